@@ -1,0 +1,35 @@
+//! The camera: the viewer, and the screen in the plane z = 0 that the viewer looks through.
+
+use crate::entity::Entity;
+use crate::model::Camera;
+use crate::pparm::{Pparm, Table};
+use glam::{DVec2, DVec3};
+
+static PIXELDIM: Pparm<[i64; 2]> = Pparm::required("pixeldim", "the width and height of the picture")
+    .alias(&["pixel_dim"])
+    .unit("pixels")
+    .must("from 1 to 100000 each way", |size: &[i64; 2]| size.iter().all(|side| (1..=100_000).contains(side)))
+    .dumped("pixel_dim", " \n");
+static WORLDDIM: Pparm<DVec2> = Pparm::required("worlddim", "the width and height of the screen")
+    .alias(&["world_dim"])
+    .unit("world units")
+    .must("positive", |size: &DVec2| size.min_element() > 0.0)
+    .dumped("world_dim", " \n");
+static VIEWPOINT: Pparm<DVec3> = Pparm::required("viewpoint", "where the viewer is")
+    .alias(&["view_point"])
+    .unit("world coordinates")
+    .must("in front of the screen: its z above 0", |at: &DVec3| at.z > 0.0)
+    .dumped("view_point", "\n");
+
+const TABLE: Table = &[&PIXELDIM, &WORLDDIM, &VIEWPOINT];
+
+inventory::submit! {
+    Entity::camera("camera", "the viewer, and a screen from the world's origin to the right and up", &[TABLE], |args| {
+        Ok(Camera {
+            // The rule has them between 1 and 100000.
+            pixels: args.get(&PIXELDIM).map(|side| side as usize),
+            screen: args.get(&WORLDDIM),
+            viewpoint: args.get(&VIEWPOINT),
+        })
+    })
+}

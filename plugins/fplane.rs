@@ -1,0 +1,80 @@
+//! A finite plane: a rectangle.
+
+use super::plane::{self, Plane};
+use crate::dump;
+use crate::entity::{Args, Entity, Refusal};
+use crate::geometry::{Body, Hittable, MISS, Ray, Span};
+use crate::pparm::{Derived, Pparm, Row, Table};
+use crate::value::Value;
+use glam::{DMat3, DVec2, DVec3};
+
+pub static DIMENSIONS: Pparm<DVec2> = Pparm::required("dimensions", "its size along xdir and across it")
+    .unit("world units")
+    .must("positive", |size: &DVec2| size.min_element() > 0.0)
+    .dumped("dimensions", "\n");
+pub static XDIR: Pparm<DVec3> =
+    Pparm::required("xdir", "the direction of its first side, seen along its normal")
+        .must("a vector that is not zero", |xdir: &DVec3| xdir.normalize().is_finite())
+        .dumped("xdir", "\n");
+static PROJECTED: Derived = Derived(|args| dump::line("projected", &frame(args).x_axis.to_datum(), "\n"));
+static ROTATION: Derived = Derived(|args| {
+    let rows = frame(args).to_cols_array_2d().map(|row| dump::matrix_row(row.into()));
+    format!("rotation matrix\n{}", rows.concat())
+});
+
+/// What planes with sides of their own take, after what a plane takes.
+pub const TABLE: Table = &[&DIMENSIONS, &XDIR, &PROJECTED];
+const ROTATION_TABLE: Table = &[&ROTATION as &dyn Row];
+
+inventory::submit! {
+    Entity::shape("fplane", "a rectangle, whose lower left corner is its point", &[plane::TABLE, TABLE, ROTATION_TABLE], |args| {
+        Ok(Body::plain(FinitePlane { sides: sides(args)?, dimensions: args.get(&DIMENSIONS), plane: Plane::new(args) }))
+    })
+}
+
+/// The directions of a rectangle's two sides and its normal, as columns, all unit vectors: the rows of the
+/// notes' rotation matrix.
+fn frame(args: &Args) -> DMat3 {
+    let normal = args.get(&plane::NORMAL).normalize();
+    let xdir = args.get(&XDIR);
+    let x = (xdir - normal.dot(xdir) * normal).normalize();
+    DMat3::from_cols(x, normal.cross(x), normal)
+}
+
+/// The directions of a rectangle's two sides.
+///
+/// # Errors
+/// Where `xdir` is parallel to the normal but for rounding, and so points nowhere on the plane.
+pub fn sides(args: &Args) -> Result<[DVec3; 2], Refusal> {
+    let normal = args.get(&plane::NORMAL).normalize();
+    let xdir = args.get(&XDIR).normalize();
+    if normal.cross(xdir).length() < 1e-6 {
+        return Err(Refusal {
+            attribute: Some("xdir"),
+            message: "has an xdir parallel to its normal".to_owned(),
+            help: "`xdir` gives the direction of the first side; any vector that is not upright on the plane will do",
+        });
+    }
+    let DMat3 { x_axis, y_axis, .. } = frame(args);
+    Ok([x_axis, y_axis])
+}
+
+struct FinitePlane {
+    plane: Plane,
+    sides: [DVec3; 2],
+    dimensions: DVec2,
+}
+
+impl Hittable for FinitePlane {
+    #[inline(always)]
+    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
+        let distance = self.plane.distance(ray, within);
+        let from_corner = ray.at(distance) - self.plane.point;
+        let inside = |side: usize| (0.0..=self.dimensions[side]).contains(&self.sides[side].dot(from_corner));
+        if inside(0) && inside(1) { distance } else { MISS }
+    }
+
+    fn normal(&self, at: DVec3) -> DVec3 {
+        self.plane.normal(at)
+    }
+}

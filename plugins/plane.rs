@@ -1,0 +1,51 @@
+//! A plane: every point in two directions, without end.
+
+use crate::entity::{Args, Entity};
+use crate::geometry::{Body, Hittable, MISS, Ray, Span};
+use crate::pparm::{Pparm, Table};
+use glam::DVec3;
+
+pub static NORMAL: Pparm<DVec3> =
+    Pparm::required("normal", "a vector that stands upright on it, on its lit side")
+        .must("a vector that is not zero", |normal: &DVec3| normal.normalize().is_finite())
+        .shown(DVec3::normalize);
+pub static POINT: Pparm<DVec3> = Pparm::required("point", "a point of it").unit("world coordinates");
+
+/// What every kind of plane takes.
+pub const TABLE: Table = &[&NORMAL, &POINT];
+
+inventory::submit! {
+    Entity::shape("plane", "a plane without end", &[TABLE], |args| Ok(Body::plain(Plane::new(args))))
+}
+
+/// An infinite plane. Other planes hold one.
+pub struct Plane {
+    pub normal: DVec3,
+    pub point: DVec3,
+    normal_dot_point: f64,
+}
+
+impl Plane {
+    /// The plane of an entity whose table has [`TABLE`]'s rows.
+    pub fn new(args: &Args) -> Self {
+        let (normal, point) = (args.get(&NORMAL).normalize(), args.get(&POINT));
+        Self { normal, point, normal_dot_point: normal.dot(point) }
+    }
+}
+
+impl Hittable for Plane {
+    #[inline(always)]
+    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
+        let toward = self.normal.dot(ray.dir);
+        if toward == 0.0 {
+            return MISS;
+        }
+        let distance = (self.normal_dot_point - self.normal.dot(ray.origin)) / toward;
+        // On the viewer's side of the screen there are no planes (the notes' "wrong side").
+        if ray.at(distance).z > 0.01 { MISS } else { within.keep(distance) }
+    }
+
+    fn normal(&self, _at: DVec3) -> DVec3 {
+        self.normal
+    }
+}

@@ -1,0 +1,53 @@
+//! A tiled plane: tiles of two materials, without end.
+
+use super::fplane::{self, DIMENSIONS, sides};
+use super::plane::{self, Plane};
+use crate::entity::Entity;
+use crate::geometry::{Body, Rgb, Shader};
+use crate::model::Material;
+use crate::pparm::{Pparm, Table};
+use glam::{DVec2, DVec3};
+use std::sync::Arc;
+
+static ALTMATERIAL: Pparm<Arc<Material>> =
+    Pparm::required("altmaterial", "the material of every other tile").not_dumped();
+
+const TABLE: Table = &[&ALTMATERIAL];
+
+inventory::submit! {
+    Entity::shape("tiled_plane", "a plane without end, tiled with two materials", &[plane::TABLE, fplane::TABLE, TABLE], |args| {
+        let tiles = Tiles {
+            sides: sides(args)?,
+            dimensions: args.get(&DIMENSIONS),
+            other: args.get(&ALTMATERIAL),
+        };
+        Ok(Body::shaded(Plane::new(args), tiles))
+    })
+    .alias(&["tplane"])
+    .dumped_as("tplane")
+}
+
+struct Tiles {
+    sides: [DVec3; 2],
+    dimensions: DVec2,
+    other: Arc<Material>,
+}
+
+impl Tiles {
+    /// The material of the tile at a point. Tiles are counted from the world's origin, not from the plane's
+    /// point, and the notes' offset keeps them from meeting twice as wide at 0.
+    fn pick<'m>(&'m self, own: &'m Material, at: DVec3) -> &'m Material {
+        let tile = |side: usize| ((self.sides[side].dot(at) + 100_000.0) / self.dimensions[side]).floor();
+        if (tile(0) + tile(1)).rem_euclid(2.0) == 0.0 { &self.other } else { own }
+    }
+}
+
+impl Shader for Tiles {
+    fn ambient(&self, material: &Material, at: DVec3) -> Rgb {
+        self.pick(material, at).ambient
+    }
+
+    fn diffuse(&self, material: &Material, at: DVec3) -> Rgb {
+        self.pick(material, at).diffuse
+    }
+}

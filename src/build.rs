@@ -1,0 +1,38 @@
+//! Names every file of `plugins/`, so that dropping one in compiles it in and deleting it takes it out.
+//!
+//! Writes `$OUT_DIR/plugins.rs`, one macro with a `mod` per file in sorted order; `lib.rs` expands it.
+
+use std::path::Path;
+use std::{env, fs, io};
+
+fn main() -> io::Result<()> {
+    println!("cargo::rerun-if-changed=plugins");
+    let mut names = Vec::new();
+    for file in fs::read_dir("plugins")? {
+        let path = file?.path();
+        if path.extension().is_none_or(|extension| extension != "rs") {
+            continue;
+        }
+        let name = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
+        if is_module_name(name) {
+            names.push(name.to_owned());
+        } else {
+            println!(
+                "cargo::error={}: a plugin's file name is a Rust module name, such as `tiled_plane.rs`",
+                path.display()
+            );
+        }
+    }
+    names.sort();
+    let modules: String = names.iter().map(|name| format!("    mod {name};\n")).collect();
+    let out = env::var_os("OUT_DIR").ok_or_else(|| io::Error::other("cargo sets OUT_DIR"))?;
+    fs::write(
+        Path::new(&out).join("plugins.rs"),
+        format!("macro_rules! plugins {{ () => {{\n{modules}}} }}\n"),
+    )
+}
+
+fn is_module_name(name: &str) -> bool {
+    name.starts_with(|c: char| c.is_ascii_lowercase())
+        && name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
+}

@@ -1,0 +1,33 @@
+//! `tabray check`: the faults of scenes, and nothing else.
+
+use super::{Failure, input, tell};
+use std::path::PathBuf;
+use tabray::entity::Registry;
+
+/// Look for faults in scenes
+#[derive(clap::Args)]
+pub struct Args {
+    /// The scenes; `-` reads one from standard input
+    #[arg(required = true, value_name = "SCENE")]
+    scenes: Vec<PathBuf>,
+}
+
+pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
+    let mut sound = true;
+    for scene in &args.scenes {
+        match input::load(registry, scene) {
+            Ok(model) => eprintln!(
+                "{}: sound ({} materials, {} objects, {} lights)",
+                scene.display(),
+                model.materials.len(),
+                model.objects.len(),
+                model.lights.len()
+            ),
+            Err(failure) => {
+                tell(&failure);
+                sound = false;
+            }
+        }
+    }
+    if sound { Ok(()) } else { Err(Failure::Told) }
+}

@@ -1,0 +1,32 @@
+//! `tabray dump`: a scene as the program understands it.
+
+use super::{Failure, input, print};
+use std::path::PathBuf;
+use tabray::dump;
+use tabray::entity::Registry;
+
+/// Print a scene as the program understands it
+#[derive(clap::Args)]
+pub struct Args {
+    /// The scene; `-` reads it from standard input
+    scene: PathBuf,
+    /// How to print it
+    #[arg(long, default_value = "notes")]
+    format: Format,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum Format {
+    /// As the course notes' program prints it, numbers to one decimal
+    Notes,
+    /// As a scene that loads again to the identical model
+    Ray,
+}
+
+pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
+    let model = input::load(registry, &args.scene)?;
+    print(&match args.format {
+        Format::Notes => dump::notes(&model),
+        Format::Ray => dump::ray(&model),
+    })
+}

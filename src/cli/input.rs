@@ -1,0 +1,55 @@
+//! Reading scenes from files and from standard input.
+
+use super::Failure;
+use std::fs::File;
+use std::io::{self, Read, Write};
+use std::path::Path;
+use tabray::entity::Registry;
+use tabray::model::Model;
+use tabray::scene;
+
+/// The largest scene that is read: far beyond any written one, and far below what memory holds.
+const LARGEST: u64 = 1 << 30;
+
+/// Whether this path stands for standard input.
+pub fn is_standard(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
+/// Reads a scene, prints its warnings and makes its model.
+pub fn load(registry: &Registry, path: &Path) -> Result<Model, Failure> {
+    let (name, bytes) = read(path)?;
+    let loaded = scene::read(registry, &name, &bytes).map_err(Failure::Scene)?;
+    let _ = write!(anstream::stderr(), "{}", loaded.warnings.styled());
+    Ok(loaded.model)
+}
+
+/// The bytes of a scene, and what messages call it.
+fn read(path: &Path) -> Result<(String, Vec<u8>), Failure> {
+    let (name, bytes) = if is_standard(path) {
+        ("<stdin>".to_owned(), to_first_nul(io::stdin().lock()))
+    } else {
+        (path.display().to_string(), File::open(path).and_then(to_first_nul))
+    };
+    match bytes {
+        Ok(bytes) if bytes.len() as u64 > LARGEST => Err(Failure::Usage(
+            format!("`{name}` is larger than {} MiB: this is not a scene", LARGEST >> 20),
+            None,
+        )),
+        Ok(bytes) => Ok((name, bytes)),
+        Err(error) => Err(Failure::Usage(format!("cannot read `{name}`: {error}"), None)),
+    }
+}
+
+/// Reads all there is, but no farther than a block with a NUL byte: no scene has one, and devices have no end.
+fn to_first_nul(source: impl Read) -> io::Result<Vec<u8>> {
+    let mut source = source.take(LARGEST + 1);
+    let mut bytes = Vec::new();
+    loop {
+        let start = bytes.len();
+        let read = source.by_ref().take(1 << 16).read_to_end(&mut bytes)?;
+        if read == 0 || bytes[start..].contains(&0) {
+            return Ok(bytes);
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! `tabray list`: the entity types and their attributes, from their tables.
+
+use super::{Failure, print};
+use tabray::entity::{Entity, Registry};
+use tabray::pparm::Attribute;
+
+/// List the entity types, or the attributes of one
+#[derive(clap::Args)]
+pub struct Args {
+    /// The entity type to tell about
+    entity: Option<String>,
+}
+
+pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
+    let Some(name) = args.entity else {
+        return print(&columns(
+            registry
+                .iter()
+                .map(|entity| [entity.name.to_owned(), entity.kind().to_string(), entity.meaning.to_owned()]),
+        ));
+    };
+    let entity = registry.find(&name).ok_or_else(|| {
+        let help = match registry.nearest(&name) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => "`tabray list` lists them all".to_owned(),
+        };
+        Failure::Usage(format!("there is no entity type `{name}`"), Some(help))
+    })?;
+    print(&details(entity))
+}
+
+fn details(entity: &'static Entity) -> String {
+    let rows = entity.attributes().map(|attribute| {
+        let names: Vec<_> = [attribute.name()].iter().chain(attribute.aliases()).copied().collect();
+        [names.join(", "), attribute.takes(), condition(attribute), attribute.meaning().to_owned()]
+    });
+    let also = match entity.aliases {
+        [] => String::new(),
+        aliases => format!("Also written {}.\n", aliases.join(", ")),
+    };
+    format!(
+        "{} NAME {{ ... }}\n\n{}: {}.\n{also}\n{}",
+        entity.name,
+        entity.kind(),
+        entity.meaning,
+        columns(rows)
+    )
+}
+
+/// Whether an attribute must be given, in what unit, and what it must be.
+fn condition(attribute: &dyn Attribute) -> String {
+    let given = if attribute.default().is_some() { "optional" } else { "required" };
+    [given, attribute.unit(), attribute.rule()]
+        .into_iter()
+        .filter(|part| !part.is_empty())
+        .collect::<Vec<_>>()
+        .join(", ")
+}
+
+/// Rows of text in columns as wide as their widest entry.
+fn columns<const N: usize>(rows: impl Iterator<Item = [String; N]>) -> String {
+    let rows: Vec<_> = rows.collect();
+    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let widths: Vec<_> = (0..N).map(width).collect();
+    let line = |row: &[String; N]| {
+        let padded: String =
+            row.iter().zip(&widths).map(|(text, width)| format!("{text:width$}  ")).collect();
+        padded.trim_end().to_owned() + "\n"
+    };
+    rows.iter().map(line).collect()
+}

@@ -1,0 +1,17 @@
+//! Without a command: the notes' program, a filter from a scene to its dump and its picture.
+
+use super::output::Output;
+use super::{Failure, input, render};
+use std::io::Write;
+use std::path::Path;
+use tabray::dump;
+use tabray::entity::Registry;
+use tabray::picture::Format;
+
+pub fn run(registry: &Registry) -> Result<(), Failure> {
+    let standard = Path::new("-");
+    let output = Output::open(standard)?;
+    let model = input::load(registry, standard)?;
+    let _ = write!(std::io::stderr(), "{}", dump::notes(&model));
+    render::picture(&model, 0, Format::Ppm, output)
+}

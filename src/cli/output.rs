@@ -1,0 +1,93 @@
+//! Where a picture goes: beside its target first, then in its place, so that no half of one is ever there.
+
+use super::Failure;
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, IsTerminal, Write};
+use std::path::{Path, PathBuf};
+use tempfile::NamedTempFile;
+
+/// A place to write to, found fit before any work is done.
+pub enum Output {
+    /// Standard output.
+    Standard,
+    /// What is no ordinary file, such as a device or a pipe; it cannot be replaced.
+    Special(File),
+    /// A file beside the target, and the target.
+    File(NamedTempFile, PathBuf),
+}
+
+impl Output {
+    /// Opens `path`, or standard output for `-`. What is there already stays until [`finish`](Self::finish).
+    pub fn open(path: &Path) -> Result<Self, Failure> {
+        if path == Path::new("-") {
+            if io::stdout().is_terminal() {
+                return Err(Failure::Usage(
+                    "standard output is a terminal, which shows no pictures".to_owned(),
+                    Some("send it on with `> FILE` or `|`, or name a file with `-o FILE`".to_owned()),
+                ));
+            }
+            return Ok(Self::Standard);
+        }
+        let cannot =
+            |error: io::Error| Failure::Failed(format!("cannot write `{}`: {error}", path.display()));
+        // A link stays a link; the file that it leads to is the one replaced.
+        let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        let folder = match target.parent() {
+            Some(folder) if folder != Path::new("") => folder,
+            _ => Path::new("."),
+        };
+        match fs::metadata(&target) {
+            Ok(meta) if meta.is_dir() => Err(cannot(io::ErrorKind::IsADirectory.into())),
+            Ok(meta) if !meta.is_file() => {
+                let file = OpenOptions::new().write(true).open(&target).map_err(cannot)?;
+                Ok(Self::Special(file))
+            }
+            Ok(meta) if meta.permissions().readonly() => Err(cannot(io::ErrorKind::PermissionDenied.into())),
+            Ok(meta) => {
+                let file = beside(folder).map_err(cannot)?;
+                fs::set_permissions(file.path(), meta.permissions()).map_err(cannot)?;
+                Ok(Self::File(file, target))
+            }
+            Err(_) => Ok(Self::File(beside(folder).map_err(cannot)?, target)),
+        }
+    }
+
+    /// Puts what was written in its place.
+    pub fn finish(self) -> io::Result<()> {
+        match self {
+            Self::Standard | Self::Special(_) => Ok(()),
+            Self::File(file, target) => file.persist(target).map(drop).map_err(|error| error.error),
+        }
+    }
+}
+
+impl Write for Output {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self {
+            Self::Standard => io::stdout().write(bytes),
+            Self::Special(file) => file.write(bytes),
+            Self::File(file, _) => file.write(bytes),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match self {
+            Self::Standard => io::stdout().flush(),
+            Self::Special(file) => file.flush(),
+            Self::File(file, _) => file.flush(),
+        }
+    }
+}
+
+/// A new hidden file in the folder, with the permissions that any new file gets. It goes when it is dropped.
+fn beside(folder: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".tabray-");
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let file = builder.tempfile_in(folder);
+    // Only the reason: the name of a file that does not exist would puzzle.
+    file.map_err(|error| {
+        error.raw_os_error().map_or_else(|| error.kind().into(), io::Error::from_raw_os_error)
+    })
+}

@@ -1,0 +1,129 @@
+//! `tabray render`: a scene's picture.
+
+use super::output::Output;
+use super::{Failure, input, interrupt};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::{self, BufWriter};
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+use tabray::entity::Registry;
+use tabray::model::Model;
+use tabray::picture::Format;
+use tabray::render::Renderer;
+
+/// Make a scene's picture
+#[derive(clap::Args)]
+pub struct Args {
+    /// The scene; `-` reads it from standard input
+    scene: PathBuf,
+    /// Where to write the picture: a .png or .ppm file, or `-` for standard output (a PPM unless --format says
+    /// otherwise); by default the scene's name with .png in the working directory
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// The picture's format, whatever the file's extension
+    #[arg(long)]
+    format: Option<FormatName>,
+    /// How many threads to use; by default one on each core
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum FormatName {
+    Ppm,
+    Png,
+}
+
+pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
+    let path = target(&args)?;
+    let format = format(&args, &path)?;
+    let model = input::load(registry, &args.scene)?;
+    let output = Output::open(&path)?;
+    let start = Instant::now();
+    picture(&model, args.threads.unwrap_or(0).into(), format, output).map_err(|failure| match failure {
+        Failure::Failed(why) => Failure::Failed(format!("cannot write `{}`: {why}", path.display())),
+        other => other,
+    })?;
+    if path != Path::new("-") {
+        let [width, height] = model.camera.value.pixels;
+        let seconds = start.elapsed().as_secs_f64();
+        eprintln!("wrote {} ({width} x {height} pixels, {seconds:.2} s)", path.display());
+    }
+    Ok(())
+}
+
+/// Renders a model and puts the picture where it belongs.
+pub fn picture(model: &Model, threads: usize, format: Format, output: Output) -> Result<(), Failure> {
+    interrupt::catch()?;
+    let renderer = Renderer::new(threads)?;
+    let [_, height] = model.camera.value.pixels;
+    let progress = Progress::new(height);
+    let done = || {
+        progress.step();
+        interrupt::check()
+    };
+    let mut out = BufWriter::with_capacity(1 << 16, output);
+    let written = format.write(&mut out, model.camera.value.pixels, renderer.bands(model, &done));
+    progress.bar.finish_and_clear();
+    if interrupt::check() == ControlFlow::Break(()) {
+        return Err(Failure::Interrupted);
+    }
+    let finished = written.and_then(|()| out.into_inner().map_err(|error| error.into_error())?.finish());
+    match finished {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error.into()),
+        _ => Ok(()),
+    }
+}
+
+/// A bar on a terminal, once rendering takes long enough to ask how long it will take.
+struct Progress {
+    bar: ProgressBar,
+    start: Instant,
+}
+
+impl Progress {
+    fn new(rows: usize) -> Self {
+        let style = ProgressStyle::with_template("{wide_bar} {percent:>3} % {eta} left");
+        let bar = ProgressBar::with_draw_target(Some(rows as u64), ProgressDrawTarget::hidden());
+        Self {
+            bar: bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar())),
+            start: Instant::now(),
+        }
+    }
+
+    fn step(&self) {
+        if self.bar.is_hidden() && self.start.elapsed() > Duration::from_millis(500) {
+            self.bar.set_draw_target(ProgressDrawTarget::stderr());
+        }
+        self.bar.inc(1);
+    }
+}
+
+fn target(args: &Args) -> Result<PathBuf, Failure> {
+    match (&args.output, args.scene.file_name()) {
+        (Some(path), _) => Ok(path.clone()),
+        (None, Some(name)) if !input::is_standard(&args.scene) => {
+            let extension = if matches!(args.format, Some(FormatName::Ppm)) { "ppm" } else { "png" };
+            Ok(Path::new(name).with_extension(extension))
+        }
+        _ => Err(Failure::Usage(
+            "a scene from standard input has no name for its picture".to_owned(),
+            Some("name one with `-o FILE`; `-o -` writes to standard output".to_owned()),
+        )),
+    }
+}
+
+fn format(args: &Args, path: &Path) -> Result<Format, Failure> {
+    match args.format {
+        Some(FormatName::Ppm) => Ok(Format::Ppm),
+        Some(FormatName::Png) => Ok(Format::Png),
+        None if path == Path::new("-") => Ok(Format::Ppm),
+        None => Format::of(path).ok_or_else(|| {
+            Failure::Usage(
+                format!("the name `{}` does not say which format the picture has", path.display()),
+                Some("end it in .png or .ppm, or give `--format png` or `--format ppm`".to_owned()),
+            )
+        }),
+    }
+}

@@ -1,0 +1,97 @@
+//! A model as text: as the notes' program dumps it, or as a scene that loads again.
+
+use crate::entity::{Args, Kind};
+use crate::model::Model;
+use crate::value::Datum;
+use std::fmt::Write;
+
+/// The notes' dump: camera, materials, objects and lights, numbers to one decimal.
+pub fn notes(model: &Model) -> String {
+    let mut text = String::new();
+    let kinds = [Kind::Camera, Kind::Material, Kind::Object, Kind::Light];
+    for (kind, args) in kinds.into_iter().flat_map(|kind| entities(model, kind).map(move |args| (kind, args)))
+    {
+        let (before, after_name, after) = match kind {
+            Kind::Camera => ("", "", "\n\n"),
+            Kind::Material => ("\n", " ", ""),
+            Kind::Object | Kind::Light => ("", " ", "\n"),
+        };
+        text += before;
+        text += &format!("{:<12} {}{after_name}\n", args.entity.dump_name, args.name);
+        text.extend(args.entity.rows().map(|row| row.dump(args)));
+        text += after;
+    }
+    text
+}
+
+/// A line of the notes' dump. Materials end their last lines, and others some, with blank lines.
+pub fn line(label: &str, datum: &Datum, ending: &str) -> String {
+    let mut line = format!("{label:<12}");
+    for value in printed(datum, 5, 1) {
+        line.push(' ');
+        line += &value;
+    }
+    line + ending
+}
+
+/// A line of the notes' dump that holds a row of a matrix.
+pub fn matrix_row(row: glam::DVec3) -> String {
+    format!("{:<12} {:7.3} {:7.3} {:7.3}\n", "", row.x, row.y, row.z)
+}
+
+fn printed(datum: &Datum, width: usize, decimals: usize) -> Vec<String> {
+    match datum {
+        Datum::Whole(numbers) => numbers.iter().map(|number| format!("{number:width$}")).collect(),
+        Datum::Numbers(numbers) => {
+            numbers.iter().map(|number| format!("{number:width$.decimals$}")).collect()
+        }
+        Datum::Word(word) => vec![word.clone()],
+        Datum::Material { name, .. } => vec![name.to_string()],
+    }
+}
+
+/// A scene in the notes' language that loads again to the identical model: every number to its last bit.
+pub fn ray(model: &Model) -> String {
+    let mut text = String::new();
+    for kind in [Kind::Camera, Kind::Material, Kind::Light, Kind::Object] {
+        for args in entities(model, kind) {
+            if !text.is_empty() {
+                text.push('\n');
+            }
+            text += &entity(args);
+        }
+    }
+    text
+}
+
+fn entity(args: &Args) -> String {
+    let mut text = format!("{} {}\n{{\n", args.entity.name, args.name);
+    let width = args.values().map(|(attribute, _)| attribute.name().len()).max().unwrap_or(0);
+    for (attribute, datum) in args.values() {
+        let _ = writeln!(text, "    {:<width$} {}", attribute.name(), exact(datum));
+    }
+    text + "}\n"
+}
+
+fn exact(datum: &Datum) -> String {
+    let words: Vec<_> = match datum {
+        Datum::Numbers(numbers) => numbers.iter().map(|number| shortest(*number)).collect(),
+        _ => printed(datum, 0, 0),
+    };
+    words.join(" ")
+}
+
+/// The shortest decimal that reads back as the same number.
+fn shortest(number: f64) -> String {
+    let text = format!("{number:?}");
+    text.strip_suffix(".0").unwrap_or(&text).to_owned()
+}
+
+fn entities(model: &Model, kind: Kind) -> Box<dyn Iterator<Item = &Args> + '_> {
+    match kind {
+        Kind::Camera => Box::new(std::iter::once(&model.camera.args)),
+        Kind::Material => Box::new(model.materials.iter().map(|item| &item.args)),
+        Kind::Object => Box::new(model.objects.iter().map(|object| &object.args)),
+        Kind::Light => Box::new(model.lights.iter().map(|item| &item.args)),
+    }
+}

@@ -1,0 +1,310 @@
+//! Entity types: what a plugin registers, and the registry of all of them.
+
+use crate::geometry::{Body, Light};
+use crate::model::{Camera, Material};
+use crate::pparm::{Attribute, Pparm, Row, Table};
+use crate::value::{Datum, Value};
+use crate::words::nearest;
+use std::collections::{BTreeMap, BTreeSet};
+use std::panic::Location;
+use std::sync::{Arc, LazyLock};
+use std::{fmt, iter};
+
+/// An entity type of the scene language: a name, a table of attributes and a constructor.
+///
+/// A plugin registers one with `inventory::submit!`.
+pub struct Entity {
+    /// Its name in the scene language.
+    pub name: &'static str,
+    /// What it is, in a few words.
+    pub meaning: &'static str,
+    /// Other names that a scene may use for it.
+    pub aliases: &'static [&'static str],
+    /// Makes the entity from its checked values.
+    pub construct: Construct,
+    /// The name that the notes' dump gives it.
+    pub dump_name: &'static str,
+    tables: &'static [Table],
+    place: &'static Location<'static>,
+}
+
+inventory::collect!(Entity);
+
+/// The kinds of entity that a scene is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Kind {
+    /// The viewer and the screen; a scene has one.
+    Camera,
+    /// How a surface answers light.
+    Material,
+    /// A shape made of a material.
+    Object,
+    /// A source of light, itself not visible.
+    Light,
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Kind::Camera => "camera",
+            Kind::Material => "material",
+            Kind::Object => "object",
+            Kind::Light => "light",
+        })
+    }
+}
+
+/// The constructor of an entity type, by kind.
+#[derive(Clone, Copy)]
+pub enum Construct {
+    /// Makes a camera.
+    Camera(fn(&Args) -> Result<Camera, Refusal>),
+    /// Makes a material.
+    Material(fn(&Args) -> Result<Material, Refusal>),
+    /// Makes an object's shape and, if it has one, its shader.
+    Object(fn(&Args) -> Result<Body, Refusal>),
+    /// Makes a light.
+    Light(fn(&Args) -> Result<Box<dyn Light>, Refusal>),
+}
+
+/// What every object has beside its own attributes.
+pub static MATERIAL: Pparm<Arc<Material>> =
+    Pparm::required("material", "what it is made of, a material defined above it");
+
+const OBJECT: Table = &[&MATERIAL];
+
+impl Entity {
+    /// A camera's type.
+    #[track_caller]
+    pub const fn camera(
+        name: &'static str,
+        meaning: &'static str,
+        tables: &'static [Table],
+        construct: fn(&Args) -> Result<Camera, Refusal>,
+    ) -> Self {
+        Self::new(name, meaning, tables, Construct::Camera(construct))
+    }
+
+    /// A material's type.
+    #[track_caller]
+    pub const fn material(
+        name: &'static str,
+        meaning: &'static str,
+        tables: &'static [Table],
+        construct: fn(&Args) -> Result<Material, Refusal>,
+    ) -> Self {
+        Self::new(name, meaning, tables, Construct::Material(construct))
+    }
+
+    /// A shape. Its table gets the attribute `material` of its own accord.
+    #[track_caller]
+    pub const fn shape(
+        name: &'static str,
+        meaning: &'static str,
+        tables: &'static [Table],
+        construct: fn(&Args) -> Result<Body, Refusal>,
+    ) -> Self {
+        Self::new(name, meaning, tables, Construct::Object(construct))
+    }
+
+    /// A light's type.
+    #[track_caller]
+    pub const fn light(
+        name: &'static str,
+        meaning: &'static str,
+        tables: &'static [Table],
+        construct: fn(&Args) -> Result<Box<dyn Light>, Refusal>,
+    ) -> Self {
+        Self::new(name, meaning, tables, Construct::Light(construct))
+    }
+
+    #[track_caller]
+    const fn new(
+        name: &'static str,
+        meaning: &'static str,
+        tables: &'static [Table],
+        construct: Construct,
+    ) -> Self {
+        Self { name, meaning, aliases: &[], construct, dump_name: name, tables, place: Location::caller() }
+    }
+
+    /// Other names that a scene may use for it.
+    pub const fn alias(mut self, aliases: &'static [&'static str]) -> Self {
+        self.aliases = aliases;
+        self
+    }
+
+    /// The name that the notes' dump gives it, where that is not its own.
+    pub const fn dumped_as(mut self, name: &'static str) -> Self {
+        self.dump_name = name;
+        self
+    }
+
+    /// The kind of thing that it is.
+    pub fn kind(&self) -> Kind {
+        match self.construct {
+            Construct::Camera(_) => Kind::Camera,
+            Construct::Material(_) => Kind::Material,
+            Construct::Object(_) => Kind::Object,
+            Construct::Light(_) => Kind::Light,
+        }
+    }
+
+    /// The rows of its table, in the order of the dump.
+    pub fn rows(&self) -> impl Iterator<Item = &'static dyn Row> + use<> {
+        let common = if self.kind() == Kind::Object { OBJECT } else { &[] };
+        iter::once(common).chain(self.tables.iter().copied()).flatten().copied()
+    }
+
+    /// Its attributes, in the order of its table.
+    pub fn attributes(&self) -> impl Iterator<Item = &'static dyn Attribute> + use<> {
+        self.rows().filter_map(|row| row.attribute())
+    }
+
+    /// The file and line that registers it.
+    pub fn place(&self) -> String {
+        let file = self.place.file().replace('\\', "/");
+        format!("{}:{}", file.strip_prefix("src/../").unwrap_or(&file), self.place.line())
+    }
+}
+
+/// An entity of a scene as a constructor sees it: its type, its name and its checked values.
+#[derive(Clone)]
+pub struct Args {
+    /// Its type.
+    pub entity: &'static Entity,
+    /// Its name.
+    pub name: String,
+    /// A value for each attribute of the type, in that order.
+    values: Vec<Datum>,
+}
+
+impl Args {
+    /// `values` holds a datum for each of the entity type's attributes, in their order.
+    pub(crate) fn new(entity: &'static Entity, name: String, values: Vec<Datum>) -> Self {
+        debug_assert_eq!(values.len(), entity.attributes().count());
+        Self { entity, name, values }
+    }
+
+    /// The value of the attribute that `key` describes.
+    ///
+    /// # Panics
+    /// Where the plugin asks for an attribute that is not in the table it registered.
+    #[track_caller]
+    pub fn get<T: Value>(&self, key: &Pparm<T>) -> T {
+        let value = self.find(key.name()).and_then(T::from_datum);
+        value.unwrap_or_else(|| self.not_in_table(key.name()))
+    }
+
+    /// The value of an attribute as it was checked.
+    #[track_caller]
+    pub(crate) fn datum(&self, attribute: &str) -> &Datum {
+        self.find(attribute).unwrap_or_else(|| self.not_in_table(attribute))
+    }
+
+    /// Every attribute with its value, in the order of the table.
+    pub fn values(&self) -> impl Iterator<Item = (&'static dyn Attribute, &Datum)> {
+        self.entity.attributes().zip(&self.values)
+    }
+
+    fn find(&self, attribute: &str) -> Option<&Datum> {
+        self.values().find(|(known, _)| known.name() == attribute).map(|(_, datum)| datum)
+    }
+
+    #[track_caller]
+    fn not_in_table(&self, attribute: &str) -> ! {
+        panic!(
+            "the plugin `{}` asks for `{attribute}`, which is not in the table it registers at {}",
+            self.entity.name,
+            self.entity.place()
+        )
+    }
+}
+
+/// Why a constructor refuses values that are sound one by one.
+#[derive(Debug)]
+pub struct Refusal {
+    /// The attribute to mark; the entity's name where there is none.
+    pub attribute: Option<&'static str>,
+    /// What is wrong, to follow the entity's name: "has an xdir parallel to its normal".
+    pub message: String,
+    /// What would be right.
+    pub help: &'static str,
+}
+
+/// All entity types of the program.
+pub struct Registry {
+    entities: BTreeMap<&'static str, &'static Entity>,
+    aliases: BTreeMap<&'static str, &'static Entity>,
+}
+
+impl Registry {
+    /// The entity types that the plugins registered, sorted by name.
+    ///
+    /// # Errors
+    /// Names given twice, each with both places: the plugins contradict each other.
+    pub fn get() -> Result<&'static Registry, &'static str> {
+        static REGISTRY: LazyLock<Result<Registry, String>> =
+            LazyLock::new(|| Registry::of(inventory::iter::<Entity>()));
+        REGISTRY.as_ref().map_err(String::as_str)
+    }
+
+    /// A registry of these entity types.
+    ///
+    /// # Errors
+    /// As [`Registry::get`].
+    pub fn of(entities: impl IntoIterator<Item = &'static Entity>) -> Result<Registry, String> {
+        // The order of `inventory` is the linker's.
+        let mut sorted: Vec<_> = entities.into_iter().collect();
+        sorted.sort_by_key(|entity| (entity.name, entity.place()));
+
+        let mut faults = Vec::new();
+        let mut by_name: BTreeMap<&str, &Entity> = BTreeMap::new();
+        let mut aliases: BTreeMap<&str, &Entity> = BTreeMap::new();
+        for &entity in &sorted {
+            if let Some(first) = by_name.insert(entity.name, entity) {
+                faults.push(taken("entity type", entity.name, first, entity));
+            }
+            let mut names = BTreeSet::new();
+            for attribute in entity.attributes() {
+                for &name in iter::once(&attribute.name()).chain(attribute.aliases()) {
+                    if !names.insert(name) {
+                        faults.push(format!(
+                            "the table of `{}` at {} has `{name}` twice",
+                            entity.name,
+                            entity.place()
+                        ));
+                    }
+                }
+            }
+        }
+        for &entity in &sorted {
+            for &alias in entity.aliases {
+                let first = by_name.get(alias).copied().or_else(|| aliases.insert(alias, entity));
+                if let Some(first) = first {
+                    faults.push(taken("entity type", alias, first, entity));
+                }
+            }
+        }
+        if faults.is_empty() { Ok(Registry { entities: by_name, aliases }) } else { Err(faults.join("\n")) }
+    }
+
+    /// The entity type of this name or alias.
+    pub fn find(&self, name: &str) -> Option<&'static Entity> {
+        self.entities.get(name).or_else(|| self.aliases.get(name)).copied()
+    }
+
+    /// The name of the entity type that a misspelt word was most likely meant to be.
+    pub fn nearest(&self, word: &str) -> Option<&'static str> {
+        nearest(word, self.entities.keys().copied())
+    }
+
+    /// All entity types, sorted by name.
+    pub fn iter(&self) -> impl Iterator<Item = &'static Entity> {
+        self.entities.values().copied()
+    }
+}
+
+fn taken(what: &str, name: &str, first: &Entity, second: &Entity) -> String {
+    format!("the {what} `{name}` is registered twice: at {} and at {}", first.place(), second.place())
+}

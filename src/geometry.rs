@@ -1,0 +1,110 @@
+//! Rays, and what a plugin implements: [`Hittable`] shapes, [`Shader`]s and [`Light`]s.
+
+use crate::model::Material;
+use glam::DVec3;
+
+/// A colour or a reflectivity: red, green and blue; 1 is as bright as a picture can show.
+pub type Rgb = DVec3;
+
+/// A half line.
+#[derive(Clone, Copy, Debug)]
+pub struct Ray {
+    /// Where it starts, in world coordinates.
+    pub origin: DVec3,
+    /// Where it goes, a unit vector.
+    pub dir: DVec3,
+}
+
+impl Ray {
+    /// The point at this distance from the origin.
+    #[inline(always)]
+    pub fn at(&self, distance: f64) -> DVec3 {
+        self.origin + distance * self.dir
+    }
+}
+
+/// Distances along a ray, both ends excluded.
+#[derive(Clone, Copy, Debug)]
+pub struct Span {
+    /// Hits must lie farther.
+    pub near: f64,
+    /// Hits must lie nearer.
+    pub far: f64,
+}
+
+/// The distance of a ray that hits nothing.
+pub const MISS: f64 = f64::INFINITY;
+
+impl Span {
+    /// All of a ray but its origin.
+    pub const RAY: Span = Span { near: 0.0, far: f64::INFINITY };
+
+    /// The distance itself if it lies in the span, else [`MISS`]; so is a NaN.
+    #[inline(always)]
+    pub fn keep(&self, distance: f64) -> f64 {
+        if self.near < distance && distance < self.far { distance } else { MISS }
+    }
+}
+
+/// A shape that rays can hit. Shapes do not change while a picture is made.
+pub trait Hittable: Send + Sync {
+    /// The distance from the ray's origin to its first hit of the shape within the span, or [`MISS`].
+    fn distance(&self, ray: &Ray, within: &Span) -> f64;
+
+    /// The unit normal of the shape at a point of it.
+    fn normal(&self, at: DVec3) -> DVec3;
+}
+
+/// How a surface answers light where its material alone does not say.
+///
+/// The defaults are the notes' `material_getamb`, `material_getdiff` and `material_getspec`.
+pub trait Shader: Send + Sync {
+    /// The reflectivity for light from nowhere in particular.
+    fn ambient(&self, material: &Material, _at: DVec3) -> Rgb {
+        material.ambient
+    }
+
+    /// The reflectivity for light from the scene's lights, scattered evenly.
+    fn diffuse(&self, material: &Material, _at: DVec3) -> Rgb {
+        material.diffuse
+    }
+
+    /// The reflectivity of the surface as a mirror.
+    fn specular(&self, material: &Material, _at: DVec3) -> Rgb {
+        material.specular
+    }
+}
+
+/// The shader of an object that has none of its own: the material everywhere.
+pub struct Plain;
+
+impl Shader for Plain {}
+
+/// A source of light.
+pub trait Light: Send + Sync {
+    /// Where it is, in world coordinates.
+    fn location(&self) -> DVec3;
+
+    /// The light that it sends toward a point, or nothing where it does not point there (the notes' `vischeck`).
+    fn emissivity(&self, toward: DVec3) -> Option<Rgb>;
+}
+
+/// What the constructor of an object makes: its shape and its shader.
+pub struct Body {
+    /// Where it is.
+    pub shape: Box<dyn Hittable>,
+    /// What it looks like.
+    pub shader: Box<dyn Shader>,
+}
+
+impl Body {
+    /// An object that looks like its material.
+    pub fn plain(shape: impl Hittable + 'static) -> Self {
+        Self::shaded(shape, Plain)
+    }
+
+    /// An object with a look of its own.
+    pub fn shaded(shape: impl Hittable + 'static, shader: impl Shader + 'static) -> Self {
+        Self { shape: Box::new(shape), shader: Box::new(shader) }
+    }
+}

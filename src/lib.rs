@@ -1,0 +1,28 @@
+//! A ray tracer in which a scene is data and every entity type is a plugin.
+//!
+//! The way of the data is one street: a scene's text becomes entities as written ([`scene`]), checked against
+//! the tables of their types ([`entity`], [`pparm`]), then a [`Model`](model::Model), then a picture
+//! ([`render`], [`picture`]). A model can also be built
+//! without any text ([`scene::build`]), and printed again ([`dump`]).
+//!
+//! A file in `plugins/` adds an entity type: it registers an [`Entity`](entity::Entity) and implements a trait
+//! of [`geometry`]. No other file knows its name.
+
+pub mod dump;
+pub mod entity;
+pub mod geometry;
+pub mod model;
+pub mod picture;
+pub mod pparm;
+pub mod render;
+pub mod scene;
+pub mod trace;
+pub mod value;
+mod words;
+
+include!(concat!(env!("OUT_DIR"), "/plugins.rs"));
+
+#[path = "../plugins"]
+mod plugins {
+    plugins!();
+}

@@ -1,0 +1,80 @@
+//! Colours to bytes, and bytes to picture files.
+
+use std::io::{self, Write};
+use std::path::Path;
+
+/// The byte of a channel: 1 and more is 255, 0 and less is 0, and between them it is cut, not rounded.
+/// A NaN is 0.
+pub fn to_byte(channel: f64) -> u8 {
+    (255.0 * channel) as u8
+}
+
+/// A picture's file format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Binary portable pixmap, `P6`.
+    Ppm,
+    /// Portable network graphics.
+    Png,
+}
+
+impl Format {
+    /// The format that a file's extension names, whatever its case.
+    pub fn of(path: &Path) -> Option<Self> {
+        let extension = path.extension()?.to_ascii_lowercase();
+        match extension.to_str()? {
+            "ppm" => Some(Self::Ppm),
+            "png" => Some(Self::Png),
+            _ => None,
+        }
+    }
+
+    /// Writes a whole picture: `rows` hands out its bytes, some rows at a time from the top, as
+    /// [`rows`](crate::render::rows) makes them.
+    ///
+    /// # Errors
+    /// Those of `out`, of `rows`, and a size that the format cannot hold.
+    pub fn write(
+        self,
+        out: impl Write,
+        [width, height]: [usize; 2],
+        rows: impl IntoIterator<Item = io::Result<Vec<u8>>>,
+    ) -> io::Result<()> {
+        match self {
+            Self::Ppm => write_ppm(out, width, height, rows),
+            Self::Png => write_png(out, width, height, rows),
+        }
+    }
+}
+
+fn write_ppm(
+    mut out: impl Write,
+    width: usize,
+    height: usize,
+    rows: impl IntoIterator<Item = io::Result<Vec<u8>>>,
+) -> io::Result<()> {
+    writeln!(out, "P6 {width} {height} 255")?;
+    for bytes in rows {
+        out.write_all(&bytes?)?;
+    }
+    out.flush()
+}
+
+fn write_png(
+    out: impl Write,
+    width: usize,
+    height: usize,
+    rows: impl IntoIterator<Item = io::Result<Vec<u8>>>,
+) -> io::Result<()> {
+    let size = |pixels: usize| u32::try_from(pixels).map_err(io::Error::other);
+    let mut encoder = png::Encoder::new(out, size(width)?, size(height)?);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    let mut writer = encoder.write_header()?;
+    let mut stream = writer.stream_writer()?;
+    for bytes in rows {
+        stream.write_all(&bytes?)?;
+    }
+    stream.finish()?;
+    Ok(writer.finish()?)
+}

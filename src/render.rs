@@ -1,0 +1,74 @@
+//! The tile loop: a model's pixels, on all threads.
+
+use crate::model::Model;
+use crate::picture::to_byte;
+use crate::trace;
+use rayon::prelude::*;
+use std::io;
+use std::ops::{ControlFlow, Range};
+
+/// Pixels of a picture that are in memory at one time, but for a picture of one longer row.
+const BAND: usize = 1 << 22;
+
+/// Room for the deepest chain of reflections that a pixel may cost. It is taken only where it is used.
+const STACK: usize = 64 << 20;
+
+/// The threads that render.
+pub struct Renderer {
+    pool: rayon::ThreadPool,
+}
+
+impl Renderer {
+    /// A renderer with this many threads; 0 for one on each core.
+    ///
+    /// # Errors
+    /// Where the system does not give the threads.
+    pub fn new(threads: usize) -> io::Result<Self> {
+        let builder = rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK);
+        Ok(Self { pool: builder.build().map_err(io::Error::other)? })
+    }
+
+    /// The picture from the top, some rows at a time: red, green and blue of each pixel from the left.
+    ///
+    /// `done` is told of each row finished, in no order, and may break off; then comes nothing more but an
+    /// error of kind `Interrupted`. The bytes depend on the model alone.
+    pub fn bands<'r>(
+        &'r self,
+        model: &'r Model,
+        done: &'r (dyn Fn() -> ControlFlow<()> + Sync),
+    ) -> impl Iterator<Item = io::Result<Vec<u8>>> + 'r {
+        let [width, height] = model.camera.value.pixels;
+        let step = (BAND / width).max(1);
+        (0..height).step_by(step).map(move |from| {
+            let rows = from..height.min(from + step);
+            self.rows(model, rows, done).ok_or_else(|| io::ErrorKind::Interrupted.into())
+        })
+    }
+
+    /// The whole picture, as [`bands`](Self::bands) gives it in parts.
+    pub fn picture(&self, model: &Model) -> Vec<u8> {
+        let [_, height] = model.camera.value.pixels;
+        self.rows(model, 0..height, &|| ControlFlow::Continue(())).unwrap_or_default()
+    }
+
+    fn rows(
+        &self,
+        model: &Model,
+        rows: Range<usize>,
+        done: &(dyn Fn() -> ControlFlow<()> + Sync),
+    ) -> Option<Vec<u8>> {
+        let camera = &model.camera.value;
+        let [width, height] = camera.pixels;
+        let mut bytes = vec![0; 3 * width * rows.len()];
+        let row = |(bytes, from_top): (&mut [u8], usize)| {
+            let y = height - 1 - from_top;
+            for (x, pixel) in bytes.chunks_exact_mut(3).enumerate() {
+                let colour = trace::colour(model, &camera.ray(x as f64, y as f64));
+                pixel.copy_from_slice(&colour.to_array().map(to_byte));
+            }
+            done()
+        };
+        let finished = self.pool.install(|| bytes.par_chunks_mut(3 * width).zip(rows).try_for_each(row));
+        finished.is_continue().then_some(bytes)
+    }
+}

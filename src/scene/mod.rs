@@ -1,0 +1,91 @@
+//! From a scene's text to a [`Model`], or to all that is wrong with it.
+
+mod check;
+mod fault;
+mod notes;
+mod values;
+mod written;
+
+pub use fault::{Fault, Place, Report, Severity};
+pub use written::{Values, Written};
+
+use crate::entity::Registry;
+use crate::model::Model;
+
+/// A model, and the warnings that its scene gave rise to.
+pub struct Loaded {
+    /// The scene, ready to be traced.
+    pub model: Model,
+    /// What may not mean what was intended.
+    pub warnings: Report,
+}
+
+/// Reads a scene in the notes' language. `name` is what messages call it.
+///
+/// # Errors
+/// Every fault of the scene, warnings among them, in the order of the text.
+pub fn read(registry: &Registry, name: &str, bytes: &[u8]) -> Result<Loaded, Report> {
+    let text = decode(name, bytes)?;
+    let mut report = Report::new(name, text);
+    let written = notes::parse(registry, text, &mut report);
+    finish(check::model(registry, written, &mut report), report)
+}
+
+/// Makes a model without any text (the notes' `modelstat.c`). The entities are checked as a text's are.
+///
+/// ```
+/// use tabray::{entity::Registry, scene, scene::Written};
+///
+/// let built = scene::build(Registry::get()?, [
+///     Written::new("camera", "cam1")
+///         .set("pixeldim", [640, 480])
+///         .set("worlddim", [8.0, 6.0])
+///         .set("viewpoint", [4.0, 3.0, 6.0]),
+///     Written::new("material", "green").set("ambient", [0.0, 5.0, 0.0]),
+///     Written::new("plane", "leftwall")
+///         .set("material", "green")
+///         .set("normal", [3.0, 0.0, 1.0])
+///         .set("point", [0.0, 0.0, 0.0]),
+/// ])?;
+/// assert_eq!(built.model.objects.len(), 1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// Every fault of the scene; it has no places.
+pub fn build(
+    registry: &Registry,
+    written: impl IntoIterator<Item = Written<'static>>,
+) -> Result<Loaded, Report> {
+    let mut report = Report::new("model", "");
+    finish(check::model(registry, written.into_iter().collect(), &mut report), report)
+}
+
+fn finish(model: Option<Model>, report: Report) -> Result<Loaded, Report> {
+    match model {
+        Some(model) if !report.is_fatal() => Ok(Loaded { model, warnings: report }),
+        _ => Err(report),
+    }
+}
+
+/// The text of a file.
+///
+/// # Errors
+/// The first place where it is none.
+fn decode<'b>(name: &str, bytes: &'b [u8]) -> Result<&'b str, Report> {
+    let nul = bytes.iter().position(|byte| *byte == 0);
+    let not_utf8 = std::str::from_utf8(bytes).err().map(|error| error.valid_up_to());
+    let (place, message) = match (nul, not_utf8) {
+        (Some(nul), bad) if bad.is_none_or(|bad| nul < bad) => (nul..nul + 1, "a NUL byte"),
+        (_, Some(bad)) => (bad..bad + char::REPLACEMENT_CHARACTER.len_utf8(), "not UTF-8"),
+        _ => {
+            let text = std::str::from_utf8(bytes).unwrap_or_default();
+            return Ok(text.strip_prefix('\u{feff}').unwrap_or(text));
+        }
+    };
+    // Up to the fault the lossy text has the same bytes.
+    let mut report = Report::new(name, String::from_utf8_lossy(bytes));
+    let help = "a scene is text: `camera`, `material`, `plane` ... with their attributes in braces";
+    report.add(Fault::error(Some(place), message).help(help));
+    Err(report)
+}

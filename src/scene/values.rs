@@ -1,0 +1,69 @@
+//! Words read as the values of an attribute, and what messages say of an attribute's values.
+
+use super::fault::Fault;
+use super::written::Word;
+use crate::pparm::Attribute;
+use crate::value::{Datum, Type};
+
+/// Reads words as values of a type.
+///
+/// # Errors
+/// A fault for each word that is none.
+pub fn read(value_type: Type, words: &[Word<'_>]) -> Result<Datum, Vec<Fault>> {
+    match value_type {
+        Type::Whole => all(words, whole).map(Datum::Whole),
+        Type::Number => all(words, number).map(Datum::Numbers),
+        Type::Word | Type::Name(_) => {
+            Ok(Datum::Word(words.first().map(|word| word.text.to_string()).unwrap_or_default()))
+        }
+    }
+}
+
+/// What a word is in place of a value, and what would be right if that can be said.
+type Complaint = (&'static str, Option<&'static str>);
+
+fn all<T>(words: &[Word<'_>], read: fn(&str) -> Result<T, Complaint>) -> Result<Vec<T>, Vec<Fault>> {
+    let mut values = Vec::with_capacity(words.len());
+    let mut faults = Vec::new();
+    for word in words {
+        match read(&word.text) {
+            Ok(value) => values.push(value),
+            Err((what, help)) => {
+                let fault = Fault::error(word.place.clone(), format!("`{}` is {what}", word.text));
+                faults.push(Fault { help: help.map(str::to_owned), ..fault });
+            }
+        }
+    }
+    if faults.is_empty() { Ok(values) } else { Err(faults) }
+}
+
+fn whole(word: &str) -> Result<i64, Complaint> {
+    word.parse().map_err(|_| {
+        let digits = word.trim_start_matches(['+', '-']);
+        let too_large = !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit());
+        (if too_large { "too large" } else { "not a whole number" }, None)
+    })
+}
+
+fn number(word: &str) -> Result<f64, Complaint> {
+    match word.parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        Ok(_) if word.contains(|c: char| c.is_ascii_digit()) => Err(("too large", None)),
+        Ok(_) => Err(("not a finite number", None)),
+        Err(_) if word.contains(',') => {
+            Err(("not a number", Some("blanks part values, and a decimal point is a point")))
+        }
+        Err(_) if word.contains('#') => Err(("not a number", Some("a comment's `#` has a blank before it"))),
+        Err(_) => Err(("not a number", None)),
+    }
+}
+
+/// How an attribute is written: its name and its values, in backticks.
+pub fn usage(attribute: &dyn Attribute) -> String {
+    let values = match attribute.value_type() {
+        Type::Name(_) => " NAME".to_owned(),
+        Type::Word => " WORD".to_owned(),
+        Type::Whole | Type::Number => " N".repeat(attribute.arity().first().copied().unwrap_or(1)),
+    };
+    format!("`{}{values}`", attribute.name())
+}

@@ -1,0 +1,93 @@
+//! Entities as they are written: kind, name, attributes and values, each with its place, none of it checked.
+
+use super::fault::Place;
+use glam::{DVec2, DVec3};
+use std::borrow::Cow;
+use std::ops::Range;
+
+/// A word of a scene and its place.
+#[derive(Clone, Debug)]
+pub(super) struct Word<'a> {
+    pub text: Cow<'a, str>,
+    pub place: Place,
+}
+
+impl<'a> Word<'a> {
+    pub fn at(text: &'a str, place: Range<usize>) -> Self {
+        Self { text: Cow::Borrowed(text), place: Some(place) }
+    }
+
+    fn unplaced(text: impl Into<String>) -> Self {
+        Self { text: Cow::Owned(text.into()), place: None }
+    }
+}
+
+/// An entity as it is written.
+#[derive(Clone, Debug)]
+pub struct Written<'a> {
+    pub(super) kind: Word<'a>,
+    pub(super) name: Word<'a>,
+    pub(super) attributes: Vec<(Word<'a>, Vec<Word<'a>>)>,
+}
+
+impl Written<'static> {
+    /// An entity written in Rust: its type and its name.
+    pub fn new(kind: &str, name: &str) -> Self {
+        Self { kind: Word::unplaced(kind), name: Word::unplaced(name), attributes: Vec::new() }
+    }
+
+    /// Gives it an attribute.
+    pub fn set(mut self, attribute: &str, values: impl Values) -> Self {
+        let values = values.words().into_iter().map(Word::unplaced).collect();
+        self.attributes.push((Word::unplaced(attribute), values));
+        self
+    }
+}
+
+/// What can be given as an attribute's values in Rust. Numbers keep every bit.
+pub trait Values {
+    /// The words that stand for the values in a scene.
+    fn words(self) -> Vec<String>;
+}
+
+impl Values for &str {
+    fn words(self) -> Vec<String> {
+        vec![self.to_owned()]
+    }
+}
+
+impl Values for f64 {
+    fn words(self) -> Vec<String> {
+        vec![format!("{self:?}")]
+    }
+}
+
+impl Values for i64 {
+    fn words(self) -> Vec<String> {
+        vec![self.to_string()]
+    }
+}
+
+impl<const N: usize> Values for [f64; N] {
+    fn words(self) -> Vec<String> {
+        self.into_iter().flat_map(f64::words).collect()
+    }
+}
+
+impl<const N: usize> Values for [i64; N] {
+    fn words(self) -> Vec<String> {
+        self.into_iter().flat_map(i64::words).collect()
+    }
+}
+
+impl Values for DVec2 {
+    fn words(self) -> Vec<String> {
+        self.to_array().words()
+    }
+}
+
+impl Values for DVec3 {
+    fn words(self) -> Vec<String> {
+        self.to_array().words()
+    }
+}

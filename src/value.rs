@@ -1,0 +1,149 @@
+//! What an attribute's values are: the types that the scene language knows.
+
+use crate::entity::Kind;
+use crate::geometry::Rgb;
+use crate::model::Material;
+use glam::{DVec2, DVec3};
+use std::sync::Arc;
+
+/// The type of an attribute's values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Type {
+    /// Whole numbers.
+    Whole,
+    /// Finite real numbers.
+    Number,
+    /// One word, free of white space and braces.
+    Word,
+    /// The name of an entity of this kind, defined before it is used.
+    Name(Kind),
+}
+
+/// The values of one attribute, checked for type, number and rule.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Datum {
+    /// Whole numbers, one or more.
+    Whole(Vec<i64>),
+    /// Real numbers, one or more, all finite.
+    Numbers(Vec<f64>),
+    /// One word.
+    Word(String),
+    /// A material, by its name.
+    Material {
+        /// The name that the scene gives it.
+        name: Arc<str>,
+        /// What the name stands for.
+        material: Arc<Material>,
+    },
+}
+
+/// A Rust type that a [`Pparm`](crate::pparm::Pparm) can be a key for.
+pub trait Value: Clone + Send + Sync + 'static {
+    /// The type of the values that it is read from.
+    const TYPE: Type;
+    /// How many values it may be read from.
+    const ARITY: &'static [usize];
+    /// The datum of a default.
+    fn to_datum(&self) -> Datum;
+    /// The value of a datum, or nothing where type or number are others.
+    fn from_datum(datum: &Datum) -> Option<Self>;
+}
+
+impl Value for f64 {
+    const TYPE: Type = Type::Number;
+    const ARITY: &'static [usize] = &[1];
+
+    fn to_datum(&self) -> Datum {
+        Datum::Numbers(vec![*self])
+    }
+
+    fn from_datum(datum: &Datum) -> Option<Self> {
+        match datum {
+            Datum::Numbers(numbers) => <[f64; 1]>::try_from(numbers.as_slice()).ok().map(|[x]| x),
+            _ => None,
+        }
+    }
+}
+
+impl Value for DVec2 {
+    const TYPE: Type = Type::Number;
+    const ARITY: &'static [usize] = &[2];
+
+    fn to_datum(&self) -> Datum {
+        Datum::Numbers(self.to_array().to_vec())
+    }
+
+    fn from_datum(datum: &Datum) -> Option<Self> {
+        match datum {
+            Datum::Numbers(numbers) => <[f64; 2]>::try_from(numbers.as_slice()).ok().map(DVec2::from),
+            _ => None,
+        }
+    }
+}
+
+impl Value for DVec3 {
+    const TYPE: Type = Type::Number;
+    const ARITY: &'static [usize] = &[3];
+
+    fn to_datum(&self) -> Datum {
+        Datum::Numbers(self.to_array().to_vec())
+    }
+
+    fn from_datum(datum: &Datum) -> Option<Self> {
+        match datum {
+            Datum::Numbers(numbers) => <[f64; 3]>::try_from(numbers.as_slice()).ok().map(DVec3::from),
+            _ => None,
+        }
+    }
+}
+
+/// A number for each of red, green and blue, written as three numbers, or as one where they are alike.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PerChannel(pub Rgb);
+
+impl Value for PerChannel {
+    const TYPE: Type = Type::Number;
+    const ARITY: &'static [usize] = &[1, 3];
+
+    fn to_datum(&self) -> Datum {
+        let Self(Rgb { x, y, z }) = *self;
+        Datum::Numbers(if x == y && y == z { vec![x] } else { vec![x, y, z] })
+    }
+
+    fn from_datum(datum: &Datum) -> Option<Self> {
+        f64::from_datum(datum).map(Rgb::splat).or_else(|| Rgb::from_datum(datum)).map(Self)
+    }
+}
+
+impl<const N: usize> Value for [i64; N] {
+    const TYPE: Type = Type::Whole;
+    const ARITY: &'static [usize] = &[N];
+
+    fn to_datum(&self) -> Datum {
+        Datum::Whole(self.to_vec())
+    }
+
+    fn from_datum(datum: &Datum) -> Option<Self> {
+        match datum {
+            Datum::Whole(numbers) => numbers.as_slice().try_into().ok(),
+            _ => None,
+        }
+    }
+}
+
+/// The name of a material; the key gives the material itself.
+impl Value for Arc<Material> {
+    const TYPE: Type = Type::Name(Kind::Material);
+    const ARITY: &'static [usize] = &[1];
+
+    fn to_datum(&self) -> Datum {
+        Datum::Material { name: Arc::from(""), material: self.clone() }
+    }
+
+    fn from_datum(datum: &Datum) -> Option<Self> {
+        match datum {
+            Datum::Material { material, .. } => Some(material.clone()),
+            _ => None,
+        }
+    }
+}
