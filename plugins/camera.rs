@@ -13,12 +13,12 @@ static PIXELDIM: Pparm<[i64; 2]> = Pparm::required("pixeldim", "the width and he
 static WORLDDIM: Pparm<DVec2> = Pparm::required("worlddim", "the width and height of the screen")
     .alias(&["world_dim"])
     .unit("world units")
-    .must("positive", |size: &DVec2| size.min_element() > 0.0)
+    .must("positive each way", |size: &DVec2| size.min_element() > 0.0)
     .dumped("world_dim", " \n");
 static VIEWPOINT: Pparm<DVec3> = Pparm::required("viewpoint", "where the viewer is")
     .alias(&["view_point"])
     .unit("world coordinates")
-    .must("in front of the screen: its z above 0", |at: &DVec3| at.z > 0.0)
+    .must("in front of the screen (z above 0)", |at: &DVec3| at.z > 0.0)
     .dumped("view_point", "\n");
 
 const TABLE: Table = &[&PIXELDIM, &WORLDDIM, &VIEWPOINT];

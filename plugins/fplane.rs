@@ -10,11 +10,11 @@ use glam::{DMat3, DVec2, DVec3};
 
 pub static DIMENSIONS: Pparm<DVec2> = Pparm::required("dimensions", "its size along xdir and across it")
     .unit("world units")
-    .must("positive", |size: &DVec2| size.min_element() > 0.0)
+    .must("positive each way", |size: &DVec2| size.min_element() > 0.0)
     .dumped("dimensions", "\n");
 pub static XDIR: Pparm<DVec3> =
     Pparm::required("xdir", "the direction of its first side, seen along its normal")
-        .must("a vector that is not zero", |xdir: &DVec3| xdir.normalize().is_finite())
+        .must("a vector with a direction", |xdir: &DVec3| xdir.try_normalize().is_some())
         .dumped("xdir", "\n");
 static PROJECTED: Derived = Derived(|args| dump::line("projected", &frame(args).x_axis.to_datum(), "\n"));
 static ROTATION: Derived = Derived(|args| {

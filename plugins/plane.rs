@@ -7,7 +7,7 @@ use glam::DVec3;
 
 pub static NORMAL: Pparm<DVec3> =
     Pparm::required("normal", "a vector that stands upright on it, on its lit side")
-        .must("a vector that is not zero", |normal: &DVec3| normal.normalize().is_finite())
+        .must("a vector with a direction", |normal: &DVec3| normal.try_normalize().is_some())
         .shown(DVec3::normalize);
 pub static POINT: Pparm<DVec3> = Pparm::required("point", "a point of it").unit("world coordinates");
 

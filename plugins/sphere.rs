@@ -6,7 +6,7 @@ use crate::pparm::{Pparm, Table};
 use glam::DVec3;
 
 static CENTER: Pparm<DVec3> =
-    Pparm::required("center", "its middle").alias(&["centre"]).unit("world coordinates");
+    Pparm::required("center", "the point in its middle").alias(&["centre"]).unit("world coordinates");
 static RADIUS: Pparm<f64> = Pparm::required("radius", "the distance from its centre to its surface")
     .unit("world units")
     .must("positive", |radius| *radius > 0.0)

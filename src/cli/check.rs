@@ -16,13 +16,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let mut sound = true;
     for scene in &args.scenes {
         match input::load(registry, scene) {
-            Ok(model) => eprintln!(
-                "{}: sound ({} materials, {} objects, {} lights)",
-                scene.display(),
-                model.materials.len(),
-                model.objects.len(),
-                model.lights.len()
-            ),
+            Ok(_) => eprintln!("{}: sound", scene.display()),
             Err(failure) => {
                 tell(&failure);
                 sound = false;

@@ -1,7 +1,7 @@
 //! Without a command: the notes' program, a filter from a scene to its dump and its picture.
 
 use super::output::Output;
-use super::{Failure, input, render};
+use super::{Failure, input, interrupt, render};
 use std::io::Write;
 use std::path::Path;
 use tabray::dump;
@@ -12,6 +12,7 @@ pub fn run(registry: &Registry) -> Result<(), Failure> {
     let standard = Path::new("-");
     let output = Output::open(standard)?;
     let model = input::load(registry, standard)?;
+    interrupt::catch()?;
     let _ = write!(std::io::stderr(), "{}", dump::notes(&model));
     render::picture(&model, 0, Format::Ppm, output)
 }

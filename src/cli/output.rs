@@ -1,6 +1,8 @@
 //! Where a picture goes: beside its target first, then in its place, so that no half of one is ever there.
 
 use super::Failure;
+use std::error::Error;
+use std::fmt::Display;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -29,7 +31,7 @@ impl Output {
             return Ok(Self::Standard);
         }
         let cannot =
-            |error: io::Error| Failure::Failed(format!("cannot write `{}`: {error}", path.display()));
+            |reason: &dyn Display| Failure::Failed(format!("cannot write `{}`: {reason}", path.display()));
         // A link stays a link; the file that it leads to is the one replaced.
         let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
         let folder = match target.parent() {
@@ -37,18 +39,18 @@ impl Output {
             _ => Path::new("."),
         };
         match fs::metadata(&target) {
-            Ok(meta) if meta.is_dir() => Err(cannot(io::ErrorKind::IsADirectory.into())),
+            Ok(meta) if meta.is_dir() => Err(cannot(&io::ErrorKind::IsADirectory)),
             Ok(meta) if !meta.is_file() => {
-                let file = OpenOptions::new().write(true).open(&target).map_err(cannot)?;
+                let file = OpenOptions::new().write(true).open(&target).map_err(|error| cannot(&error))?;
                 Ok(Self::Special(file))
             }
-            Ok(meta) if meta.permissions().readonly() => Err(cannot(io::ErrorKind::PermissionDenied.into())),
+            Ok(meta) if meta.permissions().readonly() => Err(cannot(&io::ErrorKind::PermissionDenied)),
             Ok(meta) => {
-                let file = beside(folder).map_err(cannot)?;
-                fs::set_permissions(file.path(), meta.permissions()).map_err(cannot)?;
+                let file = beside(folder).map_err(|reason| cannot(&reason))?;
+                fs::set_permissions(file.path(), meta.permissions()).map_err(|error| cannot(&error))?;
                 Ok(Self::File(file, target))
             }
-            Err(_) => Ok(Self::File(beside(folder).map_err(cannot)?, target)),
+            Err(_) => Ok(Self::File(beside(folder).map_err(|reason| cannot(&reason))?, target)),
         }
     }
 
@@ -80,14 +82,14 @@ impl Write for Output {
 }
 
 /// A new hidden file in the folder, with the permissions that any new file gets. It goes when it is dropped.
-fn beside(folder: &Path) -> io::Result<NamedTempFile> {
+///
+/// # Errors
+/// The reason alone: the name of a file that does not exist would puzzle.
+fn beside(folder: &Path) -> Result<NamedTempFile, String> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".tabray-");
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     let file = builder.tempfile_in(folder);
-    // Only the reason: the name of a file that does not exist would puzzle.
-    file.map_err(|error| {
-        error.raw_os_error().map_or_else(|| error.kind().into(), io::Error::from_raw_os_error)
-    })
+    file.map_err(|error| error.source().map_or_else(|| error.to_string(), ToString::to_string))
 }

@@ -39,6 +39,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let path = target(&args)?;
     let format = format(&args, &path)?;
     let model = input::load(registry, &args.scene)?;
+    interrupt::catch()?;
     let output = Output::open(&path)?;
     let start = Instant::now();
     picture(&model, args.threads.unwrap_or(0).into(), format, output).map_err(|failure| match failure {
@@ -55,7 +56,6 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
 
 /// Renders a model and puts the picture where it belongs.
 pub fn picture(model: &Model, threads: usize, format: Format, output: Output) -> Result<(), Failure> {
-    interrupt::catch()?;
     let renderer = Renderer::new(threads)?;
     let [_, height] = model.camera.value.pixels;
     let progress = Progress::new(height);

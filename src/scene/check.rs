@@ -182,17 +182,21 @@ impl Check<'_> {
 
     /// A datum for each attribute of the type, or nothing where a fault was reported.
     fn values(&mut self, entity: &'static Entity, written: &Written<'_>) -> Option<Vec<Datum>> {
-        let title = format!("{} `{}`", entity.name, written.name.text);
+        let title = match written.name.text.as_ref() {
+            "" => format!("this {}", entity.name),
+            name => format!("{} `{name}`", entity.name),
+        };
         let attributes: Vec<_> = entity.attributes().collect();
         let mut given: Vec<Option<&(Word<'_>, Vec<Word<'_>>)>> = vec![None; attributes.len()];
         let mut sound = true;
+        let mut meant = Vec::new();
         for pair in &written.attributes {
             let (word, _) = pair;
             let known = find_attribute(entity, &word.text);
             match known.and_then(|known| attributes.iter().position(|a| a.name() == known.name())) {
                 None => {
                     sound = false;
-                    self.unknown_attribute(entity, &title, word);
+                    meant.extend(self.unknown_attribute(entity, &title, word));
                 }
                 Some(at) => {
                     if let Some((first, _)) = given[at].replace(pair) {
@@ -210,10 +214,13 @@ impl Check<'_> {
         for (attribute, given) in attributes.iter().zip(given) {
             let datum = match given {
                 Some((word, words)) => self.datum(*attribute, &title, word, words),
-                None => attribute.default().or_else(|| {
-                    missing.push(*attribute);
-                    None
-                }),
+                None => {
+                    // One that is misspelt is not missing as well.
+                    if attribute.default().is_none() && !meant.contains(&attribute.name()) {
+                        missing.push(*attribute);
+                    }
+                    attribute.default()
+                }
             };
             sound &= datum.is_some();
             values.extend(datum);
@@ -236,13 +243,21 @@ impl Check<'_> {
         sound.then_some(values)
     }
 
-    fn unknown_attribute(&mut self, entity: &'static Entity, title: &str, word: &Word<'_>) {
+    /// Reports an attribute that the type does not have, and returns the one that was meant perhaps.
+    fn unknown_attribute(
+        &mut self,
+        entity: &'static Entity,
+        title: &str,
+        word: &Word<'_>,
+    ) -> Option<&'static str> {
+        let near = near_attribute(entity, &word.text).map(|near| near.name());
         let mut fault = Fault::error(word.place.clone(), format!("{title} has no attribute `{}`", word.text));
-        if let Some(near) = near_attribute(entity, &word.text) {
-            fault = fault.label(format!("did you mean `{}`?", near.name()));
+        if let Some(near) = near {
+            fault = fault.label(format!("did you mean `{near}`?"));
         }
         let names = list(entity.attributes().map(|attribute| attribute.name()));
         self.report.add(fault.help(format!("a {} takes {names}", entity.name)));
+        near
     }
 
     /// The values of one attribute, checked for type, number and rule.
@@ -276,7 +291,8 @@ impl Check<'_> {
             },
         };
         if !attribute.allows(&datum) {
-            let message = format!("`{}` of {title} must be {}", word.text, attribute.rule());
+            let given = words.iter().map(|word| word.text.as_ref()).collect::<Vec<_>>().join(" ");
+            let message = format!("`{}` of {title} must be {}, not {given}", word.text, attribute.rule());
             let place = words.first().map_or(word.place.clone(), |first| whole(first, words));
             self.report.add(Fault::error(place, message).help(format!(
                 "`{}` is {}",
@@ -340,10 +356,13 @@ impl Check<'_> {
 
 /// The label of a fault that may stand in several places.
 fn suggestion(near: Option<&str>, places: &[Place]) -> String {
-    let near = near.map(|near| format!("did you mean `{near}`?"));
-    let more =
-        (places.len() > 1).then(|| format!("here and in {}", words::count(places.len() - 1, "more place")));
-    near.into_iter().chain(more).collect::<Vec<_>>().join(", ")
+    let more = words::count(places.len() - 1, "more place");
+    match (near, places.len()) {
+        (None, 1) => String::new(),
+        (None, _) => format!("here and in {more}"),
+        (Some(near), 1) => format!("did you mean `{near}`?"),
+        (Some(near), _) => format!("did you mean `{near}`? (here and in {more})"),
+    }
 }
 
 /// From an attribute's name, or its first value, to its last value.

@@ -1,7 +1,7 @@
 //! Faults: what is wrong with a scene, where, and what would be right.
 
 use crate::words;
-use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
+use annotate_snippets::{AnnotationKind, Level, Origin, Renderer, Snippet};
 use std::fmt;
 use std::ops::Range;
 
@@ -121,8 +121,9 @@ impl Report {
 
     fn render(&self, renderer: &Renderer) -> String {
         let mut text = String::new();
+        let newlines: Vec<usize> = self.text.match_indices('\n').map(|(at, _)| at).collect();
         for fault in &self.faults {
-            text += &self.render_fault(fault, renderer);
+            text += &self.render_fault(fault, &newlines, renderer);
             text += "\n\n";
         }
         if self.is_fatal() {
@@ -135,17 +136,21 @@ impl Report {
         text
     }
 
-    fn render_fault(&self, fault: &Fault, renderer: &Renderer) -> String {
+    fn render_fault(&self, fault: &Fault, newlines: &[usize], renderer: &Renderer) -> String {
         let help = fault.help.as_deref().map(|help| Level::HELP.message(help));
         let Some(place) = &fault.place else {
-            return renderer.render(&[Group::with_title(fault.title()).elements(help)]);
+            let origin = Origin::path(self.name.as_str());
+            return renderer.render(&[fault.title().element(origin).elements(help)]);
         };
         // Only the lines that are marked: a long scene with many faults must not be read over and over.
         let places = || fault.also.iter().filter_map(|(place, _)| place.as_ref()).chain([place]);
         let first = places().map(|place| place.start).min().unwrap_or(0);
         let last = places().map(|place| place.end).max().unwrap_or(0);
-        let start = self.text[..first].rfind('\n').map_or(0, |newline| newline + 1);
-        let end = self.text[last..].find('\n').map_or(self.text.len(), |newline| last + newline);
+        let lines_before = newlines.partition_point(|newline| *newline < first);
+        let start = lines_before.checked_sub(1).map_or(0, |line| newlines[line] + 1);
+        let end = newlines.get(newlines.partition_point(|newline| *newline < last)).copied();
+        let end = end.unwrap_or(self.text.len());
+        let end = if end > last && self.text[..end].ends_with('\r') { end - 1 } else { end };
         let shift = |place: &Range<usize>| place.start - start..place.end - start;
 
         let mark = AnnotationKind::Primary.span(shift(place));
@@ -155,7 +160,7 @@ impl Report {
         });
         let snippet = Snippet::source(&self.text[start..end])
             .path(self.name.as_str())
-            .line_start(1 + self.text[..start].matches('\n').count())
+            .line_start(1 + lines_before)
             .annotation(mark)
             .annotations(also);
         renderer.render(&[fault.title().element(snippet).elements(help)])

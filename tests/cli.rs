@@ -1,0 +1,347 @@
+//! The program as people run it: what it prints where, what it writes, and how it ends.
+
+mod common;
+
+use assert_cmd::Command;
+use assert_cmd::cargo::cargo_bin_cmd;
+use common::root;
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::Stdio;
+use tempfile::TempDir;
+
+/// The program, in a new working directory.
+fn tabray(folder: &TempDir) -> Command {
+    let mut command = cargo_bin_cmd!("tabray");
+    command.current_dir(folder.path());
+    command
+}
+
+fn scene(name: &str) -> PathBuf {
+    root().join("scenes").join(name)
+}
+
+fn folder() -> TempDir {
+    TempDir::new().expect("a folder")
+}
+
+fn names_in(folder: &Path) -> Vec<String> {
+    let mut names: Vec<_> = fs::read_dir(folder)
+        .expect("a folder")
+        .map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    names
+}
+
+/// Runs a command; its exit status, standard output and standard error.
+fn outcome(command: &mut Command) -> (i32, Vec<u8>, String) {
+    let output = command.output().expect("the program runs");
+    (output.status.code().unwrap_or(-1), output.stdout, String::from_utf8_lossy(&output.stderr).into_owned())
+}
+
+#[test]
+fn a_picture_is_named_after_its_scene_in_the_working_directory() {
+    let folder = folder();
+    let (status, out, err) = outcome(tabray(&folder).arg("render").arg(scene("sphere/in-front.ray")));
+    assert_eq!((status, out.len()), (0, 0), "{err}");
+    assert!(err.starts_with("wrote in-front.png (160 x 120 pixels, "), "{err}");
+    assert_eq!(names_in(folder.path()), ["in-front.png"]);
+    assert_eq!(image::open(folder.path().join("in-front.png")).expect("a PNG").width(), 160);
+}
+
+#[test]
+fn the_extension_or_the_option_says_the_format() {
+    let folder = folder();
+    let scene = scene("sphere/in-front.ray");
+    let mut pictures = Vec::new();
+    for args in [
+        &["-o", "a.ppm"][..],
+        &["-o", "b.PNG"],
+        &["-o", "c", "--format", "png"],
+        &["-o", "d.png", "--format", "ppm"],
+    ] {
+        let (status, _, err) = outcome(tabray(&folder).arg("render").arg(&scene).args(args));
+        assert_eq!(status, 0, "{err}");
+        let bytes = fs::read(folder.path().join(args[1])).expect("the file named");
+        pictures.push((bytes[1], image::load_from_memory(&bytes).expect("a picture").into_rgb8()));
+    }
+    let kinds: Vec<_> = pictures.iter().map(|(kind, _)| *kind as char).collect();
+    assert_eq!(kinds, ['6', 'P', 'P', '6']);
+    assert!(pictures.iter().all(|(_, picture)| *picture == pictures[0].1));
+}
+
+#[test]
+fn an_unknown_format_is_refused_before_the_scene_is_read() {
+    let folder = folder();
+    let (status, _, err) = outcome(tabray(&folder).args(["render", "no-such-scene.ray", "-o", "a.jpeg"]));
+    assert_eq!(status, 2);
+    assert!(!err.contains('\x1b'), "no colour where there is no terminal: {err:?}");
+    assert!(err.contains("`a.jpeg` does not say which format"), "{err}");
+}
+
+#[test]
+fn standard_output_carries_the_picture_and_nothing_else() {
+    let folder = folder();
+    let (status, out, err) =
+        outcome(tabray(&folder).arg("render").arg(scene("sphere/in-front.ray")).args(["-o", "-"]));
+    assert_eq!((status, err.as_str()), (0, ""));
+    assert!(out.starts_with(b"P6 160 120 255\n"));
+    assert_eq!(out.len(), 15 + 3 * 160 * 120);
+    assert!(names_in(folder.path()).is_empty());
+}
+
+#[test]
+fn without_a_command_it_is_the_notes_program() {
+    let folder = folder();
+    let path = scene("material/glint.ray");
+    let (status, picture, dump) = outcome(tabray(&folder).write_stdin(fs::read(&path).expect("a scene")));
+    assert_eq!(status, 0, "{dump}");
+    let (_, rendered, _) = outcome(tabray(&folder).arg("render").arg(&path).args(["-o", "-"]));
+    let (_, dumped, _) = outcome(tabray(&folder).arg("dump").arg(&path));
+    assert!(picture == rendered && dump.as_bytes() == dumped);
+}
+
+#[test]
+fn without_a_command_a_faulty_scene_gives_messages_alone() {
+    let (status, out, err) = outcome(tabray(&folder()).write_stdin("sphere ball {"));
+    assert_eq!((status, out.len()), (2, 0));
+    assert!(err.contains("--> <stdin>:1:1"), "{err}");
+}
+
+#[test]
+fn a_scene_from_standard_input_needs_a_name_for_its_picture() {
+    let folder = folder();
+    let text = fs::read(scene("sphere/in-front.ray")).expect("a scene");
+    let (status, _, err) = outcome(tabray(&folder).args(["render", "-"]).write_stdin(text.clone()));
+    assert_eq!(status, 2);
+    assert!(err.contains("name one with `-o FILE`"), "{err}");
+    let (status, _, err) = outcome(tabray(&folder).args(["render", "-", "-o", "a.png"]).write_stdin(text));
+    assert_eq!(status, 0, "{err}");
+}
+
+#[test]
+fn a_faulty_scene_leaves_the_old_picture_alone() {
+    let folder = folder();
+    fs::write(folder.path().join("a.png"), "precious").expect("a file");
+    let (status, out, err) =
+        outcome(tabray(&folder).arg("render").arg(scene("wrong/zero-radius.ray")).args(["-o", "a.png"]));
+    assert_eq!((status, out.len()), (2, 0));
+    assert!(err.contains("zero-radius.ray:18:14"), "{err}");
+    assert_eq!(fs::read(folder.path().join("a.png")).expect("still there"), b"precious");
+    assert_eq!(names_in(folder.path()), ["a.png"]);
+}
+
+#[test]
+fn every_mistake_ends_with_2_and_every_scene_with_0() {
+    let folder = folder();
+    for path in common::scenes() {
+        let (status, _, err) = outcome(tabray(&folder).arg("check").arg(&path));
+        assert_eq!(status, 0, "{}: {err}", path.display());
+    }
+    for entry in fs::read_dir(scene("wrong")).expect("the mistakes") {
+        let path = entry.expect("an entry").path();
+        let (status, out, err) = outcome(tabray(&folder).arg("render").arg(&path));
+        let warned = err.contains("warning: ") && !err.contains("error: ");
+        assert_eq!((status, out.len()), (if warned { 0 } else { 2 }, 0), "{}: {err}", path.display());
+    }
+}
+
+#[test]
+fn check_tells_of_all_scenes_and_remembers_the_bad_one() {
+    let (status, out, err) = outcome(
+        tabray(&folder()).arg("check").arg(scene("wrong/zero-radius.ray")).arg(scene("sphere/in-front.ray")),
+    );
+    assert_eq!((status, out.len()), (2, 0));
+    assert!(err.contains("must be positive") && err.contains("in-front.ray: sound"), "{err}");
+}
+
+#[test]
+fn a_scene_that_cannot_be_read_is_named_with_the_reason() {
+    let folder = folder();
+    let (status, _, err) = outcome(tabray(&folder).args(["render", "no-such-scene.ray"]));
+    assert_eq!(
+        (status, err.as_str()),
+        (2, "error: cannot read `no-such-scene.ray`: No such file or directory (os error 2)\n")
+    );
+    let (status, _, err) = outcome(tabray(&folder).args(["dump", "."]));
+    assert_eq!((status, err.as_str()), (2, "error: cannot read `.`: Is a directory (os error 21)\n"));
+}
+
+#[cfg(unix)]
+#[test]
+fn an_endless_device_is_no_scene() {
+    let (status, _, err) = outcome(tabray(&folder()).args(["check", "/dev/zero"]));
+    assert_eq!(status, 2);
+    assert!(err.contains("a NUL byte"), "{err}");
+}
+
+#[test]
+fn an_unwritable_place_is_told_with_its_reason() {
+    let folder = folder();
+    fs::create_dir(folder.path().join("folder.png")).expect("a folder");
+    let scene = scene("sphere/in-front.ray");
+    for (place, reason) in [
+        ("no/such/folder/a.png", "cannot write `no/such/folder/a.png`: No such file or directory"),
+        ("folder.png", "cannot write `folder.png`: is a directory"),
+    ] {
+        let (status, _, err) = outcome(tabray(&folder).arg("render").arg(&scene).args(["-o", place]));
+        assert_eq!(status, 1);
+        assert!(err.contains(reason), "{err}");
+    }
+    assert_eq!(names_in(folder.path()), ["folder.png"]);
+}
+
+#[test]
+fn a_file_that_is_read_only_is_not_replaced() {
+    let folder = folder();
+    let path = folder.path().join("a.png");
+    fs::write(&path, "precious").expect("a file");
+    let mut permissions = fs::metadata(&path).expect("there").permissions();
+    permissions.set_readonly(true);
+    fs::set_permissions(&path, permissions).expect("read-only");
+    let (status, _, err) =
+        outcome(tabray(&folder).arg("render").arg(scene("sphere/in-front.ray")).args(["-o", "a.png"]));
+    assert_eq!(status, 1);
+    assert!(err.contains("cannot write `a.png`: permission denied"), "{err}");
+    assert_eq!(fs::read(&path).expect("still there"), b"precious");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_a_failure_with_its_reason() {
+    let (status, _, err) = outcome(tabray(&folder()).arg("render").arg(scene("sphere/in-front.ray")).args([
+        "-o",
+        "/dev/full",
+        "--format",
+        "png",
+    ]));
+    assert_eq!(status, 1);
+    assert!(err.contains("cannot write `/dev/full`: No space left on device"), "{err}");
+    assert!(fs::metadata("/dev/full").expect("still a device").len() == 0);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_link_stays_a_link_and_permissions_stay_as_they_were() {
+    use std::os::unix::fs::{PermissionsExt, symlink};
+    let folder = folder();
+    let (target, link) = (folder.path().join("target.png"), folder.path().join("link.png"));
+    fs::write(&target, "old").expect("a file");
+    fs::set_permissions(&target, fs::Permissions::from_mode(0o640)).expect("permissions");
+    symlink("target.png", &link).expect("a link");
+    let (status, _, err) =
+        outcome(tabray(&folder).arg("render").arg(scene("sphere/in-front.ray")).args(["-o", "link.png"]));
+    assert_eq!(status, 0, "{err}");
+    assert!(fs::symlink_metadata(&link).expect("there").is_symlink());
+    assert!(image::open(&target).is_ok());
+    assert_eq!(fs::metadata(&target).expect("there").permissions().mode() & 0o777, 0o640);
+    assert_eq!(names_in(folder.path()), ["link.png", "target.png"]);
+}
+
+#[test]
+fn a_reader_that_has_had_enough_is_no_failure() {
+    for args in [vec!["list"], vec!["render", "big.ray", "-o", "-"]] {
+        let folder = folder();
+        let text = fs::read_to_string(scene("sphere/in-front.ray")).expect("a scene");
+        fs::write(folder.path().join("big.ray"), text.replace("160 120", "1600 1200")).expect("a file");
+        let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin!("tabray"))
+            .args(&args)
+            .current_dir(folder.path())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the program runs");
+        drop(child.stdout.take());
+        let output = child.wait_with_output().expect("it ends");
+        assert_eq!(output.status.code(), Some(0), "{args:?}: {}", String::from_utf8_lossy(&output.stderr));
+        assert!(output.stderr.is_empty());
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_render_leaves_the_old_picture_and_nothing_else() {
+    let folder = folder();
+    let text = fs::read_to_string(scene("gallery/hall-of-mirrors.ray")).expect("a scene");
+    fs::write(folder.path().join("big.ray"), text.replace("640 480", "16000 12000")).expect("a file");
+    fs::write(folder.path().join("big.png"), "precious").expect("a file");
+    let child = std::process::Command::new(assert_cmd::cargo::cargo_bin!("tabray"))
+        .args(["render", "big.ray"])
+        .current_dir(folder.path())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program runs");
+    while names_in(folder.path()).len() < 3 {
+        std::thread::yield_now();
+    }
+    let killed = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    assert!(killed.expect("kill runs").success());
+    let output = child.wait_with_output().expect("it ends");
+    assert_eq!(output.status.code(), Some(130));
+    assert_eq!(String::from_utf8_lossy(&output.stderr), "interrupted: nothing was written\n");
+    assert_eq!(names_in(folder.path()), ["big.png", "big.ray"]);
+    assert_eq!(fs::read(folder.path().join("big.png")).expect("still there"), b"precious");
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_bytes() {
+    let folder = folder();
+    for path in [
+        scene("gallery/hall-of-mirrors.ray"),
+        scene("gallery/stained-glass.ray"),
+        scene("material/touching-mirrors.ray"),
+    ] {
+        let pictures = ["1", "2", "7"].map(|threads| {
+            let (status, out, err) =
+                outcome(tabray(&folder).arg("render").arg(&path).args(["-o", "-", "--threads", threads]));
+            assert_eq!(status, 0, "{err}");
+            out
+        });
+        assert!(pictures.iter().all(|picture| *picture == pictures[0]), "{}", path.display());
+    }
+}
+
+#[test]
+fn list_knows_every_entity_and_attribute() {
+    let folder = folder();
+    let (status, out, _) = outcome(tabray(&folder).arg("list"));
+    let out = String::from_utf8(out).expect("text");
+    assert_eq!(status, 0);
+    for entity in common::registry().iter() {
+        assert!(out.lines().any(|line| line.starts_with(&format!("{} ", entity.name))), "{}", entity.name);
+        let (status, out, _) = outcome(tabray(&folder).args(["list", entity.name]));
+        let out = String::from_utf8(out).expect("text");
+        assert_eq!(status, 0);
+        for attribute in entity.attributes() {
+            assert!(out.contains(attribute.name()) && out.contains(attribute.meaning()), "{out}");
+        }
+    }
+    let (status, _, err) = outcome(tabray(&folder).args(["list", "spere"]));
+    assert_eq!(status, 2);
+    assert!(err.contains("did you mean `sphere`?"), "{err}");
+}
+
+#[test]
+fn help_tells_the_exit_status() {
+    let (status, out, _) = outcome(tabray(&folder()).arg("--help"));
+    let out = String::from_utf8(out).expect("text");
+    assert_eq!(status, 0);
+    for code in ["  0  ", "  1  ", "  2  ", "130  "] {
+        assert!(out.contains(code), "{out}");
+    }
+}
+
+#[test]
+fn a_scene_larger_than_any_scene_is_refused_in_bounded_memory() {
+    let folder = folder();
+    let path = folder.path().join("huge.ray");
+    let mut file = fs::File::create(&path).expect("a file");
+    file.write_all(b"# a comment that goes on for ever").expect("room");
+    // Not a NUL in sight where the reader looks first, and a length that no memory should be asked for.
+    file.set_len(1 << 36).expect("a file with a hole");
+    let (status, _, err) = outcome(tabray(&folder).arg("check").arg(&path));
+    assert_eq!(status, 2);
+    assert!(err.contains("a NUL byte"), "{err}");
+}

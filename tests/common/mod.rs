@@ -1,0 +1,60 @@
+//! What several tests need: the registry, scenes and decoded pictures.
+#![allow(dead_code, reason = "each test program uses a part of it")]
+
+use image::RgbImage;
+use std::fs;
+use std::path::{Path, PathBuf};
+use tabray::entity::Registry;
+use tabray::model::Model;
+use tabray::render::Renderer;
+use tabray::scene;
+
+/// The entity types of the program.
+pub fn registry() -> &'static Registry {
+    Registry::get().expect("no two plugins claim one name")
+}
+
+/// The folder of the package.
+pub fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// The model of a scene's text, which has no faults.
+pub fn model(text: &str) -> Model {
+    match scene::read(registry(), "scene", text.as_bytes()) {
+        Ok(loaded) => loaded.model,
+        Err(report) => panic!("{report}\n{text}"),
+    }
+}
+
+/// The model of a scene's file, which has no faults.
+pub fn load(path: &Path) -> Model {
+    model(&fs::read_to_string(path).expect("a scene that is text"))
+}
+
+/// The picture of a model.
+pub fn render(model: &Model) -> RgbImage {
+    let [width, height] = model.camera.value.pixels.map(|side| side as u32);
+    let bytes = Renderer::new(0).expect("threads").picture(model);
+    RgbImage::from_raw(width, height, bytes).expect("three bytes for each pixel")
+}
+
+/// Every scene of `scenes/` that has a picture, sorted.
+pub fn scenes() -> Vec<PathBuf> {
+    fn collect(folder: &Path, found: &mut Vec<PathBuf>) {
+        for entry in fs::read_dir(folder).expect("a folder of scenes") {
+            let path = entry.expect("its entries").path();
+            if path.is_dir() {
+                collect(&path, found);
+            } else if path.extension().is_some_and(|extension| extension == "ray") {
+                found.push(path);
+            }
+        }
+    }
+    let mut found = Vec::new();
+    collect(&root().join("scenes"), &mut found);
+    found.retain(|path| !path.starts_with(root().join("scenes/wrong")));
+    found.sort();
+    assert!(found.len() > 20, "the scenes of {} are there", root().display());
+    found
+}

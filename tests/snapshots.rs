@@ -1,0 +1,146 @@
+//! The dump and the picture of every scene, and the messages of every mistake, against those accepted before.
+//!
+//! A scene is added by adding its file. Look at what it gives with `cargo insta review`, and accept it.
+
+mod common;
+
+use common::{load, registry, render, root};
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::{Rgb, RgbImage};
+use insta::internals::SnapshotContents;
+use insta::{Comparator, Settings, Snapshot};
+use std::fs;
+use std::path::Path;
+use tabray::{dump, scene};
+
+#[test]
+fn every_scene_dumps_as_before() {
+    insta::glob!("../scenes", "**/*.ray", |path| {
+        if let Some(settings) = settings(path) {
+            let name = format!("{}.dump", stem(path));
+            settings.bind(|| insta::assert_snapshot!(name, dump::notes(&load(path))));
+        }
+    });
+}
+
+#[test]
+fn every_scene_looks_as_before() {
+    insta::glob!("../scenes", "**/*.ray", |path| {
+        if let Some(mut settings) = settings(path) {
+            let mut model = load(path);
+            if path.starts_with(root().join("scenes/gallery")) {
+                // A thumbnail tells as much, and keeps the repository small.
+                model.camera.value.pixels = [128, 96];
+            }
+            let mut png = Vec::new();
+            let encoder = PngEncoder::new_with_quality(&mut png, CompressionType::Best, FilterType::Adaptive);
+            render(&model).write_with_encoder(encoder).expect("a picture can be encoded");
+            let scene = path.strip_prefix(root()).expect("a scene of this package").with_extension("");
+            settings.set_comparator(Box::new(SamePixels { scene: scene.display().to_string() }));
+            let name = format!("{}.png", stem(path));
+            settings.bind(|| insta::assert_binary_snapshot!(&name, png));
+        }
+    });
+}
+
+#[test]
+fn every_mistake_is_explained_as_before() {
+    insta::glob!("../scenes/wrong", "*.ray", |path| {
+        let name = path.strip_prefix(root()).expect("a scene of this package").display().to_string();
+        let report = match scene::read(registry(), &name, &fs::read(path).expect("a file")) {
+            Ok(loaded) => loaded.warnings,
+            Err(report) => report,
+        };
+        assert!(!report.faults().is_empty(), "{name} has no fault");
+        folder("wrong").bind(|| insta::assert_snapshot!(stem(path), report.to_string()));
+    });
+}
+
+/// Where the snapshots of a scene are, by its folder; nothing for scenes that have no picture.
+fn settings(path: &Path) -> Option<Settings> {
+    let subject = path.strip_prefix(root().join("scenes")).ok()?.parent()?.to_str()?;
+    (subject != "wrong").then(|| folder(subject))
+}
+
+fn folder(subject: &str) -> Settings {
+    let mut settings = Settings::clone_current();
+    settings.set_snapshot_path(root().join("snapshots").join(subject));
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    // `glob!` makes one up that depends on which other files exist.
+    settings.remove_snapshot_suffix();
+    settings.remove_input_file();
+    settings
+}
+
+fn stem(path: &Path) -> &str {
+    path.file_stem().and_then(|stem| stem.to_str()).expect("a name in UTF-8")
+}
+
+/// Compares pictures by their pixels; on failure says how far apart they are and writes a strip of both.
+#[derive(Clone)]
+struct SamePixels {
+    scene: String,
+}
+
+impl Comparator for SamePixels {
+    fn matches(&self, reference: &Snapshot, test: &Snapshot) -> bool {
+        let (Some(expected), Some(actual)) = (picture(reference), picture(test)) else { return false };
+        if expected == actual {
+            return true;
+        }
+        let strip =
+            Path::new(env!("CARGO_TARGET_TMPDIR")).join(self.scene.replace(['/', '\\'], "-") + ".png");
+        let differing = expected.pixels().zip(actual.pixels()).filter(|(a, b)| a != b).count();
+        let saved = strip_of(&expected, &actual).save(&strip);
+        eprintln!(
+            "{}: {differing} of {} pixels differ ({:?} and {:?}); expected | difference | actual: {} {saved:?}",
+            self.scene,
+            expected.pixels().len(),
+            expected.dimensions(),
+            actual.dimensions(),
+            strip.display()
+        );
+        false
+    }
+
+    fn dyn_clone(&self) -> Box<dyn Comparator> {
+        Box::new(self.clone())
+    }
+}
+
+fn picture(snapshot: &Snapshot) -> Option<RgbImage> {
+    match snapshot.contents() {
+        SnapshotContents::Binary(Some(bytes)) => Some(image::load_from_memory(bytes).ok()?.into_rgb8()),
+        _ => None,
+    }
+}
+
+/// Expected, difference and actual side by side; what differs by 1 shows already.
+fn strip_of(expected: &RgbImage, actual: &RgbImage) -> RgbImage {
+    let width = expected.width().max(actual.width());
+    let height = expected.height().max(actual.height());
+    RgbImage::from_fn(3 * width, height, |x, y| {
+        let at =
+            |image: &RgbImage| image.get_pixel_checked(x % width, y).copied().unwrap_or(Rgb([255, 0, 255]));
+        match x / width {
+            0 => at(expected),
+            2 => at(actual),
+            _ => {
+                let (a, b) = (at(expected), at(actual));
+                let far = |channel: usize| a[channel].abs_diff(b[channel]);
+                Rgb([0, 1, 2].map(|channel| if far(channel) == 0 { 0 } else { far(channel).max(64) }))
+            }
+        }
+    })
+}
+
+#[test]
+fn a_strip_shows_both_pictures_and_where_they_differ() {
+    let expected = RgbImage::from_pixel(2, 1, Rgb([10, 20, 30]));
+    let mut actual = expected.clone();
+    actual.put_pixel(1, 0, Rgb([11, 20, 230]));
+    let strip = strip_of(&expected, &actual);
+    let row: Vec<_> = strip.pixels().map(|pixel| pixel.0).collect();
+    assert_eq!(row, [[10, 20, 30], [10, 20, 30], [0; 3], [64, 0, 200], [10, 20, 30], [11, 20, 230]]);
+}
