@@ -13,7 +13,7 @@ pub static DIMENSIONS: Pparm<DVec2> = Pparm::required("dimensions", "its size al
     .must("positive each way", |size: &DVec2| size.min_element() > 0.0)
     .dumped("dimensions", "\n");
 pub static XDIR: Pparm<DVec3> =
-    Pparm::required("xdir", "the direction of its first side, seen along its normal")
+    Pparm::required("xdir", "the direction of its first side, or of anything right above that")
         .must("a vector with a direction", |xdir: &DVec3| xdir.try_normalize().is_some())
         .dumped("xdir", "\n");
 static PROJECTED: Derived = Derived(|args| dump::line("projected", &frame(args).x_axis.to_datum(), "\n"));

@@ -3,7 +3,6 @@
 use crate::entity::{Args, Kind};
 use crate::model::Model;
 use crate::value::Datum;
-use std::fmt::Write;
 
 /// The notes' dump: camera, materials, objects and lights, numbers to one decimal.
 pub fn notes(model: &Model) -> String {
@@ -24,30 +23,19 @@ pub fn notes(model: &Model) -> String {
     text
 }
 
-/// A line of the notes' dump. Materials end their last lines, and others some, with blank lines.
+/// A line of the notes' dump: a label, values and what ends the line.
 pub fn line(label: &str, datum: &Datum, ending: &str) -> String {
-    let mut line = format!("{label:<12}");
-    for value in printed(datum, 5, 1) {
-        line.push(' ');
-        line += &value;
-    }
-    line + ending
+    let values = match datum {
+        Datum::Whole(numbers) => numbers.iter().map(|number| format!(" {number:5}")).collect(),
+        Datum::Numbers(numbers) => numbers.iter().map(|number| format!(" {number:5.1}")).collect(),
+        Datum::Word(_) | Datum::Material { .. } => format!(" {datum}"),
+    };
+    format!("{label:<12}{values}{ending}")
 }
 
 /// A line of the notes' dump that holds a row of a matrix.
 pub fn matrix_row(row: glam::DVec3) -> String {
     format!("{:<12} {:7.3} {:7.3} {:7.3}\n", "", row.x, row.y, row.z)
-}
-
-fn printed(datum: &Datum, width: usize, decimals: usize) -> Vec<String> {
-    match datum {
-        Datum::Whole(numbers) => numbers.iter().map(|number| format!("{number:width$}")).collect(),
-        Datum::Numbers(numbers) => {
-            numbers.iter().map(|number| format!("{number:width$.decimals$}")).collect()
-        }
-        Datum::Word(word) => vec![word.clone()],
-        Datum::Material { name, .. } => vec![name.to_string()],
-    }
 }
 
 /// A scene in the notes' language that loads again to the identical model: every number to its last bit.
@@ -68,23 +56,9 @@ fn entity(args: &Args) -> String {
     let mut text = format!("{} {}\n{{\n", args.entity.name, args.name);
     let width = args.values().map(|(attribute, _)| attribute.name().len()).max().unwrap_or(0);
     for (attribute, datum) in args.values() {
-        let _ = writeln!(text, "    {:<width$} {}", attribute.name(), exact(datum));
+        text += &format!("    {:<width$} {datum}\n", attribute.name());
     }
     text + "}\n"
-}
-
-fn exact(datum: &Datum) -> String {
-    let words: Vec<_> = match datum {
-        Datum::Numbers(numbers) => numbers.iter().map(|number| shortest(*number)).collect(),
-        _ => printed(datum, 0, 0),
-    };
-    words.join(" ")
-}
-
-/// The shortest decimal that reads back as the same number.
-fn shortest(number: f64) -> String {
-    let text = format!("{number:?}");
-    text.strip_suffix(".0").unwrap_or(&text).to_owned()
 }
 
 fn entities(model: &Model, kind: Kind) -> Box<dyn Iterator<Item = &Args> + '_> {

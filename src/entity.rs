@@ -30,6 +30,12 @@ pub struct Entity {
 
 inventory::collect!(Entity);
 
+impl fmt::Debug for Entity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "`{}` of {}", self.name, self.place())
+    }
+}
+
 /// The kinds of entity that a scene is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Kind {

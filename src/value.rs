@@ -4,6 +4,7 @@ use crate::entity::Kind;
 use crate::geometry::Rgb;
 use crate::model::Material;
 use glam::{DVec2, DVec3};
+use std::fmt;
 use std::sync::Arc;
 
 /// The type of an attribute's values.
@@ -35,6 +36,25 @@ pub enum Datum {
         /// What the name stands for.
         material: Arc<Material>,
     },
+}
+
+/// The values as a scene writes them: every number reads back to its last bit.
+impl fmt::Display for Datum {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let words: Vec<String> = match self {
+            Self::Whole(numbers) => numbers.iter().map(i64::to_string).collect(),
+            Self::Numbers(numbers) => numbers.iter().map(|number| shortest(*number)).collect(),
+            Self::Word(word) => vec![word.clone()],
+            Self::Material { name, .. } => vec![name.to_string()],
+        };
+        f.write_str(&words.join(" "))
+    }
+}
+
+/// The shortest decimal that reads back as the same number.
+fn shortest(number: f64) -> String {
+    let text = format!("{number:?}");
+    text.strip_suffix(".0").unwrap_or(&text).to_owned()
 }
 
 /// A Rust type that a [`Pparm`](crate::pparm::Pparm) can be a key for.

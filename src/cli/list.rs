@@ -47,14 +47,19 @@ fn details(entity: &'static Entity) -> String {
     )
 }
 
-/// Whether an attribute must be given, in what unit, and what it must be.
+/// Whether an attribute must be given, what its values must be, and in what unit they are.
 fn condition(attribute: &dyn Attribute) -> String {
-    let given = if attribute.default().is_some() { "optional" } else { "required" };
-    [given, attribute.unit(), attribute.rule()]
-        .into_iter()
-        .filter(|part| !part.is_empty())
-        .collect::<Vec<_>>()
-        .join(", ")
+    let mut parts = vec![match attribute.default() {
+        Some(default) => format!("{default} by default"),
+        None => "required".to_owned(),
+    }];
+    if !attribute.rule().is_empty() {
+        parts.push(format!("must be {}", attribute.rule()));
+    }
+    if !attribute.unit().is_empty() {
+        parts.push(format!("in {}", attribute.unit()));
+    }
+    parts.join(", ")
 }
 
 /// Rows of text in columns as wide as their widest entry.

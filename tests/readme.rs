@@ -1,0 +1,175 @@
+//! What the README shows: its plugin is dropped in and works, its scene loads, its pictures are fresh.
+
+mod common;
+
+use common::{load, model, render, root};
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn readme() -> String {
+    fs::read_to_string(root().join("README.md")).expect("the README")
+}
+
+/// The first block of code in the README that contains a text.
+fn block_with(text: &str) -> String {
+    let readme = readme();
+    let block = readme.split("```").skip(1).step_by(2).find(|block| block.contains(text));
+    let block = block.unwrap_or_else(|| panic!("the README has a block with {text}"));
+    block.split_once('\n').expect("a first line, which names the language").1.to_owned()
+}
+
+#[test]
+fn the_readmes_scene_is_one() {
+    assert_eq!(model(&block_with("camera eye\n")).objects.len(), 2);
+}
+
+#[test]
+fn the_readmes_pictures_are_fresh() {
+    let readme = readme();
+    for entry in fs::read_dir(root().join("docs")).expect("the folder of pictures") {
+        let path = entry.expect("an entry").path();
+        let name = path.file_stem().and_then(|name| name.to_str()).expect("a name").to_owned();
+        let fresh = render(&load(&root().join("scenes/gallery").join(&name).with_extension("ray")));
+        let shown = image::open(&path).expect("a picture").into_rgb8();
+        assert!(fresh == shown, "docs/{name}.png is stale: see the README's last section");
+        assert!(readme.contains(&name), "{name} is named with its command");
+    }
+}
+
+#[test]
+fn the_readme_names_every_entity_and_attribute() {
+    let readme = readme();
+    for entity in common::registry().iter() {
+        assert!(readme.contains(&format!("| `{}` |", entity.name)), "{}", entity.name);
+        for attribute in entity.attributes() {
+            assert!(
+                readme.contains(&format!("`{}`", attribute.name())),
+                "{} {}",
+                entity.name,
+                attribute.name()
+            );
+        }
+    }
+}
+
+#[test]
+fn a_plugin_is_one_file_dropped_in() {
+    let copy = Copy::new();
+    copy.build();
+    assert!(!copy.prints(&["list"]).contains("disc "), "nothing was dropped in yet");
+    let before = copy.files();
+
+    fs::write(copy.folder.join("plugins/disc.rs"), block_with("struct Disc")).expect("room for a file");
+    copy.build();
+    let dropped: Vec<_> = copy.files().difference(&before).map(|(path, _)| path.clone()).collect();
+    assert_eq!(dropped, [copy.folder.join("plugins/disc.rs")], "no other file changes");
+
+    let disc = copy.prints(&["list"]).lines().find(|line| line.starts_with("disc ")).map(str::to_owned);
+    assert!(disc.expect("the list has it").contains("a round piece of a plane"));
+    assert!(copy.prints(&["list", "disc"]).contains("the distance from its middle to its rim"));
+
+    let scene = copy.outside("disc.ray");
+    fs::write(&scene, block_with("disc target")).expect("room for a file");
+    let scene = scene.to_str().expect("a path in UTF-8");
+    let dump = copy.prints(&["dump", scene]);
+    assert!(
+        dump.contains("\ndisc         target \nmaterial     red \nnormal         0.0   0.0   1.0 \n"),
+        "{dump}"
+    );
+    assert!(dump.contains("\nradius         2.0 \n"), "{dump}");
+
+    let picture = copy.outside("disc.png");
+    copy.prints(&["render", scene, "-o", picture.to_str().expect("a path in UTF-8")]);
+    let picture = image::open(&picture).expect("a picture").into_rgb8();
+    let red = picture.pixels().filter(|pixel| pixel.0 == [255, 0, 0]).count() as f64;
+    // The disc's radius of 2, seen through the screen, is 2 * 6 / 9 of its 8 by 6 units.
+    let area = std::f64::consts::PI * (2.0_f64 * 6.0 / 9.0).powi(2) / (8.0 * 6.0);
+    assert!((red / (160.0 * 120.0) - area).abs() < 0.005, "a round disc of the right size, {red} pixels");
+
+    let message = copy.run(&["check", "-"], "disc d { radius 0 }");
+    assert!(message.contains("`radius` of disc `d` must be positive, not 0"), "{message}");
+}
+
+/// A copy of the package to drop files into. Its build directory stays, to keep the next run quick.
+struct Copy {
+    folder: PathBuf,
+    target: PathBuf,
+}
+
+impl Copy {
+    fn new() -> Self {
+        let base = Path::new(env!("CARGO_TARGET_TMPDIR"));
+        let copy = Self { folder: base.join("dropped-in"), target: base.join("dropped-in-target") };
+        let _ = fs::remove_dir_all(&copy.folder);
+        fs::create_dir_all(&copy.folder).expect("room for a copy");
+        for file in ["Cargo.toml", "Cargo.lock"] {
+            fs::copy(root().join(file), copy.folder.join(file)).expect("a copy");
+        }
+        for folder in ["src", "plugins"] {
+            copy_all(&root().join(folder), &copy.folder.join(folder));
+        }
+        copy
+    }
+
+    /// A path that is not in the copy.
+    fn outside(&self, name: &str) -> PathBuf {
+        self.target.join(name)
+    }
+
+    fn build(&self) {
+        let build = Command::new(env!("CARGO"))
+            .args(["build", "--locked", "--quiet"])
+            .current_dir(&self.folder)
+            .env("CARGO_TARGET_DIR", &self.target)
+            .output()
+            .expect("cargo runs");
+        assert!(build.status.success(), "{}", String::from_utf8_lossy(&build.stderr));
+    }
+
+    fn prints(&self, args: &[&str]) -> String {
+        let Output { status, stdout, stderr } =
+            Command::new(self.target.join("debug/tabray")).args(args).output().expect("the program runs");
+        assert!(status.success(), "{args:?}: {}", String::from_utf8_lossy(&stderr));
+        String::from_utf8(stdout).expect("text")
+    }
+
+    /// What the program says of a scene on standard input.
+    fn run(&self, args: &[&str], scene: &str) -> String {
+        let program = self.target.join("debug/tabray");
+        let output =
+            assert_cmd::Command::new(program).args(args).write_stdin(scene).output().expect("it runs");
+        String::from_utf8(output.stderr).expect("text")
+    }
+
+    /// Every file of the copy and what is in it.
+    fn files(&self) -> BTreeSet<(PathBuf, Vec<u8>)> {
+        let mut files = BTreeSet::new();
+        let mut folders = vec![self.folder.clone()];
+        while let Some(folder) = folders.pop() {
+            for entry in fs::read_dir(folder).expect("a folder") {
+                let path = entry.expect("an entry").path();
+                if path.is_dir() {
+                    folders.push(path);
+                } else {
+                    files.insert((path.clone(), fs::read(&path).expect("a file")));
+                }
+            }
+        }
+        files
+    }
+}
+
+fn copy_all(from: &Path, to: &Path) {
+    fs::create_dir_all(to).expect("room for a copy");
+    for entry in fs::read_dir(from).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        let target = to.join(path.file_name().expect("a name"));
+        if path.is_dir() {
+            copy_all(&path, &target);
+        } else {
+            fs::copy(&path, &target).expect("a copy");
+        }
+    }
+}
