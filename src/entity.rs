@@ -1,13 +1,11 @@
-//! Entity types: what a plugin registers, and the registry of all of them.
+//! Entity types: what a plugin registers, and what its constructor is given.
 
 use crate::geometry::{Body, Light};
 use crate::model::{Camera, Material};
 use crate::pparm::{Attribute, Pparm, Row, Table};
 use crate::value::{Datum, Value};
-use crate::words::nearest;
-use std::collections::{BTreeMap, BTreeSet};
 use std::panic::Location;
-use std::sync::{Arc, LazyLock};
+use std::sync::Arc;
 use std::{fmt, iter};
 
 /// An entity type of the scene language: a name, a table of attributes and a constructor.
@@ -167,6 +165,16 @@ impl Entity {
         self.rows().filter_map(|row| row.attribute())
     }
 
+    /// How a scene writes one that has this name: its type, the name and the attributes it must have.
+    pub fn usage(&self, name: &str) -> String {
+        let required = self.attributes().filter(|attribute| attribute.default().is_none());
+        let mut body: Vec<_> = required.map(|attribute| attribute.usage()).collect();
+        if body.len() < self.attributes().count() {
+            body.push("...".to_owned());
+        }
+        format!("`{} {name} {{ {} }}`", self.name, body.join("  "))
+    }
+
     /// The file and line that registers it.
     pub fn place(&self) -> String {
         let file = self.place.file().replace('\\', "/");
@@ -236,81 +244,4 @@ pub struct Refusal {
     pub message: String,
     /// What would be right.
     pub help: &'static str,
-}
-
-/// All entity types of the program.
-pub struct Registry {
-    entities: BTreeMap<&'static str, &'static Entity>,
-    aliases: BTreeMap<&'static str, &'static Entity>,
-}
-
-impl Registry {
-    /// The entity types that the plugins registered, sorted by name.
-    ///
-    /// # Errors
-    /// Names given twice, each with both places: the plugins contradict each other.
-    pub fn get() -> Result<&'static Registry, &'static str> {
-        static REGISTRY: LazyLock<Result<Registry, String>> =
-            LazyLock::new(|| Registry::of(inventory::iter::<Entity>()));
-        REGISTRY.as_ref().map_err(String::as_str)
-    }
-
-    /// A registry of these entity types.
-    ///
-    /// # Errors
-    /// As [`Registry::get`].
-    pub fn of(entities: impl IntoIterator<Item = &'static Entity>) -> Result<Registry, String> {
-        // The order of `inventory` is the linker's.
-        let mut sorted: Vec<_> = entities.into_iter().collect();
-        sorted.sort_by_key(|entity| (entity.name, entity.place()));
-
-        let mut faults = Vec::new();
-        let mut by_name: BTreeMap<&str, &Entity> = BTreeMap::new();
-        let mut aliases: BTreeMap<&str, &Entity> = BTreeMap::new();
-        for &entity in &sorted {
-            if let Some(first) = by_name.insert(entity.name, entity) {
-                faults.push(taken("entity type", entity.name, first, entity));
-            }
-            let mut names = BTreeSet::new();
-            for attribute in entity.attributes() {
-                for &name in iter::once(&attribute.name()).chain(attribute.aliases()) {
-                    if !names.insert(name) {
-                        faults.push(format!(
-                            "the table of `{}` at {} has `{name}` twice",
-                            entity.name,
-                            entity.place()
-                        ));
-                    }
-                }
-            }
-        }
-        for &entity in &sorted {
-            for &alias in entity.aliases {
-                let first = by_name.get(alias).copied().or_else(|| aliases.insert(alias, entity));
-                if let Some(first) = first {
-                    faults.push(taken("entity type", alias, first, entity));
-                }
-            }
-        }
-        if faults.is_empty() { Ok(Registry { entities: by_name, aliases }) } else { Err(faults.join("\n")) }
-    }
-
-    /// The entity type of this name or alias.
-    pub fn find(&self, name: &str) -> Option<&'static Entity> {
-        self.entities.get(name).or_else(|| self.aliases.get(name)).copied()
-    }
-
-    /// The name of the entity type that a misspelt word was most likely meant to be.
-    pub fn nearest(&self, word: &str) -> Option<&'static str> {
-        nearest(word, self.entities.keys().copied())
-    }
-
-    /// All entity types, sorted by name.
-    pub fn iter(&self) -> impl Iterator<Item = &'static Entity> {
-        self.entities.values().copied()
-    }
-}
-
-fn taken(what: &str, name: &str, first: &Entity, second: &Entity) -> String {
-    format!("the {what} `{name}` is registered twice: at {} and at {}", first.place(), second.place())
 }

@@ -14,6 +14,7 @@ pub mod geometry;
 pub mod model;
 pub mod picture;
 pub mod pparm;
+pub mod registry;
 pub mod render;
 pub mod scene;
 pub mod trace;

@@ -30,7 +30,7 @@ impl Format {
     }
 
     /// Writes a whole picture: `rows` hands out its bytes, some rows at a time from the top, as
-    /// [`rows`](crate::render::rows) makes them.
+    /// [`Renderer::bands`](crate::render::Renderer::bands) makes them.
     ///
     /// # Errors
     /// Those of `out`, of `rows`, and a size that the format cannot hold.

@@ -144,3 +144,23 @@ fn a_strip_shows_both_pictures_and_where_they_differ() {
     let row: Vec<_> = strip.pixels().map(|pixel| pixel.0).collect();
     assert_eq!(row, [[10, 20, 30], [10, 20, 30], [0; 3], [64, 0, 200], [10, 20, 30], [11, 20, 230]]);
 }
+
+#[test]
+fn no_snapshot_is_left_of_a_scene_that_is_gone() {
+    let mut folders = vec![root().join("snapshots")];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).expect("a folder of snapshots") {
+            let path = entry.expect("an entry").path();
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
+            let subject = path.parent().and_then(|folder| folder.strip_prefix(root().join("snapshots")).ok());
+            let name = path.file_name().and_then(|name| name.to_str()).expect("a name in UTF-8");
+            let stem = name.split('.').next().expect("a stem");
+            let scene =
+                root().join("scenes").join(subject.expect("a subject")).join(stem).with_extension("ray");
+            assert!(scene.is_file(), "{} has no scene", path.display());
+        }
+    }
+}

@@ -2,7 +2,7 @@
 
 use super::{Failure, input, tell};
 use std::path::PathBuf;
-use tabray::entity::Registry;
+use tabray::registry::Registry;
 
 /// Look for faults in scenes
 #[derive(clap::Args)]

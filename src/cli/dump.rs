@@ -3,7 +3,7 @@
 use super::{Failure, input, print};
 use std::path::PathBuf;
 use tabray::dump;
-use tabray::entity::Registry;
+use tabray::registry::Registry;
 
 /// Print a scene as the program understands it
 #[derive(clap::Args)]

@@ -4,8 +4,8 @@ use super::Failure;
 use std::fs::File;
 use std::io::{self, Read, Write};
 use std::path::Path;
-use tabray::entity::Registry;
 use tabray::model::Model;
+use tabray::registry::Registry;
 use tabray::scene;
 
 /// The largest scene that is read: far beyond any written one, and far below what memory holds.

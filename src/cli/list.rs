@@ -1,8 +1,9 @@
 //! `tabray list`: the entity types and their attributes, from their tables.
 
 use super::{Failure, print};
-use tabray::entity::{Entity, Registry};
+use tabray::entity::Entity;
 use tabray::pparm::Attribute;
+use tabray::registry::Registry;
 
 /// List the entity types, or the attributes of one
 #[derive(clap::Args)]

@@ -13,7 +13,7 @@ use annotate_snippets::{Group, Level, Renderer};
 use clap::{CommandFactory, Parser, Subcommand};
 use std::io::{self, IsTerminal, Write};
 use std::process::ExitCode;
-use tabray::entity::Registry;
+use tabray::registry::Registry;
 use tabray::scene::Report;
 
 /// A ray tracer in which a scene is data and every entity type is a plugin

@@ -5,8 +5,8 @@ use super::{Failure, input, interrupt, render};
 use std::io::Write;
 use std::path::Path;
 use tabray::dump;
-use tabray::entity::Registry;
 use tabray::picture::Format;
+use tabray::registry::Registry;
 
 pub fn run(registry: &Registry) -> Result<(), Failure> {
     let standard = Path::new("-");

@@ -7,9 +7,9 @@ use std::io::{self, BufWriter};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-use tabray::entity::Registry;
 use tabray::model::Model;
 use tabray::picture::Format;
+use tabray::registry::Registry;
 use tabray::render::Renderer;
 
 /// Make a scene's picture

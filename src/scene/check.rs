@@ -4,10 +4,11 @@ use super::fault::{Fault, Place, Report};
 use super::notes::{find_attribute, near_attribute};
 use super::values;
 use super::written::{Word, Written};
-use crate::entity::{Args, Construct, Entity, Kind, MATERIAL, Refusal, Registry};
+use crate::entity::{Args, Construct, Entity, Kind, MATERIAL, Refusal};
 use crate::geometry::Light;
 use crate::model::{Camera, Item, Material, Model, Object};
 use crate::pparm::Attribute;
+use crate::registry::Registry;
 use crate::value::{Datum, Type};
 use crate::words::{self, list, nearest};
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -39,11 +40,11 @@ pub fn model(registry: &Registry, written: Vec<Written<'_>>, report: &mut Report
             }
         }
     }
-    let any = !written.is_empty();
+    let first = written.first().map(|entity| entity.kind.place.clone());
     for entity in written {
         check.entity(entity);
     }
-    check.finish(any)
+    check.finish(first)
 }
 
 /// The parts of a model as they come.
@@ -226,11 +227,11 @@ impl Check<'_> {
             values.extend(datum);
         }
         if !missing.is_empty() {
-            let wanted: Vec<_> = missing.iter().map(|attribute| values::usage(*attribute)).collect();
+            let wanted: Vec<_> = missing.iter().map(|attribute| attribute.usage()).collect();
             let fault = format!("{title} lacks {}", list(missing.iter().map(|attribute| attribute.name())));
             self.report.add(
                 Fault::error(written.name.place.clone(), fault)
-                    .help(format!("give it {}", wanted.join(", "))),
+                    .help(format!("give it `{}`", wanted.join("` and `"))),
             );
         } else if written.attributes.is_empty() && !attributes.is_empty() {
             sound = false;
@@ -315,7 +316,8 @@ impl Check<'_> {
         Datum::Material { name: Arc::from(word.text.as_ref()), material: Arc::default() }
     }
 
-    fn finish(mut self, any: bool) -> Option<Model> {
+    /// The model, or the faults that show only when all is read. The scene's first word is at `first`.
+    fn finish(mut self, first: Option<Place>) -> Option<Model> {
         let mut camera_misspelt = false;
         for (name, places) in std::mem::take(&mut self.unknown) {
             let near = self.registry.nearest(&name);
@@ -338,15 +340,19 @@ impl Check<'_> {
                     let near = nearest(&name, self.all_materials.keys().map(String::as_str));
                     Fault::error(places[0].clone(), format!("there is no material `{name}`"))
                         .label(suggestion(near, &places))
-                        .help(format!("define it above: `material {name} {{ ambient R G B diffuse R G B }}`"))
+                        .help(format!("define it above: {}", self.registry.example(Kind::Material, &name)))
                 }
             };
             self.report.add(fault);
         }
-        if any && self.camera.is_none() && !camera_misspelt {
+        if let Some(first) = first
+            && self.camera.is_none()
+            && !camera_misspelt
+        {
             self.report.add(
-                Fault::error(None, "the scene has no camera")
-                    .help("add one: `camera NAME { pixeldim 640 480 worlddim 8 6 viewpoint 4 3 6 }`"),
+                Fault::error(first, "the scene has no camera")
+                    .label("a camera belongs before this")
+                    .help(format!("add one: {}", self.registry.example(Kind::Camera, "NAME"))),
             );
         }
         let Parts { camera, materials, objects, lights } = self.model;

@@ -9,8 +9,8 @@ mod written;
 pub use fault::{Fault, Place, Report, Severity};
 pub use written::{Values, Written};
 
-use crate::entity::Registry;
 use crate::model::Model;
+use crate::registry::Registry;
 
 /// A model, and the warnings that its scene gave rise to.
 pub struct Loaded {
@@ -34,7 +34,7 @@ pub fn read(registry: &Registry, name: &str, bytes: &[u8]) -> Result<Loaded, Rep
 /// Makes a model without any text (the notes' `modelstat.c`). The entities are checked as a text's are.
 ///
 /// ```
-/// use tabray::{entity::Registry, scene, scene::Written};
+/// use tabray::{registry::Registry, scene, scene::Written};
 ///
 /// let built = scene::build(Registry::get()?, [
 ///     Written::new("camera", "cam1")
@@ -85,7 +85,7 @@ fn decode<'b>(name: &str, bytes: &'b [u8]) -> Result<&'b str, Report> {
     };
     // Up to the fault the lossy text has the same bytes.
     let mut report = Report::new(name, String::from_utf8_lossy(bytes));
-    let help = "a scene is text: `camera`, `material`, `plane` ... with their attributes in braces";
+    let help = "a scene is a text of entities, `TYPE NAME { ATTRIBUTES }`";
     report.add(Fault::error(Some(place), message).help(help));
     Err(report)
 }

@@ -2,8 +2,9 @@
 
 use super::fault::{Fault, Report};
 use super::written::{Word, Written};
-use crate::entity::{Entity, Registry};
+use crate::entity::{Entity, Kind};
 use crate::pparm::Attribute;
+use crate::registry::Registry;
 use crate::value::Type;
 use crate::words::nearest;
 use std::ops::Range;
@@ -14,13 +15,16 @@ pub fn parse<'a>(registry: &Registry, text: &'a str, report: &mut Report) -> Vec
     let mut parser = Parser { registry, tokens: tokens(text), at: 0, end: text.len(), report, last: None };
     let written = parser.scene();
     if written.is_empty() && !parser.report.is_fatal() {
-        parser.report.add(Fault::error(None, "the scene is empty").help(SHORTEST));
+        parser.report.add(Fault::error(Some(0..0), "the scene is empty").help(first_steps(registry)));
     }
     written
 }
 
-const SHORTEST: &str = "a scene begins with a camera: \
-    `camera NAME { pixeldim 640 480 worlddim 8 6 viewpoint 4 3 6 }`, then come materials, objects and lights";
+/// What a scene looks like, for those who have none.
+fn first_steps(registry: &Registry) -> String {
+    let camera = registry.example(Kind::Camera, "NAME");
+    format!("a scene begins with a camera, {camera}; then come materials, objects and lights")
+}
 
 /// A word or a brace, and where it stands.
 #[derive(Clone)]
@@ -77,7 +81,7 @@ impl<'a> Parser<'a, '_> {
             self.report.add(
                 Fault::error(Some(first.at), "this is not a scene")
                     .label("no entity begins like this")
-                    .help(SHORTEST),
+                    .help(first_steps(self.registry)),
             );
             return written;
         }
@@ -150,8 +154,7 @@ impl<'a> Parser<'a, '_> {
                 .also(Some(opened.clone()), "the entity before it begins here")
                 .also(Some(closed.clone()), "and ends here");
         }
-        self.report
-            .add(fault.help("outside of entities stand only their types and names: `sphere ball { ... }`"));
+        self.report.add(fault.help("every word of a scene belongs to an entity, `TYPE NAME { ATTRIBUTES }`"));
     }
 
     fn entity(&mut self) -> Written<'a> {

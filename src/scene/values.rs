@@ -1,8 +1,7 @@
-//! Words read as the values of an attribute, and what messages say of an attribute's values.
+//! Words read as the values of an attribute.
 
 use super::fault::Fault;
 use super::written::Word;
-use crate::pparm::Attribute;
 use crate::value::{Datum, Type};
 
 /// Reads words as values of a type.
@@ -56,14 +55,4 @@ fn number(word: &str) -> Result<f64, Complaint> {
         Err(_) if word.contains('#') => Err(("not a number", Some("a comment's `#` has a blank before it"))),
         Err(_) => Err(("not a number", None)),
     }
-}
-
-/// How an attribute is written: its name and its values, in backticks.
-pub fn usage(attribute: &dyn Attribute) -> String {
-    let values = match attribute.value_type() {
-        Type::Name(_) => " NAME".to_owned(),
-        Type::Word => " WORD".to_owned(),
-        Type::Whole | Type::Number => " N".repeat(attribute.arity().first().copied().unwrap_or(1)),
-    };
-    format!("`{}{values}`", attribute.name())
 }

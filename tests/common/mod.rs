@@ -4,8 +4,8 @@
 use image::RgbImage;
 use std::fs;
 use std::path::{Path, PathBuf};
-use tabray::entity::Registry;
 use tabray::model::Model;
+use tabray::registry::Registry;
 use tabray::render::Renderer;
 use tabray::scene;
 
