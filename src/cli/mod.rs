@@ -91,7 +91,7 @@ fn tell(failure: &Failure) -> ExitCode {
         Failure::Scene(report) => report.styled(),
         Failure::Usage(message, help) => plain(message, help.as_deref()),
         Failure::Failed(message) => plain(message, None),
-        Failure::Interrupted => "interrupted: nothing was written\n".to_owned(),
+        Failure::Interrupted => "interrupted: the picture was not finished\n".to_owned(),
         Failure::Told => String::new(),
     };
     // Where standard error is closed there is nobody to tell.

@@ -1,7 +1,6 @@
 //! Where a picture goes: beside its target first, then in its place, so that no half of one is ever there.
 
 use super::Failure;
-use std::error::Error;
 use std::fmt::Display;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, IsTerminal, Write};
@@ -46,11 +45,11 @@ impl Output {
             }
             Ok(meta) if meta.permissions().readonly() => Err(cannot(&io::ErrorKind::PermissionDenied)),
             Ok(meta) => {
-                let file = beside(folder).map_err(|reason| cannot(&reason))?;
+                let file = beside(folder).map_err(|error| cannot(&error))?;
                 fs::set_permissions(file.path(), meta.permissions()).map_err(|error| cannot(&error))?;
                 Ok(Self::File(file, target))
             }
-            Err(_) => Ok(Self::File(beside(folder).map_err(|reason| cannot(&reason))?, target)),
+            Err(_) => Ok(Self::File(beside(folder).map_err(|error| cannot(&error))?, target)),
         }
     }
 
@@ -82,14 +81,8 @@ impl Write for Output {
 }
 
 /// A new hidden file in the folder, with the permissions that any new file gets. It goes when it is dropped.
-///
-/// # Errors
-/// The reason alone: the name of a file that does not exist would puzzle.
-fn beside(folder: &Path) -> Result<NamedTempFile, String> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".tabray-");
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let file = builder.tempfile_in(folder);
-    file.map_err(|error| error.source().map_or_else(|| error.to_string(), ToString::to_string))
+fn beside(folder: &Path) -> io::Result<NamedTempFile> {
+    tempfile::Builder::new()
+        .prefix(".tabray-")
+        .make_in(folder, |path| OpenOptions::new().write(true).create_new(true).open(path))
 }
