@@ -1,7 +1,7 @@
 //! The camera: the viewer, and the screen in the plane z = 0 that the viewer looks through.
 
+use crate::camera::Camera;
 use crate::entity::Entity;
-use crate::model::Camera;
 use crate::pparm::{Pparm, Table};
 use glam::{DVec2, DVec3};
 

@@ -1,7 +1,6 @@
 //! A finite plane: a rectangle.
 
 use super::plane::{self, Plane};
-use crate::dump;
 use crate::entity::{Args, Entity, Refusal};
 use crate::geometry::{Body, Hittable, MISS, Ray, Span};
 use crate::pparm::{Derived, Pparm, Row, Table};
@@ -16,9 +15,10 @@ pub static XDIR: Pparm<DVec3> =
     Pparm::required("xdir", "the direction of its first side, or of anything right above that")
         .must("a vector with a direction", |xdir: &DVec3| xdir.try_normalize().is_some())
         .dumped("xdir", "\n");
-static PROJECTED: Derived = Derived(|args| dump::line("projected", &frame(args).x_axis.to_datum(), "\n"));
+static PROJECTED: Derived = Derived(|args| frame(args).x_axis.to_datum().line("projected", "\n"));
 static ROTATION: Derived = Derived(|args| {
-    let rows = frame(args).to_cols_array_2d().map(|row| dump::matrix_row(row.into()));
+    let rows =
+        frame(args).to_cols_array_2d().map(|[x, y, z]| format!("{:<12} {x:7.3} {y:7.3} {z:7.3}\n", ""));
     format!("rotation matrix\n{}", rows.concat())
 });
 

@@ -1,7 +1,8 @@
 //! A light: a point that shines evenly in all directions.
 
 use crate::entity::Entity;
-use crate::geometry::{Light, Rgb};
+use crate::geometry::Light;
+use crate::material::Rgb;
 use crate::pparm::{Pparm, Table};
 use glam::DVec3;
 

@@ -1,8 +1,7 @@
 //! A material: how a surface answers light.
 
 use crate::entity::Entity;
-use crate::geometry::Rgb;
-use crate::model::Material;
+use crate::material::{Material, Rgb};
 use crate::pparm::{Pparm, Table};
 use crate::value::PerChannel;
 

@@ -3,8 +3,8 @@
 use super::fplane::{self, DIMENSIONS, sides};
 use super::plane::{self, Plane};
 use crate::entity::Entity;
-use crate::geometry::{Body, Rgb, Shader};
-use crate::model::Material;
+use crate::geometry::{Body, Shader};
+use crate::material::{Material, Rgb};
 use crate::pparm::{Pparm, Table};
 use glam::{DVec2, DVec3};
 use std::sync::Arc;

@@ -2,7 +2,6 @@
 
 use crate::entity::{Args, Kind};
 use crate::model::Model;
-use crate::value::Datum;
 
 /// The notes' dump: camera, materials, objects and lights, numbers to one decimal.
 pub fn notes(model: &Model) -> String {
@@ -21,21 +20,6 @@ pub fn notes(model: &Model) -> String {
         text += after;
     }
     text
-}
-
-/// A line of the notes' dump: a label, values and what ends the line.
-pub fn line(label: &str, datum: &Datum, ending: &str) -> String {
-    let values = match datum {
-        Datum::Whole(numbers) => numbers.iter().map(|number| format!(" {number:5}")).collect(),
-        Datum::Numbers(numbers) => numbers.iter().map(|number| format!(" {number:5.1}")).collect(),
-        Datum::Word(_) | Datum::Material { .. } => format!(" {datum}"),
-    };
-    format!("{label:<12}{values}{ending}")
-}
-
-/// A line of the notes' dump that holds a row of a matrix.
-pub fn matrix_row(row: glam::DVec3) -> String {
-    format!("{:<12} {:7.3} {:7.3} {:7.3}\n", "", row.x, row.y, row.z)
 }
 
 /// A scene in the notes' language that loads again to the identical model: every number to its last bit.

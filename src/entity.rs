@@ -1,7 +1,8 @@
 //! Entity types: what a plugin registers, and what its constructor is given.
 
+use crate::camera::Camera;
 use crate::geometry::{Body, Light};
-use crate::model::{Camera, Material};
+use crate::material::Material;
 use crate::pparm::{Attribute, Pparm, Row, Table};
 use crate::value::{Datum, Value};
 use std::panic::Location;

@@ -1,10 +1,7 @@
 //! Rays, and what a plugin implements: [`Hittable`] shapes, [`Shader`]s and [`Light`]s.
 
-use crate::model::Material;
+use crate::material::{Material, Rgb};
 use glam::DVec3;
-
-/// A colour or a reflectivity: red, green and blue; 1 is as bright as a picture can show.
-pub type Rgb = DVec3;
 
 /// A half line.
 #[derive(Clone, Copy, Debug)]

@@ -8,9 +8,11 @@
 //! A file in `plugins/` adds an entity type: it registers an [`Entity`](entity::Entity) and implements a trait
 //! of [`geometry`]. No other file knows its name.
 
+pub mod camera;
 pub mod dump;
 pub mod entity;
 pub mod geometry;
+pub mod material;
 pub mod model;
 pub mod picture;
 pub mod pparm;

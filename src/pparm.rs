@@ -3,7 +3,6 @@
 //! A descriptor is a typed key. Name, type, default and rule are written once; reading, messages, dump,
 //! `tabray list` and the constructor all use that one place (the notes' "general attribute parser").
 
-use crate::dump;
 use crate::entity::Args;
 use crate::value::{Datum, Type, Value};
 
@@ -192,8 +191,8 @@ impl<T: Value> Row for Pparm<T> {
         let Some(label) = self.label else { return String::new() };
         let as_read = args.datum(self.name);
         match self.shown.zip(T::from_datum(as_read)) {
-            Some((shown, value)) => dump::line(label, &shown(value).to_datum(), self.ending),
-            None => dump::line(label, as_read, self.ending),
+            Some((shown, value)) => shown(value).to_datum().line(label, self.ending),
+            None => as_read.line(label, self.ending),
         }
     }
 }

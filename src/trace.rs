@@ -1,6 +1,7 @@
 //! The colour that a ray sees: first hits, light, shadows, mirrors and glass (the notes' `ray_trace`).
 
-use crate::geometry::{Light, Ray, Rgb, Span};
+use crate::geometry::{Light, Ray, Span};
+use crate::material::Rgb;
 use crate::model::{Model, Object};
 use glam::DVec3;
 

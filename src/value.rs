@@ -1,8 +1,7 @@
 //! What an attribute's values are: the types that the scene language knows.
 
 use crate::entity::Kind;
-use crate::geometry::Rgb;
-use crate::model::Material;
+use crate::material::{Material, Rgb};
 use glam::{DVec2, DVec3};
 use std::fmt;
 use std::sync::Arc;
@@ -36,6 +35,18 @@ pub enum Datum {
         /// What the name stands for.
         material: Arc<Material>,
     },
+}
+
+impl Datum {
+    /// Its line in the notes' dump: a label, the values and what ends the line.
+    pub fn line(&self, label: &str, ending: &str) -> String {
+        let values = match self {
+            Self::Whole(numbers) => numbers.iter().map(|number| format!(" {number:5}")).collect(),
+            Self::Numbers(numbers) => numbers.iter().map(|number| format!(" {number:5.1}")).collect(),
+            Self::Word(_) | Self::Material { .. } => format!(" {self}"),
+        };
+        format!("{label:<12}{values}{ending}")
+    }
 }
 
 /// The values as a scene writes them: every number reads back to its last bit.

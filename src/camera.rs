@@ -1,0 +1,31 @@
+//! The camera: from a pixel to the ray that it looks along.
+
+use crate::geometry::Ray;
+use glam::{DVec2, DVec3};
+
+/// The viewer and a screen in the plane z = 0, whose lower left corner is the world's origin.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Camera {
+    /// The picture's width and height in pixels.
+    pub pixels: [usize; 2],
+    /// The screen's width and height in world units.
+    pub screen: DVec2,
+    /// Where the viewer is, in front of the screen (z > 0).
+    pub viewpoint: DVec3,
+}
+
+impl Camera {
+    /// The ray from the viewpoint through a pixel. `x` counts from the left and `y` from the bottom; the
+    /// outermost pixels lie on the edges of the screen.
+    pub fn ray(&self, x: f64, y: f64) -> Ray {
+        let [width, height] = self.pixels;
+        let on_screen =
+            DVec3::new(fraction(x, width) * self.screen.x, fraction(y, height) * self.screen.y, 0.0);
+        Ray { origin: self.viewpoint, dir: (on_screen - self.viewpoint).normalize() }
+    }
+}
+
+/// How far across a row of pixels one of them is; a single pixel looks through the middle.
+fn fraction(at: f64, pixels: usize) -> f64 {
+    if pixels > 1 { at / (pixels - 1) as f64 } else { 0.5 }
+}
