@@ -3,6 +3,7 @@
 use crate::camera::Camera;
 use crate::entity::Entity;
 use crate::pparm::{Pparm, Table};
+use crate::sample::{MOST, Sampler};
 use glam::{DVec2, DVec3};
 
 static PIXELDIM: Pparm<[i64; 2]> = Pparm::required("pixeldim", "the width and height of the picture")
@@ -21,15 +22,22 @@ static VIEWPOINT: Pparm<DVec3> = Pparm::required("viewpoint", "where the viewer 
     .must("in front of the screen (z above 0)", |at: &DVec3| at.z > 0.0)
     .dumped("view_point", "\n");
 
-const TABLE: Table = &[&PIXELDIM, &WORLDDIM, &VIEWPOINT];
+static SAMPLES: Pparm<i64> =
+    Pparm::or("samples", "how many rays look through each pixel, to smooth edges", 1)
+        .must("from 1 to 65536", |samples| (1..=MOST.into()).contains(samples))
+        .not_dumped();
+
+const TABLE: Table = &[&PIXELDIM, &WORLDDIM, &VIEWPOINT, &SAMPLES];
 
 inventory::submit! {
     Entity::camera("camera", "the viewer, and a screen from the world's origin to the right and up", &[TABLE], |args| {
         Ok(Camera {
-            // The rule has them between 1 and 100000.
+            // The rules keep the whole numbers in range.
             pixels: args.get(&PIXELDIM).map(|side| side as usize),
             screen: args.get(&WORLDDIM),
             viewpoint: args.get(&VIEWPOINT),
+            samples: args.get(&SAMPLES) as u32,
+            sampler: Sampler::default(),
         })
     })
 }

@@ -11,24 +11,25 @@ pub static DIMENSIONS: Pparm<DVec2> = Pparm::required("dimensions", "its size al
     .unit("world units")
     .must("positive each way", |size: &DVec2| size.min_element() > 0.0)
     .dumped("dimensions", "\n");
-pub static XDIR: Pparm<DVec3> =
+static XDIR: Pparm<DVec3> =
     Pparm::required("xdir", "the direction of its first side, or of anything right above that")
         .must("a vector with a direction", |xdir: &DVec3| xdir.try_normalize().is_some())
         .dumped("xdir", "\n");
 static PROJECTED: Derived = Derived(|args| frame(args).x_axis.to_datum().line("projected", "\n"));
-static ROTATION: Derived = Derived(|args| {
-    let rows =
-        frame(args).to_cols_array_2d().map(|[x, y, z]| format!("{:<12} {x:7.3} {y:7.3} {z:7.3}\n", ""));
+static ROTATION_ROWS: Derived = Derived(|args| {
+    let rows = frame(args).to_cols_array_2d();
+    let rows = rows.map(|[x, y, z]| format!("{:<12} {x:7.3} {y:7.3} {z:7.3}\n", ""));
     format!("rotation matrix\n{}", rows.concat())
 });
 
 /// What planes with sides of their own take, after what a plane takes.
 pub const TABLE: Table = &[&DIMENSIONS, &XDIR, &PROJECTED];
-const ROTATION_TABLE: Table = &[&ROTATION as &dyn Row];
+/// The notes' rotation matrix, for the dump.
+pub const ROTATION: Table = &[&ROTATION_ROWS as &dyn Row];
 
 inventory::submit! {
-    Entity::shape("fplane", "a rectangle, whose lower left corner is its point", &[plane::TABLE, TABLE, ROTATION_TABLE], |args| {
-        Ok(Body::plain(FinitePlane { sides: sides(args)?, dimensions: args.get(&DIMENSIONS), plane: Plane::new(args) }))
+    Entity::shape("fplane", "a rectangle, whose lower left corner is its point", &[plane::TABLE, TABLE, ROTATION], |args| {
+        Ok(Body::plain(FinitePlane::new(args)?))
     })
 }
 
@@ -59,19 +60,39 @@ pub fn sides(args: &Args) -> Result<[DVec3; 2], Refusal> {
     Ok([x_axis, y_axis])
 }
 
-struct FinitePlane {
-    plane: Plane,
+/// A rectangle. Other rectangles hold one.
+pub struct FinitePlane {
+    pub plane: Plane,
+    pub dimensions: DVec2,
     sides: [DVec3; 2],
-    dimensions: DVec2,
+}
+
+impl FinitePlane {
+    /// The rectangle of an entity whose table has the rows of a plane's and of [`TABLE`].
+    pub fn new(args: &Args) -> Result<Self, Refusal> {
+        Ok(Self { plane: Plane::new(args), dimensions: args.get(&DIMENSIONS), sides: sides(args)? })
+    }
+
+    /// How far along its two sides a point of its plane is, from its corner.
+    #[inline(always)]
+    pub fn coordinates(&self, at: DVec3) -> DVec2 {
+        let from_corner = at - self.plane.point;
+        DVec2::new(self.sides[0].dot(from_corner), self.sides[1].dot(from_corner))
+    }
+
+    /// Whether a point of its plane is in it, its sides included.
+    #[inline(always)]
+    pub fn contains(&self, at: DVec3) -> bool {
+        let DVec2 { x, y } = self.coordinates(at);
+        (0.0..=self.dimensions.x).contains(&x) && (0.0..=self.dimensions.y).contains(&y)
+    }
 }
 
 impl Hittable for FinitePlane {
     #[inline(always)]
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
         let distance = self.plane.distance(ray, within);
-        let from_corner = ray.at(distance) - self.plane.point;
-        let inside = |side: usize| (0.0..=self.dimensions[side]).contains(&self.sides[side].dot(from_corner));
-        if inside(0) && inside(1) { distance } else { MISS }
+        if self.contains(ray.at(distance)) { distance } else { MISS }
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {

@@ -1,6 +1,6 @@
 //! A light: a point that shines evenly in all directions.
 
-use crate::entity::Entity;
+use crate::entity::{Args, Entity};
 use crate::geometry::Light;
 use crate::material::Rgb;
 use crate::pparm::{Pparm, Table};
@@ -10,17 +10,32 @@ static LOCATION: Pparm<DVec3> = Pparm::required("location", "where it is").unit(
 static EMISSIVITY: Pparm<Rgb> =
     Pparm::required("emissivity", "red, green and blue of the light that it sends");
 
-const TABLE: Table = &[&LOCATION, &EMISSIVITY];
+static SIZE: Pparm<f64> = Pparm::or("size", "the radius of the ball that shines, for soft shadows", 0.0)
+    .unit("world units")
+    .must("0 or more", |size| *size >= 0.0)
+    .not_dumped();
+
+/// What every light takes.
+pub const TABLE: Table = &[&LOCATION, &EMISSIVITY, &SIZE];
 
 inventory::submit! {
-    Entity::light("light", "a point that shines evenly in all directions", &[TABLE], |args| {
-        Ok(Box::new(PointLight { location: args.get(&LOCATION), emissivity: args.get(&EMISSIVITY) }))
+    Entity::light("light", "a point that shines evenly in all directions, or a ball if it has a size", &[TABLE], |args| {
+        Ok(Box::new(PointLight::new(args)))
     })
 }
 
-struct PointLight {
-    location: DVec3,
-    emissivity: Rgb,
+/// A light that shines evenly. Other lights hold one.
+pub struct PointLight {
+    pub location: DVec3,
+    pub emissivity: Rgb,
+    size: f64,
+}
+
+impl PointLight {
+    /// The light of an entity whose table has [`TABLE`]'s rows.
+    pub fn new(args: &Args) -> Self {
+        Self { location: args.get(&LOCATION), emissivity: args.get(&EMISSIVITY), size: args.get(&SIZE) }
+    }
 }
 
 impl Light for PointLight {
@@ -30,5 +45,9 @@ impl Light for PointLight {
 
     fn emissivity(&self, _toward: DVec3) -> Option<Rgb> {
         Some(self.emissivity)
+    }
+
+    fn size(&self) -> f64 {
+        self.size
     }
 }

@@ -28,19 +28,26 @@ pub struct Plane {
 impl Plane {
     /// The plane of an entity whose table has [`TABLE`]'s rows.
     pub fn new(args: &Args) -> Self {
-        let (normal, point) = (args.get(&NORMAL).normalize(), args.get(&POINT));
+        Self::through(args.get(&NORMAL).normalize(), args.get(&POINT))
+    }
+
+    /// The plane through a point with this unit normal.
+    pub fn through(normal: DVec3, point: DVec3) -> Self {
         Self { normal, point, normal_dot_point: normal.dot(point) }
+    }
+
+    /// The distance at which a ray crosses it, forward or backward; [`MISS`] for one that runs along it.
+    #[inline(always)]
+    pub fn crossing(&self, ray: &Ray) -> f64 {
+        let toward = self.normal.dot(ray.dir);
+        if toward == 0.0 { MISS } else { (self.normal_dot_point - self.normal.dot(ray.origin)) / toward }
     }
 }
 
 impl Hittable for Plane {
     #[inline(always)]
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        let toward = self.normal.dot(ray.dir);
-        if toward == 0.0 {
-            return MISS;
-        }
-        let distance = (self.normal_dot_point - self.normal.dot(ray.origin)) / toward;
+        let distance = self.crossing(ray);
         // On the viewer's side of the screen there are no planes (the notes' "wrong side").
         if ray.at(distance).z > 0.01 { MISS } else { within.keep(distance) }
     }

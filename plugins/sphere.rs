@@ -1,6 +1,6 @@
 //! A sphere: every point at one distance from a centre.
 
-use crate::entity::Entity;
+use crate::entity::{Args, Entity};
 use crate::geometry::{Body, Hittable, MISS, Ray, Span};
 use crate::pparm::{Pparm, Table};
 use glam::DVec3;
@@ -12,17 +12,25 @@ static RADIUS: Pparm<f64> = Pparm::required("radius", "the distance from its cen
     .must("positive", |radius| *radius > 0.0)
     .dumped("radius", "\n");
 
-const TABLE: Table = &[&CENTER, &RADIUS];
+/// What every round shape takes.
+pub const TABLE: Table = &[&CENTER, &RADIUS];
 
 inventory::submit! {
-    Entity::shape("sphere", "a ball", &[TABLE], |args| {
-        Ok(Body::plain(Sphere { center: args.get(&CENTER), radius: args.get(&RADIUS) }))
-    })
+    Entity::shape("sphere", "a ball", &[TABLE], |args| Ok(Body::plain(Sphere::new(args))))
 }
 
-struct Sphere {
-    center: DVec3,
-    radius: f64,
+/// A sphere. Other round shapes hold one.
+#[derive(Clone)]
+pub struct Sphere {
+    pub center: DVec3,
+    pub radius: f64,
+}
+
+impl Sphere {
+    /// The sphere of an entity whose table has [`TABLE`]'s rows.
+    pub fn new(args: &Args) -> Self {
+        Self { center: args.get(&CENTER), radius: args.get(&RADIUS) }
+    }
 }
 
 impl Hittable for Sphere {

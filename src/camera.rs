@@ -1,10 +1,11 @@
 //! The camera: from a pixel to the ray that it looks along.
 
 use crate::geometry::Ray;
+use crate::sample::{Sample, Sampler};
 use glam::{DVec2, DVec3};
 
 /// The viewer and a screen in the plane z = 0, whose lower left corner is the world's origin.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Camera {
     /// The picture's width and height in pixels.
     pub pixels: [usize; 2],
@@ -12,9 +13,27 @@ pub struct Camera {
     pub screen: DVec2,
     /// Where the viewer is, in front of the screen (z > 0).
     pub viewpoint: DVec3,
+    /// How many rays look through each pixel.
+    pub samples: u32,
+    /// Where in the pixel they lie, if there is more than one.
+    pub sampler: Sampler,
 }
 
 impl Camera {
+    /// The rays through a pixel, counted as [`ray`](Self::ray) counts, each with its random numbers. A single
+    /// ray goes through the middle and needs none.
+    pub fn rays(&self, x: usize, y: usize) -> impl Iterator<Item = (Ray, Option<Sample>)> + '_ {
+        let pixel = (y * self.pixels[0] + x) as u32;
+        (0..self.samples).map(move |index| {
+            if self.samples == 1 {
+                return (self.ray(x as f64, y as f64), None);
+            }
+            let sample = Sample { sampler: self.sampler, index, pixel };
+            let jitter = sample.jitter();
+            (self.ray(x as f64 + jitter.x, y as f64 + jitter.y), Some(sample))
+        })
+    }
+
     /// The ray from the viewpoint through a pixel. `x` counts from the left and `y` from the bottom; the
     /// outermost pixels lie on the edges of the screen.
     pub fn ray(&self, x: f64, y: f64) -> Ray {

@@ -4,8 +4,10 @@ use crate::camera::Camera;
 use crate::geometry::{Body, Light};
 use crate::material::Material;
 use crate::pparm::{Attribute, Pparm, Row, Table};
+use crate::texture::Texture;
 use crate::value::{Datum, Value};
 use std::panic::Location;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::{fmt, iter};
 
@@ -42,6 +44,8 @@ pub enum Kind {
     Camera,
     /// How a surface answers light.
     Material,
+    /// A picture that colours surfaces or light.
+    Texture,
     /// A shape made of a material.
     Object,
     /// A source of light, itself not visible.
@@ -53,6 +57,7 @@ impl fmt::Display for Kind {
         f.pad(match self {
             Kind::Camera => "camera",
             Kind::Material => "material",
+            Kind::Texture => "texture",
             Kind::Object => "object",
             Kind::Light => "light",
         })
@@ -66,6 +71,8 @@ pub enum Construct {
     Camera(fn(&Args) -> Result<Camera, Refusal>),
     /// Makes a material.
     Material(fn(&Args) -> Result<Material, Refusal>),
+    /// Makes a texture.
+    Texture(fn(&Args) -> Result<Texture, Refusal>),
     /// Makes an object's shape and, if it has one, its shader.
     Object(fn(&Args) -> Result<Body, Refusal>),
     /// Makes a light.
@@ -99,6 +106,17 @@ impl Entity {
         construct: fn(&Args) -> Result<Material, Refusal>,
     ) -> Self {
         Self::new(name, meaning, tables, Construct::Material(construct))
+    }
+
+    /// A texture's type.
+    #[track_caller]
+    pub const fn texture(
+        name: &'static str,
+        meaning: &'static str,
+        tables: &'static [Table],
+        construct: fn(&Args) -> Result<Texture, Refusal>,
+    ) -> Self {
+        Self::new(name, meaning, tables, Construct::Texture(construct))
     }
 
     /// A shape. Its table gets the attribute `material` of its own accord.
@@ -150,6 +168,7 @@ impl Entity {
         match self.construct {
             Construct::Camera(_) => Kind::Camera,
             Construct::Material(_) => Kind::Material,
+            Construct::Texture(_) => Kind::Texture,
             Construct::Object(_) => Kind::Object,
             Construct::Light(_) => Kind::Light,
         }
@@ -183,6 +202,15 @@ impl Entity {
     }
 }
 
+/// What a constructor may know of the scene beside its own values.
+#[derive(Clone, Debug, Default)]
+pub struct Setting {
+    /// The scene's camera; objects and lights alone are constructed after it.
+    pub camera: Camera,
+    /// The folder that the scene's file names start from.
+    pub folder: PathBuf,
+}
+
 /// An entity of a scene as a constructor sees it: its type, its name and its checked values.
 #[derive(Clone)]
 pub struct Args {
@@ -190,15 +218,19 @@ pub struct Args {
     pub entity: &'static Entity,
     /// Its name.
     pub name: String,
+    /// Its place among the scene's entities, from 0.
+    pub order: usize,
+    /// The scene around it.
+    pub setting: Arc<Setting>,
     /// A value for each attribute of the type, in that order.
     values: Vec<Datum>,
 }
 
 impl Args {
     /// `values` holds a datum for each of the entity type's attributes, in their order.
-    pub(crate) fn new(entity: &'static Entity, name: String, values: Vec<Datum>) -> Self {
+    pub(crate) fn new(entity: &'static Entity, name: String, order: usize, values: Vec<Datum>) -> Self {
         debug_assert_eq!(values.len(), entity.attributes().count());
-        Self { entity, name, values }
+        Self { entity, name, order, setting: Arc::default(), values }
     }
 
     /// The value of the attribute that `key` describes.

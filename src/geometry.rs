@@ -1,6 +1,7 @@
 //! Rays, and what a plugin implements: [`Hittable`] shapes, [`Shader`]s and [`Light`]s.
 
 use crate::material::{Material, Rgb};
+use crate::shading::{Anchor, ProceduralShader};
 use glam::DVec3;
 
 /// A half line.
@@ -84,6 +85,11 @@ pub trait Light: Send + Sync {
 
     /// The light that it sends toward a point, or nothing where it does not point there (the notes' `vischeck`).
     fn emissivity(&self, toward: DVec3) -> Option<Rgb>;
+
+    /// The radius of a ball that shines; 0 for a point, whose shadows have sharp edges.
+    fn size(&self) -> f64 {
+        0.0
+    }
 }
 
 /// What the constructor of an object makes: its shape and its shader.
@@ -103,5 +109,10 @@ impl Body {
     /// An object with a look of its own.
     pub fn shaded(shape: impl Hittable + 'static, shader: impl Shader + 'static) -> Self {
         Self { shape: Box::new(shape), shader: Box::new(shader) }
+    }
+
+    /// An object that looks as a procedural shader has it.
+    pub fn procedural(shape: impl Hittable + 'static, shader: &ProceduralShader, anchor: Anchor) -> Self {
+        Self { shape: Box::new(shape), shader: (shader.make)(anchor) }
     }
 }

@@ -9,6 +9,7 @@
 //! of [`geometry`]. No other file knows its name.
 
 pub mod camera;
+pub mod choice;
 pub mod dump;
 pub mod entity;
 pub mod geometry;
@@ -16,9 +17,13 @@ pub mod material;
 pub mod model;
 pub mod picture;
 pub mod pparm;
+pub mod profile;
 pub mod registry;
 pub mod render;
+pub mod sample;
 pub mod scene;
+pub mod shading;
+pub mod texture;
 pub mod trace;
 pub mod value;
 mod words;

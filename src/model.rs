@@ -1,9 +1,10 @@
 //! A scene ready to be traced. It does not change while a picture is made.
 
 use crate::camera::Camera;
-use crate::entity::Args;
+use crate::entity::{Args, Kind};
 use crate::geometry::{Hittable, Light, Shader};
 use crate::material::{Material, Rgb};
+use crate::texture::Texture;
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -13,10 +14,25 @@ pub struct Model {
     pub camera: Item<Camera>,
     /// The materials, in the order of the scene.
     pub materials: Vec<Item<Arc<Material>>>,
+    /// The textures, in the order of the scene.
+    pub textures: Vec<Item<Arc<Texture>>>,
     /// The visible objects, in the order of the scene.
     pub objects: Vec<Object>,
     /// The lights, in the order of the scene.
     pub lights: Vec<Item<Box<dyn Light>>>,
+}
+
+impl Model {
+    /// The entities of a kind as they were given, in the order of the scene.
+    pub fn entities(&self, kind: Kind) -> Vec<&Args> {
+        match kind {
+            Kind::Camera => vec![&self.camera.args],
+            Kind::Material => self.materials.iter().map(|item| &item.args).collect(),
+            Kind::Texture => self.textures.iter().map(|item| &item.args).collect(),
+            Kind::Object => self.objects.iter().map(|object| &object.args).collect(),
+            Kind::Light => self.lights.iter().map(|item| &item.args).collect(),
+        }
+    }
 }
 
 /// An entity of a scene: its attributes as given, and what its constructor made of them.

@@ -48,6 +48,7 @@ pub trait Attribute: Sync {
             Type::Number => format!("{counts} number{plural}"),
             Type::Word => "a word".to_owned(),
             Type::Name(kind) => format!("the name of a {kind}"),
+            Type::Choice(choices) => format!("the name or number of a {}", choices.what),
         }
     }
 
@@ -57,6 +58,7 @@ pub trait Attribute: Sync {
             Type::Whole | Type::Number => " N".repeat(self.arity().first().copied().unwrap_or(1)),
             Type::Word => " WORD".to_owned(),
             Type::Name(_) => " NAME".to_owned(),
+            Type::Choice(_) => " N".to_owned(),
         };
         format!("{}{values}", self.name())
     }

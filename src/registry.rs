@@ -1,6 +1,9 @@
 //! The registry: all entity types of the program, by name.
 
+use crate::choice::contradictions;
 use crate::entity::{Entity, Kind};
+use crate::profile::Profile;
+use crate::shading::{OnPlane, OnSphere};
 use crate::words::nearest;
 use std::collections::{BTreeMap, BTreeSet};
 use std::iter;
@@ -18,8 +21,14 @@ impl Registry {
     /// # Errors
     /// Names given twice, each with both places: the plugins contradict each other.
     pub fn get() -> Result<&'static Registry, &'static str> {
-        static REGISTRY: LazyLock<Result<Registry, String>> =
-            LazyLock::new(|| Registry::of(inventory::iter::<Entity>()));
+        static REGISTRY: LazyLock<Result<Registry, String>> = LazyLock::new(|| {
+            let choices =
+                [contradictions::<OnPlane>(), contradictions::<OnSphere>(), contradictions::<&Profile>()];
+            match choices.concat() {
+                faults if faults.is_empty() => Registry::of(inventory::iter::<Entity>()),
+                faults => Err(faults.join("\n")),
+            }
+        });
         REGISTRY.as_ref().map_err(String::as_str)
     }
 

@@ -57,14 +57,12 @@ impl Renderer {
         rows: Range<usize>,
         done: &(dyn Fn() -> ControlFlow<()> + Sync),
     ) -> Option<Vec<u8>> {
-        let camera = &model.camera.value;
-        let [width, height] = camera.pixels;
+        let [width, height] = model.camera.value.pixels;
         let mut bytes = vec![0; 3 * width * rows.len()];
         let row = |(bytes, from_top): (&mut [u8], usize)| {
             let y = height - 1 - from_top;
             for (x, pixel) in bytes.chunks_exact_mut(3).enumerate() {
-                let colour = trace::colour(model, &camera.ray(x as f64, y as f64));
-                pixel.copy_from_slice(&colour.to_array().map(to_byte));
+                pixel.copy_from_slice(&trace::pixel(model, x, y).to_array().map(to_byte));
             }
             done()
         };

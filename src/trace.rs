@@ -3,7 +3,8 @@
 use crate::geometry::{Light, Ray, Span};
 use crate::material::Rgb;
 use crate::model::{Model, Object};
-use glam::DVec3;
+use crate::sample::Sample;
+use glam::{DVec2, DVec3};
 
 /// Light that has travelled farther than this is black.
 const MAX_DIST: f64 = 20.0;
@@ -22,13 +23,23 @@ struct Hit<'m> {
     point: DVec3,
 }
 
-/// The colour that `ray` sees, before it is clamped to what a picture can show.
-pub fn colour(model: &Model, ray: &Ray) -> Rgb {
-    Tracer { model, rays: MAX_RAYS }.trace(ray, 0.0, None)
+/// The colour of a pixel, before it is clamped to what a picture can show: `x` counts from the left and `y`
+/// from the bottom.
+pub fn pixel(model: &Model, x: usize, y: usize) -> Rgb {
+    let camera = &model.camera.value;
+    let colours = camera.rays(x, y).map(|(ray, sample)| colour(model, &ray, sample));
+    colours.sum::<Rgb>() / f64::from(camera.samples)
+}
+
+/// The colour that a ray sees, before it is clamped. Lights with a size are met where `sample` says, or in
+/// their middle.
+pub fn colour(model: &Model, ray: &Ray, sample: Option<Sample>) -> Rgb {
+    Tracer { model, sample, rays: MAX_RAYS }.trace(ray, 0.0, None)
 }
 
 struct Tracer<'m> {
     model: &'m Model,
+    sample: Option<Sample>,
     /// The rays that the pixel may still cost.
     rays: usize,
 }
@@ -46,8 +57,8 @@ impl<'m> Tracer<'m> {
         let normal = shape.normal(hit.point);
 
         let mut colour = shader.ambient(material, hit.point);
-        for light in &self.model.lights {
-            colour += self.illuminate(&*light.value, &hit, normal, ray.origin);
+        for (index, light) in self.model.lights.iter().enumerate() {
+            colour += self.illuminate(index, &*light.value, &hit, normal, ray.origin);
         }
         colour *= 1.0 / travelled;
 
@@ -66,8 +77,15 @@ impl<'m> Tracer<'m> {
     }
 
     /// What one light adds to the colour of a hit, as seen from `eye`.
-    fn illuminate(&mut self, light: &dyn Light, hit: &Hit<'m>, normal: DVec3, eye: DVec3) -> Rgb {
-        let to_light = light.location() - hit.point;
+    fn illuminate(
+        &mut self,
+        index: usize,
+        light: &dyn Light,
+        hit: &Hit<'m>,
+        normal: DVec3,
+        eye: DVec3,
+    ) -> Rgb {
+        let to_light = self.place_on(index, light, hit.point) - hit.point;
         let distance = to_light.length();
         let to_light = to_light * (1.0 / distance);
         let cos = to_light.dot(normal);
@@ -87,6 +105,17 @@ impl<'m> Tracer<'m> {
             colour += light * shader.specular(material, hit.point) * glint;
         }
         colour
+    }
+
+    /// The point of a light that this sample meets: on the disc that a ball of its size shows to `seen_from`.
+    fn place_on(&self, index: usize, light: &dyn Light, seen_from: DVec3) -> DVec3 {
+        let (middle, size) = (light.location(), light.size());
+        let Some(sample) = self.sample.filter(|_| size > 0.0) else { return middle };
+        let Some(axis) = (middle - seen_from).try_normalize() else { return middle };
+        let (across, up) = axis.any_orthonormal_pair();
+        let DVec2 { x, y } = sample.on_light(index);
+        let (radius, angle) = (size * x.sqrt(), std::f64::consts::TAU * y);
+        middle + radius * (libm::cos(angle) * across + libm::sin(angle) * up)
     }
 
     /// The part of each channel that gets from a light to a hit, or nothing where an opaque object stands

@@ -1,13 +1,15 @@
 //! What an attribute's values are: the types that the scene language knows.
 
+use crate::choice::{ChoiceName, Choices};
 use crate::entity::Kind;
 use crate::material::{Material, Rgb};
+use crate::texture::Texture;
 use glam::{DVec2, DVec3};
 use std::fmt;
 use std::sync::Arc;
 
 /// The type of an attribute's values.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 pub enum Type {
     /// Whole numbers.
     Whole,
@@ -17,6 +19,8 @@ pub enum Type {
     Word,
     /// The name of an entity of this kind, defined before it is used.
     Name(Kind),
+    /// The name or the number of one of several things.
+    Choice(Choices),
 }
 
 /// The values of one attribute, checked for type, number and rule.
@@ -35,6 +39,15 @@ pub enum Datum {
         /// What the name stands for.
         material: Arc<Material>,
     },
+    /// A texture, by its name.
+    Texture {
+        /// The name that the scene gives it.
+        name: Arc<str>,
+        /// What the name stands for.
+        texture: Arc<Texture>,
+    },
+    /// One of several things.
+    Choice(ChoiceName),
 }
 
 impl Datum {
@@ -43,7 +56,9 @@ impl Datum {
         let values = match self {
             Self::Whole(numbers) => numbers.iter().map(|number| format!(" {number:5}")).collect(),
             Self::Numbers(numbers) => numbers.iter().map(|number| format!(" {number:5.1}")).collect(),
-            Self::Word(_) | Self::Material { .. } => format!(" {self}"),
+            Self::Texture { name, .. } => format!(" {name:<15}"),
+            Self::Choice(ChoiceName { number: Some(number), .. }) => format!(" {number:5}"),
+            Self::Word(_) | Self::Material { .. } | Self::Choice(_) => format!(" {self}"),
         };
         format!("{label:<12}{values}{ending}")
     }
@@ -56,7 +71,10 @@ impl fmt::Display for Datum {
             Self::Whole(numbers) => numbers.iter().map(i64::to_string).collect(),
             Self::Numbers(numbers) => numbers.iter().map(|number| shortest(*number)).collect(),
             Self::Word(word) => vec![word.clone()],
-            Self::Material { name, .. } => vec![name.to_string()],
+            Self::Material { name, .. } | Self::Texture { name, .. } => vec![name.to_string()],
+            Self::Choice(choice) => {
+                vec![choice.number.map_or(choice.name.to_owned(), |number| number.to_string())]
+            }
         };
         f.write_str(&words.join(" "))
     }
@@ -85,14 +103,11 @@ impl Value for f64 {
     const ARITY: &'static [usize] = &[1];
 
     fn to_datum(&self) -> Datum {
-        Datum::Numbers(vec![*self])
+        [*self].to_datum()
     }
 
     fn from_datum(datum: &Datum) -> Option<Self> {
-        match datum {
-            Datum::Numbers(numbers) => <[f64; 1]>::try_from(numbers.as_slice()).ok().map(|[x]| x),
-            _ => None,
-        }
+        <[f64; 1]>::from_datum(datum).map(|[number]| number)
     }
 }
 
@@ -101,14 +116,11 @@ impl Value for DVec2 {
     const ARITY: &'static [usize] = &[2];
 
     fn to_datum(&self) -> Datum {
-        Datum::Numbers(self.to_array().to_vec())
+        self.to_array().to_datum()
     }
 
     fn from_datum(datum: &Datum) -> Option<Self> {
-        match datum {
-            Datum::Numbers(numbers) => <[f64; 2]>::try_from(numbers.as_slice()).ok().map(DVec2::from),
-            _ => None,
-        }
+        <[f64; 2]>::from_datum(datum).map(DVec2::from)
     }
 }
 
@@ -117,14 +129,11 @@ impl Value for DVec3 {
     const ARITY: &'static [usize] = &[3];
 
     fn to_datum(&self) -> Datum {
-        Datum::Numbers(self.to_array().to_vec())
+        self.to_array().to_datum()
     }
 
     fn from_datum(datum: &Datum) -> Option<Self> {
-        match datum {
-            Datum::Numbers(numbers) => <[f64; 3]>::try_from(numbers.as_slice()).ok().map(DVec3::from),
-            _ => None,
-        }
+        <[f64; 3]>::from_datum(datum).map(DVec3::from)
     }
 }
 
@@ -157,6 +166,68 @@ impl<const N: usize> Value for [i64; N] {
     fn from_datum(datum: &Datum) -> Option<Self> {
         match datum {
             Datum::Whole(numbers) => numbers.as_slice().try_into().ok(),
+            _ => None,
+        }
+    }
+}
+
+impl Value for i64 {
+    const TYPE: Type = Type::Whole;
+    const ARITY: &'static [usize] = &[1];
+
+    fn to_datum(&self) -> Datum {
+        Datum::Whole(vec![*self])
+    }
+
+    fn from_datum(datum: &Datum) -> Option<Self> {
+        <[i64; 1]>::from_datum(datum).map(|[number]| number)
+    }
+}
+
+impl<const N: usize> Value for [f64; N] {
+    const TYPE: Type = Type::Number;
+    const ARITY: &'static [usize] = &[N];
+
+    fn to_datum(&self) -> Datum {
+        Datum::Numbers(self.to_vec())
+    }
+
+    fn from_datum(datum: &Datum) -> Option<Self> {
+        match datum {
+            Datum::Numbers(numbers) => numbers.as_slice().try_into().ok(),
+            _ => None,
+        }
+    }
+}
+
+impl Value for String {
+    const TYPE: Type = Type::Word;
+    const ARITY: &'static [usize] = &[1];
+
+    fn to_datum(&self) -> Datum {
+        Datum::Word(self.clone())
+    }
+
+    fn from_datum(datum: &Datum) -> Option<Self> {
+        match datum {
+            Datum::Word(word) => Some(word.clone()),
+            _ => None,
+        }
+    }
+}
+
+/// The name of a texture; the key gives the texture itself.
+impl Value for Arc<Texture> {
+    const TYPE: Type = Type::Name(Kind::Texture);
+    const ARITY: &'static [usize] = &[1];
+
+    fn to_datum(&self) -> Datum {
+        Datum::Texture { name: Arc::from(""), texture: self.clone() }
+    }
+
+    fn from_datum(datum: &Datum) -> Option<Self> {
+        match datum {
+            Datum::Texture { texture, .. } => Some(texture.clone()),
             _ => None,
         }
     }

@@ -4,11 +4,12 @@ mod common;
 
 use common::{model, registry};
 use proptest::prelude::*;
+use std::path::Path;
 use tabray::scene::{self, Severity};
 
 /// Reads bytes as a scene; either there is a model, or there is an error that can be printed.
 fn read(bytes: &[u8]) {
-    if let Err(report) = scene::read(registry(), "any", bytes) {
+    if let Err(report) = scene::read(registry(), "any", Path::new(""), bytes) {
         assert!(report.faults().iter().any(|fault| fault.severity == Severity::Error));
         assert!(report.to_string().contains("error"));
     }
@@ -44,7 +45,9 @@ fn a_scene_with_a_fault_in_each_of_ten_thousand_entities_reports_them_all() {
     for index in 0..10_000 {
         text += &format!("sphere s{index} {{ material m center 1 2 raduis 1 }}\n");
     }
-    let Err(report) = scene::read(registry(), "many", text.as_bytes()) else { panic!("faults") };
+    let Err(report) = scene::read(registry(), "many", Path::new(""), text.as_bytes()) else {
+        panic!("faults")
+    };
     assert_eq!(report.faults().len(), 20_000);
     assert!(report.to_string().ends_with("many: 20000 errors\n"));
 }

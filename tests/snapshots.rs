@@ -47,7 +47,12 @@ fn every_scene_looks_as_before() {
 fn every_mistake_is_explained_as_before() {
     insta::glob!("../scenes/wrong", "*.ray", |path| {
         let name = path.strip_prefix(root()).expect("a scene of this package").display().to_string();
-        let report = match scene::read(registry(), &name, &fs::read(path).expect("a file")) {
+        let report = match scene::read(
+            registry(),
+            &name,
+            path.parent().expect("a folder"),
+            &fs::read(path).expect("a file"),
+        ) {
             Ok(loaded) => loaded.warnings,
             Err(report) => report,
         };

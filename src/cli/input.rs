@@ -19,7 +19,8 @@ pub fn is_standard(path: &Path) -> bool {
 /// Reads a scene, prints its warnings and makes its model.
 pub fn load(registry: &Registry, path: &Path) -> Result<Model, Failure> {
     let (name, bytes) = read(path)?;
-    let loaded = scene::read(registry, &name, &bytes).map_err(Failure::Scene)?;
+    let loaded =
+        scene::read(registry, &name, path.parent().unwrap_or(path), &bytes).map_err(Failure::Scene)?;
     let _ = write!(anstream::stderr(), "{}", loaded.warnings.styled());
     Ok(loaded.model)
 }

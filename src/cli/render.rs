@@ -11,6 +11,7 @@ use tabray::model::Model;
 use tabray::picture::Format;
 use tabray::registry::Registry;
 use tabray::render::Renderer;
+use tabray::sample::{self, Sampler};
 
 /// Make a scene's picture
 #[derive(clap::Args)]
@@ -24,6 +25,12 @@ pub struct Args {
     /// The picture's format, whatever the file's extension
     #[arg(long)]
     format: Option<FormatName>,
+    /// How many rays look through each pixel, to smooth edges; by default what the scene's camera says
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(sample::MOST)))]
+    samples: Option<u32>,
+    /// Where the rays of a pixel lie
+    #[arg(long, value_name = "NAME", default_value = "sobol")]
+    sampler: SamplerName,
     /// How many threads to use; by default one on each core
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -35,10 +42,24 @@ enum FormatName {
     Png,
 }
 
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum SamplerName {
+    /// Spread evenly
+    Sobol,
+    /// Anywhere, as in the course notes
+    Random,
+}
+
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let path = target(&args)?;
     let format = format(&args, &path)?;
-    let model = input::load(registry, &args.scene)?;
+    let mut model = input::load(registry, &args.scene)?;
+    let camera = &mut model.camera.value;
+    camera.samples = args.samples.unwrap_or(camera.samples);
+    camera.sampler = match args.sampler {
+        SamplerName::Sobol => Sampler::Sobol,
+        SamplerName::Random => Sampler::Random,
+    };
     interrupt::catch()?;
     let output = Output::open(&path)?;
     let start = Instant::now();

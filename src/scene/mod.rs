@@ -1,7 +1,9 @@
 //! From a scene's text to a [`Model`], or to all that is wrong with it.
 
+mod attributes;
 mod check;
 mod fault;
+mod names;
 mod notes;
 mod values;
 mod written;
@@ -11,6 +13,7 @@ pub use written::{Values, Written};
 
 use crate::model::Model;
 use crate::registry::Registry;
+use std::path::Path;
 
 /// A model, and the warnings that its scene gave rise to.
 pub struct Loaded {
@@ -20,18 +23,20 @@ pub struct Loaded {
     pub warnings: Report,
 }
 
-/// Reads a scene in the notes' language. `name` is what messages call it.
+/// Reads a scene in the notes' language. `name` is what messages call it, and its own file names start from
+/// `folder`.
 ///
 /// # Errors
 /// Every fault of the scene, warnings among them, in the order of the text.
-pub fn read(registry: &Registry, name: &str, bytes: &[u8]) -> Result<Loaded, Report> {
+pub fn read(registry: &Registry, name: &str, folder: &Path, bytes: &[u8]) -> Result<Loaded, Report> {
     let text = decode(name, bytes)?;
     let mut report = Report::new(name, text);
     let written = notes::parse(registry, text, &mut report);
-    finish(check::model(registry, written, &mut report), report)
+    finish(check::model(registry, folder, written, &mut report), report)
 }
 
-/// Makes a model without any text (the notes' `modelstat.c`). The entities are checked as a text's are.
+/// Makes a model without any text (the notes' `modelstat.c`). The entities are checked as a text's are;
+/// file names start from the working directory.
 ///
 /// ```
 /// use tabray::{registry::Registry, scene, scene::Written};
@@ -58,7 +63,7 @@ pub fn build(
     written: impl IntoIterator<Item = Written<'static>>,
 ) -> Result<Loaded, Report> {
     let mut report = Report::new("model", "");
-    finish(check::model(registry, written.into_iter().collect(), &mut report), report)
+    finish(check::model(registry, Path::new(""), written.into_iter().collect(), &mut report), report)
 }
 
 fn finish(model: Option<Model>, report: Report) -> Result<Loaded, Report> {

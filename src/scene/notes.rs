@@ -1,12 +1,12 @@
 //! The notes' scene language: `entity-type name { attribute values ... }`, one word after another.
 
+use super::attributes::{find_attribute, near_attribute};
 use super::fault::{Fault, Report};
 use super::written::{Word, Written};
 use crate::entity::{Entity, Kind};
 use crate::pparm::Attribute;
 use crate::registry::Registry;
 use crate::value::Type;
-use crate::words::nearest;
 use std::ops::Range;
 
 /// Reads the entities of a text and reports what does not have their form. What can be made out beyond a
@@ -257,24 +257,13 @@ fn is_value(
     let most = attribute.map_or(1, |attribute| attribute.arity().iter().copied().max().unwrap_or(0));
     match attribute.map(|attribute| attribute.value_type()) {
         // A name may look like anything, even like a number or an attribute: `material material`.
-        Some(Type::Word | Type::Name(_)) => already < most,
+        Some(Type::Word | Type::Name(_) | Type::Choice(_)) => already < most,
         _ if looks_like_number(word) => true,
         _ => {
             let Some(entity) = entity else { return already < most };
             already < most && find_attribute(entity, word).is_none() && near_attribute(entity, word).is_none()
         }
     }
-}
-
-/// The attribute of this name or alias.
-pub fn find_attribute(entity: &'static Entity, name: &str) -> Option<&'static dyn Attribute> {
-    entity.attributes().find(|attribute| attribute.name() == name || attribute.aliases().contains(&name))
-}
-
-/// The attribute that a misspelt word was meant to be.
-pub fn near_attribute(entity: &'static Entity, word: &str) -> Option<&'static dyn Attribute> {
-    nearest(word, entity.attributes().map(|attribute| attribute.name()))
-        .and_then(|name| find_attribute(entity, name))
 }
 
 fn looks_like_number(word: &str) -> bool {

@@ -2,7 +2,9 @@
 
 use super::fault::Fault;
 use super::written::Word;
+use crate::choice::Choices;
 use crate::value::{Datum, Type};
+use crate::words::nearest;
 
 /// Reads words as values of a type.
 ///
@@ -15,7 +17,28 @@ pub fn read(value_type: Type, words: &[Word<'_>]) -> Result<Datum, Vec<Fault>> {
         Type::Word | Type::Name(_) => {
             Ok(Datum::Word(words.first().map(|word| word.text.to_string()).unwrap_or_default()))
         }
+        Type::Choice(choices) => words.first().ok_or_else(Vec::new).and_then(|word| choice(choices, word)),
     }
+}
+
+fn choice(choices: Choices, word: &Word<'_>) -> Result<Datum, Vec<Fault>> {
+    choices.find(&word.text).map(Datum::Choice).ok_or_else(|| {
+        let all = choices.all();
+        let known: Vec<_> = all
+            .iter()
+            .map(|choice| match choice.number {
+                Some(number) => format!("{number} (`{}`)", choice.name),
+                None => format!("`{}`", choice.name),
+            })
+            .collect();
+        let mut fault =
+            Fault::error(word.place.clone(), format!("there is no {} `{}`", choices.what, word.text))
+                .help(format!("the {}s are {}", choices.what, known.join(", ")));
+        if let Some(near) = nearest(&word.text, all.iter().map(|choice| choice.name)) {
+            fault = fault.label(format!("did you mean `{near}`?"));
+        }
+        vec![fault]
+    })
 }
 
 /// What a word is in place of a value, and what would be right if that can be said.

@@ -21,7 +21,12 @@ pub fn root() -> &'static Path {
 
 /// The model of a scene's text, which has no faults.
 pub fn model(text: &str) -> Model {
-    match scene::read(registry(), "scene", text.as_bytes()) {
+    model_in(Path::new(""), text)
+}
+
+/// The model of a scene's text, whose file names start from `folder`.
+fn model_in(folder: &Path, text: &str) -> Model {
+    match scene::read(registry(), "scene", folder, text.as_bytes()) {
         Ok(loaded) => loaded.model,
         Err(report) => panic!("{report}\n{text}"),
     }
@@ -29,7 +34,7 @@ pub fn model(text: &str) -> Model {
 
 /// The model of a scene's file, which has no faults.
 pub fn load(path: &Path) -> Model {
-    model(&fs::read_to_string(path).expect("a scene that is text"))
+    model_in(path.parent().expect("a folder"), &fs::read_to_string(path).expect("a scene that is text"))
 }
 
 /// The picture of a model.

@@ -1,0 +1,22 @@
+//! The notes' shading of a sphere: colours that change with the angle around its centre.
+
+use super::rainbow;
+use crate::geometry::Shader;
+use crate::material::{Material, Rgb};
+use crate::shading::{Anchor, ProceduralShader};
+use glam::DVec3;
+use std::f64::consts::PI;
+
+inventory::submit! {
+    ProceduralShader::new("angular", "colours around the centre, whatever the material", |anchor| Box::new(Angular(anchor))).on_sphere(0)
+}
+
+struct Angular(Anchor);
+
+impl Shader for Angular {
+    /// Up and down look alike: the notes' test for the lower half, `coord.y < 3.0`, is always true.
+    fn ambient(&self, _material: &Material, at: DVec3) -> Rgb {
+        let DVec3 { x, y, .. } = (at - self.0.origin) / self.0.unit;
+        rainbow::colour(2.0 * PI - libm::acos(x / (x * x + y * y).sqrt()))
+    }
+}

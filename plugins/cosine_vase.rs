@@ -1,0 +1,7 @@
+//! A vase with a wide mouth and a wide foot.
+
+use crate::profile::Profile;
+
+inventory::submit! {
+    Profile::new("cosine_vase", "a vase wide at its foot: 1 + 0.5 cos y", |y| 1.0 + 0.5 * libm::cos(y), |y| -0.5 * libm::sin(y)).number(2)
+}

@@ -1,0 +1,18 @@
+//! A procedural finite plane: a rectangle whose look changes from place to place by a rule.
+
+use super::fplane::{self, FinitePlane};
+use super::{plane, pplane};
+use crate::entity::Entity;
+
+inventory::submit! {
+    Entity::shape(
+        "pfplane",
+        "a rectangle that looks as a rule has it",
+        &[plane::TABLE, pplane::TABLE, fplane::TABLE, fplane::ROTATION],
+        |args| {
+            let rectangle = FinitePlane::new(args)?;
+            let origin = rectangle.plane.point;
+            Ok(pplane::body(args, rectangle, origin))
+        },
+    )
+}

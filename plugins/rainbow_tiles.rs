@@ -1,0 +1,19 @@
+//! Continuous modulation combined with tiles, as the notes suggest for their third shader.
+
+use super::{rainbow, tiles};
+use crate::geometry::Shader;
+use crate::material::{Material, Rgb};
+use crate::shading::{Anchor, ProceduralShader};
+use glam::DVec3;
+
+inventory::submit! {
+    ProceduralShader::new("rainbow_tiles", "tiles along x and z: of the material, and of colours around a point", |anchor| Box::new(RainbowTiles(anchor))).on_plane(2)
+}
+
+struct RainbowTiles(Anchor);
+
+impl Shader for RainbowTiles {
+    fn ambient(&self, material: &Material, at: DVec3) -> Rgb {
+        if tiles::is_odd(at) { material.ambient } else { 6.0 * rainbow::around(&self.0, at) }
+    }
+}

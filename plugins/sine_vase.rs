@@ -1,0 +1,7 @@
+//! A vase with a wide body and a narrow neck.
+
+use crate::profile::Profile;
+
+inventory::submit! {
+    Profile::new("sine_vase", "a vase with a narrow neck: 1 + 0.5 sin y", |y| 1.0 + 0.5 * libm::sin(y), |y| 0.5 * libm::cos(y)).number(3)
+}

@@ -1,0 +1,60 @@
+//! A spotlight: a light that shines into a cone.
+
+use super::light::{self, PointLight};
+use crate::entity::{Args, Entity, Refusal};
+use crate::geometry::Light;
+use crate::material::Rgb;
+use crate::pparm::{Derived, Pparm, Table};
+use crate::value::Value;
+use glam::DVec3;
+
+static POINT: Pparm<DVec3> =
+    Pparm::required("point", "where the middle of its beam goes").unit("world coordinates").not_dumped();
+static DIRECTION: Derived = Derived(|args| axis(args).to_datum().line("direction", " \n"));
+static THETA: Pparm<f64> = Pparm::required("theta", "the angle between the middle of its beam and the edge")
+    .unit("degrees")
+    .must("above 0 and at most 180", |theta| *theta > 0.0 && *theta <= 180.0)
+    .dumped("halfwidth", "   \n");
+
+const TABLE: Table = &[&POINT, &DIRECTION, &THETA];
+
+inventory::submit! {
+    Entity::light("spotlight", "a light that shines into a cone", &[light::TABLE, TABLE], |args| {
+        if !axis(args).is_finite() {
+            return Err(Refusal {
+                attribute: Some("point"),
+                message: "points at itself".to_owned(),
+                help: "`point` must be another point than `location`: the beam goes from one to the other",
+            });
+        }
+        let edge = args.get(&THETA) * std::f64::consts::PI / 180.0;
+        Ok(Box::new(Spotlight { light: PointLight::new(args), axis: axis(args), cos_edge: libm::cos(edge) }))
+    })
+    .dumped_as("light")
+}
+
+/// The unit vector along the middle of the beam; NaN where there is none.
+fn axis(args: &Args) -> DVec3 {
+    (args.get(&POINT) - PointLight::new(args).location).normalize()
+}
+
+struct Spotlight {
+    light: PointLight,
+    axis: DVec3,
+    cos_edge: f64,
+}
+
+impl Light for Spotlight {
+    fn location(&self) -> DVec3 {
+        self.light.location
+    }
+
+    fn emissivity(&self, toward: DVec3) -> Option<Rgb> {
+        let cos = (toward - self.light.location).normalize().dot(self.axis);
+        (cos > self.cos_edge).then_some(self.light.emissivity)
+    }
+
+    fn size(&self) -> f64 {
+        self.light.size()
+    }
+}

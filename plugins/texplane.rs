@@ -1,0 +1,88 @@
+//! A textured plane: a rectangle that shows a picture.
+
+use super::fplane::{self, FinitePlane};
+use super::plane;
+use crate::entity::{Args, Entity, Refusal};
+use crate::geometry::{Body, Hittable, Ray, Shader, Span};
+use crate::material::{Material, Rgb};
+use crate::pparm::{Pparm, Table};
+use crate::texture::Texture;
+use glam::{DVec2, DVec3};
+use std::sync::Arc;
+
+static TEXNAME: Pparm<Arc<Texture>> = Pparm::required("texname", "the texture it shows, defined above it");
+static MODE: Pparm<i64> = Pparm::required(
+    "mode",
+    "how the picture lies: 0 stretched to fit, 1 tiled, a texel for each pixel of the screen",
+)
+.must("0 or 1", |mode| (0..=1).contains(mode))
+.dumped("mode", "\n");
+
+/// What shows a texture on a rectangle takes, after what an fplane takes.
+pub const TABLE: Table = &[&TEXNAME, &MODE];
+
+inventory::submit! {
+    Entity::shape(
+        "texplane",
+        "a rectangle that shows a picture",
+        &[plane::TABLE, fplane::TABLE, fplane::ROTATION, TABLE],
+        |args| {
+            let picture = Arc::new(Picture::new(args)?);
+            Ok(Body::shaded(Rectangle(picture.clone()), Textured(picture)))
+        },
+    )
+}
+
+/// A rectangle and the picture on it.
+pub struct Picture {
+    pub rectangle: FinitePlane,
+    texture: Arc<Texture>,
+    /// The width and height of a texel where the picture is tiled; the picture is stretched to fit if there is none.
+    texel: Option<DVec2>,
+}
+
+impl Picture {
+    /// The picture of an entity whose table has the rows of an fplane's and of [`TABLE`].
+    pub fn new(args: &Args) -> Result<Self, Refusal> {
+        let camera = &args.setting.camera;
+        let pixel = camera.screen / DVec2::from(camera.pixels.map(|side| side as f64));
+        let texel = (args.get(&MODE) == 1).then_some(pixel);
+        Ok(Self { rectangle: FinitePlane::new(args)?, texture: args.get(&TEXNAME), texel })
+    }
+
+    /// The texel at a point of the rectangle, each channel from 0 to below 1.
+    pub fn colour(&self, at: DVec3) -> Rgb {
+        let across = self.rectangle.coordinates(at);
+        let size = self.texture.size();
+        let texel = |side: usize| match self.texel {
+            None => (across[side] / self.rectangle.dimensions[side] * f64::from(size[side])) as u32,
+            Some(texel) => (across[side] / texel[side]) as u32 % size[side].max(1),
+        };
+        self.texture.texel(texel(0), texel(1))
+    }
+}
+
+struct Rectangle(Arc<Picture>);
+
+impl Hittable for Rectangle {
+    #[inline(always)]
+    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
+        self.0.rectangle.distance(ray, within)
+    }
+
+    fn normal(&self, at: DVec3) -> DVec3 {
+        self.0.rectangle.normal(at)
+    }
+}
+
+struct Textured(Arc<Picture>);
+
+impl Shader for Textured {
+    fn ambient(&self, material: &Material, at: DVec3) -> Rgb {
+        material.ambient * self.0.colour(at)
+    }
+
+    fn diffuse(&self, material: &Material, at: DVec3) -> Rgb {
+        material.diffuse * self.0.colour(at)
+    }
+}

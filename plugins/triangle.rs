@@ -1,0 +1,54 @@
+//! A triangle.
+
+use super::plane;
+use crate::entity::{Entity, Refusal};
+use crate::geometry::{Body, Hittable, MISS, Ray, Span};
+use crate::pparm::{Pparm, Table};
+use glam::DVec3;
+
+static VERTEX1: Pparm<DVec3> = Pparm::required("vertex1", "its first corner").unit("world coordinates");
+static VERTEX2: Pparm<DVec3> =
+    Pparm::required("vertex2", "its second corner, against the clock as seen from its lit side")
+        .unit("world coordinates");
+static VERTEX3: Pparm<DVec3> = Pparm::required("vertex3", "its third corner").unit("world coordinates");
+// The course's program had them read and never used them.
+static NORMAL: Pparm<DVec3> =
+    Pparm::or("normal", "nothing: its corners say which way it faces", DVec3::Z).not_dumped();
+static POINT: Pparm<DVec3> =
+    Pparm::or("point", "nothing: its corners say where it is", DVec3::ZERO).not_dumped();
+
+const TABLE: Table = &[&VERTEX1, &VERTEX2, &VERTEX3, &NORMAL, &POINT];
+
+inventory::submit! {
+    Entity::shape("triangle", "a triangle", &[TABLE], |args| {
+        let corners = [args.get(&VERTEX1), args.get(&VERTEX2), args.get(&VERTEX3)];
+        let [a, b, c] = corners;
+        let normal = (b - a).cross(c - a).try_normalize().ok_or_else(|| Refusal {
+            attribute: Some("vertex3"),
+            message: "has its corners in one line".to_owned(),
+            help: "three corners that are not in one line make a triangle",
+        })?;
+        Ok(Body::plain(Triangle { plane: plane::Plane::through(normal, a), corners }))
+    })
+}
+
+struct Triangle {
+    plane: plane::Plane,
+    corners: [DVec3; 3],
+}
+
+impl Hittable for Triangle {
+    #[inline(always)]
+    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
+        let distance = self.plane.distance(ray, within);
+        let at = ray.at(distance);
+        // Inside is to the left of every edge.
+        let left_of = |from: DVec3, to: DVec3| (to - from).cross(at - from).dot(self.plane.normal) >= 0.0;
+        let [a, b, c] = self.corners;
+        if left_of(a, b) && left_of(b, c) && left_of(c, a) { distance } else { MISS }
+    }
+
+    fn normal(&self, at: DVec3) -> DVec3 {
+        self.plane.normal(at)
+    }
+}

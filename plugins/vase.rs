@@ -1,0 +1,7 @@
+//! The notes' gold vase.
+
+use crate::profile::Profile;
+
+inventory::submit! {
+    Profile::new("vase", "a vase with a wide body: 2 + sin y", |y| 2.0 + libm::sin(y), libm::cos).number(0)
+}
