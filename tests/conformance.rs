@@ -5,10 +5,12 @@
 mod common;
 
 use assert_cmd::cargo::cargo_bin_cmd;
-use common::root;
+use common::{model, render, root};
+use image::{Rgb, RgbImage};
 use std::fs;
 use std::io::{self, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use tabray::profile::Profile;
 
 /// A scene, and the percentage of its pixels that must be right to 1 of 255 in every channel. What is short
 /// of 100 is the instructor's program's: hit points overwritten by shadow rays, 80-bit arithmetic at edges,
@@ -35,50 +37,111 @@ const SCENES: [(&str, f64); 19] = [
     ("trans/translucent5", 100.0),
 ];
 
-/// Calls `check` with each scene, the path of its files without an extension, and the percentage.
-fn each(mut check: impl FnMut(&str, PathBuf, f64)) {
+/// The scenes that were rendered with 16 random samples to a pixel.
+const SMOOTHED: [&str; 2] = ["aa/aademo", "aa/aademo2"];
+
+// The instructor's cone: its slope is twice what it should be, which shades its flank too dark.
+inventory::submit! {
+    Profile::new("doubled_cone", "the course's cone, mistake and all", |y| -4.0 / 6.0 * (y - 6.0), |_| -8.0 / 6.0)
+}
+
+/// The course's folder of this name, if it is there.
+fn course() -> Option<PathBuf> {
     let folder = root().join("../shared/conformance");
-    if !folder.is_dir() {
-        // Not `eprintln!`, which the test harness hides.
-        let _ = writeln!(io::stderr(), "SKIPPED: the course's scenes are not in {}", folder.display());
-        return;
+    if folder.is_dir() {
+        return Some(folder);
     }
-    for (scene, percent) in SCENES {
-        check(scene, folder.join(scene), percent);
-    }
+    // Not `eprintln!`, which the test harness hides.
+    let _ = writeln!(io::stderr(), "SKIPPED: the course's scenes are not in {}", folder.display());
+    None
+}
+
+/// The picture that the program makes of a scene.
+fn rendered(scene: &Path, options: &[&str]) -> RgbImage {
+    let run =
+        cargo_bin_cmd!("tabray").arg("render").arg(scene).args(["-o", "-"]).args(options).assert().success();
+    image::load_from_memory(&run.get_output().stdout).expect("a PPM").into_rgb8()
+}
+
+/// The course's own picture of a scene.
+fn expected(scene: &Path) -> RgbImage {
+    image::open(scene.with_extension("png")).expect("the course's picture").into_rgb8()
+}
+
+/// How far apart two pixels are in the channel where they differ most.
+fn difference(a: &Rgb<u8>, b: &Rgb<u8>) -> u8 {
+    (0..3).map(|channel| a[channel].abs_diff(b[channel])).max().unwrap_or(0)
+}
+
+/// The percentage of pixels that are right to 1 of 255 in every channel.
+fn percent_near(actual: &RgbImage, expected: &RgbImage) -> f64 {
+    assert_eq!(actual.dimensions(), expected.dimensions());
+    let near = actual.pixels().zip(expected.pixels()).filter(|(a, b)| difference(a, b) <= 1).count();
+    100.0 * near as f64 / expected.pixels().len() as f64
 }
 
 #[test]
 fn the_courses_pictures_come_out_the_same() {
+    let Some(folder) = course() else { return };
     let mut short = Vec::new();
-    each(|scene, path, percent| {
-        let run = cargo_bin_cmd!()
-            .arg("render")
-            .arg(path.with_extension("txt"))
-            .args(["-o", "-"])
-            .assert()
-            .success();
-        let actual = image::load_from_memory(&run.get_output().stdout).expect("a PPM").into_rgb8();
-        let expected = image::open(path.with_extension("png")).expect("the course's picture").into_rgb8();
-        assert_eq!(actual.dimensions(), expected.dimensions(), "{scene}");
-        let far = |(a, b): (&image::Rgb<u8>, &image::Rgb<u8>)| (0..3).map(|i| a[i].abs_diff(b[i])).max();
-        let pixels = expected.pixels().len();
-        let near = actual.pixels().zip(expected.pixels()).filter(|pair| far(*pair) <= Some(1)).count();
-        let got = 100.0 * near as f64 / pixels as f64;
+    for (scene, percent) in SCENES {
+        let path = folder.join(scene);
+        let got = percent_near(&rendered(&path.with_extension("txt"), &[]), &expected(&path));
         eprintln!("{scene:20} {got:8.4} % of its pixels within 1, {percent} wanted");
         if got < percent {
-            short.push(scene.to_owned());
+            short.push(scene);
         }
-    });
+    }
     assert!(short.is_empty(), "too many pixels differ in {short:?}");
 }
 
 #[test]
+fn the_courses_cone_is_all_explained_by_its_wrong_slope() {
+    let Some(folder) = course() else { return };
+    let path = folder.join("revsurf/revsurfa");
+    let text = fs::read_to_string(path.with_extension("txt")).expect("a scene");
+    let actual = render(&model(&text.replace("surfer 1", "surfer doubled_cone")));
+    assert_eq!(percent_near(&actual, &expected(&path)), 100.0);
+}
+
+#[test]
+fn the_courses_smoothed_pictures_agree_but_for_chance() {
+    let Some(folder) = course() else { return };
+    for scene in SMOOTHED {
+        let path = folder.join(scene);
+        let actual = rendered(&path.with_extension("txt"), &["--sampler", "random", "--samples", "16"]);
+        let sharp = rendered(&path.with_extension("txt"), &[]);
+        let expected = expected(&path);
+        let mean = |picture: &RgbImage, channel: usize| {
+            let sum: u64 = picture.pixels().map(|pixel| u64::from(pixel[channel])).sum();
+            sum as f64 / picture.pixels().len() as f64
+        };
+        for channel in 0..3 {
+            let apart = (mean(&actual, channel) - mean(&expected, channel)).abs();
+            eprintln!("{scene:20} {apart:.4} of 255 apart in the mean of channel {channel}, 0.1 allowed");
+            assert!(apart <= 0.1, "{scene}");
+        }
+        let (width, height) = sharp.dimensions();
+        let is_edge = |x: u32, y: u32| {
+            let around = |x: u32, size: u32| x.saturating_sub(1)..=(x + 1).min(size - 1);
+            let here = sharp.get_pixel(x, y);
+            around(x, width).any(|x| around(y, height).any(|y| difference(here, sharp.get_pixel(x, y)) > 20))
+        };
+        let off_edges = actual.enumerate_pixels().filter(|(x, y, _)| !is_edge(*x, *y));
+        let worst = off_edges.map(|(x, y, pixel)| difference(pixel, expected.get_pixel(x, y))).max();
+        eprintln!("{scene:20} {worst:?} of 255 apart away from edges, 12 allowed");
+        assert!(worst <= Some(12), "{scene}");
+    }
+}
+
+#[test]
 fn the_courses_dumps_come_out_the_same() {
-    each(|scene, path, _| {
-        let run = cargo_bin_cmd!().arg("dump").arg(path.with_extension("txt")).assert().success();
+    let Some(folder) = course() else { return };
+    for scene in SCENES.map(|(scene, _)| scene).into_iter().chain(SMOOTHED) {
+        let path = folder.join(scene);
+        let run = cargo_bin_cmd!("tabray").arg("dump").arg(path.with_extension("txt")).assert().success();
         let actual = String::from_utf8_lossy(&run.get_output().stdout).into_owned();
         let expected = fs::read_to_string(path.with_extension("log")).expect("the course's dump");
         assert!(actual == expected, "{scene} dumps\n{actual}\nnot\n{expected}");
-    });
+    }
 }
