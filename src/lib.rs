@@ -18,6 +18,7 @@ pub mod model;
 pub mod picture;
 pub mod pparm;
 pub mod profile;
+pub mod reference;
 pub mod registry;
 pub mod render;
 pub mod sample;

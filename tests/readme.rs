@@ -26,31 +26,37 @@ fn the_readmes_scene_is_one() {
 }
 
 #[test]
-fn the_readmes_pictures_are_fresh() {
-    let readme = readme();
-    for entry in fs::read_dir(root().join("docs")).expect("the folder of pictures") {
-        let path = entry.expect("an entry").path();
-        let name = path.file_stem().and_then(|name| name.to_str()).expect("a name").to_owned();
-        let fresh = render(&load(&root().join("scenes/gallery").join(&name).with_extension("ray")));
-        let shown = image::open(&path).expect("a picture").into_rgb8();
-        assert!(fresh == shown, "docs/{name}.png is stale: see the README's last section");
-        assert!(readme.contains(&name), "{name} is named with its command");
+fn the_pictures_of_the_docs_are_fresh() {
+    for (scenes, pictures) in [("scenes/gallery", "docs"), ("scenes/entities", "docs/entities")] {
+        for entry in fs::read_dir(root().join(scenes)).expect("a folder of scenes") {
+            let scene = entry.expect("an entry").path();
+            let stem = scene.file_stem().expect("a name");
+            let picture = root().join(pictures).join(stem).with_extension("png");
+            let shown = image::open(&picture).expect("a picture for each scene").into_rgb8();
+            assert!(
+                render(&load(&scene)) == shown,
+                "{} is stale: the README says how to make it",
+                picture.display()
+            );
+        }
     }
 }
 
 #[test]
-fn the_readme_names_every_entity_and_attribute() {
+fn the_reference_of_the_language_is_fresh() {
+    let written = fs::read_to_string(root().join("docs/language.md")).expect("the reference");
+    assert!(
+        written == tabray::reference::markdown(common::registry()),
+        "docs/language.md is stale: its first lines say how to make it"
+    );
+}
+
+#[test]
+fn the_readme_shows_every_entity() {
     let readme = readme();
     for entity in common::registry().iter() {
-        assert!(readme.contains(&format!("| `{}` |", entity.name)), "{}", entity.name);
-        for attribute in entity.attributes() {
-            assert!(
-                readme.contains(&format!("`{}`", attribute.name())),
-                "{} {}",
-                entity.name,
-                attribute.name()
-            );
-        }
+        let picture = format!("![{}](docs/entities/{}.png)", entity.name, entity.name);
+        assert!(readme.contains(&picture), "the README shows no {}", entity.name);
     }
 }
 

@@ -169,3 +169,25 @@ fn no_snapshot_is_left_of_a_scene_that_is_gone() {
         }
     }
 }
+
+#[test]
+fn every_entity_has_its_scene_and_a_mistake() {
+    let mistakes: Vec<_> = fs::read_dir(root().join("snapshots/wrong"))
+        .expect("the messages")
+        .map(|entry| fs::read_to_string(entry.expect("an entry").path()).expect("a text"))
+        .collect();
+    for entity in registry().iter() {
+        let name = entity.name;
+        let scene = load(&root().join("scenes/entities").join(name).with_extension("ray"));
+        assert!(scene.entities(entity.kind()).iter().any(|args| args.entity.name == name), "{name}");
+        for snapshot in [format!("{name}.dump.snap"), format!("{name}.snap.png")] {
+            let path = root().join("snapshots/entities").join(&snapshot);
+            assert!(path.is_file(), "there is no {}", path.display());
+        }
+        let title = format!("{name} `");
+        assert!(
+            mistakes.iter().any(|message| message.contains(&title)),
+            "no mistake in scenes/wrong is about {name}"
+        );
+    }
+}

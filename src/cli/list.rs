@@ -3,6 +3,7 @@
 use super::{Failure, print};
 use tabray::entity::Entity;
 use tabray::pparm::Attribute;
+use tabray::reference;
 use tabray::registry::Registry;
 
 /// List the entity types, or the attributes of one
@@ -10,9 +11,15 @@ use tabray::registry::Registry;
 pub struct Args {
     /// The entity type to tell about
     entity: Option<String>,
+    /// Print the whole reference of the language as Markdown
+    #[arg(long, conflicts_with = "entity")]
+    markdown: bool,
 }
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
+    if args.markdown {
+        return print(&reference::markdown(registry));
+    }
     let Some(name) = args.entity else {
         return print(&columns(
             registry

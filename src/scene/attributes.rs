@@ -121,11 +121,13 @@ impl Against<'_> {
                 Ok(datum) => datum,
                 Err(faults) => {
                     for fault in faults {
-                        let label = match fault.label.as_str() {
-                            "" => format!("`{}` takes {}", word.text, attribute.takes()),
-                            label => label.to_owned(),
-                        };
-                        self.report.add(fault.label(label));
+                        let takes = format!("`{}` of {title} takes {}", word.text, attribute.takes());
+                        self.report.add(match (&fault.place, fault.label.is_empty()) {
+                            // Without a text there is nothing to mark.
+                            (None, _) => Fault { message: format!("{}: {takes}", fault.message), ..fault },
+                            (Some(_), true) => fault.label(takes),
+                            (Some(_), false) => fault,
+                        });
                     }
                     return None;
                 }

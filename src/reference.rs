@@ -1,0 +1,100 @@
+//! The reference of the scene language, written from the tables: `docs/language.md`.
+
+use crate::choice::{Choice, ChoiceName};
+use crate::entity::{Entity, Kind};
+use crate::pparm::Attribute;
+use crate::profile::Profile;
+use crate::registry::Registry;
+use crate::shading::{OnPlane, OnSphere};
+use crate::value::{Type, Value};
+
+const INTRODUCTION: &str = "\
+# The scene language
+
+Made from the tables of the plugins by `cargo run --release -- list --markdown > docs/language.md`; the pictures
+beside it by
+
+```sh
+for scene in scenes/entities/*.ray; do
+    cargo run --release -- render $scene -o docs/entities/$(basename $scene .ray).png
+done
+```
+
+A scene is a text of entities, `TYPE NAME { ATTRIBUTES }`. Blanks and line ends part words, braces stand for
+themselves, and a `#` that begins a word begins a comment, which ends with the line. A name is any word. Each
+attribute is followed by its values, and attributes come in any order. A material or a texture stands above
+what refers to it. Lengths are in world units: the screen lies in the plane z = 0, its lower left corner is the
+world's origin, x goes to the right, y up and z toward the viewer. A colour is red, green and blue; 1 is as
+bright as a picture can show, after the light has been divided by the distance that it travelled.
+";
+
+/// The reference as Markdown. Pictures are named `entities/TYPE.png`, scenes `../scenes/entities/TYPE.ray`.
+pub fn markdown(registry: &Registry) -> String {
+    let mut text = INTRODUCTION.to_owned();
+    for (kind, title) in [
+        (Kind::Camera, "The camera"),
+        (Kind::Material, "Materials"),
+        (Kind::Texture, "Textures"),
+        (Kind::Light, "Lights"),
+        (Kind::Object, "Objects"),
+    ] {
+        text += &format!("\n## {title}\n");
+        text.extend(registry.iter().filter(|entity| entity.kind() == kind).map(entity_section));
+    }
+    text += "\n## Procedural shaders\n\nWhat `shader` may be, by name or by number; the numbers differ on spheres.\n\n";
+    text += &choices::<OnPlane>("number on planes");
+    text += "\n";
+    text += &choices::<OnSphere>("number on spheres");
+    text += "\n## Profiles\n\nWhat `surfer` may be, by name or by number.\n\n";
+    text += &choices::<&'static Profile>("number");
+    text
+}
+
+fn entity_section(entity: &'static Entity) -> String {
+    let name = entity.name;
+    let also = match entity.aliases {
+        [] => String::new(),
+        aliases => {
+            format!(", also written {}", aliases.iter().map(|alias| format!("`{alias}`")).collect::<String>())
+        }
+    };
+    let rows: String = entity.attributes().map(attribute_row).collect();
+    format!(
+        "\n### {name}\n\n{}{also}. [This scene](../scenes/entities/{name}.ray):\n\n\
+         ![a picture of {name}](entities/{name}.png)\n\n\
+         | attribute | values | if not given | what it is |\n|---|---|---|---|\n{rows}",
+        capital(entity.meaning)
+    )
+}
+
+fn attribute_row(attribute: &'static dyn Attribute) -> String {
+    let names = [attribute.name()]
+        .iter()
+        .chain(attribute.aliases())
+        .map(|name| format!("`{name}`"))
+        .collect::<Vec<_>>();
+    let default = attribute.default().map_or("must be given".to_owned(), |datum| format!("`{datum}`"));
+    let mut meaning = attribute.meaning().to_owned();
+    if !attribute.unit().is_empty() {
+        meaning += &format!(", in {}", attribute.unit());
+    }
+    if !attribute.rule().is_empty() {
+        meaning += &format!("; must be {}", attribute.rule());
+    }
+    format!("| {} | {} | {default} | {meaning} |\n", names.join(", "), attribute.takes())
+}
+
+fn choices<T: Choice + Value>(number: &str) -> String {
+    let Type::Choice(choices) = T::TYPE else { return String::new() };
+    let row = |ChoiceName { name, number, meaning, .. }: ChoiceName| {
+        let number = number.map_or("".to_owned(), |number| number.to_string());
+        format!("| `{name}` | {number} | {meaning} |\n")
+    };
+    let rows: String = choices.all().into_iter().map(row).collect();
+    format!("| {} | {number} | what it is |\n|---|---|---|\n{rows}", choices.what)
+}
+
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
+}
