@@ -21,7 +21,7 @@ static BOX: Pparm<[f64; 6]> = Pparm::or(
 const TABLE: Table = &[&COEFFICIENTS, &CENTER, &BOX];
 
 inventory::submit! {
-    Entity::shape("quadric", "a surface of the second degree: cone, cylinder, saddle, ...", &[TABLE], |args| {
+    Entity::shape("quadric", "a surface of the second degree, such as a cone, a cylinder or a saddle", &[TABLE], |args| {
         let [a, b, c, d, e, f, g, h, i, j] = args.get(&COEFFICIENTS);
         let [x1, y1, z1, x2, y2, z2] = args.get(&BOX);
         let (low, high) = (DVec3::new(x1, y1, z1), DVec3::new(x2, y2, z2));

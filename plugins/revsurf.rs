@@ -20,7 +20,7 @@ static HEIGHT: Pparm<f64> = Pparm::required("height", "how far along the axis it
 const TABLE: Table = &[&SURFER, &DIRECTION, &BASE, &HEIGHT];
 
 inventory::submit! {
-    Entity::shape("revsurf", "a line turned around an axis: cone, vase, column, ...", &[TABLE], |args| {
+    Entity::shape("revsurf", "a line turned around an axis, such as a cone, a vase or a column", &[TABLE], |args| {
         let up = args.get(&DIRECTION).normalize();
         let (across, away) = up.any_orthonormal_pair();
         Ok(Body::plain(Revsurf {
