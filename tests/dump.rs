@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{load, model, registry, root, scenes};
+use common::{load, model, model_in, registry, root, scenes};
 use proptest::prelude::*;
 use std::path::Path;
 use tabray::dump;
@@ -35,7 +35,7 @@ fn values(model: &Model) -> Vec<String> {
 
 fn assert_loads_again(first: &Model) {
     let text = dump::ray(first);
-    let again = model(&text);
+    let again = model_in(&first.camera.args.setting.folder, &text);
     assert_eq!(values(first), values(&again), "{text}");
     assert_eq!(text, dump::ray(&again));
     assert_eq!(dump::notes(first), dump::notes(&again), "{text}");
