@@ -67,10 +67,14 @@ fn a_plugin_is_one_file_dropped_in() {
     assert!(!copy.prints(&["list"]).contains("disc "), "nothing was dropped in yet");
     let before = copy.files();
 
-    fs::write(copy.folder.join("plugins/disc.rs"), block_with("struct Disc")).expect("room for a file");
+    let plugins = [("disc", block_with("struct Disc").as_str()), ("barrel", BARREL), ("stripes", STRIPES)]
+        .map(|(name, text)| (copy.folder.join("plugins").join(name).with_extension("rs"), text.to_owned()));
+    for (path, text) in &plugins {
+        fs::write(path, text).expect("room for a file");
+    }
     copy.build();
-    let dropped: Vec<_> = copy.files().difference(&before).map(|(path, _)| path.clone()).collect();
-    assert_eq!(dropped, [copy.folder.join("plugins/disc.rs")], "no other file changes");
+    let dropped: BTreeSet<_> = copy.files().difference(&before).map(|(path, _)| path.clone()).collect();
+    assert_eq!(dropped, plugins.into_iter().map(|(path, _)| path).collect(), "no other file changes");
 
     let disc = copy.prints(&["list"]).lines().find(|line| line.starts_with("disc ")).map(str::to_owned);
     assert!(disc.expect("the list has it").contains("a round piece of a plane"));
@@ -94,9 +98,44 @@ fn a_plugin_is_one_file_dropped_in() {
     let area = std::f64::consts::PI * (2.0_f64 * 6.0 / 9.0).powi(2) / (8.0 * 6.0);
     assert!((red / (160.0 * 120.0) - area).abs() < 0.005, "a round disc of the right size, {red} pixels");
 
+    let named = "camera eye { pixeldim 8 6 worlddim 8 6 viewpoint 4 3 6 } material m { ambient 5 5 5 }
+        revsurf cask { material m surfer barrel base 4 0 -4 direction 0 1 0 height 4 }
+        psphere ball { material m shader stripes center 4 3 -3 radius 1 }";
+    assert!(copy.run(&["check", "-"], named).contains("-: sound"));
+
     let message = copy.run(&["check", "-"], "disc d { radius 0 }");
     assert!(message.contains("`radius` of disc `d` must be positive, not 0"), "{message}");
 }
+
+const BARREL: &str = "//! A barrel.
+
+use crate::profile::Profile;
+
+inventory::submit! {
+    Profile::new(\"barrel\", \"a barrel 4 high\", |y| 1.5 - 0.1 * (y - 2.0) * (y - 2.0), |y| -0.2 * (y - 2.0))
+}
+";
+
+const STRIPES: &str = "//! Stripes, as wide as a tenth of the anchor's unit.
+
+use crate::geometry::Shader;
+use crate::material::{Material, Rgb};
+use crate::shading::{Anchor, ProceduralShader};
+use glam::DVec3;
+
+inventory::submit! {
+    ProceduralShader::new(\"stripes\", \"stripes across y\", |anchor| Box::new(Stripes(anchor)))
+}
+
+struct Stripes(Anchor);
+
+impl Shader for Stripes {
+    fn ambient(&self, material: &Material, at: DVec3) -> Rgb {
+        let stripe = (10.0 * (at - self.0.origin).y / self.0.unit).floor();
+        if stripe.rem_euclid(2.0) == 0.0 { material.ambient } else { Rgb::ZERO }
+    }
+}
+";
 
 /// A copy of the package to drop files into. Its build directory stays, to keep the next run quick.
 struct Copy {
