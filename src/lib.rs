@@ -8,8 +8,10 @@
 //! A file in `plugins/` adds an entity type: it registers an [`Entity`](entity::Entity) and implements a trait
 //! of [`geometry`]. No other file knows its name.
 
+pub mod aov;
 pub mod camera;
 pub mod choice;
+pub mod debug;
 pub mod dump;
 pub mod entity;
 pub mod geometry;
@@ -17,6 +19,7 @@ pub mod material;
 pub mod model;
 pub mod picture;
 pub mod pparm;
+pub mod probe;
 pub mod profile;
 pub mod reference;
 pub mod registry;
@@ -27,6 +30,7 @@ pub mod shading;
 pub mod texture;
 pub mod trace;
 pub mod value;
+pub mod watch;
 mod words;
 
 include!(concat!(env!("OUT_DIR"), "/plugins.rs"));

@@ -57,16 +57,34 @@ impl Renderer {
         rows: Range<usize>,
         done: &(dyn Fn() -> ControlFlow<()> + Sync),
     ) -> Option<Vec<u8>> {
+        let pixel = |x, y| trace::pixel(model, x, y).to_array().map(to_byte);
+        self.pixels(model, rows, done, pixel).map(Vec::into_flattened)
+    }
+
+    /// Something of each pixel, from the top and from the left, for some rows counted from the top; nothing
+    /// where `done` broke off.
+    pub(crate) fn pixels<T: Clone + Default + Send>(
+        &self,
+        model: &Model,
+        rows: Range<usize>,
+        done: &(dyn Fn() -> ControlFlow<()> + Sync),
+        pixel: impl Fn(usize, usize) -> T + Sync,
+    ) -> Option<Vec<T>> {
         let [width, height] = model.camera.value.pixels;
-        let mut bytes = vec![0; 3 * width * rows.len()];
-        let row = |(bytes, from_top): (&mut [u8], usize)| {
+        let mut pixels = vec![T::default(); width * rows.len()];
+        let row = |(row, from_top): (&mut [T], usize)| {
             let y = height - 1 - from_top;
-            for (x, pixel) in bytes.chunks_exact_mut(3).enumerate() {
-                pixel.copy_from_slice(&trace::pixel(model, x, y).to_array().map(to_byte));
+            for (x, place) in row.iter_mut().enumerate() {
+                *place = pixel(x, y);
             }
             done()
         };
-        let finished = self.pool.install(|| bytes.par_chunks_mut(3 * width).zip(rows).try_for_each(row));
-        finished.is_continue().then_some(bytes)
+        let finished = self.pool.install(|| pixels.par_chunks_mut(width).zip(rows).try_for_each(row));
+        finished.is_continue().then_some(pixels)
+    }
+
+    /// Runs something else on one of the threads, which have room for deep reflections.
+    pub fn run<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        self.pool.install(work)
     }
 }

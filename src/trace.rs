@@ -4,51 +4,68 @@ use crate::geometry::{Light, Ray, Span};
 use crate::material::Rgb;
 use crate::model::{Model, Object};
 use crate::sample::Sample;
+use crate::watch::{Event, Hit, Outcome, Purpose, Reason, Watch};
 use glam::{DVec2, DVec3};
 
 /// Light that has travelled farther than this is black.
-const MAX_DIST: f64 = 20.0;
+pub(crate) const MAX_DIST: f64 = 20.0;
 
 /// The rays that one pixel may cost. Mirrors that nearly touch would otherwise reflect each other for ever;
 /// what lies beyond is black.
-const MAX_RAYS: usize = 20_000;
-
-/// What a ray meets first.
-struct Hit<'m> {
-    /// Which of the model's objects.
-    index: usize,
-    object: &'m Object,
-    /// How far from the ray's origin.
-    distance: f64,
-    point: DVec3,
-}
+pub(crate) const MAX_RAYS: usize = 20_000;
 
 /// The colour of a pixel, before it is clamped to what a picture can show: `x` counts from the left and `y`
 /// from the bottom.
 pub fn pixel(model: &Model, x: usize, y: usize) -> Rgb {
+    watch_pixel(model, x, y, &mut ())
+}
+
+/// As [`pixel`], and `watch` sees how it comes about.
+pub fn watch_pixel(model: &Model, x: usize, y: usize, watch: &mut impl Watch) -> Rgb {
     let camera = &model.camera.value;
-    let colours = camera.rays(x, y).map(|(ray, sample)| colour(model, &ray, sample));
+    let colours = camera.rays(x, y).map(|(ray, sample)| watch_colour(model, &ray, sample, watch));
     colours.sum::<Rgb>() / f64::from(camera.samples)
 }
 
 /// The colour that a ray sees, before it is clamped. Lights with a size are met where `sample` says, or in
 /// their middle.
 pub fn colour(model: &Model, ray: &Ray, sample: Option<Sample>) -> Rgb {
-    Tracer { model, sample, rays: MAX_RAYS }.trace(ray, 0.0, None)
+    watch_colour(model, ray, sample, &mut ())
 }
 
-struct Tracer<'m> {
+/// As [`colour`], and `watch` sees how it comes about.
+pub fn watch_colour(model: &Model, ray: &Ray, sample: Option<Sample>, watch: &mut impl Watch) -> Rgb {
+    watch.see(Event::Begin(Purpose::Primary));
+    Tracer { model, sample, rays: MAX_RAYS, watch }.trace(ray, 0.0, None)
+}
+
+/// What a ray from the viewer meets first.
+pub fn first_hit<'m>(model: &'m Model, ray: &Ray) -> Option<Hit<'m>> {
+    let mut tracer = Tracer { model, sample: None, rays: MAX_RAYS, watch: &mut () };
+    tracer.closest(ray, &Span::RAY, None)
+}
+
+struct Tracer<'m, 'w, W> {
     model: &'m Model,
     sample: Option<Sample>,
     /// The rays that the pixel may still cost.
     rays: usize,
+    watch: &'w mut W,
 }
 
-impl<'m> Tracer<'m> {
+impl<'m, W: Watch> Tracer<'m, '_, W> {
     /// The light that comes back along a ray. The light has `travelled` this far from the viewer already, and
     /// the ray leaves the object `last`, which it does not see.
     fn trace(&mut self, ray: &Ray, travelled: f64, last: Option<usize>) -> Rgb {
+        let colour = self.follow(ray, travelled, last);
+        self.watch.see(Event::Colour(colour));
+        colour
+    }
+
+    #[inline(always)]
+    fn follow(&mut self, ray: &Ray, travelled: f64, last: Option<usize>) -> Rgb {
         if travelled > MAX_DIST {
+            self.watch.see(Event::Dropped(Reason::TooFar));
             return DVec3::ZERO;
         }
         let Some(hit) = self.closest(ray, &Span::RAY, last) else { return DVec3::ZERO };
@@ -57,20 +74,24 @@ impl<'m> Tracer<'m> {
         let normal = shape.normal(hit.point);
 
         let mut colour = shader.ambient(material, hit.point);
+        self.watch.see(Event::Surface { normal, ambient: colour });
         for (index, light) in self.model.lights.iter().enumerate() {
             colour += self.illuminate(index, &*light.value, &hit, normal, ray.origin);
         }
         colour *= 1.0 / travelled;
+        self.watch.see(Event::Shaded { hit: &hit, travelled, colour });
 
         if material.transparency != 0.0 {
             let onward = Ray { origin: hit.point, dir: ray.dir };
-            let behind = self.trace(&onward, travelled, Some(hit.index));
-            colour = (1.0 - material.transparency) * colour + hit.object.tint(hit.point) * behind;
+            let (tint, kept) = (hit.object.tint(hit.point), 1.0 - material.transparency);
+            self.watch.see(Event::Begin(Purpose::Transmitted { tint, kept }));
+            colour = kept * colour + tint * self.trace(&onward, travelled, Some(hit.index));
         }
         let specular = shader.specular(material, hit.point);
         if specular != DVec3::ZERO {
             let mirrored = ray.dir - 2.0 * ray.dir.dot(normal) * normal;
             let reflected = Ray { origin: hit.point, dir: mirrored };
+            self.watch.see(Event::Begin(Purpose::Reflected { specular }));
             colour += specular * self.trace(&reflected, travelled, Some(hit.index));
         }
         colour
@@ -91,10 +112,20 @@ impl<'m> Tracer<'m> {
         let cos = to_light.dot(normal);
         // The light is behind the surface, or on it (NaN).
         if cos.is_nan() || cos <= 0.0 {
+            self.watch.see(Event::Light(index, Outcome::Behind));
             return DVec3::ZERO;
         }
-        let Some(emissivity) = light.emissivity(hit.point) else { return DVec3::ZERO };
-        let Some(passed) = self.unshadowed(hit, to_light, distance) else { return DVec3::ZERO };
+        let Some(emissivity) = light.emissivity(hit.point) else {
+            self.watch.see(Event::Light(index, Outcome::Aside));
+            return DVec3::ZERO;
+        };
+        let passed = match self.unshadowed(hit, to_light, distance) {
+            Ok(passed) => passed,
+            Err(blocker) => {
+                self.watch.see(Event::Light(index, Outcome::Blocked(blocker)));
+                return DVec3::ZERO;
+            }
+        };
 
         let Object { material, shader, .. } = hit.object;
         let light = emissivity * passed;
@@ -104,6 +135,7 @@ impl<'m> Tracer<'m> {
             let glint = libm::pow(half.dot(normal), material.shininess);
             colour += light * shader.specular(material, hit.point) * glint;
         }
+        self.watch.see(Event::Light(index, Outcome::Shines { passed, colour }));
         colour
     }
 
@@ -118,18 +150,18 @@ impl<'m> Tracer<'m> {
         middle + radius * (libm::cos(angle) * across + libm::sin(angle) * up)
     }
 
-    /// The part of each channel that gets from a light to a hit, or nothing where an opaque object stands
-    /// between them. Glass on the way tints it.
-    fn unshadowed(&mut self, hit: &Hit<'m>, to_light: DVec3, distance: f64) -> Option<Rgb> {
+    /// The part of each channel that gets from a light to a hit, or the opaque object that stands between them.
+    /// Glass on the way tints it.
+    fn unshadowed(&mut self, hit: &Hit<'m>, to_light: DVec3, distance: f64) -> Result<Rgb, usize> {
         let mut passed = DVec3::ONE;
         let (mut from, mut skip, mut left) = (hit.point, hit.index, distance);
         loop {
             let ray = Ray { origin: from, dir: to_light };
-            let Some(blocker) = self.closest(&ray, &Span { near: 0.0, far: left }, Some(skip)) else {
-                return Some(passed);
-            };
+            let within = Span { near: 0.0, far: left };
+            self.watch.see(Event::Begin(Purpose::Shadow { distance: left }));
+            let Some(blocker) = self.closest(&ray, &within, Some(skip)) else { return Ok(passed) };
             if blocker.object.material.transparency == 0.0 {
-                return None;
+                return Err(blocker.index);
             }
             passed *= blocker.object.tint(blocker.point);
             (from, skip) = (blocker.point, blocker.index);
@@ -140,20 +172,33 @@ impl<'m> Tracer<'m> {
     /// What a ray meets first within a span, the object that it leaves excepted. Of two at the same distance
     /// the earlier one in the scene wins.
     fn closest(&mut self, ray: &Ray, within: &Span, skip: Option<usize>) -> Option<Hit<'m>> {
-        self.rays = self.rays.checked_sub(1)?;
+        let Some(rays) = self.rays.checked_sub(1) else {
+            self.watch.see(Event::Dropped(Reason::TooMany));
+            return None;
+        };
+        self.rays = rays;
+        self.watch.see(Event::Search(ray));
         let mut nearest = None;
         let mut within = *within;
         for (index, object) in self.model.objects.iter().enumerate() {
             if Some(index) == skip {
+                self.watch.see(Event::Tested(index, None));
                 continue;
             }
             let distance = object.shape.distance(ray, &within);
+            self.watch.see(Event::Tested(index, Some(distance)));
             if distance < within.far {
                 within.far = distance;
                 nearest = Some((index, object));
             }
         }
-        let (index, object) = nearest?;
-        Some(Hit { index, object, distance: within.far, point: ray.at(within.far) })
+        let hit = nearest.map(|(index, object)| Hit {
+            index,
+            object,
+            distance: within.far,
+            point: ray.at(within.far),
+        });
+        self.watch.see(Event::Met(hit.as_ref()));
+        hit
     }
 }

@@ -1,12 +1,15 @@
 //! The command line: one file per subcommand, and what they share.
 
+mod aov;
 mod check;
+mod debug;
 mod dump;
 mod input;
 mod interrupt;
 mod list;
 mod notes;
 mod output;
+mod probe;
 mod render;
 
 use annotate_snippets::{Group, Level, Renderer};
@@ -32,6 +35,7 @@ enum Command {
     Render(render::Args),
     Dump(dump::Args),
     Check(check::Args),
+    Probe(probe::Args),
     List(list::Args),
 }
 
@@ -70,6 +74,7 @@ pub fn run() -> ExitCode {
             Some(Command::Render(args)) => render::run(registry, args),
             Some(Command::Dump(args)) => dump::run(registry, args),
             Some(Command::Check(args)) => check::run(registry, args),
+            Some(Command::Probe(args)) => probe::run(registry, args),
             Some(Command::List(args)) => list::run(registry, args),
             None if io::stdin().is_terminal() => {
                 let mut command = Cli::command();

@@ -14,5 +14,5 @@ pub fn run(registry: &Registry) -> Result<(), Failure> {
     let model = input::load(registry, standard)?;
     interrupt::catch()?;
     let _ = write!(std::io::stderr(), "{}", dump::notes(&model));
-    render::picture(&model, 0, Format::Ppm, output)
+    render::picture(&model, 0, Format::Ppm, standard, output)
 }

@@ -1,7 +1,7 @@
 //! `tabray render`: a scene's picture.
 
 use super::output::Output;
-use super::{Failure, input, interrupt};
+use super::{Failure, aov, debug, input, interrupt};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, BufWriter};
 use std::ops::ControlFlow;
@@ -34,6 +34,10 @@ pub struct Args {
     /// How many threads to use; by default one on each core
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+    #[command(flatten)]
+    aov: aov::Args,
+    #[command(flatten)]
+    debug: debug::Args,
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
@@ -62,21 +66,27 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     };
     interrupt::catch()?;
     let output = Output::open(&path)?;
+    let beside = aov::open(&model, &args.aov, &path, &output)?;
+    debug::print(&model, &args.debug)?;
+    let threads = args.threads.unwrap_or(0).into();
     let start = Instant::now();
-    picture(&model, args.threads.unwrap_or(0).into(), format, output).map_err(|failure| match failure {
-        Failure::Failed(why) => Failure::Failed(format!("cannot write `{}`: {why}", path.display())),
-        other => other,
-    })?;
+    picture(&model, threads, format, &path, output)?;
     if path != Path::new("-") {
         let [width, height] = model.camera.value.pixels;
         let seconds = start.elapsed().as_secs_f64();
         eprintln!("wrote {} ({width} x {height} pixels, {seconds:.2} s)", path.display());
     }
-    Ok(())
+    aov::write(&model, threads, format, beside)
 }
 
 /// Renders a model and puts the picture where it belongs.
-pub fn picture(model: &Model, threads: usize, format: Format, output: Output) -> Result<(), Failure> {
+pub fn picture(
+    model: &Model,
+    threads: usize,
+    format: Format,
+    path: &Path,
+    output: Output,
+) -> Result<(), Failure> {
     let renderer = Renderer::new(threads)?;
     let [_, height] = model.camera.value.pixels;
     let progress = Progress::new(height);
@@ -86,25 +96,31 @@ pub fn picture(model: &Model, threads: usize, format: Format, output: Output) ->
     };
     let mut out = BufWriter::with_capacity(1 << 16, output);
     let written = format.write(&mut out, model.camera.value.pixels, renderer.bands(model, &done));
-    progress.bar.finish_and_clear();
+    progress.end();
     if interrupt::check() == ControlFlow::Break(()) {
         return Err(Failure::Interrupted);
     }
-    let finished = written.and_then(|()| out.into_inner().map_err(|error| error.into_error())?.finish());
-    match finished {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error.into()),
+    finished(path, written, out)
+}
+
+/// Puts a picture in its place, if it was written without an error.
+pub fn finished(path: &Path, written: io::Result<()>, out: BufWriter<Output>) -> Result<(), Failure> {
+    match written.and_then(|()| out.into_inner().map_err(|error| error.into_error())?.finish()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(Failure::Failed(format!("cannot write `{}`: {error}", path.display())))
+        }
         _ => Ok(()),
     }
 }
 
 /// A bar on a terminal, once rendering takes long enough to ask how long it will take.
-struct Progress {
+pub struct Progress {
     bar: ProgressBar,
     start: Instant,
 }
 
 impl Progress {
-    fn new(rows: usize) -> Self {
+    pub fn new(rows: usize) -> Self {
         let style = ProgressStyle::with_template("{wide_bar} {percent:>3} % {eta} left");
         let bar = ProgressBar::with_draw_target(Some(rows as u64), ProgressDrawTarget::hidden());
         Self {
@@ -113,11 +129,15 @@ impl Progress {
         }
     }
 
-    fn step(&self) {
+    pub fn step(&self) {
         if self.bar.is_hidden() && self.start.elapsed() > Duration::from_millis(500) {
             self.bar.set_draw_target(ProgressDrawTarget::stderr());
         }
         self.bar.inc(1);
+    }
+
+    pub fn end(&self) {
+        self.bar.finish_and_clear();
     }
 }
 

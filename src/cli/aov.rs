@@ -1,0 +1,133 @@
+//! `tabray render --aov`: pictures beside the main one, and exact numbers.
+
+use super::output::Output;
+use super::render::{Progress, finished};
+use super::{Failure, interrupt};
+use std::ffi::OsStr;
+use std::io::{self, BufWriter, Write};
+use std::iter;
+use std::path::{Path, PathBuf};
+use tabray::aov::Aov;
+use tabray::model::Model;
+use tabray::picture::Format;
+use tabray::render::Renderer;
+
+/// The largest picture that these are made of: unlike the main one, they are in memory as a whole.
+const LARGEST: usize = 1 << 26;
+
+#[derive(clap::Args)]
+pub struct Args {
+    /// Write these pictures too, beside the main one: `-o a.png --aov depth` writes a-depth.png, and a-depth.exr
+    /// with exact numbers
+    #[arg(long, value_name = "PICTURES", value_delimiter = ',')]
+    aov: Vec<AovName>,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum AovName {
+    /// How far the first hit is, near ones bright
+    Depth,
+    /// The direction of the surface: red, green and blue are x, y and z
+    Normal,
+    /// Each object in a colour of its own
+    Object,
+    /// How many rays a pixel costs
+    Cost,
+}
+
+/// The files of one such picture.
+pub struct Files {
+    aov: Aov,
+    picture: (PathBuf, Output),
+    exact: Option<(PathBuf, Output)>,
+}
+
+/// Opens all files that are asked for, named after the main picture's.
+pub fn open(model: &Model, args: &Args, main: &Path, output: &Output) -> Result<Vec<Files>, Failure> {
+    if args.aov.is_empty() {
+        return Ok(Vec::new());
+    }
+    if !matches!(output, Output::File(..)) {
+        return Err(Failure::Usage(
+            format!("there is no place for the pictures of `--aov` beside `{}`", main.display()),
+            Some("name the main picture's file with `-o FILE`".to_owned()),
+        ));
+    }
+    let [width, height] = model.camera.value.pixels;
+    if width * height > LARGEST {
+        return Err(Failure::Usage(
+            format!("a picture of {width} x {height} pixels is too large for `--aov`"),
+            Some(format!("it can have {LARGEST} pixels, such as 8192 x 8192")),
+        ));
+    }
+    let mut aovs: Vec<Aov> = Vec::new();
+    for name in &args.aov {
+        let aov = match name {
+            AovName::Depth => Aov::Depth,
+            AovName::Normal => Aov::Normal,
+            AovName::Object => Aov::Object,
+            AovName::Cost => Aov::Cost,
+        };
+        if !aovs.contains(&aov) {
+            aovs.push(aov);
+        }
+    }
+    let opened = |path: PathBuf| Output::open(&path).map(|output| (path, output));
+    aovs.into_iter()
+        .map(|aov| {
+            let mut stem = main.file_stem().unwrap_or_default().to_owned();
+            stem.push(format!("-{}", aov.name()));
+            let picture = main.with_file_name(stem);
+            // `with_extension` would cut a stem that has a dot.
+            let with = |extension: &OsStr| {
+                let mut path = picture.clone().into_os_string();
+                path.push(".");
+                path.push(extension);
+                PathBuf::from(path)
+            };
+            let exact = aov.is_exact().then(|| opened(with("exr".as_ref()))).transpose()?;
+            let picture = opened(main.extension().map_or_else(|| picture.clone(), with))?;
+            Ok(Files { aov, picture, exact })
+        })
+        .collect()
+}
+
+/// Makes the pictures and writes their files.
+pub fn write(model: &Model, threads: usize, format: Format, files: Vec<Files>) -> Result<(), Failure> {
+    if files.is_empty() {
+        return Ok(());
+    }
+    let renderer = Renderer::new(threads)?;
+    let size = model.camera.value.pixels;
+    for Files { aov, picture, exact } in files {
+        let progress = Progress::new(size[1]);
+        let layer = aov.render(&renderer, model, &|| {
+            progress.step();
+            interrupt::check()
+        });
+        progress.end();
+        let layer = layer.map_err(|_| Failure::Interrupted)?;
+        if let Some((most, [x, y])) = layer.most {
+            eprintln!("the most expensive pixel is {x} {y}, of {most} rays");
+        }
+        let exact = exact.map(|(path, output)| Ok::<_, io::Error>((path, output, layer.exr(size)?)));
+        if let Some((path, output, bytes)) = exact.transpose()? {
+            put(&path, output, |out| out.write_all(&bytes))?;
+        }
+        let (path, output) = picture;
+        put(&path, output, |out| format.write(out, size, iter::once(Ok(layer.bytes))))?;
+    }
+    Ok(())
+}
+
+fn put(
+    path: &Path,
+    output: Output,
+    write: impl FnOnce(&mut BufWriter<Output>) -> io::Result<()>,
+) -> Result<(), Failure> {
+    let mut out = BufWriter::new(output);
+    let written = write(&mut out);
+    finished(path, written, out)?;
+    eprintln!("wrote {}", path.display());
+    Ok(())
+}

@@ -1,0 +1,89 @@
+//! `tabray render --debug`: the notes' debug lines, for some pixels or for all.
+
+use super::{Failure, interrupt, probe};
+use std::io::{self, BufWriter, Write};
+use tabray::debug::{self, Line};
+use tabray::model::Model;
+use tabray::render::Renderer;
+
+#[derive(clap::Args)]
+pub struct Args {
+    /// Print the course notes' debug lines to standard error before rendering
+    #[arg(long, value_name = "LINES", value_delimiter = ',')]
+    debug: Vec<LineName>,
+    /// Print them for one pixel or for a rectangle, both corners included: columns count from 0 at the left, rows
+    /// from 0 at the bottom
+    #[arg(long, value_name = "X,Y|X0,Y0,X1,Y1", requires = "debug", value_parser = corners)]
+    #[arg(allow_hyphen_values = true)]
+    at: Option<[[i64; 2]; 2]>,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum LineName {
+    /// The pixel: its row and its column
+    Pix,
+    /// What a ray meets, and where
+    Hit,
+    /// The colour of what it meets
+    Drgb,
+    /// The pixel's bytes
+    Irgb,
+    /// The pixel's place in the picture's file
+    Offset,
+    /// Each object that a search finds, and its distance
+    Find,
+}
+
+/// Prints the lines that are asked for.
+pub fn print(model: &Model, args: &Args) -> Result<(), Failure> {
+    if args.debug.is_empty() {
+        return Ok(());
+    }
+    let lines: Vec<_> = args.debug.iter().copied().map(line).collect();
+    let [width, height] = model.camera.value.pixels;
+    let [a, b] = match args.at {
+        Some([a, b]) => [probe::inside(model, a)?, probe::inside(model, b)?],
+        None => [[0, 0], [width - 1, height - 1]],
+    };
+    let printed = Renderer::new(1)?.run(|| {
+        let mut out = BufWriter::new(io::stderr());
+        // The notes' order.
+        for y in a[1].min(b[1])..=a[1].max(b[1]) {
+            for x in a[0].min(b[0])..=a[0].max(b[0]) {
+                debug::pixel(model, x, y, &lines, &mut out)?;
+                if interrupt::check().is_break() {
+                    return Err(io::ErrorKind::Interrupted.into());
+                }
+            }
+        }
+        // The notes begin lines and do not end them; what else comes begins one of its own.
+        writeln!(out)?;
+        out.flush()
+    });
+    match printed {
+        Err(error) if error.kind() == io::ErrorKind::Interrupted => Err(Failure::Interrupted),
+        // Where standard error is closed there is nobody to tell.
+        _ => Ok(()),
+    }
+}
+
+fn line(name: LineName) -> Line {
+    match name {
+        LineName::Pix => Line::Pix,
+        LineName::Hit => Line::Hit,
+        LineName::Drgb => Line::Drgb,
+        LineName::Irgb => Line::Irgb,
+        LineName::Offset => Line::Offset,
+        LineName::Find => Line::Find,
+    }
+}
+
+/// One pixel or two corners.
+fn corners(text: &str) -> Result<[[i64; 2]; 2], String> {
+    let numbers: Result<Vec<i64>, _> = text.split(',').map(str::parse).collect();
+    match numbers.as_deref() {
+        Ok([x, y]) => Ok([[*x, *y]; 2]),
+        Ok([x0, y0, x1, y1]) => Ok([[*x0, *y0], [*x1, *y1]]),
+        _ => Err("give a pixel as `X,Y` or two corners as `X0,Y0,X1,Y1`, whole numbers".to_owned()),
+    }
+}

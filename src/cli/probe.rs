@@ -1,0 +1,53 @@
+//! `tabray probe`: one pixel, explained.
+
+use super::{Failure, input};
+use std::io::{self, BufWriter, Write};
+use std::path::PathBuf;
+use tabray::model::Model;
+use tabray::probe;
+use tabray::registry::Registry;
+use tabray::render::Renderer;
+
+/// Explain how a pixel gets its colour
+#[derive(clap::Args)]
+pub struct Args {
+    /// The scene; `-` reads it from standard input
+    scene: PathBuf,
+    /// The pixel's column, from 0 at the left
+    #[arg(allow_negative_numbers = true)]
+    x: i64,
+    /// The pixel's row, from 0 at the bottom
+    #[arg(allow_negative_numbers = true)]
+    y: i64,
+}
+
+pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
+    let model = input::load(registry, &args.scene)?;
+    let [x, y] = inside(&model, [args.x, args.y])?;
+    let mut out = BufWriter::new(io::stdout());
+    let printed = Renderer::new(1)?.run(|| probe::pixel(&model, x, y, &mut out).and_then(|()| out.flush()));
+    match printed {
+        // A reader that has had enough is no failure.
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(Failure::Failed(format!("cannot write to standard output: {error}")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// A pixel that a user named, if the picture has it.
+pub fn inside(model: &Model, pixel: [i64; 2]) -> Result<[usize; 2], Failure> {
+    let size = model.camera.value.pixels;
+    let find = |side: usize| usize::try_from(pixel[side]).ok().filter(|at| *at < size[side]);
+    find(0).zip(find(1)).map(|(x, y)| [x, y]).ok_or_else(|| {
+        let ([x, y], [width, height]) = (pixel, size);
+        Failure::Usage(
+            format!("the picture of {width} x {height} pixels has no pixel {x} {y}"),
+            Some(format!(
+                "X counts from the left, from 0 to {}, and Y from the bottom, from 0 to {}",
+                width - 1,
+                height - 1
+            )),
+        )
+    })
+}
