@@ -157,7 +157,10 @@ fn no_snapshot_is_left_of_a_scene_that_is_gone() {
         for entry in fs::read_dir(folder).expect("a folder of snapshots") {
             let path = entry.expect("an entry").path();
             if path.is_dir() {
-                folders.push(path);
+                // Explanations of pixels are named after what they show.
+                if !path.ends_with("probe") {
+                    folders.push(path);
+                }
                 continue;
             }
             let subject = path.parent().and_then(|folder| folder.strip_prefix(root().join("snapshots")).ok());

@@ -16,6 +16,7 @@ use tabray::render::Renderer;
 const LARGEST: usize = 1 << 26;
 
 #[derive(clap::Args)]
+#[group(id = "pictures beside")]
 pub struct Args {
     /// Write these pictures too, beside the main one: `-o a.png --aov depth` writes a-depth.png, and a-depth.exr
     /// with exact numbers

@@ -7,6 +7,7 @@ use tabray::model::Model;
 use tabray::render::Renderer;
 
 #[derive(clap::Args)]
+#[group(id = "debug lines")]
 pub struct Args {
     /// Print the course notes' debug lines to standard error before rendering
     #[arg(long, value_name = "LINES", value_delimiter = ',')]
