@@ -42,12 +42,14 @@ impl Choices {
         (self.all)()
     }
 
-    /// The one that a word names or numbers.
-    pub fn find(&self, word: &str) -> Option<ChoiceName> {
-        let number = word.parse().ok();
-        self.all()
-            .into_iter()
-            .find(|choice| choice.name == word || (number.is_some() && choice.number == number))
+    /// The one of this name.
+    pub fn named(&self, name: &str) -> Option<ChoiceName> {
+        self.all().into_iter().find(|choice| choice.name == name)
+    }
+
+    /// The one of this number.
+    pub fn numbered(&self, number: i64) -> Option<ChoiceName> {
+        self.all().into_iter().find(|choice| choice.number == Some(number))
     }
 }
 

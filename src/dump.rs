@@ -3,6 +3,7 @@
 use crate::entity::{Args, Kind};
 use crate::model::Model;
 use crate::pparm::Attribute;
+use crate::syntax::Syntax;
 use crate::value::Datum;
 
 /// The notes' dump: camera, materials, objects and lights, numbers to one decimal. Textures are not in it.
@@ -21,21 +22,39 @@ fn notes_block(args: &Args) -> String {
     format!("{before}{:<12} {}{after_name}\n{lines}{after}", args.entity.dump_name, args.name)
 }
 
-/// A scene in the notes' language that loads again to the identical model: every number to its last bit, the
-/// entities in their order. Values that are the default are left out.
-pub fn ray(model: &Model) -> String {
-    let blocks: Vec<_> = in_order(model).into_iter().map(ray_block).collect();
+/// A scene that loads again to the identical model, in either spelling: every number to its last bit, the
+/// entities in their order, and of their attributes those that were given.
+pub fn scene(model: &Model, syntax: Syntax) -> String {
+    let entities = in_order(model);
+    let count = |args: &Args| entities.iter().filter(|other| same_title(other, args)).count();
+    let blocks: Vec<_> = entities.iter().map(|args| scene_block(args, syntax, count(args) > 1)).collect();
     blocks.join("\n")
 }
 
-fn ray_block(args: &Args) -> String {
-    let given = given(args);
-    let width = given.iter().map(|(attribute, _)| attribute.name().len()).max().unwrap_or(0);
-    let lines: String = given
-        .iter()
-        .map(|(attribute, datum)| format!("    {:<width$} {datum}\n", attribute.name()))
-        .collect();
-    format!("{} {}\n{{\n{lines}}}\n", args.entity.name, args.name)
+/// Whether TOML needs an array of tables, as two entities have one title.
+fn same_title(a: &Args, b: &Args) -> bool {
+    (a.entity.name, &a.name) == (b.entity.name, &b.name)
+}
+
+fn scene_block(args: &Args, syntax: Syntax, repeated: bool) -> String {
+    let (kind, name) = (args.entity.name, syntax.key(&args.name));
+    let width = args.given().map(|(attribute, _)| attribute.name().len()).max().unwrap_or(0);
+    let line = |(attribute, datum): (&dyn Attribute, &Datum)| {
+        let padded = format!("{:<width$}", attribute.name());
+        syntax.pair(&padded, &syntax.values(datum))
+    };
+    let lines = args.given().map(line);
+    match syntax {
+        Syntax::Notes => {
+            let lines: String = lines.map(|line| format!("    {line}\n")).collect();
+            format!("{kind} {name}\n{{\n{lines}}}\n")
+        }
+        Syntax::Toml => {
+            let title = if repeated { format!("[[{kind}.{name}]]") } else { format!("[{kind}.{name}]") };
+            let lines: String = lines.map(|line| line + "\n").collect();
+            format!("{title}\n{lines}")
+        }
+    }
 }
 
 /// All entities of a model in the order of its scene.
@@ -44,14 +63,4 @@ fn in_order(model: &Model) -> Vec<&Args> {
     let mut all: Vec<_> = kinds.into_iter().flat_map(|kind| model.entities(kind)).collect();
     all.sort_by_key(|args| args.order);
     all
-}
-
-/// The attributes that are not at their default, or all where there would be none.
-fn given(args: &Args) -> Vec<(&'static dyn Attribute, &Datum)> {
-    // Compared as text: 0 and -0 are equal and yet not the same.
-    let is_default = |attribute: &dyn Attribute, datum: &Datum| {
-        attribute.default().is_some_and(|default| default.to_string() == datum.to_string())
-    };
-    let given: Vec<_> = args.values().filter(|(attribute, datum)| !is_default(*attribute, datum)).collect();
-    if given.is_empty() { args.values().collect() } else { given }
 }

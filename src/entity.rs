@@ -185,16 +185,6 @@ impl Entity {
         self.rows().filter_map(|row| row.attribute())
     }
 
-    /// How a scene writes one that has this name: its type, the name and the attributes it must have.
-    pub fn usage(&self, name: &str) -> String {
-        let required = self.attributes().filter(|attribute| attribute.default().is_none());
-        let mut body: Vec<_> = required.map(|attribute| attribute.usage()).collect();
-        if body.len() < self.attributes().count() {
-            body.push("...".to_owned());
-        }
-        format!("`{} {name} {{ {} }}`", self.name, body.join("  "))
-    }
-
     /// The file and line that registers it.
     pub fn place(&self) -> String {
         let file = self.place.file().replace('\\', "/");
@@ -211,6 +201,9 @@ pub struct Setting {
     pub folder: PathBuf,
 }
 
+/// The values of an attribute, and whether the scene gives them: if not, they are the default.
+pub(crate) type Given = (Datum, bool);
+
 /// An entity of a scene as a constructor sees it: its type, its name and its checked values.
 #[derive(Clone)]
 pub struct Args {
@@ -223,12 +216,12 @@ pub struct Args {
     /// The scene around it.
     pub setting: Arc<Setting>,
     /// A value for each attribute of the type, in that order.
-    values: Vec<Datum>,
+    values: Vec<Given>,
 }
 
 impl Args {
-    /// `values` holds a datum for each of the entity type's attributes, in their order.
-    pub(crate) fn new(entity: &'static Entity, name: String, order: usize, values: Vec<Datum>) -> Self {
+    /// `values` holds those of each of the entity type's attributes, in their order.
+    pub(crate) fn new(entity: &'static Entity, name: String, order: usize, values: Vec<Given>) -> Self {
         debug_assert_eq!(values.len(), entity.attributes().count());
         Self { entity, name, order, setting: Arc::default(), values }
     }
@@ -251,7 +244,13 @@ impl Args {
 
     /// Every attribute with its value, in the order of the table.
     pub fn values(&self) -> impl Iterator<Item = (&'static dyn Attribute, &Datum)> {
-        self.entity.attributes().zip(&self.values)
+        self.entity.attributes().zip(self.values.iter().map(|(datum, _)| datum))
+    }
+
+    /// The attributes that the scene gives, with their values.
+    pub fn given(&self) -> impl Iterator<Item = (&'static dyn Attribute, &Datum)> {
+        let values = self.entity.attributes().zip(&self.values);
+        values.filter(|(_, (_, given))| *given).map(|(attribute, (datum, _))| (attribute, datum))
     }
 
     fn find(&self, attribute: &str) -> Option<&Datum> {

@@ -51,17 +51,6 @@ pub trait Attribute: Sync {
             Type::Choice(choices) => format!("the name or number of a {}", choices.what),
         }
     }
-
-    /// How a scene writes it: `center N N N`.
-    fn usage(&self) -> String {
-        let values = match self.value_type() {
-            Type::Whole | Type::Number => " N".repeat(self.arity().first().copied().unwrap_or(1)),
-            Type::Word => " WORD".to_owned(),
-            Type::Name(_) => " NAME".to_owned(),
-            Type::Choice(_) => " N".to_owned(),
-        };
-        format!("{}{values}", self.name())
-    }
 }
 
 /// An attribute's name, meaning, unit, default and rule, and the key to its value.

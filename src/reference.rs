@@ -8,8 +8,7 @@ use crate::registry::Registry;
 use crate::shading::{OnPlane, OnSphere};
 use crate::value::{Type, Value};
 
-const INTRODUCTION: &str = "\
-# The scene language
+const INTRODUCTION: &str = r#"# The scene language
 
 Made from the tables of the plugins by `cargo run --release -- list --markdown > docs/language.md`; the pictures
 beside it by
@@ -21,12 +20,18 @@ done
 ```
 
 A scene is a text of entities, `TYPE NAME { ATTRIBUTES }`. Blanks and line ends part words, braces stand for
-themselves, and a `#` that begins a word begins a comment, which ends with the line. A name is any word. Each
+themselves, and a `#` that begins a word begins a comment, which ends with the line. A name is any word; one
+with blanks stands in quotes, `"dark red"`, where `\"` is a quote and `\\` a backslash. Each
 attribute is followed by its values, and attributes come in any order. A material or a texture stands above
 what refers to it. Lengths are in world units: the screen lies in the plane z = 0, its lower left corner is the
 world's origin, x goes to the right, y up and z toward the viewer. A colour is red, green and blue; 1 is as
 bright as a picture can show, after the light has been divided by the distance that it travelled.
-";
+
+The same scenes can be written in TOML, in files whose names end in `.toml`: `sphere ball { radius 2 }` is
+`[sphere.ball]` and below it `radius = 2` there; several values stand in brackets, `center = [4, 2, -4]`, and names in
+quotes, `material = "red"`. Entities that share a name are `[[sphere.ball]]` each. The order of the text counts in
+TOML, too. `tabray convert` turns each spelling into the other, and `tabray schema` prints a JSON Schema for editors.
+"#;
 
 /// The reference as Markdown. Pictures are named `entities/TYPE.png`, scenes `../scenes/entities/TYPE.ray`.
 pub fn markdown(registry: &Registry) -> String {

@@ -4,6 +4,7 @@ use crate::choice::contradictions;
 use crate::entity::{Entity, Kind};
 use crate::profile::Profile;
 use crate::shading::{OnPlane, OnSphere};
+use crate::syntax::Syntax;
 use crate::words::nearest;
 use std::collections::{BTreeMap, BTreeSet};
 use std::iter;
@@ -83,8 +84,9 @@ impl Registry {
     }
 
     /// How a scene writes an entity of this kind.
-    pub(crate) fn example(&self, kind: Kind, name: &str) -> String {
-        self.iter().find(|entity| entity.kind() == kind).map(|entity| entity.usage(name)).unwrap_or_default()
+    pub(crate) fn example(&self, kind: Kind, name: &str, syntax: Syntax) -> String {
+        let entity = self.iter().find(|entity| entity.kind() == kind);
+        entity.map(|entity| syntax.entity_usage(entity, name)).unwrap_or_default()
     }
 
     /// All entity types, sorted by name.

@@ -3,6 +3,7 @@
 use crate::choice::{ChoiceName, Choices};
 use crate::entity::Kind;
 use crate::material::{Material, Rgb};
+use crate::syntax::Syntax;
 use crate::texture::Texture;
 use glam::{DVec2, DVec3};
 use std::fmt;
@@ -15,7 +16,7 @@ pub enum Type {
     Whole,
     /// Finite real numbers.
     Number,
-    /// One word, free of white space and braces.
+    /// One word. It stands in quotes where it has blanks or braces.
     Word,
     /// The name of an entity of this kind, defined before it is used.
     Name(Kind),
@@ -58,32 +59,19 @@ impl Datum {
             Self::Numbers(numbers) => numbers.iter().map(|number| format!(" {number:5.1}")).collect(),
             Self::Texture { name, .. } => format!(" {name:<15}"),
             Self::Choice(ChoiceName { number: Some(number), .. }) => format!(" {number:5}"),
-            Self::Word(_) | Self::Material { .. } | Self::Choice(_) => format!(" {self}"),
+            Self::Word(word) => format!(" {word}"),
+            Self::Material { name, .. } => format!(" {name}"),
+            Self::Choice(choice) => format!(" {}", choice.name),
         };
         format!("{label:<12}{values}{ending}")
     }
 }
 
-/// The values as a scene writes them: every number reads back to its last bit.
+/// The values as the notes' spelling of a scene writes them: every number reads back to its last bit.
 impl fmt::Display for Datum {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let words: Vec<String> = match self {
-            Self::Whole(numbers) => numbers.iter().map(i64::to_string).collect(),
-            Self::Numbers(numbers) => numbers.iter().map(|number| shortest(*number)).collect(),
-            Self::Word(word) => vec![word.clone()],
-            Self::Material { name, .. } | Self::Texture { name, .. } => vec![name.to_string()],
-            Self::Choice(choice) => {
-                vec![choice.number.map_or(choice.name.to_owned(), |number| number.to_string())]
-            }
-        };
-        f.write_str(&words.join(" "))
+        f.write_str(&Syntax::Notes.values(self).join(" "))
     }
-}
-
-/// The shortest decimal that reads back as the same number.
-fn shortest(number: f64) -> String {
-    let text = format!("{number:?}");
-    text.strip_suffix(".0").unwrap_or(&text).to_owned()
 }
 
 /// A Rust type that a [`Pparm`](crate::pparm::Pparm) can be a key for.

@@ -5,6 +5,7 @@ mod common;
 use common::{model, registry, render};
 use tabray::dump;
 use tabray::scene::{self, Written};
+use tabray::syntax::Syntax;
 
 const TEXT: &str = "
 camera cam1 { pixeldim 80 60 worlddim 8 6 viewpoint 4 3 6 }
@@ -44,7 +45,7 @@ fn modelstat() -> Vec<Written<'static>> {
 fn a_built_model_gives_the_same_picture_and_dump_as_its_text() {
     let built = scene::build(registry(), modelstat()).unwrap_or_else(|report| panic!("{report}")).model;
     let read = model(TEXT);
-    assert_eq!(dump::ray(&built), dump::ray(&read));
+    assert_eq!(dump::scene(&built, Syntax::Notes), dump::scene(&read, Syntax::Notes));
     let picture = render(&built);
     assert!(picture == render(&read));
     assert!(picture.pixels().any(|pixel| pixel.0 != [0; 3]), "the picture shows something");
@@ -55,7 +56,7 @@ fn a_built_model_is_checked_as_a_text_is() {
     let mut entities = modelstat();
     entities[1] = Written::new("material", "green").set("ambient", [0.0, 5.0]);
     entities.push(
-        Written::new("sphere", "a ball").set("material", "gray").set("center", [0.0; 3]).set("radius", -1.0),
+        Written::new("sphere", "a\nball").set("material", "gray").set("center", [0.0; 3]).set("radius", -1.0),
     );
     let Err(report) = scene::build(registry(), entities) else { panic!("faults") };
     let messages: Vec<_> = report.faults().iter().map(|fault| fault.message.as_str()).collect();
@@ -63,8 +64,8 @@ fn a_built_model_is_checked_as_a_text_is() {
         messages,
         [
             "`ambient` of material `green` takes 3 numbers, not 2",
-            "`a ball` cannot be a name",
-            "`radius` of sphere `a ball` must be positive, not -1.0",
+            "`a\\nball` cannot be a name",
+            "`radius` of sphere `a\u{fffd}ball` must be positive, not -1.0",
         ]
     );
 }

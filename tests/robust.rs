@@ -38,6 +38,44 @@ proptest! {
     }
 }
 
+proptest! {
+    #[test]
+    fn any_order_of_tomls_words_is_read_or_refused(
+        words in prop::collection::vec(prop::sample::select(vec![
+            "[camera.eye]", "\n[sphere.a]\n", "\n[sphere.b]\n", "\n[[sphere.a]]\n", "\n[material.m]\n", "[", "]", "{", "}",
+            "\n", "#", ".", "=", ",", "\"", "'", "\"m\"", "\"\"\"", "\\", "pixeldim = [8, 6]\n", "material = \"m\"\n",
+            "center = [1, 2, 3]\n", "radius", "radius = 1\n", "1", "-0", "1.", "0x", "nan", "true", "1979-05-27", "über",
+            "\r\n", "\t", "\u{7f}",
+        ]), 0..60)
+    ) {
+        read(format!("[camera.eye]\n{}", words.concat()).as_bytes());
+        read(words.join(" ").as_bytes());
+    }
+}
+
+#[test]
+fn brackets_in_brackets_are_refused_however_many() {
+    for (open, close) in [("[", "]"), ("{a=", "}")] {
+        let deep = format!("[sphere.a]\nradius = {}1{}\n", open.repeat(200_000), close.repeat(200_000));
+        read(deep.as_bytes());
+        read(format!("[sphere.a]\nradius = {}", open.repeat(200_000)).as_bytes());
+    }
+}
+
+#[test]
+fn a_scene_with_a_fault_in_each_toml_table_reports_them_all() {
+    let mut text =
+        "[camera.eye]\npixeldim = [8, 6]\nworlddim = [8, 6]\nviewpoint = [4, 3, 6]\n[material.m]\nambient = [1, 1, 1]\n"
+            .to_owned();
+    for index in 0..10_000 {
+        text += &format!("[sphere.s{index}]\nmaterial = \"m\"\ncenter = [1, 2\nradius = 1\n");
+    }
+    let Err(report) = scene::read(registry(), "many.toml", Path::new(""), text.as_bytes()) else {
+        panic!("faults")
+    };
+    assert_eq!(report.faults().len(), 10_000);
+}
+
 #[test]
 fn a_scene_with_a_fault_in_each_of_ten_thousand_entities_reports_them_all() {
     let mut text =

@@ -15,7 +15,7 @@ use tabray::{dump, scene};
 
 #[test]
 fn every_scene_dumps_as_before() {
-    insta::glob!("../scenes", "**/*.ray", |path| {
+    insta::glob!("../scenes", "**/*.{ray,toml}", |path| {
         if let Some(settings) = settings(path) {
             let name = format!("{}.dump", stem(path));
             settings.bind(|| insta::assert_snapshot!(name, dump::notes(&load(path))));
@@ -25,7 +25,7 @@ fn every_scene_dumps_as_before() {
 
 #[test]
 fn every_scene_looks_as_before() {
-    insta::glob!("../scenes", "**/*.ray", |path| {
+    insta::glob!("../scenes", "**/*.{ray,toml}", |path| {
         if let Some(mut settings) = settings(path) {
             let mut model = load(path);
             if path.starts_with(root().join("scenes/gallery")) {
@@ -45,7 +45,7 @@ fn every_scene_looks_as_before() {
 
 #[test]
 fn every_mistake_is_explained_as_before() {
-    insta::glob!("../scenes/wrong", "*.ray", |path| {
+    insta::glob!("../scenes/wrong", "*.{ray,toml}", |path| {
         let name = path.strip_prefix(root()).expect("a scene of this package").display().to_string();
         let report = match scene::read(
             registry(),
@@ -166,9 +166,9 @@ fn no_snapshot_is_left_of_a_scene_that_is_gone() {
             let subject = path.parent().and_then(|folder| folder.strip_prefix(root().join("snapshots")).ok());
             let name = path.file_name().and_then(|name| name.to_str()).expect("a name in UTF-8");
             let stem = name.split('.').next().expect("a stem");
-            let scene =
-                root().join("scenes").join(subject.expect("a subject")).join(stem).with_extension("ray");
-            assert!(scene.is_file(), "{} has no scene", path.display());
+            let scene = root().join("scenes").join(subject.expect("a subject")).join(stem);
+            let is_there = ["ray", "toml"].iter().any(|extension| scene.with_extension(extension).is_file());
+            assert!(is_there, "{} has no scene", path.display());
         }
     }
 }

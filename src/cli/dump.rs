@@ -4,6 +4,7 @@ use super::{Failure, input, print};
 use std::path::PathBuf;
 use tabray::dump;
 use tabray::registry::Registry;
+use tabray::syntax::Syntax;
 
 /// Print a scene as the program understands it
 #[derive(clap::Args)]
@@ -21,12 +22,15 @@ enum Format {
     Notes,
     /// As a scene that loads again to the identical model
     Ray,
+    /// As such a scene in TOML
+    Toml,
 }
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let model = input::load(registry, &args.scene)?;
     print(&match args.format {
         Format::Notes => dump::notes(&model),
-        Format::Ray => dump::ray(&model),
+        Format::Ray => dump::scene(&model, Syntax::Notes),
+        Format::Toml => dump::scene(&model, Syntax::Toml),
     })
 }

@@ -2,6 +2,7 @@
 
 mod aov;
 mod check;
+mod convert;
 mod debug;
 mod dump;
 mod input;
@@ -11,6 +12,7 @@ mod notes;
 mod output;
 mod probe;
 mod render;
+mod schema;
 
 use annotate_snippets::{Group, Level, Renderer};
 use clap::{CommandFactory, Parser, Subcommand};
@@ -34,9 +36,11 @@ struct Cli {
 enum Command {
     Render(render::Args),
     Dump(dump::Args),
+    Convert(convert::Args),
     Check(check::Args),
     Probe(probe::Args),
     List(list::Args),
+    Schema(schema::Args),
 }
 
 const EXIT_STATUS: &str = "\
@@ -73,9 +77,11 @@ pub fn run() -> ExitCode {
         Ok(registry) => match cli.command {
             Some(Command::Render(args)) => render::run(registry, args),
             Some(Command::Dump(args)) => dump::run(registry, args),
+            Some(Command::Convert(args)) => convert::run(registry, args),
             Some(Command::Check(args)) => check::run(registry, args),
             Some(Command::Probe(args)) => probe::run(registry, args),
             Some(Command::List(args)) => list::run(registry, args),
+            Some(Command::Schema(_)) => schema::run(registry),
             None if io::stdin().is_terminal() => {
                 let mut command = Cli::command();
                 let _ = write!(io::stderr(), "{}", command.render_long_help());

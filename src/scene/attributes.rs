@@ -3,8 +3,8 @@
 use super::fault::{Fault, Place, Report};
 use super::names::Names;
 use super::values;
-use super::written::{Word, Written};
-use crate::entity::Entity;
+use super::written::{Form, Word, Written};
+use crate::entity::{Entity, Given};
 use crate::pparm::Attribute;
 use crate::value::{Datum, Type};
 use crate::words::{list, nearest};
@@ -21,7 +21,7 @@ pub struct Against<'c> {
 
 impl Against<'_> {
     /// A datum for each attribute of the type, or nothing where a fault was reported.
-    pub fn values(&mut self, written: &Written<'_>) -> Option<Vec<Datum>> {
+    pub fn values(&mut self, written: &Written<'_>) -> Option<Vec<Given>> {
         let entity = self.entity;
         let title = match written.name.text.as_ref() {
             "" => format!("this {}", entity.name),
@@ -29,7 +29,7 @@ impl Against<'_> {
         };
         let attributes: Vec<_> = entity.attributes().collect();
         let mut given: Vec<Option<&(Word<'_>, Vec<Word<'_>>)>> = vec![None; attributes.len()];
-        let mut sound = true;
+        let mut sound = !written.is_damaged;
         let mut meant = Vec::new();
         for pair in &written.attributes {
             let (word, _) = pair;
@@ -53,27 +53,30 @@ impl Against<'_> {
         let mut missing = Vec::new();
         let mut values = Vec::new();
         for (attribute, given) in attributes.iter().zip(given) {
+            let is_given = given.is_some();
             let datum = match given {
                 Some((word, words)) => self.datum(*attribute, &title, word, words),
                 None => {
-                    // One that is misspelt is not missing as well.
-                    if attribute.default().is_none() && !meant.contains(&attribute.name()) {
+                    // One that is misspelt or could not be made out is not missing as well.
+                    let may_be_there = meant.contains(&attribute.name()) || written.is_damaged;
+                    if attribute.default().is_none() && !may_be_there {
                         missing.push(*attribute);
                     }
                     attribute.default()
                 }
             };
             sound &= datum.is_some();
-            values.extend(datum);
+            values.extend(datum.map(|datum| (datum, is_given)));
         }
         if !missing.is_empty() {
-            let wanted: Vec<_> = missing.iter().map(|attribute| attribute.usage()).collect();
+            let wanted: Vec<_> =
+                missing.iter().map(|attribute| self.report.syntax().usage(*attribute)).collect();
             let fault = format!("{title} lacks {}", list(missing.iter().map(|attribute| attribute.name())));
             self.report.add(
                 Fault::error(written.name.place.clone(), fault)
                     .help(format!("give it `{}`", wanted.join("` and `"))),
             );
-        } else if written.attributes.is_empty() && !attributes.is_empty() {
+        } else if written.attributes.is_empty() && !attributes.is_empty() && !written.is_damaged {
             sound = false;
             let names = list(attributes.iter().map(|attribute| attribute.name()));
             self.report.add(
@@ -116,7 +119,7 @@ impl Against<'_> {
             return None;
         }
         let datum = match (attribute.value_type(), words) {
-            (Type::Name(kind), [name]) => self.names.resolve(kind, name),
+            (Type::Name(kind), [name]) if name.form != Form::Number => self.names.resolve(kind, name),
             (value_type, _) => match values::read(value_type, words) {
                 Ok(datum) => datum,
                 Err(faults) => {

@@ -211,7 +211,10 @@ impl Check<'_> {
             self.report.add(
                 Fault::error(first.kind.place.clone(), "the scene has no camera")
                     .label("a camera belongs before this")
-                    .help(format!("add one: {}", self.registry.example(Kind::Camera, "NAME"))),
+                    .help(format!(
+                        "add one: {}",
+                        self.registry.example(Kind::Camera, "NAME", self.report.syntax())
+                    )),
             );
         }
         let Self { camera, materials, textures, objects, lights, .. } = self;

@@ -1,5 +1,6 @@
 //! Faults: what is wrong with a scene, where, and what would be right.
 
+use crate::syntax::Syntax;
 use crate::words;
 use annotate_snippets::{AnnotationKind, Level, Origin, Renderer, Snippet};
 use std::fmt;
@@ -84,17 +85,27 @@ impl Fault {
 pub struct Report {
     name: String,
     text: String,
+    syntax: Syntax,
     faults: Vec<Fault>,
 }
 
 impl Report {
     /// A report without faults on a scene's text; `name` is what messages call it.
-    pub fn new(name: impl Into<String>, text: impl Into<String>) -> Self {
-        Self { name: name.into(), text: text.into(), faults: Vec::new() }
+    pub fn new(name: impl Into<String>, text: impl Into<String>, syntax: Syntax) -> Self {
+        Self { name: name.into(), text: text.into(), syntax, faults: Vec::new() }
+    }
+
+    /// The spelling in which messages tell what would be right.
+    pub fn syntax(&self) -> Syntax {
+        self.syntax
     }
 
     /// Adds a fault at its place in the order.
-    pub fn add(&mut self, fault: Fault) {
+    pub fn add(&mut self, mut fault: Fault) {
+        // A name with a line end must not look like a message of its own.
+        if fault.message.contains(char::is_control) {
+            fault.message = fault.message.replace(char::is_control, "\u{fffd}");
+        }
         let start = |fault: &Fault| fault.place.as_ref().map_or(0, |place| place.start);
         let at = self.faults.partition_point(|earlier| start(earlier) <= start(&fault));
         self.faults.insert(at, fault);

@@ -5,14 +5,17 @@ mod check;
 mod fault;
 mod names;
 mod notes;
+mod toml;
 mod values;
 mod written;
 
 pub use fault::{Fault, Place, Report, Severity};
 pub use written::{Values, Written};
 
+use crate::entity::Kind;
 use crate::model::Model;
 use crate::registry::Registry;
+use crate::syntax::Syntax;
 use std::path::Path;
 
 /// A model, and the warnings that its scene gave rise to.
@@ -23,15 +26,26 @@ pub struct Loaded {
     pub warnings: Report,
 }
 
-/// Reads a scene in the notes' language. `name` is what messages call it, and its own file names start from
-/// `folder`.
+/// Reads a scene, in TOML if its name ends in `.toml` or its text begins as TOML does, and in the notes'
+/// spelling if not. `name` is what messages call it, and its own file names start from `folder`.
 ///
 /// # Errors
 /// Every fault of the scene, warnings among them, in the order of the text.
 pub fn read(registry: &Registry, name: &str, folder: &Path, bytes: &[u8]) -> Result<Loaded, Report> {
     let text = decode(name, bytes)?;
-    let mut report = Report::new(name, text);
-    let written = notes::parse(registry, text, &mut report);
+    let syntax = match Syntax::of_name(name) {
+        Some(Syntax::Toml) => Syntax::Toml,
+        _ => Syntax::of_text(text),
+    };
+    let mut report = Report::new(name, text, syntax);
+    let parse = match syntax {
+        Syntax::Notes => notes::parse,
+        Syntax::Toml => toml::parse,
+    };
+    let written = parse(registry, text, &mut report);
+    if written.is_empty() && !report.is_fatal() {
+        report.add(Fault::error(Some(0..0), "the scene is empty").help(first_steps(registry, syntax)));
+    }
     finish(check::model(registry, folder, written, &mut report), report)
 }
 
@@ -62,7 +76,7 @@ pub fn build(
     registry: &Registry,
     written: impl IntoIterator<Item = Written<'static>>,
 ) -> Result<Loaded, Report> {
-    let mut report = Report::new("model", "");
+    let mut report = Report::new("model", "", Syntax::Notes);
     finish(check::model(registry, Path::new(""), written.into_iter().collect(), &mut report), report)
 }
 
@@ -71,6 +85,12 @@ fn finish(model: Option<Model>, report: Report) -> Result<Loaded, Report> {
         Some(model) if !report.is_fatal() => Ok(Loaded { model, warnings: report }),
         _ => Err(report),
     }
+}
+
+/// What a scene looks like, for those who have none.
+fn first_steps(registry: &Registry, syntax: Syntax) -> String {
+    let camera = registry.example(Kind::Camera, "NAME", syntax);
+    format!("a scene begins with a camera, {camera}; then come materials, objects and lights")
 }
 
 /// The text of a file.
@@ -89,7 +109,7 @@ fn decode<'b>(name: &str, bytes: &'b [u8]) -> Result<&'b str, Report> {
         }
     };
     // Up to the fault the lossy text has the same bytes.
-    let mut report = Report::new(name, String::from_utf8_lossy(bytes));
+    let mut report = Report::new(name, String::from_utf8_lossy(bytes), Syntax::default());
     let help = "a scene is a text of entities, `TYPE NAME { ATTRIBUTES }`";
     report.add(Fault::error(Some(place), message).help(help));
     Err(report)

@@ -1,7 +1,7 @@
 //! The names of a scene: who has them, and what those that refer to them mean.
 
 use super::fault::{Fault, Place, Report};
-use super::written::{Word, Written};
+use super::written::{Form, Word, Written};
 use crate::entity::Kind;
 use crate::registry::Registry;
 use crate::value::Datum;
@@ -52,12 +52,14 @@ impl Names {
 
     /// Gives an entity its name, and reports a word that is none and a name that is taken.
     pub fn claim(&mut self, kind: Kind, word: &Word<'_>, report: &mut Report) {
-        let Word { text, place, .. } = word;
-        let splits = |c: char| c.is_whitespace() || c == '{' || c == '}';
-        if text.starts_with('#') || text.contains(splits) {
+        let Word { text, form, place } = word;
+        if text.is_empty() && *form == Form::Text {
+            report.add(Fault::error(place.clone(), format!("this {kind} has an empty name")));
+        }
+        if text.contains(char::is_control) {
             report.add(
-                Fault::error(place.clone(), format!("`{text}` cannot be a name"))
-                    .help("a name has no blanks and no braces, and does not begin with `#`"),
+                Fault::error(place.clone(), format!("`{}` cannot be a name", text.escape_debug()))
+                    .help("a name has no line ends and no other control characters"),
             );
         }
         let name = (kind, text.to_string());
@@ -109,7 +111,7 @@ impl Names {
                     known.sort_unstable();
                     Fault::error(places[0].clone(), format!("there is no {kind} `{text}`"))
                         .label(suggestion(nearest(text, known), places))
-                        .help(format!("define it above: {}", registry.example(*kind, text)))
+                        .help(format!("define it above: {}", registry.example(*kind, text, report.syntax())))
                 }
             };
             report.add(fault);

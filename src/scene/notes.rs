@@ -2,65 +2,101 @@
 
 use super::attributes::{find_attribute, near_attribute};
 use super::fault::{Fault, Report};
-use super::written::{Word, Written};
-use crate::entity::{Entity, Kind};
+use super::first_steps;
+use super::written::{Form, Word, Written};
+use crate::entity::Entity;
 use crate::pparm::Attribute;
 use crate::registry::Registry;
+use crate::syntax::Syntax;
 use crate::value::Type;
+use std::borrow::Cow;
 use std::ops::Range;
 
 /// Reads the entities of a text and reports what does not have their form. What can be made out beyond a
 /// fault is read all the same, so that one run finds the faults that follow.
 pub fn parse<'a>(registry: &Registry, text: &'a str, report: &mut Report) -> Vec<Written<'a>> {
-    let mut parser = Parser { registry, tokens: tokens(text), at: 0, end: text.len(), report, last: None };
-    let written = parser.scene();
-    if written.is_empty() && !parser.report.is_fatal() {
-        parser.report.add(Fault::error(Some(0..0), "the scene is empty").help(first_steps(registry)));
-    }
-    written
-}
-
-/// What a scene looks like, for those who have none.
-fn first_steps(registry: &Registry) -> String {
-    let camera = registry.example(Kind::Camera, "NAME");
-    format!("a scene begins with a camera, {camera}; then come materials, objects and lights")
+    let tokens = tokens(text, report);
+    let mut parser = Parser { registry, tokens, at: 0, end: text.len(), report, last: None };
+    parser.scene()
 }
 
 /// A word or a brace, and where it stands.
 #[derive(Clone)]
 struct Token<'a> {
-    text: &'a str,
+    text: Cow<'a, str>,
+    form: Form,
     at: Range<usize>,
 }
 
 impl<'a> Token<'a> {
+    fn is(&self, brace: &str) -> bool {
+        self.form == Form::Any && self.text == brace
+    }
+
     fn is_brace(&self) -> bool {
-        matches!(self.text, "{" | "}")
+        self.is("{") || self.is("}")
     }
 
     fn word(&self) -> Word<'a> {
-        Word::at(self.text, self.at.clone())
+        Word::at(self.text.clone(), self.form, self.at.clone())
     }
 }
 
-/// Splits a text into words and braces. A `#` that begins a word begins a comment.
-fn tokens(text: &str) -> Vec<Token<'_>> {
+/// Splits a text into words and braces. A `#` that begins a word begins a comment, and a `"` a word with blanks.
+fn tokens<'a>(text: &'a str, report: &mut Report) -> Vec<Token<'a>> {
     let mut tokens = Vec::new();
     let mut at = 0;
     while let Some(c) = text[at..].chars().next() {
         let rest = &text[at..];
         let length = match c {
             '#' => rest.find('\n').unwrap_or(rest.len()),
+            '"' => {
+                let (text, length) = quoted(rest, at, report);
+                tokens.push(Token { text, form: Form::Text, at: at..at + length });
+                at += length;
+                continue;
+            }
             '{' | '}' => 1,
             c if c.is_whitespace() => c.len_utf8(),
             _ => rest.find(|c: char| c.is_whitespace() || c == '{' || c == '}').unwrap_or(rest.len()),
         };
         if c != '#' && !c.is_whitespace() {
-            tokens.push(Token { text: &rest[..length], at: at..at + length });
+            let text = Cow::Borrowed(&rest[..length]);
+            tokens.push(Token { text, form: Form::Any, at: at..at + length });
         }
         at += length;
     }
     tokens
+}
+
+/// What stands in the quotes that a text begins with, and how long it is with them. `\\` and `\"` stand for a
+/// backslash and for a quote.
+fn quoted<'a>(text: &'a str, at: usize, report: &mut Report) -> (Cow<'a, str>, usize) {
+    let mut word = String::new();
+    let mut letters = text.char_indices().skip(1);
+    while let Some((index, letter)) = letters.next().filter(|(_, letter)| *letter != '\n') {
+        match letter {
+            '"' => return (word.into(), index + 1),
+            '\\' => match letters.next() {
+                Some((_, letter @ ('"' | '\\'))) => word.push(letter),
+                other => {
+                    let end = index + 1 + other.map_or(0, |(_, letter)| letter.len_utf8());
+                    report.add(
+                        Fault::error(Some(at + index..at + end), "a backslash that stands for nothing")
+                            .help("in quotes, `\\\\` stands for a backslash and `\\\"` for a quote"),
+                    );
+                }
+            },
+            letter => word.push(letter),
+        }
+    }
+    report.add(
+        Fault::error(Some(at..at + 1), "this quote is never closed")
+            .help("a word in quotes ends on its line"),
+    );
+    // The first word was meant perhaps.
+    let end = text.find(|c: char| c.is_whitespace() || c == '{' || c == '}').unwrap_or(text.len());
+    (Cow::Borrowed(&text[1..end]), end)
 }
 
 struct Parser<'a, 'r> {
@@ -81,7 +117,7 @@ impl<'a> Parser<'a, '_> {
             self.report.add(
                 Fault::error(Some(first.at), "this is not a scene")
                     .label("no entity begins like this")
-                    .help(first_steps(self.registry)),
+                    .help(first_steps(self.registry, Syntax::Notes)),
             );
             return written;
         }
@@ -100,7 +136,7 @@ impl<'a> Parser<'a, '_> {
     }
 
     fn is(&self, at: usize, brace: &str) -> bool {
-        self.tokens.get(at).is_some_and(|token| token.text == brace)
+        self.tokens.get(at).is_some_and(|token| token.is(brace))
     }
 
     fn is_word(&self, at: usize) -> bool {
@@ -108,7 +144,7 @@ impl<'a> Parser<'a, '_> {
     }
 
     fn is_entity_type(&self, at: usize) -> bool {
-        self.tokens.get(at).is_some_and(|token| self.registry.find(token.text).is_some())
+        self.tokens.get(at).is_some_and(|token| self.registry.find(&token.text).is_some())
     }
 
     fn looks_like_a_scene(&self) -> bool {
@@ -120,7 +156,7 @@ impl<'a> Parser<'a, '_> {
         self.is_word(at)
             && self.is_word(at + 1)
             && self.is(at + 2, "{")
-            && !looks_like_number(self.tokens[at].text)
+            && !looks_like_number(&self.tokens[at].text)
     }
 
     /// Whether an entity begins here, its name or its brace forgotten perhaps.
@@ -171,7 +207,7 @@ impl<'a> Parser<'a, '_> {
                     Fault::error(Some(kind.at.clone()), format!("this `{}` has no name", kind.text))
                         .help(format!("a name follows the type: `{} NAME {{`", kind.text)),
                 );
-                Word::at("", kind.at.end..kind.at.end)
+                Word::at("", Form::Any, kind.at.end..kind.at.end)
             }
         };
         if self.is(self.at, "{") {
@@ -184,8 +220,8 @@ impl<'a> Parser<'a, '_> {
                     .help(format!("attributes stand in braces: `{} {} {{ ... }}`", kind.text, name.text)),
             );
         }
-        let mut entity = Written { kind: kind.word(), name, attributes: Vec::new() };
-        let known = self.registry.find(kind.text);
+        let mut entity = Written { kind: kind.word(), name, attributes: Vec::new(), is_damaged: false };
+        let known = self.registry.find(&kind.text);
         while self.body_goes_on(&entity) {
             if self.is(self.at, "{") {
                 let brace = self.tokens[self.at].at.clone();
@@ -232,13 +268,13 @@ impl<'a> Parser<'a, '_> {
         let name = self.tokens[self.at].clone();
         self.at += 1;
         let described = entity.and_then(|entity| {
-            find_attribute(entity, name.text).or_else(|| near_attribute(entity, name.text))
+            find_attribute(entity, &name.text).or_else(|| near_attribute(entity, &name.text))
         });
         let mut values = Vec::new();
         while let Some(token) = self.token(0)
             && !token.is_brace()
             && !self.has_form(self.at)
-            && is_value(entity, described, values.len(), token.text)
+            && (token.form == Form::Text || is_value(entity, described, values.len(), &token.text))
         {
             values.push(token.word());
             self.at += 1;

@@ -1,7 +1,7 @@
 //! Words read as the values of an attribute.
 
 use super::fault::Fault;
-use super::written::Word;
+use super::written::{Form, Word};
 use crate::choice::Choices;
 use crate::value::{Datum, Type};
 use crate::words::nearest;
@@ -14,15 +14,27 @@ pub fn read(value_type: Type, words: &[Word<'_>]) -> Result<Datum, Vec<Fault>> {
     match value_type {
         Type::Whole => all(words, whole).map(Datum::Whole),
         Type::Number => all(words, number).map(Datum::Numbers),
-        Type::Word | Type::Name(_) => {
-            Ok(Datum::Word(words.first().map(|word| word.text.to_string()).unwrap_or_default()))
-        }
+        Type::Word | Type::Name(_) => words.first().ok_or_else(Vec::new).and_then(text),
         Type::Choice(choices) => words.first().ok_or_else(Vec::new).and_then(|word| choice(choices, word)),
     }
 }
 
+fn text(word: &Word<'_>) -> Result<Datum, Vec<Fault>> {
+    let fault = |what| Fault::error(word.place.clone(), format!("`{}` {what}", word.text.escape_debug()));
+    if word.form == Form::Number {
+        return Err(vec![fault("is a number").help(format!("in quotes it is a word: \"{}\"", word.text))]);
+    }
+    if word.text.contains(char::is_control) {
+        return Err(vec![fault("has a line end or another control character")]);
+    }
+    Ok(Datum::Word(word.text.to_string()))
+}
+
 fn choice(choices: Choices, word: &Word<'_>) -> Result<Datum, Vec<Fault>> {
-    choices.find(&word.text).map(Datum::Choice).ok_or_else(|| {
+    // In quotes it is no number.
+    let number = word.text.parse().ok().filter(|_| word.form != Form::Text);
+    let chosen = number.and_then(|number| choices.numbered(number)).or_else(|| choices.named(&word.text));
+    chosen.map(Datum::Choice).ok_or_else(|| {
         let all = choices.all();
         let known: Vec<_> = all
             .iter()
@@ -48,7 +60,11 @@ fn all<T>(words: &[Word<'_>], read: fn(&str) -> Result<T, Complaint>) -> Result<
     let mut values = Vec::with_capacity(words.len());
     let mut faults = Vec::new();
     for word in words {
-        match read(&word.text) {
+        let value = match word.form {
+            Form::Text => Err(("in quotes", Some("a number stands without quotes"))),
+            Form::Any | Form::Number => read(&word.text),
+        };
+        match value {
             Ok(value) => values.push(value),
             Err((what, help)) => {
                 let fault = Fault::error(word.place.clone(), format!("`{}` is {what}", word.text));

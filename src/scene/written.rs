@@ -9,16 +9,28 @@ use std::ops::Range;
 #[derive(Clone, Debug)]
 pub(super) struct Word<'a> {
     pub text: Cow<'a, str>,
+    pub form: Form,
     pub place: Place,
 }
 
+/// What a word's spelling says of its meaning.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Form {
+    /// Nothing: a word of the notes' spelling may be a number or a name.
+    Any,
+    /// It is a number, as TOML writes them.
+    Number,
+    /// It is not: it stands in quotes.
+    Text,
+}
+
 impl<'a> Word<'a> {
-    pub fn at(text: &'a str, place: Range<usize>) -> Self {
-        Self { text: Cow::Borrowed(text), place: Some(place) }
+    pub fn at(text: impl Into<Cow<'a, str>>, form: Form, place: Range<usize>) -> Self {
+        Self { text: text.into(), form, place: Some(place) }
     }
 
     fn unplaced(text: impl Into<String>) -> Self {
-        Self { text: Cow::Owned(text.into()), place: None }
+        Self { text: Cow::Owned(text.into()), form: Form::Any, place: None }
     }
 }
 
@@ -28,12 +40,19 @@ pub struct Written<'a> {
     pub(super) kind: Word<'a>,
     pub(super) name: Word<'a>,
     pub(super) attributes: Vec<(Word<'a>, Vec<Word<'a>>)>,
+    /// Whether its text could not all be made out: then what it lacks is no fault of its own.
+    pub(super) is_damaged: bool,
 }
 
 impl Written<'static> {
     /// An entity written in Rust: its type and its name.
     pub fn new(kind: &str, name: &str) -> Self {
-        Self { kind: Word::unplaced(kind), name: Word::unplaced(name), attributes: Vec::new() }
+        Self {
+            kind: Word::unplaced(kind),
+            name: Word::unplaced(name),
+            attributes: Vec::new(),
+            is_damaged: false,
+        }
     }
 
     /// Gives it an attribute.

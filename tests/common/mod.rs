@@ -51,7 +51,7 @@ pub fn scenes() -> Vec<PathBuf> {
             let path = entry.expect("its entries").path();
             if path.is_dir() {
                 collect(&path, found);
-            } else if path.extension().is_some_and(|extension| extension == "ray") {
+            } else if path.extension().is_some_and(|extension| extension == "ray" || extension == "toml") {
                 found.push(path);
             }
         }

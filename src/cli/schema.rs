@@ -1,0 +1,13 @@
+//! `tabray schema`: what editors need to check and complete scenes in TOML.
+
+use super::{Failure, print};
+use tabray::registry::Registry;
+use tabray::schema;
+
+/// Print a JSON Schema of scenes in TOML, for editors
+#[derive(clap::Args)]
+pub struct Args {}
+
+pub fn run(registry: &Registry) -> Result<(), Failure> {
+    print(&format!("{:#}\n", schema::of(registry)))
+}
