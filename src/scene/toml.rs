@@ -61,8 +61,8 @@ fn pieces(text: &str) -> Vec<Range<usize>> {
         }
         at += line.len();
     }
-    let ends = starts[1..].to_vec().into_iter().chain([text.len()]);
-    starts.into_iter().zip(ends).map(|(start, end)| start..end).collect()
+    let ends = starts[1..].iter().copied().chain([text.len()]);
+    starts.iter().copied().zip(ends).map(|(start, end)| start..end).collect()
 }
 
 /// The first syntax error of each line, in their order: what follows one on its line mostly follows from it.
@@ -264,7 +264,11 @@ impl<'a> Parser<'a, '_> {
                 words.push(self.word(digits, Form::Number, place));
             }
             DeValue::Array(values) if values.iter().all(|value| !value.get_ref().is_array()) => {
-                return values.iter().fold(true, |sound, value| self.values(value, words) && sound);
+                let mut sound = true;
+                for value in values.iter() {
+                    sound &= self.values(value, words);
+                }
+                return sound;
             }
             DeValue::Boolean(_) | DeValue::Datetime(_) | DeValue::Array(_) | DeValue::Table(_) => {
                 let what = match value.get_ref() {
