@@ -1,0 +1,400 @@
+//! Formulas in y, as a scene or a profile plugin writes them: `2 + sin(y)`.
+
+use crate::number::Number;
+use std::f64::consts::PI;
+use std::ops::Range;
+
+/// A formula in y, ready to be evaluated with any [`Number`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Formula {
+    /// The operations in the order in which they are done: operands first.
+    steps: Vec<Step>,
+}
+
+/// What is wrong with the text of a formula.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FormulaFault {
+    /// The bytes of the text to mark.
+    pub place: Range<usize>,
+    /// What is wrong.
+    pub message: String,
+    /// What would be right.
+    pub help: &'static str,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Step {
+    Y,
+    Number(f64),
+    Neg,
+    Add,
+    Sub,
+    Mul,
+    Div,
+    /// A power with a whole exponent.
+    Powi(i32),
+    Call(Function),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Function {
+    Sin,
+    Cos,
+    Tan,
+    Exp,
+    Ln,
+    Sqrt,
+    Abs,
+    Floor,
+    Min,
+    Max,
+    Pow,
+}
+
+/// The functions of a formula, by name, each with how many arguments it takes.
+const FUNCTIONS: [(&str, Function, usize); 10] = [
+    ("sin", Function::Sin, 1),
+    ("cos", Function::Cos, 1),
+    ("tan", Function::Tan, 1),
+    ("exp", Function::Exp, 1),
+    ("ln", Function::Ln, 1),
+    ("sqrt", Function::Sqrt, 1),
+    ("abs", Function::Abs, 1),
+    ("floor", Function::Floor, 1),
+    ("min", Function::Min, 2),
+    ("max", Function::Max, 2),
+];
+
+const LANGUAGE: &str = "a formula is made of numbers, `y`, `pi`, + - * / ^, parentheses, and \
+    sin cos tan exp ln sqrt abs floor of one value, min max of two";
+
+/// The most values that wait for their operation, and so how deep a formula can be nested.
+const DEPTH: usize = 32;
+
+impl Formula {
+    /// Reads a formula.
+    ///
+    /// # Errors
+    /// The first place where the text is none.
+    pub fn parse(text: &str) -> Result<Self, FormulaFault> {
+        let mut parser = Parser { text, at: 0, steps: Vec::new(), depth: 0 };
+        parser.sum()?;
+        match parser.peek() {
+            None => Ok(Self { steps: parser.steps }),
+            Some(')') => Err(parser.fault_here("a `)` without its `(`")),
+            Some(_) => Err(parser.fault_here("an operator belongs here")),
+        }
+    }
+
+    /// The square of a formula. That of a root has no root any more: where a sphere's profile ends, its slope is
+    /// without end, and that of its square is not.
+    pub fn squared(&self) -> Self {
+        let mut steps = self.steps.clone();
+        match steps.last() {
+            Some(Step::Call(Function::Sqrt)) => {
+                steps.pop();
+            }
+            _ => steps.push(Step::Powi(2)),
+        }
+        Self { steps }
+    }
+
+    /// Its value at y.
+    pub fn at<N: Number>(&self, y: N) -> N {
+        let mut stack = [y; DEPTH];
+        let mut top = 0_usize;
+        for step in &self.steps {
+            // The parser has seen to it that operands are there and that they fit.
+            let (a, b) = (stack[top.saturating_sub(2)], stack[top.saturating_sub(1)]);
+            let (used, value) = match *step {
+                Step::Y => (0, y),
+                Step::Number(number) => (0, N::constant(number)),
+                Step::Neg => (1, -b),
+                Step::Powi(exponent) => (1, b.powi(exponent)),
+                Step::Add => (2, a + b),
+                Step::Sub => (2, a - b),
+                Step::Mul => (2, a * b),
+                Step::Div => (2, a / b),
+                Step::Call(Function::Sin) => (1, b.sin()),
+                Step::Call(Function::Cos) => (1, b.cos()),
+                Step::Call(Function::Tan) => (1, b.tan()),
+                Step::Call(Function::Exp) => (1, b.exp()),
+                Step::Call(Function::Ln) => (1, b.ln()),
+                Step::Call(Function::Sqrt) => (1, b.sqrt()),
+                Step::Call(Function::Abs) => (1, b.abs()),
+                Step::Call(Function::Floor) => (1, b.floor()),
+                Step::Call(Function::Min) => (2, a.min(b)),
+                Step::Call(Function::Max) => (2, a.max(b)),
+                Step::Call(Function::Pow) => (2, a.pow(b)),
+            };
+            top = top - used + 1;
+            stack[top - 1] = value;
+        }
+        stack[0]
+    }
+}
+
+struct Parser<'t> {
+    text: &'t str,
+    at: usize,
+    steps: Vec<Step>,
+    /// How many values wait for their operation, or how deep parentheses go, whichever is more.
+    depth: usize,
+}
+
+type Parsed = Result<(), FormulaFault>;
+
+impl<'t> Parser<'t> {
+    /// The next character that is no blank.
+    fn peek(&mut self) -> Option<char> {
+        let rest = &self.text[self.at..];
+        self.at += rest.len() - rest.trim_start().len();
+        self.text[self.at..].chars().next()
+    }
+
+    /// Reads past one of these characters if it is the next.
+    fn take(&mut self, any: &[char]) -> Option<char> {
+        let next = self.peek().filter(|next| any.contains(next))?;
+        self.at += next.len_utf8();
+        Some(next)
+    }
+
+    fn fault(&self, place: Range<usize>, message: impl Into<String>) -> FormulaFault {
+        FormulaFault { place, message: message.into(), help: LANGUAGE }
+    }
+
+    fn fault_here(&mut self, message: &str) -> FormulaFault {
+        let width = self.peek().map_or(0, char::len_utf8);
+        self.fault(self.at..self.at + width, message)
+    }
+
+    fn sum(&mut self) -> Parsed {
+        self.deeper()?;
+        self.product()?;
+        while let Some(sign) = self.take(&['+', '-']) {
+            self.product()?;
+            self.steps.push(if sign == '+' { Step::Add } else { Step::Sub });
+        }
+        self.depth -= 1;
+        Ok(())
+    }
+
+    fn product(&mut self) -> Parsed {
+        self.signed()?;
+        while let Some(sign) = self.take(&['*', '/']) {
+            self.deeper()?;
+            self.signed()?;
+            self.depth -= 1;
+            self.steps.push(if sign == '*' { Step::Mul } else { Step::Div });
+        }
+        Ok(())
+    }
+
+    /// Minus binds less than a power: -y^2 is -(y^2).
+    fn signed(&mut self) -> Parsed {
+        if self.take(&['-']).is_some() {
+            self.deeper()?;
+            self.signed()?;
+            self.depth -= 1;
+            self.steps.push(Step::Neg);
+            return Ok(());
+        }
+        self.power()
+    }
+
+    fn power(&mut self) -> Parsed {
+        self.atom()?;
+        if self.take(&['^']).is_none() {
+            return Ok(());
+        }
+        let exponent = self.steps.len();
+        self.deeper()?;
+        self.signed()?;
+        self.depth -= 1;
+        let whole = match self.steps[exponent..] {
+            [Step::Number(number)] => Some(number),
+            [Step::Number(number), Step::Neg] => Some(-number),
+            _ => None,
+        };
+        match whole.filter(|number| number.fract() == 0.0 && number.abs() <= 1000.0) {
+            Some(number) => {
+                self.steps.truncate(exponent);
+                self.steps.push(Step::Powi(number as i32));
+            }
+            None => self.steps.push(Step::Call(Function::Pow)),
+        }
+        Ok(())
+    }
+
+    fn atom(&mut self) -> Parsed {
+        match self.peek() {
+            Some('(') => {
+                let open = self.at;
+                self.at += 1;
+                self.sum()?;
+                self.close(open)
+            }
+            Some(c) if c.is_ascii_digit() || c == '.' => self.number(),
+            Some(c) if c.is_alphabetic() => self.name(),
+            _ => Err(self.fault_here("a value belongs here")),
+        }
+    }
+
+    fn close(&mut self, open: usize) -> Parsed {
+        match self.take(&[')']) {
+            Some(_) => Ok(()),
+            None => Err(self.fault(open..open + 1, "a `(` without its `)`")),
+        }
+    }
+
+    fn number(&mut self) -> Parsed {
+        let start = self.at;
+        let bytes = self.text.as_bytes();
+        while let Some(byte) = bytes.get(self.at)
+            && (byte.is_ascii_alphanumeric()
+                || *byte == b'.'
+                || (matches!(byte, b'+' | b'-') && matches!(bytes[self.at - 1], b'e' | b'E')))
+        {
+            self.at += 1;
+        }
+        let word = &self.text[start..self.at];
+        match word.parse::<f64>() {
+            Ok(number) if number.is_finite() => {
+                self.steps.push(Step::Number(number));
+                Ok(())
+            }
+            _ => Err(self.fault(start..self.at, format!("`{word}` is not a number"))),
+        }
+    }
+
+    fn name(&mut self) -> Parsed {
+        let start = self.at;
+        let rest = &self.text[start..];
+        let length = rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len());
+        self.at += length;
+        let word = &rest[..length];
+        let place = start..self.at;
+        match (word, FUNCTIONS.iter().find(|(name, ..)| *name == word)) {
+            ("y", _) => self.steps.push(Step::Y),
+            ("pi", _) => self.steps.push(Step::Number(PI)),
+            (_, Some((_, function, arguments))) => {
+                self.arguments(word, place, *arguments)?;
+                self.steps.push(Step::Call(*function));
+            }
+            _ => return Err(self.fault(place, format!("a formula does not know `{word}`"))),
+        }
+        Ok(())
+    }
+
+    fn arguments(&mut self, name: &str, place: Range<usize>, count: usize) -> Parsed {
+        let open = self.at;
+        if self.take(&['(']).is_none() {
+            return Err(self.fault(place, format!("`{name}` needs its argument in parentheses")));
+        }
+        self.sum()?;
+        for _ in 1..count {
+            if self.take(&[',']).is_none() {
+                return Err(
+                    self.fault(place, format!("`{name}` takes {count} values, with commas between them"))
+                );
+            }
+            self.deeper()?;
+            self.sum()?;
+            self.depth -= 1;
+        }
+        self.close(open)
+    }
+
+    fn deeper(&mut self) -> Parsed {
+        self.depth += 1;
+        if self.depth >= DEPTH { Err(self.fault_here("this is nested too deeply")) } else { Ok(()) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dual::Dual;
+
+    fn value(text: &str, y: f64) -> f64 {
+        Formula::parse(text).unwrap_or_else(|fault| panic!("{text}: {fault:?}")).at(y)
+    }
+
+    #[test]
+    fn formulas_mean_what_they_say() {
+        for (text, y, expected) in [
+            ("2 + sin(y)", 0.0, 2.0),
+            ("-4/6 * (y - 6)", 0.0, 4.0),
+            ("2 - 3 - 4", 0.0, -5.0),
+            ("2 / 4 / 2", 0.0, 0.25),
+            ("-y^2", 3.0, -9.0),
+            ("2^-1", 0.0, 0.5),
+            ("2^3^2", 0.0, 512.0),
+            ("y^0.5", 9.0, 3.0),
+            ("min(y, 2) * max(y, 2)", 5.0, 10.0),
+            ("abs(-y) + sqrt(16) + exp(0) + ln(1) + cos(0) + tan(0)", 2.0, 8.0),
+            ("1e-3 + .5 + 2.", 0.0, 2.501),
+            ("pi", 0.0, PI),
+            ("--y", 2.0, 2.0),
+        ] {
+            assert_eq!(value(text, y), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn faults_are_marked_where_they_are() {
+        for (text, place, message) in [
+            ("2 + sni(y)", 4..7, "a formula does not know `sni`"),
+            ("2 sin(y)", 2..3, "an operator belongs here"),
+            ("2 + ", 4..4, "a value belongs here"),
+            ("", 0..0, "a value belongs here"),
+            ("(2 + y", 0..1, "a `(` without its `)`"),
+            ("2 + y)", 5..6, "a `)` without its `(`"),
+            ("sin y", 0..3, "`sin` needs its argument in parentheses"),
+            ("min(y)", 0..3, "`min` takes 2 values, with commas between them"),
+            ("2 * 1.2.3", 4..9, "`1.2.3` is not a number"),
+            ("2 * 1e999", 4..9, "`1e999` is not a number"),
+            ("ü", 0..2, "a formula does not know `ü`"),
+        ] {
+            let fault = Formula::parse(text).expect_err(text);
+            assert_eq!((fault.place, fault.message.as_str()), (place, message), "{text}");
+        }
+    }
+
+    #[test]
+    fn deep_nesting_is_refused_and_long_formulas_are_not() {
+        assert!(Formula::parse(&format!("{}y{}", "(".repeat(100_000), ")".repeat(100_000))).is_err());
+        assert!(Formula::parse(&"-".repeat(100_000)).is_err());
+        assert_eq!(value(&format!("y{}", " + y".repeat(9_999)), 1.0), 10_000.0);
+        let right = format!("{}y{}", "y + (".repeat(20), ")".repeat(20));
+        assert_eq!(value(&right, 1.0), 21.0);
+    }
+
+    #[test]
+    fn slopes_are_derivatives() {
+        for text in [
+            "2 + sin(y)",
+            "y^3 - 2*y",
+            "exp(-y^2)",
+            "ln(y)/y",
+            "sqrt(y)*tan(y/4)",
+            "y^y",
+            "abs(y-3)",
+            "min(y, 2)+max(1, y)*cos(y)",
+            "y^0.5",
+            "(1+y)^-2",
+        ] {
+            let formula = Formula::parse(text).expect(text);
+            for y in [0.7, 1.3, 2.9] {
+                let Dual { value, slope } = formula.at(Dual::variable(y));
+                let step = 1e-6;
+                let difference = (formula.at(y + step) - formula.at(y - step)) / (2.0 * step);
+                assert_eq!(value, formula.at(y), "{text} at {y}");
+                assert!(
+                    (slope - difference).abs() < 1e-8 * (1.0 + slope.abs()),
+                    "{text} at {y}: {slope}, {difference}"
+                );
+            }
+        }
+    }
+}

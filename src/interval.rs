@@ -1,0 +1,280 @@
+//! Intervals that certainly hold the true result: every operation rounds outward.
+//!
+//! Sums, products, quotients and roots are rounded to nearest by the machine, so one step outward is enough. The
+//! `libm` functions are trusted to within one unit in the last place, so two steps are.
+
+use crate::number::Number;
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// All numbers from `low` to `high`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval {
+    /// The least of them.
+    pub low: f64,
+    /// The greatest of them.
+    pub high: f64,
+}
+
+impl Interval {
+    /// All numbers, and what is not defined.
+    pub const WHOLE: Self = Self { low: f64::NEG_INFINITY, high: f64::INFINITY };
+
+    /// The numbers between two, in any order.
+    #[inline(always)]
+    pub fn hull(a: f64, b: f64) -> Self {
+        if a < b { Self { low: a, high: b } } else { Self { low: b, high: a } }
+    }
+
+    /// Whether 0 may be one of them.
+    #[inline(always)]
+    pub fn has_zero(self) -> bool {
+        !(self.low > 0.0 || self.high < 0.0)
+    }
+
+    /// The greatest distance from 0.
+    #[inline(always)]
+    pub fn magnitude(self) -> f64 {
+        self.low.abs().max(self.high.abs())
+    }
+
+    /// How far it is from end to end.
+    pub fn width(self) -> f64 {
+        self.high - self.low
+    }
+
+    /// Whether it has no end on either side, or none that is a number.
+    pub fn is_bounded(self) -> bool {
+        self.low.is_finite() && self.high.is_finite()
+    }
+
+    /// One step outward at either end. What is not a number becomes anything.
+    #[inline(always)]
+    fn outward(low: f64, high: f64) -> Self {
+        if low.is_nan() || high.is_nan() {
+            return Self::WHOLE;
+        }
+        Self { low: low.next_down(), high: high.next_up() }
+    }
+
+    /// Around values that a function of `libm` gave.
+    fn around(low: f64, high: f64) -> Self {
+        let Self { low, high } = Self::outward(low, high);
+        Self::outward(low, high)
+    }
+
+    /// Whether it may hold `start` and any number of turns from there.
+    fn holds_angle(self, start: f64) -> bool {
+        let slack = 1e-15 * (1.0 + self.low.abs() + self.high.abs());
+        let turns = ((self.low - slack - start) / (2.0 * PI)).ceil();
+        start + turns * 2.0 * PI <= self.high + slack
+    }
+
+    /// The sine or cosine, whose values at the ends are these, and which is 1 at `top` and -1 half a turn on.
+    fn wave(self, at_low: f64, at_high: f64, top: f64) -> Self {
+        // Written so that what is not a number, and angles without end, are any.
+        if !(self.width() < 2.0 * PI && self.magnitude() < 1e15) {
+            return Self { low: -1.0, high: 1.0 };
+        }
+        let Self { low, high } = Self::around(at_low.min(at_high), at_low.max(at_high));
+        Self {
+            low: if self.holds_angle(top - PI) { -1.0 } else { low.max(-1.0) },
+            high: if self.holds_angle(top) { 1.0 } else { high.min(1.0) },
+        }
+    }
+
+    /// The least and the greatest of four, those that are not numbers left out.
+    #[inline(always)]
+    fn of_four(a: f64, b: f64, c: f64, d: f64) -> (f64, f64) {
+        (a.min(b).min(c.min(d)), a.max(b).max(c.max(d)))
+    }
+}
+
+impl Add for Interval {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self::outward(self.low + other.low, self.high + other.high)
+    }
+}
+
+impl Sub for Interval {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self::outward(self.low - other.high, self.high - other.low)
+    }
+}
+
+impl Neg for Interval {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self { low: -self.high, high: -self.low }
+    }
+}
+
+impl Mul for Interval {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        // Nothing times anything is nothing, even where that has no end.
+        if self.is_zero() || other.is_zero() {
+            return Self::constant(0.0);
+        }
+        let (low, high) = Self::of_four(
+            self.low * other.low,
+            self.low * other.high,
+            self.high * other.low,
+            self.high * other.high,
+        );
+        // 0 times infinity was left out above, where an end at 0 meets no end.
+        let touches = |a: Self, b: Self| a.has_zero() && !b.is_bounded();
+        if touches(self, other) || touches(other, self) {
+            return Self::outward(low.min(0.0), high.max(0.0));
+        }
+        Self::outward(low, high)
+    }
+}
+
+impl Div for Interval {
+    type Output = Self;
+
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        if other.has_zero() {
+            return if self.is_zero() && !other.is_zero() { Self::constant(0.0) } else { Self::WHOLE };
+        }
+        if !other.is_bounded() {
+            return self
+                * Self {
+                    low: (1.0 / other.high).min(1.0 / other.low),
+                    high: (1.0 / other.low).max(1.0 / other.high),
+                };
+        }
+        let (low, high) = Self::of_four(
+            self.low / other.low,
+            self.low / other.high,
+            self.high / other.low,
+            self.high / other.high,
+        );
+        Self::outward(low, high)
+    }
+}
+
+impl Number for Interval {
+    #[inline(always)]
+    fn constant(value: f64) -> Self {
+        Self { low: value, high: value }
+    }
+
+    fn sin(self) -> Self {
+        self.wave(libm::sin(self.low), libm::sin(self.high), FRAC_PI_2)
+    }
+
+    fn cos(self) -> Self {
+        self.wave(libm::cos(self.low), libm::cos(self.high), 0.0)
+    }
+
+    fn tan(self) -> Self {
+        if !(self.width() < PI && self.magnitude() < 1e15)
+            || self.holds_angle(FRAC_PI_2)
+            || self.holds_angle(-FRAC_PI_2)
+        {
+            return Self::WHOLE;
+        }
+        Self::around(libm::tan(self.low), libm::tan(self.high))
+    }
+
+    fn exp(self) -> Self {
+        let Self { low, high } = Self::around(libm::exp(self.low), libm::exp(self.high));
+        Self { low: low.max(0.0), high }
+    }
+
+    fn ln(self) -> Self {
+        if self.low > 0.0 { Self::around(libm::log(self.low), libm::log(self.high)) } else { Self::WHOLE }
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        let root = Self::outward(Number::sqrt(self.low), Number::sqrt(self.high));
+        Self { low: root.low.max(0.0), high: root.high }
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        if self.low >= 0.0 {
+            self
+        } else if self.high <= 0.0 {
+            -self
+        } else {
+            Self { low: 0.0, high: self.magnitude() }
+        }
+    }
+
+    fn floor(self) -> Self {
+        Self { low: self.low.floor(), high: self.high.floor() }
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self { low: self.low.min(other.low), high: self.high.min(other.high) }
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self { low: self.low.max(other.low), high: self.high.max(other.high) }
+    }
+
+    fn pow(self, exponent: Self) -> Self {
+        if self.low > 0.0 {
+            return (exponent * self.ln()).exp();
+        }
+        // A root of what may be 0: 0 stays 0.
+        if self.low == 0.0 && exponent.low > 0.0 {
+            let high = (exponent * Self::constant(self.high).ln()).exp();
+            return Self { low: 0.0, high: high.high.max(if self.high == 0.0 { 0.0 } else { high.high }) };
+        }
+        Self::WHOLE
+    }
+
+    #[inline(always)]
+    fn powi(self, exponent: i32) -> Self {
+        if exponent < 0 {
+            return Self::constant(1.0) / self.powi(-exponent);
+        }
+        if exponent == 0 {
+            return Self::constant(1.0);
+        }
+        let base = if exponent % 2 == 0 { self.abs() } else { self };
+        let mut power = base;
+        for _ in 1..exponent {
+            power = power * base;
+        }
+        if exponent % 2 == 0 { Self { low: power.low.max(0.0), high: power.high } } else { power }
+    }
+
+    #[inline(always)]
+    fn step(self) -> Self {
+        Self { low: if self.low > 0.0 { 1.0 } else { 0.0 }, high: if self.high < 0.0 { 0.0 } else { 1.0 } }
+    }
+
+    #[inline(always)]
+    fn kink(self) -> Self {
+        if self.has_zero() { Self::WHOLE } else { Self::constant(0.0) }
+    }
+
+    fn jump(self) -> Self {
+        let below = self.low.floor();
+        if below == self.high.floor() && self.low > below { Self::constant(0.0) } else { Self::WHOLE }
+    }
+
+    #[inline(always)]
+    fn is_zero(self) -> bool {
+        self.low == 0.0 && self.high == 0.0
+    }
+}
