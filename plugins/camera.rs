@@ -1,5 +1,6 @@
 //! The camera: the viewer, and the screen in the plane z = 0 that the viewer looks through.
 
+use crate::accuracy::Accuracy;
 use crate::camera::Camera;
 use crate::entity::Entity;
 use crate::pparm::{Pparm, Table};
@@ -27,7 +28,10 @@ static SAMPLES: Pparm<i64> =
         .must("from 1 to 65536", |samples| (1..=MOST.into()).contains(samples))
         .not_dumped();
 
-const TABLE: Table = &[&PIXELDIM, &WORLDDIM, &VIEWPOINT, &SAMPLES];
+static ACCURACY: Pparm<Accuracy> =
+    Pparm::or("accuracy", "how exactly shapes find their hits", Accuracy::Exact).not_dumped();
+
+const TABLE: Table = &[&PIXELDIM, &WORLDDIM, &VIEWPOINT, &SAMPLES, &ACCURACY];
 
 inventory::submit! {
     Entity::camera("camera", "the viewer, and a screen from the world's origin to the right and up", &[TABLE], |args| {
@@ -38,6 +42,7 @@ inventory::submit! {
             viewpoint: args.get(&VIEWPOINT),
             samples: args.get(&SAMPLES) as u32,
             sampler: Sampler::default(),
+            accuracy: args.get(&ACCURACY),
         })
     })
 }

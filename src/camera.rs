@@ -1,5 +1,6 @@
 //! The camera: from a pixel to the ray that it looks along.
 
+use crate::accuracy::Accuracy;
 use crate::geometry::Ray;
 use crate::sample::{Sample, Sampler};
 use glam::{DVec2, DVec3};
@@ -17,6 +18,8 @@ pub struct Camera {
     pub samples: u32,
     /// Where in the pixel they lie, if there is more than one.
     pub sampler: Sampler,
+    /// How exactly they find their hits.
+    pub accuracy: Accuracy,
 }
 
 impl Camera {

@@ -1,5 +1,6 @@
 //! Entity types: what a plugin registers, and what its constructor is given.
 
+use crate::accuracy::Accuracy;
 use crate::camera::Camera;
 use crate::geometry::{Body, Light};
 use crate::material::Material;
@@ -251,6 +252,11 @@ impl Args {
     pub fn given(&self) -> impl Iterator<Item = (&'static dyn Attribute, &Datum)> {
         let values = self.entity.attributes().zip(&self.values);
         values.filter(|(_, (_, given))| *given).map(|(attribute, (datum, _))| (attribute, datum))
+    }
+
+    /// How exactly the scene is traced.
+    pub fn accuracy(&self) -> Accuracy {
+        self.setting.camera.accuracy
     }
 
     fn find(&self, attribute: &str) -> Option<&Datum> {

@@ -21,6 +21,32 @@ impl Ray {
     }
 }
 
+/// A side of a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// The one that its normal points to.
+    Outside,
+    /// The other one.
+    Inside,
+}
+
+impl Side {
+    /// The side of a surface with this normal from which something comes that moves along `dir`.
+    #[inline(always)]
+    pub fn seen_along(dir: DVec3, normal: DVec3) -> Self {
+        if dir.dot(normal) < 0.0 { Self::Outside } else { Self::Inside }
+    }
+
+    /// The other side.
+    #[inline(always)]
+    pub fn opposite(self) -> Self {
+        match self {
+            Self::Outside => Self::Inside,
+            Self::Inside => Self::Outside,
+        }
+    }
+}
+
 /// Distances along a ray, both ends excluded.
 #[derive(Clone, Copy, Debug)]
 pub struct Span {
@@ -28,6 +54,9 @@ pub struct Span {
     pub near: f64,
     /// Hits must lie nearer.
     pub far: f64,
+    /// The side of the shape's own surface that the ray starts on and leaves, if it does: where it starts is no hit,
+    /// however rounding has it. Only shapes that are not convex are asked then.
+    pub leaves: Option<Side>,
 }
 
 /// The distance of a ray that hits nothing.
@@ -35,7 +64,7 @@ pub const MISS: f64 = f64::INFINITY;
 
 impl Span {
     /// All of a ray but its origin.
-    pub const RAY: Span = Span { near: 0.0, far: f64::INFINITY };
+    pub const RAY: Span = Span { near: 0.0, far: f64::INFINITY, leaves: None };
 
     /// The distance itself if it lies in the span, else [`MISS`]; so is a NaN.
     #[inline(always)]
@@ -51,6 +80,17 @@ pub trait Hittable: Send + Sync {
 
     /// The unit normal of the shape at a point of it.
     fn normal(&self, at: DVec3) -> DVec3;
+
+    /// Whether no ray that leaves it can meet it again. Then it is not asked.
+    fn is_convex(&self) -> bool {
+        true
+    }
+
+    /// Whether both its sides are lit: then its normal is turned to the side that a ray comes from. A plane shows
+    /// one side.
+    fn is_two_sided(&self) -> bool {
+        false
+    }
 }
 
 /// How a surface answers light where its material alone does not say.

@@ -8,6 +8,7 @@
 //! A file in `plugins/` adds an entity type: it registers an [`Entity`](entity::Entity) and implements a trait
 //! of [`geometry`]. No other file knows its name.
 
+pub mod accuracy;
 pub mod aov;
 pub mod camera;
 pub mod choice;

@@ -1,6 +1,6 @@
 //! The colour that a ray sees: first hits, light, shadows, mirrors and glass (the notes' `ray_trace`).
 
-use crate::geometry::{Light, Ray, Span};
+use crate::geometry::{Light, Ray, Side, Span};
 use crate::material::Rgb;
 use crate::model::{Model, Object};
 use crate::sample::Sample;
@@ -55,15 +55,15 @@ struct Tracer<'m, 'w, W> {
 
 impl<'m, W: Watch> Tracer<'m, '_, W> {
     /// The light that comes back along a ray. The light has `travelled` this far from the viewer already, and
-    /// the ray leaves the object `last`, which it does not see.
-    fn trace(&mut self, ray: &Ray, travelled: f64, last: Option<usize>) -> Rgb {
+    /// the ray leaves the object `last` on a side of it, and does not see it where it starts.
+    fn trace(&mut self, ray: &Ray, travelled: f64, last: Option<(usize, Side)>) -> Rgb {
         let colour = self.follow(ray, travelled, last);
         self.watch.see(Event::Colour(colour));
         colour
     }
 
     #[inline(always)]
-    fn follow(&mut self, ray: &Ray, travelled: f64, last: Option<usize>) -> Rgb {
+    fn follow(&mut self, ray: &Ray, travelled: f64, last: Option<(usize, Side)>) -> Rgb {
         if travelled > MAX_DIST {
             self.watch.see(Event::Dropped(Reason::TooFar));
             return DVec3::ZERO;
@@ -72,11 +72,13 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
         let travelled = travelled + hit.distance;
         let Object { material, shape, shader, .. } = hit.object;
         let normal = shape.normal(hit.point);
+        let side = Side::seen_along(ray.dir, normal);
+        let normal = if side == Side::Inside && shape.is_two_sided() { -normal } else { normal };
 
         let mut colour = shader.ambient(material, hit.point);
         self.watch.see(Event::Surface { normal, ambient: colour });
         for (index, light) in self.model.lights.iter().enumerate() {
-            colour += self.illuminate(index, &*light.value, &hit, normal, ray.origin);
+            colour += self.illuminate(index, &*light.value, &hit, (normal, side), ray.origin);
         }
         colour *= 1.0 / travelled;
         self.watch.see(Event::Shaded { hit: &hit, travelled, colour });
@@ -85,14 +87,15 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
             let onward = Ray { origin: hit.point, dir: ray.dir };
             let (tint, kept) = (hit.object.tint(hit.point), 1.0 - material.transparency);
             self.watch.see(Event::Begin(Purpose::Transmitted { tint, kept }));
-            colour = kept * colour + tint * self.trace(&onward, travelled, Some(hit.index));
+            colour =
+                kept * colour + tint * self.trace(&onward, travelled, Some((hit.index, side.opposite())));
         }
         let specular = shader.specular(material, hit.point);
         if specular != DVec3::ZERO {
             let mirrored = ray.dir - 2.0 * ray.dir.dot(normal) * normal;
             let reflected = Ray { origin: hit.point, dir: mirrored };
             self.watch.see(Event::Begin(Purpose::Reflected { specular }));
-            colour += specular * self.trace(&reflected, travelled, Some(hit.index));
+            colour += specular * self.trace(&reflected, travelled, Some((hit.index, side)));
         }
         colour
     }
@@ -103,7 +106,7 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
         index: usize,
         light: &dyn Light,
         hit: &Hit<'m>,
-        normal: DVec3,
+        (normal, side): (DVec3, Side),
         eye: DVec3,
     ) -> Rgb {
         let to_light = self.place_on(index, light, hit.point) - hit.point;
@@ -119,7 +122,7 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
             self.watch.see(Event::Light(index, Outcome::Aside));
             return DVec3::ZERO;
         };
-        let passed = match self.unshadowed(hit, to_light, distance) {
+        let passed = match self.unshadowed(hit, side, to_light, distance) {
             Ok(passed) => passed,
             Err(blocker) => {
                 self.watch.see(Event::Light(index, Outcome::Blocked(blocker)));
@@ -152,26 +155,34 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
 
     /// The part of each channel that gets from a light to a hit, or the opaque object that stands between them.
     /// Glass on the way tints it.
-    fn unshadowed(&mut self, hit: &Hit<'m>, to_light: DVec3, distance: f64) -> Result<Rgb, usize> {
+    fn unshadowed(
+        &mut self,
+        hit: &Hit<'m>,
+        side: Side,
+        to_light: DVec3,
+        distance: f64,
+    ) -> Result<Rgb, usize> {
         let mut passed = DVec3::ONE;
-        let (mut from, mut skip, mut left) = (hit.point, hit.index, distance);
+        let (mut from, mut last, mut left) = (hit.point, (hit.index, side), distance);
         loop {
             let ray = Ray { origin: from, dir: to_light };
-            let within = Span { near: 0.0, far: left };
+            let within = Span { far: left, ..Span::RAY };
             self.watch.see(Event::Begin(Purpose::Shadow { distance: left }));
-            let Some(blocker) = self.closest(&ray, &within, Some(skip)) else { return Ok(passed) };
+            let Some(blocker) = self.closest(&ray, &within, Some(last)) else { return Ok(passed) };
             if blocker.object.material.transparency == 0.0 {
                 return Err(blocker.index);
             }
             passed *= blocker.object.tint(blocker.point);
-            (from, skip) = (blocker.point, blocker.index);
+            let normal = blocker.object.shape.normal(blocker.point);
+            last = (blocker.index, Side::seen_along(to_light, normal).opposite());
+            from = blocker.point;
             left -= blocker.distance;
         }
     }
 
-    /// What a ray meets first within a span, the object that it leaves excepted. Of two at the same distance
-    /// the earlier one in the scene wins.
-    fn closest(&mut self, ray: &Ray, within: &Span, skip: Option<usize>) -> Option<Hit<'m>> {
+    /// What a ray meets first within a span, but for the place where it leaves an object. Of two at the same
+    /// distance the earlier one in the scene wins.
+    fn closest(&mut self, ray: &Ray, within: &Span, last: Option<(usize, Side)>) -> Option<Hit<'m>> {
         let Some(rays) = self.rays.checked_sub(1) else {
             self.watch.see(Event::Dropped(Reason::TooMany));
             return None;
@@ -181,11 +192,12 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
         let mut nearest = None;
         let mut within = *within;
         for (index, object) in self.model.objects.iter().enumerate() {
-            if Some(index) == skip {
+            let leaves = last.filter(|(last, _)| *last == index).map(|(_, side)| side);
+            if leaves.is_some() && object.shape.is_convex() {
                 self.watch.see(Event::Tested(index, None));
                 continue;
             }
-            let distance = object.shape.distance(ray, &within);
+            let distance = object.shape.distance(ray, &Span { leaves, ..within });
             self.watch.see(Event::Tested(index, Some(distance)));
             if distance < within.far {
                 within.far = distance;

@@ -86,7 +86,8 @@ fn the_courses_pictures_come_out_the_same() {
     let mut short = Vec::new();
     for (scene, percent) in SCENES {
         let path = folder.join(scene);
-        let got = percent_near(&rendered(&path.with_extension("txt"), &[]), &expected(&path));
+        let got =
+            percent_near(&rendered(&path.with_extension("txt"), &["--method", "classic"]), &expected(&path));
         eprintln!("{scene:20} {got:8.4} % of its pixels within 1, {percent} wanted");
         if got < percent {
             short.push(scene);
@@ -109,8 +110,11 @@ fn the_courses_smoothed_pictures_agree_but_for_chance() {
     let Some(folder) = course() else { return };
     for scene in SMOOTHED {
         let path = folder.join(scene);
-        let actual = rendered(&path.with_extension("txt"), &["--sampler", "random", "--samples", "16"]);
-        let sharp = rendered(&path.with_extension("txt"), &[]);
+        let actual = rendered(
+            &path.with_extension("txt"),
+            &["--method", "classic", "--sampler", "random", "--samples", "16"],
+        );
+        let sharp = rendered(&path.with_extension("txt"), &["--method", "classic"]);
         let expected = expected(&path);
         let mean = |picture: &RgbImage, channel: usize| {
             let sum: u64 = picture.pixels().map(|pixel| u64::from(pixel[channel])).sum();

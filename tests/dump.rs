@@ -68,7 +68,7 @@ proptest! {
 
     #[test]
     fn any_scene_survives_its_dump(text in any_scene()) {
-        match scene::read(registry(), "any", Path::new(""), text.as_bytes()) {
+        match scene::read(registry(), "any", Path::new(""), text.as_bytes(), None) {
             Ok(loaded) => assert_loads_again(&loaded.model),
             // Only what no single attribute shows may be wrong.
             Err(report) => prop_assert!(report.faults().iter().all(of_a_constructor), "{report}"),

@@ -52,6 +52,7 @@ fn every_mistake_is_explained_as_before() {
             &name,
             path.parent().expect("a folder"),
             &fs::read(path).expect("a file"),
+            None,
         ) {
             Ok(loaded) => loaded.warnings,
             Err(report) => report,

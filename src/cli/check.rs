@@ -15,7 +15,7 @@ pub struct Args {
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let mut sound = true;
     for scene in &args.scenes {
-        match input::load(registry, scene) {
+        match input::load(registry, scene, None) {
             Ok(_) => eprintln!("{}: sound", scene.display()),
             Err(failure) => {
                 tell(&failure);

@@ -34,7 +34,7 @@ enum SyntaxName {
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let syntax = syntax(&args)?;
-    let model = input::load(registry, &args.scene)?;
+    let model = input::load(registry, &args.scene, None)?;
     let text = dump::scene(&model, syntax);
     if input::is_standard(&args.output) {
         return print(&text);
@@ -70,7 +70,7 @@ fn syntax(args: &Args) -> Result<Syntax, Failure> {
 /// Reads the copy as from its place, where it may not find the files that the scene names.
 fn is_the_same_scene(registry: &Registry, model: &Model, text: &str, path: &Path) -> Result<(), Failure> {
     let folder = path.parent().unwrap_or(path);
-    match scene::read(registry, &path.display().to_string(), folder, text.as_bytes()) {
+    match scene::read(registry, &path.display().to_string(), folder, text.as_bytes(), None) {
         Ok(copy) if dump::scene(&copy.model, Syntax::Notes) == dump::scene(model, Syntax::Notes) => Ok(()),
         Ok(_) => {
             Err(Failure::Failed(format!("the copy in `{}` would not be the same scene", path.display())))

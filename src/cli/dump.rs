@@ -27,7 +27,7 @@ enum Format {
 }
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
-    let model = input::load(registry, &args.scene)?;
+    let model = input::load(registry, &args.scene, None)?;
     print(&match args.format {
         Format::Notes => dump::notes(&model),
         Format::Ray => dump::scene(&model, Syntax::Notes),

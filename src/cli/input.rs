@@ -4,6 +4,7 @@ use super::Failure;
 use std::fs::File;
 use std::io::{self, Read, Write};
 use std::path::Path;
+use tabray::accuracy::Accuracy;
 use tabray::model::Model;
 use tabray::registry::Registry;
 use tabray::scene;
@@ -16,11 +17,11 @@ pub fn is_standard(path: &Path) -> bool {
     path == Path::new("-")
 }
 
-/// Reads a scene, prints its warnings and makes its model.
-pub fn load(registry: &Registry, path: &Path) -> Result<Model, Failure> {
+/// Reads a scene, prints its warnings and makes its model, of this accuracy or of its own.
+pub fn load(registry: &Registry, path: &Path, accuracy: Option<Accuracy>) -> Result<Model, Failure> {
     let (name, bytes) = read(path)?;
-    let loaded =
-        scene::read(registry, &name, path.parent().unwrap_or(path), &bytes).map_err(Failure::Scene)?;
+    let folder = path.parent().unwrap_or(path);
+    let loaded = scene::read(registry, &name, folder, &bytes, accuracy).map_err(Failure::Scene)?;
     let _ = write!(anstream::stderr(), "{}", loaded.warnings.styled());
     Ok(loaded.model)
 }

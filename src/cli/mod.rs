@@ -8,6 +8,7 @@ mod dump;
 mod input;
 mod interrupt;
 mod list;
+mod method;
 mod notes;
 mod output;
 mod probe;

@@ -4,6 +4,7 @@ use super::output::Output;
 use super::{Failure, input, interrupt, render};
 use std::io::Write;
 use std::path::Path;
+use tabray::accuracy::Accuracy;
 use tabray::dump;
 use tabray::picture::Format;
 use tabray::registry::Registry;
@@ -11,7 +12,7 @@ use tabray::registry::Registry;
 pub fn run(registry: &Registry) -> Result<(), Failure> {
     let standard = Path::new("-");
     let output = Output::open(standard)?;
-    let model = input::load(registry, standard)?;
+    let model = input::load(registry, standard, Some(Accuracy::Classic))?;
     interrupt::catch()?;
     let _ = write!(std::io::stderr(), "{}", dump::notes(&model));
     render::picture(&model, 0, Format::Ppm, standard, output)

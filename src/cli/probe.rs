@@ -1,6 +1,6 @@
 //! `tabray probe`: one pixel, explained.
 
-use super::{Failure, input};
+use super::{Failure, input, method};
 use std::io::{self, BufWriter, Write};
 use std::path::PathBuf;
 use tabray::model::Model;
@@ -19,10 +19,12 @@ pub struct Args {
     /// The pixel's row, from 0 at the bottom
     #[arg(allow_negative_numbers = true)]
     y: i64,
+    #[command(flatten)]
+    method: method::Args,
 }
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
-    let model = input::load(registry, &args.scene)?;
+    let model = input::load(registry, &args.scene, args.method.accuracy()?)?;
     let [x, y] = inside(&model, [args.x, args.y])?;
     let mut out = BufWriter::new(io::stdout());
     let printed = Renderer::new(1)?.run(|| probe::pixel(&model, x, y, &mut out).and_then(|()| out.flush()));

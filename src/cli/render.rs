@@ -1,7 +1,7 @@
 //! `tabray render`: a scene's picture.
 
 use super::output::Output;
-use super::{Failure, aov, debug, input, interrupt};
+use super::{Failure, aov, debug, input, interrupt, method};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, BufWriter};
 use std::ops::ControlFlow;
@@ -35,6 +35,8 @@ pub struct Args {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
     #[command(flatten)]
+    method: method::Args,
+    #[command(flatten)]
     aov: aov::Args,
     #[command(flatten)]
     debug: debug::Args,
@@ -57,7 +59,7 @@ enum SamplerName {
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let path = target(&args)?;
     let format = format(&args, &path)?;
-    let mut model = input::load(registry, &args.scene)?;
+    let mut model = input::load(registry, &args.scene, args.method.accuracy()?)?;
     let camera = &mut model.camera.value;
     camera.samples = args.samples.unwrap_or(camera.samples);
     camera.sampler = match args.sampler {

@@ -4,6 +4,7 @@ use super::attributes::{Against, find_attribute, whole};
 use super::fault::{Fault, Place, Report};
 use super::names::{Names, stand_in, suggestion};
 use super::written::{Word, Written};
+use crate::accuracy::Accuracy;
 use crate::camera::Camera;
 use crate::entity::{Args, Construct, Entity, Kind, MATERIAL, Refusal, Setting};
 use crate::geometry::{Body, Light};
@@ -18,10 +19,11 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// Makes a model of entities as written and reports all their faults. Without faults there is a model. File
-/// names start from `folder`.
+/// names start from `folder`; `accuracy`, if there is one, counts in place of the scene's own.
 pub fn model(
     registry: &Registry,
     folder: &Path,
+    accuracy: Option<Accuracy>,
     written: Vec<Written<'_>>,
     report: &mut Report,
 ) -> Option<Model> {
@@ -34,6 +36,7 @@ pub fn model(
         unknown: BTreeMap::new(),
         first_camera: None,
         setting: Arc::new(setting),
+        accuracy,
         camera: None,
         materials: Vec::new(),
         textures: Vec::new(),
@@ -62,6 +65,8 @@ struct Check<'r> {
     /// Where the first camera is named.
     first_camera: Option<Place>,
     setting: Arc<Setting>,
+    /// What counts in place of the scene's own.
+    accuracy: Option<Accuracy>,
     camera: Option<Item<Camera>>,
     materials: Vec<Item<Arc<Material>>>,
     textures: Vec<Item<Arc<Texture>>>,
@@ -109,7 +114,8 @@ impl Check<'_> {
         let (kind, name) = (args.entity.kind(), args.name.clone());
         match args.entity.construct {
             Construct::Camera(construct) => {
-                if let Some(camera) = self.made(written, args, construct) {
+                if let Some(mut camera) = self.made(written, args, construct) {
+                    camera.value.accuracy = self.accuracy.unwrap_or(camera.value.accuracy);
                     let folder = self.setting.folder.clone();
                     self.setting = Arc::new(Setting { camera: camera.value.clone(), folder });
                     self.camera = Some(camera);

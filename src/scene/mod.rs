@@ -12,6 +12,7 @@ mod written;
 pub use fault::{Fault, Place, Report, Severity};
 pub use written::{Values, Written};
 
+use crate::accuracy::Accuracy;
 use crate::entity::Kind;
 use crate::model::Model;
 use crate::registry::Registry;
@@ -27,11 +28,18 @@ pub struct Loaded {
 }
 
 /// Reads a scene, in TOML if its name ends in `.toml` or its text begins as TOML does, and in the notes'
-/// spelling if not. `name` is what messages call it, and its own file names start from `folder`.
+/// spelling if not. `name` is what messages call it, and its own file names start from `folder`. An accuracy that is
+/// given here counts in place of the scene's own.
 ///
 /// # Errors
 /// Every fault of the scene, warnings among them, in the order of the text.
-pub fn read(registry: &Registry, name: &str, folder: &Path, bytes: &[u8]) -> Result<Loaded, Report> {
+pub fn read(
+    registry: &Registry,
+    name: &str,
+    folder: &Path,
+    bytes: &[u8],
+    accuracy: Option<Accuracy>,
+) -> Result<Loaded, Report> {
     let text = decode(name, bytes)?;
     let syntax = match Syntax::of_name(name) {
         Some(Syntax::Toml) => Syntax::Toml,
@@ -46,7 +54,7 @@ pub fn read(registry: &Registry, name: &str, folder: &Path, bytes: &[u8]) -> Res
     if written.is_empty() && !report.is_fatal() {
         report.add(Fault::error(Some(0..0), "the scene is empty").help(first_steps(registry, syntax)));
     }
-    finish(check::model(registry, folder, written, &mut report), report)
+    finish(check::model(registry, folder, accuracy, written, &mut report), report)
 }
 
 /// Makes a model without any text (the notes' `modelstat.c`). The entities are checked as a text's are;
@@ -77,7 +85,8 @@ pub fn build(
     written: impl IntoIterator<Item = Written<'static>>,
 ) -> Result<Loaded, Report> {
     let mut report = Report::new("model", "", Syntax::Notes);
-    finish(check::model(registry, Path::new(""), written.into_iter().collect(), &mut report), report)
+    let written = written.into_iter().collect();
+    finish(check::model(registry, Path::new(""), None, written, &mut report), report)
 }
 
 fn finish(model: Option<Model>, report: Report) -> Result<Loaded, Report> {

@@ -26,7 +26,7 @@ pub fn model(text: &str) -> Model {
 
 /// The model of a scene's text, whose file names start from `folder`.
 pub fn model_in(folder: &Path, text: &str) -> Model {
-    match scene::read(registry(), "scene", folder, text.as_bytes()) {
+    match scene::read(registry(), "scene", folder, text.as_bytes(), None) {
         Ok(loaded) => loaded.model,
         Err(report) => panic!("{report}\n{text}"),
     }

@@ -1,0 +1,43 @@
+//! How exactly a scene is traced: by the notes' own methods, or by stable ones of a chosen accuracy.
+
+use crate::choice::{Choice, ChoiceName};
+use std::panic::Location;
+
+/// How exactly shapes find their hits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Accuracy {
+    /// The course notes' methods, with the hits that they lose and the artefacts that they make.
+    Classic,
+    /// Right hits, their distances to about 1/1000 of a unit where that saves time.
+    Draft,
+    /// Right hits, their distances to a few units in the last place.
+    #[default]
+    Exact,
+    /// As exact, and in twice the precision wherever that exists.
+    Strict,
+}
+
+impl Accuracy {
+    const ALL: [Self; 4] = [Self::Classic, Self::Draft, Self::Exact, Self::Strict];
+    const PLACE: &'static Location<'static> = Location::caller();
+}
+
+impl Choice for Accuracy {
+    const WHAT: &'static str = "accuracy";
+
+    fn all() -> Vec<Self> {
+        Self::ALL.to_vec()
+    }
+
+    fn option(&self) -> ChoiceName {
+        let (name, meaning) = match self {
+            Self::Classic => ("classic", "the course notes' own methods"),
+            Self::Draft => ("draft", "the right objects, at distances right to about 1/1000 of a unit"),
+            Self::Exact => {
+                ("exact", "the right objects, at distances right to a few units in the last place")
+            }
+            Self::Strict => ("strict", "as exact, in twice the precision wherever a shape has it"),
+        };
+        ChoiceName { name, number: None, meaning, place: Self::PLACE }
+    }
+}
