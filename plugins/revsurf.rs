@@ -1,13 +1,23 @@
 //! A surface of revolution: a line turned around an axis.
 
-use crate::entity::Entity;
+use crate::accuracy::Accuracy;
+use crate::entity::{Args, Entity, Refusal};
+use crate::formula::Formula;
 use crate::geometry::{Body, Hittable, MISS, Ray, Span};
 use crate::pparm::{Pparm, Table};
-use crate::profile::Profile;
+use crate::profile::{Line, Profile};
+use crate::revolution::{Finish, NoSurface, Revolution};
 use glam::{DMat3, DVec3};
+use std::sync::Arc;
 
-static SURFER: Pparm<&'static Profile> =
-    Pparm::required("surfer", "the line that is turned: its distance from the axis at each height");
+static SURFER: Pparm<Option<&'static Profile>> =
+    Pparm::or("surfer", "the line that is turned, by the notes' number or by its name", None);
+static PROFILE: Pparm<Option<Arc<Formula>>> = Pparm::or(
+    "profile",
+    "the line that is turned, in place of a surfer: its distance from the axis at each height y",
+    None,
+)
+.not_dumped();
 static DIRECTION: Pparm<DVec3> = Pparm::required("direction", "the direction of the axis, from base upward")
     .must("a vector with a direction", |axis: &DVec3| axis.try_normalize().is_some());
 static BASE: Pparm<DVec3> =
@@ -17,54 +27,110 @@ static HEIGHT: Pparm<f64> = Pparm::required("height", "how far along the axis it
     .must("positive", |height| *height > 0.0)
     .not_dumped();
 
-const TABLE: Table = &[&SURFER, &DIRECTION, &BASE, &HEIGHT];
+const TABLE: Table = &[&SURFER, &PROFILE, &DIRECTION, &BASE, &HEIGHT];
 
 inventory::submit! {
     Entity::shape("revsurf", "a line turned around an axis, such as a cone, a vase or a column", &[TABLE], |args| {
         let up = args.get(&DIRECTION).normalize();
         let (across, away) = up.any_orthonormal_pair();
-        Ok(Body::plain(Revsurf {
-            profile: args.get(&SURFER),
-            base: args.get(&BASE),
-            height: args.get(&HEIGHT),
-            axes: DMat3::from_cols(across, up, away),
-        }))
+        let frame = Frame { base: args.get(&BASE), axes: DMat3::from_cols(across, up, away) };
+        let (line, height) = (line(args)?, args.get(&HEIGHT));
+        let finish = match args.accuracy() {
+            Accuracy::Classic => return Ok(Body::plain(Classic { frame, line, height })),
+            Accuracy::Draft => Finish::Bracket,
+            Accuracy::Exact | Accuracy::Strict => Finish::Root,
+        };
+        let surface = Revolution::new(&line.radius, height).map_err(|fault| Refusal {
+            attribute: Some(if args.get(&SURFER).is_some() { "surfer" } else { "profile" }),
+            message: match fault {
+                NoSurface::Unbounded { near } => format!("has a profile without a bound near y = {near:.6}"),
+                NoSurface::Nowhere => "has a profile that is nowhere above 0".to_owned(),
+            },
+            help: "a profile is the distance from the axis, finite at each height from 0 to the surface's own",
+        })?;
+        Ok(Body::plain(Exact { frame, surface, finish }))
     })
 }
 
-struct Revsurf {
-    profile: &'static Profile,
+/// The line that an entity names or spells out.
+fn line(args: &Args) -> Result<Line, Refusal> {
+    match (args.get(&SURFER), args.get(&PROFILE)) {
+        (Some(profile), None) => Ok(profile.line()),
+        (None, Some(formula)) => Ok(Line { radius: (*formula).clone(), slope: None }),
+        (Some(_), Some(_)) => Err(Refusal {
+            attribute: Some("profile"),
+            message: "has a surfer and a profile".to_owned(),
+            help: "one of them is the line that is turned",
+        }),
+        (None, None) => Err(Refusal {
+            attribute: None,
+            message: "lacks `surfer` or `profile`".to_owned(),
+            help: "give it `surfer N`, or a formula: `profile \"2 + sin(y)\"`",
+        }),
+    }
+}
+
+/// Where it stands, and the directions in the world of its own x, y (the axis) and z.
+struct Frame {
     base: DVec3,
-    height: f64,
-    /// The directions in the world of its own x, y (the axis) and z.
     axes: DMat3,
 }
 
-impl Revsurf {
-    /// A ray as seen from the base and along the axes.
+impl Frame {
+    #[inline(always)]
     fn to_local(&self, ray: &Ray) -> Ray {
-        Ray {
-            origin: self.axes.transpose_mul_vec3(ray.origin - self.base),
-            dir: self.axes.transpose_mul_vec3(ray.dir),
-        }
+        Ray { origin: self.place(ray.origin), dir: self.axes.transpose_mul_vec3(ray.dir) }
     }
 
-    /// Positive outside of the surface, negative inside.
-    fn outside(&self, at: DVec3) -> f64 {
-        let radius = (self.profile.radius)(at.y);
-        at.x * at.x - radius * radius + at.z * at.z
+    #[inline(always)]
+    fn place(&self, at: DVec3) -> DVec3 {
+        self.axes.transpose_mul_vec3(at - self.base)
     }
 }
 
-impl Hittable for Revsurf {
+struct Exact {
+    frame: Frame,
+    surface: Revolution,
+    finish: Finish,
+}
+
+impl Hittable for Exact {
+    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
+        self.surface.first_hit(&self.frame.to_local(ray), within, self.finish)
+    }
+
+    fn normal(&self, at: DVec3) -> DVec3 {
+        (self.frame.axes * self.surface.normal(self.frame.place(at))).normalize()
+    }
+
+    fn is_convex(&self) -> bool {
+        false
+    }
+
+    fn is_two_sided(&self) -> bool {
+        true
+    }
+}
+
+struct Classic {
+    frame: Frame,
+    line: Line,
+    height: f64,
+}
+
+impl Hittable for Classic {
     /// The notes' method: between the ray's origin and its point closest to the axis, bisection to 1e-4. A ray
     /// that grazes the surface is lost, and so is the inner wall.
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        let ray = self.to_local(ray);
+        let ray = self.frame.to_local(ray);
+        let outside = |at: DVec3| {
+            let radius = self.line.radius.at(at.y);
+            at.x * at.x - radius * radius + at.z * at.z
+        };
         let closest = -(ray.origin.x * ray.dir.x + ray.origin.z * ray.dir.z)
             / (ray.dir.x * ray.dir.x + ray.dir.z * ray.dir.z);
-        let at_origin = self.outside(ray.origin);
-        if closest.is_nan() || closest <= 0.0 || at_origin * self.outside(ray.at(closest)) >= 0.0 {
+        let at_origin = outside(ray.origin);
+        if closest.is_nan() || closest <= 0.0 || at_origin * outside(ray.at(closest)) >= 0.0 {
             return MISS;
         }
         let (mut near, mut far) = (0.0, closest);
@@ -73,7 +139,7 @@ impl Hittable for Revsurf {
             if middle <= near || middle >= far {
                 break; // Far from the origin there is no number between them.
             }
-            if at_origin * self.outside(ray.at(middle)) < 0.0 {
+            if at_origin * outside(ray.at(middle)) < 0.0 {
                 far = middle;
             } else {
                 near = middle;
@@ -85,8 +151,8 @@ impl Hittable for Revsurf {
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {
-        let at = self.axes.transpose_mul_vec3(at - self.base);
-        let downhill = -(self.profile.radius)(at.y) * (self.profile.slope)(at.y);
-        (self.axes * DVec3::new(2.0 * at.x, 2.0 * downhill, 2.0 * at.z)).normalize()
+        let at = self.frame.place(at);
+        let downhill = -self.line.radius.at(at.y) * self.line.slope_at(at.y);
+        (self.frame.axes * DVec3::new(2.0 * at.x, 2.0 * downhill, 2.0 * at.z)).normalize()
     }
 }

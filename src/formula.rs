@@ -2,11 +2,13 @@
 
 use crate::number::Number;
 use std::f64::consts::PI;
+use std::fmt;
 use std::ops::Range;
 
 /// A formula in y, ready to be evaluated with any [`Number`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Formula {
+    text: String,
     /// The operations in the order in which they are done: operands first.
     steps: Vec<Step>,
 }
@@ -80,7 +82,7 @@ impl Formula {
         let mut parser = Parser { text, at: 0, steps: Vec::new(), depth: 0 };
         parser.sum()?;
         match parser.peek() {
-            None => Ok(Self { steps: parser.steps }),
+            None => Ok(Self { text: text.to_owned(), steps: parser.steps }),
             Some(')') => Err(parser.fault_here("a `)` without its `(`")),
             Some(_) => Err(parser.fault_here("an operator belongs here")),
         }
@@ -96,7 +98,7 @@ impl Formula {
             }
             _ => steps.push(Step::Powi(2)),
         }
-        Self { steps }
+        Self { text: format!("({})^2", self.text), steps }
     }
 
     /// Its value at y.
@@ -131,6 +133,13 @@ impl Formula {
             stack[top - 1] = value;
         }
         stack[0]
+    }
+}
+
+/// The text that it was read from.
+impl fmt::Display for Formula {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(&self.text)
     }
 }
 

@@ -49,6 +49,7 @@ pub trait Attribute: Sync {
             Type::Word => "a word".to_owned(),
             Type::Name(kind) => format!("the name of a {kind}"),
             Type::Choice(choices) => format!("the name or number of a {}", choices.what),
+            Type::Formula => "a formula in y, in quotes".to_owned(),
         }
     }
 }

@@ -6,7 +6,7 @@ use crate::pparm::Attribute;
 use crate::profile::Profile;
 use crate::registry::Registry;
 use crate::shading::{OnPlane, OnSphere};
-use crate::value::{Type, Value};
+use crate::value::{Datum, Type, Value};
 
 const INTRODUCTION: &str = r#"# The scene language
 
@@ -78,7 +78,11 @@ fn attribute_row(attribute: &'static dyn Attribute) -> String {
         .chain(attribute.aliases())
         .map(|name| format!("`{name}`"))
         .collect::<Vec<_>>();
-    let default = attribute.default().map_or("must be given".to_owned(), |datum| format!("`{datum}`"));
+    let default = match attribute.default() {
+        None => "must be given".to_owned(),
+        Some(Datum::Absent) => "left out".to_owned(),
+        Some(datum) => format!("`{datum}`"),
+    };
     let mut meaning = attribute.meaning().to_owned();
     if !attribute.unit().is_empty() {
         meaning += &format!(", in {}", attribute.unit());

@@ -23,8 +23,12 @@ impl Registry {
     /// Names given twice, each with both places: the plugins contradict each other.
     pub fn get() -> Result<&'static Registry, &'static str> {
         static REGISTRY: LazyLock<Result<Registry, String>> = LazyLock::new(|| {
-            let choices =
-                [contradictions::<OnPlane>(), contradictions::<OnSphere>(), contradictions::<&Profile>()];
+            let choices = [
+                contradictions::<OnPlane>(),
+                contradictions::<OnSphere>(),
+                contradictions::<&Profile>(),
+                profiles(),
+            ];
             match choices.concat() {
                 faults if faults.is_empty() => Registry::of(inventory::iter::<Entity>()),
                 faults => Err(faults.join("\n")),
@@ -93,6 +97,13 @@ impl Registry {
     pub fn iter(&self) -> impl Iterator<Item = &'static Entity> {
         self.entities.values().copied()
     }
+}
+
+/// Profiles that are no formulas.
+fn profiles() -> Vec<String> {
+    let mut faults: Vec<_> = inventory::iter::<Profile>().filter_map(Profile::fault).collect();
+    faults.sort();
+    faults
 }
 
 fn taken(what: &str, name: &str, first: &Entity, second: &Entity) -> String {

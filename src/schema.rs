@@ -80,7 +80,7 @@ fn value(attribute: &'static dyn Attribute) -> Value {
     let one = match attribute.value_type() {
         Type::Whole => json!({ "type": "integer" }),
         Type::Number => json!({ "type": "number" }),
-        Type::Word | Type::Name(_) => json!({ "type": "string" }),
+        Type::Word | Type::Name(_) | Type::Formula => json!({ "type": "string" }),
         Type::Choice(choices) => {
             let all = choices.all();
             let numbers = all.iter().filter_map(|choice| choice.number).map(|number| json!(number));
@@ -97,7 +97,9 @@ fn value(attribute: &'static dyn Attribute) -> Value {
     let mut schema = if forms.len() == 1 { forms.remove(0) } else { json!({ "anyOf": forms }) };
     schema["description"] = json!(description(attribute));
     if let Some(default) = attribute.default() {
-        schema["default"] = constant(&default);
+        if default != Datum::Absent {
+            schema["default"] = constant(&default);
+        }
     }
     schema
 }
@@ -120,6 +122,8 @@ fn constant(datum: &Datum) -> Value {
         Datum::Numbers(numbers) if numbers.len() == 1 => json!(numbers[0]),
         Datum::Numbers(numbers) => json!(numbers),
         Datum::Word(word) => json!(word),
+        Datum::Formula(formula) => json!(formula.to_string()),
+        Datum::Absent => Value::Null,
         Datum::Material { name, .. } | Datum::Texture { name, .. } => json!(**name),
         Datum::Choice(choice) => choice.number.map_or(json!(choice.name), |number| json!(number)),
     }

@@ -38,8 +38,9 @@ impl Syntax {
             Type::Word => ("WORD", 1),
             Type::Name(_) => ("NAME", 1),
             Type::Choice(_) => ("N", 1),
+            Type::Formula => ("2 + sin(y)", 1),
         };
-        let is_text = matches!(attribute.value_type(), Type::Word | Type::Name(_));
+        let is_text = matches!(attribute.value_type(), Type::Word | Type::Name(_) | Type::Formula);
         let values = vec![if is_text { self.word(value) } else { value.to_owned() }; count];
         self.pair(attribute.name(), &values)
     }
@@ -77,6 +78,8 @@ impl Syntax {
             Datum::Whole(numbers) => numbers.iter().map(i64::to_string).collect(),
             Datum::Numbers(numbers) => numbers.iter().map(|number| shortest(*number)).collect(),
             Datum::Word(word) => vec![self.word(word)],
+            Datum::Formula(formula) => vec![quoted(&formula.to_string())],
+            Datum::Absent => Vec::new(),
             Datum::Material { name, .. } | Datum::Texture { name, .. } => vec![self.word(name)],
             Datum::Choice(choice) => {
                 vec![choice.number.map_or_else(|| self.word(choice.name), |number| number.to_string())]

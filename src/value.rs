@@ -2,6 +2,7 @@
 
 use crate::choice::{ChoiceName, Choices};
 use crate::entity::Kind;
+use crate::formula::Formula;
 use crate::material::{Material, Rgb};
 use crate::syntax::Syntax;
 use crate::texture::Texture;
@@ -22,6 +23,8 @@ pub enum Type {
     Name(Kind),
     /// The name or the number of one of several things.
     Choice(Choices),
+    /// A formula.
+    Formula,
 }
 
 /// The values of one attribute, checked for type, number and rule.
@@ -49,6 +52,10 @@ pub enum Datum {
     },
     /// One of several things.
     Choice(ChoiceName),
+    /// A formula.
+    Formula(Arc<Formula>),
+    /// Nothing, where an attribute may be left out.
+    Absent,
 }
 
 impl Datum {
@@ -59,6 +66,8 @@ impl Datum {
             Self::Numbers(numbers) => numbers.iter().map(|number| format!(" {number:5.1}")).collect(),
             Self::Texture { name, .. } => format!(" {name:<15}"),
             Self::Choice(ChoiceName { number: Some(number), .. }) => format!(" {number:5}"),
+            Self::Absent => return String::new(),
+            Self::Formula(formula) => format!(" {formula}"),
             Self::Word(word) => format!(" {word}"),
             Self::Material { name, .. } => format!(" {name}"),
             Self::Choice(choice) => format!(" {}", choice.name),
@@ -200,6 +209,39 @@ impl Value for String {
         match datum {
             Datum::Word(word) => Some(word.clone()),
             _ => None,
+        }
+    }
+}
+
+impl Value for Arc<Formula> {
+    const TYPE: Type = Type::Formula;
+    const ARITY: &'static [usize] = &[1];
+
+    fn to_datum(&self) -> Datum {
+        Datum::Formula(self.clone())
+    }
+
+    fn from_datum(datum: &Datum) -> Option<Self> {
+        match datum {
+            Datum::Formula(formula) => Some(formula.clone()),
+            _ => None,
+        }
+    }
+}
+
+/// What may be left out.
+impl<T: Value> Value for Option<T> {
+    const TYPE: Type = T::TYPE;
+    const ARITY: &'static [usize] = T::ARITY;
+
+    fn to_datum(&self) -> Datum {
+        self.as_ref().map_or(Datum::Absent, T::to_datum)
+    }
+
+    fn from_datum(datum: &Datum) -> Option<Self> {
+        match datum {
+            Datum::Absent => Some(None),
+            datum => T::from_datum(datum).map(Some),
         }
     }
 }

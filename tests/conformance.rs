@@ -42,7 +42,7 @@ const SMOOTHED: [&str; 2] = ["aa/aademo", "aa/aademo2"];
 
 // The instructor's cone: its slope is twice what it should be, which shades its flank too dark.
 inventory::submit! {
-    Profile::new("doubled_cone", "the course's cone, mistake and all", |y| -4.0 / 6.0 * (y - 6.0), |_| -8.0 / 6.0)
+    Profile::new("doubled_cone", "the course's cone, mistake and all", "-4/6 * (y - 6)").slope("-8/6")
 }
 
 /// The course's folder of this name, if it is there.
@@ -101,7 +101,9 @@ fn the_courses_cone_is_all_explained_by_its_wrong_slope() {
     let Some(folder) = course() else { return };
     let path = folder.join("revsurf/revsurfa");
     let text = fs::read_to_string(path.with_extension("txt")).expect("a scene");
-    let actual = render(&model(&text.replace("surfer 1", "surfer doubled_cone")));
+    let actual = render(&model(
+        &text.replace("surfer 1", "surfer doubled_cone").replace("pixeldim", "accuracy classic pixeldim"),
+    ));
     assert_eq!(percent_near(&actual, &expected(&path)), 100.0);
 }
 

@@ -130,6 +130,8 @@ fn any_values(attribute: &'static dyn Attribute) -> BoxedStrategy<String> {
             .boxed(),
         Type::Name(Kind::Texture) => return Just(format!("{} t0\n", attribute.name())).boxed(),
         Type::Word | Type::Name(_) => return Just(format!("{} m0\n", attribute.name())).boxed(),
+        // A revsurf takes a surfer or a formula; the scenes have those.
+        Type::Formula => return Just(String::new()).boxed(),
         Type::Choice(choices) => prop::sample::select(choices.all()).prop_map(Datum::Choice).boxed(),
     };
     datum

@@ -112,7 +112,7 @@ const BARREL: &str = "//! A barrel.
 use crate::profile::Profile;
 
 inventory::submit! {
-    Profile::new(\"barrel\", \"a barrel 4 high\", |y| 1.5 - 0.1 * (y - 2.0) * (y - 2.0), |y| -0.2 * (y - 2.0))
+    Profile::new(\"barrel\", \"a barrel 4 high\", \"1.5 - 0.1 * (y - 2)^2\")
 }
 ";
 

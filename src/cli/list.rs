@@ -5,6 +5,7 @@ use tabray::entity::Entity;
 use tabray::pparm::Attribute;
 use tabray::reference;
 use tabray::registry::Registry;
+use tabray::value::Datum;
 
 /// List the entity types, or the attributes of one
 #[derive(clap::Args)]
@@ -58,6 +59,7 @@ fn details(entity: &'static Entity) -> String {
 /// Whether an attribute must be given, what its values must be, and in what unit they are.
 fn condition(attribute: &dyn Attribute) -> String {
     let mut parts = vec![match attribute.default() {
+        Some(Datum::Absent) => "may be left out".to_owned(),
         Some(default) => format!("{default} by default"),
         None => "required".to_owned(),
     }];

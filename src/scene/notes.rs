@@ -293,7 +293,7 @@ fn is_value(
     let most = attribute.map_or(1, |attribute| attribute.arity().iter().copied().max().unwrap_or(0));
     match attribute.map(|attribute| attribute.value_type()) {
         // A name may look like anything, even like a number or an attribute: `material material`.
-        Some(Type::Word | Type::Name(_) | Type::Choice(_)) => already < most,
+        Some(Type::Word | Type::Name(_) | Type::Choice(_) | Type::Formula) => already < most,
         _ if looks_like_number(word) => true,
         _ => {
             let Some(entity) = entity else { return already < most };

@@ -3,8 +3,11 @@
 use super::fault::Fault;
 use super::written::{Form, Word};
 use crate::choice::Choices;
+use crate::formula::Formula;
 use crate::value::{Datum, Type};
 use crate::words::nearest;
+use std::ops::Range;
+use std::sync::Arc;
 
 /// Reads words as values of a type.
 ///
@@ -15,6 +18,7 @@ pub fn read(value_type: Type, words: &[Word<'_>]) -> Result<Datum, Vec<Fault>> {
         Type::Whole => all(words, whole).map(Datum::Whole),
         Type::Number => all(words, number).map(Datum::Numbers),
         Type::Word | Type::Name(_) => words.first().ok_or_else(Vec::new).and_then(text),
+        Type::Formula => words.first().ok_or_else(Vec::new).and_then(formula),
         Type::Choice(choices) => words.first().ok_or_else(Vec::new).and_then(|word| choice(choices, word)),
     }
 }
@@ -28,6 +32,21 @@ fn text(word: &Word<'_>) -> Result<Datum, Vec<Fault>> {
         return Err(vec![fault("has a line end or another control character")]);
     }
     Ok(Datum::Word(word.text.to_string()))
+}
+
+fn formula(word: &Word<'_>) -> Result<Datum, Vec<Fault>> {
+    Formula::parse(&word.text).map(|formula| Datum::Formula(Arc::new(formula))).map_err(|fault| {
+        // The place inside of the quotes, where the text stands there as it is.
+        let quotes = usize::from(word.form == Form::Text);
+        let is_as_it_is = |place: &Range<usize>| place.len() == word.text.len() + 2 * quotes;
+        let inside = |place: &Range<usize>| {
+            let at = place.start + quotes;
+            at + fault.place.start..at + fault.place.end
+        };
+        let place =
+            word.place.as_ref().map(|place| if is_as_it_is(place) { inside(place) } else { place.clone() });
+        vec![Fault::error(place, fault.message).help(fault.help)]
+    })
 }
 
 fn choice(choices: Choices, word: &Word<'_>) -> Result<Datum, Vec<Fault>> {
