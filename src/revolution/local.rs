@@ -53,8 +53,7 @@ impl Local {
         } else if origin.x * origin.x + origin.z * origin.z > widest * widest {
             return None;
         }
-        // Written so that what is not a number is nothing.
-        if !(near <= far) || !base.is_finite() {
+        if near > far || (far - near).is_nan() || !base.is_finite() {
             return None;
         }
         let moved = DVec3::new(

@@ -127,19 +127,7 @@ fn signs(profile: &Formula, (from, to): (f64, f64), halvings: u32, ranges: &mut 
         // It grows or falls all the way: there is one change of sign at most.
         let is_void = |y: f64| profile.at(y) < 0.0;
         let (at_from, at_to) = (is_void(from), is_void(to));
-        let (mut low, mut high) = (from, to);
-        while at_from != at_to {
-            let middle = 0.5 * (low + high);
-            if middle <= low || middle >= high {
-                break;
-            }
-            if is_void(middle) == at_from {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        let change = if at_from == at_to { to } else { low };
+        let change = if at_from == at_to { to } else { change(|y| is_void(y) == at_from, from, to) };
         push(from, change, at_from);
         push(change, to, at_to);
     } else if halvings == 0 || middle <= from || middle >= to {
@@ -147,6 +135,21 @@ fn signs(profile: &Formula, (from, to): (f64, f64), halvings: u32, ranges: &mut 
     } else {
         signs(profile, (from, middle), halvings - 1, ranges);
         signs(profile, (middle, to), halvings - 1, ranges);
+    }
+}
+
+/// The last number from `low` to `high` of which something is true, which is true of `low` and not of `high`.
+fn change(is_true: impl Fn(f64) -> bool, mut low: f64, mut high: f64) -> f64 {
+    loop {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            return low;
+        }
+        if is_true(middle) {
+            low = middle;
+        } else {
+            high = middle;
+        }
     }
 }
 
