@@ -4,8 +4,7 @@ use super::rainbow;
 use crate::geometry::Shader;
 use crate::material::{Material, Rgb};
 use crate::shading::{Anchor, ProceduralShader};
-use glam::DVec3;
-use std::f64::consts::PI;
+use glam::{DVec2, DVec3};
 
 inventory::submit! {
     ProceduralShader::new("angular", "colours around the centre, whatever the material", |anchor| Box::new(Angular(anchor))).on_sphere(0)
@@ -16,7 +15,7 @@ struct Angular(Anchor);
 impl Shader for Angular {
     /// Up and down look alike: the notes' test for the lower half, `coord.y < 3.0`, is always true.
     fn ambient(&self, _material: &Material, at: DVec3) -> Rgb {
-        let DVec3 { x, y, .. } = (at - self.0.origin) / self.0.unit;
-        rainbow::colour(2.0 * PI - libm::acos(x / (x * x + y * y).sqrt()))
+        let DVec3 { x, y, .. } = at - self.0.origin;
+        rainbow::colour(DVec2::new(x, -y.abs()))
     }
 }

@@ -1,9 +1,12 @@
 //! An ellipsoid: a sphere stretched along the axes.
 
 use super::sphere::{self, Sphere};
+use crate::accuracy::Accuracy;
+use crate::ball::{self, Line};
 use crate::entity::Entity;
 use crate::geometry::{Body, Hittable, Ray, Span};
 use crate::pparm::{Pparm, Row, Table};
+use crate::twofold::Twofold;
 use glam::DVec3;
 
 static SCALE: Pparm<DVec3> = Pparm::required("scale", "how much it is stretched along x, y and z")
@@ -13,28 +16,38 @@ const TABLE: Table = &[&SCALE as &dyn Row];
 
 inventory::submit! {
     Entity::shape("ellipsoid", "a ball stretched along the axes", &[sphere::TABLE, TABLE], |args| {
-        let Sphere { center, radius } = Sphere::new(args);
-        let scale = args.get(&SCALE);
-        Ok(Body::plain(Ellipsoid { center, scale, unstretched: Sphere { center: DVec3::ZERO, radius } }))
+        Ok(Body::plain(Ellipsoid { ball: Sphere::new(args), scale: args.get(&SCALE) }))
     })
 }
 
 struct Ellipsoid {
-    center: DVec3,
+    /// The sphere that it is where space is squeezed by `scale` around its centre.
+    ball: Sphere,
     scale: DVec3,
-    /// The sphere that it is where space is squeezed by `scale`.
-    unstretched: Sphere,
 }
 
 impl Hittable for Ellipsoid {
     /// Squeezed, a ray's direction is no unit vector any more, so that distances stay what they were.
     #[inline(always)]
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        let squeezed = Ray { origin: (ray.origin - self.center) / self.scale, dir: ray.dir / self.scale };
-        self.unstretched.distance(&squeezed, within)
+        let Sphere { center, radius, accuracy } = self.ball;
+        if accuracy == Accuracy::Classic {
+            let (from, dir) = ((ray.origin - center) / self.scale, ray.dir / self.scale);
+            return within.keep(sphere::classic(from, dir, radius));
+        }
+        let scale = self.scale.to_array().map(Twofold::from);
+        let line = Line {
+            from: [0, 1, 2].map(|axis| Twofold::difference(ray.origin[axis], center[axis]) / scale[axis]),
+            dir: [0, 1, 2].map(|axis| Twofold::from(ray.dir[axis]) / scale[axis]),
+        };
+        within.keep(ball::first_hit(&line, radius, accuracy))
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {
-        ((at - self.center) / (self.scale * self.scale)).normalize()
+        ((at - self.ball.center) / (self.scale * self.scale)).normalize()
+    }
+
+    fn is_two_sided(&self) -> bool {
+        self.ball.is_two_sided()
     }
 }

@@ -1,6 +1,7 @@
 //! A finite plane: a rectangle.
 
 use super::plane::{self, Plane};
+use crate::accuracy::Accuracy;
 use crate::entity::{Args, Entity, Refusal};
 use crate::geometry::{Body, Hittable, MISS, Ray, Span};
 use crate::pparm::{Derived, Pparm, Row, Table};
@@ -65,12 +66,16 @@ pub struct FinitePlane {
     pub plane: Plane,
     pub dimensions: DVec2,
     sides: [DVec3; 2],
+    /// How far from the world's origin it reaches, about.
+    reach: f64,
 }
 
 impl FinitePlane {
     /// The rectangle of an entity whose table has the rows of a plane's and of [`TABLE`].
     pub fn new(args: &Args) -> Result<Self, Refusal> {
-        Ok(Self { plane: Plane::new(args), dimensions: args.get(&DIMENSIONS), sides: sides(args)? })
+        let (plane, dimensions) = (Plane::new(args), args.get(&DIMENSIONS));
+        let reach = plane.point.abs().max_element() + dimensions.element_sum();
+        Ok(Self { plane, dimensions, sides: sides(args)?, reach })
     }
 
     /// How far along its two sides a point of its plane is, from its corner.
@@ -80,11 +85,17 @@ impl FinitePlane {
         DVec2::new(self.sides[0].dot(from_corner), self.sides[1].dot(from_corner))
     }
 
-    /// Whether a point of its plane is in it, its sides included.
+    /// Whether it has the point of its plane where a ray crosses that, its sides included.
+    ///
+    /// A side is as wide as rounding makes the point, so that nothing falls through between two rectangles.
     #[inline(always)]
-    pub fn contains(&self, at: DVec3) -> bool {
-        let DVec2 { x, y } = self.coordinates(at);
-        (0.0..=self.dimensions.x).contains(&x) && (0.0..=self.dimensions.y).contains(&y)
+    pub fn has_crossing(&self, ray: &Ray, distance: f64) -> bool {
+        let DVec2 { x, y } = self.coordinates(ray.at(distance));
+        let slack = match self.plane.accuracy {
+            Accuracy::Classic => 0.0,
+            _ => 4.0 * f64::EPSILON * (ray.origin.abs().max_element() + distance + self.reach),
+        };
+        (-slack..=self.dimensions.x + slack).contains(&x) && (-slack..=self.dimensions.y + slack).contains(&y)
     }
 }
 
@@ -92,7 +103,7 @@ impl Hittable for FinitePlane {
     #[inline(always)]
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
         let distance = self.plane.distance(ray, within);
-        if self.contains(ray.at(distance)) { distance } else { MISS }
+        if self.has_crossing(ray, distance) { distance } else { MISS }
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {

@@ -1,8 +1,10 @@
 //! A plane: every point in two directions, without end.
 
+use crate::accuracy::Accuracy;
 use crate::entity::{Args, Entity};
 use crate::geometry::{Body, Hittable, MISS, Ray, Span};
 use crate::pparm::{Pparm, Table};
+use crate::twofold::Twofold;
 use glam::DVec3;
 
 pub static NORMAL: Pparm<DVec3> =
@@ -22,25 +24,53 @@ inventory::submit! {
 pub struct Plane {
     pub normal: DVec3,
     pub point: DVec3,
-    normal_dot_point: f64,
+    pub accuracy: Accuracy,
 }
 
 impl Plane {
     /// The plane of an entity whose table has [`TABLE`]'s rows.
     pub fn new(args: &Args) -> Self {
-        Self::through(args.get(&NORMAL).normalize(), args.get(&POINT))
-    }
-
-    /// The plane through a point with this unit normal.
-    pub fn through(normal: DVec3, point: DVec3) -> Self {
-        Self { normal, point, normal_dot_point: normal.dot(point) }
+        let normal = args.get(&NORMAL).normalize();
+        Self { normal, point: args.get(&POINT), accuracy: args.accuracy() }
     }
 
     /// The distance at which a ray crosses it, forward or backward; [`MISS`] for one that runs along it.
+    ///
+    /// The notes' form subtracts two numbers that grow with the distance from the world's origin, and takes a ray
+    /// for parallel where the product is 0, which rounding hardly ever leaves it.
     #[inline(always)]
     pub fn crossing(&self, ray: &Ray) -> f64 {
         let toward = self.normal.dot(ray.dir);
-        if toward == 0.0 { MISS } else { (self.normal_dot_point - self.normal.dot(ray.origin)) / toward }
+        if self.accuracy == Accuracy::Classic {
+            let away = self.normal.dot(self.point) - self.normal.dot(ray.origin);
+            return if toward == 0.0 { MISS } else { away / toward };
+        }
+        let between = self.point - ray.origin;
+        let away = self.normal.dot(between);
+        let (toward_size, away_size) = (self.size(ray.dir), self.size(between));
+        if toward.abs() <= 4.0 * f64::EPSILON * toward_size {
+            return MISS;
+        }
+        let cancels = toward_size > 2.0 * toward.abs() || away_size > 2.0 * away.abs();
+        if self.accuracy == Accuracy::Strict || (cancels && self.accuracy == Accuracy::Exact) {
+            return self.crossing_in_twice_the_precision(ray);
+        }
+        away / toward
+    }
+
+    /// How large the products are that the product with the normal is a sum of.
+    #[inline(always)]
+    fn size(&self, of: DVec3) -> f64 {
+        (self.normal * of).abs().element_sum()
+    }
+
+    fn crossing_in_twice_the_precision(&self, ray: &Ray) -> f64 {
+        let dot = |of: [Twofold; 3]| {
+            let product = |axis: usize| Twofold::from(self.normal[axis]) * of[axis];
+            product(0) + product(1) + product(2)
+        };
+        let between = [0, 1, 2].map(|axis| Twofold::difference(self.point[axis], ray.origin[axis]));
+        (dot(between) / dot(ray.dir.to_array().map(Twofold::from))).high
     }
 }
 

@@ -39,7 +39,7 @@ impl Light for Projector {
         let ray = Ray { origin: toward, dir: (self.light.location - toward).normalize() };
         let distance = self.picture.rectangle.plane.crossing(&ray);
         let at = ray.at(distance);
-        (distance > 0.0 && self.picture.rectangle.contains(at))
+        (distance > 0.0 && self.picture.rectangle.has_crossing(&ray, distance))
             .then(|| self.light.emissivity * self.picture.colour(at))
     }
 

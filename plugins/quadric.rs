@@ -1,8 +1,11 @@
 //! A quadric: every point that solves an equation of the second degree (the notes' "General Quadric Surfaces").
 
+use crate::accuracy::Accuracy;
 use crate::entity::{Entity, Refusal};
-use crate::geometry::{Body, Hittable, MISS, Ray, Span};
+use crate::geometry::{Body, Hittable, MISS, Ray, Side, Span};
 use crate::pparm::{Pparm, Table};
+use crate::quadratic;
+use crate::twofold::advance;
 use glam::{DMat3, DVec3};
 
 static COEFFICIENTS: Pparm<[f64; 10]> =
@@ -37,7 +40,15 @@ inventory::submit! {
             DVec3::new(d / 2.0, b, f / 2.0),
             DVec3::new(e / 2.0, f / 2.0, c),
         );
-        Ok(Body::plain(Quadric { square, linear: DVec3::new(g, h, i), constant: -j, center: args.get(&CENTER), low, high }))
+        Ok(Body::plain(Quadric {
+            square,
+            linear: DVec3::new(g, h, i),
+            constant: -j,
+            center: args.get(&CENTER),
+            low,
+            high,
+            is_classic: args.accuracy() == Accuracy::Classic,
+        }))
     })
 }
 
@@ -49,6 +60,7 @@ struct Quadric {
     center: DVec3,
     low: DVec3,
     high: DVec3,
+    is_classic: bool,
 }
 
 impl Quadric {
@@ -56,28 +68,66 @@ impl Quadric {
         let from_center = at - self.center;
         self.low.cmple(from_center).all() && from_center.cmple(self.high).all()
     }
+
+    /// The coefficients of `a t^2 + 2 b t + c`, which is 0 where a line meets it.
+    #[inline(always)]
+    fn along(&self, origin: DVec3, dir: DVec3) -> [f64; 3] {
+        let turned = self.square * dir;
+        [
+            dir.dot(turned),
+            origin.dot(turned) + 0.5 * self.linear.dot(dir),
+            origin.dot(self.square * origin) + self.linear.dot(origin) + self.constant,
+        ]
+    }
+
+    /// The distances of both hits, the nearer first; what is none is no number.
+    #[inline(always)]
+    fn crossings(&self, ray: &Ray, leaves: Option<Side>) -> [f64; 2] {
+        let origin = ray.origin - self.center;
+        if self.is_classic {
+            let [a, b, c] = self.along(origin, ray.dir);
+            if a == 0.0 {
+                return [-c / (2.0 * b), f64::NAN];
+            }
+            let (a, b) = (a, 2.0 * b);
+            let root = (b * b - 4.0 * a * c).sqrt();
+            let (one, other) = ((-b - root) / (2.0 * a), (-b + root) / (2.0 * a));
+            return [one.min(other), one.max(other)];
+        }
+        // Counted from near the center, so that nothing far away is left in the arithmetic.
+        let base = if leaves.is_some() { 0.0 } else { -origin.dot(ray.dir) };
+        let moved = |axis: usize| advance(origin[axis], base, ray.dir[axis]);
+        let [a, b, c] = self.along(DVec3::new(moved(0), moved(1), moved(2)), ray.dir);
+        // A direction along which it is straight, but for rounding: the far root would be made of that.
+        let dir = ray.dir.abs();
+        let size = dir.dot(DMat3::from_cols_array(&self.square.to_cols_array().map(f64::abs)) * dir);
+        let a = if a.abs() <= 4.0 * f64::EPSILON * size { 0.0 } else { a };
+        // A ray that leaves it starts on one root: the other one is what is left.
+        let c = if leaves.is_some() { 0.0 } else { c };
+        quadratic::roots(a, b, c).map(|root| base + root)
+    }
 }
 
 impl Hittable for Quadric {
-    /// The nearer root that lies in the box, or the farther one.
+    /// The nearer hit that lies in the box, or the farther one.
     #[inline(always)]
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        let (origin, dir) = (ray.origin - self.center, ray.dir);
-        let a = dir.dot(self.square * dir);
-        let b = 2.0 * origin.dot(self.square * dir) + self.linear.dot(dir);
-        let c = origin.dot(self.square * origin) + self.linear.dot(origin) + self.constant;
-        let roots = if a == 0.0 {
-            [-c / b, f64::NAN]
-        } else {
-            let root = (b * b - 4.0 * a * c).sqrt();
-            let (one, other) = ((-b - root) / (2.0 * a), (-b + root) / (2.0 * a));
-            [one.min(other), one.max(other)]
-        };
-        let kept = roots.map(|root| within.keep(root)).into_iter().find(|root| self.keeps(ray.at(*root)));
+        let crossings = self.crossings(ray, within.leaves).map(|distance| within.keep(distance));
+        let kept = crossings.into_iter().find(|distance| self.keeps(ray.at(*distance)));
         kept.unwrap_or(MISS)
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {
-        (2.0 * (self.square * (at - self.center)) + self.linear).normalize()
+        let normal = 2.0 * (self.square * (at - self.center)) + self.linear;
+        // A cone's apex has none; any will do.
+        normal.try_normalize().unwrap_or(DVec3::Y)
+    }
+
+    fn is_convex(&self) -> bool {
+        self.is_classic
+    }
+
+    fn is_two_sided(&self) -> bool {
+        !self.is_classic
     }
 }

@@ -3,8 +3,7 @@
 use crate::geometry::Shader;
 use crate::material::{Material, Rgb};
 use crate::shading::{Anchor, ProceduralShader};
-use glam::DVec3;
-use std::f64::consts::PI;
+use glam::{DVec2, DVec3};
 
 inventory::submit! {
     ProceduralShader::new("rainbow", "colours around a point, whatever the material", |anchor| Box::new(Rainbow(anchor))).on_plane(1)
@@ -18,19 +17,17 @@ impl Shader for Rainbow {
     }
 }
 
-/// The angle of a direction around z, from 0 to 2 pi.
-fn angle(toward: DVec3) -> f64 {
-    let angle = libm::acos(toward.x / (toward.x * toward.x + toward.y * toward.y).sqrt());
-    if toward.y < 0.0 { 2.0 * PI - angle } else { angle }
-}
-
-/// Red, green and blue from 0 to 2, each a third of a turn behind the other, twice around.
-pub fn colour(angle: f64) -> Rgb {
-    let channel = |third: f64| 1.0 + libm::cos(2.0 * angle + third * 2.0 * PI / 3.0);
-    Rgb::new(channel(0.0), channel(1.0), channel(2.0))
+/// Red, green and blue from 0 to 2, each a third of a turn behind the other, twice around: `1 + cos(2 t + k/3)` for
+/// a direction of the angle t. Without an angle there is no `acos` to lose digits or to be asked for what is none.
+pub fn colour(toward: DVec2) -> Rgb {
+    // At the point itself there is no direction; all are alike there.
+    let DVec2 { x, y } = (toward / toward.abs().max_element()).try_normalize().unwrap_or(DVec2::ZERO);
+    let (cos, sin) = (x * x - y * y, 2.0 * x * y);
+    let half_root_3 = 0.5 * 3.0_f64.sqrt();
+    Rgb::new(1.0 + cos, 1.0 - 0.5 * cos - half_root_3 * sin, 1.0 - 0.5 * cos + half_root_3 * sin)
 }
 
 /// The colour at a point of a surface, as seen from an anchor.
 pub fn around(anchor: &Anchor, at: DVec3) -> Rgb {
-    colour(angle(at - anchor.origin))
+    colour((at - anchor.origin).truncate())
 }

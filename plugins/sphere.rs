@@ -1,8 +1,11 @@
 //! A sphere: every point at one distance from a centre.
 
+use crate::accuracy::Accuracy;
+use crate::ball::{self, Line};
 use crate::entity::{Args, Entity};
 use crate::geometry::{Body, Hittable, MISS, Ray, Span};
 use crate::pparm::{Pparm, Table};
+use crate::twofold::Twofold;
 use glam::DVec3;
 
 static CENTER: Pparm<DVec3> =
@@ -24,28 +27,43 @@ inventory::submit! {
 pub struct Sphere {
     pub center: DVec3,
     pub radius: f64,
+    pub accuracy: Accuracy,
 }
 
 impl Sphere {
     /// The sphere of an entity whose table has [`TABLE`]'s rows.
     pub fn new(args: &Args) -> Self {
-        Self { center: args.get(&CENTER), radius: args.get(&RADIUS) }
+        Self { center: args.get(&CENTER), radius: args.get(&RADIUS), accuracy: args.accuracy() }
     }
 }
 
 impl Hittable for Sphere {
     #[inline(always)]
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        let from_center = ray.origin - self.center;
-        let a = ray.dir.dot(ray.dir);
-        let b = 2.0 * from_center.dot(ray.dir);
-        let c = from_center.dot(from_center) - self.radius * self.radius;
-        let discriminant = b * b - 4.0 * a * c;
-        // A ray that only touches the sphere misses it (the notes).
-        if discriminant <= 0.0 { MISS } else { within.keep((-b - discriminant.sqrt()) / (2.0 * a)) }
+        if self.accuracy == Accuracy::Classic {
+            return within.keep(classic(ray.origin - self.center, ray.dir, self.radius));
+        }
+        let from = |axis: usize| Twofold::difference(ray.origin[axis], self.center[axis]);
+        let line = Line { from: [0, 1, 2].map(from), dir: ray.dir.to_array().map(Twofold::from) };
+        within.keep(ball::first_hit(&line, self.radius, self.accuracy))
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {
         (at - self.center).normalize()
     }
+
+    fn is_two_sided(&self) -> bool {
+        self.accuracy != Accuracy::Classic
+    }
+}
+
+/// The notes' distance of a ball, for a ray that starts `from` its centre.
+#[inline(always)]
+pub fn classic(from: DVec3, dir: DVec3, radius: f64) -> f64 {
+    let a = dir.dot(dir);
+    let b = 2.0 * from.dot(dir);
+    let c = from.dot(from) - radius * radius;
+    let discriminant = b * b - 4.0 * a * c;
+    // A ray that only touches the sphere misses it.
+    if discriminant <= 0.0 { MISS } else { (-b - discriminant.sqrt()) / (2.0 * a) }
 }

@@ -1,6 +1,7 @@
 //! A triangle.
 
-use super::plane;
+use super::plane::Plane;
+use crate::accuracy::Accuracy;
 use crate::entity::{Entity, Refusal};
 use crate::geometry::{Body, Hittable, MISS, Ray, Span};
 use crate::pparm::{Pparm, Table};
@@ -28,12 +29,13 @@ inventory::submit! {
             message: "has its corners in one line".to_owned(),
             help: "three corners that are not in one line make a triangle",
         })?;
-        Ok(Body::plain(Triangle { plane: plane::Plane::through(normal, a), corners }))
+        let plane = Plane { normal, point: a, accuracy: args.accuracy() };
+        Ok(Body::plain(Triangle { plane, corners }))
     })
 }
 
 struct Triangle {
-    plane: plane::Plane,
+    plane: Plane,
     corners: [DVec3; 3],
 }
 
@@ -41,14 +43,35 @@ impl Hittable for Triangle {
     #[inline(always)]
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
         let distance = self.plane.distance(ray, within);
-        let at = ray.at(distance);
-        // Inside is to the left of every edge.
-        let left_of = |from: DVec3, to: DVec3| (to - from).cross(at - from).dot(self.plane.normal) >= 0.0;
-        let [a, b, c] = self.corners;
-        if left_of(a, b) && left_of(b, c) && left_of(c, a) { distance } else { MISS }
+        let is_inside = match self.plane.accuracy {
+            Accuracy::Classic => self.contains(ray.at(distance)),
+            _ => self.is_passed_by(ray),
+        };
+        if is_inside { distance } else { MISS }
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {
         self.plane.normal(at)
+    }
+}
+
+impl Triangle {
+    /// Whether a point of the plane is to the left of every edge.
+    #[inline(always)]
+    fn contains(&self, at: DVec3) -> bool {
+        let left_of = |from: DVec3, to: DVec3| (to - from).cross(at - from).dot(self.plane.normal) >= 0.0;
+        let [a, b, c] = self.corners;
+        left_of(a, b) && left_of(b, c) && left_of(c, a)
+    }
+
+    /// Whether a ray, continued both ways, passes every edge on the same side.
+    ///
+    /// Of an edge that two triangles share, each computes the same number but for its sign, so that no ray falls
+    /// through between them (Woop, Benthin and Wald 2013).
+    #[inline(always)]
+    fn is_passed_by(&self, ray: &Ray) -> bool {
+        let [a, b, c] = self.corners.map(|corner| corner - ray.origin);
+        let sides = [a.cross(b), b.cross(c), c.cross(a)].map(|edge| edge.dot(ray.dir));
+        sides.iter().all(|side| *side >= 0.0) || sides.iter().all(|side| *side <= 0.0)
     }
 }

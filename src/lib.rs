@@ -10,6 +10,7 @@
 
 pub mod accuracy;
 pub mod aov;
+pub mod ball;
 pub mod camera;
 pub mod choice;
 pub mod debug;
@@ -27,6 +28,7 @@ pub mod picture;
 pub mod pparm;
 pub mod probe;
 pub mod profile;
+pub mod quadratic;
 pub mod reference;
 pub mod registry;
 pub mod render;

@@ -96,10 +96,8 @@ fn value(attribute: &'static dyn Attribute) -> Value {
     }
     let mut schema = if forms.len() == 1 { forms.remove(0) } else { json!({ "anyOf": forms }) };
     schema["description"] = json!(description(attribute));
-    if let Some(default) = attribute.default() {
-        if default != Datum::Absent {
-            schema["default"] = constant(&default);
-        }
+    if let Some(default) = attribute.default().filter(|default| *default != Datum::Absent) {
+        schema["default"] = constant(&default);
     }
     schema
 }
