@@ -3,8 +3,10 @@
 use super::sphere::{self, Sphere};
 use crate::accuracy::Accuracy;
 use crate::ball::{self, Line};
+use crate::certify::{self, Enclosure, Equation};
 use crate::entity::Entity;
 use crate::geometry::{Body, Hittable, Ray, Span};
+use crate::number::Number;
 use crate::pparm::{Pparm, Row, Table};
 use crate::twofold::Twofold;
 use glam::DVec3;
@@ -49,5 +51,18 @@ impl Hittable for Ellipsoid {
 
     fn is_two_sided(&self) -> bool {
         self.ball.is_two_sided()
+    }
+
+    fn certify(&self, ray: &Ray) -> Enclosure {
+        certify::first_hit(self, ray)
+    }
+}
+
+impl Equation for Ellipsoid {
+    fn value<N: Number>(&self, at: [N; 3]) -> N {
+        let part = |axis: usize| {
+            ((at[axis] - N::constant(self.ball.center[axis])) / N::constant(self.scale[axis])).powi(2)
+        };
+        part(0) + part(1) + part(2) - N::constant(self.ball.radius).powi(2)
     }
 }

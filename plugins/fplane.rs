@@ -2,8 +2,11 @@
 
 use super::plane::{self, Plane};
 use crate::accuracy::Accuracy;
+use crate::certify::{self, Enclosure, Equation};
 use crate::entity::{Args, Entity, Refusal};
 use crate::geometry::{Body, Hittable, MISS, Ray, Span};
+use crate::interval::Interval;
+use crate::number::Number;
 use crate::pparm::{Derived, Pparm, Row, Table};
 use crate::value::Value;
 use glam::{DMat3, DVec2, DVec3};
@@ -108,5 +111,25 @@ impl Hittable for FinitePlane {
 
     fn normal(&self, at: DVec3) -> DVec3 {
         self.plane.normal(at)
+    }
+
+    fn certify(&self, ray: &Ray) -> Enclosure {
+        certify::first_hit(self, ray)
+    }
+}
+
+impl Equation for FinitePlane {
+    fn value<N: Number>(&self, at: [N; 3]) -> N {
+        self.plane.value(at)
+    }
+
+    fn kept(&self, at: [Interval; 3]) -> Interval {
+        let from_corner = [0, 1, 2].map(|axis| at[axis] - Interval::constant(self.plane.point[axis]));
+        let inside = |side: usize| {
+            let part = |axis: usize| from_corner[axis] * Interval::constant(self.sides[side][axis]);
+            let along = part(0) + part(1) + part(2);
+            along.min(Interval::constant(self.dimensions[side]) - along)
+        };
+        self.plane.kept(at).min(inside(0)).min(inside(1))
     }
 }

@@ -1,8 +1,11 @@
 //! A plane: every point in two directions, without end.
 
 use crate::accuracy::Accuracy;
+use crate::certify::{self, Enclosure, Equation};
 use crate::entity::{Args, Entity};
 use crate::geometry::{Body, Hittable, MISS, Ray, Span};
+use crate::interval::Interval;
+use crate::number::Number;
 use crate::pparm::{Pparm, Table};
 use crate::twofold::Twofold;
 use glam::DVec3;
@@ -47,10 +50,11 @@ impl Plane {
         }
         let between = self.point - ray.origin;
         let away = self.normal.dot(between);
-        let (toward_size, away_size) = (self.size(ray.dir), self.size(between));
-        if toward.abs() <= 4.0 * f64::EPSILON * toward_size {
+        // Parallel, but for what rounding makes of unit vectors.
+        if toward.abs() <= 4.0 * f64::EPSILON {
             return MISS;
         }
+        let (toward_size, away_size) = (self.size(ray.dir), self.size(between));
         let cancels = toward_size > 2.0 * toward.abs() || away_size > 2.0 * away.abs();
         if self.accuracy == Accuracy::Strict || (cancels && self.accuracy == Accuracy::Exact) {
             return self.crossing_in_twice_the_precision(ray);
@@ -84,5 +88,20 @@ impl Hittable for Plane {
 
     fn normal(&self, _at: DVec3) -> DVec3 {
         self.normal
+    }
+
+    fn certify(&self, ray: &Ray) -> Enclosure {
+        certify::first_hit(self, ray)
+    }
+}
+
+impl Equation for Plane {
+    fn value<N: Number>(&self, at: [N; 3]) -> N {
+        let part = |axis: usize| (at[axis] - N::constant(self.point[axis])) * N::constant(self.normal[axis]);
+        part(0) + part(1) + part(2)
+    }
+
+    fn kept(&self, [_, _, z]: [Interval; 3]) -> Interval {
+        Interval::constant(0.01) - z
     }
 }

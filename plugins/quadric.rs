@@ -1,8 +1,11 @@
 //! A quadric: every point that solves an equation of the second degree (the notes' "General Quadric Surfaces").
 
 use crate::accuracy::Accuracy;
+use crate::certify::{self, Enclosure, Equation};
 use crate::entity::{Entity, Refusal};
 use crate::geometry::{Body, Hittable, MISS, Ray, Side, Span};
+use crate::interval::Interval;
+use crate::number::Number;
 use crate::pparm::{Pparm, Table};
 use crate::quadratic;
 use crate::twofold::advance;
@@ -129,5 +132,30 @@ impl Hittable for Quadric {
 
     fn is_two_sided(&self) -> bool {
         !self.is_classic
+    }
+
+    fn certify(&self, ray: &Ray) -> Enclosure {
+        certify::first_hit(self, ray)
+    }
+}
+
+impl Equation for Quadric {
+    fn value<N: Number>(&self, at: [N; 3]) -> N {
+        let from_center = [0, 1, 2].map(|axis| at[axis] - N::constant(self.center[axis]));
+        let sum = |part: &dyn Fn(usize) -> N| part(0) + part(1) + part(2);
+        let row = |row: usize| {
+            let square = sum(&|column| from_center[column] * N::constant(self.square.col(column)[row]));
+            from_center[row] * (square + N::constant(self.linear[row]))
+        };
+        sum(&row) + N::constant(self.constant)
+    }
+
+    fn kept(&self, at: [Interval; 3]) -> Interval {
+        let inside = |axis: usize| {
+            let from_center = at[axis] - Interval::constant(self.center[axis]);
+            let (low, high) = (Interval::constant(self.low[axis]), Interval::constant(self.high[axis]));
+            (from_center - low).min(high - from_center)
+        };
+        inside(0).min(inside(1)).min(inside(2))
     }
 }

@@ -1,12 +1,13 @@
 //! A surface of revolution: a line turned around an axis.
 
 use crate::accuracy::Accuracy;
+use crate::certify::{self, Enclosure};
 use crate::entity::{Args, Entity, Refusal};
 use crate::formula::Formula;
-use crate::geometry::{Body, Hittable, MISS, Ray, Span};
+use crate::geometry::{Body, Hittable, Ray, Span};
 use crate::pparm::{Pparm, Table};
 use crate::profile::{Line, Profile};
-use crate::revolution::{Finish, NoSurface, Revolution};
+use crate::revolution::{Classic, Finish, NoSurface, Revolution};
 use glam::{DMat3, DVec3};
 use std::sync::Arc;
 
@@ -36,7 +37,10 @@ inventory::submit! {
         let frame = Frame { base: args.get(&BASE), axes: DMat3::from_cols(across, up, away) };
         let (line, height) = (line(args)?, args.get(&HEIGHT));
         let finish = match args.accuracy() {
-            Accuracy::Classic => return Ok(Body::plain(Classic { frame, line, height })),
+            Accuracy::Classic => {
+                let surface = Surface::Classic(Classic { line, height });
+                return Ok(Body::plain(Revsurf { frame, surface }));
+            }
             Accuracy::Draft => Finish::Bracket,
             Accuracy::Exact | Accuracy::Strict => Finish::Root,
         };
@@ -48,7 +52,7 @@ inventory::submit! {
             },
             help: "a profile is the distance from the axis, finite at each height from 0 to the surface's own",
         })?;
-        Ok(Body::plain(Exact { frame, surface, finish }))
+        Ok(Body::plain(Revsurf { frame, surface: Surface::Exact(surface, finish) }))
     })
 }
 
@@ -88,71 +92,46 @@ impl Frame {
     }
 }
 
-struct Exact {
+struct Revsurf {
     frame: Frame,
-    surface: Revolution,
-    finish: Finish,
+    surface: Surface,
 }
 
-impl Hittable for Exact {
-    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        self.surface.first_hit(&self.frame.to_local(ray), within, self.finish)
-    }
-
-    fn normal(&self, at: DVec3) -> DVec3 {
-        (self.frame.axes * self.surface.normal(self.frame.place(at))).normalize()
-    }
-
-    fn is_convex(&self) -> bool {
-        false
-    }
-
-    fn is_two_sided(&self) -> bool {
-        true
-    }
+enum Surface {
+    Classic(Classic),
+    Exact(Revolution, Finish),
 }
 
-struct Classic {
-    frame: Frame,
-    line: Line,
-    height: f64,
-}
-
-impl Hittable for Classic {
-    /// The notes' method: between the ray's origin and its point closest to the axis, bisection to 1e-4. A ray
-    /// that grazes the surface is lost, and so is the inner wall.
+impl Hittable for Revsurf {
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
         let ray = self.frame.to_local(ray);
-        let outside = |at: DVec3| {
-            let radius = self.line.radius.at(at.y);
-            at.x * at.x - radius * radius + at.z * at.z
-        };
-        let closest = -(ray.origin.x * ray.dir.x + ray.origin.z * ray.dir.z)
-            / (ray.dir.x * ray.dir.x + ray.dir.z * ray.dir.z);
-        let at_origin = outside(ray.origin);
-        if closest.is_nan() || closest <= 0.0 || at_origin * outside(ray.at(closest)) >= 0.0 {
-            return MISS;
+        match &self.surface {
+            Surface::Classic(surface) => surface.first_hit(&ray, within),
+            Surface::Exact(surface, finish) => surface.first_hit(&ray, within, *finish),
         }
-        let (mut near, mut far) = (0.0, closest);
-        while far - near > 1e-4 {
-            let middle = (near + far) / 2.0;
-            if middle <= near || middle >= far {
-                break; // Far from the origin there is no number between them.
-            }
-            if at_origin * outside(ray.at(middle)) < 0.0 {
-                far = middle;
-            } else {
-                near = middle;
-            }
-        }
-        let distance = (near + far) / 2.0;
-        let height = ray.at(distance).y;
-        if (0.0..=self.height).contains(&height) { within.keep(distance) } else { MISS }
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {
         let at = self.frame.place(at);
-        let downhill = -self.line.radius.at(at.y) * self.line.slope_at(at.y);
-        (self.frame.axes * DVec3::new(2.0 * at.x, 2.0 * downhill, 2.0 * at.z)).normalize()
+        let normal = match &self.surface {
+            Surface::Classic(surface) => surface.normal(at),
+            Surface::Exact(surface, _) => surface.normal(at),
+        };
+        (self.frame.axes * normal).normalize()
+    }
+
+    fn is_convex(&self) -> bool {
+        matches!(self.surface, Surface::Classic(_))
+    }
+
+    fn is_two_sided(&self) -> bool {
+        !self.is_convex()
+    }
+
+    fn certify(&self, ray: &Ray) -> Enclosure {
+        match &self.surface {
+            Surface::Classic(surface) => certify::first_hit(surface, &self.frame.to_local(ray)),
+            Surface::Exact(surface, _) => certify::first_hit(surface, &self.frame.to_local(ray)),
+        }
     }
 }

@@ -2,8 +2,10 @@
 
 use crate::accuracy::Accuracy;
 use crate::ball::{self, Line};
+use crate::certify::{self, Enclosure, Equation};
 use crate::entity::{Args, Entity};
 use crate::geometry::{Body, Hittable, MISS, Ray, Span};
+use crate::number::Number;
 use crate::pparm::{Pparm, Table};
 use crate::twofold::Twofold;
 use glam::DVec3;
@@ -54,6 +56,17 @@ impl Hittable for Sphere {
 
     fn is_two_sided(&self) -> bool {
         self.accuracy != Accuracy::Classic
+    }
+
+    fn certify(&self, ray: &Ray) -> Enclosure {
+        certify::first_hit(self, ray)
+    }
+}
+
+impl Equation for Sphere {
+    fn value<N: Number>(&self, at: [N; 3]) -> N {
+        let part = |axis: usize| (at[axis] - N::constant(self.center[axis])).powi(2);
+        part(0) + part(1) + part(2) - N::constant(self.radius).powi(2)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::fplane::{self, FinitePlane};
 use super::plane;
+use crate::certify::Enclosure;
 use crate::entity::{Args, Entity, Refusal};
 use crate::geometry::{Body, Hittable, Ray, Shader, Span};
 use crate::material::{Material, Rgb};
@@ -72,6 +73,10 @@ impl Hittable for Rectangle {
 
     fn normal(&self, at: DVec3) -> DVec3 {
         self.0.rectangle.normal(at)
+    }
+
+    fn certify(&self, ray: &Ray) -> Enclosure {
+        self.0.rectangle.certify(ray)
     }
 }
 

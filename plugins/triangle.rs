@@ -2,8 +2,11 @@
 
 use super::plane::Plane;
 use crate::accuracy::Accuracy;
+use crate::certify::{self, Enclosure, Equation};
 use crate::entity::{Entity, Refusal};
 use crate::geometry::{Body, Hittable, MISS, Ray, Span};
+use crate::interval::Interval;
+use crate::number::Number;
 use crate::pparm::{Pparm, Table};
 use glam::DVec3;
 
@@ -52,6 +55,28 @@ impl Hittable for Triangle {
 
     fn normal(&self, at: DVec3) -> DVec3 {
         self.plane.normal(at)
+    }
+
+    fn certify(&self, ray: &Ray) -> Enclosure {
+        certify::first_hit(self, ray)
+    }
+}
+
+impl Equation for Triangle {
+    fn value<N: Number>(&self, at: [N; 3]) -> N {
+        self.plane.value(at)
+    }
+
+    fn kept(&self, at: [Interval; 3]) -> Interval {
+        let [a, b, c] = self.corners;
+        let inside = |from: DVec3, to: DVec3| {
+            // Upright on the edge, in the plane, toward the inside.
+            let inward = self.plane.normal.cross(to - from);
+            let part =
+                |axis: usize| (at[axis] - Interval::constant(from[axis])) * Interval::constant(inward[axis]);
+            part(0) + part(1) + part(2)
+        };
+        self.plane.kept(at).min(inside(a, b)).min(inside(b, c)).min(inside(c, a))
     }
 }
 

@@ -1,5 +1,6 @@
 //! Rays, and what a plugin implements: [`Hittable`] shapes, [`Shader`]s and [`Light`]s.
 
+use crate::certify::Enclosure;
 use crate::material::{Material, Rgb};
 use crate::shading::{Anchor, ProceduralShader};
 use glam::DVec3;
@@ -90,6 +91,12 @@ pub trait Hittable: Send + Sync {
     /// one side.
     fn is_two_sided(&self) -> bool {
         false
+    }
+
+    /// What is certain about the first hit of a ray from afar. A shape that says nothing of it cannot be verified;
+    /// [`certify::first_hit`](crate::certify::first_hit) proves it for shapes that have an equation.
+    fn certify(&self, _ray: &Ray) -> Enclosure {
+        Enclosure::Doubtful(0.0)
     }
 }
 

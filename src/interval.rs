@@ -43,7 +43,12 @@ impl Interval {
         self.high - self.low
     }
 
-    /// Whether it has no end on either side, or none that is a number.
+    /// A number halfway between its ends.
+    pub fn middle(self) -> f64 {
+        self.low + 0.5 * (self.high - self.low)
+    }
+
+    /// Whether both its ends are numbers.
     pub fn is_bounded(self) -> bool {
         self.low.is_finite() && self.high.is_finite()
     }

@@ -12,6 +12,7 @@ pub mod accuracy;
 pub mod aov;
 pub mod ball;
 pub mod camera;
+pub mod certify;
 pub mod choice;
 pub mod debug;
 pub mod dual;

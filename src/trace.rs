@@ -1,5 +1,6 @@
 //! The colour that a ray sees: first hits, light, shadows, mirrors and glass (the notes' `ray_trace`).
 
+use crate::accuracy::Accuracy;
 use crate::geometry::{Light, Ray, Side, Span};
 use crate::material::Rgb;
 use crate::model::{Model, Object};
@@ -163,7 +164,12 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
         distance: f64,
     ) -> Result<Rgb, usize> {
         let mut passed = DVec3::ONE;
-        let (mut from, mut last, mut left) = (hit.point, (hit.index, side), distance);
+        // A surface that the light lies on is no blocker, however rounding has it.
+        let slack = match self.model.camera.value.accuracy {
+            Accuracy::Classic => 0.0,
+            _ => 16.0 * f64::EPSILON * (distance + hit.point.abs().max_element()),
+        };
+        let (mut from, mut last, mut left) = (hit.point, (hit.index, side), distance - slack);
         loop {
             let ray = Ray { origin: from, dir: to_light };
             let within = Span { far: left, ..Span::RAY };

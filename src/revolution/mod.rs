@@ -6,16 +6,21 @@
 //! proves that there is none (`walk`); where it grazes the error's shell, bounds of the second derivative decide
 //! (`graze`). No hit is lost or invented, whatever the profile, and nothing has to be tuned.
 
+mod classic;
 mod graze;
 mod local;
 mod slabs;
 mod walk;
 
+pub use classic::Classic;
 pub use slabs::NoSurface;
 
+use crate::certify::Equation;
 use crate::dual::Dual;
 use crate::formula::Formula;
 use crate::geometry::{MISS, Ray, Side, Span};
+use crate::interval::Interval;
+use crate::number::Number;
 use glam::DVec3;
 use local::Local;
 use slabs::Slabs;
@@ -61,6 +66,9 @@ impl Revolution {
 
     /// The unit normal at a point of the surface, away from the axis. At an apex it points along the axis.
     pub fn normal(&self, at: DVec3) -> DVec3 {
+        if let Some(up_or_down) = self.ledge(at.y) {
+            return up_or_down;
+        }
         let Dual { value, slope } = self.profile.at(Dual::variable(at.y));
         let around = libm::hypot(at.x, at.z);
         let (x, z) = if around > 0.0 { (at.x / around, at.z / around) } else { (0.0, 0.0) };
@@ -71,6 +79,20 @@ impl Revolution {
         // The profile ends there, as a ball's does at its poles: its square has a slope, and that is finite.
         let twice = self.square.at(Dual::variable(at.y)).slope;
         DVec3::new(x * value, -0.5 * twice, z * value).try_normalize().unwrap_or(DVec3::Y)
+    }
+
+    /// The normal of the ledge at a height where the profile jumps, if it does: upward where it is narrower above.
+    fn ledge(&self, y: f64) -> Option<DVec3> {
+        // Slopes that have no bound are in few slabs, if in any.
+        if self.slabs.get(self.slabs.index(y)).slope_error.is_finite() {
+            return None;
+        }
+        let near = 1e-9 * self.height;
+        let slope = self.profile.at(Dual::variable(Interval { low: y - near, high: y + near })).slope;
+        let (below, above) = (self.profile.at(y - near), self.profile.at(y + near));
+        // A ledge is far wider than what a slope makes of so small a step.
+        let is_ledge = !slope.is_bounded() && (above - below).abs() > 1e3 * near;
+        is_ledge.then_some(if above < below { DVec3::Y } else { -DVec3::Y })
     }
 
     /// How far outside of the surface a place along a ray is: positive outside, negative inside.
@@ -84,6 +106,17 @@ impl Revolution {
     fn outside_and_slope(&self, local: &Local, along: f64) -> (f64, f64) {
         let Dual { value, slope } = self.square.at(Dual::variable(local.height(along)));
         (local.around(along) - value, 2.0 * (local.a * along + local.b) - slope * local.dir.y)
+    }
+}
+
+impl Equation for Revolution {
+    fn value<N: Number>(&self, [x, y, z]: [N; 3]) -> N {
+        x.powi(2) + z.powi(2) - self.square.at(y)
+    }
+
+    fn kept(&self, [_, y, _]: [Interval; 3]) -> Interval {
+        let below_the_top = Interval::constant(self.height) - y;
+        y.min(below_the_top).min(self.profile.at(y))
     }
 }
 
