@@ -21,7 +21,7 @@ fn plane(normal: DVec3, point: DVec3) -> String {
 fn a_plane_far_from_the_origin_is_hit_to_the_last_digit() {
     let (normal, eye) = (dvec3(0.6, 0.8, 0.0), dvec3(1e8, -7.5e7, 0.0));
     let point = dvec3(1e8 + 0.6e-3, -7.5e7 + 0.8e-3, 0.0);
-    let truth = 9.999_960_660_934_448e-4;
+    let truth = 9.999960660934448e-4;
     let off = naive(eye, normal, normal, point).expect("a hit, if a wrong one") - truth;
     assert!(off.abs() > 1e-9, "{off:e}");
     holds(distance(&*shape(&plane(normal, point)), eye, normal), truth, 2.0);

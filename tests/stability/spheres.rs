@@ -24,7 +24,7 @@ fn ball(camera: &str, center: DVec3, radius: f64) -> Box<dyn Hittable> {
 fn a_far_sphere_keeps_its_hit() {
     let eye = dvec3(0.5, 0.3, 1e8);
     assert_eq!(naive(eye, DOWN_Z, DVec3::ZERO, 1.0), None);
-    holds(distance(&*ball("", DVec3::ZERO, 1.0), eye, DOWN_Z), 99_999_999.187_596_16, 1.0);
+    holds(distance(&*ball("", DVec3::ZERO, 1.0), eye, DOWN_Z), 99_999_999.18759616, 1.0);
 }
 
 /// F01 for the shapes that hold a sphere or are one in another spelling.
@@ -36,7 +36,7 @@ fn a_far_ellipsoid_and_a_far_quadric_keep_their_hits() {
         "ellipsoid e { material m center 0 0 0 radius 0.5 scale 2 2 2 }",
         "quadric q { material m coefficients 1 1 1 0 0 0 0 0 0 1 }",
     ] {
-        holds(distance(&*shape(object), eye, DOWN_Z), 99_999_999.187_596_16, 1.0);
+        holds(distance(&*shape(object), eye, DOWN_Z), 99_999_999.18759616, 1.0);
     }
 }
 
@@ -45,7 +45,7 @@ fn a_far_ellipsoid_and_a_far_quadric_keep_their_hits() {
 fn a_tiny_far_sphere_keeps_its_hit() {
     let eye = dvec3(3e-4, 4e-4, 1e6);
     assert_eq!(naive(eye, DOWN_Z, DVec3::ZERO, 1e-3), None);
-    holds(distance(&*ball("", DVec3::ZERO, 1e-3), eye, DOWN_Z), 999_999.999_133_974_5, 1.0);
+    holds(distance(&*ball("", DVec3::ZERO, 1e-3), eye, DOWN_Z), 999_999.9991339745, 1.0);
 }
 
 /// F03
@@ -53,7 +53,7 @@ fn a_tiny_far_sphere_keeps_its_hit() {
 fn a_ray_one_ulp_from_touching_hits() {
     let eye = dvec3(1.0_f64.next_down(), 0.0, 5.0);
     assert_eq!(naive(eye, DOWN_Z, DVec3::ZERO, 1.0), None);
-    holds(distance(&*ball("", DVec3::ZERO, 1.0), eye, DOWN_Z), 4.999_999_985_098_838_8, 1.0);
+    holds(distance(&*ball("", DVec3::ZERO, 1.0), eye, DOWN_Z), 4.9999999850988388, 1.0);
     assert_eq!(distance(&*ball("", DVec3::ZERO, 1.0), dvec3(1.0, 0.0, 5.0), DOWN_Z), MISS, "touching");
 }
 
@@ -61,7 +61,7 @@ fn a_ray_one_ulp_from_touching_hits() {
 #[test]
 fn a_graze_of_a_sphere_away_from_the_origin_is_exact() {
     let (eye, center) = (dvec3(10_001.0 - 1e-11, 0.0, 5.0), dvec3(1e4, 0.0, 0.0));
-    holds(distance(&*ball("", center, 1.0), eye, DOWN_Z), 4.999_995_735_038_801, 1.0);
+    holds(distance(&*ball("", center, 1.0), eye, DOWN_Z), 4.999995735038801, 1.0);
 }
 
 /// A ray along z past the unit sphere, on a grid so fine and so exact that whole numbers tell how it ends.
@@ -127,7 +127,7 @@ fn no_ray_from_a_billion_away_misses() {
 #[test]
 fn a_globe_is_hit_where_it_is_from_an_eye_that_stands_on_it() {
     let (eye, dir) = (dvec3(0.0, 1e9 + 1.0, 0.0), dvec3(3.0, -1.0, 2.0).normalize());
-    let truth = 3.741_657_411_094_715;
+    let truth = 3.7416574110947147;
     let off = naive(eye, dir, DVec3::ZERO, 1e9).expect("a hit, if a wrong one") - truth;
     assert!(off.abs() > 1e-9, "{off:e}");
     let off = distance(&*ball("", DVec3::ZERO, 1e9), eye, dir) - truth;
