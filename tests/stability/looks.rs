@@ -1,6 +1,6 @@
 //! F12 to F14: colours.
 
-use super::{DOWN_Z, shape, text};
+use super::{DOWN_Z, Random, shape, text};
 use crate::common::{model, render};
 use glam::{DVec3, dvec3};
 use std::f64::consts::{PI, TAU};
@@ -190,6 +190,26 @@ fn a_light_on_the_surface_blinds_nobody() {
             );
         }
     }
+}
+
+/// F14: what a light lies on does not stand between it and the rest of the scene, however the two distances, which
+/// are one, are rounded.
+#[test]
+fn a_light_on_a_wall_lights_the_floor_evenly() {
+    let scene = model(&text(
+        "",
+        "material grey { diffuse 1 1 1 }
+         plane wall { material grey normal 0 0 1 point 0 0 -4 }
+         plane floor { material grey normal 0 1 0 point 0 0 0 }
+         light l { location 4 3 -4 emissivity 9 9 9 }",
+    ));
+    let mut random = Random(14);
+    let dark = (0..2_000).filter(|_| {
+        let target = dvec3(random.between(0.0, 8.0), 0.0, random.between(-3.9, -1.0));
+        let eye = dvec3(4.0, 3.0, 6.0);
+        trace::colour(&scene, &Ray { origin: eye, dir: (target - eye).normalize() }, None).x == 0.0
+    });
+    assert_eq!(dark.count(), 0, "of 2000 points of the floor lie in the shadow of the wall");
 }
 
 /// F14: an eye on the surface, or so near that 1 / distance is infinite.

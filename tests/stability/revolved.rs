@@ -1,10 +1,12 @@
 //! F15 to F24: surfaces of revolution.
 
 use super::profiles::{FLANGE, KINK, Line, NASTY, STAIR, VASE, revsurf};
-use super::{DOWN_Z, Random, distance, holds, refusal, shape};
+use super::{DOWN_Z, Random, distance, holds, refusal, shape, text};
+use crate::common::model;
 use glam::{DVec3, dvec3};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_6};
-use tabray::geometry::{Hittable, MISS};
+use tabray::geometry::{Hittable, MISS, Ray};
+use tabray::trace;
 
 /// The notes' cone, 6 high; a greater height goes beyond its apex.
 fn cone(camera: &str, height: f64) -> Box<dyn Hittable> {
@@ -246,6 +248,29 @@ fn the_ledge_of_a_jump_is_hit() {
         let hit = distance(&*stair, eye, dir);
         assert!((hit - truth).abs() < 1e-13, "{hit} is not {truth} from {eye}");
     }
+}
+
+/// F23: a ledge is one ring, whose two sides rounding does not mix: seen from below and lit from above it is dark.
+#[test]
+fn a_ledge_is_dark_from_below() {
+    let scene = model(&text(
+        "",
+        &format!(
+            "material grey {{ diffuse 1 1 1 }}
+             revsurf r {{ material grey profile \"{}\" base 0 0 0 direction 0 1 0 height 6.28 }}
+             light l {{ location 0 20 9 emissivity 99 99 99 }}",
+            STAIR.formula
+        ),
+    ));
+    let mut random = Random(24);
+    let lit = (0..2_000).filter(|_| {
+        // Between the radii 1 and 1.25 on the near side, where the ledge is at 3.
+        let target = random.around(DVec3::Z, 0.9) * 1.2;
+        let target = dvec3(target.x, 3.0, target.z);
+        let eye = dvec3(0.0, -4.0, 8.0);
+        trace::colour(&scene, &Ray { origin: eye, dir: (target - eye).normalize() }, None).x > 0.0
+    });
+    assert_eq!(lit.count(), 0, "of 2000 points of the ledge are lit through it");
 }
 
 /// F24: expanded in powers of the distance, 1e14 swallows what the vase is.

@@ -91,7 +91,8 @@ fn grazes() -> impl Iterator<Item = Graze> {
 fn rays_that_graze_a_sphere_are_neither_missed_nor_invented() {
     let wrong =
         grazes().filter(|ray| naive(ray.eye, DOWN_Z, DVec3::ZERO, 1.0).is_some() != ray.truth.is_some());
-    assert!(wrong.count() > 50);
+    let wrong = wrong.count();
+    assert!(wrong > 20, "{wrong} by the naive form");
     for accuracy in ["exact", "strict"] {
         let ball = ball(&format!("accuracy {accuracy}"), DVec3::ZERO, 1.0);
         let (mut wrong, mut worst) = (0, 0.0_f64);
