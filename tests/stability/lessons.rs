@@ -175,7 +175,7 @@ fn a_ray_that_leaves_is_hit_by_the_first_entry_and_not_by_the_first_root() {
             dvec3(-0.3704856571036659, 0.47889028458725014, 0.8794161961925451),
             dvec3(-0.0715808601844208, 0.1517085853747172, -0.9858299475968767),
             1.76e-14,
-            8.780963933856201e-2,
+            0.08780963933856202,
         ),
     ];
     for (line, origin, dir, root, truth) in cases {

@@ -4,6 +4,12 @@
 //! the naive form fails on the numbers of the row, and then that our shapes do not. Distances are compared in units
 //! in the last place (ulps) of the true one, which is a literal computed with 50 digits.
 
+#![allow(clippy::approx_constant, reason = "6.28 is the height of the rows' surfaces, and no turn")]
+#![allow(
+    clippy::neg_cmp_op_on_partial_ord,
+    reason = "it is what NaN does to a comparison that rows are about"
+)]
+
 #[path = "../common/mod.rs"]
 mod common;
 
