@@ -31,6 +31,9 @@ pub trait Equation {
 /// How far rays are followed. No hit of a scene made of round numbers lies where this is halved.
 const FAR: f64 = 1_234_567_891.0;
 
+/// What is left of 0 by rounding outward from it.
+const NOTHING: f64 = 1e-300;
+
 /// The pieces of a ray that are looked at before it is given up.
 const PIECES: usize = 2000;
 
@@ -84,7 +87,13 @@ enum Judgement {
 
 impl<S: Equation> OnRay<'_, S> {
     fn at<N: Number>(&self, distance: N) -> [N; 3] {
-        [0, 1, 2].map(|axis| N::constant(self.ray.origin[axis]) + distance * N::constant(self.ray.dir[axis]))
+        let Ray { origin, dir } = self.ray;
+        let start = origin.to_array().map(N::constant);
+        // Where it starts, nothing is rounded.
+        if distance.is_zero() {
+            return start;
+        }
+        [0, 1, 2].map(|axis| start[axis] + distance * N::constant(dir[axis]))
     }
 
     fn value<N: Number>(&self, distance: N) -> N {
@@ -94,7 +103,8 @@ impl<S: Equation> OnRay<'_, S> {
     fn judge(&self, low: f64, high: f64) -> Judgement {
         let piece = Interval { low, high };
         let Dual { value, slope } = self.value(Dual::variable(piece));
-        if !value.has_zero() {
+        // A ray that runs in a plane, or starts on it, does not meet it.
+        if !value.has_zero() || value.magnitude() < NOTHING {
             return Judgement::Free;
         }
         let middle = low + 0.5 * (high - low);
@@ -116,6 +126,7 @@ impl<S: Equation> OnRay<'_, S> {
         let (first, last) = (sign(low), sign(high));
         match (first.has_zero(), last.has_zero()) {
             (false, false) if (first.low > 0.0) == (last.low > 0.0) => Judgement::Free,
+            (true, false) if low == 0.0 && first.magnitude() < NOTHING => Judgement::Free,
             (false, false) => Judgement::Root(self.root(low, high, first.low > 0.0)),
             _ => Judgement::Open,
         }

@@ -43,6 +43,7 @@ pub mod texture;
 pub mod trace;
 pub mod twofold;
 pub mod value;
+pub mod verify;
 pub mod watch;
 mod words;
 

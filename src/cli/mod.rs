@@ -14,6 +14,7 @@ mod output;
 mod probe;
 mod render;
 mod schema;
+mod verify;
 
 use annotate_snippets::{Group, Level, Renderer};
 use clap::{CommandFactory, Parser, Subcommand};
@@ -40,6 +41,7 @@ enum Command {
     Convert(convert::Args),
     Check(check::Args),
     Probe(probe::Args),
+    Verify(verify::Args),
     List(list::Args),
     Schema(schema::Args),
 }
@@ -81,6 +83,7 @@ pub fn run() -> ExitCode {
             Some(Command::Convert(args)) => convert::run(registry, args),
             Some(Command::Check(args)) => check::run(registry, args),
             Some(Command::Probe(args)) => probe::run(registry, args),
+            Some(Command::Verify(args)) => verify::run(registry, args),
             Some(Command::List(args)) => list::run(registry, args),
             Some(Command::Schema(_)) => schema::run(registry),
             None if io::stdin().is_terminal() => {

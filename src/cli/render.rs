@@ -162,11 +162,14 @@ fn format(args: &Args, path: &Path) -> Result<Format, Failure> {
         Some(FormatName::Ppm) => Ok(Format::Ppm),
         Some(FormatName::Png) => Ok(Format::Png),
         None if path == Path::new("-") => Ok(Format::Ppm),
-        None => Format::of(path).ok_or_else(|| {
-            Failure::Usage(
-                format!("the name `{}` does not say which format the picture has", path.display()),
-                Some("end it in .png or .ppm, or give `--format png` or `--format ppm`".to_owned()),
-            )
-        }),
+        None => named(path, "end it in .png or .ppm, or give `--format png` or `--format ppm`"),
     }
+}
+
+/// The format that a file's name says, or what would be right.
+pub fn named(path: &Path, help: &str) -> Result<Format, Failure> {
+    Format::of(path).ok_or_else(|| {
+        let message = format!("the name `{}` does not say which format the picture has", path.display());
+        Failure::Usage(message, Some(help.to_owned()))
+    })
 }

@@ -1,0 +1,72 @@
+//! `tabray verify`: a proof, pixel by pixel, of which object is seen.
+
+use super::output::Output;
+use super::render::{Progress, finished, named};
+use super::{Failure, input, interrupt, method, print};
+use std::io::BufWriter;
+use std::iter;
+use std::path::PathBuf;
+use tabray::registry::Registry;
+use tabray::render::Renderer;
+use tabray::verify::{self, Verdict};
+
+/// Prove for each pixel which object is seen
+///
+/// The proof is of the ray through the pixel's middle, with intervals that hold every rounding error, and knows
+/// nothing of the methods that make the picture. It ends with status 1 where those find another object.
+#[derive(clap::Args)]
+pub struct Args {
+    /// The scene; `-` reads it from standard input
+    scene: PathBuf,
+    /// Where to write a picture of what is proven: black where it is, white where rounding hides it, red where the
+    /// tracer finds another object; a .png or .ppm file
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    method: method::Args,
+    /// How many threads to use; by default one on each core
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+}
+
+pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
+    let model = input::load(registry, &args.scene, args.method.accuracy()?)?;
+    interrupt::catch()?;
+    let picture = match &args.output {
+        Some(path) => Some((path, named(path, "end it in .png or .ppm")?, Output::open(path)?)),
+        None => None,
+    };
+    let size = model.camera.value.pixels;
+    let progress = Progress::new(size[1]);
+    let renderer = Renderer::new(args.threads.unwrap_or(0).into())?;
+    let verdicts = verify::picture(&renderer, &model, &|| {
+        progress.step();
+        interrupt::check()
+    });
+    progress.end();
+    let verdicts = verdicts.map_err(|_| Failure::Interrupted)?;
+    let count = |wanted| verdicts.iter().filter(|verdict| **verdict == wanted).count();
+    let (undecided, contradicted) = (count(Verdict::Undecided), count(Verdict::Contradicted));
+    let proven = verdicts.len() - undecided - contradicted;
+    let percent = 100.0 * proven as f64 / verdicts.len() as f64;
+    print(&format!(
+        "{proven} of {} pixels proven ({percent:.4} %), {undecided} undecided, {contradicted} contradicted\n",
+        verdicts.len()
+    ))?;
+    if let Some((path, format, output)) = picture {
+        let colour = |verdict: &Verdict| match verdict {
+            Verdict::Proven => [0; 3],
+            Verdict::Undecided => [255; 3],
+            Verdict::Contradicted => [255, 0, 0],
+        };
+        let bytes = verdicts.iter().flat_map(colour).collect();
+        let mut out = BufWriter::new(output);
+        let written = format.write(&mut out, size, iter::once(Ok(bytes)));
+        finished(path, written, out)?;
+        eprintln!("wrote {}", path.display());
+    }
+    if contradicted > 0 {
+        return Err(Failure::Failed(format!("the tracer finds another object at {contradicted} pixels")));
+    }
+    Ok(())
+}
