@@ -1,0 +1,47 @@
+//! A torus: a ball's way around a circle.
+
+use crate::entity::Entity;
+use crate::geometry::Body;
+use crate::implicit::{Frame, Implicit};
+use crate::number::Number;
+use crate::pparm::{Pparm, Table};
+use glam::DVec3;
+
+static CENTER: Pparm<DVec3> =
+    Pparm::required("center", "the point in its middle").alias(&["centre"]).unit("world coordinates");
+static DIRECTION: Pparm<DVec3> = Pparm::or("direction", "the axis that it goes around", DVec3::Y)
+    .must("a vector with a direction", |axis: &DVec3| axis.try_normalize().is_some());
+static RADIUS: Pparm<f64> = Pparm::required("radius", "the distance from its center to the middle of its tube")
+    .unit("world units")
+    .must("positive", |radius| *radius > 0.0);
+static TUBE: Pparm<f64> = Pparm::required("tube", "the radius of its tube")
+    .unit("world units")
+    .must("positive", |tube| *tube > 0.0);
+
+const TABLE: Table = &[&CENTER, &DIRECTION, &RADIUS, &TUBE];
+
+inventory::submit! {
+    Entity::shape("torus", "a ring", &[TABLE], |args| {
+        let torus = Torus { radius: args.get(&RADIUS), tube: args.get(&TUBE) };
+        Ok(Body::implicit(torus, Frame::around(args.get(&CENTER), args.get(&DIRECTION))))
+    })
+}
+
+/// A torus around the y axis.
+struct Torus {
+    radius: f64,
+    tube: f64,
+}
+
+impl Implicit for Torus {
+    fn value<N: Number>(&self, [x, y, z]: [N; 3]) -> N {
+        let from_circle = (x.powi(2) + z.powi(2)).sqrt() - N::constant(self.radius);
+        from_circle.powi(2) + y.powi(2) - N::constant(self.tube).powi(2)
+    }
+
+    fn bounds(&self) -> [DVec3; 2] {
+        let across = self.radius + self.tube;
+        let high = DVec3::new(across, self.tube, across);
+        [-high, high]
+    }
+}

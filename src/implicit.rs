@@ -1,0 +1,158 @@
+//! Shapes that are one formula: the points where f(x, y, z) = 0.
+//!
+//! A plugin gives the formula, once, for every number type, and a box around it. The rest follows: [`first_root`]
+//! finds what a ray meets first and proves that nothing lies before, and [`Dual`] numbers give the normal.
+
+use crate::dual::Dual;
+use crate::geometry::{Body, Hittable, MISS, Ray, Span};
+use crate::number::Number;
+use crate::taylor::{Line, first_root};
+use glam::{DMat3, DVec3};
+
+/// A shape by its formula, in coordinates of its own.
+pub trait Implicit: Send + Sync {
+    /// Below 0 inside of the shape, above 0 outside, and 0 on it.
+    fn value<N: Number>(&self, at: [N; 3]) -> N;
+
+    /// The low and the high corner of a box around the shape. What lies outside of it is cut off, and a shape that is
+    /// cut shows its inside.
+    fn bounds(&self) -> [DVec3; 2];
+}
+
+/// Where a shape's own coordinates lie in the world.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame {
+    origin: DVec3,
+    /// The directions in the world of its own x, y and z.
+    axes: DMat3,
+}
+
+impl Frame {
+    /// As the world's, from another origin.
+    pub fn at(origin: DVec3) -> Self {
+        Self { origin, axes: DMat3::IDENTITY }
+    }
+
+    /// With its y along a vector that is not 0. Around that axis it is turned anyhow: for shapes that are round.
+    pub fn around(origin: DVec3, axis: DVec3) -> Self {
+        let up = axis.normalize();
+        let (across, away) = up.any_orthonormal_pair();
+        Self { origin, axes: DMat3::from_cols(away, up, across) }
+    }
+
+    fn to_local(self, vector: DVec3) -> DVec3 {
+        self.axes.transpose_mul_vec3(vector)
+    }
+}
+
+impl Body {
+    /// An object by its formula, that looks like its material.
+    pub fn implicit(formula: impl Implicit + 'static, frame: Frame) -> Self {
+        let [low, high] = formula.bounds();
+        Self::plain(ImplicitShape { formula, frame, low, high })
+    }
+}
+
+/// A shape whose hits and normals are found by its formula.
+struct ImplicitShape<T> {
+    formula: T,
+    frame: Frame,
+    low: DVec3,
+    high: DVec3,
+}
+
+impl<T: Implicit> Hittable for ImplicitShape<T> {
+    /// From the point of the ray that is closest to the shape's origin, so that a shape far away is met as exactly
+    /// as a near one.
+    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
+        let closest = (self.frame.origin - ray.origin).dot(ray.dir);
+        let base = self.frame.to_local(offset(ray, closest, self.frame.origin));
+        let dir = self.frame.to_local(ray.dir);
+        let (mut near, mut far) = (within.near - closest, within.far - closest);
+        for axis in 0..3 {
+            let (base, dir) = (base[axis], dir[axis]);
+            if dir != 0.0 {
+                let (one, other) = ((self.low[axis] - base) / dir, (self.high[axis] - base) / dir);
+                near = near.max(one.min(other));
+                far = far.min(one.max(other));
+            } else if base < self.low[axis] || base > self.high[axis] {
+                return MISS;
+            }
+        }
+        let line = OnRay { formula: &self.formula, base, dir };
+        match first_root(&line, near..far, within.leaves) {
+            Some(root) => within.keep(closest + root),
+            None => MISS,
+        }
+    }
+
+    /// Along the formula's gradient. Where that vanishes or does not exist, as at the tip of a cone, the normal
+    /// points away from the shape's origin, and in the origin along its y.
+    fn normal(&self, at: DVec3) -> DVec3 {
+        let at = self.frame.to_local(at - self.frame.origin);
+        let slope = |axis: usize| {
+            let along = |own: usize| if own == axis { Dual::variable(at[own]) } else { Dual::constant(at[own]) };
+            self.formula.value([along(0), along(1), along(2)]).slope
+        };
+        let normal = direction(DVec3::new(slope(0), slope(1), slope(2))).or(direction(at)).unwrap_or(DVec3::Y);
+        self.frame.axes * normal
+    }
+
+    fn is_convex(&self) -> bool {
+        false
+    }
+
+    fn is_two_sided(&self) -> bool {
+        true
+    }
+}
+
+/// The unit vector along a vector, however short or long, that has a direction.
+fn direction(vector: DVec3) -> Option<DVec3> {
+    (vector / vector.abs().max_element()).try_normalize()
+}
+
+/// A formula along a ray.
+struct OnRay<'s, T> {
+    formula: &'s T,
+    base: DVec3,
+    dir: DVec3,
+}
+
+impl<T: Implicit> Line for OnRay<'_, T> {
+    fn at<N: Number>(&self, t: N) -> N {
+        let along = |axis: usize| N::constant(self.base[axis]) + N::constant(self.dir[axis]) * t;
+        self.formula.value([along(0), along(1), along(2)])
+    }
+}
+
+/// The point at a distance along a ray, as seen from another: rounded as one operation is, however far apart they
+/// are.
+fn offset(ray: &Ray, distance: f64, from: DVec3) -> DVec3 {
+    let along = |axis: usize| {
+        let (way, way_error) = exact_product(distance, ray.dir[axis]);
+        let (place, place_error) = exact_sum(ray.origin[axis], way);
+        let (offset, offset_error) = exact_sum(place, -from[axis]);
+        offset + (way_error + place_error + offset_error)
+    };
+    DVec3::new(along(0), along(1), along(2))
+}
+
+/// A sum and what rounding took from it (D. E. Knuth's TwoSum).
+fn exact_sum(a: f64, b: f64) -> (f64, f64) {
+    let sum = a + b;
+    let part = sum - a;
+    (sum, (a - (sum - part)) + (b - part))
+}
+
+/// A product and what rounding took from it (T. J. Dekker, G. W. Veltkamp).
+fn exact_product(a: f64, b: f64) -> (f64, f64) {
+    let halves = |number: f64| {
+        let scaled = 134_217_729.0 * number; // 2^27 + 1
+        let high = scaled - (scaled - number);
+        (high, number - high)
+    };
+    let product = a * b;
+    let ((a_high, a_low), (b_high, b_low)) = (halves(a), halves(b));
+    (product, a_low * b_low - (((product - a_high * b_high) - a_low * b_high) - a_high * b_low))
+}
