@@ -92,10 +92,12 @@ enum Judgement {
 
 impl<L: Line> Search<'_, L> {
     fn judge(&self, low: f64, high: f64) -> Judgement {
-        let over = self.line.at(Dual::variable_twice(Interval { low, high }));
-        if !over.value.value.has_zero() {
+        let piece = Interval { low, high };
+        // Cheap, and enough for most pieces of a function that wriggles.
+        if !self.line.at(piece).has_zero() {
             return Judgement::Free;
         }
+        let over = self.line.at(Dual::variable_twice(piece));
         let middle = low + 0.5 * (high - low);
         let half = (middle - low).max(high - middle).next_up();
         let around = Interval { low: -half, high: half };

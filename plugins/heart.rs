@@ -1,0 +1,40 @@
+//! A heart: G. Taubin's surface of the sixth degree (1993).
+
+use crate::entity::Entity;
+use crate::geometry::Body;
+use crate::implicit::{Frame, Implicit};
+use crate::number::Number;
+use crate::pparm::{Pparm, Table};
+use glam::DVec3;
+
+static CENTER: Pparm<DVec3> =
+    Pparm::required("center", "the point in its middle").alias(&["centre"]).unit("world coordinates");
+static SIZE: Pparm<f64> = Pparm::required("size", "the distance from its center down to its tip")
+    .unit("world units")
+    .must("positive", |size| *size > 0.0);
+
+const TABLE: Table = &[&CENTER, &SIZE];
+
+inventory::submit! {
+    Entity::shape("heart", "a heart", &[TABLE], |args| {
+        Ok(Body::implicit(Heart { size: args.get(&SIZE) }, Frame::at(args.get(&CENTER))))
+    })
+}
+
+/// A heart that stands upright and faces z.
+struct Heart {
+    size: f64,
+}
+
+impl Implicit for Heart {
+    fn value<N: Number>(&self, at: [N; 3]) -> N {
+        let n = N::constant;
+        let [x, y, z] = at.map(|coordinate| coordinate / n(self.size));
+        let ball = x.powi(2) + y.powi(2) + n(2.25) * z.powi(2) - n(1.0);
+        ball.powi(3) - (x.powi(2) + n(0.1125) * z.powi(2)) * y.powi(3)
+    }
+
+    fn bounds(&self) -> [DVec3; 2] {
+        [DVec3::new(-1.14, -1.0, -0.68) * self.size, DVec3::new(1.14, 1.24, 0.68) * self.size]
+    }
+}
