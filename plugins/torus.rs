@@ -11,9 +11,10 @@ static CENTER: Pparm<DVec3> =
     Pparm::required("center", "the point in its middle").alias(&["centre"]).unit("world coordinates");
 static DIRECTION: Pparm<DVec3> = Pparm::or("direction", "the axis that it goes around", DVec3::Y)
     .must("a vector with a direction", |axis: &DVec3| axis.try_normalize().is_some());
-static RADIUS: Pparm<f64> = Pparm::required("radius", "the distance from its center to the middle of its tube")
-    .unit("world units")
-    .must("positive", |radius| *radius > 0.0);
+static RADIUS: Pparm<f64> =
+    Pparm::required("radius", "the distance from its center to the middle of its tube")
+        .unit("world units")
+        .must("positive", |radius| *radius > 0.0);
 static TUBE: Pparm<f64> = Pparm::required("tube", "the radius of its tube")
     .unit("world units")
     .must("positive", |tube| *tube > 0.0);

@@ -7,6 +7,7 @@ use crate::dual::Dual;
 use crate::geometry::{Body, Hittable, MISS, Ray, Span};
 use crate::number::Number;
 use crate::taylor::{Line, first_root};
+use crate::twofold::{two_product, two_sum};
 use glam::{DMat3, DVec3};
 
 /// A shape by its formula, in coordinates of its own.
@@ -91,10 +92,12 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
     fn normal(&self, at: DVec3) -> DVec3 {
         let at = self.frame.to_local(at - self.frame.origin);
         let slope = |axis: usize| {
-            let along = |own: usize| if own == axis { Dual::variable(at[own]) } else { Dual::constant(at[own]) };
+            let along =
+                |own: usize| if own == axis { Dual::variable(at[own]) } else { Dual::constant(at[own]) };
             self.formula.value([along(0), along(1), along(2)]).slope
         };
-        let normal = direction(DVec3::new(slope(0), slope(1), slope(2))).or(direction(at)).unwrap_or(DVec3::Y);
+        let normal =
+            direction(DVec3::new(slope(0), slope(1), slope(2))).or(direction(at)).unwrap_or(DVec3::Y);
         self.frame.axes * normal
     }
 
@@ -126,33 +129,14 @@ impl<T: Implicit> Line for OnRay<'_, T> {
     }
 }
 
-/// The point at a distance along a ray, as seen from another: rounded as one operation is, however far apart they
-/// are.
+/// The point at a distance along a ray, as seen from another one: rounded as one operation is, however far away the
+/// ray's origin is.
 fn offset(ray: &Ray, distance: f64, from: DVec3) -> DVec3 {
     let along = |axis: usize| {
-        let (way, way_error) = exact_product(distance, ray.dir[axis]);
-        let (place, place_error) = exact_sum(ray.origin[axis], way);
-        let (offset, offset_error) = exact_sum(place, -from[axis]);
-        offset + (way_error + place_error + offset_error)
+        let (way, way_low) = two_product(distance, ray.dir[axis]);
+        let (place, place_low) = two_sum(ray.origin[axis], way);
+        let (offset, offset_low) = two_sum(place, -from[axis]);
+        offset + (way_low + place_low + offset_low)
     };
     DVec3::new(along(0), along(1), along(2))
-}
-
-/// A sum and what rounding took from it (D. E. Knuth's TwoSum).
-fn exact_sum(a: f64, b: f64) -> (f64, f64) {
-    let sum = a + b;
-    let part = sum - a;
-    (sum, (a - (sum - part)) + (b - part))
-}
-
-/// A product and what rounding took from it (T. J. Dekker, G. W. Veltkamp).
-fn exact_product(a: f64, b: f64) -> (f64, f64) {
-    let halves = |number: f64| {
-        let scaled = 134_217_729.0 * number; // 2^27 + 1
-        let high = scaled - (scaled - number);
-        (high, number - high)
-    };
-    let product = a * b;
-    let ((a_high, a_low), (b_high, b_low)) = (halves(a), halves(b));
-    (product, a_low * b_low - (((product - a_high * b_high) - a_low * b_high) - a_high * b_low))
 }

@@ -10,6 +10,7 @@
 use crate::dual::Dual;
 use crate::geometry::Side;
 use crate::interval::Interval;
+use crate::newton;
 use crate::number::Number;
 use std::ops::Range;
 
@@ -37,7 +38,8 @@ pub fn first_root(line: &impl Line, span: Range<f64>, leaves: Option<Side>) -> O
     if !(span.start < span.end && span.start.is_finite() && span.end.is_finite()) {
         return None;
     }
-    let search = Search { line, start: span.start, leaves, unit: f64::EPSILON * scale(&span) };
+    let unit = f64::EPSILON * span.start.abs().max(span.end.abs());
+    let search = Search { line, start: span.start, leaves, unit };
     let is_root = |root: &f64| span.start < *root && *root < span.end;
     let mut waiting = [(0.0, 0.0); WAITING];
     waiting[0] = (span.start, span.end);
@@ -68,11 +70,6 @@ pub fn first_root(line: &impl Line, span: Range<f64>, leaves: Option<Side>) -> O
     None
 }
 
-/// The greatest distance from 0.
-fn scale(span: &Range<f64>) -> f64 {
-    span.start.abs().max(span.end.abs())
-}
-
 struct Search<'l, L> {
     line: &'l L,
     start: f64,
@@ -92,12 +89,10 @@ enum Judgement {
 
 impl<L: Line> Search<'_, L> {
     fn judge(&self, low: f64, high: f64) -> Judgement {
-        let piece = Interval { low, high };
-        // Cheap, and enough for most pieces of a function that wriggles.
-        if !self.line.at(piece).has_zero() {
+        let over = self.line.at(Dual::variable_twice(Interval { low, high }));
+        if !over.value.value.has_zero() {
             return Judgement::Free;
         }
-        let over = self.line.at(Dual::variable_twice(piece));
         let middle = low + 0.5 * (high - low);
         let half = (middle - low).max(high - middle).next_up();
         let around = Interval { low: -half, high: half };
@@ -143,41 +138,38 @@ impl<L: Line> Search<'_, L> {
         Judgement::Root(self.newton(low, high, rises, guess))
     }
 
-    /// Newton's method, kept between two ends by bisection.
-    fn newton(&self, mut low: f64, mut high: f64, rises: bool, guess: f64) -> f64 {
-        let middle = |low: f64, high: f64| low + 0.5 * (high - low);
-        let mut t = if low < guess && guess < high { guess } else { middle(low, high) };
-        for _ in 0..100 {
+    /// The root of a piece by Newton's method, from a guess that may be any number.
+    fn newton(&self, low: f64, high: f64, rises: bool, guess: f64) -> f64 {
+        let value_and_slope = |t| {
             let Dual { value, slope } = self.line.at(Dual::variable(t));
-            if (value < 0.0) == rises {
-                low = t;
-            } else {
-                high = t;
-            }
-            let newton = t - value / slope;
-            let next = if low <= newton && newton <= high { newton } else { middle(low, high) };
-            if (next - t).abs() <= self.unit {
-                return next;
-            }
-            t = next;
-        }
-        t
+            (value, slope)
+        };
+        let guess = if low < guess && guess < high { guess } else { low + 0.5 * (high - low) };
+        newton::root(value_and_slope, (low, high), if rises { -1.0 } else { 1.0 }, guess, 2.0 * self.unit)
     }
 
-    /// What a piece has that is too short to be cut: a root if the sign changes, or if rounding may hide a touch.
+    /// What a piece has that is not cut any more: a root if the sign changes, or if rounding may hide a touch. A pole
+    /// is no root.
     fn last_word(&self, low: f64, high: f64) -> Judgement {
-        let (at_low, at_high) = (self.line.at(low), self.line.at(high));
-        let has_crossing = match self.leaves {
-            None => at_low <= 0.0 && at_high >= 0.0 || at_low >= 0.0 && at_high <= 0.0,
-            Some(Side::Outside) => at_low > 0.0 && at_high <= 0.0,
-            Some(Side::Inside) => at_low < 0.0 && at_high >= 0.0,
-        };
-        if has_crossing {
-            return Judgement::Root(self.newton(low, high, at_low < at_high, low));
+        let over = self.line.at(Interval { low, high });
+        if !over.has_zero() || !over.is_bounded() {
+            return Judgement::Free;
         }
+        let (at_low, at_high) = (self.line.at(low), self.line.at(high));
+        let (falls, rises) = (at_low > 0.0 && at_high <= 0.0, at_low < 0.0 && at_high >= 0.0);
         let middle = low + 0.5 * (high - low);
-        let touches = self.leaves.is_none() && self.value(middle).has_zero() && self.value(middle).is_bounded();
-        if touches { Judgement::Root(middle) } else { Judgement::Free }
+        let crosses = match self.leaves {
+            None => falls || rises,
+            Some(Side::Outside) => falls,
+            Some(Side::Inside) => rises,
+        };
+        if crosses {
+            return Judgement::Root(self.newton(low, high, rises, middle));
+        }
+        if self.leaves.is_none() && self.value(middle).has_zero() {
+            return Judgement::Root(middle);
+        }
+        Judgement::Free
     }
 
     /// The value at a place and how far rounding can have moved it.

@@ -12,16 +12,19 @@ use tabray::implicit::{Frame, Implicit};
 use tabray::model::Model;
 use tabray::number::Number;
 
-const CENTER: DVec3 = DVec3::new(0.3, -0.2, 0.7);
+const CENTER: DVec3 = DVec3::new(4.1, 2.9, -2.7);
 const AXIS: DVec3 = DVec3::new(0.4, 1.0, -0.3);
 const RADIUS: f64 = 1.5;
 const TUBE: f64 = 0.5;
 
-/// The torus that the quartic below describes.
+/// A mirror in the shape of the torus that the quartic below describes, and what it mirrors.
 fn torus() -> Model {
     model(&format!(
-        "camera eye {{ pixeldim 8 6 worlddim 8 6 viewpoint 4 3 6 }} material m {{ ambient 1 1 1 }}
-        torus ring {{ material m center {} {} {} direction {} {} {} radius {RADIUS} tube {TUBE} }}",
+        "camera eye {{ pixeldim 160 120 worlddim 8 6 viewpoint 4 3 5 }}
+        material chrome {{ ambient 1 0.5 0.2 diffuse 2 1 1 specular 0.85 shininess 50 }}
+        torus ring {{ material chrome center {} {} {} direction {} {} {} radius {RADIUS} tube {TUBE} }}
+        plane floor {{ material chrome normal 0 1 0 point 0 0 0 }}
+        light lamp {{ location 1 8 3 emissivity 16 16 16 }}",
         CENTER.x, CENTER.y, CENTER.z, AXIS.x, AXIS.y, AXIS.z
     ))
 }
@@ -62,7 +65,7 @@ impl Dice {
         Ray { origin, dir: (target - origin).normalize() }
     }
 
-    /// A ray from `far` away that passes the torus at `off` from touching it; and where.
+    /// A ray from `far` away that passes the torus at `off` from touching it.
     fn grazing(&mut self, far: f64, off: f64) -> Ray {
         let (at, normal) = self.on_torus();
         let dir = self.direction().cross(normal).normalize();
@@ -115,17 +118,47 @@ impl Quartic {
         if turns.iter().any(|turn| value(&self.coefficients, *turn).abs() < 2e-13) {
             return None;
         }
-        let roots = roots(&self.coefficients);
-        Some(roots.iter().enumerate().map(|(index, root)| (self.start + root, index % 2 == 0)).collect())
+        Some(self.roots())
     }
 
-    /// The first root beyond `near`, of those that a ray meets which leaves a side.
-    fn first(&self, near: f64, leaves: Option<Side>) -> Option<f64> {
-        let crossings = self.crossings()?;
-        let wanted = |(distance, comes_in): &(f64, bool)| {
-            near < *distance && leaves.is_none_or(|side| *comes_in == (side == Side::Outside))
-        };
-        Some(crossings.into_iter().find(wanted).map_or(MISS, |(distance, _)| distance))
+    /// As [`crossings`](Self::crossings), however close.
+    fn roots(&self) -> Vec<(f64, bool)> {
+        let roots = roots(&self.coefficients);
+        roots.iter().enumerate().map(|(index, root)| (self.start + root, index % 2 == 0)).collect()
+    }
+
+    /// The first root ahead, of those that a ray meets which leaves a side.
+    fn first(&self, leaves: Option<Side>) -> Option<f64> {
+        Some(first(self.crossings()?, leaves))
+    }
+}
+
+fn first(roots: Vec<(f64, bool)>, leaves: Option<Side>) -> f64 {
+    let wanted = |(distance, comes_in): &(f64, bool)| {
+        0.0 < *distance && leaves.is_none_or(|side| *comes_in == (side == Side::Outside))
+    };
+    roots.into_iter().find(wanted).map_or(MISS, |(distance, _)| distance)
+}
+
+/// The torus by its quartic, and its normal by its geometry.
+struct Quartics;
+
+impl Hittable for Quartics {
+    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
+        within.keep(first(Quartic::new(ray).roots(), within.leaves))
+    }
+
+    fn normal(&self, at: DVec3) -> DVec3 {
+        let (axis, at) = (AXIS.normalize(), at - CENTER);
+        (at - RADIUS * at.reject_from_normalized(axis).normalize()).normalize()
+    }
+
+    fn is_convex(&self) -> bool {
+        false
+    }
+
+    fn is_two_sided(&self) -> bool {
+        true
     }
 }
 
@@ -177,9 +210,9 @@ fn roots(coefficients: &[f64]) -> Vec<f64> {
 }
 
 /// Asserts that the torus is hit where the quartic says; whether the quartic is sure.
-fn agrees(shape: &dyn Hittable, ray: &Ray, leaves: Option<Side>, near: f64) -> bool {
+fn agrees(shape: &dyn Hittable, ray: &Ray, leaves: Option<Side>) -> bool {
     let quartic = Quartic::new(ray);
-    let Some(expected) = quartic.first(near, leaves) else { return false };
+    let Some(expected) = quartic.first(leaves) else { return false };
     let found = shape.distance(ray, &Span { leaves, ..Span::RAY });
     if found == expected {
         return true;
@@ -201,7 +234,7 @@ fn no_hit_of_a_torus_is_missed_or_made_up() {
     let (model, mut dice) = (torus(), Dice::new());
     let shape = &*model.objects[0].shape;
     for _ in 0..100_000 {
-        assert!(agrees(shape, &dice.aimed(6.0), None, 0.0));
+        assert!(agrees(shape, &dice.aimed(6.0), None));
     }
 }
 
@@ -211,7 +244,7 @@ fn rays_that_graze_hit_or_miss_as_they_should() {
     let shape = &*model.objects[0].shape;
     for power in 2..=12 {
         for off in [1.0, -1.0].map(|side| side * 0.1_f64.powi(power)) {
-            let sure = (0..5_000).filter(|_| agrees(shape, &dice.grazing(6.0, off), None, 0.0)).count();
+            let sure = (0..5_000).filter(|_| agrees(shape, &dice.grazing(6.0, off), None)).count();
             assert!(sure > 4_950, "{off:e}: {sure}");
         }
     }
@@ -223,8 +256,8 @@ fn distance_does_not_blur_a_torus() {
     let shape = &*model.objects[0].shape;
     for far in [1e4, 1e7] {
         for _ in 0..10_000 {
-            agrees(shape, &dice.aimed(far), None, 0.0);
-            agrees(shape, &dice.grazing(far, 1e-6), None, 0.0);
+            agrees(shape, &dice.aimed(far), None);
+            agrees(shape, &dice.grazing(far, 1e-6), None);
         }
     }
 }
@@ -236,7 +269,7 @@ fn a_viewer_inside_sees_the_wall() {
     for _ in 0..20_000 {
         let (at, normal) = dice.on_torus();
         let ray = Ray { origin: at - normal * dice.within(0.1..0.9) * TUBE, dir: dice.direction() };
-        assert!(agrees(shape, &ray, None, 0.0));
+        assert!(agrees(shape, &ray, None));
     }
 }
 
@@ -260,7 +293,7 @@ fn what_leaves_a_torus_meets_it_again_where_it_is_and_not_where_it_starts() {
         let dir = (shallow + steep * dice.within(0.3..2.0) * normal).normalize();
         for (leaves, dir) in [(Side::Outside, dir), (Side::Inside, -dir)] {
             let ray = Ray { origin, dir };
-            assert!(agrees(shape, &ray, Some(leaves), 0.0));
+            assert!(agrees(shape, &ray, Some(leaves)));
             let found = shape.distance(&ray, &Span { leaves: Some(leaves), ..Span::RAY });
             // A ball as large as the tube, that touches the torus there from either side, meets it nowhere else.
             assert!(found > 1.5 * TUBE * dir.dot(normal).abs(), "{found:e} {leaves:?} {ray:?}");
@@ -269,4 +302,147 @@ fn what_leaves_a_torus_meets_it_again_where_it_is_and_not_where_it_starts() {
         left += 1;
     }
     assert!(left > 20_000 && again[0] > left / 10 && again[1] == left, "{again:?} of {left}");
+}
+
+#[test]
+fn a_mirror_torus_looks_as_its_quartic_has_it() {
+    let model = torus();
+    let picture = render(&model);
+    let mut by_quartic = model;
+    by_quartic.objects[0].shape = Box::new(Quartics);
+    let expected = render(&by_quartic);
+    let differing = expected.pixels().zip(picture.pixels()).filter(|(a, b)| a != b).count();
+    assert!(differing == 0, "{differing} pixels differ");
+}
+
+#[test]
+fn normals_are_unit_vectors_that_point_outward() {
+    let (model, mut dice) = (torus(), Dice::new());
+    for _ in 0..10_000 {
+        let (at, normal) = dice.on_torus();
+        let found = model.objects[0].shape.normal(at);
+        assert!((found - normal).length() < 1e-13 && found.is_normalized(), "{found} {normal}");
+    }
+}
+
+struct By<F> {
+    formula: F,
+    bounds: [DVec3; 2],
+}
+
+/// A formula for each number type.
+trait Formula: Send + Sync + 'static {
+    fn value<N: Number>(&self, at: [N; 3]) -> N;
+}
+
+impl<F: Formula> Implicit for By<F> {
+    fn value<N: Number>(&self, at: [N; 3]) -> N {
+        self.formula.value(at)
+    }
+
+    fn bounds(&self) -> [DVec3; 2] {
+        self.bounds
+    }
+}
+
+fn shape(formula: impl Formula, low: DVec3, high: DVec3) -> Box<dyn Hittable> {
+    Body::implicit(By { formula, bounds: [low, high] }, Frame::at(DVec3::ZERO)).shape
+}
+
+struct Ball;
+
+impl Formula for Ball {
+    fn value<N: Number>(&self, [x, y, z]: [N; 3]) -> N {
+        x.powi(2) + y.powi(2) + z.powi(2) - N::constant(1.0)
+    }
+}
+
+#[test]
+fn the_box_cuts_and_shows_the_inside() {
+    let bowl = shape(Ball, DVec3::splat(-1.0), DVec3::new(1.0, 0.0, 1.0));
+    let hit = |origin, dir, leaves| bowl.distance(&Ray { origin, dir }, &Span { leaves, ..Span::RAY });
+    let above = DVec3::new(0.0, 3.0, 0.0);
+    assert_eq!(hit(above, DVec3::NEG_Y, None), 4.0);
+    assert_eq!(hit(above, DVec3::Y, None), MISS);
+    assert_eq!(hit(DVec3::new(-3.0, 0.5, 0.0), DVec3::X, None), MISS);
+    assert!((hit(DVec3::new(-3.0, -0.6, 0.0), DVec3::X, None) - 2.2).abs() < 1e-15);
+    assert_eq!(hit(DVec3::NEG_Y, DVec3::Y, Some(Side::Inside)), MISS);
+    // Along a face of the box.
+    assert_eq!(hit(DVec3::new(-3.0, -1.0, 0.5), DVec3::X, None), MISS);
+    assert!((hit(DVec3::new(-3.0, 0.0, 0.0), DVec3::X, None) - 2.0).abs() < 1e-15);
+}
+
+struct Cone;
+
+impl Formula for Cone {
+    fn value<N: Number>(&self, [x, y, z]: [N; 3]) -> N {
+        (x.powi(2) + z.powi(2)).sqrt() - y.abs()
+    }
+}
+
+#[test]
+fn a_tip_has_a_normal() {
+    let cone = shape(Cone, DVec3::splat(-1.0), DVec3::splat(1.0));
+    assert_eq!(cone.normal(DVec3::ZERO), DVec3::Y);
+    let ray = Ray { origin: DVec3::new(3.0, 0.0, 0.0), dir: DVec3::NEG_X };
+    assert_eq!(cone.distance(&ray, &Span::RAY), 3.0);
+}
+
+/// A wall of the gyroid, cut to a ball: it has edges, and rays meet it often.
+struct Gyroid;
+
+impl Formula for Gyroid {
+    fn value<N: Number>(&self, [x, y, z]: [N; 3]) -> N {
+        let ball = (x.powi(2) + y.powi(2) + z.powi(2)).sqrt() - N::constant(2.0);
+        let [x, y, z] = [x, y, z].map(|coordinate| coordinate * N::constant(4.0));
+        let wall = (x.sin() * y.cos() + y.sin() * z.cos() + z.sin() * x.cos()).abs() - N::constant(0.3);
+        wall.max(N::constant(4.0) * ball)
+    }
+}
+
+#[test]
+fn thin_walls_and_edges_are_found_as_by_small_steps() {
+    let (gyroid, mut dice) = (shape(Gyroid, DVec3::splat(-2.0), DVec3::splat(2.0)), Dice::new());
+    let mut hits = 0;
+    for _ in 0..300 {
+        let (from, to) = (dice.direction() * 4.0, dice.direction() * 1.5);
+        let ray = Ray { origin: from, dir: (to - from).normalize() };
+        let value = |distance: f64| Gyroid.value(ray.at(distance).to_array());
+        let found = gyroid.distance(&ray, &Span::RAY);
+        let stepped = (0..8000).map(|step| f64::from(step) * 1e-3).find(|distance| value(*distance) < 0.0);
+        // A step can pass over a hit, and never finds one too early.
+        match stepped {
+            Some(stepped) => {
+                assert!(found <= stepped, "{found} {stepped}");
+                assert!(value(found).abs() < 1e-13 && value(found - 1e-9) > -1e-13, "{found} {ray:?}");
+                hits += 1;
+            }
+            None if found < MISS => assert!(value(found).abs() < 1e-13, "{found} {ray:?}"),
+            None => {}
+        }
+    }
+    assert!(hits > 200, "{hits}");
+}
+
+struct Wild;
+
+impl Formula for Wild {
+    fn value<N: Number>(&self, [x, y, z]: [N; 3]) -> N {
+        (N::constant(1.0) / x).tan() * (y * N::constant(1e9)).floor() + (z.ln() / x).exp()
+    }
+}
+
+#[test]
+fn formulas_without_bounds_end() {
+    let (wild, mut dice) = (shape(Wild, DVec3::splat(-1.0), DVec3::splat(1.0)), Dice::new());
+    for _ in 0..20 {
+        let ray = Ray { origin: dice.direction() * 3.0, dir: dice.direction() };
+        let distance = wild.distance(&ray, &Span::RAY);
+        assert!(distance > 0.0);
+        wild.distance(&Ray { origin: -0.4 * ray.dir, dir: ray.dir }, &Span::RAY);
+    }
+    for far in [1e300, f64::INFINITY, f64::NAN] {
+        let ray = Ray { origin: DVec3::splat(far), dir: DVec3::NEG_X };
+        assert_eq!(wild.distance(&ray, &Span::RAY), MISS);
+    }
 }
