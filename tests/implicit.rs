@@ -446,3 +446,24 @@ fn formulas_without_bounds_end() {
         assert_eq!(wild.distance(&ray, &Span::RAY), MISS);
     }
 }
+
+#[test]
+fn a_heart_has_no_seam_where_its_parts_meet() {
+    let model = model(
+        "camera eye { pixeldim 8 6 worlddim 8 6 viewpoint 4 3 6 } material m { ambient 1 1 1 }
+        heart h { material m center 0 0 0 size 1 }",
+    );
+    let (heart, mut dice) = (&*model.objects[0].shape, Dice::new());
+    for turn in 0..20_000 {
+        let height = dice.within(-0.5..0.5) * 0.1_f64.powi(turn % 16);
+        let target = DVec3::new(dice.within(-0.3..0.3), height, 0.0);
+        let level = dice.direction().reject_from_normalized(DVec3::Y).normalize();
+        let ray = Ray { origin: target + 5.0 * level, dir: -level };
+        let distance = heart.distance(&ray, &Span::RAY);
+        let (at, normal) = (ray.at(distance), heart.normal(ray.at(distance)));
+        assert!(distance < MISS && normal.is_normalized() && normal.dot(ray.dir) < 0.0, "{ray:?}");
+        let dir = (normal + 0.9 * dice.direction()).normalize();
+        let left = heart.distance(&Ray { origin: at, dir }, &Span { leaves: Some(Side::Outside), ..Span::RAY });
+        assert!(left > 0.01, "{left:e} from {at}");
+    }
+}
