@@ -463,7 +463,8 @@ fn a_heart_has_no_seam_where_its_parts_meet() {
         let (at, normal) = (ray.at(distance), heart.normal(ray.at(distance)));
         assert!(distance < MISS && normal.is_normalized() && normal.dot(ray.dir) < 0.0, "{ray:?}");
         let dir = (normal + 0.9 * dice.direction()).normalize();
-        let left = heart.distance(&Ray { origin: at, dir }, &Span { leaves: Some(Side::Outside), ..Span::RAY });
+        let left =
+            heart.distance(&Ray { origin: at, dir }, &Span { leaves: Some(Side::Outside), ..Span::RAY });
         assert!(left > 0.01, "{left:e} from {at}");
     }
 }
