@@ -27,19 +27,19 @@ const PIECES: usize = 4096;
 /// ever wait.
 const WAITING: usize = 64;
 
-/// The first root in a span, both ends excluded.
+/// The first root in a span, its ends excluded but for rounding.
 ///
 /// A line that starts on the surface itself does so on a side of it, `leaves`, and no root where it starts is meant
 /// then: from outside, only a root where the values fall from above 0 to below, from inside only one where they rise.
 ///
-/// A function whose curvature has no bounds anywhere may use up all [proofs](PIECES); then only the signs at the
-/// ends of the remaining pieces tell.
+/// A function whose curvature has no bounds anywhere may need more proofs than are made, a few thousand; then only
+/// the signs at the ends of the remaining pieces tell.
 pub fn first_root(line: &impl Line, span: Range<f64>, leaves: Option<Side>) -> Option<f64> {
     if !(span.start < span.end && span.start.is_finite() && span.end.is_finite()) {
         return None;
     }
-    let unit = f64::EPSILON * span.start.abs().max(span.end.abs());
-    let search = Search { line, start: span.start, leaves, unit };
+    let shortest = 4.0 * f64::EPSILON * span.start.abs().max(span.end.abs());
+    let search = Search { line, start: span.start, leaves, shortest };
     let is_root = |root: &f64| span.start < *root && *root < span.end;
     let mut waiting = [(0.0, 0.0); WAITING];
     waiting[0] = (span.start, span.end);
@@ -48,7 +48,7 @@ pub fn first_root(line: &impl Line, span: Range<f64>, leaves: Option<Side>) -> O
         count -= 1;
         let (low, high) = waiting[count];
         judged += 1;
-        let may_cut = judged < PIECES && count + 2 <= WAITING && high - low > 4.0 * search.unit;
+        let may_cut = judged < PIECES && count + 2 <= WAITING && high - low > search.shortest;
         let judgement = if may_cut { search.judge(low, high) } else { search.last_word(low, high) };
         match judgement {
             Judgement::Free => {}
@@ -74,8 +74,8 @@ struct Search<'l, L> {
     line: &'l L,
     start: f64,
     leaves: Option<Side>,
-    /// A unit in the last place of the greatest numbers in the span.
-    unit: f64,
+    /// What is not cut any more: a few units in the last place of the greatest numbers in the span.
+    shortest: f64,
 }
 
 enum Judgement {
@@ -145,11 +145,11 @@ impl<L: Line> Search<'_, L> {
             (value, slope)
         };
         let guess = if low < guess && guess < high { guess } else { low + 0.5 * (high - low) };
-        newton::root(value_and_slope, (low, high), if rises { -1.0 } else { 1.0 }, guess, 2.0 * self.unit)
+        newton::root(value_and_slope, (low, high), if rises { -1.0 } else { 1.0 }, guess, 0.5 * self.shortest)
     }
 
-    /// What a piece has that is not cut any more: a root if the sign changes, or if rounding may hide a touch. A pole
-    /// is no root.
+    /// What a piece has that is not cut any more: a root if the sign changes, or if it is so short that its values
+    /// are 0 but for rounding. A pole is no root.
     fn last_word(&self, low: f64, high: f64) -> Judgement {
         let over = self.line.at(Interval { low, high });
         if !over.has_zero() || !over.is_bounded() {
@@ -166,10 +166,8 @@ impl<L: Line> Search<'_, L> {
         if crosses {
             return Judgement::Root(self.newton(low, high, rises, middle));
         }
-        if self.leaves.is_none() && self.value(middle).has_zero() {
-            return Judgement::Root(middle);
-        }
-        Judgement::Free
+        let touches = self.leaves.is_none() && high - low <= self.shortest;
+        if touches { Judgement::Root(middle) } else { Judgement::Free }
     }
 
     /// The value at a place and how far rounding can have moved it.
@@ -194,5 +192,47 @@ fn reach(away: f64, slope: f64, bend: f64) -> f64 {
         ((slope + root) / -bend).low.max(0.0)
     } else {
         f64::INFINITY
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two roots at 1, and one at 3.
+    struct Cubic;
+
+    impl Line for Cubic {
+        fn at<N: Number>(&self, t: N) -> N {
+            (t - N::constant(1.0)).powi(2) * (N::constant(3.0) - t)
+        }
+    }
+
+    /// A kink at the root 2, a jump past 0 at 3 and a pole at 4.
+    struct Broken;
+
+    impl Line for Broken {
+        fn at<N: Number>(&self, t: N) -> N {
+            let n = N::constant;
+            (t - n(2.0)).abs().min(n(2.5) - t.floor()) / (n(4.0) - t)
+        }
+    }
+
+    #[test]
+    fn a_touch_is_a_root_and_no_way_in() {
+        let first = first_root(&Cubic, 0.0..9.0, None).expect("a touch");
+        assert!((first - 1.0).abs() < 1e-7, "{first:e}");
+        assert_eq!(first_root(&Cubic, 0.0..9.0, Some(Side::Outside)), Some(3.0));
+        assert_eq!(first_root(&Cubic, 0.0..9.0, Some(Side::Inside)), None);
+        assert_eq!(first_root(&Cubic, 1.5..2.9, None), None);
+    }
+
+    #[test]
+    fn kinks_and_jumps_are_met_and_poles_are_not() {
+        let kink = first_root(&Broken, 0.3..9.0, None).expect("a kink");
+        assert!((kink - 2.0).abs() < 1e-14, "{kink}");
+        let jump = first_root(&Broken, 2.3..9.0, None).expect("a jump");
+        assert!((jump - 3.0).abs() < 1e-14, "{jump}");
+        assert_eq!(first_root(&Broken, 3.3..9.0, None), None);
     }
 }
