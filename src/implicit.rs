@@ -3,8 +3,10 @@
 //! A plugin gives the formula, once, for every number type, and a box around it. The rest follows: [`first_root`]
 //! finds what a ray meets first and proves that nothing lies before, and [`Dual`] numbers give the normal.
 
+use crate::certify::{self, Enclosure, Equation};
 use crate::dual::Dual;
 use crate::geometry::{Body, Hittable, MISS, Ray, Span};
+use crate::interval::Interval;
 use crate::number::Number;
 use crate::taylor::{Line, first_root};
 use crate::twofold::{two_product, two_sum};
@@ -107,6 +109,36 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
 
     fn is_two_sided(&self) -> bool {
         true
+    }
+
+    fn certify(&self, ray: &Ray) -> Enclosure {
+        certify::first_hit(self, ray)
+    }
+}
+
+impl<T: Implicit> ImplicitShape<T> {
+    /// A point in the shape's own coordinates, with any number type.
+    fn own<N: Number>(&self, at: [N; 3]) -> [N; 3] {
+        let from_origin = [0, 1, 2].map(|axis| at[axis] - N::constant(self.frame.origin[axis]));
+        [0, 1, 2].map(|axis| {
+            let part = |world: usize| from_origin[world] * N::constant(self.frame.axes.col(axis)[world]);
+            part(0) + part(1) + part(2)
+        })
+    }
+}
+
+impl<T: Implicit> Equation for ImplicitShape<T> {
+    fn value<N: Number>(&self, at: [N; 3]) -> N {
+        self.formula.value(self.own(at))
+    }
+
+    fn kept(&self, at: [Interval; 3]) -> Interval {
+        let own = self.own(at);
+        let inside = |axis: usize| {
+            let (low, high) = (Interval::constant(self.low[axis]), Interval::constant(self.high[axis]));
+            (own[axis] - low).min(high - own[axis])
+        };
+        inside(0).min(inside(1)).min(inside(2))
     }
 }
 
