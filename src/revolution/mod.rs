@@ -4,10 +4,9 @@
 //! Each is cut, when it is made, into slabs in which the profile's square is a parabola but for a proven error
 //! (`slabs`). A ray meets the quadrics of revolution around those in closed form, which brackets its first hit or
 //! proves that there is none (`walk`); where it grazes the error's shell, bounds of the second derivative decide
-//! (`graze`). No hit is lost or invented, whatever the profile, and nothing has to be tuned.
+//! ([`taylor`](crate::taylor)). No hit is lost or invented, whatever the profile, and nothing has to be tuned.
 
 mod classic;
-mod graze;
 mod local;
 mod slabs;
 mod walk;
@@ -21,6 +20,7 @@ use crate::formula::Formula;
 use crate::geometry::{MISS, Ray, Side, Span};
 use crate::interval::Interval;
 use crate::number::Number;
+use crate::taylor::Line;
 use glam::DVec3;
 use local::Local;
 use slabs::Slabs;
@@ -117,6 +117,21 @@ impl Equation for Revolution {
     fn kept(&self, [_, y, _]: [Interval; 3]) -> Interval {
         let below_the_top = Interval::constant(self.height) - y;
         y.min(below_the_top).min(self.profile.at(y))
+    }
+}
+
+/// How far outside of the surface the places along a ray are, with any number type.
+struct OnRay<'s> {
+    square: &'s Formula,
+    local: &'s Local,
+}
+
+impl Line for OnRay<'_> {
+    #[inline(always)]
+    fn at<N: Number>(&self, along: N) -> N {
+        let place =
+            |axis: usize| N::constant(self.local.origin[axis]) + along * N::constant(self.local.dir[axis]);
+        place(0).powi(2) + place(2).powi(2) - self.square.at(place(1))
     }
 }
 

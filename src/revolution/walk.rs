@@ -6,9 +6,10 @@
 
 use super::local::Local;
 use super::slabs::Slab;
-use super::{Finish, Revolution, sign};
+use super::{Finish, OnRay, Revolution, sign};
 use crate::geometry::Side;
 use crate::newton;
+use crate::taylor;
 
 /// `sg * (a s^2 + 2 b s + c)`, which is positive where the ray is still on its side of a slab's parabola.
 #[derive(Clone, Copy)]
@@ -31,7 +32,7 @@ impl Revolution {
         // What rounding makes of the ray's own part of the arithmetic.
         let rounding = 16.0 * f64::EPSILON * (local.c + local.a * reach * reach + widest * widest);
         let mut side = leaves.map(sign);
-        let mut wanted = side.unwrap_or(0.0);
+        let mut wanted = leaves;
         loop {
             let slab = self.slabs.get(index);
             let is_last = if is_upward { index + 1 == self.slabs.count() } else { index == 0 };
@@ -42,7 +43,7 @@ impl Revolution {
                 ((end - local.origin.y) / dy).min(local.to)
             };
             if slab.is_void {
-                (side, wanted) = (None, 0.0);
+                (side, wanted) = (None, None);
             } else if to > from || from == local.from {
                 let sg = side.unwrap_or_else(|| self.side_at(local, slab, from, rounding));
                 side = Some(sg);
@@ -77,7 +78,7 @@ impl Revolution {
         local: &Local,
         slab: &Slab,
         (from, to): (f64, f64),
-        (sg, wanted): (f64, f64),
+        (sg, wanted): (f64, Option<Side>),
         rounding: f64,
         finish: Finish,
     ) -> Option<f64> {
@@ -116,6 +117,13 @@ impl Revolution {
         // It may have touched the surface, while it was in the shell.
         let out = quadratic.lowered(error).next_positive(enters, to);
         self.first_crossing(local, enters, out, wanted)
+    }
+
+    /// The first crossing on a short piece, from a side if it matters from which.
+    fn first_crossing(&self, local: &Local, from: f64, to: f64, wanted: Option<Side>) -> Option<f64> {
+        // The piece's own ends may be crossings: they are where shells begin and end.
+        let (from, to) = (from.next_down(), to.next_up());
+        taylor::first_root(&OnRay { square: &self.square, local }, from..to, wanted)
     }
 
     /// The one root of a bracket.
