@@ -98,12 +98,10 @@ impl<N: Number> Number for Dual<N> {
         Self { value: N::constant(value), slope: N::constant(0.0) }
     }
 
-    fn sin(self) -> Self {
-        self.chain(self.value.sin(), self.value.cos())
-    }
-
-    fn cos(self) -> Self {
-        self.chain(self.value.cos(), -self.value.sin())
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        let (sin, cos) = self.value.sin_cos();
+        (self.chain(sin, cos), self.chain(cos, -sin))
     }
 
     fn tan(self) -> Self {
@@ -159,8 +157,11 @@ impl<N: Number> Number for Dual<N> {
 
     #[inline(always)]
     fn powi(self, exponent: i32) -> Self {
-        if exponent == 0 {
-            return Self::constant(1.0);
+        match exponent {
+            0 => return Self::constant(1.0),
+            1 => return self,
+            2 => return self.chain(self.value.powi(2), self.value + self.value),
+            _ => {}
         }
         let derivative = N::constant(f64::from(exponent)) * self.value.powi(exponent - 1);
         self.chain(self.value.powi(exponent), derivative)

@@ -11,6 +11,8 @@ pub struct Formula {
     text: String,
     /// The operations in the order in which they are done: operands first.
     steps: Vec<Step>,
+    /// The most values that wait for their operation at one time.
+    needs: usize,
 }
 
 /// What is wrong with the text of a formula.
@@ -82,7 +84,7 @@ impl Formula {
         let mut parser = Parser { text, at: 0, steps: Vec::new(), depth: 0 };
         parser.sum()?;
         match parser.peek() {
-            None => Ok(Self { text: text.to_owned(), steps: parser.steps }),
+            None => Ok(Self { text: text.to_owned(), needs: needs(&parser.steps), steps: parser.steps }),
             Some(')') => Err(parser.fault_here("a `)` without its `(`")),
             Some(_) => Err(parser.fault_here("an operator belongs here")),
         }
@@ -98,12 +100,18 @@ impl Formula {
             }
             _ => steps.push(Step::Powi(2)),
         }
-        Self { text: format!("({})^2", self.text), steps }
+        Self { text: format!("({})^2", self.text), steps, needs: self.needs }
     }
 
     /// Its value at y.
+    #[inline(always)]
     pub fn at<N: Number>(&self, y: N) -> N {
-        let mut stack = [y; DEPTH];
+        // Most formulas are small, and so is then what must be made ready for them.
+        if self.needs <= 4 { self.run::<N, 4>(y) } else { self.run::<N, DEPTH>(y) }
+    }
+
+    fn run<N: Number, const ROOM: usize>(&self, y: N) -> N {
+        let mut stack = [y; ROOM];
         let mut top = 0_usize;
         for step in &self.steps {
             // The parser has seen to it that operands are there and that they fit.
@@ -134,6 +142,24 @@ impl Formula {
         }
         stack[0]
     }
+}
+
+/// The most values that wait at one time while these operations are done.
+fn needs(steps: &[Step]) -> usize {
+    let mut waiting = 0_usize;
+    let after = steps.iter().map(|step| {
+        let used = match step {
+            Step::Y | Step::Number(_) => 0,
+            Step::Neg | Step::Powi(_) => 1,
+            Step::Add | Step::Sub | Step::Mul | Step::Div => 2,
+            Step::Call(function) => {
+                FUNCTIONS.iter().find(|(_, known, _)| known == function).map_or(2, |(.., count)| *count)
+            }
+        };
+        waiting = waiting + 1 - used.min(waiting);
+        waiting
+    });
+    after.max().unwrap_or(1)
 }
 
 /// The text that it was read from.

@@ -83,7 +83,8 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
             }
         }
         let line = OnRay { formula: &self.formula, base, dir };
-        match first_root(&line, near..far, within.leaves) {
+        let shortest = 4.0 * f64::EPSILON * near.abs().max(far.abs());
+        match first_root(&line, near..far, shortest, within.leaves) {
             Some(root) => within.keep(closest + root),
             None => MISS,
         }

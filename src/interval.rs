@@ -53,13 +53,16 @@ impl Interval {
         self.low.is_finite() && self.high.is_finite()
     }
 
-    /// One step outward at either end. What is not a number becomes anything.
+    /// At least one step outward at either end, two at most. What is not a number becomes anything.
+    ///
+    /// A product and a difference are many times faster than the next number of f64.
     #[inline(always)]
     fn outward(low: f64, high: f64) -> Self {
-        if low.is_nan() || high.is_nan() {
-            return Self::WHOLE;
-        }
-        Self { low: low.next_down(), high: high.next_up() }
+        const STEP: f64 = 1.04 * f64::EPSILON;
+        const LEAST: f64 = 1e-305;
+        let low = low - (low.abs() * STEP + LEAST);
+        let high = high + (high.abs() * STEP + LEAST);
+        if low.is_nan() || high.is_nan() { Self::WHOLE } else { Self { low, high } }
     }
 
     /// Around values that a function of `libm` gave.
@@ -131,12 +134,16 @@ impl Mul for Interval {
         if self.is_zero() || other.is_zero() {
             return Self::constant(0.0);
         }
-        let (low, high) = Self::of_four(
-            self.low * other.low,
-            self.low * other.high,
-            self.high * other.low,
-            self.high * other.high,
-        );
+        let products =
+            [self.low * other.low, self.low * other.high, self.high * other.low, self.high * other.high];
+        let [a, b, c, d] = products;
+        // Nearly always there is nothing to think about.
+        if a * b * c * d != 0.0 && (a + b + c + d).is_finite() {
+            let less = |a: f64, b: f64| if a < b { a } else { b };
+            let more = |a: f64, b: f64| if a > b { a } else { b };
+            return Self::outward(less(less(a, b), less(c, d)), more(more(a, b), more(c, d)));
+        }
+        let (low, high) = Self::of_four(a, b, c, d);
         // 0 times infinity was left out above, where an end at 0 meets no end.
         let touches = |a: Self, b: Self| a.has_zero() && !b.is_bounded();
         if touches(self, other) || touches(other, self) {
@@ -177,12 +184,11 @@ impl Number for Interval {
         Self { low: value, high: value }
     }
 
-    fn sin(self) -> Self {
-        self.wave(libm::sin(self.low), libm::sin(self.high), FRAC_PI_2)
-    }
-
-    fn cos(self) -> Self {
-        self.wave(libm::cos(self.low), libm::cos(self.high), 0.0)
+    fn sin_cos(self) -> (Self, Self) {
+        let (sin_low, cos_low) = libm::sincos(self.low);
+        let is_point = self.low == self.high;
+        let (sin_high, cos_high) = if is_point { (sin_low, cos_low) } else { libm::sincos(self.high) };
+        (self.wave(sin_low, sin_high, FRAC_PI_2), self.wave(cos_low, cos_high, 0.0))
     }
 
     fn tan(self) -> Self {
@@ -252,8 +258,15 @@ impl Number for Interval {
         if exponent < 0 {
             return Self::constant(1.0) / self.powi(-exponent);
         }
-        if exponent == 0 {
-            return Self::constant(1.0);
+        match exponent {
+            0 => return Self::constant(1.0),
+            1 => return self,
+            2 => {
+                let Self { low, high } = self.abs();
+                let square = Self::outward(low * low, high * high);
+                return Self { low: if square.low > 0.0 { square.low } else { 0.0 }, high: square.high };
+            }
+            _ => {}
         }
         let base = if exponent % 2 == 0 { self.abs() } else { self };
         let mut power = base;

@@ -15,10 +15,20 @@ pub trait Number:
 {
     /// A number that does not depend on anything.
     fn constant(value: f64) -> Self;
+    /// The sine and the cosine.
+    fn sin_cos(self) -> (Self, Self);
     /// The sine.
-    fn sin(self) -> Self;
+    #[inline(always)]
+    fn sin(self) -> Self {
+        self.sin_cos().0
+    }
+
     /// The cosine.
-    fn cos(self) -> Self;
+    #[inline(always)]
+    fn cos(self) -> Self {
+        self.sin_cos().1
+    }
+
     /// The tangent.
     fn tan(self) -> Self;
     /// e to the power of it.
@@ -56,12 +66,8 @@ impl Number for f64 {
         value
     }
 
-    fn sin(self) -> Self {
-        libm::sin(self)
-    }
-
-    fn cos(self) -> Self {
-        libm::cos(self)
+    fn sin_cos(self) -> (Self, Self) {
+        libm::sincos(self)
     }
 
     fn tan(self) -> Self {

@@ -18,6 +18,11 @@ use std::ops::Range;
 pub trait Line {
     /// The value at a place, with any number type.
     fn at<N: Number>(&self, t: N) -> N;
+
+    /// Bounds of the second derivative on a piece.
+    fn curvature(&self, piece: Interval) -> Interval {
+        self.at(Dual::variable_twice(piece)).second()
+    }
 }
 
 /// The pieces looked at before proofs are given up: far more than any but the wildest function takes.
@@ -32,13 +37,14 @@ const WAITING: usize = 64;
 /// A line that starts on the surface itself does so on a side of it, `leaves`, and no root where it starts is meant
 /// then: from outside, only a root where the values fall from above 0 to below, from inside only one where they rise.
 ///
+/// Pieces not longer than `shortest` are not cut: a few units in the last place of the greatest numbers on the line.
+///
 /// A function whose curvature has no bounds anywhere may need more proofs than are made, a few thousand; then only
 /// the signs at the ends of the remaining pieces tell.
-pub fn first_root(line: &impl Line, span: Range<f64>, leaves: Option<Side>) -> Option<f64> {
+pub fn first_root(line: &impl Line, span: Range<f64>, shortest: f64, leaves: Option<Side>) -> Option<f64> {
     if !(span.start < span.end && span.start.is_finite() && span.end.is_finite()) {
         return None;
     }
-    let shortest = 4.0 * f64::EPSILON * span.start.abs().max(span.end.abs());
     let search = Search { line, start: span.start, leaves, shortest };
     let is_root = |root: &f64| span.start < *root && *root < span.end;
     let mut waiting = [(0.0, 0.0); WAITING];
@@ -74,7 +80,7 @@ struct Search<'l, L> {
     line: &'l L,
     start: f64,
     leaves: Option<Side>,
-    /// What is not cut any more: a few units in the last place of the greatest numbers in the span.
+    /// What is not cut any more.
     shortest: f64,
 }
 
@@ -89,22 +95,28 @@ enum Judgement {
 
 impl<L: Line> Search<'_, L> {
     fn judge(&self, low: f64, high: f64) -> Judgement {
-        let over = self.line.at(Dual::variable_twice(Interval { low, high }));
-        if !over.value.value.has_zero() {
-            return Judgement::Free;
-        }
+        let piece = Interval { low, high };
         let middle = low + 0.5 * (high - low);
         let half = (middle - low).max(high - middle).next_up();
         let around = Interval { low: -half, high: half };
-        let (slopes, curvature) = (over.first(), over.second());
         let Dual { value, slope } = self.line.at(Dual::variable(Interval::constant(middle)));
-        if !(value + slopes * around).has_zero() {
+        let curvature = self.line.curvature(piece);
+        // Taylor's theorem of the second order, or where there is no bound for that, of the first.
+        let (values, slopes) = if curvature.is_bounded() {
+            let bend = curvature * around;
+            (value + (slope + Interval::constant(0.5) * bend) * around, slope + bend)
+        } else {
+            let over = self.line.at(Dual::variable(piece));
+            if !over.value.has_zero() {
+                return Judgement::Free;
+            }
+            (value + over.slope * around, over.slope)
+        };
+        if !values.has_zero() {
             return Judgement::Free;
         }
-        for slopes in [slopes, slope + curvature * around] {
-            if !slopes.has_zero() {
-                return self.cross(low, high, slopes.low > 0.0, middle - value.low / slope.low);
-            }
+        if !slopes.has_zero() {
+            return self.cross(low, high, slopes.low > 0.0, middle - value.low / slope.low);
         }
         // |value| from the middle on is above `away + slope u + curvature u²/2`, as its mirror image is to the left.
         let (away, slope, bend) = if value.low > 0.0 {
@@ -220,19 +232,19 @@ mod tests {
 
     #[test]
     fn a_touch_is_a_root_and_no_way_in() {
-        let first = first_root(&Cubic, 0.0..9.0, None).expect("a touch");
+        let first = first_root(&Cubic, 0.0..9.0, f64::EPSILON * 36.0, None).expect("a touch");
         assert!((first - 1.0).abs() < 1e-7, "{first:e}");
-        assert_eq!(first_root(&Cubic, 0.0..9.0, Some(Side::Outside)), Some(3.0));
-        assert_eq!(first_root(&Cubic, 0.0..9.0, Some(Side::Inside)), None);
-        assert_eq!(first_root(&Cubic, 1.5..2.9, None), None);
+        assert_eq!(first_root(&Cubic, 0.0..9.0, f64::EPSILON * 36.0, Some(Side::Outside)), Some(3.0));
+        assert_eq!(first_root(&Cubic, 0.0..9.0, f64::EPSILON * 36.0, Some(Side::Inside)), None);
+        assert_eq!(first_root(&Cubic, 1.5..2.9, f64::EPSILON * 36.0, None), None);
     }
 
     #[test]
     fn kinks_and_jumps_are_met_and_poles_are_not() {
-        let kink = first_root(&Broken, 0.3..9.0, None).expect("a kink");
+        let kink = first_root(&Broken, 0.3..9.0, f64::EPSILON * 36.0, None).expect("a kink");
         assert!((kink - 2.0).abs() < 1e-14, "{kink}");
-        let jump = first_root(&Broken, 2.3..9.0, None).expect("a jump");
+        let jump = first_root(&Broken, 2.3..9.0, f64::EPSILON * 36.0, None).expect("a jump");
         assert!((jump - 3.0).abs() < 1e-14, "{jump}");
-        assert_eq!(first_root(&Broken, 3.3..9.0, None), None);
+        assert_eq!(first_root(&Broken, 3.3..9.0, f64::EPSILON * 36.0, None), None);
     }
 }

@@ -133,6 +133,14 @@ impl Line for OnRay<'_> {
             |axis: usize| N::constant(self.local.origin[axis]) + along * N::constant(self.local.dir[axis]);
         place(0).powi(2) + place(2).powi(2) - self.square.at(place(1))
     }
+
+    /// That of the squared distance from the axis is the same everywhere.
+    fn curvature(&self, piece: Interval) -> Interval {
+        let dir = self.local.dir.to_array().map(Interval::constant);
+        let height = Interval::constant(self.local.origin.y) + piece * dir[1];
+        let of_square = self.square.at(Dual::variable_twice(height)).second();
+        Interval::constant(2.0) * (dir[0].powi(2) + dir[2].powi(2)) - of_square * dir[1].powi(2)
+    }
 }
 
 /// The sign of [`Revolution::outside`] on a side.
