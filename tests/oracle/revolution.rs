@@ -1,0 +1,327 @@
+//! Where a ray first meets a line turned around the y axis: the first root of x^2 + z^2 - g(y)^2.
+//!
+//! All roots are isolated. A piece of the ray is cut in two until bounds that certainly hold say that it has no
+//! root, or that the function only grows or only falls on it, so that the signs at its ends decide. The bounds come
+//! from intervals, and on short pieces, where these are too coarse, from [`DoubleDouble`].
+
+use super::double_double::DoubleDouble;
+use super::{Crossings, Hit, Truth};
+use glam::DVec3;
+use tabray::dual::Dual;
+use tabray::formula::Formula;
+use tabray::geometry::Ray;
+use tabray::interval::Interval;
+use tabray::number::Number;
+
+/// A line x = g(y) turned around the y axis through a base. Where g is below 0 there is nothing.
+pub struct Revolution {
+    formula: Formula,
+    base: DVec3,
+    height: f64,
+    /// What the line's distance from the axis certainly does not exceed.
+    radius: f64,
+}
+
+/// A ray as the solver sees it: counted from the base of the surface, and from a point near it.
+#[derive(Clone, Copy)]
+struct Local {
+    /// How far along the ray that point is.
+    start: f64,
+    /// That point.
+    at: [DoubleDouble; 3],
+    dir: [f64; 3],
+    /// The part of the ray, counted from that point, outside of which the surface is not.
+    from: f64,
+    to: f64,
+}
+
+/// What the surface's function certainly is somewhere, or all over a piece, with its first derivative.
+struct Bounds {
+    value: Interval,
+    slope: Interval,
+}
+
+/// What [`DoubleDouble`]'s errors certainly do not exceed, for numbers of magnitude 1.
+const ERROR: f64 = 1e-28;
+
+/// The pieces that one ray may cost.
+const MOST_PIECES: usize = 100_000;
+
+impl Revolution {
+    /// A formula's line, turned around the axis from a base to a height above it.
+    pub fn new(formula: &str, base: DVec3, height: f64) -> Self {
+        const PIECES: i32 = 1024;
+        let formula = Formula::parse(formula).expect("a formula");
+        let end = |index: i32| height * f64::from(index) / f64::from(PIECES);
+        let radius = (0..PIECES).map(|piece| {
+            let heights = Interval { low: end(piece), high: end(piece + 1).next_up() };
+            formula.at(heights).magnitude()
+        });
+        let radius = radius.fold(0.0, f64::max);
+        Self { formula, base, height, radius }
+    }
+
+    /// How far from the axis it is at a height, and how fast that grows.
+    pub fn line(&self, y: f64) -> Dual {
+        self.formula.at(Dual::variable(y))
+    }
+
+    /// The point of its axis where the height is 0.
+    pub fn base(&self) -> DVec3 {
+        self.base
+    }
+
+    /// How far along its axis it goes.
+    pub fn height(&self) -> f64 {
+        self.height
+    }
+
+    /// What the line's distance from the axis certainly does not exceed.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// The first hit of a ray farther than `near`.
+    pub fn first_hit(&self, ray: &Ray, near: f64, crossings: Crossings) -> Truth {
+        match self.clip(ray, near) {
+            Some(local) => Search { surface: self, ray: local, near, crossings }.run(),
+            None => Truth::Miss,
+        }
+    }
+
+    /// How far from the surface the point at a distance along a ray is, to first order.
+    pub fn off_surface(&self, ray: &Ray, distance: f64) -> f64 {
+        let local =
+            Local { start: distance, at: self.from_base(ray, distance), dir: [0.0; 3], from: 0.0, to: 0.0 };
+        let Dual { value: radius, slope } = self.formula.at(Dual::variable(local.at[1]));
+        let value = self.function(&local, DoubleDouble::from(0.0)).value.to_f64();
+        // The length of the gradient of x^2 + z^2 - g(y)^2 at a point of the surface.
+        let gradient = 2.0 * radius.to_f64() * slope.to_f64().hypot(1.0);
+        (value / gradient).abs()
+    }
+
+    /// The point at a distance along a ray, counted from the base.
+    fn from_base(&self, ray: &Ray, distance: f64) -> [DoubleDouble; 3] {
+        let (origin, base, dir) = (ray.origin.to_array(), self.base.to_array(), ray.dir.to_array());
+        std::array::from_fn(|axis| {
+            DoubleDouble::sum(origin[axis], -base[axis])
+                + DoubleDouble::from(distance) * DoubleDouble::from(dir[axis])
+        })
+    }
+
+    /// The part of a ray beyond `near` that is between the surface's two ends and in a cylinder around it, or a
+    /// little more.
+    fn clip(&self, ray: &Ray, near: f64) -> Option<Local> {
+        let [x, y, z] = self.from_base(ray, 0.0);
+        let [dx, dy, dz] = ray.dir.to_array().map(DoubleDouble::from);
+        let (mut from, mut to) = (DoubleDouble::from(near), DoubleDouble::from(1e200));
+        if !dy.is_zero() {
+            let (bottom, top) = (-y / dy, (DoubleDouble::from(self.height) - y) / dy);
+            (from, to) = (from.max(bottom.min(top)), to.min(bottom.max(top)));
+        } else if y.is_negative() || DoubleDouble::from(self.height) < y {
+            return None;
+        }
+        let across = dx * dx + dz * dz;
+        if !across.is_zero() {
+            let nearest = -(x * dx + z * dz) / across;
+            let (x, z) = (x + nearest * dx, z + nearest * dz);
+            let radius = DoubleDouble::from(1.01 * self.radius);
+            let room = radius * radius - x * x - z * z;
+            if room.is_negative() {
+                return None;
+            }
+            let half = (room / across).sqrt();
+            (from, to) = (from.max(nearest - half), to.min(nearest + half));
+        }
+        if to < from {
+            return None;
+        }
+        let start = ((from + to) / DoubleDouble::from(2.0)).to_f64();
+        let [from, to] = [from, to].map(|end| (end - start.into()).to_f64());
+        let slack = 1e-12 * (to - from) + f64::MIN_POSITIVE;
+        let at = self.from_base(ray, start);
+        Some(Local { start, at, dir: ray.dir.to_array(), from: from - slack, to: to + slack })
+    }
+
+    /// The surface's function along a ray, with its derivative: positive outside.
+    fn function(&self, ray: &Local, t: DoubleDouble) -> Dual<DoubleDouble> {
+        let t = Dual::variable(t);
+        let [x, y, z] = [0, 1, 2].map(|axis| {
+            let place = Dual { value: ray.at[axis], slope: 0.0.into() };
+            place + t * Dual::constant(ray.dir[axis])
+        });
+        x * x + z * z - self.formula.at(y).powi(2)
+    }
+
+    /// The surface's function on a piece of a ray, with its first and second derivatives: certain bounds.
+    fn bounds(&self, ray: &Local, piece: Interval) -> Dual<Dual<Interval>> {
+        let t = Dual::variable_twice(piece);
+        let [x, y, z] = [0, 1, 2].map(|axis| {
+            let [high, low] = ray.at[axis].parts().map(Interval::constant);
+            let place =
+                Dual { value: Dual { value: high + low, ..Dual::constant(0.0) }, ..Dual::constant(0.0) };
+            place + t * Dual::constant(ray.dir[axis])
+        });
+        x.powi(2) + z.powi(2) - self.formula.at(y).powi(2)
+    }
+}
+
+struct Search<'s> {
+    surface: &'s Revolution,
+    ray: Local,
+    near: f64,
+    crossings: Crossings,
+}
+
+/// What is known of a piece of a ray.
+enum Piece {
+    /// No root.
+    Empty,
+    /// At most one root, and one if the signs at its ends differ.
+    Monotone,
+    /// Anything.
+    Open,
+}
+
+impl Search<'_> {
+    fn run(&self) -> Truth {
+        let mut pieces = vec![(self.ray.from, self.ray.to)];
+        let finest = 4.0 * f64::EPSILON * self.ray.from.abs().max(self.ray.to.abs());
+        for _ in 0..MOST_PIECES {
+            let Some((from, to)) = pieces.pop() else { return Truth::Miss };
+            let is_finest = to - from <= finest;
+            match self.examine(from, to) {
+                Piece::Empty => {}
+                Piece::Monotone => {
+                    if let Some(hit) = self.crossing(from, to) {
+                        return Truth::Hit(hit);
+                    }
+                }
+                // A ledge, or a kink: where the sign changes the ray crosses it.
+                Piece::Open if is_finest && self.is_inside(from) != self.is_inside(to) => {
+                    if let Some(hit) = self.crossing(from, to) {
+                        return Truth::Hit(hit);
+                    }
+                }
+                Piece::Open if is_finest => return Truth::Undecided,
+                Piece::Open => {
+                    let middle = from + (to - from) / 2.0;
+                    pieces.extend([(middle, to), (from, middle)]);
+                }
+            }
+        }
+        Truth::Undecided
+    }
+
+    fn examine(&self, from: f64, to: f64) -> Piece {
+        let whole = self.surface.bounds(&self.ray, Interval { low: from, high: to });
+        if !whole.value.value.has_zero() {
+            return Piece::Empty;
+        }
+        if !whole.first().has_zero() {
+            return Piece::Monotone;
+        }
+        let middle = from + (to - from) / 2.0;
+        let half = (to - middle).max(middle - from).next_up();
+        let Bounds { value, slope } = self.at(middle, half);
+        // Outward rounding makes up for the one of these products and sums.
+        let reach = Interval { low: -half, high: half };
+        let bend = whole.second();
+        let value = value + slope * reach + Interval::constant(0.5) * bend * reach.powi(2);
+        let slope = slope + bend * reach;
+        if !value.has_zero() {
+            Piece::Empty
+        } else if !slope.has_zero() {
+            Piece::Monotone
+        } else {
+            Piece::Open
+        }
+    }
+
+    /// The function and its slope at one place in the middle of a piece, as exactly as the piece is short.
+    fn at(&self, t: f64, half: f64) -> Bounds {
+        let reach = self.ray.to - self.ray.from;
+        if half > 1e-4 * reach {
+            let there = self.surface.bounds(&self.ray, Interval::constant(t));
+            return Bounds { value: there.value.value, slope: there.first() };
+        }
+        let Dual { value, slope } = self.surface.function(&self.ray, t.into());
+        let size = self.surface.radius + reach;
+        let steep = 1.0 + slope.to_f64().abs() / size;
+        let around = |number: DoubleDouble, error: f64| {
+            let error = DoubleDouble::from(error);
+            Interval { low: (number - error).to_f64().next_down(), high: (number + error).to_f64().next_up() }
+        };
+        Bounds {
+            value: around(value, ERROR * size * size * steep),
+            slope: around(slope, ERROR * size * steep),
+        }
+    }
+
+    fn is_inside(&self, t: f64) -> bool {
+        self.surface.function(&self.ray, t.into()).value.is_negative()
+    }
+
+    /// The one root of a piece, if there is one and it counts.
+    fn crossing(&self, from: f64, to: f64) -> Option<Hit> {
+        let inside_at_first = self.is_inside(from);
+        if inside_at_first == self.is_inside(to) {
+            return None;
+        }
+        let (mut low, mut high) = (DoubleDouble::from(from), DoubleDouble::from(to));
+        let mut t = DoubleDouble::from(self.guess(from, to, inside_at_first));
+        let half = DoubleDouble::from(0.5);
+        // Newton's steps, and halves of the bracket where these leave it.
+        for _ in 0..120 {
+            let Dual { value, slope } = self.surface.function(&self.ray, t);
+            if value.is_negative() == inside_at_first {
+                low = t;
+            } else {
+                high = t;
+            }
+            let step = t - value / slope;
+            let next = if low <= step && step <= high { step } else { low + (high - low) * half };
+            let moved = (next - t).to_f64().abs();
+            t = next;
+            if moved <= 1e-30 * (self.ray.to - self.ray.from) {
+                break;
+            }
+        }
+        let slope = self.surface.function(&self.ray, t).slope.to_f64();
+        let distance = t + self.ray.start.into();
+        let y = self.ray.at[1] + t * self.ray.dir[1].into();
+        let there = DoubleDouble::from(self.near) < distance
+            && !y.is_negative()
+            && y <= self.surface.height.into()
+            && !self.surface.formula.at(y).is_negative()
+            && self.crossings.count(if inside_at_first { 1.0 } else { -1.0 });
+        there.then_some(Hit { t: distance, slope })
+    }
+
+    /// The root of a piece to about the precision of `f64`.
+    fn guess(&self, from: f64, to: f64, inside_at_first: bool) -> f64 {
+        let [at, dir] = [self.ray.at.map(DoubleDouble::to_f64), self.ray.dir];
+        let function = |t: f64| {
+            let t = Dual::variable(t);
+            let [x, y, z] = [0, 1, 2].map(|axis| Dual::constant(at[axis]) + t * Dual::constant(dir[axis]));
+            x * x + z * z - self.surface.formula.at(y).powi(2)
+        };
+        let (mut low, mut high) = (from, to);
+        let mut t = low + (high - low) / 2.0;
+        for _ in 0..60 {
+            let Dual { value, slope } = function(t);
+            if (value < 0.0) == inside_at_first {
+                low = t;
+            } else {
+                high = t;
+            }
+            let step = t - value / slope;
+            let next = if low <= step && step <= high { step } else { low + (high - low) / 2.0 };
+            if (next - t).abs() <= 2.0 * f64::EPSILON * t.abs() {
+                break;
+            }
+            t = next;
+        }
+        t
+    }
+}
