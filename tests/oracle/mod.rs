@@ -5,6 +5,7 @@ pub mod double_double;
 pub mod rays;
 pub mod revolution;
 pub mod shapes;
+pub mod tally;
 
 use double_double::DoubleDouble;
 

@@ -77,8 +77,8 @@ pub fn triangle([a, b, c]: [DVec3; 3], ray: &Ray) -> Truth {
     plane.part_hit(ray, &[edge(a, b), edge(b, c), edge(c, a)])
 }
 
-/// A sphere stretched along the axes. Rays that start inside meet its far wall.
-pub fn ellipsoid(center: DVec3, radius: f64, scale: DVec3, ray: &Ray) -> Truth {
+/// A sphere stretched along the axes, as far as it is farther than `near`: rays that start inside meet its far wall.
+pub fn ellipsoid(center: DVec3, radius: f64, scale: DVec3, ray: &Ray, near: f64) -> Truth {
     let squeezed = |vector: Vector| {
         let scale = scale.to_array();
         std::array::from_fn(|axis| vector[axis] / scale[axis].into())
@@ -99,18 +99,18 @@ pub fn ellipsoid(center: DVec3, radius: f64, scale: DVec3, ray: &Ray) -> Truth {
     }
     let half = (room / square).sqrt();
     let slope = 2.0 * (half * square).to_f64();
-    if nearest - half > 0.0.into() {
+    if nearest - half > near.into() {
         Truth::Hit(Hit { t: nearest - half, slope: -slope })
-    } else if nearest + half > 0.0.into() {
+    } else if nearest + half > near.into() {
         Truth::Hit(Hit { t: nearest + half, slope })
     } else {
         Truth::Miss
     }
 }
 
-/// A sphere.
-pub fn sphere(center: DVec3, radius: f64, ray: &Ray) -> Truth {
-    ellipsoid(center, radius, DVec3::ONE, ray)
+/// A sphere, likewise.
+pub fn sphere(center: DVec3, radius: f64, ray: &Ray, near: f64) -> Truth {
+    ellipsoid(center, radius, DVec3::ONE, ray, near)
 }
 
 /// The part in a box of what solves Axx + Byy + Czz + Dxy + Exz + Fyz + Gx + Hy + Iz = J, counted from a center.
@@ -124,8 +124,8 @@ pub struct Quadric {
 }
 
 impl Quadric {
-    /// The first hit of a ray.
-    pub fn first_hit(&self, ray: &Ray) -> Truth {
+    /// The first hit of a ray farther than `near`.
+    pub fn first_hit(&self, ray: &Ray, near: f64) -> Truth {
         let [a, b, c, d, e, f, g, h, i, j] = self.coefficients.map(DoubleDouble::from);
         let half = DoubleDouble::from(0.5);
         let square = |[x, y, z]: Vector| {
@@ -152,7 +152,7 @@ impl Quadric {
         let sum = if linear.is_negative() { root - linear } else { -root - linear };
         let mut roots = [sum / quadratic, constant / sum].map(|root| root + nearest);
         roots.sort_by(|one, other| one.to_f64().total_cmp(&other.to_f64()));
-        for t in roots.into_iter().filter(|t| t.to_f64().is_finite() && *t > 0.0.into()) {
+        for t in roots.into_iter().filter(|t| t.to_f64().is_finite() && *t > near.into()) {
             let from_start = t - nearest;
             match self.keeps(add(at, times(dir, from_start)), t.to_f64() + ray.origin.abs().max_element()) {
                 Some(true) => {
