@@ -14,7 +14,7 @@ use tabray::geometry::{Hittable, MISS, Ray, Span};
 use tabray::model::Model;
 
 /// The rays of each set.
-const RAYS: usize = 20_000;
+const RAYS: usize = 10_000;
 
 /// A method that is right: a crossing is not taken for another one, however near they are to each other.
 fn exactly(scale: f64) -> Tolerance {
@@ -213,10 +213,9 @@ fn the_truth_of_a_revolution_is_where_the_function_first_changes_its_sign() {
 /// A cone is a quadric, too.
 #[test]
 fn two_truths_of_a_cone_agree() {
-    let slope = -4.0 / 6.0;
     let surface = Revolution::new(CONE.0, BASE, CONE.1);
     let quadric = Quadric {
-        coefficients: [1.0, -slope * slope, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+        coefficients: [9.0, -4.0, 9.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
         center: BASE + dvec3(0.0, 6.0, 0.0),
         corners: [dvec3(-9.0, -6.0, -9.0), dvec3(9.0, 0.0, 9.0)],
     };
@@ -225,9 +224,8 @@ fn two_truths_of_a_cone_agree() {
         let (one, other) = (surface.first_hit(&ray, 0.0, Crossings::All), quadric.first_hit(&ray, 0.0));
         match (one, other) {
             (Truth::Hit(one), Truth::Hit(other)) => {
-                // The two slopes are rounded differently.
                 let apart = (one.t - other.t).to_f64().abs();
-                assert!(apart < 1e-9, "{ray:?}: {one:?} {other:?}");
+                assert!(apart * one.slope.abs() < 1e-25, "{ray:?}: {one:?} {other:?}");
             }
             (Truth::Undecided, _) | (_, Truth::Undecided) => {}
             (one, other) => assert_eq!(one, other, "{ray:?}"),

@@ -183,6 +183,15 @@ enum Piece {
     Open,
 }
 
+/// What a ray crosses where the function changes its sign.
+#[derive(PartialEq)]
+enum Kind {
+    /// A place where it is 0.
+    Root,
+    /// One where it jumps, such as a stair's step, or where its slope does.
+    Ledge,
+}
+
 impl Search<'_> {
     fn run(&self) -> Truth {
         let mut pieces = vec![(self.ray.from, self.ray.to)];
@@ -193,17 +202,17 @@ impl Search<'_> {
             match self.examine(from, to) {
                 Piece::Empty => {}
                 Piece::Monotone => {
-                    if let Some(hit) = self.crossing(from, to) {
+                    if let Some(hit) = self.crossing(from, to, Kind::Root) {
                         return Truth::Hit(hit);
                     }
                 }
-                // A ledge, or a kink: where the sign changes the ray crosses it.
                 Piece::Open if is_finest && self.is_inside(from) != self.is_inside(to) => {
-                    if let Some(hit) = self.crossing(from, to) {
+                    if let Some(hit) = self.crossing(from, to, Kind::Ledge) {
                         return Truth::Hit(hit);
                     }
                 }
-                Piece::Open if is_finest => return Truth::Undecided,
+                Piece::Open if is_finest && self.may_touch(from, to) => return Truth::Undecided,
+                Piece::Open if is_finest => {}
                 Piece::Open => {
                     let middle = from + (to - from) / 2.0;
                     pieces.extend([(middle, to), (from, middle)]);
@@ -258,12 +267,23 @@ impl Search<'_> {
         }
     }
 
+    /// Whether the ray may touch the surface on a piece of a few units in the last place that ends on one side of it.
+    /// Next to a ledge bounds do not say, but the function is far from 0.
+    fn may_touch(&self, from: f64, to: f64) -> bool {
+        let size = self.surface.radius + self.ray.to - self.ray.from;
+        let is_near = |t: f64| {
+            let value = self.surface.function(&self.ray, t.into()).value;
+            value.to_f64().abs() < 1e-13 * size * size
+        };
+        is_near(from) || is_near(to)
+    }
+
     fn is_inside(&self, t: f64) -> bool {
         self.surface.function(&self.ray, t.into()).value.is_negative()
     }
 
     /// The one root of a piece, if there is one and it counts.
-    fn crossing(&self, from: f64, to: f64) -> Option<Hit> {
+    fn crossing(&self, from: f64, to: f64, kind: Kind) -> Option<Hit> {
         let inside_at_first = self.is_inside(from);
         if inside_at_first == self.is_inside(to) {
             return None;
@@ -283,19 +303,29 @@ impl Search<'_> {
             let next = if low <= step && step <= high { step } else { low + (high - low) * half };
             let moved = (next - t).to_f64().abs();
             t = next;
-            if moved <= 1e-30 * (self.ray.to - self.ray.from) {
+            if moved <= 1e-30 * (self.ray.to - self.ray.from) || high <= low {
                 break;
             }
         }
-        let slope = self.surface.function(&self.ray, t).slope.to_f64();
         let distance = t + self.ray.start.into();
+        let is_surface = match kind {
+            Kind::Root => self.is_surface(t),
+            // It has two sides.
+            Kind::Ledge => self.is_surface(low) && self.is_surface(high),
+        };
+        let sign = if inside_at_first { 1.0 } else { -1.0 };
+        let slope = match kind {
+            Kind::Root => self.surface.function(&self.ray, t).slope.to_f64(),
+            Kind::Ledge => sign,
+        };
+        let counts = DoubleDouble::from(self.near) < distance && is_surface && self.crossings.count(sign);
+        counts.then_some(Hit { t: distance, slope })
+    }
+
+    /// Whether there is a surface as high as the ray is there.
+    fn is_surface(&self, t: DoubleDouble) -> bool {
         let y = self.ray.at[1] + t * self.ray.dir[1].into();
-        let there = DoubleDouble::from(self.near) < distance
-            && !y.is_negative()
-            && y <= self.surface.height.into()
-            && !self.surface.formula.at(y).is_negative()
-            && self.crossings.count(if inside_at_first { 1.0 } else { -1.0 });
-        there.then_some(Hit { t: distance, slope })
+        !y.is_negative() && y <= self.surface.height.into() && !self.surface.formula.at(y).is_negative()
     }
 
     /// The root of a piece to about the precision of `f64`.

@@ -78,7 +78,8 @@ impl Tally {
                     let error = distance(hit.t, found);
                     self.errors.push(error);
                     self.ulps = self.ulps.max(error / ulp(hit.t.to_f64()));
-                    self.off_surface = self.off_surface.max(off_surface(found));
+                    // On a ledge the surface's function does not say, but the ray cannot be farther off than along it.
+                    self.off_surface = self.off_surface.max(off_surface(found).min(error));
                     true
                 }
             }
