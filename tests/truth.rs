@@ -4,13 +4,13 @@ mod common;
 mod oracle;
 
 use common::model;
-use glam::{DVec2, DVec3, dvec2, dvec3};
-use oracle::rays::{self, BASE, Random, VIEWPOINT, toward};
+use glam::{DMat3, DVec3, dvec2, dvec3};
+use oracle::rays::{self, BASE, Random};
 use oracle::revolution::Revolution;
 use oracle::shapes::{self, Plane, Quadric};
 use oracle::tally::{Tally, Tolerance, ulp};
 use oracle::{Crossings, Truth};
-use tabray::geometry::{Hittable, MISS, Ray, Span};
+use tabray::geometry::{MISS, Ray, Side, Span};
 use tabray::model::Model;
 
 /// The rays of each set.
@@ -144,6 +144,7 @@ const NASTY: (&str, f64) = ("1 + 0.3*sin(20*y)", 6.28);
 const CONE: (&str, f64) = ("-4/6*(y - 6)", 6.0);
 const FLANGE: (&str, f64) = ("0.3 + 2*exp(-(20*(y-3))^2)", 6.28);
 const KINK: (&str, f64) = ("0.6 + 0.5*abs(y-3)", 6.28);
+const TUBE: (&str, f64) = ("1.5", 6.0);
 const JUMP: (&str, f64) = ("0.5 + 0.25*floor(y)", 6.28);
 
 #[test]
@@ -176,10 +177,15 @@ fn stairs_are_found() {
     finds_the_revolution("jump", JUMP.0, JUMP.1);
 }
 
+#[test]
+fn a_tube_is_found() {
+    finds_the_revolution("tube", TUBE.0, TUBE.1);
+}
+
 /// The truth itself: no sign changes before the hit, and it is where the sign changes.
 #[test]
 fn the_truth_of_a_revolution_is_where_the_function_first_changes_its_sign() {
-    for (formula, height) in [VASE, NASTY, CONE, FLANGE, KINK, JUMP] {
+    for (formula, height) in [VASE, NASTY, CONE, FLANGE, KINK, TUBE, JUMP] {
         let surface = Revolution::new(formula, BASE, height);
         let line = tabray::formula::Formula::parse(formula).expect("a formula");
         for ray in rays::camera(500, 1.0).chain(rays::inside(500, BASE + dvec3(0.0, 3.0, 0.0), 4.0)) {
@@ -249,4 +255,320 @@ fn the_notes_method_finds_the_vase_but_for_its_silhouette() {
     assert!(tally.hits > RAYS / 4, "{tally}");
     assert!(tally.wrong() * 20 < tally.hits, "{tally}");
     assert!(tally.worst() < 1e-3, "{tally}");
+}
+
+// Shapes with a formula for their hits
+
+/// Where the shapes with ends are, and how far they reach.
+const MIDDLE: DVec3 = dvec3(4.0, 3.0, -4.0);
+const REACH: f64 = 3.0;
+
+/// A shape's spelling in a scene of some size, and its truth.
+type Spelt = (String, Box<dyn Fn(&Ray, f64) -> Truth>);
+
+fn sphere(scale: f64) -> Spelt {
+    let (center, radius) = (scale * MIDDLE, scale * 2.0);
+    let text = format!("sphere s {{ material m center {} radius {radius:?} }}", spelt(center));
+    (text, Box::new(move |ray, near| shapes::sphere(center, radius, ray, near)))
+}
+
+fn ellipsoid(scale: f64) -> Spelt {
+    let (center, radius, stretch) = (scale * MIDDLE, scale, dvec3(2.0, 0.3, 1.1));
+    let text = format!(
+        "ellipsoid e {{ material m center {} radius {radius:?} scale {} }}",
+        spelt(center),
+        spelt(stretch)
+    );
+    (text, Box::new(move |ray, near| shapes::ellipsoid(center, radius, stretch, ray, near)))
+}
+
+/// A hyperboloid of one sheet, cut to a box.
+fn quadric(scale: f64) -> Spelt {
+    let coefficients = [1.0, -0.5, 1.0, 0.1, 0.2, -0.1, 0.0, 0.0, 0.0, scale * scale];
+    let corners = [scale * dvec3(-1.75, -2.0, -1.875), scale * dvec3(1.875, 2.0, 1.75)];
+    let quadric = Quadric { coefficients, center: scale * MIDDLE, corners };
+    let text = format!(
+        "quadric q {{ material m coefficients {} center {} box {} {} }}",
+        coefficients.map(|coefficient| format!("{coefficient:?}")).join(" "),
+        spelt(quadric.center),
+        spelt(corners[0]),
+        spelt(corners[1]),
+    );
+    (text, Box::new(move |ray, near| quadric.first_hit(ray, near)))
+}
+
+fn plane(scale: f64) -> Spelt {
+    let (normal, point) = (dvec3(0.3, 1.0, 0.5), scale * MIDDLE);
+    let text = format!("plane p {{ material m normal {} point {} }}", spelt(normal), spelt(point));
+    let plane = Plane::new(normal, point);
+    (text, Box::new(move |ray, near| beyond(plane.first_hit(ray), near)))
+}
+
+fn fplane(scale: f64) -> Spelt {
+    let (normal, xdir, dimensions) = (dvec3(0.3, 1.0, 0.5), dvec3(1.0, 0.2, 0.0), scale * dvec2(3.0, 2.5));
+    let point = scale * (MIDDLE - dvec3(1.5, 0.0, -1.0));
+    let text = format!(
+        "fplane f {{ material m normal {} point {} xdir {} dimensions {:?} {:?} }}",
+        spelt(normal),
+        spelt(point),
+        spelt(xdir),
+        dimensions.x,
+        dimensions.y
+    );
+    let plane = Plane::new(normal, point);
+    (text, Box::new(move |ray, near| beyond(shapes::rectangle(&plane, xdir, dimensions, ray), near)))
+}
+
+fn triangle(scale: f64) -> Spelt {
+    let corners = [dvec3(-2.0, -1.5, 0.5), dvec3(2.0, -1.0, -0.5), dvec3(0.25, 2.0, 0.0)];
+    let corners = corners.map(|corner| scale * (MIDDLE + corner));
+    let [a, b, c] = corners.map(spelt);
+    let text = format!("triangle t {{ material m vertex1 {a} vertex2 {b} vertex3 {c} }}");
+    (text, Box::new(move |ray, near| beyond(shapes::triangle(corners, ray), near)))
+}
+
+/// What is farther than a distance of a shape that is met at most once.
+fn beyond(truth: Truth, near: f64) -> Truth {
+    match truth {
+        Truth::Hit(hit) if hit.t <= near.into() => Truth::Miss,
+        truth => truth,
+    }
+}
+
+/// A random point of a shape, with its normal.
+fn place_on(subject: &Subject, random: &mut Random) -> (DVec3, DVec3) {
+    loop {
+        let origin = subject.scale * (MIDDLE + 9.0 * random.direction());
+        let ray = rays::toward(origin, random.in_ball(subject.scale * MIDDLE, subject.scale * REACH));
+        if let Some(hit) = (subject.truth)(&ray, 0.0).hit() {
+            let at = ray.at(hit.t.to_f64());
+            return (at, subject.model.objects[0].shape.normal(at));
+        }
+    }
+}
+
+/// All sets of rays find the true hits of a shape, to so many units in the last place of what lies around it.
+#[track_caller]
+fn finds(name: &str, accuracy: &str, spelt: fn(f64) -> Spelt, is_flat: bool) -> f64 {
+    let mut worst = 0.0_f64;
+    for scale in [1.0, 1e-3, 1e6] {
+        let (text, truth) = spelt(scale);
+        let model = scene(accuracy, &text);
+        let subject =
+            Subject { name, model: &model, scale, truth: &truth, off_surface: &|_, _| f64::INFINITY };
+        let mut check = |set: &str, rays: &mut dyn Iterator<Item = Ray>| {
+            let rays: Vec<Ray> = rays.collect();
+            let tally = subject.is_right(&format!("{set} x {scale:e}, {accuracy}"), rays.iter().copied());
+            worst = worst.max(tally.ulps);
+        };
+        let (middle, reach) = (scale * MIDDLE, scale * REACH);
+        check("camera", &mut rays::camera(RAYS, scale));
+        check("inside", &mut rays::inside(RAYS, middle, reach));
+        for exponent in 1..=9 {
+            let distance = scale * 10_f64.powi(exponent);
+            check(&format!("from 1e{exponent}"), &mut rays::aimed(RAYS, middle, reach, distance));
+        }
+        if !is_flat {
+            check("grazing", &mut rays::grazing(RAYS, scale, |random| place_on(&subject, random)));
+        }
+    }
+    worst
+}
+
+#[test]
+fn spheres_are_found_to_four_ulp() {
+    for accuracy in ["exact", "strict"] {
+        let worst = finds("sphere", accuracy, sphere, false);
+        assert!(worst <= 4.0, "{accuracy}: {worst} ulp");
+    }
+}
+
+#[test]
+fn ellipsoids_are_found_to_four_ulp() {
+    for accuracy in ["exact", "strict"] {
+        let worst = finds("ellipsoid", accuracy, ellipsoid, false);
+        assert!(worst <= 4.0, "{accuracy}: {worst} ulp");
+    }
+}
+
+#[test]
+fn planes_are_found_to_four_ulp() {
+    for accuracy in ["exact", "strict"] {
+        let worst = finds("plane", accuracy, plane, true);
+        assert!(worst <= 4.0, "{accuracy}: {worst} ulp");
+    }
+}
+
+#[test]
+fn rectangles_are_found_to_four_ulp() {
+    let worst = finds("fplane", "exact", fplane, true);
+    assert!(worst <= 4.0, "{worst} ulp");
+}
+
+#[test]
+fn triangles_are_found_to_four_ulp() {
+    let worst = finds("triangle", "exact", triangle, true);
+    assert!(worst <= 4.0, "{worst} ulp");
+}
+
+#[test]
+fn quadrics_are_found() {
+    finds("quadric", "exact", quadric, false);
+}
+
+// Scenes that are the same but for where they are and how large
+
+/// A ray whose numbers have digits to spare, so that moving it loses none.
+fn short(ray: &Ray) -> Ray {
+    let cut = |number: f64| (number * 2_f64.powi(20)).round() / 2_f64.powi(20);
+    Ray { origin: DVec3::from_array(ray.origin.to_array().map(cut)), dir: ray.dir }
+}
+
+/// Rays toward the shapes.
+fn sample() -> impl Iterator<Item = Ray> {
+    rays::camera(RAYS, 1.0).chain(rays::aimed(RAYS, MIDDLE, REACH, 10.0)).map(|ray| short(&ray))
+}
+
+fn vase(scale: f64) -> Spelt {
+    let (surface, _) = revolution("exact", VASE.0, VASE.1, scale);
+    let text = format!(
+        "revsurf r {{ material m profile \"{}\" direction 0 1 0 base {} height {:?} }}",
+        scaled(VASE.0, scale),
+        spelt(scale * BASE),
+        scale * VASE.1
+    );
+    (text, Box::new(move |ray, near| surface.first_hit(ray, near, Crossings::All)))
+}
+
+const SHAPES: [fn(f64) -> Spelt; 7] = [sphere, ellipsoid, quadric, plane, fplane, triangle, vase];
+
+#[test]
+fn a_scene_twice_as_large_has_its_hits_twice_as_far() {
+    for spelt in SHAPES {
+        let (text, _) = spelt(1.0);
+        let model = scene("exact", &text);
+        for scale in [0.25, 2.0, 1024.0] {
+            let scaled = scene("exact", &spelt(scale).0);
+            for ray in sample() {
+                let (one, other) =
+                    (distance(&model, &ray), distance(&scaled, &Ray { origin: scale * ray.origin, ..ray }));
+                assert_eq!(scale * one, other, "{text} x {scale}: {ray:?}");
+            }
+        }
+    }
+}
+
+/// How far two distances to one hit may be from each other: a few roundings of what the ray has on its way, as the
+/// slant of the surface makes them longer.
+fn slack(model: &Model, ray: &Ray, hit: f64) -> f64 {
+    let slant = model.objects[0].shape.normal(ray.at(hit)).dot(ray.dir).abs();
+    let size = ray.origin.abs().max_element() + hit;
+    8.0 * ulp(size) / slant
+}
+
+/// Both scenes have the same hits, of rays that are the same but for this.
+#[track_caller]
+fn has_the_same_hits(text: &str, moved_text: &str, moved: impl Fn(&Ray) -> Ray) {
+    let (model, moved_model) = (scene("exact", text), scene("exact", moved_text));
+    for ray in sample() {
+        let (one, other) = (distance(&model, &ray), distance(&moved_model, &moved(&ray)));
+        if one == MISS || other == MISS {
+            assert_eq!(one, other, "{text} as {moved_text}: {ray:?}");
+        } else {
+            let slack = slack(&model, &ray, one) + slack(&moved_model, &moved(&ray), other);
+            assert!((one - other).abs() <= slack, "{text} as {moved_text}: {ray:?}, {one} {other}");
+        }
+    }
+}
+
+#[test]
+fn a_scene_that_is_moved_has_the_same_hits() {
+    let by = dvec3(16.0, -8.0, -32.0);
+    let at = |place: DVec3| spelt(place + by);
+    let moved = |ray: &Ray| Ray { origin: ray.origin + by, ..*ray };
+    let ends = |end: &str, place: DVec3| (end.replace("AT", &spelt(place)), end.replace("AT", &at(place)));
+    for (text, place) in [
+        ("sphere s { material m center AT radius 2 }", MIDDLE),
+        ("ellipsoid e { material m center AT radius 1 scale 2 0.3 1.1 }", MIDDLE),
+        (
+            "quadric q { material m coefficients 1 -0.5 1 0.1 0.2 -0.1 0 0 0 1 center AT box -2 -2 -2 2 2 2 }",
+            MIDDLE,
+        ),
+        ("fplane f { material m normal 0.3 1 0.5 point AT xdir 1 0.2 0 dimensions 3 2 }", MIDDLE),
+        ("revsurf r { material m profile \"2 + sin(y)\" direction 0 1 0 base AT height 6.28 }", BASE),
+        ("revsurf r { material m profile \"1 + 0.3*sin(20*y)\" direction 0 1 0 base AT height 6.28 }", BASE),
+    ] {
+        let (text, moved_text) = ends(text, place);
+        has_the_same_hits(&text, &moved_text, moved);
+    }
+}
+
+/// A quarter of a turn around z turns every number into another one, exactly.
+#[test]
+fn a_scene_that_is_turned_has_the_same_hits() {
+    let turn = DMat3::from_cols(DVec3::Y, -DVec3::X, DVec3::Z);
+    let moved = |ray: &Ray| Ray { origin: turn * ray.origin, dir: turn * ray.dir };
+    let (middle, base) = (spelt(turn * MIDDLE), spelt(turn * BASE));
+    let upright = |text: &str| text.replace("MIDDLE", &spelt(MIDDLE)).replace("BASE", &spelt(BASE));
+    for (text, turned) in [
+        ("sphere s { material m center MIDDLE radius 2 }", "sphere s { material m center MIDDLE radius 2 }"),
+        (
+            "ellipsoid e { material m center MIDDLE radius 1 scale 2 0.3 1.1 }",
+            "ellipsoid e { material m center MIDDLE radius 1 scale 0.3 2 1.1 }",
+        ),
+        (
+            "fplane f { material m normal 0.3 1 0.5 point MIDDLE xdir 1 0.2 0 dimensions 3 2 }",
+            "fplane f { material m normal -1 0.3 0.5 point MIDDLE xdir -0.2 1 0 dimensions 3 2 }",
+        ),
+        (
+            "revsurf r { material m profile \"2 + sin(y)\" direction 0 1 0 base BASE height 6.28 }",
+            "revsurf r { material m profile \"2 + sin(y)\" direction -1 0 0 base BASE height 6.28 }",
+        ),
+    ] {
+        let turned = turned.replace("MIDDLE", &middle).replace("BASE", &base);
+        has_the_same_hits(&upright(text), &turned, moved);
+    }
+}
+
+// Rays that leave a surface
+
+/// A ray that leaves a surface of revolution does not meet it where it starts, and meets it where it should.
+#[test]
+fn rays_that_leave_a_surface_meet_it_again_where_they_should() {
+    for (formula, height) in [VASE, NASTY, FLANGE, KINK, TUBE] {
+        let (surface, model) = revolution("exact", formula, height, 1.0);
+        let mut random = Random::new(9);
+        let (mut wrong, mut again) = (Vec::new(), 0);
+        let shape = &model.objects[0].shape;
+        for ray in rays::camera(RAYS, 1.0) {
+            let found = distance(&model, &ray);
+            if found == MISS {
+                continue;
+            }
+            let start = ray.at(found);
+            let normal = shape.normal(start);
+            let dir = random.direction();
+            if dir.dot(normal).abs() < 1e-6 {
+                continue;
+            }
+            let leaves = Side::seen_along(-dir, normal);
+            let crossings = if leaves == Side::Outside { Crossings::Entries } else { Crossings::Exits };
+            let onward = Ray { origin: start, dir };
+            let found = shape.distance(&onward, &Span { leaves: Some(leaves), ..Span::RAY });
+            let truth = surface.first_hit(&onward, 0.0, crossings);
+            let is_right = match truth {
+                Truth::Undecided => true,
+                Truth::Miss => found == MISS,
+                Truth::Hit(hit) => {
+                    again += 1;
+                    (hit.t.to_f64() - found).abs() < 1e-6
+                }
+            };
+            if !is_right {
+                wrong.push((onward, leaves, truth, found));
+            }
+        }
+        println!("{formula}: {again} rays meet it again, {} wrong", wrong.len());
+        assert!(wrong.is_empty(), "{formula}: {} wrong, such as {:?}", wrong.len(), wrong[0]);
+    }
 }

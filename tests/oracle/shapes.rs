@@ -29,16 +29,27 @@ impl Plane {
         Self { normal: normal.normalize(), point }
     }
 
-    /// Where a ray crosses it.
+    /// Where a ray crosses it. On the viewer's side of the screen there are no planes (the notes).
     pub fn first_hit(&self, ray: &Ray) -> Truth {
+        const SCREEN: f64 = 0.01;
         let normal = vector(self.normal);
         let toward = dot(normal, vector(ray.dir));
         // A unit vector is not exactly one, nor upright on another.
-        if toward.to_f64().abs() <= 4.0 * f64::EPSILON * self.normal.abs().dot(ray.dir.abs()) {
+        if toward.to_f64().abs() <= 8.0 * f64::EPSILON * self.normal.abs().dot(ray.dir.abs()) {
             return Truth::Undecided;
         }
         let t = dot(normal, difference(self.point, ray.origin)) / toward;
-        if t <= 0.0.into() { Truth::Miss } else { Truth::Hit(Hit { t, slope: toward.to_f64() }) }
+        if t <= 0.0.into() {
+            return Truth::Miss;
+        }
+        let z = (DoubleDouble::sum(ray.origin.z, -SCREEN) + t * ray.dir.z.into()).to_f64();
+        if z.abs() <= EDGE * (ray.origin.z.abs() + t.to_f64()) {
+            Truth::Undecided
+        } else if z > 0.0 {
+            Truth::Miss
+        } else {
+            Truth::Hit(Hit { t, slope: toward.to_f64() })
+        }
     }
 
     /// As [`first_hit`](Self::first_hit), for the part of it that is left of these edges, each given by a point and
