@@ -100,6 +100,11 @@ impl Revolution {
         (value / gradient).abs()
     }
 
+    /// How high above the base the point at a distance along a ray is.
+    pub fn height_at(&self, ray: &Ray, distance: f64) -> f64 {
+        self.from_base(ray, distance)[1].to_f64()
+    }
+
     /// The point at a distance along a ray, counted from the base.
     fn from_base(&self, ray: &Ray, distance: f64) -> [DoubleDouble; 3] {
         let (origin, base, dir) = (ray.origin.to_array(), self.base.to_array(), ray.dir.to_array());
