@@ -124,10 +124,13 @@ fn the_least_greatest_and_whole_numbers_are_exact() {
     assert_eq!(DoubleDouble::sum(2.0, 1e-30).floor(), 2.0.into());
 }
 
+type Bounds = fn(Interval) -> Interval;
+type Exact = fn(DoubleDouble) -> DoubleDouble;
+
 /// The bounds that the truth is proven with hold.
 #[test]
 fn intervals_hold_the_true_results() {
-    let functions: [(&str, (f64, f64), fn(Interval) -> Interval, fn(DoubleDouble) -> DoubleDouble); 9] = [
+    let functions: [(&str, (f64, f64), Bounds, Exact); 9] = [
         ("sin", (-30.0, 30.0), Number::sin, Number::sin),
         ("cos", (-30.0, 30.0), Number::cos, Number::cos),
         ("tan", (-1.5, 1.5), Number::tan, Number::tan),

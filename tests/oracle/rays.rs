@@ -30,7 +30,7 @@ impl Random {
 
     /// One of this many, from 0.
     pub fn below(&mut self, count: u32) -> u32 {
-        (u64::from(self.0.next_u32()) * u64::from(count) >> 32) as u32
+        ((u64::from(self.0.next_u32()) * u64::from(count)) >> 32) as u32
     }
 
     /// A direction, none more likely than another.

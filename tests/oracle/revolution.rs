@@ -92,7 +92,7 @@ impl Revolution {
     /// How far from the surface the point at a distance along a ray is, to first order.
     pub fn off_surface(&self, ray: &Ray, distance: f64) -> f64 {
         let local =
-            Local { start: distance, at: self.from_base(ray, distance), dir: [0.0; 3], from: 0.0, to: 0.0 };
+            Local { start: distance, at: self.place_along(ray, distance), dir: [0.0; 3], from: 0.0, to: 0.0 };
         let Dual { value: radius, slope } = self.formula.at(Dual::variable(local.at[1]));
         let value = self.function(&local, DoubleDouble::from(0.0)).value.to_f64();
         // The length of the gradient of x^2 + z^2 - g(y)^2 at a point of the surface.
@@ -102,11 +102,11 @@ impl Revolution {
 
     /// How high above the base the point at a distance along a ray is.
     pub fn height_at(&self, ray: &Ray, distance: f64) -> f64 {
-        self.from_base(ray, distance)[1].to_f64()
+        self.place_along(ray, distance)[1].to_f64()
     }
 
     /// The point at a distance along a ray, counted from the base.
-    fn from_base(&self, ray: &Ray, distance: f64) -> [DoubleDouble; 3] {
+    fn place_along(&self, ray: &Ray, distance: f64) -> [DoubleDouble; 3] {
         let (origin, base, dir) = (ray.origin.to_array(), self.base.to_array(), ray.dir.to_array());
         std::array::from_fn(|axis| {
             DoubleDouble::sum(origin[axis], -base[axis])
@@ -117,7 +117,7 @@ impl Revolution {
     /// The part of a ray beyond `near` that is between the surface's two ends and in a cylinder around it, or a
     /// little more.
     fn clip(&self, ray: &Ray, near: f64) -> Option<Local> {
-        let [x, y, z] = self.from_base(ray, 0.0);
+        let [x, y, z] = self.place_along(ray, 0.0);
         let [dx, dy, dz] = ray.dir.to_array().map(DoubleDouble::from);
         let (mut from, mut to) = (DoubleDouble::from(near), DoubleDouble::from(1e200));
         if !dy.is_zero() {
@@ -144,7 +144,7 @@ impl Revolution {
         let start = ((from + to) / DoubleDouble::from(2.0)).to_f64();
         let [from, to] = [from, to].map(|end| (end - start.into()).to_f64());
         let slack = 1e-12 * (to - from) + f64::MIN_POSITIVE;
-        let at = self.from_base(ray, start);
+        let at = self.place_along(ray, start);
         Some(Local { start, at, dir: ray.dir.to_array(), from: from - slack, to: to + slack })
     }
 
