@@ -11,7 +11,9 @@ use oracle::revolution::Revolution;
 use oracle::shapes::{self, Plane, Quadric};
 use oracle::tally::{Tally, Tolerance, ulp};
 use oracle::{Crossings, Truth};
+use tabray::certify::Enclosure;
 use tabray::geometry::{MISS, Ray, Side, Span};
+use tabray::interval::Interval;
 use tabray::model::Model;
 
 /// The rays of each set.
@@ -613,5 +615,47 @@ fn rays_that_leave_a_surface_meet_it_again_where_they_should() {
         }
         println!("{formula}: {again} rays meet it again, {} wrong", wrong.len());
         assert!(wrong.is_empty(), "{formula}: {} wrong, such as {:?}", wrong.len(), wrong[0]);
+    }
+}
+
+// What the program holds for certain
+
+/// The enclosure of a ray's first hit is where the truth is, for every shape and for profiles of each kind.
+#[test]
+fn what_is_certain_is_true() {
+    const RAYS: usize = 1_000;
+    let mut shapes: Vec<Spelt> = SHAPES.into_iter().map(|spelt| spelt(1.0)).collect();
+    for (formula, height) in [NASTY, CONE, FLANGE, KINK, TUBE, JUMP] {
+        let (text, surface) = revsurf(formula, height, 1.0);
+        shapes.push((text, Box::new(move |ray, near| surface.first_hit(ray, near, Crossings::All))));
+    }
+    for (text, truth) in shapes {
+        let model = scene("exact", &text);
+        let shape = &model.objects[0].shape;
+        let (mut doubtful, mut wrong) = (0, Vec::new());
+        let around = rays::aimed(RAYS, MIDDLE, REACH, 10.0).chain(rays::aimed(RAYS, MIDDLE, REACH, 1e6));
+        for ray in rays::camera(RAYS, 1.0).chain(rays::inside(RAYS, MIDDLE, REACH)).chain(around) {
+            let (certain, truth) = (shape.certify(&ray), truth(&ray, 0.0));
+            let at = truth.hit().map(|hit| hit.t.to_f64());
+            // The program counts from the shape's own place, which rounds where the ray starts.
+            let slack = 8.0 * ulp(ray.origin.length());
+            let is_true = match certain {
+                Enclosure::Misses => at.is_none(),
+                Enclosure::Hits(Interval { low, high }) => {
+                    at.map_or(truth == Truth::Undecided, |at| low - slack <= at && at <= high + slack)
+                }
+                Enclosure::Doubtful(nearest) => {
+                    doubtful += 1;
+                    at.is_none_or(|at| at >= nearest - slack)
+                }
+            };
+            if !is_true {
+                wrong.push(format!("{ray:?}: {certain:?}, {truth:?}"));
+            }
+        }
+        println!("{text}: {doubtful} of {} doubtful, {} wrong", 4 * RAYS, wrong.len());
+        assert!(wrong.is_empty(), "{text}: {} wrong, such as {}", wrong.len(), wrong[0]);
+        // Bounds of a profile that jumps say little near its steps.
+        assert!(doubtful == 0 || text.contains("floor") && doubtful * 10 < 4 * RAYS, "{text}: {doubtful}");
     }
 }

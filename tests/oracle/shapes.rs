@@ -35,7 +35,7 @@ impl Plane {
         let normal = vector(self.normal);
         let toward = dot(normal, vector(ray.dir));
         // A unit vector is not exactly one, nor upright on another.
-        if toward.to_f64().abs() <= 8.0 * f64::EPSILON * self.normal.abs().dot(ray.dir.abs()) {
+        if toward.to_f64().abs() <= 8.0 * f64::EPSILON {
             return Truth::Undecided;
         }
         let t = dot(normal, difference(self.point, ray.origin)) / toward;
