@@ -211,7 +211,8 @@ turns.
 ### Grazing rays
 
 {RAYS} rays for each profile that touch it, but for 10^-2 to 10^-12 outward or inward. Their distances answer an error
-of the last digit with one of its root: how far off the surface a hit is says more.
+of the last digit with one of its root: how far off the surface a hit is says more. The notes' method loses most of
+them, which takes no time.
 
 "
     )
