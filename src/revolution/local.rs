@@ -28,32 +28,18 @@ impl Local {
     #[inline(always)]
     pub fn new(ray: &Ray, within: &Span, height: f64, widest: f64) -> Option<Self> {
         let Ray { origin, dir } = *ray;
+        let a = dir.x * dir.x + dir.z * dir.z;
+        // Far away the next distance is farther on than what is to be told apart: these ends only say where the base
+        // lies, and all others are counted from there.
         let (mut near, mut far) = (within.near, within.far);
         if dir.y != 0.0 {
             let (bottom, top) = (-origin.y / dir.y, (height - origin.y) / dir.y);
             near = near.max(bottom.min(top));
             far = far.min(bottom.max(top));
-        } else if !(0.0..=height).contains(&origin.y) {
-            return None;
         }
-        let a = dir.x * dir.x + dir.z * dir.z;
-        let mut base = near;
-        if a > 1e-30 {
-            let closest = -(origin.x * dir.x + origin.z * dir.z) / a;
-            let (x, z) = (advance(origin.x, closest, dir.x), advance(origin.z, closest, dir.z));
-            // A hair more than is needed: rounding must not cut anything off.
-            let room = widest * widest * (1.0 + 1e-9) - (x * x + z * z);
-            if room < 0.0 {
-                return None;
-            }
-            let half = (room / a).sqrt();
-            near = near.max(closest - half);
-            far = far.min(closest + half);
-            base = closest.max(near).min(far);
-        } else if origin.x * origin.x + origin.z * origin.z > widest * widest {
-            return None;
-        }
-        if near > far || (far - near).is_nan() || !base.is_finite() {
+        let closest = -(origin.x * dir.x + origin.z * dir.z) / a;
+        let base = if a > 1e-30 { closest.min(far).max(near) } else { near };
+        if !base.is_finite() {
             return None;
         }
         let moved = DVec3::new(
@@ -61,16 +47,33 @@ impl Local {
             advance(origin.y, base, dir.y),
             advance(origin.z, base, dir.z),
         );
-        Some(Self {
-            origin: moved,
-            dir,
-            a,
-            b: moved.x * dir.x + moved.z * dir.z,
-            c: moved.x * moved.x + moved.z * moved.z,
-            from: near - base,
-            to: far - base,
-            base,
-        })
+        let b = moved.x * dir.x + moved.z * dir.z;
+        let c = moved.x * moved.x + moved.z * moved.z;
+        let (mut from, mut to) = (within.near - base, within.far - base);
+        if dir.y != 0.0 {
+            let (bottom, top) = (-moved.y / dir.y, (height - moved.y) / dir.y);
+            from = from.max(bottom.min(top));
+            to = to.min(bottom.max(top));
+        } else if !(0.0..=height).contains(&moved.y) {
+            return None;
+        }
+        // A hair more than is needed: rounding must not cut anything off.
+        let widest = widest * widest * (1.0 + 1e-9);
+        if a > 1e-30 {
+            let room = b * b - a * (c - widest);
+            if room < 0.0 {
+                return None;
+            }
+            let root = room.sqrt();
+            from = from.max((-b - root) / a);
+            to = to.min((root - b) / a);
+        } else if c > widest {
+            return None;
+        }
+        if from > to || (to - from).is_nan() {
+            return None;
+        }
+        Some(Self { origin: moved, dir, a, b, c, from, to, base })
     }
 
     /// The height at a place along the ray.
