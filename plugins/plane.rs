@@ -55,7 +55,7 @@ impl Plane {
             return MISS;
         }
         let (toward_size, away_size) = (self.size(ray.dir), self.size(between));
-        let cancels = toward_size > 2.0 * toward.abs() || away_size > 2.0 * away.abs();
+        let cancels = toward_size > 1.3 * toward.abs() || away_size > 1.3 * away.abs();
         if self.accuracy == Accuracy::Strict || (cancels && self.accuracy == Accuracy::Exact) {
             return self.crossing_in_twice_the_precision(ray);
         }

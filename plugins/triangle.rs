@@ -8,6 +8,7 @@ use crate::geometry::{Body, Hittable, MISS, Ray, Span};
 use crate::interval::Interval;
 use crate::number::Number;
 use crate::pparm::{Pparm, Table};
+use crate::twofold::Twofold;
 use glam::DVec3;
 
 static VERTEX1: Pparm<DVec3> = Pparm::required("vertex1", "its first corner").unit("world coordinates");
@@ -95,8 +96,28 @@ impl Triangle {
     /// through between them (Woop, Benthin and Wald 2013).
     #[inline(always)]
     fn is_passed_by(&self, ray: &Ray) -> bool {
-        let [a, b, c] = self.corners.map(|corner| corner - ray.origin);
-        let sides = [a.cross(b), b.cross(c), c.cross(a)].map(|edge| edge.dot(ray.dir));
+        let [a, b, c] = self.corners;
+        let sides = [side(a, b, ray), side(b, c, ray), side(c, a, ray)];
         sides.iter().all(|side| *side >= 0.0) || sides.iter().all(|side| *side <= 0.0)
     }
+}
+
+/// On which side of the line from one point to another a ray passes: the sign tells.
+#[inline(always)]
+fn side(from: DVec3, to: DVec3, ray: &Ray) -> f64 {
+    let (a, b) = (from - ray.origin, to - ray.origin);
+    let side = a.cross(b).dot(ray.dir);
+    // What rounding could have turned is computed in twice the precision.
+    let size = a.abs().max_element() * b.abs().max_element();
+    if side.abs() > 32.0 * f64::EPSILON * size { side } else { side_in_twice_the_precision(from, to, ray) }
+}
+
+fn side_in_twice_the_precision(from: DVec3, to: DVec3, ray: &Ray) -> f64 {
+    let place = |of: DVec3| [0, 1, 2].map(|axis| Twofold::difference(of[axis], ray.origin[axis]));
+    let (a, b) = (place(from), place(to));
+    let part = |axis: usize| {
+        let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
+        (a[next] * b[last] - a[last] * b[next]) * Twofold::from(ray.dir[axis])
+    };
+    (part(0) + part(1) + part(2)).high
 }

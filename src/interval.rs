@@ -112,6 +112,10 @@ impl Sub for Interval {
 
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
+        // Of one number alone the difference is 0 and not about 0: what is multiplied by it may have no end.
+        if self == other && self.low == self.high {
+            return Self::constant(0.0);
+        }
         Self::outward(self.low - other.high, self.high - other.low)
     }
 }

@@ -178,7 +178,9 @@ impl<L: Line> Search<'_, L> {
         if crosses {
             return Judgement::Root(self.newton(low, high, rises, middle));
         }
-        let touches = self.leaves.is_none() && high - low <= self.shortest;
+        // Where the function jumps, bounds hold 0 though it is far from it on both sides.
+        let jumps = || !self.line.at(Dual::variable(Interval { low, high })).slope.is_bounded();
+        let touches = self.leaves.is_none() && high - low <= self.shortest && !jumps();
         if touches { Judgement::Root(middle) } else { Judgement::Free }
     }
 

@@ -198,13 +198,11 @@ fn a_waist_with_an_edge_is_found() {
 }
 
 #[test]
-#[ignore = "hits of steps are right to 1e-13, and the lowest rim is taken for one"]
 fn stairs_are_found() {
     finds_the_revolution("jump", JUMP.0, JUMP.1);
 }
 
 #[test]
-#[ignore = "from 1e7 away the clip to the bounding cylinder cuts off what touches it"]
 fn a_tube_is_found() {
     finds_the_revolution("tube", TUBE.0, TUBE.1);
 }
@@ -447,7 +445,6 @@ fn triangles_are_found() {
 }
 
 #[test]
-#[ignore = "from 1e7 of their sizes away rounding decides on which side of an edge a ray passes"]
 fn triangles_are_found_from_afar() {
     finds("triangle", triangle, 9, [6.0, 1.0]);
 }

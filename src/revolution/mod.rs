@@ -95,16 +95,22 @@ impl Revolution {
         is_ledge.then_some(if above < below { DVec3::Y } else { -DVec3::Y })
     }
 
+    /// The height at a place along a ray. Beyond its ends the profile may be anything, and rounding must not ask.
+    #[inline(always)]
+    fn height_of(&self, local: &Local, along: f64) -> f64 {
+        local.height(along).clamp(0.0, self.height)
+    }
+
     /// How far outside of the surface a place along a ray is: positive outside, negative inside.
     #[inline(always)]
     fn outside(&self, local: &Local, along: f64) -> f64 {
-        local.around(along) - self.square.at(local.height(along))
+        local.around(along) - self.square.at(self.height_of(local, along))
     }
 
     /// As [`outside`](Self::outside), and how fast that grows.
     #[inline(always)]
     fn outside_and_slope(&self, local: &Local, along: f64) -> (f64, f64) {
-        let Dual { value, slope } = self.square.at(Dual::variable(local.height(along)));
+        let Dual { value, slope } = self.square.at(Dual::variable(self.height_of(local, along)));
         (local.around(along) - value, 2.0 * (local.a * along + local.b) - slope * local.dir.y)
     }
 }
@@ -122,7 +128,7 @@ impl Equation for Revolution {
 
 /// How far outside of the surface the places along a ray are, with any number type.
 struct OnRay<'s> {
-    square: &'s Formula,
+    surface: &'s Revolution,
     local: &'s Local,
 }
 
@@ -131,14 +137,15 @@ impl Line for OnRay<'_> {
     fn at<N: Number>(&self, along: N) -> N {
         let place =
             |axis: usize| N::constant(self.local.origin[axis]) + along * N::constant(self.local.dir[axis]);
-        place(0).powi(2) + place(2).powi(2) - self.square.at(place(1))
+        let height = place(1).max(N::constant(0.0)).min(N::constant(self.surface.height));
+        place(0).powi(2) + place(2).powi(2) - self.surface.square.at(height)
     }
 
     /// That of the squared distance from the axis is the same everywhere.
     fn curvature(&self, piece: Interval) -> Interval {
         let dir = self.local.dir.to_array().map(Interval::constant);
         let height = Interval::constant(self.local.origin.y) + piece * dir[1];
-        let of_square = self.square.at(Dual::variable_twice(height)).second();
+        let of_square = self.surface.square.at(Dual::variable_twice(height)).second();
         Interval::constant(2.0) * (dir[0].powi(2) + dir[2].powi(2)) - of_square * dir[1].powi(2)
     }
 }

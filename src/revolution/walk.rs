@@ -123,7 +123,7 @@ impl Revolution {
     fn first_crossing(&self, local: &Local, from: f64, to: f64, wanted: Option<Side>) -> Option<f64> {
         // The piece's own ends may be crossings: they are where shells begin and end.
         let (from, to) = (from.next_down(), to.next_up());
-        taylor::first_root(&OnRay { square: &self.square, local }, from..to, 4.0 * local.tolerance(), wanted)
+        taylor::first_root(&OnRay { surface: self, local }, from..to, 4.0 * local.tolerance(), wanted)
     }
 
     /// The one root of a bracket.

@@ -120,7 +120,7 @@ impl DoubleDouble {
     }
 
     /// Its sine and cosine.
-    pub fn sin_cos(self) -> (Self, Self) {
+    fn reduced_sin_cos(self) -> (Self, Self) {
         let quarters = (self.high / HALF_PI[0]).round();
         let (sin, cos) = self.without(quarters, &HALF_PI).sin_cos_of_small();
         match quarters.rem_euclid(4.0) as u8 {
@@ -193,12 +193,8 @@ impl Number for DoubleDouble {
         value.into()
     }
 
-    fn sin(self) -> Self {
-        self.sin_cos().0
-    }
-
-    fn cos(self) -> Self {
-        self.sin_cos().1
+    fn sin_cos(self) -> (Self, Self) {
+        self.reduced_sin_cos()
     }
 
     fn tan(self) -> Self {
