@@ -15,8 +15,8 @@ use oracle::{Crossings, Truth};
 use std::fmt::Write;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
-use tabray::geometry::{Ray, Span};
-use tabray::model::Model;
+use tabray::formula::Formula;
+use tabray::geometry::{Hittable, MISS, Ray, Span};
 
 /// The rays of each kind for each profile.
 const RAYS: usize = 1_000_000;
@@ -35,9 +35,51 @@ const COMMAND: &str = "cargo test --release --test accuracy -- --ignored --nocap
 /// The methods, by the names that a camera's `accuracy` has for them.
 const METHODS: [&str; 4] = ["classic", "draft", "exact", "strict"];
 
+/// The notes' page on procedural surfaces: from where a ray enters the surface's heights to where it leaves them, in
+/// steps of 0.1, then bisection to 1e-6.
+struct Steps {
+    profile: Formula,
+    height: f64,
+}
+
+impl Hittable for Steps {
+    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
+        let origin = ray.origin - BASE;
+        let outside = |t: f64| {
+            let at = origin + t * ray.dir;
+            let radius = self.profile.at(at.y);
+            at.x * at.x - radius * radius + at.z * at.z
+        };
+        let (one, other) = (-origin.y / ray.dir.y, (self.height - origin.y) / ray.dir.y);
+        let (mut near, far) = (one.min(other).max(0.0), one.max(other).min(100.0));
+        let mut at_near = outside(near);
+        while near < far {
+            let next = (near + 0.1).min(far);
+            let at_next = outside(next);
+            if (at_near < 0.0) != (at_next < 0.0) {
+                let mut far = next;
+                while far - near > 1e-6 {
+                    let middle = 0.5 * (near + far);
+                    if (at_near < 0.0) == (outside(middle) < 0.0) { near = middle } else { far = middle }
+                }
+                return within.keep(0.5 * (near + far));
+            }
+            (near, at_near) = (next, at_next);
+        }
+        MISS
+    }
+
+    fn normal(&self, _at: DVec3) -> DVec3 {
+        DVec3::Y
+    }
+}
+
+/// A shape, found by one of the methods.
+type Shape = Box<dyn Hittable>;
+
 /// A method's hits are another crossing's if they are nearer to that one, and off by more than it promises.
 fn tolerance(method: &str) -> Tolerance {
-    let sure = if matches!(method, "classic" | "draft") { 1e-2 } else { 1e-9 };
+    let sure = if matches!(method, "steps" | "classic" | "draft") { 1e-2 } else { 1e-9 };
     Tolerance { sure, most: 0.05 }
 }
 
@@ -51,29 +93,29 @@ const PROFILES: [(&str, f64, &str); 6] = [
     ("0.5 + 0.25*floor(y)", 6.28, "stairs"),
 ];
 
-fn scene(method: &str, object: &str) -> Model {
-    common::model(&format!(
+fn shape(method: &str, object: &str) -> Shape {
+    let mut model = common::model(&format!(
         "camera eye {{ pixeldim 640 480 worlddim 8 6 viewpoint 4 3 7 accuracy {method} }}
          material m {{ ambient 1 1 1 }}
          {object}"
-    ))
+    ));
+    model.objects.remove(0).shape
 }
 
 /// The distances of the first hits.
-fn trace(model: &Model, rays: &[Ray]) -> Vec<f64> {
-    let shape = &model.objects[0].shape;
+fn trace(shape: &Shape, rays: &[Ray]) -> Vec<f64> {
     rays.iter().map(|ray| shape.distance(black_box(ray), &Span::RAY)).collect()
 }
 
-/// How long each model takes for these rays. They take turns, so that what else the machine does meets them all.
-fn times(models: &[Model], rays: &[Ray]) -> Vec<Duration> {
-    let mut totals = vec![Duration::ZERO; models.len()];
+/// How long each shape takes for these rays. They take turns, so that what else the machine does meets them all.
+fn times(shapes: &[Shape], rays: &[Ray]) -> Vec<Duration> {
+    let mut totals = vec![Duration::ZERO; shapes.len()];
     for rays in rays.chunks(ROUND).take(5) {
-        let mut least = vec![Duration::MAX; models.len()];
+        let mut least = vec![Duration::MAX; shapes.len()];
         for _ in 0..ROUNDS {
-            for (model, least) in models.iter().zip(&mut least) {
+            for (shape, least) in shapes.iter().zip(&mut least) {
                 let start = Instant::now();
-                black_box(trace(model, rays));
+                black_box(trace(shape, rays));
                 *least = start.elapsed().min(*least);
             }
         }
@@ -118,15 +160,18 @@ fn revolution_table(set: &str, text: &mut String) {
         let truth = |ray: &Ray, near: f64| surface.first_hit(ray, near, Crossings::All);
         let truths: Vec<Truth> = rays.iter().map(|ray| truth(ray, 0.0)).collect();
         let place = format!("direction 0 1 0 base 4 0 -4 height {height:?}");
-        let models = METHODS.map(|method| {
-            scene(method, &format!("revsurf r {{ material m profile \"{formula}\" {place} }}"))
-        });
-        let times = times(&models, &rays);
-        for ((method, model), time) in METHODS.iter().zip(&models).zip(&times) {
-            let found = trace(model, &rays);
+        let profile = Formula::parse(formula).expect("a formula");
+        let steps: Shape = Box::new(Steps { profile, height });
+        let object = format!("revsurf r {{ material m profile \"{formula}\" {place} }}");
+        let shapes: Vec<_> =
+            [steps].into_iter().chain(METHODS.map(|method| shape(method, &object))).collect();
+        let methods = ["steps"].iter().chain(&METHODS);
+        let times = times(&shapes, &rays);
+        for ((method, shape), time) in methods.zip(&shapes).zip(&times) {
+            let found = trace(shape, &rays);
             let tally = tally(method, &rays, &found, &truths, truth, |ray, t| surface.off_surface(ray, t));
             println!("{name}, {set}, {method}: {tally}");
-            let label = if *method == METHODS[0] {
+            let label = if *method == "steps" {
                 let undecided = match tally.undecided {
                     0 => String::new(),
                     count => format!(", {count} undecided"),
@@ -154,14 +199,14 @@ fn distance_table(object: &str, truth: impl Fn(&Ray, f64) -> Truth, text: &mut S
         write!(text, " `{method}` wrong | ulp |").expect("text grows");
     }
     *text += &format!("\n|---|{}\n", "---:|---:|".repeat(METHODS.len()));
-    let models = METHODS.map(|method| scene(method, object));
+    let shapes = METHODS.map(|method| shape(method, object));
     for exponent in 1..=9 {
         let distance = 10_f64.powi(exponent);
         let rays: Vec<Ray> = rays::aimed(FAR_RAYS, MIDDLE, 3.0, distance).collect();
         let truths: Vec<Truth> = rays.iter().map(|ray| truth(ray, 0.0)).collect();
         write!(text, "| 10^{exponent} |").expect("text grows");
-        for (method, model) in METHODS.iter().zip(&models) {
-            let found = trace(model, &rays);
+        for (method, shape) in METHODS.iter().zip(&shapes) {
+            let found = trace(shape, &rays);
             let tally = tally(method, &rays, &found, &truths, &truth, |_, _| f64::INFINITY);
             println!("{object}, from {distance:e}, {method}: {tally}");
             write!(text, " {} | {} |", tally.wrong(), short(tally.ulps)).expect("text grows");
@@ -193,8 +238,11 @@ numbers are those of one run of
 
 *Missed* are hits that were not found, *invented* ones that are none, *later* ones at another crossing than the
 first. The errors are those of the distances of all other hits, in world units; *off the surface* is how far the
-worst of these points is from the surface. *Time* is per ray, against the notes' method in the same run, in rounds by
-turns.
+worst of these points is from the surface. *Time* is per ray, against the notes' `steps` in the same run, in rounds by
+turns, over all rays, those that miss the surface's heights among them.
+
+`steps` is the notes' page on procedural surfaces, which no scene can choose: 0.1 at a time, then bisection to 1e-6.
+`classic` is what the notes' program does: one bracket, from the viewer to the ray's point closest to the axis.
 
 ## Surfaces of revolution
 
@@ -211,8 +259,8 @@ turns.
 ### Grazing rays
 
 {RAYS} rays for each profile that touch it, but for 10^-2 to 10^-12 outward or inward. Their distances answer an error
-of the last digit with one of its root: how far off the surface a hit is says more. The notes' method loses most of
-them, which takes no time.
+of the last digit with one of its root: how far off the surface a hit is says more. `classic` loses most of them,
+which takes no time.
 
 "
     )

@@ -354,3 +354,37 @@ fn a_scene_larger_than_any_scene_is_refused_in_bounded_memory() {
     assert_eq!(status, 2);
     assert!(err.contains("a NUL byte"), "{err}");
 }
+
+#[test]
+fn a_method_is_chosen_by_the_scene_or_by_an_option() {
+    let folder = folder();
+    let text = fs::read_to_string(scene("revsurf/leaning.ray")).expect("a scene");
+    let classic = text.replace("pixeldim", "accuracy classic\n    pixeldim");
+    fs::write(folder.path().join("exact.ray"), &text).expect("a file");
+    fs::write(folder.path().join("classic.ray"), classic).expect("a file");
+    let picture = |args: &[&str]| {
+        let (status, out, err) = outcome(tabray(&folder).arg("render").args(args).args(["-o", "-"]));
+        assert_eq!(status, 0, "{err}");
+        out
+    };
+    let (exact, classic) = (picture(&["exact.ray"]), picture(&["classic.ray"]));
+    assert_ne!(exact, classic);
+    assert_eq!(picture(&["exact.ray", "--method", "classic"]), classic);
+    assert_eq!(picture(&["classic.ray", "--method", "exact"]), exact);
+    assert_eq!(picture(&["classic.ray", "--accuracy", "strict"]), exact);
+    let both = ["render", "exact.ray", "--method", "classic", "--accuracy", "draft"];
+    let (status, _, err) = outcome(tabray(&folder).args(both));
+    assert_eq!(status, 2);
+    assert!(err.contains("the classic method has no accuracy to choose"), "{err}");
+}
+
+#[test]
+fn without_a_command_the_notes_methods_are_used() {
+    let folder = folder();
+    let text = fs::read_to_string(scene("revsurf/leaning.ray")).expect("a scene");
+    let (status, notes, _) = outcome(tabray(&folder).write_stdin(text));
+    assert_eq!(status, 0);
+    let path = scene("revsurf/leaning.ray");
+    let args = ["--method", "classic", "-o", "-"];
+    assert_eq!(notes, outcome(tabray(&folder).arg("render").arg(path).args(args)).1);
+}

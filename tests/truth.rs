@@ -431,22 +431,22 @@ fn ellipsoids_are_found() {
 
 #[test]
 fn planes_are_found() {
-    finds("plane", plane, 9, [6.0, 1.0]);
+    finds("plane", plane, 9, [4.0, 1.0]);
 }
 
 #[test]
 fn rectangles_are_found() {
-    finds("fplane", fplane, 9, [6.0, 1.0]);
+    finds("fplane", fplane, 9, [4.0, 1.0]);
 }
 
 #[test]
 fn triangles_are_found() {
-    finds("triangle", triangle, 6, [6.0, 1.0]);
+    finds("triangle", triangle, 6, [4.0, 1.0]);
 }
 
 #[test]
 fn triangles_are_found_from_afar() {
-    finds("triangle", triangle, 9, [6.0, 1.0]);
+    finds("triangle", triangle, 9, [4.0, 1.0]);
 }
 
 /// Where a quadric is met next to the ray's origin, a unit in the last place is nothing.
