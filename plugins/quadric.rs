@@ -89,18 +89,12 @@ impl Quadric {
         let origin = ray.origin - self.center;
         if self.is_classic {
             let [a, b, c] = self.along(origin, ray.dir);
-            if a == 0.0 {
-                return [-c / (2.0 * b), f64::NAN];
-            }
-            let (a, b) = (a, 2.0 * b);
-            let root = (b * b - 4.0 * a * c).sqrt();
-            let (one, other) = ((-b - root) / (2.0 * a), (-b + root) / (2.0 * a));
-            return [one.min(other), one.max(other)];
+            return quadratic::classic_roots(a, b, c);
         }
         // Counted from near the center, so that nothing far away is left in the arithmetic.
         let base = if leaves.is_some() { 0.0 } else { -origin.dot(ray.dir) };
-        let moved = |axis: usize| advance(origin[axis], base, ray.dir[axis]);
-        let [a, b, c] = self.along(DVec3::new(moved(0), moved(1), moved(2)), ray.dir);
+        let moved = [0, 1, 2].map(|axis| advance(origin[axis], base, ray.dir[axis]));
+        let [a, b, c] = self.along(DVec3::from(moved), ray.dir);
         // A direction along which it is straight, but for rounding: the far root would be made of that.
         let dir = ray.dir.abs();
         let size = dir.dot(DMat3::from_cols_array(&self.square.to_cols_array().map(f64::abs)) * dir);

@@ -17,8 +17,7 @@ static PROFILE: Pparm<Option<Arc<Formula>>> = Pparm::or(
     "profile",
     "the line that is turned, in place of a surfer: its distance from the axis at each height y",
     None,
-)
-.not_dumped();
+);
 static DIRECTION: Pparm<DVec3> = Pparm::required("direction", "the direction of the axis, from base upward")
     .must("a vector with a direction", |axis: &DVec3| axis.try_normalize().is_some());
 static BASE: Pparm<DVec3> =

@@ -27,6 +27,18 @@ pub fn roots(a: f64, b: f64, c: f64) -> [f64; 2] {
     if one < other { [one, other] } else { [other, one] }
 }
 
+/// The roots by the well-known formula, which the notes have: it loses digits, and double roots.
+#[inline(always)]
+pub fn classic_roots(a: f64, half_b: f64, c: f64) -> [f64; 2] {
+    let b = 2.0 * half_b;
+    if a == 0.0 {
+        return [-c / b, f64::NAN];
+    }
+    let root = (b * b - 4.0 * a * c).sqrt();
+    let (one, other) = ((-b - root) / (2.0 * a), (-b + root) / (2.0 * a));
+    [one.min(other), one.max(other)]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -36,6 +48,8 @@ mod tests {
         // (t - 1e-8) (t - 1e8): the well-known formula gives 1.49e-8 for the first.
         let [near, far] = roots(1.0, -0.5 * (1e8 + 1e-8), 1.0);
         assert!((near - 1e-8).abs() < 1e-23 && (far - 1e8).abs() < 1e-7, "{near:e} {far:e}");
+        let [near, _] = classic_roots(1.0, -0.5 * (1e8 + 1e-8), 1.0);
+        assert!((near - 1e-8).abs() > 1e-9, "{near:e}");
         assert_eq!(roots(2.0, 0.0, -8.0), [-2.0, 2.0]);
         assert_eq!(roots(1.0, -3.0, 9.0), [3.0, 3.0]);
         assert_eq!(roots(1.0, 0.0, 0.0), [0.0, 0.0]);

@@ -112,9 +112,12 @@ fn the_courses_cone_is_all_explained_by_its_wrong_slope() {
     assert_eq!(percent_near(&actual, &expected(&path)), 100.0);
 }
 
-/// Each search of a pixel's rays: where it goes, and which objects it asks with what answer.
+/// An object that a ray was tested with, and its distance.
+type Test = (usize, Option<f64>);
+
+/// The searches of a pixel: where each ray goes, and its tests.
 #[derive(Default)]
-struct Searches(Vec<(Ray, Vec<(usize, Option<f64>)>)>);
+struct Searches(Vec<(Ray, Vec<Test>)>);
 
 impl Watch for Searches {
     fn see(&mut self, event: Event) {
