@@ -33,16 +33,16 @@ impl Hittable for Ellipsoid {
     #[inline(always)]
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
         let Sphere { center, radius, accuracy } = self.ball;
+        let (from, dir) = ((ray.origin - center) / self.scale, ray.dir / self.scale);
         if accuracy == Accuracy::Classic {
-            let (from, dir) = ((ray.origin - center) / self.scale, ray.dir / self.scale);
             return within.keep(sphere::classic(from, dir, radius));
         }
         let scale = self.scale.to_array().map(Twofold::from);
-        let line = Line {
+        let line = || Line {
             from: [0, 1, 2].map(|axis| Twofold::difference(ray.origin[axis], center[axis]) / scale[axis]),
             dir: [0, 1, 2].map(|axis| Twofold::from(ray.dir[axis]) / scale[axis]),
         };
-        within.keep(ball::first_hit(&line, radius, accuracy))
+        within.keep(ball::first_hit(from, dir, line, radius, accuracy))
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {

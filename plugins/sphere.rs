@@ -46,8 +46,9 @@ impl Hittable for Sphere {
             return within.keep(classic(ray.origin - self.center, ray.dir, self.radius));
         }
         let from = |axis: usize| Twofold::difference(ray.origin[axis], self.center[axis]);
-        let line = Line { from: [0, 1, 2].map(from), dir: ray.dir.to_array().map(Twofold::from) };
-        within.keep(ball::first_hit(&line, self.radius, self.accuracy))
+        let dir = |axis: usize| Twofold::from(ray.dir[axis]);
+        let line = || Line { from: [from(0), from(1), from(2)], dir: [dir(0), dir(1), dir(2)] };
+        within.keep(ball::first_hit(ray.origin - self.center, ray.dir, line, self.radius, self.accuracy))
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {

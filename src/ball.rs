@@ -21,12 +21,13 @@ pub struct Line {
 
 /// The distance of the first hit of a ball: of its near side, or from inside of its far one. A line that only
 /// touches it misses it, as in the notes.
+///
+/// `from` and `dir` are what `line` is when it is rounded. Most lines need no more, and miss.
 #[inline(always)]
-pub fn first_hit(line: &Line, radius: f64, accuracy: Accuracy) -> f64 {
+pub fn first_hit(from: DVec3, dir: DVec3, line: impl Fn() -> Line, radius: f64, accuracy: Accuracy) -> f64 {
     if accuracy == Accuracy::Strict {
-        return in_twice_the_precision(line, radius);
+        return in_twice_the_precision(&line(), radius);
     }
-    let (from, dir) = (high(&line.from), high(&line.dir));
     let a = dir.dot(dir);
     let toward = -from.dot(dir);
     let aside = from + (toward / a) * dir;
@@ -39,7 +40,7 @@ pub fn first_hit(line: &Line, radius: f64, accuracy: Accuracy) -> f64 {
         return MISS;
     }
     if room <= doubt || outside.abs() <= 32.0 * f64::EPSILON * size * size {
-        return in_twice_the_precision(line, radius);
+        return in_twice_the_precision(&line(), radius);
     }
     let root = (a * room).sqrt();
     let (near, far) = if toward > 0.0 {
@@ -53,15 +54,15 @@ pub fn first_hit(line: &Line, radius: f64, accuracy: Accuracy) -> f64 {
     }
     // The error of the point's own rounding matters where the ball is large for its distance or met aslant.
     if radius * radius <= distance * root {
-        corrected(line, radius, distance)
+        corrected(&line(), radius, distance)
     } else {
-        corrected_in_twice_the_precision(line, radius, distance)
+        corrected_in_twice_the_precision(&line(), radius, distance)
     }
 }
 
 #[inline(always)]
 fn high(of: &[Twofold; 3]) -> DVec3 {
-    DVec3::from(of.map(|part| part.high))
+    DVec3::new(of[0].high, of[1].high, of[2].high)
 }
 
 /// A step of Newton's method, from a point rounded once.
@@ -79,7 +80,8 @@ fn corrected(line: &Line, radius: f64, distance: f64) -> f64 {
 
 /// A step of Newton's method, from a point in twice the precision.
 fn corrected_in_twice_the_precision(line: &Line, radius: f64, distance: f64) -> f64 {
-    let at = [0, 1, 2].map(|axis| line.from[axis] + Twofold::from(distance) * line.dir[axis]);
+    let part = |axis: usize| line.from[axis] + Twofold::from(distance) * line.dir[axis];
+    let at = [part(0), part(1), part(2)];
     let outside = dot(&at, &at) - square(radius);
     distance - outside.high / (2.0 * dot(&at, &line.dir).high)
 }

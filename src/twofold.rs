@@ -36,6 +36,19 @@ pub fn advance(start: f64, distance: f64, step: f64) -> f64 {
     sum + (product_low + sum_low)
 }
 
+/// A sum of three products, the second factors with what rounding took from them: rounded about once, however much of
+/// it cancels (Ogita, Rump and Oishi 2005).
+#[inline(always)]
+pub fn dot(a: [f64; 3], b: [f64; 3], b_low: [f64; 3]) -> f64 {
+    let (first, first_low) = two_product(a[0], b[0]);
+    let (second, second_low) = two_product(a[1], b[1]);
+    let (third, third_low) = two_product(a[2], b[2]);
+    let (sum, sum_low) = two_sum(first, second);
+    let (sum, rest_low) = two_sum(sum, third);
+    let of_low = a[0] * b_low[0] + a[1] * b_low[1] + a[2] * b_low[2];
+    sum + ((first_low + second_low + third_low) + (sum_low + rest_low) + of_low)
+}
+
 /// A number in twice the precision: the sum of two, the second far smaller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Twofold {

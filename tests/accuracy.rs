@@ -167,9 +167,18 @@ fn revolution_table(set: &str, text: &mut String) {
             [steps].into_iter().chain(METHODS.map(|method| shape(method, &object))).collect();
         let methods = ["steps"].iter().chain(&METHODS);
         let times = times(&shapes, &rays);
+        let off_surface = |ray: &Ray, distance: f64| {
+            let off = surface.off_surface(ray, distance);
+            if !formula.contains("floor") {
+                return off;
+            }
+            // It may have hit a step, and so be near to a whole height.
+            let height = surface.height_at(ray, distance);
+            off.min((height - height.round()).abs())
+        };
         for ((method, shape), time) in methods.zip(&shapes).zip(&times) {
             let found = trace(shape, &rays);
-            let tally = tally(method, &rays, &found, &truths, truth, |ray, t| surface.off_surface(ray, t));
+            let tally = tally(method, &rays, &found, &truths, truth, off_surface);
             println!("{name}, {set}, {method}: {tally}");
             let label = if *method == "steps" {
                 let undecided = match tally.undecided {
