@@ -111,6 +111,8 @@ impl Layer {
 struct Rays(u64);
 
 impl Watch for Rays {
+    const SEES: bool = true;
+
     fn see(&mut self, event: Event) {
         if let Event::Search(_) = event {
             self.0 += 1;

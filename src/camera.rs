@@ -1,7 +1,9 @@
 //! The camera: from a pixel to the ray that it looks along.
 
 use crate::accuracy::Accuracy;
+use crate::cpu::kernels;
 use crate::geometry::Ray;
+use crate::packet::ViewMut;
 use crate::sample::{Sample, Sampler};
 use glam::{DVec2, DVec3};
 
@@ -26,19 +28,25 @@ impl Camera {
     /// The rays through a pixel, counted as [`ray`](Self::ray) counts, each with its random numbers. A single
     /// ray goes through the middle and needs none.
     pub fn rays(&self, x: usize, y: usize) -> impl Iterator<Item = (Ray, Option<Sample>)> + '_ {
-        let pixel = (y * self.pixels[0] + x) as u32;
-        (0..self.samples).map(move |index| {
-            if self.samples == 1 {
-                return (self.ray(x as f64, y as f64), None);
+        self.places(x, y).map(|(place, sample)| (self.ray(place.x, place.y), sample))
+    }
+
+    /// The places that those rays go through.
+    pub(crate) fn places(&self, x: usize, y: usize) -> impl Iterator<Item = (DVec2, Option<Sample>)> + use<> {
+        let Self { samples, sampler, .. } = *self;
+        let (pixel, middle) = ((y * self.pixels[0] + x) as u32, DVec2::new(x as f64, y as f64));
+        (0..samples).map(move |index| {
+            if samples == 1 {
+                return (middle, None);
             }
-            let sample = Sample { sampler: self.sampler, index, pixel };
-            let jitter = sample.jitter();
-            (self.ray(x as f64 + jitter.x, y as f64 + jitter.y), Some(sample))
+            let sample = Sample { sampler, index, pixel };
+            (middle + sample.jitter(), Some(sample))
         })
     }
 
     /// The ray from the viewpoint through a pixel. `x` counts from the left and `y` from the bottom; the
     /// outermost pixels lie on the edges of the screen.
+    #[inline(always)]
     pub fn ray(&self, x: f64, y: f64) -> Ray {
         let [width, height] = self.pixels;
         let on_screen =
@@ -47,7 +55,19 @@ impl Camera {
     }
 }
 
+kernels! {
+    /// The directions of the rays through these places.
+    pub(crate) fn look(camera: &Camera, x: &[f64], y: &[f64], out: ViewMut) {
+        let (count, mut out) = (x.len(), out);
+        let (y, mut out) = (&y[..count], out.first(count));
+        for lane in 0..count {
+            out.set(lane, camera.ray(x[lane], y[lane]).dir);
+        }
+    }
+}
+
 /// How far across a row of pixels one of them is; a single pixel looks through the middle.
+#[inline(always)]
 fn fraction(at: f64, pixels: usize) -> f64 {
     if pixels > 1 { at / (pixels - 1) as f64 } else { 0.5 }
 }

@@ -77,6 +77,8 @@ impl<W: Write> Printer<'_, W> {
 }
 
 impl<W: Write> Watch for Printer<'_, W> {
+    const SEES: bool = true;
+
     fn see(&mut self, event: Event) {
         match event {
             Event::Begin(purpose) => self.shadow = matches!(purpose, Purpose::Shadow { .. }),

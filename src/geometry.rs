@@ -1,7 +1,10 @@
 //! Rays, and what a plugin implements: [`Hittable`] shapes, [`Shader`]s and [`Light`]s.
 
+use crate::bounds::Bounds;
 use crate::certify::Enclosure;
+use crate::cpu::Cpu;
 use crate::material::{Material, Rgb};
+use crate::packet::{self, Nearest, Rays, View, ViewMut};
 use crate::shading::{Anchor, ProceduralShader};
 use glam::DVec3;
 
@@ -74,13 +77,63 @@ impl Span {
     }
 }
 
+/// Between which distances a ray's first hit of a shape within a span is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bracket {
+    /// It is no nearer than this; [`MISS`] where there is certainly none.
+    pub near: f64,
+    /// It is certainly there and no farther than this; [`MISS`] where that is not certain.
+    pub far: f64,
+}
+
+impl Bracket {
+    /// Of a ray that certainly misses.
+    pub const MISS: Self = Self { near: MISS, far: MISS };
+
+    /// Of a ray whose hit is known.
+    #[inline(always)]
+    pub fn exactly(distance: f64) -> Self {
+        Self { near: distance, far: distance }
+    }
+
+    /// Of a ray of which plain arithmetic tells nothing.
+    pub const UNKNOWN: Self = Self { near: 0.0, far: MISS };
+}
+
 /// A shape that rays can hit. Shapes do not change while a picture is made.
+///
+/// A plugin implements `distance` and `normal`, and of the others what is not as their defaults have it. The last
+/// ones, which take packets, are there for every shape.
 pub trait Hittable: Send + Sync {
     /// The distance from the ray's origin to its first hit of the shape within the span, or [`MISS`].
     fn distance(&self, ray: &Ray, within: &Span) -> f64;
 
     /// The unit normal of the shape at a point of it.
     fn normal(&self, at: DVec3) -> DVec3;
+
+    /// A box that holds all of it; nothing where there is none.
+    fn bounds(&self) -> Option<Bounds> {
+        None
+    }
+
+    /// Whether no part of it lies in a region. A shape without bounds may know better.
+    fn is_clear_of(&self, region: &Bounds) -> bool {
+        self.bounds().is_some_and(|bounds| !bounds.overlaps(region))
+    }
+
+    /// Between which distances [`distance`](Self::distance) is. Where that is dear, plain arithmetic without branches
+    /// says quickly which shape a ray may meet first, and the rest is computed for that one alone.
+    #[inline(always)]
+    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
+        Bracket::exactly(self.distance(ray, within))
+    }
+
+    /// What [`distance`](Self::distance) gives, to the last bit, or NaN where it takes more than plain arithmetic
+    /// without branches.
+    #[inline(always)]
+    fn quick_distance(&self, ray: &Ray, within: &Span) -> f64 {
+        self.distance(ray, within)
+    }
 
     /// Whether no ray that leaves it can meet it again. Then it is not asked.
     fn is_convex(&self) -> bool {
@@ -97,6 +150,36 @@ pub trait Hittable: Send + Sync {
     /// [`certify::first_hit`](crate::certify::first_hit) proves it for shapes that have an equation.
     fn certify(&self, _ray: &Ray) -> Enclosure {
         Enclosure::Doubtful(0.0)
+    }
+
+    /// Compares the hits of a packet with the nearest so far, and tells whether any is in doubt. `sides` are those of
+    /// this shape that the rays leave, if they do; `id` is its index in the scene and 1.
+    fn meet(&self, cpu: Cpu, rays: Rays, sides: Option<&[Side]>, id: u64, nearest: Nearest) -> bool {
+        packet::meet(cpu, self, rays, sides, id, nearest)
+    }
+
+    /// Marks the rays of a packet that it blocks before their ends, and those of which that is in doubt; tells
+    /// whether any is.
+    fn block(
+        &self,
+        cpu: Cpu,
+        rays: Rays,
+        sides: Option<&[Side]>,
+        ends: &[f64],
+        blocked: &mut [u64],
+        doubt: &mut [u64],
+    ) -> bool {
+        packet::block(cpu, self, rays, sides, ends, blocked, doubt)
+    }
+
+    /// The quick distances of a packet.
+    fn distances(&self, cpu: Cpu, rays: Rays, sides: Option<&[Side]>, out: &mut [f64]) {
+        packet::distances(cpu, self, rays, sides, out);
+    }
+
+    /// The normals at many points.
+    fn normals(&self, cpu: Cpu, points: View, out: ViewMut) {
+        packet::normals(cpu, self, points, out);
     }
 }
 
@@ -118,6 +201,21 @@ pub trait Shader: Send + Sync {
     fn specular(&self, material: &Material, _at: DVec3) -> Rgb {
         material.specular
     }
+
+    /// What [`ambient`](Self::ambient) gives at many points.
+    fn ambients(&self, cpu: Cpu, material: &Material, points: View, out: ViewMut) {
+        packet::ambients(cpu, self, material, points, out);
+    }
+
+    /// What [`diffuse`](Self::diffuse) gives at many points.
+    fn diffuses(&self, cpu: Cpu, material: &Material, points: View, out: ViewMut) {
+        packet::diffuses(cpu, self, material, points, out);
+    }
+
+    /// What [`specular`](Self::specular) gives at many points.
+    fn speculars(&self, cpu: Cpu, material: &Material, points: View, out: ViewMut) {
+        packet::speculars(cpu, self, material, points, out);
+    }
 }
 
 /// The shader of an object that has none of its own: the material everywhere.
@@ -136,6 +234,11 @@ pub trait Light: Send + Sync {
     /// The radius of a ball that shines; 0 for a point, whose shadows have sharp edges.
     fn size(&self) -> f64 {
         0.0
+    }
+
+    /// What [`emissivity`](Self::emissivity) gives toward many points; 0 in `shines` where it gives nothing.
+    fn emissivities(&self, cpu: Cpu, toward: View, out: ViewMut, shines: &mut [u64]) {
+        packet::emissivities(cpu, self, toward, out, shines);
     }
 }
 

@@ -4,9 +4,10 @@ use crate::camera::Camera;
 use crate::entity::{Args, Kind};
 use crate::geometry::{Hittable, Light, Shader};
 use crate::material::{Material, Rgb};
+use crate::plan::Plan;
 use crate::texture::Texture;
 use glam::DVec3;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// All that a picture is made from.
 pub struct Model {
@@ -20,9 +21,15 @@ pub struct Model {
     pub objects: Vec<Object>,
     /// The lights, in the order of the scene.
     pub lights: Vec<Item<Box<dyn Light>>>,
+    pub(crate) plan: OnceLock<Plan>,
 }
 
 impl Model {
+    /// What tracing it needs, decided when it is first asked for.
+    pub fn plan(&self) -> &Plan {
+        self.plan.get_or_init(|| Plan::new(&self.objects))
+    }
+
     /// The entities of a kind as they were given, in the order of the scene.
     pub fn entities(&self, kind: Kind) -> Vec<&Args> {
         match kind {

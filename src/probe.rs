@@ -66,6 +66,8 @@ struct Search {
 }
 
 impl<W: Write> Watch for Probe<'_, W> {
+    const SEES: bool = true;
+
     fn see(&mut self, event: Event) {
         match event {
             Event::Begin(purpose) => self.begin(purpose),

@@ -1,8 +1,9 @@
 //! The tile loop: a model's pixels, on all threads.
 
+use crate::cpu::Cpu;
 use crate::model::Model;
 use crate::picture::to_byte;
-use crate::trace;
+use crate::trace::Tracer;
 use rayon::prelude::*;
 use std::io;
 use std::ops::{ControlFlow, Range};
@@ -11,11 +12,15 @@ use std::ops::{ControlFlow, Range};
 const BAND: usize = 1 << 22;
 
 /// Room for the deepest chain of reflections that a pixel may cost. It is taken only where it is used.
-const STACK: usize = 64 << 20;
+const STACK: usize = 128 << 20;
+
+/// The width and height of a tile, whose rays go together, in pixels.
+const TILE: usize = 8;
 
 /// The threads that render.
 pub struct Renderer {
     pool: rayon::ThreadPool,
+    cpu: Cpu,
 }
 
 impl Renderer {
@@ -25,7 +30,13 @@ impl Renderer {
     /// Where the system does not give the threads.
     pub fn new(threads: usize) -> io::Result<Self> {
         let builder = rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK);
-        Ok(Self { pool: builder.build().map_err(io::Error::other)? })
+        Ok(Self { pool: builder.build().map_err(io::Error::other)?, cpu: Cpu::best() })
+    }
+
+    /// With these instructions in place of the best that this machine has. The picture is the same.
+    pub fn on(mut self, cpu: Cpu) -> Self {
+        self.cpu = cpu;
+        self
     }
 
     /// The picture from the top, some rows at a time: red, green and blue of each pixel from the left.
@@ -38,7 +49,8 @@ impl Renderer {
         done: &'r (dyn Fn() -> ControlFlow<()> + Sync),
     ) -> impl Iterator<Item = io::Result<Vec<u8>>> + 'r {
         let [width, height] = model.camera.value.pixels;
-        let step = (BAND / width).max(1);
+        // Whole tiles.
+        let step = (BAND / width).max(1).next_multiple_of(TILE);
         (0..height).step_by(step).map(move |from| {
             let rows = from..height.min(from + step);
             self.rows(model, rows, done).ok_or_else(|| io::ErrorKind::Interrupted.into())
@@ -57,8 +69,30 @@ impl Renderer {
         rows: Range<usize>,
         done: &(dyn Fn() -> ControlFlow<()> + Sync),
     ) -> Option<Vec<u8>> {
-        let pixel = |x, y| trace::pixel(model, x, y).to_array().map(to_byte);
-        self.pixels(model, rows, done, pixel).map(Vec::into_flattened)
+        let [width, height] = model.camera.value.pixels;
+        let mut pixels = vec![[0; 3]; width * rows.len()];
+        let strips = pixels.par_chunks_mut(TILE * width).zip(rows.into_par_iter().step_by(TILE));
+        let finished = self.pool.install(|| {
+            strips.try_for_each(|(strip, from_top)| {
+                let (tall, mut nobody) = (strip.len() / width, ());
+                let mut tracer = Tracer::new(model, self.cpu, &mut nobody);
+                for left in (0..width).step_by(TILE) {
+                    let wide = TILE.min(width - left);
+                    let place = |index: usize| (left + index % wide, index / wide);
+                    let mut tile = [[0; 2]; TILE * TILE];
+                    for (index, pixel) in tile.iter_mut().enumerate().take(wide * tall) {
+                        let (x, row) = place(index);
+                        *pixel = [x, height - 1 - from_top - row];
+                    }
+                    tracer.pixels(&tile[..wide * tall], |index, colour| {
+                        let (x, row) = place(index);
+                        strip[row * width + x] = colour.to_array().map(to_byte);
+                    });
+                }
+                (0..tall).try_for_each(|_| done())
+            })
+        });
+        finished.is_continue().then(|| pixels.into_flattened())
     }
 
     /// Something of each pixel, from the top and from the left, for some rows counted from the top; nothing

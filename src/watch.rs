@@ -9,13 +9,42 @@ use glam::DVec3;
 ///
 /// Nobody, `()`, watches plain rendering; there all of this compiles to nothing.
 pub trait Watch {
+    /// Whether it sees each event. Then rays go one by one, and none is spared a test.
+    const SEES: bool;
+
     /// Something happened.
-    fn see(&mut self, event: Event);
+    fn see(&mut self, _event: Event) {}
+
+    /// So much was done.
+    fn count(&mut self, _count: Count) {}
 }
 
 impl Watch for () {
-    #[inline(always)]
-    fn see(&mut self, _event: Event) {}
+    const SEES: bool = false;
+}
+
+/// Work that was done, or spared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Count {
+    /// So many rays of a kind were cast.
+    Rays(Kind, usize),
+    /// So many rays were tested against the object of this index.
+    Tested(usize, usize),
+    /// So many rays were not, as the object's bounds are not in their way.
+    Culled(usize, usize),
+}
+
+/// The kinds of rays.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    /// From the viewer.
+    Primary,
+    /// From a surface to a light.
+    Shadow,
+    /// From a mirror.
+    Reflected,
+    /// Through glass.
+    Transmitted,
 }
 
 /// What happens to rays.

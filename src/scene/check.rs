@@ -16,7 +16,7 @@ use crate::value::Datum;
 use crate::words::list;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Makes a model of entities as written and reports all their faults. Without faults there is a model. File
 /// names start from `folder`; `accuracy`, if there is one, counts in place of the scene's own.
@@ -224,7 +224,7 @@ impl Check<'_> {
             );
         }
         let Self { camera, materials, textures, objects, lights, .. } = self;
-        Some(Model { camera: camera?, materials, textures, objects, lights })
+        Some(Model { camera: camera?, materials, textures, objects, lights, plan: OnceLock::new() })
     }
 }
 

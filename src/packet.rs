@@ -1,0 +1,300 @@
+//! Packets: rays by the dozen, an array for each coordinate, so that one call of a shape serves all of them and the
+//! processor takes several at a time.
+//!
+//! A plugin is written for one ray. The loops here take its functions in and are compiled for each level of
+//! instructions ([`cpu`](crate::cpu)). Arrays are as long as a multiple of [`STEP`]; what is beyond the last ray is a
+//! copy of it, and is computed and ignored.
+
+use crate::cpu::kernels;
+use crate::geometry::{Bracket, Hittable, Light, Ray, Shader, Side, Span};
+use crate::material::{Material, Rgb};
+use glam::DVec3;
+
+/// Arrays are as long as a multiple of this.
+pub const STEP: usize = 8;
+
+/// Vectors, an array for each coordinate.
+#[derive(Clone)]
+pub struct Vectors<const N: usize> {
+    /// The first coordinates, or red.
+    pub x: [f64; N],
+    /// The second, or green.
+    pub y: [f64; N],
+    /// The third, or blue.
+    pub z: [f64; N],
+}
+
+impl<const N: usize> Vectors<N> {
+    /// All of them 0.
+    pub const ZERO: Self = Self { x: [0.0; N], y: [0.0; N], z: [0.0; N] };
+
+    /// The one of this index.
+    #[inline(always)]
+    pub fn get(&self, index: usize) -> DVec3 {
+        DVec3::new(self.x[index], self.y[index], self.z[index])
+    }
+
+    /// Puts one in its place.
+    #[inline(always)]
+    pub fn set(&mut self, index: usize, vector: DVec3) {
+        (self.x[index], self.y[index], self.z[index]) = (vector.x, vector.y, vector.z);
+    }
+
+    /// The first of them, so many.
+    #[inline(always)]
+    pub fn view(&self, count: usize) -> View<'_> {
+        View { x: &self.x[..count], y: &self.y[..count], z: &self.z[..count] }
+    }
+
+    /// Likewise, to be written.
+    #[inline(always)]
+    pub fn view_mut(&mut self, count: usize) -> ViewMut<'_> {
+        ViewMut { x: &mut self.x[..count], y: &mut self.y[..count], z: &mut self.z[..count] }
+    }
+}
+
+/// Some vectors of an array.
+#[derive(Clone, Copy)]
+pub struct View<'v> {
+    /// The first coordinates.
+    pub x: &'v [f64],
+    /// The second.
+    pub y: &'v [f64],
+    /// The third.
+    pub z: &'v [f64],
+}
+
+impl View<'_> {
+    /// How many there are.
+    #[inline(always)]
+    pub fn len(&self) -> usize {
+        self.x.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.x.is_empty()
+    }
+
+    /// The one of this index.
+    #[inline(always)]
+    pub fn get(&self, index: usize) -> DVec3 {
+        DVec3::new(self.x[index], self.y[index], self.z[index])
+    }
+
+    /// The first of them, so many.
+    #[inline(always)]
+    pub fn first(&self, count: usize) -> Self {
+        Self { x: &self.x[..count], y: &self.y[..count], z: &self.z[..count] }
+    }
+}
+
+/// Some vectors of an array, to be written.
+pub struct ViewMut<'v> {
+    /// The first coordinates.
+    pub x: &'v mut [f64],
+    /// The second.
+    pub y: &'v mut [f64],
+    /// The third.
+    pub z: &'v mut [f64],
+}
+
+impl ViewMut<'_> {
+    /// The first of them, so many.
+    #[inline(always)]
+    pub fn first(&mut self, count: usize) -> ViewMut<'_> {
+        ViewMut { x: &mut self.x[..count], y: &mut self.y[..count], z: &mut self.z[..count] }
+    }
+
+    /// The one of this index.
+    #[inline(always)]
+    pub fn get(&self, index: usize) -> DVec3 {
+        DVec3::new(self.x[index], self.y[index], self.z[index])
+    }
+
+    /// Puts one in its place.
+    #[inline(always)]
+    pub fn set(&mut self, index: usize, vector: DVec3) {
+        (self.x[index], self.y[index], self.z[index]) = (vector.x, vector.y, vector.z);
+    }
+}
+
+/// Rays. A packet's rays all leave the same object, or none.
+#[derive(Clone, Copy)]
+pub struct Rays<'r> {
+    /// Where each starts.
+    pub origin: View<'r>,
+    /// Where each goes, a unit vector.
+    pub dir: View<'r>,
+}
+
+impl Rays<'_> {
+    /// How many there are.
+    #[inline(always)]
+    pub fn len(&self) -> usize {
+        self.origin.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.origin.is_empty()
+    }
+
+    /// The one of this index.
+    #[inline(always)]
+    pub fn get(&self, index: usize) -> Ray {
+        Ray { origin: self.origin.get(index), dir: self.dir.get(index) }
+    }
+
+    #[inline(always)]
+    pub fn first(&self, count: usize) -> Self {
+        Self { origin: self.origin.first(count), dir: self.dir.first(count) }
+    }
+}
+
+/// What the rays of a packet meet first, as far as it is known.
+pub struct Nearest<'n> {
+    /// The hit of the object in `met` is no nearer than this.
+    pub near: &'n mut [f64],
+    /// And no farther than this. Both are the same where it is known exactly, and the end of the search where nothing
+    /// is met.
+    pub far: &'n mut [f64],
+    /// The object's index and 1; 0 for none.
+    pub met: &'n mut [u64],
+    /// Not 0 where brackets overlap: the nearer one of two is not known yet.
+    pub doubt: &'n mut [u64],
+}
+
+kernels! {
+    /// Compares a shape's hits with the nearest so far. Tells whether any is in doubt.
+    pub(crate) fn meet[T: Hittable](shape: &T, rays: Rays, sides: Option<&[Side]>, id: u64, nearest: Nearest) -> bool {
+        match sides {
+            None => meet_all(shape, rays, |_| None, id, nearest),
+            Some(sides) => meet_all(shape, rays, |lane| Some(sides[lane]), id, nearest),
+        }
+    }
+
+    /// Marks the rays that a shape's hits block before they come to their ends. Tells whether any is in doubt.
+    pub(crate) fn block[T: Hittable](
+        shape: &T, rays: Rays, sides: Option<&[Side]>, ends: &[f64], blocked: &mut [u64], doubt: &mut [u64]
+    ) -> bool {
+        match sides {
+            None => block_all(shape, rays, |_| None, ends, blocked, doubt),
+            Some(sides) => block_all(shape, rays, |lane| Some(sides[lane]), ends, blocked, doubt),
+        }
+    }
+
+    /// The distances of a shape's hits, as [`Hittable::quick_distance`] gives them.
+    pub(crate) fn distances[T: Hittable](shape: &T, rays: Rays, sides: Option<&[Side]>, out: &mut [f64]) {
+        let (count, rays) = (out.len(), rays.first(out.len()));
+        match sides {
+            None => for lane in 0..count {
+                out[lane] = shape.quick_distance(&rays.get(lane), &Span::RAY);
+            },
+            Some(sides) => for lane in 0..count {
+                out[lane] = shape.quick_distance(&rays.get(lane), &Span { leaves: Some(sides[lane]), ..Span::RAY });
+            },
+        }
+    }
+
+    /// The normals of a shape at points of it.
+    pub(crate) fn normals[T: Hittable](shape: &T, points: View, out: ViewMut) {
+        let (count, mut out) = (points.len(), out);
+        let mut out = out.first(count);
+        for lane in 0..count {
+            out.set(lane, shape.normal(points.get(lane)));
+        }
+    }
+
+    /// The reflectivities at points of a surface.
+    pub(crate) fn ambients[T: Shader](shader: &T, material: &Material, points: View, out: ViewMut) {
+        let (count, mut out) = (points.len(), out);
+        let mut out = out.first(count);
+        for lane in 0..count {
+            out.set(lane, shader.ambient(material, points.get(lane)));
+        }
+    }
+
+    /// Likewise for light from the scene's lights.
+    pub(crate) fn diffuses[T: Shader](shader: &T, material: &Material, points: View, out: ViewMut) {
+        let (count, mut out) = (points.len(), out);
+        let mut out = out.first(count);
+        for lane in 0..count {
+            out.set(lane, shader.diffuse(material, points.get(lane)));
+        }
+    }
+
+    /// Likewise as a mirror.
+    pub(crate) fn speculars[T: Shader](shader: &T, material: &Material, points: View, out: ViewMut) {
+        let (count, mut out) = (points.len(), out);
+        let mut out = out.first(count);
+        for lane in 0..count {
+            out.set(lane, shader.specular(material, points.get(lane)));
+        }
+    }
+
+    /// The light that is sent toward points, and where there is none 0 in `shines`.
+    pub(crate) fn emissivities[T: Light](light: &T, points: View, out: ViewMut, shines: &mut [u64]) {
+        let (count, mut out) = (points.len(), out);
+        let (mut out, shines) = (out.first(count), &mut shines[..count]);
+        for lane in 0..count {
+            let emissivity = light.emissivity(points.get(lane));
+            shines[lane] = u64::from(emissivity.is_some());
+            out.set(lane, emissivity.unwrap_or(Rgb::ZERO));
+        }
+    }
+}
+
+#[inline(always)]
+fn meet_all<T: Hittable + ?Sized>(
+    shape: &T,
+    rays: Rays,
+    leaves: impl Fn(usize) -> Option<Side>,
+    id: u64,
+    nearest: Nearest,
+) -> bool {
+    let count = rays.len();
+    let (near, far) = (&mut nearest.near[..count], &mut nearest.far[..count]);
+    let (met, doubt) = (&mut nearest.met[..count], &mut nearest.doubt[..count]);
+    let rays = rays.first(count);
+    let mut any = 0;
+    for lane in 0..count {
+        let within = Span { far: far[lane], leaves: leaves(lane), ..Span::RAY };
+        let Bracket { near: low, far: high } = shape.bracket(&rays.get(lane), &within);
+        let is_nearer = high < near[lane];
+        // Of two at the same distance the earlier one in the scene wins.
+        let is_earlier = (low == far[lane]) & (met[lane] > id);
+        let is_farther = (low >= far[lane]) & !is_earlier;
+        near[lane] = if is_nearer { low } else { near[lane] };
+        far[lane] = if is_nearer { high } else { far[lane] };
+        met[lane] = if is_nearer { id } else { met[lane] };
+        doubt[lane] = u64::from(!(is_nearer | is_farther));
+        any |= doubt[lane];
+    }
+    any != 0
+}
+
+#[inline(always)]
+fn block_all<T: Hittable + ?Sized>(
+    shape: &T,
+    rays: Rays,
+    leaves: impl Fn(usize) -> Option<Side>,
+    ends: &[f64],
+    blocked: &mut [u64],
+    doubt: &mut [u64],
+) -> bool {
+    let count = rays.len();
+    let (ends, blocked, doubt) = (&ends[..count], &mut blocked[..count], &mut doubt[..count]);
+    let rays = rays.first(count);
+    let mut any = 0;
+    for lane in 0..count {
+        let within = Span { far: ends[lane], leaves: leaves(lane), ..Span::RAY };
+        let Bracket { near: low, far: high } = shape.bracket(&rays.get(lane), &within);
+        let is_before = high < ends[lane];
+        let is_behind = low >= ends[lane];
+        blocked[lane] |= u64::from(is_before);
+        doubt[lane] = u64::from(!(is_before | is_behind)) & !blocked[lane];
+        any |= doubt[lane];
+    }
+    any != 0
+}

@@ -1,0 +1,194 @@
+//! How much of a light comes to the places of a surface.
+
+use super::group::{Group, Parts, pick, pick_vectors};
+use super::shade::Surface;
+use super::{NARROW, Tracer};
+use crate::accuracy::Accuracy;
+use crate::bounds;
+use crate::geometry::Side;
+use crate::packet::{Rays, STEP, Vectors};
+use crate::watch::{Count, Event, Kind, Purpose, Watch};
+
+/// The ways from the places of a surface to a light.
+pub(super) struct Ways<'w, const N: usize> {
+    /// Where the light is, as seen from each place.
+    pub places: &'w Vectors<N>,
+    /// The directions there.
+    pub toward: &'w Vectors<N>,
+    /// How far it is.
+    pub distances: &'w [f64; N],
+}
+
+/// What comes of light on its way to a packet's places.
+pub(super) struct Passed<const N: usize> {
+    /// The part of each channel that gets there.
+    pub tint: Vectors<N>,
+    /// The opaque object that stands in the way, by its index and 1; 0 where there is none.
+    pub blocker: [u64; N],
+}
+
+impl<W: Watch> Tracer<'_, '_, W> {
+    /// Where the ways end: a surface that the light lies on is no blocker, however rounding has it.
+    fn ends<const N: usize>(&self, surface: &Surface<N>, ways: &Ways<N>, count: usize) -> [f64; N] {
+        let mut ends = *ways.distances;
+        if self.model.camera.value.accuracy != Accuracy::Classic {
+            for (lane, end) in ends.iter_mut().enumerate().take(count) {
+                let reach = surface.points.get(lane).abs().max_element();
+                *end -= 16.0 * f64::EPSILON * (*end + reach);
+            }
+        }
+        ends
+    }
+
+    /// Takes the light away (0 in `shines`) where an object stands in its way, in a scene without glass.
+    pub(super) fn shadow<const N: usize>(
+        &mut self,
+        group: &mut Group<N>,
+        surface: &Surface<N>,
+        ways: &Ways<N>,
+        shines: &mut [u64; N],
+    ) {
+        let count = group.padded();
+        let mut ends = self.ends(surface, ways, count);
+        let (mut lanes, mut len) = ([0; N], 0);
+        for lane in 0..group.len {
+            // A ray that has cost as many as it may finds nothing in the way.
+            let looks = shines[lane] != 0 && group.budget[lane] != 0;
+            group.budget[lane] -= u32::from(looks);
+            ends[lane] = if looks { ends[lane] } else { 0.0 };
+            lanes[len] = lane as u8;
+            len += usize::from(looks);
+        }
+        if len == 0 {
+            return;
+        }
+        self.watch.count(Count::Rays(Kind::Shadow, len));
+        let region = bounds::around(self.cpu, surface.points.view(count));
+        let region = region.and(&bounds::around(self.cpu, ways.places.view(count)));
+        let mut blocked = [0; N];
+        if 2 * len > group.len {
+            let rays = Rays { origin: surface.points.view(count), dir: ways.toward.view(count) };
+            let leaves = (surface.index, &surface.sides[..count]);
+            self.blocked(rays, &ends[..count], leaves, &region, &mut blocked[..count]);
+            for (shines, blocked) in shines.iter_mut().zip(&blocked) {
+                *shines &= u64::from(*blocked == 0);
+            }
+            return;
+        }
+        let lanes = &lanes[..len];
+        let count = len.next_multiple_of(STEP);
+        let (origin, dir): (Vectors<N>, Vectors<N>) =
+            (pick_vectors(&surface.points, lanes), pick_vectors(ways.toward, lanes));
+        let (ends, sides): ([f64; N], [Side; N]) = (pick(&ends, lanes), pick(&surface.sides, lanes));
+        let rays = Rays { origin: origin.view(count), dir: dir.view(count) };
+        let leaves = (surface.index, &sides[..count]);
+        self.blocked(rays, &ends[..count], leaves, &region, &mut blocked[..count]);
+        for (lane, blocked) in lanes.iter().zip(&blocked) {
+            shines[usize::from(*lane)] &= u64::from(*blocked == 0);
+        }
+    }
+
+    /// What comes through of the light that shines on some places, in a scene with glass.
+    pub(super) fn passed<const N: usize>(
+        &mut self,
+        group: &mut Group<N>,
+        surface: &Surface<N>,
+        ways: &Ways<N>,
+        shines: &[u64; N],
+    ) -> Passed<N> {
+        let ends = self.ends(surface, ways, group.padded());
+        let (mut lanes, mut len) = ([0; N], 0);
+        for lane in 0..group.len {
+            lanes[len] = lane as u8;
+            len += usize::from(shines[lane] != 0);
+        }
+        let lanes = &lanes[..len];
+        let mut part = Group::<N> {
+            len,
+            origin: pick_vectors(&surface.points, lanes),
+            dir: pick_vectors(ways.toward, lanes),
+            travelled: [0.0; N],
+            budget: pick(&group.budget, lanes),
+            camera: [0; N],
+            leaves: Some(surface.index),
+            sides: pick(&surface.sides, lanes),
+        };
+        let open = Passed { tint: Vectors { x: [1.0; N], y: [1.0; N], z: [1.0; N] }, blocker: [0; N] };
+        let ways = self.walk(&mut part, &pick(&ends, lanes), open);
+        let mut passed = Passed { tint: Vectors::ZERO, blocker: [0; N] };
+        for (index, lane) in lanes.iter().enumerate() {
+            let lane = usize::from(*lane);
+            passed.tint.set(lane, ways.tint.get(index));
+            passed.blocker[lane] = ways.blocker[index];
+            group.budget[lane] = part.budget[index];
+        }
+        passed
+    }
+
+    /// Goes on toward a light, through glass, from where `passed` has come through.
+    fn walk<const N: usize>(
+        &mut self,
+        group: &mut Group<N>,
+        ends: &[f64; N],
+        mut passed: Passed<N>,
+    ) -> Passed<N> {
+        self.watch.count(Count::Rays(Kind::Shadow, group.len));
+        if W::SEES {
+            self.watch.see(Event::Begin(Purpose::Shadow { distance: ends[0] }));
+        }
+        let found = self.closest(group, Some(ends));
+        let mut parts = Parts::new(&found.met[..group.len]);
+        while let Some((id, lanes)) = parts.next() {
+            let Some(index) = (id as usize).checked_sub(1) else { continue };
+            if self.model.objects[index].material.transparency == 0.0 {
+                for lane in lanes {
+                    passed.blocker[usize::from(*lane)] = id;
+                }
+                continue;
+            }
+            for lanes in lanes.chunks(if lanes.len() > NARROW && self.is_shallow() { N } else { NARROW }) {
+                let (near, far) = (&found.near, &found.far);
+                if lanes.len() <= NARROW {
+                    self.pane::<N, NARROW>(group, (ends, near, far), index, lanes, &mut passed);
+                } else {
+                    self.pane::<N, N>(group, (ends, near, far), index, lanes, &mut passed);
+                }
+            }
+        }
+        passed
+    }
+
+    /// Goes through one object of glass.
+    fn pane<const N: usize, const M: usize>(
+        &mut self,
+        group: &mut Group<N>,
+        (ends, near, far): (&[f64; N], &[f64; N], &[f64; N]),
+        index: usize,
+        lanes: &[u8],
+        passed: &mut Passed<N>,
+    ) {
+        let mut part = group.pick::<M>(lanes);
+        let distances = self.settle(&part, &pick(near, lanes), &pick(far, lanes), index);
+        let object = &self.model.objects[index];
+        let mut ends: [f64; M] = pick(ends, lanes);
+        let mut tint: Vectors<M> = pick_vectors(&passed.tint, lanes);
+        for lane in 0..part.padded() {
+            let ray = part.rays().get(lane);
+            let point = ray.at(distances[lane]);
+            part.sides[lane] = Side::seen_along(ray.dir, object.shape.normal(point)).opposite();
+            part.origin.set(lane, point);
+            tint.set(lane, tint.get(lane) * object.tint(point));
+            ends[lane] -= distances[lane];
+        }
+        part.leaves = Some(index);
+        self.depth += 1;
+        let onward = self.walk(&mut part, &ends, Passed { tint, blocker: [0; M] });
+        self.depth -= 1;
+        for (index, lane) in lanes.iter().enumerate() {
+            let lane = usize::from(*lane);
+            passed.tint.set(lane, onward.tint.get(index));
+            passed.blocker[lane] = onward.blocker[index];
+            group.budget[lane] = part.budget[index];
+        }
+    }
+}
