@@ -3,9 +3,10 @@
 use super::sphere::{self, Sphere};
 use crate::accuracy::Accuracy;
 use crate::ball::{self, Line};
+use crate::bounds::Bounds;
 use crate::certify::{self, Enclosure, Equation};
 use crate::entity::Entity;
-use crate::geometry::{Body, Hittable, Ray, Span};
+use crate::geometry::{Body, Bracket, Hittable, Ray, Span};
 use crate::number::Number;
 use crate::pparm::{Pparm, Row, Table};
 use crate::twofold::Twofold;
@@ -28,21 +29,47 @@ struct Ellipsoid {
     scale: DVec3,
 }
 
+impl Ellipsoid {
+    /// A ray, squeezed: its direction is no unit vector any more, so that distances stay what they were.
+    #[inline(always)]
+    fn squeezed(&self, ray: &Ray) -> (DVec3, DVec3) {
+        ((ray.origin - self.ball.center) / self.scale, ray.dir / self.scale)
+    }
+
+    /// Likewise in twice the precision.
+    #[inline(always)]
+    fn line(&self, ray: &Ray) -> Line {
+        let scale = |axis: usize| Twofold::from(self.scale[axis]);
+        let from = |axis: usize| Twofold::difference(ray.origin[axis], self.ball.center[axis]) / scale(axis);
+        let dir = |axis: usize| Twofold::from(ray.dir[axis]) / scale(axis);
+        Line { from: [from(0), from(1), from(2)], dir: [dir(0), dir(1), dir(2)] }
+    }
+}
+
 impl Hittable for Ellipsoid {
-    /// Squeezed, a ray's direction is no unit vector any more, so that distances stay what they were.
     #[inline(always)]
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        let Sphere { center, radius, accuracy } = self.ball;
-        let (from, dir) = ((ray.origin - center) / self.scale, ray.dir / self.scale);
+        let Sphere { radius, accuracy, .. } = self.ball;
         if accuracy == Accuracy::Classic {
+            let (from, dir) = self.squeezed(ray);
             return within.keep(sphere::classic(from, dir, radius));
         }
-        let scale = self.scale.to_array().map(Twofold::from);
-        let line = || Line {
-            from: [0, 1, 2].map(|axis| Twofold::difference(ray.origin[axis], center[axis]) / scale[axis]),
-            dir: [0, 1, 2].map(|axis| Twofold::from(ray.dir[axis]) / scale[axis]),
-        };
-        within.keep(ball::first_hit(from, dir, line, radius, accuracy))
+        within.keep(ball::first_hit(&self.line(ray), radius, accuracy))
+    }
+
+    #[inline(always)]
+    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
+        let (from, dir) = self.squeezed(ray);
+        match self.ball.accuracy {
+            Accuracy::Classic => Bracket::exactly(within.keep(sphere::classic(from, dir, self.ball.radius))),
+            _ => ball::bracket(from, dir, 1.0 / dir.dot(dir), self.ball.radius),
+        }
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        let reach = self.ball.radius * self.scale;
+        let bounds = Bounds { low: self.ball.center - reach, high: self.ball.center + reach };
+        (self.ball.accuracy != Accuracy::Classic).then_some(bounds)
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {

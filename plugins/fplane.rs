@@ -2,9 +2,10 @@
 
 use super::plane::{self, Plane};
 use crate::accuracy::Accuracy;
+use crate::bounds::Bounds;
 use crate::certify::{self, Enclosure, Equation};
 use crate::entity::{Args, Entity, Refusal};
-use crate::geometry::{Body, Hittable, MISS, Ray, Span};
+use crate::geometry::{Body, Bracket, Hittable, MISS, Ray, Span};
 use crate::interval::Interval;
 use crate::number::Number;
 use crate::pparm::{Derived, Pparm, Row, Table};
@@ -93,12 +94,25 @@ impl FinitePlane {
     /// A side is as wide as rounding makes the point, so that nothing falls through between two rectangles.
     #[inline(always)]
     pub fn has_crossing(&self, ray: &Ray, distance: f64) -> bool {
-        let DVec2 { x, y } = self.coordinates(ray.at(distance));
         let slack = match self.plane.accuracy {
             Accuracy::Classic => 0.0,
-            _ => 4.0 * f64::EPSILON * (ray.origin.abs().max_element() + distance + self.reach),
+            _ => self.slack(ray, distance),
         };
-        (-slack..=self.dimensions.x + slack).contains(&x) && (-slack..=self.dimensions.y + slack).contains(&y)
+        self.inside(ray, distance) >= -slack
+    }
+
+    /// What rounding may make of the place where a ray crosses its plane.
+    #[inline(always)]
+    fn slack(&self, ray: &Ray, distance: f64) -> f64 {
+        4.0 * f64::EPSILON * (ray.origin.abs().max_element() + distance + self.reach)
+    }
+
+    /// How far inside of its nearest side a ray crosses its plane; below 0 outside, NaN for none.
+    #[inline(always)]
+    fn inside(&self, ray: &Ray, distance: f64) -> f64 {
+        let at = self.coordinates(ray.at(distance));
+        let DVec2 { x, y } = at.min(self.dimensions - at);
+        if x <= y { x } else { y }
     }
 }
 
@@ -107,6 +121,38 @@ impl Hittable for FinitePlane {
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
         let distance = self.plane.distance(ray, within);
         if self.has_crossing(ray, distance) { distance } else { MISS }
+    }
+
+    #[inline(always)]
+    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
+        if self.plane.accuracy == Accuracy::Classic {
+            return Bracket::exactly(self.quick_distance(ray, within));
+        }
+        let rough = self.plane.rough(ray);
+        let inside = self.inside(ray, rough.distance);
+        let slack = rough.error + 8.0 * self.slack(ray, rough.distance);
+        let Bracket { near, far } = self.plane.bracket(&rough, ray, within);
+        Bracket {
+            near: if inside < -slack { MISS } else { near },
+            far: if inside > slack { far } else { MISS },
+        }
+    }
+
+    #[inline(always)]
+    fn quick_distance(&self, ray: &Ray, within: &Span) -> f64 {
+        let distance = self.plane.quick_distance(ray, within);
+        if distance.is_nan() | self.has_crossing(ray, distance) { distance } else { MISS }
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        let corner = |x: f64, y: f64| self.plane.point + x * self.sides[0] + y * self.sides[1];
+        let DVec2 { x, y } = self.dimensions;
+        let bounds = Bounds::around(&[corner(0.0, 0.0), corner(x, 0.0), corner(0.0, y), corner(x, y)]);
+        (self.plane.accuracy != Accuracy::Classic).then_some(bounds)
+    }
+
+    fn is_clear_of(&self, region: &Bounds) -> bool {
+        self.plane.is_clear_of(region) || self.bounds().is_some_and(|bounds| !bounds.overlaps(region))
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {

@@ -1,6 +1,7 @@
 //! A quadric: every point that solves an equation of the second degree (the notes' "General Quadric Surfaces").
 
 use crate::accuracy::Accuracy;
+use crate::bounds::Bounds;
 use crate::certify::{self, Enclosure, Equation};
 use crate::entity::{Entity, Refusal};
 use crate::geometry::{Body, Hittable, MISS, Ray, Side, Span};
@@ -118,6 +119,11 @@ impl Hittable for Quadric {
         let normal = 2.0 * (self.square * (at - self.center)) + self.linear;
         // A cone's apex has none; any will do.
         normal.try_normalize().unwrap_or(DVec3::Y)
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        let bounds = Bounds { low: self.center + self.low, high: self.center + self.high };
+        (!self.is_classic).then_some(bounds)
     }
 
     fn is_convex(&self) -> bool {

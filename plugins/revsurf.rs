@@ -1,6 +1,7 @@
 //! A surface of revolution: a line turned around an axis.
 
 use crate::accuracy::Accuracy;
+use crate::bounds::Bounds;
 use crate::certify::{self, Enclosure};
 use crate::entity::{Args, Entity, Refusal};
 use crate::formula::Formula;
@@ -117,6 +118,15 @@ impl Hittable for Revsurf {
             Surface::Exact(surface, _) => surface.normal(at),
         };
         (self.frame.axes * normal).normalize()
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        match &self.surface {
+            Surface::Classic(_) => None,
+            Surface::Exact(surface, _) => {
+                Some(surface.bounds().from_frame(self.frame.base, &self.frame.axes))
+            }
+        }
     }
 
     fn is_convex(&self) -> bool {

@@ -2,9 +2,10 @@
 
 use crate::accuracy::Accuracy;
 use crate::ball::{self, Line};
+use crate::bounds::Bounds;
 use crate::certify::{self, Enclosure, Equation};
 use crate::entity::{Args, Entity};
-use crate::geometry::{Body, Hittable, MISS, Ray, Span};
+use crate::geometry::{Body, Bracket, Hittable, MISS, Ray, Span};
 use crate::number::Number;
 use crate::pparm::{Pparm, Table};
 use crate::twofold::Twofold;
@@ -39,16 +40,46 @@ impl Sphere {
     }
 }
 
+impl Sphere {
+    /// A ray, counted from the centre.
+    #[inline(always)]
+    fn line(&self, ray: &Ray) -> Line {
+        let from = |axis: usize| Twofold::difference(ray.origin[axis], self.center[axis]);
+        let dir = |axis: usize| Twofold::from(ray.dir[axis]);
+        Line { from: [from(0), from(1), from(2)], dir: [dir(0), dir(1), dir(2)] }
+    }
+}
+
 impl Hittable for Sphere {
     #[inline(always)]
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        if self.accuracy == Accuracy::Classic {
-            return within.keep(classic(ray.origin - self.center, ray.dir, self.radius));
+        within.keep(match self.accuracy {
+            Accuracy::Classic => classic(ray.origin - self.center, ray.dir, self.radius),
+            _ => ball::first_hit(&self.line(ray), self.radius, self.accuracy),
+        })
+    }
+
+    #[inline(always)]
+    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
+        let from = ray.origin - self.center;
+        match self.accuracy {
+            Accuracy::Classic => Bracket::exactly(within.keep(classic(from, ray.dir, self.radius))),
+            _ => ball::bracket(from, ray.dir, 1.0, self.radius),
         }
-        let from = |axis: usize| Twofold::difference(ray.origin[axis], self.center[axis]);
-        let dir = |axis: usize| Twofold::from(ray.dir[axis]);
-        let line = || Line { from: [from(0), from(1), from(2)], dir: [dir(0), dir(1), dir(2)] };
-        within.keep(ball::first_hit(ray.origin - self.center, ray.dir, line, self.radius, self.accuracy))
+    }
+
+    #[inline(always)]
+    fn quick_distance(&self, ray: &Ray, within: &Span) -> f64 {
+        let distance = match self.accuracy {
+            Accuracy::Classic => classic(ray.origin - self.center, ray.dir, self.radius),
+            _ => ball::quick_hit(&self.line(ray), self.radius, self.accuracy),
+        };
+        if distance.is_nan() { distance } else { within.keep(distance) }
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        let bounds = Bounds { low: self.center - self.radius, high: self.center + self.radius };
+        (self.accuracy != Accuracy::Classic).then_some(bounds)
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {

@@ -2,9 +2,10 @@
 
 use super::fplane::{self, FinitePlane};
 use super::plane;
+use crate::bounds::Bounds;
 use crate::certify::Enclosure;
 use crate::entity::{Args, Entity, Refusal};
-use crate::geometry::{Body, Hittable, Ray, Shader, Span};
+use crate::geometry::{Body, Bracket, Hittable, Ray, Shader, Span};
 use crate::material::{Material, Rgb};
 use crate::pparm::{Pparm, Table};
 use crate::texture::Texture;
@@ -69,6 +70,24 @@ impl Hittable for Rectangle {
     #[inline(always)]
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
         self.0.rectangle.distance(ray, within)
+    }
+
+    #[inline(always)]
+    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
+        self.0.rectangle.bracket(ray, within)
+    }
+
+    #[inline(always)]
+    fn quick_distance(&self, ray: &Ray, within: &Span) -> f64 {
+        self.0.rectangle.quick_distance(ray, within)
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        self.0.rectangle.bounds()
+    }
+
+    fn is_clear_of(&self, region: &Bounds) -> bool {
+        self.0.rectangle.is_clear_of(region)
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {

@@ -1,10 +1,11 @@
 //! A triangle.
 
-use super::plane::Plane;
 use crate::accuracy::Accuracy;
+use crate::bounds::Bounds;
 use crate::certify::{self, Enclosure, Equation};
 use crate::entity::{Entity, Refusal};
-use crate::geometry::{Body, Hittable, MISS, Ray, Span};
+use crate::flat::Plane;
+use crate::geometry::{Body, Bracket, Hittable, MISS, Ray, Span};
 use crate::interval::Interval;
 use crate::number::Number;
 use crate::pparm::{Pparm, Table};
@@ -54,6 +55,42 @@ impl Hittable for Triangle {
         if is_inside { distance } else { MISS }
     }
 
+    #[inline(always)]
+    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
+        if self.plane.accuracy == Accuracy::Classic {
+            return Bracket::exactly(self.quick_distance(ray, within));
+        }
+        let rough = self.plane.rough(ray);
+        let Bracket { near, far } = self.plane.bracket(&rough, ray, within);
+        let passed = self.passed(ray);
+        Bracket {
+            near: if passed == Some(false) { MISS } else { near },
+            far: if passed == Some(true) { far } else { MISS },
+        }
+    }
+
+    #[inline(always)]
+    fn quick_distance(&self, ray: &Ray, within: &Span) -> f64 {
+        let distance = self.plane.quick_distance(ray, within);
+        let is_inside = match self.plane.accuracy {
+            Accuracy::Classic => Some(self.contains(ray.at(distance))),
+            _ => self.passed(ray),
+        };
+        match is_inside {
+            Some(true) => distance,
+            Some(false) => MISS,
+            None => f64::NAN,
+        }
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        (self.plane.accuracy != Accuracy::Classic).then(|| Bounds::around(&self.corners))
+    }
+
+    fn is_clear_of(&self, region: &Bounds) -> bool {
+        self.plane.is_clear_of(region) || self.bounds().is_some_and(|bounds| !bounds.overlaps(region))
+    }
+
     fn normal(&self, at: DVec3) -> DVec3 {
         self.plane.normal(at)
     }
@@ -96,22 +133,30 @@ impl Triangle {
     /// through between them (Woop, Benthin and Wald 2013).
     #[inline(always)]
     fn is_passed_by(&self, ray: &Ray) -> bool {
-        let [a, b, c] = self.corners;
-        let sides = [side(a, b, ray), side(b, c, ray), side(c, a, ray)];
-        sides.iter().all(|side| *side >= 0.0) || sides.iter().all(|side| *side <= 0.0)
+        self.passed(ray).unwrap_or_else(|| {
+            let [a, b, c] = self.corners;
+            let sides = [(a, b), (b, c), (c, a)].map(|(from, to)| side_in_twice_the_precision(from, to, ray));
+            sides.iter().all(|side| *side >= 0.0) || sides.iter().all(|side| *side <= 0.0)
+        })
+    }
+
+    /// Likewise, or nothing where rounding could have turned a sign.
+    #[inline(always)]
+    fn passed(&self, ray: &Ray) -> Option<bool> {
+        let [a, b, c] = self.corners.map(|corner| corner - ray.origin);
+        let side = |from: DVec3, to: DVec3| {
+            let side = from.cross(to).dot(ray.dir);
+            let error = 32.0 * f64::EPSILON * from.abs().max_element() * to.abs().max_element();
+            (side > error, side < -error)
+        };
+        let (one, two, three) = (side(a, b), side(b, c), side(c, a));
+        let is_inside = (one.0 & two.0 & three.0) | (one.1 & two.1 & three.1);
+        let is_outside = (one.0 | two.0 | three.0) & (one.1 | two.1 | three.1);
+        if is_inside | is_outside { Some(is_inside) } else { None }
     }
 }
 
 /// On which side of the line from one point to another a ray passes: the sign tells.
-#[inline(always)]
-fn side(from: DVec3, to: DVec3, ray: &Ray) -> f64 {
-    let (a, b) = (from - ray.origin, to - ray.origin);
-    let side = a.cross(b).dot(ray.dir);
-    // What rounding could have turned is computed in twice the precision.
-    let size = a.abs().max_element() * b.abs().max_element();
-    if side.abs() > 32.0 * f64::EPSILON * size { side } else { side_in_twice_the_precision(from, to, ray) }
-}
-
 fn side_in_twice_the_precision(from: DVec3, to: DVec3, ray: &Ray) -> f64 {
     let place = |of: DVec3| [0, 1, 2].map(|axis| Twofold::difference(of[axis], ray.origin[axis]));
     let (a, b) = (place(from), place(to));

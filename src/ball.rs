@@ -2,12 +2,11 @@
 //!
 //! The notes' formula loses far, small and grazed balls, as `b^2 - 4ac` cancels. Here the discriminant comes from the
 //! line's point closest to the centre (Haines, Günther and Akenine-Möller 2019), the root is corrected by a step of
-//! Newton's method from a point that is rounded once, and what rounding could decide is decided in twice the
-//! precision.
+//! Newton's method, and what rounding could decide is decided in twice the precision.
 
 use crate::accuracy::Accuracy;
-use crate::geometry::MISS;
-use crate::twofold::{Twofold, two_product, two_sum};
+use crate::geometry::{Bracket, MISS};
+use crate::twofold::{Twofold, two_product};
 use glam::DVec3;
 
 /// A half line from a point, in twice the precision.
@@ -21,13 +20,16 @@ pub struct Line {
 
 /// The distance of the first hit of a ball: of its near side, or from inside of its far one. A line that only
 /// touches it misses it, as in the notes.
-///
-/// `from` and `dir` are what `line` is when it is rounded. Most lines need no more, and miss.
 #[inline(always)]
-pub fn first_hit(from: DVec3, dir: DVec3, line: impl Fn() -> Line, radius: f64, accuracy: Accuracy) -> f64 {
-    if accuracy == Accuracy::Strict {
-        return in_twice_the_precision(&line(), radius);
-    }
+pub fn first_hit(line: &Line, radius: f64, accuracy: Accuracy) -> f64 {
+    let quick = quick_hit(line, radius, accuracy);
+    if quick.is_nan() { in_twice_the_precision(line, radius) } else { quick }
+}
+
+/// As [`first_hit`], or NaN where rounding could decide it.
+#[inline(always)]
+pub fn quick_hit(line: &Line, radius: f64, accuracy: Accuracy) -> f64 {
+    let (from, dir) = (high(&line.from), high(&line.dir));
     let a = dir.dot(dir);
     let toward = -from.dot(dir);
     let aside = from + (toward / a) * dir;
@@ -36,27 +38,57 @@ pub fn first_hit(from: DVec3, dir: DVec3, line: impl Fn() -> Line, radius: f64, 
     let outside = from.dot(from) - radius * radius;
     // A few units in the last place of what the differences came from.
     let doubt = 32.0 * f64::EPSILON * radius * size;
-    if room < -doubt {
-        return MISS;
-    }
-    if room <= doubt || outside.abs() <= 32.0 * f64::EPSILON * size * size {
-        return in_twice_the_precision(&line(), radius);
-    }
+    let is_missed = room < -doubt;
+    let is_doubtful = (accuracy == Accuracy::Strict)
+        | (!is_missed & ((room <= doubt) | (outside.abs() <= 32.0 * f64::EPSILON * size * size)));
     let root = (a * room).sqrt();
-    let (near, far) = if toward > 0.0 {
-        (outside / (toward + root), (toward + root) / a)
-    } else {
-        ((toward - root) / a, outside / (toward - root))
-    };
+    let is_ahead = toward > 0.0;
+    let larger = if is_ahead { toward + root } else { toward - root };
+    let (one, other) = (outside / larger, larger / a);
+    let (near, far) = if is_ahead { (one, other) } else { (other, one) };
     let distance = if near > 0.0 { near } else { far };
-    if distance <= 0.0 || accuracy == Accuracy::Draft {
-        return if distance > 0.0 { distance } else { MISS };
-    }
-    // The error of the point's own rounding matters where the ball is large for its distance or met aslant.
-    if radius * radius <= distance * root {
-        corrected(&line(), radius, distance)
+    let corrected = if accuracy == Accuracy::Draft { distance } else { corrected(line, radius, distance) };
+    let is_behind = distance <= 0.0;
+    if is_doubtful {
+        f64::NAN
+    } else if is_missed | is_behind {
+        MISS
     } else {
-        corrected_in_twice_the_precision(&line(), radius, distance)
+        corrected
+    }
+}
+
+/// Between which distances the first hit is, of a line whose direction has the length `1 / sqrt(inverse)`.
+///
+/// It is wide, and plain arithmetic tells it quickly: most rays miss most balls.
+#[inline(always)]
+pub fn bracket(from: DVec3, dir: DVec3, inverse: f64, radius: f64) -> Bracket {
+    // Far more than rounding makes of the root where there is room enough.
+    const ERROR: f64 = 1.0 / (1 << 29) as f64;
+    const ROOM: f64 = 32_768.0 * f64::EPSILON;
+
+    let middle = -from.dot(dir) * inverse;
+    let aside = from + middle * dir;
+    let room = radius * radius - aside.dot(aside);
+    let size = from.abs().element_sum() + radius;
+    let error = ERROR * size * inverse.sqrt();
+    let half = (room.max(0.0) * inverse).sqrt();
+    let (near, far) = (middle - half, middle + half);
+    let is_missed = (room < -ROOM * radius * size) | (far < -error);
+    // From outside of it, or from inside.
+    let is_ahead = near > error;
+    let is_inside = (near < -error) & (far > error);
+    let is_there = (room > ROOM * radius * size) & (is_ahead | is_inside);
+    let distance = if is_ahead { near } else { far };
+    Bracket {
+        near: if is_missed {
+            MISS
+        } else if is_there {
+            distance - error
+        } else {
+            0.0
+        },
+        far: if is_there & !is_missed { distance + error } else { MISS },
     }
 }
 
@@ -65,21 +97,10 @@ fn high(of: &[Twofold; 3]) -> DVec3 {
     DVec3::new(of[0].high, of[1].high, of[2].high)
 }
 
-/// A step of Newton's method, from a point rounded once.
+/// A step of Newton's method, from a point in twice the precision: the error of the point's own rounding matters
+/// where the ball is large for its distance or met aslant.
 #[inline(always)]
 fn corrected(line: &Line, radius: f64, distance: f64) -> f64 {
-    let part = |axis: usize| {
-        let (from, dir) = (line.from[axis], line.dir[axis]);
-        let (product, product_low) = two_product(distance, dir.high);
-        let (sum, sum_low) = two_sum(from.high, product);
-        sum + (product_low + sum_low + from.low + distance * dir.low)
-    };
-    let at = DVec3::new(part(0), part(1), part(2));
-    distance - (at.dot(at) - radius * radius) / (2.0 * at.dot(high(&line.dir)))
-}
-
-/// A step of Newton's method, from a point in twice the precision.
-fn corrected_in_twice_the_precision(line: &Line, radius: f64, distance: f64) -> f64 {
     let part = |axis: usize| line.from[axis] + Twofold::from(distance) * line.dir[axis];
     let at = [part(0), part(1), part(2)];
     let outside = dot(&at, &at) - square(radius);
@@ -87,6 +108,7 @@ fn corrected_in_twice_the_precision(line: &Line, radius: f64, distance: f64) -> 
 }
 
 /// All of it in twice the precision.
+#[inline(never)]
 fn in_twice_the_precision(line: &Line, radius: f64) -> f64 {
     let a = dot(&line.dir, &line.dir);
     let toward = -dot(&line.from, &line.dir);
@@ -110,11 +132,13 @@ fn in_twice_the_precision(line: &Line, radius: f64) -> f64 {
     }
 }
 
+#[inline(always)]
 fn square(value: f64) -> Twofold {
     let (high, low) = two_product(value, value);
     Twofold { high, low }
 }
 
+#[inline(always)]
 fn dot(a: &[Twofold; 3], b: &[Twofold; 3]) -> Twofold {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

@@ -3,6 +3,7 @@
 //! A plugin gives the formula, once, for every number type, and a box around it. The rest follows: [`first_root`]
 //! finds what a ray meets first and proves that nothing lies before, and [`Dual`] numbers give the normal.
 
+use crate::bounds::Bounds;
 use crate::certify::{self, Enclosure, Equation};
 use crate::dual::Dual;
 use crate::geometry::{Body, Hittable, MISS, Ray, Span};
@@ -102,6 +103,11 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
         let normal =
             direction(DVec3::new(slope(0), slope(1), slope(2))).or(direction(at)).unwrap_or(DVec3::Y);
         self.frame.axes * normal
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        let own = Bounds { low: self.low, high: self.high };
+        Some(own.from_frame(self.frame.origin, &self.frame.axes))
     }
 
     fn is_convex(&self) -> bool {

@@ -20,6 +20,7 @@ pub mod debug;
 pub mod dual;
 pub mod dump;
 pub mod entity;
+pub mod flat;
 pub mod formula;
 pub mod geometry;
 pub mod implicit;

@@ -9,13 +9,25 @@ pub fn to_byte(channel: f64) -> u8 {
     (255.0 * channel) as u8
 }
 
+/// How hard a file is compressed. The picture is the same.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Compression {
+    /// As quickly as possible.
+    #[default]
+    Fast,
+    /// To about half of that size, which takes longer than most pictures take to render.
+    Balanced,
+    /// As small as possible.
+    High,
+}
+
 /// A picture's file format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// Binary portable pixmap, `P6`.
     Ppm,
     /// Portable network graphics.
-    Png,
+    Png(Compression),
 }
 
 impl Format {
@@ -24,7 +36,7 @@ impl Format {
         let extension = path.extension()?.to_ascii_lowercase();
         match extension.to_str()? {
             "ppm" => Some(Self::Ppm),
-            "png" => Some(Self::Png),
+            "png" => Some(Self::Png(Compression::default())),
             _ => None,
         }
     }
@@ -42,7 +54,7 @@ impl Format {
     ) -> io::Result<()> {
         match self {
             Self::Ppm => write_ppm(out, width, height, rows),
-            Self::Png => write_png(out, width, height, rows),
+            Self::Png(compression) => write_png(out, width, height, compression, rows),
         }
     }
 }
@@ -64,12 +76,18 @@ fn write_png(
     out: impl Write,
     width: usize,
     height: usize,
+    compression: Compression,
     rows: impl IntoIterator<Item = io::Result<Vec<u8>>>,
 ) -> io::Result<()> {
     let size = |pixels: usize| u32::try_from(pixels).map_err(io::Error::other);
     let mut encoder = png::Encoder::new(out, size(width)?, size(height)?);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(match compression {
+        Compression::Fast => png::Compression::Fast,
+        Compression::Balanced => png::Compression::Balanced,
+        Compression::High => png::Compression::High,
+    });
     let mut writer = encoder.write_header()?;
     let mut stream = writer.stream_writer()?;
     for bytes in rows {

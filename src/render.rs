@@ -75,18 +75,18 @@ impl Renderer {
         let finished = self.pool.install(|| {
             strips.try_for_each(|(strip, from_top)| {
                 let (tall, mut nobody) = (strip.len() / width, ());
+                let top = height - 1 - from_top;
                 let mut tracer = Tracer::new(model, self.cpu, &mut nobody);
                 for left in (0..width).step_by(TILE) {
-                    let wide = TILE.min(width - left);
-                    let place = |index: usize| (left + index % wide, index / wide);
-                    let mut tile = [[0; 2]; TILE * TILE];
-                    for (index, pixel) in tile.iter_mut().enumerate().take(wide * tall) {
-                        let (x, row) = place(index);
-                        *pixel = [x, height - 1 - from_top - row];
+                    let (mut tile, mut len) = ([[0; 2]; TILE * TILE], 0);
+                    for row in 0..tall {
+                        for x in left..width.min(left + TILE) {
+                            tile[len] = [x, top - row];
+                            len += 1;
+                        }
                     }
-                    tracer.pixels(&tile[..wide * tall], |index, colour| {
-                        let (x, row) = place(index);
-                        strip[row * width + x] = colour.to_array().map(to_byte);
+                    tracer.pixels(&tile[..len], |[x, y], colour| {
+                        strip[(top - y) * width + x] = colour.to_array().map(to_byte);
                     });
                 }
                 (0..tall).try_for_each(|_| done())

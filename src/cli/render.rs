@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use tabray::model::Model;
-use tabray::picture::Format;
+use tabray::picture::{Compression, Format};
 use tabray::registry::Registry;
 use tabray::render::Renderer;
 use tabray::sample::{self, Sampler};
@@ -25,6 +25,9 @@ pub struct Args {
     /// The picture's format, whatever the file's extension
     #[arg(long)]
     format: Option<FormatName>,
+    /// How hard a PNG is compressed
+    #[arg(long, value_name = "HOW", default_value = "fast")]
+    compress: CompressionName,
     /// How many rays look through each pixel, to smooth edges; by default what the scene's camera says
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(sample::MOST)))]
     samples: Option<u32>,
@@ -46,6 +49,16 @@ pub struct Args {
 enum FormatName {
     Ppm,
     Png,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum CompressionName {
+    /// As quickly as possible
+    Fast,
+    /// Smaller
+    Default,
+    /// As small as possible
+    Best,
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
@@ -158,11 +171,19 @@ fn target(args: &Args) -> Result<PathBuf, Failure> {
 }
 
 fn format(args: &Args, path: &Path) -> Result<Format, Failure> {
+    let compression = match args.compress {
+        CompressionName::Fast => Compression::Fast,
+        CompressionName::Default => Compression::Balanced,
+        CompressionName::Best => Compression::High,
+    };
     match args.format {
         Some(FormatName::Ppm) => Ok(Format::Ppm),
-        Some(FormatName::Png) => Ok(Format::Png),
+        Some(FormatName::Png) => Ok(Format::Png(compression)),
         None if path == Path::new("-") => Ok(Format::Ppm),
-        None => named(path, "end it in .png or .ppm, or give `--format png` or `--format ppm`"),
+        None => match named(path, "end it in .png or .ppm, or give `--format png` or `--format ppm`")? {
+            Format::Png(_) => Ok(Format::Png(compression)),
+            Format::Ppm => Ok(Format::Ppm),
+        },
     }
 }
 

@@ -14,6 +14,7 @@ mod walk;
 pub use classic::Classic;
 pub use slabs::NoSurface;
 
+use crate::bounds::Bounds;
 use crate::certify::Equation;
 use crate::dual::Dual;
 use crate::formula::Formula;
@@ -62,6 +63,12 @@ impl Revolution {
             Some(along) => within.keep(local.base + along),
             None => MISS,
         }
+    }
+
+    /// A box around it.
+    pub fn bounds(&self) -> Bounds {
+        let widest = self.slabs.widest();
+        Bounds { low: DVec3::new(-widest, 0.0, -widest), high: DVec3::new(widest, self.height, widest) }
     }
 
     /// The unit normal at a point of the surface, away from the axis. At an apex it points along the axis.

@@ -93,30 +93,43 @@ impl<'m, 'w, W: Watch> Tracer<'m, 'w, W> {
         Self { model, plan, cpu, samples: [None; WIDE], depth: 0, ahead: Vec::new(), watch }
     }
 
-    /// The colours of some pixels, up to [`WIDE`] rays of which are traced together. `colour` is told of each pixel,
-    /// by its place in the list.
-    pub(crate) fn pixels(&mut self, pixels: &[[usize; 2]], mut colour: impl FnMut(usize, Rgb)) {
+    /// The colours of some pixels, up to [`WIDE`] rays of which are traced together. `colour` is told of each pixel.
+    pub(crate) fn pixels(&mut self, pixels: &[[usize; 2]], mut colour: impl FnMut([usize; 2], Rgb)) {
         let camera = &self.model.camera.value;
-        let mut rays = pixels.iter().enumerate().flat_map(|(index, &[x, y])| {
-            camera.places(x, y).map(move |(place, sample)| (index, place, sample))
-        });
+        let (mut x, mut y) = ([0.0; WIDE], [0.0; WIDE]);
+        if camera.samples == 1 {
+            for pixels in pixels.chunks(WIDE) {
+                for (lane, [column, row]) in pixels.iter().enumerate() {
+                    (x[lane], y[lane]) = (*column as f64, *row as f64);
+                }
+                let mut group = Group::<WIDE>::through(self.cpu, camera, &mut x, &mut y, pixels.len());
+                let colours = self.colours(&mut group);
+                for (lane, pixel) in pixels.iter().enumerate() {
+                    colour(*pixel, colours.get(lane));
+                }
+            }
+            return;
+        }
+        let mut rays = pixels.iter().flat_map(|&[x, y]| camera.places(x, y));
+        let mut pixels = pixels.iter();
         let (mut sum, mut seen) = (Rgb::ZERO, 0);
         loop {
-            let (mut x, mut y, mut of) = ([0.0; WIDE], [0.0; WIDE], [0; WIDE]);
             let mut len = 0;
-            for (index, place, sample) in rays.by_ref().take(WIDE) {
-                (of[len], x[len], y[len], self.samples[len]) = (index, place.x, place.y, sample);
+            for (place, sample) in rays.by_ref().take(WIDE) {
+                (x[len], y[len], self.samples[len]) = (place.x, place.y, sample);
                 len += 1;
             }
             if len == 0 {
                 return;
             }
             let colours = self.colours(&mut Group::<WIDE>::through(self.cpu, camera, &mut x, &mut y, len));
-            for (lane, index) in of.iter().enumerate().take(len) {
+            for lane in 0..len {
                 sum += colours.get(lane);
                 seen += 1;
-                if seen == camera.samples {
-                    colour(*index, sum / f64::from(camera.samples));
+                if seen == camera.samples
+                    && let Some(pixel) = pixels.next()
+                {
+                    colour(*pixel, sum / f64::from(camera.samples));
                     (sum, seen) = (Rgb::ZERO, 0);
                 }
             }
@@ -140,6 +153,13 @@ impl<'m, 'w, W: Watch> Tracer<'m, 'w, W> {
     /// The light that comes back along the rays of a packet.
     fn trace<const N: usize>(&mut self, group: &mut Group<N>) -> Vectors<N> {
         let found = self.closest(group, None);
+        if found.met[0] != 0 && found.met[..group.len].iter().all(|met| *met == found.met[0]) {
+            let colours = self.shade(group, &found.near, &found.far, found.met[0] as usize - 1);
+            if W::SEES {
+                self.watch.see(Event::Colour(colours.get(0)));
+            }
+            return colours;
+        }
         let mut colours = Vectors::ZERO;
         let mut parts = Parts::new(&found.met[..group.len]);
         while let Some((id, lanes)) = parts.next() {
@@ -147,9 +167,7 @@ impl<'m, 'w, W: Watch> Tracer<'m, 'w, W> {
                 continue;
             }
             let object = id as usize - 1;
-            if lanes.len() == group.len {
-                colours = self.shade(group, &found.near, &found.far, object);
-            } else if lanes.len() <= NARROW {
+            if lanes.len() <= NARROW {
                 self.shade_part::<N, NARROW>(group, &found, lanes, object, &mut colours);
             } else {
                 self.shade_part::<N, N>(group, &found, lanes, object, &mut colours);

@@ -7,7 +7,6 @@ use crate::geometry::{MISS, Ray, Side, Span};
 use crate::packet::{Nearest, Rays, Vectors};
 use crate::tree::Visitor;
 use crate::watch::{Count, Event, Hit, Reason, Watch};
-use glam::DVec3;
 
 /// What each ray of a packet meets first, and between which distances.
 pub(super) struct Found<const N: usize> {
@@ -124,6 +123,7 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
             leaves,
             sides,
             region: region.with_slack(0.0),
+            inverse: Vectors::ZERO,
             blocked,
         };
         search.run(&mut ahead);
@@ -229,6 +229,8 @@ struct Blocked<'s, 'm, 'w, W> {
     sides: &'s [Side],
     /// Where the rays go.
     region: Bounds,
+    /// The reciprocals of their directions, for a tree.
+    inverse: Vectors<WIDE>,
     blocked: &'s mut [u64],
 }
 
@@ -246,14 +248,19 @@ impl<W: Watch> Blocked<'_, '_, '_, W> {
             }
         }
         if let Some(tree) = &plan.tree {
-            tree.visit(DVec3::ONE, ahead, self);
+            for lane in 0..self.ends.len() {
+                self.inverse.set(lane, self.rays.dir.get(lane).recip());
+            }
+            tree.visit(self.rays.dir.get(0), ahead, self);
         }
     }
 }
 
 impl<W: Watch> Visitor for Blocked<'_, '_, '_, W> {
     fn enters(&mut self, bounds: &Bounds) -> bool {
+        let inverse = self.inverse.view(self.ends.len());
         bounds.overlaps(&self.region)
+            && bounds::any_meets(self.tracer.cpu, self.rays, inverse, self.ends, bounds)
     }
 
     fn object(&mut self, index: usize) {

@@ -106,13 +106,13 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
         specular: &Vectors<N>,
         colours: &mut Vectors<N>,
     ) {
+        if !is_anything(self.cpu, specular.view(group.padded())) {
+            return;
+        }
         let (mut lanes, mut len) = ([0; N], 0);
         for lane in 0..group.len {
             lanes[len] = lane as u8;
             len += usize::from(specular.get(lane) != DVec3::ZERO);
-        }
-        if len == 0 {
-            return;
         }
         if W::SEES {
             self.watch.see(Event::Begin(Purpose::Reflected { specular: specular.get(0) }));
@@ -222,10 +222,7 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
             }
             let mut emissivity = Vectors::<N>::ZERO;
             light.emissivities(cpu, points, emissivity.view_mut(count), &mut shines);
-            for lane in 0..count {
-                shines[lane] &= u64::from(cosines[lane] > 0.0);
-            }
-            if shines[..group.len].iter().all(|shines| *shines == 0) {
+            if !open(cpu, &cosines[..count], &mut shines) {
                 if W::SEES {
                     self.watch.see(Event::Light(index, Outcome::Aside));
                 }
@@ -238,7 +235,9 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
                     shines[lane] &= u64::from(passed.blocker[lane] == 0);
                     emissivity.set(lane, emissivity.get(lane) * passed.tint.get(lane));
                 }
-                if W::SEES && let Some(blocker) = (passed.blocker[0] as usize).checked_sub(1) {
+                if W::SEES
+                    && let Some(blocker) = (passed.blocker[0] as usize).checked_sub(1)
+                {
                     self.watch.see(Event::Light(index, Outcome::Blocked(blocker)));
                     continue;
                 }
@@ -360,6 +359,28 @@ kernels! {
         } else {
             shine_all(lit, Some(|cos| libm::pow(cos, shininess)), colours);
         }
+    }
+
+    /// Leaves the light where it comes from before the surface. Tells whether there is any.
+    fn open(cosines: &[f64], shines: &mut [u64]) -> bool {
+        let (count, mut any) = (cosines.len(), 0);
+        let shines = &mut shines[..count];
+        for lane in 0..count {
+            shines[lane] &= u64::from(cosines[lane] > 0.0);
+            any |= shines[lane];
+        }
+        any != 0
+    }
+
+    /// Whether any vector is not 0.
+    fn is_anything(vectors: View) -> bool {
+        let (count, mut any) = (vectors.len(), 0);
+        let vectors = vectors.first(count);
+        for lane in 0..count {
+            let vector = vectors.get(lane);
+            any |= u64::from((vector.x != 0.0) | (vector.y != 0.0) | (vector.z != 0.0));
+        }
+        any != 0
     }
 
     /// Divides colours by how far their light has travelled.

@@ -5,8 +5,9 @@ use super::shade::Surface;
 use super::{NARROW, Tracer};
 use crate::accuracy::Accuracy;
 use crate::bounds;
+use crate::cpu::kernels;
 use crate::geometry::Side;
-use crate::packet::{Rays, STEP, Vectors};
+use crate::packet::{Rays, STEP, Vectors, View};
 use crate::watch::{Count, Event, Kind, Purpose, Watch};
 
 /// The ways from the places of a surface to a light.
@@ -28,16 +29,13 @@ pub(super) struct Passed<const N: usize> {
 }
 
 impl<W: Watch> Tracer<'_, '_, W> {
-    /// Where the ways end: a surface that the light lies on is no blocker, however rounding has it.
-    fn ends<const N: usize>(&self, surface: &Surface<N>, ways: &Ways<N>, count: usize) -> [f64; N] {
-        let mut ends = *ways.distances;
-        if self.model.camera.value.accuracy != Accuracy::Classic {
-            for (lane, end) in ends.iter_mut().enumerate().take(count) {
-                let reach = surface.points.get(lane).abs().max_element();
-                *end -= 16.0 * f64::EPSILON * (*end + reach);
-            }
+    /// What the ends of the ways are short of the light, as a part of how far that is: a surface that the light lies
+    /// on is no blocker, however rounding has it.
+    fn slack(&self) -> f64 {
+        match self.model.camera.value.accuracy {
+            Accuracy::Classic => 0.0,
+            _ => 16.0 * f64::EPSILON,
         }
-        ends
     }
 
     /// Takes the light away (0 in `shines`) where an object stands in its way, in a scene without glass.
@@ -49,18 +47,24 @@ impl<W: Watch> Tracer<'_, '_, W> {
         shines: &mut [u64; N],
     ) {
         let count = group.padded();
-        let mut ends = self.ends(surface, ways, count);
-        let (mut lanes, mut len) = ([0; N], 0);
-        for lane in 0..group.len {
-            // A ray that has cost as many as it may finds nothing in the way.
-            let looks = shines[lane] != 0 && group.budget[lane] != 0;
-            group.budget[lane] -= u32::from(looks);
-            ends[lane] = if looks { ends[lane] } else { 0.0 };
-            lanes[len] = lane as u8;
-            len += usize::from(looks);
-        }
+        let mut ends = [0.0; N];
+        let points = surface.points.view(count);
+        aim(
+            self.cpu,
+            points,
+            &ways.distances[..count],
+            self.slack(),
+            &shines[..],
+            &group.budget[..],
+            &mut ends,
+        );
+        // A ray that has cost as many as it may finds nothing in the way.
+        let len = ends[..group.len].iter().filter(|end| **end > 0.0).count();
         if len == 0 {
             return;
+        }
+        for (budget, end) in group.budget[..group.len].iter_mut().zip(&ends) {
+            *budget -= u32::from(*end > 0.0);
         }
         self.watch.count(Count::Rays(Kind::Shadow, len));
         let region = bounds::around(self.cpu, surface.points.view(count));
@@ -70,10 +74,15 @@ impl<W: Watch> Tracer<'_, '_, W> {
             let rays = Rays { origin: surface.points.view(count), dir: ways.toward.view(count) };
             let leaves = (surface.index, &surface.sides[..count]);
             self.blocked(rays, &ends[..count], leaves, &region, &mut blocked[..count]);
-            for (shines, blocked) in shines.iter_mut().zip(&blocked) {
-                *shines &= u64::from(*blocked == 0);
-            }
+            darken(self.cpu, &blocked[..count], &mut shines[..]);
             return;
+        }
+        let (mut lanes, mut found) = ([0; N], 0);
+        for (lane, end) in ends.iter().enumerate().take(group.len) {
+            if *end > 0.0 {
+                lanes[found] = lane as u8;
+                found += 1;
+            }
         }
         let lanes = &lanes[..len];
         let count = len.next_multiple_of(STEP);
@@ -96,7 +105,11 @@ impl<W: Watch> Tracer<'_, '_, W> {
         ways: &Ways<N>,
         shines: &[u64; N],
     ) -> Passed<N> {
-        let ends = self.ends(surface, ways, group.padded());
+        let (mut ends, count) = ([0.0; N], group.padded());
+        let points = surface.points.view(count);
+        // Those that have cost as many as they may go, too: they find nothing.
+        let distances = &ways.distances[..count];
+        aim(self.cpu, points, distances, self.slack(), &shines[..], &[1; N], &mut ends);
         let (mut lanes, mut len) = ([0; N], 0);
         for lane in 0..group.len {
             lanes[len] = lane as u8;
@@ -189,6 +202,31 @@ impl<W: Watch> Tracer<'_, '_, W> {
             passed.tint.set(lane, onward.tint.get(index));
             passed.blocker[lane] = onward.blocker[index];
             group.budget[lane] = part.budget[index];
+        }
+    }
+}
+
+kernels! {
+    /// Takes the light away where it is blocked.
+    fn darken(blocked: &[u64], shines: &mut [u64]) {
+        let count = blocked.len();
+        let shines = &mut shines[..count];
+        for lane in 0..count {
+            shines[lane] &= u64::from(blocked[lane] == 0);
+        }
+    }
+
+    /// Where the ways from points to a light end, as far as its distances go; 0 for those that need not be gone.
+    fn aim(points: View, distances: &[f64], slack: f64, shines: &[u64], budget: &[u32], ends: &mut [f64]) {
+        let count = distances.len();
+        let (points, shines, budget) = (points.first(count), &shines[..count], &budget[..count]);
+        let ends = &mut ends[..count];
+        for lane in 0..count {
+            let reach = points.get(lane).abs();
+            let across = if reach.x > reach.y { reach.x } else { reach.y };
+            let reach = if across > reach.z { across } else { reach.z };
+            let end = distances[lane] - slack * (distances[lane] + reach);
+            ends[lane] = if (shines[lane] != 0) & (budget[lane] != 0) { end } else { 0.0 };
         }
     }
 }

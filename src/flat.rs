@@ -1,0 +1,138 @@
+//! Where a ray crosses a plane: the arithmetic behind planes and what is cut out of them.
+//!
+//! The notes' form subtracts two numbers that grow with the distance from the world's origin, and takes a ray for
+//! parallel where the product is 0, which rounding hardly ever leaves it. Here the ray's origin is subtracted first,
+//! and where a sum of products cancels it is computed with what rounding took from each (Ogita, Rump and Oishi 2005).
+
+use crate::accuracy::Accuracy;
+use crate::bounds::Bounds;
+use crate::geometry::{Bracket, MISS, Ray, Span};
+use crate::twofold::{Twofold, dot, two_sum};
+use glam::DVec3;
+
+/// On the viewer's side of the screen there are no planes (the notes' "wrong side").
+const SCREEN: f64 = 0.01;
+
+/// An infinite plane.
+#[derive(Clone, Copy, Debug)]
+pub struct Plane {
+    /// The unit vector that stands on its lit side.
+    pub normal: DVec3,
+    /// A point of it.
+    pub point: DVec3,
+    /// How exactly it is crossed.
+    pub accuracy: Accuracy,
+}
+
+/// Where a ray crosses a plane, as far as plain arithmetic tells.
+#[derive(Clone, Copy, Debug)]
+pub struct Rough {
+    /// The distance, or [`MISS`].
+    pub distance: f64,
+    /// How far off that is at most.
+    pub error: f64,
+    /// Whether so much cancels in it that it should be computed better.
+    cancels: bool,
+}
+
+impl Plane {
+    /// The distance at which a ray crosses it, forward or backward; [`MISS`] for one that runs along it.
+    #[inline(always)]
+    pub fn crossing(&self, ray: &Ray) -> f64 {
+        match self.accuracy {
+            Accuracy::Strict => self.crossing_in_twice_the_precision(ray),
+            _ => self.quick_crossing(ray),
+        }
+    }
+
+    /// As [`crossing`](Self::crossing), or NaN where it takes more than plain arithmetic.
+    #[inline(always)]
+    pub fn quick_crossing(&self, ray: &Ray) -> f64 {
+        match self.accuracy {
+            Accuracy::Classic => {
+                let toward = self.normal.dot(ray.dir);
+                let away = self.normal.dot(self.point) - self.normal.dot(ray.origin);
+                if toward == 0.0 { MISS } else { away / toward }
+            }
+            Accuracy::Draft => self.rough(ray).distance,
+            Accuracy::Exact => {
+                let rough = self.rough(ray);
+                if rough.cancels { self.fine(ray) } else { rough.distance }
+            }
+            Accuracy::Strict => f64::NAN,
+        }
+    }
+
+    /// The distance within a span; none on the viewer's side of the screen.
+    #[inline(always)]
+    pub fn keep(&self, distance: f64, ray: &Ray, within: &Span) -> f64 {
+        if ray.at(distance).z > SCREEN { MISS } else { within.keep(distance) }
+    }
+
+    /// The crossing in plain arithmetic, and what rounding may make of it.
+    #[inline(always)]
+    pub fn rough(&self, ray: &Ray) -> Rough {
+        let between = self.point - ray.origin;
+        let (toward, away) = (self.normal.dot(ray.dir), self.normal.dot(between));
+        let (toward_size, away_size) = (self.size(ray.dir), self.size(between));
+        let distance = away / toward;
+        let error = 8.0 * f64::EPSILON * (away_size + distance.abs() * toward_size) / toward.abs();
+        // Parallel, but for what rounding makes of unit vectors.
+        let is_parallel = toward.abs() <= 4.0 * f64::EPSILON;
+        Rough {
+            distance: if is_parallel { MISS } else { distance },
+            error: if is_parallel { 0.0 } else { error },
+            cancels: !is_parallel & ((toward_size > 1.3 * toward.abs()) | (away_size > 1.3 * away.abs())),
+        }
+    }
+
+    /// Between which distances a crossing within a span is.
+    #[inline(always)]
+    pub fn bracket(&self, rough: &Rough, ray: &Ray, within: &Span) -> Bracket {
+        let Rough { distance, error, .. } = *rough;
+        let (low, high) = (distance - error, distance + error);
+        let z = ray.origin.z + distance * ray.dir.z;
+        // Of z, and of the product in it.
+        let z_error = error + 4.0 * f64::EPSILON * (ray.origin.z.abs() + distance.abs());
+        let is_missed = (high <= within.near) | (low == MISS) | (z - z_error > SCREEN);
+        let is_there = (low > within.near) & (z + z_error < SCREEN);
+        Bracket {
+            near: if is_missed { MISS } else { low.max(within.near) },
+            far: if is_there & !is_missed { high } else { MISS },
+        }
+    }
+
+    /// Whether it does not come into a region.
+    #[inline(always)]
+    pub fn is_clear_of(&self, region: &Bounds) -> bool {
+        let region = region.with_slack(self.point.abs().max_element());
+        let reach = self.normal.abs().dot(region.half_size());
+        self.accuracy != Accuracy::Classic && self.normal.dot(region.middle() - self.point).abs() > reach
+    }
+
+    /// The crossing to a few units in the last place, whatever cancels.
+    #[inline(always)]
+    fn fine(&self, ray: &Ray) -> f64 {
+        let (x, x_low) = two_sum(self.point.x, -ray.origin.x);
+        let (y, y_low) = two_sum(self.point.y, -ray.origin.y);
+        let (z, z_low) = two_sum(self.point.z, -ray.origin.z);
+        let normal = self.normal.to_array();
+        let away = dot(normal, [x, y, z], [x_low, y_low, z_low]);
+        away / dot(normal, ray.dir.to_array(), [0.0; 3])
+    }
+
+    /// How large the products are that the product with the normal is a sum of.
+    #[inline(always)]
+    fn size(&self, of: DVec3) -> f64 {
+        (self.normal * of).abs().element_sum()
+    }
+
+    fn crossing_in_twice_the_precision(&self, ray: &Ray) -> f64 {
+        let product = |of: [Twofold; 3]| {
+            let part = |axis: usize| Twofold::from(self.normal[axis]) * of[axis];
+            part(0) + part(1) + part(2)
+        };
+        let between = [0, 1, 2].map(|axis| Twofold::difference(self.point[axis], ray.origin[axis]));
+        (product(between) / product(ray.dir.to_array().map(Twofold::from))).high
+    }
+}
