@@ -1,8 +1,9 @@
 //! A heart: G. Taubin's surface of the sixth degree (1993).
 
 use crate::entity::Entity;
+use crate::frame::Frame;
 use crate::geometry::Body;
-use crate::implicit::{Frame, Implicit};
+use crate::implicit::Implicit;
 use crate::number::Number;
 use crate::pparm::{Pparm, Table};
 use glam::DVec3;

@@ -1,15 +1,14 @@
 //! A surface of revolution: a line turned around an axis.
 
 use crate::accuracy::Accuracy;
-use crate::bounds::Bounds;
-use crate::certify::{self, Enclosure};
 use crate::entity::{Args, Entity, Refusal};
 use crate::formula::Formula;
-use crate::geometry::{Body, Hittable, Ray, Span};
+use crate::frame::Frame;
+use crate::geometry::Body;
 use crate::pparm::{Pparm, Table};
 use crate::profile::{Line, Profile};
-use crate::revolution::{Classic, Finish, NoSurface, Revolution};
-use glam::{DMat3, DVec3};
+use crate::revolution::{Classic, Finish, InFrame, NoSurface, Revolution};
+use glam::DVec3;
 use std::sync::Arc;
 
 static SURFER: Pparm<Option<&'static Profile>> =
@@ -32,19 +31,16 @@ const TABLE: Table = &[&SURFER, &PROFILE, &DIRECTION, &BASE, &HEIGHT];
 
 inventory::submit! {
     Entity::shape("revsurf", "a line turned around an axis, such as a cone, a vase or a column", &[TABLE], |args| {
-        let up = args.get(&DIRECTION).normalize();
-        let (across, away) = up.any_orthonormal_pair();
-        let frame = Frame { base: args.get(&BASE), axes: DMat3::from_cols(across, up, away) };
+        let frame = Frame::around(args.get(&BASE), args.get(&DIRECTION));
         let (line, height) = (line(args)?, args.get(&HEIGHT));
         let finish = match args.accuracy() {
             Accuracy::Classic => {
-                let surface = Surface::Classic(Classic { line, height });
-                return Ok(Body::plain(Revsurf { frame, surface }));
+                return Ok(Body::plain(InFrame { surface: Classic { line, height }, frame }));
             }
             Accuracy::Draft => Finish::Bracket,
             Accuracy::Exact | Accuracy::Strict => Finish::Root,
         };
-        let surface = Revolution::new(&line.radius, height).map_err(|fault| Refusal {
+        let surface = Revolution::new(&line.radius, height, finish).map_err(|fault| Refusal {
             attribute: Some(if args.get(&SURFER).is_some() { "surfer" } else { "profile" }),
             message: match fault {
                 NoSurface::Unbounded { near } => format!("has a profile without a bound near y = {near:.6}"),
@@ -52,7 +48,7 @@ inventory::submit! {
             },
             help: "a profile is the distance from the axis, finite at each height from 0 to the surface's own",
         })?;
-        Ok(Body::plain(Revsurf { frame, surface: Surface::Exact(surface, finish) }))
+        Ok(Body::plain(InFrame { surface, frame }))
     })
 }
 
@@ -71,76 +67,5 @@ fn line(args: &Args) -> Result<Line, Refusal> {
             message: "lacks `surfer` or `profile`".to_owned(),
             help: "give it `surfer N`, or a formula: `profile \"2 + sin(y)\"`",
         }),
-    }
-}
-
-/// Where it stands, and the directions in the world of its own x, y (the axis) and z.
-struct Frame {
-    base: DVec3,
-    axes: DMat3,
-}
-
-impl Frame {
-    #[inline(always)]
-    fn to_local(&self, ray: &Ray) -> Ray {
-        Ray { origin: self.place(ray.origin), dir: self.axes.transpose_mul_vec3(ray.dir) }
-    }
-
-    #[inline(always)]
-    fn place(&self, at: DVec3) -> DVec3 {
-        self.axes.transpose_mul_vec3(at - self.base)
-    }
-}
-
-struct Revsurf {
-    frame: Frame,
-    surface: Surface,
-}
-
-enum Surface {
-    Classic(Classic),
-    Exact(Revolution, Finish),
-}
-
-impl Hittable for Revsurf {
-    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        let ray = self.frame.to_local(ray);
-        match &self.surface {
-            Surface::Classic(surface) => surface.first_hit(&ray, within),
-            Surface::Exact(surface, finish) => surface.first_hit(&ray, within, *finish),
-        }
-    }
-
-    fn normal(&self, at: DVec3) -> DVec3 {
-        let at = self.frame.place(at);
-        let normal = match &self.surface {
-            Surface::Classic(surface) => surface.normal(at),
-            Surface::Exact(surface, _) => surface.normal(at),
-        };
-        (self.frame.axes * normal).normalize()
-    }
-
-    fn bounds(&self) -> Option<Bounds> {
-        match &self.surface {
-            Surface::Classic(_) => None,
-            Surface::Exact(surface, _) => {
-                Some(surface.bounds().from_frame(self.frame.base, &self.frame.axes))
-            }
-        }
-    }
-
-    fn is_convex(&self) -> bool {
-        matches!(self.surface, Surface::Classic(_))
-    }
-
-    fn is_two_sided(&self) -> bool {
-        !self.is_convex()
-    }
-
-    fn certify(&self, ray: &Ray) -> Enclosure {
-        match &self.surface {
-            Surface::Classic(surface) => certify::first_hit(surface, &self.frame.to_local(ray)),
-            Surface::Exact(surface, _) => certify::first_hit(surface, &self.frame.to_local(ray)),
-        }
     }
 }

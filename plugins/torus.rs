@@ -1,8 +1,9 @@
 //! A torus: a ball's way around a circle.
 
 use crate::entity::Entity;
+use crate::frame::Frame;
 use crate::geometry::Body;
-use crate::implicit::{Frame, Implicit};
+use crate::implicit::Implicit;
 use crate::number::Number;
 use crate::pparm::{Pparm, Table};
 use glam::DVec3;

@@ -2,7 +2,7 @@
 
 use crate::cpu::kernels;
 use crate::packet::{Rays, View};
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
 /// What rounding may make of a place, as a part of how far it is from the world's origin; far more than it does.
 const SLACK: f64 = 1e-12;
@@ -29,14 +29,6 @@ impl Bounds {
     #[inline(always)]
     pub fn and(&self, other: &Self) -> Self {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
-    }
-
-    /// The box in the world around this one, which lies in a frame with this origin and these unit axes.
-    pub fn from_frame(&self, origin: DVec3, axes: &DMat3) -> Self {
-        let middle = origin + *axes * self.middle();
-        let reach =
-            DMat3::from_cols(axes.x_axis.abs(), axes.y_axis.abs(), axes.z_axis.abs()) * self.half_size();
-        Self { low: middle - reach, high: middle + reach }
     }
 
     /// Whether a point lies in both.
@@ -128,22 +120,30 @@ impl Bundle {
     }
 }
 
+/// A number's place in the order of all numbers, as a whole number: of those the least is found several at a time,
+/// without a care for NaN.
+#[inline(always)]
+pub(crate) fn order(number: f64) -> i64 {
+    let bits = number.to_bits() as i64;
+    bits ^ (((bits >> 63) as u64) >> 1) as i64
+}
+
+/// The number at that place.
+#[inline(always)]
+pub(crate) fn from_order(place: i64) -> f64 {
+    f64::from_bits((place ^ (((place >> 63) as u64) >> 1) as i64) as u64)
+}
+
 kernels! {
     /// The box around some points.
     pub fn around(points: View) -> Bounds {
-        // As whole numbers in the same order, of which the least is found without a care for NaN.
-        let key = |number: f64| {
-            let bits = number.to_bits() as i64;
-            bits ^ (((bits >> 63) as u64) >> 1) as i64
-        };
-        let number = |key: i64| f64::from_bits((key ^ (((key >> 63) as u64) >> 1) as i64) as u64);
         let range = |of: &[f64]| {
             let (mut low, mut high) = (i64::MAX, i64::MIN);
             for number in of {
-                low = low.min(key(*number));
-                high = high.max(key(*number));
+                low = low.min(order(*number));
+                high = high.max(order(*number));
             }
-            (number(low), number(high))
+            (from_order(low), from_order(high))
         };
         let ((x0, x1), (y0, y1), (z0, z1)) = (range(points.x), range(points.y), range(points.z));
         Bounds { low: DVec3::new(x0, y0, z0), high: DVec3::new(x1, y1, z1) }

@@ -172,8 +172,16 @@ pub trait Hittable: Send + Sync {
         packet::block(cpu, self, rays, sides, ends, blocked, doubt)
     }
 
-    /// The quick distances of a packet.
-    fn distances(&self, cpu: Cpu, rays: Rays, sides: Option<&[Side]>, out: &mut [f64]) {
+    /// The distances of hits that are certain, each between two distances where [`meet`](Self::meet) has bracketed it;
+    /// NaN where it takes more than plain arithmetic.
+    fn distances(
+        &self,
+        cpu: Cpu,
+        rays: Rays,
+        sides: Option<&[Side]>,
+        _brackets: (&[f64], &[f64]),
+        out: &mut [f64],
+    ) {
         packet::distances(cpu, self, rays, sides, out);
     }
 

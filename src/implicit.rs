@@ -6,12 +6,13 @@
 use crate::bounds::Bounds;
 use crate::certify::{self, Enclosure, Equation};
 use crate::dual::Dual;
+use crate::frame::Frame;
 use crate::geometry::{Body, Hittable, MISS, Ray, Span};
 use crate::interval::Interval;
 use crate::number::Number;
 use crate::taylor::{Line, first_root};
 use crate::twofold::{two_product, two_sum};
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
 /// A shape by its formula, in coordinates of its own.
 pub trait Implicit: Send + Sync {
@@ -21,32 +22,6 @@ pub trait Implicit: Send + Sync {
     /// The low and the high corner of a box around the shape. What lies outside of it is cut off, and a shape that is
     /// cut shows its inside.
     fn bounds(&self) -> [DVec3; 2];
-}
-
-/// Where a shape's own coordinates lie in the world.
-#[derive(Clone, Copy, Debug)]
-pub struct Frame {
-    origin: DVec3,
-    /// The directions in the world of its own x, y and z.
-    axes: DMat3,
-}
-
-impl Frame {
-    /// As the world's, from another origin.
-    pub fn at(origin: DVec3) -> Self {
-        Self { origin, axes: DMat3::IDENTITY }
-    }
-
-    /// With its y along a vector that is not 0. Around that axis it is turned anyhow: for shapes that are round.
-    pub fn around(origin: DVec3, axis: DVec3) -> Self {
-        let up = axis.normalize();
-        let (across, away) = up.any_orthonormal_pair();
-        Self { origin, axes: DMat3::from_cols(away, up, across) }
-    }
-
-    fn to_local(self, vector: DVec3) -> DVec3 {
-        self.axes.transpose_mul_vec3(vector)
-    }
 }
 
 impl Body {
@@ -70,8 +45,8 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
     /// as a near one.
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
         let closest = (self.frame.origin - ray.origin).dot(ray.dir);
-        let base = self.frame.to_local(offset(ray, closest, self.frame.origin));
-        let dir = self.frame.to_local(ray.dir);
+        let base = self.frame.direction(offset(ray, closest, self.frame.origin));
+        let dir = self.frame.direction(ray.dir);
         let (mut near, mut far) = (within.near - closest, within.far - closest);
         for axis in 0..3 {
             let (base, dir) = (base[axis], dir[axis]);
@@ -94,7 +69,7 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
     /// Along the formula's gradient. Where that vanishes or does not exist, as at the tip of a cone, the normal
     /// points away from the shape's origin, and in the origin along its y.
     fn normal(&self, at: DVec3) -> DVec3 {
-        let at = self.frame.to_local(at - self.frame.origin);
+        let at = self.frame.point(at);
         let slope = |axis: usize| {
             let along =
                 |own: usize| if own == axis { Dual::variable(at[own]) } else { Dual::constant(at[own]) };
@@ -107,7 +82,7 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
 
     fn bounds(&self) -> Option<Bounds> {
         let own = Bounds { low: self.low, high: self.high };
-        Some(own.from_frame(self.frame.origin, &self.frame.axes))
+        Some(self.frame.bounds(&own))
     }
 
     fn is_convex(&self) -> bool {

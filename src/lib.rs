@@ -22,6 +22,7 @@ pub mod dump;
 pub mod entity;
 pub mod flat;
 pub mod formula;
+pub mod frame;
 pub mod geometry;
 pub mod implicit;
 pub mod interval;

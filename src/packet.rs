@@ -13,6 +13,9 @@ use glam::DVec3;
 /// Arrays are as long as a multiple of this.
 pub const STEP: usize = 8;
 
+/// The most rays of a packet.
+pub const WIDE: usize = 64;
+
 /// Vectors, an array for each coordinate.
 #[derive(Clone)]
 pub struct Vectors<const N: usize> {
@@ -147,6 +150,7 @@ impl Rays<'_> {
         Ray { origin: self.origin.get(index), dir: self.dir.get(index) }
     }
 
+    /// The first of them, so many.
     #[inline(always)]
     pub fn first(&self, count: usize) -> Self {
         Self { origin: self.origin.first(count), dir: self.dir.first(count) }
@@ -169,9 +173,10 @@ pub struct Nearest<'n> {
 kernels! {
     /// Compares a shape's hits with the nearest so far. Tells whether any is in doubt.
     pub(crate) fn meet[T: Hittable](shape: &T, rays: Rays, sides: Option<&[Side]>, id: u64, nearest: Nearest) -> bool {
+        let (count, rays) = (rays.len(), rays.first(rays.len()));
         match sides {
-            None => meet_all(shape, rays, |_| None, id, nearest),
-            Some(sides) => meet_all(shape, rays, |lane| Some(sides[lane]), id, nearest),
+            None => merge(count, &Sought { shape, rays }, id, nearest),
+            Some(sides) => merge(count, &Leaving { shape, rays, sides: &sides[..count] }, id, nearest),
         }
     }
 
@@ -179,10 +184,26 @@ kernels! {
     pub(crate) fn block[T: Hittable](
         shape: &T, rays: Rays, sides: Option<&[Side]>, ends: &[f64], blocked: &mut [u64], doubt: &mut [u64]
     ) -> bool {
+        let (count, rays) = (ends.len(), rays.first(ends.len()));
         match sides {
-            None => block_all(shape, rays, |_| None, ends, blocked, doubt),
-            Some(sides) => block_all(shape, rays, |lane| Some(sides[lane]), ends, blocked, doubt),
+            None => mark(&Sought { shape, rays }, ends, blocked, doubt),
+            Some(sides) => mark(&Leaving { shape, rays, sides: &sides[..count] }, ends, blocked, doubt),
         }
+    }
+
+    /// Compares brackets with the nearest so far. Tells whether any is in doubt.
+    pub(crate) fn meet_brackets(near: &[f64], far: &[f64], id: u64, nearest: Nearest) -> bool {
+        let count = nearest.near.len().min(near.len());
+        let (near, far) = (&near[..count], &far[..count]);
+        merge(count, &Known { near, far }, id, nearest)
+    }
+
+    /// Marks the rays that brackets say are blocked before their ends. Tells whether any is in doubt.
+    pub(crate) fn block_brackets(
+        near: &[f64], far: &[f64], ends: &[f64], blocked: &mut [u64], doubt: &mut [u64]
+    ) -> bool {
+        let (near, far) = (&near[..ends.len()], &far[..ends.len()]);
+        mark(&Known { near, far }, ends, blocked, doubt)
     }
 
     /// The distances of a shape's hits, as [`Hittable::quick_distance`] gives them.
@@ -246,22 +267,60 @@ kernels! {
     }
 }
 
+/// The brackets of rays, by lane. No closures: those are taken in only where it pleases the compiler.
+trait Brackets {
+    /// That of a hit before `far`.
+    fn get(&self, lane: usize, far: f64) -> Bracket;
+}
+
+/// Brackets that are known.
+struct Known<'b> {
+    near: &'b [f64],
+    far: &'b [f64],
+}
+
+impl Brackets for Known<'_> {
+    #[inline(always)]
+    fn get(&self, lane: usize, _far: f64) -> Bracket {
+        Bracket { near: self.near[lane], far: self.far[lane] }
+    }
+}
+
+/// Those that a shape gives.
+struct Sought<'b, T: ?Sized> {
+    shape: &'b T,
+    rays: Rays<'b>,
+}
+
+impl<T: Hittable + ?Sized> Brackets for Sought<'_, T> {
+    #[inline(always)]
+    fn get(&self, lane: usize, far: f64) -> Bracket {
+        self.shape.bracket(&self.rays.get(lane), &Span { far, ..Span::RAY })
+    }
+}
+
+/// Those that a shape gives for rays that leave it.
+struct Leaving<'b, T: ?Sized> {
+    shape: &'b T,
+    rays: Rays<'b>,
+    sides: &'b [Side],
+}
+
+impl<T: Hittable + ?Sized> Brackets for Leaving<'_, T> {
+    #[inline(always)]
+    fn get(&self, lane: usize, far: f64) -> Bracket {
+        let leaves = Some(self.sides[lane]);
+        self.shape.bracket(&self.rays.get(lane), &Span { far, leaves, ..Span::RAY })
+    }
+}
+
 #[inline(always)]
-fn meet_all<T: Hittable + ?Sized>(
-    shape: &T,
-    rays: Rays,
-    leaves: impl Fn(usize) -> Option<Side>,
-    id: u64,
-    nearest: Nearest,
-) -> bool {
-    let count = rays.len();
+fn merge(count: usize, brackets: &impl Brackets, id: u64, nearest: Nearest) -> bool {
     let (near, far) = (&mut nearest.near[..count], &mut nearest.far[..count]);
     let (met, doubt) = (&mut nearest.met[..count], &mut nearest.doubt[..count]);
-    let rays = rays.first(count);
     let mut any = 0;
     for lane in 0..count {
-        let within = Span { far: far[lane], leaves: leaves(lane), ..Span::RAY };
-        let Bracket { near: low, far: high } = shape.bracket(&rays.get(lane), &within);
+        let Bracket { near: low, far: high } = brackets.get(lane, far[lane]);
         let is_nearer = high < near[lane];
         // Of two at the same distance the earlier one in the scene wins.
         let is_earlier = (low == far[lane]) & (met[lane] > id);
@@ -276,23 +335,13 @@ fn meet_all<T: Hittable + ?Sized>(
 }
 
 #[inline(always)]
-fn block_all<T: Hittable + ?Sized>(
-    shape: &T,
-    rays: Rays,
-    leaves: impl Fn(usize) -> Option<Side>,
-    ends: &[f64],
-    blocked: &mut [u64],
-    doubt: &mut [u64],
-) -> bool {
-    let count = rays.len();
-    let (ends, blocked, doubt) = (&ends[..count], &mut blocked[..count], &mut doubt[..count]);
-    let rays = rays.first(count);
+fn mark(brackets: &impl Brackets, ends: &[f64], blocked: &mut [u64], doubt: &mut [u64]) -> bool {
+    let count = ends.len();
+    let (blocked, doubt) = (&mut blocked[..count], &mut doubt[..count]);
     let mut any = 0;
     for lane in 0..count {
-        let within = Span { far: ends[lane], leaves: leaves(lane), ..Span::RAY };
-        let Bracket { near: low, far: high } = shape.bracket(&rays.get(lane), &within);
-        let is_before = high < ends[lane];
-        let is_behind = low >= ends[lane];
+        let Bracket { near: low, far: high } = brackets.get(lane, ends[lane]);
+        let (is_before, is_behind) = (high < ends[lane], low >= ends[lane]);
         blocked[lane] |= u64::from(is_before);
         doubt[lane] = u64::from(!(is_before | is_behind)) & !blocked[lane];
         any |= doubt[lane];

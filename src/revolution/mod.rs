@@ -6,12 +6,15 @@
 //! proves that there is none (`walk`); where it grazes the error's shell, bounds of the second derivative decide
 //! ([`taylor`](crate::taylor)). No hit is lost or invented, whatever the profile, and nothing has to be tuned.
 
+mod bracket;
 mod classic;
 mod local;
+mod shape;
 mod slabs;
 mod walk;
 
 pub use classic::Classic;
+pub use shape::InFrame;
 pub use slabs::NoSurface;
 
 use crate::bounds::Bounds;
@@ -34,6 +37,7 @@ pub struct Revolution {
     square: Formula,
     height: f64,
     slabs: Slabs,
+    finish: Finish,
 }
 
 /// How the distance of a hit is finished.
@@ -50,16 +54,16 @@ impl Revolution {
     ///
     /// # Errors
     /// Where the profile has no bound, and where it is nowhere above 0.
-    pub fn new(profile: &Formula, height: f64) -> Result<Self, NoSurface> {
+    pub fn new(profile: &Formula, height: f64, finish: Finish) -> Result<Self, NoSurface> {
         let square = profile.squared();
         let slabs = Slabs::new(profile, &square, height)?;
-        Ok(Self { profile: profile.clone(), square, height, slabs })
+        Ok(Self { profile: profile.clone(), square, height, slabs, finish })
     }
 
-    /// The distance of a ray's first hit within a span.
-    pub fn first_hit(&self, ray: &Ray, within: &Span, finish: Finish) -> f64 {
+    /// The distance of a ray's first hit within a span, whatever the ray does.
+    pub fn first_hit(&self, ray: &Ray, within: &Span) -> f64 {
         let Some(local) = Local::new(ray, within, self.height, self.slabs.widest()) else { return MISS };
-        match self.walk(&local, within.leaves, finish) {
+        match self.walk(&local, within.leaves) {
             Some(along) => within.keep(local.base + along),
             None => MISS,
         }
@@ -108,6 +112,14 @@ impl Revolution {
         local.height(along).clamp(0.0, self.height)
     }
 
+    /// The profile's square at a height, and its slope.
+    #[inline(always)]
+    fn square_and_slope(&self, y: f64) -> (f64, f64) {
+        // Beyond its ends the profile may be anything, and rounding must not ask.
+        let Dual { value, slope } = self.square.at(Dual::variable(y.clamp(0.0, self.height)));
+        (value, slope)
+    }
+
     /// How far outside of the surface a place along a ray is: positive outside, negative inside.
     #[inline(always)]
     fn outside(&self, local: &Local, along: f64) -> f64 {
@@ -117,7 +129,7 @@ impl Revolution {
     /// As [`outside`](Self::outside), and how fast that grows.
     #[inline(always)]
     fn outside_and_slope(&self, local: &Local, along: f64) -> (f64, f64) {
-        let Dual { value, slope } = self.square.at(Dual::variable(self.height_of(local, along)));
+        let (value, slope) = self.square_and_slope(local.height(along));
         (local.around(along) - value, 2.0 * (local.a * along + local.b) - slope * local.dir.y)
     }
 }

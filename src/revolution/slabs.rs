@@ -31,6 +31,14 @@ pub struct Slab {
     pub is_void: bool,
 }
 
+impl Slab {
+    /// The parabola at `v` from the middle.
+    #[inline(always)]
+    pub fn parabola(&self, v: f64) -> f64 {
+        self.c0 + v * (self.c1 + v * self.c2)
+    }
+}
+
 /// Why a profile makes no surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NoSurface {
@@ -50,6 +58,7 @@ pub struct Slabs {
     table: Vec<u32>,
     parts_per_unit: f64,
     widest: f64,
+    reach: f64,
 }
 
 impl Slabs {
@@ -73,13 +82,20 @@ impl Slabs {
         let slab_at = |y: f64| slabs.partition_point(|slab: &Slab| slab.to <= y).min(slabs.len() - 1) as u32;
         let table = (0..=parts).map(|part| slab_at(part as f64 / parts_per_unit)).collect();
         let most = slabs.iter().map(|slab| slab.most).fold(0.0, f64::max);
-        Ok(Self { table, parts_per_unit, widest: most.sqrt().next_up(), slabs })
+        let shell = slabs.iter().map(|slab| slab.most + 2.0 * slab.error).fold(0.0, f64::max);
+        Ok(Self { table, parts_per_unit, widest: most.sqrt().next_up(), reach: 1.001 * shell, slabs })
     }
 
     /// How far the surface is from the axis at most.
     #[inline(always)]
     pub fn widest(&self) -> f64 {
         self.widest
+    }
+
+    /// The square of a distance from the axis at which every ray is outside of the parabolas and of their errors.
+    #[inline(always)]
+    pub fn reach(&self) -> f64 {
+        self.reach
     }
 
     /// The slab of this index, from the bottom.

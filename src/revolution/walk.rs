@@ -22,7 +22,7 @@ struct Quadratic {
 impl Revolution {
     /// The first place along a ray where it crosses the surface. A ray that leaves the surface on a side looks for
     /// crossings from there alone.
-    pub(super) fn walk(&self, local: &Local, leaves: Option<Side>, finish: Finish) -> Option<f64> {
+    pub(super) fn walk(&self, local: &Local, leaves: Option<Side>) -> Option<f64> {
         let dy = local.dir.y;
         let is_upward = dy > 0.0;
         let mut index = self.slabs.index(local.height(local.from));
@@ -47,7 +47,7 @@ impl Revolution {
             } else if to > from || from == local.from {
                 let sg = side.unwrap_or_else(|| self.side_at(local, slab, from, rounding));
                 side = Some(sg);
-                if let Some(hit) = self.cross(local, slab, (from, to), (sg, wanted), rounding, finish) {
+                if let Some(hit) = self.cross(local, slab, (from, to), (sg, wanted), rounding) {
                     return Some(hit);
                 }
             }
@@ -63,7 +63,7 @@ impl Revolution {
     #[inline(always)]
     fn side_at(&self, local: &Local, slab: &Slab, along: f64, rounding: f64) -> f64 {
         let v = local.height(along) - slab.middle;
-        let outside = local.around(along) - (slab.c0 + v * (slab.c1 + v * slab.c2));
+        let outside = local.around(along) - slab.parabola(v);
         let error = slab.error + rounding + slab.rounding(v, self.height);
         if outside.abs() > error {
             return outside.signum();
@@ -80,7 +80,6 @@ impl Revolution {
         (from, to): (f64, f64),
         (sg, wanted): (f64, Option<Side>),
         rounding: f64,
-        finish: Finish,
     ) -> Option<f64> {
         let dy = local.dir.y;
         if sg > 0.0 && local.closest_around(from, to) > slab.most + rounding {
@@ -92,7 +91,7 @@ impl Revolution {
         let quadratic = Quadratic {
             a: sg * (local.a - slab.c2 * dy * dy),
             b: sg * (local.b - (0.5 * slab.c1 + slab.c2 * v) * dy),
-            c: sg * (local.c - (slab.c0 + v * (slab.c1 + v * slab.c2))),
+            c: sg * (local.c - slab.parabola(v)),
         };
         // A crossing to the other side falls: begin where it can.
         let slope_error = slab.slope_error * dy.abs();
@@ -110,7 +109,7 @@ impl Revolution {
         let enters = quadratic.lowered(error).first_not_positive(from, to)?;
         if let Some(leaves) = quadratic.lowered(-error).first_not_positive(enters, to) {
             if quadratic.slope(enters).max(quadratic.slope(leaves)) + slope_error < 0.0 {
-                return Some(self.finish(local, (enters, leaves), sg, finish));
+                return Some(self.finish(local, (enters, leaves), sg));
             }
             return Some(self.first_crossing(local, enters, leaves, wanted).unwrap_or(enters));
         }
@@ -128,9 +127,9 @@ impl Revolution {
 
     /// The one root of a bracket.
     #[inline(always)]
-    fn finish(&self, local: &Local, bracket: (f64, f64), sg: f64, finish: Finish) -> f64 {
+    pub(super) fn finish(&self, local: &Local, bracket: (f64, f64), sg: f64) -> f64 {
         let middle = 0.5 * (bracket.0 + bracket.1);
-        match finish {
+        match self.finish {
             Finish::Bracket => middle,
             Finish::Root => {
                 let f = |along| self.outside_and_slope(local, along);

@@ -4,7 +4,7 @@ use super::MAX_RAYS;
 use crate::camera::{self, Camera};
 use crate::cpu::Cpu;
 use crate::geometry::{Ray, Side};
-use crate::packet::{Rays, STEP, Vectors};
+use crate::packet::{Rays, STEP, Vectors, WIDE};
 use glam::DVec3;
 
 /// A packet of rays that leave the same object, or none.
@@ -110,15 +110,15 @@ pub(super) fn pick_vectors<const N: usize, const M: usize>(from: &Vectors<N>, la
 /// Rays by what they met: the rays of one object after those of another.
 pub(super) struct Parts<'m> {
     met: &'m [u64],
-    done: [bool; super::WIDE],
-    lanes: [u8; super::WIDE],
+    done: [bool; WIDE],
+    lanes: [u8; WIDE],
     next: usize,
 }
 
 impl<'m> Parts<'m> {
     /// `met` tells of each ray what it met.
     pub fn new(met: &'m [u64]) -> Self {
-        Self { met, done: [false; super::WIDE], lanes: [0; super::WIDE], next: 0 }
+        Self { met, done: [false; WIDE], lanes: [0; WIDE], next: 0 }
     }
 
     /// What some rays met, and which rays those are.

@@ -13,7 +13,7 @@ use crate::cpu::Cpu;
 use crate::geometry::Ray;
 use crate::material::Rgb;
 use crate::model::Model;
-use crate::packet::Vectors;
+use crate::packet::{Vectors, WIDE};
 use crate::plan::Plan;
 use crate::sample::Sample;
 use crate::watch::{Count, Event, Hit, Kind, Purpose, Watch};
@@ -26,9 +26,6 @@ pub(crate) const MAX_DIST: f64 = 20.0;
 /// The rays that one camera ray may cost. Mirrors that nearly touch would otherwise reflect each other for ever;
 /// what lies beyond is black.
 pub(crate) const MAX_RAYS: usize = 20_000;
-
-/// The rays of a full packet.
-pub(crate) const WIDE: usize = 64;
 
 /// The rays of a packet where there are few.
 const NARROW: usize = 8;

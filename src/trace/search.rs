@@ -1,10 +1,10 @@
 //! What the rays of a packet meet first.
 
+use super::Tracer;
 use super::group::Group;
-use super::{Tracer, WIDE};
 use crate::bounds::{self, Bounds, Bundle};
 use crate::geometry::{MISS, Ray, Side, Span};
-use crate::packet::{Nearest, Rays, Vectors};
+use crate::packet::{Nearest, Rays, Vectors, WIDE};
 use crate::tree::Visitor;
 use crate::watch::{Count, Event, Hit, Reason, Watch};
 
@@ -87,7 +87,8 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
         }
         let shape = &*self.model.objects[object].shape;
         let sides = group.sides_of(object);
-        shape.distances(self.cpu, group.rays(), sides, &mut distances[..count]);
+        let brackets = (&near[..count], &far[..count]);
+        shape.distances(self.cpu, group.rays(), sides, brackets, &mut distances[..count]);
         for lane in 0..group.len {
             if near[lane] == far[lane] {
                 distances[lane] = near[lane];

@@ -2,12 +2,12 @@
 
 use super::group::{Group, pick, pick_vectors};
 use super::shadow::Ways;
-use super::{MAX_DIST, NARROW, Tracer, WIDE};
+use super::{MAX_DIST, NARROW, Tracer};
 use crate::cpu::kernels;
 use crate::geometry::Side;
 use crate::material::Rgb;
 use crate::model::Object;
-use crate::packet::{Rays, Vectors, View, ViewMut};
+use crate::packet::{Rays, Vectors, View, ViewMut, WIDE};
 use crate::watch::{Count, Event, Hit, Kind, Outcome, Purpose, Reason, Watch};
 use glam::{DVec2, DVec3};
 

@@ -1,0 +1,91 @@
+//! Surfaces of revolution as shapes, wherever they stand.
+
+use super::{Classic, Revolution};
+use crate::bounds::Bounds;
+use crate::certify::{self, Enclosure};
+use crate::cpu::Cpu;
+use crate::frame::Frame;
+use crate::geometry::{Hittable, Ray, Side, Span};
+use crate::packet::{self, Nearest, Rays};
+use glam::DVec3;
+
+/// A surface around the y axis of a frame.
+pub struct InFrame<S> {
+    /// The surface.
+    pub surface: S,
+    /// Where it stands.
+    pub frame: Frame,
+}
+
+impl Hittable for InFrame<Classic> {
+    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
+        self.surface.first_hit(&self.frame.ray(ray), within)
+    }
+
+    fn normal(&self, at: DVec3) -> DVec3 {
+        (self.frame.axes * self.surface.normal(self.frame.point(at))).normalize()
+    }
+
+    fn certify(&self, ray: &Ray) -> Enclosure {
+        certify::first_hit(&self.surface, &self.frame.ray(ray))
+    }
+}
+
+impl Hittable for InFrame<Revolution> {
+    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
+        self.surface.distance(&self.frame, ray, within)
+    }
+
+    fn normal(&self, at: DVec3) -> DVec3 {
+        (self.frame.axes * self.surface.normal(self.frame.point(at))).normalize()
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        Some(self.frame.bounds(&self.surface.bounds()))
+    }
+
+    fn is_convex(&self) -> bool {
+        false
+    }
+
+    fn is_two_sided(&self) -> bool {
+        true
+    }
+
+    fn certify(&self, ray: &Ray) -> Enclosure {
+        certify::first_hit(&self.surface, &self.frame.ray(ray))
+    }
+
+    fn meet(&self, cpu: Cpu, rays: Rays, sides: Option<&[Side]>, id: u64, nearest: Nearest) -> bool {
+        let lanes = self.surface.brackets(cpu, &self.frame, rays, sides, nearest.far);
+        packet::meet_brackets(cpu, &lanes.near, &lanes.far, id, nearest)
+    }
+
+    fn block(
+        &self,
+        cpu: Cpu,
+        rays: Rays,
+        sides: Option<&[Side]>,
+        ends: &[f64],
+        blocked: &mut [u64],
+        doubt: &mut [u64],
+    ) -> bool {
+        let lanes = self.surface.brackets(cpu, &self.frame, rays, sides, ends);
+        packet::block_brackets(cpu, &lanes.near, &lanes.far, ends, blocked, doubt)
+    }
+
+    fn distances(
+        &self,
+        _cpu: Cpu,
+        rays: Rays,
+        _sides: Option<&[Side]>,
+        (near, far): (&[f64], &[f64]),
+        out: &mut [f64],
+    ) {
+        for (lane, distance) in out.iter_mut().enumerate() {
+            if near[lane] < far[lane] {
+                *distance = self.surface.root(&self.frame.ray(&rays.get(lane)), near[lane], far[lane]);
+            }
+        }
+    }
+}
