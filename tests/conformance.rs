@@ -120,6 +120,8 @@ type Test = (usize, Option<f64>);
 struct Searches(Vec<(Ray, Vec<Test>)>);
 
 impl Watch for Searches {
+    const SEES: bool = true;
+
     fn see(&mut self, event: Event) {
         match (event, self.0.last_mut()) {
             (Event::Search(ray), _) => self.0.push((*ray, Vec::new())),

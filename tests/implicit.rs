@@ -7,8 +7,9 @@ use glam::DVec3;
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
 use std::ops::Range;
+use tabray::frame::Frame;
 use tabray::geometry::{Body, Hittable, MISS, Ray, Side, Span};
-use tabray::implicit::{Frame, Implicit};
+use tabray::implicit::Implicit;
 use tabray::model::Model;
 use tabray::number::Number;
 
