@@ -15,6 +15,7 @@ pub mod bounds;
 pub mod camera;
 pub mod certify;
 pub mod choice;
+pub mod compare;
 pub mod cpu;
 pub mod debug;
 pub mod dual;

@@ -1,16 +1,18 @@
 //! The dump and the picture of every scene, and the messages of every mistake, against those accepted before.
 //!
-//! A scene is added by adding its file. Look at what it gives with `cargo insta review`, and accept it.
+//! A scene is added by adding its file. Look at what it gives with `cargo run --release -- review --serve`, and accept
+//! it there.
 
 mod common;
 
 use common::{load, registry, render, root};
+use image::RgbImage;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
-use image::{Rgb, RgbImage};
 use insta::internals::SnapshotContents;
 use insta::{Comparator, Settings, Snapshot};
 use std::fs;
 use std::path::Path;
+use tabray::compare::Comparison;
 use tabray::{dump, scene};
 
 #[test]
@@ -83,7 +85,7 @@ fn stem(path: &Path) -> &str {
     path.file_stem().and_then(|stem| stem.to_str()).expect("a name in UTF-8")
 }
 
-/// Compares pictures by their pixels; on failure says how far apart they are and writes a strip of both.
+/// Compares pictures by their pixels; on failure says how far apart they are.
 #[derive(Clone)]
 struct SamePixels {
     scene: String,
@@ -92,21 +94,15 @@ struct SamePixels {
 impl Comparator for SamePixels {
     fn matches(&self, reference: &Snapshot, test: &Snapshot) -> bool {
         let (Some(expected), Some(actual)) = (picture(reference), picture(test)) else { return false };
-        if expected == actual {
+        let comparison = Comparison::new(&expected, &actual, 0);
+        if comparison.as_ref().is_some_and(|comparison| comparison.differing == 0) {
             return true;
         }
-        let strip =
-            Path::new(env!("CARGO_TARGET_TMPDIR")).join(self.scene.replace(['/', '\\'], "-") + ".png");
-        let differing = expected.pixels().zip(actual.pixels()).filter(|(a, b)| a != b).count();
-        let saved = strip_of(&expected, &actual).save(&strip);
-        eprintln!(
-            "{}: {differing} of {} pixels differ ({:?} and {:?}); expected | difference | actual: {} {saved:?}",
-            self.scene,
-            expected.pixels().len(),
-            expected.dimensions(),
-            actual.dimensions(),
-            strip.display()
-        );
+        let told = match comparison {
+            Some(comparison) => comparison.to_string(),
+            None => format!("{:?} pixels became {:?}", expected.dimensions(), actual.dimensions()),
+        };
+        eprintln!("{}: {told}; see it with `cargo run --release -- review`", self.scene);
         false
     }
 
@@ -120,35 +116,6 @@ fn picture(snapshot: &Snapshot) -> Option<RgbImage> {
         SnapshotContents::Binary(Some(bytes)) => Some(image::load_from_memory(bytes).ok()?.into_rgb8()),
         _ => None,
     }
-}
-
-/// Expected, difference and actual side by side; what differs by 1 shows already.
-fn strip_of(expected: &RgbImage, actual: &RgbImage) -> RgbImage {
-    let width = expected.width().max(actual.width());
-    let height = expected.height().max(actual.height());
-    RgbImage::from_fn(3 * width, height, |x, y| {
-        let at =
-            |image: &RgbImage| image.get_pixel_checked(x % width, y).copied().unwrap_or(Rgb([255, 0, 255]));
-        match x / width {
-            0 => at(expected),
-            2 => at(actual),
-            _ => {
-                let (a, b) = (at(expected), at(actual));
-                let far = |channel: usize| a[channel].abs_diff(b[channel]);
-                Rgb([0, 1, 2].map(|channel| if far(channel) == 0 { 0 } else { far(channel).max(64) }))
-            }
-        }
-    })
-}
-
-#[test]
-fn a_strip_shows_both_pictures_and_where_they_differ() {
-    let expected = RgbImage::from_pixel(2, 1, Rgb([10, 20, 30]));
-    let mut actual = expected.clone();
-    actual.put_pixel(1, 0, Rgb([11, 20, 230]));
-    let strip = strip_of(&expected, &actual);
-    let row: Vec<_> = strip.pixels().map(|pixel| pixel.0).collect();
-    assert_eq!(row, [[10, 20, 30], [10, 20, 30], [0; 3], [64, 0, 200], [10, 20, 30], [11, 20, 230]]);
 }
 
 #[test]
