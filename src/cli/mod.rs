@@ -4,16 +4,22 @@ mod aov;
 mod check;
 mod convert;
 mod debug;
+mod diff;
 mod dump;
+mod explain;
 mod input;
 mod interrupt;
 mod list;
 mod method;
 mod notes;
 mod output;
+mod picture;
 mod probe;
 mod render;
+mod report;
+mod review;
 mod schema;
+mod serve;
 mod verify;
 
 use annotate_snippets::{Group, Level, Renderer};
@@ -42,6 +48,8 @@ enum Command {
     Check(check::Args),
     Probe(probe::Args),
     Verify(verify::Args),
+    Diff(diff::Args),
+    Review(review::Args),
     List(list::Args),
     Schema(schema::Args),
 }
@@ -84,6 +92,8 @@ pub fn run() -> ExitCode {
             Some(Command::Check(args)) => check::run(registry, args),
             Some(Command::Probe(args)) => probe::run(registry, args),
             Some(Command::Verify(args)) => verify::run(registry, args),
+            Some(Command::Diff(args)) => return diff::run(registry, &args),
+            Some(Command::Review(args)) => review::run(registry, &args),
             Some(Command::List(args)) => list::run(registry, args),
             Some(Command::Schema(_)) => schema::run(registry),
             None if io::stdin().is_terminal() => {

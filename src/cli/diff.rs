@@ -1,0 +1,83 @@
+//! `tabray diff`: how two pictures differ.
+
+use super::explain::Place;
+use super::report::{Change, Item, Page};
+use super::{Failure, input, picture, print, tell};
+use image::RgbImage;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use tabray::compare::Comparison;
+use tabray::registry::Registry;
+
+/// Compare two pictures
+///
+/// It tells how many pixels differ, the largest difference of any channel, in levels from 0 to 255, the root of the
+/// mean of all channels' squared differences (RMS), and the first pixel that differs, row by row from the top, each
+/// from the left. Like everywhere, a pixel's column counts from 0 at the left and its row from 0 at the bottom.
+#[derive(clap::Args)]
+#[command(after_help = EXIT_STATUS)]
+pub struct Args {
+    /// The old picture, PNG or PPM
+    old: PathBuf,
+    /// The new one, of the same size
+    new: PathBuf,
+    /// Let pixels differ by this many levels in each channel
+    #[arg(long, value_name = "LEVELS", default_value_t = 0)]
+    tolerance: u8,
+    /// Write a page that shows both pictures and their difference: one .html file, with everything in it
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// The scene of the pictures: the page explains with it the first pixel that differs
+    #[arg(long, requires = "output")]
+    scene: Option<PathBuf>,
+    /// A `tabray` that made the old picture: the page has its explanation too
+    #[arg(long, value_name = "PROGRAM", requires = "scene")]
+    before: Option<PathBuf>,
+}
+
+const EXIT_STATUS: &str = "\
+Exit status:
+    0  the pictures are the same
+    1  they differ
+    2  trouble: a picture could not be read, the sizes differ, or the page could not be written";
+
+/// Compares; trouble of any kind is told from a difference by its status, as `diff` and `cmp` do.
+pub fn run(registry: &Registry, args: &Args) -> ExitCode {
+    match compare(registry, args) {
+        Ok(same) => ExitCode::from(u8::from(!same)),
+        Err(failure) => {
+            tell(&failure);
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Whether the pictures are the same.
+fn compare(registry: &Registry, args: &Args) -> Result<bool, Failure> {
+    let page = args.output.as_deref().map(Page::open).transpose()?;
+    let model = args.scene.as_deref().map(|scene| input::load(registry, scene, None)).transpose()?;
+    let (old, new) = (picture::read(&args.old)?, picture::read(&args.new)?);
+    let names = [&args.old, &args.new].map(|path| path.display().to_string());
+    let comparison = Comparison::new(&old, &new, args.tolerance).ok_or_else(|| {
+        let size = |name: &str, picture: &RgbImage| {
+            format!("`{name}` has {} x {} pixels", picture.width(), picture.height())
+        };
+        Failure::Usage(
+            format!("{}, and {}", size(&names[0], &old), size(&names[1], &new)),
+            Some("only pictures of one size can be compared".to_owned()),
+        )
+    })?;
+    let first = comparison.first;
+    let place = first.map(|pixel| format!("first at {pixel}\n")).unwrap_or_default();
+    print(&format!("{comparison}\n{place}"))?;
+    let same = comparison.differing == 0;
+    if let Some(page) = page {
+        let place = args.scene.as_deref().zip(model).zip(first);
+        let place = place.map(|((scene, model), pixel)| Place { scene, model, size: comparison.size, pixel });
+        let explanations = place.map(|place| place.explained(args.before.as_deref())).unwrap_or_default();
+        let name = names.join(" and ");
+        let change = Change::Picture { old: Some(old), new, names, comparison: Some(comparison) };
+        page.write("tabray diff", &[Item { name, change, explanations, decision: None }])?;
+    }
+    Ok(same)
+}

@@ -1,0 +1,83 @@
+//! What `probe` says of a picture's pixel, for reports: by this program, and by one from before.
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+use tabray::compare::Pixel;
+use tabray::model::Model;
+use tabray::probe;
+use tabray::render::Renderer;
+
+/// How a pixel got its colour, as far as that can be known.
+pub struct Explanation {
+    /// Which picture's pixel it is, and who explains it.
+    pub title: String,
+    /// What `probe` prints, or why it does not.
+    pub text: String,
+}
+
+/// A pixel of a picture of a scene.
+pub struct Place<'p> {
+    /// The scene's file.
+    pub scene: &'p Path,
+    /// The scene as it is now.
+    pub model: Model,
+    /// The picture's width and height: it may be smaller than its scene says.
+    pub size: [u32; 2],
+    /// The pixel.
+    pub pixel: Pixel,
+}
+
+impl Place<'_> {
+    /// How the pixel came about: in the old picture if there is a program from before, and in the new one.
+    pub fn explained(self, before: Option<&Path>) -> Vec<Explanation> {
+        let Pixel { old, new, .. } = self.pixel;
+        let scene = self.scene.display();
+        let by_another = before.map(|program| {
+            let title = format!("Before, by {}", program.display());
+            explanation(title, self.by_another(program), old)
+        });
+        let title = format!("After: {scene}");
+        by_another.into_iter().chain([explanation(title, self.by_this(), new)]).collect()
+    }
+
+    fn by_this(mut self) -> Result<String, String> {
+        self.model.camera.value.pixels = self.size();
+        let (x, y) = (self.pixel.x as usize, self.pixel.y as usize);
+        let mut out = Vec::new();
+        let renderer = Renderer::new(1).map_err(|error| error.to_string())?;
+        renderer.run(|| probe::pixel(&self.model, x, y, &mut out)).map_err(|error| error.to_string())?;
+        Ok(String::from_utf8_lossy(&out).into_owned())
+    }
+
+    fn by_another(&self, program: &Path) -> Result<String, String> {
+        if self.model.camera.value.pixels != self.size() {
+            return Err("the picture is not as large as its scene says".to_owned());
+        }
+        let output = Command::new(program)
+            .arg("probe")
+            .arg(self.scene)
+            .args([self.pixel.x.to_string(), self.pixel.y.to_string()])
+            .stdin(Stdio::null())
+            .output()
+            .map_err(|error| format!("`{}` does not start: {error}", program.display()))?;
+        if !output.status.success() {
+            return Err(format!("it says\n\n{}", String::from_utf8_lossy(&output.stderr).trim_end()));
+        }
+        Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+    }
+
+    fn size(&self) -> [usize; 2] {
+        self.size.map(|side| side as usize)
+    }
+}
+
+/// An explanation of a pixel that has these bytes, which says so where it comes to others.
+fn explanation(title: String, told: Result<String, String>, [r, g, b]: [u8; 3]) -> Explanation {
+    let bytes = format!("({r}, {g}, {b})");
+    let text = match told {
+        Ok(text) if text.trim_end().ends_with(&bytes) => text,
+        Ok(text) => format!("the picture has {bytes} here and was made otherwise than this:\n\n{text}"),
+        Err(reason) => format!("no explanation: {reason}"),
+    };
+    Explanation { title, text }
+}

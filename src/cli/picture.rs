@@ -1,0 +1,31 @@
+//! Reading pictures, to compare them.
+
+use super::Failure;
+use image::{DynamicImage, ImageReader, RgbImage};
+use std::fs::File;
+use std::io::{BufRead, BufReader, Seek};
+use std::path::Path;
+
+/// The picture in a file.
+pub fn read(path: &Path) -> Result<RgbImage, Failure> {
+    let cannot = |reason: String| Failure::Usage(format!("cannot read `{}`: {reason}", path.display()), None);
+    let file = File::open(path).map_err(|error| cannot(error.to_string()))?;
+    decode(BufReader::new(file)).map_err(cannot)
+}
+
+/// A picture from its file's bytes. What bytes of red, green and blue cannot tell is refused, not left out.
+pub fn decode(bytes: impl BufRead + Seek) -> Result<RgbImage, String> {
+    let reader = ImageReader::new(bytes).with_guessed_format().map_err(|error| error.to_string())?;
+    let picture = reader.decode().map_err(|error| error.to_string())?;
+    let is_plain = match &picture {
+        DynamicImage::ImageLuma8(_) | DynamicImage::ImageRgb8(_) => true,
+        DynamicImage::ImageLumaA8(picture) => picture.pixels().all(|pixel| pixel[1] == u8::MAX),
+        DynamicImage::ImageRgba8(picture) => picture.pixels().all(|pixel| pixel[3] == u8::MAX),
+        _ => false,
+    };
+    if is_plain {
+        Ok(picture.into_rgb8())
+    } else {
+        Err("it is no opaque picture of 8 bits a channel, and only such can be compared".to_owned())
+    }
+}

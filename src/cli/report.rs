@@ -1,0 +1,159 @@
+//! The page that shows what changed: one file with everything in it, which works without a network.
+
+use super::Failure;
+use super::explain::Explanation;
+use super::output::Output;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use image::RgbImage;
+use serde_json::{Value, json};
+use similar::{ChangeTag, TextDiff};
+use std::io::{self, Write};
+use std::iter;
+use std::path::{Path, PathBuf};
+use tabray::compare::Comparison;
+use tabray::picture::Format;
+
+const PAGE: &str = include_str!("report.html");
+
+/// Where the page wants its data: one place, in an element that no script is.
+const DATA: &str = "\"the data\"";
+
+/// Something that changed, or may have.
+pub struct Item {
+    /// What it is called.
+    pub name: String,
+    /// What it was and is.
+    pub change: Change,
+    /// How its first differing pixel came about.
+    pub explanations: Vec<Explanation>,
+    /// How to decide about it, where that is to be done.
+    pub decision: Option<Decision>,
+}
+
+/// What is shown.
+pub enum Change {
+    /// A picture, as it was if it was, and as it is; and what one picture and the other are called.
+    Picture { old: Option<RgbImage>, new: RgbImage, names: [String; 2], comparison: Option<Comparison> },
+    /// A text.
+    Text { old: Option<String>, new: String },
+}
+
+impl Change {
+    /// A few words on what changed.
+    pub fn summary(&self) -> String {
+        match self {
+            Self::Picture { comparison: Some(comparison), .. } => comparison.to_string(),
+            Self::Picture { old: None, new, .. } => format!("new, {}", size(new)),
+            Self::Picture { old: Some(old), new, .. } => {
+                format!("the size differs: {} became {}", size(old), size(new))
+            }
+            Self::Text { old: None, .. } => "new".to_owned(),
+            Self::Text { old: Some(old), new } => {
+                let diff = TextDiff::from_lines(old, new);
+                let count = |tag| diff.iter_all_changes().filter(|line| line.tag() == tag).count();
+                format!("lines: {} removed, {} added", count(ChangeTag::Delete), count(ChangeTag::Insert))
+            }
+        }
+    }
+}
+
+fn size(picture: &RgbImage) -> String {
+    format!("{} x {} pixels", picture.width(), picture.height())
+}
+
+/// How to accept or reject a pending snapshot.
+pub struct Decision {
+    /// The command that accepts it.
+    pub accept: String,
+    /// The command that rejects it.
+    pub reject: String,
+    /// What tells this content from any other that the snapshot may have later.
+    pub version: String,
+}
+
+/// The file of a page, found fit before any work is done.
+pub struct Page {
+    path: PathBuf,
+    output: Output,
+}
+
+impl Page {
+    /// Opens the file; it must be named as a page, so that no picture is taken for one and written over.
+    pub fn open(path: &Path) -> Result<Self, Failure> {
+        if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("html")) {
+            return Err(Failure::Usage(
+                format!("the name `{}` is not that of a page", path.display()),
+                Some("end it in .html".to_owned()),
+            ));
+        }
+        Ok(Self { path: path.to_owned(), output: Output::open(path)? })
+    }
+
+    /// Writes it.
+    pub fn write(mut self, title: &str, items: &[Item]) -> Result<(), Failure> {
+        let written = html(title, items, false)
+            .and_then(|html| self.output.write_all(html.as_bytes()))
+            .and_then(|()| self.output.finish());
+        let path = self.path.display();
+        written.map_err(|error| Failure::Failed(format!("cannot write `{path}`: {error}")))?;
+        eprintln!("wrote {path}");
+        Ok(())
+    }
+}
+
+/// The page, as HTML. One that is `served` can accept and reject.
+pub fn html(title: &str, items: &[Item], served: bool) -> io::Result<String> {
+    let items: Vec<_> = items.iter().map(item).collect::<io::Result<_>>()?;
+    let data = json!({ "title": title, "served": served, "items": items });
+    // Nothing in the data can end its element: in JSON a `<` can be written otherwise.
+    Ok(PAGE.replacen(DATA, &data.to_string().replace('<', "\\u003c"), 1))
+}
+
+fn item(item: &Item) -> io::Result<Value> {
+    let mut value = match &item.change {
+        Change::Picture { old, new, names, comparison } => {
+            let first = comparison.as_ref().and_then(|comparison| comparison.first);
+            json!({
+                "kind": "picture",
+                "old": old.as_ref().map(data_uri).transpose()?,
+                "new": data_uri(new)?,
+                "names": names,
+                "tolerance": comparison.as_ref().map(|comparison| comparison.tolerance),
+                "first": first.map(|pixel| json!({ "x": pixel.x, "y": pixel.y, "text": pixel.to_string() })),
+            })
+        }
+        Change::Text { old, new } => {
+            let diff = TextDiff::from_lines(old.as_deref().unwrap_or_default(), new);
+            json!({ "kind": "text", "lines": diff.iter_all_changes().map(|line| json!(line_of(&line))).collect::<Vec<_>>() })
+        }
+    };
+    value["name"] = json!(item.name);
+    value["summary"] = json!(item.change.summary());
+    value["explanations"] =
+        item.explanations.iter().map(|Explanation { title, text }| json!([title, text])).collect();
+    if let Some(Decision { accept, reject, version }) = &item.decision {
+        value["decision"] = json!({ "accept": accept, "reject": reject, "version": version });
+    }
+    Ok(value)
+}
+
+/// The picture within the page, written anew: no colour profile that its file may have changes what is seen.
+fn data_uri(picture: &RgbImage) -> io::Result<String> {
+    let size = [picture.width() as usize, picture.height() as usize];
+    let mut png = Vec::new();
+    Format::Png.write(&mut png, size, iter::once(Ok(picture.as_raw().clone())))?;
+    Ok(format!("data:image/png;base64,{}", STANDARD.encode(png)))
+}
+
+/// Whether a line stays, comes or goes, its numbers in the old and the new text, and the line.
+fn line_of<'t>(line: &similar::Change<&'t str>) -> (char, Option<usize>, Option<usize>, &'t str) {
+    let sign = match line.tag() {
+        ChangeTag::Equal => ' ',
+        ChangeTag::Delete => '-',
+        ChangeTag::Insert => '+',
+    };
+    let number = |index: usize| index + 1;
+    let text = line.value().trim_end_matches('\n');
+    (sign, line.old_index().map(number), line.new_index().map(number), text)
+}

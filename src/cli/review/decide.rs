@@ -1,0 +1,80 @@
+//! `tabray review --serve`: the page that accepts and rejects.
+
+use super::Args;
+use super::pending::{self, Pending};
+use crate::cli::serve::{self, Server};
+use crate::cli::{Failure, report, tell};
+use hyper::body::Bytes;
+use hyper::{Request, Response, StatusCode};
+use serde_json::Value;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use tabray::registry::Registry;
+
+/// Shows the page and does what is decided there.
+pub fn serve(registry: &'static Registry, args: &Args) -> Result<(), Failure> {
+    let (folder, before) = (args.folder.clone(), args.before.clone());
+    let server = Server::open(args.port)?;
+    eprintln!("review at {} (Ctrl-C ends it)", server.url());
+    server.run(async move |request: Request<Bytes>| {
+        let verdict = match (request.method().as_str(), request.uri().path()) {
+            ("GET", "/") => return ControlFlow::Continue(page(registry, &folder, before.as_deref())),
+            ("POST", "/accept") => decide(&folder, request.body(), "accepted", Pending::accept),
+            ("POST", "/reject") => decide(&folder, request.body(), "rejected", Pending::reject),
+            _ => Err((StatusCode::NOT_FOUND, "there is nothing here".to_owned())),
+        };
+        match verdict {
+            Ok(told) => {
+                eprintln!("{told}");
+                let response = serve::text(StatusCode::OK, &told);
+                let is_last = pending::find(&folder).is_ok_and(|found| found.is_empty());
+                if is_last { ControlFlow::Break(response) } else { ControlFlow::Continue(response) }
+            }
+            Err((status, reason)) => ControlFlow::Continue(serve::text(status, &reason)),
+        }
+    })
+}
+
+fn page(registry: &Registry, folder: &Path, before: Option<&Path>) -> Response<serve::Body> {
+    let html = super::items(registry, folder, before)
+        .and_then(|(items, _)| report::html("tabray review", &items, true).map_err(Failure::from));
+    match html {
+        Ok(html) => serve::content(StatusCode::OK, "text/html; charset=utf-8", html),
+        Err(failure) => {
+            tell(&failure);
+            serve::text(StatusCode::INTERNAL_SERVER_ERROR, "the terminal says what is wrong")
+        }
+    }
+}
+
+/// Does what was decided on the page, which sends a snapshot's name and the version that it showed, if the snapshot is
+/// still that.
+fn decide(
+    folder: &Path,
+    body: &[u8],
+    verdict: &str,
+    act: impl Fn(&Pending) -> Result<(), Failure>,
+) -> Result<String, (StatusCode, String)> {
+    let seen: Value = serde_json::from_slice(body).unwrap_or_default();
+    let (Some(name), Some(version)) = (seen["snapshot"].as_str(), seen["version"].as_str()) else {
+        return Err((StatusCode::BAD_REQUEST, "this names no snapshot".to_owned()));
+    };
+    let failed = |failure: Failure| {
+        tell(&failure);
+        (StatusCode::INTERNAL_SERVER_ERROR, "the terminal says what is wrong".to_owned())
+    };
+    let found = pending::find(folder).map_err(failed)?;
+    let named = |new: &&PathBuf| new.with_extension("").display().to_string() == name;
+    let Some(new) = found.iter().find(named) else {
+        return Err((StatusCode::NOT_FOUND, format!("{name} is not pending any more")));
+    };
+    let snapshot = Pending::read(new).map_err(failed)?;
+    if snapshot.version() != version {
+        return Err((
+            StatusCode::CONFLICT,
+            format!("{name} is another since it was shown: load this page again"),
+        ));
+    }
+    act(&snapshot).map_err(failed)?;
+    Ok(format!("{verdict} {name}"))
+}

@@ -1,0 +1,165 @@
+//! Pending snapshots: what a failing test leaves beside the snapshot that was accepted, by insta's conventions.
+//!
+//! Beside `ball.snap` comes `ball.snap.new`: a header between two lines of dashes, then a text. Where the header says
+//! that the snapshot is binary, it is in a file of its own, `ball.snap.png` beside `ball.snap` and `ball.snap.new.png`
+//! beside `ball.snap.new`.
+
+use crate::cli::Failure;
+use crate::cli::output::Output;
+use std::fs;
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+/// A snapshot that waits for a decision.
+pub struct Pending {
+    /// The accepted snapshot's file, whether there is one or not.
+    pub path: PathBuf,
+    /// What was accepted, if anything was.
+    pub old: Option<Content>,
+    /// What a test came to now.
+    pub new: Content,
+    /// The whole pending file.
+    file: String,
+}
+
+/// What a snapshot is of.
+#[derive(PartialEq, Eq, Hash)]
+pub enum Content {
+    /// A text.
+    Text(String),
+    /// The bytes of a file, and its name's extension.
+    Binary(Vec<u8>, String),
+}
+
+/// The files of pending snapshots at a path: below a folder, sorted, or the one of a snapshot.
+pub fn find(path: &Path) -> Result<Vec<PathBuf>, Failure> {
+    if !path.is_dir() {
+        let snapshot = if path.extension() == Some("new".as_ref()) { &path.with_extension("") } else { path };
+        return match with(snapshot, ".new") {
+            new if new.is_file() => Ok(vec![new]),
+            _ if snapshot.is_file() => {
+                Err(Failure::Usage(format!("nothing is pending for `{}`", path.display()), None))
+            }
+            _ => Err(Failure::Usage(
+                format!("there is neither a folder nor a snapshot `{}`", path.display()),
+                Some("name a folder of snapshots, or a snapshot by its `.snap`".to_owned()),
+            )),
+        };
+    }
+    let mut found = Vec::new();
+    let mut folders = vec![path.to_owned()];
+    while let Some(folder) = folders.pop() {
+        let cannot =
+            |error: io::Error| Failure::Usage(format!("cannot read `{}`: {error}", folder.display()), None);
+        for entry in fs::read_dir(&folder).map_err(cannot)? {
+            let entry = entry.map_err(cannot)?;
+            if entry.file_type().map_err(cannot)?.is_dir() {
+                folders.push(entry.path());
+            } else if entry.file_name().to_string_lossy().ends_with(".snap.new") {
+                found.push(entry.path());
+            }
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
+impl Pending {
+    /// Reads a pending snapshot's file and what is beside it.
+    pub fn read(new: &Path) -> Result<Self, Failure> {
+        let path = new.with_extension("");
+        let cannot = |file: &Path, reason: &str| {
+            Failure::Usage(format!("cannot read the snapshot `{}`: {reason}", file.display()), None)
+        };
+        let file = fs::read_to_string(new).map_err(|error| cannot(new, &error.to_string()))?;
+        let is = content(new, &file).map_err(|reason| cannot(new, &reason))?;
+        let is = is.ok_or_else(|| cannot(new, "the file beside it is missing"))?;
+        let old = match fs::read_to_string(&path) {
+            Ok(old) => content(&path, &old).map_err(|reason| cannot(&path, &reason))?,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => None,
+            Err(error) => return Err(cannot(&path, &error.to_string())),
+        };
+        Ok(Self { path, old, new: is, file })
+    }
+
+    /// Tells this content from any other that the snapshot had or will have.
+    pub fn version(&self) -> String {
+        let mut hasher = DefaultHasher::new();
+        (&self.old, &self.new, &self.file).hash(&mut hasher);
+        format!("{:016x}", hasher.finish())
+    }
+
+    /// Puts what is new in the place of what is old.
+    pub fn accept(&self) -> Result<(), Failure> {
+        if let Content::Binary(bytes, extension) = &self.new {
+            put(&with(&self.path, &format!(".{extension}")), bytes)?;
+        }
+        // The line of the test's source is for reviewing alone: it changes too often to be kept.
+        let kept = |line: &&str| !line.starts_with("assertion_line:");
+        let (header, text) = parts(&self.file).unwrap_or_default();
+        let header: String = header.split_inclusive('\n').filter(kept).collect();
+        put(&self.path, format!("---\n{header}---\n{text}").as_bytes())?;
+        self.reject()
+    }
+
+    /// Removes what is new.
+    pub fn reject(&self) -> Result<(), Failure> {
+        let new = with(&self.path, ".new");
+        let binary = match &self.new {
+            Content::Text(_) => None,
+            Content::Binary(_, extension) => Some(with(&new, &format!(".{extension}"))),
+        };
+        [Some(new), binary].into_iter().flatten().try_for_each(|file| {
+            fs::remove_file(&file)
+                .map_err(|error| Failure::Failed(format!("cannot remove `{}`: {error}", file.display())))
+        })
+    }
+}
+
+/// What a snapshot's file holds, or the file beside it; nothing where that is missing.
+fn content(path: &Path, file: &str) -> Result<Option<Content>, String> {
+    let (header, text) = parts(file).ok_or("it has no header between lines of dashes")?;
+    let field = |name: &str| {
+        header.lines().find_map(|line| Some(line.strip_prefix(name)?.strip_prefix(": ")?.trim_matches('"')))
+    };
+    if field("snapshot_kind") != Some("binary") {
+        return Ok(Some(Content::Text(text.replace("\r\n", "\n"))));
+    }
+    let extension = field("extension").filter(|extension| extension.chars().all(char::is_alphanumeric));
+    let extension = extension.ok_or("its header names no extension")?;
+    match fs::read(with(path, &format!(".{extension}"))) {
+        Ok(bytes) => Ok(Some(Content::Binary(bytes, extension.to_owned()))),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(format!("its .{extension} file: {error}")),
+    }
+}
+
+/// The header's lines and what comes after them.
+fn parts(file: &str) -> Option<(&str, &str)> {
+    let header = file.strip_prefix("---\r\n").or_else(|| file.strip_prefix("---\n"))?;
+    let mut end = 0;
+    for line in header.split_inclusive('\n') {
+        if line.trim_end() == "---" {
+            return Some((&header[..end], &header[end + line.len()..]));
+        }
+        end += line.len();
+    }
+    None
+}
+
+/// A path with something appended: `with_extension` would cut what the name ends in.
+fn with(path: &Path, end: &str) -> PathBuf {
+    let mut path = path.as_os_str().to_owned();
+    path.push(end);
+    path.into()
+}
+
+/// Writes a file in the place of another, or of none.
+fn put(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    let mut output = Output::open(path)?;
+    output
+        .write_all(bytes)
+        .and_then(|()| output.finish())
+        .map_err(|error| Failure::Failed(format!("cannot write `{}`: {error}", path.display())))
+}
