@@ -5,14 +5,12 @@ use super::explain::Explanation;
 use super::output::Output;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use image::RgbImage;
+use image::{ImageFormat, RgbImage};
 use serde_json::{Value, json};
 use similar::{ChangeTag, TextDiff};
-use std::io::{self, Write};
-use std::iter;
+use std::io::{self, Cursor, Write};
 use std::path::{Path, PathBuf};
 use tabray::compare::Comparison;
-use tabray::picture::Format;
 
 const PAGE: &str = include_str!("report.html");
 
@@ -140,10 +138,9 @@ fn item(item: &Item) -> io::Result<Value> {
 
 /// The picture within the page, written anew: no colour profile that its file may have changes what is seen.
 fn data_uri(picture: &RgbImage) -> io::Result<String> {
-    let size = [picture.width() as usize, picture.height() as usize];
-    let mut png = Vec::new();
-    Format::Png.write(&mut png, size, iter::once(Ok(picture.as_raw().clone())))?;
-    Ok(format!("data:image/png;base64,{}", STANDARD.encode(png)))
+    let mut png = Cursor::new(Vec::new());
+    picture.write_to(&mut png, ImageFormat::Png).map_err(io::Error::other)?;
+    Ok(format!("data:image/png;base64,{}", STANDARD.encode(png.into_inner())))
 }
 
 /// Whether a line stays, comes or goes, its numbers in the old and the new text, and the line.
