@@ -240,6 +240,7 @@ kernels! {
             let at_start = (a * from + 2.0 * b) * from + c;
             let is_start = (from == lanes.from[lane]) & (lanes.is_free[lane] != 0.0);
             let side = if is_start { 1.0_f64.copysign(at_start) } else { lanes.side[lane] };
+            let starts_in_shell = is_start & (at_start.abs() <= error);
             let (a, b, c) = (side * a, side * b, side * c);
             // A crossing to the other side falls: begin where it can.
             let rises = 2.0 * (a * from + b) - slope_error - rounding;
@@ -251,9 +252,17 @@ kernels! {
             let inner = (a, b, c + error);
             let (leaves, is_left) = first_not_positive(inner, enters, to);
             let falls = larger(a * enters + b, a * leaves + b);
-            let is_certain = !is_in_shell & is_left & (2.0 * falls + slope_error + rounding < 0.0);
-            let is_met = (is_close[lane] != 0) & !never_falls & (is_in_shell | is_entered);
-            let near = if is_in_shell { begin } else { enters };
+            let is_certain =
+                !starts_in_shell & !is_in_shell & is_left & (2.0 * falls + slope_error + rounding < 0.0);
+            let is_met = (is_close[lane] != 0)
+                & (starts_in_shell | (!never_falls & (is_in_shell | is_entered)));
+            let near = if starts_in_shell {
+                from
+            } else if is_in_shell {
+                begin
+            } else {
+                enters
+            };
             let is_nearer = is_met & (near < lanes.near[lane]);
             lanes.near[lane] = if is_nearer { near } else { lanes.near[lane] };
             lanes.far[lane] = if is_nearer { if is_certain { leaves } else { MISS } } else { lanes.far[lane] };
