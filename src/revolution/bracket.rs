@@ -240,7 +240,9 @@ kernels! {
             let at_start = (a * from + 2.0 * b) * from + c;
             let is_start = (from == lanes.from[lane]) & (lanes.is_free[lane] != 0.0);
             let side = if is_start { 1.0_f64.copysign(at_start) } else { lanes.side[lane] };
-            let starts_in_shell = is_start & (at_start.abs() <= error);
+            // In the shell it may be either; and rays that rise and that fall go through slabs in one order, so that
+            // some come to a slab before their side is known.
+            let is_side_unknown = (is_start & (at_start.abs() <= error)) | (side * at_start < -error);
             let (a, b, c) = (side * a, side * b, side * c);
             // A crossing to the other side falls: begin where it can.
             let rises = 2.0 * (a * from + b) - slope_error - rounding;
@@ -253,10 +255,10 @@ kernels! {
             let (leaves, is_left) = first_not_positive(inner, enters, to);
             let falls = larger(a * enters + b, a * leaves + b);
             let is_certain =
-                !starts_in_shell & !is_in_shell & is_left & (2.0 * falls + slope_error + rounding < 0.0);
+                !is_side_unknown & !is_in_shell & is_left & (2.0 * falls + slope_error + rounding < 0.0);
             let is_met = (is_close[lane] != 0)
-                & (starts_in_shell | (!never_falls & (is_in_shell | is_entered)));
-            let near = if starts_in_shell {
+                & (is_side_unknown | (!never_falls & (is_in_shell | is_entered)));
+            let near = if is_side_unknown {
                 from
             } else if is_in_shell {
                 begin
