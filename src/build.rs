@@ -1,6 +1,7 @@
 //! Names every file of `plugins/`, so that dropping one in compiles it in and deleting it takes it out.
 //!
-//! Writes `$OUT_DIR/plugins.rs`, one macro with a `mod` per file in sorted order; `lib.rs` expands it.
+//! Writes `$OUT_DIR/plugins.rs`, one macro with a `mod` per file in sorted order; `lib.rs` expands it. The modules'
+//! names are raw, so that a plugin can be named after a word of Rust: `box`.
 
 use std::path::Path;
 use std::{env, fs, io};
@@ -16,6 +17,12 @@ fn main() -> io::Result<()> {
         let name = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
         if is_module_name(name) {
             names.push(name.to_owned());
+            if !fs::read_to_string(&path)?.contains("inventory::submit!") {
+                println!(
+                    "cargo::warning={} registers nothing, so that no scene can use it: add `inventory::submit! {{ ... }}`",
+                    path.display()
+                );
+            }
         } else {
             println!(
                 "cargo::error={}: a plugin's file name is a Rust module name, such as `tiled_plane.rs`",
@@ -24,7 +31,7 @@ fn main() -> io::Result<()> {
         }
     }
     names.sort();
-    let modules: String = names.iter().map(|name| format!("    mod {name};\n")).collect();
+    let modules: String = names.iter().map(|name| format!("    mod r#{name};\n")).collect();
     let out = env::var_os("OUT_DIR").ok_or_else(|| io::Error::other("cargo sets OUT_DIR"))?;
     fs::write(
         Path::new(&out).join("plugins.rs"),

@@ -6,7 +6,11 @@
 //! without any text ([`scene::build`]), and printed again ([`dump`]).
 //!
 //! A file in `plugins/` adds an entity type: it registers an [`Entity`](entity::Entity) and implements a trait
-//! of [`geometry`]. No other file knows its name.
+//! of [`geometry`]. No other file knows its name. A plugin outside of this package does the same, and its program is
+//! [`cli::run`] (see `docs/plugins.md`).
+
+// What a plugin outside of this package writes its types and its registration with.
+pub use {glam, inventory};
 
 pub mod accuracy;
 pub mod aov;
@@ -15,6 +19,7 @@ pub mod bounds;
 pub mod camera;
 pub mod certify;
 pub mod choice;
+pub mod cli;
 pub mod compare;
 pub mod cpu;
 pub mod debug;

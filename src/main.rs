@@ -1,9 +1,7 @@
 //! The `tabray` program.
 
-mod cli;
-
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    cli::run()
+    tabray::cli::run()
 }

@@ -3,14 +3,14 @@
 use super::output::Output;
 use super::render::{Progress, finished};
 use super::{Failure, interrupt};
+use crate::aov::Aov;
+use crate::model::Model;
+use crate::picture::Format;
+use crate::render::Renderer;
 use std::ffi::OsStr;
 use std::io::{self, BufWriter, Write};
 use std::iter;
 use std::path::{Path, PathBuf};
-use tabray::aov::Aov;
-use tabray::model::Model;
-use tabray::picture::Format;
-use tabray::render::Renderer;
 
 /// The largest picture that these are made of: unlike the main one, they are in memory as a whole.
 const LARGEST: usize = 1 << 26;

@@ -1,8 +1,8 @@
 //! `tabray check`: the faults of scenes, and nothing else.
 
 use super::{Failure, input, tell};
+use crate::registry::Registry;
 use std::path::PathBuf;
-use tabray::registry::Registry;
 
 /// Look for faults in scenes
 #[derive(clap::Args)]

@@ -2,13 +2,13 @@
 
 use super::output::Output;
 use super::{Failure, input, print};
+use crate::dump;
+use crate::model::Model;
+use crate::registry::Registry;
+use crate::scene;
+use crate::syntax::Syntax;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use tabray::dump;
-use tabray::model::Model;
-use tabray::registry::Registry;
-use tabray::scene;
-use tabray::syntax::Syntax;
 
 /// Write a scene in the other spelling
 ///

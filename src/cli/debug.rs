@@ -1,10 +1,10 @@
 //! `tabray render --debug`: the notes' debug lines, for some pixels or for all.
 
 use super::{Failure, interrupt, probe};
+use crate::debug::{self, Line};
+use crate::model::Model;
+use crate::render::Renderer;
 use std::io::{self, BufWriter, Write};
-use tabray::debug::{self, Line};
-use tabray::model::Model;
-use tabray::render::Renderer;
 
 #[derive(clap::Args)]
 #[group(id = "debug lines")]

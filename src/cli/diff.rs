@@ -6,8 +6,8 @@ use super::{Failure, input, picture, print, tell};
 use image::RgbImage;
 use std::path::PathBuf;
 use std::process::ExitCode;
-use tabray::compare::Comparison;
-use tabray::registry::Registry;
+use crate::compare::Comparison;
+use crate::registry::Registry;
 
 /// Compare two pictures
 ///

@@ -1,10 +1,10 @@
 //! `tabray dump`: a scene as the program understands it.
 
 use super::{Failure, input, print};
+use crate::dump;
+use crate::registry::Registry;
+use crate::syntax::Syntax;
 use std::path::PathBuf;
-use tabray::dump;
-use tabray::registry::Registry;
-use tabray::syntax::Syntax;
 
 /// Print a scene as the program understands it
 #[derive(clap::Args)]

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 use std::process::{Command, Stdio};
-use tabray::compare::Pixel;
-use tabray::model::Model;
-use tabray::probe;
-use tabray::render::Renderer;
+use crate::compare::Pixel;
+use crate::model::Model;
+use crate::probe;
+use crate::render::Renderer;
 
 /// How a pixel got its colour, as far as that can be known.
 pub struct Explanation {

@@ -1,13 +1,13 @@
 //! Reading scenes from files and from standard input.
 
 use super::Failure;
+use crate::accuracy::Accuracy;
+use crate::model::Model;
+use crate::registry::Registry;
+use crate::scene;
 use std::fs::File;
 use std::io::{self, Read, Write};
 use std::path::Path;
-use tabray::accuracy::Accuracy;
-use tabray::model::Model;
-use tabray::registry::Registry;
-use tabray::scene;
 
 /// The largest scene that is read: far beyond any written one, and far below what memory holds.
 const LARGEST: u64 = 1 << 30;

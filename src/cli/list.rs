@@ -1,11 +1,11 @@
 //! `tabray list`: the entity types and their attributes, from their tables.
 
 use super::{Failure, print};
-use tabray::entity::Entity;
-use tabray::pparm::Attribute;
-use tabray::reference;
-use tabray::registry::Registry;
-use tabray::value::Datum;
+use crate::entity::Entity;
+use crate::pparm::Attribute;
+use crate::reference;
+use crate::registry::Registry;
+use crate::value::Datum;
 
 /// List the entity types, or the attributes of one
 #[derive(clap::Args)]

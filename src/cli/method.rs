@@ -1,7 +1,7 @@
 //! `--method` and `--accuracy`: how exactly a scene is traced, whatever it says itself.
 
 use super::Failure;
-use tabray::accuracy::Accuracy;
+use crate::accuracy::Accuracy;
 
 #[derive(clap::Args)]
 #[group(id = "how exactly")]

@@ -22,12 +22,12 @@ mod schema;
 mod serve;
 mod verify;
 
+use crate::registry::Registry;
+use crate::scene::Report;
 use annotate_snippets::{Group, Level, Renderer};
 use clap::{CommandFactory, Parser, Subcommand};
 use std::io::{self, IsTerminal, Write};
 use std::process::ExitCode;
-use tabray::registry::Registry;
-use tabray::scene::Report;
 
 /// A ray tracer in which a scene is data and every entity type is a plugin
 ///
@@ -81,7 +81,8 @@ impl From<io::Error> for Failure {
     }
 }
 
-/// Runs the command that the arguments name.
+/// Runs the command that the program's arguments name, with every plugin that is linked into it. Its messages go to
+/// standard error, and its exit status tells how it went.
 pub fn run() -> ExitCode {
     let cli = Cli::parse();
     let outcome = match Registry::get() {

@@ -2,12 +2,12 @@
 
 use super::output::Output;
 use super::{Failure, input, interrupt, render};
+use crate::accuracy::Accuracy;
+use crate::dump;
+use crate::picture::Format;
+use crate::registry::Registry;
 use std::io::Write;
 use std::path::Path;
-use tabray::accuracy::Accuracy;
-use tabray::dump;
-use tabray::picture::Format;
-use tabray::registry::Registry;
 
 pub fn run(registry: &Registry) -> Result<(), Failure> {
     let standard = Path::new("-");

@@ -1,12 +1,12 @@
 //! `tabray probe`: one pixel, explained.
 
 use super::{Failure, input, method};
+use crate::model::Model;
+use crate::probe;
+use crate::registry::Registry;
+use crate::render::Renderer;
 use std::io::{self, BufWriter, Write};
 use std::path::PathBuf;
-use tabray::model::Model;
-use tabray::probe;
-use tabray::registry::Registry;
-use tabray::render::Renderer;
 
 /// Explain how a pixel gets its colour
 #[derive(clap::Args)]

@@ -2,16 +2,16 @@
 
 use super::output::Output;
 use super::{Failure, aov, debug, input, interrupt, method};
+use crate::model::Model;
+use crate::picture::{Compression, Format};
+use crate::registry::Registry;
+use crate::render::Renderer;
+use crate::sample::{self, Sampler};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, BufWriter};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-use tabray::model::Model;
-use tabray::picture::{Compression, Format};
-use tabray::registry::Registry;
-use tabray::render::Renderer;
-use tabray::sample::{self, Sampler};
 
 /// Make a scene's picture
 #[derive(clap::Args)]

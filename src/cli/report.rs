@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use similar::{ChangeTag, TextDiff};
 use std::io::{self, Cursor, Write};
 use std::path::{Path, PathBuf};
-use tabray::compare::Comparison;
+use crate::compare::Comparison;
 
 const PAGE: &str = include_str!("report.html");
 

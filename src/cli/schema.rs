@@ -1,8 +1,8 @@
 //! `tabray schema`: what editors need to check and complete scenes in TOML.
 
 use super::{Failure, print};
-use tabray::registry::Registry;
-use tabray::schema;
+use crate::registry::Registry;
+use crate::schema;
 
 /// Print a JSON Schema of scenes in TOML, for editors
 #[derive(clap::Args)]

@@ -3,12 +3,12 @@
 use super::output::Output;
 use super::render::{Progress, finished, named};
 use super::{Failure, input, interrupt, method, print};
+use crate::registry::Registry;
+use crate::render::Renderer;
+use crate::verify::{self, Verdict};
 use std::io::BufWriter;
 use std::iter;
 use std::path::PathBuf;
-use tabray::registry::Registry;
-use tabray::render::Renderer;
-use tabray::verify::{self, Verdict};
 
 /// Prove for each pixel which object is seen
 ///

@@ -9,7 +9,7 @@ use hyper::{Request, Response, StatusCode};
 use serde_json::Value;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use tabray::registry::Registry;
+use crate::registry::Registry;
 
 /// Shows the page and does what is decided there.
 pub fn serve(registry: &'static Registry, args: &Args) -> Result<(), Failure> {

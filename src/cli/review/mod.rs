@@ -11,8 +11,8 @@ use std::env;
 use std::ffi::OsStr;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
-use tabray::compare::Comparison;
-use tabray::registry::Registry;
+use crate::compare::Comparison;
+use crate::registry::Registry;
 
 /// Show the snapshots that tests left to be reviewed
 ///
