@@ -2,6 +2,7 @@
 //!
 //! Each sort of them is a registry of its own; a plugin file adds one.
 
+use crate::entity;
 use crate::value::{Datum, Type, Value};
 use std::panic::Location;
 
@@ -67,11 +68,11 @@ pub(crate) fn contradictions<T: Choice>() -> Vec<String> {
         for first in &all[..index] {
             if first.name == second.name || (first.number.is_some() && first.number == second.number) {
                 faults.push(format!(
-                    "two are registered as {} `{}`: at {} and at {}",
+                    "two are registered as {} `{}`, at {} and at {}: call or number one of them otherwise",
                     T::WHAT,
                     second.name,
-                    first.place,
-                    second.place
+                    entity::place(first.place),
+                    entity::place(second.place)
                 ));
             }
         }

@@ -188,9 +188,14 @@ impl Entity {
 
     /// The file and line that registers it.
     pub fn place(&self) -> String {
-        let file = self.place.file().replace('\\', "/");
-        format!("{}:{}", file.strip_prefix("src/../").unwrap_or(&file), self.place.line())
+        place(self.place)
     }
+}
+
+/// The file and line of a place that registers something.
+pub(crate) fn place(of: &Location) -> String {
+    let file = of.file().replace('\\', "/");
+    format!("{}:{}", file.strip_prefix("src/../").unwrap_or(&file), of.line())
 }
 
 /// What a constructor may know of the scene beside its own values.
@@ -233,8 +238,11 @@ impl Args {
     /// Where the plugin asks for an attribute that is not in the table it registered.
     #[track_caller]
     pub fn get<T: Value>(&self, key: &Pparm<T>) -> T {
-        let value = self.find(key.name()).and_then(T::from_datum);
-        value.unwrap_or_else(|| self.not_in_table(key.name()))
+        match self.find(key.name()).and_then(T::from_datum) {
+            Some(value) => value,
+            // No closure: the message is to name the plugin's line.
+            None => self.not_in_table(key.name()),
+        }
     }
 
     /// The value of an attribute as it was checked.
@@ -263,13 +271,22 @@ impl Args {
         self.values().find(|(known, _)| known.name() == attribute).map(|(_, datum)| datum)
     }
 
+    /// Whether the attribute that a refusal marks, if it marks one, is in the type's table.
+    pub(crate) fn has_what_is_refused(&self, refusal: &Refusal) -> bool {
+        refusal.attribute.is_none_or(|attribute| self.find(attribute).is_some())
+    }
+
     #[track_caller]
     fn not_in_table(&self, attribute: &str) -> ! {
-        panic!(
-            "the plugin `{}` asks for `{attribute}`, which is not in the table it registers at {}",
-            self.entity.name,
-            self.entity.place()
-        )
+        let (name, place) = (self.entity.name, self.entity.place());
+        match self.find(attribute) {
+            Some(_) => panic!(
+                "the plugin `{name}` asks for `{attribute}` as a type that is not the one in the table it registers at {place}"
+            ),
+            None => panic!(
+                "the plugin `{name}` asks for `{attribute}`, which is not in the table it registers at {place}: add it there"
+            ),
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::choice::{Choice, ChoiceName};
 use crate::dual::Dual;
+use crate::entity;
 use crate::formula::Formula;
 use std::panic::Location;
 
@@ -50,7 +51,7 @@ impl Profile {
     pub(crate) fn fault(&self) -> Option<String> {
         let fault = |text| Formula::parse(text).err().map(|fault| (text, fault));
         let (text, fault) = fault(self.formula).or_else(|| self.slope.and_then(fault))?;
-        let place = self.place;
+        let place = entity::place(self.place);
         Some(format!("the profile `{}` at {place} is no formula: {} in `{text}`", self.name, fault.message))
     }
 }

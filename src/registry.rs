@@ -58,7 +58,7 @@ impl Registry {
                 for &name in iter::once(&attribute.name()).chain(attribute.aliases()) {
                     if !names.insert(name) {
                         faults.push(format!(
-                            "the table of `{}` at {} has `{name}` twice",
+                            "the table of `{}` at {} has `{name}` twice: call one of them otherwise",
                             entity.name,
                             entity.place()
                         ));
@@ -107,7 +107,11 @@ fn profiles() -> Vec<String> {
 }
 
 fn taken(what: &str, name: &str, first: &Entity, second: &Entity) -> String {
-    format!("the {what} `{name}` is registered twice: at {} and at {}", first.place(), second.place())
+    format!(
+        "the {what} `{name}` is registered twice, at {} and at {}: call one of them otherwise",
+        first.place(),
+        second.place()
+    )
 }
 
 #[cfg(test)]
@@ -139,7 +143,7 @@ mod tests {
     fn a_name_taken_twice_is_refused_with_both_places() {
         for order in [[&BOX, &OTHER_BOX], [&OTHER_BOX, &BOX]] {
             let expected = format!(
-                "the entity type `box` is registered twice: at {} and at {}",
+                "the entity type `box` is registered twice, at {} and at {}: call one of them otherwise",
                 BOX.place(),
                 OTHER_BOX.place()
             );
@@ -150,13 +154,15 @@ mod tests {
 
     #[test]
     fn an_alias_that_is_another_types_name_is_refused() {
-        assert!(fault(&[&CRATE, &BOX]).starts_with("the entity type `box` is registered twice: at "));
+        assert!(fault(&[&CRATE, &BOX]).starts_with("the entity type `box` is registered twice, at "));
         assert!(Registry::of([&CRATE]).is_ok_and(|registry| registry.find("box").is_some()));
     }
 
     #[test]
     fn a_table_with_one_name_twice_is_refused_with_its_place() {
-        assert_eq!(fault(&[&TORN]), format!("the table of `torn` at {} has `extent` twice", TORN.place()));
+        let expected =
+            format!("the table of `torn` at {} has `extent` twice: call one of them otherwise", TORN.place());
+        assert_eq!(fault(&[&TORN]), expected);
     }
 
     #[test]
@@ -164,22 +170,22 @@ mod tests {
         let registry = Registry::get().expect("no two plugins claim one name");
         for entity in registry.iter() {
             let of = |what: &str| format!("{what} of `{}`, {}", entity.name, entity.place());
-            assert!(!entity.meaning.is_empty() && !entity.meaning.ends_with('.'), "{}", of("the meaning"));
+            let is_short = |meaning: &str| !meaning.is_empty() && !meaning.ends_with('.');
+            let meant = "the meaning is a few words without a full stop:";
+            assert!(is_short(entity.meaning), "{meant} {}", of("that"));
             for attribute in entity.attributes() {
                 let of = |what: &str| of(&format!("{what} of `{}`", attribute.name()));
-                assert!(
-                    !attribute.meaning().is_empty() && !attribute.meaning().ends_with('.'),
-                    "{}",
-                    of("the meaning")
-                );
-                assert!(!attribute.arity().is_empty(), "{}", of("the arity"));
+                assert!(is_short(attribute.meaning()), "{meant} {}", of("that"));
+                assert!(!attribute.arity().is_empty(), "some number of values is taken: {}", of("the arity"));
                 assert!(
                     attribute.default().is_none_or(|datum| attribute.allows(&datum)),
-                    "{}",
-                    of("the default")
+                    "{} does not keep its own rule, to be {}",
+                    of("the default"),
+                    attribute.rule()
                 );
                 if let Type::Name(kind) = attribute.value_type() {
-                    assert!(registry.iter().any(|entity| entity.kind() == kind), "{}", of("the kind"));
+                    let is_there = registry.iter().any(|entity| entity.kind() == kind);
+                    assert!(is_there, "no plugin makes a {kind}, {}", of("the type"));
                 }
             }
         }
@@ -194,9 +200,10 @@ mod tests {
             let file = format!("plugins/{}.rs:", entity.name);
             assert!(
                 entity.place().starts_with(&file),
-                "`{}` is registered at {}",
+                "`{}` is registered at {}: a plugin's file is named after it, `plugins/{}.rs`",
                 entity.name,
-                entity.place()
+                entity.place(),
+                entity.name
             );
         }
     }

@@ -149,16 +149,26 @@ fn every_entity_has_its_scene_and_a_mistake() {
         .collect();
     for entity in registry().iter() {
         let name = entity.name;
-        let scene = load(&root().join("scenes/entities").join(name).with_extension("ray"));
-        assert!(scene.entities(entity.kind()).iter().any(|args| args.entity.name == name), "{name}");
+        let path = root().join("scenes/entities").join(name).with_extension("ray");
+        assert!(
+            path.is_file(),
+            "{entity:?} has no scene of its own: add scenes/entities/{name}.ray, which shows it"
+        );
+        let scene = load(&path);
+        let shown = scene.entities(entity.kind()).iter().any(|args| args.entity.name == name);
+        assert!(shown, "scenes/entities/{name}.ray shows no {name}");
         for snapshot in [format!("{name}.dump.snap"), format!("{name}.snap.png")] {
             let path = root().join("snapshots/entities").join(&snapshot);
-            assert!(path.is_file(), "there is no {}", path.display());
+            assert!(
+                path.is_file(),
+                "there is no {}: look at what the scene gives with `cargo insta review`, and accept it",
+                path.display()
+            );
         }
         let title = format!("{name} `");
         assert!(
             mistakes.iter().any(|message| message.contains(&title)),
-            "no mistake in scenes/wrong is about {name}"
+            "no mistake is about {entity:?}: add a scene with one to scenes/wrong, and accept its message"
         );
     }
 }

@@ -163,6 +163,13 @@ impl Check<'_> {
         match construct(&args) {
             Ok(value) => Some(Item { args, value }),
             Err(refusal) => {
+                debug_assert!(
+                    args.has_what_is_refused(&refusal),
+                    "the plugin `{}` refuses `{}`, which is not in the table it registers at {}: name an attribute of that",
+                    args.entity.name,
+                    refusal.attribute.unwrap_or_default(),
+                    args.entity.place()
+                );
                 let place = place_of(args.entity, written, refusal.attribute);
                 let message = format!("{} `{}` {}", args.entity.name, args.name, refusal.message);
                 self.report.add(Fault::error(place, message).help(refusal.help));
