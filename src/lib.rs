@@ -21,6 +21,7 @@ pub mod certify;
 pub mod choice;
 pub mod cli;
 pub mod compare;
+pub mod contract;
 pub mod cpu;
 pub mod debug;
 pub mod dual;
