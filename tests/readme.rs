@@ -2,27 +2,18 @@
 
 mod common;
 
-use common::{load, model, render, root};
+use common::copy::Copy;
+use common::{block_with, load, model, render, root};
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
 
 fn readme() -> String {
     fs::read_to_string(root().join("README.md")).expect("the README")
 }
 
-/// The first block of code in the README that contains a text.
-fn block_with(text: &str) -> String {
-    let readme = readme();
-    let block = readme.split("```").skip(1).step_by(2).find(|block| block.contains(text));
-    let block = block.unwrap_or_else(|| panic!("the README has a block with {text}"));
-    block.split_once('\n').expect("a first line, which names the language").1.to_owned()
-}
-
 #[test]
 fn the_readmes_scene_is_one() {
-    assert_eq!(model(&block_with("camera eye\n")).objects.len(), 2);
+    assert_eq!(model(&block_with(&readme(), "camera eye\n")).objects.len(), 2);
 }
 
 #[test]
@@ -56,19 +47,26 @@ fn the_readme_shows_every_entity() {
     let readme = readme();
     for entity in common::registry().iter() {
         let picture = format!("![{}](docs/entities/{}.png)", entity.name, entity.name);
-        assert!(readme.contains(&picture), "the README shows no {}", entity.name);
+        assert!(
+            readme.contains(&picture),
+            "the README shows no {}: add {picture} to its entities",
+            entity.name
+        );
     }
 }
 
 #[test]
 fn a_plugin_is_one_file_dropped_in() {
-    let copy = Copy::new();
+    let copy = Copy::new("dropped-in");
     copy.build();
     assert!(!copy.prints(&["list"]).contains("disc "), "nothing was dropped in yet");
     let before = copy.files();
 
-    let plugins = [("disc", block_with("struct Disc").as_str()), ("barrel", BARREL), ("stripes", STRIPES)]
-        .map(|(name, text)| (copy.folder.join("plugins").join(name).with_extension("rs"), text.to_owned()));
+    let plugins =
+        [("disc", block_with(&readme(), "struct Disc").as_str()), ("barrel", BARREL), ("stripes", STRIPES)]
+            .map(|(name, text)| {
+                (copy.folder.join("plugins").join(name).with_extension("rs"), text.to_owned())
+            });
     for (path, text) in &plugins {
         fs::write(path, text).expect("room for a file");
     }
@@ -81,7 +79,7 @@ fn a_plugin_is_one_file_dropped_in() {
     assert!(copy.prints(&["list", "disc"]).contains("the distance from its middle to its rim"));
 
     let scene = copy.outside("disc.ray");
-    fs::write(&scene, block_with("disc target")).expect("room for a file");
+    fs::write(&scene, block_with(&readme(), "disc target")).expect("room for a file");
     let scene = scene.to_str().expect("a path in UTF-8");
     let dump = copy.prints(&["dump", scene]);
     assert!(
@@ -136,85 +134,3 @@ impl Shader for Stripes {
     }
 }
 ";
-
-/// A copy of the package to drop files into. Its build directory stays, to keep the next run quick.
-struct Copy {
-    folder: PathBuf,
-    target: PathBuf,
-}
-
-impl Copy {
-    fn new() -> Self {
-        let base = Path::new(env!("CARGO_TARGET_TMPDIR"));
-        let copy = Self { folder: base.join("dropped-in"), target: base.join("dropped-in-target") };
-        let _ = fs::remove_dir_all(&copy.folder);
-        fs::create_dir_all(&copy.folder).expect("room for a copy");
-        for file in ["Cargo.toml", "Cargo.lock"] {
-            fs::copy(root().join(file), copy.folder.join(file)).expect("a copy");
-        }
-        for folder in ["src", "plugins"] {
-            copy_all(&root().join(folder), &copy.folder.join(folder));
-        }
-        copy
-    }
-
-    /// A path that is not in the copy.
-    fn outside(&self, name: &str) -> PathBuf {
-        self.target.join(name)
-    }
-
-    fn build(&self) {
-        let build = Command::new(env!("CARGO"))
-            .args(["build", "--locked", "--quiet"])
-            .current_dir(&self.folder)
-            .env("CARGO_TARGET_DIR", &self.target)
-            .output()
-            .expect("cargo runs");
-        assert!(build.status.success(), "{}", String::from_utf8_lossy(&build.stderr));
-    }
-
-    fn prints(&self, args: &[&str]) -> String {
-        let Output { status, stdout, stderr } =
-            Command::new(self.target.join("debug/tabray")).args(args).output().expect("the program runs");
-        assert!(status.success(), "{args:?}: {}", String::from_utf8_lossy(&stderr));
-        String::from_utf8(stdout).expect("text")
-    }
-
-    /// What the program says of a scene on standard input.
-    fn run(&self, args: &[&str], scene: &str) -> String {
-        let program = self.target.join("debug/tabray");
-        let output =
-            assert_cmd::Command::new(program).args(args).write_stdin(scene).output().expect("it runs");
-        String::from_utf8(output.stderr).expect("text")
-    }
-
-    /// Every file of the copy and what is in it.
-    fn files(&self) -> BTreeSet<(PathBuf, Vec<u8>)> {
-        let mut files = BTreeSet::new();
-        let mut folders = vec![self.folder.clone()];
-        while let Some(folder) = folders.pop() {
-            for entry in fs::read_dir(folder).expect("a folder") {
-                let path = entry.expect("an entry").path();
-                if path.is_dir() {
-                    folders.push(path);
-                } else {
-                    files.insert((path.clone(), fs::read(&path).expect("a file")));
-                }
-            }
-        }
-        files
-    }
-}
-
-fn copy_all(from: &Path, to: &Path) {
-    fs::create_dir_all(to).expect("room for a copy");
-    for entry in fs::read_dir(from).expect("a folder") {
-        let path = entry.expect("an entry").path();
-        let target = to.join(path.file_name().expect("a name"));
-        if path.is_dir() {
-            copy_all(&path, &target);
-        } else {
-            fs::copy(&path, &target).expect("a copy");
-        }
-    }
-}

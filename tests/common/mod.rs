@@ -1,6 +1,8 @@
 //! What several tests need: the registry, scenes and decoded pictures.
 #![allow(dead_code, reason = "each test program uses a part of it")]
 
+pub mod copy;
+
 use image::RgbImage;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -35,6 +37,13 @@ pub fn model_in(folder: &Path, text: &str) -> Model {
 /// The model of a scene's file, which has no faults.
 pub fn load(path: &Path) -> Model {
     model_in(path.parent().expect("a folder"), &fs::read_to_string(path).expect("a scene that is text"))
+}
+
+/// The first block of code with a text in a page of the docs.
+pub fn block_with(page: &str, text: &str) -> String {
+    let block = page.split("```").skip(1).step_by(2).find(|block| block.contains(text));
+    let block = block.unwrap_or_else(|| panic!("the page has a block with {text}"));
+    block.split_once('\n').expect("a first line, which names the language").1.to_owned()
 }
 
 /// The picture of a model.

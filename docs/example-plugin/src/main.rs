@@ -1,0 +1,12 @@
+//! `tabray` with one plugin more.
+
+mod tangle;
+
+fn main() -> std::process::ExitCode {
+    tabray::cli::run()
+}
+
+#[test]
+fn every_plugin_keeps_its_contract() {
+    tabray::contract::assert_kept();
+}

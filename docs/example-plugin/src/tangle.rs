@@ -1,0 +1,43 @@
+//! A tangle: a closed surface of the fourth degree with a hole in each side of a cube.
+
+use tabray::entity::Entity;
+use tabray::geometry::Body;
+use tabray::glam::DVec3;
+use tabray::implicit::{Frame, Implicit};
+use tabray::number::Number;
+use tabray::pparm::{Pparm, Table};
+
+static CENTER: Pparm<DVec3> = Pparm::required("center", "the point in its middle").unit("world coordinates");
+static SIZE: Pparm<f64> = Pparm::required("size", "the distance from its center to its sides")
+    .unit("world units")
+    .must("positive", |size| *size > 0.0);
+
+const TABLE: Table = &[&CENTER, &SIZE];
+
+tabray::inventory::submit! {
+    Entity::shape("tangle", "a cube with holes through its middle", &[TABLE], |args| {
+        Ok(Body::implicit(Tangle { size: args.get(&SIZE) }, Frame::at(args.get(&CENTER))))
+    })
+}
+
+/// How far the surface reaches where its formula is not scaled.
+const REACH: f64 = 2.2665;
+
+struct Tangle {
+    size: f64,
+}
+
+impl Implicit for Tangle {
+    fn value<N: Number>(&self, at: [N; 3]) -> N {
+        let side = |at: N| {
+            let square = (at * N::constant(REACH / self.size)).powi(2);
+            square * (square - N::constant(5.0))
+        };
+        let [x, y, z] = at;
+        side(x) + side(y) + side(z) + N::constant(11.8)
+    }
+
+    fn bounds(&self) -> [DVec3; 2] {
+        [DVec3::splat(-self.size), DVec3::splat(self.size)]
+    }
+}

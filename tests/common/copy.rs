@@ -1,0 +1,104 @@
+//! A copy of the package, into which plugins are dropped.
+
+use super::root;
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// A copy of the package to drop files into. What is built of all copies stays, to keep the next run quick.
+pub struct Copy {
+    /// Where it is.
+    pub folder: PathBuf,
+    target: PathBuf,
+}
+
+impl Copy {
+    /// A copy of this name.
+    pub fn new(name: &str) -> Self {
+        let base = Path::new(env!("CARGO_TARGET_TMPDIR"));
+        let copy = Self { folder: base.join(name), target: base.join("dropped-in-target") };
+        let _ = fs::remove_dir_all(&copy.folder);
+        fs::create_dir_all(&copy.folder).expect("room for a copy");
+        for file in ["Cargo.toml", "Cargo.lock"] {
+            fs::copy(root().join(file), copy.folder.join(file)).expect("a copy");
+        }
+        for folder in ["src", "plugins"] {
+            copy_all(&root().join(folder), &copy.folder.join(folder));
+        }
+        copy
+    }
+
+    /// A path that is not in the copy.
+    pub fn outside(&self, name: &str) -> PathBuf {
+        self.target.join(name)
+    }
+
+    /// Builds its program; what cargo says.
+    pub fn build(&self) -> String {
+        self.cargo(&self.folder, &["build", "--locked"])
+    }
+
+    /// What cargo says in a folder of the copy.
+    pub fn cargo(&self, folder: &Path, args: &[&str]) -> String {
+        let mut cargo = Command::new(env!("CARGO"));
+        cargo.args(args).current_dir(folder).env("CARGO_TARGET_DIR", &self.target);
+        let output = cargo.output().expect("cargo runs");
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success(), "{said}");
+        said
+    }
+
+    /// What the program prints.
+    pub fn prints(&self, args: &[&str]) -> String {
+        self.program_prints("tabray", args)
+    }
+
+    /// What a program prints that was built here.
+    pub fn program_prints(&self, program: &str, args: &[&str]) -> String {
+        let program = self.target.join("debug").join(program);
+        let Output { status, stdout, stderr } =
+            Command::new(program).args(args).output().expect("the program runs");
+        assert!(status.success(), "{args:?}: {}", String::from_utf8_lossy(&stderr));
+        String::from_utf8(stdout).expect("text")
+    }
+
+    /// What the program says of a scene on standard input.
+    pub fn run(&self, args: &[&str], scene: &str) -> String {
+        let program = self.target.join("debug/tabray");
+        let output =
+            assert_cmd::Command::new(program).args(args).write_stdin(scene).output().expect("it runs");
+        String::from_utf8(output.stderr).expect("text")
+    }
+
+    /// Every file of the copy and what is in it.
+    pub fn files(&self) -> BTreeSet<(PathBuf, Vec<u8>)> {
+        let mut files = BTreeSet::new();
+        let mut folders = vec![self.folder.clone()];
+        while let Some(folder) = folders.pop() {
+            for entry in fs::read_dir(folder).expect("a folder") {
+                let path = entry.expect("an entry").path();
+                if path.is_dir() {
+                    folders.push(path);
+                } else {
+                    files.insert((path.clone(), fs::read(&path).expect("a file")));
+                }
+            }
+        }
+        files
+    }
+}
+
+/// Copies a folder.
+pub fn copy_all(from: &Path, to: &Path) {
+    fs::create_dir_all(to).expect("room for a copy");
+    for entry in fs::read_dir(from).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        let target = to.join(path.file_name().expect("a name"));
+        if path.is_dir() {
+            copy_all(&path, &target);
+        } else {
+            fs::copy(&path, &target).expect("a copy");
+        }
+    }
+}
