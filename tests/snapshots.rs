@@ -161,7 +161,7 @@ fn every_entity_has_its_scene_and_a_mistake() {
             let path = root().join("snapshots/entities").join(&snapshot);
             assert!(
                 path.is_file(),
-                "there is no {}: look at what the scene gives with `cargo insta review`, and accept it",
+                "there is no {}: look at what the scene gives with `tabray review`, and accept it",
                 path.display()
             );
         }

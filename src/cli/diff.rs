@@ -3,11 +3,11 @@
 use super::explain::Place;
 use super::report::{Change, Item, Page};
 use super::{Failure, input, picture, print, tell};
+use crate::compare::Comparison;
+use crate::registry::Registry;
 use image::RgbImage;
 use std::path::PathBuf;
 use std::process::ExitCode;
-use crate::compare::Comparison;
-use crate::registry::Registry;
 
 /// Compare two pictures
 ///

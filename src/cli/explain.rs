@@ -1,11 +1,11 @@
 //! What `probe` says of a picture's pixel, for reports: by this program, and by one from before.
 
-use std::path::Path;
-use std::process::{Command, Stdio};
 use crate::compare::Pixel;
 use crate::model::Model;
 use crate::probe;
 use crate::render::Renderer;
+use std::path::Path;
+use std::process::{Command, Stdio};
 
 /// How a pixel got its colour, as far as that can be known.
 pub struct Explanation {

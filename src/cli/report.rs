@@ -3,6 +3,7 @@
 use super::Failure;
 use super::explain::Explanation;
 use super::output::Output;
+use crate::compare::Comparison;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use image::{ImageFormat, RgbImage};
@@ -10,7 +11,6 @@ use serde_json::{Value, json};
 use similar::{ChangeTag, TextDiff};
 use std::io::{self, Cursor, Write};
 use std::path::{Path, PathBuf};
-use crate::compare::Comparison;
 
 const PAGE: &str = include_str!("report.html");
 

@@ -11,7 +11,7 @@ use crate::model::Model;
 use crate::packet::{STEP, Vectors};
 use crate::profile::Profile;
 use crate::registry::Registry;
-use crate::revolution::{NoSurface, Revolution};
+use crate::revolution::{Finish, NoSurface, Revolution};
 use crate::scene;
 use crate::shading::{Anchor, ProceduralShader};
 use crate::syntax::Syntax;
@@ -149,7 +149,7 @@ pub fn material(material: &Material) -> Result<(), Fault> {
 pub fn profile(profile: &Profile) -> Result<(), Fault> {
     let line = profile.line();
     let fault = |found: String| Promise::ProfileIsFinite.fault(found);
-    Revolution::new(&line.radius, 4.0).map_err(|none| match none {
+    Revolution::new(&line.radius, 4.0, Finish::Root).map_err(|none| match none {
         NoSurface::Unbounded { near } => fault(format!("it has no bound near y = {near:.6}")),
         NoSurface::Nowhere => fault("it is nowhere above 0".to_owned()),
     })?;

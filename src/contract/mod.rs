@@ -8,6 +8,7 @@ mod draw;
 mod looks;
 mod promise;
 mod shape;
+mod surface;
 
 pub use promise::Promise;
 
@@ -86,7 +87,9 @@ pub fn breaches_in(model: &Model) -> Vec<Breach> {
     let mut draw = Draw::new("scene");
     let mut found = Vec::new();
     for object in &model.objects {
-        found.extend(shape::faults(object, &mut draw, RAYS).faults.map(|fault| (object.args.entity, fault)));
+        found.extend(
+            shape::try_object(object, &mut draw, RAYS).gravest.map(|fault| (object.args.entity, fault)),
+        );
     }
     for light in &model.lights {
         found.extend(looks::light(&*light.value, &mut draw).err().map(|fault| (light.args.entity, fault)));
@@ -125,19 +128,18 @@ fn of_entity(registry: &Registry, entity: &'static Entity, room: &Room) -> Optio
             }
         };
         models += 1;
-        let mut fault = looks::dump(registry, room.folder(), &model).err();
-        if let Some(object) = model.objects.first() {
-            let outcome = shape::faults(object, &mut draw, RAYS);
-            hits += outcome.hits;
-            fault = fault.or(outcome.faults);
-        }
-        if let Some(light) = model.lights.first() {
-            fault = fault.or(looks::light(&*light.value, &mut draw).err());
-        }
-        if let Some(material) = model.materials.first() {
-            fault = fault.or(looks::material(&material.value).err());
-        }
-        fault = fault.or(looks::camera(&model.camera.value).err());
+        let tried = match entity.kind() {
+            Kind::Camera => looks::camera(&model.camera.value),
+            Kind::Material => model.materials.iter().try_for_each(|item| looks::material(&item.value)),
+            Kind::Texture => Ok(()),
+            Kind::Light => model.lights.iter().try_for_each(|item| looks::light(&*item.value, &mut draw)),
+            Kind::Object => model.objects.iter().try_for_each(|object| {
+                let outcome = shape::try_object(object, &mut draw, RAYS);
+                hits += outcome.hits;
+                outcome.gravest.map_or(Ok(()), Err)
+            }),
+        };
+        let fault = looks::dump(registry, room.folder(), &model).and(tried).err();
         if let Some(fault) = fault
             && gravest.as_ref().is_none_or(|breach| fault.promise < breach.promise)
         {

@@ -3,23 +3,19 @@
 use super::draw::Draw;
 use super::looks::{same_bits, shader};
 use super::promise::{Fault, Promise};
-use crate::bounds::Bounds;
 use crate::certify::Enclosure;
 use crate::cpu::Cpu;
-use crate::geometry::{Hittable, MISS, Ray, Side, Span};
+use crate::geometry::{Hittable, MISS, Ray, Span};
 use crate::model::Object;
-use crate::packet::{Rays, STEP, Vectors};
+use crate::packet::{Nearest, Rays, STEP, Vectors};
 use crate::value::Datum;
 use glam::DVec3;
 
 /// How far off a distance may be, as a part of the numbers that it is computed from.
-const SLACK: f64 = 1e-7;
-
-/// A step that is far longer than that, and far shorter than what is to be seen.
-const STRIDE: f64 = 1e-4;
+pub const SLACK: f64 = 1e-7;
 
 /// Rays that meet a surface at a smaller cosine graze it: rounding tells how they fare.
-const GRAZING: f64 = 0.05;
+pub const GRAZING: f64 = 0.05;
 
 /// The first rays, which go exactly to what may be a corner or a middle.
 const EXACT: usize = 3;
@@ -32,13 +28,13 @@ pub struct Outcome {
     /// How many rays met it.
     pub hits: usize,
     /// The gravest fault.
-    pub faults: Option<Fault>,
+    pub gravest: Option<Fault>,
 }
 
 /// Sends rays at an object.
-pub fn faults(object: &Object, draw: &mut Draw, rays: usize) -> Outcome {
+pub fn try_object(object: &Object, draw: &mut Draw, rays: usize) -> Outcome {
     let mut aims = aims(object);
-    let mut outcome = Outcome { hits: 0, faults: None };
+    let mut outcome = Outcome { hits: 0, gravest: None };
     for index in 0..rays {
         let ray = ray(&aims, draw, index);
         let tried = try_ray(&Tried { shape: &*object.shape, ray, is_exact: index < EXACT }, draw);
@@ -54,8 +50,8 @@ pub fn faults(object: &Object, draw: &mut Draw, rays: usize) -> Outcome {
             }
             Ok(None) => {}
             Err(fault) => {
-                if outcome.faults.as_ref().is_none_or(|gravest| fault.promise < gravest.promise) {
-                    outcome.faults = Some(fault);
+                if outcome.gravest.as_ref().is_none_or(|gravest| fault.promise < gravest.promise) {
+                    outcome.gravest = Some(fault);
                 }
             }
         }
@@ -90,18 +86,11 @@ fn ray(aims: &[DVec3], draw: &mut Draw, index: usize) -> Ray {
 }
 
 /// A shape and a ray that it is tried with.
-struct Tried<'s> {
-    shape: &'s dyn Hittable,
-    ray: Ray,
+pub struct Tried<'s> {
+    pub shape: &'s dyn Hittable,
+    pub ray: Ray,
     /// Whether it may meet an edge or a corner, where rounding tells what is met from elsewhere.
     is_exact: bool,
-}
-
-/// A hit that rounding does not blur.
-struct Met {
-    distance: f64,
-    at: DVec3,
-    normal: DVec3,
 }
 
 /// Tries a shape with a ray; where it is met, if it is.
@@ -130,12 +119,12 @@ fn try_ray(tried: &Tried, draw: &mut Draw) -> Result<Option<DVec3>, Fault> {
 
 impl Tried<'_> {
     /// How exact distances are where the ray is.
-    fn size(&self, distance: f64) -> f64 {
+    pub fn size(&self, distance: f64) -> f64 {
         1.0 + self.ray.origin.abs().max_element() + distance
     }
 
     /// The distance along a ray, which is a sound one.
-    fn in_span(&self, ray: &Ray, within: &Span) -> Result<f64, Fault> {
+    pub fn in_span(&self, ray: &Ray, within: &Span) -> Result<f64, Fault> {
         let distance = self.shape.distance(ray, within);
         if distance == MISS || (within.near < distance && distance < within.far) {
             return Ok(distance);
@@ -170,11 +159,29 @@ impl Tried<'_> {
         let lanes = |of: DVec3| Vectors::<STEP> { x: [of.x; STEP], y: [of.y; STEP], z: [of.z; STEP] };
         let (origin, dir, points) = (lanes(ray.origin), lanes(ray.dir), lanes(at));
         for cpu in Cpu::all() {
-            let (mut many, mut normals) = ([0.0; STEP], Vectors::<STEP>::ZERO);
-            shape.distances(cpu, Rays { origin: origin.view(STEP), dir: dir.view(STEP) }, None, &mut many);
-            if many[0].to_bits() != quick.to_bits() && !(many[0].is_nan() && quick.is_nan()) {
-                return fault(format!("{quick} in single rays, and {} in packets ({cpu})", many[0]));
+            let rays = Rays { origin: origin.view(STEP), dir: dir.view(STEP) };
+            let (mut near, mut far) = ([MISS; STEP], [MISS; STEP]);
+            let (mut met, mut doubt) = ([0; STEP], [0; STEP]);
+            let nearest = Nearest { near: &mut near, far: &mut far, met: &mut met, doubt: &mut doubt };
+            shape.meet(cpu, rays, None, 1, nearest);
+            let (low, high) = (near[0], far[0]);
+            if doubt[0] == 0 && !(low <= distance && distance <= high) {
+                return fault(format!(
+                    "`distance` gives {distance}, and packets are from {low} to {high} ({cpu})"
+                ));
             }
+            // As the tracer has it: what is known exactly is not asked for again.
+            if doubt[0] == 0 && low < high {
+                let mut many = near;
+                shape.distances(cpu, rays, None, (&near, &far), &mut many);
+                if !many[0].is_nan() && many[0].to_bits() != distance.to_bits() {
+                    return fault(format!(
+                        "`distance` gives {distance}, and `distances` {} ({cpu})",
+                        many[0]
+                    ));
+                }
+            }
+            let mut normals = Vectors::<STEP>::ZERO;
             if distance != MISS {
                 shape.normals(cpu, points.view(STEP), normals.view_mut(STEP));
                 let (one, many) = (shape.normal(at), normals.get(0));
@@ -221,168 +228,9 @@ impl Tried<'_> {
         let found = format!("`distance` gives {distance}, and `certify` {proven:?}, {}", told(&self.ray));
         Err(Promise::AgreesWithItsProof.fault(found))
     }
-
-    /// The hit at a distance, whose normal is a unit vector.
-    fn met(&self, distance: f64) -> Result<Met, Fault> {
-        let at = self.ray.at(distance);
-        let normal = self.shape.normal(at);
-        if (normal.length() - 1.0).abs() <= 1e-9 {
-            return Ok(Met { distance, at, normal });
-        }
-        let found = format!("at {at} the normal is {normal}, of length {}", normal.length());
-        Err(Promise::NormalIsUnit.fault(found))
-    }
-
-    fn is_held(&self, at: DVec3) -> Result<(), Fault> {
-        let around = Bounds { low: at - STRIDE, high: at + STRIDE };
-        if self.shape.is_clear_of(&around) {
-            let found = format!("it says that it is clear of {around:?}, and is hit at {at}");
-            return Err(Promise::BoundsHoldHits.fault(found));
-        }
-        match self.shape.bounds() {
-            Some(bounds) if !bounds.with_slack(100.0).overlaps(&Bounds { low: at, high: at }) => {
-                Err(Promise::BoundsHoldHits.fault(format!("it is hit at {at}, outside of {bounds:?}")))
-            }
-            _ => Ok(()),
-        }
-    }
-
-    /// The point of a hit is one for rays from nearer, from behind and from any side.
-    fn is_met_from_elsewhere(&self, met: &Met, draw: &mut Draw) -> Result<(), Fault> {
-        let (Ray { dir, .. }, stride) = (self.ray, STRIDE * self.size(met.distance));
-        let mut origins = vec![self.ray.at(0.75 * met.distance), met.at + stride * dir];
-        for _ in 0..4 {
-            let from = draw.direction();
-            if met.normal.dot(from).abs() >= GRAZING {
-                origins.push(met.at + 3.0 * draw.part() * from + stride * from);
-            }
-        }
-        for origin in origins {
-            let way = met.at - origin;
-            let ray = Ray { origin, dir: way.normalize() };
-            let distance = self.in_span(&ray, &Span::RAY)?;
-            if distance > way.length() + SLACK * self.size(met.distance) {
-                return Err(Promise::HitIsOnTheSurface.fault(format!(
-                    "it is hit at {}, {}; but `distance` gives {distance} for that point, which is {} away, {}",
-                    met.at,
-                    told(&self.ray),
-                    way.length(),
-                    told(&ray)
-                )));
-            }
-        }
-        Ok(())
-    }
-
-    /// Where the surface is smooth its normal is upright on it, and points to the side that those beside it point to.
-    fn stands_upright(&self, met: &Met) -> Result<(), Fault> {
-        let (across, up) = self.ray.dir.any_orthonormal_pair();
-        let stride = STRIDE * self.size(met.distance).min(10.0);
-        for aside in [stride * across, stride * up] {
-            let beside = |aside: DVec3| {
-                let ray = Ray { origin: self.ray.origin + aside, ..self.ray };
-                let distance = self.shape.distance(&ray, &Span::RAY);
-                (distance != MISS).then(|| ray.at(distance))
-            };
-            let (Some(one), Some(other)) = (beside(aside), beside(-aside)) else { continue };
-            let between = other - one;
-            // A bend, an edge or another part of the shape.
-            if (one + other - 2.0 * met.at).length() > 1e-3 * between.length() {
-                continue;
-            }
-            let lean = met.normal.dot(between.normalize());
-            if lean.abs() > 0.01 {
-                let found = format!(
-                    "at {} it leans: {} instead of 90 degrees",
-                    met.at,
-                    libm::acos(lean).to_degrees()
-                );
-                return Err(Promise::NormalIsUpright.fault(found));
-            }
-            let (a, b) = (self.shape.normal(one), self.shape.normal(other));
-            if a.dot(b) < 0.0 {
-                return Err(Promise::NormalsAgree.fault(format!("{a} at {one}, and {b} at {other}")));
-            }
-        }
-        Ok(())
-    }
-
-    /// What is convex is met by no ray that leaves it; a ray that goes through it comes in from outside.
-    fn is_convex(&self, met: &Met, draw: &mut Draw) -> Result<(), Fault> {
-        let (Ray { dir, .. }, stride) = (self.ray, STRIDE * self.size(met.distance));
-        let beyond = Ray { origin: met.at + stride * dir, dir };
-        let through = self.in_span(&beyond, &Span::RAY)?;
-        if through != MISS {
-            let at = beyond.at(through);
-            let behind = Ray { origin: at + stride * dir, dir };
-            let sides = [(met.at, met.normal), (at, self.shape.normal(at))];
-            let ends = self.in_span(&behind, &Span::RAY)? == MISS;
-            match sides.map(|(_, normal)| Side::seen_along(dir, normal)) {
-                // Too thin to be told from a touch.
-                _ if through <= 10.0 * stride => {}
-                [Side::Outside, Side::Inside] if ends => {}
-                [Side::Inside, Side::Outside] if ends => {
-                    let found =
-                        format!("a ray goes through, and the normals are {sides:?}, {}", told(&self.ray));
-                    return Err(Promise::NormalsPointOut.fault(found));
-                }
-                _ => {
-                    let found = format!("a ray goes in or comes out twice, {}", told(&self.ray));
-                    return Err(Promise::ConvexIsNotMetAgain.fault(found));
-                }
-            }
-        }
-        for _ in 0..4 {
-            let dir = draw.direction();
-            let dir = if dir.dot(met.normal) < 0.0 { -dir } else { dir };
-            let ray = Ray { origin: met.at + stride * dir, dir };
-            if dir.dot(met.normal) >= GRAZING && self.in_span(&ray, &Span::RAY)? != MISS {
-                let found =
-                    format!("`is_convex` says so, and a ray that leaves it meets it again, {}", told(&ray));
-                return Err(Promise::ConvexIsNotMetAgain.fault(found));
-            }
-        }
-        Ok(())
-    }
-
-    /// A ray that leaves the surface meets what it meets from a little farther.
-    fn leaves(&self, met: &Met, draw: &mut Draw) -> Result<(), Fault> {
-        let stride = STRIDE * self.size(met.distance);
-        for _ in 0..4 {
-            let dir = draw.direction();
-            let cos = dir.dot(met.normal);
-            if cos.abs() < GRAZING {
-                continue;
-            }
-            let side = if cos > 0.0 { Side::Outside } else { Side::Inside };
-            let ray = Ray { origin: met.at, dir };
-            let leaving = self.in_span(&ray, &Span { leaves: Some(side), ..Span::RAY })?;
-            let ahead = Ray { origin: ray.at(stride), dir };
-            let from_ahead = self.in_span(&ahead, &Span::RAY)? + stride;
-            let found = |what: String| Err(Promise::StartIsNoHit.fault(format!("{what}, {}", told(&ray))));
-            if leaving <= SLACK * self.size(met.distance) {
-                return found(format!("on leaving its {side:?} `distance` gives {leaving}"));
-            }
-            // What lies closer by than the step, and what is only grazed, is left alone.
-            let is_near = |distance: f64| distance < 3.0 * stride;
-            let grazes = |distance: f64| {
-                distance != MISS && dir.dot(self.shape.normal(ray.at(distance))).abs() < GRAZING
-            };
-            let differ = leaving != from_ahead
-                && (leaving - from_ahead).abs() > SLACK * self.size(from_ahead.min(leaving));
-            let is_told =
-                ![leaving, from_ahead].iter().any(|distance| is_near(*distance) || grazes(*distance));
-            if differ && is_told {
-                return found(format!(
-                    "on leaving its {side:?} `distance` gives {leaving}, and from a little farther {from_ahead}"
-                ));
-            }
-        }
-        Ok(())
-    }
 }
 
 /// A ray, in words.
-fn told(Ray { origin, dir }: &Ray) -> String {
+pub fn told(Ray { origin, dir }: &Ray) -> String {
     format!("from {origin} along {dir}")
 }

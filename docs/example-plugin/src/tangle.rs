@@ -1,9 +1,10 @@
 //! A tangle: a closed surface of the fourth degree with a hole in each side of a cube.
 
 use tabray::entity::Entity;
+use tabray::frame::Frame;
 use tabray::geometry::Body;
 use tabray::glam::DVec3;
-use tabray::implicit::{Frame, Implicit};
+use tabray::implicit::Implicit;
 use tabray::number::Number;
 use tabray::pparm::{Pparm, Table};
 

@@ -4,12 +4,12 @@ use super::Args;
 use super::pending::{self, Pending};
 use crate::cli::serve::{self, Server};
 use crate::cli::{Failure, report, tell};
+use crate::registry::Registry;
 use hyper::body::Bytes;
 use hyper::{Request, Response, StatusCode};
 use serde_json::Value;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use crate::registry::Registry;
 
 /// Shows the page and does what is decided there.
 pub fn serve(registry: &'static Registry, args: &Args) -> Result<(), Failure> {

@@ -6,13 +6,13 @@ mod pending;
 use super::explain::Place;
 use super::report::{Change, Decision, Item, Page};
 use super::{Failure, input, picture, tell};
+use crate::compare::Comparison;
+use crate::registry::Registry;
 use pending::{Content, Pending};
 use std::env;
 use std::ffi::OsStr;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
-use crate::compare::Comparison;
-use crate::registry::Registry;
 
 /// Show the snapshots that tests left to be reviewed
 ///
