@@ -2,8 +2,8 @@
 //!
 //! Each sort of them is a registry of its own; a plugin file adds one.
 
-use crate::entity;
 use crate::value::{Datum, Type, Value};
+use crate::words;
 use std::panic::Location;
 
 /// One of several things of a sort.
@@ -71,8 +71,8 @@ pub(crate) fn contradictions<T: Choice>() -> Vec<String> {
                     "two are registered as {} `{}`, at {} and at {}: call or number one of them otherwise",
                     T::WHAT,
                     second.name,
-                    entity::place(first.place),
-                    entity::place(second.place)
+                    words::place(first.place),
+                    words::place(second.place)
                 ));
             }
         }

@@ -7,6 +7,7 @@ use crate::material::Material;
 use crate::pparm::{Attribute, Pparm, Row, Table};
 use crate::texture::Texture;
 use crate::value::{Datum, Value};
+use crate::words;
 use std::panic::Location;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -188,14 +189,8 @@ impl Entity {
 
     /// The file and line that registers it.
     pub fn place(&self) -> String {
-        place(self.place)
+        words::place(self.place)
     }
-}
-
-/// The file and line of a place that registers something.
-pub(crate) fn place(of: &Location) -> String {
-    let file = of.file().replace('\\', "/");
-    format!("{}:{}", file.strip_prefix("src/../").unwrap_or(&file), of.line())
 }
 
 /// What a constructor may know of the scene beside its own values.

@@ -31,6 +31,7 @@ pub mod flat;
 pub mod formula;
 pub mod frame;
 pub mod geometry;
+pub mod grammar;
 pub mod implicit;
 pub mod interval;
 pub mod material;
@@ -53,6 +54,7 @@ pub mod scene;
 pub mod schema;
 pub mod shading;
 pub mod syntax;
+pub mod tables;
 pub mod taylor;
 pub mod texture;
 pub mod trace;
@@ -61,7 +63,7 @@ pub mod twofold;
 pub mod value;
 pub mod verify;
 pub mod watch;
-mod words;
+pub mod words;
 
 include!(concat!(env!("OUT_DIR"), "/plugins.rs"));
 

@@ -2,8 +2,8 @@
 
 use crate::choice::{Choice, ChoiceName};
 use crate::dual::Dual;
-use crate::entity;
 use crate::formula::Formula;
+use crate::words;
 use std::panic::Location;
 
 /// A line x = g(y), which a scene chooses by name or by number. A plugin registers one with
@@ -51,7 +51,7 @@ impl Profile {
     pub(crate) fn fault(&self) -> Option<String> {
         let fault = |text| Formula::parse(text).err().map(|fault| (text, fault));
         let (text, fault) = fault(self.formula).or_else(|| self.slope.and_then(fault))?;
-        let place = entity::place(self.place);
+        let place = words::place(self.place);
         Some(format!("the profile `{}` at {place} is no formula: {} in `{text}`", self.name, fault.message))
     }
 }

@@ -20,7 +20,8 @@ impl Registry {
     /// The entity types that the plugins registered, sorted by name.
     ///
     /// # Errors
-    /// Names given twice, each with both places: the plugins contradict each other.
+    /// Names given twice, each with both places, and profiles that are no formulas, each on a line: the plugins
+    /// contradict each other.
     pub fn get() -> Result<&'static Registry, &'static str> {
         static REGISTRY: LazyLock<Result<Registry, String>> = LazyLock::new(|| {
             let choices = [
@@ -29,10 +30,13 @@ impl Registry {
                 contradictions::<&Profile>(),
                 profiles(),
             ];
-            match choices.concat() {
-                faults if faults.is_empty() => Registry::of(inventory::iter::<Entity>()),
-                faults => Err(faults.join("\n")),
-            }
+            let mut faults = choices.concat();
+            // A shader's name is taken on planes and on spheres.
+            faults.sort();
+            faults.dedup();
+            let registry = Registry::of(inventory::iter::<Entity>());
+            faults.extend(registry.as_ref().err().cloned());
+            if faults.is_empty() { registry } else { Err(faults.join("\n")) }
         });
         REGISTRY.as_ref().map_err(String::as_str)
     }

@@ -39,37 +39,41 @@ impl Renderer {
         self
     }
 
-    /// The picture from the top, some rows at a time: red, green and blue of each pixel from the left.
+    /// A part of the picture from the top, some rows at a time: red, green and blue of each pixel from the left.
+    /// `columns` count from the left and `rows` from the top, and neither is empty.
     ///
     /// `done` is told of each row finished, in no order, and may break off; then comes nothing more but an
     /// error of kind `Interrupted`. The bytes depend on the model alone.
     pub fn bands<'r>(
         &'r self,
         model: &'r Model,
+        columns: Range<usize>,
+        rows: Range<usize>,
         done: &'r (dyn Fn() -> ControlFlow<()> + Sync),
     ) -> impl Iterator<Item = io::Result<Vec<u8>>> + 'r {
-        let [width, height] = model.camera.value.pixels;
         // Whole tiles.
-        let step = (BAND / width).max(1).next_multiple_of(TILE);
-        (0..height).step_by(step).map(move |from| {
-            let rows = from..height.min(from + step);
-            self.rows(model, rows, done).ok_or_else(|| io::ErrorKind::Interrupted.into())
+        let step = (BAND / columns.len()).max(1).next_multiple_of(TILE);
+        rows.clone().step_by(step).map(move |from| {
+            let rows = from..rows.end.min(from + step);
+            self.rows(model, columns.clone(), rows, done).ok_or_else(|| io::ErrorKind::Interrupted.into())
         })
     }
 
     /// The whole picture, as [`bands`](Self::bands) gives it in parts.
     pub fn picture(&self, model: &Model) -> Vec<u8> {
-        let [_, height] = model.camera.value.pixels;
-        self.rows(model, 0..height, &|| ControlFlow::Continue(())).unwrap_or_default()
+        let [width, height] = model.camera.value.pixels;
+        self.rows(model, 0..width, 0..height, &|| ControlFlow::Continue(())).unwrap_or_default()
     }
 
     fn rows(
         &self,
         model: &Model,
+        columns: Range<usize>,
         rows: Range<usize>,
         done: &(dyn Fn() -> ControlFlow<()> + Sync),
     ) -> Option<Vec<u8>> {
-        let [width, height] = model.camera.value.pixels;
+        let [_, height] = model.camera.value.pixels;
+        let width = columns.len();
         let mut pixels = vec![[0; 3]; width * rows.len()];
         let strips = pixels.par_chunks_mut(TILE * width).zip(rows.into_par_iter().step_by(TILE));
         let finished = self.pool.install(|| {
@@ -77,16 +81,16 @@ impl Renderer {
                 let (tall, mut nobody) = (strip.len() / width, ());
                 let top = height - 1 - from_top;
                 let mut tracer = Tracer::new(model, self.cpu, &mut nobody);
-                for left in (0..width).step_by(TILE) {
+                for left in columns.clone().step_by(TILE) {
                     let (mut tile, mut len) = ([[0; 2]; TILE * TILE], 0);
                     for row in 0..tall {
-                        for x in left..width.min(left + TILE) {
+                        for x in left..columns.end.min(left + TILE) {
                             tile[len] = [x, top - row];
                             len += 1;
                         }
                     }
                     tracer.pixels(&tile[..len], |[x, y], colour| {
-                        strip[(top - y) * width + x] = colour.to_array().map(to_byte);
+                        strip[(top - y) * width + x - columns.start] = colour.to_array().map(to_byte);
                     });
                 }
                 (0..tall).try_for_each(|_| done())

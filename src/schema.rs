@@ -113,7 +113,8 @@ fn description(attribute: &dyn Attribute) -> String {
     text
 }
 
-fn constant(datum: &Datum) -> Value {
+/// The values of an attribute as JSON.
+pub(crate) fn constant(datum: &Datum) -> Value {
     match datum {
         Datum::Whole(numbers) if numbers.len() == 1 => json!(numbers[0]),
         Datum::Whole(numbers) => json!(numbers),

@@ -1,7 +1,9 @@
 //! Textures: pictures that colour surfaces and light.
 
 use crate::material::Rgb;
+use crate::words;
 use image::{ImageReader, RgbImage};
+use std::io;
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
@@ -32,10 +34,18 @@ impl Texture {
     pub fn load(&self) -> Result<&RgbImage, &str> {
         let read = || {
             let reader = ImageReader::open(&self.path).and_then(ImageReader::with_guessed_format);
-            let picture = reader.map_err(|error| error.to_string())?.decode();
-            picture.map(|picture| picture.into_rgb8()).map_err(|error| error.to_string())
+            let picture = reader.map_err(|error| self.not_read(&error))?.decode();
+            picture.map(|picture| picture.into_rgb8()).map_err(|error| words::picture_reason(&error))
         };
         self.picture.get_or_init(read).as_ref().map_err(String::as_str)
+    }
+
+    fn not_read(&self, error: &io::Error) -> String {
+        let near = words::nearest_file(&self.path).filter(|_| error.kind() == io::ErrorKind::NotFound);
+        match near {
+            Some(near) => format!("it is not there, but a `{near}` is"),
+            None => words::reason(error),
+        }
     }
 
     /// Width and height in texels; none where there is no picture.

@@ -1,4 +1,9 @@
-//! Small helps for messages: the word that was meant, and lists of words.
+//! Small helps for messages: the word that was meant, lists of words, and reasons.
+
+use image::ImageError;
+use std::io;
+use std::panic::Location;
+use std::path::Path;
 
 /// The word of `known` that `word` was most likely meant to be.
 pub fn nearest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
@@ -9,6 +14,44 @@ pub fn nearest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Opti
         .filter(|(distance, candidate)| *distance <= candidate.len().max(lower.len()).div_ceil(3))
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, candidate)| candidate)
+}
+
+/// The file that a path which leads nowhere was most likely meant to lead to: the name of one in the same folder.
+pub fn nearest_file(path: &Path) -> Option<String> {
+    let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    let entries = folder.read_dir().ok()?.filter_map(Result::ok);
+    let mut names: Vec<_> = entries.filter_map(|entry| entry.file_name().into_string().ok()).collect();
+    // A folder hands them out in any order.
+    names.sort();
+    nearest(path.file_name()?.to_str()?, names.iter().map(String::as_str)).map(str::to_owned)
+}
+
+/// Why the system refused something: lower case, without its number.
+pub fn reason(error: &io::Error) -> String {
+    let text = error.to_string();
+    let text = text.split(" (os error").next().unwrap_or_default();
+    match text.as_bytes() {
+        [first, second, ..] if second.is_ascii_lowercase() => {
+            char::from(first.to_ascii_lowercase()).to_string() + text.get(1..).unwrap_or_default()
+        }
+        _ => text.to_owned(),
+    }
+}
+
+/// Why a file gives no picture.
+pub fn picture_reason(error: &ImageError) -> String {
+    match error {
+        ImageError::IoError(error) if error.kind() != io::ErrorKind::UnexpectedEof => reason(error),
+        ImageError::Unsupported(_) => "it is no picture in PPM or PNG".to_owned(),
+        ImageError::Limits(_) => "it is too large".to_owned(),
+        _ => "it is broken".to_owned(),
+    }
+}
+
+/// The file and line of a plugin that registers something.
+pub fn place(location: &Location<'_>) -> String {
+    let file = location.file().replace('\\', "/");
+    format!("{}:{}", file.strip_prefix("src/../").unwrap_or(&file), location.line())
 }
 
 /// Words in backticks, commas between them.

@@ -2,44 +2,10 @@
 
 mod common;
 
-use assert_cmd::Command;
-use assert_cmd::cargo::cargo_bin_cmd;
-use common::root;
+use common::program::{folder, names_in, outcome, scene, tabray};
 use std::fs;
 use std::io::Write;
-use std::path::{Path, PathBuf};
 use std::process::Stdio;
-use tempfile::TempDir;
-
-/// The program, in a new working directory.
-fn tabray(folder: &TempDir) -> Command {
-    let mut command = cargo_bin_cmd!("tabray");
-    command.current_dir(folder.path());
-    command
-}
-
-fn scene(name: &str) -> PathBuf {
-    root().join("scenes").join(name)
-}
-
-fn folder() -> TempDir {
-    TempDir::new().expect("a folder")
-}
-
-fn names_in(folder: &Path) -> Vec<String> {
-    let mut names: Vec<_> = fs::read_dir(folder)
-        .expect("a folder")
-        .map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned())
-        .collect();
-    names.sort();
-    names
-}
-
-/// Runs a command; its exit status, standard output and standard error.
-fn outcome(command: &mut Command) -> (i32, Vec<u8>, String) {
-    let output = command.output().expect("the program runs");
-    (output.status.code().unwrap_or(-1), output.stdout, String::from_utf8_lossy(&output.stderr).into_owned())
-}
 
 #[test]
 fn a_picture_is_named_after_its_scene_in_the_working_directory() {
@@ -163,10 +129,10 @@ fn a_scene_that_cannot_be_read_is_named_with_the_reason() {
     let (status, _, err) = outcome(tabray(&folder).args(["render", "no-such-scene.ray"]));
     assert_eq!(
         (status, err.as_str()),
-        (2, "error: cannot read `no-such-scene.ray`: No such file or directory (os error 2)\n")
+        (2, "error: cannot read `no-such-scene.ray`: no such file or directory\n")
     );
     let (status, _, err) = outcome(tabray(&folder).args(["dump", "."]));
-    assert_eq!((status, err.as_str()), (2, "error: cannot read `.`: Is a directory (os error 21)\n"));
+    assert_eq!((status, err.as_str()), (2, "error: cannot read `.`: is a directory\n"));
 }
 
 #[cfg(unix)]
@@ -185,7 +151,7 @@ fn an_unwritable_place_is_told_with_its_reason() {
     for (place, reason) in [
         (
             "no/such/folder/a.png",
-            "error: cannot write `no/such/folder/a.png`: No such file or directory (os error 2)\n",
+            "error: cannot write `no/such/folder/a.png`: there is no folder `no/such/folder`\n",
         ),
         ("folder.png", "error: cannot write `folder.png`: is a directory\n"),
     ] {
@@ -221,7 +187,7 @@ fn a_full_disk_is_a_failure_with_its_reason() {
         "png",
     ]));
     assert_eq!(status, 1);
-    assert!(err.contains("cannot write `/dev/full`: No space left on device"), "{err}");
+    assert!(err.contains("cannot write `/dev/full`: no space left on device"), "{err}");
     assert!(fs::metadata("/dev/full").expect("still a device").len() == 0);
 }
 

@@ -60,6 +60,7 @@ fn a_plugin_is_one_file_dropped_in() {
     let copy = Copy::new("dropped-in");
     copy.build();
     assert!(!copy.prints(&["list"]).contains("disc "), "nothing was dropped in yet");
+    let new = copy.new_plugins();
     let before = copy.files();
 
     let plugins =
@@ -103,7 +104,53 @@ fn a_plugin_is_one_file_dropped_in() {
 
     let message = copy.run(&["check", "-"], "disc d { radius 0 }");
     assert!(message.contains("`radius` of disc `d` must be positive, not 0"), "{message}");
+
+    for (name, scene) in new {
+        let picture = copy.outside(&format!("{name}.png"));
+        let scene = copy.folder.join(scene);
+        let paths = [&scene, &picture].map(|path| path.to_str().expect("a path in UTF-8"));
+        copy.prints(&["render", paths[0], "-o", paths[1]]);
+        let picture = image::open(&picture).expect("a picture").into_rgb8();
+        let orange = picture.pixels().filter(|pixel| pixel.0[0] > 60 && pixel.0[0] / 2 > pixel.0[2]).count();
+        assert!(orange > 300, "{name} shows something orange, {orange} pixels");
+        let mistake = copy.folder.join("scenes/wrong").join(name).with_extension("ray");
+        if let Ok(mistake) = fs::read_to_string(mistake) {
+            let message = copy.run(&["check", "-"], &mistake);
+            assert!(message.contains(&format!("{name} `")) && message.contains("2 errors"), "{message}");
+        }
+    }
+    contradictions_are_told_with_their_places(&copy);
 }
+
+/// Plugins that claim what others have, and one whose file is no module.
+fn contradictions_are_told_with_their_places(copy: &Copy) {
+    let plugin = |name: &str| copy.folder.join("plugins").join(name);
+    fs::write(plugin("Bad-Name.rs"), "").expect("room for a file");
+    let message = copy.cargo_build().expect_err("no module can have this name");
+    assert!(message.contains("Bad-Name.rs: a plugin's file name is a Rust module name"), "{message}");
+    fs::remove_file(plugin("Bad-Name.rs")).expect("it was there");
+
+    fs::write(plugin("rival.rs"), RIVAL).expect("room for a file");
+    copy.build();
+    let mut settings = insta::Settings::clone_current();
+    settings.set_snapshot_path(root().join("snapshots/refusals"));
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    let told = copy.run(&["list"], "");
+    settings.bind(|| insta::assert_snapshot!("plugins-that-contradict-each-other", told));
+}
+
+const RIVAL: &str = "//! What others have already.
+
+use crate::entity::Entity;
+use crate::profile::Profile;
+use crate::shading::ProceduralShader;
+
+inventory::submit! { Entity::shape(\"sphere\", \"another ball\", &[], |_| unreachable!()) }
+inventory::submit! { Profile::new(\"cone\", \"another cone\", \"1\") }
+inventory::submit! { Profile::new(\"crooked\", \"no formula\", \"2 +\") }
+inventory::submit! { ProceduralShader::new(\"checks\", \"its number is that of tiles\", |_| unreachable!()).on_plane(0) }
+";
 
 const BARREL: &str = "//! A barrel.
 

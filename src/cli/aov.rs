@@ -1,12 +1,11 @@
 //! `tabray render --aov`: pictures beside the main one, and exact numbers.
 
 use super::output::Output;
-use super::render::{Progress, finished};
-use super::{Failure, interrupt};
+use super::render::{self, Progress, finished};
+use super::{Failure, interrupt, messages};
 use crate::aov::Aov;
 use crate::model::Model;
 use crate::picture::Format;
-use crate::render::Renderer;
 use std::ffi::OsStr;
 use std::io::{self, BufWriter, Write};
 use std::iter;
@@ -98,7 +97,7 @@ pub fn write(model: &Model, threads: usize, format: Format, files: Vec<Files>) -
     if files.is_empty() {
         return Ok(());
     }
-    let renderer = Renderer::new(threads)?;
+    let renderer = render::threads(threads)?;
     let size = model.camera.value.pixels;
     for Files { aov, picture, exact } in files {
         let progress = Progress::new(size[1]);
@@ -109,10 +108,10 @@ pub fn write(model: &Model, threads: usize, format: Format, files: Vec<Files>) -
         progress.end();
         let layer = layer.map_err(|_| Failure::Interrupted)?;
         if let Some((most, [x, y])) = layer.most {
-            eprintln!("the most expensive pixel is {x} {y}, of {most} rays");
+            messages::note(&format!("the most expensive pixel is {x} {y}, of {most} rays"));
         }
-        let exact = exact.map(|(path, output)| Ok::<_, io::Error>((path, output, layer.exr(size)?)));
-        if let Some((path, output, bytes)) = exact.transpose()? {
+        if let Some((path, output)) = exact {
+            let bytes = layer.exr(size).map_err(|error| Failure::cannot_write(&path, &error))?;
             put(&path, output, |out| out.write_all(&bytes))?;
         }
         let (path, output) = picture;
@@ -129,6 +128,6 @@ fn put(
     let mut out = BufWriter::new(output);
     let written = write(&mut out);
     finished(path, written, out)?;
-    eprintln!("wrote {}", path.display());
+    messages::note(&format!("wrote {}", path.display()));
     Ok(())
 }

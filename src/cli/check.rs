@@ -1,6 +1,6 @@
 //! `tabray check`: the faults of scenes, and nothing else.
 
-use super::{Failure, input, tell};
+use super::{Failure, input, messages, tell};
 use crate::registry::Registry;
 use std::path::PathBuf;
 
@@ -16,7 +16,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let mut sound = true;
     for scene in &args.scenes {
         match input::load(registry, scene, None) {
-            Ok(_) => eprintln!("{}: sound", scene.display()),
+            Ok(_) => messages::note(&format!("{}: sound", scene.display())),
             Err(failure) => {
                 tell(&failure);
                 sound = false;

@@ -1,13 +1,13 @@
 //! `tabray convert`: a scene in the other spelling.
 
 use super::output::Output;
-use super::{Failure, input, print};
+use super::{Failure, input, messages, print};
 use crate::dump;
 use crate::model::Model;
 use crate::registry::Registry;
 use crate::scene;
 use crate::syntax::Syntax;
-use std::io::{self, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Write a scene in the other spelling
@@ -40,11 +40,12 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         return print(&text);
     }
     is_the_same_scene(registry, &model, &text, &args.output)?;
-    let cannot =
-        |reason: io::Error| Failure::Failed(format!("cannot write `{}`: {reason}", args.output.display()));
     let mut output = Output::open(&args.output)?;
-    output.write_all(text.as_bytes()).and_then(|()| output.finish()).map_err(cannot)?;
-    eprintln!("wrote {} (comments are not carried over)", args.output.display());
+    output
+        .write_all(text.as_bytes())
+        .and_then(|()| output.finish())
+        .map_err(|error| Failure::cannot_write(&args.output, &error))?;
+    messages::note(&format!("wrote {} (comments are not carried over)", args.output.display()));
     Ok(())
 }
 

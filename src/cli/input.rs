@@ -1,12 +1,13 @@
 //! Reading scenes from files and from standard input.
 
-use super::Failure;
+use super::{Failure, messages};
 use crate::accuracy::Accuracy;
 use crate::model::Model;
 use crate::registry::Registry;
 use crate::scene;
+use crate::words;
 use std::fs::File;
-use std::io::{self, Read, Write};
+use std::io::{self, Read};
 use std::path::Path;
 
 /// The largest scene that is read: far beyond any written one, and far below what memory holds.
@@ -22,7 +23,7 @@ pub fn load(registry: &Registry, path: &Path, accuracy: Option<Accuracy>) -> Res
     let (name, bytes) = read(path)?;
     let folder = path.parent().unwrap_or(path);
     let loaded = scene::read(registry, &name, folder, &bytes, accuracy).map_err(Failure::Scene)?;
-    let _ = write!(anstream::stderr(), "{}", loaded.warnings.styled());
+    messages::report(&loaded.warnings);
     Ok(loaded.model)
 }
 
@@ -39,7 +40,13 @@ fn read(path: &Path) -> Result<(String, Vec<u8>), Failure> {
             None,
         )),
         Ok(bytes) => Ok((name, bytes)),
-        Err(error) => Err(Failure::Usage(format!("cannot read `{name}`: {error}"), None)),
+        Err(error) => {
+            let near = words::nearest_file(path).filter(|_| error.kind() == io::ErrorKind::NotFound);
+            Err(Failure::Usage(
+                format!("cannot read `{name}`: {}", words::reason(&error)),
+                near.map(|near| format!("did you mean `{}`?", path.with_file_name(near).display())),
+            ))
+        }
     }
 }
 

@@ -5,6 +5,7 @@ use crate::entity::Entity;
 use crate::pparm::Attribute;
 use crate::reference;
 use crate::registry::Registry;
+use crate::tables;
 use crate::value::Datum;
 
 /// List the entity types, or the attributes of one
@@ -15,11 +16,17 @@ pub struct Args {
     /// Print the whole reference of the language as Markdown
     #[arg(long, conflicts_with = "entity")]
     markdown: bool,
+    /// Print all that is in the tables as JSON, for programs
+    #[arg(long, conflicts_with_all = ["entity", "markdown"])]
+    json: bool,
 }
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     if args.markdown {
         return print(&reference::markdown(registry));
+    }
+    if args.json {
+        return print(&format!("{:#}\n", tables::json(registry)));
     }
     let Some(name) = args.entity else {
         return print(&columns(

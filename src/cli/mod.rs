@@ -2,15 +2,20 @@
 
 mod aov;
 mod check;
+mod completions;
 mod convert;
 mod debug;
 mod diff;
 mod dump;
 mod explain;
+mod grammar;
 mod input;
 mod interrupt;
 mod list;
+mod man;
+mod messages;
 mod method;
+mod new;
 mod notes;
 mod output;
 mod picture;
@@ -20,13 +25,16 @@ mod report;
 mod review;
 mod schema;
 mod serve;
+mod size;
 mod verify;
 
 use crate::registry::Registry;
 use crate::scene::Report;
-use annotate_snippets::{Group, Level, Renderer};
+use crate::words;
+use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{CommandFactory, Parser, Subcommand};
 use std::io::{self, IsTerminal, Write};
+use std::path::Path;
 use std::process::ExitCode;
 
 /// A ray tracer in which a scene is data and every entity type is a plugin
@@ -38,6 +46,9 @@ use std::process::ExitCode;
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
+    /// How messages are written
+    #[arg(long, global = true, value_name = "FORM", default_value = "human")]
+    message_format: messages::Form,
 }
 
 #[derive(Subcommand)]
@@ -51,7 +62,11 @@ enum Command {
     Diff(diff::Args),
     Review(review::Args),
     List(list::Args),
+    New(new::Args),
     Schema(schema::Args),
+    Grammar(grammar::Args),
+    Completions(completions::Args),
+    Man(man::Args),
 }
 
 const EXIT_STATUS: &str = "\
@@ -77,7 +92,21 @@ enum Failure {
 
 impl From<io::Error> for Failure {
     fn from(error: io::Error) -> Self {
-        Self::Failed(error.to_string())
+        Self::Failed(words::reason(&error))
+    }
+}
+
+impl Failure {
+    /// What the system does not let be written, and why.
+    fn cannot_write(path: &Path, error: &io::Error) -> Self {
+        let folder = path.parent().filter(|folder| *folder != Path::new("") && !folder.exists());
+        let reason = match folder {
+            Some(folder) if error.kind() == io::ErrorKind::NotFound => {
+                format!("there is no folder `{}`", folder.display())
+            }
+            _ => words::reason(error),
+        };
+        Self::Failed(format!("cannot write `{}`: {reason}", path.display()))
     }
 }
 
@@ -85,6 +114,7 @@ impl From<io::Error> for Failure {
 /// standard error, and its exit status tells how it went.
 pub fn run() -> ExitCode {
     let cli = Cli::parse();
+    messages::choose(cli.message_format);
     let outcome = match Registry::get() {
         Ok(registry) => match cli.command {
             Some(Command::Render(args)) => render::run(registry, args),
@@ -96,7 +126,11 @@ pub fn run() -> ExitCode {
             Some(Command::Diff(args)) => return diff::run(registry, &args),
             Some(Command::Review(args)) => review::run(registry, &args),
             Some(Command::List(args)) => list::run(registry, args),
+            Some(Command::New(args)) => new::run(registry, &args),
             Some(Command::Schema(_)) => schema::run(registry),
+            Some(Command::Grammar(_)) => grammar::run(registry),
+            Some(Command::Completions(args)) => completions::run(registry, &args),
+            Some(Command::Man(args)) => man::run(registry, &args),
             None if io::stdin().is_terminal() => {
                 let mut command = Cli::command();
                 let _ = write!(io::stderr(), "{}", command.render_long_help());
@@ -104,7 +138,10 @@ pub fn run() -> ExitCode {
             }
             None => notes::run(registry),
         },
-        Err(fault) => Err(Failure::Failed(fault.to_owned())),
+        Err(faults) => {
+            faults.lines().for_each(|fault| messages::error(fault, None));
+            return ExitCode::from(1);
+        }
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
@@ -113,15 +150,13 @@ pub fn run() -> ExitCode {
 }
 
 fn tell(failure: &Failure) -> ExitCode {
-    let message = match failure {
-        Failure::Scene(report) => report.styled(),
-        Failure::Usage(message, help) => plain(message, help.as_deref()),
-        Failure::Failed(message) => plain(message, None),
-        Failure::Interrupted => "interrupted: the picture was not finished\n".to_owned(),
-        Failure::Told => String::new(),
-    };
-    // Where standard error is closed there is nobody to tell.
-    let _ = anstream::stderr().write_all(message.as_bytes());
+    match failure {
+        Failure::Scene(report) => messages::report(report),
+        Failure::Usage(message, help) => messages::error(message, help.as_deref()),
+        Failure::Failed(message) => messages::error(message, None),
+        Failure::Interrupted => messages::note("interrupted: the picture was not finished"),
+        Failure::Told => {}
+    }
     ExitCode::from(match failure {
         Failure::Failed(_) => 1,
         Failure::Scene(_) | Failure::Usage(..) | Failure::Told => 2,
@@ -129,17 +164,19 @@ fn tell(failure: &Failure) -> ExitCode {
     })
 }
 
-fn plain(message: &str, help: Option<&str>) -> String {
-    let help = help.map(|help| Level::HELP.message(help));
-    let group = Group::with_title(Level::ERROR.primary_title(message)).elements(help);
-    Renderer::styled().render(&[group]) + "\n"
+/// The command line for shells and manuals, which want to know the entity types too. The program itself takes any word
+/// and says which was meant.
+fn described(registry: &Registry) -> clap::Command {
+    let types = registry.iter().map(|entity| PossibleValue::new(entity.name).help(entity.meaning));
+    let types = PossibleValuesParser::new(types);
+    Cli::command().mut_subcommand("list", |list| list.mut_arg("entity", |entity| entity.value_parser(types)))
 }
 
 /// Prints to standard output. A reader that has had enough is no failure.
 fn print(text: &str) -> Result<(), Failure> {
     match io::stdout().write_all(text.as_bytes()).and_then(|()| io::stdout().flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            Err(Failure::Failed(format!("cannot write to standard output: {error}")))
+            Err(Failure::Failed(format!("cannot write to standard output: {}", words::reason(&error))))
         }
         _ => Ok(()),
     }

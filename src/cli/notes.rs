@@ -1,6 +1,7 @@
 //! Without a command: the notes' program, a filter from a scene to its dump and its picture.
 
 use super::output::Output;
+use super::size::Part;
 use super::{Failure, input, interrupt, render};
 use crate::accuracy::Accuracy;
 use crate::dump;
@@ -15,5 +16,6 @@ pub fn run(registry: &Registry) -> Result<(), Failure> {
     let model = input::load(registry, standard, Some(Accuracy::Classic))?;
     interrupt::catch()?;
     let _ = write!(std::io::stderr(), "{}", dump::notes(&model));
-    render::picture(&model, 0, Format::Ppm, standard, output)
+    let whole = Part::whole(&model.camera.value);
+    render::picture(&model, &whole, 0, Format::Ppm, standard, output)
 }

@@ -1,7 +1,6 @@
 //! Where a picture goes: beside its target first, then in its place, so that no half of one is ever there.
 
 use super::Failure;
-use std::fmt::Display;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -17,6 +16,31 @@ pub enum Output {
     File(NamedTempFile, PathBuf),
 }
 
+/// Writes a new file as a whole, and none in place of another one.
+pub fn create(path: &Path, text: &str) -> Result<(), Failure> {
+    is_new(path)?;
+    let cannot = |error: io::Error| match error.kind() {
+        io::ErrorKind::AlreadyExists => is_there(path),
+        _ => Failure::cannot_write(path, &error),
+    };
+    let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    let mut file = beside(folder).map_err(cannot)?;
+    file.write_all(text.as_bytes()).map_err(cannot)?;
+    file.persist_noclobber(path).map(drop).map_err(|error| cannot(error.error))
+}
+
+/// Refuses a path at which something is already.
+pub fn is_new(path: &Path) -> Result<(), Failure> {
+    if path.symlink_metadata().is_ok() { Err(is_there(path)) } else { Ok(()) }
+}
+
+fn is_there(path: &Path) -> Failure {
+    Failure::Usage(
+        format!("there is a `{}` already", path.display()),
+        Some("nothing is written in its place: choose another name".to_owned()),
+    )
+}
+
 impl Output {
     /// Opens `path`, or standard output for `-`. What is there already stays until [`finish`](Self::finish).
     pub fn open(path: &Path) -> Result<Self, Failure> {
@@ -29,8 +53,7 @@ impl Output {
             }
             return Ok(Self::Standard);
         }
-        let cannot =
-            |reason: &dyn Display| Failure::Failed(format!("cannot write `{}`: {reason}", path.display()));
+        let cannot = |error: io::Error| Failure::cannot_write(path, &error);
         // A link stays a link; the file that it leads to is the one replaced.
         let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
         let folder = match target.parent() {
@@ -38,18 +61,18 @@ impl Output {
             _ => Path::new("."),
         };
         match fs::metadata(&target) {
-            Ok(meta) if meta.is_dir() => Err(cannot(&io::ErrorKind::IsADirectory)),
+            Ok(meta) if meta.is_dir() => Err(cannot(io::ErrorKind::IsADirectory.into())),
             Ok(meta) if !meta.is_file() => {
-                let file = OpenOptions::new().write(true).open(&target).map_err(|error| cannot(&error))?;
+                let file = OpenOptions::new().write(true).open(&target).map_err(cannot)?;
                 Ok(Self::Special(file))
             }
-            Ok(meta) if meta.permissions().readonly() => Err(cannot(&io::ErrorKind::PermissionDenied)),
+            Ok(meta) if meta.permissions().readonly() => Err(cannot(io::ErrorKind::PermissionDenied.into())),
             Ok(meta) => {
-                let file = beside(folder).map_err(|error| cannot(&error))?;
-                fs::set_permissions(file.path(), meta.permissions()).map_err(|error| cannot(&error))?;
+                let file = beside(folder).map_err(cannot)?;
+                fs::set_permissions(file.path(), meta.permissions()).map_err(cannot)?;
                 Ok(Self::File(file, target))
             }
-            Err(_) => Ok(Self::File(beside(folder).map_err(|error| cannot(&error))?, target)),
+            Err(_) => Ok(Self::File(beside(folder).map_err(cannot)?, target)),
         }
     }
 

@@ -1,6 +1,7 @@
 //! Reading pictures, to compare them.
 
 use super::Failure;
+use crate::words;
 use image::{DynamicImage, ImageReader, RgbImage};
 use std::fs::File;
 use std::io::{BufRead, BufReader, Seek};
@@ -9,14 +10,14 @@ use std::path::Path;
 /// The picture in a file.
 pub fn read(path: &Path) -> Result<RgbImage, Failure> {
     let cannot = |reason: String| Failure::Usage(format!("cannot read `{}`: {reason}", path.display()), None);
-    let file = File::open(path).map_err(|error| cannot(error.to_string()))?;
+    let file = File::open(path).map_err(|error| cannot(words::reason(&error)))?;
     decode(BufReader::new(file)).map_err(cannot)
 }
 
 /// A picture from its file's bytes. What bytes of red, green and blue cannot tell is refused, not left out.
 pub fn decode(bytes: impl BufRead + Seek) -> Result<RgbImage, String> {
-    let reader = ImageReader::new(bytes).with_guessed_format().map_err(|error| error.to_string())?;
-    let picture = reader.decode().map_err(|error| error.to_string())?;
+    let reader = ImageReader::new(bytes).with_guessed_format().map_err(|error| words::reason(&error))?;
+    let picture = reader.decode().map_err(|error| words::picture_reason(&error))?;
     let is_plain = match &picture {
         DynamicImage::ImageLuma8(_) | DynamicImage::ImageRgb8(_) => true,
         DynamicImage::ImageLumaA8(picture) => picture.pixels().all(|pixel| pixel[1] == u8::MAX),

@@ -1,10 +1,10 @@
 //! `tabray probe`: one pixel, explained.
 
-use super::{Failure, input, method};
+use super::{Failure, input, method, render};
 use crate::model::Model;
 use crate::probe;
 use crate::registry::Registry;
-use crate::render::Renderer;
+use crate::words;
 use std::io::{self, BufWriter, Write};
 use std::path::PathBuf;
 
@@ -27,11 +27,11 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let model = input::load(registry, &args.scene, args.method.accuracy()?)?;
     let [x, y] = inside(&model, [args.x, args.y])?;
     let mut out = BufWriter::new(io::stdout());
-    let printed = Renderer::new(1)?.run(|| probe::pixel(&model, x, y, &mut out).and_then(|()| out.flush()));
+    let printed = render::threads(1)?.run(|| probe::pixel(&model, x, y, &mut out).and_then(|()| out.flush()));
     match printed {
         // A reader that has had enough is no failure.
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            Err(Failure::Failed(format!("cannot write to standard output: {error}")))
+            Err(Failure::Failed(format!("cannot write to standard output: {}", words::reason(&error))))
         }
         _ => Ok(()),
     }

@@ -1,12 +1,14 @@
 //! `tabray render`: a scene's picture.
 
 use super::output::Output;
-use super::{Failure, aov, debug, input, interrupt, method};
+use super::size::{self, Part};
+use super::{Failure, aov, debug, input, interrupt, messages, method};
 use crate::model::Model;
 use crate::picture::{Compression, Format};
 use crate::registry::Registry;
 use crate::render::Renderer;
 use crate::sample::{self, Sampler};
+use crate::words;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, BufWriter};
 use std::ops::ControlFlow;
@@ -37,6 +39,8 @@ pub struct Args {
     /// How many threads to use; by default one on each core
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+    #[command(flatten)]
+    size: size::Args,
     #[command(flatten)]
     method: method::Args,
     #[command(flatten)]
@@ -79,38 +83,40 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         SamplerName::Sobol => Sampler::Sobol,
         SamplerName::Random => Sampler::Random,
     };
+    let part = args.size.apply(camera)?;
     interrupt::catch()?;
     let output = Output::open(&path)?;
     let beside = aov::open(&model, &args.aov, &path, &output)?;
     debug::print(&model, &args.debug)?;
     let threads = args.threads.unwrap_or(0).into();
     let start = Instant::now();
-    picture(&model, threads, format, &path, output)?;
+    picture(&model, &part, threads, format, &path, output)?;
     if path != Path::new("-") {
-        let [width, height] = model.camera.value.pixels;
+        let [width, height] = part.size();
         let seconds = start.elapsed().as_secs_f64();
-        eprintln!("wrote {} ({width} x {height} pixels, {seconds:.2} s)", path.display());
+        messages::note(&format!("wrote {} ({width} x {height} pixels, {seconds:.2} s)", path.display()));
     }
     aov::write(&model, threads, format, beside)
 }
 
-/// Renders a model and puts the picture where it belongs.
+/// Renders a part of a model's picture and puts it where it belongs.
 pub fn picture(
     model: &Model,
+    part: &Part,
     threads: usize,
     format: Format,
     path: &Path,
     output: Output,
 ) -> Result<(), Failure> {
-    let renderer = Renderer::new(threads)?;
-    let [_, height] = model.camera.value.pixels;
-    let progress = Progress::new(height);
+    let renderer = self::threads(threads)?;
+    let progress = Progress::new(part.rows.len());
     let done = || {
         progress.step();
         interrupt::check()
     };
     let mut out = BufWriter::with_capacity(1 << 16, output);
-    let written = format.write(&mut out, model.camera.value.pixels, renderer.bands(model, &done));
+    let bands = renderer.bands(model, part.columns.clone(), part.rows.clone(), &done);
+    let written = format.write(&mut out, part.size(), bands);
     progress.end();
     if interrupt::check() == ControlFlow::Break(()) {
         return Err(Failure::Interrupted);
@@ -118,12 +124,17 @@ pub fn picture(
     finished(path, written, out)
 }
 
+/// This many threads to render with; 0 for one on each core.
+pub fn threads(count: usize) -> Result<Renderer, Failure> {
+    Renderer::new(count).map_err(|error| {
+        Failure::Failed(format!("cannot start threads to render with: {}", words::reason(&error)))
+    })
+}
+
 /// Puts a picture in its place, if it was written without an error.
 pub fn finished(path: &Path, written: io::Result<()>, out: BufWriter<Output>) -> Result<(), Failure> {
     match written.and_then(|()| out.into_inner().map_err(|error| error.into_error())?.finish()) {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            Err(Failure::Failed(format!("cannot write `{}`: {error}", path.display())))
-        }
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::cannot_write(path, &error)),
         _ => Ok(()),
     }
 }

@@ -1,8 +1,8 @@
 //! The page that shows what changed: one file with everything in it, which works without a network.
 
-use super::Failure;
 use super::explain::Explanation;
 use super::output::Output;
+use super::{Failure, messages};
 use crate::compare::Comparison;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -93,9 +93,8 @@ impl Page {
         let written = html(title, items, false)
             .and_then(|html| self.output.write_all(html.as_bytes()))
             .and_then(|()| self.output.finish());
-        let path = self.path.display();
-        written.map_err(|error| Failure::Failed(format!("cannot write `{path}`: {error}")))?;
-        eprintln!("wrote {path}");
+        written.map_err(|error| Failure::cannot_write(&self.path, &error))?;
+        messages::note(&format!("wrote {}", self.path.display()));
         Ok(())
     }
 }

@@ -5,6 +5,7 @@
 //! header. What is sent to change something must have one.
 
 use super::Failure;
+use crate::words;
 use http_body_util::combinators::BoxBody;
 use http_body_util::{BodyExt, Full, Limited};
 use hyper::body::{Bytes, Incoming};
@@ -41,8 +42,9 @@ impl Server {
     pub fn open(port: Option<u16>) -> Result<Self, Failure> {
         let listen = |port| TcpListener::bind((Ipv4Addr::LOCALHOST, port));
         let listener = match port {
-            Some(port) => listen(port)
-                .map_err(|error| Failure::Failed(format!("cannot listen on port {port}: {error}")))?,
+            Some(port) => listen(port).map_err(|error| {
+                Failure::Failed(format!("cannot listen on port {port}: {}", words::reason(&error)))
+            })?,
             None => (FIRST_PORT..=u16::MAX)
                 .find_map(|port| listen(port).ok())
                 .ok_or_else(|| Failure::Failed(format!("no port from {FIRST_PORT} is free")))?,

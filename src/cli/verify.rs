@@ -1,10 +1,9 @@
 //! `tabray verify`: a proof, pixel by pixel, of which object is seen.
 
 use super::output::Output;
-use super::render::{Progress, finished, named};
-use super::{Failure, input, interrupt, method, print};
+use super::render::{self, Progress, finished, named};
+use super::{Failure, input, interrupt, messages, method, print};
 use crate::registry::Registry;
-use crate::render::Renderer;
 use crate::verify::{self, Verdict};
 use std::io::BufWriter;
 use std::iter;
@@ -38,7 +37,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     };
     let size = model.camera.value.pixels;
     let progress = Progress::new(size[1]);
-    let renderer = Renderer::new(args.threads.unwrap_or(0).into())?;
+    let renderer = render::threads(args.threads.unwrap_or(0).into())?;
     let verdicts = verify::picture(&renderer, &model, &|| {
         progress.step();
         interrupt::check()
@@ -63,7 +62,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         let mut out = BufWriter::new(output);
         let written = format.write(&mut out, size, iter::once(Ok(bytes)));
         finished(path, written, out)?;
-        eprintln!("wrote {}", path.display());
+        messages::note(&format!("wrote {}", path.display()));
     }
     if contradicted > 0 {
         return Err(Failure::Failed(format!("the tracer finds another object at {contradicted} pixels")));

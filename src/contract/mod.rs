@@ -15,7 +15,7 @@ pub use promise::Promise;
 use crate::accuracy::Accuracy;
 use crate::choice::{Choice, ChoiceName};
 use crate::dump;
-use crate::entity::{self, Entity, Kind};
+use crate::entity::{Entity, Kind};
 use crate::model::Model;
 use crate::profile::Profile;
 use crate::registry::Registry;
@@ -171,7 +171,7 @@ fn of_profile(profile: &'static Profile) -> Option<Breach> {
 
 fn of_choice(what: &str, choice: ChoiceName, outcome: Result<(), Fault>) -> Option<Breach> {
     let Fault { promise, found } = outcome.err()?;
-    let (plugin, place) = (format!("the {what} `{}`", choice.name), entity::place(choice.place));
+    let (plugin, place) = (format!("the {what} `{}`", choice.name), crate::words::place(choice.place));
     Some(Breach { plugin, place, promise, found, scene: String::new() })
 }
 

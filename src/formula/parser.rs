@@ -1,6 +1,7 @@
 //! From the text of a formula to its steps, operands first.
 
 use super::{DEPTH, FormulaFault, Function, Step};
+use crate::words;
 use std::f64::consts::PI;
 use std::ops::Range;
 
@@ -199,6 +200,10 @@ impl<'t> Parser<'t> {
             self.deeper()?;
             self.sum()?;
             self.depth -= 1;
+        }
+        if self.peek() == Some(',') {
+            let takes = words::count(count, "value");
+            return Err(self.fault(place, format!("`{name}` takes {takes}, and here are more")));
         }
         self.close(open)
     }

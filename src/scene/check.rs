@@ -193,7 +193,7 @@ impl Check<'_> {
             if used.contains(args.name.as_str())
                 && let Err(reason) = value.load()
             {
-                let message = format!("the picture of texture `{}` cannot be read: {reason}", args.name);
+                let message = format!("the file of texture `{}` cannot be read: {reason}", args.name);
                 let mut files = args.values().filter(|(_, datum)| matches!(datum, Datum::Word(_)));
                 let place =
                     place_of(args.entity, &written[args.order], files.next().map(|(file, _)| file.name()));

@@ -83,10 +83,10 @@ impl Fault {
 /// All faults of one scene, in the order of its text.
 #[derive(Clone, Debug, Default)]
 pub struct Report {
-    name: String,
-    text: String,
+    pub(super) name: String,
+    pub(super) text: String,
     syntax: Syntax,
-    faults: Vec<Fault>,
+    pub(super) faults: Vec<Fault>,
 }
 
 impl Report {
@@ -147,7 +147,7 @@ impl Report {
         text
     }
 
-    fn render_fault(&self, fault: &Fault, newlines: &[usize], renderer: &Renderer) -> String {
+    pub(super) fn render_fault(&self, fault: &Fault, newlines: &[usize], renderer: &Renderer) -> String {
         let help = fault.help.as_deref().map(|help| Level::HELP.message(help));
         let Some(place) = &fault.place else {
             let origin = Origin::path(self.name.as_str());

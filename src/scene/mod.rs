@@ -3,6 +3,7 @@
 mod attributes;
 mod check;
 mod fault;
+mod machine;
 mod names;
 mod notes;
 mod toml;
@@ -10,6 +11,7 @@ mod values;
 mod written;
 
 pub use fault::{Fault, Place, Report, Severity};
+pub use machine::message;
 pub use written::{Values, Written};
 
 use crate::accuracy::Accuracy;

@@ -54,7 +54,10 @@ impl Names {
     pub fn claim(&mut self, kind: Kind, word: &Word<'_>, report: &mut Report) {
         let Word { text, form, place } = word;
         if text.is_empty() && *form == Form::Text {
-            report.add(Fault::error(place.clone(), format!("this {kind} has an empty name")));
+            report.add(
+                Fault::error(place.clone(), format!("this {kind} has an empty name"))
+                    .help("a name is any word; one with blanks stands in quotes"),
+            );
         }
         if text.contains(char::is_control) {
             report.add(

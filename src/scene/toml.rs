@@ -113,10 +113,13 @@ fn fault_of(place: Range<usize>, message: &str, text: &str) -> Fault {
         _ if message.starts_with("key with no value") => {
             (place, "missing `=`".to_owned(), "an attribute is `NAME = VALUE`")
         }
-        _ => (place, message.to_owned(), ""),
+        _ => (
+            place,
+            message.to_owned(),
+            "a value is a number, a word in quotes, or several of them in brackets",
+        ),
     };
-    let fault = Fault::error(Some(place), message);
-    if help.is_empty() { fault } else { fault.help(help) }
+    Fault::error(Some(place), message).help(help)
 }
 
 struct Parser<'a, 'r> {

@@ -29,7 +29,9 @@ fn text(word: &Word<'_>) -> Result<Datum, Vec<Fault>> {
         return Err(vec![fault("is a number").help(format!("in quotes it is a word: \"{}\"", word.text))]);
     }
     if word.text.contains(char::is_control) {
-        return Err(vec![fault("has a line end or another control character")]);
+        return Err(vec![
+            fault("has a line end or another control character").help("a word stands on one line"),
+        ]);
     }
     Ok(Datum::Word(word.text.to_string()))
 }

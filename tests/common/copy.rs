@@ -49,6 +49,28 @@ impl Copy {
         said
     }
 
+    /// Starts a plugin of each kind with the program; their names and their scenes.
+    pub fn new_plugins(&self) -> [(&'static str, &'static str); 4] {
+        for folder in ["entities", "psphere", "revsurf", "wrong"] {
+            fs::create_dir_all(self.folder.join("scenes").join(folder)).expect("room for a folder");
+        }
+        let plugins = [
+            ("shape", "round_cube", "scenes/entities/round_cube.ray"),
+            ("light", "shade", "scenes/entities/shade.ray"),
+            ("shader", "rings", "scenes/psphere/rings.ray"),
+            ("profile", "ringed_cup", "scenes/revsurf/ringed_cup.ray"),
+        ];
+        plugins.map(|(kind, name, scene)| {
+            let new = Command::new(self.target.join("debug/tabray"))
+                .args(["new", "plugin", name, "--kind", kind])
+                .current_dir(&self.folder)
+                .output()
+                .expect("the program runs");
+            assert!(new.status.success(), "{}", String::from_utf8_lossy(&new.stderr));
+            (name, scene)
+        })
+    }
+
     /// What the program prints.
     pub fn prints(&self, args: &[&str]) -> String {
         self.program_prints("tabray", args)

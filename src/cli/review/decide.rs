@@ -3,7 +3,7 @@
 use super::Args;
 use super::pending::{self, Pending};
 use crate::cli::serve::{self, Server};
-use crate::cli::{Failure, report, tell};
+use crate::cli::{Failure, messages, report, tell};
 use crate::registry::Registry;
 use hyper::body::Bytes;
 use hyper::{Request, Response, StatusCode};
@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 pub fn serve(registry: &'static Registry, args: &Args) -> Result<(), Failure> {
     let (folder, before) = (args.folder.clone(), args.before.clone());
     let server = Server::open(args.port)?;
-    eprintln!("review at {} (Ctrl-C ends it)", server.url());
+    messages::note(&format!("review at {} (Ctrl-C ends it)", server.url()));
     server.run(async move |request: Request<Bytes>| {
         let verdict = match (request.method().as_str(), request.uri().path()) {
             ("GET", "/") => return ControlFlow::Continue(page(registry, &folder, before.as_deref())),
@@ -25,7 +25,7 @@ pub fn serve(registry: &'static Registry, args: &Args) -> Result<(), Failure> {
         };
         match verdict {
             Ok(told) => {
-                eprintln!("{told}");
+                messages::note(&told);
                 let response = serve::text(StatusCode::OK, &told);
                 let is_last = pending::find(&folder).is_ok_and(|found| found.is_empty());
                 if is_last { ControlFlow::Break(response) } else { ControlFlow::Continue(response) }

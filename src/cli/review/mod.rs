@@ -5,7 +5,7 @@ mod pending;
 
 use super::explain::Place;
 use super::report::{Change, Decision, Item, Page};
-use super::{Failure, input, picture, tell};
+use super::{Failure, input, messages, picture, tell};
 use crate::compare::Comparison;
 use crate::registry::Registry;
 use pending::{Content, Pending};
@@ -53,7 +53,7 @@ pub fn run(registry: &'static Registry, args: &Args) -> Result<(), Failure> {
         return each(&args.reject, "rejected", Pending::reject);
     }
     if pending::find(&args.folder)?.is_empty() {
-        eprintln!("nothing is pending in `{}`", args.folder.display());
+        messages::note(&format!("nothing is pending in `{}`", args.folder.display()));
         return Ok(());
     }
     if args.serve {
@@ -62,7 +62,7 @@ pub fn run(registry: &'static Registry, args: &Args) -> Result<(), Failure> {
     let page = Page::open(&args.output)?;
     let (items, is_whole) = items(registry, &args.folder, args.before.as_deref())?;
     for item in &items {
-        eprintln!("{}: {}", item.name, item.change.summary());
+        messages::note(&format!("{}: {}", item.name, item.change.summary()));
     }
     page.write("tabray review", &items)?;
     if is_whole { Ok(()) } else { Err(Failure::Told) }
@@ -78,7 +78,7 @@ fn each(
         for new in pending::find(path)? {
             let snapshot = Pending::read(&new)?;
             decide(&snapshot)?;
-            eprintln!("{verdict} {}", snapshot.path.display());
+            messages::note(&format!("{verdict} {}", snapshot.path.display()));
         }
     }
     Ok(())

@@ -6,6 +6,7 @@
 
 use crate::cli::Failure;
 use crate::cli::output::Output;
+use crate::words;
 use std::fs;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::{self, Write};
@@ -50,8 +51,9 @@ pub fn find(path: &Path) -> Result<Vec<PathBuf>, Failure> {
     let mut found = Vec::new();
     let mut folders = vec![path.to_owned()];
     while let Some(folder) = folders.pop() {
-        let cannot =
-            |error: io::Error| Failure::Usage(format!("cannot read `{}`: {error}", folder.display()), None);
+        let cannot = |error: io::Error| {
+            Failure::Usage(format!("cannot read `{}`: {}", folder.display(), words::reason(&error)), None)
+        };
         for entry in fs::read_dir(&folder).map_err(cannot)? {
             let entry = entry.map_err(cannot)?;
             if entry.file_type().map_err(cannot)?.is_dir() {
@@ -72,13 +74,13 @@ impl Pending {
         let cannot = |file: &Path, reason: &str| {
             Failure::Usage(format!("cannot read the snapshot `{}`: {reason}", file.display()), None)
         };
-        let file = fs::read_to_string(new).map_err(|error| cannot(new, &error.to_string()))?;
+        let file = fs::read_to_string(new).map_err(|error| cannot(new, &words::reason(&error)))?;
         let is = content(new, &file).map_err(|reason| cannot(new, &reason))?;
         let is = is.ok_or_else(|| cannot(new, "the file beside it is missing"))?;
         let old = match fs::read_to_string(&path) {
             Ok(old) => content(&path, &old).map_err(|reason| cannot(&path, &reason))?,
             Err(error) if error.kind() == io::ErrorKind::NotFound => None,
-            Err(error) => return Err(cannot(&path, &error.to_string())),
+            Err(error) => return Err(cannot(&path, &words::reason(&error))),
         };
         Ok(Self { path, old, new: is, file })
     }
@@ -111,8 +113,9 @@ impl Pending {
             Content::Binary(_, extension) => Some(with(&new, &format!(".{extension}"))),
         };
         [Some(new), binary].into_iter().flatten().try_for_each(|file| {
-            fs::remove_file(&file)
-                .map_err(|error| Failure::Failed(format!("cannot remove `{}`: {error}", file.display())))
+            fs::remove_file(&file).map_err(|error| {
+                Failure::Failed(format!("cannot remove `{}`: {}", file.display(), words::reason(&error)))
+            })
         })
     }
 }
@@ -131,7 +134,7 @@ fn content(path: &Path, file: &str) -> Result<Option<Content>, String> {
     match fs::read(with(path, &format!(".{extension}"))) {
         Ok(bytes) => Ok(Some(Content::Binary(bytes, extension.to_owned()))),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
-        Err(error) => Err(format!("its .{extension} file: {error}")),
+        Err(error) => Err(format!("its .{extension} file: {}", words::reason(&error))),
     }
 }
 
@@ -161,5 +164,5 @@ fn put(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     output
         .write_all(bytes)
         .and_then(|()| output.finish())
-        .map_err(|error| Failure::Failed(format!("cannot write `{}`: {error}", path.display())))
+        .map_err(|error| Failure::cannot_write(path, &error))
 }

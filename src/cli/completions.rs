@@ -1,0 +1,18 @@
+//! `tabray completions`: what shells need to complete the command line.
+
+use super::{Failure, described, print};
+use crate::registry::Registry;
+use clap_complete::Shell;
+
+/// Print a script that completes the command line, for a shell
+#[derive(clap::Args)]
+pub struct Args {
+    /// The shell
+    shell: Shell,
+}
+
+pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
+    let mut script = Vec::new();
+    clap_complete::generate(args.shell, &mut described(registry), "tabray", &mut script);
+    print(&String::from_utf8_lossy(&script))
+}

@@ -1,0 +1,13 @@
+//! `tabray grammar`: what editors need to colour scenes in the notes' spelling.
+
+use super::{Failure, print};
+use crate::grammar;
+use crate::registry::Registry;
+
+/// Print a TextMate grammar of scenes, for editors
+#[derive(clap::Args)]
+pub struct Args {}
+
+pub fn run(registry: &Registry) -> Result<(), Failure> {
+    print(&format!("{:#}\n", grammar::of(registry)))
+}

@@ -1,0 +1,43 @@
+//! `tabray man`: manual pages, as packages install them.
+
+use super::output::Output;
+use super::{Failure, described, messages};
+use crate::registry::Registry;
+use clap::Command;
+use clap_mangen::Man;
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// Write the manual pages, one for each command
+#[derive(clap::Args)]
+pub struct Args {
+    /// The folder to write them to, such as share/man/man1
+    folder: PathBuf,
+}
+
+pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
+    let folder = &args.folder;
+    fs::create_dir_all(folder).map_err(|error| Failure::cannot_write(folder, &error))?;
+    let mut command = described(registry).disable_help_subcommand(true);
+    command.build();
+    let count = pages(command, folder)?;
+    messages::note(&format!("wrote {count} pages to {}", folder.display()));
+    Ok(())
+}
+
+/// Writes the page of a command and those of its own commands; how many they are.
+fn pages(command: Command, folder: &Path) -> Result<usize, Failure> {
+    let mut count = 1;
+    for command in command.get_subcommands() {
+        count += pages(command.clone(), folder)?;
+    }
+    let man = Man::new(command).source(concat!("tabray ", env!("CARGO_PKG_VERSION")));
+    let path = folder.join(man.get_filename());
+    let mut output = Output::open(&path)?;
+    man.render(&mut output)
+        .and_then(|()| output.flush())
+        .and_then(|()| output.finish())
+        .map_err(|error| Failure::cannot_write(&path, &error))?;
+    Ok(count)
+}

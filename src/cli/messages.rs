@@ -1,0 +1,68 @@
+//! What the program says on standard error, in the form that was asked for.
+
+use crate::scene::{self, Report};
+use annotate_snippets::{Group, Level, Renderer};
+use std::io::Write;
+use std::sync::OnceLock;
+
+/// How messages are written.
+#[derive(Clone, Copy, Default, PartialEq, clap::ValueEnum)]
+pub enum Form {
+    /// For people: with the lines of the scene that they are about
+    #[default]
+    Human,
+    /// One on each line, `FILE:LINE:COLUMN: error: MESSAGE`, as editors read them
+    Short,
+    /// One on each line, as an object of JSON
+    Json,
+}
+
+static FORM: OnceLock<Form> = OnceLock::new();
+
+/// From here on messages have this form.
+pub fn choose(form: Form) {
+    FORM.get_or_init(|| form);
+}
+
+fn form() -> Form {
+    FORM.get().copied().unwrap_or_default()
+}
+
+/// The faults of a scene.
+pub fn report(report: &Report) {
+    say(&match form() {
+        Form::Human => report.styled(),
+        Form::Short => report.short(),
+        Form::Json => report.json(),
+    });
+}
+
+/// An error that is no fault of a scene, and what would be right if that can be said.
+pub fn error(message: &str, help: Option<&str>) {
+    let rendered = |renderer: Renderer| {
+        let help = help.map(|help| Level::HELP.message(help));
+        renderer.render(&[Group::with_title(Level::ERROR.primary_title(message)).elements(help)])
+    };
+    say(&match form() {
+        Form::Human => rendered(Renderer::styled()) + "\n",
+        Form::Short => format!("error: {message}\n"),
+        Form::Json => json("error", message, help, &rendered(Renderer::plain())),
+    });
+}
+
+/// Something that went well, or how it ended.
+pub fn note(message: &str) {
+    say(&match form() {
+        Form::Human | Form::Short => format!("{message}\n"),
+        Form::Json => json("note", message, None, message),
+    });
+}
+
+fn json(level: &str, message: &str, help: Option<&str>, rendered: &str) -> String {
+    scene::message(level, message, help, Vec::new(), rendered).to_string() + "\n"
+}
+
+/// Where standard error is closed there is nobody to tell.
+fn say(text: &str) {
+    let _ = anstream::stderr().write_all(text.as_bytes());
+}

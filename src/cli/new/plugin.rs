@@ -1,0 +1,149 @@
+//! `tabray new plugin`: a plugin that works, and its scenes.
+
+use crate::choice::Choice;
+use crate::cli::{Failure, messages, output};
+use crate::profile::Profile;
+use crate::registry::Registry;
+use crate::shading::OnPlane;
+use std::fs;
+use std::path::Path;
+use toml::de::DeTable;
+
+/// Write a plugin that explains itself and works, with its scenes
+///
+/// A plugin is compiled into the program: this is for a checkout of tabray, and runs in its topmost folder. After
+/// `cargo build` the language has the new word.
+#[derive(clap::Args)]
+pub struct Args {
+    /// What scenes call it: lower case letters, digits and `_`
+    name: String,
+    /// What it adds to the language
+    #[arg(long, default_value = "shape")]
+    kind: Kind,
+}
+
+#[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
+enum Kind {
+    /// An entity type of objects
+    Shape,
+    /// A procedural shader, for `psphere`, `pplane` and `pfplane`
+    Shader,
+    /// An entity type of lights
+    Light,
+    /// A profile for surfaces of revolution
+    Profile,
+}
+
+/// A file to write: its path, in which `NAME` is the plugin's name, and the text that it starts from.
+type Template = (&'static str, &'static str);
+
+impl Kind {
+    /// The plugin first. In the texts, `template` and `Template` stand for its name.
+    fn templates(self) -> &'static [Template] {
+        match self {
+            Self::Shape => &[
+                ("plugins/NAME.rs", include_str!("templates/shape.rs")),
+                ("scenes/entities/NAME.ray", include_str!("templates/shape.ray")),
+                ("scenes/wrong/NAME.ray", include_str!("templates/shape-wrong.ray")),
+            ],
+            Self::Light => &[
+                ("plugins/NAME.rs", include_str!("templates/light.rs")),
+                ("scenes/entities/NAME.ray", include_str!("templates/light.ray")),
+                ("scenes/wrong/NAME.ray", include_str!("templates/light-wrong.ray")),
+            ],
+            Self::Shader => &[
+                ("plugins/NAME.rs", include_str!("templates/shader.rs")),
+                ("scenes/psphere/NAME.ray", include_str!("templates/shader.ray")),
+            ],
+            Self::Profile => &[
+                ("plugins/NAME.rs", include_str!("templates/profile.rs")),
+                ("scenes/revsurf/NAME.ray", include_str!("templates/profile.ray")),
+            ],
+        }
+    }
+}
+
+/// Words that Rust keeps for itself.
+const KEYWORDS: &str = "abstract as async await become box break const continue crate do dyn else enum extern false \
+                        final fn for gen if impl in let loop macro match mod move mut override priv pub ref return \
+                        self static struct super trait true try type typeof unsafe unsized use virtual where while \
+                        yield";
+
+pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
+    is_checkout()?;
+    let name = args.name.as_str();
+    let templates = args.kind.templates();
+    is_free(registry, name, templates[0].1)?;
+    let files: Vec<_> =
+        templates.iter().map(|(path, text)| (path.replace("NAME", name), named(text, name))).collect();
+    for (path, _) in &files {
+        output::is_new(Path::new(path))?;
+    }
+    for (path, text) in &files {
+        output::create(Path::new(path), text)?;
+        messages::note(&format!("wrote {path}"));
+    }
+    messages::note(&format!(
+        "look at it with `cargo run --release -- render {}`; README.md tells what else belongs to a plugin",
+        files[1].0
+    ));
+    Ok(())
+}
+
+/// Whether the working directory is where plugins are compiled from.
+fn is_checkout() -> Result<(), Failure> {
+    let manifest = fs::read_to_string("Cargo.toml").unwrap_or_default();
+    let (manifest, _) = DeTable::parse_recoverable(&manifest);
+    let package = manifest
+        .get_ref()
+        .get("package")
+        .and_then(|package| package.get_ref().get("name")?.get_ref().as_str());
+    if package == Some("tabray") && Path::new("plugins").is_dir() {
+        return Ok(());
+    }
+    Err(Failure::Usage(
+        "this is not the topmost folder of a checkout of tabray".to_owned(),
+        Some(
+            "a plugin is compiled into the program: go to the folder with its `Cargo.toml` and `plugins/`"
+                .to_owned(),
+        ),
+    ))
+}
+
+/// Whether a plugin can have this name.
+fn is_free(registry: &Registry, name: &str, template: &str) -> Result<(), Failure> {
+    let no_name = |what: String| {
+        let help = "a plugin's name is that of a Rust module, such as `tiled_plane`";
+        Err(Failure::Usage(what, Some(help.to_owned())))
+    };
+    let is_letter = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
+    if !name.starts_with(|c: char| c.is_ascii_lowercase()) || !name.chars().all(is_letter) {
+        return no_name(format!("`{}` cannot be the name of a plugin", name.escape_debug()));
+    }
+    if KEYWORDS.split_whitespace().any(|keyword| keyword == name) {
+        return no_name(format!("`{name}` is a word of Rust"));
+    }
+    let what = if let Some(entity) = registry.find(name) {
+        format!("there is an entity type `{name}` already, at {}", entity.place())
+    } else if OnPlane::all().iter().any(|shader| shader.option().name == name) {
+        format!("there is a shader `{name}` already")
+    } else if <&Profile>::all().iter().any(|profile| profile.option().name == name) {
+        format!("there is a profile `{name}` already")
+    } else if template.split(|c: char| !c.is_alphanumeric()).any(|word| word == camel_case(name)) {
+        format!("the text to start from has a `{}` of its own", camel_case(name))
+    } else {
+        return Ok(());
+    };
+    Err(Failure::Usage(what, Some("give the plugin another name".to_owned())))
+}
+
+/// A text in which the plugin has its name.
+fn named(text: &str, name: &str) -> String {
+    text.replace("Template", &camel_case(name)).replace("template", name)
+}
+
+/// A module's name as a type's: `TiledPlane` for `tiled_plane`.
+fn camel_case(name: &str) -> String {
+    let capital = |part: &str| part[..1].to_ascii_uppercase() + &part[1..];
+    name.split('_').filter(|part| !part.is_empty()).map(capital).collect()
+}

@@ -1,0 +1,48 @@
+//! `tabray new scene`: a scene that explains itself.
+
+use crate::cli::{Failure, messages, output};
+use crate::syntax::Syntax;
+use std::path::PathBuf;
+
+/// Write a scene that explains itself and can be rendered at once
+#[derive(clap::Args)]
+pub struct Args {
+    /// The scene's name, or its file: without an ending it gets the one of its spelling
+    name: PathBuf,
+    /// Write it as TOML; so is a file that ends in .toml
+    #[arg(long)]
+    toml: bool,
+}
+
+pub fn run(args: &Args) -> Result<(), Failure> {
+    let ending = args.name.extension().and_then(|ending| ending.to_str());
+    let mut path = args.name.clone().into_os_string();
+    let syntax = match ending {
+        Some("ray") if args.toml => {
+            return Err(Failure::Usage(
+                format!("the file `{}` would not be read as TOML", args.name.display()),
+                Some("end its name in .toml, or leave out `--toml`".to_owned()),
+            ));
+        }
+        Some("ray") => Syntax::Notes,
+        Some("toml") => Syntax::Toml,
+        _ if args.toml => {
+            path.push(".toml");
+            Syntax::Toml
+        }
+        _ => {
+            path.push(".ray");
+            Syntax::Notes
+        }
+    };
+    let path = PathBuf::from(path);
+    output::create(
+        &path,
+        match syntax {
+            Syntax::Notes => include_str!("templates/scene.ray"),
+            Syntax::Toml => include_str!("templates/scene.toml"),
+        },
+    )?;
+    messages::note(&format!("wrote {}; look at it with `tabray render {0}`", path.display()));
+    Ok(())
+}

@@ -1,0 +1,116 @@
+//! `--size`, `--quick` and `--crop`: how large the picture is, and which part of it is made.
+
+use super::Failure;
+use crate::camera::Camera;
+use std::ops::Range;
+
+/// What `pixeldim` allows each way.
+const LARGEST: usize = 100_000;
+
+#[derive(clap::Args)]
+#[group(id = "how large")]
+pub struct Args {
+    /// The picture's width and height in pixels, or the width alone, with the height that goes with it; by default
+    /// what the scene's camera says
+    #[arg(long, value_name = "W|WxH", value_parser = size)]
+    size: Option<Size>,
+    /// A picture to look at soon: a quarter as wide and as high, with one ray through each pixel
+    #[arg(long, conflicts_with_all = ["size", "samples"])]
+    quick: bool,
+    /// Make this part of the picture alone, W pixels wide and H high, as it is in the whole one: X is its first
+    /// column, from 0 at the left, and Y its first row, from 0 at the bottom
+    #[arg(long, value_name = "X,Y,W,H", conflicts_with = "aov", value_parser = crop, allow_hyphen_values = true)]
+    crop: Option<[i64; 4]>,
+}
+
+/// A size as it was asked for.
+#[derive(Clone, Copy)]
+struct Size {
+    width: usize,
+    height: Option<usize>,
+}
+
+/// A part of a picture.
+pub struct Part {
+    /// From the left.
+    pub columns: Range<usize>,
+    /// From the top.
+    pub rows: Range<usize>,
+}
+
+impl Part {
+    /// Its width and height.
+    pub fn size(&self) -> [usize; 2] {
+        [self.columns.len(), self.rows.len()]
+    }
+
+    /// All of a camera's picture.
+    pub fn whole(camera: &Camera) -> Self {
+        let [width, height] = camera.pixels;
+        Self { columns: 0..width, rows: 0..height }
+    }
+}
+
+impl Args {
+    /// Gives the picture the size that is asked for, and finds the part of it that is.
+    pub fn apply(&self, camera: &mut Camera) -> Result<Part, Failure> {
+        let [width, height] = camera.pixels;
+        if self.quick {
+            camera.pixels = camera.pixels.map(|side| (side / 4).max(1));
+            camera.samples = 1;
+        }
+        if let Some(size) = self.size {
+            let in_proportion = (size.width as f64 * height as f64 / width as f64).round() as usize;
+            camera.pixels = [size.width, size.height.unwrap_or(in_proportion.max(1))];
+            if camera.pixels[1] > LARGEST {
+                return Err(Failure::Usage(
+                    format!("a picture {} pixels wide would be {} high", size.width, camera.pixels[1]),
+                    Some(format!(
+                        "it can have {LARGEST} each way: ask for a smaller one, or give both as `WxH`"
+                    )),
+                ));
+            }
+        }
+        match self.crop {
+            Some(crop) => part(camera, crop),
+            None => Ok(Part::whole(camera)),
+        }
+    }
+}
+
+/// The part that a user named, if the picture has it.
+fn part(camera: &Camera, [x, y, wide, high]: [i64; 4]) -> Result<Part, Failure> {
+    let [width, height] = camera.pixels;
+    let range = |from: i64, count: i64, whole: usize| {
+        let (from, count) = (usize::try_from(from).ok()?, usize::try_from(count).ok()?);
+        let to = from.checked_add(count).filter(|to| count > 0 && *to <= whole)?;
+        Some(from..to)
+    };
+    match (range(x, wide, width), range(y, high, height)) {
+        (Some(columns), Some(rows)) => Ok(Part { columns, rows: height - rows.end..height - rows.start }),
+        _ => Err(Failure::Usage(
+            format!("the picture of {width} x {height} pixels has no part of {wide} x {high} at {x} {y}"),
+            Some(format!(
+                "X counts from the left and Y from the bottom, both from 0; X + W can be {width}, and Y + H {height}"
+            )),
+        )),
+    }
+}
+
+fn size(text: &str) -> Result<Size, String> {
+    let side = |text: &str| text.parse().ok().filter(|side| (1..=LARGEST).contains(side));
+    let (width, height) = match text.split_once('x') {
+        Some((width, height)) => (side(width), side(height).map(Some)),
+        None => (side(text), Some(None)),
+    };
+    width
+        .zip(height)
+        .map(|(width, height)| Size { width, height })
+        .ok_or_else(|| format!("give a width as `800`, or both as `800x600`, each from 1 to {LARGEST}"))
+}
+
+fn crop(text: &str) -> Result<[i64; 4], String> {
+    let numbers: Result<Vec<i64>, _> = text.split(',').map(str::parse).collect();
+    let numbers = numbers.ok().and_then(|numbers| numbers.try_into().ok());
+    numbers.ok_or_else(|| "give the part as `X,Y,W,H`, whole numbers".to_owned())
+}
