@@ -80,6 +80,10 @@ impl Hittable for Ellipsoid {
         self.ball.is_two_sided()
     }
 
+    fn method(&self) -> String {
+        ball::method(self.ball.accuracy).to_owned()
+    }
+
     fn certify(&self, ray: &Ray) -> Enclosure {
         certify::first_hit(self, ray)
     }

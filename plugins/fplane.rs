@@ -159,6 +159,10 @@ impl Hittable for FinitePlane {
         self.plane.normal(at)
     }
 
+    fn method(&self) -> String {
+        self.plane.method().to_owned()
+    }
+
     fn certify(&self, ray: &Ray) -> Enclosure {
         certify::first_hit(self, ray)
     }

@@ -60,6 +60,10 @@ impl Hittable for Plane {
         Plane::is_clear_of(self, region)
     }
 
+    fn method(&self) -> String {
+        Plane::method(self).to_owned()
+    }
+
     fn certify(&self, ray: &Ray) -> Enclosure {
         certify::first_hit(self, ray)
     }

@@ -134,6 +134,12 @@ impl Hittable for Quadric {
         !self.is_classic
     }
 
+    fn method(&self) -> String {
+        let method =
+            if self.is_classic { "the notes' formula" } else { "a closed form, from near its center" };
+        method.to_owned()
+    }
+
     fn certify(&self, ray: &Ray) -> Enclosure {
         certify::first_hit(self, ray)
     }

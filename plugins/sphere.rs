@@ -90,6 +90,10 @@ impl Hittable for Sphere {
         self.accuracy != Accuracy::Classic
     }
 
+    fn method(&self) -> String {
+        ball::method(self.accuracy).to_owned()
+    }
+
     fn certify(&self, ray: &Ray) -> Enclosure {
         certify::first_hit(self, ray)
     }

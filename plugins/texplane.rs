@@ -94,6 +94,10 @@ impl Hittable for Rectangle {
         self.0.rectangle.normal(at)
     }
 
+    fn method(&self) -> String {
+        self.0.rectangle.method()
+    }
+
     fn certify(&self, ray: &Ray) -> Enclosure {
         self.0.rectangle.certify(ray)
     }

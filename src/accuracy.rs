@@ -1,6 +1,7 @@
 //! How exactly a scene is traced: by the notes' own methods, or by stable ones of a chosen accuracy.
 
 use crate::choice::{Choice, ChoiceName};
+use std::fmt;
 use std::panic::Location;
 
 /// How exactly shapes find their hits.
@@ -20,6 +21,14 @@ pub enum Accuracy {
 impl Accuracy {
     const ALL: [Self; 4] = [Self::Classic, Self::Draft, Self::Exact, Self::Strict];
     const PLACE: &'static Location<'static> = Location::caller();
+}
+
+/// What choosing it does, in a few words.
+impl fmt::Display for Accuracy {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let option = self.option();
+        write!(f, "{}: {}", option.name, option.meaning)
+    }
 }
 
 impl Choice for Accuracy {

@@ -18,6 +18,18 @@ pub struct Line {
     pub dir: [Twofold; 3],
 }
 
+/// How hits are computed, in a few words.
+pub fn method(accuracy: Accuracy) -> &'static str {
+    match accuracy {
+        Accuracy::Classic => "the notes' formula",
+        Accuracy::Draft => "a closed form, in twice the precision where rounding could decide",
+        Accuracy::Exact => {
+            "a closed form and a step of Newton's method, in twice the precision where rounding could decide"
+        }
+        Accuracy::Strict => "a closed form in twice the precision",
+    }
+}
+
 /// The distance of the first hit of a ball: of its near side, or from inside of its far one. A line that only
 /// touches it misses it, as in the notes.
 #[inline(always)]

@@ -49,6 +49,11 @@ impl Cpu {
         Level::ALL.into_iter().filter(|level| level.is_here()).map(Self)
     }
 
+    /// This level, where the machine has it.
+    pub fn of(level: Level) -> Option<Self> {
+        level.is_here().then_some(Self(level))
+    }
+
     /// The best level that this machine has.
     pub fn best() -> Self {
         Self::all().next_back().unwrap_or(Self(Level::Baseline))

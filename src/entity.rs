@@ -257,6 +257,14 @@ impl Args {
         values.filter(|(_, (_, given))| *given).map(|(attribute, (datum, _))| (attribute, datum))
     }
 
+    /// The names of the textures that it refers to.
+    pub fn textures(&self) -> impl Iterator<Item = &str> {
+        self.values().filter_map(|(_, datum)| match datum {
+            Datum::Texture { name, .. } => Some(&**name),
+            _ => None,
+        })
+    }
+
     /// How exactly the scene is traced.
     pub fn accuracy(&self) -> Accuracy {
         self.setting.camera.accuracy

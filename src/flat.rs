@@ -63,6 +63,16 @@ impl Plane {
         }
     }
 
+    /// How a crossing is computed, in a few words.
+    pub fn method(&self) -> &'static str {
+        match self.accuracy {
+            Accuracy::Classic => "the notes' formula",
+            Accuracy::Draft => "plain arithmetic",
+            Accuracy::Exact => "plain arithmetic, and what rounding takes from it where sums cancel",
+            Accuracy::Strict => "twice the precision",
+        }
+    }
+
     /// The distance within a span; none on the viewer's side of the screen.
     #[inline(always)]
     pub fn keep(&self, distance: f64, ray: &Ray, within: &Span) -> f64 {

@@ -146,6 +146,11 @@ pub trait Hittable: Send + Sync {
         false
     }
 
+    /// How its hits are found, in a few words, for the plan of a scene.
+    fn method(&self) -> String {
+        "its own distance".to_owned()
+    }
+
     /// What is certain about the first hit of a ray from afar. A shape that says nothing of it cannot be verified;
     /// [`certify::first_hit`](crate::certify::first_hit) proves it for shapes that have an equation.
     fn certify(&self, _ray: &Ray) -> Enclosure {

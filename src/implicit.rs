@@ -93,6 +93,10 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
         true
     }
 
+    fn method(&self) -> String {
+        "its first root isolated by bounds that certainly hold, then polished".to_owned()
+    }
+
     fn certify(&self, ray: &Ray) -> Enclosure {
         certify::first_hit(self, ray)
     }

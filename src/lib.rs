@@ -55,6 +55,7 @@ pub mod schema;
 pub mod shading;
 pub mod syntax;
 pub mod tables;
+pub mod tally;
 pub mod taylor;
 pub mod texture;
 pub mod trace;

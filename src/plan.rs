@@ -1,7 +1,11 @@
 //! What a scene needs, decided once before any ray is traced: everything else is left out.
 
+mod text;
+
+pub use text::Decision;
+
 use crate::bounds::Bounds;
-use crate::model::Object;
+use crate::model::{Model, Object};
 use crate::tree::Tree;
 
 /// From so many objects with bounds on, a tree finds them faster than a list.
@@ -36,5 +40,10 @@ impl Plan {
         });
         let has_glass = objects.iter().any(|object| object.material.transparency != 0.0);
         Self { bounds, listed, has_bounds, tree, has_glass }
+    }
+
+    /// All decisions about a model, each with its reason.
+    pub fn decisions(model: &Model) -> Vec<Decision> {
+        text::decisions(model)
     }
 }

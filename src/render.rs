@@ -4,6 +4,7 @@ use crate::cpu::Cpu;
 use crate::model::Model;
 use crate::picture::to_byte;
 use crate::trace::Tracer;
+use crate::watch::Watch;
 use rayon::prelude::*;
 use std::io;
 use std::ops::{ControlFlow, Range};
@@ -51,26 +52,41 @@ impl Renderer {
         rows: Range<usize>,
         done: &'r (dyn Fn() -> ControlFlow<()> + Sync),
     ) -> impl Iterator<Item = io::Result<Vec<u8>>> + 'r {
+        self.watched_bands(model, columns, rows, done, &|()| {})
+    }
+
+    /// As [`bands`](Self::bands); a new watcher watches each strip of tiles, and `watched` gets it then, on any thread
+    /// and in no order.
+    pub fn watched_bands<'r, W: Watch + Default>(
+        &'r self,
+        model: &'r Model,
+        columns: Range<usize>,
+        rows: Range<usize>,
+        done: &'r (dyn Fn() -> ControlFlow<()> + Sync),
+        watched: &'r (dyn Fn(W) + Sync),
+    ) -> impl Iterator<Item = io::Result<Vec<u8>>> + 'r {
         // Whole tiles.
         let step = (BAND / columns.len()).max(1).next_multiple_of(TILE);
         rows.clone().step_by(step).map(move |from| {
             let rows = from..rows.end.min(from + step);
-            self.rows(model, columns.clone(), rows, done).ok_or_else(|| io::ErrorKind::Interrupted.into())
+            let bytes = self.rows(model, columns.clone(), rows, done, watched);
+            bytes.ok_or_else(|| io::ErrorKind::Interrupted.into())
         })
     }
 
     /// The whole picture, as [`bands`](Self::bands) gives it in parts.
     pub fn picture(&self, model: &Model) -> Vec<u8> {
         let [width, height] = model.camera.value.pixels;
-        self.rows(model, 0..width, 0..height, &|| ControlFlow::Continue(())).unwrap_or_default()
+        self.rows(model, 0..width, 0..height, &|| ControlFlow::Continue(()), &|()| {}).unwrap_or_default()
     }
 
-    fn rows(
+    fn rows<W: Watch + Default>(
         &self,
         model: &Model,
         columns: Range<usize>,
         rows: Range<usize>,
         done: &(dyn Fn() -> ControlFlow<()> + Sync),
+        watched: &(dyn Fn(W) + Sync),
     ) -> Option<Vec<u8>> {
         let [_, height] = model.camera.value.pixels;
         let width = columns.len();
@@ -78,9 +94,9 @@ impl Renderer {
         let strips = pixels.par_chunks_mut(TILE * width).zip(rows.into_par_iter().step_by(TILE));
         let finished = self.pool.install(|| {
             strips.try_for_each(|(strip, from_top)| {
-                let (tall, mut nobody) = (strip.len() / width, ());
+                let (tall, mut watch) = (strip.len() / width, W::default());
                 let top = height - 1 - from_top;
-                let mut tracer = Tracer::new(model, self.cpu, &mut nobody);
+                let mut tracer = Tracer::new(model, self.cpu, &mut watch);
                 for left in columns.clone().step_by(TILE) {
                     let (mut tile, mut len) = ([[0; 2]; TILE * TILE], 0);
                     for row in 0..tall {
@@ -93,6 +109,7 @@ impl Renderer {
                         strip[(top - y) * width + x - columns.start] = colour.to_array().map(to_byte);
                     });
                 }
+                watched(watch);
                 (0..tall).try_for_each(|_| done())
             })
         });

@@ -7,7 +7,7 @@ use std::io;
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
-/// A picture in a file. It is read when something first needs it, and never if nothing does.
+/// A picture in a file. It is read once, when something first needs it, and never if nothing does.
 #[derive(Debug, Default)]
 pub struct Texture {
     path: PathBuf,

@@ -4,6 +4,7 @@ use crate::geometry::Ray;
 use crate::material::Rgb;
 use crate::model::Object;
 use glam::DVec3;
+use std::fmt;
 
 /// Someone who watches rays being traced.
 ///
@@ -23,7 +24,7 @@ impl Watch for () {
     const SEES: bool = false;
 }
 
-/// Work that was done, or spared.
+/// Work that was done, or spared. Rays go in packets; it is their rays that are counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Count {
     /// So many rays of a kind were cast.
@@ -39,12 +40,28 @@ pub enum Count {
 pub enum Kind {
     /// From the viewer.
     Primary,
-    /// From a surface to a light.
+    /// From a surface to a light; in a scene with glass, anew from behind each pane on its way.
     Shadow,
     /// From a mirror.
     Reflected,
     /// Through glass.
     Transmitted,
+}
+
+impl Kind {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Primary, Self::Shadow, Self::Reflected, Self::Transmitted];
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Primary => "primary",
+            Self::Shadow => "shadow",
+            Self::Reflected => "reflected",
+            Self::Transmitted => "transmitted",
+        })
+    }
 }
 
 /// What happens to rays.

@@ -125,8 +125,8 @@ fn no_snapshot_is_left_of_a_scene_that_is_gone() {
         for entry in fs::read_dir(folder).expect("a folder of snapshots") {
             let path = entry.expect("an entry").path();
             if path.is_dir() {
-                // Explanations of pixels and refusals are named after what they show.
-                if !path.ends_with("probe") && !path.ends_with("refusals") {
+                // Explanations of pixels, plans and refusals are named after what they show.
+                if !["probe", "plan", "refusals"].iter().any(|folder| path.ends_with(folder)) {
                     folders.push(path);
                 }
                 continue;

@@ -4,7 +4,7 @@ use super::{Failure, messages};
 use crate::accuracy::Accuracy;
 use crate::model::Model;
 use crate::registry::Registry;
-use crate::scene;
+use crate::scene::{self, Loaded};
 use crate::words;
 use std::fs::File;
 use std::io::{self, Read};
@@ -20,11 +20,16 @@ pub fn is_standard(path: &Path) -> bool {
 
 /// Reads a scene, prints its warnings and makes its model, of this accuracy or of its own.
 pub fn load(registry: &Registry, path: &Path, accuracy: Option<Accuracy>) -> Result<Model, Failure> {
+    loaded(registry, path, accuracy).map(|loaded| loaded.model)
+}
+
+/// As [`load`], with what else is known of it.
+pub fn loaded(registry: &Registry, path: &Path, accuracy: Option<Accuracy>) -> Result<Loaded, Failure> {
     let (name, bytes) = read(path)?;
     let folder = path.parent().unwrap_or(path);
     let loaded = scene::read(registry, &name, folder, &bytes, accuracy).map_err(Failure::Scene)?;
     messages::report(&loaded.warnings);
-    Ok(loaded.model)
+    Ok(loaded)
 }
 
 /// The bytes of a scene, and what messages call it.

@@ -4,6 +4,7 @@ mod aov;
 mod check;
 mod completions;
 mod convert;
+mod cpu;
 mod debug;
 mod diff;
 mod dump;
@@ -19,6 +20,7 @@ mod new;
 mod notes;
 mod output;
 mod picture;
+mod plan;
 mod probe;
 mod render;
 mod report;
@@ -26,6 +28,7 @@ mod review;
 mod schema;
 mod serve;
 mod size;
+mod stats;
 mod verify;
 
 use crate::registry::Registry;
@@ -57,6 +60,7 @@ enum Command {
     Dump(dump::Args),
     Convert(convert::Args),
     Check(check::Args),
+    Plan(plan::Args),
     Probe(probe::Args),
     Verify(verify::Args),
     Diff(diff::Args),
@@ -121,6 +125,7 @@ pub fn run() -> ExitCode {
             Some(Command::Dump(args)) => dump::run(registry, args),
             Some(Command::Convert(args)) => convert::run(registry, args),
             Some(Command::Check(args)) => check::run(registry, args),
+            Some(Command::Plan(args)) => plan::run(registry, args),
             Some(Command::Probe(args)) => probe::run(registry, args),
             Some(Command::Verify(args)) => verify::run(registry, args),
             Some(Command::Diff(args)) => return diff::run(registry, &args),

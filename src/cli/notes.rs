@@ -7,6 +7,7 @@ use crate::accuracy::Accuracy;
 use crate::dump;
 use crate::picture::Format;
 use crate::registry::Registry;
+use crate::render::Renderer;
 use std::io::Write;
 use std::path::Path;
 
@@ -17,5 +18,5 @@ pub fn run(registry: &Registry) -> Result<(), Failure> {
     interrupt::catch()?;
     let _ = write!(std::io::stderr(), "{}", dump::notes(&model));
     let whole = Part::whole(&model.camera.value);
-    render::picture(&model, &whole, 0, Format::Ppm, standard, output)
+    render::picture(&model, &whole, &Renderer::new(0)?, Format::Ppm, standard, output, None)
 }

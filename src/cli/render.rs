@@ -2,12 +2,14 @@
 
 use super::output::Output;
 use super::size::{self, Part};
-use super::{Failure, aov, debug, input, interrupt, messages, method};
+use super::stats::{self, Stats};
+use super::{Failure, aov, cpu, debug, input, interrupt, messages, method};
 use crate::model::Model;
 use crate::picture::{Compression, Format};
 use crate::registry::Registry;
 use crate::render::Renderer;
 use crate::sample::{self, Sampler};
+use crate::scene::Loaded;
 use crate::words;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, BufWriter};
@@ -47,6 +49,10 @@ pub struct Args {
     aov: aov::Args,
     #[command(flatten)]
     debug: debug::Args,
+    #[command(flatten)]
+    cpu: cpu::Args,
+    #[command(flatten)]
+    stats: stats::Args,
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
@@ -76,7 +82,10 @@ enum SamplerName {
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let path = target(&args)?;
     let format = format(&args, &path)?;
-    let mut model = input::load(registry, &args.scene, args.method.accuracy()?)?;
+    let cpu = args.cpu.cpu()?;
+    let start = Instant::now();
+    let Loaded { mut model, building, .. } = input::loaded(registry, &args.scene, args.method.accuracy()?)?;
+    let mut stats = Stats { reading: start.elapsed() - building, building, ..Stats::default() };
     let camera = &mut model.camera.value;
     camera.samples = args.samples.unwrap_or(camera.samples);
     camera.sampler = match args.sampler {
@@ -90,33 +99,48 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     debug::print(&model, &args.debug)?;
     let threads = args.threads.unwrap_or(0).into();
     let start = Instant::now();
-    picture(&model, &part, threads, format, &path, output)?;
+    model.plan();
+    stats.building += start.elapsed();
+    let renderer = self::threads(threads)?.on(cpu);
+    let whole = Instant::now();
+    let wanted = args.stats.wants_any().then_some(&stats);
+    picture(&model, &part, &renderer, format, &path, output, wanted)?;
+    stats.writing = whole.elapsed().saturating_sub(stats.rendering.get());
     if path != Path::new("-") {
         let [width, height] = part.size();
         let seconds = start.elapsed().as_secs_f64();
         messages::note(&format!("wrote {} ({width} x {height} pixels, {seconds:.2} s)", path.display()));
     }
+    args.stats.print(&stats, &model);
     aov::write(&model, threads, format, beside)
 }
 
-/// Renders a part of a model's picture and puts it where it belongs.
+/// Renders a part of a model's picture and puts it where it belongs. What it takes goes into `stats`, if there are any.
 pub fn picture(
     model: &Model,
     part: &Part,
-    threads: usize,
+    renderer: &Renderer,
     format: Format,
     path: &Path,
     output: Output,
+    stats: Option<&Stats>,
 ) -> Result<(), Failure> {
-    let renderer = self::threads(threads)?;
     let progress = Progress::new(part.rows.len());
     let done = || {
         progress.step();
         interrupt::check()
     };
     let mut out = BufWriter::with_capacity(1 << 16, output);
-    let bands = renderer.bands(model, part.columns.clone(), part.rows.clone(), &done);
-    let written = format.write(&mut out, part.size(), bands);
+    let (columns, rows) = (part.columns.clone(), part.rows.clone());
+    let written = match stats {
+        None => format.write(&mut out, part.size(), renderer.bands(model, columns, rows, &done)),
+        Some(stats) => {
+            let sum = &stats.tally;
+            let add = |tally| sum.add(&tally);
+            let bands = renderer.watched_bands(model, columns, rows, &done, &add);
+            format.write(&mut out, part.size(), stats.timed(bands))
+        }
+    };
     progress.end();
     if interrupt::check() == ControlFlow::Break(()) {
         return Err(Failure::Interrupted);

@@ -25,9 +25,11 @@ use crate::geometry::{MISS, Ray, Side, Span};
 use crate::interval::Interval;
 use crate::number::Number;
 use crate::taylor::Line;
+use crate::words;
 use glam::DVec3;
 use local::Local;
 use slabs::Slabs;
+use std::fmt;
 
 /// A surface of revolution around the y axis, from the origin upward.
 pub struct Revolution {
@@ -131,6 +133,20 @@ impl Revolution {
     fn outside_and_slope(&self, local: &Local, along: f64) -> (f64, f64) {
         let (value, slope) = self.square_and_slope(local.height(along));
         (local.around(along) - value, 2.0 * (local.a * along + local.b) - slope * local.dir.y)
+    }
+}
+
+/// How its hits are found.
+impl fmt::Display for Revolution {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let slabs = (0..self.slabs.count()).map(|index| self.slabs.get(index));
+        let error = slabs.map(|slab| slab.error).fold(0.0, f64::max);
+        let count = words::count(self.slabs.count(), "slab");
+        let finish = match self.finish {
+            Finish::Bracket => "left in the middle of their brackets",
+            Finish::Root => "finished by Newton's method",
+        };
+        write!(f, "{count}, the profile's square in each a parabola within {error:.1e}; hits {finish}")
     }
 }
 

@@ -26,6 +26,10 @@ impl Hittable for InFrame<Classic> {
         (self.frame.axes * self.surface.normal(self.frame.point(at))).normalize()
     }
 
+    fn method(&self) -> String {
+        "bisection to 1e-4, from the ray's origin to its point closest to the axis".to_owned()
+    }
+
     fn certify(&self, ray: &Ray) -> Enclosure {
         certify::first_hit(&self.surface, &self.frame.ray(ray))
     }
@@ -50,6 +54,10 @@ impl Hittable for InFrame<Revolution> {
 
     fn is_two_sided(&self) -> bool {
         true
+    }
+
+    fn method(&self) -> String {
+        self.surface.to_string()
     }
 
     fn certify(&self, ray: &Ray) -> Enclosure {

@@ -132,7 +132,9 @@ impl Check<'_> {
             }
             Construct::Texture(construct) => {
                 if let Some(Item { args, value }) = self.made(written, args, construct) {
-                    let texture = Arc::new(value);
+                    // Two that have one file are one, so that it is read once.
+                    let known = self.textures.iter().map(|item| &item.value).find(|known| ***known == value);
+                    let texture = known.cloned().unwrap_or_else(|| Arc::new(value));
                     let shown = Datum::Texture { name: Arc::from(name.as_str()), texture: texture.clone() };
                     self.names.define(kind, &name, shown);
                     self.textures.push(Item { args, value: texture });
@@ -182,13 +184,7 @@ impl Check<'_> {
     fn textures_can_be_read(&mut self, written: &[Written<'_>]) {
         let users =
             self.objects.iter().map(|object| &object.args).chain(self.lights.iter().map(|light| &light.args));
-        let used: BTreeSet<_> = users
-            .flat_map(Args::values)
-            .filter_map(|(_, datum)| match datum {
-                Datum::Texture { name, .. } => Some(name.clone()),
-                _ => None,
-            })
-            .collect();
+        let used: BTreeSet<_> = users.flat_map(Args::textures).collect();
         for Item { args, value } in &self.textures {
             if used.contains(args.name.as_str())
                 && let Err(reason) = value.load()

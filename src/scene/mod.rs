@@ -20,6 +20,7 @@ use crate::model::Model;
 use crate::registry::Registry;
 use crate::syntax::Syntax;
 use std::path::Path;
+use std::time::{Duration, Instant};
 
 /// A model, and the warnings that its scene gave rise to.
 pub struct Loaded {
@@ -27,6 +28,9 @@ pub struct Loaded {
     pub model: Model,
     /// What may not mean what was intended.
     pub warnings: Report,
+    /// How long it took to check the entities and to make the model of them, textures and all; reading the text is
+    /// not in it.
+    pub building: Duration,
 }
 
 /// Reads a scene, in TOML if its name ends in `.toml` or its text begins as TOML does, and in the notes'
@@ -56,7 +60,7 @@ pub fn read(
     if written.is_empty() && !report.is_fatal() {
         report.add(Fault::error(Some(0..0), "the scene is empty").help(first_steps(registry, syntax)));
     }
-    finish(check::model(registry, folder, accuracy, written, &mut report), report)
+    finish(registry, folder, accuracy, written, report)
 }
 
 /// Makes a model without any text (the notes' `modelstat.c`). The entities are checked as a text's are;
@@ -86,14 +90,22 @@ pub fn build(
     registry: &Registry,
     written: impl IntoIterator<Item = Written<'static>>,
 ) -> Result<Loaded, Report> {
-    let mut report = Report::new("model", "", Syntax::Notes);
-    let written = written.into_iter().collect();
-    finish(check::model(registry, Path::new(""), None, written, &mut report), report)
+    let report = Report::new("model", "", Syntax::Notes);
+    finish(registry, Path::new(""), None, written.into_iter().collect(), report)
 }
 
-fn finish(model: Option<Model>, report: Report) -> Result<Loaded, Report> {
-    match model {
-        Some(model) if !report.is_fatal() => Ok(Loaded { model, warnings: report }),
+fn finish(
+    registry: &Registry,
+    folder: &Path,
+    accuracy: Option<Accuracy>,
+    written: Vec<Written<'_>>,
+    mut report: Report,
+) -> Result<Loaded, Report> {
+    let start = Instant::now();
+    match check::model(registry, folder, accuracy, written, &mut report) {
+        Some(model) if !report.is_fatal() => {
+            Ok(Loaded { model, warnings: report, building: start.elapsed() })
+        }
         _ => Err(report),
     }
 }

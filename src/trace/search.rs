@@ -80,37 +80,43 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
         far: &[f64; N],
         object: usize,
     ) -> [f64; N] {
-        let count = group.padded();
+        let (len, count) = (group.len, group.padded());
         let mut distances = *near;
-        if near[..group.len] == far[..group.len] {
-            return distances;
-        }
-        let shape = &*self.model.objects[object].shape;
-        let sides = group.sides_of(object);
-        let brackets = (&near[..count], &far[..count]);
-        shape.distances(self.cpu, group.rays(), sides, brackets, &mut distances[..count]);
-        for lane in 0..group.len {
-            if near[lane] == far[lane] {
-                distances[lane] = near[lane];
-            } else if distances[lane].is_nan() {
-                distances[lane] = exact(shape, &group.rays().get(lane), sides.map(|sides| sides[lane]), MISS);
+        if near[..len] != far[..len] {
+            let shape = &*self.model.objects[object].shape;
+            let sides = group.sides_of(object);
+            let brackets = (&near[..count], &far[..count]);
+            shape.distances(self.cpu, group.rays(), sides, brackets, &mut distances[..count]);
+            for lane in 0..len {
+                if near[lane] == far[lane] {
+                    distances[lane] = near[lane];
+                } else if distances[lane].is_nan() {
+                    let leaves = sides.map(|sides| sides[lane]);
+                    distances[lane] = exact(shape, &group.rays().get(lane), leaves, MISS);
+                }
+                debug_assert!(
+                    near[lane] <= distances[lane] && distances[lane] <= far[lane],
+                    "the bracket {} to {} of `{}` does not hold {}",
+                    near[lane],
+                    far[lane],
+                    self.model.objects[object].args.entity.name,
+                    distances[lane]
+                );
             }
-            debug_assert!(
-                near[lane] <= distances[lane] && distances[lane] <= far[lane],
-                "the bracket {} to {} of `{}` does not hold {}",
-                near[lane],
-                far[lane],
-                self.model.objects[object].args.entity.name,
-                distances[lane]
-            );
         }
+        // What is beyond the last ray goes on as a copy of it: what plain arithmetic left open there is no number, and
+        // would make no box of the places.
+        let last = distances[len - 1];
+        distances[len..count].fill(last);
         distances
     }
 
-    /// Marks the rays that an object blocks before their ends. All leave the same object, or none.
+    /// Marks the rays that an object blocks before their ends: so many, and copies that fill the arrays up. All leave the
+    /// same object, or none.
     pub(super) fn blocked(
         &mut self,
         rays: Rays,
+        len: usize,
         ends: &[f64],
         (leaves, sides): (usize, &[Side]),
         region: &Bounds,
@@ -120,6 +126,7 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
         let mut search = Blocked {
             tracer: self,
             rays,
+            len,
             ends,
             leaves,
             sides,
@@ -225,6 +232,8 @@ impl<W: Watch, const N: usize> Visitor for Closest<'_, '_, '_, W, N> {
 struct Blocked<'s, 'm, 'w, W> {
     tracer: &'s mut Tracer<'m, 'w, W>,
     rays: Rays<'s>,
+    /// How many of them are no copies.
+    len: usize,
     ends: &'s [f64],
     leaves: usize,
     sides: &'s [Side],
@@ -240,7 +249,7 @@ impl<W: Watch> Blocked<'_, '_, '_, W> {
         let plan = self.tracer.plan;
         for index in &plan.listed {
             if self.tracer.model.objects[*index].shape.is_clear_of(&self.region) {
-                self.tracer.watch.count(Count::Culled(*index, self.ends.len()));
+                self.tracer.watch.count(Count::Culled(*index, self.len));
                 continue;
             }
             self.object(*index);
@@ -270,7 +279,7 @@ impl<W: Watch> Visitor for Blocked<'_, '_, '_, W> {
         if sides.is_some() && shape.is_convex() {
             return;
         }
-        self.tracer.watch.count(Count::Tested(index, self.ends.len()));
+        self.tracer.watch.count(Count::Tested(index, self.len));
         let mut doubt = [0; WIDE];
         if shape.block(self.tracer.cpu, self.rays, sides, self.ends, self.blocked, &mut doubt) {
             for lane in 0..self.ends.len() {

@@ -73,7 +73,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
         if 2 * len > group.len {
             let rays = Rays { origin: surface.points.view(count), dir: ways.toward.view(count) };
             let leaves = (surface.index, &surface.sides[..count]);
-            self.blocked(rays, &ends[..count], leaves, &region, &mut blocked[..count]);
+            self.blocked(rays, len, &ends[..count], leaves, &region, &mut blocked[..count]);
             darken(self.cpu, &blocked[..count], &mut shines[..]);
             return;
         }
@@ -91,7 +91,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
         let (ends, sides): ([f64; N], [Side; N]) = (pick(&ends, lanes), pick(&surface.sides, lanes));
         let rays = Rays { origin: origin.view(count), dir: dir.view(count) };
         let leaves = (surface.index, &sides[..count]);
-        self.blocked(rays, &ends[..count], leaves, &region, &mut blocked[..count]);
+        self.blocked(rays, len, &ends[..count], leaves, &region, &mut blocked[..count]);
         for (lane, blocked) in lanes.iter().zip(&blocked) {
             shines[usize::from(*lane)] &= u64::from(*blocked == 0);
         }

@@ -1,0 +1,29 @@
+//! `tabray plan`: what a scene needs, and why.
+
+use super::{Failure, input, method, print};
+use crate::cpu::Cpu;
+use crate::plan::{Decision, Plan};
+use crate::registry::Registry;
+use std::path::PathBuf;
+
+/// Print how a scene would be rendered, each decision with its reason
+#[derive(clap::Args)]
+pub struct Args {
+    /// The scene; `-` reads it from standard input
+    scene: PathBuf,
+    #[command(flatten)]
+    method: method::Args,
+}
+
+pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
+    let model = input::load(registry, &args.scene, args.method.accuracy()?)?;
+    let best = format!("{}, the most that this machine has; the picture is the same with any", Cpu::best());
+    let cpu = Decision { subject: "instructions", text: best };
+    print(
+        &Plan::decisions(&model)
+            .iter()
+            .chain([&cpu])
+            .map(|decision| format!("{decision}\n"))
+            .collect::<String>(),
+    )
+}

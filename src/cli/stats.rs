@@ -1,0 +1,150 @@
+//! `--stats`: what a picture took, in rays, tests, time and memory.
+
+use crate::model::Model;
+use crate::tally::Tally;
+use crate::watch::Kind;
+use serde_json::json;
+use std::cell::Cell;
+use std::fmt::Write as _;
+use std::io::{self, Write as _};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+#[derive(clap::Args)]
+#[group(id = "statistics")]
+pub struct Args {
+    /// Print what the picture took to standard error, as a table or as JSON: its rays by kind, their tests by entity
+    /// type, the time of each stage and the memory
+    #[arg(long, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "table")]
+    stats: Option<Format>,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum Format {
+    /// To be read
+    Table,
+    /// One object in one line, to be read by a program
+    Json,
+}
+
+/// What a picture took.
+#[derive(Default)]
+pub struct Stats {
+    pub tally: Sum,
+    /// Getting and understanding the scene's text.
+    pub reading: Duration,
+    /// From the text's entities to the model, and the search tree if there is one.
+    pub building: Duration,
+    /// Tracing rays.
+    pub rendering: Cell<Duration>,
+    /// Making a file of the picture.
+    pub writing: Duration,
+}
+
+impl Args {
+    /// Whether anything is to be counted.
+    pub fn wants_any(&self) -> bool {
+        self.stats.is_some()
+    }
+
+    /// Prints what was counted.
+    pub fn print(&self, stats: &Stats, model: &Model) {
+        let text = match self.stats {
+            None => return,
+            Some(Format::Table) => stats.table(model),
+            Some(Format::Json) => stats.json(model),
+        };
+        // Where standard error is closed there is nobody to tell.
+        let _ = io::stderr().write_all(text.as_bytes());
+    }
+}
+
+/// The counts of all parts of a picture, from all threads.
+#[derive(Default)]
+pub struct Sum(Mutex<Tally>);
+
+impl Sum {
+    fn get(&self) -> MutexGuard<'_, Tally> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Adds those of a part.
+    pub fn add(&self, part: &Tally) {
+        self.get().add(part);
+    }
+}
+
+impl Stats {
+    /// The bands of a picture as they come, and how long each takes.
+    pub fn timed<B>(&self, mut bands: impl Iterator<Item = B>) -> impl Iterator<Item = B> {
+        std::iter::from_fn(move || {
+            let start = Instant::now();
+            let band = bands.next();
+            self.rendering.set(self.rendering.get() + start.elapsed());
+            band
+        })
+    }
+
+    fn stages(&self) -> [(&'static str, f64); 4] {
+        [
+            ("reading", self.reading),
+            ("building", self.building),
+            ("rendering", self.rendering.get()),
+            ("writing", self.writing),
+        ]
+        .map(|(stage, time)| (stage, time.as_secs_f64()))
+    }
+
+    fn table(&self, model: &Model) -> String {
+        let tally = self.tally.get();
+        let mut out = format!("{:<12} {:>14}\n", "rays", "cast");
+        for kind in Kind::ALL {
+            let _ = writeln!(out, "{kind:<12} {:>14}", tally.rays(kind));
+        }
+        let _ = writeln!(
+            out,
+            "\n{:<12} {:>14} {:>14} {:>14} {:>14}",
+            "tests", "objects", "tested", "culled", "of all rays"
+        );
+        for (name, tests) in tally.tests(model) {
+            let percent = 100.0 * tests.tested as f64 / (tally.all_rays() * tests.objects) as f64;
+            let (objects, tested, culled) = (tests.objects, tests.tested, tests.culled);
+            let _ = writeln!(out, "{name:<12} {objects:>14} {tested:>14} {culled:>14} {percent:>12.1} %");
+        }
+        let _ = writeln!(out, "\n{:<12} {:>14}", "stages", "seconds");
+        for (stage, seconds) in self.stages() {
+            let _ = writeln!(out, "{stage:<12} {seconds:>14.4}");
+        }
+        if let Some(bytes) = peak_memory() {
+            let _ = writeln!(out, "\n{:<12} {:>10.1} MiB", "peak memory", bytes as f64 / f64::from(1 << 20));
+        }
+        out
+    }
+
+    fn json(&self, model: &Model) -> String {
+        let tally = self.tally.get();
+        let rays = Kind::ALL.map(|kind| (kind.to_string(), tally.rays(kind).into()));
+        let tests = tally.tests(model).into_iter().map(|(name, tests)| {
+            let tests = json!({"objects": tests.objects, "tested": tests.tested, "culled": tests.culled});
+            (name.to_owned(), tests)
+        });
+        let mut all = json!({
+            "rays": serde_json::Map::from_iter(rays),
+            "tests": serde_json::Map::from_iter(tests),
+            "seconds": serde_json::Map::from_iter(self.stages().map(|(stage, time)| (stage.to_owned(), time.into()))),
+        });
+        if let Some(bytes) = peak_memory() {
+            all["peak_memory"] = bytes.into();
+        }
+        format!("{all}\n")
+    }
+}
+
+/// The most memory that the program has had at one time, in bytes, where the system tells: on Linux.
+///
+/// What `getrusage` says of it counts the program that started this one, too.
+fn peak_memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    Some(peak.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()? << 10)
+}

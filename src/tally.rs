@@ -1,0 +1,82 @@
+//! How much work a picture took: its rays by kind, and their tests by object.
+
+use crate::model::Model;
+use crate::watch::{Count, Kind, Watch};
+use std::collections::BTreeMap;
+
+/// Counts of rays and tests. It is a watcher that leaves packets together, and so counts what plain rendering does.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Tally {
+    rays: [u64; Kind::ALL.len()],
+    /// By the objects' indices.
+    tests: Vec<Tests>,
+}
+
+/// What became of the tests of an object, or of all objects of an entity type.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tests {
+    /// How many objects there are.
+    pub objects: u64,
+    /// How many rays were tested.
+    pub tested: u64,
+    /// How many were not, as the object's bounds are not in their way.
+    ///
+    /// What a tree passes over is in neither number, and no more are rays that leave the object or were blocked by
+    /// another one before.
+    pub culled: u64,
+}
+
+impl Watch for Tally {
+    const SEES: bool = false;
+
+    fn count(&mut self, count: Count) {
+        match count {
+            Count::Rays(kind, rays) => self.rays[kind as usize] += rays as u64,
+            Count::Tested(object, rays) => self.of(object).tested += rays as u64,
+            Count::Culled(object, rays) => self.of(object).culled += rays as u64,
+        }
+    }
+}
+
+impl Tally {
+    fn of(&mut self, object: usize) -> &mut Tests {
+        if self.tests.len() <= object {
+            self.tests.resize(object + 1, Tests { objects: 1, tested: 0, culled: 0 });
+        }
+        &mut self.tests[object]
+    }
+
+    /// Adds the counts of another part of the picture.
+    pub fn add(&mut self, other: &Self) {
+        for (sum, part) in self.rays.iter_mut().zip(other.rays) {
+            *sum += part;
+        }
+        for (object, part) in other.tests.iter().enumerate() {
+            let sum = self.of(object);
+            (sum.tested, sum.culled) = (sum.tested + part.tested, sum.culled + part.culled);
+        }
+    }
+
+    /// How many rays of a kind were cast.
+    pub fn rays(&self, kind: Kind) -> u64 {
+        self.rays[kind as usize]
+    }
+
+    /// How many rays were cast.
+    pub fn all_rays(&self) -> u64 {
+        self.rays.iter().sum()
+    }
+
+    /// What became of the tests of a model's objects, by the names of their entity types.
+    pub fn tests(&self, model: &Model) -> BTreeMap<&'static str, Tests> {
+        let mut tests: BTreeMap<_, Tests> = BTreeMap::new();
+        for (index, object) in model.objects.iter().enumerate() {
+            let part = self.tests.get(index).copied().unwrap_or_default();
+            let sum = tests.entry(object.args.entity.name).or_default();
+            sum.objects += 1;
+            sum.tested += part.tested;
+            sum.culled += part.culled;
+        }
+        tests
+    }
+}

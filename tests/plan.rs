@@ -1,0 +1,372 @@
+//! No more than a scene needs: the plan says so, the counts prove it, and the picture is the same whoever makes it.
+
+mod common;
+
+use assert_cmd::cargo::cargo_bin_cmd;
+use common::{model, model_in, registry, root, scenes};
+use insta::Settings;
+use serde_json::Value;
+use std::fs;
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::Mutex;
+use tabray::accuracy::Accuracy;
+use tabray::cpu::Cpu;
+use tabray::model::Model;
+use tabray::picture::to_byte;
+use tabray::plan::Plan;
+use tabray::render::Renderer;
+use tabray::scene;
+use tabray::tally::{Tally, Tests};
+use tabray::trace;
+use tabray::watch::Kind::{Primary, Reflected, Shadow, Transmitted};
+use tempfile::TempDir;
+
+/// What a scene's picture of 40 x 30 pixels takes.
+fn counted(entities: &str) -> (Model, Tally) {
+    let camera = "camera eye { pixeldim 40 30 worlddim 8 6 viewpoint 4 3 7 }
+        material matt { ambient 1 1 1 diffuse 2 2 2 }
+        material mirror { specular 0.5 }
+        material glass { diffuse 1 2 1 transparency 0.5 }";
+    let model = model(&format!("{camera}\n{entities}"));
+    let tally = count(&model, 2);
+    (model, tally)
+}
+
+fn count(model: &Model, threads: usize) -> Tally {
+    let sum = Mutex::new(Tally::default());
+    let add = |part: Tally| sum.lock().expect("no thread panics").add(&part);
+    let renderer = Renderer::new(threads).expect("threads");
+    let [width, height] = model.camera.value.pixels;
+    let done = || ControlFlow::Continue(());
+    let bands: Result<Vec<_>, _> = renderer.watched_bands(model, 0..width, 0..height, &done, &add).collect();
+    assert_eq!(
+        bands.expect("nothing breaks off").concat(),
+        renderer.picture(model),
+        "watching changes nothing"
+    );
+    sum.into_inner().expect("no thread panics")
+}
+
+fn text(model: &Model) -> String {
+    Plan::decisions(model).iter().map(|decision| format!("{decision}\n")).collect()
+}
+
+/// The line of a plan about a subject.
+fn line(model: &Model, subject: &str) -> String {
+    let text = text(model);
+    let line = text.lines().find(|line| line.split_whitespace().next() == Some(subject));
+    line.unwrap_or_else(|| panic!("nothing about {subject} in {text}")).to_owned()
+}
+
+const FLOOR: &str = "plane floor { material matt normal 0 1 0 point 0 0 0 }";
+const LAMP: &str = "light lamp { location 1 7 2 emissivity 5 5 5 }";
+const PIXELS: u64 = 40 * 30;
+
+#[test]
+fn without_lights_no_shadow_rays_are_cast() {
+    let (dark, tally) = counted(FLOOR);
+    assert_eq!([Primary, Shadow].map(|kind| tally.rays(kind)), [PIXELS, 0]);
+    assert!(line(&dark, "lights").contains("none: ") && !text(&dark).contains("shadows "));
+    let (lit, tally) = counted(&format!("{FLOOR} {LAMP}"));
+    let hits = (0..30).flat_map(|y| (0..40).map(move |x| (x, y)));
+    let hits = hits.filter(|(x, y)| trace::pixel(&lit, *x, *y).max_element() > 0.0).count() as u64;
+    assert!(hits > PIXELS / 3);
+    assert_eq!(
+        tally.rays(Shadow),
+        hits,
+        "a light above a floor: a shadow ray from each place of it that is seen"
+    );
+    assert!(line(&lit, "lights").contains("`lamp`"));
+    let (_, tally) = counted(&format!("{FLOOR} {LAMP} light other {{ location 7 7 2 emissivity 5 5 5 }}"));
+    assert_eq!(tally.rays(Shadow), 2 * hits);
+    let (_, tally) = counted(&format!("{FLOOR} light below {{ location 1 -7 2 emissivity 5 5 5 }}"));
+    assert_eq!(tally.rays(Shadow), 0, "no place faces it");
+}
+
+#[test]
+fn without_mirrors_no_rays_are_reflected() {
+    let (matt, tally) =
+        counted(&format!("{FLOOR} {LAMP} sphere ball {{ material matt center 4 2 -4 radius 2 }}"));
+    assert_eq!(tally.rays(Reflected), 0);
+    assert!(line(&matt, "mirrors").contains("none: "));
+    let (mirror, tally) = counted("plane wall { material mirror normal 0 0 1 point 0 0 -4 }");
+    assert_eq!(tally.rays(Reflected), PIXELS, "every ray meets the wall, and what it mirrors is empty");
+    assert!(line(&mirror, "mirrors").contains("`wall`"));
+}
+
+#[test]
+fn without_glass_no_rays_are_transmitted() {
+    let (opaque, tally) = counted(&format!("{FLOOR} {LAMP}"));
+    assert_eq!(tally.rays(Transmitted), 0);
+    assert!(line(&opaque, "glass").contains("none: ") && line(&opaque, "shadows").contains("two shades"));
+    let (pane, tally) = counted(&format!("{LAMP} plane pane {{ material glass normal 0 0 1 point 0 0 -4 }}"));
+    assert_eq!(tally.rays(Transmitted), PIXELS);
+    assert!(line(&pane, "glass").contains("`pane`") && line(&pane, "shadows").contains("tinted"));
+}
+
+#[test]
+fn samples_multiply_the_primary_rays_exactly() {
+    for samples in [1, 2, 3, 16, 70] {
+        let mut model = model(&format!(
+            "camera eye {{ pixeldim 21 13 worlddim 8 6 viewpoint 4 3 7 samples {samples} }}
+             material matt {{ ambient 1 1 1 }} {FLOOR}"
+        ));
+        assert_eq!(count(&model, 2).rays(Primary), 21 * 13 * samples);
+        model.camera.value.pixels = [1, 1];
+        assert_eq!(count(&model, 2).rays(Primary), samples);
+    }
+}
+
+#[test]
+fn three_planes_are_a_list_and_each_is_tested_with_each_ray() {
+    let (model, tally) = counted(&format!(
+        "{FLOOR} plane left {{ material matt normal 1 0 0 point 0 0 0 }}
+         plane back {{ material matt normal 0 0 1 point 0 0 -9 }}"
+    ));
+    assert!(line(&model, "search").contains("a list of 3 objects: none has bounds"));
+    assert_eq!(tally.tests(&model)["plane"], Tests { objects: 3, tested: 3 * PIXELS, culled: 0 });
+}
+
+#[test]
+fn a_sphere_in_a_corner_is_hardly_ever_tested() {
+    let (model, tally) =
+        counted(&format!("{FLOOR} sphere ball {{ material matt center 0.5 0.5 -1 radius 0.4 }}"));
+    let Tests { tested, culled, .. } = tally.tests(&model)["sphere"];
+    assert_eq!(tested + culled, PIXELS, "a ray is tested or it is not");
+    assert!(tested > 0 && tested < PIXELS / 10, "{tested}");
+    assert_eq!(tally.tests(&model)["plane"].tested, PIXELS);
+    assert!(line(&model, "search").contains("a list of 2 objects, 1 with bounds"));
+}
+
+#[test]
+fn many_spheres_are_in_a_tree_and_few_of_them_are_tested() {
+    let spheres: String = (0..400)
+        .map(|index| {
+            let (x, y, z) =
+                (0.4 * f64::from(index % 20), 0.3 * f64::from(index / 20), -1.0 - f64::from(index % 7));
+            format!("sphere s{index} {{ material matt center {x} {y} {z} radius 0.1 }}\n")
+        })
+        .collect();
+    let (model, tally) = counted(&format!("{FLOOR} {LAMP} {spheres}"));
+    let search = line(&model, "search");
+    assert!(
+        search.contains("for the 400 objects with bounds") && search.contains("a list of the 1 without"),
+        "{search}"
+    );
+    let Tests { objects, tested, .. } = tally.tests(&model)["sphere"];
+    assert_eq!(objects, 400);
+    assert!(
+        tested > 0 && tested < tally.all_rays() * 400 / 10,
+        "{tested} tests of {} rays",
+        tally.all_rays()
+    );
+}
+
+#[test]
+fn no_ray_is_counted_twice() {
+    for path in scenes() {
+        let model = small(&path, None);
+        let tally = count(&model, 2);
+        for (name, Tests { objects, tested, culled }) in tally.tests(&model) {
+            assert!(tested + culled <= tally.all_rays() * objects, "{name} in {}", path.display());
+        }
+        assert_eq!(count(&model, 1), tally, "{}: counts depend on the threads", path.display());
+    }
+}
+
+/// A scene of few pixels and samples.
+fn small(path: &Path, accuracy: Option<Accuracy>) -> Model {
+    let bytes = fs::read(path).expect("a scene");
+    let name = path.display().to_string();
+    let mut model = match scene::read(registry(), &name, path.parent().expect("a folder"), &bytes, accuracy) {
+        Ok(loaded) => loaded.model,
+        Err(report) => panic!("{report}"),
+    };
+    let camera = &mut model.camera.value;
+    // Mirrors that touch cost 20000 rays a pixel. Neither side is a whole number of tiles.
+    camera.pixels = if path.ends_with("touching-mirrors.ray") { [9, 5] } else { [36, 27] };
+    camera.samples = camera.samples.min(3);
+    model
+}
+
+#[test]
+fn a_picture_depends_neither_on_instructions_nor_on_threads_nor_on_tiles() {
+    let renderers: Vec<_> = Cpu::all()
+        .map(|cpu| (format!("{cpu}"), Renderer::new(2).expect("threads").on(cpu)))
+        .chain(
+            [1, 2, 5].map(|threads| (format!("{threads} threads"), Renderer::new(threads).expect("threads"))),
+        )
+        .collect();
+    let mut faults = Vec::new();
+    for path in scenes() {
+        for accuracy in [Accuracy::Exact, Accuracy::Classic, Accuracy::Draft, Accuracy::Strict] {
+            let model = small(&path, Some(accuracy));
+            let [width, height] = model.camera.value.pixels;
+            let alone = renderers[0].1.run(|| {
+                let pixels = (0..height).rev().flat_map(|y| (0..width).map(move |x| (x, y)));
+                let pixels = pixels.flat_map(|(x, y)| trace::pixel(&model, x, y).to_array());
+                pixels.map(to_byte).collect::<Vec<_>>()
+            });
+            for (name, renderer) in &renderers {
+                let picture = renderer.picture(&model);
+                let differ = picture.iter().zip(&alone).filter(|(one, other)| one != other).count();
+                if differ > 0 || picture.len() != alone.len() {
+                    faults.push(format!("{} {accuracy:?}, {name}: {differ} bytes", path.display()));
+                }
+            }
+        }
+    }
+    assert!(faults.is_empty(), "not as each pixel alone:\n{}", faults.join("\n"));
+}
+
+#[test]
+fn plans_are_as_before() {
+    let mut settings = Settings::clone_current();
+    settings.set_snapshot_path(root().join("snapshots/plan"));
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    settings.bind(|| {
+        for scene in [
+            "gallery/marbles",
+            "gallery/stained-glass",
+            "notes/three-planes",
+            "projector/shadow",
+            "texture/never-used",
+            "camera/samples",
+            "entities/revsurf",
+            "entities/torus",
+        ] {
+            let model = common::load(&root().join("scenes").join(scene).with_extension("ray"));
+            insta::assert_snapshot!(scene.replace('/', "-"), text(&model));
+        }
+        let classic = fs::read(root().join("scenes/entities/revsurf.ray")).expect("a scene");
+        let accuracy = Some(Accuracy::Classic);
+        let classic = scene::read(registry(), "revsurf.ray", Path::new(""), &classic, accuracy);
+        insta::assert_snapshot!("classic", text(&classic.ok().expect("no faults").model));
+    });
+}
+
+#[test]
+fn a_parabola_is_one_slab_and_a_vase_is_many() {
+    let slabs = |profile: &str| {
+        let (model, _) = counted(&format!(
+            "revsurf r {{ material matt profile \"{profile}\" direction 0 1 0 base 4 0 -4 height 4 }}"
+        ));
+        let line = line(&model, "revsurf");
+        let number = line.split_whitespace().zip(line.split_whitespace().skip(1));
+        let mut number = number.filter(|(_, noun)| noun.starts_with("slab")).map(|(number, _)| number);
+        number.next().expect("a number of slabs").parse::<usize>().expect("a number")
+    };
+    assert_eq!([slabs("1"), slabs("2 - 0.4 * y"), slabs("sqrt(5 - y)")], [1; 3]);
+    assert!(slabs("1 + 0.3 * sin(9 * y)") > 10);
+}
+
+#[test]
+fn a_texture_is_read_once_before_the_first_ray_and_never_if_nothing_uses_it() {
+    let folder = TempDir::new().expect("a folder");
+    let file = folder.path().join("bricks.png");
+    fs::copy(root().join("scenes/textures/bricks.png"), &file).expect("a copy");
+    let wall = |name: &str, x: f64| {
+        format!(
+            "texplane {name} {{ material m texname {name} mode 0 normal 0 0 1 point {x} 0 -4 xdir 1 0 0 dimensions 3 3 }}"
+        )
+    };
+    let model = model_in(
+        folder.path(),
+        &format!(
+            "camera eye {{ pixeldim 40 30 worlddim 8 6 viewpoint 4 3 7 }} material m {{ ambient 9 9 9 }}
+             texture one {{ filename bricks.png }} texture two {{ filename bricks.png }}
+             texture missing {{ filename no/such/file.png }} {} {}",
+            wall("one", 0.0),
+            wall("two", 4.0)
+        ),
+    );
+    fs::remove_file(&file).expect("a file");
+    let [one, two, missing] = [0, 1, 2].map(|index| &model.textures[index].value);
+    let [one, two] = [one, two].map(|texture| std::ptr::from_ref(texture.load().expect("read before")));
+    assert_eq!(one, two, "one picture in memory for two names of one file");
+    assert!(common::render(&model).pixels().any(|pixel| pixel.0[0] > 2 * pixel.0[2]), "bricks are seen");
+    assert!(missing.load().is_err());
+    assert!(text(&model).contains("`missing` is not read: nothing uses it"), "{}", text(&model));
+}
+
+/// What the program does in a new folder: its status, standard output and standard error.
+fn outcome(args: &[&str]) -> (i32, String, String) {
+    let folder = TempDir::new().expect("a folder");
+    let output = cargo_bin_cmd!("tabray").current_dir(folder.path()).args(args).output().expect("it runs");
+    let text = |bytes| String::from_utf8_lossy(bytes).into_owned();
+    (output.status.code().unwrap_or(-1), text(&output.stdout), text(&output.stderr))
+}
+
+fn file(scene: &str) -> String {
+    root().join("scenes").join(scene).display().to_string()
+}
+
+#[test]
+fn plan_prints_every_decision_and_the_instructions() {
+    let (status, out, err) = outcome(&["plan", &file("gallery/marbles.ray")]);
+    assert_eq!((status, err.as_str()), (0, ""));
+    for subject in ["picture", "accuracy", "lights", "shadows", "glass", "mirrors", "search", "instructions"]
+    {
+        assert!(out.lines().any(|line| line.starts_with(&format!("{subject} "))), "{subject}: {out}");
+    }
+    let (_, classic, _) = outcome(&["plan", &file("gallery/marbles.ray"), "--method", "classic"]);
+    assert!(classic.contains("none has bounds"), "{classic}");
+    assert_eq!(outcome(&["plan", &file("wrong/zero-radius.ray")]).0, 2);
+    assert_eq!(outcome(&["plan", "no-such-scene.ray"]).0, 2);
+}
+
+#[test]
+fn statistics_go_to_standard_error_and_change_nothing_else() {
+    let scene = file("material/mirror.ray");
+    let plain = outcome(&["render", &scene, "-o", "-"]);
+    let (status, out, err) = outcome(&["render", &scene, "-o", "-", "--stats", "json"]);
+    assert_eq!((status, out), (0, plain.1));
+    let stats: Value = serde_json::from_str(&err).expect("one object and nothing else");
+    assert_eq!(stats["rays"]["primary"], 160 * 120);
+    assert_eq!(stats["rays"]["transmitted"], 0);
+    assert!(stats["rays"]["reflected"].as_u64() > Some(0), "{err}");
+    let model = common::load(Path::new(&scene));
+    let tally = count(&model, 1);
+    for (name, tests) in tally.tests(&model) {
+        assert_eq!(stats["tests"][name]["tested"], tests.tested, "{name}");
+        assert_eq!(stats["tests"][name]["culled"], tests.culled, "{name}");
+        assert_eq!(stats["tests"][name]["objects"], tests.objects, "{name}");
+    }
+    for stage in ["reading", "building", "rendering", "writing"] {
+        assert!(stats["seconds"][stage].as_f64() >= Some(0.0), "{stage}: {err}");
+    }
+    if cfg!(target_os = "linux") {
+        // No less than the picture itself, and less than a machine has.
+        assert!((160 * 120 * 3..1 << 34).contains(&stats["peak_memory"].as_u64().expect("bytes")), "{err}");
+    }
+
+    let (status, _, err) = outcome(&["render", &scene, "-o", "a.png", "--stats"]);
+    assert_eq!(status, 0);
+    for word in
+        ["primary", "shadow", "reflected", "transmitted", "tested", "culled", "rendering", "wrote a.png"]
+    {
+        assert!(err.contains(word), "{word}: {err}");
+    }
+}
+
+#[test]
+fn instructions_are_chosen_among_those_that_are_there() {
+    let scene = file("gallery/stained-glass.ray");
+    let render = |cpu: &str| {
+        let args = ["render", &scene, "-o", "a.png", "--cpu", cpu, "--stats", "json"];
+        let (status, _, err) = outcome(&args);
+        (status, err)
+    };
+    for cpu in ["baseline", "avx2", "avx512"] {
+        let (status, err) = render(cpu);
+        if Cpu::all().any(|here| here.to_string() == cpu) {
+            assert_eq!(status, 0, "{err}");
+        } else {
+            assert_eq!(status, 2);
+            assert!(err.contains("this machine does not have") && err.contains("`--cpu baseline`"), "{err}");
+        }
+    }
+    assert_eq!(render("mmx").0, 2);
+}
