@@ -25,7 +25,7 @@ inventory::submit! {
 }
 
 impl Plane {
-    /// The plane of an entity whose table has [`TABLE`]'s rows.
+    /// The plane of an entity whose table has a plane's rows.
     pub fn new(args: &Args) -> Self {
         let normal = args.get(&NORMAL).normalize();
         Self { normal, point: args.get(&POINT), accuracy: args.accuracy() }

@@ -243,7 +243,7 @@ fn plans_are_as_before() {
         let classic = fs::read(root().join("scenes/entities/revsurf.ray")).expect("a scene");
         let accuracy = Some(Accuracy::Classic);
         let classic = scene::read(registry(), "revsurf.ray", Path::new(""), &classic, accuracy);
-        insta::assert_snapshot!("classic", text(&classic.ok().expect("no faults").model));
+        insta::assert_snapshot!("classic", text(&classic.unwrap_or_else(|report| panic!("{report}")).model));
     });
 }
 
