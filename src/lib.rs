@@ -44,6 +44,7 @@ pub mod plan;
 pub mod pparm;
 pub mod probe;
 pub mod profile;
+pub mod progressive;
 pub mod quadratic;
 pub mod reference;
 pub mod registry;

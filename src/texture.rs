@@ -4,7 +4,7 @@ use crate::material::Rgb;
 use crate::words;
 use image::{ImageReader, RgbImage};
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 /// A picture in a file. It is read once, when something first needs it, and never if nothing does.
@@ -25,6 +25,11 @@ impl Texture {
     /// The picture of this file: PPM, PGM, PBM or PNG.
     pub fn new(path: PathBuf) -> Self {
         Self { path, picture: OnceLock::new() }
+    }
+
+    /// The file of its picture.
+    pub fn path(&self) -> &Path {
+        &self.path
     }
 
     /// The picture, read from its file at the first call.

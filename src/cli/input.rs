@@ -32,18 +32,18 @@ pub fn loaded(registry: &Registry, path: &Path, accuracy: Option<Accuracy>) -> R
     Ok(loaded)
 }
 
-/// The bytes of a scene, and what messages call it.
-fn read(path: &Path) -> Result<(String, Vec<u8>), Failure> {
+/// The bytes of a scene, and what messages call it; or why it has none.
+pub fn read(path: &Path) -> Result<(String, Vec<u8>), Failure> {
     let (name, bytes) = if is_standard(path) {
         ("<stdin>".to_owned(), to_first_nul(io::stdin().lock()))
     } else {
         (path.display().to_string(), File::open(path).and_then(to_first_nul))
     };
     match bytes {
-        Ok(bytes) if bytes.len() as u64 > LARGEST => Err(Failure::Usage(
-            format!("`{name}` is larger than {} MiB: this is not a scene", LARGEST >> 20),
-            None,
-        )),
+        Ok(bytes) if bytes.len() as u64 > LARGEST => {
+            let message = format!("`{name}` is larger than {} MiB: this is not a scene", LARGEST >> 20);
+            Err(Failure::Usage(message, None))
+        }
         Ok(bytes) => Ok((name, bytes)),
         Err(error) => {
             let near = words::nearest_file(path).filter(|_| error.kind() == io::ErrorKind::NotFound);

@@ -8,10 +8,16 @@ static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
 /// From here on an interruption is only noted, for [`check`] to act on.
 pub fn catch() -> Result<(), Failure> {
-    ctrlc::set_handler(|| {
+    catch_and(|| ())
+}
+
+/// As [`catch`], and the first one calls `then`, on a thread of its own.
+pub fn catch_and(mut then: impl FnMut() + Send + 'static) -> Result<(), Failure> {
+    ctrlc::set_handler(move || {
         if INTERRUPTED.swap(true, Ordering::Relaxed) {
             std::process::exit(130);
         }
+        then();
     })
     .map_err(|error| Failure::Failed(format!("cannot catch interruptions: {error}")))
 }

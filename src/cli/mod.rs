@@ -30,6 +30,7 @@ mod serve;
 mod size;
 mod stats;
 mod verify;
+mod watch;
 
 use crate::registry::Registry;
 use crate::scene::Report;
@@ -65,6 +66,7 @@ enum Command {
     Verify(verify::Args),
     Diff(diff::Args),
     Review(review::Args),
+    Watch(watch::Args),
     List(list::Args),
     New(new::Args),
     Schema(schema::Args),
@@ -130,6 +132,7 @@ pub fn run() -> ExitCode {
             Some(Command::Verify(args)) => verify::run(registry, args),
             Some(Command::Diff(args)) => return diff::run(registry, &args),
             Some(Command::Review(args)) => review::run(registry, &args),
+            Some(Command::Watch(args)) => watch::run(registry, args),
             Some(Command::List(args)) => list::run(registry, args),
             Some(Command::New(args)) => new::run(registry, &args),
             Some(Command::Schema(_)) => schema::run(registry),

@@ -132,6 +132,7 @@ impl Check<'_> {
             }
             Construct::Texture(construct) => {
                 if let Some(Item { args, value }) = self.made(written, args, construct) {
+                    self.report.add_file(value.path().to_owned());
                     // Two that have one file are one, so that it is read once.
                     let known = self.textures.iter().map(|item| &item.value).find(|known| ***known == value);
                     let texture = known.cloned().unwrap_or_else(|| Arc::new(value));

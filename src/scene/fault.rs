@@ -5,6 +5,7 @@ use crate::words;
 use annotate_snippets::{AnnotationKind, Level, Origin, Renderer, Snippet};
 use std::fmt;
 use std::ops::Range;
+use std::path::PathBuf;
 
 /// Where something stands in a scene's text, in bytes; nothing for what was built without a text.
 pub type Place = Option<Range<usize>>;
@@ -87,12 +88,13 @@ pub struct Report {
     pub(super) text: String,
     syntax: Syntax,
     pub(super) faults: Vec<Fault>,
+    files: Vec<PathBuf>,
 }
 
 impl Report {
     /// A report without faults on a scene's text; `name` is what messages call it.
     pub fn new(name: impl Into<String>, text: impl Into<String>, syntax: Syntax) -> Self {
-        Self { name: name.into(), text: text.into(), syntax, faults: Vec::new() }
+        Self { name: name.into(), text: text.into(), syntax, faults: Vec::new(), files: Vec::new() }
     }
 
     /// The spelling in which messages tell what would be right.
@@ -114,6 +116,16 @@ impl Report {
     /// The faults, in the order of the text.
     pub fn faults(&self) -> &[Fault] {
         &self.faults
+    }
+
+    /// The files that the scene names, whether they are there or not.
+    pub fn files(&self) -> &[PathBuf] {
+        &self.files
+    }
+
+    /// Adds a file that the scene names.
+    pub(super) fn add_file(&mut self, file: PathBuf) {
+        self.files.push(file);
     }
 
     /// Whether any fault leaves the scene without a meaning.

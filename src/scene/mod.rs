@@ -31,6 +31,8 @@ pub struct Loaded {
     /// How long it took to check the entities and to make the model of them, textures and all; reading the text is
     /// not in it.
     pub building: Duration,
+    /// Where each entity stands, from its type to its end, by its [order](crate::entity::Args::order).
+    pub places: Vec<Place>,
 }
 
 /// Reads a scene, in TOML if its name ends in `.toml` or its text begins as TOML does, and in the notes'
@@ -101,10 +103,11 @@ fn finish(
     written: Vec<Written<'_>>,
     mut report: Report,
 ) -> Result<Loaded, Report> {
+    let places = written.iter().map(|entity| entity.place.clone()).collect();
     let start = Instant::now();
     match check::model(registry, folder, accuracy, written, &mut report) {
         Some(model) if !report.is_fatal() => {
-            Ok(Loaded { model, warnings: report, building: start.elapsed() })
+            Ok(Loaded { model, warnings: report, building: start.elapsed(), places })
         }
         _ => Err(report),
     }

@@ -220,7 +220,8 @@ impl<'a> Parser<'a, '_> {
                     .help(format!("attributes stand in braces: `{} {} {{ ... }}`", kind.text, name.text)),
             );
         }
-        let mut entity = Written { kind: kind.word(), name, attributes: Vec::new(), is_damaged: false };
+        let mut entity =
+            Written { kind: kind.word(), name, attributes: Vec::new(), place: None, is_damaged: false };
         let known = self.registry.find(&kind.text);
         while self.body_goes_on(&entity) {
             if self.is(self.at, "{") {
@@ -237,6 +238,7 @@ impl<'a> Parser<'a, '_> {
             }
         }
         let closed = self.tokens.get(self.at - 1).map_or(self.end..self.end, |token| token.at.clone());
+        entity.place = Some(kind.at.start..closed.end);
         self.last = Some((kind.at, closed));
         entity
     }

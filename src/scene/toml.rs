@@ -209,10 +209,12 @@ impl<'a> Parser<'a, '_> {
             found.map_or(key.span(), |start| start..start + source.len())
         };
         let (kind_at, name_at) = (place_of(kind), place_of(name));
+        let start = kind_at.start;
         let mut entity = Written {
             kind: self.word(kind.get_ref().clone(), Form::Text, kind_at),
             name: self.word(name.get_ref().clone(), Form::Text, name_at.clone()),
             attributes: Vec::new(),
+            place: None,
             is_damaged: false,
         };
         let mut attributes: Vec<_> = attributes.into_iter().collect();
@@ -233,6 +235,7 @@ impl<'a> Parser<'a, '_> {
                 entity.is_damaged = true;
             }
         }
+        entity.place = Some(self.placed(start..end));
         // What could not be made out at all stands after the last attribute, and before the next title.
         let next = self.text[end..].find("\n[").map_or(self.text.len(), |length| end + length);
         entity.is_damaged |= self.is_faulty(name_at.start..next);

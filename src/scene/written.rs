@@ -40,6 +40,8 @@ pub struct Written<'a> {
     pub(super) kind: Word<'a>,
     pub(super) name: Word<'a>,
     pub(super) attributes: Vec<(Word<'a>, Vec<Word<'a>>)>,
+    /// From its type to its end.
+    pub(super) place: Place,
     /// Whether its text could not all be made out: then what it lacks is no fault of its own.
     pub(super) is_damaged: bool,
 }
@@ -51,6 +53,7 @@ impl Written<'static> {
             kind: Word::unplaced(kind),
             name: Word::unplaced(name),
             attributes: Vec::new(),
+            place: None,
             is_damaged: false,
         }
     }

@@ -1,0 +1,228 @@
+//! `tabray watch`: a page that shows the picture while its scene is edited.
+
+mod board;
+mod events;
+mod files;
+mod frame;
+mod server;
+
+use super::{Failure, input, interrupt, method};
+use crate::accuracy::Accuracy;
+use crate::model::Model;
+use crate::progressive;
+use crate::registry::Registry;
+use crate::render::Renderer;
+use crate::scene::{self, Loaded};
+use board::Board;
+use files::Files;
+use frame::{Frame, lines};
+use server::Server;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::sync::mpsc::{self, Receiver, Sender};
+use std::thread;
+use std::time::{Duration, Instant, SystemTime};
+
+/// The largest picture that a page shows: all of it is in memory, there and here.
+const LARGEST: usize = 1 << 24;
+
+/// A file is read once it has been left alone for so long: many editors write it in several steps.
+const SETTLED: Duration = Duration::from_millis(10);
+
+/// Show the picture on a page, and make it anew whenever the scene changes
+///
+/// The page is for a browser on this machine and for nobody else. Click on a pixel to see how it gets its colour.
+/// Ctrl-C ends it, with status 0.
+#[derive(clap::Args)]
+pub struct Args {
+    /// The scene
+    scene: PathBuf,
+    /// The port of the page on 127.0.0.1; by default the first free one from 3000, and 0 for any free one
+    #[arg(long, value_name = "N")]
+    port: Option<u16>,
+    /// Open the page in the browser
+    #[arg(long)]
+    open: bool,
+    #[command(flatten)]
+    method: method::Args,
+}
+
+/// What the command waits for.
+enum News {
+    Changed,
+    Interrupted,
+    ServerFailed(String),
+}
+
+pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
+    if input::is_standard(&args.scene) {
+        return Err(Failure::Usage(
+            "standard input cannot be watched".to_owned(),
+            Some("name the scene's file".to_owned()),
+        ));
+    }
+    let accuracy = args.method.accuracy()?;
+    let (sender, news) = mpsc::channel();
+    let mut files = Files::new(teller(&sender, || News::Changed))?;
+    files.watch([&args.scene])?;
+    // A scene with faults has a page. A file that is not there, or no file, has none.
+    input::read(&args.scene)?;
+    let server = Server::bind(args.port)?;
+    let url = server.url();
+    interrupt::catch_and(teller(&sender, || News::Interrupted))?;
+
+    let board = Arc::new(Board::new());
+    let frames = painter(board.clone())?;
+    thread::spawn({
+        let board = board.clone();
+        move || {
+            if let Err(error) = server.run(&board) {
+                let _ = sender.send(News::ServerFailed(format!("the server ended: {error}")));
+            }
+        }
+    });
+    eprintln!("watching {}: its page is {url} (Ctrl-C ends this)", args.scene.display());
+    if args.open
+        && let Err(error) = open::that(&url)
+    {
+        eprintln!("cannot open a browser ({error}): open the page by hand");
+    }
+    let mut watched =
+        Watched { registry, path: args.scene, accuracy, named: Vec::new(), last: None, version: 0 };
+    loop {
+        watched.read(&board, &frames, &mut files)?;
+        match next(&news) {
+            News::Changed => {}
+            News::Interrupted => return Ok(()),
+            News::ServerFailed(message) => return Err(Failure::Failed(message)),
+        }
+    }
+}
+
+/// A function that sends news, from any thread.
+fn teller(sender: &Sender<News>, news: impl Fn() -> News + Send + 'static) -> impl Fn() + Send + 'static {
+    let sender = sender.clone();
+    move || {
+        // When nobody waits any more, the program is about to end.
+        let _ = sender.send(news());
+    }
+}
+
+/// Waits for news. Changes that follow one another are one.
+fn next(news: &Receiver<News>) -> News {
+    let mut last = news.recv().unwrap_or(News::Interrupted);
+    while let News::Changed = last {
+        match news.recv_timeout(SETTLED) {
+            Ok(more) => last = more,
+            Err(_) => break,
+        }
+    }
+    last
+}
+
+/// Starts the thread that makes pictures, of one scene after another.
+fn painter(board: Arc<Board>) -> Result<Sender<Arc<Frame>>, Failure> {
+    let renderer = Renderer::new(0)?;
+    let (sender, frames) = mpsc::channel::<Arc<Frame>>();
+    thread::spawn(move || {
+        for frame in frames {
+            let start = Instant::now();
+            let part = |area, colours: Vec<_>| board.add(&frame, events::part(&frame, &area, &colours));
+            let painted = progressive::render(&renderer, &frame.model, part, || frame.check());
+            if painted.is_continue() {
+                board.add(&frame, events::done(&frame, start.elapsed()));
+            }
+        }
+    });
+    Ok(sender)
+}
+
+/// When a file was written last, and its length.
+type Stamp = (SystemTime, u64);
+
+fn stamp(file: &Path) -> Option<Stamp> {
+    let meta = fs::metadata(file).ok()?;
+    Some((meta.modified().ok()?, meta.len()))
+}
+
+/// A scene's file that is read over and over.
+struct Watched<'r> {
+    registry: &'r Registry,
+    path: PathBuf,
+    accuracy: Option<Accuracy>,
+    /// The files that it names.
+    named: Vec<PathBuf>,
+    /// What was read last: the scene, and how old and how long the files were that it names.
+    last: Option<(Vec<u8>, Vec<Option<Stamp>>)>,
+    /// How many times it was sound.
+    version: u64,
+}
+
+impl Watched<'_> {
+    /// Reads the scene as it is now, shows it or what is wrong with it, and watches all files that it names.
+    fn read(&mut self, board: &Board, frames: &Sender<Arc<Frame>>, files: &mut Files) -> Result<(), Failure> {
+        let (name, bytes) = match input::read(&self.path) {
+            Ok(read) => read,
+            Err(Failure::Usage(message, _)) => {
+                let name = self.path.display().to_string();
+                board.fault(events::fault(&name, None, &format!("error: {message}"), &[]));
+                self.last = None;
+                return Ok(());
+            }
+            Err(failure) => return Err(failure),
+        };
+        // One save may be told in several steps. How old the files are is asked before they are read, so that what
+        // changes meanwhile counts as a change.
+        let now = (bytes, self.named.iter().map(|file| stamp(file)).collect());
+        if self.last.as_ref() == Some(&now) {
+            return Ok(());
+        }
+        let (bytes, _) = self.last.insert(now);
+        let text = String::from_utf8_lossy(bytes);
+        let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+        let folder = self.path.parent().unwrap_or(&self.path);
+        let read = scene::read(self.registry, &name, folder, bytes, self.accuracy);
+        let report = read.as_ref().map_or_else(|report| report, |loaded| &loaded.warnings);
+        self.named = report.files().to_vec();
+        files.watch(self.named.iter().chain([&self.path]))?;
+        match read {
+            Ok(Loaded { model, .. }) if !fits(&model) => {
+                let [width, height] = model.camera.value.pixels;
+                let message = format!(
+                    "error: a picture of {width} x {height} pixels is too large for a page\n\
+                     help: it can have {LARGEST} pixels, such as 4096 x 4096"
+                );
+                board.fault(events::fault(&name, Some(text), &message, &[]));
+            }
+            Ok(Loaded { model, warnings, places, .. }) => {
+                self.version += 1;
+                let frame = Arc::new(Frame {
+                    version: self.version,
+                    name,
+                    text: text.to_owned(),
+                    warnings: warnings.to_string(),
+                    model,
+                    places,
+                    stale: AtomicBool::new(false),
+                });
+                board.show(&frame);
+                // The thread that makes pictures ends with the program.
+                let _ = frames.send(frame);
+            }
+            Err(report) => {
+                let places = report.faults().iter().filter_map(|fault| fault.place.as_ref());
+                let marked: Vec<_> =
+                    places.filter_map(|place| lines(text, place)).map(|[first, _]| first).collect();
+                board.fault(events::fault(&name, Some(text), &report.to_string(), &marked));
+            }
+        }
+        Ok(())
+    }
+}
+
+fn fits(model: &Model) -> bool {
+    let [width, height] = model.camera.value.pixels;
+    width * height <= LARGEST
+}

@@ -1,0 +1,81 @@
+//! The files that a scene is read from, and who wants to know when one of them changes.
+
+use super::super::Failure;
+use notify::event::{AccessKind, AccessMode, EventKind, ModifyKind};
+use notify::{Event, RecommendedWatcher, RecursiveMode, Watcher};
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Watches files by their folders: many editors put a new file in the place of the old one.
+pub struct Files {
+    watcher: RecommendedWatcher,
+    files: Arc<Mutex<BTreeSet<PathBuf>>>,
+    folders: BTreeSet<PathBuf>,
+}
+
+impl Files {
+    /// Watches nothing yet. `changed` is called, on another thread, whenever a file may have changed.
+    ///
+    /// # Errors
+    /// Where the system does not watch files.
+    pub fn new(changed: impl Fn() + Send + 'static) -> Result<Self, Failure> {
+        let files = Arc::<Mutex<BTreeSet<PathBuf>>>::default();
+        let wanted = files.clone();
+        let see = move |event: notify::Result<Event>| {
+            let concerns = |event: &Event| {
+                let wanted = wanted.lock().unwrap_or_else(PoisonError::into_inner);
+                is_change(event.kind) && event.paths.iter().any(|path| wanted.contains(path))
+            };
+            // Events that were lost may have been about any file.
+            if event.is_ok_and(|event| event.need_rescan() || concerns(&event)) {
+                changed();
+            }
+        };
+        let watcher = notify::recommended_watcher(see)
+            .map_err(|error| Failure::Failed(format!("cannot watch files: {error}")))?;
+        Ok(Self { watcher, files, folders: BTreeSet::new() })
+    }
+
+    /// Watches these files, whether they are there or not, and no others.
+    ///
+    /// # Errors
+    /// Where the system does not watch one of their folders.
+    pub fn watch<'f>(&mut self, files: impl IntoIterator<Item = &'f PathBuf>) -> Result<(), Failure> {
+        let files: BTreeSet<_> = files.into_iter().flat_map(|file| places(file)).collect();
+        let folders: BTreeSet<_> =
+            files.iter().filter_map(|file| file.parent()).map(Path::to_owned).collect();
+        *self.files.lock().unwrap_or_else(PoisonError::into_inner) = files;
+        for folder in folders.difference(&self.folders) {
+            self.watcher.watch(folder, RecursiveMode::NonRecursive).map_err(|error| {
+                Failure::Failed(format!("cannot watch the folder `{}`: {error}", folder.display()))
+            })?;
+        }
+        for folder in self.folders.difference(&folders) {
+            // A folder that is gone is not watched any more.
+            let _ = self.watcher.unwatch(folder);
+        }
+        self.folders = folders;
+        Ok(())
+    }
+}
+
+/// Where a file stands and, if it is a link, where that leads, as the system names them. A folder that is not
+/// there cannot be watched.
+fn places(file: &Path) -> impl Iterator<Item = PathBuf> {
+    let folder = match file.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    };
+    let itself = folder.canonicalize().ok().zip(file.file_name()).map(|(folder, name)| folder.join(name));
+    itself.into_iter().chain(file.canonicalize())
+}
+
+/// Whether a file may have other contents than before. Reading one is an event, too.
+fn is_change(kind: EventKind) -> bool {
+    match kind {
+        EventKind::Access(access) => access == AccessKind::Close(AccessMode::Write),
+        EventKind::Modify(ModifyKind::Metadata(_)) => false,
+        _ => true,
+    }
+}
