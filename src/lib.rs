@@ -15,6 +15,7 @@ pub use {glam, inventory};
 pub mod accuracy;
 pub mod aov;
 pub mod ball;
+pub mod bench;
 pub mod bounds;
 pub mod camera;
 pub mod certify;

@@ -16,7 +16,7 @@ const BAND: usize = 1 << 22;
 const STACK: usize = 128 << 20;
 
 /// The width and height of a tile, whose rays go together, in pixels.
-const TILE: usize = 8;
+pub(crate) const TILE: usize = 8;
 
 /// The threads that render.
 pub struct Renderer {

@@ -1,6 +1,7 @@
 //! The command line: one file per subcommand, and what they share.
 
 mod aov;
+mod bench;
 mod check;
 mod completions;
 mod convert;
@@ -67,6 +68,7 @@ enum Command {
     Diff(diff::Args),
     Review(review::Args),
     Watch(watch::Args),
+    Bench(bench::Args),
     List(list::Args),
     New(new::Args),
     Schema(schema::Args),
@@ -133,6 +135,7 @@ pub fn run() -> ExitCode {
             Some(Command::Diff(args)) => return diff::run(registry, &args),
             Some(Command::Review(args)) => review::run(registry, &args),
             Some(Command::Watch(args)) => watch::run(registry, args),
+            Some(Command::Bench(args)) => bench::run(registry, args),
             Some(Command::List(args)) => list::run(registry, args),
             Some(Command::New(args)) => new::run(registry, &args),
             Some(Command::Schema(_)) => schema::run(registry),

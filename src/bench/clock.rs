@@ -1,0 +1,48 @@
+//! How long work takes, as the thread that does it has it on its core: what else the machine does hardly counts.
+
+use std::time::Duration;
+
+/// Shorter work is repeated until it takes so long, so that looking at the clock does not count.
+const SHORTEST: Duration = Duration::from_micros(200);
+
+/// The core's time that this thread has had so far.
+#[cfg(target_os = "linux")]
+pub fn now() -> Duration {
+    use nix::time::{ClockId, clock_gettime};
+    // Every Linux has this clock.
+    clock_gettime(ClockId::CLOCK_THREAD_CPUTIME_ID).map_or(Duration::ZERO, Duration::from)
+}
+
+/// The time on the wall, where no clock counts a thread's own.
+#[cfg(not(target_os = "linux"))]
+pub fn now() -> Duration {
+    use std::sync::OnceLock;
+    use std::time::Instant;
+    static START: OnceLock<Instant> = OnceLock::new();
+    START.get_or_init(Instant::now).elapsed()
+}
+
+/// The least time that each of several works takes, in seconds. They take turns for about as long as `patience`, three
+/// times at least, so that a machine that grows slower meets them all.
+pub fn least<const N: usize>(patience: Duration, works: [&mut dyn FnMut(); N]) -> [f64; N] {
+    let mut works = works.map(|work| {
+        let repeats = SHORTEST.as_nanos().div_ceil(time(work, 1).as_nanos().max(1));
+        (work, repeats.max(1) as u32, Duration::MAX)
+    });
+    let (start, mut rounds) = (now(), 0);
+    while rounds < 3 || now() - start < patience {
+        for (work, repeats, least) in &mut works {
+            *least = time(work, *repeats).min(*least);
+        }
+        rounds += 1;
+    }
+    works.map(|(_, repeats, least)| least.as_secs_f64() / f64::from(repeats))
+}
+
+fn time(work: &mut dyn FnMut(), repeats: u32) -> Duration {
+    let start = now();
+    for _ in 0..repeats {
+        work();
+    }
+    now() - start
+}

@@ -1,0 +1,188 @@
+//! How fast a scene is traced on one core, and what the arithmetic alone would take there.
+//!
+//! Times are the core's own for the thread that traces ([`clock`]), the least of several rounds.
+
+pub mod ceiling;
+pub mod clock;
+mod count;
+mod packets;
+pub mod scenes;
+
+pub use packets::Times;
+
+use crate::cpu::Cpu;
+use crate::geometry::Shader;
+use crate::material::{Material, Rgb};
+use crate::model::{Model, Object};
+use crate::packet::{View, ViewMut};
+use crate::render::Renderer;
+use ceiling::Bare;
+use count::Counts;
+use glam::DVec3;
+use std::collections::BTreeMap;
+use std::io;
+use std::ops::ControlFlow;
+use std::sync::{Arc, OnceLock};
+use std::time::Duration;
+
+/// How fast a scene is traced.
+#[derive(Clone, Debug)]
+pub struct Speed {
+    /// The rays from the viewer, and what they cost in the scene without lights, mirrors and glass.
+    pub primary: Cost,
+    /// The rays to lights, and what lights add to that, shading included.
+    pub shadow: Cost,
+    /// The rays mirrored and through glass, with those from there to lights, and what they add to that.
+    pub onward: Cost,
+    /// All rays, and what the whole frame costs, without a file being written.
+    pub frame: Cost,
+    /// The tests by the type of the entity, sorted.
+    pub tests: Vec<Tests>,
+    /// What the frame's tests take as bare arithmetic, in seconds, if each has a formula of textbooks
+    /// ([`ceiling`]).
+    pub bare: Option<f64>,
+}
+
+/// What some rays cost.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Cost {
+    /// How many there are in a frame.
+    pub rays: usize,
+    /// How long they take, in seconds.
+    pub seconds: f64,
+}
+
+impl Cost {
+    /// Rays for each second; nothing where there are none, or too few to be told from what they are added to.
+    pub fn rate(&self) -> Option<f64> {
+        (self.rays > 0 && self.seconds > 0.0).then(|| self.rays as f64 / self.seconds)
+    }
+
+    /// What this is more than another.
+    fn beyond(&self, other: &Self) -> Self {
+        Self { rays: self.rays.saturating_sub(other.rays), seconds: self.seconds - other.seconds }
+    }
+}
+
+/// The tests of rays against the objects of a type.
+#[derive(Clone, Debug)]
+pub struct Tests {
+    /// The type.
+    pub entity: &'static str,
+    /// How many a frame makes, one for each ray and object.
+    pub number: usize,
+    /// What they cost on the scene's own rays.
+    pub times: Times,
+    /// What the formula of textbooks costs, in nanoseconds for each ray.
+    pub bare: Option<f64>,
+}
+
+impl Speed {
+    /// The part of the frame's time that its tests take as bare arithmetic.
+    pub fn share(&self) -> Option<f64> {
+        self.bare.map(|bare| bare / self.frame.seconds)
+    }
+
+    /// Measures a model with these instructions. Each of a handful of numbers is measured for about as long as
+    /// `patience`, or three times where that takes longer.
+    ///
+    /// # Errors
+    /// Where the system does not give a thread.
+    pub fn measure(model: Model, cpu: Cpu, patience: Duration) -> io::Result<Self> {
+        let renderer = Renderer::new(1)?.on(cpu);
+        Ok(renderer.run(|| Self::measure_with(&renderer, model, cpu, patience)))
+    }
+
+    fn measure_with(renderer: &Renderer, mut model: Model, cpu: Cpu, patience: Duration) -> Self {
+        let counts = Counts::of(&model, cpu);
+        let tests = tests(&model, &counts, cpu, patience);
+        let bare: Option<Vec<_>> =
+            tests.iter().map(|tests| Some((Bare::of(tests.entity)?, tests.number))).collect();
+        let mut arithmetic = || {
+            for (bare, tests) in bare.iter().flatten() {
+                bare.run(cpu, *tests);
+            }
+        };
+        let [seconds, arithmetic] =
+            clock::least(patience, [&mut || render(renderer, &model), &mut arithmetic]);
+        let frame = Cost { rays: counts.rays(), seconds };
+        let bare = bare.filter(|bare| !bare.is_empty()).map(|_| arithmetic);
+
+        let measured = |model: &Model| {
+            let rays = Counts::of(model, cpu).rays();
+            let [seconds] = clock::least(patience, [&mut || render(renderer, model)]);
+            Cost { rays, seconds }
+        };
+        let mut lit = frame;
+        if counts.onward > 0 {
+            model = matt(model);
+            lit = measured(&model);
+        }
+        let mut primary = lit;
+        if counts.shadow > 0 {
+            model.lights.clear();
+            primary = measured(&model);
+        }
+        Self { primary, shadow: lit.beyond(&primary), onward: frame.beyond(&lit), frame, tests, bare }
+    }
+}
+
+/// Makes a frame, and throws it away.
+fn render(renderer: &Renderer, model: &Model) {
+    let [width, height] = model.camera.value.pixels;
+    renderer.bands(model, 0..width, 0..height, &|| ControlFlow::Continue(())).for_each(drop)
+}
+
+fn tests(model: &Model, counts: &Counts, cpu: Cpu, patience: Duration) -> Vec<Tests> {
+    let entity = |object: usize| model.objects[object].args.entity.name;
+    let mut numbers = BTreeMap::new();
+    for (object, tests) in counts.tests.iter().enumerate().filter(|(_, tests)| **tests > 0) {
+        *numbers.entry(entity(object)).or_insert(0) += tests;
+    }
+    let packets = packets::of(model, cpu);
+    let tests = numbers.into_iter().map(|(name, number)| {
+        let times = packets::times(&packets, model, cpu, patience, |object| entity(object) == name);
+        let bare = Bare::of(name).map(|bare| {
+            const TESTS: usize = 1 << 16;
+            let [seconds] = clock::least(patience, [&mut || bare.run(cpu, TESTS)]);
+            1e9 * seconds / TESTS as f64
+        });
+        Tests { entity: name, number, times, bare }
+    });
+    tests.collect()
+}
+
+/// A model without mirrors and glass.
+fn matt(model: Model) -> Model {
+    let matt = |object: Object| {
+        let material = Material { specular: Rgb::ZERO, transparency: 0.0, ..(*object.material).clone() };
+        Object { material: Arc::new(material), shader: Box::new(Matt(object.shader)), ..object }
+    };
+    let objects = model.objects.into_iter().map(matt).collect();
+    Model { objects, plan: OnceLock::new(), ..model }
+}
+
+/// A shader that mirrors nothing.
+struct Matt(Box<dyn Shader>);
+
+impl Shader for Matt {
+    fn ambient(&self, material: &Material, at: DVec3) -> Rgb {
+        self.0.ambient(material, at)
+    }
+
+    fn diffuse(&self, material: &Material, at: DVec3) -> Rgb {
+        self.0.diffuse(material, at)
+    }
+
+    fn specular(&self, _material: &Material, _at: DVec3) -> Rgb {
+        Rgb::ZERO
+    }
+
+    fn ambients(&self, cpu: Cpu, material: &Material, points: View, out: ViewMut) {
+        self.0.ambients(cpu, material, points, out);
+    }
+
+    fn diffuses(&self, cpu: Cpu, material: &Material, points: View, out: ViewMut) {
+        self.0.diffuses(cpu, material, points, out);
+    }
+}

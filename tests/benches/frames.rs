@@ -1,0 +1,52 @@
+//! `cargo bench --bench frames`: whole frames without files being written, on one core and on two, and what a file adds.
+
+use divan::{Bencher, black_box, counter::ItemsCount};
+use tabray::bench::scenes;
+use tabray::model::Model;
+use tabray::picture::{Compression, Format};
+use tabray::registry::Registry;
+use tabray::render::Renderer;
+use tabray::scene;
+
+fn main() {
+    divan::main();
+}
+
+/// The scenes that `tabray bench` has built in.
+const SCENES: [&str; 4] = ["3 planes and 2 spheres", "a vase", "1000 spheres", "20000 triangles"];
+
+fn model(name: &str) -> Model {
+    let registry = Registry::get().expect("no two plugins claim one name");
+    let scene = scenes::all().into_iter().find(|scene| scene.0 == name).expect("a scene of this name").1;
+    match scene::build(registry, scene) {
+        Ok(built) => built.model,
+        Err(report) => panic!("{report}"),
+    }
+}
+
+/// The items are the rays from the viewer.
+#[divan::bench(args = SCENES, consts = [1, 2])]
+fn frame<const THREADS: usize>(bencher: Bencher, name: &str) {
+    let (renderer, model) = (Renderer::new(THREADS).expect("threads"), model(name));
+    let [width, height] = model.camera.value.pixels;
+    bencher.counter(ItemsCount::new(width * height)).bench_local(|| renderer.picture(&model));
+}
+
+/// A PNG or a PPM of the first scene, in memory.
+#[divan::bench(args = ["ppm", "png fast", "png default", "png best"])]
+fn encode(bencher: Bencher, format: &str) {
+    let model = model(SCENES[0]);
+    let picture = Renderer::new(0).expect("threads").picture(&model);
+    let format = match format {
+        "ppm" => Format::Ppm,
+        "png fast" => Format::Png(Compression::Fast),
+        "png default" => Format::Png(Compression::Balanced),
+        _ => Format::Png(Compression::High),
+    };
+    bencher.bench_local(|| {
+        let mut out = Vec::new();
+        let bands = std::iter::once(Ok(picture.clone()));
+        format.write(&mut out, model.camera.value.pixels, bands).expect("memory takes it");
+        black_box(out)
+    });
+}
