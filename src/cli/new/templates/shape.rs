@@ -1,8 +1,9 @@
 //! A template: a cube with round edges. Say here what it is, and where its formula comes from.
 
 use crate::entity::Entity;
+use crate::frame::Frame;
 use crate::geometry::Body;
-use crate::implicit::{Frame, Implicit};
+use crate::implicit::Implicit;
 use crate::number::Number;
 use crate::pparm::{Pparm, Table};
 use glam::DVec3;
