@@ -23,7 +23,7 @@ pub struct Args {
     #[arg(long, value_name = "LEVEL")]
     cpu: Option<CpuName>,
     /// For how long to measure each number, in seconds
-    #[arg(long, value_name = "S", default_value = "0.3", value_parser = seconds)]
+    #[arg(long, value_name = "S", default_value = "0.3", value_parser = seconds, allow_negative_numbers = true)]
     seconds: Duration,
     /// Print JSON
     #[arg(long)]
