@@ -11,7 +11,7 @@ fn page() -> String {
     fs::read_to_string(root().join("docs/plugins.md")).expect("the page")
 }
 
-/// Whether the page has a message, each word of it, in one of its cells.
+/// Whether the page has a message.
 fn tells(message: &str) -> bool {
     page().contains(message)
 }
