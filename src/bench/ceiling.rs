@@ -35,7 +35,7 @@ impl Bare {
     }
 
     /// Makes at least so many tests.
-    pub fn run(self, cpu: Cpu, tests: usize) {
+    pub fn run(self, cpu: Cpu, tests: u64) {
         let (mut origin, mut dir) = (Vectors::<WIDE>::ZERO, Vectors::<WIDE>::ZERO);
         for lane in 0..WIDE {
             let (x, y) = ((lane % 8) as f64, (lane / 8) as f64);
@@ -47,7 +47,7 @@ impl Bare {
             let corner = DVec3::new(4.0, 3.0, -4.0 - 0.1 * index as f64);
             [corner, DVec3::X + 0.1 * DVec3::Z, DVec3::Y]
         });
-        for _ in 0..tests.div_ceil(WIDE * SHAPES) {
+        for _ in 0..tests.div_ceil((WIDE * SHAPES) as u64) {
             let (mut near, mut met) = ([f64::INFINITY; WIDE], [0; WIDE]);
             let shapes = black_box(&shapes);
             match self {

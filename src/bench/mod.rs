@@ -4,7 +4,6 @@
 
 pub mod ceiling;
 pub mod clock;
-mod count;
 mod packets;
 pub mod scenes;
 
@@ -16,13 +15,13 @@ use crate::material::{Material, Rgb};
 use crate::model::{Model, Object};
 use crate::packet::{View, ViewMut};
 use crate::render::Renderer;
+use crate::tally::Tally;
+use crate::watch::Kind;
 use ceiling::Bare;
-use count::Counts;
 use glam::DVec3;
-use std::collections::BTreeMap;
 use std::io;
 use std::ops::ControlFlow;
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Duration;
 
 /// How fast a scene is traced.
@@ -47,7 +46,7 @@ pub struct Speed {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Cost {
     /// How many there are in a frame.
-    pub rays: usize,
+    pub rays: u64,
     /// How long they take, in seconds.
     pub seconds: f64,
 }
@@ -70,7 +69,7 @@ pub struct Tests {
     /// The type.
     pub entity: &'static str,
     /// How many a frame makes, one for each ray and object.
-    pub number: usize,
+    pub number: u64,
     /// What they cost on the scene's own rays.
     pub times: Times,
     /// What the formula of textbooks costs, in nanoseconds for each ray.
@@ -94,8 +93,8 @@ impl Speed {
     }
 
     fn measure_with(renderer: &Renderer, mut model: Model, cpu: Cpu, patience: Duration) -> Self {
-        let counts = Counts::of(&model, cpu);
-        let tests = tests(&model, &counts, cpu, patience);
+        let tally = counted(renderer, &model);
+        let tests = tests(&model, &tally, cpu, patience);
         let bare: Option<Vec<_>> =
             tests.iter().map(|tests| Some((Bare::of(tests.entity)?, tests.number))).collect();
         let mut arithmetic = || {
@@ -105,21 +104,21 @@ impl Speed {
         };
         let [seconds, arithmetic] =
             clock::least(patience, [&mut || render(renderer, &model), &mut arithmetic]);
-        let frame = Cost { rays: counts.rays(), seconds };
+        let frame = Cost { rays: tally.all_rays(), seconds };
         let bare = bare.filter(|bare| !bare.is_empty()).map(|_| arithmetic);
 
         let measured = |model: &Model| {
-            let rays = Counts::of(model, cpu).rays();
+            let rays = counted(renderer, model).all_rays();
             let [seconds] = clock::least(patience, [&mut || render(renderer, model)]);
             Cost { rays, seconds }
         };
         let mut lit = frame;
-        if counts.onward > 0 {
+        if tally.rays(Kind::Reflected) + tally.rays(Kind::Transmitted) > 0 {
             model = matt(model);
             lit = measured(&model);
         }
         let mut primary = lit;
-        if counts.shadow > 0 {
+        if tally.rays(Kind::Shadow) > 0 {
             model.lights.clear();
             primary = measured(&model);
         }
@@ -130,24 +129,33 @@ impl Speed {
 /// Makes a frame, and throws it away.
 fn render(renderer: &Renderer, model: &Model) {
     let [width, height] = model.camera.value.pixels;
-    renderer.bands(model, 0..width, 0..height, &|| ControlFlow::Continue(())).for_each(drop)
+    renderer.bands(model, 0..width, 0..height, &|| ControlFlow::Continue(())).for_each(drop);
 }
 
-fn tests(model: &Model, counts: &Counts, cpu: Cpu, patience: Duration) -> Vec<Tests> {
-    let entity = |object: usize| model.objects[object].args.entity.name;
-    let mut numbers = BTreeMap::new();
-    for (object, tests) in counts.tests.iter().enumerate().filter(|(_, tests)| **tests > 0) {
-        *numbers.entry(entity(object)).or_insert(0) += tests;
-    }
+/// What a frame takes.
+fn counted(renderer: &Renderer, model: &Model) -> Tally {
+    let [width, height] = model.camera.value.pixels;
+    let sum = Mutex::new(Tally::default());
+    let add = |part: Tally| sum.lock().unwrap_or_else(PoisonError::into_inner).add(&part);
+    renderer.watched_bands(model, 0..width, 0..height, &|| ControlFlow::Continue(()), &add).for_each(drop);
+    sum.into_inner().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn tests(model: &Model, tally: &Tally, cpu: Cpu, patience: Duration) -> Vec<Tests> {
+    /// Textbooks' tests in a round.
+    const ROUND: u64 = 1 << 16;
     let packets = packets::of(model, cpu);
-    let tests = numbers.into_iter().map(|(name, number)| {
-        let times = packets::times(&packets, model, cpu, patience, |object| entity(object) == name);
-        let bare = Bare::of(name).map(|bare| {
-            const TESTS: usize = 1 << 16;
-            let [seconds] = clock::least(patience, [&mut || bare.run(cpu, TESTS)]);
-            1e9 * seconds / TESTS as f64
-        });
-        Tests { entity: name, number, times, bare }
+    let tests = tally.tests(model).into_iter().filter(|(_, tests)| tests.tested > 0);
+    let tests = tests.map(|(entity, tests)| Tests {
+        entity,
+        number: tests.tested,
+        times: packets::times(&packets, model, cpu, patience, |object| {
+            model.objects[object].args.entity.name == entity
+        }),
+        bare: Bare::of(entity).map(|bare| {
+            let [seconds] = clock::least(patience, [&mut || bare.run(cpu, ROUND)]);
+            1e9 * seconds / ROUND as f64
+        }),
     });
     tests.collect()
 }

@@ -1,12 +1,13 @@
 //! A scene's own packets, to time the functions of its shapes with.
 
 use super::clock;
-use super::count::{Tested, tiles};
 use crate::cpu::Cpu;
 use crate::geometry::{MISS, Side};
 use crate::model::Model;
 use crate::packet::{Nearest, Rays, Vectors, WIDE};
-use crate::trace;
+use crate::render::TILE;
+use crate::trace::{self, Tracer};
+use crate::watch::{Count, Kind, Watch};
 use std::hint::black_box;
 use std::time::Duration;
 
@@ -171,5 +172,51 @@ pub(super) fn times(
         meet: per_ray(meets, viewed.iter().map(|(_, objects)| objects.len()).sum()),
         block: per_ray(blocks, lit.iter().map(|(_, objects)| objects.len()).sum()),
         settle: per_ray(settles, met.len()),
+    }
+}
+
+/// The pixels of a frame, tile by tile as the renderer takes them: from the left and from the bottom.
+fn tiles(model: &Model) -> impl Iterator<Item = Vec<[usize; 2]>> {
+    let [width, height] = model.camera.value.pixels;
+    (0..height).step_by(TILE).flat_map(move |top| {
+        (0..width).step_by(TILE).map(move |left| {
+            let rows = top..height.min(top + TILE);
+            let row = move |y| (left..width.min(left + TILE)).map(move |x| [x, height - 1 - y]);
+            rows.flat_map(row).collect()
+        })
+    })
+}
+
+/// The objects that the rays from the viewer and the first rays to lights are tested against.
+#[derive(Default)]
+struct Tested {
+    primary: Vec<usize>,
+    shadow: Vec<usize>,
+    kind: Option<Kind>,
+}
+
+impl Watch for Tested {
+    const SEES: bool = false;
+
+    fn count(&mut self, count: Count) {
+        match (count, self.kind) {
+            (Count::Rays(kind, _), _) => self.kind = Some(kind),
+            (Count::Tested(object, _), Some(Kind::Primary)) => self.primary.push(object),
+            (Count::Tested(object, _), Some(Kind::Shadow)) => self.shadow.push(object),
+            _ => (),
+        }
+    }
+}
+
+impl Tested {
+    /// Those of a tile, each once.
+    fn of(model: &Model, cpu: Cpu, tile: &[[usize; 2]]) -> Self {
+        let mut tested = Self::default();
+        Tracer::new(model, cpu, &mut tested).pixels(tile, |_, _| ());
+        for objects in [&mut tested.primary, &mut tested.shadow] {
+            objects.sort_unstable();
+            objects.dedup();
+        }
+        tested
     }
 }

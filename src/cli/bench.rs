@@ -1,7 +1,7 @@
 //! `tabray bench`: how fast scenes are traced on one core.
 
-use super::{Failure, input, method, print};
-use crate::bench::{Speed, scenes};
+use super::{Failure, cpu, input, method, print};
+use crate::bench::{Cost, Speed, scenes};
 use crate::cpu::Cpu;
 use crate::model::Model;
 use crate::registry::Registry;
@@ -19,9 +19,8 @@ use std::time::Duration;
 pub struct Args {
     /// The scenes; `-` reads one from standard input; by default four that are built in
     scenes: Vec<PathBuf>,
-    /// Which of the processor's instructions to use; by default the best that it has
-    #[arg(long, value_name = "LEVEL")]
-    cpu: Option<CpuName>,
+    #[command(flatten)]
+    cpu: cpu::Args,
     /// For how long to measure each number, in seconds
     #[arg(long, value_name = "S", default_value = "0.3", value_parser = seconds, allow_negative_numbers = true)]
     seconds: Duration,
@@ -32,13 +31,6 @@ pub struct Args {
     method: method::Args,
 }
 
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum CpuName {
-    Baseline,
-    Avx2,
-    Avx512,
-}
-
 fn seconds(text: &str) -> Result<Duration, String> {
     let seconds = text.parse().ok().and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
     seconds
@@ -47,7 +39,7 @@ fn seconds(text: &str) -> Result<Duration, String> {
 }
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
-    let cpu = cpu(args.cpu)?;
+    let cpu = args.cpu.cpu()?;
     let accuracy = args.method.accuracy()?;
     let mut models = Vec::new();
     for path in &args.scenes {
@@ -73,20 +65,6 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         print(&format!("{:#}\n", Value::from(values)))?;
     }
     Ok(())
-}
-
-fn cpu(name: Option<CpuName>) -> Result<Cpu, Failure> {
-    let Some(name) = name else { return Ok(Cpu::best()) };
-    let name = match name {
-        CpuName::Baseline => "baseline",
-        CpuName::Avx2 => "avx2",
-        CpuName::Avx512 => "avx512",
-    };
-    Cpu::all().find(|cpu| cpu.to_string() == name).ok_or_else(|| {
-        let levels: Vec<_> = Cpu::all().map(|cpu| format!("`{cpu}`")).collect();
-        let help = format!("it has {}", levels.join(", "));
-        Failure::Usage(format!("this machine has no `{name}`"), Some(help))
-    })
 }
 
 /// What was measured.
@@ -154,7 +132,7 @@ impl About {
     }
 
     fn json(&self, speed: &Speed) -> Value {
-        let cost = |cost: &crate::bench::Cost| json!({ "rays": cost.rays, "seconds": cost.seconds, "rays_per_second": cost.rate() });
+        let cost = |cost: &Cost| json!({ "rays": cost.rays, "seconds": cost.seconds, "rays_per_second": cost.rate() });
         let tests = speed.tests.iter().map(|tests| {
             json!({
                 "entity": tests.entity,
