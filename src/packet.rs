@@ -86,7 +86,6 @@ impl View<'_> {
     }
 
     /// The first of them, so many.
-    /// The first of them, so many.
     #[inline(always)]
     pub fn first(&self, count: usize) -> Self {
         Self { x: &self.x[..count], y: &self.y[..count], z: &self.z[..count] }
