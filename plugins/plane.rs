@@ -3,11 +3,13 @@
 use crate::accuracy::Accuracy;
 use crate::bounds::Bounds;
 use crate::certify::{self, Enclosure, Equation};
+use crate::cpu::Cpu;
 use crate::entity::{Args, Entity};
 pub use crate::flat::Plane;
-use crate::geometry::{Body, Bracket, Hittable, Ray, Span};
+use crate::geometry::{Body, Bracket, Hittable, Ray, Side, Span};
 use crate::interval::Interval;
 use crate::number::Number;
+use crate::packet::Rays;
 use crate::pparm::{Pparm, Table};
 use glam::DVec3;
 
@@ -62,6 +64,17 @@ impl Hittable for Plane {
 
     fn method(&self) -> String {
         Plane::method(self).to_owned()
+    }
+
+    fn distances(
+        &self,
+        cpu: Cpu,
+        rays: Rays,
+        _sides: Option<&[Side]>,
+        _brackets: (&[f64], &[f64]),
+        out: &mut [f64],
+    ) {
+        Plane::distances(self, cpu, rays, out);
     }
 
     fn certify(&self, ray: &Ray) -> Enclosure {

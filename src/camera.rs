@@ -3,7 +3,6 @@
 use crate::accuracy::Accuracy;
 use crate::cpu::kernels;
 use crate::geometry::Ray;
-use crate::packet::ViewMut;
 use crate::sample::{Sample, Sampler};
 use glam::{DVec2, DVec3};
 
@@ -57,8 +56,8 @@ impl Camera {
 
 kernels! {
     /// The directions of the rays through these places.
-    pub(crate) fn look(camera: &Camera, x: &[f64], y: &[f64], out: ViewMut) {
-        let (count, mut out) = (x.len(), out);
+    pub(crate) fn look(camera: &Camera, x: &[f64], y: &[f64]) => out {
+        let count = x.len();
         let (y, mut out) = (&y[..count], out.first(count));
         for lane in 0..count {
             out.set(lane, camera.ray(x[lane], y[lane]).dir);

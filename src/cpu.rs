@@ -78,44 +78,67 @@ impl fmt::Display for Cpu {
 
 /// Defines functions that are compiled for every level; each takes the [`Cpu`] to use as its first argument.
 ///
-/// What such a function calls takes part in that where it is inlined.
+/// What such a function calls takes part in that where it is inlined. Vectors to be written are named behind `=>` and
+/// are its last argument. Inside, their arrays are arguments of their own, by which the compiler knows that none is
+/// part of another: else it looks at that at every call, and takes rays one by one where there are few.
 macro_rules! kernels {
     ($(
         $(#[$attribute:meta])*
-        $visible:vis fn $name:ident$([$T:ident: $Bound:path])?($($argument:ident: $type:ty),* $(,)?) $(-> $out:ty)? $body:block
+        $visible:vis fn $name:ident$([$T:ident: $Bound:path])?($($argument:ident: $type:ty),* $(,)?)
+            $(=> $out:ident)? $(-> $result:ty)? $body:block
     )*) => {$(
         $(#[$attribute])*
         #[allow(clippy::too_many_arguments, reason = "they are arrays")]
-        $visible fn $name$(<$T: $Bound + ?Sized>)?(cpu: $crate::cpu::Cpu, $($argument: $type),*) $(-> $out)? {
+        $visible fn $name$(<$T: $Bound + ?Sized>)?(
+            cpu: $crate::cpu::Cpu, $($argument: $type,)* $($out: $crate::packet::ViewMut)?
+        ) $(-> $result)? {
             #[inline(always)]
             #[allow(clippy::too_many_arguments, reason = "they are arrays")]
-            fn body$(<$T: $Bound + ?Sized>)?($($argument: $type),*) $(-> $out)? $body
-
-            #[cfg(target_arch = "x86_64")]
-            #[allow(clippy::too_many_arguments, reason = "they are arrays")]
-            #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw")]
-            fn avx512$(<$T: $Bound + ?Sized>)?($($argument: $type),*) $(-> $out)? {
-                body($($argument),*)
+            fn body$(<$T: $Bound + ?Sized>)?(
+                $($argument: $type,)*
+                $(x: $crate::cpu::beside!($out, &mut [f64]), y: $crate::cpu::beside!($out, &mut [f64]), z: $crate::cpu::beside!($out, &mut [f64]))?
+            ) $(-> $result)? {
+                $(let mut $out = $crate::packet::ViewMut { x, y, z };)?
+                $body
             }
 
             #[cfg(target_arch = "x86_64")]
+            #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw")]
             #[allow(clippy::too_many_arguments, reason = "they are arrays")]
+            fn avx512$(<$T: $Bound + ?Sized>)?(
+                $($argument: $type,)*
+                $(x: $crate::cpu::beside!($out, &mut [f64]), y: $crate::cpu::beside!($out, &mut [f64]), z: $crate::cpu::beside!($out, &mut [f64]))?
+            ) $(-> $result)? {
+                body($($argument,)* $($crate::cpu::beside!($out, x), y, z)?)
+            }
+
+            #[cfg(target_arch = "x86_64")]
             #[target_feature(enable = "avx2")]
-            fn avx2$(<$T: $Bound + ?Sized>)?($($argument: $type),*) $(-> $out)? {
-                body($($argument),*)
+            #[allow(clippy::too_many_arguments, reason = "they are arrays")]
+            fn avx2$(<$T: $Bound + ?Sized>)?(
+                $($argument: $type,)*
+                $(x: $crate::cpu::beside!($out, &mut [f64]), y: $crate::cpu::beside!($out, &mut [f64]), z: $crate::cpu::beside!($out, &mut [f64]))?
+            ) $(-> $result)? {
+                body($($argument,)* $($crate::cpu::beside!($out, x), y, z)?)
             }
 
             match cpu.level() {
                 // SAFETY: there is no `Cpu` of a level that the machine has not.
                 #[cfg(target_arch = "x86_64")]
                 #[allow(unsafe_code)]
-                $crate::cpu::Level::Avx512 => unsafe { avx512($($argument),*) },
+                $crate::cpu::Level::Avx512 => unsafe { avx512($($argument,)* $($out.x, $out.y, $out.z)?) },
                 #[cfg(target_arch = "x86_64")]
                 #[allow(unsafe_code)]
-                $crate::cpu::Level::Avx2 => unsafe { avx2($($argument),*) },
-                _ => body($($argument),*),
+                $crate::cpu::Level::Avx2 => unsafe { avx2($($argument,)* $($out.x, $out.y, $out.z)?) },
+                _ => body($($argument,)* $($out.x, $out.y, $out.z)?),
             }
         }
     )*};
 }
-pub(crate) use kernels;
+
+/// Something that is there where a kernel has vectors to be written.
+macro_rules! beside {
+    ($out:ident, $($what:tt)*) => { $($what)* };
+}
+
+pub(crate) use {beside, kernels};

@@ -73,7 +73,9 @@ impl Span {
     /// The distance itself if it lies in the span, else [`MISS`]; so is a NaN.
     #[inline(always)]
     pub fn keep(&self, distance: f64) -> f64 {
-        if self.near < distance && distance < self.far { distance } else { MISS }
+        // One after the other: both at once become a question after the kind of number, of one number at a time.
+        let distance = if distance < self.far { distance } else { MISS };
+        if self.near < distance { distance } else { MISS }
     }
 }
 
@@ -251,7 +253,7 @@ pub trait Light: Send + Sync {
 
     /// What [`emissivity`](Self::emissivity) gives toward many points; 0 in `shines` where it gives nothing.
     fn emissivities(&self, cpu: Cpu, toward: View, out: ViewMut, shines: &mut [u64]) {
-        packet::emissivities(cpu, self, toward, out, shines);
+        packet::emissivities(cpu, self, toward, shines, out);
     }
 }
 

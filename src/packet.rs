@@ -173,9 +173,12 @@ kernels! {
     /// Compares a shape's hits with the nearest so far. Tells whether any is in doubt.
     pub(crate) fn meet[T: Hittable](shape: &T, rays: Rays, sides: Option<&[Side]>, id: u64, nearest: Nearest) -> bool {
         let (count, rays) = (rays.len(), rays.first(rays.len()));
+        let Nearest { near, far, met, doubt } = nearest;
         match sides {
-            None => merge(count, &Sought { shape, rays }, id, nearest),
-            Some(sides) => merge(count, &Leaving { shape, rays, sides: &sides[..count] }, id, nearest),
+            None => merge(count, &Sought { shape, rays }, id, near, far, met, doubt),
+            Some(sides) => {
+                merge(count, &Leaving { shape, rays, sides: &sides[..count] }, id, near, far, met, doubt)
+            }
         }
     }
 
@@ -194,7 +197,8 @@ kernels! {
     pub(crate) fn meet_brackets(near: &[f64], far: &[f64], id: u64, nearest: Nearest) -> bool {
         let count = nearest.near.len().min(near.len());
         let (near, far) = (&near[..count], &far[..count]);
-        merge(count, &Known { near, far }, id, nearest)
+        let known = Known { near, far };
+        merge(count, &known, id, nearest.near, nearest.far, nearest.met, nearest.doubt)
     }
 
     /// Marks the rays that brackets say are blocked before their ends. Tells whether any is in doubt.
@@ -219,8 +223,8 @@ kernels! {
     }
 
     /// The normals of a shape at points of it.
-    pub(crate) fn normals[T: Hittable](shape: &T, points: View, out: ViewMut) {
-        let (count, mut out) = (points.len(), out);
+    pub(crate) fn normals[T: Hittable](shape: &T, points: View) => out {
+        let count = points.len();
         let mut out = out.first(count);
         for lane in 0..count {
             out.set(lane, shape.normal(points.get(lane)));
@@ -228,8 +232,8 @@ kernels! {
     }
 
     /// The reflectivities at points of a surface.
-    pub(crate) fn ambients[T: Shader](shader: &T, material: &Material, points: View, out: ViewMut) {
-        let (count, mut out) = (points.len(), out);
+    pub(crate) fn ambients[T: Shader](shader: &T, material: &Material, points: View) => out {
+        let count = points.len();
         let mut out = out.first(count);
         for lane in 0..count {
             out.set(lane, shader.ambient(material, points.get(lane)));
@@ -237,8 +241,8 @@ kernels! {
     }
 
     /// Likewise for light from the scene's lights.
-    pub(crate) fn diffuses[T: Shader](shader: &T, material: &Material, points: View, out: ViewMut) {
-        let (count, mut out) = (points.len(), out);
+    pub(crate) fn diffuses[T: Shader](shader: &T, material: &Material, points: View) => out {
+        let count = points.len();
         let mut out = out.first(count);
         for lane in 0..count {
             out.set(lane, shader.diffuse(material, points.get(lane)));
@@ -246,8 +250,8 @@ kernels! {
     }
 
     /// Likewise as a mirror.
-    pub(crate) fn speculars[T: Shader](shader: &T, material: &Material, points: View, out: ViewMut) {
-        let (count, mut out) = (points.len(), out);
+    pub(crate) fn speculars[T: Shader](shader: &T, material: &Material, points: View) => out {
+        let count = points.len();
         let mut out = out.first(count);
         for lane in 0..count {
             out.set(lane, shader.specular(material, points.get(lane)));
@@ -255,8 +259,8 @@ kernels! {
     }
 
     /// The light that is sent toward points, and where there is none 0 in `shines`.
-    pub(crate) fn emissivities[T: Light](light: &T, points: View, out: ViewMut, shines: &mut [u64]) {
-        let (count, mut out) = (points.len(), out);
+    pub(crate) fn emissivities[T: Light](light: &T, points: View, shines: &mut [u64]) => out {
+        let count = points.len();
         let (mut out, shines) = (out.first(count), &mut shines[..count]);
         for lane in 0..count {
             let emissivity = light.emissivity(points.get(lane));
@@ -313,10 +317,20 @@ impl<T: Hittable + ?Sized> Brackets for Leaving<'_, T> {
     }
 }
 
+// The arrays are arguments of their own, not a `Nearest`, for the compiler to know that they are not the same: else it
+// looks at that each time, and takes single rays where there are few.
 #[inline(always)]
-fn merge(count: usize, brackets: &impl Brackets, id: u64, nearest: Nearest) -> bool {
-    let (near, far) = (&mut nearest.near[..count], &mut nearest.far[..count]);
-    let (met, doubt) = (&mut nearest.met[..count], &mut nearest.doubt[..count]);
+fn merge(
+    count: usize,
+    brackets: &impl Brackets,
+    id: u64,
+    near: &mut [f64],
+    far: &mut [f64],
+    met: &mut [u64],
+    doubt: &mut [u64],
+) -> bool {
+    let (near, far) = (&mut near[..count], &mut far[..count]);
+    let (met, doubt) = (&mut met[..count], &mut doubt[..count]);
     let mut any = 0;
     for lane in 0..count {
         let Bracket { near: low, far: high } = brackets.get(lane, far[lane]);

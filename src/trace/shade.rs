@@ -3,6 +3,7 @@
 use super::group::{Group, pick, pick_vectors};
 use super::shadow::Ways;
 use super::{MAX_DIST, NARROW, Tracer};
+use crate::bounds::{self, Bounds};
 use crate::cpu::kernels;
 use crate::geometry::Side;
 use crate::material::Rgb;
@@ -46,10 +47,10 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
             travelled: group.travelled,
         };
         let travelled = &mut surface.travelled[..count];
-        arrive(cpu, group.rays(), &distances, surface.points.view_mut(count), travelled);
+        arrive(cpu, group.rays(), &distances, travelled, surface.points.view_mut(count));
         shape.normals(cpu, surface.points.view(count), surface.normals.view_mut(count));
         let (normals, sides) = (surface.normals.view_mut(count), &mut surface.sides[..count]);
-        face(cpu, group.dir.view(count), shape.is_two_sided(), normals, sides);
+        face(cpu, group.dir.view(count), shape.is_two_sided(), sides, normals);
 
         let mut colours = Vectors::ZERO;
         shader.ambients(cpu, material, surface.points.view(count), colours.view_mut(count));
@@ -206,21 +207,22 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
         let points = surface.points.view(count);
         let mut diffuse = Vectors::<N>::ZERO;
         shader.diffuses(cpu, material, points, diffuse.view_mut(count));
+        let around = bounds::around(cpu, points);
+        // What each light writes anew.
+        let (mut toward, mut emissivity) = (Vectors::<N>::ZERO, Vectors::<N>::ZERO);
+        let (mut distances, mut cosines, mut shines) = ([0.0; N], [0.0; N], [0; N]);
         for (index, light) in self.model.lights.iter().enumerate() {
             let light = &*light.value;
             let mut tint = Rgb::ONE;
             let places = self.places_on(index, group, surface);
-            let mut toward = Vectors::<N>::ZERO;
-            let (mut distances, mut cosines, mut shines) = ([0.0; N], [0.0; N], [0; N]);
             let normals = surface.normals.view(count);
             let (to, cos) = (toward.view_mut(count), &mut cosines[..count]);
-            if !face_light(cpu, points, normals, places.view(count), to, &mut distances, cos) {
+            if !face_light(cpu, points, normals, places.view(count), &mut distances, cos, to) {
                 if W::SEES {
                     self.watch.see(Event::Light(index, Outcome::Behind));
                 }
                 continue;
             }
-            let mut emissivity = Vectors::<N>::ZERO;
             light.emissivities(cpu, points, emissivity.view_mut(count), &mut shines);
             if !open(cpu, &cosines[..count], &mut shines) {
                 if W::SEES {
@@ -228,7 +230,12 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
                 }
                 continue;
             }
-            let ways = Ways { places: &places, toward: &toward, distances: &distances };
+            let source = if light.size() == 0.0 {
+                Bounds { low: light.location(), high: light.location() }
+            } else {
+                bounds::around(cpu, places.view(count))
+            };
+            let ways = Ways { region: around.and(&source), toward: &toward, distances: &distances };
             if W::SEES || self.plan.has_glass {
                 let passed = self.passed(group, surface, &ways, &shines);
                 for lane in 0..group.len {
@@ -306,8 +313,8 @@ struct Lit<'l> {
 
 kernels! {
     /// Where rays come after these distances, and how far their light has then travelled.
-    fn arrive(rays: Rays, distances: &[f64], points: ViewMut, travelled: &mut [f64]) {
-        let (count, mut points) = (travelled.len(), points);
+    fn arrive(rays: Rays, distances: &[f64], travelled: &mut [f64]) => points {
+        let count = travelled.len();
         let (rays, distances, mut points) = (rays.first(count), &distances[..count], points.first(count));
         for lane in 0..count {
             points.set(lane, rays.get(lane).at(distances[lane]));
@@ -316,8 +323,8 @@ kernels! {
     }
 
     /// The sides that rays come to, and the normals turned there if both sides are lit.
-    fn face(dir: View, is_two_sided: bool, normals: ViewMut, sides: &mut [Side]) {
-        let (count, mut normals) = (sides.len(), normals);
+    fn face(dir: View, is_two_sided: bool, sides: &mut [Side]) => normals {
+        let count = sides.len();
         let (dir, mut normals) = (dir.first(count), normals.first(count));
         for lane in 0..count {
             let normal = normals.get(lane);
@@ -330,9 +337,9 @@ kernels! {
     /// The directions and distances from places to a light, and the cosines of the angles there. Tells whether any
     /// place faces the light.
     fn face_light(
-        points: View, normals: View, places: View, toward: ViewMut, distances: &mut [f64], cosines: &mut [f64]
-    ) -> bool {
-        let (count, mut toward) = (cosines.len(), toward);
+        points: View, normals: View, places: View, distances: &mut [f64], cosines: &mut [f64]
+    ) => toward -> bool {
+        let count = cosines.len();
         let (points, normals, places) = (points.first(count), normals.first(count), places.first(count));
         let (mut toward, distances) = (toward.first(count), &mut distances[..count]);
         let mut any = 0;
@@ -350,7 +357,8 @@ kernels! {
     }
 
     /// Adds the light that comes to places, where it does.
-    fn shine(lit: &Lit, shininess: f64, colours: ViewMut) {
+    fn shine(lit: &Lit, shininess: f64) => colours {
+        let colours = colours.first(lit.shines.len());
         let whole = shininess as u32;
         if shininess == 0.0 {
             shine_all(lit, None::<fn(f64) -> f64>, colours);
@@ -384,8 +392,8 @@ kernels! {
     }
 
     /// Divides colours by how far their light has travelled.
-    fn fade(travelled: &[f64], colours: ViewMut) {
-        let (count, mut colours) = (travelled.len(), colours);
+    fn fade(travelled: &[f64]) => colours {
+        let count = travelled.len();
         let mut colours = colours.first(count);
         for lane in 0..count {
             colours.set(lane, colours.get(lane) * (1.0 / travelled[lane]));
@@ -393,8 +401,8 @@ kernels! {
     }
 
     /// Directions, mirrored.
-    fn mirror(dir: View, normals: View, out: ViewMut) {
-        let (count, mut out) = (dir.len(), out);
+    fn mirror(dir: View, normals: View) => out {
+        let count = dir.len();
         let (normals, mut out) = (normals.first(count), out.first(count));
         for lane in 0..count {
             let (dir, normal) = (dir.get(lane), normals.get(lane));
@@ -421,7 +429,6 @@ fn whole_power(of: f64, power: u32) -> f64 {
 #[inline(always)]
 fn shine_all(lit: &Lit, glint: Option<impl Fn(f64) -> f64>, colours: ViewMut) {
     let (count, mut colours) = (lit.shines.len(), colours);
-    let mut colours = colours.first(count);
     let (rays, eyes, normals) = (lit.rays.first(count), lit.eyes.first(count), lit.normals.first(count));
     let (diffuse, specular) = (lit.diffuse.first(count), lit.specular.first(count));
     let emissivity = lit.emissivity.first(count);

@@ -4,7 +4,7 @@ use super::group::{Group, Parts, pick, pick_vectors};
 use super::shade::Surface;
 use super::{NARROW, Tracer};
 use crate::accuracy::Accuracy;
-use crate::bounds;
+use crate::bounds::Bounds;
 use crate::cpu::kernels;
 use crate::geometry::Side;
 use crate::packet::{Rays, STEP, Vectors, View};
@@ -12,8 +12,8 @@ use crate::watch::{Count, Event, Kind, Purpose, Watch};
 
 /// The ways from the places of a surface to a light.
 pub(super) struct Ways<'w, const N: usize> {
-    /// Where the light is, as seen from each place.
-    pub places: &'w Vectors<N>,
+    /// Where they go.
+    pub region: Bounds,
     /// The directions there.
     pub toward: &'w Vectors<N>,
     /// How far it is.
@@ -67,13 +67,11 @@ impl<W: Watch> Tracer<'_, '_, W> {
             *budget -= u32::from(*end > 0.0);
         }
         self.watch.count(Count::Rays(Kind::Shadow, len));
-        let region = bounds::around(self.cpu, surface.points.view(count));
-        let region = region.and(&bounds::around(self.cpu, ways.places.view(count)));
         let mut blocked = [0; N];
         if 2 * len > group.len {
             let rays = Rays { origin: surface.points.view(count), dir: ways.toward.view(count) };
             let leaves = (surface.index, &surface.sides[..count]);
-            self.blocked(rays, len, &ends[..count], leaves, &region, &mut blocked[..count]);
+            self.blocked(rays, len, &ends[..count], leaves, &ways.region, &mut blocked[..count]);
             darken(self.cpu, &blocked[..count], &mut shines[..]);
             return;
         }
@@ -91,7 +89,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
         let (ends, sides): ([f64; N], [Side; N]) = (pick(&ends, lanes), pick(&surface.sides, lanes));
         let rays = Rays { origin: origin.view(count), dir: dir.view(count) };
         let leaves = (surface.index, &sides[..count]);
-        self.blocked(rays, len, &ends[..count], leaves, &region, &mut blocked[..count]);
+        self.blocked(rays, len, &ends[..count], leaves, &ways.region, &mut blocked[..count]);
         for (lane, blocked) in lanes.iter().zip(&blocked) {
             shines[usize::from(*lane)] &= u64::from(*blocked == 0);
         }
