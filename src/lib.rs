@@ -39,6 +39,7 @@ pub mod material;
 pub mod model;
 pub mod newton;
 pub mod number;
+pub mod octet;
 pub mod packet;
 pub mod picture;
 pub mod plan;

@@ -2,7 +2,10 @@
 
 mod parser;
 
+use crate::dual::Dual;
 use crate::number::Number;
+use crate::octet::Octet;
+use crate::packet::STEP;
 use std::fmt;
 use std::ops::Range;
 
@@ -14,6 +17,8 @@ pub struct Formula {
     steps: Vec<Step>,
     /// The most values that wait for their operation at one time.
     needs: usize,
+    /// Whether it can be done for eight y at once.
+    is_plain: bool,
 }
 
 /// What is wrong with the text of a formula.
@@ -56,6 +61,9 @@ enum Function {
     Pow,
 }
 
+/// The values that wait in most formulas.
+const FEW: usize = 4;
+
 /// The most values that wait for their operation, and so how deep a formula can be nested.
 const DEPTH: usize = 32;
 
@@ -65,8 +73,7 @@ impl Formula {
     /// # Errors
     /// The first place where the text is none.
     pub fn parse(text: &str) -> Result<Self, FormulaFault> {
-        let steps = parser::parse(text)?;
-        Ok(Self { text: text.to_owned(), needs: needs(&steps), steps })
+        Ok(Self::new(text.to_owned(), parser::parse(text)?))
     }
 
     /// The square of a formula. That of a root has no root any more: where a sphere's profile ends, its slope is
@@ -79,17 +86,42 @@ impl Formula {
             }
             _ => steps.push(Step::Powi(2)),
         }
-        Self { text: format!("({})^2", self.text), steps, needs: self.needs }
+        Self::new(format!("({})^2", self.text), steps)
+    }
+
+    fn new(text: String, steps: Vec<Step>) -> Self {
+        let needs = needs(&steps);
+        // What a general power's slope is takes more than arithmetic.
+        let is_plain = needs <= FEW && !steps.contains(&Step::Call(Function::Pow));
+        Self { text, steps, needs, is_plain }
     }
 
     /// Its value at y.
     #[inline(always)]
     pub fn at<N: Number>(&self, y: N) -> N {
         // Most formulas are small, and so is then what must be made ready for them.
-        if self.needs <= 4 { self.run::<N, 4>(y) } else { self.run::<N, DEPTH>(y) }
+        if self.needs <= FEW { self.run::<N, FEW>(y) } else { self.run::<N, DEPTH>(y) }
     }
 
     fn run<N: Number, const ROOM: usize>(&self, y: N) -> N {
+        self.done::<N, ROOM>(y)
+    }
+
+    /// Its values and slopes at eight y, for kernels.
+    #[inline(always)]
+    pub fn at_eight(&self, y: [f64; STEP]) -> Dual<Octet> {
+        if self.is_plain {
+            return self.done::<_, FEW>(Dual::variable(Octet(y)));
+        }
+        let (mut value, mut slope) = ([0.0; STEP], [0.0; STEP]);
+        for lane in 0..STEP {
+            Dual { value: value[lane], slope: slope[lane] } = self.at(Dual::variable(y[lane]));
+        }
+        Dual { value: Octet(value), slope: Octet(slope) }
+    }
+
+    #[inline(always)]
+    fn done<N: Number, const ROOM: usize>(&self, y: N) -> N {
         let mut stack = [y; ROOM];
         let mut top = 0_usize;
         for step in &self.steps {
@@ -150,7 +182,6 @@ impl fmt::Display for Formula {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dual::Dual;
     use std::f64::consts::PI;
 
     fn value(text: &str, y: f64) -> f64 {

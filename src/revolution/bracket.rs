@@ -4,15 +4,13 @@
 //! the error's shell, starts in it, runs along the axis or upright on it, or crosses the surface where slabs meet, the
 //! bracket says no more than where that begins, and the ray goes its way alone.
 
+use super::Revolution;
 use super::slabs::Slab;
-use super::{Finish, Revolution};
 use crate::bounds::{from_order, order};
 use crate::cpu::{Cpu, kernels};
 use crate::frame::Frame;
 use crate::geometry::{MISS, Ray, Side, Span};
-use crate::newton;
 use crate::packet::{Rays, STEP, Vectors, WIDE};
-use crate::twofold::advance;
 use glam::DVec3;
 
 /// A direction with less than this of an axis is taken for upright on it.
@@ -114,34 +112,12 @@ impl Revolution {
         if near == MISS {
             MISS
         } else if far < MISS {
-            within.keep(self.root(&frame.ray(ray), near, far))
+            let mut root = [near; STEP];
+            self.roots(Cpu::best(), frame, rays, (&[near; STEP], &[far; STEP]), &mut root);
+            within.keep(root[0])
         } else {
             self.first_hit(&frame.ray(ray), within)
         }
-    }
-
-    /// The distance of the one hit between two distances.
-    pub(super) fn root(&self, ray: &Ray, near: f64, far: f64) -> f64 {
-        if self.finish == Finish::Bracket {
-            return 0.5 * (near + far);
-        }
-        let Ray { origin, dir } = *ray;
-        let from = DVec3::new(
-            advance(origin.x, near, dir.x),
-            advance(origin.y, near, dir.y),
-            advance(origin.z, near, dir.z),
-        );
-        let (a, b) = (dir.x * dir.x + dir.z * dir.z, from.x * dir.x + from.z * dir.z);
-        let outside = |along: f64| {
-            let (x, z) = (from.x + along * dir.x, from.z + along * dir.z);
-            let (square, slope) = self.square_and_slope(from.y + along * dir.y);
-            (x * x + z * z - square, 2.0 * (a * along + b) - slope * dir.y)
-        };
-        let width = far - near;
-        // In a bracket it falls all the way, or rises.
-        let sign = -outside(0.5 * width).1.signum();
-        let tolerance = 2.0 * f64::EPSILON * self.slabs.widest();
-        near + newton::root(outside, (0.0, width), sign, 0.5 * width, tolerance)
     }
 }
 

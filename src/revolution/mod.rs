@@ -9,6 +9,8 @@
 mod bracket;
 mod classic;
 mod local;
+mod normal;
+mod root;
 mod shape;
 mod slabs;
 mod walk;
@@ -75,37 +77,6 @@ impl Revolution {
     pub fn bounds(&self) -> Bounds {
         let widest = self.slabs.widest();
         Bounds { low: DVec3::new(-widest, 0.0, -widest), high: DVec3::new(widest, self.height, widest) }
-    }
-
-    /// The unit normal at a point of the surface, away from the axis. At an apex it points along the axis.
-    pub fn normal(&self, at: DVec3) -> DVec3 {
-        if let Some(up_or_down) = self.ledge(at.y) {
-            return up_or_down;
-        }
-        let Dual { value, slope } = self.profile.at(Dual::variable(at.y));
-        let around = libm::hypot(at.x, at.z);
-        let (x, z) = if around > 0.0 { (at.x / around, at.z / around) } else { (0.0, 0.0) };
-        if slope.is_finite() {
-            let normal = DVec3::new(x, -slope, z);
-            return normal.try_normalize().unwrap_or(DVec3::Y);
-        }
-        // The profile ends there, as a ball's does at its poles: its square has a slope, and that is finite.
-        let twice = self.square.at(Dual::variable(at.y)).slope;
-        DVec3::new(x * value, -0.5 * twice, z * value).try_normalize().unwrap_or(DVec3::Y)
-    }
-
-    /// The normal of the ledge at a height where the profile jumps, if it does: upward where it is narrower above.
-    fn ledge(&self, y: f64) -> Option<DVec3> {
-        // Slopes that have no bound are in few slabs, if in any.
-        if self.slabs.get(self.slabs.index(y)).slope_error.is_finite() {
-            return None;
-        }
-        let near = 1e-9 * self.height;
-        let slope = self.profile.at(Dual::variable(Interval { low: y - near, high: y + near })).slope;
-        let (below, above) = (self.profile.at(y - near), self.profile.at(y + near));
-        // A ledge is far wider than what a slope makes of so small a step.
-        let is_ledge = !slope.is_bounded() && (above - below).abs() > 1e3 * near;
-        is_ledge.then_some(if above < below { DVec3::Y } else { -DVec3::Y })
     }
 
     /// The height at a place along a ray. Beyond its ends the profile may be anything, and rounding must not ask.

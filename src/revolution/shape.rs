@@ -6,7 +6,7 @@ use crate::certify::{self, Enclosure};
 use crate::cpu::Cpu;
 use crate::frame::Frame;
 use crate::geometry::{Hittable, Ray, Side, Span};
-use crate::packet::{self, Nearest, Rays};
+use crate::packet::{self, Nearest, Rays, View, ViewMut};
 use glam::DVec3;
 
 /// A surface around the y axis of a frame.
@@ -41,7 +41,7 @@ impl Hittable for InFrame<Revolution> {
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {
-        (self.frame.axes * self.surface.normal(self.frame.point(at))).normalize()
+        self.surface.normal_in(&self.frame, at)
     }
 
     fn bounds(&self) -> Option<Bounds> {
@@ -84,16 +84,16 @@ impl Hittable for InFrame<Revolution> {
 
     fn distances(
         &self,
-        _cpu: Cpu,
+        cpu: Cpu,
         rays: Rays,
         _sides: Option<&[Side]>,
-        (near, far): (&[f64], &[f64]),
+        brackets: (&[f64], &[f64]),
         out: &mut [f64],
     ) {
-        for (lane, distance) in out.iter_mut().enumerate() {
-            if near[lane] < far[lane] {
-                *distance = self.surface.root(&self.frame.ray(&rays.get(lane)), near[lane], far[lane]);
-            }
-        }
+        self.surface.roots(cpu, &self.frame, rays, brackets, out);
+    }
+
+    fn normals(&self, cpu: Cpu, points: View, out: ViewMut) {
+        self.surface.normals(cpu, &self.frame, points, out);
     }
 }

@@ -59,6 +59,7 @@ pub struct Slabs {
     parts_per_unit: f64,
     widest: f64,
     reach: f64,
+    is_smooth: bool,
 }
 
 impl Slabs {
@@ -83,7 +84,15 @@ impl Slabs {
         let table = (0..=parts).map(|part| slab_at(part as f64 / parts_per_unit)).collect();
         let most = slabs.iter().map(|slab| slab.most).fold(0.0, f64::max);
         let shell = slabs.iter().map(|slab| slab.most + 2.0 * slab.error).fold(0.0, f64::max);
-        Ok(Self { table, parts_per_unit, widest: most.sqrt().next_up(), reach: 1.001 * shell, slabs })
+        let is_smooth = slabs.iter().all(|slab| slab.slope_error.is_finite());
+        Ok(Self {
+            is_smooth,
+            table,
+            parts_per_unit,
+            widest: most.sqrt().next_up(),
+            reach: 1.001 * shell,
+            slabs,
+        })
     }
 
     /// How far the surface is from the axis at most.
@@ -96,6 +105,12 @@ impl Slabs {
     #[inline(always)]
     pub fn reach(&self) -> f64 {
         self.reach
+    }
+
+    /// Whether the profile's slope is bounded everywhere, so that it does not jump.
+    #[inline(always)]
+    pub fn is_smooth(&self) -> bool {
+        self.is_smooth
     }
 
     /// The slab of this index, from the bottom.

@@ -1,0 +1,94 @@
+//! The normals of a surface of revolution.
+
+use super::Revolution;
+use crate::cpu::{Cpu, kernels};
+use crate::dual::Dual;
+use crate::frame::Frame;
+use crate::interval::Interval;
+use crate::packet::{STEP, View, ViewMut};
+use glam::DVec3;
+
+impl Revolution {
+    /// The unit normal at a point of the surface, away from the axis. At an apex it points along the axis.
+    pub fn normal(&self, at: DVec3) -> DVec3 {
+        if let Some(up_or_down) = self.ledge(at.y) {
+            return up_or_down;
+        }
+        let Dual { value, slope } = self.profile.at(Dual::variable(at.y));
+        if slope.is_finite() {
+            return upright(at, slope);
+        }
+        // The profile ends there, as a ball's does at its poles: its square has a slope, and that is finite.
+        let twice = self.square.at(Dual::variable(at.y)).slope;
+        let DVec3 { x, z, .. } = outward(at);
+        DVec3::new(x * value, -0.5 * twice, z * value).try_normalize().unwrap_or(DVec3::Y)
+    }
+
+    /// The normals at many points of the world, in a frame.
+    pub(super) fn normals(&self, cpu: Cpu, frame: &Frame, points: View, out: ViewMut) {
+        normals(cpu, self, frame, points, out);
+    }
+
+    /// The normal in the world at a point of it.
+    #[inline(always)]
+    pub(super) fn normal_in(&self, frame: &Frame, at: DVec3) -> DVec3 {
+        (frame.axes * self.normal(frame.point(at))).normalize()
+    }
+
+    /// The normal of the ledge at a height where the profile jumps, if it does: upward where it is narrower above.
+    fn ledge(&self, y: f64) -> Option<DVec3> {
+        // Slopes that have no bound are in few slabs, if in any.
+        if self.slabs.get(self.slabs.index(y)).slope_error.is_finite() {
+            return None;
+        }
+        let near = 1e-9 * self.height;
+        let slope = self.profile.at(Dual::variable(Interval { low: y - near, high: y + near })).slope;
+        let (below, above) = (self.profile.at(y - near), self.profile.at(y + near));
+        // A ledge is far wider than what a slope makes of so small a step.
+        let is_ledge = !slope.is_bounded() && (above - below).abs() > 1e3 * near;
+        is_ledge.then_some(if above < below { DVec3::Y } else { -DVec3::Y })
+    }
+}
+
+/// The direction from the axis to a point; 0 on the axis.
+#[inline(always)]
+fn outward(at: DVec3) -> DVec3 {
+    let around = (at.x * at.x + at.z * at.z).sqrt();
+    let inverse = if around > 0.0 { 1.0 / around } else { 0.0 };
+    DVec3::new(at.x * inverse, 0.0, at.z * inverse)
+}
+
+/// The unit normal at a point where the profile has this slope.
+#[inline(always)]
+fn upright(at: DVec3, slope: f64) -> DVec3 {
+    let normal = outward(at) - slope * DVec3::Y;
+    let inverse = 1.0 / normal.length();
+    if (inverse > 0.0) & (inverse < f64::INFINITY) { normal * inverse } else { DVec3::Y }
+}
+
+kernels! {
+    fn normals(surface: &Revolution, frame: &Frame, points: View) => out {
+        let count = points.len();
+        let mut out = out.first(count);
+        let is_smooth = surface.slabs.is_smooth();
+        for first in (0..count).step_by(STEP) {
+            let mut height = [0.0; STEP];
+            for lane in 0..STEP {
+                height[lane] = frame.point(points.get(first + lane)).y;
+            }
+            let slope = surface.profile.at_eight(height).slope.0;
+            let mut any = 0;
+            for lane in 0..STEP {
+                let normal = upright(frame.point(points.get(first + lane)), slope[lane]);
+                out.set(first + lane, (frame.axes * normal).normalize());
+                // Of what is infinite, or no number.
+                any |= u64::from(0.0 * slope[lane] != 0.0);
+            }
+            if (any != 0) | !is_smooth {
+                for lane in first..first + STEP {
+                    out.set(lane, surface.normal_in(frame, points.get(lane)));
+                }
+            }
+        }
+    }
+}
