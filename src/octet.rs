@@ -11,17 +11,18 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 #[derive(Clone, Copy, Debug)]
 pub struct Octet(pub [f64; STEP]);
 
-/// Something of each number.
+/// Something of each number, or of each of several octets' numbers: `each!(a = x, b = y => a.hypot(b))`.
 macro_rules! each {
     ($($number:ident = $octet:expr),+ => $value:expr) => {{
-        let mut all = [0.0; STEP];
-        for lane in 0..STEP {
+        let mut all = [0.0; $crate::packet::STEP];
+        for lane in 0..$crate::packet::STEP {
             $(let $number = $octet.0[lane];)+
             all[lane] = $value;
         }
-        Octet(all)
+        $crate::octet::Octet(all)
     }};
 }
+pub(crate) use each;
 
 impl Add for Octet {
     type Output = Self;
@@ -267,7 +268,7 @@ mod tests {
                 _ => (index % 64) as f64 * std::f64::consts::FRAC_PI_4 * (1.0 + 1e-7 * (spread - 0.5)),
             }
         });
-        let special = [0.0, -0.0, 1.0, f64::INFINITY, f64::NAN, f64::MIN_POSITIVE, 1e300, 0.785, 0.7853];
+        let special = [0.0, -0.0, 1.0, f64::INFINITY, f64::NAN, f64::MIN_POSITIVE, 1e300, 0.785];
         let numbers: Vec<_> = numbers.chain(special).collect();
         for eight in numbers.chunks_exact(STEP) {
             let octet = Octet(std::array::from_fn(|lane| eight[lane]));

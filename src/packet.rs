@@ -90,6 +90,13 @@ impl View<'_> {
     pub fn first(&self, count: usize) -> Self {
         Self { x: &self.x[..count], y: &self.y[..count], z: &self.z[..count] }
     }
+
+    /// [`STEP`] of them from this one on.
+    #[inline(always)]
+    pub fn eight(&self, first: usize) -> Self {
+        let end = first + STEP;
+        Self { x: &self.x[first..end], y: &self.y[first..end], z: &self.z[first..end] }
+    }
 }
 
 /// Some vectors of an array, to be written.
@@ -153,6 +160,12 @@ impl Rays<'_> {
     #[inline(always)]
     pub fn first(&self, count: usize) -> Self {
         Self { origin: self.origin.first(count), dir: self.dir.first(count) }
+    }
+
+    /// [`STEP`] of them from this one on.
+    #[inline(always)]
+    pub fn eight(&self, first: usize) -> Self {
+        Self { origin: self.origin.eight(first), dir: self.dir.eight(first) }
     }
 }
 

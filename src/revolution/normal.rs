@@ -5,7 +5,7 @@ use crate::cpu::{Cpu, kernels};
 use crate::dual::Dual;
 use crate::frame::Frame;
 use crate::interval::Interval;
-use crate::packet::{STEP, View, ViewMut};
+use crate::packet::{STEP, Vectors, View, ViewMut};
 use glam::DVec3;
 
 impl Revolution {
@@ -53,9 +53,13 @@ impl Revolution {
 /// The direction from the axis to a point; 0 on the axis.
 #[inline(always)]
 fn outward(at: DVec3) -> DVec3 {
-    let around = (at.x * at.x + at.z * at.z).sqrt();
+    // Squares of what is next to nothing are nothing.
+    let is_tiny = (at.x.abs() < 1e-100) & (at.z.abs() < 1e-100);
+    let scale = if is_tiny { 1e200 } else { 1.0 };
+    let (x, z) = (scale * at.x, scale * at.z);
+    let around = (x * x + z * z).sqrt();
     let inverse = if around > 0.0 { 1.0 / around } else { 0.0 };
-    DVec3::new(at.x * inverse, 0.0, at.z * inverse)
+    DVec3::new(x * inverse, 0.0, z * inverse)
 }
 
 /// The unit normal at a point where the profile has this slope.
@@ -72,18 +76,21 @@ kernels! {
         let mut out = out.first(count);
         let is_smooth = surface.slabs.is_smooth();
         for first in (0..count).step_by(STEP) {
-            let mut height = [0.0; STEP];
+            let eight = points.eight(first);
+            let (mut at, mut normal) = (Vectors::<STEP>::ZERO, Vectors::<STEP>::ZERO);
             for lane in 0..STEP {
-                height[lane] = frame.point(points.get(first + lane)).y;
+                at.set(lane, frame.point(eight.get(lane)));
             }
-            let slope = surface.profile.at_eight(height).slope.0;
+            let slope = surface.profile.at_eight(at.y).slope.0;
             let mut any = 0;
             for lane in 0..STEP {
-                let normal = upright(frame.point(points.get(first + lane)), slope[lane]);
-                out.set(first + lane, (frame.axes * normal).normalize());
+                normal.set(lane, (frame.axes * upright(at.get(lane), slope[lane])).normalize());
                 // Of what is infinite, or no number.
                 any |= u64::from(0.0 * slope[lane] != 0.0);
             }
+            out.x[first..first + STEP].copy_from_slice(&normal.x);
+            out.y[first..first + STEP].copy_from_slice(&normal.y);
+            out.z[first..first + STEP].copy_from_slice(&normal.z);
             if (any != 0) | !is_smooth {
                 for lane in first..first + STEP {
                     out.set(lane, surface.normal_in(frame, points.get(lane)));

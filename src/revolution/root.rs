@@ -2,9 +2,10 @@
 
 use super::{Finish, Revolution};
 use crate::cpu::{Cpu, kernels};
-use crate::dual::Dual;
 use crate::frame::Frame;
 use crate::geometry::Ray;
+use crate::number::Number;
+use crate::octet::{Octet, each};
 use crate::packet::{Rays, STEP};
 use crate::twofold::advance;
 
@@ -13,13 +14,9 @@ const MOST: usize = 100;
 
 /// Rays, counted from the near ends of their brackets.
 struct Eight {
-    x: [f64; STEP],
-    y: [f64; STEP],
-    z: [f64; STEP],
-    dx: [f64; STEP],
-    dy: [f64; STEP],
-    dz: [f64; STEP],
-    width: [f64; STEP],
+    from: [Octet; 3],
+    dir: [Octet; 3],
+    width: Octet,
 }
 
 impl Revolution {
@@ -45,89 +42,81 @@ impl Revolution {
 kernels! {
     fn roots(surface: &Revolution, frame: &Frame, rays: Rays, near: &[f64], far: &[f64], out: &mut [f64]) {
         let count = out.len();
-        let (rays, near, far) = (rays.first(count), &near[..count], &far[..count]);
         for first in (0..count).step_by(STEP) {
-            let zero = [0.0; STEP];
-            let mut eight = Eight { x: zero, y: zero, z: zero, dx: zero, dy: zero, dz: zero, width: zero };
-            let mut is_sought = [0; STEP];
+            let rays = rays.eight(first);
+            let (near, far) = (&near[first..first + STEP], &far[first..first + STEP]);
+            let out = &mut out[first..first + STEP];
+            let zero = Octet([0.0; STEP]);
+            let mut eight = Eight { from: [zero; 3], dir: [zero; 3], width: zero };
             for lane in 0..STEP {
-                let (near, far) = (near[first + lane], far[first + lane]);
-                let Ray { origin, dir } = frame.ray(&rays.get(first + lane));
-                eight.x[lane] = advance(origin.x, near, dir.x);
-                eight.y[lane] = advance(origin.y, near, dir.y);
-                eight.z[lane] = advance(origin.z, near, dir.z);
-                (eight.dx[lane], eight.dy[lane], eight.dz[lane]) = (dir.x, dir.y, dir.z);
-                is_sought[lane] = u64::from(near < far);
-                eight.width[lane] = if near < far { far - near } else { 0.0 };
+                let Ray { origin, dir } = frame.ray(&rays.get(lane));
+                for axis in 0..3 {
+                    eight.from[axis].0[lane] = advance(origin[axis], near[lane], dir[axis]);
+                    eight.dir[axis].0[lane] = dir[axis];
+                }
+                eight.width.0[lane] = if near[lane] < far[lane] { far[lane] - near[lane] } else { 0.0 };
             }
-            let along = surface.eight_roots(&eight, is_sought);
+            let along = surface.eight_roots(&eight).0;
             for lane in 0..STEP {
-                let distance = near[first + lane] + along[lane];
-                out[first + lane] = if is_sought[lane] != 0 { distance } else { out[first + lane] };
+                out[lane] = if near[lane] < far[lane] { near[lane] + along[lane] } else { out[lane] };
             }
         }
     }
 }
 
 impl Revolution {
-    /// What [`newton::root`](crate::newton::root) does, for each of those that are sought.
+    /// What [`newton::root`](crate::newton::root) does, for each that has a width. Flags are 0 or 1.
     #[inline(always)]
-    fn eight_roots(&self, rays: &Eight, is_sought: [u64; STEP]) -> [f64; STEP] {
-        let Eight { x, y, z, dx, dy, dz, width } = *rays;
+    fn eight_roots(&self, rays: &Eight) -> Octet {
+        let Eight { from: [x, y, z], dir: [dx, dy, dz], width } = *rays;
         let tolerance = 2.0 * f64::EPSILON * self.slabs.widest();
-        let mut is_going = is_sought;
-        let (mut low, mut high, mut sign) = ([0.0; STEP], width, [0.0; STEP]);
-        let (mut at, mut last_step) = ([0.0; STEP], [f64::INFINITY; STEP]);
-        for lane in 0..STEP {
-            at[lane] = 0.5 * width[lane];
-        }
+        let (two, half) = (Octet::constant(2.0), Octet::constant(0.5));
+        let mut goes_on = each!(width = width => flag(width > 0.0));
+        let (mut low, mut high, mut at) = (Octet::constant(0.0), width, half * width);
+        let (mut sign, mut last_step) = (Octet::constant(0.0), Octet::constant(f64::INFINITY));
         for _ in 0..MOST {
-            let mut height = [0.0; STEP];
-            for lane in 0..STEP {
-                let y = y[lane] + at[lane] * dy[lane];
-                // Beyond its ends the profile may be anything.
-                let y = if y > 0.0 { y } else { 0.0 };
-                height[lane] = if y < self.height { y } else { self.height };
-            }
-            let Dual { value, slope } = self.square.at_eight(height);
-            let mut any = 0;
-            for lane in 0..STEP {
-                let (px, pz) = (x[lane] + at[lane] * dx[lane], z[lane] + at[lane] * dz[lane]);
-                let outside = px * px + pz * pz - value.0[lane];
-                let slope = 2.0 * (px * dx[lane] + pz * dz[lane]) - slope.0[lane] * dy[lane];
-                // In a bracket it falls all the way, or rises.
-                let sign_here = if sign[lane] == 0.0 { -1.0_f64.copysign(slope) } else { sign[lane] };
-                let is_before = (outside > 0.0) == (sign_here > 0.0);
-                let (a, b) = (
-                    if is_before { at[lane] } else { low[lane] },
-                    if is_before { high[lane] } else { at[lane] },
-                );
-                let next = at[lane] - outside / slope;
-                // Written so that what is not a number is outside.
-                let is_inside = (next > a) & (next < b);
-                let middle = 0.5 * (a + b);
-                let step = (next - at[lane]).abs();
-                let last = last_step[lane];
-                let predicted = step * (step / last) * (step / last);
-                let is_last =
-                    (step <= tolerance) | ((predicted <= 0.25 * tolerance) & (last < f64::INFINITY));
-                let is_root = outside == 0.0;
-                let is_stuck = !is_inside & ((middle == a) | (middle == b));
-                let to = if is_inside { next } else { middle };
-                let to = if is_root | is_stuck { at[lane] } else { to };
-                let is_moving = is_going[lane] != 0;
-                at[lane] = if is_moving { to } else { at[lane] };
-                low[lane] = a;
-                high[lane] = b;
-                sign[lane] = sign_here;
-                last_step[lane] = if is_inside { step } else { f64::INFINITY };
-                is_going[lane] &= u64::from(!(is_root | is_stuck | (is_inside & is_last)));
-                any |= is_going[lane];
-            }
-            if any == 0 {
+            // Beyond its ends the profile may be anything.
+            let height = y + at * dy;
+            let height = each!(y = height => if y > 0.0 { y } else { 0.0 });
+            let height = each!(y = height => if y < self.height { y } else { self.height });
+            let square = self.square.at_eight(height.0);
+            let (x, z) = (x + at * dx, z + at * dz);
+            let outside = x * x + z * z - square.value;
+            let slope = two * (x * dx + z * dz) - square.slope * dy;
+            // In a bracket it falls all the way, or rises.
+            sign = each!(sign = sign, slope = slope => if sign == 0.0 { -1.0_f64.copysign(slope) } else { sign });
+            let is_before = each!(outside = outside, sign = sign => flag(outside * sign > 0.0));
+            low = each!(is_before = is_before, at = at, low = low => if is_before != 0.0 { at } else { low });
+            high = each!(is_before = is_before, at = at, high = high => if is_before != 0.0 { high } else { at });
+
+            let (next, middle) = (at - outside / slope, half * (low + high));
+            // Written so that what is not a number is outside.
+            let is_inside = each!(next = next, low = low, high = high => flag((next > low) & (next < high)));
+            let is_stuck =
+                each!(middle = middle, low = low, high = high => flag((middle == low) | (middle == high)));
+            let step = (next - at).abs();
+            let shrinks = step / last_step;
+            let next_step = step * shrinks * shrinks;
+            let is_last = each!(step = step, next_step = next_step, last = last_step =>
+                flag((step <= tolerance) | ((next_step <= 0.25 * tolerance) & (last < f64::INFINITY))));
+            let to = each!(is_inside = is_inside, next = next, middle = middle =>
+                if is_inside != 0.0 { next } else { middle });
+            let stays = each!(goes_on = goes_on, outside = outside, is_inside = is_inside, is_stuck = is_stuck =>
+                flag((goes_on == 0.0) | (outside == 0.0) | ((is_inside == 0.0) & (is_stuck != 0.0))));
+            at = each!(stays = stays, at = at, to = to => if stays != 0.0 { at } else { to });
+            last_step = each!(is_inside = is_inside, step = step =>
+                if is_inside != 0.0 { step } else { f64::INFINITY });
+            goes_on = each!(stays = stays, is_inside = is_inside, is_last = is_last =>
+                flag((stays == 0.0) & ((is_inside == 0.0) | (is_last == 0.0))));
+            if goes_on.is_zero() {
                 break;
             }
         }
         at
     }
+}
+
+#[inline(always)]
+fn flag(is_so: bool) -> f64 {
+    if is_so { 1.0 } else { 0.0 }
 }
