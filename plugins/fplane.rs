@@ -4,10 +4,12 @@ use super::plane::{self, Plane};
 use crate::accuracy::Accuracy;
 use crate::bounds::Bounds;
 use crate::certify::{self, Enclosure, Equation};
+use crate::cpu::Cpu;
 use crate::entity::{Args, Entity, Refusal};
-use crate::geometry::{Body, Bracket, Hittable, MISS, Ray, Span};
+use crate::geometry::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
 use crate::interval::Interval;
 use crate::number::Number;
+use crate::packet::Rays;
 use crate::pparm::{Derived, Pparm, Row, Table};
 use crate::value::Value;
 use glam::{DMat3, DVec2, DVec3};
@@ -142,6 +144,15 @@ impl Hittable for FinitePlane {
     fn quick_distance(&self, ray: &Ray, within: &Span) -> f64 {
         let distance = self.plane.quick_distance(ray, within);
         if distance.is_nan() | self.has_crossing(ray, distance) { distance } else { MISS }
+    }
+
+    fn distances(&self, cpu: Cpu, rays: Rays, _: Option<&[Side]>, _: (&[f64], &[f64]), out: &mut [f64]) {
+        self.plane.distances(cpu, rays, out);
+        for (lane, distance) in out.iter_mut().enumerate() {
+            if !distance.is_nan() && !self.has_crossing(&rays.get(lane), *distance) {
+                *distance = MISS;
+            }
+        }
     }
 
     fn bounds(&self) -> Option<Bounds> {

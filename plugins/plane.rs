@@ -66,14 +66,7 @@ impl Hittable for Plane {
         Plane::method(self).to_owned()
     }
 
-    fn distances(
-        &self,
-        cpu: Cpu,
-        rays: Rays,
-        _sides: Option<&[Side]>,
-        _brackets: (&[f64], &[f64]),
-        out: &mut [f64],
-    ) {
+    fn distances(&self, cpu: Cpu, rays: Rays, _: Option<&[Side]>, _: (&[f64], &[f64]), out: &mut [f64]) {
         Plane::distances(self, cpu, rays, out);
     }
 
