@@ -16,17 +16,31 @@ use hyper::{Method, Request, Response, StatusCode};
 use hyper_util::rt::TokioIo;
 use std::cell::Cell;
 use std::convert::Infallible;
+use std::io;
 use std::net::{Ipv4Addr, TcpListener};
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, RangeInclusive};
 use std::rc::Rc;
 use tokio::sync::Notify;
 use tokio::task::{LocalSet, spawn_local};
 
-/// The port that is tried first.
-const FIRST_PORT: u16 = 3000;
+/// Where it looks for a port that is free.
+const PORTS: RangeInclusive<u16> = 3000..=u16::MAX;
 
 /// The most bytes of a request's body that are read.
 const LARGEST: usize = 1 << 16;
+
+/// What every answer says: it is for this page alone, which asks nobody else, and for now.
+const HEADERS: [(HeaderName, &str); 5] = [
+    (header::CACHE_CONTROL, "no-store"),
+    (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
+    (header::X_FRAME_OPTIONS, "DENY"),
+    (HeaderName::from_static("cross-origin-resource-policy"), "same-origin"),
+    (
+        header::CONTENT_SECURITY_POLICY,
+        "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:; \
+         connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+    ),
+];
 
 /// What an answer holds: all at once, or as it comes about.
 pub type Body = BoxBody<Bytes, Infallible>;
@@ -40,15 +54,20 @@ pub struct Server {
 impl Server {
     /// Listens on this port, or on the first free one from 3000.
     pub fn open(port: Option<u16>) -> Result<Self, Failure> {
-        let listen = |port| TcpListener::bind((Ipv4Addr::LOCALHOST, port));
+        let listen = |port| TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(|error| (port, error));
         let listener = match port {
-            Some(port) => listen(port).map_err(|error| {
-                Failure::Failed(format!("cannot listen on port {port}: {}", words::reason(&error)))
-            })?,
-            None => (FIRST_PORT..=u16::MAX)
-                .find_map(|port| listen(port).ok())
-                .ok_or_else(|| Failure::Failed(format!("no port from {FIRST_PORT} is free")))?,
+            Some(port) => listen(port),
+            None => PORTS
+                .map(listen)
+                .find(|tried| !matches!(tried, Err((_, error)) if error.kind() == io::ErrorKind::AddrInUse))
+                .unwrap_or_else(|| Err((u16::MAX, io::ErrorKind::AddrInUse.into()))),
         };
+        let listener = listener.map_err(|(port, error)| match error.kind() {
+            io::ErrorKind::AddrInUse => Failure::Failed(format!(
+                "port {port} is taken; give `--port` another one, or leave it out for the first free one"
+            )),
+            _ => Failure::Failed(format!("cannot listen on port {port}: {}", words::reason(&error))),
+        })?;
         listener.set_nonblocking(true)?;
         let port = listener.local_addr()?.port();
         Ok(Self { listener, port })
@@ -60,7 +79,10 @@ impl Server {
     }
 
     /// Answers the requests that may be, until an answer breaks off: it is the last one.
-    pub fn run<A>(self, answer: A) -> Result<(), Failure>
+    ///
+    /// # Errors
+    /// The reason why it can no longer listen.
+    pub fn run<A>(self, answer: A) -> io::Result<()>
     where
         A: AsyncFn(Request<Bytes>) -> ControlFlow<Response<Body>, Response<Body>> + 'static,
     {
@@ -69,11 +91,19 @@ impl Server {
         LocalSet::new().block_on(&runtime, async move {
             let listener = tokio::net::TcpListener::from_std(self.listener)?;
             let (answer, end) = (Rc::new(answer), Rc::new(Notify::new()));
-            let ended = end.clone();
+            let outcome = Rc::new(Cell::new(Ok(())));
+            let (ended, told) = (end.clone(), outcome.clone());
             spawn_local(async move {
                 loop {
-                    // A connection that failed on its way here concerns nobody.
-                    let Ok((stream, _)) = listener.accept().await else { continue };
+                    let stream = match listener.accept().await {
+                        Ok((stream, _)) => stream,
+                        // A connection that failed on its way here concerns nobody.
+                        Err(error) if error.kind() == io::ErrorKind::ConnectionAborted => continue,
+                        Err(error) => {
+                            told.set(Err(error));
+                            return end.notify_one();
+                        }
+                    };
                     let (answer, end) = (answer.clone(), end.clone());
                     spawn_local(async move {
                         let is_last = Cell::new(false);
@@ -98,7 +128,7 @@ impl Server {
                 }
             });
             ended.notified().await;
-            Ok(())
+            outcome.replace(Ok(()))
         })
     }
 }
@@ -146,19 +176,21 @@ pub fn text(status: StatusCode, text: &str) -> Response<Body> {
 
 /// An answer of this type, as in its `Content-Type` header.
 pub fn content(status: StatusCode, kind: &'static str, bytes: impl Into<Bytes>) -> Response<Body> {
-    let mut response = Response::new(Full::new(bytes.into()).boxed());
+    let mut response = stream(kind, Full::new(bytes.into()).boxed());
     *response.status_mut() = status;
+    response
+}
+
+/// An answer of this type, whatever its body is.
+pub fn stream(kind: &'static str, body: Body) -> Response<Body> {
+    let mut response = Response::new(body);
     response.headers_mut().insert(header::CONTENT_TYPE, HeaderValue::from_static(kind));
     response
 }
 
 /// Keeps browsers from storing an answer, from taking it for something else and from showing it within other pages.
 fn guard(response: &mut Response<Body>) {
-    for (name, value) in [
-        (header::CACHE_CONTROL, "no-store"),
-        (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
-        (header::X_FRAME_OPTIONS, "DENY"),
-    ] {
+    for (name, value) in HEADERS {
         response.headers_mut().insert(name, HeaderValue::from_static(value));
     }
 }

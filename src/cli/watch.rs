@@ -1,11 +1,12 @@
 //! `tabray watch`: a page that shows the picture while its scene is edited.
 
+mod answer;
 mod board;
 mod events;
 mod files;
 mod frame;
-mod server;
 
+use super::serve::Server;
 use super::{Failure, input, interrupt, method};
 use crate::accuracy::Accuracy;
 use crate::model::Model;
@@ -13,11 +14,14 @@ use crate::progressive;
 use crate::registry::Registry;
 use crate::render::Renderer;
 use crate::scene::{self, Loaded};
+use crate::words;
 use board::Board;
 use files::Files;
 use frame::{Frame, lines};
-use server::Server;
+use hyper::Request;
+use hyper::body::Bytes;
 use std::fs;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -69,7 +73,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     files.watch([&args.scene])?;
     // A scene with faults has a page. A file that is not there, or no file, has none.
     input::read(&args.scene)?;
-    let server = Server::bind(args.port)?;
+    let server = Server::open(args.port)?;
     let url = server.url();
     interrupt::catch_and(teller(&sender, || News::Interrupted))?;
 
@@ -78,8 +82,12 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     thread::spawn({
         let board = board.clone();
         move || {
-            if let Err(error) = server.run(&board) {
-                let _ = sender.send(News::ServerFailed(format!("the server ended: {error}")));
+            let run = server.run(async move |request: Request<Bytes>| {
+                ControlFlow::Continue(answer::answer(&request, &board).await)
+            });
+            if let Err(error) = run {
+                let reason = words::reason(&error);
+                let _ = sender.send(News::ServerFailed(format!("the server ended: {reason}")));
             }
         }
     });

@@ -134,5 +134,5 @@ fn a_port_that_is_taken_is_refused_when_it_was_asked_for() {
     let (_, port) = served.host.split_once(':').expect("a port");
     let (status, _, err) = tabray(folder.path(), &["review", "--serve", "--port", port]);
     assert_eq!(status, 1);
-    assert!(err.contains(&format!("cannot listen on port {port}")), "{err}");
+    assert!(err.contains(&format!("error: port {port} is taken")), "{err}");
 }

@@ -215,7 +215,10 @@ fn foreign_hosts_and_origins_are_refused() {
         let status = status(&foreign);
         assert!(status == 403 || status == 400, "{status} for {foreign}");
     }
-    let answer = raw(port, &format!("POST / HTTP/1.1\nHost: 127.0.0.1:{port}\nConnection: close\n\n"));
+    let post = format!("POST / HTTP/1.1\nHost: 127.0.0.1:{port}\nConnection: close\n");
+    let answer = raw(port, &format!("{post}\n"));
+    assert!(answer.starts_with("HTTP/1.1 403 "), "{answer}");
+    let answer = raw(port, &format!("{post}Origin: http://127.0.0.1:{port}\n\n"));
     assert!(answer.starts_with("HTTP/1.1 405 "), "{answer}");
 }
 

@@ -5,6 +5,7 @@ use super::pending::{self, Pending};
 use crate::cli::serve::{self, Server};
 use crate::cli::{Failure, messages, report, tell};
 use crate::registry::Registry;
+use crate::words;
 use hyper::body::Bytes;
 use hyper::{Request, Response, StatusCode};
 use serde_json::Value;
@@ -16,7 +17,7 @@ pub fn serve(registry: &'static Registry, args: &Args) -> Result<(), Failure> {
     let (folder, before) = (args.folder.clone(), args.before.clone());
     let server = Server::open(args.port)?;
     messages::note(&format!("review at {} (Ctrl-C ends it)", server.url()));
-    server.run(async move |request: Request<Bytes>| {
+    let run = server.run(async move |request: Request<Bytes>| {
         let verdict = match (request.method().as_str(), request.uri().path()) {
             ("GET", "/") => return ControlFlow::Continue(page(registry, &folder, before.as_deref())),
             ("POST", "/accept") => decide(&folder, request.body(), "accepted", Pending::accept),
@@ -32,7 +33,8 @@ pub fn serve(registry: &'static Registry, args: &Args) -> Result<(), Failure> {
             }
             Err((status, reason)) => ControlFlow::Continue(serve::text(status, &reason)),
         }
-    })
+    });
+    run.map_err(|error| Failure::Failed(format!("the server ended: {}", words::reason(&error))))
 }
 
 fn page(registry: &Registry, folder: &Path, before: Option<&Path>) -> Response<serve::Body> {

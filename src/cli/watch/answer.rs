@@ -1,0 +1,92 @@
+//! What the page asks for: itself, its events, and more about the picture that it shows.
+
+use super::board::Board;
+use super::frame::Frame;
+use crate::aov::Aov;
+use crate::cli::serve::{self, Body};
+use crate::probe;
+use crate::render::Renderer;
+use http_body_util::BodyExt;
+use http_body_util::channel::Channel;
+use hyper::body::Bytes;
+use hyper::{Method, Request, Response, StatusCode};
+use serde_json::json;
+use std::io;
+use std::sync::Arc;
+
+const PAGE: &str = include_str!("page.html");
+
+/// The answer to a request.
+pub async fn answer(request: &Request<Bytes>, board: &Board) -> Response<Body> {
+    if request.method() != Method::GET {
+        return serve::text(StatusCode::METHOD_NOT_ALLOWED, "this server is read only\n");
+    }
+    let path: Vec<_> = request.uri().path().split('/').skip(1).collect();
+    match path[..] {
+        [""] => serve::content(StatusCode::OK, "text/html; charset=utf-8", PAGE),
+        ["events"] => serve::stream("text/event-stream", events(board)),
+        ["probe", version, x, y] => about(board, version, |frame| pixel(frame, x, y)).await,
+        ["layer", version, name] => about(board, version, |frame| layer(frame, name)).await,
+        _ => serve::text(StatusCode::NOT_FOUND, "there is no such page\n"),
+    }
+}
+
+fn events(board: &Board) -> Body {
+    let (mut sender, body) = Channel::new(1);
+    let mut reader = board.reader();
+    tokio::spawn(async move {
+        // When the program ends, a page is to look for the next one soon.
+        let mut event = Some(Bytes::from("retry: 500\n\n"));
+        while let Some(bytes) = event {
+            if sender.send_data(bytes).await.is_err() {
+                return;
+            }
+            event = reader.next().await;
+        }
+    });
+    body.boxed()
+}
+
+/// An answer about the present picture, which may take a while; none about one that is not there any more.
+async fn about(board: &Board, version: &str, work: impl FnOnce(Arc<Frame>) -> Option<Job>) -> Response<Body> {
+    let Some(frame) = version.parse().ok().and_then(|version| board.frame(version)) else {
+        return serve::text(StatusCode::GONE, "this picture is not there any more\n");
+    };
+    let Some(job) = work(frame) else {
+        return serve::text(StatusCode::NOT_FOUND, "the picture has no such part\n");
+    };
+    match tokio::task::spawn_blocking(job).await {
+        Ok(Ok((kind, bytes))) => serve::content(StatusCode::OK, kind, bytes),
+        Ok(Err(error)) if error.kind() == io::ErrorKind::Interrupted => {
+            serve::text(StatusCode::GONE, "this picture is not there any more\n")
+        }
+        _ => serve::text(StatusCode::INTERNAL_SERVER_ERROR, "something went wrong\n"),
+    }
+}
+
+/// Work that ends with the type of its result and the result.
+type Job = Box<dyn FnOnce() -> io::Result<(&'static str, Vec<u8>)> + Send>;
+
+/// The explanation of a pixel, and the lines of the object that it shows.
+fn pixel(frame: Arc<Frame>, x: &str, y: &str) -> Option<Job> {
+    let [width, height] = frame.model.camera.value.pixels;
+    let x = x.parse().ok().filter(|x| *x < width)?;
+    let y = y.parse().ok().filter(|y| *y < height)?;
+    Some(Box::new(move || {
+        Renderer::new(1)?.run(|| {
+            let mut text = Vec::new();
+            probe::pixel(&frame.model, x, y, &mut text)?;
+            let data = json!({ "text": String::from_utf8_lossy(&text), "lines": frame.lines_of([x, y]) });
+            Ok(("application/json", data.to_string().into_bytes()))
+        })
+    }))
+}
+
+/// A picture beside the main one: red, green and blue of each pixel.
+fn layer(frame: Arc<Frame>, name: &str) -> Option<Job> {
+    let aov = [Aov::Depth, Aov::Normal, Aov::Object, Aov::Cost].into_iter().find(|aov| aov.name() == name)?;
+    Some(Box::new(move || {
+        let layer = aov.render(&Renderer::new(0)?, &frame.model, &|| frame.check())?;
+        Ok(("application/octet-stream", layer.bytes))
+    }))
+}
