@@ -1,6 +1,7 @@
 //! Colours to bytes, and bytes to picture files.
 
-use std::io::{self, Write};
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Read, Write};
 use std::path::Path;
 
 /// The byte of a channel: 1 and more is 255, 0 and less is 0, and between them it is cut, not rounded.
@@ -55,6 +56,42 @@ impl Format {
         match self {
             Self::Ppm => write_ppm(out, width, height, rows),
             Self::Png(compression) => write_png(out, width, height, compression, rows),
+        }
+    }
+
+    /// Reads a file that [`write`](Self::write) wrote, from its beginning.
+    ///
+    /// # Errors
+    /// Those of the file.
+    pub fn read(self, file: File) -> io::Result<Rows> {
+        let mut file = BufReader::with_capacity(1 << 16, file);
+        Ok(match self {
+            Self::Ppm => {
+                file.skip_until(b'\n')?;
+                Rows::Ppm(file)
+            }
+            Self::Png(_) => Rows::Png(Box::new(png::Decoder::new(file).read_info()?)),
+        })
+    }
+}
+
+/// The rows of a picture's file, from the top.
+pub enum Rows {
+    /// From after the header.
+    Ppm(BufReader<File>),
+    /// From the decoder.
+    Png(Box<png::Reader<BufReader<File>>>),
+}
+
+impl Rows {
+    /// The next row: red, green and blue of each pixel.
+    ///
+    /// # Errors
+    /// Those of the file, and where it has no other row of this length.
+    pub fn next(&mut self, row: &mut [u8]) -> io::Result<()> {
+        match self {
+            Self::Ppm(file) => file.read_exact(row),
+            Self::Png(png) => png.read_row(row)?.map(drop).ok_or_else(|| io::ErrorKind::UnexpectedEof.into()),
         }
     }
 }

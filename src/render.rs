@@ -3,20 +3,25 @@
 use crate::cpu::Cpu;
 use crate::model::Model;
 use crate::picture::to_byte;
+use crate::tiles::{BAND, Band, TILE};
 use crate::trace::Tracer;
 use crate::watch::Watch;
 use rayon::prelude::*;
 use std::io;
 use std::ops::{ControlFlow, Range};
 
-/// Pixels of a picture that are in memory at one time, but for a picture of one longer row.
-const BAND: usize = 1 << 22;
-
 /// Room for the deepest chain of reflections that a pixel may cost. It is taken only where it is used.
 const STACK: usize = 128 << 20;
 
-/// The width and height of a tile, whose rays go together, in pixels.
-pub(crate) const TILE: usize = 8;
+/// Who decides how long a renderer goes on, and learns how far it is.
+#[derive(Clone, Copy)]
+pub struct Overseer<'o> {
+    /// Asked before each tile, on any thread: whether this one and all others are left out. Once it has said so, it must
+    /// go on to.
+    pub stops: &'o (dyn Fn() -> bool + Sync),
+    /// Told of each row that nothing is left to do on, on any thread and in no order.
+    pub row: &'o (dyn Fn() + Sync),
+}
 
 /// The threads that render.
 pub struct Renderer {
@@ -40,64 +45,58 @@ impl Renderer {
         self
     }
 
-    /// A part of the picture from the top, some rows at a time: red, green and blue of each pixel from the left.
-    /// `columns` count from the left and `rows` from the top, and neither is empty.
+    /// A part of the picture from the top, some rows at a time. `columns` count from the left and `rows` from the top,
+    /// and neither is empty. The pixels depend on the model alone.
     ///
-    /// `done` is told of each row finished, in no order, and may break off; then comes nothing more but an
-    /// error of kind `Interrupted`. The bytes depend on the model alone.
-    pub fn bands<'r>(
+    /// A new watcher watches each strip of tiles, and `watched` gets it then, on any thread and in no order.
+    pub fn bands<'r, W: Watch + Default>(
         &'r self,
         model: &'r Model,
         columns: Range<usize>,
         rows: Range<usize>,
-        done: &'r (dyn Fn() -> ControlFlow<()> + Sync),
-    ) -> impl Iterator<Item = io::Result<Vec<u8>>> + 'r {
-        self.watched_bands(model, columns, rows, done, &|()| {})
-    }
-
-    /// As [`bands`](Self::bands); a new watcher watches each strip of tiles, and `watched` gets it then, on any thread
-    /// and in no order.
-    pub fn watched_bands<'r, W: Watch + Default>(
-        &'r self,
-        model: &'r Model,
-        columns: Range<usize>,
-        rows: Range<usize>,
-        done: &'r (dyn Fn() -> ControlFlow<()> + Sync),
         watched: &'r (dyn Fn(W) + Sync),
-    ) -> impl Iterator<Item = io::Result<Vec<u8>>> + 'r {
-        // Whole tiles.
-        let step = (BAND / columns.len()).max(1).next_multiple_of(TILE);
-        rows.clone().step_by(step).map(move |from| {
-            let rows = from..rows.end.min(from + step);
-            let bytes = self.rows(model, columns.clone(), rows, done, watched);
-            bytes.ok_or_else(|| io::ErrorKind::Interrupted.into())
+    ) -> impl Iterator<Item = Band> + 'r {
+        Band::split(&columns, &rows, BAND).map(move |rows| {
+            let mut band = Band::blank(columns.clone(), rows);
+            self.fill(model, &mut band, Overseer { stops: &|| false, row: &|| () }, watched);
+            band
         })
     }
 
-    /// The whole picture, as [`bands`](Self::bands) gives it in parts.
+    /// The whole picture, as [`bands`](Self::bands) gives it in parts: red, green and blue of each pixel.
     pub fn picture(&self, model: &Model) -> Vec<u8> {
         let [width, height] = model.camera.value.pixels;
-        self.rows(model, 0..width, 0..height, &|| ControlFlow::Continue(()), &|()| {}).unwrap_or_default()
+        let mut band = Band::blank(0..width, 0..height);
+        self.fill(model, &mut band, Overseer { stops: &|| false, row: &|| () }, &|()| {});
+        band.pixels.into_flattened()
     }
 
-    fn rows<W: Watch + Default>(
+    /// Renders the tiles of a band that are not rendered yet, or those of them that the overseer lets it, watched as
+    /// [`bands`](Self::bands) are.
+    pub fn fill<W: Watch + Default>(
         &self,
         model: &Model,
-        columns: Range<usize>,
-        rows: Range<usize>,
-        done: &(dyn Fn() -> ControlFlow<()> + Sync),
+        band: &mut Band,
+        overseer: Overseer,
         watched: &(dyn Fn(W) + Sync),
-    ) -> Option<Vec<u8>> {
+    ) {
         let [_, height] = model.camera.value.pixels;
+        let Band { columns, rows, pixels, tiles } = band;
         let width = columns.len();
-        let mut pixels = vec![[0; 3]; width * rows.len()];
-        let strips = pixels.par_chunks_mut(TILE * width).zip(rows.into_par_iter().step_by(TILE));
-        let finished = self.pool.install(|| {
-            strips.try_for_each(|(strip, from_top)| {
+        let strips = pixels.par_chunks_mut(TILE * width).zip(tiles.par_chunks_mut(width.div_ceil(TILE)));
+        let strips = strips.zip(rows.clone().into_par_iter().step_by(TILE));
+        self.pool.install(|| {
+            strips.for_each(|((strip, tiles), from_top)| {
                 let (tall, mut watch) = (strip.len() / width, W::default());
                 let top = height - 1 - from_top;
                 let mut tracer = Tracer::new(model, self.cpu, &mut watch);
-                for left in columns.clone().step_by(TILE) {
+                for (left, is_done) in columns.clone().step_by(TILE).zip(tiles) {
+                    if *is_done {
+                        continue;
+                    }
+                    if (overseer.stops)() {
+                        break;
+                    }
                     let (mut tile, mut len) = ([[0; 2]; TILE * TILE], 0);
                     for row in 0..tall {
                         for x in left..columns.end.min(left + TILE) {
@@ -108,12 +107,12 @@ impl Renderer {
                     tracer.pixels(&tile[..len], |[x, y], colour| {
                         strip[(top - y) * width + x - columns.start] = colour.to_array().map(to_byte);
                     });
+                    *is_done = true;
                 }
                 watched(watch);
-                (0..tall).try_for_each(|_| done())
-            })
+                (0..tall).for_each(|_| (overseer.row)());
+            });
         });
-        finished.is_continue().then(|| pixels.into_flattened())
     }
 
     /// Something of each pixel, from the top and from the left, for some rows counted from the top; nothing

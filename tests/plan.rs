@@ -7,7 +7,6 @@ use common::{model, model_in, registry, root, scenes};
 use insta::Settings;
 use serde_json::Value;
 use std::fs;
-use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Mutex;
 use tabray::accuracy::Accuracy;
@@ -38,13 +37,9 @@ fn count(model: &Model, threads: usize) -> Tally {
     let add = |part: Tally| sum.lock().expect("no thread panics").add(&part);
     let renderer = Renderer::new(threads).expect("threads");
     let [width, height] = model.camera.value.pixels;
-    let done = || ControlFlow::Continue(());
-    let bands: Result<Vec<_>, _> = renderer.watched_bands(model, 0..width, 0..height, &done, &add).collect();
-    assert_eq!(
-        bands.expect("nothing breaks off").concat(),
-        renderer.picture(model),
-        "watching changes nothing"
-    );
+    let bands = renderer.bands(model, 0..width, 0..height, &add);
+    let pixels: Vec<_> = bands.flat_map(|band| band.pixels).collect();
+    assert_eq!(pixels.into_flattened(), renderer.picture(model), "watching changes nothing");
     sum.into_inner().expect("no thread panics")
 }
 

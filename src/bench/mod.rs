@@ -20,7 +20,6 @@ use crate::watch::Kind;
 use ceiling::Bare;
 use glam::DVec3;
 use std::io;
-use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Duration;
 
@@ -129,7 +128,7 @@ impl Speed {
 /// Makes a frame, and throws it away.
 fn render(renderer: &Renderer, model: &Model) {
     let [width, height] = model.camera.value.pixels;
-    renderer.bands(model, 0..width, 0..height, &|| ControlFlow::Continue(())).for_each(drop);
+    renderer.bands(model, 0..width, 0..height, &|()| {}).for_each(drop);
 }
 
 /// What a frame takes.
@@ -137,7 +136,7 @@ fn counted(renderer: &Renderer, model: &Model) -> Tally {
     let [width, height] = model.camera.value.pixels;
     let sum = Mutex::new(Tally::default());
     let add = |part: Tally| sum.lock().unwrap_or_else(PoisonError::into_inner).add(&part);
-    renderer.watched_bands(model, 0..width, 0..height, &|| ControlFlow::Continue(()), &add).for_each(drop);
+    renderer.bands(model, 0..width, 0..height, &add).for_each(drop);
     sum.into_inner().unwrap_or_else(PoisonError::into_inner)
 }
 

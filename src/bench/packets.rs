@@ -5,7 +5,7 @@ use crate::cpu::Cpu;
 use crate::geometry::{MISS, Side};
 use crate::model::Model;
 use crate::packet::{Nearest, Rays, Vectors, WIDE};
-use crate::render::TILE;
+use crate::tiles::TILE;
 use crate::trace::{self, Tracer};
 use crate::watch::{Count, Kind, Watch};
 use std::hint::black_box;

@@ -1,7 +1,8 @@
 //! `tabray render --aov`: pictures beside the main one, and exact numbers.
 
 use super::output::Output;
-use super::render::{self, Progress, finished};
+use super::progress::Progress;
+use super::render::{self, finished};
 use super::{Failure, interrupt, messages};
 use crate::aov::Aov;
 use crate::model::Model;

@@ -13,8 +13,10 @@ mod explain;
 mod grammar;
 mod input;
 mod interrupt;
+mod job;
 mod list;
 mod man;
+mod memory;
 mod messages;
 mod method;
 mod new;
@@ -23,13 +25,17 @@ mod output;
 mod picture;
 mod plan;
 mod probe;
+mod progress;
 mod render;
 mod report;
+mod resume;
 mod review;
 mod schema;
 mod serve;
 mod size;
 mod stats;
+mod stop;
+mod temporary;
 mod verify;
 mod watch;
 
@@ -82,7 +88,7 @@ Exit status:
     0  all went well
     1  a failure: something could not be read, written or started
     2  bad input: a scene or a command line with faults
-  130  interrupted";
+  130  interrupted, or stopped at a limit";
 
 /// Why a command did not do what it was asked to.
 enum Failure {
@@ -94,6 +100,8 @@ enum Failure {
     Failed(String),
     /// The user stopped it.
     Interrupted,
+    /// It was stopped with a part of its work done, of which the user was told already.
+    Stopped,
     /// Faults that were printed already.
     Told,
 }
@@ -166,12 +174,12 @@ fn tell(failure: &Failure) -> ExitCode {
         Failure::Usage(message, help) => messages::error(message, help.as_deref()),
         Failure::Failed(message) => messages::error(message, None),
         Failure::Interrupted => messages::note("interrupted: the picture was not finished"),
-        Failure::Told => {}
+        Failure::Stopped | Failure::Told => {}
     }
     ExitCode::from(match failure {
         Failure::Failed(_) => 1,
         Failure::Scene(_) | Failure::Usage(..) | Failure::Told => 2,
-        Failure::Interrupted => 130,
+        Failure::Interrupted | Failure::Stopped => 130,
     })
 }
 

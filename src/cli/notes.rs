@@ -1,13 +1,16 @@
 //! Without a command: the notes' program, a filter from a scene to its dump and its picture.
 
+use super::job::Job;
 use super::output::Output;
 use super::size::Part;
-use super::{Failure, input, interrupt, render};
+use super::stop::Stop;
+use super::{Failure, input, interrupt};
 use crate::accuracy::Accuracy;
 use crate::dump;
 use crate::picture::Format;
 use crate::registry::Registry;
 use crate::render::Renderer;
+use crate::tiles::BAND;
 use std::io::Write;
 use std::path::Path;
 
@@ -17,6 +20,15 @@ pub fn run(registry: &Registry) -> Result<(), Failure> {
     let model = input::load(registry, standard, Some(Accuracy::Classic))?;
     interrupt::catch()?;
     let _ = write!(std::io::stderr(), "{}", dump::notes(&model));
-    let whole = Part::whole(&model.camera.value);
-    render::picture(&model, &whole, &Renderer::new(0)?, Format::Ppm, standard, output, None)
+    let job = Job {
+        model: &model,
+        part: &Part::whole(&model.camera.value),
+        renderer: &Renderer::new(0)?,
+        format: Format::Ppm,
+        path: standard,
+        band: BAND,
+        stop: &Stop::default(),
+        stats: None,
+    };
+    job.run(output, None)
 }

@@ -1,10 +1,10 @@
 //! Where a picture goes: beside its target first, then in its place, so that no half of one is ever there.
 
 use super::Failure;
+use super::temporary::Temporary;
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, IsTerminal, Seek, Write};
 use std::path::{Path, PathBuf};
-use tempfile::NamedTempFile;
 
 /// A place to write to, found fit before any work is done.
 pub enum Output {
@@ -13,7 +13,7 @@ pub enum Output {
     /// What is no ordinary file, such as a device or a pipe; it cannot be replaced.
     Special(File),
     /// A file beside the target, and the target.
-    File(NamedTempFile, PathBuf),
+    File(Temporary, PathBuf),
 }
 
 /// Writes a new file as a whole, and none in place of another one.
@@ -24,9 +24,9 @@ pub fn create(path: &Path, text: &str) -> Result<(), Failure> {
         _ => Failure::cannot_write(path, &error),
     };
     let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
-    let mut file = beside(folder).map_err(cannot)?;
-    file.write_all(text.as_bytes()).map_err(cannot)?;
-    file.persist_noclobber(path).map(drop).map_err(|error| cannot(error.error))
+    let file = Temporary::new(folder).map_err(cannot)?;
+    file.file().write_all(text.as_bytes()).map_err(cannot)?;
+    file.persist_new(path).map_err(cannot)
 }
 
 /// Refuses a path at which something is already.
@@ -68,19 +68,27 @@ impl Output {
             }
             Ok(meta) if meta.permissions().readonly() => Err(cannot(io::ErrorKind::PermissionDenied.into())),
             Ok(meta) => {
-                let file = beside(folder).map_err(cannot)?;
-                fs::set_permissions(file.path(), meta.permissions()).map_err(cannot)?;
+                let file = Temporary::new(folder).map_err(cannot)?;
+                file.file().set_permissions(meta.permissions()).map_err(cannot)?;
                 Ok(Self::File(file, target))
             }
-            Err(_) => Ok(Self::File(beside(folder).map_err(cannot)?, target)),
+            Err(_) => Ok(Self::File(Temporary::new(folder).map_err(cannot)?, target)),
         }
+    }
+
+    /// What was written so far, from its beginning.
+    pub fn read(&self) -> io::Result<File> {
+        let Self::File(file, _) = self else { return Err(io::ErrorKind::Unsupported.into()) };
+        let mut file = file.file().try_clone()?;
+        file.rewind()?;
+        Ok(file)
     }
 
     /// Puts what was written in its place.
     pub fn finish(self) -> io::Result<()> {
         match self {
             Self::Standard | Self::Special(_) => Ok(()),
-            Self::File(file, target) => file.persist(target).map(drop).map_err(|error| error.error),
+            Self::File(file, target) => file.persist(&target),
         }
     }
 }
@@ -90,7 +98,7 @@ impl Write for Output {
         match self {
             Self::Standard => io::stdout().write(bytes),
             Self::Special(file) => file.write(bytes),
-            Self::File(file, _) => file.write(bytes),
+            Self::File(file, _) => file.file().write(bytes),
         }
     }
 
@@ -98,14 +106,7 @@ impl Write for Output {
         match self {
             Self::Standard => io::stdout().flush(),
             Self::Special(file) => file.flush(),
-            Self::File(file, _) => file.flush(),
+            Self::File(file, _) => file.file().flush(),
         }
     }
-}
-
-/// A new hidden file in the folder, with the permissions that any new file gets. It goes when it is dropped.
-fn beside(folder: &Path) -> io::Result<NamedTempFile> {
-    tempfile::Builder::new()
-        .prefix(".tabray-")
-        .make_in(folder, |path| OpenOptions::new().write(true).create_new(true).open(path))
 }

@@ -1,21 +1,19 @@
 //! `tabray render`: a scene's picture.
 
+use super::job::Job;
 use super::output::Output;
-use super::size::{self, Part};
+use super::resume::Begun;
 use super::stats::{self, Stats};
-use super::{Failure, aov, cpu, debug, input, interrupt, messages, method};
-use crate::model::Model;
+use super::{Failure, aov, cpu, debug, input, interrupt, messages, method, size, stop};
 use crate::picture::{Compression, Format};
 use crate::registry::Registry;
 use crate::render::Renderer;
 use crate::sample::{self, Sampler};
 use crate::scene::Loaded;
 use crate::words;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, BufWriter};
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 /// Make a scene's picture
 #[derive(clap::Args)]
@@ -53,6 +51,8 @@ pub struct Args {
     cpu: cpu::Args,
     #[command(flatten)]
     stats: stats::Args,
+    #[command(flatten)]
+    stop: stop::Args,
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
@@ -82,6 +82,7 @@ enum SamplerName {
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let path = target(&args)?;
     let format = format(&args, &path)?;
+    let stop = args.stop.watch()?;
     let cpu = args.cpu.cpu()?;
     let start = Instant::now();
     let Loaded { mut model, building, .. } = input::loaded(registry, &args.scene, args.method.accuracy()?)?;
@@ -96,6 +97,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     interrupt::catch()?;
     let output = Output::open(&path)?;
     let beside = aov::open(&model, &args.aov, &path, &output)?;
+    let begun = Begun::open(args.stop.resume, &model, &part, &path, &output)?;
     debug::print(&model, &args.debug)?;
     let threads = args.threads.unwrap_or(0).into();
     let start = Instant::now();
@@ -103,8 +105,17 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     stats.building += start.elapsed();
     let renderer = self::threads(threads)?.on(cpu);
     let whole = Instant::now();
-    let wanted = args.stats.wants_any().then_some(&stats);
-    picture(&model, &part, &renderer, format, &path, output, wanted)?;
+    let job = Job {
+        model: &model,
+        part: &part,
+        renderer: &renderer,
+        format,
+        path: &path,
+        band: args.stop.band(part.columns.len())?,
+        stop: &stop,
+        stats: args.stats.wants_any().then_some(&stats),
+    };
+    job.run(output, begun)?;
     stats.writing = whole.elapsed().saturating_sub(stats.rendering.get());
     if path != Path::new("-") {
         let [width, height] = part.size();
@@ -113,39 +124,6 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     }
     args.stats.print(&stats, &model);
     aov::write(&model, threads, format, beside)
-}
-
-/// Renders a part of a model's picture and puts it where it belongs. What it takes goes into `stats`, if there are any.
-pub fn picture(
-    model: &Model,
-    part: &Part,
-    renderer: &Renderer,
-    format: Format,
-    path: &Path,
-    output: Output,
-    stats: Option<&Stats>,
-) -> Result<(), Failure> {
-    let progress = Progress::new(part.rows.len());
-    let done = || {
-        progress.step();
-        interrupt::check()
-    };
-    let mut out = BufWriter::with_capacity(1 << 16, output);
-    let (columns, rows) = (part.columns.clone(), part.rows.clone());
-    let written = match stats {
-        None => format.write(&mut out, part.size(), renderer.bands(model, columns, rows, &done)),
-        Some(stats) => {
-            let sum = &stats.tally;
-            let add = |tally| sum.add(&tally);
-            let bands = renderer.watched_bands(model, columns, rows, &done, &add);
-            format.write(&mut out, part.size(), stats.timed(bands))
-        }
-    };
-    progress.end();
-    if interrupt::check() == ControlFlow::Break(()) {
-        return Err(Failure::Interrupted);
-    }
-    finished(path, written, out)
 }
 
 /// This many threads to render with; 0 for one on each core.
@@ -160,34 +138,6 @@ pub fn finished(path: &Path, written: io::Result<()>, out: BufWriter<Output>) ->
     match written.and_then(|()| out.into_inner().map_err(|error| error.into_error())?.finish()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::cannot_write(path, &error)),
         _ => Ok(()),
-    }
-}
-
-/// A bar on a terminal, once rendering takes long enough to ask how long it will take.
-pub struct Progress {
-    bar: ProgressBar,
-    start: Instant,
-}
-
-impl Progress {
-    pub fn new(rows: usize) -> Self {
-        let style = ProgressStyle::with_template("{wide_bar} {percent:>3} % {eta} left");
-        let bar = ProgressBar::with_draw_target(Some(rows as u64), ProgressDrawTarget::hidden());
-        Self {
-            bar: bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar())),
-            start: Instant::now(),
-        }
-    }
-
-    pub fn step(&self) {
-        if self.bar.is_hidden() && self.start.elapsed() > Duration::from_millis(500) {
-            self.bar.set_draw_target(ProgressDrawTarget::stderr());
-        }
-        self.bar.inc(1);
-    }
-
-    pub fn end(&self) {
-        self.bar.finish_and_clear();
     }
 }
 

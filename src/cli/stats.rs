@@ -1,5 +1,6 @@
 //! `--stats`: what a picture took, in rays, tests, time and memory.
 
+use super::memory;
 use crate::model::Model;
 use crate::tally::Tally;
 use crate::watch::Kind;
@@ -75,14 +76,11 @@ impl Sum {
 }
 
 impl Stats {
-    /// The bands of a picture as they come, and how long each takes.
-    pub fn timed<B>(&self, mut bands: impl Iterator<Item = B>) -> impl Iterator<Item = B> {
-        std::iter::from_fn(move || {
-            let start = Instant::now();
-            let band = bands.next();
-            self.rendering.set(self.rendering.get() + start.elapsed());
-            band
-        })
+    /// Renders, and adds how long that takes.
+    pub fn timed(&self, render: impl FnOnce()) {
+        let start = Instant::now();
+        render();
+        self.rendering.set(self.rendering.get() + start.elapsed());
     }
 
     fn stages(&self) -> [(&'static str, f64); 4] {
@@ -115,7 +113,7 @@ impl Stats {
         for (stage, seconds) in self.stages() {
             let _ = writeln!(out, "{stage:<12} {seconds:>14.4}");
         }
-        if let Some(bytes) = peak_memory() {
+        if let Some(bytes) = memory::peak() {
             let _ = writeln!(out, "\n{:<12} {:>10.1} MiB", "peak memory", bytes as f64 / f64::from(1 << 20));
         }
         out
@@ -133,18 +131,9 @@ impl Stats {
             "tests": serde_json::Map::from_iter(tests),
             "seconds": serde_json::Map::from_iter(self.stages().map(|(stage, time)| (stage.to_owned(), time.into()))),
         });
-        if let Some(bytes) = peak_memory() {
+        if let Some(bytes) = memory::peak() {
             all["peak_memory"] = bytes.into();
         }
         format!("{all}\n")
     }
-}
-
-/// The most memory that the program has had at one time, in bytes, where the system tells: on Linux.
-///
-/// What `getrusage` says of it counts the program that started this one, too.
-fn peak_memory() -> Option<u64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
-    Some(peak.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()? << 10)
 }

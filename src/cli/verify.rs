@@ -1,7 +1,8 @@
 //! `tabray verify`: a proof, pixel by pixel, of which object is seen.
 
 use super::output::Output;
-use super::render::{self, Progress, finished, named};
+use super::progress::Progress;
+use super::render::{self, finished, named};
 use super::{Failure, input, interrupt, messages, method, print};
 use crate::registry::Registry;
 use crate::verify::{self, Verdict};

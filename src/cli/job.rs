@@ -1,0 +1,107 @@
+//! A picture being made: rendered and written, or stopped and left to be gone on with.
+
+use super::output::Output;
+use super::progress::Progress;
+use super::render::finished;
+use super::resume::{self, Begun};
+use super::size::Part;
+use super::stats::Stats;
+use super::stop::Stop;
+use super::{Failure, messages};
+use crate::model::Model;
+use crate::picture::Format;
+use crate::render::{Overseer, Renderer};
+use crate::tiles::{Band, Tiles};
+use std::io::{self, BufWriter};
+use std::path::Path;
+
+/// A part of a model's picture, and how it is made.
+pub struct Job<'a> {
+    pub model: &'a Model,
+    pub part: &'a Part,
+    pub renderer: &'a Renderer,
+    pub format: Format,
+    /// Where it belongs.
+    pub path: &'a Path,
+    /// How many pixels may be in memory at one time.
+    pub band: usize,
+    pub stop: &'a Stop,
+    /// What it takes goes in here, if anybody wants to know.
+    pub stats: Option<&'a Stats>,
+}
+
+impl Job<'_> {
+    /// Renders what a checkpoint does not have, and puts the picture where it belongs.
+    pub fn run(&self, output: Output, mut begun: Option<Begun>) -> Result<(), Failure> {
+        let Part { columns, rows } = self.part;
+        let progress = Progress::new(rows.len());
+        let mut tiles = Tiles::none(self.part.size());
+        let (mut broken, mut told) = (None, false);
+        let mut out = BufWriter::with_capacity(1 << 16, output);
+        let bands = Band::split(columns, rows, self.band).map(|rows| {
+            let mut band = Band::blank(columns.clone(), rows);
+            if let Some(begun) = &mut begun
+                && let Err(failure) = begun.fill(&mut band)
+            {
+                broken = Some(failure);
+                return Err(io::ErrorKind::InvalidData.into());
+            }
+            self.fill(&mut band, &progress);
+            tiles.add(&band);
+            if !band.is_whole() && !told {
+                told = true;
+                progress.end();
+                self.stop.tell();
+            }
+            Ok(band.pixels.into_flattened())
+        });
+        let written = self.format.write(&mut out, self.part.size(), bands);
+        progress.end();
+        match broken {
+            Some(failure) => Err(failure),
+            None if written.is_ok() && !tiles.is_whole() => self.leave(out, &tiles),
+            None => {
+                finished(self.path, written, out)?;
+                begun.map_or(Ok(()), Begun::remove)
+            }
+        }
+    }
+
+    fn fill(&self, band: &mut Band, progress: &Progress) {
+        let overseer = Overseer { stops: &|| self.stop.is_due(), row: &|| progress.step() };
+        match self.stats {
+            None => self.renderer.fill(self.model, band, overseer, &|()| {}),
+            Some(stats) => {
+                let sum = &stats.tally;
+                stats.timed(|| self.renderer.fill(self.model, band, overseer, &|tally| sum.add(&tally)));
+            }
+        }
+    }
+
+    /// Puts a part of the picture where it belongs, and says what is there. `out` has it, and black for the rest.
+    fn leave(&self, out: BufWriter<Output>, tiles: &Tiles) -> Result<(), Failure> {
+        let output =
+            out.into_inner().map_err(|error| Failure::cannot_write(self.path, &error.into_error()))?;
+        let [width, height] = self.part.size();
+        // Not rounded: what is not finished is not 100 %.
+        let share = (1000.0 * tiles.pixels() as f64 / (width * height) as f64).floor() / 10.0;
+        messages::note(&match &output {
+            Output::File(..) if tiles.pixels() == 0 => {
+                "nothing is rendered yet, and nothing is written".to_owned()
+            }
+            Output::File(..) => {
+                let checkpoint = resume::leave(self, output, tiles)?;
+                let [picture, checkpoint] = [self.path, &checkpoint].map(Path::display);
+                format!(
+                    "wrote {share:.1} % of {picture}, and {checkpoint}, from which `--resume` makes the rest"
+                )
+            }
+            Output::Standard | Output::Special(_) => {
+                format!(
+                    "{share:.1} % of the picture is rendered, and the rest is black; only files can be resumed"
+                )
+            }
+        });
+        Err(Failure::Stopped)
+    }
+}

@@ -1,0 +1,140 @@
+//! Checkpoints beside pictures: left where a render stops, and gone on from by `--resume`.
+
+use super::job::Job;
+use super::output::Output;
+use super::size::Part;
+use super::{Failure, messages};
+use crate::checkpoint::{self, Checkpoint, Identity};
+use crate::model::Model;
+use crate::picture::Format;
+use crate::tiles::{Band, Tiles};
+use crate::words;
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// The checkpoint that a render goes on from.
+pub struct Begun {
+    path: PathBuf,
+    checkpoint: Checkpoint,
+}
+
+/// Where the checkpoint of a picture is.
+pub fn beside(picture: &Path) -> PathBuf {
+    let mut path = picture.to_owned().into_os_string();
+    path.push(".checkpoint");
+    path.into()
+}
+
+impl Begun {
+    /// Opens the checkpoint of a picture, if there is one and it is `wanted`.
+    pub fn open(
+        wanted: bool,
+        model: &Model,
+        part: &Part,
+        picture: &Path,
+        output: &Output,
+    ) -> Result<Option<Self>, Failure> {
+        if !matches!(output, Output::File(..)) {
+            return if wanted {
+                Err(Failure::Usage(
+                    format!("there is no place for a checkpoint beside `{}`", picture.display()),
+                    Some("name the picture's file with `-o FILE`, or leave out `--resume`".to_owned()),
+                ))
+            } else {
+                Ok(None)
+            };
+        }
+        let path = beside(picture);
+        let shown = path.display();
+        if !wanted {
+            if path.exists() {
+                messages::note(&format!(
+                    "{shown} is there, and with `--resume` the picture would go on from it"
+                ));
+            }
+            return Ok(None);
+        }
+        let file = match File::open(&path) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {
+                messages::note(&format!("there is no {shown} to go on from: the picture begins anew"));
+                return Ok(None);
+            }
+            file => file,
+        };
+        let checkpoint = file.and_then(Checkpoint::open).map_err(|error| cannot_read(&path, &error))?;
+        let identity = identity(model, part)?;
+        let differences = identity.differences(&checkpoint.identity);
+        if !differences.is_empty() {
+            return Err(Failure::Usage(
+                format!("`{shown}` is of another picture: {}", differences.join(", ")),
+                Some(BEGIN_ANEW.to_owned()),
+            ));
+        }
+        if checkpoint.size() != part.size() {
+            return Err(cannot_read(&path, &io::ErrorKind::InvalidData.into()));
+        }
+        Ok(Some(Self { path, checkpoint }))
+    }
+
+    /// Fills a band with what is rendered of it. Bands come from the top.
+    pub fn fill(&mut self, band: &mut Band) -> Result<(), Failure> {
+        self.checkpoint.fill(band).map_err(|error| cannot_read(&self.path, &error))
+    }
+
+    /// Removes the checkpoint, as its picture is finished.
+    pub fn remove(self) -> Result<(), Failure> {
+        fs::remove_file(&self.path).map_err(|error| {
+            Failure::Failed(format!("cannot remove `{}`: {}", self.path.display(), words::reason(&error)))
+        })
+    }
+}
+
+const BEGIN_ANEW: &str = "leave out `--resume` to begin anew";
+
+fn cannot_read(path: &Path, error: &io::Error) -> Failure {
+    let reason = match error.kind() {
+        io::ErrorKind::InvalidData => "it is no checkpoint, or a broken one".to_owned(),
+        _ => words::reason(error),
+    };
+    Failure::Usage(format!("cannot read `{}`: {reason}", path.display()), Some(BEGIN_ANEW.to_owned()))
+}
+
+/// Leaves a part of a picture at its place, and a checkpoint beside it, whose path is returned. `written` is the picture,
+/// black where nothing is rendered.
+///
+/// Neither is put in its place before both are whole.
+pub fn leave(job: &Job, written: Output, tiles: &Tiles) -> Result<PathBuf, Failure> {
+    let path = beside(job.path);
+    let cannot_write = |error: io::Error| Failure::cannot_write(&path, &error);
+    let mut checkpoint = Output::open(&path)?;
+    let identity = identity(job.model, job.part)?;
+    written
+        .read()
+        .and_then(|file| job.format.read(file))
+        .and_then(|rows| {
+            let mut out = BufWriter::with_capacity(1 << 16, &mut checkpoint);
+            checkpoint::write(&mut out, job.part.size(), &identity, tiles, rows)?;
+            out.flush()
+        })
+        .map_err(cannot_write)?;
+    let partial = match job.format {
+        Format::Ppm => written,
+        // The checkpoint shows what is wanted.
+        Format::Png(_) => {
+            let mut shown = checkpoint.read().map_err(cannot_write)?;
+            let mut partial = Output::open(job.path)?;
+            io::copy(&mut shown, &mut partial).map_err(|error| Failure::cannot_write(job.path, &error))?;
+            partial
+        }
+    };
+    checkpoint.finish().map_err(cannot_write)?;
+    partial.finish().map_err(|error| Failure::cannot_write(job.path, &error))?;
+    Ok(path)
+}
+
+fn identity(model: &Model, part: &Part) -> Result<Identity, Failure> {
+    Identity::of(model, &part.columns, &part.rows).map_err(|error| {
+        Failure::Failed(format!("cannot read the program's own file: {}", words::reason(&error)))
+    })
+}

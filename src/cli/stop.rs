@@ -1,0 +1,132 @@
+//! When a render stops before its picture is finished: at an interruption, or at a limit of time or memory.
+
+use super::{Failure, interrupt, memory, messages};
+use crate::tiles::{BAND, TILE};
+use crate::words;
+use bytesize::ByteSize;
+use std::fmt;
+use std::sync::{Arc, OnceLock};
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// How often memory is looked at.
+const LOOK: Duration = Duration::from_millis(20);
+
+/// What a pixel of a band takes, in bytes: three, and room for what its tiles need.
+const PIXEL: u64 = 4;
+
+/// What the rows that are being written take for each of their columns, in bytes.
+const ROWS: u64 = 64;
+
+/// What rendering takes beside the picture, in bytes.
+const ASIDE: u64 = 4 << 20;
+
+#[derive(clap::Args)]
+#[group(id = "when to stop")]
+pub struct Args {
+    /// Go on from the checkpoint that was left beside the same picture when it was stopped; from the start where there
+    /// is none
+    #[arg(long)]
+    pub resume: bool,
+    /// Stop as Ctrl-C does after this time, such as 90s, 5m or 1.5h: the part of the picture that is done is written,
+    /// and a checkpoint beside it; pictures of --aov are made of finished ones alone, and take their own time
+    #[arg(long, value_name = "TIME", value_parser = time)]
+    time_limit: Option<Duration>,
+    /// Get along with this much memory, such as 200MiB, and stop as Ctrl-C does where that does not do
+    #[arg(long, value_name = "SIZE", value_parser = size)]
+    max_memory: Option<ByteSize>,
+}
+
+/// What a render may not go beyond.
+#[derive(Clone, Copy)]
+enum Limit {
+    Time(Duration),
+    Memory(ByteSize),
+}
+
+impl fmt::Display for Limit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Time(limit) => write!(f, "time limit of {}", humantime::format_duration(*limit)),
+            Self::Memory(limit) => write!(f, "memory limit of {limit}"),
+        }
+    }
+}
+
+/// Knows whether a render is to stop.
+#[derive(Default)]
+pub struct Stop {
+    reached: Arc<OnceLock<Limit>>,
+}
+
+impl Stop {
+    /// Whether it is.
+    pub fn is_due(&self) -> bool {
+        interrupt::check().is_break() || self.reached.get().is_some()
+    }
+
+    /// Says why it is.
+    pub fn tell(&self) {
+        messages::note(&match self.reached.get() {
+            Some(limit) => format!("the {limit} is reached"),
+            None => "interrupted; another Ctrl-C ends at once".to_owned(),
+        });
+    }
+}
+
+impl Args {
+    /// From here on, somebody watches the limits.
+    pub fn watch(&self) -> Result<Stop, Failure> {
+        let stop = Stop::default();
+        let &Self { time_limit, max_memory, .. } = self;
+        if time_limit.is_none() && max_memory.is_none() {
+            return Ok(stop);
+        }
+        let (start, reached) = (Instant::now(), stop.reached.clone());
+        let watch = move || {
+            loop {
+                let left = time_limit.map(|limit| limit.saturating_sub(start.elapsed()));
+                let over = max_memory.filter(|limit| memory::now().is_some_and(|now| now > limit.as_u64()));
+                let time = time_limit.filter(|_| left == Some(Duration::ZERO));
+                if let Some(limit) = time.map(Limit::Time).or(over.map(Limit::Memory)) {
+                    let _ = reached.set(limit);
+                    return;
+                }
+                let look = if max_memory.is_some() { LOOK } else { Duration::MAX };
+                thread::sleep(look.min(left.unwrap_or(Duration::MAX)));
+            }
+        };
+        let started = thread::Builder::new().name("limits".to_owned()).spawn(watch);
+        started.map(|_| stop).map_err(|error| {
+            Failure::Failed(format!("cannot start a thread to watch the limits: {}", words::reason(&error)))
+        })
+    }
+
+    /// How many pixels may be in memory at one time, of a picture of this width.
+    pub fn band(&self, width: usize) -> Result<usize, Failure> {
+        let Some(limit) = self.max_memory else { return Ok(BAND) };
+        let Some(now) = memory::now() else {
+            let message = "this system does not tell how much memory the program has";
+            return Err(Failure::Usage(message.to_owned(), Some("leave out `--max-memory`".to_owned())));
+        };
+        let free = limit.as_u64().saturating_sub(now + ASIDE + ROWS * width as u64);
+        let pixels = usize::try_from(free / PIXEL).unwrap_or(BAND).min(BAND);
+        if pixels < TILE * width {
+            let least = ByteSize(now + ASIDE + (ROWS + PIXEL * TILE as u64) * width as u64);
+            return Err(Failure::Usage(
+                format!("{limit} of memory are not enough for this picture"),
+                Some(format!("it takes about {least} at least")),
+            ));
+        }
+        Ok(pixels)
+    }
+}
+
+fn time(text: &str) -> Result<Duration, String> {
+    let time = humantime::parse_duration(text).ok().filter(|time| !time.is_zero());
+    time.ok_or_else(|| "give a time as `90s`, `5m` or `1.5h`".to_owned())
+}
+
+fn size(text: &str) -> Result<ByteSize, String> {
+    text.parse().map_err(|_| "give a size as `200MiB` or `1.5GiB`".to_owned())
+}

@@ -1,0 +1,114 @@
+//! Files that get their names when they are whole.
+
+use std::fs::{self, File, OpenOptions};
+use std::io;
+use std::path::Path;
+use tempfile::NamedTempFile;
+
+/// A file in a folder, written before anybody sees it.
+pub enum Temporary {
+    /// Without a name: it goes with the program, however that ends.
+    #[cfg(target_os = "linux")]
+    Unnamed(File),
+    /// Hidden, where the system has no files without names. It goes when it is dropped.
+    Named(NamedTempFile),
+}
+
+impl Temporary {
+    /// A new one, with the permissions that any new file gets.
+    pub fn new(folder: &Path) -> io::Result<Self> {
+        #[cfg(target_os = "linux")]
+        if let Some(file) = unnamed::open(folder) {
+            return Ok(Self::Unnamed(file));
+        }
+        let open = |path: &Path| OpenOptions::new().read(true).write(true).create_new(true).open(path);
+        tempfile::Builder::new().prefix(".tabray-").make_in(folder, open).map(Self::Named)
+    }
+
+    /// To be written, and read again.
+    pub fn file(&self) -> &File {
+        match self {
+            #[cfg(target_os = "linux")]
+            Self::Unnamed(file) => file,
+            Self::Named(file) => file.as_file(),
+        }
+    }
+
+    /// Gives it a name, in the folder that it is in, and takes the name from the file that has it, if one has.
+    pub fn persist(self, target: &Path) -> io::Result<()> {
+        match self {
+            #[cfg(target_os = "linux")]
+            Self::Unnamed(file) => match unnamed::link(&file, target) {
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => unnamed::replace(&file, target),
+                linked => linked,
+            },
+            Self::Named(file) => file.persist(target).map(drop).map_err(|error| error.error),
+        }
+    }
+
+    /// As [`persist`](Self::persist), but for a name that another file has already.
+    pub fn persist_new(self, target: &Path) -> io::Result<()> {
+        match self {
+            #[cfg(target_os = "linux")]
+            Self::Unnamed(file) => unnamed::link(&file, target),
+            Self::Named(file) => file.persist_noclobber(target).map(drop).map_err(|error| error.error),
+        }
+    }
+}
+
+#[cfg(target_os = "linux")]
+mod unnamed {
+    use super::{File, OpenOptions, Path, fs, io};
+    use nix::fcntl::{AT_FDCWD, AtFlags, OFlag};
+    use nix::unistd::linkat;
+    use sha2::{Digest, Sha256};
+    use std::os::fd::AsRawFd;
+    use std::os::unix::ffi::OsStrExt;
+    use std::os::unix::fs::OpenOptionsExt;
+    use std::path::PathBuf;
+
+    /// The name that the system has for an open file.
+    fn path(file: &File) -> PathBuf {
+        format!("/proc/self/fd/{}", file.as_raw_fd()).into()
+    }
+
+    /// A file that can be given a name later, unless the file system or the machine has none such.
+    pub fn open(folder: &Path) -> Option<File> {
+        let mut options = OpenOptions::new();
+        let file = options.read(true).write(true).custom_flags(OFlag::O_TMPFILE.bits()).open(folder).ok()?;
+        path(&file).symlink_metadata().is_ok().then_some(file)
+    }
+
+    /// Gives a file a name that no other one has.
+    pub fn link(file: &File, target: &Path) -> io::Result<()> {
+        Ok(linkat(AT_FDCWD, &path(file), AT_FDCWD, target, AtFlags::AT_SYMLINK_FOLLOW)?)
+    }
+
+    /// Puts a file in the place of another one. There is no single step to this: for a moment the file, which is whole,
+    /// has a hidden name. If the program is killed right then, the next one with this target takes the name away.
+    pub fn replace(file: &File, target: &Path) -> io::Result<()> {
+        let name = target.file_name().unwrap_or_default();
+        let hash = Sha256::digest(name.as_bytes()).into_iter().take(8).map(|byte| format!("{byte:02x}"));
+        let hidden = target.with_file_name(format!(".tabray-{}", hash.collect::<String>()));
+        loop {
+            match link(file, &hidden) {
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
+                    match fs::remove_file(&hidden) {
+                        Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
+                        _ => continue,
+                    }
+                }
+                linked => linked?,
+            }
+            match fs::rename(&hidden, target) {
+                // Another program with the same target took the name away.
+                Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+                Err(error) => {
+                    fs::remove_file(&hidden)?;
+                    return Err(error);
+                }
+                Ok(()) => return Ok(()),
+            }
+        }
+    }
+}
