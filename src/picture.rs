@@ -42,8 +42,8 @@ impl Format {
         }
     }
 
-    /// Writes a whole picture: `rows` hands out its bytes, some rows at a time from the top, as
-    /// [`Renderer::bands`](crate::render::Renderer::bands) makes them.
+    /// Writes a whole picture: `rows` hands out its bytes, some rows at a time from the top: red, green and blue of each
+    /// pixel from the left.
     ///
     /// # Errors
     /// Those of `out`, of `rows`, and a size that the format cannot hold.

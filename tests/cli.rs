@@ -229,31 +229,6 @@ fn a_reader_that_has_had_enough_is_no_failure() {
     }
 }
 
-#[cfg(unix)]
-#[test]
-fn an_interrupted_render_leaves_the_old_picture_and_nothing_else() {
-    let folder = folder();
-    let text = fs::read_to_string(scene("gallery/hall-of-mirrors.ray")).expect("a scene");
-    fs::write(folder.path().join("big.ray"), text.replace("640 480", "16000 12000")).expect("a file");
-    fs::write(folder.path().join("big.png"), "precious").expect("a file");
-    let child = std::process::Command::new(assert_cmd::cargo::cargo_bin!("tabray"))
-        .args(["render", "big.ray"])
-        .current_dir(folder.path())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the program runs");
-    while names_in(folder.path()).len() < 3 {
-        std::thread::yield_now();
-    }
-    let killed = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
-    assert!(killed.expect("kill runs").success());
-    let output = child.wait_with_output().expect("it ends");
-    assert_eq!(output.status.code(), Some(130));
-    assert_eq!(String::from_utf8_lossy(&output.stderr), "interrupted: the picture was not finished\n");
-    assert_eq!(names_in(folder.path()), ["big.png", "big.ray"]);
-    assert_eq!(fs::read(folder.path().join("big.png")).expect("still there"), b"precious");
-}
-
 #[test]
 fn any_number_of_threads_gives_the_same_bytes() {
     let folder = folder();

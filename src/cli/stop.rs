@@ -15,24 +15,25 @@ const LOOK: Duration = Duration::from_millis(20);
 /// What a pixel of a band takes, in bytes: three, and room for what its tiles need.
 const PIXEL: u64 = 4;
 
-/// What the rows that are being written take for each of their columns, in bytes.
-const ROWS: u64 = 64;
+/// What the row that is being written takes for each of its pixels, in bytes.
+const ROW: u64 = 64;
 
-/// What rendering takes beside the picture, in bytes.
-const ASIDE: u64 = 4 << 20;
+/// What rendering takes beside the picture at least, in bytes.
+const ASIDE: u64 = 2 << 20;
 
 #[derive(clap::Args)]
 #[group(id = "when to stop")]
 pub struct Args {
-    /// Go on from the checkpoint that was left beside the same picture when it was stopped; from the start where there
-    /// is none
+    /// Go on from the checkpoint that the same picture left beside it when it was stopped; where there is none, from the
+    /// start
     #[arg(long)]
     pub resume: bool,
-    /// Stop as Ctrl-C does after this time, such as 90s, 5m or 1.5h: the part of the picture that is done is written,
-    /// and a checkpoint beside it; pictures of --aov are made of finished ones alone, and take their own time
+    /// Stop after this time, such as 90s, 5m or 1.5h, as Ctrl-C does: what is done is written, and beside it a
+    /// checkpoint for --resume; the pictures of --aov come after the main one, and are not limited
     #[arg(long, value_name = "TIME", value_parser = time)]
     time_limit: Option<Duration>,
-    /// Get along with this much memory, such as 200MiB, and stop as Ctrl-C does where that does not do
+    /// Hold less of the picture at a time, so that this memory does, such as 200MiB; stop as Ctrl-C does where it does
+    /// not
     #[arg(long, value_name = "SIZE", value_parser = size)]
     max_memory: Option<ByteSize>,
 }
@@ -109,16 +110,18 @@ impl Args {
             let message = "this system does not tell how much memory the program has";
             return Err(Failure::Usage(message.to_owned(), Some("leave out `--max-memory`".to_owned())));
         };
-        let free = limit.as_u64().saturating_sub(now + ASIDE + ROWS * width as u64);
-        let pixels = usize::try_from(free / PIXEL).unwrap_or(BAND).min(BAND);
-        if pixels < TILE * width {
-            let least = ByteSize(now + ASIDE + (ROWS + PIXEL * TILE as u64) * width as u64);
+        let row = ROW * width as u64;
+        let strip = PIXEL * (TILE * width) as u64;
+        let least = now + ASIDE + row + strip;
+        if limit.as_u64() < least {
             return Err(Failure::Usage(
                 format!("{limit} of memory are not enough for this picture"),
-                Some(format!("it takes about {least} at least")),
+                Some(format!("it takes about {} at least", ByteSize(least))),
             ));
         }
-        Ok(pixels)
+        // Most is left to the rays: how deep their reflections go shows when they are there.
+        let bytes = ((limit.as_u64() - now - row) / 4).max(strip);
+        Ok(usize::try_from(bytes / PIXEL).map_or(BAND, |pixels| pixels.min(BAND)))
     }
 }
 
