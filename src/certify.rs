@@ -5,14 +5,16 @@ use crate::dual::Dual;
 use crate::geometry::Ray;
 use crate::interval::Interval;
 use crate::number::Number;
+use crate::twofold::Twofold;
 
 /// What is certain about the first hit of a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Enclosure {
     /// There is none.
     Misses,
-    /// There is one, at one of these distances.
-    Hits(Interval),
+    /// There is one, at one of these distances; the number of twice the precision is the nearest of its kind to it, or
+    /// next to that.
+    Hits(Interval, Twofold),
     /// There may be one, not nearer than this.
     Doubtful(f64),
 }
@@ -48,7 +50,7 @@ pub fn first_hit(shape: &impl Equation, ray: &Ray) -> Enclosure {
             Judgement::Root(root) => {
                 let kept = shape.kept(line.at(root));
                 if kept.low > 0.0 {
-                    return Enclosure::Hits(root);
+                    return Enclosure::Hits(root, line.refined(root));
                 }
                 if kept.high >= 0.0 {
                     return Enclosure::Doubtful(low);
@@ -157,6 +159,30 @@ impl<S: Equation> OnRay<'_, S> {
         let behind =
             halve(unknown.middle(), unknown.high, |at| if is_behind(at) { Step::Down } else { Step::Up });
         Interval { low: before.low, high: behind.high }
+    }
+
+    /// The root that an interval holds, by Newton's method in twice the precision.
+    fn refined(&self, root: Interval) -> Twofold {
+        const MOST: usize = 100;
+        let (mut low, mut high) = (Twofold::from(root.low), Twofold::from(root.high));
+        let begins_inside = self.value(low).is_negative();
+        let mut at = Twofold::from(root.middle());
+        for _ in 0..MOST {
+            let Dual { value, slope } = self.value(Dual::variable(at));
+            if value.is_negative() == begins_inside {
+                low = at;
+            } else {
+                high = at;
+            }
+            let step = at - value / slope;
+            let next = if low < step && step < high { step } else { (low + high) * Twofold::from(0.5) };
+            let moved = (next - at).high.abs();
+            at = next;
+            if moved <= 1e-31 * root.high {
+                break;
+            }
+        }
+        at
     }
 }
 

@@ -2,6 +2,8 @@
 //!
 //! Nothing here multiplies and adds in one step, so the bits are the same on every machine.
 
+mod elementary;
+
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A sum, and what rounding took from it.
@@ -50,8 +52,11 @@ pub fn dot(a: [f64; 3], b: [f64; 3], b_low: [f64; 3]) -> f64 {
 }
 
 /// A number in twice the precision: the sum of two, the second far smaller.
-#[derive(Clone, Copy, Debug, PartialEq)]
+///
+/// For finite numbers of a magnitude below 1e290, products' magnitudes above 1e-290: beyond them parts are lost.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct Twofold {
+    // The order of the fields is that in which numbers compare.
     /// The number, rounded.
     pub high: f64,
     /// What rounding took.

@@ -40,7 +40,7 @@ fn first(enclosures: impl Iterator<Item = Enclosure>) -> Option<Option<usize>> {
         match enclosure {
             Enclosure::Misses => {}
             Enclosure::Doubtful(low) => others = others.min(low),
-            Enclosure::Hits(at) => match nearest {
+            Enclosure::Hits(at, _) => match nearest {
                 Some((_, _, high)) if high <= at.high => others = others.min(at.low),
                 _ => {
                     others = others.min(nearest.map_or(f64::INFINITY, |(_, low, _)| low));
@@ -73,10 +73,15 @@ pub fn picture(
 mod tests {
     use super::*;
     use crate::interval::Interval;
+    use crate::twofold::Twofold;
 
-    const NEAR: Enclosure = Enclosure::Hits(Interval { low: 1.0, high: 2.0 });
-    const FAR: Enclosure = Enclosure::Hits(Interval { low: 3.0, high: 4.0 });
-    const BETWEEN: Enclosure = Enclosure::Hits(Interval { low: 1.5, high: 3.5 });
+    const NEAR: Enclosure = hits(1.0, 2.0);
+    const FAR: Enclosure = hits(3.0, 4.0);
+    const BETWEEN: Enclosure = hits(1.5, 3.5);
+
+    const fn hits(low: f64, high: f64) -> Enclosure {
+        Enclosure::Hits(Interval { low, high }, Twofold { high: 0.5 * (low + high), low: 0.0 })
+    }
 
     #[test]
     fn the_first_is_certain_only_where_nothing_may_lie_before() {

@@ -643,7 +643,7 @@ fn what_is_certain_is_true() {
             let slack = 8.0 * ulp(ray.origin.length());
             let is_true = match certain {
                 Enclosure::Misses => at.is_none(),
-                Enclosure::Hits(Interval { low, high }) => {
+                Enclosure::Hits(Interval { low, high }, _) => {
                     at.map_or(truth == Truth::Undecided, |at| low - slack <= at && at <= high + slack)
                 }
                 Enclosure::Doubtful(nearest) => {

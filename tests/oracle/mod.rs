@@ -1,13 +1,12 @@
 //! The truth that tests compare the program with: first hits in twice the precision of `f64`, and rays to ask for.
 #![allow(dead_code, reason = "each test program uses a part of it")]
 
-pub mod double_double;
 pub mod rays;
 pub mod revolution;
 pub mod shapes;
 pub mod tally;
 
-use double_double::DoubleDouble;
+use tabray::twofold::Twofold;
 
 /// Where a ray first meets a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,7 +23,7 @@ pub enum Truth {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// How far along the ray, in lengths of its direction.
-    pub t: DoubleDouble,
+    pub t: Twofold,
     /// How fast the surface's function grows along the ray there: negative where the ray enters. At a ledge, where
     /// that has no bound, 1 or -1.
     pub slope: f64,

@@ -2,9 +2,8 @@
 //!
 //! All roots are isolated. A piece of the ray is cut in two until bounds that certainly hold say that it has no
 //! root, or that the function only grows or only falls on it, so that the signs at its ends decide. The bounds come
-//! from intervals, and on short pieces, where these are too coarse, from [`DoubleDouble`].
+//! from intervals, and on short pieces, where these are too coarse, from [`Twofold`].
 
-use super::double_double::DoubleDouble;
 use super::{Crossings, Hit, Truth};
 use glam::DVec3;
 use tabray::dual::Dual;
@@ -12,6 +11,7 @@ use tabray::formula::Formula;
 use tabray::geometry::Ray;
 use tabray::interval::Interval;
 use tabray::number::Number;
+use tabray::twofold::Twofold;
 
 /// A line x = g(y) turned around the y axis through a base. Where g is below 0 there is nothing.
 pub struct Revolution {
@@ -28,7 +28,7 @@ struct Local {
     /// How far along the ray that point is.
     start: f64,
     /// That point.
-    at: [DoubleDouble; 3],
+    at: [Twofold; 3],
     dir: [f64; 3],
     /// The part of the ray, counted from that point, outside of which the surface is not.
     from: f64,
@@ -41,7 +41,7 @@ struct Bounds {
     slope: Interval,
 }
 
-/// What [`DoubleDouble`]'s errors certainly do not exceed, for numbers of magnitude 1.
+/// What [`Twofold`]'s errors certainly do not exceed, for numbers of magnitude 1.
 const ERROR: f64 = 1e-28;
 
 /// The pieces that one ray may cost.
@@ -94,23 +94,22 @@ impl Revolution {
         let local =
             Local { start: distance, at: self.place_along(ray, distance), dir: [0.0; 3], from: 0.0, to: 0.0 };
         let Dual { value: radius, slope } = self.formula.at(Dual::variable(local.at[1]));
-        let value = self.function(&local, DoubleDouble::from(0.0)).value.to_f64();
+        let value = self.function(&local, Twofold::from(0.0)).value.high;
         // The length of the gradient of x^2 + z^2 - g(y)^2 at a point of the surface.
-        let gradient = 2.0 * radius.to_f64() * slope.to_f64().hypot(1.0);
+        let gradient = 2.0 * radius.high * slope.high.hypot(1.0);
         (value / gradient).abs()
     }
 
     /// How high above the base the point at a distance along a ray is.
     pub fn height_at(&self, ray: &Ray, distance: f64) -> f64 {
-        self.place_along(ray, distance)[1].to_f64()
+        self.place_along(ray, distance)[1].high
     }
 
     /// The point at a distance along a ray, counted from the base.
-    fn place_along(&self, ray: &Ray, distance: f64) -> [DoubleDouble; 3] {
+    fn place_along(&self, ray: &Ray, distance: f64) -> [Twofold; 3] {
         let (origin, base, dir) = (ray.origin.to_array(), self.base.to_array(), ray.dir.to_array());
         std::array::from_fn(|axis| {
-            DoubleDouble::sum(origin[axis], -base[axis])
-                + DoubleDouble::from(distance) * DoubleDouble::from(dir[axis])
+            Twofold::difference(origin[axis], base[axis]) + Twofold::from(distance) * Twofold::from(dir[axis])
         })
     }
 
@@ -118,19 +117,19 @@ impl Revolution {
     /// little more.
     fn clip(&self, ray: &Ray, near: f64) -> Option<Local> {
         let [x, y, z] = self.place_along(ray, 0.0);
-        let [dx, dy, dz] = ray.dir.to_array().map(DoubleDouble::from);
-        let (mut from, mut to) = (DoubleDouble::from(near), DoubleDouble::from(1e200));
+        let [dx, dy, dz] = ray.dir.to_array().map(Twofold::from);
+        let (mut from, mut to) = (Twofold::from(near), Twofold::from(1e200));
         if !dy.is_zero() {
-            let (bottom, top) = (-y / dy, (DoubleDouble::from(self.height) - y) / dy);
+            let (bottom, top) = (-y / dy, (Twofold::from(self.height) - y) / dy);
             (from, to) = (from.max(bottom.min(top)), to.min(bottom.max(top)));
-        } else if y.is_negative() || DoubleDouble::from(self.height) < y {
+        } else if y.is_negative() || Twofold::from(self.height) < y {
             return None;
         }
         let across = dx * dx + dz * dz;
         if !across.is_zero() {
             let nearest = -(x * dx + z * dz) / across;
             let (x, z) = (x + nearest * dx, z + nearest * dz);
-            let radius = DoubleDouble::from(1.01 * self.radius);
+            let radius = Twofold::from(1.01 * self.radius);
             let room = radius * radius - x * x - z * z;
             if room.is_negative() {
                 return None;
@@ -141,15 +140,15 @@ impl Revolution {
         if to < from {
             return None;
         }
-        let start = ((from + to) / DoubleDouble::from(2.0)).to_f64();
-        let [from, to] = [from, to].map(|end| (end - start.into()).to_f64());
+        let start = ((from + to) / Twofold::from(2.0)).high;
+        let [from, to] = [from, to].map(|end| (end - start.into()).high);
         let slack = 1e-12 * (to - from) + f64::MIN_POSITIVE;
         let at = self.place_along(ray, start);
         Some(Local { start, at, dir: ray.dir.to_array(), from: from - slack, to: to + slack })
     }
 
     /// The surface's function along a ray, with its derivative: positive outside.
-    fn function(&self, ray: &Local, t: DoubleDouble) -> Dual<DoubleDouble> {
+    fn function(&self, ray: &Local, t: Twofold) -> Dual<Twofold> {
         let t = Dual::variable(t);
         let [x, y, z] = [0, 1, 2].map(|axis| {
             let place = Dual { value: ray.at[axis], slope: 0.0.into() };
@@ -162,7 +161,7 @@ impl Revolution {
     fn bounds(&self, ray: &Local, piece: Interval) -> Dual<Dual<Interval>> {
         let t = Dual::variable_twice(piece);
         let [x, y, z] = [0, 1, 2].map(|axis| {
-            let [high, low] = ray.at[axis].parts().map(Interval::constant);
+            let [high, low] = [ray.at[axis].high, ray.at[axis].low].map(Interval::constant);
             let place =
                 Dual { value: Dual { value: high + low, ..Dual::constant(0.0) }, ..Dual::constant(0.0) };
             place + t * Dual::constant(ray.dir[axis])
@@ -261,10 +260,10 @@ impl Search<'_> {
         }
         let Dual { value, slope } = self.surface.function(&self.ray, t.into());
         let size = self.surface.radius + reach;
-        let steep = 1.0 + slope.to_f64().abs() / size;
-        let around = |number: DoubleDouble, error: f64| {
-            let error = DoubleDouble::from(error);
-            Interval { low: (number - error).to_f64().next_down(), high: (number + error).to_f64().next_up() }
+        let steep = 1.0 + slope.high.abs() / size;
+        let around = |number: Twofold, error: f64| {
+            let error = Twofold::from(error);
+            Interval { low: (number - error).high.next_down(), high: (number + error).high.next_up() }
         };
         Bounds {
             value: around(value, ERROR * size * size * steep),
@@ -278,7 +277,7 @@ impl Search<'_> {
         let size = self.surface.radius + self.ray.to - self.ray.from;
         let is_near = |t: f64| {
             let value = self.surface.function(&self.ray, t.into()).value;
-            value.to_f64().abs() < 1e-13 * size * size
+            value.high.abs() < 1e-13 * size * size
         };
         is_near(from) || is_near(to)
     }
@@ -293,9 +292,9 @@ impl Search<'_> {
         if inside_at_first == self.is_inside(to) {
             return None;
         }
-        let (mut low, mut high) = (DoubleDouble::from(from), DoubleDouble::from(to));
-        let mut t = DoubleDouble::from(self.guess(from, to, inside_at_first));
-        let half = DoubleDouble::from(0.5);
+        let (mut low, mut high) = (Twofold::from(from), Twofold::from(to));
+        let mut t = Twofold::from(self.guess(from, to, inside_at_first));
+        let half = Twofold::from(0.5);
         // Newton's steps, and halves of the bracket where these leave it.
         for _ in 0..120 {
             let Dual { value, slope } = self.surface.function(&self.ray, t);
@@ -306,7 +305,7 @@ impl Search<'_> {
             }
             let step = t - value / slope;
             let next = if low <= step && step <= high { step } else { low + (high - low) * half };
-            let moved = (next - t).to_f64().abs();
+            let moved = (next - t).high.abs();
             t = next;
             if moved <= 1e-30 * (self.ray.to - self.ray.from) || high <= low {
                 break;
@@ -320,22 +319,22 @@ impl Search<'_> {
         };
         let sign = if inside_at_first { 1.0 } else { -1.0 };
         let slope = match kind {
-            Kind::Root => self.surface.function(&self.ray, t).slope.to_f64(),
+            Kind::Root => self.surface.function(&self.ray, t).slope.high,
             Kind::Ledge => sign,
         };
-        let counts = DoubleDouble::from(self.near) < distance && is_surface && self.crossings.count(sign);
+        let counts = Twofold::from(self.near) < distance && is_surface && self.crossings.count(sign);
         counts.then_some(Hit { t: distance, slope })
     }
 
     /// Whether there is a surface as high as the ray is there.
-    fn is_surface(&self, t: DoubleDouble) -> bool {
+    fn is_surface(&self, t: Twofold) -> bool {
         let y = self.ray.at[1] + t * self.ray.dir[1].into();
         !y.is_negative() && y <= self.surface.height.into() && !self.surface.formula.at(y).is_negative()
     }
 
     /// The root of a piece to about the precision of `f64`.
     fn guess(&self, from: f64, to: f64, inside_at_first: bool) -> f64 {
-        let [at, dir] = [self.ray.at.map(DoubleDouble::to_f64), self.ray.dir];
+        let [at, dir] = [self.ray.at.map(|number| number.high), self.ray.dir];
         let function = |t: f64| {
             let t = Dual::variable(t);
             let [x, y, z] = [0, 1, 2].map(|axis| Dual::constant(at[axis]) + t * Dual::constant(dir[axis]));

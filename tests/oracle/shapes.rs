@@ -1,14 +1,14 @@
-//! Where a ray first meets the shapes that have a formula for it, in [`DoubleDouble`].
+//! Where a ray first meets the shapes that have a formula for it, in [`Twofold`].
 //!
 //! The numbers are those of a scene's text; a plane's unit normal and sides are what the program makes of them.
 
-use super::double_double::DoubleDouble;
 use super::{Hit, Truth};
 use glam::{DVec2, DVec3};
 use tabray::geometry::Ray;
 use tabray::number::Number;
+use tabray::twofold::Twofold;
 
-type Vector = [DoubleDouble; 3];
+type Vector = [Twofold; 3];
 
 /// A plane, or a part of one.
 #[derive(Clone, Copy)]
@@ -35,20 +35,20 @@ impl Plane {
         let normal = vector(self.normal);
         let toward = dot(normal, vector(ray.dir));
         // A unit vector is not exactly one, nor upright on another.
-        if toward.to_f64().abs() <= 8.0 * f64::EPSILON {
+        if toward.high.abs() <= 8.0 * f64::EPSILON {
             return Truth::Undecided;
         }
         let t = dot(normal, difference(self.point, ray.origin)) / toward;
         if t <= 0.0.into() {
             return Truth::Miss;
         }
-        let z = (DoubleDouble::sum(ray.origin.z, -SCREEN) + t * ray.dir.z.into()).to_f64();
-        if z.abs() <= EDGE * (ray.origin.z.abs() + t.to_f64()) {
+        let z = (Twofold::difference(ray.origin.z, SCREEN) + t * ray.dir.z.into()).high;
+        if z.abs() <= EDGE * (ray.origin.z.abs() + t.high) {
             Truth::Undecided
         } else if z > 0.0 {
             Truth::Miss
         } else {
-            Truth::Hit(Hit { t, slope: toward.to_f64() })
+            Truth::Hit(Hit { t, slope: toward.high })
         }
     }
 
@@ -56,10 +56,10 @@ impl Plane {
     /// by a vector across it.
     fn part_hit(&self, ray: &Ray, edges: &[(DVec3, DVec3)]) -> Truth {
         let Truth::Hit(hit) = self.first_hit(ray) else { return self.first_hit(ray) };
-        let size = ray.origin.abs().max_element() + self.point.abs().max_element() + hit.t.to_f64();
+        let size = ray.origin.abs().max_element() + self.point.abs().max_element() + hit.t.high;
         let inward = |(point, across): &(DVec3, DVec3)| {
             let from_edge = add(difference(ray.origin, *point), times(vector(ray.dir), hit.t));
-            (dot(from_edge, vector(*across)).to_f64(), EDGE * size * across.length())
+            (dot(from_edge, vector(*across)).high, EDGE * size * across.length())
         };
         let inward: Vec<_> = edges.iter().map(inward).collect();
         if inward.iter().any(|(depth, edge)| *depth < -edge) {
@@ -100,16 +100,16 @@ pub fn ellipsoid(center: DVec3, radius: f64, scale: DVec3, ray: &Ray, near: f64)
     let square = dot(dir, dir);
     let nearest = -dot(origin, dir) / square;
     let at = add(origin, times(dir, nearest));
-    let radius = DoubleDouble::from(radius);
+    let radius = Twofold::from(radius);
     let room = radius * radius - dot(at, at);
-    if room.to_f64().abs() < 1e-24 * radius.powi(2).to_f64() {
+    if room.high.abs() < 1e-24 * radius.powi(2).high {
         return Truth::Undecided;
     }
     if room.is_negative() {
         return Truth::Miss;
     }
     let half = (room / square).sqrt();
-    let slope = 2.0 * (half * square).to_f64();
+    let slope = 2.0 * (half * square).high;
     if nearest - half > near.into() {
         Truth::Hit(Hit { t: nearest - half, slope: -slope })
     } else if nearest + half > near.into() {
@@ -137,8 +137,8 @@ pub struct Quadric {
 impl Quadric {
     /// The first hit of a ray farther than `near`.
     pub fn first_hit(&self, ray: &Ray, near: f64) -> Truth {
-        let [a, b, c, d, e, f, g, h, i, j] = self.coefficients.map(DoubleDouble::from);
-        let half = DoubleDouble::from(0.5);
+        let [a, b, c, d, e, f, g, h, i, j] = self.coefficients.map(Twofold::from);
+        let half = Twofold::from(0.5);
         let square = |[x, y, z]: Vector| {
             [a * x + half * (d * y + e * z), b * y + half * (d * x + f * z), c * z + half * (e * x + f * y)]
         };
@@ -148,11 +148,11 @@ impl Quadric {
         let nearest = -dot(origin, dir) / dot(dir, dir);
         let at = add(origin, times(dir, nearest));
         let quadratic = dot(dir, square(dir));
-        let linear = (DoubleDouble::from(2.0) * dot(at, square(dir)) + dot([g, h, i], dir)) * half;
+        let linear = (Twofold::from(2.0) * dot(at, square(dir)) + dot([g, h, i], dir)) * half;
         let constant = dot(at, square(at)) + dot([g, h, i], at) - j;
         let discriminant = linear * linear - quadratic * constant;
-        let size = linear.powi(2).to_f64() + (quadratic * constant).to_f64().abs();
-        if discriminant.to_f64().abs() < 1e-24 * size {
+        let size = linear.powi(2).high + (quadratic * constant).high.abs();
+        if discriminant.high.abs() < 1e-24 * size {
             return Truth::Undecided;
         }
         if discriminant.is_negative() {
@@ -162,13 +162,13 @@ impl Quadric {
         let root = discriminant.sqrt();
         let sum = if linear.is_negative() { root - linear } else { -root - linear };
         let mut roots = [sum / quadratic, constant / sum].map(|root| root + nearest);
-        roots.sort_by(|one, other| one.to_f64().total_cmp(&other.to_f64()));
-        for t in roots.into_iter().filter(|t| t.to_f64().is_finite() && *t > near.into()) {
+        roots.sort_by(|one, other| one.high.total_cmp(&other.high));
+        for t in roots.into_iter().filter(|t| t.high.is_finite() && *t > near.into()) {
             let from_start = t - nearest;
-            match self.keeps(add(at, times(dir, from_start)), t.to_f64() + ray.origin.abs().max_element()) {
+            match self.keeps(add(at, times(dir, from_start)), t.high + ray.origin.abs().max_element()) {
                 Some(true) => {
-                    let slope = DoubleDouble::from(2.0) * (quadratic * from_start + linear);
-                    return Truth::Hit(Hit { t, slope: slope.to_f64() });
+                    let slope = Twofold::from(2.0) * (quadratic * from_start + linear);
+                    return Truth::Hit(Hit { t, slope: slope.high });
                 }
                 Some(false) => {}
                 None => return Truth::Undecided,
@@ -181,23 +181,23 @@ impl Quadric {
     fn keeps(&self, at: Vector, size: f64) -> Option<bool> {
         let [low, high] = self.corners.map(|corner| corner.to_array());
         let depth =
-            (0..3).map(|axis| (at[axis] - low[axis].into()).min(DoubleDouble::from(high[axis]) - at[axis]));
-        let depth = depth.map(DoubleDouble::to_f64).fold(f64::INFINITY, f64::min);
+            (0..3).map(|axis| (at[axis] - low[axis].into()).min(Twofold::from(high[axis]) - at[axis]));
+        let depth = depth.map(|number| number.high).fold(f64::INFINITY, f64::min);
         if depth.abs() <= EDGE * size { None } else { Some(depth > 0.0) }
     }
 }
 
 fn vector(vector: DVec3) -> Vector {
-    vector.to_array().map(DoubleDouble::from)
+    vector.to_array().map(Twofold::from)
 }
 
 /// The way from one point to another, exactly.
 fn difference(to: DVec3, from: DVec3) -> Vector {
     let (to, from) = (to.to_array(), from.to_array());
-    std::array::from_fn(|axis| DoubleDouble::sum(to[axis], -from[axis]))
+    std::array::from_fn(|axis| Twofold::difference(to[axis], from[axis]))
 }
 
-fn dot(a: Vector, b: Vector) -> DoubleDouble {
+fn dot(a: Vector, b: Vector) -> Twofold {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
@@ -205,6 +205,6 @@ fn add(a: Vector, b: Vector) -> Vector {
     std::array::from_fn(|axis| a[axis] + b[axis])
 }
 
-fn times(a: Vector, factor: DoubleDouble) -> Vector {
+fn times(a: Vector, factor: Twofold) -> Vector {
     a.map(|part| part * factor)
 }

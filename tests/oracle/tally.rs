@@ -1,9 +1,9 @@
 //! What a method gets wrong, counted.
 
-use super::double_double::DoubleDouble;
 use super::{Hit, Truth};
 use std::fmt;
 use tabray::geometry::MISS;
+use tabray::twofold::Twofold;
 
 /// The distance from one number to the next.
 pub fn ulp(number: f64) -> f64 {
@@ -77,7 +77,7 @@ impl Tally {
                 } else {
                     let error = distance(hit.t, found);
                     self.errors.push(error);
-                    self.ulps = self.ulps.max(error / ulp(hit.t.to_f64()));
+                    self.ulps = self.ulps.max(error / ulp(hit.t.high));
                     // On a ledge the surface's function does not say, but the ray cannot be farther off than along it.
                     self.off_surface = self.off_surface.max(off_surface(found).min(error));
                     true
@@ -127,8 +127,8 @@ impl fmt::Display for Tally {
 }
 
 /// How far a distance is from the true one.
-fn distance(right: DoubleDouble, found: f64) -> f64 {
-    (DoubleDouble::from(found) - right).to_f64().abs()
+fn distance(right: Twofold, found: f64) -> f64 {
+    (Twofold::from(found) - right).high.abs()
 }
 
 /// Whether what was found is another crossing than this hit.
@@ -138,5 +138,5 @@ fn is_another(hit: Hit, found: f64, tolerance: Tolerance, next: impl FnOnce(f64)
         return true;
     }
     error > tolerance.sure
-        && next(hit.t.to_f64().next_up()).hit().is_some_and(|next| distance(next.t, found) < error)
+        && next(hit.t.high.next_up()).hit().is_some_and(|next| distance(next.t, found) < error)
 }

@@ -4,10 +4,10 @@ mod oracle;
 
 use dashu_float::FBig;
 use dashu_float::round::mode::HalfEven;
-use oracle::double_double::DoubleDouble;
 use oracle::rays::Random;
 use tabray::interval::Interval;
 use tabray::number::Number;
+use tabray::twofold::Twofold;
 
 type Big = FBig<HalfEven, 2>;
 
@@ -16,26 +16,26 @@ const ARGUMENTS: usize = 2_000;
 
 const BITS: usize = 160;
 
-fn big(number: DoubleDouble) -> Big {
-    let [high, low] =
-        number.parts().map(|part| Big::try_from(part).expect("finite").with_precision(BITS).value());
+fn big(number: Twofold) -> Big {
+    let [high, low] = [number.high, number.low]
+        .map(|part| Big::try_from(part).expect("finite").with_precision(BITS).value());
     high + low
 }
 
 /// How far a number is from the right one, against that one.
-fn error(number: DoubleDouble, right: &Big) -> f64 {
+fn error(number: Twofold, right: &Big) -> f64 {
     let apart = (big(number) - right).to_f64().value().abs();
     apart / right.to_f64().value().abs()
 }
 
 /// A random number of twice the usual length.
-fn long(random: &mut Random, low: f64, high: f64) -> DoubleDouble {
-    let number = DoubleDouble::from(random.between(low, high));
+fn long(random: &mut Random, low: f64, high: f64) -> Twofold {
+    let number = Twofold::from(random.between(low, high));
     number + number * random.between(-1e-17, 1e-17).into()
 }
 
 #[track_caller]
-fn agrees((low, high): (f64, f64), own: impl Fn(DoubleDouble) -> DoubleDouble, right: impl Fn(&Big) -> Big) {
+fn agrees((low, high): (f64, f64), own: impl Fn(Twofold) -> Twofold, right: impl Fn(&Big) -> Big) {
     let mut random = Random::new(5);
     for _ in 0..ARGUMENTS {
         let argument = long(&mut random, low, high);
@@ -47,7 +47,7 @@ fn agrees((low, high): (f64, f64), own: impl Fn(DoubleDouble) -> DoubleDouble, r
 #[track_caller]
 fn agrees_of_two(
     (low, high): (f64, f64),
-    own: impl Fn(DoubleDouble, DoubleDouble) -> DoubleDouble,
+    own: impl Fn(Twofold, Twofold) -> Twofold,
     right: impl Fn(&Big, &Big) -> Big,
 ) {
     let mut random = Random::new(6);
@@ -72,7 +72,7 @@ fn sums_products_and_quotients_agree() {
 fn roots_agree_and_those_below_zero_are_zero() {
     agrees((0.0, 1.0), Number::sqrt, Big::sqrt);
     agrees((0.0, 1e18), Number::sqrt, Big::sqrt);
-    assert!(Number::sqrt(DoubleDouble::from(-1.0)).is_zero());
+    assert!(Number::sqrt(Twofold::from(-1.0)).is_zero());
 }
 
 #[test]
@@ -84,7 +84,7 @@ fn waves_agree() {
     }
     // Next to where the wave is 0, most digits of the argument are lost.
     for quarters in 1..200 {
-        let near = DoubleDouble::from(f64::from(quarters) * std::f64::consts::FRAC_PI_2);
+        let near = Twofold::from(f64::from(quarters) * std::f64::consts::FRAC_PI_2);
         assert!(error(near.sin(), &big(near).sin()) < 1e-28, "{near:?}");
         assert!(error(near.cos(), &big(near).cos()) < 1e-28, "{near:?}");
     }
@@ -97,7 +97,7 @@ fn exponentials_and_logarithms_agree() {
     agrees((1e-9, 4.0), Number::ln, Big::ln);
     agrees((0.999_999, 1.000_001), Number::ln, Big::ln);
     agrees((1.0, 1e200), Number::ln, Big::ln);
-    assert!(DoubleDouble::from(-3600.0).exp().is_zero());
+    assert!(Twofold::from(-3600.0).exp().is_zero());
 }
 
 #[test]
@@ -119,13 +119,13 @@ fn the_least_greatest_and_whole_numbers_are_exact() {
         assert!(!a.abs().is_negative() && (a.abs() - a).is_zero() != a.is_negative());
         assert_eq!(a.step().is_zero(), a.is_negative());
     }
-    let below = DoubleDouble::sum(2.0, -1e-30);
+    let below = Twofold::difference(2.0, 1e-30);
     assert_eq!(below.floor(), 1.0.into());
-    assert_eq!(DoubleDouble::sum(2.0, 1e-30).floor(), 2.0.into());
+    assert_eq!(Twofold::difference(2.0, -1e-30).floor(), 2.0.into());
 }
 
 type Bounds = fn(Interval) -> Interval;
-type Exact = fn(DoubleDouble) -> DoubleDouble;
+type Exact = fn(Twofold) -> Twofold;
 
 /// The bounds that the truth is proven with hold.
 #[test]
@@ -139,7 +139,7 @@ fn intervals_hold_the_true_results() {
         ("sqrt", (0.0, 50.0), Number::sqrt, Number::sqrt),
         ("abs", (-3.0, 3.0), Number::abs, Number::abs),
         ("cube", (-9.0, 9.0), |x| x.powi(3), |x| x.powi(3)),
-        ("inverse", (0.1, 9.0), |x| Interval::constant(1.0) / x, |x| DoubleDouble::from(1.0) / x),
+        ("inverse", (0.1, 9.0), |x| Interval::constant(1.0) / x, |x| Twofold::from(1.0) / x),
     ];
     let mut random = Random::new(8);
     for (name, (low, high), bounds, exact) in functions {

@@ -1,47 +1,7 @@
-//! Numbers of about 106 bits, each the sum of two `f64`s (Dekker 1971; Hida, Li and Bailey 2001).
-//!
-//! Nothing here uses a fused multiply-add, so that the program and its truth do not share one way to round.
+//! The functions of formulas in twice the precision: their series, so that the truth about any shape can be told.
 
-use std::ops::{Add, Div, Mul, Neg, Sub};
-use tabray::number::Number;
-
-/// The unevaluated sum of two numbers, the second at most half a unit in the last place of the first.
-///
-/// For finite numbers of a magnitude below 1e290, products' magnitudes above 1e-290: beyond them parts are lost.
-#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
-pub struct DoubleDouble {
-    // The order of the fields is that in which numbers compare.
-    high: f64,
-    low: f64,
-}
-
-/// The sum and what rounding took from it.
-fn two_sum(a: f64, b: f64) -> (f64, f64) {
-    let sum = a + b;
-    let added = sum - a;
-    (sum, (a - (sum - added)) + (b - added))
-}
-
-/// As [`two_sum`], for `a` not smaller than `b`.
-fn quick_two_sum(a: f64, b: f64) -> (f64, f64) {
-    let sum = a + b;
-    (sum, b - (sum - a))
-}
-
-/// Two halves of 26 bits each.
-fn split(a: f64) -> (f64, f64) {
-    const FACTOR: f64 = 134_217_729.0; // 2^27 + 1
-    let scaled = FACTOR * a;
-    let high = scaled - (scaled - a);
-    (high, a - high)
-}
-
-/// The product and what rounding took from it.
-fn two_product(a: f64, b: f64) -> (f64, f64) {
-    let product = a * b;
-    let ((a_high, a_low), (b_high, b_low)) = (split(a), split(b));
-    (product, ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low)
-}
+use super::{Twofold, two_product};
+use crate::number::Number;
 
 /// A power of two, also one that is too small for a normal number.
 fn power_of_two(exponent: i32) -> f64 {
@@ -60,35 +20,13 @@ const HALF_PI: [f64; 4] = [
 /// ln 2, likewise.
 const LN_2: [f64; 3] = [std::f64::consts::LN_2, 2.319_046_813_846_299_6e-17, 5.707_708_438_416_212e-34];
 
-impl DoubleDouble {
+impl Twofold {
     const ZERO: Self = Self { high: 0.0, low: 0.0 };
     const ONE: Self = Self { high: 1.0, low: 0.0 };
-
-    /// The sum of two numbers, exactly.
-    pub fn sum(a: f64, b: f64) -> Self {
-        let (high, low) = two_sum(a, b);
-        Self { high, low }
-    }
-
-    /// The nearest `f64`.
-    pub fn to_f64(self) -> f64 {
-        self.high
-    }
-
-    /// Its two parts, whose sum it is.
-    pub fn parts(self) -> [f64; 2] {
-        [self.high, self.low]
-    }
 
     /// Whether it is below 0.
     pub fn is_negative(self) -> bool {
         self < Self::ZERO
-    }
-
-    /// The sum of these two, the first of which is not the smaller.
-    fn quick(high: f64, low: f64) -> Self {
-        let (high, low) = quick_two_sum(high, low);
-        Self { high, low }
     }
 
     /// Times a power of two, exactly.
@@ -132,63 +70,7 @@ impl DoubleDouble {
     }
 }
 
-impl From<f64> for DoubleDouble {
-    fn from(value: f64) -> Self {
-        Self { high: value, low: 0.0 }
-    }
-}
-
-impl Add for DoubleDouble {
-    type Output = Self;
-
-    fn add(self, other: Self) -> Self {
-        let (high, high_error) = two_sum(self.high, other.high);
-        let (low, low_error) = two_sum(self.low, other.low);
-        let (high, low) = quick_two_sum(high, high_error + low);
-        Self::quick(high, low + low_error)
-    }
-}
-
-impl Neg for DoubleDouble {
-    type Output = Self;
-
-    fn neg(self) -> Self {
-        Self { high: -self.high, low: -self.low }
-    }
-}
-
-impl Sub for DoubleDouble {
-    type Output = Self;
-
-    fn sub(self, other: Self) -> Self {
-        self + -other
-    }
-}
-
-impl Mul for DoubleDouble {
-    type Output = Self;
-
-    fn mul(self, other: Self) -> Self {
-        let (product, error) = two_product(self.high, other.high);
-        Self::quick(product, error + (self.high * other.low + self.low * other.high))
-    }
-}
-
-impl Div for DoubleDouble {
-    type Output = Self;
-
-    /// Long division with digits of 53 bits.
-    fn div(self, other: Self) -> Self {
-        let first = self.high / other.high;
-        let rest = self - other * Self::from(first);
-        let second = rest.high / other.high;
-        let rest = rest - other * Self::from(second);
-        let third = rest.high / other.high;
-        Self::quick(first, second) + Self::from(third)
-    }
-}
-
-impl Number for DoubleDouble {
+impl Number for Twofold {
     fn constant(value: f64) -> Self {
         value.into()
     }
@@ -246,14 +128,8 @@ impl Number for DoubleDouble {
         (ratio * series).scaled(1).without(-doublings, &LN_2)
     }
 
-    /// One step of Newton's for the inverse root, times the number (Karp and Markstein 1997).
     fn sqrt(self) -> Self {
-        if self <= Self::ZERO {
-            return Self::ZERO;
-        }
-        let inverse = 1.0 / self.high.sqrt();
-        let root = Self::from(self.high * inverse);
-        root + Self::from((self - root * root).high * inverse / 2.0)
+        self.sqrt()
     }
 
     fn abs(self) -> Self {
@@ -262,7 +138,7 @@ impl Number for DoubleDouble {
 
     fn floor(self) -> Self {
         let high = self.high.floor();
-        if high == self.high { Self::quick(high, self.low.floor()) } else { high.into() }
+        if high == self.high { Self::normal(high, self.low.floor()) } else { high.into() }
     }
 
     fn min(self, other: Self) -> Self {
