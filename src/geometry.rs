@@ -5,6 +5,7 @@ use crate::certify::Enclosure;
 use crate::cpu::Cpu;
 use crate::material::{Material, Rgb};
 use crate::packet::{self, Nearest, Rays, View, ViewMut};
+use crate::roots::Method;
 use crate::shading::{Anchor, ProceduralShader};
 use glam::DVec3;
 
@@ -151,6 +152,12 @@ pub trait Hittable: Send + Sync {
     /// How its hits are found, in a few words, for the plan of a scene.
     fn method(&self) -> String {
         "its own distance".to_owned()
+    }
+
+    /// The distance by another method of finding roots, to be compared with it; nothing where the shape is not the
+    /// roots of a function along a ray, or is found in closed form.
+    fn distance_by(&self, _method: Method, _ray: &Ray, _within: &Span) -> Option<f64> {
+        None
     }
 
     /// What is certain about the first hit of a ray from afar. A shape that says nothing of it cannot be verified;

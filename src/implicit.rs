@@ -1,7 +1,8 @@
 //! Shapes that are one formula: the points where f(x, y, z) = 0.
 //!
-//! A plugin gives the formula, once, for every number type, and a box around it. The rest follows: [`first_root`]
-//! finds what a ray meets first and proves that nothing lies before, and [`Dual`] numbers give the normal.
+//! A plugin gives the formula, once, for every number type, and a box around it. The rest follows:
+//! [`taylor`](crate::roots::taylor) finds what a ray meets first and proves that nothing lies before, and [`Dual`]
+//! numbers give the normal.
 
 use crate::bounds::Bounds;
 use crate::certify::{self, Enclosure, Equation};
@@ -10,7 +11,8 @@ use crate::frame::Frame;
 use crate::geometry::{Body, Hittable, MISS, Ray, Span};
 use crate::interval::Interval;
 use crate::number::Number;
-use crate::taylor::{Line, first_root};
+use crate::roots::Method;
+use crate::roots::taylor::Line;
 use crate::twofold::{two_product, two_sum};
 use glam::DVec3;
 
@@ -41,29 +43,12 @@ struct ImplicitShape<T> {
 }
 
 impl<T: Implicit> Hittable for ImplicitShape<T> {
-    /// From the point of the ray that is closest to the shape's origin, so that a shape far away is met as exactly
-    /// as a near one.
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        let closest = (self.frame.origin - ray.origin).dot(ray.dir);
-        let base = self.frame.direction(offset(ray, closest, self.frame.origin));
-        let dir = self.frame.direction(ray.dir);
-        let (mut near, mut far) = (within.near - closest, within.far - closest);
-        for axis in 0..3 {
-            let (base, dir) = (base[axis], dir[axis]);
-            if dir != 0.0 {
-                let (one, other) = ((self.low[axis] - base) / dir, (self.high[axis] - base) / dir);
-                near = near.max(one.min(other));
-                far = far.min(one.max(other));
-            } else if base < self.low[axis] || base > self.high[axis] {
-                return MISS;
-            }
-        }
-        let line = OnRay { formula: &self.formula, base, dir };
-        let shortest = 4.0 * f64::EPSILON * near.abs().max(far.abs());
-        match first_root(&line, near..far, shortest, within.leaves) {
-            Some(root) => within.keep(closest + root),
-            None => MISS,
-        }
+        self.first_hit(Method::Taylor, ray, within)
+    }
+
+    fn distance_by(&self, method: Method, ray: &Ray, within: &Span) -> Option<f64> {
+        Some(self.first_hit(method, ray, within))
     }
 
     /// Along the formula's gradient. Where that vanishes or does not exist, as at the tip of a cone, the normal
@@ -103,6 +88,31 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
 }
 
 impl<T: Implicit> ImplicitShape<T> {
+    /// From the point of the ray that is closest to the shape's origin, so that a shape far away is met as exactly
+    /// as a near one.
+    fn first_hit(&self, method: Method, ray: &Ray, within: &Span) -> f64 {
+        let closest = (self.frame.origin - ray.origin).dot(ray.dir);
+        let base = self.frame.direction(offset(ray, closest, self.frame.origin));
+        let dir = self.frame.direction(ray.dir);
+        let (mut near, mut far) = (within.near - closest, within.far - closest);
+        for axis in 0..3 {
+            let (base, dir) = (base[axis], dir[axis]);
+            if dir != 0.0 {
+                let (one, other) = ((self.low[axis] - base) / dir, (self.high[axis] - base) / dir);
+                near = near.max(one.min(other));
+                far = far.min(one.max(other));
+            } else if base < self.low[axis] || base > self.high[axis] {
+                return MISS;
+            }
+        }
+        let line = OnRay { formula: &self.formula, base, dir };
+        let shortest = 4.0 * f64::EPSILON * near.abs().max(far.abs());
+        match method.first_root(&line, near..far, shortest, within.leaves) {
+            Some(root) => within.keep(closest + root),
+            None => MISS,
+        }
+    }
+
     /// A point in the shape's own coordinates, with any number type.
     fn own<N: Number>(&self, at: [N; 3]) -> [N; 3] {
         let from_origin = [0, 1, 2].map(|axis| at[axis] - N::constant(self.frame.origin[axis]));

@@ -4,7 +4,7 @@
 //! Each is cut, when it is made, into slabs in which the profile's square is a parabola but for a proven error
 //! (`slabs`). A ray meets the quadrics of revolution around those in closed form, which brackets its first hit or
 //! proves that there is none (`walk`); where it grazes the error's shell, bounds of the second derivative decide
-//! ([`taylor`](crate::taylor)). No hit is lost or invented, whatever the profile, and nothing has to be tuned.
+//! ([`taylor`](crate::roots::taylor)). No hit is lost or invented, whatever the profile, and nothing has to be tuned.
 
 mod bracket;
 mod classic;
@@ -26,7 +26,8 @@ use crate::formula::Formula;
 use crate::geometry::{MISS, Ray, Side, Span};
 use crate::interval::Interval;
 use crate::number::Number;
-use crate::taylor::Line;
+use crate::roots::Method;
+use crate::roots::taylor::Line;
 use crate::words;
 use glam::DVec3;
 use local::Local;
@@ -77,6 +78,19 @@ impl Revolution {
     pub fn bounds(&self) -> Bounds {
         let widest = self.slabs.widest();
         Bounds { low: DVec3::new(-widest, 0.0, -widest), high: DVec3::new(widest, self.height, widest) }
+    }
+
+    /// As [`first_hit`](Self::first_hit), by another method and in the same bounding cylinder; but the notes' steps, as
+    /// in the notes, go all the way between the surface's heights.
+    pub fn first_hit_by(&self, method: Method, ray: &Ray, within: &Span) -> f64 {
+        let widest = if method == Method::Steps { f64::INFINITY } else { self.slabs.widest() };
+        let Some(local) = Local::new(ray, within, self.height, widest) else { return MISS };
+        let line = Uncut { surface: self, local: &local };
+        let shortest = 4.0 * local.tolerance();
+        match method.first_root(&line, local.from..local.to, shortest, within.leaves) {
+            Some(along) => within.keep(local.base + along),
+            None => MISS,
+        }
     }
 
     /// The height at a place along a ray. Beyond its ends the profile may be anything, and rounding must not ask.
@@ -153,6 +167,22 @@ impl Line for OnRay<'_> {
         let height = Interval::constant(self.local.origin.y) + piece * dir[1];
         let of_square = self.surface.square.at(Dual::variable_twice(height)).second();
         Interval::constant(2.0) * (dir[0].powi(2) + dir[2].powi(2)) - of_square * dir[1].powi(2)
+    }
+}
+
+/// As [`OnRay`], and where the profile is negative it is 0: methods that know nothing of slabs have nothing to leave
+/// out.
+struct Uncut<'s> {
+    surface: &'s Revolution,
+    local: &'s Local,
+}
+
+impl Line for Uncut<'_> {
+    #[inline(always)]
+    fn at<N: Number>(&self, along: N) -> N {
+        let place =
+            |axis: usize| N::constant(self.local.origin[axis]) + along * N::constant(self.local.dir[axis]);
+        place(0).powi(2) + place(2).powi(2) - self.surface.profile.at(place(1)).max(N::constant(0.0)).powi(2)
     }
 }
 

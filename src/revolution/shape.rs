@@ -7,6 +7,7 @@ use crate::cpu::Cpu;
 use crate::frame::Frame;
 use crate::geometry::{Hittable, Ray, Side, Span};
 use crate::packet::{self, Nearest, Rays, View, ViewMut};
+use crate::roots::Method;
 use glam::DVec3;
 
 /// A surface around the y axis of a frame.
@@ -38,6 +39,10 @@ impl Hittable for InFrame<Classic> {
 impl Hittable for InFrame<Revolution> {
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
         self.surface.distance(&self.frame, ray, within)
+    }
+
+    fn distance_by(&self, method: Method, ray: &Ray, within: &Span) -> Option<f64> {
+        Some(self.surface.first_hit_by(method, &self.frame.ray(ray), within))
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {

@@ -8,8 +8,7 @@ use super::local::Local;
 use super::slabs::Slab;
 use super::{Finish, OnRay, Revolution, sign};
 use crate::geometry::Side;
-use crate::newton;
-use crate::taylor;
+use crate::roots::{newton, taylor};
 
 /// `sg * (a s^2 + 2 b s + c)`, which is positive where the ray is still on its side of a slab's parabola.
 #[derive(Clone, Copy)]

@@ -10,8 +10,8 @@
 use crate::dual::Dual;
 use crate::geometry::Side;
 use crate::interval::Interval;
-use crate::newton;
 use crate::number::Number;
+use crate::roots::newton;
 use std::ops::Range;
 
 /// The values of a function along a line: above 0 outside of something, below 0 inside.

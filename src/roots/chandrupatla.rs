@@ -1,0 +1,40 @@
+//! Parabolas through the last three places where they can be trusted, halving where they cannot.
+//!
+//! T. R. Chandrupatla, "A new hybrid quadratic/bisection algorithm for finding the zero of a nonlinear function
+//! without using derivatives" (1997). Without slopes, the least evaluations of its kind; where slopes are to be had,
+//! Newton's method takes half of them.
+
+/// The root between two places where the function's signs differ.
+pub fn root(f: impl Fn(f64) -> f64, (low, high): (f64, f64), tolerance: f64) -> f64 {
+    const MOST: usize = 200;
+    // `a` is the last place, `b` the one on the other side of the root, `c` the one before.
+    let (mut a, mut b) = (low, high);
+    let (mut at_a, mut at_b) = (f(a), f(b));
+    let mut part = 0.5;
+    for _ in 0..MOST {
+        let t = a + part * (b - a);
+        let at_t = f(t);
+        let (c, at_c);
+        if (at_t >= 0.0) == (at_a >= 0.0) {
+            (c, at_c) = (a, at_a);
+        } else {
+            (c, at_c) = (b, at_b);
+            (b, at_b) = (a, at_a);
+        }
+        (a, at_a) = (t, at_t);
+        let best = if at_a.abs() < at_b.abs() { a } else { b };
+        let least = 0.5 * tolerance / (b - a).abs();
+        if least > 0.5 || at_a == 0.0 || !least.is_finite() {
+            return best;
+        }
+        let (across, up) = ((a - b) / (c - b), (at_a - at_b) / (at_c - at_b));
+        part = if up * up < across && (1.0 - up) * (1.0 - up) < 1.0 - across {
+            at_a / (at_b - at_a) * at_c / (at_b - at_c)
+                + (c - a) / (b - a) * at_a / (at_c - at_a) * at_b / (at_c - at_b)
+        } else {
+            0.5
+        };
+        part = part.clamp(least, 1.0 - least);
+    }
+    a
+}
