@@ -1,8 +1,9 @@
-//! Pictures of what a renderer works with beside colours: depth, normals, objects, and what each pixel costs.
+//! Pictures of what a renderer works with beside colours: depth, normals, objects, what each pixel costs, and how
+//! wrong it is.
 
 use crate::geometry::Ray;
 use crate::model::Model;
-use crate::picture::to_byte;
+use crate::picture::{shown, to_byte};
 use crate::render::Renderer;
 use crate::trace;
 use crate::watch::{Event, Watch};
@@ -24,6 +25,8 @@ pub enum Aov {
     Object,
     /// How many rays a pixel costs, the most expensive one white.
     Cost,
+    /// How far a pixel's colour is from the true one, the worst one white; red where another object is seen.
+    Error,
 }
 
 /// Such a picture, from the top and from the left.
@@ -31,11 +34,15 @@ pub struct Layer {
     /// Red, green and blue of each pixel, to be looked at.
     pub bytes: Vec<u8>,
     /// The numbers behind it, three for each pixel, where there is more to them than the bytes tell. A depth
-    /// fills all three channels and is infinite where there is nothing; a normal is 0 there.
+    /// fills all three channels and is infinite where there is nothing; a normal is 0 there. An error has that of the
+    /// colour, the root of the mean square over its channels, then that of the first hit's distance, and 1 where that
+    /// is another object's.
     pub exact: Option<Vec<f32>>,
     /// The rays that the most expensive pixel costs, and that pixel, counted as everywhere: from the left and
     /// from the bottom.
     pub most: Option<(u64, [usize; 2])>,
+    /// The greatest error of a colour, and its pixel.
+    pub worst: Option<(f64, [usize; 2])>,
 }
 
 /// The part of white that the farthest depth has, to tell it from nothing.
@@ -49,15 +56,17 @@ impl Aov {
             Self::Normal => "normal",
             Self::Object => "object",
             Self::Cost => "cost",
+            Self::Error => "error",
         }
     }
 
     /// Whether its layer has exact numbers.
     pub fn is_exact(self) -> bool {
-        matches!(self, Self::Depth | Self::Normal)
+        matches!(self, Self::Depth | Self::Normal | Self::Error)
     }
 
-    /// Makes this picture of a model. `done` is told of each row, and may break off.
+    /// Makes this picture of a model. `truth` is the same scene, exact and with many samples, which only the error is
+    /// seen against. `done` is told of each row, and may break off.
     ///
     /// # Errors
     /// `Interrupted` where `done` broke off.
@@ -65,6 +74,7 @@ impl Aov {
         self,
         renderer: &Renderer,
         model: &Model,
+        truth: &Model,
         done: &(dyn Fn() -> ControlFlow<()> + Sync),
     ) -> io::Result<Layer> {
         match self {
@@ -85,6 +95,10 @@ impl Aov {
                     rays.0
                 })?;
                 Ok(cost(&costs, model.camera.value.pixels))
+            }
+            Self::Error => {
+                let errors = each(renderer, model, done, |x, y| Off::of(model, truth, x, y))?;
+                Ok(error(&errors, model.camera.value.pixels))
             }
         }
     }
@@ -134,7 +148,7 @@ fn middle(model: &Model, x: usize, y: usize) -> Ray {
     model.camera.value.ray(x as f64, y as f64)
 }
 
-fn shown(colours: impl Iterator<Item = DVec3>) -> Vec<u8> {
+fn shown_all(colours: impl Iterator<Item = DVec3>) -> Vec<u8> {
     colours.flat_map(|colour| colour.to_array().map(to_byte)).collect()
 }
 
@@ -148,27 +162,30 @@ fn depth(depths: &[f64]) -> Layer {
         nearness => FARTHEST + (1.0 - FARTHEST) * (nearness - far) / (near - far),
     };
     Layer {
-        bytes: shown(depths.iter().map(grey).map(DVec3::splat)),
+        bytes: shown_all(depths.iter().map(grey).map(DVec3::splat)),
         exact: Some(depths.iter().flat_map(|depth| [*depth as f32; 3]).collect()),
         most: None,
+        worst: None,
     }
 }
 
 fn normal(normals: &[Option<DVec3>]) -> Layer {
     Layer {
-        bytes: shown(normals.iter().map(|normal| normal.map_or(DVec3::ZERO, |n| 0.5 * n + 0.5))),
+        bytes: shown_all(normals.iter().map(|normal| normal.map_or(DVec3::ZERO, |n| 0.5 * n + 0.5))),
         exact: Some(
             normals.iter().flat_map(|n| n.unwrap_or_default().to_array().map(|part| part as f32)).collect(),
         ),
         most: None,
+        worst: None,
     }
 }
 
 fn object(objects: &[Option<usize>]) -> Layer {
     Layer {
-        bytes: shown(objects.iter().map(|object| object.map_or(DVec3::ZERO, colour_of))),
+        bytes: shown_all(objects.iter().map(|object| object.map_or(DVec3::ZERO, colour_of))),
         exact: None,
         most: None,
+        worst: None,
     }
 }
 
@@ -176,9 +193,53 @@ fn cost(costs: &[u64], [width, height]: [usize; 2]) -> Layer {
     let most = costs.iter().copied().max().unwrap_or(0);
     let place = costs.iter().position(|cost| *cost == most).unwrap_or(0);
     Layer {
-        bytes: shown(costs.iter().map(|cost| DVec3::splat(*cost as f64 / most as f64))),
+        bytes: shown_all(costs.iter().map(|cost| DVec3::splat(*cost as f64 / most as f64))),
         exact: None,
         most: Some((most, [place % width, height - 1 - place / width])),
+        worst: None,
+    }
+}
+
+/// How far off a pixel is.
+#[derive(Clone, Copy, Default)]
+struct Off {
+    /// The root of the mean square of its channels' errors.
+    colour: f64,
+    /// The error of the distance that its middle sees.
+    distance: f64,
+    /// Whether its middle sees another object.
+    is_other: bool,
+}
+
+impl Off {
+    fn of(model: &Model, truth: &Model, x: usize, y: usize) -> Self {
+        let colours = [model, truth].map(|model| shown(trace::pixel(model, x, y)));
+        let ray = middle(model, x, y);
+        let [found, right] = [model, truth].map(|model| trace::first_hit(model, &ray));
+        let [found, right] = [found, right].map(|hit| hit.map(|hit| (hit.index, hit.distance)));
+        let is_other = found.map(|(index, _)| index) != right.map(|(index, _)| index);
+        let distance = match (found, right) {
+            (Some((_, found)), Some((_, right))) if !is_other => (found - right).abs(),
+            _ => 0.0,
+        };
+        Self { colour: (colours[0] - colours[1]).length() / 3.0_f64.sqrt(), distance, is_other }
+    }
+}
+
+fn error(errors: &[Off], [width, height]: [usize; 2]) -> Layer {
+    let worst = errors.iter().map(|off| off.colour).fold(0.0, f64::max);
+    let place = errors.iter().position(|off| off.colour == worst).unwrap_or(0);
+    let shade = |off: &Off| match off {
+        Off { is_other: true, .. } => DVec3::X,
+        _ if worst == 0.0 => DVec3::ZERO,
+        Off { colour, .. } => DVec3::splat(colour / worst),
+    };
+    let numbers = |off: &Off| [off.colour, off.distance, f64::from(off.is_other)].map(|number| number as f32);
+    Layer {
+        bytes: shown_all(errors.iter().map(shade)),
+        exact: Some(errors.iter().flat_map(numbers).collect()),
+        most: None,
+        worst: Some((worst, [place % width, height - 1 - place / width])),
     }
 }
 

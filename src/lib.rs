@@ -19,6 +19,7 @@ pub mod bench;
 pub mod bounds;
 pub mod camera;
 pub mod certify;
+pub mod chart;
 pub mod checkpoint;
 pub mod choice;
 pub mod cli;

@@ -1,5 +1,7 @@
 //! Colours to bytes, and bytes to picture files.
 
+use crate::material::Rgb;
+use glam::DVec3;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::path::Path;
@@ -8,6 +10,11 @@ use std::path::Path;
 /// A NaN is 0.
 pub fn to_byte(channel: f64) -> u8 {
     (255.0 * channel) as u8
+}
+
+/// What a picture shows of a colour: each channel from 0 to 1, a NaN as 0.
+pub fn shown(colour: Rgb) -> Rgb {
+    DVec3::from_array(colour.to_array().map(|channel| if channel > 0.0 { channel.min(1.0) } else { 0.0 }))
 }
 
 /// How hard a file is compressed. The picture is the same.

@@ -169,6 +169,35 @@ fn objects_differ_in_colour_and_near_is_brighter_than_far() {
 }
 
 #[test]
+fn errors_are_where_edges_are_and_red_where_another_object_is_seen() {
+    let folder = TempDir::new().expect("a folder");
+    let render = |name: &str, method: &str| {
+        let scene = root().join("scenes/hard/ripples.ray");
+        let mut render = cargo_bin_cmd!("tabray");
+        let render = render.current_dir(folder.path()).arg("render").arg(scene);
+        let output =
+            render.args(["--aov", "error", "-o", name, "--method", method]).output().expect("it runs");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let stem = name.trim_end_matches(".png");
+        let picture =
+            image::open(folder.path().join(format!("{stem}-error.png"))).expect("a PNG").into_rgb8();
+        let exact =
+            image::open(folder.path().join(format!("{stem}-error.exr"))).expect("an EXR").into_rgb32f();
+        (picture, exact)
+    };
+    let (picture, exact) = render("exact.png", "exact");
+    assert!(picture.pixels().all(|pixel| pixel.0[0] == pixel.0[1]), "no other object is seen");
+    assert!(exact.pixels().all(|pixel| pixel.0[1] == 0.0 && pixel.0[2] == 0.0), "every distance is right");
+    let wrong = exact.pixels().filter(|pixel| pixel.0[0] > 0.02).count();
+    assert!((200..6000).contains(&wrong), "edges alone: {wrong}");
+    let (picture, exact) = render("classic.png", "classic");
+    let red = picture.pixels().filter(|pixel| pixel.0 == [255, 0, 0]).count();
+    assert_eq!(red, exact.pixels().filter(|pixel| pixel.0[2] == 1.0).count());
+    assert!(red > 50, "{red}");
+    assert!(exact.pixels().any(|pixel| pixel.0[1] > 1e-6), "its distances are off");
+}
+
+#[test]
 fn a_pixel_outside_the_picture_is_refused() {
     let scene = root().join("scenes/sphere/in-front.ray");
     for (x, y) in [("160", "0"), ("0", "120"), ("-1", "0")] {

@@ -10,7 +10,7 @@ use oracle::rays::{self, BASE, Random};
 use oracle::revolution::Revolution;
 use oracle::shapes::{self, Plane, Quadric};
 use oracle::tally::{Tally, Tolerance, ulp};
-use oracle::{Crossings, Truth};
+use oracle::{Crossings, Hit, Truth};
 use tabray::certify::Enclosure;
 use tabray::geometry::{MISS, Ray, Side, Span};
 use tabray::interval::Interval;
@@ -227,7 +227,7 @@ fn the_truth_of_a_revolution_is_where_the_function_first_changes_its_sign() {
             };
             let end = match surface.first_hit(&ray, 0.0, Crossings::All) {
                 Truth::Hit(hit) => {
-                    let t = hit.t.to_f64();
+                    let t = hit.t.high;
                     let (before, after) = (outside(t - 1e-9), outside(t + 1e-9));
                     assert!(before != after, "{formula}: {ray:?}, {hit:?}");
                     t - 1e-9
@@ -260,7 +260,7 @@ fn two_truths_of_a_cone_agree() {
         let (one, other) = (surface.first_hit(&ray, 0.0, Crossings::All), quadric.first_hit(&ray, 0.0));
         match (one, other) {
             (Truth::Hit(one), Truth::Hit(other)) => {
-                let apart = (one.t - other.t).to_f64().abs();
+                let apart = (one.t - other.t).high.abs();
                 assert!(apart * one.slope.abs() < 1e-25, "{ray:?}: {one:?} {other:?}");
             }
             (Truth::Undecided, _) | (_, Truth::Undecided) => {}
@@ -372,7 +372,7 @@ fn place_on(subject: &Subject, random: &mut Random) -> (DVec3, DVec3) {
         let origin = subject.scale * (MIDDLE + 9.0 * random.direction());
         let ray = rays::toward(origin, random.in_ball(subject.scale * MIDDLE, subject.scale * REACH));
         if let Some(hit) = (subject.truth)(&ray, 0.0).hit() {
-            let at = ray.at(hit.t.to_f64());
+            let at = ray.at(hit.t.high);
             return (at, subject.model.objects[0].shape.normal(at));
         }
     }
@@ -393,7 +393,7 @@ fn finds(name: &str, spelt: fn(f64) -> Spelt, farthest: i32, [exact, strict]: [f
         let off_surface = |ray: &Ray, found: f64| {
             let slant = model.objects[0].shape.normal(ray.at(found)).dot(ray.dir).abs();
             let hit = truth(ray, 0.0).hit();
-            hit.map_or(f64::NAN, |hit| (hit.t - found.into()).to_f64().abs() * slant)
+            hit.map_or(f64::NAN, |hit| (hit.t - found.into()).high.abs() * slant)
         };
         let name = format!("{name}, {accuracy}");
         let subject = Subject {
@@ -608,7 +608,7 @@ fn rays_that_leave_a_surface_meet_it_again_where_they_should() {
                 Truth::Miss => found == MISS,
                 Truth::Hit(hit) => {
                     again += 1;
-                    (hit.t.to_f64() - found).abs() < 1e-6
+                    (hit.t.high - found).abs() < 1e-6
                 }
             };
             if !is_right {
@@ -638,13 +638,15 @@ fn what_is_certain_is_true() {
         let around = rays::aimed(RAYS, MIDDLE, REACH, 10.0).chain(rays::aimed(RAYS, MIDDLE, REACH, 1e6));
         for ray in rays::camera(RAYS, 1.0).chain(rays::inside(RAYS, MIDDLE, REACH)).chain(around) {
             let (certain, truth) = (shape.certify(&ray), truth(&ray, 0.0));
-            let at = truth.hit().map(|hit| hit.t.to_f64());
+            let at = truth.hit().map(|hit| hit.t.high);
             // The program counts from the shape's own place, which rounds where the ray starts.
             let slack = 8.0 * ulp(ray.origin.length());
             let is_true = match certain {
                 Enclosure::Misses => at.is_none(),
-                Enclosure::Hits(Interval { low, high }, _) => {
+                Enclosure::Hits(Interval { low, high }, nearest) => {
+                    let is_near = |hit: Hit| (nearest - hit.t).high.abs() <= slack;
                     at.map_or(truth == Truth::Undecided, |at| low - slack <= at && at <= high + slack)
+                        && truth.hit().is_none_or(is_near)
                 }
                 Enclosure::Doubtful(nearest) => {
                     doubtful += 1;

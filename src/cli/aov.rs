@@ -7,6 +7,7 @@ use super::{Failure, interrupt, messages};
 use crate::aov::Aov;
 use crate::model::Model;
 use crate::picture::Format;
+use crate::sample::{self, Sampler};
 use std::ffi::OsStr;
 use std::io::{self, BufWriter, Write};
 use std::iter;
@@ -34,6 +35,8 @@ enum AovName {
     Object,
     /// How many rays a pixel costs
     Cost,
+    /// How far a pixel's colour is from that of four times its samples, at least 64, exactly traced
+    Error,
 }
 
 /// The files of one such picture.
@@ -68,6 +71,7 @@ pub fn open(model: &Model, args: &Args, main: &Path, output: &Output) -> Result<
             AovName::Normal => Aov::Normal,
             AovName::Object => Aov::Object,
             AovName::Cost => Aov::Cost,
+            AovName::Error => Aov::Error,
         };
         if !aovs.contains(&aov) {
             aovs.push(aov);
@@ -93,23 +97,46 @@ pub fn open(model: &Model, args: &Args, main: &Path, output: &Output) -> Result<
         .collect()
 }
 
-/// Makes the pictures and writes their files.
-pub fn write(model: &Model, threads: usize, format: Format, files: Vec<Files>) -> Result<(), Failure> {
+/// The samples of a model that errors are seen against: so many times its own, and at least so many.
+const TRUE_TIMES: u32 = 4;
+const TRUE_LEAST: u32 = 64;
+
+/// Makes the pictures and writes their files. `exact` makes the model that errors are seen against.
+pub fn write(
+    model: &Model,
+    exact: impl FnOnce() -> Result<Model, Failure>,
+    threads: usize,
+    format: Format,
+    files: Vec<Files>,
+) -> Result<(), Failure> {
     if files.is_empty() {
         return Ok(());
     }
+    let own;
+    let truth = if files.iter().any(|file| file.aov == Aov::Error) {
+        let mut exact = exact()?;
+        let samples = (TRUE_TIMES * model.camera.value.samples).clamp(TRUE_LEAST, sample::MOST);
+        (exact.camera.value.samples, exact.camera.value.sampler) = (samples, Sampler::Sobol);
+        own = exact;
+        &own
+    } else {
+        model
+    };
     let renderer = render::threads(threads)?;
     let size = model.camera.value.pixels;
     for Files { aov, picture, exact } in files {
         let progress = Progress::new(size[1]);
-        let layer = aov.render(&renderer, model, &|| {
+        let layer = aov.render(&renderer, model, truth, &|| {
             progress.step();
             interrupt::check()
         });
         progress.end();
-        let layer = layer.map_err(|_| Failure::Interrupted)?;
+        let layer = layer.map_err(|_| Failure::Interrupted("the picture was not finished"))?;
         if let Some((most, [x, y])) = layer.most {
             messages::note(&format!("the most expensive pixel is {x} {y}, of {most} rays"));
+        }
+        if let Some((worst, [x, y])) = layer.worst {
+            messages::note(&format!("the greatest error is {worst:.2e}, of pixel {x} {y}"));
         }
         if let Some((path, output)) = exact {
             let bytes = layer.exr(size).map_err(|error| Failure::cannot_write(&path, &error))?;

@@ -61,7 +61,9 @@ pub fn print(model: &Model, args: &Args) -> Result<(), Failure> {
         out.flush()
     });
     match printed {
-        Err(error) if error.kind() == io::ErrorKind::Interrupted => Err(Failure::Interrupted),
+        Err(error) if error.kind() == io::ErrorKind::Interrupted => {
+            Err(Failure::Interrupted("the picture was not finished"))
+        }
         // Where standard error is closed there is nobody to tell.
         _ => Ok(()),
     }

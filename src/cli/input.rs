@@ -4,11 +4,11 @@ use super::{Failure, messages};
 use crate::accuracy::Accuracy;
 use crate::model::Model;
 use crate::registry::Registry;
-use crate::scene::{self, Loaded};
+use crate::scene::{self, Loaded, Report};
 use crate::words;
 use std::fs::File;
 use std::io::{self, Read};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The largest scene that is read: far beyond any written one, and far below what memory holds.
 const LARGEST: u64 = 1 << 30;
@@ -25,11 +25,34 @@ pub fn load(registry: &Registry, path: &Path, accuracy: Option<Accuracy>) -> Res
 
 /// As [`load`], with what else is known of it.
 pub fn loaded(registry: &Registry, path: &Path, accuracy: Option<Accuracy>) -> Result<Loaded, Failure> {
-    let (name, bytes) = read(path)?;
-    let folder = path.parent().unwrap_or(path);
-    let loaded = scene::read(registry, &name, folder, &bytes, accuracy).map_err(Failure::Scene)?;
+    told(Source::read(path)?.load(registry, accuracy))
+}
+
+/// Prints the warnings of a scene that was loaded.
+pub fn told(loaded: Result<Loaded, Report>) -> Result<Loaded, Failure> {
+    let loaded = loaded.map_err(Failure::Scene)?;
     messages::report(&loaded.warnings);
     Ok(loaded)
+}
+
+/// The text of a scene, of which any number of models can be made.
+pub struct Source {
+    name: String,
+    folder: PathBuf,
+    bytes: Vec<u8>,
+}
+
+impl Source {
+    /// Reads it.
+    pub fn read(path: &Path) -> Result<Self, Failure> {
+        let (name, bytes) = read(path)?;
+        Ok(Self { name, folder: path.parent().unwrap_or(path).to_owned(), bytes })
+    }
+
+    /// A model of it, of this accuracy or of its own, and the warnings that it gave rise to.
+    pub fn load(&self, registry: &Registry, accuracy: Option<Accuracy>) -> Result<Loaded, Report> {
+        scene::read(registry, &self.name, &self.folder, &self.bytes, accuracy)
+    }
 }
 
 /// The bytes of a scene, and what messages call it; or why it has none.

@@ -2,7 +2,9 @@
 
 mod aov;
 mod bench;
+mod chart;
 mod check;
+mod choose;
 mod completions;
 mod convert;
 mod cpu;
@@ -71,6 +73,8 @@ enum Command {
     Plan(plan::Args),
     Probe(probe::Args),
     Verify(verify::Args),
+    Chart(chart::Args),
+    Choose(choose::Args),
     Diff(diff::Args),
     Review(review::Args),
     Watch(watch::Args),
@@ -98,8 +102,8 @@ enum Failure {
     Usage(String, Option<String>),
     /// The machine or another program stood in the way.
     Failed(String),
-    /// The user stopped it.
-    Interrupted,
+    /// The user stopped it: what is there of it, or is not.
+    Interrupted(&'static str),
     /// It was stopped with a part of its work done, of which the user was told already.
     Stopped,
     /// Faults that were printed already.
@@ -140,6 +144,8 @@ pub fn run() -> ExitCode {
             Some(Command::Plan(args)) => plan::run(registry, args),
             Some(Command::Probe(args)) => probe::run(registry, args),
             Some(Command::Verify(args)) => verify::run(registry, args),
+            Some(Command::Chart(args)) => chart::run(registry, args),
+            Some(Command::Choose(args)) => choose::run(registry, args),
             Some(Command::Diff(args)) => return diff::run(registry, &args),
             Some(Command::Review(args)) => review::run(registry, &args),
             Some(Command::Watch(args)) => watch::run(registry, args),
@@ -173,13 +179,13 @@ fn tell(failure: &Failure) -> ExitCode {
         Failure::Scene(report) => messages::report(report),
         Failure::Usage(message, help) => messages::error(message, help.as_deref()),
         Failure::Failed(message) => messages::error(message, None),
-        Failure::Interrupted => messages::note("interrupted: the picture was not finished"),
+        Failure::Interrupted(what) => messages::note(&format!("interrupted: {what}")),
         Failure::Stopped | Failure::Told => {}
     }
     ExitCode::from(match failure {
         Failure::Failed(_) => 1,
         Failure::Scene(_) | Failure::Usage(..) | Failure::Told => 2,
-        Failure::Interrupted | Failure::Stopped => 130,
+        Failure::Interrupted(_) | Failure::Stopped => 130,
     })
 }
 

@@ -3,27 +3,37 @@
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::time::{Duration, Instant};
 
-/// A bar on a terminal, once rendering takes long enough to ask how long it will take.
+/// A bar on a terminal, once work takes long enough to ask how long it will take.
 pub struct Progress {
     bar: ProgressBar,
     start: Instant,
 }
 
 impl Progress {
-    pub fn new(rows: usize) -> Self {
+    pub fn new(steps: usize) -> Self {
         let style = ProgressStyle::with_template("{wide_bar} {percent:>3} % {eta} left");
-        let bar = ProgressBar::with_draw_target(Some(rows as u64), ProgressDrawTarget::hidden());
+        let bar = ProgressBar::with_draw_target(Some(steps as u64), ProgressDrawTarget::hidden());
         Self {
             bar: bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar())),
             start: Instant::now(),
         }
     }
 
+    /// So many more steps are to be done.
+    pub fn lengthen(&self, steps: usize) {
+        self.bar.inc_length(steps as u64);
+    }
+
     pub fn step(&self) {
+        self.advance(1);
+    }
+
+    /// So many steps are done.
+    pub fn advance(&self, steps: usize) {
         if self.bar.is_hidden() && self.start.elapsed() > Duration::from_millis(500) {
             self.bar.set_draw_target(ProgressDrawTarget::stderr());
         }
-        self.bar.inc(1);
+        self.bar.inc(steps as u64);
     }
 
     pub fn end(&self) {

@@ -1,10 +1,12 @@
 //! `tabray render`: a scene's picture.
 
+use super::input::Source;
 use super::job::Job;
 use super::output::Output;
 use super::resume::Begun;
 use super::stats::{self, Stats};
 use super::{Failure, aov, cpu, debug, input, interrupt, messages, method, size, stop};
+use crate::accuracy::Accuracy;
 use crate::picture::{Compression, Format};
 use crate::registry::Registry;
 use crate::render::Renderer;
@@ -85,7 +87,9 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let stop = args.stop.watch()?;
     let cpu = args.cpu.cpu()?;
     let start = Instant::now();
-    let Loaded { mut model, building, .. } = input::loaded(registry, &args.scene, args.method.accuracy()?)?;
+    let accuracy = args.method.accuracy()?;
+    let source = Source::read(&args.scene)?;
+    let Loaded { mut model, building, .. } = input::told(source.load(registry, accuracy))?;
     let mut stats = Stats { reading: start.elapsed() - building, building, ..Stats::default() };
     let camera = &mut model.camera.value;
     camera.samples = args.samples.unwrap_or(camera.samples);
@@ -123,7 +127,11 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         messages::note(&format!("wrote {} ({width} x {height} pixels, {seconds:.2} s)", path.display()));
     }
     args.stats.print(&stats, &model);
-    aov::write(&model, threads, format, beside)
+    let exact = || match source.load(registry, Some(Accuracy::Exact)) {
+        Ok(loaded) => Ok(loaded.model),
+        Err(report) => Err(Failure::Scene(report)),
+    };
+    aov::write(&model, exact, threads, format, beside)
 }
 
 /// This many threads to render with; 0 for one on each core.

@@ -44,7 +44,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         interrupt::check()
     });
     progress.end();
-    let verdicts = verdicts.map_err(|_| Failure::Interrupted)?;
+    let verdicts = verdicts.map_err(|_| Failure::Interrupted("the picture was not finished"))?;
     let count = |wanted| verdicts.iter().filter(|verdict| **verdict == wanted).count();
     let (undecided, contradicted) = (count(Verdict::Undecided), count(Verdict::Contradicted));
     let proven = verdicts.len() - undecided - contradicted;

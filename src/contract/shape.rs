@@ -219,7 +219,7 @@ impl Tried<'_> {
         let slack = SLACK * self.size(if distance == MISS { 0.0 } else { distance });
         let agrees = match proven {
             Enclosure::Misses => distance == MISS,
-            Enclosure::Hits(hit) => hit.low - slack <= distance && distance <= hit.high + slack,
+            Enclosure::Hits(hit, _) => hit.low - slack <= distance && distance <= hit.high + slack,
             Enclosure::Doubtful(from) => from - slack <= distance,
         };
         if agrees {

@@ -80,7 +80,7 @@ impl Method {
         shortest: f64,
         leaves: Option<Side>,
     ) -> Option<f64> {
-        if !(span.start < span.end) {
+        if span.is_empty() {
             return None;
         }
         match self {
@@ -110,8 +110,8 @@ impl fmt::Display for Method {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let name = match self {
             Self::Steps => "steps of 0.1".to_owned(),
-            Self::Samples(count, refiner) => format!("{count} samples, {refiner}"),
-            Self::Turning(count) => format!("{count} samples, turning points"),
+            Self::Samples(count, refiner) => format!("{count} + {refiner}"),
+            Self::Turning(count) => format!("{count} + turning points"),
             Self::Tracing => "sphere tracing".to_owned(),
             Self::Intervals => "intervals".to_owned(),
             Self::Taylor => "Taylor bounds".to_owned(),

@@ -86,7 +86,7 @@ fn pixel(frame: Arc<Frame>, x: &str, y: &str) -> Option<Job> {
 fn layer(frame: Arc<Frame>, name: &str) -> Option<Job> {
     let aov = [Aov::Depth, Aov::Normal, Aov::Object, Aov::Cost].into_iter().find(|aov| aov.name() == name)?;
     Some(Box::new(move || {
-        let layer = aov.render(&Renderer::new(0)?, &frame.model, &|| frame.check())?;
+        let layer = aov.render(&Renderer::new(0)?, &frame.model, &frame.model, &|| frame.check())?;
         Ok(("application/octet-stream", layer.bytes))
     }))
 }

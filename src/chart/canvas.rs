@@ -1,0 +1,170 @@
+//! Lines, markers and words, drawn into whatever `plotters` writes: the same for SVG and PNG.
+
+use super::labels::Area;
+use plotters::coord::Shift;
+use plotters::element::{PathElement, Polygon, Text};
+use plotters::prelude::{
+    BLACK, Color, DrawingArea, DrawingBackend, FontStyle, FontTransform, IntoFont, RGBColor, ShapeStyle,
+};
+use plotters::style::register_font;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use std::fmt::Display;
+use std::io;
+use std::sync::LazyLock;
+
+/// The colours of M. Okabe and K. Ito, "Color universal design" (2008), which all readers can tell apart.
+pub const VERMILION: RGBColor = RGBColor(0xd5, 0x5e, 0x00);
+pub const ORANGE: RGBColor = RGBColor(0xe6, 0x9f, 0x00);
+pub const PURPLE: RGBColor = RGBColor(0xcc, 0x79, 0xa7);
+pub const BLUE: RGBColor = RGBColor(0x00, 0x72, 0xb2);
+pub const GREEN: RGBColor = RGBColor(0x00, 0x9e, 0x73);
+pub const GREY: RGBColor = RGBColor(0x60, 0x60, 0x60);
+pub const LIGHT: RGBColor = RGBColor(0xdd, 0xdd, 0xdd);
+
+/// The form of a marker.
+#[derive(Clone, Copy)]
+pub enum Marker {
+    Disc,
+    Square,
+    Diamond,
+    Up,
+    Down,
+    Star,
+}
+
+/// Where a text has its point.
+#[derive(Clone, Copy)]
+pub enum Align {
+    Left,
+    Middle,
+    Right,
+}
+
+/// How a text looks.
+#[derive(Clone, Copy)]
+pub struct Letters {
+    pub size: f64,
+    pub colour: RGBColor,
+    pub is_bold: bool,
+}
+
+impl Letters {
+    /// Plain black ones.
+    pub const fn new(size: f64) -> Self {
+        Self { size, colour: BLACK, is_bold: false }
+    }
+
+    /// About how wide a text is.
+    pub fn width(&self, text: &str) -> f64 {
+        text.chars().count() as f64 * self.size * if self.is_bold { 0.62 } else { 0.55 }
+    }
+}
+
+/// Why something was not drawn; the writers' own errors are not known to live long enough.
+fn failed(error: impl Display) -> io::Error {
+    io::Error::other(error.to_string())
+}
+
+/// What is drawn on.
+pub struct Canvas<D: DrawingBackend> {
+    area: DrawingArea<D, Shift>,
+    /// Its pixels in each unit.
+    scale: f64,
+}
+
+impl<D: DrawingBackend> Canvas<D> {
+    /// A white one.
+    pub fn new(area: DrawingArea<D, Shift>, scale: f64) -> io::Result<Self> {
+        // The letters of pictures; where letters are kept as text, whoever shows them has their own.
+        static FONT: LazyLock<bool> = LazyLock::new(|| {
+            register_font("sans-serif", FontStyle::Normal, dejavu::sans::regular()).is_ok()
+                && register_font("sans-serif", FontStyle::Bold, dejavu::sans::bold()).is_ok()
+        });
+        if !*FONT {
+            return Err(io::Error::other("the font cannot be read"));
+        }
+        area.fill(&plotters::style::WHITE).map_err(failed)?;
+        Ok(Self { area, scale })
+    }
+
+    /// Ends the drawing.
+    pub fn finish(self) -> io::Result<()> {
+        self.area.present().map_err(failed)
+    }
+
+    fn pixel(&self, (x, y): (f64, f64)) -> (i32, i32) {
+        ((x * self.scale).round() as i32, (y * self.scale).round() as i32)
+    }
+
+    /// A line through points.
+    pub fn line(&self, points: &[(f64, f64)], colour: RGBColor, width: f64) -> io::Result<()> {
+        let points: Vec<_> = points.iter().map(|point| self.pixel(*point)).collect();
+        let style = colour.stroke_width((width * self.scale).round().max(1.0) as u32);
+        self.area.draw(&PathElement::new(points, style)).map_err(failed)
+    }
+
+    /// The edges of a rectangle.
+    pub fn frame(&self, area: Area, colour: RGBColor) -> io::Result<()> {
+        let Area { left, top, right, bottom } = area;
+        self.line(&[(left, top), (right, top), (right, bottom), (left, bottom), (left, top)], colour, 1.0)
+    }
+
+    /// A marker, filled or hollow.
+    pub fn marker(
+        &self,
+        (x, y): (f64, f64),
+        marker: Marker,
+        colour: RGBColor,
+        is_hollow: bool,
+    ) -> io::Result<()> {
+        let points = |corners: usize, turn: f64, radius: &dyn Fn(usize) -> f64| -> Vec<(f64, f64)> {
+            let corner = |index: usize| {
+                let (sin, cos) = libm::sincos(std::f64::consts::TAU * (index as f64 / corners as f64 + turn));
+                (x + radius(index) * sin, y - radius(index) * cos)
+            };
+            (0..=corners).map(|index| corner(index % corners)).collect()
+        };
+        let outline = match marker {
+            Marker::Disc => points(24, 0.0, &|_| 5.0),
+            Marker::Square => points(4, 0.125, &|_| 6.4),
+            Marker::Diamond => points(4, 0.0, &|_| 6.8),
+            Marker::Up => points(3, 0.0, &|_| 7.0),
+            Marker::Down => points(3, 0.5, &|_| 7.0),
+            Marker::Star => points(10, 0.0, &|index| if index % 2 == 0 { 10.0 } else { 4.4 }),
+        };
+        let fill = if is_hollow { plotters::style::WHITE } else { colour };
+        let pixels: Vec<_> = outline.iter().map(|point| self.pixel(*point)).collect();
+        let inside = ShapeStyle { color: fill.to_rgba(), filled: true, stroke_width: 0 };
+        self.area.draw(&Polygon::new(pixels, inside)).map_err(failed)?;
+        self.line(&outline, colour, 1.5)
+    }
+
+    /// A line of text; its point is halfway up.
+    pub fn text(&self, text: &str, at: (f64, f64), align: Align, letters: Letters) -> io::Result<()> {
+        self.write(text, at, align, letters, FontTransform::None)
+    }
+
+    /// A line of text that runs upward.
+    pub fn upward(&self, text: &str, at: (f64, f64), letters: Letters) -> io::Result<()> {
+        self.write(text, at, Align::Middle, letters, FontTransform::Rotate270)
+    }
+
+    fn write(
+        &self,
+        text: &str,
+        at: (f64, f64),
+        align: Align,
+        letters: Letters,
+        turn: FontTransform,
+    ) -> io::Result<()> {
+        let style = if letters.is_bold { FontStyle::Bold } else { FontStyle::Normal };
+        let across = match align {
+            Align::Left => HPos::Left,
+            Align::Middle => HPos::Center,
+            Align::Right => HPos::Right,
+        };
+        let font = ("sans-serif", letters.size * self.scale, style).into_font().transform(turn);
+        let style = font.color(&letters.colour).pos(Pos::new(across, VPos::Center));
+        self.area.draw(&Text::new(text.to_owned(), self.pixel(at), style)).map_err(failed)
+    }
+}

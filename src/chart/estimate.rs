@@ -1,0 +1,86 @@
+//! A quick measurement of what accuracy and samples make of a scene, to choose from.
+
+use super::colours::difference;
+use super::pictures::{self, Seen, TIMED_TESTS, TRUE_SAMPLES, TRUE_TESTS, each, smaller, spread, tests};
+use super::{Load, Progress};
+use crate::accuracy::Accuracy;
+use crate::bench::clock;
+use crate::choice::Choice;
+use crate::model::Model;
+use crate::render::Renderer;
+use crate::sample::Sampler;
+use crate::trace;
+use std::hint::black_box;
+use std::io;
+use std::ops::ControlFlow;
+
+/// The samples that there are to choose from.
+const SAMPLES: [u32; 9] = [1, 2, 4, 8, 16, 32, 64, 128, 256];
+
+/// How often each picture is timed; the least counts.
+const ROUNDS: usize = 3;
+
+/// What measuring one choice adds to the work.
+const UNITS: usize = 100_000;
+
+/// What a choice of accuracy and samples costs, and how wrong it is, all errors taken together.
+pub struct Estimate {
+    /// The accuracy.
+    pub accuracy: Accuracy,
+    /// The samples for each pixel, spread evenly.
+    pub samples: u32,
+    /// The CPU time of one thread for all of the picture, in seconds.
+    pub seconds: f64,
+    /// The root of the mean square of the colours' errors, 1 being white.
+    pub rmse: f64,
+}
+
+/// What the accuracies and some numbers of samples make of a scene.
+///
+/// # Errors
+/// Those of `load`, and of threads that are not to be had; `Interrupted` where `progress` breaks off.
+pub fn estimates(load: Load, progress: &mut dyn Progress) -> io::Result<Vec<Estimate>> {
+    let (threads, thread) = (Renderer::new(0)?, Renderer::new(1)?);
+    let accuracies = Accuracy::all();
+    progress.more(TRUE_TESTS / 10 + accuracies.len() * SAMPLES.len() * UNITS);
+    let exact = load(Some(Accuracy::Exact))?;
+    let tests = tests(&exact, &threads);
+    let size = exact.camera.value.pixels;
+    let count = (TRUE_TESTS as f64 / 2.0 / (f64::from(TRUE_SAMPLES) * tests)) as usize;
+    let pixels = spread(size, count.clamp(256, 4096));
+    let small = smaller(size, (TIMED_TESTS as f64 / 4.0 / tests) as usize);
+    let scale = (size[0] * size[1]) as f64 / (small[0] * small[1]) as f64;
+    let right = whole(pictures::truth(&exact, &threads, &pixels, Seen::Picture, progress))?;
+    let mut estimates = Vec::new();
+    for accuracy in accuracies {
+        let mut model = load(Some(accuracy))?;
+        model.camera.value.sampler = Sampler::Sobol;
+        for samples in SAMPLES {
+            model.camera.value.samples = samples;
+            let colours = each(&threads, &pixels, |x, y| trace::pixel(&model, x, y));
+            let rmse = difference(&colours, &right).rmse;
+            model.camera.value.pixels = small;
+            let seconds = scale * (0..ROUNDS).map(|_| time(&thread, &model)).fold(f64::INFINITY, f64::min);
+            model.camera.value.pixels = size;
+            estimates.push(Estimate { accuracy, samples, seconds, rmse });
+            whole(progress.done(UNITS))?;
+        }
+    }
+    Ok(estimates)
+}
+
+fn whole<T>(flow: ControlFlow<(), T>) -> io::Result<T> {
+    match flow {
+        ControlFlow::Continue(value) => Ok(value),
+        ControlFlow::Break(()) => Err(io::ErrorKind::Interrupted.into()),
+    }
+}
+
+/// The CPU time of a picture on one thread, in seconds.
+fn time(thread: &Renderer, model: &Model) -> f64 {
+    thread.run(|| {
+        let start = clock::now();
+        drop(black_box(thread.picture(model)));
+        (clock::now() - start).as_secs_f64()
+    })
+}

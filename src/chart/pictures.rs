@@ -1,0 +1,327 @@
+//! What each choice makes of the picture: its colours against the right ones, and how long they take.
+//!
+//! Errors are of some of the picture's own pixels, spread evenly; times are of a smaller picture of the same view, made
+//! on one thread.
+
+use super::clock::{self, Times};
+use super::colours::{Difference, difference};
+use super::{Family, Panel, Point, Progress, Study, Subject, Wrong};
+use crate::material::Rgb;
+use crate::model::Model;
+use crate::render::Renderer;
+use crate::sample::{Sample, Sampler};
+use crate::trace;
+use crate::watch::{Event, Watch};
+use std::hint::black_box;
+use std::ops::ControlFlow;
+
+/// The samples of a picture that counts as true: of no use against more than a quarter of them.
+pub(super) const TRUE_SAMPLES: u32 = 1024;
+
+/// The samples that are compared, and the scene's own.
+const SAMPLES: [u32; 8] = [1, 2, 4, 8, 16, 24, 32, 64];
+
+/// The tests of an object that one panel of samples may take for its truth: about as many tenths of a microsecond.
+pub(super) const TRUE_TESTS: usize = 50_000_000;
+
+/// The tests that a picture to be timed takes with one sample for each pixel.
+pub(super) const TIMED_TESTS: usize = 25_000;
+
+/// The tests that pictures by another method may take.
+const METHOD_TESTS: usize = 500_000;
+
+/// What samples of a picture are for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Seen {
+    /// Edges, and shadows where these are soft.
+    Picture,
+    /// Soft shadows alone: each pixel is looked at in its middle.
+    Shadows,
+}
+
+/// Pixels, from the left and from the bottom.
+pub(super) type Pixels = Vec<[usize; 2]>;
+
+/// How much of the picture is looked at.
+struct Extent {
+    pixels: Pixels,
+    /// The width and height of the smaller picture.
+    small: [usize; 2],
+}
+
+/// What all pictures add to the work, about.
+pub fn work(study: &Study) -> usize {
+    let kinds = 1 + usize::from(has_size(&study.candidates[study.default].model));
+    let methods = study.candidates.len() * METHOD_TESTS / 10 + clock::work(study.candidates.len());
+    methods + kinds * (TRUE_TESTS / 8 + clock::work(2 * SAMPLES.len()))
+}
+
+fn has_size(model: &Model) -> bool {
+    model.lights.iter().any(|light| light.value.size() > 0.0)
+}
+
+/// The picture, one ray through the middle of each pixel, by each way to find hits.
+pub fn methods(study: &mut Study, progress: &mut dyn Progress) -> ControlFlow<(), Panel> {
+    let tests = tests(&study.candidates[study.default].model, &study.threads);
+    let own = study.candidates[study.default].model.camera.value.pixels;
+    let pixels = spread(own, (METHOD_TESTS as f64 / tests) as usize);
+    let small = smaller(own, (TIMED_TESTS as f64 / tests) as usize);
+    let samples = study.candidates[study.default].model.camera.value.samples;
+    let set = |study: &mut Study, pixels: [usize; 2], samples: u32| {
+        for candidate in &mut study.candidates {
+            (candidate.model.camera.value.pixels, candidate.model.camera.value.samples) = (pixels, samples);
+        }
+    };
+    set(study, own, 1);
+    let mut colours = Vec::new();
+    for candidate in &study.candidates {
+        colours.push(each(&study.threads, &pixels, |x, y| trace::pixel(&candidate.model, x, y)));
+        progress.done(METHOD_TESTS / 10)?;
+    }
+    let right = &colours[study.strict];
+    let differences: Vec<_> = colours.iter().map(|colours| difference(colours, right)).collect();
+    set(study, small, 1);
+    let count = small[0] * small[1];
+    let times = {
+        let Study { candidates, thread, .. } = &*study;
+        let work = |choice: usize| drop(black_box(thread.picture(&candidates[choice].model)));
+        thread.run(|| clock::rounds(candidates.len(), count, work, progress))
+    };
+    set(study, own, samples);
+    let points =
+        study.candidates.iter().zip(differences).zip(times?).map(|((candidate, off), times)| Point {
+            is_default: candidate.is_default,
+            ..point(candidate.name.clone(), candidate.family, times, off, (pixels.len(), 1))
+        });
+    ControlFlow::Continue(Panel {
+        title: "the picture, by method".to_owned(),
+        note: format!("{} of {} pixels, against strict", pixels.len(), own[0] * own[1]),
+        subject: Subject::Methods,
+        points: points.collect(),
+    })
+}
+
+/// The picture by samples, against one of so many that they make no difference any more; nothing where one sample is
+/// right.
+pub fn samples(study: &mut Study, seen: Seen, progress: &mut dyn Progress) -> ControlFlow<(), Option<Panel>> {
+    let Study { candidates, default, threads, thread, .. } = study;
+    let model = &mut candidates[*default].model;
+    let own = model.camera.value.clone();
+    let extent = extent(model, threads);
+    let right = truth(model, threads, &extent.pixels, seen, progress)?;
+    let choices: Vec<_> = choices(own.samples, own.sampler);
+    let mut differences = Vec::new();
+    for (samples, sampler) in &choices {
+        (model.camera.value.samples, model.camera.value.sampler) = (*samples, *sampler);
+        let model = &*model;
+        let colours = each(threads, &extent.pixels, |x, y| colour(model, [x, y], seen));
+        differences.push(difference(&colours, &right));
+        progress.done(TRUE_TESTS / 40 / choices.len())?;
+    }
+    let timed = match seen {
+        Seen::Picture => extent.small[0] * extent.small[1],
+        Seen::Shadows => extent.pixels.len().min(200),
+    };
+    let times = thread.run(|| {
+        let work = |choice: usize| {
+            (model.camera.value.samples, model.camera.value.sampler) = choices[choice];
+            match seen {
+                Seen::Picture => {
+                    model.camera.value.pixels = extent.small;
+                    drop(black_box(thread.picture(model)));
+                    model.camera.value.pixels = own.pixels;
+                }
+                Seen::Shadows => extent.pixels.iter().take(timed).for_each(|place| {
+                    black_box(colour(model, *place, seen));
+                }),
+            }
+        };
+        clock::rounds(choices.len(), timed, work, progress)
+    });
+    model.camera.value = own.clone();
+    if differences.iter().all(|off| off.rmse == 0.0) {
+        return ControlFlow::Continue(None);
+    }
+    let points =
+        choices.iter().zip(differences).zip(times?).map(|(((samples, sampler), off), times)| Point {
+            is_default: *samples == own.samples && *sampler == own.sampler,
+            ..point(
+                format!("{} {samples}", name(*sampler)),
+                sampler.family(),
+                times,
+                off,
+                (extent.pixels.len(), *samples),
+            )
+        });
+    let title = match (seen, has_size(model)) {
+        (Seen::Picture, false) => "samples for each pixel: edges",
+        (Seen::Picture, true) => "samples for each pixel: edges and soft shadows",
+        (Seen::Shadows, _) => "samples for each pixel: soft shadows alone",
+    };
+    ControlFlow::Continue(Some(Panel {
+        title: title.to_owned(),
+        note: format!("{} pixels, against {TRUE_SAMPLES} samples", extent.pixels.len()),
+        subject: Subject::Samples,
+        points: points.collect(),
+    }))
+}
+
+fn point(
+    name: String,
+    family: Family,
+    times: Times,
+    off: Difference,
+    (pixels, samples): (usize, u32),
+) -> Point {
+    Point {
+        name,
+        family,
+        is_default: false,
+        times,
+        error: off.rmse,
+        worst: off.worst,
+        wrong: Wrong::default(),
+        visible: Some(off.visible),
+        changed: Some([off.changed, pixels]),
+        samples,
+    }
+}
+
+fn name(sampler: Sampler) -> &'static str {
+    match sampler {
+        Sampler::Random => "random",
+        Sampler::Sobol => "sobol",
+    }
+}
+
+/// The samples and samplers that are compared, one sample only once.
+fn choices(own: u32, own_sampler: Sampler) -> Vec<(u32, Sampler)> {
+    let mut counts = SAMPLES.to_vec();
+    if !counts.contains(&own) && own <= TRUE_SAMPLES / 4 {
+        counts.push(own);
+        counts.sort_unstable();
+    }
+    let mut choices = Vec::new();
+    for sampler in [Sampler::Sobol, Sampler::Random] {
+        // One sample lies in the middle, whatever the sampler.
+        choices.extend(
+            counts
+                .iter()
+                .filter(|count| **count > 1 || sampler == own_sampler)
+                .map(|count| (*count, sampler)),
+        );
+    }
+    choices
+}
+
+fn extent(model: &Model, threads: &Renderer) -> Extent {
+    let tests = tests(model, threads);
+    let own = model.camera.value.pixels;
+    let count = (TRUE_TESTS as f64 / (f64::from(TRUE_SAMPLES) * tests)) as usize;
+    Extent {
+        pixels: spread(own, count.clamp(1024, 8192)),
+        small: smaller(own, (TIMED_TESTS as f64 / tests) as usize),
+    }
+}
+
+/// The right colours: so many samples that they make no difference any more, other ones than those that are compared.
+pub(super) fn truth(
+    model: &Model,
+    threads: &Renderer,
+    pixels: &Pixels,
+    seen: Seen,
+    progress: &mut dyn Progress,
+) -> ControlFlow<(), Vec<Rgb>> {
+    let mut colours = Vec::new();
+    let camera = &model.camera.value;
+    let colour = |x: usize, y: usize| {
+        let pixel = !((y * camera.pixels[0] + x) as u32);
+        let sample = |index| Sample { sampler: Sampler::Sobol, index, pixel };
+        let one = |index| colour_of(model, [x, y], sample(index), seen);
+        (0..TRUE_SAMPLES).map(one).sum::<Rgb>() / f64::from(TRUE_SAMPLES)
+    };
+    for part in pixels.chunks(pixels.len().div_ceil(50)) {
+        colours.extend(each(threads, part, colour));
+        progress.done(TRUE_TESTS / 10 * part.len() / pixels.len())?;
+    }
+    ControlFlow::Continue(colours)
+}
+
+/// A pixel's colour with the camera's samples.
+fn colour(model: &Model, [x, y]: [usize; 2], seen: Seen) -> Rgb {
+    if seen == Seen::Picture {
+        return trace::pixel(model, x, y);
+    }
+    let camera = &model.camera.value;
+    if camera.samples == 1 {
+        return trace::colour(model, &camera.ray(x as f64, y as f64), None);
+    }
+    let pixel = (y * camera.pixels[0] + x) as u32;
+    let sample = |index| Sample { sampler: camera.sampler, index, pixel };
+    let colours = (0..camera.samples).map(|index| colour_of(model, [x, y], sample(index), seen));
+    colours.sum::<Rgb>() / f64::from(camera.samples)
+}
+
+/// What one sample of a pixel sees.
+fn colour_of(model: &Model, [x, y]: [usize; 2], sample: Sample, seen: Seen) -> Rgb {
+    let jitter = match seen {
+        Seen::Picture => sample.jitter(),
+        Seen::Shadows => glam::DVec2::ZERO,
+    };
+    let ray = model.camera.value.ray(x as f64 + jitter.x, y as f64 + jitter.y);
+    trace::colour(model, &ray, Some(sample))
+}
+
+/// Something of each of these pixels, on all threads of a renderer.
+pub(super) fn each<T: Send>(
+    threads: &Renderer,
+    pixels: &[[usize; 2]],
+    work: impl Fn(usize, usize) -> T + Sync + Send,
+) -> Vec<T> {
+    use rayon::prelude::*;
+    threads.run(|| pixels.par_iter().map(|[x, y]| work(*x, *y)).collect())
+}
+
+/// How many objects one ray through a pixel and all that follow from it test, in the mean.
+pub(super) fn tests(model: &Model, threads: &Renderer) -> f64 {
+    struct Tests(usize);
+    impl Watch for Tests {
+        const SEES: bool = true;
+
+        fn see(&mut self, event: Event) {
+            if let Event::Tested(..) = event {
+                self.0 += 1;
+            }
+        }
+    }
+    const PIXELS: usize = 400;
+    let pixels = spread(model.camera.value.pixels, PIXELS);
+    let samples = model.camera.value.samples as usize;
+    let count = |x, y| {
+        let mut tests = Tests(0);
+        trace::watch_pixel(model, x, y, &mut tests);
+        tests.0
+    };
+    let all: usize = each(threads, &pixels, count).into_iter().sum();
+    (all as f64 / (pixels.len() * samples) as f64).max(1.0)
+}
+
+/// So many pixels of a picture, spread evenly over it; all of a smaller one.
+pub(super) fn spread([width, height]: [usize; 2], count: usize) -> Pixels {
+    let all = width * height;
+    if count >= all {
+        return (0..all).map(|index| [index % width, index / width]).collect();
+    }
+    let place = |index: usize, part: f64, side: usize| ((part * index as f64).fract() * side as f64) as usize;
+    (0..count)
+        .map(|index| {
+            [place(index, 0.754_877_666_246_692_7, width), place(index, 0.569_840_290_998_053_2, height)]
+        })
+        .collect()
+}
+
+/// The size of a picture like another one, of about so many pixels and no more than that has.
+pub(super) fn smaller([width, height]: [usize; 2], count: usize) -> [usize; 2] {
+    let factor = (count as f64 / (width * height) as f64).sqrt().min(1.0);
+    [width, height].map(|side| ((side as f64 * factor).round() as usize).max(1))
+}

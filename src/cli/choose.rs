@@ -1,0 +1,140 @@
+//! `tabray choose`: accuracy and samples for an error or a time.
+
+use super::chart::{Work, all_accuracies};
+use super::input::{self, Source};
+use super::{Failure, interrupt, print};
+use crate::accuracy::Accuracy;
+use crate::chart::{self, Estimate};
+use crate::choice::Choice;
+use crate::registry::Registry;
+use clap::ArgGroup;
+use std::fmt::Write;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::thread;
+
+/// Choose accuracy and samples for an error or a time
+///
+/// It measures quickly what they make of the scene, says what it weighed, and prints the command line to use.
+#[derive(clap::Args)]
+#[command(group = ArgGroup::new("limit").args(["max_error", "max_time"]).required(true))]
+pub struct Args {
+    /// The scene; `-` reads it from standard input
+    scene: PathBuf,
+    /// The greatest error that is allowed: the root of the mean square of the colours' errors, 1 being white
+    #[arg(long, value_name = "E", value_parser = positive)]
+    max_error: Option<f64>,
+    /// How long the picture may take on all cores, in seconds
+    #[arg(long, value_name = "T", value_parser = positive)]
+    max_time: Option<f64>,
+}
+
+/// Times and errors that differ by less are equal: then the default accuracy is taken.
+const SAME: f64 = 1.1;
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(number) if number > 0.0 && f64::is_finite(number) => Ok(number),
+        _ => Err("this must be a number above 0".to_owned()),
+    }
+}
+
+pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
+    let source = Source::read(&args.scene)?;
+    input::told(source.load(registry, None))?;
+    let load = all_accuracies(registry, &source)?;
+    interrupt::catch()?;
+    let mut work = Work::new();
+    let estimates = chart::estimates(&load, &mut work);
+    work.end();
+    let estimates = estimates.map_err(|error| match error.kind() {
+        io::ErrorKind::Interrupted => Failure::Interrupted("nothing was chosen"),
+        _ => error.into(),
+    })?;
+    let cores = thread::available_parallelism().map_or(1, usize::from);
+    let choice = Weighed { estimates: &estimates, cores };
+    let (chosen, why) = match (args.max_error, args.max_time) {
+        (Some(error), _) => {
+            (choice.for_error(error)?, format!("the fastest with an error of at most {error}"))
+        }
+        (None, Some(time)) => (
+            choice.for_time(time)?,
+            format!("the one with the least error within {time} s on {cores} threads"),
+        ),
+        (None, None) => {
+            return Err(Failure::Usage("there is nothing to choose for".to_owned(), None));
+        }
+    };
+    print(&choice.words(chosen, &why, &args.scene))
+}
+
+struct Weighed<'e> {
+    estimates: &'e [Estimate],
+    cores: usize,
+}
+
+impl<'e> Weighed<'e> {
+    /// How long a choice takes on all cores, in seconds.
+    fn time(&self, estimate: &Estimate) -> f64 {
+        estimate.seconds / self.cores as f64
+    }
+
+    fn for_error(&self, error: f64) -> Result<&'e Estimate, Failure> {
+        let fit: Vec<_> = self.estimates.iter().filter(|estimate| estimate.rmse <= error).collect();
+        let fastest = fit.iter().min_by(|a, b| a.seconds.total_cmp(&b.seconds)).ok_or_else(|| {
+            let least = self.estimates.iter().map(|estimate| estimate.rmse).fold(f64::INFINITY, f64::min);
+            Failure::Failed(format!("no choice has an error of at most {error:e}; the least is {least:.2e}"))
+        })?;
+        Ok(fit
+            .iter()
+            .find(|own| own.accuracy == Accuracy::default() && own.seconds <= SAME * fastest.seconds)
+            .unwrap_or(fastest))
+    }
+
+    fn for_time(&self, time: f64) -> Result<&'e Estimate, Failure> {
+        let fit: Vec<_> = self.estimates.iter().filter(|estimate| self.time(estimate) <= time).collect();
+        let best = fit.iter().min_by(|a, b| a.rmse.total_cmp(&b.rmse)).ok_or_else(|| {
+            let least =
+                self.estimates.iter().map(|estimate| self.time(estimate)).fold(f64::INFINITY, f64::min);
+            Failure::Failed(format!("no choice takes at most {time} s; the fastest takes about {least:.2} s"))
+        })?;
+        Ok(fit
+            .iter()
+            .find(|own| own.accuracy == Accuracy::default() && own.rmse <= SAME * best.rmse)
+            .unwrap_or(best))
+    }
+
+    /// What was weighed, what was chosen, and the command line.
+    fn words(&self, chosen: &Estimate, why: &str, scene: &Path) -> String {
+        let mut text = format!("  {:<9}{:>8}{:>12}{:>12}\n", "accuracy", "samples", "error", "time");
+        let mut shown: Vec<_> =
+            self.estimates.iter().filter(|one| self.is_best(one) || std::ptr::eq(*one, chosen)).collect();
+        shown.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
+        for estimate in shown {
+            let mark = if std::ptr::eq(estimate, chosen) { '>' } else { ' ' };
+            let name = estimate.accuracy.option().name;
+            let (error, time) = (format!("{:.2e}", estimate.rmse), format!("{:.3} s", self.time(estimate)));
+            let _ = writeln!(text, "{mark} {name:<9}{:>8}{error:>12}{time:>12}", estimate.samples);
+        }
+        let how = match chosen.accuracy {
+            Accuracy::Classic => "--method classic".to_owned(),
+            accuracy => format!("--accuracy {}", accuracy.option().name),
+        };
+        let _ = write!(
+            text,
+            "\nThe one marked is {why}. The others have less error and take longer, or less time and more error.\n\n\
+             tabray render {} {how} --samples {}\n",
+            scene.display(),
+            chosen.samples
+        );
+        text
+    }
+
+    /// Whether no other choice is as fast and as right, and clearly better in one of these.
+    fn is_best(&self, one: &Estimate) -> bool {
+        !self.estimates.iter().any(|other| {
+            let (time, error) = (other.seconds / one.seconds, other.rmse / one.rmse);
+            time <= 1.0 && error <= SAME && (time * SAME < 1.0 || error * SAME < 1.0)
+        })
+    }
+}
