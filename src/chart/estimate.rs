@@ -1,7 +1,8 @@
 //! A quick measurement of what accuracy and samples make of a scene, to choose from.
 
 use super::colours::difference;
-use super::pictures::{self, Seen, TIMED_TESTS, TRUE_SAMPLES, TRUE_TESTS, each, smaller, spread, tests};
+use super::pictures::{self, Seen, TRUE_SAMPLES, TRUE_TESTS, count, each, render, tests, timed};
+use super::places::{Pixels, spread};
 use super::{Load, Progress};
 use crate::accuracy::Accuracy;
 use crate::bench::clock;
@@ -10,14 +11,13 @@ use crate::model::Model;
 use crate::render::Renderer;
 use crate::sample::Sampler;
 use crate::trace;
-use std::hint::black_box;
 use std::io;
 use std::ops::ControlFlow;
 
 /// The samples that there are to choose from.
 const SAMPLES: [u32; 9] = [1, 2, 4, 8, 16, 32, 64, 128, 256];
 
-/// How often each picture is timed; the least counts.
+/// How often each choice is timed; the least counts.
 const ROUNDS: usize = 3;
 
 /// What measuring one choice adds to the work.
@@ -46,10 +46,10 @@ pub fn estimates(load: Load, progress: &mut dyn Progress) -> io::Result<Vec<Esti
     let exact = load(Some(Accuracy::Exact))?;
     let tests = tests(&exact, &threads);
     let size = exact.camera.value.pixels;
-    let count = (TRUE_TESTS as f64 / 2.0 / (f64::from(TRUE_SAMPLES) * tests)) as usize;
-    let pixels = spread(size, count.clamp(256, 4096));
-    let small = smaller(size, (TIMED_TESTS as f64 / 4.0 / tests) as usize);
-    let scale = (size[0] * size[1]) as f64 / (small[0] * small[1]) as f64;
+    let most = (TRUE_TESTS as f64 / 2.0 / (f64::from(TRUE_SAMPLES) * tests)) as usize;
+    let pixels = spread(size, most.clamp(256, 4096));
+    let timed = timed(size, tests);
+    let scale = (size[0] * size[1]) as f64 / count(&timed) as f64;
     let right = whole(pictures::truth(&exact, &threads, &pixels, Seen::Picture, progress))?;
     let mut estimates = Vec::new();
     for accuracy in accuracies {
@@ -59,9 +59,8 @@ pub fn estimates(load: Load, progress: &mut dyn Progress) -> io::Result<Vec<Esti
             model.camera.value.samples = samples;
             let colours = each(&threads, &pixels, |x, y| trace::pixel(&model, x, y));
             let rmse = difference(&colours, &right).rmse;
-            model.camera.value.pixels = small;
-            let seconds = scale * (0..ROUNDS).map(|_| time(&thread, &model)).fold(f64::INFINITY, f64::min);
-            model.camera.value.pixels = size;
+            let rounds = (0..ROUNDS).map(|_| time(&thread, &model, &timed));
+            let seconds = scale * rounds.fold(f64::INFINITY, f64::min);
             estimates.push(Estimate { accuracy, samples, seconds, rmse });
             whole(progress.done(UNITS))?;
         }
@@ -76,11 +75,11 @@ fn whole<T>(flow: ControlFlow<(), T>) -> io::Result<T> {
     }
 }
 
-/// The CPU time of a picture on one thread, in seconds.
-fn time(thread: &Renderer, model: &Model) -> f64 {
+/// The CPU time that tiles take on one thread, in seconds.
+fn time(thread: &Renderer, model: &Model, tiles: &[Pixels]) -> f64 {
     thread.run(|| {
         let start = clock::now();
-        drop(black_box(thread.picture(model)));
+        render(model, tiles);
         (clock::now() - start).as_secs_f64()
     })
 }

@@ -3,29 +3,33 @@
 
 use super::candidate::{Candidate, is_searched};
 use super::clock;
+use super::packets::Packet;
+use super::places::{spread, tiles};
 use super::{Panel, Point, Progress, Study, Subject, Wrong};
 use crate::certify::Enclosure;
+use crate::cpu::Cpu;
 use crate::geometry::{Hittable, MISS, Ray, Side, Span};
 use crate::model::Model;
+use crate::packet::WIDE;
 use crate::twofold::Twofold;
 use std::hint::black_box;
 use std::ops::ControlFlow;
 
-/// The pairs of a ray and an object in each set.
+/// The pairs of a ray and an object in each set, about.
 const CAMERA: usize = 20_000;
 const GRAZING: usize = 4_000;
 
-/// Of which so many are timed.
-const TIMED: usize = 1_000;
+/// Of which so many are timed, about.
+const TIMED: usize = 2_000;
 
 /// What finding the truth about one pair takes, in units of [`Progress`].
 const TRUTH: usize = 30;
 
-/// Rays, each with the object that it is asked about, by its index.
+/// Rays, with the objects that they are asked about.
 pub struct Set {
     title: String,
     note: String,
-    pairs: Vec<(Ray, usize)>,
+    packets: Vec<Packet>,
     /// Whether the objects are the roots of a function along a ray.
     is_searched: bool,
 }
@@ -54,11 +58,11 @@ pub fn sets(model: &Model) -> Vec<Set> {
         }
         let names: Vec<_> = group.iter().map(|index| model.objects[*index].args.name.as_str()).collect();
         let what = list(names);
-        let mut add = |kind: &str, pairs: Vec<(Ray, usize)>| {
-            if !pairs.is_empty() {
+        let mut add = |kind: &str, packets: Vec<Packet>| {
+            if !packets.is_empty() {
                 let title = format!("{what}: {kind}");
-                let note = format!("{} rays", pairs.len());
-                sets.push(Set { title, note, pairs, is_searched: is_of_roots });
+                let note = format!("{} rays", count(&packets));
+                sets.push(Set { title, note, packets, is_searched: is_of_roots });
             }
         };
         add("rays of the camera", camera(model, &group));
@@ -67,9 +71,14 @@ pub fn sets(model: &Model) -> Vec<Set> {
     sets
 }
 
+/// How many rays they have.
+fn count(packets: &[Packet]) -> usize {
+    packets.iter().map(Packet::len).sum()
+}
+
 /// What measuring a set adds to the work.
 pub fn work(set: &Set, candidates: usize) -> usize {
-    set.pairs.len() * (TRUTH + candidates) + clock::work(candidates)
+    count(&set.packets) * (TRUTH + candidates) + clock::work(candidates)
 }
 
 /// Measures all choices on a set.
@@ -77,26 +86,30 @@ pub fn panel(study: &Study, set: &Set, progress: &mut dyn Progress) -> ControlFl
     let strict = &study.candidates[study.strict].model;
     let candidates: Vec<_> =
         study.candidates.iter().filter(|candidate| set.is_searched || candidate.accuracy.is_some()).collect();
+    let (cpu, rays) = (Cpu::best(), count(&set.packets));
     let mut truths = Vec::new();
-    for pairs in set.pairs.chunks(500) {
-        truths.extend(study.threads.run(|| each(pairs, |(ray, index)| truth(strict, ray, *index))));
-        progress.done(pairs.len() * TRUTH)?;
+    for packets in set.packets.chunks(8) {
+        truths.extend(
+            study.threads.run(|| each(packets, |packet| truths_of(strict, packet))).into_iter().flatten(),
+        );
+        progress.done(count(packets) * TRUTH)?;
     }
     let screen = strict.camera.value.screen.max_element();
     let mut errors = Vec::new();
     for candidate in &candidates {
         errors.push(tally(candidate, set, &truths, screen));
-        progress.done(set.pairs.len())?;
+        progress.done(rays)?;
     }
-    let step = set.pairs.len().div_ceil(TIMED);
-    let timed: Vec<_> = set.pairs.iter().step_by(step).collect();
+    let step = rays.div_ceil(TIMED);
+    let timed: Vec<_> = set.packets.iter().step_by(step).collect();
     let work = |choice: usize| {
         let objects = &candidates[choice].model.objects;
-        for (ray, index) in &timed {
-            black_box(objects[*index].shape.distance(black_box(ray), &Span::RAY));
+        for packet in &timed {
+            black_box(black_box(packet).hits(&*objects[packet.object].shape, cpu));
         }
     };
-    let times = clock::rounds(candidates.len(), timed.len(), work, progress)?;
+    let count = timed.iter().map(|packet| packet.len()).sum();
+    let times = clock::rounds(candidates.len(), count, work, progress)?;
     let hits = truths.iter().filter(|truth| matches!(truth, Truth::Hit(..))).count();
     let undecided = truths.iter().filter(|truth| matches!(truth, Truth::Undecided)).count();
     if hits == 0 {
@@ -138,13 +151,14 @@ fn each<T: Sync, U: Send>(of: &[T], work: impl Fn(&T) -> U + Sync + Send) -> Vec
     of.par_iter().map(work).collect()
 }
 
-fn truth(model: &Model, ray: &Ray, index: usize) -> Truth {
-    let shape = &model.objects[index].shape;
-    match shape.certify(ray) {
-        Enclosure::Hits(_, at) => Truth::Hit(at, side(&**shape, ray, at.high)),
+fn truths_of(model: &Model, packet: &Packet) -> Vec<Truth> {
+    let shape = &*model.objects[packet.object].shape;
+    let truth = |ray: Ray| match shape.certify(&ray) {
+        Enclosure::Hits(_, at) => Truth::Hit(at, side(shape, &ray, at.high)),
         Enclosure::Misses => Truth::Miss,
         Enclosure::Doubtful(_) => Truth::Undecided,
-    }
+    };
+    packet.rays().map(truth).collect()
 }
 
 /// The side of its surface on which a ray meets a shape.
@@ -155,9 +169,13 @@ fn side(shape: &dyn Hittable, ray: &Ray, distance: f64) -> Side {
 /// The errors of the right hits, sorted, and how many others there are.
 fn tally(candidate: &Candidate, set: &Set, truths: &[Truth], screen: f64) -> (Vec<f64>, Wrong) {
     let (mut errors, mut wrong) = (Vec::new(), Wrong::default());
-    for ((ray, index), truth) in set.pairs.iter().zip(truths) {
-        let shape = &*candidate.model.objects[*index].shape;
-        let found = shape.distance(ray, &Span::RAY);
+    let cpu = Cpu::best();
+    let found = set.packets.iter().flat_map(|packet| {
+        let shape = &*candidate.model.objects[packet.object].shape;
+        let hits = packet.hits(shape, cpu);
+        packet.rays().zip(hits).map(move |(ray, found)| (shape, ray, found))
+    });
+    for ((shape, ray, found), truth) in found.zip(truths) {
         match truth {
             Truth::Undecided => continue,
             Truth::Miss => wrong.invented += usize::from(found != MISS),
@@ -166,7 +184,7 @@ fn tally(candidate: &Candidate, set: &Set, truths: &[Truth], screen: f64) -> (Ve
                 let error = (Twofold::from(found) - *right).high.abs();
                 // A hit on the other side of the surface is another crossing, unless it is off by no more than it
                 // may be; one far off is in any case.
-                let is_off = error > 10.0 * candidate.promise && side(shape, ray, found) != *on;
+                let is_off = error > 10.0 * candidate.promise && side(shape, &ray, found) != *on;
                 if is_off || error > 0.01 * screen {
                     wrong.later += 1;
                 } else {
@@ -183,27 +201,25 @@ fn tally(candidate: &Candidate, set: &Set, truths: &[Truth], screen: f64) -> (Ve
 /// Whether anything is certain about rays that meet a shape.
 fn is_provable(model: &Model, shape: &dyn Hittable) -> bool {
     const LOOKS: usize = 64;
-    through(model, LOOKS).any(|ray| !matches!(shape.certify(&ray), Enclosure::Doubtful(_)))
-}
-
-/// So many rays through the picture, spread evenly by the R2 sequence (M. Roberts, "The unreasonable effectiveness of
-/// quasirandom sequences", 2018).
-fn through(model: &Model, count: usize) -> impl Iterator<Item = Ray> + '_ {
     let camera = &model.camera.value;
-    let [width, height] = camera.pixels.map(|side| (side - 1) as f64);
-    (0..count).map(move |index| {
-        let place = |part: f64| (0.5 + part * index as f64).fract();
-        camera.ray(width * place(0.754_877_666_246_692_7), height * place(0.569_840_290_998_053_2))
-    })
+    let mut places = spread(camera.pixels, LOOKS).into_iter();
+    places.any(|[x, y]| !matches!(shape.certify(&camera.ray(x as f64, y as f64)), Enclosure::Doubtful(_)))
 }
 
-fn camera(model: &Model, group: &[usize]) -> Vec<(Ray, usize)> {
-    let rays = CAMERA.div_ceil(group.len());
-    through(model, rays).flat_map(|ray| group.iter().map(move |index| (ray, *index))).collect()
+/// Rays through the middles of pixels, in the packets in which a render has them.
+fn camera(model: &Model, group: &[usize]) -> Vec<Packet> {
+    let camera = &model.camera.value;
+    let count = CAMERA.div_ceil(group.len() * WIDE);
+    let mut packets = Vec::new();
+    for tile in tiles(camera.pixels, count) {
+        let rays: Vec<_> = tile.into_iter().map(|[x, y]| camera.ray(x as f64, y as f64)).collect();
+        packets.extend(group.iter().flat_map(|index| Packet::of(*index, &rays)));
+    }
+    packets
 }
 
 /// Rays beside the edges of objects, from a pixel's width to 10^-10 of one away from them.
-fn grazing(model: &Model, group: &[usize]) -> Vec<(Ray, usize)> {
+fn grazing(model: &Model, group: &[usize]) -> Vec<Packet> {
     const DIGITS: i32 = 10;
     let camera = &model.camera.value;
     let [width, height] = camera.pixels;
@@ -211,8 +227,8 @@ fn grazing(model: &Model, group: &[usize]) -> Vec<(Ray, usize)> {
         model.objects[index].shape.distance(&camera.ray(x, y), &Span::RAY) != MISS
     };
     let mut edges = Vec::new();
-    for y in 0..height {
-        for &index in group {
+    for &index in group {
+        for y in 0..height {
             let mut last = hits(0.0, y as f64, index);
             for x in 1..width {
                 let here = hits(x as f64, y as f64, index);
@@ -225,7 +241,7 @@ fn grazing(model: &Model, group: &[usize]) -> Vec<(Ray, usize)> {
     }
     let rays = 2 * (DIGITS as usize + 1);
     let step = edges.len().div_ceil(GRAZING / rays).max(1);
-    let mut pairs = Vec::new();
+    let mut rays_of = vec![Vec::new(); model.objects.len()];
     for (x, y, index, here) in edges.into_iter().step_by(step) {
         let (y, mut low, mut high) = (y as f64, x as f64 - 1.0, x as f64);
         loop {
@@ -237,11 +253,11 @@ fn grazing(model: &Model, group: &[usize]) -> Vec<(Ray, usize)> {
         }
         for digits in 0..=DIGITS {
             for beside in [-1.0, 1.0] {
-                pairs.push((camera.ray(high + beside * 0.1_f64.powi(digits), y), index));
+                rays_of[index].push(camera.ray(high + beside * 0.1_f64.powi(digits), y));
             }
         }
     }
-    pairs
+    group.iter().flat_map(|index| Packet::of(*index, &rays_of[*index]).collect::<Vec<_>>()).collect()
 }
 
 /// Names, each once, in words.

@@ -1,12 +1,13 @@
 //! Where and when a chart was measured.
 
+use crate::cpu::Cpu;
 use std::fs;
 use std::thread;
 use std::time::SystemTime;
 
 /// A machine, a build of the program, and a time.
 pub struct Machine {
-    /// The processor, as the system calls it, and how many threads it runs.
+    /// The processor, as the system calls it, those of its instructions that are used, and how many threads it runs.
     pub processor: String,
     /// The program's version, and how it was built.
     pub build: String,
@@ -23,8 +24,9 @@ impl Machine {
         let now = humantime::format_rfc3339_seconds(SystemTime::now()).to_string();
         Self {
             processor: format!(
-                "{}, {threads} thread{}",
+                "{}, {}, {threads} thread{}",
                 name().unwrap_or_else(|| target.clone()),
+                Cpu::best(),
                 if threads == 1 { "" } else { "s" }
             ),
             build: format!("tabray {}, {build} for {target}", env!("CARGO_PKG_VERSION")),

@@ -16,7 +16,9 @@ mod front;
 mod hits;
 mod labels;
 mod machine;
+mod packets;
 mod pictures;
+mod places;
 mod verdict;
 
 pub use clock::Times;

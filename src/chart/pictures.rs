@@ -1,16 +1,19 @@
 //! What each choice makes of the picture: its colours against the right ones, and how long they take.
 //!
-//! Errors are of some of the picture's own pixels, spread evenly; times are of a smaller picture of the same view, made
-//! on one thread.
+//! Errors are of some of the picture's own pixels, spread evenly; times are of some of its tiles, each traced on one
+//! thread as a render traces it.
 
 use super::clock::{self, Times};
 use super::colours::{Difference, difference};
+use super::places::{Pixels, spread, tiles};
 use super::{Family, Panel, Point, Progress, Study, Subject, Wrong};
+use crate::cpu::Cpu;
 use crate::material::Rgb;
 use crate::model::Model;
+use crate::packet::WIDE;
 use crate::render::Renderer;
 use crate::sample::{Sample, Sampler};
-use crate::trace;
+use crate::trace::{self, Tracer};
 use crate::watch::{Event, Watch};
 use std::hint::black_box;
 use std::ops::ControlFlow;
@@ -24,8 +27,9 @@ const SAMPLES: [u32; 8] = [1, 2, 4, 8, 16, 24, 32, 64];
 /// The tests of an object that one panel of samples may take for its truth: about as many tenths of a microsecond.
 pub(super) const TRUE_TESTS: usize = 50_000_000;
 
-/// The tests that a picture to be timed takes with one sample for each pixel.
-pub(super) const TIMED_TESTS: usize = 25_000;
+/// The tests that what is timed takes with one sample for each pixel, about, and the tiles that are timed at least.
+const TIMED_TESTS: usize = 25_000;
+const TIMED_TILES: usize = 16;
 
 /// The tests that pictures by another method may take.
 const METHOD_TESTS: usize = 500_000;
@@ -37,16 +41,6 @@ pub(super) enum Seen {
     Picture,
     /// Soft shadows alone: each pixel is looked at in its middle.
     Shadows,
-}
-
-/// Pixels, from the left and from the bottom.
-pub(super) type Pixels = Vec<[usize; 2]>;
-
-/// How much of the picture is looked at.
-struct Extent {
-    pixels: Pixels,
-    /// The width and height of the smaller picture.
-    small: [usize; 2],
 }
 
 /// What all pictures add to the work, about.
@@ -65,14 +59,14 @@ pub fn methods(study: &mut Study, progress: &mut dyn Progress) -> ControlFlow<()
     let tests = tests(&study.candidates[study.default].model, &study.threads);
     let own = study.candidates[study.default].model.camera.value.pixels;
     let pixels = spread(own, (METHOD_TESTS as f64 / tests) as usize);
-    let small = smaller(own, (TIMED_TESTS as f64 / tests) as usize);
+    let timed = timed(own, tests);
     let samples = study.candidates[study.default].model.camera.value.samples;
-    let set = |study: &mut Study, pixels: [usize; 2], samples: u32| {
+    let set = |study: &mut Study, samples: u32| {
         for candidate in &mut study.candidates {
-            (candidate.model.camera.value.pixels, candidate.model.camera.value.samples) = (pixels, samples);
+            candidate.model.camera.value.samples = samples;
         }
     };
-    set(study, own, 1);
+    set(study, 1);
     let mut colours = Vec::new();
     for candidate in &study.candidates {
         colours.push(each(&study.threads, &pixels, |x, y| trace::pixel(&candidate.model, x, y)));
@@ -80,14 +74,12 @@ pub fn methods(study: &mut Study, progress: &mut dyn Progress) -> ControlFlow<()
     }
     let right = &colours[study.strict];
     let differences: Vec<_> = colours.iter().map(|colours| difference(colours, right)).collect();
-    set(study, small, 1);
-    let count = small[0] * small[1];
     let times = {
         let Study { candidates, thread, .. } = &*study;
-        let work = |choice: usize| drop(black_box(thread.picture(&candidates[choice].model)));
-        thread.run(|| clock::rounds(candidates.len(), count, work, progress))
+        let work = |choice: usize| render(&candidates[choice].model, &timed);
+        thread.run(|| clock::rounds(candidates.len(), count(&timed), work, progress))
     };
-    set(study, own, samples);
+    set(study, samples);
     let points =
         study.candidates.iter().zip(differences).zip(times?).map(|((candidate, off), times)| Point {
             is_default: candidate.is_default,
@@ -107,36 +99,26 @@ pub fn samples(study: &mut Study, seen: Seen, progress: &mut dyn Progress) -> Co
     let Study { candidates, default, threads, thread, .. } = study;
     let model = &mut candidates[*default].model;
     let own = model.camera.value.clone();
-    let extent = extent(model, threads);
-    let right = truth(model, threads, &extent.pixels, seen, progress)?;
+    let tests = tests(model, threads);
+    let most = (TRUE_TESTS as f64 / (f64::from(TRUE_SAMPLES) * tests)) as usize;
+    let pixels = spread(own.pixels, most.clamp(1024, 8192));
+    let right = truth(model, threads, &pixels, seen, progress)?;
     let choices: Vec<_> = choices(own.samples, own.sampler);
     let mut differences = Vec::new();
     for (samples, sampler) in &choices {
         (model.camera.value.samples, model.camera.value.sampler) = (*samples, *sampler);
         let model = &*model;
-        let colours = each(threads, &extent.pixels, |x, y| colour(model, [x, y], seen));
+        let colours = each(threads, &pixels, |x, y| colour(model, [x, y], seen));
         differences.push(difference(&colours, &right));
         progress.done(TRUE_TESTS / 40 / choices.len())?;
     }
-    let timed = match seen {
-        Seen::Picture => extent.small[0] * extent.small[1],
-        Seen::Shadows => extent.pixels.len().min(200),
-    };
+    let timed = timed(own.pixels, tests);
     let times = thread.run(|| {
         let work = |choice: usize| {
             (model.camera.value.samples, model.camera.value.sampler) = choices[choice];
-            match seen {
-                Seen::Picture => {
-                    model.camera.value.pixels = extent.small;
-                    drop(black_box(thread.picture(model)));
-                    model.camera.value.pixels = own.pixels;
-                }
-                Seen::Shadows => extent.pixels.iter().take(timed).for_each(|place| {
-                    black_box(colour(model, *place, seen));
-                }),
-            }
+            render(model, &timed);
         };
-        clock::rounds(choices.len(), timed, work, progress)
+        clock::rounds(choices.len(), count(&timed), work, progress)
     });
     model.camera.value = own.clone();
     if differences.iter().all(|off| off.rmse == 0.0) {
@@ -150,7 +132,7 @@ pub fn samples(study: &mut Study, seen: Seen, progress: &mut dyn Progress) -> Co
                 sampler.family(),
                 times,
                 off,
-                (extent.pixels.len(), *samples),
+                (pixels.len(), *samples),
             )
         });
     let title = match (seen, has_size(model)) {
@@ -160,7 +142,7 @@ pub fn samples(study: &mut Study, seen: Seen, progress: &mut dyn Progress) -> Co
     };
     ControlFlow::Continue(Some(Panel {
         title: title.to_owned(),
-        note: format!("{} pixels, against {TRUE_SAMPLES} samples", extent.pixels.len()),
+        note: format!("{} pixels, against {TRUE_SAMPLES} samples", pixels.len()),
         subject: Subject::Samples,
         points: points.collect(),
     }))
@@ -214,13 +196,23 @@ fn choices(own: u32, own_sampler: Sampler) -> Vec<(u32, Sampler)> {
     choices
 }
 
-fn extent(model: &Model, threads: &Renderer) -> Extent {
-    let tests = tests(model, threads);
-    let own = model.camera.value.pixels;
-    let count = (TRUE_TESTS as f64 / (f64::from(TRUE_SAMPLES) * tests)) as usize;
-    Extent {
-        pixels: spread(own, count.clamp(1024, 8192)),
-        small: smaller(own, (TIMED_TESTS as f64 / tests) as usize),
+/// What is timed of a picture whose pixels take so many tests each.
+pub(super) fn timed(size: [usize; 2], tests: f64) -> Vec<Pixels> {
+    tiles(size, ((TIMED_TESTS as f64 / tests) as usize).div_ceil(WIDE).max(TIMED_TILES))
+}
+
+/// How many pixels tiles have.
+pub(super) fn count(tiles: &[Pixels]) -> usize {
+    tiles.iter().map(Vec::len).sum()
+}
+
+/// Traces tiles as a render does, on this thread.
+pub(super) fn render(model: &Model, tiles: &[Pixels]) {
+    for tile in tiles {
+        let mut nobody = ();
+        Tracer::new(model, Cpu::best(), &mut nobody).pixels(tile, |_, colour| {
+            black_box(colour);
+        });
     }
 }
 
@@ -304,24 +296,4 @@ pub(super) fn tests(model: &Model, threads: &Renderer) -> f64 {
     };
     let all: usize = each(threads, &pixels, count).into_iter().sum();
     (all as f64 / (pixels.len() * samples) as f64).max(1.0)
-}
-
-/// So many pixels of a picture, spread evenly over it; all of a smaller one.
-pub(super) fn spread([width, height]: [usize; 2], count: usize) -> Pixels {
-    let all = width * height;
-    if count >= all {
-        return (0..all).map(|index| [index % width, index / width]).collect();
-    }
-    let place = |index: usize, part: f64, side: usize| ((part * index as f64).fract() * side as f64) as usize;
-    (0..count)
-        .map(|index| {
-            [place(index, 0.754_877_666_246_692_7, width), place(index, 0.569_840_290_998_053_2, height)]
-        })
-        .collect()
-}
-
-/// The size of a picture like another one, of about so many pixels and no more than that has.
-pub(super) fn smaller([width, height]: [usize; 2], count: usize) -> [usize; 2] {
-    let factor = (count as f64 / (width * height) as f64).sqrt().min(1.0);
-    [width, height].map(|side| ((side as f64 * factor).round() as usize).max(1))
 }

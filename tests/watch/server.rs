@@ -175,7 +175,8 @@ fn the_layers_are_those_of_aov() {
     watching.events().until("done");
     let renderer = Renderer::new(1).expect("a thread");
     for aov in [Aov::Depth, Aov::Normal, Aov::Object, Aov::Cost] {
-        let layer = aov.render(&renderer, &model(&ball("9 0 0")), &|| ControlFlow::Continue(()));
+        let model = model(&ball("9 0 0"));
+        let layer = aov.render(&renderer, &model, &model, &|| ControlFlow::Continue(()));
         let expected = layer.unwrap_or_else(|_| panic!("nobody interrupts {aov:?}")).bytes;
         assert_eq!(watching.get(&format!("layer/1/{}", aov.name())), (200, expected));
     }
