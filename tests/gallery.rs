@@ -131,8 +131,9 @@ the first; beside it stands of how many of all rays. The line is the Pareto fron
 those that none beats in both time and error. Times that differ by less than a tenth count as equal, and so do errors
 that differ by less than a half.
 
-- **Rays of the camera**: 20000 pairs of a ray through the picture and an object, spread evenly. Objects are apart by
-  kind: those that are found by a search along the ray, and those that have a formula.
+- **Rays of the camera**: about 20000 pairs of a ray through a pixel and an object, in tiles of 8 by 8 pixels that are
+  spread evenly. Objects are apart by kind: those that are found by a search along the ray, and those that have a
+  formula.
 - **Rays that graze silhouettes**: pairs beside an object's edge as the camera sees it, at distances from a pixel to
   10^-10 of one. Their distances answer an error of the last digit with one of its root.
 - **The picture, by method**: one ray through each pixel, and how far its colours are from those that `strict` makes.
@@ -145,9 +146,12 @@ as undecided. Errors of colours are the root of the mean square over pixels and 
 0 to 1. Errors depend on the scene alone: two runs give the same to the last digit.
 
 Times are those of one thread, in CPU time, of the same work for each choice by turns, up to 15 rounds after one to warm
-up; the least round counts. Distances are timed on up to 1000 of the pairs, pictures on a smaller one of the same view.
-The caption tells how far the middle round was from the least, for the choice in the middle. Where that is above 15 %, or
-where rounds waited that long for other work of the machine, it says not to trust the times.
+up; the least round counts. Distances are timed on about 2000 of the pairs, pictures on some of their tiles. Both go as
+in a render: a packet of 64 rays at a time, with the best instructions that the processor has. Where a hit is searched
+for, only `draft`, `exact` and `strict` take a packet's rays together. All others take them one by one; `exact, one by
+one` does so too, and tells what of the difference is the method's and what the packets'. The caption tells how far the
+middle round was from the least, for the choice in the middle. Where that is above 15 %, or where rounds waited that long
+for other work of the machine, it says not to trust the times.
 
 ## The methods
 

@@ -6,7 +6,7 @@ use crate::bounds::Bounds;
 use crate::certify::Enclosure;
 use crate::choice::Choice;
 use crate::geometry::{Hittable, MISS, Ray, Span};
-use crate::model::Model;
+use crate::model::{Model, Object};
 use crate::roots::Method;
 use glam::DVec3;
 use std::io;
@@ -43,29 +43,30 @@ pub fn all(load: Load) -> io::Result<Vec<Candidate>> {
             promise,
         });
     }
-    for method in Method::ALL {
+    // Without packets the default is measured as the other methods are.
+    for method in [None].into_iter().chain(Method::ALL.map(Some)) {
         let mut model = load(Some(Accuracy::Exact))?;
         if !model.objects.iter().any(|object| is_searched(&*object.shape)) {
             break;
         }
-        for object in &mut model.objects {
-            if is_searched(&*object.shape) {
-                let shape = std::mem::replace(&mut object.shape, Box::new(Nothing));
-                object.shape = Box::new(By { shape, method });
-            }
-        }
+        let by = |object: Object| match is_searched(&*object.shape) {
+            true => Object { shape: Box::new(By { shape: object.shape, method }), ..object },
+            false => object,
+        };
+        model.objects = model.objects.into_iter().map(by).collect();
         candidates.push(Candidate {
-            name: method.to_string(),
+            name: method.map_or_else(|| "exact, one by one".to_owned(), |method| method.to_string()),
             family: match method {
-                Method::Steps => Family::Notes,
-                Method::Samples(..) | Method::Turning(_) => Family::Sampling,
-                Method::Tracing => Family::Tracing,
-                Method::Intervals | Method::Taylor => Family::Bounds,
+                None => Family::Own,
+                Some(Method::Steps) => Family::Notes,
+                Some(Method::Samples(..) | Method::Turning(_)) => Family::Sampling,
+                Some(Method::Tracing) => Family::Tracing,
+                Some(Method::Intervals | Method::Taylor) => Family::Bounds,
             },
             model,
             accuracy: None,
             is_default: false,
-            promise: method.promise(),
+            promise: method.map_or(1e-9, Method::promise),
         });
     }
     Ok(candidates)
@@ -77,15 +78,18 @@ pub fn is_searched(shape: &dyn Hittable) -> bool {
     shape.distance_by(Method::Steps, &any, &Span::RAY).is_some()
 }
 
-/// A shape that is found by another method.
+/// A shape whose rays go one by one, found by another method or by its own.
 struct By {
     shape: Box<dyn Hittable>,
-    method: Method,
+    method: Option<Method>,
 }
 
 impl Hittable for By {
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        self.shape.distance_by(self.method, ray, within).unwrap_or(MISS)
+        match self.method {
+            None => self.shape.distance(ray, within),
+            Some(method) => self.shape.distance_by(method, ray, within).unwrap_or(MISS),
+        }
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {
@@ -106,18 +110,5 @@ impl Hittable for By {
 
     fn certify(&self, ray: &Ray) -> Enclosure {
         self.shape.certify(ray)
-    }
-}
-
-/// What stands in a shape's place while it changes.
-struct Nothing;
-
-impl Hittable for Nothing {
-    fn distance(&self, _ray: &Ray, _within: &Span) -> f64 {
-        MISS
-    }
-
-    fn normal(&self, _at: DVec3) -> DVec3 {
-        DVec3::Y
     }
 }
