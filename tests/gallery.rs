@@ -148,10 +148,12 @@ as undecided. Errors of colours are the root of the mean square over pixels and 
 Times are those of one thread, in CPU time, of the same work for each choice by turns, up to 15 rounds after one to warm
 up; the least round counts. Distances are timed on about 2000 of the pairs, pictures on some of their tiles. Both go as
 in a render: a packet of 64 rays at a time, with the best instructions that the processor has. Where a hit is searched
-for, only `draft`, `exact` and `strict` take a packet's rays together. All others take them one by one; `exact, one by
-one` does so too, and tells what of the difference is the method's and what the packets'. The caption tells how far the
-middle round was from the least, for the choice in the middle. Where that is above 15 %, or where rounds waited that long
-for other work of the machine, it says not to trust the times.
+for, only `draft`, `exact` and `strict` take a packet's rays together; all others take them one by one, and a part of
+what the default is faster is owed to that. Of rays that graze silhouettes it takes most one by one, too.
+
+The caption tells how far the middle round was from the least, for the choice in the middle: above 15 % it says not to
+trust the times. Where rounds waited so long for other work of the machine, it says so: that is no part of CPU time, but
+cores that share a cache or a unit of arithmetic slow each other, all choices alike.
 
 ## The methods
 

@@ -43,8 +43,7 @@ pub fn all(load: Load) -> io::Result<Vec<Candidate>> {
             promise,
         });
     }
-    // Without packets the default is measured as the other methods are.
-    for method in [None].into_iter().chain(Method::ALL.map(Some)) {
+    for method in Method::ALL {
         let mut model = load(Some(Accuracy::Exact))?;
         if !model.objects.iter().any(|object| is_searched(&*object.shape)) {
             break;
@@ -55,18 +54,17 @@ pub fn all(load: Load) -> io::Result<Vec<Candidate>> {
         };
         model.objects = model.objects.into_iter().map(by).collect();
         candidates.push(Candidate {
-            name: method.map_or_else(|| "exact, one by one".to_owned(), |method| method.to_string()),
+            name: method.to_string(),
             family: match method {
-                None => Family::Own,
-                Some(Method::Steps) => Family::Notes,
-                Some(Method::Samples(..) | Method::Turning(_)) => Family::Sampling,
-                Some(Method::Tracing) => Family::Tracing,
-                Some(Method::Intervals | Method::Taylor) => Family::Bounds,
+                Method::Steps => Family::Notes,
+                Method::Samples(..) | Method::Turning(_) => Family::Sampling,
+                Method::Tracing => Family::Tracing,
+                Method::Intervals | Method::Taylor => Family::Bounds,
             },
             model,
             accuracy: None,
             is_default: false,
-            promise: method.map_or(1e-9, Method::promise),
+            promise: method.promise(),
         });
     }
     Ok(candidates)
@@ -78,18 +76,15 @@ pub fn is_searched(shape: &dyn Hittable) -> bool {
     shape.distance_by(Method::Steps, &any, &Span::RAY).is_some()
 }
 
-/// A shape whose rays go one by one, found by another method or by its own.
+/// A shape that is found by another method.
 struct By {
     shape: Box<dyn Hittable>,
-    method: Option<Method>,
+    method: Method,
 }
 
 impl Hittable for By {
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        match self.method {
-            None => self.shape.distance(ray, within),
-            Some(method) => self.shape.distance_by(method, ray, within).unwrap_or(MISS),
-        }
+        self.shape.distance_by(self.method, ray, within).unwrap_or(MISS)
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {

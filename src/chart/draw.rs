@@ -71,7 +71,11 @@ fn draw<D: DrawingBackend>(chart: &Chart, backend: D, scale: f64) -> io::Result<
     let title = format!("{}: what each choice costs, and how wrong it is", chart.scene);
     canvas.text(&title, (20.0, 26.0), Align::Left, head)?;
     let machine = &chart.machine;
-    let trust = if chart.is_noisy() { " - the machine was busy: do not trust the times" } else { "" };
+    let trust = match (chart.is_noisy(), chart.is_busy()) {
+        (true, _) => ": do not trust the times",
+        (false, true) => "; the machine was busy: all times may be too long",
+        (false, false) => "",
+    };
     let caption = format!(
         "{}; {}; measured on {} UTC; rounds {:.1} % apart{trust}",
         machine.processor,

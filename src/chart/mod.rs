@@ -230,6 +230,9 @@ impl Panel {
     }
 }
 
+/// What noise and waiting may be at most.
+const MOST: f64 = 0.15;
+
 impl Chart {
     /// How far apart rounds of the same work were, as a part of their time: that of the choice in the middle.
     pub fn noise(&self) -> f64 {
@@ -243,8 +246,12 @@ impl Chart {
 
     /// Whether its times cannot be trusted.
     pub fn is_noisy(&self) -> bool {
-        const MOST: f64 = 0.15;
-        self.noise() > MOST || self.waited() > MOST
+        self.noise() > MOST
+    }
+
+    /// Whether the machine had other work, which slows all choices alike.
+    pub fn is_busy(&self) -> bool {
+        self.waited() > MOST
     }
 
     fn middle(&self, of: impl Fn(&Times) -> f64) -> f64 {

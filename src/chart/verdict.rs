@@ -25,9 +25,14 @@ pub fn words(chart: &Chart) -> String {
     if chart.is_noisy() {
         let _ = writeln!(
             text,
-            "The machine was busy: rounds of the same work were {:.0} % apart and waited {:.0} % of their time for \
-             others. Do not trust the times.",
-            100.0 * chart.noise(),
+            "Rounds of the same work were {:.0} % apart. Do not trust the times.",
+            100.0 * chart.noise()
+        );
+    }
+    if chart.is_busy() {
+        let _ = writeln!(
+            text,
+            "The machine was busy: rounds waited {:.0} % of their time for other work. All times may be too long.",
             100.0 * chart.waited()
         );
     }
