@@ -169,6 +169,13 @@ fn objects_differ_in_colour_and_near_is_brighter_than_far() {
 }
 
 #[test]
+fn costs_are_counted_where_only_a_part_of_a_light_shines() {
+    let folder = with_aov(&root().join("scenes/light/size.ray"), "cost");
+    let costs = image::open(folder.path().join("a-cost.png")).expect("a PNG").into_rgb8();
+    assert!(costs.pixels().any(|pixel| pixel.0[0] < 255), "not every sample's ray meets the ball or the floor");
+}
+
+#[test]
 fn errors_are_where_edges_are_and_red_where_another_object_is_seen() {
     let folder = TempDir::new().expect("a folder");
     let render = |name: &str, method: &str| {
