@@ -172,7 +172,10 @@ fn objects_differ_in_colour_and_near_is_brighter_than_far() {
 fn costs_are_counted_where_only_a_part_of_a_light_shines() {
     let folder = with_aov(&root().join("scenes/light/size.ray"), "cost");
     let costs = image::open(folder.path().join("a-cost.png")).expect("a PNG").into_rgb8();
-    assert!(costs.pixels().any(|pixel| pixel.0[0] < 255), "not every sample's ray meets the ball or the floor");
+    assert!(
+        costs.pixels().any(|pixel| pixel.0[0] < 255),
+        "not every sample's ray meets the ball or the floor"
+    );
 }
 
 #[test]

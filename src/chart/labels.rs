@@ -57,14 +57,14 @@ pub struct Place {
 }
 
 /// Places labels of these sizes beside their points, the first ones best, and clear of lines; nothing for one that has
-/// no room.
+/// no room. Where points crowd, a line from one to its label may run across another point.
 pub fn place(points: &[(f64, f64)], sizes: &[(f64, f64)], lines: &[Line], room: Area) -> Vec<Option<Place>> {
     const ATTEMPTS: usize = 10;
     let mut order: Vec<usize> = (0..points.len()).collect();
     let mut best: Vec<Option<Place>> = vec![None; points.len()];
     let count = |places: &[Option<Place>]| places.iter().flatten().count();
     for _ in 0..ATTEMPTS {
-        let places = place_in_order(&order, points, sizes, lines, room);
+        let places = place_in_order(&order, points, sizes, lines, room, false);
         if count(&places) > count(&best) {
             best.clone_from(&places);
         }
@@ -74,7 +74,10 @@ pub fn place(points: &[(f64, f64)], sizes: &[(f64, f64)], lines: &[Line], room: 
         // Those that found no room choose first.
         order.sort_by_key(|index| places[*index].is_some());
     }
-    best
+    if count(&best) == points.len() {
+        return best;
+    }
+    place_in_order(&(0..points.len()).collect::<Vec<_>>(), points, sizes, lines, room, true)
 }
 
 fn place_in_order(
@@ -83,6 +86,7 @@ fn place_in_order(
     sizes: &[(f64, f64)],
     lines: &[Line],
     room: Area,
+    may_cross: bool,
 ) -> Vec<Option<Place>> {
     const MARKER: f64 = 8.0;
     /// As far from its point a label needs no line to it.
@@ -101,7 +105,7 @@ fn place_in_order(
     let mut placed: Vec<Option<Place>> = vec![None; points.len()];
     for &index in order {
         let ((x, y), (width, height)) = (&points[index], &sizes[index]);
-        let fits = |radius: f64, (right, down): (f64, f64), begins: f64| {
+        let fits = |radius: f64, (right, down): (f64, f64), begins: f64, may_cross: bool| {
             let end = (x + radius * right, y + radius * down);
             // It begins, ends or has its middle there.
             let left = end.0 - begins * width;
@@ -117,7 +121,7 @@ fn place_in_order(
                 let line = ((*x, *y), end);
                 // Those that it starts below are there in any case.
                 let mut others = markers.iter().filter(|marker| !marker.holds(points[index]));
-                !others.any(|marker| marker.is_crossed(line))
+                (may_cross || !others.any(|marker| marker.is_crossed(line)))
                     && !placed.iter().flatten().any(|other| other.area.is_crossed(line))
             });
             let covers = placed.iter().zip(points).any(|(other, from)| {
@@ -125,17 +129,23 @@ fn place_in_order(
             });
             (is_free && is_clear && !covers).then_some(Place { area, leader })
         };
-        let places = (0..RADII).map(|step| NEAR + 10.0 * f64::from(step)).flat_map(|radius| {
-            ways.iter().flat_map(move |way| {
-                let (right, _) = *way;
-                let natural = if right.abs() < 0.1 { 0.5 } else { f64::from(right < 0.0) };
-                // Beside a steep line it can be on either side.
-                let others = if right.abs() < 0.8 && radius > NEAR { [0.0, 1.0].as_slice() } else { &[] };
-                [natural].into_iter().chain(others.iter().copied()).map(move |begins| (radius, *way, begins))
+        let places = || {
+            (0..RADII).map(|step| NEAR + 10.0 * f64::from(step)).flat_map(|radius| {
+                ways.iter().flat_map(move |way| {
+                    let (right, _) = *way;
+                    let natural = if right.abs() < 0.1 { 0.5 } else { f64::from(right < 0.0) };
+                    // Beside a steep line it can be on either side.
+                    let others = if right.abs() < 0.8 && radius > NEAR { [0.0, 1.0].as_slice() } else { &[] };
+                    [natural]
+                        .into_iter()
+                        .chain(others.iter().copied())
+                        .map(move |begins| (radius, *way, begins))
+                })
             })
-        });
-        let place = places.into_iter().find_map(|(radius, way, begins)| fits(radius, way, begins));
-        placed[index] = place;
+        };
+        let place =
+            |may_cross: bool| places().find_map(|(radius, way, begins)| fits(radius, way, begins, may_cross));
+        placed[index] = place(false).or_else(|| may_cross.then(|| place(true))?);
     }
     placed
 }
@@ -143,6 +153,24 @@ fn place_in_order(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_point_between_others_has_its_label() {
+        let points = [
+            (250.0, 150.0),
+            (234.0, 150.0),
+            (266.0, 150.0),
+            (250.0, 134.0),
+            (250.0, 166.0),
+            (238.0, 138.0),
+            (262.0, 138.0),
+            (238.0, 162.0),
+            (262.0, 162.0),
+        ];
+        let room = Area { left: 0.0, top: 0.0, right: 500.0, bottom: 300.0 };
+        let places = place(&points, &[(90.0, 14.0); 9], &[], room);
+        assert!(places.iter().all(Option::is_some));
+    }
 
     #[test]
     fn labels_of_a_crowd_cover_neither_each_other_nor_a_point() {
