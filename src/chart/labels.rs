@@ -57,97 +57,109 @@ pub struct Place {
 }
 
 /// Places labels of these sizes beside their points, the first ones best, and clear of lines; nothing for one that has
-/// no room. Where points crowd, a line from one to its label may run across another point.
+/// no room.
 pub fn place(points: &[(f64, f64)], sizes: &[(f64, f64)], lines: &[Line], room: Area) -> Vec<Option<Place>> {
-    const ATTEMPTS: usize = 10;
+    const ATTEMPTS: usize = 20;
     let mut order: Vec<usize> = (0..points.len()).collect();
-    let mut best: Vec<Option<Place>> = vec![None; points.len()];
-    let count = |places: &[Option<Place>]| places.iter().flatten().count();
+    let (mut best, mut least) = (vec![None; points.len()], f64::INFINITY);
     for _ in 0..ATTEMPTS {
-        let places = place_in_order(&order, points, sizes, lines, room, false);
-        if count(&places) > count(&best) {
-            best.clone_from(&places);
+        let (places, costs) = place_in_order(&order, points, sizes, lines, room);
+        let cost = costs.iter().sum();
+        if cost < least {
+            (best, least) = (places, cost);
         }
-        if count(&best) == points.len() {
+        if costs.iter().all(|cost| *cost < CROSSING) {
             break;
         }
-        // Those that found no room choose first.
-        order.sort_by_key(|index| places[*index].is_some());
+        // Those that found no good place choose first.
+        order.sort_by(|a, b| costs[*b].total_cmp(&costs[*a]));
     }
-    if count(&best) == points.len() {
-        return best;
-    }
-    place_in_order(&(0..points.len()).collect::<Vec<_>>(), points, sizes, lines, room, true)
+    best
 }
 
+/// As far from its point a label needs no line to it.
+const NEAR: f64 = 13.0;
+
+/// How far a label may be from its point.
+const FAR: u32 = 250;
+
+/// What is bad about a label, in the length of lines: that its line crosses a marker or another line, or that it has no
+/// place.
+const CROSSING: f64 = 300.0;
+const MISSING: f64 = 3000.0;
+
+/// Places them one after the other, and tells what is bad about each.
 fn place_in_order(
     order: &[usize],
     points: &[(f64, f64)],
     sizes: &[(f64, f64)],
     lines: &[Line],
     room: Area,
-    may_cross: bool,
-) -> Vec<Option<Place>> {
+) -> (Vec<Option<Place>>, Vec<f64>) {
     const MARKER: f64 = 8.0;
-    /// As far from its point a label needs no line to it.
-    const NEAR: f64 = 13.0;
-    const RADII: u32 = 24;
+    let markers: Vec<Area> = points.iter().map(|point| Area::around(*point, MARKER)).collect();
+    let mut placed: Vec<Option<Place>> = vec![None; points.len()];
+    let mut costs = vec![MISSING; points.len()];
+    for &index in order {
+        let point = points[index];
+        let there = || placed.iter().zip(points).filter_map(|(place, from)| Some((place.as_ref()?, *from)));
+        let leaders = || there().filter_map(|(place, from)| Some((from, place.leader?)));
+        let is_free = |place: &Place| {
+            place.area.is_within(&room)
+                && !markers.iter().any(|marker| marker.overlaps(&place.area))
+                && !lines.iter().any(|line| place.area.is_crossed(*line))
+                && !there().any(|(other, _)| other.area.overlaps(&place.area))
+                && !leaders().any(|leader| place.area.is_crossed(leader))
+                && !there()
+                    .any(|(other, _)| place.leader.is_some_and(|end| other.area.is_crossed((point, end))))
+        };
+        let cost = |place: &Place| {
+            let Some(end) = place.leader else { return 0.0 };
+            // The markers that it starts below are there in any case.
+            let others = markers.iter().filter(|marker| !marker.holds(point));
+            let crossed = others.filter(|marker| marker.is_crossed((point, end))).count()
+                + leaders().filter(|leader| do_cross(*leader, (point, end))).count();
+            (end.0 - point.0).hypot(end.1 - point.1) + CROSSING * crossed as f64
+        };
+        let free = around(point, sizes[index]).filter(is_free).map(|place| (cost(&place), place));
+        if let Some((cost, place)) = free.min_by(|a, b| a.0.total_cmp(&b.0)) {
+            (costs[index], placed[index]) = (cost, Some(place));
+        }
+    }
+    (placed, costs)
+}
+
+/// The places for a label of this size around its point, the best first.
+fn around(point: (f64, f64), (width, height): (f64, f64)) -> impl Iterator<Item = Place> {
+    const STEP: u32 = 10;
     const TURNS: u32 = 24;
     // Right, left, up and down first.
     let mut turns: Vec<u32> = (0..TURNS).collect();
     turns.sort_by_key(|turn| (turn % (TURNS / 4) != 0, turn % (TURNS / 2) != 0));
-    let ways: Vec<(f64, f64)> = turns
-        .into_iter()
-        .map(|turn| libm::sincos(std::f64::consts::TAU * f64::from(turn) / f64::from(TURNS)))
-        .map(|(down, right)| (right, down))
-        .collect();
-    let markers: Vec<Area> = points.iter().map(|point| Area::around(*point, MARKER)).collect();
-    let mut placed: Vec<Option<Place>> = vec![None; points.len()];
-    for &index in order {
-        let ((x, y), (width, height)) = (&points[index], &sizes[index]);
-        let fits = |radius: f64, (right, down): (f64, f64), begins: f64, may_cross: bool| {
-            let end = (x + radius * right, y + radius * down);
-            // It begins, ends or has its middle there.
-            let left = end.0 - begins * width;
+    (0..FAR / STEP).map(|step| NEAR + f64::from(step * STEP)).flat_map(move |radius| {
+        turns.clone().into_iter().flat_map(move |turn| {
+            let (down, right) = libm::sincos(std::f64::consts::TAU * f64::from(turn) / f64::from(TURNS));
+            let natural = if right.abs() < 0.1 { 0.5 } else { f64::from(right < 0.0) };
+            // Beside a steep line it can be on either side.
+            let others = if right.abs() < 0.8 && radius > NEAR { [0.0, 1.0].as_slice() } else { &[] };
+            let end = (point.0 + radius * right, point.1 + radius * down);
             let top = end.1 + 0.5 * height * (down - 1.0);
-            let area = Area { left, top, right: left + width, bottom: top + height };
-            let leader = (radius > NEAR).then_some(end);
-            let is_free = area.is_within(&room)
-                && !markers.iter().any(|marker| marker.overlaps(&area))
-                && !lines.iter().any(|line| area.is_crossed(*line))
-                && !placed.iter().flatten().any(|other| other.area.overlaps(&area));
-            // A line runs neither across another label or marker nor below a label that is there.
-            let is_clear = leader.is_none_or(|end| {
-                let line = ((*x, *y), end);
-                // Those that it starts below are there in any case.
-                let mut others = markers.iter().filter(|marker| !marker.holds(points[index]));
-                (may_cross || !others.any(|marker| marker.is_crossed(line)))
-                    && !placed.iter().flatten().any(|other| other.area.is_crossed(line))
-            });
-            let covers = placed.iter().zip(points).any(|(other, from)| {
-                other.and_then(|other| other.leader).is_some_and(|to| area.is_crossed((*from, to)))
-            });
-            (is_free && is_clear && !covers).then_some(Place { area, leader })
-        };
-        let places = || {
-            (0..RADII).map(|step| NEAR + 10.0 * f64::from(step)).flat_map(|radius| {
-                ways.iter().flat_map(move |way| {
-                    let (right, _) = *way;
-                    let natural = if right.abs() < 0.1 { 0.5 } else { f64::from(right < 0.0) };
-                    // Beside a steep line it can be on either side.
-                    let others = if right.abs() < 0.8 && radius > NEAR { [0.0, 1.0].as_slice() } else { &[] };
-                    [natural]
-                        .into_iter()
-                        .chain(others.iter().copied())
-                        .map(move |begins| (radius, *way, begins))
-                })
+            // It begins, ends or has its middle there.
+            [natural].into_iter().chain(others.iter().copied()).map(move |begins| {
+                let left = end.0 - begins * width;
+                let area = Area { left, top, right: left + width, bottom: top + height };
+                Place { area, leader: (radius > NEAR).then_some(end) }
             })
-        };
-        let place =
-            |may_cross: bool| places().find_map(|(radius, way, begins)| fits(radius, way, begins, may_cross));
-        placed[index] = place(false).or_else(|| may_cross.then(|| place(true))?);
-    }
-    placed
+        })
+    })
+}
+
+/// Whether two lines cross each other.
+fn do_cross((a, b): Line, (c, d): Line) -> bool {
+    let turn = |a: (f64, f64), b: (f64, f64), c: (f64, f64)| {
+        ((b.0 - a.0) * (c.1 - a.1) - (b.1 - a.1) * (c.0 - a.0)).total_cmp(&0.0)
+    };
+    turn(a, b, c) != turn(a, b, d) && turn(c, d, a) != turn(c, d, b)
 }
 
 #[cfg(test)]
