@@ -65,7 +65,7 @@ kernels! {
 }
 
 impl Revolution {
-    /// What [`newton::root`](crate::newton::root) does, for each that has a width. Flags are 0 or 1.
+    /// What [`newton::root`](crate::roots::newton::root) does, for each that has a width. Flags are 0 or 1.
     #[inline(always)]
     fn eight_roots(&self, rays: &Eight) -> Octet {
         let Eight { from: [x, y, z], dir: [dx, dy, dz], width } = *rays;
