@@ -25,7 +25,7 @@ const FLANGE: &str = "camera eye { pixeldim 64 48 worlddim 8 6 viewpoint 4 7 7 }
     light lamp { location 1 7 3 emissivity 9 9 9 size 0.5 }";
 
 /// A disc before a wall, whose edge is all that samples are for.
-const EDGE: &str = "camera eye { pixeldim 64 48 worlddim 8 6 viewpoint 4 3 6 }
+const EDGE: &str = "camera eye { pixeldim 40 30 worlddim 8 6 viewpoint 4 3 6 }
     material white { ambient 8 8 8 }
     material red { ambient 8 0 0 }
     plane wall { material white normal 0 0 1 point 0 0 -2 }
