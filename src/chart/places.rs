@@ -1,6 +1,6 @@
 //! The pixels that are looked at, spread evenly over a picture.
 
-use crate::render::TILE;
+use crate::tiles::TILE;
 use glam::DVec2;
 
 /// Pixels, from the left and from the bottom.
