@@ -79,7 +79,7 @@ impl Plane {
         let is_upright = self.normal.to_array().into_iter().filter(|part| *part != 0.0).count() == 1;
         match self.accuracy {
             Accuracy::Exact if !is_upright => compensated(cpu, self, rays, out),
-            Accuracy::Exact => plain(cpu, self, rays, out),
+            Accuracy::Exact | Accuracy::Draft => plain(cpu, self, rays, out),
             _ => packet::distances(cpu, self, rays, None, out),
         }
     }

@@ -5,6 +5,7 @@
 //! mirrors (`shade`). One ray is a packet of one. A ray's colour does not depend on which others go with it.
 
 mod group;
+mod light;
 mod search;
 mod shade;
 mod shadow;

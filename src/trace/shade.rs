@@ -1,14 +1,14 @@
 //! The colours of the places that a packet's rays meet on one object.
 
 use super::group::{Group, pick, pick_vectors};
+use super::light::{self, Lit};
 use super::shadow::Ways;
 use super::{MAX_DIST, NARROW, Tracer};
 use crate::bounds::{self, Bounds};
-use crate::cpu::kernels;
 use crate::geometry::Side;
 use crate::material::Rgb;
 use crate::model::Object;
-use crate::packet::{Rays, Vectors, View, ViewMut, WIDE};
+use crate::packet::{Rays, Vectors, WIDE};
 use crate::watch::{Count, Event, Hit, Kind, Outcome, Purpose, Reason, Watch};
 use glam::{DVec2, DVec3};
 
@@ -47,10 +47,10 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
             travelled: group.travelled,
         };
         let travelled = &mut surface.travelled[..count];
-        arrive(cpu, group.rays(), &distances, travelled, surface.points.view_mut(count));
+        light::arrive(cpu, group.rays(), &distances, travelled, surface.points.view_mut(count));
         shape.normals(cpu, surface.points.view(count), surface.normals.view_mut(count));
         let (normals, sides) = (surface.normals.view_mut(count), &mut surface.sides[..count]);
-        face(cpu, group.dir.view(count), shape.is_two_sided(), sides, normals);
+        light::face(cpu, group.dir.view(count), shape.is_two_sided(), sides, normals);
 
         let mut colours = Vectors::ZERO;
         shader.ambients(cpu, material, surface.points.view(count), colours.view_mut(count));
@@ -60,7 +60,7 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
         let mut specular = Vectors::ZERO;
         shader.speculars(cpu, material, surface.points.view(count), specular.view_mut(count));
         self.illuminate(group, &surface, &specular, &mut colours);
-        fade(cpu, &surface.travelled[..count], colours.view_mut(count));
+        light::fade(cpu, &surface.travelled[..count], colours.view_mut(count));
         if W::SEES {
             let (point, travelled) = (surface.points.get(0), surface.travelled[0]);
             let hit = Hit { index, object, distance: distances[0], point };
@@ -107,7 +107,7 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
         specular: &Vectors<N>,
         colours: &mut Vectors<N>,
     ) {
-        if !is_anything(self.cpu, specular.view(group.padded())) {
+        if !light::is_anything(self.cpu, specular.view(group.padded())) {
             return;
         }
         let (mut lanes, mut len) = ([0; N], 0);
@@ -121,7 +121,7 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
         let mut mirrored = Vectors::ZERO;
         let count = group.padded();
         let normals = surface.normals.view(count);
-        mirror(self.cpu, group.dir.view(count), normals, mirrored.view_mut(count));
+        light::mirror(self.cpu, group.dir.view(count), normals, mirrored.view_mut(count));
         let lanes = &lanes[..len];
         let seen = self.onward(group, surface, lanes, &mirrored, &surface.sides, Kind::Reflected);
         for lane in lanes {
@@ -217,14 +217,14 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
             let places = self.places_on(index, group, surface);
             let normals = surface.normals.view(count);
             let (to, cos) = (toward.view_mut(count), &mut cosines[..count]);
-            if !face_light(cpu, points, normals, places.view(count), &mut distances, cos, to) {
+            if !light::face_light(cpu, points, normals, places.view(count), &mut distances, cos, to) {
                 if W::SEES {
                     self.watch.see(Event::Light(index, Outcome::Behind));
                 }
                 continue;
             }
             light.emissivities(cpu, points, emissivity.view_mut(count), &mut shines);
-            if !open(cpu, &cosines[..count], &mut shines) {
+            if !light::open(cpu, &cosines[..count], &mut shines) {
                 if W::SEES {
                     self.watch.see(Event::Light(index, Outcome::Aside));
                 }
@@ -263,10 +263,10 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
                 specular: specular.view(count),
                 emissivity: emissivity.view(count),
             };
-            shine(cpu, &lit, material.shininess, colours.view_mut(count));
+            light::shine(cpu, &lit, material.shininess, colours.view_mut(count));
             if W::SEES {
                 let mut alone = Vectors::<N>::ZERO;
-                shine(cpu, &lit, material.shininess, alone.view_mut(count));
+                light::shine(cpu, &lit, material.shininess, alone.view_mut(count));
                 self.watch.see(Event::Light(index, Outcome::Shines { passed: tint, colour: alone.get(0) }));
             }
         }
@@ -290,158 +290,5 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
             places.set(lane, middle + radius * (libm::cos(angle) * across + libm::sin(angle) * up));
         }
         places
-    }
-}
-
-/// Places that a light shines on.
-struct Lit<'l> {
-    /// From each place to the light.
-    rays: Rays<'l>,
-    /// Where each is seen from.
-    eyes: View<'l>,
-    normals: View<'l>,
-    /// To the light.
-    distances: &'l [f64],
-    /// Of the angles between the normals and the directions of the light.
-    cosines: &'l [f64],
-    /// 0 where no light comes.
-    shines: &'l [u64],
-    diffuse: View<'l>,
-    specular: View<'l>,
-    emissivity: View<'l>,
-}
-
-kernels! {
-    /// Where rays come after these distances, and how far their light has then travelled.
-    fn arrive(rays: Rays, distances: &[f64], travelled: &mut [f64]) => points {
-        let count = travelled.len();
-        let (rays, distances, mut points) = (rays.first(count), &distances[..count], points.first(count));
-        for lane in 0..count {
-            points.set(lane, rays.get(lane).at(distances[lane]));
-            travelled[lane] += distances[lane];
-        }
-    }
-
-    /// The sides that rays come to, and the normals turned there if both sides are lit.
-    fn face(dir: View, is_two_sided: bool, sides: &mut [Side]) => normals {
-        let count = sides.len();
-        let (dir, mut normals) = (dir.first(count), normals.first(count));
-        for lane in 0..count {
-            let normal = normals.get(lane);
-            let side = Side::seen_along(dir.get(lane), normal);
-            sides[lane] = side;
-            normals.set(lane, if is_two_sided & (side == Side::Inside) { -normal } else { normal });
-        }
-    }
-
-    /// The directions and distances from places to a light, and the cosines of the angles there. Tells whether any
-    /// place faces the light.
-    fn face_light(
-        points: View, normals: View, places: View, distances: &mut [f64], cosines: &mut [f64]
-    ) => toward -> bool {
-        let count = cosines.len();
-        let (points, normals, places) = (points.first(count), normals.first(count), places.first(count));
-        let (mut toward, distances) = (toward.first(count), &mut distances[..count]);
-        let mut any = 0;
-        for lane in 0..count {
-            let between = places.get(lane) - points.get(lane);
-            let distance = between.length();
-            let dir = between * (1.0 / distance);
-            toward.set(lane, dir);
-            distances[lane] = distance;
-            // A light on the surface itself makes it NaN, and is behind.
-            cosines[lane] = dir.dot(normals.get(lane));
-            any |= u64::from(cosines[lane] > 0.0);
-        }
-        any != 0
-    }
-
-    /// Adds the light that comes to places, where it does.
-    fn shine(lit: &Lit, shininess: f64) => colours {
-        let colours = colours.first(lit.shines.len());
-        let whole = shininess as u32;
-        if shininess == 0.0 {
-            shine_all(lit, None::<fn(f64) -> f64>, colours);
-        } else if f64::from(whole) == shininess && whole <= MOST_MULTIPLIED {
-            shine_all(lit, Some(|cos| whole_power(cos, whole)), colours);
-        } else {
-            shine_all(lit, Some(|cos| libm::pow(cos, shininess)), colours);
-        }
-    }
-
-    /// Leaves the light where it comes from before the surface. Tells whether there is any.
-    fn open(cosines: &[f64], shines: &mut [u64]) -> bool {
-        let (count, mut any) = (cosines.len(), 0);
-        let shines = &mut shines[..count];
-        for lane in 0..count {
-            shines[lane] &= u64::from(cosines[lane] > 0.0);
-            any |= shines[lane];
-        }
-        any != 0
-    }
-
-    /// Whether any vector is not 0.
-    fn is_anything(vectors: View) -> bool {
-        let (count, mut any) = (vectors.len(), 0);
-        let vectors = vectors.first(count);
-        for lane in 0..count {
-            let vector = vectors.get(lane);
-            any |= u64::from((vector.x != 0.0) | (vector.y != 0.0) | (vector.z != 0.0));
-        }
-        any != 0
-    }
-
-    /// Divides colours by how far their light has travelled.
-    fn fade(travelled: &[f64]) => colours {
-        let count = travelled.len();
-        let mut colours = colours.first(count);
-        for lane in 0..count {
-            colours.set(lane, colours.get(lane) * (1.0 / travelled[lane]));
-        }
-    }
-
-    /// Directions, mirrored.
-    fn mirror(dir: View, normals: View) => out {
-        let count = dir.len();
-        let (normals, mut out) = (normals.first(count), out.first(count));
-        for lane in 0..count {
-            let (dir, normal) = (dir.get(lane), normals.get(lane));
-            out.set(lane, dir - 2.0 * dir.dot(normal) * normal);
-        }
-    }
-}
-
-/// Powers up to this one are multiplied out.
-const MOST_MULTIPLIED: u32 = 1 << 16;
-
-/// A power by repeated squaring: for many numbers at a time, which a general power is not.
-#[inline(always)]
-fn whole_power(of: f64, power: u32) -> f64 {
-    let (mut product, mut square, mut left) = (1.0, of, power);
-    while left > 0 {
-        product = if left & 1 == 1 { product * square } else { product };
-        square *= square;
-        left >>= 1;
-    }
-    product
-}
-
-#[inline(always)]
-fn shine_all(lit: &Lit, glint: Option<impl Fn(f64) -> f64>, colours: ViewMut) {
-    let (count, mut colours) = (lit.shines.len(), colours);
-    let (rays, eyes, normals) = (lit.rays.first(count), lit.eyes.first(count), lit.normals.first(count));
-    let (diffuse, specular) = (lit.diffuse.first(count), lit.specular.first(count));
-    let emissivity = lit.emissivity.first(count);
-    let (distances, cosines, shines) = (&lit.distances[..count], &lit.cosines[..count], &lit.shines[..count]);
-    for lane in 0..count {
-        let light = emissivity.get(lane);
-        let mut colour = diffuse.get(lane) * light * (cosines[lane] / distances[lane]);
-        if let Some(glint) = &glint {
-            let to_eye = (eyes.get(lane) - rays.origin.get(lane)).normalize();
-            let half = (to_eye + rays.dir.get(lane)).normalize();
-            colour += light * specular.get(lane) * glint(half.dot(normals.get(lane)));
-        }
-        let before = colours.get(lane);
-        colours.set(lane, if shines[lane] != 0 { before + colour } else { before });
     }
 }

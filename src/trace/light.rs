@@ -1,0 +1,158 @@
+//! The arithmetic of shading, for all places of a packet at once.
+
+use crate::cpu::kernels;
+use crate::geometry::Side;
+use crate::packet::{Rays, View, ViewMut};
+
+/// Places that a light shines on.
+pub(super) struct Lit<'l> {
+    /// From each place to the light.
+    pub rays: Rays<'l>,
+    /// Where each is seen from.
+    pub eyes: View<'l>,
+    pub normals: View<'l>,
+    /// To the light.
+    pub distances: &'l [f64],
+    /// Of the angles between the normals and the directions of the light.
+    pub cosines: &'l [f64],
+    /// 0 where no light comes.
+    pub shines: &'l [u64],
+    pub diffuse: View<'l>,
+    pub specular: View<'l>,
+    pub emissivity: View<'l>,
+}
+
+kernels! {
+    /// Where rays come after these distances, and how far their light has then travelled.
+    pub(super) fn arrive(rays: Rays, distances: &[f64], travelled: &mut [f64]) => points {
+        let count = travelled.len();
+        let (rays, distances, mut points) = (rays.first(count), &distances[..count], points.first(count));
+        for lane in 0..count {
+            points.set(lane, rays.get(lane).at(distances[lane]));
+            travelled[lane] += distances[lane];
+        }
+    }
+
+    /// The sides that rays come to, and the normals turned there if both sides are lit.
+    pub(super) fn face(dir: View, is_two_sided: bool, sides: &mut [Side]) => normals {
+        let count = sides.len();
+        let (dir, mut normals) = (dir.first(count), normals.first(count));
+        for lane in 0..count {
+            let normal = normals.get(lane);
+            let side = Side::seen_along(dir.get(lane), normal);
+            sides[lane] = side;
+            normals.set(lane, if is_two_sided & (side == Side::Inside) { -normal } else { normal });
+        }
+    }
+
+    /// The directions and distances from places to a light, and the cosines of the angles there. Tells whether any
+    /// place faces the light.
+    pub(super) fn face_light(
+        points: View, normals: View, places: View, distances: &mut [f64], cosines: &mut [f64]
+    ) => toward -> bool {
+        let count = cosines.len();
+        let (points, normals, places) = (points.first(count), normals.first(count), places.first(count));
+        let (mut toward, distances) = (toward.first(count), &mut distances[..count]);
+        let mut any = 0;
+        for lane in 0..count {
+            let between = places.get(lane) - points.get(lane);
+            let distance = between.length();
+            let dir = between * (1.0 / distance);
+            toward.set(lane, dir);
+            distances[lane] = distance;
+            // A light on the surface itself makes it NaN, and is behind.
+            cosines[lane] = dir.dot(normals.get(lane));
+            any |= u64::from(cosines[lane] > 0.0);
+        }
+        any != 0
+    }
+
+    /// Adds the light that comes to places, where it does.
+    pub(super) fn shine(lit: &Lit, shininess: f64) => colours {
+        let colours = colours.first(lit.shines.len());
+        let whole = shininess as u32;
+        if shininess == 0.0 {
+            shine_all(lit, None::<fn(f64) -> f64>, colours);
+        } else if f64::from(whole) == shininess && whole <= MOST_MULTIPLIED {
+            shine_all(lit, Some(|cos| whole_power(cos, whole)), colours);
+        } else {
+            shine_all(lit, Some(|cos| libm::pow(cos, shininess)), colours);
+        }
+    }
+
+    /// Leaves the light where it comes from before the surface. Tells whether there is any.
+    pub(super) fn open(cosines: &[f64], shines: &mut [u64]) -> bool {
+        let (count, mut any) = (cosines.len(), 0);
+        let shines = &mut shines[..count];
+        for lane in 0..count {
+            shines[lane] &= u64::from(cosines[lane] > 0.0);
+            any |= shines[lane];
+        }
+        any != 0
+    }
+
+    /// Whether any vector is not 0.
+    pub(super) fn is_anything(vectors: View) -> bool {
+        let (count, mut any) = (vectors.len(), 0);
+        let vectors = vectors.first(count);
+        for lane in 0..count {
+            let vector = vectors.get(lane);
+            any |= u64::from((vector.x != 0.0) | (vector.y != 0.0) | (vector.z != 0.0));
+        }
+        any != 0
+    }
+
+    /// Divides colours by how far their light has travelled.
+    pub(super) fn fade(travelled: &[f64]) => colours {
+        let count = travelled.len();
+        let mut colours = colours.first(count);
+        for lane in 0..count {
+            colours.set(lane, colours.get(lane) * (1.0 / travelled[lane]));
+        }
+    }
+
+    /// Directions, mirrored.
+    pub(super) fn mirror(dir: View, normals: View) => out {
+        let count = dir.len();
+        let (normals, mut out) = (normals.first(count), out.first(count));
+        for lane in 0..count {
+            let (dir, normal) = (dir.get(lane), normals.get(lane));
+            out.set(lane, dir - 2.0 * dir.dot(normal) * normal);
+        }
+    }
+}
+
+/// Powers up to this one are multiplied out.
+const MOST_MULTIPLIED: u32 = 1 << 16;
+
+/// A power by repeated squaring: for many numbers at a time, which a general power is not.
+#[inline(always)]
+fn whole_power(of: f64, power: u32) -> f64 {
+    let (mut product, mut square, mut left) = (1.0, of, power);
+    while left > 0 {
+        product = if left & 1 == 1 { product * square } else { product };
+        square *= square;
+        left >>= 1;
+    }
+    product
+}
+
+#[inline(always)]
+fn shine_all(lit: &Lit, glint: Option<impl Fn(f64) -> f64>, colours: ViewMut) {
+    let (count, mut colours) = (lit.shines.len(), colours);
+    let (rays, eyes, normals) = (lit.rays.first(count), lit.eyes.first(count), lit.normals.first(count));
+    let (diffuse, specular) = (lit.diffuse.first(count), lit.specular.first(count));
+    let emissivity = lit.emissivity.first(count);
+    let (distances, cosines, shines) = (&lit.distances[..count], &lit.cosines[..count], &lit.shines[..count]);
+    for lane in 0..count {
+        let light = emissivity.get(lane);
+        let mut colour = diffuse.get(lane) * light * (cosines[lane] / distances[lane]);
+        if let Some(glint) = &glint {
+            let to_eye = (eyes.get(lane) - rays.origin.get(lane)).normalize();
+            let half = (to_eye + rays.dir.get(lane)).normalize();
+            colour += light * specular.get(lane) * glint(half.dot(normals.get(lane)));
+        }
+        let before = colours.get(lane);
+        colours.set(lane, if shines[lane] != 0 { before + colour } else { before });
+    }
+}
