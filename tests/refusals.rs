@@ -49,7 +49,7 @@ fn every_refusal_is_explained_as_before() {
 }
 
 /// A name for each refusal, and the command line that it answers.
-const REFUSALS: [(&str, &str); 33] = [
+const REFUSALS: [(&str, &str); 48] = [
     ("scene-not-there", "render bell.ray"),
     ("scene-not-there-nor-one-like-it", "check no-such-scene.ray"),
     ("scene-is-a-folder", "dump ."),
@@ -83,6 +83,21 @@ const REFUSALS: [(&str, &str); 33] = [
     ("new-scene-in-the-place-of-another", "new scene ball"),
     ("new-plugin-outside-of-a-checkout", "new plugin gem"),
     ("man-in-the-place-of-a-file", "man ball.ray"),
+    ("resume-to-standard-output", "render ball.ray -o - --resume"),
+    ("memory-of-no-size", "render ball.ray --max-memory lots"),
+    ("time-of-no-length", "render ball.ray --time-limit soon"),
+    ("cpu-unknown", "render ball.ray --cpu mmx"),
+    ("format-unknown", "render ball.ray --format gif"),
+    ("diff-of-no-picture", "diff ball.ray bricks.png"),
+    ("diff-into-no-page", "diff bricks.png bricks.png -o page.txt"),
+    ("review-of-nothing", "review nowhere"),
+    ("review-of-nothing-pending", "review ball.ray"),
+    ("watch-of-standard-input", "watch -"),
+    ("watch-not-there", "watch bell.ray"),
+    ("bench-of-no-time", "bench ball.ray --seconds -1"),
+    ("choose-without-a-limit", "choose ball.ray"),
+    ("choose-without-an-error", "choose ball.ray --max-error 0"),
+    ("chart-not-there", "chart bell.ray"),
 ];
 
 #[test]
