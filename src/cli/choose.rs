@@ -130,11 +130,14 @@ impl<'e> Weighed<'e> {
         text
     }
 
-    /// Whether no other choice is as fast and as right, and clearly better in one of these.
+    /// Whether no other choice is as fast and as right, and clearly better in one of these or the default.
     fn is_best(&self, one: &Estimate) -> bool {
+        let is_default = |own: &Estimate| own.accuracy == Accuracy::default();
         !self.estimates.iter().any(|other| {
             let (time, error) = (other.seconds / one.seconds, other.rmse / one.rmse);
-            time <= 1.0 && error <= SAME && (time * SAME < 1.0 || error * SAME < 1.0)
+            let is_better = time <= 1.0 && error <= SAME && (time * SAME < 1.0 || error * SAME < 1.0);
+            let is_equal = time <= SAME && error <= SAME;
+            is_better || (is_equal && is_default(other) && !is_default(one))
         })
     }
 }

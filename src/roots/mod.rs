@@ -23,15 +23,15 @@ use taylor::Line;
 /// A way to find the first root.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// The notes' page on procedural surfaces: [`steps`].
+    /// The notes' page on procedural surfaces: `steps`.
     Steps,
-    /// So many samples, and a refiner between the first two that differ in their signs: [`samples`].
+    /// So many samples, and a refiner between the first two that differ in their signs: `samples`.
     Samples(u32, Refiner),
-    /// As many samples and Newton's method, and the places between them where the function turns: [`turning`].
+    /// As many samples and Newton's method, and the places between them where the function turns: `turning`.
     Turning(u32),
-    /// Steps as long as a bound of the slope allows: [`tracing`].
+    /// Steps as long as a bound of the slope allows: `tracing`.
     Tracing,
-    /// Bounds of the function's values and slopes: [`intervals`].
+    /// Bounds of the function's values and slopes: `intervals`.
     Intervals,
     /// Bounds of its curvature as well: [`taylor`].
     Taylor,
@@ -40,13 +40,13 @@ pub enum Method {
 /// A way to narrow down a root between two places where the function's signs differ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refiner {
-    /// Halving, to 1/1000: [`bisection`].
+    /// Halving, to 1/1000: `bisection`.
     Bisection3,
     /// Halving, to 1/1000000.
     Bisection6,
     /// Halving, to the last place.
     Bisection,
-    /// Parabolas and halving: [`chandrupatla`].
+    /// Parabolas and halving: `chandrupatla`.
     Chandrupatla,
     /// Slopes and halving: [`newton`].
     Newton,
