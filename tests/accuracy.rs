@@ -248,7 +248,8 @@ numbers are those of one run of
 *Missed* are hits that were not found, *invented* ones that are none, *later* ones at another crossing than the
 first. The errors are those of the distances of all other hits, in world units; *off the surface* is how far the
 worst of these points is from the surface. *Time* is per ray, against the notes' `steps` in the same run, in rounds by
-turns, over all rays, those that miss the surface's heights among them.
+turns, over all rays, those that miss the surface's heights among them. Rays go one by one here; in packets, as those
+of a picture do, the default takes less: see the [charts](charts.md).
 
 `steps` is the notes' page on procedural surfaces, which no scene can choose: 0.1 at a time, then bisection to 1e-6.
 `classic` is what the notes' program does: one bracket, from the viewer to the ray's point closest to the axis.
