@@ -84,17 +84,25 @@ impl Args {
             return Ok(stop);
         }
         let (start, reached) = (Instant::now(), stop.reached.clone());
+        let left = move || time_limit.map(|limit| limit.saturating_sub(start.elapsed()));
+        let look = move || {
+            let time = time_limit.filter(|_| left() == Some(Duration::ZERO));
+            let over = max_memory.filter(|limit| memory::now().is_some_and(|now| now > limit.as_u64()));
+            time.map(Limit::Time).or(over.map(Limit::Memory))
+        };
+        // A limit may be reached before anything is begun, and then nothing is.
+        if let Some(limit) = look() {
+            let _ = reached.set(limit);
+            return Ok(stop);
+        }
         let watch = move || {
             loop {
-                let left = time_limit.map(|limit| limit.saturating_sub(start.elapsed()));
-                let over = max_memory.filter(|limit| memory::now().is_some_and(|now| now > limit.as_u64()));
-                let time = time_limit.filter(|_| left == Some(Duration::ZERO));
-                if let Some(limit) = time.map(Limit::Time).or(over.map(Limit::Memory)) {
+                let next = if max_memory.is_some() { LOOK } else { Duration::MAX };
+                thread::sleep(next.min(left().unwrap_or(Duration::MAX)));
+                if let Some(limit) = look() {
                     let _ = reached.set(limit);
                     return;
                 }
-                let look = if max_memory.is_some() { LOOK } else { Duration::MAX };
-                thread::sleep(look.min(left.unwrap_or(Duration::MAX)));
             }
         };
         let started = thread::Builder::new().name("limits".to_owned()).spawn(watch);
