@@ -54,6 +54,7 @@ impl Copy {
         cargo.args(args).current_dir(folder).env("CARGO_TARGET_DIR", &self.target);
         // Its pictures are small: what counts is how long the compiler takes.
         cargo.env("CARGO_PROFILE_DEV_OPT_LEVEL", "0").env("CARGO_PROFILE_DEV_DEBUG", "0");
+        cargo.args(["--config", "profile.dev.package.'*'.opt-level=0"]);
         let output = cargo.output().expect("cargo runs");
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         if output.status.success() { Ok(said) } else { Err(said) }
