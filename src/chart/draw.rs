@@ -182,7 +182,7 @@ fn draw_panel<D: DrawingBackend>(canvas: &Canvas<D>, panel: &Panel, corner: (f64
         canvas.text(&text, (plot.left - 8.0, y), Align::Right, ticks)?;
     }
     if has_nothing {
-        canvas.line(&[(plot.left, floor), (plot.right, floor)], GREY, 1.0)?;
+        canvas.line(&[(plot.left, floor), (plot.right, floor)], LIGHT, 2.0)?;
         let text = if nothing == 0.0 { "0" } else { "none" };
         canvas.text(text, (plot.left - 8.0, plot.bottom - 0.5 * NOTHING), Align::Right, ticks)?;
     }
@@ -209,7 +209,11 @@ fn draw_panel<D: DrawingBackend>(canvas: &Canvas<D>, panel: &Panel, corner: (f64
     if front.len() > 1 {
         canvas.line(&front, GREY, 2.0)?;
     }
-    let lines: Vec<_> = front.windows(2).map(|ends| (ends[0], ends[1])).collect();
+    // What labels keep clear of.
+    let mut lines: Vec<_> = front.windows(2).map(|ends| (ends[0], ends[1])).collect();
+    if has_nothing {
+        lines.push(((plot.left, floor), (plot.right, floor)));
+    }
     // The most important labels are placed first.
     let mut order: Vec<usize> =
         (0..panel.points.len()).filter(|index| !panel.points[*index].error.is_nan()).collect();
