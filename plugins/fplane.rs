@@ -148,11 +148,6 @@ impl Hittable for FinitePlane {
 
     fn distances(&self, cpu: Cpu, rays: Rays, _: Option<&[Side]>, _: (&[f64], &[f64]), out: &mut [f64]) {
         self.plane.distances(cpu, rays, out);
-        for (lane, distance) in out.iter_mut().enumerate() {
-            if !distance.is_nan() && !self.has_crossing(&rays.get(lane), *distance) {
-                *distance = MISS;
-            }
-        }
     }
 
     fn bounds(&self) -> Option<Bounds> {

@@ -27,9 +27,10 @@ impl Ray {
 }
 
 /// A side of a surface.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Side {
     /// The one that its normal points to.
+    #[default]
     Outside,
     /// The other one.
     Inside,

@@ -9,12 +9,13 @@ use crate::cpu::kernels;
 use crate::geometry::{Bracket, Hittable, Light, Ray, Shader, Side, Span};
 use crate::material::{Material, Rgb};
 use glam::DVec3;
+use std::ops::Range;
 
 /// Arrays are as long as a multiple of this.
 pub const STEP: usize = 8;
 
 /// The most rays of a packet.
-pub const WIDE: usize = 64;
+pub const WIDE: usize = 256;
 
 /// Vectors, an array for each coordinate.
 #[derive(Clone)]
@@ -91,11 +92,10 @@ impl View<'_> {
         Self { x: &self.x[..count], y: &self.y[..count], z: &self.z[..count] }
     }
 
-    /// [`STEP`] of them from this one on.
+    /// Some of them.
     #[inline(always)]
-    pub fn eight(&self, first: usize) -> Self {
-        let end = first + STEP;
-        Self { x: &self.x[first..end], y: &self.y[first..end], z: &self.z[first..end] }
+    pub fn part(&self, Range { start, end }: Range<usize>) -> Self {
+        Self { x: &self.x[start..end], y: &self.y[start..end], z: &self.z[start..end] }
     }
 }
 
@@ -126,6 +126,14 @@ impl ViewMut<'_> {
     #[inline(always)]
     pub fn set(&mut self, index: usize, vector: DVec3) {
         (self.x[index], self.y[index], self.z[index]) = (vector.x, vector.y, vector.z);
+    }
+
+    /// Puts some in their places from this one on.
+    pub fn put(&mut self, first: usize, vectors: View) {
+        let end = first + vectors.len();
+        self.x[first..end].copy_from_slice(vectors.x);
+        self.y[first..end].copy_from_slice(vectors.y);
+        self.z[first..end].copy_from_slice(vectors.z);
     }
 }
 
@@ -162,10 +170,10 @@ impl Rays<'_> {
         Self { origin: self.origin.first(count), dir: self.dir.first(count) }
     }
 
-    /// [`STEP`] of them from this one on.
+    /// Some of them.
     #[inline(always)]
-    pub fn eight(&self, first: usize) -> Self {
-        Self { origin: self.origin.eight(first), dir: self.dir.eight(first) }
+    pub fn part(&self, range: Range<usize>) -> Self {
+        Self { origin: self.origin.part(range.clone()), dir: self.dir.part(range) }
     }
 }
 
@@ -180,6 +188,18 @@ pub struct Nearest<'n> {
     pub met: &'n mut [u64],
     /// Not 0 where brackets overlap: the nearer one of two is not known yet.
     pub doubt: &'n mut [u64],
+}
+
+impl Nearest<'_> {
+    /// What is known of some of the rays.
+    pub fn part(&mut self, range: Range<usize>) -> Nearest<'_> {
+        Nearest {
+            near: &mut self.near[range.clone()],
+            far: &mut self.far[range.clone()],
+            met: &mut self.met[range.clone()],
+            doubt: &mut self.doubt[range],
+        }
+    }
 }
 
 kernels! {

@@ -13,13 +13,11 @@ const TREE: usize = 24;
 
 /// The decisions that depend on a scene's objects.
 pub struct Plan {
-    /// A box around each object that has bounds, by its index.
-    pub(crate) bounds: Vec<Option<Bounds>>,
-    /// The objects that a packet of rays looks at one by one.
-    pub(crate) listed: Vec<usize>,
-    /// Whether any of those has bounds.
-    pub(crate) has_bounds: bool,
-    /// The others, where they are many.
+    /// The objects without bounds, by their indices: each is looked at for each ray.
+    pub(crate) unbounded: Vec<usize>,
+    /// Those with bounds, which a packet of rays looks at one by one, and the boxes around them.
+    pub(crate) bounded: Vec<(usize, Bounds)>,
+    /// Those with bounds, where they are many.
     pub(crate) tree: Option<Tree>,
     /// Whether any object lets light through, so that shadows have more than two shades.
     pub(crate) has_glass: bool,
@@ -28,18 +26,19 @@ pub struct Plan {
 impl Plan {
     /// The plan for a scene with these objects.
     pub fn new(objects: &[Object]) -> Self {
-        let bounds: Vec<_> = objects.iter().map(|object| object.shape.bounds()).collect();
-        let bounded = |index: &usize| bounds[*index].is_some();
-        let has_tree = (0..objects.len()).filter(bounded).count() >= TREE;
-        let listed: Vec<_> = (0..objects.len()).filter(|index| !(has_tree && bounded(index))).collect();
-        let has_bounds = listed.iter().any(bounded);
-        let tree = has_tree.then(|| {
-            let boxes = bounds.iter().enumerate();
-            let boxes = boxes.filter_map(|(index, bounds)| Some((index as u32, (*bounds)?.with_slack(0.0))));
-            Tree::new(boxes.collect())
+        let (mut unbounded, mut bounded) = (Vec::new(), Vec::new());
+        for (index, object) in objects.iter().enumerate() {
+            match object.shape.bounds() {
+                Some(bounds) => bounded.push((index, bounds)),
+                None => unbounded.push(index),
+            }
+        }
+        let tree = (bounded.len() >= TREE).then(|| {
+            let boxes = bounded.drain(..);
+            Tree::new(boxes.map(|(index, bounds)| (index as u32, bounds.with_slack(0.0))).collect())
         });
         let has_glass = objects.iter().any(|object| object.material.transparency != 0.0);
-        Self { bounds, listed, has_bounds, tree, has_glass }
+        Self { unbounded, bounded, tree, has_glass }
     }
 
     /// All decisions about a model, each with its reason.

@@ -60,12 +60,10 @@ impl Area {
                         [middle(0, *column), camera.pixels[1] - 1 - middle(1, *row)]
                     };
                     let pixels: Vec<_> = blocks.iter().map(place).collect();
-                    let mut blocks = blocks.iter();
-                    tracer.pixels(&pixels, |_, colour| {
-                        if let Some([column, row]) = blocks.next() {
-                            colours[row * across + column] = colour;
-                        }
-                    });
+                    let seen = tracer.pixels(&pixels);
+                    for (index, [column, row]) in blocks.iter().enumerate() {
+                        colours[row * across + column] = seen.get(index);
+                    }
                 }
             }
         }

@@ -2,7 +2,7 @@
 
 use crate::cpu::Cpu;
 use crate::model::Model;
-use crate::picture::to_byte;
+use crate::picture::to_bytes;
 use crate::tiles::{BAND, Band, TILE};
 use crate::trace::Tracer;
 use crate::watch::Watch;
@@ -90,6 +90,7 @@ impl Renderer {
                 let (tall, mut watch) = (strip.len() / width, W::default());
                 let top = height - 1 - from_top;
                 let mut tracer = Tracer::new(model, self.cpu, &mut watch);
+                let (mut tile, mut bytes) = (Vec::new(), [[0; 3]; TILE * TILE]);
                 for (left, is_done) in columns.clone().step_by(TILE).zip(tiles) {
                     if *is_done {
                         continue;
@@ -97,16 +98,12 @@ impl Renderer {
                     if (overseer.stops)() {
                         break;
                     }
-                    let (mut tile, mut len) = ([[0; 2]; TILE * TILE], 0);
-                    for row in 0..tall {
-                        for x in left..columns.end.min(left + TILE) {
-                            tile[len] = [x, top - row];
-                            len += 1;
-                        }
+                    list(left..columns.end.min(left + TILE), top + 1 - tall..top + 1, &mut tile);
+                    let colours = tracer.pixels(&tile);
+                    to_bytes(self.cpu, colours, &mut bytes[..tile.len()]);
+                    for ([x, y], bytes) in tile.iter().zip(&bytes) {
+                        strip[(top - y) * width + x - columns.start] = *bytes;
                     }
-                    tracer.pixels(&tile[..len], |[x, y], colour| {
-                        strip[(top - y) * width + x - columns.start] = colour.to_array().map(to_byte);
-                    });
                     *is_done = true;
                 }
                 watched(watch);
@@ -140,5 +137,18 @@ impl Renderer {
     /// Runs something else on one of the threads, which have room for deep reflections.
     pub fn run<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
         self.pool.install(work)
+    }
+}
+
+/// Lists the pixels of a tile, those together that are near each other.
+fn list(columns: Range<usize>, rows: Range<usize>, pixels: &mut Vec<[usize; 2]>) {
+    const SIDE: usize = 8;
+    pixels.clear();
+    for bottom in rows.clone().step_by(SIDE) {
+        for left in columns.clone().step_by(SIDE) {
+            for y in bottom..rows.end.min(bottom + SIDE) {
+                pixels.extend((left..columns.end.min(left + SIDE)).map(|x| [x, y]));
+            }
+        }
     }
 }

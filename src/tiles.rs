@@ -4,7 +4,7 @@ use std::iter;
 use std::ops::Range;
 
 /// The width and height of a tile, whose rays go together, in pixels. Those at the right and lower edges may be smaller.
-pub(crate) const TILE: usize = 8;
+pub(crate) const TILE: usize = 16;
 
 /// Pixels of a picture that are in memory at one time, but for a picture of one longer row of tiles.
 pub const BAND: usize = 1 << 22;

@@ -212,7 +212,7 @@ impl Tested {
     /// Those of a tile, each once.
     fn of(model: &Model, cpu: Cpu, tile: &[[usize; 2]]) -> Self {
         let mut tested = Self::default();
-        Tracer::new(model, cpu, &mut tested).pixels(tile, |_, _| ());
+        Tracer::new(model, cpu, &mut tested).pixels(tile);
         for objects in [&mut tested.primary, &mut tested.shadow] {
             objects.sort_unstable();
             objects.dedup();

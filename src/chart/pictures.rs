@@ -210,9 +210,7 @@ pub(super) fn count(tiles: &[Pixels]) -> usize {
 pub(super) fn render(model: &Model, tiles: &[Pixels]) {
     for tile in tiles {
         let mut nobody = ();
-        Tracer::new(model, Cpu::best(), &mut nobody).pixels(tile, |_, colour| {
-            black_box(colour);
-        });
+        black_box(Tracer::new(model, Cpu::best(), &mut nobody).pixels(tile));
     }
 }
 

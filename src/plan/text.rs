@@ -43,7 +43,7 @@ pub fn decisions(model: &Model) -> Vec<Decision> {
     all.push(decision("glass", glass(&model.objects)));
     all.push(decision("mirrors", mirrors(&model.objects)));
     all.extend(textures(model).into_iter().map(|text| decision("texture", text)));
-    all.push(decision("search", search(plan)));
+    all.push(decision("search", search(model, plan)));
     all.extend(objects(model, plan));
     all
 }
@@ -122,9 +122,9 @@ fn textures(model: &Model) -> Vec<String> {
     model.textures.iter().map(text).collect()
 }
 
-fn search(plan: &Plan) -> String {
-    let bounded = plan.bounds.iter().flatten().count();
-    let listed = plan.listed.len();
+fn search(model: &Model, plan: &Plan) -> String {
+    let bounded = model.objects.len() - plan.unbounded.len();
+    let listed = plan.unbounded.len() + plan.bounded.len();
     let by_one = "a packet of rays passes those with bounds over that are not in its way";
     match (&plan.tree, bounded) {
         (Some(tree), _) => {
@@ -149,8 +149,8 @@ fn search(plan: &Plan) -> String {
 /// The objects, those together that follow each other and are alike.
 fn objects(model: &Model, plan: &Plan) -> Vec<Decision> {
     let mut alike: Vec<(&'static str, String, Vec<&str>)> = Vec::new();
-    for (index, object) in model.objects.iter().enumerate() {
-        let place = match (&plan.tree, plan.bounds[index]) {
+    for object in &model.objects {
+        let place = match (&plan.tree, object.shape.bounds()) {
             (Some(_), Some(_)) => "in the tree",
             (None, Some(_)) => "with bounds",
             (_, None) => "without bounds",

@@ -10,44 +10,48 @@ use crate::bounds::{from_order, order};
 use crate::cpu::{Cpu, kernels};
 use crate::frame::Frame;
 use crate::geometry::{MISS, Ray, Side, Span};
-use crate::packet::{Rays, STEP, Vectors, WIDE};
+use crate::packet::{Rays, STEP, Vectors};
 use glam::DVec3;
 
 /// A direction with less than this of an axis is taken for upright on it.
 const UPRIGHT: f64 = 1e-9;
 
-/// Rays of a packet, each counted from its point closest to the axis.
+/// The most rays that go together: few enough for what is computed of them to stay near the processor, and for slabs
+/// that no ray comes to.
+pub(super) const MOST: usize = 64;
+
+/// Some rays of a packet, each counted from its point closest to the axis.
 pub(super) struct Lanes {
     /// The height of that point, how fast the ray rises, and the reciprocal of that.
-    y: [f64; WIDE],
-    dy: [f64; WIDE],
-    inverse_dy: [f64; WIDE],
+    y: [f64; MOST],
+    dy: [f64; MOST],
+    inverse_dy: [f64; MOST],
     /// The squared distance from the axis is `a s^2 + 2 b s + c`, and the least at `middle`.
-    a: [f64; WIDE],
-    b: [f64; WIDE],
-    c: [f64; WIDE],
-    middle: [f64; WIDE],
+    a: [f64; MOST],
+    b: [f64; MOST],
+    c: [f64; MOST],
+    middle: [f64; MOST],
     /// Where the ray is in the surface's bounding cylinder.
-    from: [f64; WIDE],
-    to: [f64; WIDE],
+    from: [f64; MOST],
+    to: [f64; MOST],
     /// How far that point is from the ray's origin, and how far off it may be.
-    base: [f64; WIDE],
-    off: [f64; WIDE],
+    base: [f64; MOST],
+    off: [f64; MOST],
     /// What rounding makes of the quadratic, and of the places where the ray comes to the cylinder's ends.
-    rounding: [f64; WIDE],
-    hair: [f64; WIDE],
+    rounding: [f64; MOST],
+    hair: [f64; MOST],
     /// 1 where the ray is outside of the surface, -1 where it is inside.
-    side: [f64; WIDE],
+    side: [f64; MOST],
     /// 1 where the ray does not start on the surface.
-    is_free: [f64; WIDE],
+    is_free: [f64; MOST],
     /// The bracket so far, counted as `from`; in the end from the ray's origin.
-    pub near: [f64; WIDE],
-    pub far: [f64; WIDE],
+    pub near: [f64; MOST],
+    pub far: [f64; MOST],
 }
 
 impl Revolution {
-    /// The brackets of the first hits of rays, which may leave the surface on these sides. What begins beyond `ends`
-    /// is of no interest.
+    /// The brackets of the first hits of rays, up to [`MOST`], which may leave the surface on these sides. What begins
+    /// beyond `ends` is of no interest.
     pub(super) fn brackets(
         &self,
         cpu: Cpu,
@@ -56,7 +60,7 @@ impl Revolution {
         sides: Option<&[Side]>,
         ends: &[f64],
     ) -> Lanes {
-        let zero = [0.0; WIDE];
+        let zero = [0.0; MOST];
         let mut lanes = Lanes {
             y: zero,
             dy: zero,
@@ -71,10 +75,10 @@ impl Revolution {
             off: zero,
             rounding: zero,
             hair: zero,
-            side: [1.0; WIDE],
-            is_free: [1.0; WIDE],
+            side: [1.0; MOST],
+            is_free: [1.0; MOST],
             near: zero,
-            far: [MISS; WIDE],
+            far: [MISS; MOST],
         };
         for (lane, side) in sides.unwrap_or_default().iter().enumerate() {
             lanes.side[lane] = super::sign(*side);
@@ -127,7 +131,7 @@ kernels! {
     fn enter(
         lanes: &mut Lanes, frame: &Frame, rays: Rays, height: f64, widest: f64, reach: f64, ends: &[f64]
     ) -> Option<(f64, f64)> {
-        let count = rays.len().min(WIDE);
+        let count = rays.len().min(MOST);
         let (rays, ends) = (rays.first(count), &ends[..count]);
         let (mut low, mut high) = (i64::MAX, i64::MIN);
         for lane in 0..count {
@@ -180,8 +184,8 @@ kernels! {
 
     /// Compares the brackets with those of a slab.
     fn cross(lanes: &mut Lanes, slab: &Slab, height: f64, count: usize) {
-        let count = count.min(WIDE);
-        let mut is_close = [0; WIDE];
+        let count = count.min(MOST);
+        let mut is_close = [0; MOST];
         let mut any = 0;
         for lane in 0..count {
             let (from, to) = lanes.part(slab, lane);
@@ -250,7 +254,7 @@ kernels! {
 
     /// Counts the brackets from the rays' origins, a hair wider.
     fn leave(lanes: &mut Lanes, count: usize) {
-        let count = count.min(WIDE);
+        let count = count.min(MOST);
         for lane in 0..count {
             let (near, far, base) = (lanes.near[lane], lanes.far[lane], lanes.base[lane]);
             let hair = 2.0 * lanes.hair[lane];

@@ -76,7 +76,7 @@ kernels! {
         let mut out = out.first(count);
         let is_smooth = surface.slabs.is_smooth();
         for first in (0..count).step_by(STEP) {
-            let eight = points.eight(first);
+            let eight = points.part(first..first + STEP);
             let (mut at, mut normal) = (Vectors::<STEP>::ZERO, Vectors::<STEP>::ZERO);
             for lane in 0..STEP {
                 at.set(lane, frame.point(eight.get(lane)));

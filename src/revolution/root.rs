@@ -43,7 +43,7 @@ kernels! {
     fn roots(surface: &Revolution, frame: &Frame, rays: Rays, near: &[f64], far: &[f64], out: &mut [f64]) {
         let count = out.len();
         for first in (0..count).step_by(STEP) {
-            let rays = rays.eight(first);
+            let rays = rays.part(first..first + STEP);
             let (near, far) = (&near[first..first + STEP], &far[first..first + STEP]);
             let out = &mut out[first..first + STEP];
             let zero = Octet([0.0; STEP]);

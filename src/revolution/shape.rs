@@ -1,5 +1,6 @@
 //! Surfaces of revolution as shapes, wherever they stand.
 
+use super::bracket::MOST;
 use super::{Classic, Revolution};
 use crate::bounds::Bounds;
 use crate::certify::{self, Enclosure};
@@ -9,6 +10,12 @@ use crate::geometry::{Hittable, Ray, Side, Span};
 use crate::packet::{self, Nearest, Rays, View, ViewMut};
 use crate::roots::Method;
 use glam::DVec3;
+use std::ops::Range;
+
+/// So many rays, as many at a time as are bracketed together.
+fn parts(count: usize) -> impl Iterator<Item = Range<usize>> {
+    (0..count).step_by(MOST).map(move |first| first..count.min(first + MOST))
+}
 
 /// A surface around the y axis of a frame.
 pub struct InFrame<S> {
@@ -69,9 +76,15 @@ impl Hittable for InFrame<Revolution> {
         certify::first_hit(&self.surface, &self.frame.ray(ray))
     }
 
-    fn meet(&self, cpu: Cpu, rays: Rays, sides: Option<&[Side]>, id: u64, nearest: Nearest) -> bool {
-        let lanes = self.surface.brackets(cpu, &self.frame, rays, sides, nearest.far);
-        packet::meet_brackets(cpu, &lanes.near, &lanes.far, id, nearest)
+    fn meet(&self, cpu: Cpu, rays: Rays, sides: Option<&[Side]>, id: u64, mut nearest: Nearest) -> bool {
+        let mut any = false;
+        for part in parts(rays.len()) {
+            let (rays, sides) = (rays.part(part.clone()), sides.map(|sides| &sides[part.clone()]));
+            let nearest = nearest.part(part);
+            let lanes = self.surface.brackets(cpu, &self.frame, rays, sides, nearest.far);
+            any |= packet::meet_brackets(cpu, &lanes.near, &lanes.far, id, nearest);
+        }
+        any
     }
 
     fn block(
@@ -83,8 +96,14 @@ impl Hittable for InFrame<Revolution> {
         blocked: &mut [u64],
         doubt: &mut [u64],
     ) -> bool {
-        let lanes = self.surface.brackets(cpu, &self.frame, rays, sides, ends);
-        packet::block_brackets(cpu, &lanes.near, &lanes.far, ends, blocked, doubt)
+        let mut any = false;
+        for part in parts(ends.len()) {
+            let (rays, sides) = (rays.part(part.clone()), sides.map(|sides| &sides[part.clone()]));
+            let (ends, blocked, doubt) = (&ends[part.clone()], &mut blocked[part.clone()], &mut doubt[part]);
+            let lanes = self.surface.brackets(cpu, &self.frame, rays, sides, ends);
+            any |= packet::block_brackets(cpu, &lanes.near, &lanes.far, ends, blocked, doubt);
+        }
+        any
     }
 
     fn distances(

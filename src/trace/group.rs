@@ -1,64 +1,71 @@
 //! Rays that go together.
 
 use super::MAX_RAYS;
+use super::room::{Vectors, pick, room};
 use crate::camera::{self, Camera};
 use crate::cpu::Cpu;
 use crate::geometry::{Ray, Side};
-use crate::packet::{Rays, STEP, Vectors, WIDE};
+use crate::packet::{Rays, STEP};
 use glam::DVec3;
 
 /// A packet of rays that leave the same object, or none.
-#[derive(Clone)]
-pub(super) struct Group<const N: usize> {
+#[derive(Default)]
+pub(super) struct Group {
     pub len: usize,
-    pub origin: Vectors<N>,
-    pub dir: Vectors<N>,
+    pub origin: Vectors,
+    pub dir: Vectors,
     /// How far the light of each has come already.
-    pub travelled: [f64; N],
+    pub travelled: Vec<f64>,
     /// The rays that each may still cost.
-    pub budget: [u32; N],
+    pub budget: Vec<u32>,
     /// The camera ray that each comes from.
-    pub camera: [u8; N],
+    pub camera: Vec<u8>,
     /// The object that they leave, by its index, and on which side of it each goes.
     pub leaves: Option<usize>,
-    pub sides: [Side; N],
+    pub sides: Vec<Side>,
 }
 
-impl<const N: usize> Group<N> {
-    /// Rays from a viewpoint, with their directions yet to be given.
-    fn from(viewpoint: DVec3, len: usize) -> Self {
-        let mut camera = [0; N];
-        for (lane, camera) in camera.iter_mut().enumerate() {
-            // The copies that fill the arrays up are of the last ray, its sample of a light too.
-            *camera = lane.min(len - 1) as u8;
-        }
-        Self {
-            len,
-            origin: Vectors { x: [viewpoint.x; N], y: [viewpoint.y; N], z: [viewpoint.z; N] },
-            dir: Vectors::ZERO,
-            travelled: [0.0; N],
-            budget: [MAX_RAYS as u32; N],
-            camera,
-            leaves: None,
-            sides: [Side::Outside; N],
-        }
-    }
+/// Of a group's rays, by their lanes.
+pub(super) struct Onward<'o> {
+    pub points: &'o Vectors,
+    pub dir: &'o Vectors,
+    pub travelled: &'o [f64],
+    /// The object that they leave.
+    pub leaves: usize,
+    pub sides: &'o [Side],
+}
 
+impl Group {
     /// One ray from a viewer.
     pub fn primary(ray: &Ray) -> Self {
-        let Ray { origin, dir } = *ray;
-        Self { dir: Vectors { x: [dir.x; N], y: [dir.y; N], z: [dir.z; N] }, ..Self::from(origin, 1) }
+        let mut group = Self::default();
+        group.begin(ray.origin, 1);
+        group.dir.fill(STEP, ray.dir);
+        group
     }
 
     /// The rays that look through so many places, in pixels from the left and from the bottom.
-    pub fn through(cpu: Cpu, camera: &Camera, x: &mut [f64; N], y: &mut [f64; N], len: usize) -> Self {
-        let mut group = Self::from(camera.viewpoint, len);
-        let count = group.padded();
+    pub fn look(&mut self, cpu: Cpu, camera: &Camera, x: &mut [f64], y: &mut [f64], len: usize) {
+        self.begin(camera.viewpoint, len);
+        let count = self.padded();
         let last = (x[len - 1], y[len - 1]);
         x[len..count].fill(last.0);
         y[len..count].fill(last.1);
-        camera::look(cpu, camera, &x[..count], &y[..count], group.dir.view_mut(count));
-        group
+        camera::look(cpu, camera, &x[..count], &y[..count], self.dir.room(count));
+    }
+
+    /// Rays from a viewpoint, with their directions yet to be given.
+    fn begin(&mut self, viewpoint: DVec3, len: usize) {
+        self.len = len;
+        let count = self.padded();
+        self.origin.fill(count, viewpoint);
+        room(&mut self.travelled, count).fill(0.0);
+        room(&mut self.budget, count).fill(MAX_RAYS as u32);
+        for (lane, camera) in room(&mut self.camera, count).iter_mut().enumerate() {
+            // The copies that fill the arrays up are of the last ray, its sample of a light too.
+            *camera = lane.min(len - 1) as u8;
+        }
+        self.leaves = None;
     }
 
     /// How many rays there are with the copies that fill the arrays up.
@@ -79,63 +86,74 @@ impl<const N: usize> Group<N> {
         (self.leaves == Some(object)).then(|| &self.sides[..self.padded()])
     }
 
-    /// Some of them.
-    pub fn pick<const M: usize>(&self, lanes: &[u8]) -> Group<M> {
-        Group {
-            len: lanes.len(),
-            origin: pick_vectors(&self.origin, lanes),
-            dir: pick_vectors(&self.dir, lanes),
-            travelled: pick(&self.travelled, lanes),
-            budget: pick(&self.budget, lanes),
-            camera: pick(&self.camera, lanes),
-            leaves: self.leaves,
-            sides: if self.leaves.is_some() { pick(&self.sides, lanes) } else { [Side::Outside; M] },
+    /// Becomes some rays of another group.
+    pub fn pick(&mut self, from: &Self, lanes: &[u8]) {
+        self.len = lanes.len();
+        let count = self.padded();
+        self.dir.pick(&from.dir, lanes, count);
+        pick(&mut self.budget, &from.budget, lanes, count);
+        pick(&mut self.camera, &from.camera, lanes, count);
+        self.leaves = from.leaves;
+        if self.leaves.is_some() {
+            self.origin.pick(&from.origin, lanes, count);
+            pick(&mut self.travelled, &from.travelled, lanes, count);
+            pick(&mut self.sides, &from.sides, lanes, count);
+        } else {
+            // They all come from the viewer.
+            self.origin.fill(count, from.origin.get(0));
+            room(&mut self.travelled, count).fill(from.travelled[0]);
+        }
+    }
+
+    /// Becomes rays that go on where those of another group have met an object.
+    pub fn go_on(&mut self, from: &Self, onward: &Onward, lanes: &[u8]) {
+        self.len = lanes.len();
+        let count = self.padded();
+        self.origin.pick(onward.points, lanes, count);
+        self.dir.pick(onward.dir, lanes, count);
+        pick(&mut self.travelled, onward.travelled, lanes, count);
+        pick(&mut self.budget, &from.budget, lanes, count);
+        pick(&mut self.camera, &from.camera, lanes, count);
+        self.leaves = Some(onward.leaves);
+        pick(&mut self.sides, onward.sides, lanes, count);
+    }
+
+    /// What some of its rays, which have gone on as others, have cost.
+    pub fn pay(&mut self, part: &Self, lanes: &[u8]) {
+        for (lane, budget) in lanes.iter().zip(&part.budget) {
+            self.budget[usize::from(*lane)] = *budget;
         }
     }
 }
 
-/// Some elements of an array, the last one repeated to fill it up.
-#[inline(always)]
-pub(super) fn pick<T: Copy, const N: usize, const M: usize>(from: &[T; N], lanes: &[u8]) -> [T; M] {
-    let mut picked = [from[usize::from(lanes[lanes.len() - 1])]; M];
-    for (place, lane) in picked.iter_mut().zip(lanes) {
-        *place = from[usize::from(*lane)];
-    }
-    picked
-}
-
-pub(super) fn pick_vectors<const N: usize, const M: usize>(from: &Vectors<N>, lanes: &[u8]) -> Vectors<M> {
-    Vectors { x: pick(&from.x, lanes), y: pick(&from.y, lanes), z: pick(&from.z, lanes) }
-}
-
-/// Rays by what they met: the rays of one object after those of another.
-pub(super) struct Parts<'m> {
-    met: &'m [u64],
-    done: [bool; WIDE],
-    lanes: [u8; WIDE],
+/// Sorts rays by what they met: the rays of one object after those of another.
+#[derive(Default)]
+pub(super) struct Parts {
+    is_done: Vec<bool>,
+    lanes: Vec<u8>,
     next: usize,
 }
 
-impl<'m> Parts<'m> {
-    /// `met` tells of each ray what it met.
-    pub fn new(met: &'m [u64]) -> Self {
-        Self { met, done: [false; WIDE], lanes: [0; WIDE], next: 0 }
+impl Parts {
+    /// Begins with so many rays.
+    pub fn begin(&mut self, count: usize) {
+        room(&mut self.is_done, count).fill(false);
+        self.next = 0;
     }
 
-    /// What some rays met, and which rays those are.
-    pub fn next(&mut self) -> Option<(u64, &[u8])> {
-        while self.done.get(self.next).is_some_and(|done| *done) {
+    /// What some rays met, of which `met` tells for each, and which rays those are.
+    pub fn next(&mut self, met: &[u64]) -> Option<(u64, &[u8])> {
+        let is_done = &mut self.is_done[..met.len()];
+        while is_done.get(self.next).is_some_and(|done| *done) {
             self.next += 1;
         }
-        let id = *self.met.get(self.next)?;
-        let mut count = 0;
-        for (lane, other) in self.met.iter().enumerate().skip(self.next) {
-            if *other == id {
-                self.lanes[count] = lane as u8;
-                self.done[lane] = true;
-                count += 1;
-            }
+        let id = *met.get(self.next)?;
+        let (lanes, mut count) = (room(&mut self.lanes, met.len()), 0);
+        for (lane, other) in met.iter().enumerate().skip(self.next) {
+            lanes[count] = lane as u8;
+            count += usize::from(*other == id);
+            is_done[lane] |= *other == id;
         }
-        Some((id, &self.lanes[..count]))
+        Some((id, &lanes[..count]))
     }
 }

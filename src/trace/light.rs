@@ -111,6 +111,15 @@ kernels! {
         }
     }
 
+    /// Adds what is mirrored.
+    pub(super) fn reflect(specular: View, seen: View) => colours {
+        let count = specular.len();
+        let (seen, mut colours) = (seen.first(count), colours.first(count));
+        for lane in 0..count {
+            colours.set(lane, colours.get(lane) + specular.get(lane) * seen.get(lane));
+        }
+    }
+
     /// Directions, mirrored.
     pub(super) fn mirror(dir: View, normals: View) => out {
         let count = dir.len();

@@ -4,8 +4,12 @@
 //! object go on together, as a smaller packet, and so do their shadows (`shadow`), what they see through glass and in
 //! mirrors (`shade`). One ray is a packet of one. A ray's colour does not depend on which others go with it.
 
+mod block;
 mod group;
+mod illuminate;
 mod light;
+mod passage;
+mod room;
 mod search;
 mod shade;
 mod shadow;
@@ -14,12 +18,16 @@ use crate::cpu::Cpu;
 use crate::geometry::Ray;
 use crate::material::Rgb;
 use crate::model::Model;
-use crate::packet::{Vectors, WIDE};
+use crate::packet::{View, WIDE};
 use crate::plan::Plan;
 use crate::sample::Sample;
 use crate::watch::{Count, Event, Hit, Kind, Purpose, Watch};
 use group::{Group, Parts};
+use illuminate::Lighting;
+use passage::Passage;
+use room::{Vectors, pick};
 use search::Found;
+use shade::Shading;
 
 /// Light that has travelled farther than this is black.
 pub(crate) const MAX_DIST: f64 = 20.0;
@@ -57,18 +65,56 @@ pub fn colour(model: &Model, ray: &Ray, sample: Option<Sample>) -> Rgb {
 pub fn watch_colour(model: &Model, ray: &Ray, sample: Option<Sample>, watch: &mut impl Watch) -> Rgb {
     let mut tracer = Tracer::new(model, Cpu::best(), watch);
     tracer.samples[0] = sample;
-    tracer.colours(&mut Group::<NARROW>::primary(ray)).get(0)
+    let mut colours = Vectors::default();
+    tracer.colours(&mut Group::primary(ray), &mut colours);
+    colours.get(0)
 }
 
 /// What a ray from the viewer meets first.
 pub fn first_hit<'m>(model: &'m Model, ray: &Ray) -> Option<Hit<'m>> {
     let mut nobody = ();
     let mut tracer = Tracer::new(model, Cpu::best(), &mut nobody);
-    let mut group = Group::<NARROW>::primary(ray);
-    let found = tracer.closest(&mut group, None);
+    let (mut group, mut found, mut distances) = (Group::primary(ray), Found::default(), Vec::new());
+    tracer.closest(&mut group, None, &mut found);
     let object = (found.met[0] as usize).checked_sub(1)?;
-    let distance = tracer.settle(&group, &found.near, &found.far, object)[0];
+    tracer.settle(&group, (&found.near, &found.far), object, &mut distances);
+    let distance = distances[0];
     Some(Hit { index: object, object: &model.objects[object], distance, point: ray.at(distance) })
+}
+
+/// Room for rays from the viewer.
+struct Primary {
+    /// The places that they look through.
+    x: [f64; WIDE],
+    y: [f64; WIDE],
+    group: Group,
+    seen: Vectors,
+    /// Of pixels.
+    colours: Vectors,
+}
+
+impl Default for Primary {
+    fn default() -> Self {
+        Self {
+            x: [0.0; WIDE],
+            y: [0.0; WIDE],
+            group: Group::default(),
+            seen: Vectors::default(),
+            colours: Vectors::default(),
+        }
+    }
+}
+
+/// Room for the rays of a packet that meet the same object, while they are followed.
+#[derive(Default)]
+struct Level {
+    found: Found,
+    parts: Parts,
+    part: Group,
+    near: Vec<f64>,
+    far: Vec<f64>,
+    shading: Shading,
+    seen: Vectors,
 }
 
 /// Traces packets of rays through a model.
@@ -82,65 +128,86 @@ pub(crate) struct Tracer<'m, 'w, W> {
     depth: usize,
     /// Room for the way through a tree.
     ahead: Vec<usize>,
+    inverse: Vectors,
+    /// Room for rays from the viewer.
+    primary: Option<Box<Primary>>,
+    /// Room for packets that wait for those which have gone on from them, the foremost one last.
+    #[expect(clippy::vec_box, reason = "they come and go, and are large")]
+    levels: Vec<Box<Level>>,
+    #[expect(clippy::vec_box, reason = "likewise")]
+    passages: Vec<Box<Passage>>,
+    /// Room for what is over before any go on.
+    lighting: Option<Box<Lighting>>,
+    doubt: Vec<u64>,
     watch: &'w mut W,
 }
 
 impl<'m, 'w, W: Watch> Tracer<'m, 'w, W> {
     pub(crate) fn new(model: &'m Model, cpu: Cpu, watch: &'w mut W) -> Self {
-        let plan = model.plan();
-        Self { model, plan, cpu, samples: [None; WIDE], depth: 0, ahead: Vec::new(), watch }
+        Self {
+            model,
+            plan: model.plan(),
+            cpu,
+            samples: [None; WIDE],
+            depth: 0,
+            ahead: Vec::new(),
+            inverse: Vectors::default(),
+            primary: None,
+            levels: Vec::new(),
+            passages: Vec::new(),
+            lighting: None,
+            doubt: Vec::new(),
+            watch,
+        }
     }
 
-    /// The colours of some pixels, up to [`WIDE`] rays of which are traced together. `colour` is told of each pixel.
-    pub(crate) fn pixels(&mut self, pixels: &[[usize; 2]], mut colour: impl FnMut([usize; 2], Rgb)) {
+    /// The colours of some pixels, up to [`WIDE`] rays of which are traced together.
+    pub(crate) fn pixels(&mut self, pixels: &[[usize; 2]]) -> View<'_> {
         let camera = &self.model.camera.value;
-        let (mut x, mut y) = ([0.0; WIDE], [0.0; WIDE]);
+        let mut room = self.primary.take().unwrap_or_default();
+        let Primary { x, y, group, seen, colours } = &mut *room;
+        let mut colours = colours.room(pixels.len());
         if camera.samples == 1 {
-            for pixels in pixels.chunks(WIDE) {
+            for (pixels, first) in pixels.chunks(WIDE).zip((0..).step_by(WIDE)) {
                 for (lane, [column, row]) in pixels.iter().enumerate() {
                     (x[lane], y[lane]) = (*column as f64, *row as f64);
                 }
-                let mut group = Group::<WIDE>::through(self.cpu, camera, &mut x, &mut y, pixels.len());
-                let colours = self.colours(&mut group);
-                for (lane, pixel) in pixels.iter().enumerate() {
-                    colour(*pixel, colours.get(lane));
+                group.look(self.cpu, camera, x, y, pixels.len());
+                self.colours(group, seen);
+                colours.put(first, seen.view(pixels.len()));
+            }
+        } else {
+            let samples = camera.samples as usize;
+            let mut rays = pixels.iter().flat_map(|&[x, y]| camera.places(x, y));
+            let (mut sum, mut count) = (Rgb::ZERO, 0);
+            while count < samples * pixels.len() {
+                let mut len = 0;
+                for (place, sample) in rays.by_ref().take(WIDE) {
+                    (x[len], y[len], self.samples[len]) = (place.x, place.y, sample);
+                    len += 1;
                 }
-            }
-            return;
-        }
-        let mut rays = pixels.iter().flat_map(|&[x, y]| camera.places(x, y));
-        let mut pixels = pixels.iter();
-        let (mut sum, mut seen) = (Rgb::ZERO, 0);
-        loop {
-            let mut len = 0;
-            for (place, sample) in rays.by_ref().take(WIDE) {
-                (x[len], y[len], self.samples[len]) = (place.x, place.y, sample);
-                len += 1;
-            }
-            if len == 0 {
-                return;
-            }
-            let colours = self.colours(&mut Group::<WIDE>::through(self.cpu, camera, &mut x, &mut y, len));
-            for lane in 0..len {
-                sum += colours.get(lane);
-                seen += 1;
-                if seen == camera.samples
-                    && let Some(pixel) = pixels.next()
-                {
-                    colour(*pixel, sum / f64::from(camera.samples));
-                    (sum, seen) = (Rgb::ZERO, 0);
+                group.look(self.cpu, camera, x, y, len);
+                self.colours(group, seen);
+                for lane in 0..len {
+                    sum += seen.get(lane);
+                    count += 1;
+                    if count % samples == 0 {
+                        colours.set(count / samples - 1, sum / f64::from(camera.samples));
+                        sum = Rgb::ZERO;
+                    }
                 }
             }
         }
+        self.primary.insert(room).colours.view(pixels.len())
     }
 
     /// The colours that rays from the viewer see.
-    fn colours<const N: usize>(&mut self, group: &mut Group<N>) -> Vectors<N> {
+    fn colours(&mut self, group: &mut Group, colours: &mut Vectors) {
         self.watch.count(Count::Rays(Kind::Primary, group.len));
         if W::SEES {
             self.watch.see(Event::Begin(Purpose::Primary));
         }
-        self.trace(group)
+        self.trace(group, colours);
     }
 
     /// Whether wide packets may go on.
@@ -149,49 +216,29 @@ impl<'m, 'w, W: Watch> Tracer<'m, 'w, W> {
     }
 
     /// The light that comes back along the rays of a packet.
-    fn trace<const N: usize>(&mut self, group: &mut Group<N>) -> Vectors<N> {
-        let found = self.closest(group, None);
-        if found.met[0] != 0 && found.met[..group.len].iter().all(|met| *met == found.met[0]) {
-            let colours = self.shade(group, &found.near, &found.far, found.met[0] as usize - 1);
-            if W::SEES {
-                self.watch.see(Event::Colour(colours.get(0)));
-            }
-            return colours;
-        }
-        let mut colours = Vectors::ZERO;
-        let mut parts = Parts::new(&found.met[..group.len]);
-        while let Some((id, lanes)) = parts.next() {
-            if id == 0 {
-                continue;
-            }
-            let object = id as usize - 1;
-            if lanes.len() <= NARROW {
-                self.shade_part::<N, NARROW>(group, &found, lanes, object, &mut colours);
-            } else {
-                self.shade_part::<N, N>(group, &found, lanes, object, &mut colours);
+    fn trace(&mut self, group: &mut Group, colours: &mut Vectors) {
+        let mut level = self.levels.pop().unwrap_or_default();
+        let Level { found, parts, part, near, far, shading, seen } = &mut *level;
+        self.closest(group, None, found);
+        let met = &found.met[..group.len];
+        if met[0] != 0 && met.iter().all(|other| *other == met[0]) {
+            self.shade(group, (&found.near, &found.far), met[0] as usize - 1, shading, colours);
+        } else {
+            colours.fill(group.padded(), Rgb::ZERO);
+            parts.begin(group.len);
+            while let Some((id, lanes)) = parts.next(met) {
+                let Some(object) = (id as usize).checked_sub(1) else { continue };
+                part.pick(group, lanes);
+                pick(near, &found.near, lanes, part.padded());
+                pick(far, &found.far, lanes, part.padded());
+                self.shade(part, (near, far), object, shading, seen);
+                colours.put(seen, lanes);
+                group.pay(part, lanes);
             }
         }
         if W::SEES {
             self.watch.see(Event::Colour(colours.get(0)));
         }
-        colours
-    }
-
-    /// The colours of those rays of a packet that meet the same object, as a packet of their own.
-    fn shade_part<const N: usize, const M: usize>(
-        &mut self,
-        group: &mut Group<N>,
-        found: &Found<N>,
-        lanes: &[u8],
-        object: usize,
-        colours: &mut Vectors<N>,
-    ) {
-        let mut part = group.pick::<M>(lanes);
-        let (near, far) = (group::pick(&found.near, lanes), group::pick(&found.far, lanes));
-        let seen = self.shade(&mut part, &near, &far, object);
-        for (index, lane) in lanes.iter().enumerate() {
-            colours.set(usize::from(*lane), seen.get(index));
-            group.budget[usize::from(*lane)] = part.budget[index];
-        }
+        self.levels.push(level);
     }
 }

@@ -2,52 +2,76 @@
 
 use super::Tracer;
 use super::group::Group;
+use super::room::{Vectors, room};
 use crate::bounds::{self, Bounds, Bundle};
-use crate::geometry::{MISS, Ray, Side, Span};
-use crate::packet::{Nearest, Rays, Vectors, WIDE};
+use crate::cpu::kernels;
+use crate::geometry::{Hittable, MISS, Ray, Side, Span};
+use crate::packet::{Nearest, Rays, WIDE};
 use crate::tree::Visitor;
 use crate::watch::{Count, Event, Hit, Reason, Watch};
+use std::ops::Range;
 
 /// What each ray of a packet meets first, and between which distances.
-pub(super) struct Found<const N: usize> {
-    pub near: [f64; N],
-    pub far: [f64; N],
+#[derive(Default)]
+pub(super) struct Found {
+    pub near: Vec<f64>,
+    pub far: Vec<f64>,
     /// The object's index and 1; 0 for none.
-    pub met: [u64; N],
+    pub met: Vec<u64>,
+    doubt: Vec<u64>,
+}
+
+impl Found {
+    /// Nothing yet, before these ends.
+    fn begin(&mut self, count: usize, ends: Option<&[f64]>) {
+        for distances in [&mut self.near, &mut self.far] {
+            let distances = room(distances, count);
+            match ends {
+                Some(ends) => distances.copy_from_slice(&ends[..count]),
+                None => distances.fill(MISS),
+            }
+        }
+        room(&mut self.met, count).fill(0);
+        room(&mut self.doubt, count).fill(0);
+    }
+
+    /// Of some of the rays.
+    fn part(&mut self, range: Range<usize>) -> Nearest<'_> {
+        Nearest {
+            near: &mut self.near[range.clone()],
+            far: &mut self.far[range.clone()],
+            met: &mut self.met[range.clone()],
+            doubt: &mut self.doubt[range],
+        }
+    }
 }
 
 impl<'m, W: Watch> Tracer<'m, '_, W> {
     /// What each ray meets first before its end, if it has one. A ray that has cost as many as it may meets nothing.
-    pub(super) fn closest<const N: usize>(
-        &mut self,
-        group: &mut Group<N>,
-        ends: Option<&[f64; N]>,
-    ) -> Found<N> {
-        let ends = ends.unwrap_or(&[MISS; N]);
-        let mut found = Found { near: *ends, far: *ends, met: [0; N] };
+    pub(super) fn closest(&mut self, group: &mut Group, ends: Option<&[f64]>, found: &mut Found) {
+        found.begin(group.padded(), ends);
         if W::SEES && group.budget[0] == 0 {
             self.watch.see(Event::Dropped(Reason::TooMany));
-            return found;
+            return;
         }
-        for lane in 0..group.len {
-            found.near[lane] = if group.budget[lane] == 0 { 0.0 } else { found.near[lane] };
-            group.budget[lane] = group.budget[lane].saturating_sub(1);
+        for (lane, budget) in group.budget[..group.len].iter_mut().enumerate() {
+            if *budget == 0 {
+                (found.near[lane], found.far[lane]) = (0.0, 0.0);
+            }
+            *budget = budget.saturating_sub(1);
         }
-        found.far = found.near;
         if W::SEES {
-            self.closest_seen(group, &mut found);
-            return found;
+            self.closest_seen(group, found);
+            return;
         }
-        let doubt = [0; N];
-        let mut ahead = std::mem::take(&mut self.ahead);
-        let mut search = Closest { tracer: self, group, found: &mut found, doubt, inverse: Vectors::ZERO };
-        search.run(&mut ahead);
-        self.ahead = ahead;
-        found
+        let (mut ahead, mut inverse) = (std::mem::take(&mut self.ahead), std::mem::take(&mut self.inverse));
+        let part = 0..group.padded();
+        Closest { tracer: self, group, found, part, inverse: &mut inverse }.run(&mut ahead);
+        (self.ahead, self.inverse) = (ahead, inverse);
     }
 
     /// What one ray meets first, with all that leads to it told.
-    fn closest_seen<const N: usize>(&mut self, group: &Group<N>, found: &mut Found<N>) {
+    fn closest_seen(&mut self, group: &Group, found: &mut Found) {
         let ray = group.rays().get(0);
         self.watch.see(Event::Search(&ray));
         for index in 0..self.model.objects.len() {
@@ -73,108 +97,142 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
     }
 
     /// The distances at which the rays of a packet meet an object, known to lie between `near` and `far`.
-    pub(super) fn settle<const N: usize>(
+    pub(super) fn settle(
         &mut self,
-        group: &Group<N>,
-        near: &[f64; N],
-        far: &[f64; N],
+        group: &Group,
+        (near, far): (&[f64], &[f64]),
         object: usize,
-    ) -> [f64; N] {
+        distances: &mut Vec<f64>,
+    ) {
         let (len, count) = (group.len, group.padded());
-        let mut distances = *near;
+        let (near, far, distances) = (&near[..count], &far[..count], room(distances, count));
+        distances.copy_from_slice(near);
         if near[..len] != far[..len] {
             let shape = &*self.model.objects[object].shape;
             let sides = group.sides_of(object);
-            let brackets = (&near[..count], &far[..count]);
-            shape.distances(self.cpu, group.rays(), sides, brackets, &mut distances[..count]);
-            for lane in 0..len {
-                if near[lane] == far[lane] {
-                    distances[lane] = near[lane];
-                } else if distances[lane].is_nan() {
-                    let leaves = sides.map(|sides| sides[lane]);
-                    distances[lane] = exact(shape, &group.rays().get(lane), leaves, MISS);
+            shape.distances(self.cpu, group.rays(), sides, (near, far), distances);
+            if keep_known(self.cpu, near, far, distances) {
+                for lane in 0..len {
+                    if distances[lane].is_nan() {
+                        let leaves = sides.map(|sides| sides[lane]);
+                        distances[lane] = exact(shape, &group.rays().get(lane), leaves, MISS);
+                    }
                 }
-                debug_assert!(
-                    near[lane] <= distances[lane] && distances[lane] <= far[lane],
-                    "the bracket {} to {} of `{}` does not hold {}",
-                    near[lane],
-                    far[lane],
-                    self.model.objects[object].args.entity.name,
-                    distances[lane]
-                );
             }
+            debug_assert!(
+                (0..len).all(|lane| near[lane] <= distances[lane] && distances[lane] <= far[lane]),
+                "brackets of `{}` do not hold what is in them",
+                self.model.objects[object].args.entity.name,
+            );
         }
         // What is beyond the last ray goes on as a copy of it: what plain arithmetic left open there is no number, and
         // would make no box of the places.
         let last = distances[len - 1];
-        distances[len..count].fill(last);
-        distances
-    }
-
-    /// Marks the rays that an object blocks before their ends: so many, and copies that fill the arrays up. All leave the
-    /// same object, or none.
-    pub(super) fn blocked(
-        &mut self,
-        rays: Rays,
-        len: usize,
-        ends: &[f64],
-        (leaves, sides): (usize, &[Side]),
-        region: &Bounds,
-        blocked: &mut [u64],
-    ) {
-        let mut ahead = std::mem::take(&mut self.ahead);
-        let mut search = Blocked {
-            tracer: self,
-            rays,
-            len,
-            ends,
-            leaves,
-            sides,
-            region: region.with_slack(0.0),
-            inverse: Vectors::ZERO,
-            blocked,
-        };
-        search.run(&mut ahead);
-        self.ahead = ahead;
+        distances[len..].fill(last);
     }
 }
 
 /// A shape's exact distance on one ray.
-fn exact(shape: &dyn crate::geometry::Hittable, ray: &Ray, leaves: Option<Side>, far: f64) -> f64 {
+pub(super) fn exact(shape: &dyn Hittable, ray: &Ray, leaves: Option<Side>, far: f64) -> f64 {
     shape.distance(ray, &Span { far, leaves, ..Span::RAY })
 }
 
-struct Closest<'s, 'm, 'w, W, const N: usize> {
-    tracer: &'s mut Tracer<'m, 'w, W>,
-    group: &'s Group<N>,
-    found: &'s mut Found<N>,
-    doubt: [u64; N],
-    /// The reciprocals of the rays' directions, for a tree.
-    inverse: Vectors<N>,
+kernels! {
+    /// Puts distances that are known where they are. Tells whether any is no number.
+    fn keep_known(near: &[f64], far: &[f64], distances: &mut [f64]) -> bool {
+        let count = distances.len();
+        let (near, far) = (&near[..count], &far[..count]);
+        let mut any = 0;
+        for lane in 0..count {
+            distances[lane] = if near[lane] == far[lane] { near[lane] } else { distances[lane] };
+            any |= u64::from(distances[lane].is_nan());
+        }
+        any != 0
+    }
 }
 
-impl<W: Watch, const N: usize> Closest<'_, '_, '_, W, N> {
-    fn run(&mut self, ahead: &mut Vec<usize>) {
+/// The most rays of a part of a packet.
+const PART: usize = 64;
+
+/// The rays of a packet in parts, which are nearer each other than all of them, and so come near fewer objects.
+pub(super) fn parts(count: usize) -> impl Iterator<Item = Range<usize>> {
+    (0..count).step_by(PART).map(move |first| first..count.min(first + PART))
+}
+
+/// The reciprocals of rays' directions.
+pub(super) fn invert(rays: Rays, inverse: &mut Vectors) {
+    let mut inverse = inverse.room(rays.len());
+    for lane in 0..rays.len() {
+        inverse.set(lane, rays.dir.get(lane).recip());
+    }
+}
+
+struct Closest<'s, 'm, 'w, W> {
+    tracer: &'s mut Tracer<'m, 'w, W>,
+    group: &'s Group,
+    found: &'s mut Found,
+    /// Which of the rays are looked after.
+    part: Range<usize>,
+    /// The reciprocals of their directions, for a tree.
+    inverse: &'s mut Vectors,
+}
+
+impl<W: Watch> Closest<'_, '_, '_, W> {
+    fn run(mut self, ahead: &mut Vec<usize>) {
         let plan = self.tracer.plan;
-        let cpu = self.tracer.cpu;
-        let bundle = plan.has_bounds.then(|| {
-            let rays = self.group.rays();
-            Bundle::new(bounds::around(cpu, rays.origin), bounds::around(cpu, rays.dir))
-        });
-        for index in &plan.listed {
-            match (&plan.bounds[*index], &bundle) {
-                (Some(bounds), Some(bundle)) if !bundle.may_meet(bounds) => {
-                    self.tracer.watch.count(Count::Culled(*index, self.group.len));
+        for index in &plan.unbounded {
+            self.object(*index);
+        }
+        if !plan.bounded.is_empty() {
+            self.bounded();
+        }
+        let Some(tree) = &plan.tree else { return };
+        for part in parts(self.group.padded()) {
+            let rays = self.group.rays().part(part.clone());
+            self.part = part;
+            invert(rays, self.inverse);
+            tree.visit(rays.dir.get(0), ahead, &mut self);
+        }
+    }
+
+    /// Looks at the objects with bounds that are listed, for those parts of the packet that come near each.
+    fn bounded(&mut self) {
+        let (cpu, group) = (self.tracer.cpu, self.group);
+        let mut bundles = [const { None }; WIDE / PART];
+        let (mut origins, mut dirs) = (Bounds::EMPTY, Bounds::EMPTY);
+        for (part, bundle) in parts(group.padded()).zip(&mut bundles) {
+            let rays = group.rays().part(part);
+            let (origin, dir) = (bounds::around(cpu, rays.origin), bounds::around(cpu, rays.dir));
+            (origins, dirs) = (origins.and(&origin), dirs.and(&dir));
+            *bundle = Some(Bundle::new(origin, dir));
+        }
+        let whole = Bundle::new(origins, dirs);
+        for (index, bounds) in &self.tracer.plan.bounded {
+            let mut tested = 0;
+            if whole.may_meet(bounds) {
+                let meets =
+                    bundles.each_ref().map(|bundle| bundle.as_ref().is_some_and(|it| it.may_meet(bounds)));
+                let mut end = 0;
+                // Neighbours go together.
+                for run in meets.chunk_by(|one, other| one == other) {
+                    let start = end;
+                    end += PART * run.len();
+                    if run[0] {
+                        self.part = start..end.min(group.padded());
+                        tested += self.len();
+                        self.object(*index);
+                    }
                 }
-                _ => self.object(*index),
+            }
+            if tested < group.len {
+                self.tracer.watch.count(Count::Culled(*index, group.len - tested));
             }
         }
-        if let Some(tree) = &plan.tree {
-            for lane in 0..self.group.padded() {
-                self.inverse.set(lane, self.group.dir.get(lane).recip());
-            }
-            tree.visit(self.group.dir.get(0), ahead, self);
-        }
+    }
+
+    /// How many of the rays are no copies.
+    fn len(&self) -> usize {
+        self.part.end.min(self.group.len) - self.part.start
     }
 
     /// Which of two objects one ray meets first, where brackets do not tell.
@@ -199,94 +257,25 @@ impl<W: Watch, const N: usize> Closest<'_, '_, '_, W, N> {
     }
 }
 
-impl<W: Watch, const N: usize> Visitor for Closest<'_, '_, '_, W, N> {
+impl<W: Watch> Visitor for Closest<'_, '_, '_, W> {
     fn enters(&mut self, bounds: &Bounds) -> bool {
-        let count = self.group.padded();
-        let ends = &self.found.far[..count];
-        bounds::any_meets(self.tracer.cpu, self.group.rays(), self.inverse.view(count), ends, bounds)
+        let rays = self.group.rays().part(self.part.clone());
+        let ends = &self.found.far[self.part.clone()];
+        bounds::any_meets(self.tracer.cpu, rays, self.inverse.view(rays.len()), ends, bounds)
     }
 
     fn object(&mut self, index: usize) {
         let shape = &*self.tracer.model.objects[index].shape;
-        let sides = self.group.sides_of(index);
+        let sides = self.group.sides_of(index).map(|sides| &sides[self.part.clone()]);
         if sides.is_some() && shape.is_convex() {
             return;
         }
-        self.tracer.watch.count(Count::Tested(index, self.group.len));
-        let nearest = Nearest {
-            near: &mut self.found.near,
-            far: &mut self.found.far,
-            met: &mut self.found.met,
-            doubt: &mut self.doubt,
-        };
-        if shape.meet(self.tracer.cpu, self.group.rays(), sides, index as u64 + 1, nearest) {
-            for lane in 0..self.group.len {
-                if self.doubt[lane] != 0 {
-                    self.decide(lane, index, sides.map(|sides| sides[lane]));
-                }
-            }
-        }
-    }
-}
-
-struct Blocked<'s, 'm, 'w, W> {
-    tracer: &'s mut Tracer<'m, 'w, W>,
-    rays: Rays<'s>,
-    /// How many of them are no copies.
-    len: usize,
-    ends: &'s [f64],
-    leaves: usize,
-    sides: &'s [Side],
-    /// Where the rays go.
-    region: Bounds,
-    /// The reciprocals of their directions, for a tree.
-    inverse: Vectors<WIDE>,
-    blocked: &'s mut [u64],
-}
-
-impl<W: Watch> Blocked<'_, '_, '_, W> {
-    fn run(&mut self, ahead: &mut Vec<usize>) {
-        let plan = self.tracer.plan;
-        for index in &plan.listed {
-            if self.tracer.model.objects[*index].shape.is_clear_of(&self.region) {
-                self.tracer.watch.count(Count::Culled(*index, self.len));
-                continue;
-            }
-            self.object(*index);
-            if self.blocked.iter().all(|blocked| *blocked != 0) {
-                return;
-            }
-        }
-        if let Some(tree) = &plan.tree {
-            for lane in 0..self.ends.len() {
-                self.inverse.set(lane, self.rays.dir.get(lane).recip());
-            }
-            tree.visit(self.rays.dir.get(0), ahead, self);
-        }
-    }
-}
-
-impl<W: Watch> Visitor for Blocked<'_, '_, '_, W> {
-    fn enters(&mut self, bounds: &Bounds) -> bool {
-        let inverse = self.inverse.view(self.ends.len());
-        bounds.overlaps(&self.region)
-            && bounds::any_meets(self.tracer.cpu, self.rays, inverse, self.ends, bounds)
-    }
-
-    fn object(&mut self, index: usize) {
-        let shape = &*self.tracer.model.objects[index].shape;
-        let sides = (index == self.leaves).then_some(self.sides);
-        if sides.is_some() && shape.is_convex() {
-            return;
-        }
-        self.tracer.watch.count(Count::Tested(index, self.len));
-        let mut doubt = [0; WIDE];
-        if shape.block(self.tracer.cpu, self.rays, sides, self.ends, self.blocked, &mut doubt) {
-            for lane in 0..self.ends.len() {
-                if doubt[lane] != 0 {
-                    let leaves = sides.map(|sides| sides[lane]);
-                    let distance = exact(shape, &self.rays.get(lane), leaves, self.ends[lane]);
-                    self.blocked[lane] |= u64::from(distance < self.ends[lane]);
+        self.tracer.watch.count(Count::Tested(index, self.len()));
+        let rays = self.group.rays().part(self.part.clone());
+        if shape.meet(self.tracer.cpu, rays, sides, index as u64 + 1, self.found.part(self.part.clone())) {
+            for lane in 0..self.len() {
+                if self.found.doubt[self.part.start + lane] != 0 {
+                    self.decide(self.part.start + lane, index, sides.map(|sides| sides[lane]));
                 }
             }
         }

@@ -1,37 +1,54 @@
 //! How much of a light comes to the places of a surface.
 
-use super::group::{Group, Parts, pick, pick_vectors};
+use super::Tracer;
+use super::block::Leaving;
+use super::group::{Group, Onward};
+use super::room::{Vectors, pick, room};
 use super::shade::Surface;
-use super::{NARROW, Tracer};
 use crate::accuracy::Accuracy;
 use crate::bounds::Bounds;
 use crate::cpu::kernels;
 use crate::geometry::Side;
-use crate::packet::{Rays, STEP, Vectors, View};
-use crate::watch::{Count, Event, Kind, Purpose, Watch};
+use crate::packet::{Rays, STEP, View};
+use crate::watch::{Count, Kind, Watch};
 
 /// The ways from the places of a surface to a light.
-pub(super) struct Ways<'w, const N: usize> {
+pub(super) struct Ways<'w> {
+    /// Where those places are.
+    pub from: Bounds,
     /// Where they go.
-    pub region: Bounds,
+    pub to: Bounds,
     /// The directions there.
-    pub toward: &'w Vectors<N>,
+    pub toward: &'w Vectors,
     /// How far it is.
-    pub distances: &'w [f64; N],
+    pub distances: &'w [f64],
 }
 
-/// What comes of light on its way to a packet's places.
-pub(super) struct Passed<const N: usize> {
-    /// The part of each channel that gets there.
-    pub tint: Vectors<N>,
-    /// The opaque object that stands in the way, by its index and 1; 0 where there is none.
-    pub blocker: [u64; N],
+impl<'w> Ways<'w> {
+    /// As ways on from a surface.
+    pub fn onward(&self, surface: &'w Surface) -> Onward<'w> {
+        let Surface { index, points, sides, travelled, .. } = surface;
+        Onward { points, dir: self.toward, travelled, leaves: *index, sides }
+    }
+}
+
+/// Room for the shadows of a packet.
+#[derive(Default)]
+pub(super) struct Shadows {
+    ends: Vec<f64>,
+    blocked: Vec<u64>,
+    /// Those that remain of a packet.
+    lanes: Vec<u8>,
+    origin: Vectors,
+    dir: Vectors,
+    their_ends: Vec<f64>,
+    sides: Vec<Side>,
 }
 
 impl<W: Watch> Tracer<'_, '_, W> {
     /// What the ends of the ways are short of the light, as a part of how far that is: a surface that the light lies
     /// on is no blocker, however rounding has it.
-    fn slack(&self) -> f64 {
+    pub(super) fn slack(&self) -> f64 {
         match self.model.camera.value.accuracy {
             Accuracy::Classic => 0.0,
             _ => 16.0 * f64::EPSILON,
@@ -39,167 +56,49 @@ impl<W: Watch> Tracer<'_, '_, W> {
     }
 
     /// Takes the light away (0 in `shines`) where an object stands in its way, in a scene without glass.
-    pub(super) fn shadow<const N: usize>(
+    pub(super) fn shadow(
         &mut self,
-        group: &mut Group<N>,
-        surface: &Surface<N>,
-        ways: &Ways<N>,
-        shines: &mut [u64; N],
+        group: &mut Group,
+        surface: &Surface,
+        ways: &Ways,
+        shadows: &mut Shadows,
+        shines: &mut [u64],
     ) {
-        let count = group.padded();
-        let mut ends = [0.0; N];
-        let points = surface.points.view(count);
-        aim(
-            self.cpu,
-            points,
-            &ways.distances[..count],
-            self.slack(),
-            &shines[..],
-            &group.budget[..],
-            &mut ends,
-        );
+        let (cpu, count) = (self.cpu, group.padded());
+        let Shadows { ends, blocked, lanes, origin, dir, their_ends, sides } = shadows;
+        let ends = room(ends, count);
+        aim(cpu, surface.points.view(count), ways.distances, self.slack(), shines, ends);
         // A ray that has cost as many as it may finds nothing in the way.
-        let len = ends[..group.len].iter().filter(|end| **end > 0.0).count();
+        let len = spend(cpu, &mut group.budget[..group.len], ends);
         if len == 0 {
             return;
         }
-        for (budget, end) in group.budget[..group.len].iter_mut().zip(&ends) {
-            *budget -= u32::from(*end > 0.0);
-        }
         self.watch.count(Count::Rays(Kind::Shadow, len));
-        let mut blocked = [0; N];
         if 2 * len > group.len {
+            let blocked = room(blocked, count);
+            close(cpu, ends, blocked);
             let rays = Rays { origin: surface.points.view(count), dir: ways.toward.view(count) };
-            let leaves = (surface.index, &surface.sides[..count]);
-            self.blocked(rays, len, &ends[..count], leaves, &ways.region, &mut blocked[..count]);
-            darken(self.cpu, &blocked[..count], &mut shines[..]);
+            let sides = &surface.sides[..count];
+            let leaving = Leaving { rays, len: group.len, ends, object: surface.index, sides };
+            self.block(&leaving, &ways.from, &ways.to, blocked);
+            darken(cpu, blocked, shines);
             return;
         }
-        let (mut lanes, mut found) = ([0; N], 0);
-        for (lane, end) in ends.iter().enumerate().take(group.len) {
-            if *end > 0.0 {
-                lanes[found] = lane as u8;
-                found += 1;
-            }
-        }
-        let lanes = &lanes[..len];
+        lanes.clear();
+        lanes.extend((0..group.len).filter(|lane| ends[*lane] > 0.0).map(|lane| lane as u8));
         let count = len.next_multiple_of(STEP);
-        let (origin, dir): (Vectors<N>, Vectors<N>) =
-            (pick_vectors(&surface.points, lanes), pick_vectors(ways.toward, lanes));
-        let (ends, sides): ([f64; N], [Side; N]) = (pick(&ends, lanes), pick(&surface.sides, lanes));
+        origin.pick(&surface.points, lanes, count);
+        dir.pick(ways.toward, lanes, count);
+        pick(their_ends, ends, lanes, count);
+        pick(sides, &surface.sides, lanes, count);
+        let blocked = room(blocked, count);
+        blocked.fill(0);
         let rays = Rays { origin: origin.view(count), dir: dir.view(count) };
-        let leaves = (surface.index, &sides[..count]);
-        self.blocked(rays, len, &ends[..count], leaves, &ways.region, &mut blocked[..count]);
-        for (lane, blocked) in lanes.iter().zip(&blocked) {
+        let (ends, sides) = (&their_ends[..count], &sides[..count]);
+        let leaving = Leaving { rays, len, ends, object: surface.index, sides };
+        self.block(&leaving, &ways.from, &ways.to, blocked);
+        for (lane, blocked) in lanes.iter().zip(blocked) {
             shines[usize::from(*lane)] &= u64::from(*blocked == 0);
-        }
-    }
-
-    /// What comes through of the light that shines on some places, in a scene with glass.
-    pub(super) fn passed<const N: usize>(
-        &mut self,
-        group: &mut Group<N>,
-        surface: &Surface<N>,
-        ways: &Ways<N>,
-        shines: &[u64; N],
-    ) -> Passed<N> {
-        let (mut ends, count) = ([0.0; N], group.padded());
-        let points = surface.points.view(count);
-        // Those that have cost as many as they may go, too: they find nothing.
-        let distances = &ways.distances[..count];
-        aim(self.cpu, points, distances, self.slack(), &shines[..], &[1; N], &mut ends);
-        let (mut lanes, mut len) = ([0; N], 0);
-        for lane in 0..group.len {
-            lanes[len] = lane as u8;
-            len += usize::from(shines[lane] != 0);
-        }
-        let lanes = &lanes[..len];
-        let mut part = Group::<N> {
-            len,
-            origin: pick_vectors(&surface.points, lanes),
-            dir: pick_vectors(ways.toward, lanes),
-            travelled: [0.0; N],
-            budget: pick(&group.budget, lanes),
-            camera: [0; N],
-            leaves: Some(surface.index),
-            sides: pick(&surface.sides, lanes),
-        };
-        let open = Passed { tint: Vectors { x: [1.0; N], y: [1.0; N], z: [1.0; N] }, blocker: [0; N] };
-        let ways = self.walk(&mut part, &pick(&ends, lanes), open);
-        let mut passed = Passed { tint: Vectors::ZERO, blocker: [0; N] };
-        for (index, lane) in lanes.iter().enumerate() {
-            let lane = usize::from(*lane);
-            passed.tint.set(lane, ways.tint.get(index));
-            passed.blocker[lane] = ways.blocker[index];
-            group.budget[lane] = part.budget[index];
-        }
-        passed
-    }
-
-    /// Goes on toward a light, through glass, from where `passed` has come through.
-    fn walk<const N: usize>(
-        &mut self,
-        group: &mut Group<N>,
-        ends: &[f64; N],
-        mut passed: Passed<N>,
-    ) -> Passed<N> {
-        self.watch.count(Count::Rays(Kind::Shadow, group.len));
-        if W::SEES {
-            self.watch.see(Event::Begin(Purpose::Shadow { distance: ends[0] }));
-        }
-        let found = self.closest(group, Some(ends));
-        let mut parts = Parts::new(&found.met[..group.len]);
-        while let Some((id, lanes)) = parts.next() {
-            let Some(index) = (id as usize).checked_sub(1) else { continue };
-            if self.model.objects[index].material.transparency == 0.0 {
-                for lane in lanes {
-                    passed.blocker[usize::from(*lane)] = id;
-                }
-                continue;
-            }
-            for lanes in lanes.chunks(if lanes.len() > NARROW && self.is_shallow() { N } else { NARROW }) {
-                let (near, far) = (&found.near, &found.far);
-                if lanes.len() <= NARROW {
-                    self.pane::<N, NARROW>(group, (ends, near, far), index, lanes, &mut passed);
-                } else {
-                    self.pane::<N, N>(group, (ends, near, far), index, lanes, &mut passed);
-                }
-            }
-        }
-        passed
-    }
-
-    /// Goes through one object of glass.
-    fn pane<const N: usize, const M: usize>(
-        &mut self,
-        group: &mut Group<N>,
-        (ends, near, far): (&[f64; N], &[f64; N], &[f64; N]),
-        index: usize,
-        lanes: &[u8],
-        passed: &mut Passed<N>,
-    ) {
-        let mut part = group.pick::<M>(lanes);
-        let distances = self.settle(&part, &pick(near, lanes), &pick(far, lanes), index);
-        let object = &self.model.objects[index];
-        let mut ends: [f64; M] = pick(ends, lanes);
-        let mut tint: Vectors<M> = pick_vectors(&passed.tint, lanes);
-        for lane in 0..part.padded() {
-            let ray = part.rays().get(lane);
-            let point = ray.at(distances[lane]);
-            part.sides[lane] = Side::seen_along(ray.dir, object.shape.normal(point)).opposite();
-            part.origin.set(lane, point);
-            tint.set(lane, tint.get(lane) * object.tint(point));
-            ends[lane] -= distances[lane];
-        }
-        part.leaves = Some(index);
-        self.depth += 1;
-        let onward = self.walk(&mut part, &ends, Passed { tint, blocker: [0; M] });
-        self.depth -= 1;
-        for (index, lane) in lanes.iter().enumerate() {
-            let lane = usize::from(*lane);
-            passed.tint.set(lane, onward.tint.get(index));
-            passed.blocker[lane] = onward.blocker[index];
-            group.budget[lane] = part.budget[index];
         }
     }
 }
@@ -215,16 +114,35 @@ kernels! {
     }
 
     /// Where the ways from points to a light end, as far as its distances go; 0 for those that need not be gone.
-    fn aim(points: View, distances: &[f64], slack: f64, shines: &[u64], budget: &[u32], ends: &mut [f64]) {
-        let count = distances.len();
-        let (points, shines, budget) = (points.first(count), &shines[..count], &budget[..count]);
-        let ends = &mut ends[..count];
+    pub(super) fn aim(points: View, distances: &[f64], slack: f64, shines: &[u64], ends: &mut [f64]) {
+        let count = ends.len();
+        let (points, shines, distances) = (points.first(count), &shines[..count], &distances[..count]);
         for lane in 0..count {
             let reach = points.get(lane).abs();
             let across = if reach.x > reach.y { reach.x } else { reach.y };
             let reach = if across > reach.z { across } else { reach.z };
             let end = distances[lane] - slack * (distances[lane] + reach);
-            ends[lane] = if (shines[lane] != 0) & (budget[lane] != 0) { end } else { 0.0 };
+            ends[lane] = if shines[lane] != 0 { end } else { 0.0 };
+        }
+    }
+
+    /// Counts a ray for each way, and leaves out those of rays that have cost as many as they may. Tells how many remain.
+    fn spend(budget: &mut [u32], ends: &mut [f64]) -> usize {
+        let (mut len, ends) = (0, &mut ends[..budget.len()]);
+        for lane in 0..budget.len() {
+            let goes = (ends[lane] > 0.0) & (budget[lane] > 0);
+            ends[lane] = if goes { ends[lane] } else { 0.0 };
+            budget[lane] -= u32::from(goes);
+            len += usize::from(goes);
+        }
+        len
+    }
+
+    /// Marks the ways that need not be gone.
+    fn close(ends: &[f64], blocked: &mut [u64]) {
+        let blocked = &mut blocked[..ends.len()];
+        for lane in 0..ends.len() {
+            blocked[lane] = u64::from(ends[lane] <= 0.0);
         }
     }
 }

@@ -1,0 +1,143 @@
+//! What the lights of a scene do at the places of a surface.
+
+use super::Tracer;
+use super::group::Group;
+use super::light::{self, Lit};
+use super::room::{Vectors, room};
+use super::shade::Surface;
+use super::shadow::{Shadows, Ways};
+use crate::bounds::{self, Bounds};
+use crate::geometry::Light;
+use crate::material::Rgb;
+use crate::model::Object;
+use crate::packet::Rays;
+use crate::watch::{Event, Outcome, Watch};
+use glam::DVec2;
+
+/// Room for what one light does after the other.
+#[derive(Default)]
+pub(super) struct Lighting {
+    diffuse: Vectors,
+    /// Where each place sees the light.
+    places: Vectors,
+    toward: Vectors,
+    distances: Vec<f64>,
+    cosines: Vec<f64>,
+    emissivity: Vectors,
+    shines: Vec<u64>,
+    shadows: Shadows,
+}
+
+impl<W: Watch> Tracer<'_, '_, W> {
+    /// Adds what the lights do.
+    pub(super) fn illuminate(&mut self, group: &mut Group, surface: &Surface, colours: &mut Vectors) {
+        if self.model.lights.is_empty() {
+            return;
+        }
+        let mut lighting = self.lighting.take().unwrap_or_default();
+        let (cpu, count) = (self.cpu, group.padded());
+        let Object { material, shader, .. } = &self.model.objects[surface.index];
+        let points = surface.points.view(count);
+        shader.diffuses(cpu, material, points, lighting.diffuse.room(count));
+        let around = bounds::around(cpu, points);
+        for index in 0..self.model.lights.len() {
+            self.shine(index, group, surface, &around, &mut lighting, colours);
+        }
+        self.lighting = Some(lighting);
+    }
+
+    /// Adds what one light does.
+    fn shine(
+        &mut self,
+        index: usize,
+        group: &mut Group,
+        surface: &Surface,
+        around: &Bounds,
+        lighting: &mut Lighting,
+        colours: &mut Vectors,
+    ) {
+        let (cpu, count) = (self.cpu, group.padded());
+        let light = &*self.model.lights[index].value;
+        let material = &self.model.objects[surface.index].material;
+        let Lighting { diffuse, places, toward, distances, cosines, emissivity, shines, shadows } = lighting;
+        let (points, normals) = (surface.points.view(count), surface.normals.view(count));
+        self.places(light, index, group, surface, places);
+        let (far, cosines) = (room(distances, count), room(cosines, count));
+        if !light::face_light(cpu, points, normals, places.view(count), far, cosines, toward.room(count)) {
+            if W::SEES {
+                self.watch.see(Event::Light(index, Outcome::Behind));
+            }
+            return;
+        }
+        let shines = room(shines, count);
+        light.emissivities(cpu, points, emissivity.room(count), shines);
+        if !light::open(cpu, cosines, shines) {
+            if W::SEES {
+                self.watch.see(Event::Light(index, Outcome::Aside));
+            }
+            return;
+        }
+        let source = if light.size() == 0.0 {
+            Bounds { low: light.location(), high: light.location() }
+        } else {
+            bounds::around(cpu, places.view(count))
+        };
+        let ways = Ways { from: *around, to: source, toward, distances: far };
+        let mut tint = Rgb::ONE;
+        if W::SEES || self.plan.has_glass {
+            let (blocker, passed) = self.pass(group, surface, &ways, shines, emissivity);
+            if W::SEES
+                && let Some(blocker) = blocker
+            {
+                self.watch.see(Event::Light(index, Outcome::Blocked(blocker)));
+                return;
+            }
+            tint = passed;
+        } else {
+            self.shadow(group, surface, &ways, shadows, shines);
+        }
+        let lit = Lit {
+            rays: Rays { origin: points, dir: toward.view(count) },
+            eyes: group.origin.view(count),
+            normals,
+            distances: far,
+            cosines,
+            shines,
+            diffuse: diffuse.view(count),
+            specular: surface.specular.view(count),
+            emissivity: emissivity.view(count),
+        };
+        light::shine(cpu, &lit, material.shininess, colours.room(count));
+        if W::SEES {
+            let mut alone = Vectors::default();
+            alone.fill(count, Rgb::ZERO);
+            light::shine(cpu, &lit, material.shininess, alone.room(count));
+            self.watch.see(Event::Light(index, Outcome::Shines { passed: tint, colour: alone.get(0) }));
+        }
+    }
+
+    /// The points of a light that the places of a surface see: on the disc that a ball of its size shows to each, where
+    /// the sample has it.
+    fn places(
+        &self,
+        light: &dyn Light,
+        index: usize,
+        group: &Group,
+        surface: &Surface,
+        places: &mut Vectors,
+    ) {
+        let (middle, size) = (light.location(), light.size());
+        places.fill(group.padded(), middle);
+        if size == 0.0 {
+            return;
+        }
+        for lane in 0..group.padded() {
+            let Some(sample) = self.samples[usize::from(group.camera[lane])] else { continue };
+            let Some(axis) = (middle - surface.points.get(lane)).try_normalize() else { continue };
+            let (across, up) = axis.any_orthonormal_pair();
+            let DVec2 { x, y } = sample.on_light(index);
+            let (radius, angle) = (size * x.sqrt(), std::f64::consts::TAU * y);
+            places.set(lane, middle + radius * (libm::cos(angle) * across + libm::sin(angle) * up));
+        }
+    }
+}
