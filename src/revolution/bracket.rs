@@ -49,19 +49,11 @@ pub(super) struct Lanes {
     pub far: [f64; MOST],
 }
 
-impl Revolution {
-    /// The brackets of the first hits of rays, up to [`MOST`], which may leave the surface on these sides. What begins
-    /// beyond `ends` is of no interest.
-    pub(super) fn brackets(
-        &self,
-        cpu: Cpu,
-        frame: &Frame,
-        rays: Rays,
-        sides: Option<&[Side]>,
-        ends: &[f64],
-    ) -> Lanes {
+impl Lanes {
+    /// None yet.
+    pub fn none() -> Self {
         let zero = [0.0; MOST];
-        let mut lanes = Lanes {
+        Self {
             y: zero,
             dy: zero,
             inverse_dy: zero,
@@ -75,17 +67,46 @@ impl Revolution {
             off: zero,
             rounding: zero,
             hair: zero,
-            side: [1.0; MOST],
-            is_free: [1.0; MOST],
+            side: zero,
+            is_free: zero,
             near: zero,
-            far: [MISS; MOST],
-        };
-        for (lane, side) in sides.unwrap_or_default().iter().enumerate() {
-            lanes.side[lane] = super::sign(*side);
-            lanes.is_free[lane] = 0.0;
+            far: zero,
         }
+    }
+
+    /// So many rays that leave the surface on these sides, or begin elsewhere.
+    fn begin(&mut self, count: usize, sides: Option<&[Side]>) {
+        match sides {
+            None => {
+                self.side[..count].fill(1.0);
+                self.is_free[..count].fill(1.0);
+            }
+            Some(sides) => {
+                for (lane, side) in sides.iter().enumerate() {
+                    self.side[lane] = super::sign(*side);
+                }
+                self.is_free[..count].fill(0.0);
+            }
+        }
+        self.far[..count].fill(MISS);
+    }
+}
+
+impl Revolution {
+    /// The brackets of the first hits of rays, up to [`MOST`], which may leave the surface on these sides. What begins
+    /// beyond `ends` is of no interest.
+    pub(super) fn bracket(
+        &self,
+        cpu: Cpu,
+        frame: &Frame,
+        rays: Rays,
+        sides: Option<&[Side]>,
+        ends: &[f64],
+        lanes: &mut Lanes,
+    ) {
+        lanes.begin(rays.len(), sides);
         let (widest, reach) = (self.slabs.widest(), self.slabs.reach());
-        let heights = enter(cpu, &mut lanes, frame, rays, self.height, widest, reach, ends);
+        let heights = enter(cpu, lanes, frame, rays, self.height, widest, reach, ends);
         if let Some((low, high)) = heights {
             let (first, last) = (self.slabs.index(low), self.slabs.index(high));
             for step in 0..=last - first {
@@ -97,11 +118,10 @@ impl Revolution {
                     to: if index + 1 == self.slabs.count() { f64::INFINITY } else { slab.to },
                     ..*slab
                 };
-                cross(cpu, &mut lanes, &slab, self.height, rays.len());
+                cross(cpu, lanes, &slab, self.height, rays.len());
             }
         }
-        leave(cpu, &mut lanes, rays.len());
-        lanes
+        leave(cpu, lanes, rays.len());
     }
 
     /// The distance of a ray's first hit within a span.
@@ -111,7 +131,8 @@ impl Revolution {
         let rays = Rays { origin: origin.view(STEP), dir: dir.view(STEP) };
         let sides = within.leaves.map(|side| [side; STEP]);
         let sides = sides.as_ref().map(|sides| &sides[..]);
-        let lanes = self.brackets(Cpu::best(), frame, rays, sides, &[MISS; STEP]);
+        let mut lanes = Lanes::none();
+        self.bracket(Cpu::best(), frame, rays, sides, &[MISS; STEP], &mut lanes);
         let (near, far) = (lanes.near[0], lanes.far[0]);
         if near == MISS {
             MISS

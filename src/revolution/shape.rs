@@ -1,6 +1,6 @@
 //! Surfaces of revolution as shapes, wherever they stand.
 
-use super::bracket::MOST;
+use super::bracket::{Lanes, MOST};
 use super::{Classic, Revolution};
 use crate::bounds::Bounds;
 use crate::certify::{self, Enclosure};
@@ -77,11 +77,11 @@ impl Hittable for InFrame<Revolution> {
     }
 
     fn meet(&self, cpu: Cpu, rays: Rays, sides: Option<&[Side]>, id: u64, mut nearest: Nearest) -> bool {
-        let mut any = false;
+        let (mut any, mut lanes) = (false, Lanes::none());
         for part in parts(rays.len()) {
             let (rays, sides) = (rays.part(part.clone()), sides.map(|sides| &sides[part.clone()]));
             let nearest = nearest.part(part);
-            let lanes = self.surface.brackets(cpu, &self.frame, rays, sides, nearest.far);
+            self.surface.bracket(cpu, &self.frame, rays, sides, nearest.far, &mut lanes);
             any |= packet::meet_brackets(cpu, &lanes.near, &lanes.far, id, nearest);
         }
         any
@@ -96,11 +96,11 @@ impl Hittable for InFrame<Revolution> {
         blocked: &mut [u64],
         doubt: &mut [u64],
     ) -> bool {
-        let mut any = false;
+        let (mut any, mut lanes) = (false, Lanes::none());
         for part in parts(ends.len()) {
             let (rays, sides) = (rays.part(part.clone()), sides.map(|sides| &sides[part.clone()]));
             let (ends, blocked, doubt) = (&ends[part.clone()], &mut blocked[part.clone()], &mut doubt[part]);
-            let lanes = self.surface.brackets(cpu, &self.frame, rays, sides, ends);
+            self.surface.bracket(cpu, &self.frame, rays, sides, ends, &mut lanes);
             any |= packet::block_brackets(cpu, &lanes.near, &lanes.far, ends, blocked, doubt);
         }
         any
