@@ -5,7 +5,7 @@ use crate::material::Rgb;
 use crate::model::Model;
 use crate::packet::WIDE;
 use crate::render::Renderer;
-use crate::trace::Tracer;
+use crate::trace::{Rooms, Tracer};
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -43,8 +43,8 @@ impl Area {
             let start = index * self.block;
             self.corner[side] + start + (self.block / 2).min(self.size[side] - start - 1)
         };
-        let mut nobody = ();
-        let mut tracer = Tracer::new(model, Cpu::best(), &mut nobody);
+        let (mut rooms, mut nobody) = (Rooms::default(), ());
+        let mut tracer = Tracer::new(model, Cpu::best(), &mut rooms, &mut nobody);
         let mut colours = vec![Rgb::ZERO; across * down];
         for top in (0..down).step_by(SQUARE) {
             for left in (0..across).step_by(SQUARE) {

@@ -4,7 +4,7 @@ use crate::cpu::Cpu;
 use crate::model::Model;
 use crate::picture::to_bytes;
 use crate::tiles::{BAND, Band, TILE};
-use crate::trace::Tracer;
+use crate::trace::{Rooms, Tracer};
 use crate::watch::Watch;
 use rayon::prelude::*;
 use std::io;
@@ -86,10 +86,10 @@ impl Renderer {
         let strips = pixels.par_chunks_mut(TILE * width).zip(tiles.par_chunks_mut(width.div_ceil(TILE)));
         let strips = strips.zip(rows.clone().into_par_iter().step_by(TILE));
         self.pool.install(|| {
-            strips.for_each(|((strip, tiles), from_top)| {
+            strips.for_each_init(Rooms::default, |rooms, ((strip, tiles), from_top)| {
                 let (tall, mut watch) = (strip.len() / width, W::default());
                 let top = height - 1 - from_top;
-                let mut tracer = Tracer::new(model, self.cpu, &mut watch);
+                let mut tracer = Tracer::new(model, self.cpu, rooms, &mut watch);
                 let (mut tile, mut bytes) = (Vec::new(), [[0; 3]; TILE * TILE]);
                 for (left, is_done) in columns.clone().step_by(TILE).zip(tiles) {
                     if *is_done {

@@ -6,7 +6,7 @@ use crate::geometry::{MISS, Side};
 use crate::model::Model;
 use crate::packet::{Nearest, Rays, Vectors, WIDE};
 use crate::tiles::TILE;
-use crate::trace::{self, Tracer};
+use crate::trace::{self, Rooms, Tracer};
 use crate::watch::{Count, Kind, Watch};
 use std::hint::black_box;
 use std::time::Duration;
@@ -212,7 +212,7 @@ impl Tested {
     /// Those of a tile, each once.
     fn of(model: &Model, cpu: Cpu, tile: &[[usize; 2]]) -> Self {
         let mut tested = Self::default();
-        Tracer::new(model, cpu, &mut tested).pixels(tile);
+        Tracer::new(model, cpu, &mut Rooms::default(), &mut tested).pixels(tile);
         for objects in [&mut tested.primary, &mut tested.shadow] {
             objects.sort_unstable();
             objects.dedup();

@@ -13,7 +13,7 @@ use crate::model::Model;
 use crate::packet::WIDE;
 use crate::render::Renderer;
 use crate::sample::{Sample, Sampler};
-use crate::trace::{self, Tracer};
+use crate::trace::{self, Rooms, Tracer};
 use crate::watch::{Event, Watch};
 use std::hint::black_box;
 use std::ops::ControlFlow;
@@ -208,9 +208,9 @@ pub(super) fn count(tiles: &[Pixels]) -> usize {
 
 /// Traces tiles as a render does, on this thread.
 pub(super) fn render(model: &Model, tiles: &[Pixels]) {
+    let (mut rooms, mut nobody) = (Rooms::default(), ());
     for tile in tiles {
-        let mut nobody = ();
-        black_box(Tracer::new(model, Cpu::best(), &mut nobody).pixels(tile));
+        black_box(Tracer::new(model, Cpu::best(), &mut rooms, &mut nobody).pixels(tile));
     }
 }
 

@@ -8,6 +8,7 @@ use crate::geometry::Side;
 use crate::packet::Rays;
 use crate::tree::Visitor;
 use crate::watch::{Count, Watch};
+use std::mem::take;
 use std::ops::Range;
 
 /// Rays that leave the same object.
@@ -32,13 +33,13 @@ impl Leaving<'_> {
 impl<W: Watch> Tracer<'_, '_, W> {
     /// Marks the rays that an object blocks before their ends, on their ways from these places to those.
     pub(super) fn block(&mut self, leaving: &Leaving, from: &Bounds, to: &Bounds, blocked: &mut [u64]) {
-        let (mut ahead, mut inverse) = (std::mem::take(&mut self.ahead), std::mem::take(&mut self.inverse));
-        let mut doubt = std::mem::take(&mut self.doubt);
+        let (mut ahead, mut inverse) = (take(&mut self.rooms.ahead), take(&mut self.rooms.inverse));
+        let mut doubt = take(&mut self.rooms.doubt);
         let (part, doubted) = (0..leaving.ends.len(), room(&mut doubt, leaving.ends.len()));
         let (len, region) = (leaving.count(&part), from.and(to).with_slack(0.0));
         Block { tracer: self, leaving, part, len, region, inverse: &mut inverse, blocked, doubt: doubted }
             .run(to, &mut ahead);
-        (self.ahead, self.inverse, self.doubt) = (ahead, inverse, doubt);
+        (self.rooms.ahead, self.rooms.inverse, self.rooms.doubt) = (ahead, inverse, doubt);
     }
 }
 

@@ -34,7 +34,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
         if self.model.lights.is_empty() {
             return;
         }
-        let mut lighting = self.lighting.take().unwrap_or_default();
+        let mut lighting = self.rooms.lighting.take().unwrap_or_default();
         let (cpu, count) = (self.cpu, group.padded());
         let Object { material, shader, .. } = &self.model.objects[surface.index];
         let points = surface.points.view(count);
@@ -43,7 +43,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
         for index in 0..self.model.lights.len() {
             self.shine(index, group, surface, &around, &mut lighting, colours);
         }
-        self.lighting = Some(lighting);
+        self.rooms.lighting = Some(lighting);
     }
 
     /// Adds what one light does.
@@ -132,7 +132,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
             return;
         }
         for lane in 0..group.padded() {
-            let Some(sample) = self.samples[usize::from(group.camera[lane])] else { continue };
+            let Some(sample) = self.rooms.samples.get(usize::from(group.camera[lane])) else { continue };
             let Some(axis) = (middle - surface.points.get(lane)).try_normalize() else { continue };
             let (across, up) = axis.any_orthonormal_pair();
             let DVec2 { x, y } = sample.on_light(index);

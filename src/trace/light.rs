@@ -91,15 +91,24 @@ kernels! {
         any != 0
     }
 
-    /// Whether any vector is not 0.
-    pub(super) fn is_anything(vectors: View) -> bool {
-        let (count, mut any) = (vectors.len(), 0);
-        let vectors = vectors.first(count);
+    /// Which vectors are not 0. Tells whether any is.
+    pub(super) fn mirrors(specular: View, goes: &mut [u64]) -> bool {
+        let (count, mut any) = (goes.len(), 0);
+        let specular = specular.first(count);
         for lane in 0..count {
-            let vector = vectors.get(lane);
-            any |= u64::from((vector.x != 0.0) | (vector.y != 0.0) | (vector.z != 0.0));
+            let vector = specular.get(lane);
+            goes[lane] = u64::from((vector.x != 0.0) | (vector.y != 0.0) | (vector.z != 0.0));
+            any |= goes[lane];
         }
         any != 0
+    }
+
+    /// Leaves those out that have travelled farther.
+    pub(super) fn reach(travelled: &[f64], most: f64, goes: &mut [u64]) {
+        let (count, travelled) = (goes.len(), &travelled[..goes.len()]);
+        for lane in 0..count {
+            goes[lane] &= u64::from(travelled[lane] <= most);
+        }
     }
 
     /// Divides colours by how far their light has travelled.

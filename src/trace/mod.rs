@@ -22,12 +22,10 @@ use crate::packet::{View, WIDE};
 use crate::plan::Plan;
 use crate::sample::Sample;
 use crate::watch::{Count, Event, Hit, Kind, Purpose, Watch};
-use group::{Group, Parts};
-use illuminate::Lighting;
-use passage::Passage;
-use room::{Vectors, pick};
+use group::Group;
+pub(crate) use room::Rooms;
+use room::{Level, Primary, Vectors, pick};
 use search::Found;
-use shade::Shading;
 
 /// Light that has travelled farther than this is black.
 pub(crate) const MAX_DIST: f64 = 20.0;
@@ -63,17 +61,17 @@ pub fn colour(model: &Model, ray: &Ray, sample: Option<Sample>) -> Rgb {
 
 /// As [`colour`], and `watch` sees how it comes about.
 pub fn watch_colour(model: &Model, ray: &Ray, sample: Option<Sample>, watch: &mut impl Watch) -> Rgb {
-    let mut tracer = Tracer::new(model, Cpu::best(), watch);
-    tracer.samples[0] = sample;
-    let mut colours = Vectors::default();
+    let (mut rooms, mut colours) = (Rooms::default(), Vectors::default());
+    rooms.samples.extend(sample);
+    let mut tracer = Tracer::new(model, Cpu::best(), &mut rooms, watch);
     tracer.colours(&mut Group::primary(ray), &mut colours);
     colours.get(0)
 }
 
 /// What a ray from the viewer meets first.
 pub fn first_hit<'m>(model: &'m Model, ray: &Ray) -> Option<Hit<'m>> {
-    let mut nobody = ();
-    let mut tracer = Tracer::new(model, Cpu::best(), &mut nobody);
+    let (mut rooms, mut nobody) = (Rooms::default(), ());
+    let mut tracer = Tracer::new(model, Cpu::best(), &mut rooms, &mut nobody);
     let (mut group, mut found, mut distances) = (Group::primary(ray), Found::default(), Vec::new());
     tracer.closest(&mut group, None, &mut found);
     let object = (found.met[0] as usize).checked_sub(1)?;
@@ -82,89 +80,26 @@ pub fn first_hit<'m>(model: &'m Model, ray: &Ray) -> Option<Hit<'m>> {
     Some(Hit { index: object, object: &model.objects[object], distance, point: ray.at(distance) })
 }
 
-/// Room for rays from the viewer.
-struct Primary {
-    /// The places that they look through.
-    x: [f64; WIDE],
-    y: [f64; WIDE],
-    group: Group,
-    seen: Vectors,
-    /// Of pixels.
-    colours: Vectors,
-}
-
-impl Default for Primary {
-    fn default() -> Self {
-        Self {
-            x: [0.0; WIDE],
-            y: [0.0; WIDE],
-            group: Group::default(),
-            seen: Vectors::default(),
-            colours: Vectors::default(),
-        }
-    }
-}
-
-/// Room for the rays of a packet that meet the same object, while they are followed.
-#[derive(Default)]
-struct Level {
-    found: Found,
-    parts: Parts,
-    part: Group,
-    near: Vec<f64>,
-    far: Vec<f64>,
-    shading: Shading,
-    seen: Vectors,
-}
-
 /// Traces packets of rays through a model.
 pub(crate) struct Tracer<'m, 'w, W> {
     model: &'m Model,
     plan: &'m Plan,
     cpu: Cpu,
-    /// Those of the camera rays under way.
-    samples: [Option<Sample>; WIDE],
     /// How many mirrors and panes of glass the present packet has behind it.
     depth: usize,
-    /// Room for the way through a tree.
-    ahead: Vec<usize>,
-    inverse: Vectors,
-    /// Room for rays from the viewer.
-    primary: Option<Box<Primary>>,
-    /// Room for packets that wait for those which have gone on from them, the foremost one last.
-    #[expect(clippy::vec_box, reason = "they come and go, and are large")]
-    levels: Vec<Box<Level>>,
-    #[expect(clippy::vec_box, reason = "likewise")]
-    passages: Vec<Box<Passage>>,
-    /// Room for what is over before any go on.
-    lighting: Option<Box<Lighting>>,
-    doubt: Vec<u64>,
+    rooms: &'w mut Rooms,
     watch: &'w mut W,
 }
 
 impl<'m, 'w, W: Watch> Tracer<'m, 'w, W> {
-    pub(crate) fn new(model: &'m Model, cpu: Cpu, watch: &'w mut W) -> Self {
-        Self {
-            model,
-            plan: model.plan(),
-            cpu,
-            samples: [None; WIDE],
-            depth: 0,
-            ahead: Vec::new(),
-            inverse: Vectors::default(),
-            primary: None,
-            levels: Vec::new(),
-            passages: Vec::new(),
-            lighting: None,
-            doubt: Vec::new(),
-            watch,
-        }
+    pub(crate) fn new(model: &'m Model, cpu: Cpu, rooms: &'w mut Rooms, watch: &'w mut W) -> Self {
+        Self { model, plan: model.plan(), cpu, depth: 0, rooms, watch }
     }
 
     /// The colours of some pixels, up to [`WIDE`] rays of which are traced together.
     pub(crate) fn pixels(&mut self, pixels: &[[usize; 2]]) -> View<'_> {
         let camera = &self.model.camera.value;
-        let mut room = self.primary.take().unwrap_or_default();
+        let mut room = self.rooms.primary.take().unwrap_or_default();
         let Primary { x, y, group, seen, colours } = &mut *room;
         let mut colours = colours.room(pixels.len());
         if camera.samples == 1 {
@@ -182,8 +117,10 @@ impl<'m, 'w, W: Watch> Tracer<'m, 'w, W> {
             let (mut sum, mut count) = (Rgb::ZERO, 0);
             while count < samples * pixels.len() {
                 let mut len = 0;
+                self.rooms.samples.clear();
                 for (place, sample) in rays.by_ref().take(WIDE) {
-                    (x[len], y[len], self.samples[len]) = (place.x, place.y, sample);
+                    (x[len], y[len]) = (place.x, place.y);
+                    self.rooms.samples.extend(sample);
                     len += 1;
                 }
                 group.look(self.cpu, camera, x, y, len);
@@ -198,7 +135,7 @@ impl<'m, 'w, W: Watch> Tracer<'m, 'w, W> {
                 }
             }
         }
-        self.primary.insert(room).colours.view(pixels.len())
+        self.rooms.primary.insert(room).colours.view(pixels.len())
     }
 
     /// The colours that rays from the viewer see.
@@ -217,7 +154,7 @@ impl<'m, 'w, W: Watch> Tracer<'m, 'w, W> {
 
     /// The light that comes back along the rays of a packet.
     fn trace(&mut self, group: &mut Group, colours: &mut Vectors) {
-        let mut level = self.levels.pop().unwrap_or_default();
+        let mut level = self.rooms.levels.pop().unwrap_or_default();
         let Level { found, parts, part, near, far, shading, seen } = &mut *level;
         self.closest(group, None, found);
         let met = &found.met[..group.len];
@@ -239,6 +176,6 @@ impl<'m, 'w, W: Watch> Tracer<'m, 'w, W> {
         if W::SEES {
             self.watch.see(Event::Colour(colours.get(0)));
         }
-        self.levels.push(level);
+        self.rooms.levels.push(level);
     }
 }

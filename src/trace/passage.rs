@@ -1,7 +1,7 @@
 //! How much of a light comes through glass.
 
 use super::group::{Group, Parts};
-use super::room::{Vectors, pick, room};
+use super::room::{Vectors, list, pick, room};
 use super::search::Found;
 use super::shade::Surface;
 use super::shadow::{self, Ways};
@@ -39,7 +39,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
         shines: &mut [u64],
         emissivity: &mut Vectors,
     ) -> (Option<usize>, Rgb) {
-        let mut passage = self.passages.pop().unwrap_or_default();
+        let mut passage = self.rooms.passages.pop().unwrap_or_default();
         let mut distances = std::mem::take(&mut passage.distances);
         let ends = room(&mut distances, group.padded());
         shadow::aim(
@@ -50,12 +50,12 @@ impl<W: Watch> Tracer<'_, '_, W> {
             shines,
             ends,
         );
-        let lanes: Vec<u8> =
-            (0..group.len).filter(|lane| shines[*lane] != 0).map(|lane| lane as u8).collect();
+        let mut lanes = Vec::new();
+        let lanes = list(&shines[..group.len], &mut lanes);
         let Passage { group: part, ends: far, tint, blocker, .. } = &mut *passage;
-        part.go_on(group, &ways.onward(surface), &lanes);
+        part.go_on(group, &ways.onward(surface), lanes);
         let count = part.padded();
-        pick(far, ends, &lanes, count);
+        pick(far, ends, lanes, count);
         tint.fill(count, Rgb::ONE);
         room(blocker, count).fill(0);
         self.walk(&mut passage);
@@ -64,10 +64,10 @@ impl<W: Watch> Tracer<'_, '_, W> {
             shines[lane] = u64::from(passage.blocker[index] == 0);
             emissivity.set(lane, emissivity.get(lane) * passage.tint.get(index));
         }
-        group.pay(&passage.group, &lanes);
+        group.pay(&passage.group, lanes);
         let first = ((passage.blocker[0] as usize).checked_sub(1), passage.tint.get(0));
         passage.distances = distances;
-        self.passages.push(passage);
+        self.rooms.passages.push(passage);
         first
     }
 
@@ -86,7 +86,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
                 lanes.iter().for_each(|lane| blocker[usize::from(*lane)] = id);
                 continue;
             }
-            let mut onward = self.passages.pop().unwrap_or_default();
+            let mut onward = self.rooms.passages.pop().unwrap_or_default();
             for lanes in lanes.chunks(if self.is_shallow() { WIDE } else { NARROW }) {
                 onward.group.pick(group, lanes);
                 let count = onward.group.padded();
@@ -102,7 +102,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
                 }
                 group.pay(&onward.group, lanes);
             }
-            self.passages.push(onward);
+            self.rooms.passages.push(onward);
         }
     }
 

@@ -1,8 +1,68 @@
 //! Room for packets: arrays that are as long as the longest packet so far, and are kept from one to the next, so that a
 //! packet costs what its rays cost.
 
-use crate::packet::{View, ViewMut};
+use super::group::{Group, Parts};
+use super::illuminate::Lighting;
+use super::passage::Passage;
+use super::search::Found;
+use super::shade::Shading;
+use crate::packet::{View, ViewMut, WIDE};
+use crate::sample::Sample;
 use glam::DVec3;
+
+/// All that the packets of one thread need, one after the other.
+#[derive(Default)]
+pub(crate) struct Rooms {
+    pub(super) primary: Option<Box<Primary>>,
+    /// Of the camera rays under way, where pixels have more than one.
+    pub(super) samples: Vec<Sample>,
+    /// For packets that wait for those which have gone on from them, the foremost one last.
+    #[expect(clippy::vec_box, reason = "they come and go, and are large")]
+    pub(super) levels: Vec<Box<Level>>,
+    #[expect(clippy::vec_box, reason = "likewise")]
+    pub(super) passages: Vec<Box<Passage>>,
+    /// For what is over before any go on.
+    pub(super) lighting: Option<Box<Lighting>>,
+    pub(super) doubt: Vec<u64>,
+    /// For the way through a tree.
+    pub(super) ahead: Vec<usize>,
+    pub(super) inverse: Vectors,
+}
+
+/// Rays from the viewer.
+pub(super) struct Primary {
+    /// The places that they look through.
+    pub x: [f64; WIDE],
+    pub y: [f64; WIDE],
+    pub group: Group,
+    pub seen: Vectors,
+    /// Of pixels.
+    pub colours: Vectors,
+}
+
+impl Default for Primary {
+    fn default() -> Self {
+        Self {
+            x: [0.0; WIDE],
+            y: [0.0; WIDE],
+            group: Group::default(),
+            seen: Vectors::default(),
+            colours: Vectors::default(),
+        }
+    }
+}
+
+/// The rays of a packet that meet the same object, while they are followed.
+#[derive(Default)]
+pub(super) struct Level {
+    pub found: Found,
+    pub parts: Parts,
+    pub part: Group,
+    pub near: Vec<f64>,
+    pub far: Vec<f64>,
+    pub shading: Shading,
+    pub seen: Vectors,
+}
 
 /// Room for so many elements. What is in them is left from before.
 #[inline(always)]
@@ -11,6 +71,16 @@ pub(super) fn room<T: Copy + Default>(array: &mut Vec<T>, count: usize) -> &mut 
         array.resize(count, T::default());
     }
     &mut array[..count]
+}
+
+/// Lists the lanes that are not 0.
+pub(super) fn list<'l>(of: &[u64], lanes: &'l mut Vec<u8>) -> &'l [u8] {
+    let (lanes, mut len) = (room(lanes, of.len()), 0);
+    for (lane, is_one) in of.iter().enumerate() {
+        lanes[len] = lane as u8;
+        len += usize::from(*is_one != 0);
+    }
+    &lanes[..len]
 }
 
 /// Puts some elements of an array into another one, the last of them repeated to make so many. Lanes rise.

@@ -9,6 +9,7 @@ use crate::geometry::{Hittable, MISS, Ray, Side, Span};
 use crate::packet::{Nearest, Rays, WIDE};
 use crate::tree::Visitor;
 use crate::watch::{Count, Event, Hit, Reason, Watch};
+use std::mem::take;
 use std::ops::Range;
 
 /// What each ray of a packet meets first, and between which distances.
@@ -54,20 +55,15 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
             self.watch.see(Event::Dropped(Reason::TooMany));
             return;
         }
-        for (lane, budget) in group.budget[..group.len].iter_mut().enumerate() {
-            if *budget == 0 {
-                (found.near[lane], found.far[lane]) = (0.0, 0.0);
-            }
-            *budget = budget.saturating_sub(1);
-        }
+        spend(self.cpu, &mut group.budget[..group.len], &mut found.near, &mut found.far);
         if W::SEES {
             self.closest_seen(group, found);
             return;
         }
-        let (mut ahead, mut inverse) = (std::mem::take(&mut self.ahead), std::mem::take(&mut self.inverse));
+        let (mut ahead, mut inverse) = (take(&mut self.rooms.ahead), take(&mut self.rooms.inverse));
         let part = 0..group.padded();
         Closest { tracer: self, group, found, part, inverse: &mut inverse }.run(&mut ahead);
-        (self.ahead, self.inverse) = (ahead, inverse);
+        (self.rooms.ahead, self.rooms.inverse) = (ahead, inverse);
     }
 
     /// What one ray meets first, with all that leads to it told.
@@ -138,6 +134,18 @@ pub(super) fn exact(shape: &dyn Hittable, ray: &Ray, leaves: Option<Side>, far: 
 }
 
 kernels! {
+    /// Counts the rays. Those that have cost as many as they may end where they begin.
+    fn spend(budget: &mut [u32], near: &mut [f64], far: &mut [f64]) {
+        let count = budget.len();
+        let (near, far) = (&mut near[..count], &mut far[..count]);
+        for lane in 0..count {
+            let is_over = budget[lane] == 0;
+            near[lane] = if is_over { 0.0 } else { near[lane] };
+            far[lane] = if is_over { 0.0 } else { far[lane] };
+            budget[lane] -= u32::from(!is_over);
+        }
+    }
+
     /// Puts distances that are known where they are. Tells whether any is no number.
     fn keep_known(near: &[f64], far: &[f64], distances: &mut [f64]) -> bool {
         let count = distances.len();

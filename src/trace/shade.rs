@@ -2,7 +2,7 @@
 
 use super::group::{Group, Onward};
 use super::light;
-use super::room::{Vectors, room};
+use super::room::{Vectors, list, room};
 use super::{MAX_DIST, NARROW, Tracer};
 use crate::geometry::Side;
 use crate::model::Object;
@@ -33,7 +33,8 @@ pub(super) struct Shading {
     surface: Surface,
     /// Where rays go on to.
     dir: Vectors,
-    /// Which ones.
+    /// Which ones: 1 for those, and 0; and a list.
+    goes: Vec<u64>,
     lanes: Vec<u8>,
     /// They themselves, and what they see.
     onward: Group,
@@ -93,8 +94,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
             let tint = object.tint(surface.points.get(0));
             self.watch.see(Event::Begin(Purpose::Transmitted { tint, kept }));
         }
-        shading.lanes.clear();
-        shading.lanes.extend((0..group.len).map(|lane| lane as u8));
+        room(&mut shading.goes, count).fill(1);
         shading.dir.copy(group.dir.view(count));
         let turn = |sides: &mut [Side]| sides.iter_mut().for_each(|side| *side = side.opposite());
         turn(&mut surface.sides[..count]);
@@ -110,12 +110,9 @@ impl<W: Watch> Tracer<'_, '_, W> {
     /// Adds what is mirrored.
     fn look_in_the_mirror(&mut self, group: &mut Group, shading: &mut Shading, colours: &mut Vectors) {
         let (cpu, count, surface) = (self.cpu, group.padded(), &shading.surface);
-        if !light::is_anything(cpu, surface.specular.view(count)) {
+        if !light::mirrors(cpu, surface.specular.view(count), room(&mut shading.goes, count)) {
             return;
         }
-        let mirrors = |lane: &u8| surface.specular.get(usize::from(*lane)) != DVec3::ZERO;
-        shading.lanes.clear();
-        shading.lanes.extend((0..group.len).map(|lane| lane as u8).filter(mirrors));
         if W::SEES {
             self.watch.see(Event::Begin(Purpose::Reflected { specular: surface.specular.get(0) }));
         }
@@ -128,8 +125,10 @@ impl<W: Watch> Tracer<'_, '_, W> {
     /// What comes to the places of a surface along the rays that go on from there; nothing to those from which none
     /// does, or which are too far away.
     fn onward(&mut self, group: &mut Group, shading: &mut Shading, kind: Kind) {
-        let Shading { surface, dir, lanes, onward, seen, behind, .. } = shading;
-        lanes.retain(|lane| surface.travelled[usize::from(*lane)] <= MAX_DIST);
+        let Shading { surface, dir, goes, lanes, onward, seen, behind, .. } = shading;
+        let goes = &mut goes[..group.len];
+        light::reach(self.cpu, &surface.travelled[..group.len], MAX_DIST, goes);
+        let lanes = list(goes, lanes);
         behind.fill(group.padded(), DVec3::ZERO);
         if W::SEES && lanes.is_empty() {
             self.watch.see(Event::Dropped(Reason::TooFar));
