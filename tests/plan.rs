@@ -114,6 +114,22 @@ fn samples_multiply_the_primary_rays_exactly() {
 }
 
 #[test]
+fn what_scatters_no_light_casts_no_shadow_rays() {
+    let floor = |look: &str| {
+        format!("material polished {{ {look} }} plane floor {{ material polished normal 0 1 0 point 0 0 0 }} {LAMP}")
+    };
+    let (_, tally) = counted(&floor("ambient 1 1 1 specular 0.5"));
+    assert_eq!(tally.rays(Shadow), 0, "a mirror without a glint");
+    let (_, tally) = counted(&floor("ambient 1 1 1 shininess 20"));
+    assert_eq!(tally.rays(Shadow), 0, "a glint of nothing");
+    let (_, tally) = counted(&floor("specular 0.5 shininess 20"));
+    assert!(tally.rays(Shadow) > 0, "a glint");
+    let (lit, tally) = counted(&floor("diffuse 0 0 1"));
+    assert!(tally.rays(Shadow) > 0);
+    assert!(line(&lit, "lights").contains("each place that faces it and scatters light"));
+}
+
+#[test]
 fn three_planes_are_a_list_and_each_is_tested_with_each_ray() {
     let (model, tally) = counted(&format!(
         "{FLOOR} plane left {{ material matt normal 1 0 0 point 0 0 0 }}

@@ -69,8 +69,8 @@ fn lights(model: &Model) -> String {
     let names = some(model.lights.iter().map(|light| light.args.name.as_str()));
     match model.lights.len() {
         0 => "none: surfaces have their ambient colour, and no shadow rays are cast".to_owned(),
-        1 => format!("{names}: a shadow ray from each place that faces it"),
-        _ => format!("{names}: from each place a shadow ray to each that it faces"),
+        1 => format!("{names}: a shadow ray from each place that faces it and scatters light"),
+        _ => format!("{names}: from each place that scatters light a shadow ray to each that it faces"),
     }
 }
 

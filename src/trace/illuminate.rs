@@ -39,9 +39,14 @@ impl<W: Watch> Tracer<'_, '_, W> {
         let Object { material, shader, .. } = &self.model.objects[surface.index];
         let points = surface.points.view(count);
         shader.diffuses(cpu, material, points, lighting.diffuse.room(count));
-        let around = bounds::around(cpu, points);
-        for index in 0..self.model.lights.len() {
-            self.shine(index, group, surface, &around, &mut lighting, colours);
+        let scatters = light::is_anything(cpu, lighting.diffuse.view(count))
+            || material.shininess != 0.0 && light::is_anything(cpu, surface.specular.view(count));
+        // Where nothing is scattered lights make no difference. Whoever looks on is told of them all the same.
+        if scatters || W::SEES {
+            let around = bounds::around(cpu, points);
+            for index in 0..self.model.lights.len() {
+                self.shine(index, group, surface, &around, &mut lighting, colours);
+            }
         }
         self.rooms.lighting = Some(lighting);
     }

@@ -91,6 +91,17 @@ kernels! {
         any != 0
     }
 
+    /// Whether any vector is not 0.
+    pub(super) fn is_anything(vectors: View) -> bool {
+        let (count, mut any) = (vectors.len(), 0);
+        let vectors = vectors.first(count);
+        for lane in 0..count {
+            let vector = vectors.get(lane);
+            any |= u64::from((vector.x != 0.0) | (vector.y != 0.0) | (vector.z != 0.0));
+        }
+        any != 0
+    }
+
     /// Which vectors are not 0. Tells whether any is.
     pub(super) fn mirrors(specular: View, goes: &mut [u64]) -> bool {
         let (count, mut any) = (goes.len(), 0);
