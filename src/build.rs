@@ -40,6 +40,8 @@ fn main() -> io::Result<()> {
 }
 
 fn is_module_name(name: &str) -> bool {
-    name.starts_with(|c: char| c.is_ascii_lowercase())
+    // These cannot be raw.
+    !["crate", "self", "super"].contains(&name)
+        && name.starts_with(|c: char| c.is_ascii_lowercase())
         && name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
 }

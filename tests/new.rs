@@ -72,29 +72,33 @@ fn refused(folder: &TempDir, name: &str) -> String {
     err
 }
 
+const NO_NAME: &str = "a plugin's name is that of a Rust module, such as `tiled_plane`";
+const TAKEN: &str = "give the plugin another name";
+const IN_THE_WAY: &str = "nothing is written in its place: choose another name";
+
 #[test]
 fn a_plugin_that_cannot_be_is_refused_and_nothing_is_written() {
     let folder = checkout();
     fs::write(folder.path().join("plugins/gem.rs"), "precious").expect("a file");
     fs::write(folder.path().join("scenes/wrong/coil.ray"), "precious").expect("a file");
-    for (name, says) in [
-        ("Gem", "`Gem` cannot be the name of a plugin"),
-        ("2d", "`2d` cannot be"),
-        ("a-b", "`a-b` cannot be"),
-        ("../a", "`../a` cannot be"),
-        ("", "`` cannot be"),
-        ("a\nb", "`a\\nb` cannot be"),
-        ("match", "`match` is a word of Rust"),
-        ("sphere", "there is an entity type `sphere` already, at plugins/sphere.rs:"),
-        ("tplane", "there is an entity type `tplane` already, at plugins/tiled_plane.rs:"),
-        ("rainbow", "there is a shader `rainbow` already"),
-        ("cone", "there is a profile `cone` already"),
-        ("body", "the text to start from has a `Body` of its own"),
-        ("gem", "there is a `plugins/gem.rs` already"),
-        ("coil", "there is a `scenes/wrong/coil.ray` already"),
+    for (name, says, help) in [
+        ("Gem", "`Gem` cannot be the name of a plugin", NO_NAME),
+        ("2d", "`2d` cannot be", NO_NAME),
+        ("a-b", "`a-b` cannot be", NO_NAME),
+        ("../a", "`../a` cannot be", NO_NAME),
+        ("", "`` cannot be", NO_NAME),
+        ("a\nb", "`a\\nb` cannot be", NO_NAME),
+        ("crate", "`crate` is a word of Rust", NO_NAME),
+        ("sphere", "there is an entity type `sphere` already, at plugins/sphere.rs:", TAKEN),
+        ("tplane", "there is an entity type `tplane` already, at plugins/tiled_plane.rs:", TAKEN),
+        ("rainbow", "there is a shader `rainbow` already", TAKEN),
+        ("cone", "there is a profile `cone` already", TAKEN),
+        ("body", "the text to start from has a `Body` of its own", TAKEN),
+        ("gem", "there is a `plugins/gem.rs` already", IN_THE_WAY),
+        ("coil", "there is a `scenes/wrong/coil.ray` already", IN_THE_WAY),
     ] {
         let err = refused(&folder, name);
-        assert!(err.contains(says), "{name}: {err}");
+        assert!(err.contains(says) && err.ends_with(&format!("\n |\n = help: {help}\n")), "{name}: {err}");
     }
     let written = |path: &str| names_in(&folder.path().join(path));
     assert_eq!(
@@ -124,6 +128,9 @@ fn a_plugin_comes_with_its_scenes() {
         assert!(text.contains("cut_gem") && !text.contains("emplate"), "{path}: {text}");
         assert!(err.contains(&format!("wrote {path}\n")), "{err}");
     }
+    let last = "look at it with `cargo run --release -- render scenes/entities/cut_gem.ray`; docs/plugins.md tells \
+                what else belongs to a plugin\n";
+    assert!(err.ends_with(last), "{err}");
     assert!(
         fs::read_to_string(folder.path().join(Path::new("plugins/cut_gem.rs")))
             .expect("text")

@@ -66,7 +66,7 @@ impl Copy {
             fs::create_dir_all(self.folder.join("scenes").join(folder)).expect("room for a folder");
         }
         let plugins = [
-            ("shape", "round_cube", "scenes/entities/round_cube.ray"),
+            ("shape", "loop", "scenes/entities/loop.ray"),
             ("light", "shade", "scenes/entities/shade.ray"),
             ("shader", "rings", "scenes/psphere/rings.ray"),
             ("profile", "ringed_cup", "scenes/revsurf/ringed_cup.ray"),

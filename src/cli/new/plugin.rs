@@ -63,11 +63,8 @@ impl Kind {
     }
 }
 
-/// Words that Rust keeps for itself.
-const KEYWORDS: &str = "abstract as async await become box break const continue crate do dyn else enum extern false \
-                        final fn for gen if impl in let loop macro match mod move mut override priv pub ref return \
-                        self static struct super trait true try type typeof unsafe unsized use virtual where while \
-                        yield";
+/// The words of Rust that no module can have for a name. It can have the others, as raw ones.
+const KEYWORDS: [&str; 3] = ["crate", "self", "super"];
 
 pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
     is_checkout()?;
@@ -84,7 +81,7 @@ pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
         messages::note(&format!("wrote {path}"));
     }
     messages::note(&format!(
-        "look at it with `cargo run --release -- render {}`; README.md tells what else belongs to a plugin",
+        "look at it with `cargo run --release -- render {}`; docs/plugins.md tells what else belongs to a plugin",
         files[1].0
     ));
     Ok(())
@@ -120,7 +117,7 @@ fn is_free(registry: &Registry, name: &str, template: &str) -> Result<(), Failur
     if !name.starts_with(|c: char| c.is_ascii_lowercase()) || !name.chars().all(is_letter) {
         return no_name(format!("`{}` cannot be the name of a plugin", name.escape_debug()));
     }
-    if KEYWORDS.split_whitespace().any(|keyword| keyword == name) {
+    if KEYWORDS.contains(&name) {
         return no_name(format!("`{name}` is a word of Rust"));
     }
     let what = if let Some(entity) = registry.find(name) {
