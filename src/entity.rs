@@ -284,7 +284,7 @@ impl Args {
         let (name, place) = (self.entity.name, self.entity.place());
         match self.find(attribute) {
             Some(_) => panic!(
-                "the plugin `{name}` asks for `{attribute}` as a type that is not the one in the table it registers at {place}"
+                "the plugin `{name}` asks for `{attribute}` as a type that is not the one in the table it registers at {place}: give both the same type"
             ),
             None => panic!(
                 "the plugin `{name}` asks for `{attribute}`, which is not in the table it registers at {place}: add it there"

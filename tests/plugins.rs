@@ -24,6 +24,14 @@ fn the_pages_plugin_is_made_as_it_says_and_its_mistakes_are_told() {
     // A constructor that asks for what is not in its table.
     let forgetful = block_with(&page(), "struct Brick").replace("&[&CENTER, &SIZE]", "&[&CENTER]");
     fs::write(copy.folder.join("plugins/brick.rs"), forgetful.replace("\"box\"", "\"brick\"")).expect("room");
+    // One that takes three numbers for one.
+    let confused = block_with(&page(), "struct Brick")
+        .replace(
+            "const TABLE",
+            "static WIDE: Pparm<f64> = Pparm::required(\"size\", \"its width\");\n\nconst TABLE",
+        )
+        .replace("0.5 * args.get(&SIZE)", "DVec3::splat(0.5 * args.get(&WIDE))");
+    fs::write(copy.folder.join("plugins/slab.rs"), confused.replace("\"box\"", "\"slab\"")).expect("room");
     let said = copy.build();
     let warning = "plugins/box.rs registers nothing, so that no scene can use it";
     assert!(said.contains(warning) && tells(warning), "{said}");
@@ -39,7 +47,15 @@ fn the_pages_plugin_is_made_as_it_says_and_its_mistakes_are_told() {
     };
     assert!(said.contains("panicked at src/../plugins/brick.rs:"), "the plugin's own line is told: {said}");
     assert!(said.contains(&message("brick")) && tells(&message("box")), "{said}");
-    fs::remove_file(copy.folder.join("plugins/brick.rs")).expect("it was there");
+    let said = copy.run(
+        &["check", "-"],
+        &scene.replace("brick b", "slab b").replace("center 1 1 1", "center 1 1 1 size 1 1 1"),
+    );
+    let message = "the plugin `slab` asks for `size` as a type that is not the one in the table it registers at plugins/slab.rs:19: give both the same type";
+    assert!(said.contains("panicked at src/../plugins/slab.rs:") && said.contains(message), "{said}");
+    for plugin in ["brick.rs", "slab.rs"] {
+        fs::remove_file(copy.folder.join("plugins").join(plugin)).expect("it was there");
+    }
 
     fs::write(&plugin, block_with(&page(), "struct Brick").replace("\"box\"", "\"sphere\"")).expect("room");
     copy.build();
@@ -70,6 +86,16 @@ fn a_plugin_in_a_crate_of_its_own_is_a_program_of_its_own() {
     copy.cargo(&folder, &["build", "--offline"]);
 
     assert!(copy.program_prints("example-plugin", &["list"]).contains("tangle "));
+    let version = format!("example-plugin (tabray {})\n", env!("CARGO_PKG_VERSION"));
+    assert_eq!(copy.program_prints("example-plugin", &["--version"]), version);
+    for args in [&["--help"][..], &["render", "--help"], &["completions", "bash"], &["completions", "zsh"]] {
+        let said = copy.program_prints("example-plugin", args);
+        assert!(said.contains("example-plugin") && !said.contains("tabray "), "{args:?}: {said}");
+    }
+    assert!(
+        copy.program_prints("example-plugin", &["render", "--help"])
+            .contains("Usage: example-plugin render ")
+    );
     let scene = root().join("docs/example-plugin/tangle.ray");
     assert_shows(&copy, "example-plugin", scene.to_str().expect("a path in UTF-8"), "tangle");
     let program = fs::read_to_string(folder.join("src/main.rs")).expect("a program");

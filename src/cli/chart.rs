@@ -1,7 +1,7 @@
 //! `tabray chart`: what each choice costs in a scene, and how wrong it is.
 
 use super::input::{self, Source};
-use super::output::Output;
+use super::output::{self, Output};
 use super::progress::Progress;
 use super::render::finished;
 use super::{Failure, interrupt, messages, print};
@@ -10,7 +10,6 @@ use crate::chart::{self, Chart};
 use crate::choice::Choice;
 use crate::model::Model;
 use crate::registry::Registry;
-use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -38,8 +37,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         _ => "stdin".to_owned(),
     };
     let folder = &args.output;
-    fs::create_dir_all(folder)
-        .map_err(|error| Failure::Failed(format!("cannot make `{}`: {error}", folder.display())))?;
+    output::folder(folder)?;
     let files = ["svg", "png", "csv", "json", "txt"].map(|extension| {
         let path = folder.join(format!("{name}.{extension}"));
         Output::open(&path).map(|output| (path, output))

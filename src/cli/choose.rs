@@ -2,7 +2,7 @@
 
 use super::chart::{Work, all_accuracies};
 use super::input::{self, Source};
-use super::{Failure, interrupt, print};
+use super::{Failure, interrupt, print, program};
 use crate::accuracy::Accuracy;
 use crate::chart::{self, Estimate};
 use crate::choice::Choice;
@@ -12,6 +12,7 @@ use std::fmt::Write;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::thread;
+use std::time::Duration;
 
 /// Choose accuracy and samples for an error or a time
 ///
@@ -53,17 +54,12 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     })?;
     let cores = thread::available_parallelism().map_or(1, usize::from);
     let choice = Weighed { estimates: &estimates, cores };
-    let (chosen, why) = match (args.max_error, args.max_time) {
-        (Some(error), _) => {
-            (choice.for_error(error)?, format!("the fastest with an error of at most {error}"))
-        }
-        (None, Some(time)) => (
-            choice.for_time(time)?,
-            format!("the one with the least error within {time} s on {cores} threads"),
-        ),
-        (None, None) => {
-            return Err(Failure::Usage("there is nothing to choose for".to_owned(), None));
-        }
+    let (chosen, why) = if let Some(error) = args.max_error {
+        (choice.for_error(error)?, format!("the fastest with an error of at most {error}"))
+    } else {
+        // One of the two is given.
+        let time = args.max_time.unwrap_or(f64::INFINITY);
+        (choice.for_time(time)?, format!("the one with the least error within {time} s on {cores} threads"))
     };
     print(&choice.words(chosen, &why, &args.scene))
 }
@@ -96,7 +92,8 @@ impl<'e> Weighed<'e> {
         let best = fit.iter().min_by(|a, b| a.rmse.total_cmp(&b.rmse)).ok_or_else(|| {
             let least =
                 self.estimates.iter().map(|estimate| self.time(estimate)).fold(f64::INFINITY, f64::min);
-            Failure::Failed(format!("no choice takes at most {time} s; the fastest takes about {least:.2} s"))
+            let least = Duration::from_secs_f64(least);
+            Failure::Failed(format!("no choice takes at most {time} s; the fastest takes about {least:.2?}"))
         })?;
         Ok(fit
             .iter()
@@ -123,7 +120,8 @@ impl<'e> Weighed<'e> {
         let _ = write!(
             text,
             "\nThe one marked is {why}. The others have less error and take longer, or less time and more error.\n\n\
-             tabray render {} {how} --samples {}\n",
+             {} render {} {how} --samples {}\n",
+            program::name(),
             scene.display(),
             chosen.samples
         );

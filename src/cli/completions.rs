@@ -1,6 +1,6 @@
 //! `tabray completions`: what shells need to complete the command line.
 
-use super::{Failure, described, print};
+use super::{Failure, print, program};
 use crate::registry::Registry;
 use clap_complete::Shell;
 
@@ -13,6 +13,6 @@ pub struct Args {
 
 pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
     let mut script = Vec::new();
-    clap_complete::generate(args.shell, &mut described(registry), "tabray", &mut script);
+    clap_complete::generate(args.shell, &mut program::described(registry), program::name(), &mut script);
     print(&String::from_utf8_lossy(&script))
 }

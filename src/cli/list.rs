@@ -1,6 +1,6 @@
 //! `tabray list`: the entity types and their attributes, from their tables.
 
-use super::{Failure, print};
+use super::{Failure, print, program};
 use crate::entity::Entity;
 use crate::pparm::Attribute;
 use crate::reference;
@@ -38,7 +38,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let entity = registry.find(&name).ok_or_else(|| {
         let help = match registry.nearest(&name) {
             Some(near) => format!("did you mean `{near}`?"),
-            None => "`tabray list` lists them all".to_owned(),
+            None => format!("`{} list` lists them all", program::name()),
         };
         Failure::Usage(format!("there is no entity type `{name}`"), Some(help))
     })?;

@@ -1,11 +1,10 @@
 //! `tabray man`: manual pages, as packages install them.
 
-use super::output::Output;
-use super::{Failure, described, messages};
+use super::output::{self, Output};
+use super::{Failure, messages, program};
 use crate::registry::Registry;
 use clap::Command;
 use clap_mangen::Man;
-use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -18,8 +17,8 @@ pub struct Args {
 
 pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
     let folder = &args.folder;
-    fs::create_dir_all(folder).map_err(|error| Failure::cannot_write(folder, &error))?;
-    let mut command = described(registry).disable_help_subcommand(true);
+    output::folder(folder)?;
+    let mut command = program::described(registry).disable_help_subcommand(true);
     command.build();
     let count = pages(command, folder)?;
     messages::note(&format!("wrote {count} pages to {}", folder.display()));

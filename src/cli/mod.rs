@@ -27,6 +27,7 @@ mod output;
 mod picture;
 mod plan;
 mod probe;
+mod program;
 mod progress;
 mod render;
 mod report;
@@ -44,8 +45,7 @@ mod watch;
 use crate::registry::Registry;
 use crate::scene::Report;
 use crate::words;
-use clap::builder::{PossibleValue, PossibleValuesParser};
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{FromArgMatches, Parser, Subcommand};
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 use std::process::ExitCode;
@@ -119,6 +119,9 @@ impl From<io::Error> for Failure {
 impl Failure {
     /// What the system does not let be written, and why.
     fn cannot_write(path: &Path, error: &io::Error) -> Self {
+        if path == Path::new("-") {
+            return Self::Failed(format!("cannot write to standard output: {}", words::reason(error)));
+        }
         let folder = path.parent().filter(|folder| *folder != Path::new("") && !folder.exists());
         let reason = match folder {
             Some(folder) if error.kind() == io::ErrorKind::NotFound => {
@@ -133,7 +136,7 @@ impl Failure {
 /// Runs the command that the program's arguments name, with every plugin that is linked into it. Its messages go to
 /// standard error, and its exit status tells how it went.
 pub fn run() -> ExitCode {
-    let cli = Cli::parse();
+    let cli = Cli::from_arg_matches(&program::command().get_matches()).unwrap_or_else(|error| error.exit());
     messages::choose(cli.message_format);
     let outcome = match Registry::get() {
         Ok(registry) => match cli.command {
@@ -157,8 +160,7 @@ pub fn run() -> ExitCode {
             Some(Command::Completions(args)) => completions::run(registry, &args),
             Some(Command::Man(args)) => man::run(registry, &args),
             None if io::stdin().is_terminal() => {
-                let mut command = Cli::command();
-                let _ = write!(io::stderr(), "{}", command.render_long_help());
+                let _ = write!(io::stderr(), "{}", program::command().render_long_help());
                 Err(Failure::Told)
             }
             None => notes::run(registry),
@@ -189,19 +191,11 @@ fn tell(failure: &Failure) -> ExitCode {
     })
 }
 
-/// The command line for shells and manuals, which want to know the entity types too. The program itself takes any word
-/// and says which was meant.
-fn described(registry: &Registry) -> clap::Command {
-    let types = registry.iter().map(|entity| PossibleValue::new(entity.name).help(entity.meaning));
-    let types = PossibleValuesParser::new(types);
-    Cli::command().mut_subcommand("list", |list| list.mut_arg("entity", |entity| entity.value_parser(types)))
-}
-
 /// Prints to standard output. A reader that has had enough is no failure.
 fn print(text: &str) -> Result<(), Failure> {
     match io::stdout().write_all(text.as_bytes()).and_then(|()| io::stdout().flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            Err(Failure::Failed(format!("cannot write to standard output: {}", words::reason(&error))))
+            Err(Failure::cannot_write(Path::new("-"), &error))
         }
         _ => Ok(()),
     }

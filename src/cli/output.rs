@@ -2,6 +2,7 @@
 
 use super::Failure;
 use super::temporary::Temporary;
+use crate::words;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, IsTerminal, Seek, Write};
 use std::path::{Path, PathBuf};
@@ -27,6 +28,17 @@ pub fn create(path: &Path, text: &str) -> Result<(), Failure> {
     let file = Temporary::new(folder).map_err(cannot)?;
     file.file().write_all(text.as_bytes()).map_err(cannot)?;
     file.persist_new(path).map_err(cannot)
+}
+
+/// Makes a folder and those that it is in, where they are not there yet.
+pub fn folder(path: &Path) -> Result<(), Failure> {
+    fs::create_dir_all(path).map_err(|error| {
+        let reason = match error.kind() {
+            io::ErrorKind::AlreadyExists => "a file has this name".to_owned(),
+            _ => words::reason(&error),
+        };
+        Failure::Failed(format!("cannot make the folder `{}`: {reason}", path.display()))
+    })
 }
 
 /// Refuses a path at which something is already.

@@ -1,12 +1,12 @@
 //! `tabray probe`: one pixel, explained.
 
-use super::{Failure, input, method, render};
+use super::{Failure, input, method};
 use crate::model::Model;
 use crate::probe;
 use crate::registry::Registry;
-use crate::words;
+use crate::render::Renderer;
 use std::io::{self, BufWriter, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Explain how a pixel gets its colour
 #[derive(clap::Args)]
@@ -27,11 +27,11 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let model = input::load(registry, &args.scene, args.method.accuracy()?)?;
     let [x, y] = inside(&model, [args.x, args.y])?;
     let mut out = BufWriter::new(io::stdout());
-    let printed = render::threads(1)?.run(|| probe::pixel(&model, x, y, &mut out).and_then(|()| out.flush()));
+    let printed = Renderer::new(1)?.run(|| probe::pixel(&model, x, y, &mut out).and_then(|()| out.flush()));
     match printed {
         // A reader that has had enough is no failure.
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            Err(Failure::Failed(format!("cannot write to standard output: {}", words::reason(&error))))
+            Err(Failure::cannot_write(Path::new("-"), &error))
         }
         _ => Ok(()),
     }

@@ -1,6 +1,6 @@
 //! `tabray new scene`: a scene that explains itself.
 
-use crate::cli::{Failure, messages, output};
+use crate::cli::{Failure, messages, output, program};
 use crate::syntax::Syntax;
 use std::path::PathBuf;
 
@@ -36,13 +36,12 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         }
     };
     let path = PathBuf::from(path);
-    output::create(
-        &path,
-        match syntax {
-            Syntax::Notes => include_str!("templates/scene.ray"),
-            Syntax::Toml => include_str!("templates/scene.toml"),
-        },
-    )?;
-    messages::note(&format!("wrote {}; look at it with `tabray render {0}`", path.display()));
+    let text = match syntax {
+        Syntax::Notes => include_str!("templates/scene.ray"),
+        Syntax::Toml => include_str!("templates/scene.toml"),
+    };
+    let program = program::name();
+    output::create(&path, &text.replace("`tabray ", &format!("`{program} ")))?;
+    messages::note(&format!("wrote {}; look at it with `{program} render {0}`", path.display()));
     Ok(())
 }
