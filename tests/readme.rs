@@ -3,6 +3,7 @@
 mod common;
 
 use common::copy::Copy;
+use common::program::{folder, outcome, tabray};
 use common::{block_with, load, model, render, root};
 use std::collections::BTreeSet;
 use std::fs;
@@ -14,6 +15,15 @@ fn readme() -> String {
 #[test]
 fn the_readmes_scene_is_one() {
     assert_eq!(model(&block_with(&readme(), "camera eye\n")).objects.len(), 2);
+}
+
+#[test]
+fn the_readmes_mistake_is_told_as_it_says() {
+    let folder = folder();
+    let scene = block_with(&readme(), "camera eye\n").replace("radius", "raduis");
+    fs::write(folder.path().join("ball.ray"), scene).expect("room for a file");
+    let (status, _, err) = outcome(tabray(&folder).args(["render", "ball.ray"]));
+    assert_eq!((status, err), (2, block_with(&readme(), "raduis")));
 }
 
 #[test]
