@@ -6,6 +6,7 @@ use crate::picture::to_bytes;
 use crate::tiles::{BAND, Band, TILE};
 use crate::trace::{Rooms, Tracer};
 use crate::watch::Watch;
+use crate::words;
 use rayon::prelude::*;
 use std::io;
 use std::ops::{ControlFlow, Range};
@@ -36,7 +37,11 @@ impl Renderer {
     /// Where the system does not give the threads.
     pub fn new(threads: usize) -> io::Result<Self> {
         let builder = rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK);
-        Ok(Self { pool: builder.build().map_err(io::Error::other)?, cpu: Cpu::best() })
+        let cannot = |error| {
+            let reason = words::reason(&io::Error::other(error));
+            io::Error::other(format!("cannot start threads to render with: {reason}"))
+        };
+        Ok(Self { pool: builder.build().map_err(cannot)?, cpu: Cpu::best() })
     }
 
     /// With these instructions in place of the best that this machine has. The picture is the same.

@@ -297,6 +297,18 @@ fn a_scene_larger_than_any_scene_is_refused_in_bounded_memory() {
 }
 
 #[test]
+#[ignore = "takes more than 1 GiB of memory"]
+fn a_text_larger_than_any_scene_is_refused() {
+    let script = "yes | head -c 1100000000 | \"$0\" check -";
+    let program = assert_cmd::cargo::cargo_bin!("tabray");
+    let output =
+        std::process::Command::new("sh").args(["-c", script]).arg(program).output().expect("sh runs");
+    assert_eq!(output.status.code(), Some(2));
+    let said = "error: `<stdin>` is larger than 1024 MiB: this is not a scene\n";
+    assert_eq!(String::from_utf8_lossy(&output.stderr), said);
+}
+
+#[test]
 fn a_method_is_chosen_by_the_scene_or_by_an_option() {
     let folder = folder();
     let text = fs::read_to_string(scene("revsurf/leaning.ray")).expect("a scene");

@@ -109,6 +109,7 @@ fn every_command_has_its_page() {
     let (status, _, err) = outcome(tabray(&folder).args(["man", "share/man/man1"]));
     assert_eq!(status, 0, "{err}");
     let pages = names_in(&folder.path().join("share/man/man1"));
+    assert_eq!(err, format!("wrote {} pages to share/man/man1\n", pages.len()));
     let help = printed(&["--help"]);
     let (_, commands) = help.split_once("Commands:\n").expect("the commands");
     let commands = commands.lines().take_while(|line| !line.is_empty());

@@ -106,8 +106,8 @@ fn watching_changes_no_colour() {
     }
 }
 
-/// Renders a scene with some of `--aov` and gives its folder.
-fn with_aov(scene: &Path, names: &str) -> TempDir {
+/// Renders a scene with some of `--aov`; its folder, and what was said.
+fn with_aov(scene: &Path, names: &str) -> (TempDir, String) {
     let folder = TempDir::new().expect("a folder");
     let output = cargo_bin_cmd!("tabray")
         .current_dir(folder.path())
@@ -116,14 +116,15 @@ fn with_aov(scene: &Path, names: &str) -> TempDir {
         .args(["-o", "a.png", "--aov", names])
         .output()
         .expect("the program runs");
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    folder
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{said}");
+    (folder, said)
 }
 
 #[test]
 fn depth_and_normal_are_written_exactly() {
     let path = root().join("scenes/sphere/through-the-floor.ray");
-    let folder = with_aov(&path, "depth,normal");
+    let (folder, _) = with_aov(&path, "depth,normal");
     let model = load(&path);
     let [width, height] = model.camera.value.pixels;
     let exact = |name: &str| image::open(folder.path().join(name)).expect("an EXR").into_rgb32f();
@@ -145,8 +146,11 @@ fn depth_and_normal_are_written_exactly() {
 #[test]
 fn objects_differ_in_colour_and_near_is_brighter_than_far() {
     let path = root().join("scenes/sphere/through-the-floor.ray");
-    let folder = with_aov(&path, "object,depth,cost");
+    let (folder, said) = with_aov(&path, "object,depth,cost");
     let model = load(&path);
+    let (_, costly) = said.split_once("the most expensive pixel is ").expect("it is told");
+    let words: Vec<_> = costly.lines().next().expect("a line").split(' ').collect();
+    assert!(matches!(words[..], [_, _, "of", rays, "rays"] if rays != "0"), "{said}");
     let [width, height] = model.camera.value.pixels;
     let open = |name: &str| image::open(folder.path().join(name)).expect("a PNG").into_rgb8();
     let (objects, depths, costs) = (open("a-object.png"), open("a-depth.png"), open("a-cost.png"));
@@ -170,7 +174,7 @@ fn objects_differ_in_colour_and_near_is_brighter_than_far() {
 
 #[test]
 fn costs_are_counted_where_only_a_part_of_a_light_shines() {
-    let folder = with_aov(&root().join("scenes/light/size.ray"), "cost");
+    let (folder, _) = with_aov(&root().join("scenes/light/size.ray"), "cost");
     let costs = image::open(folder.path().join("a-cost.png")).expect("a PNG").into_rgb8();
     assert!(
         costs.pixels().any(|pixel| pixel.0[0] < 255),
@@ -187,7 +191,8 @@ fn errors_are_where_edges_are_and_red_where_another_object_is_seen() {
         let render = render.current_dir(folder.path()).arg("render").arg(scene);
         let output =
             render.args(["--aov", "error", "-o", name, "--method", method]).output().expect("it runs");
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success() && said.contains("\nthe greatest error is "), "{said}");
         let stem = name.trim_end_matches(".png");
         let picture =
             image::open(folder.path().join(format!("{stem}-error.png"))).expect("a PNG").into_rgb8();

@@ -87,3 +87,18 @@ fn the_program_counts_and_shows_what_is_proven() {
     let red = colours("b.png").pixels().filter(|pixel| pixel.0 == [255, 0, 0]).count();
     assert!(red > 0 && said.ends_with(&format!(" {red} contradicted\n")), "{said}");
 }
+
+#[test]
+fn a_contradiction_is_a_failure_that_counts_it() {
+    let folder = TempDir::new().expect("a folder");
+    let mut verify = cargo_bin_cmd!("tabray");
+    verify.current_dir(folder.path()).args(["verify", "--method", "classic"]);
+    let output = verify.arg(root().join("scenes/hard/ripples.ray")).output().expect("it runs");
+    let (out, err) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert_eq!(output.status.code(), Some(1), "{out}{err}");
+    let (_, contradicted) = out.rsplit_once(", ").expect("three counts");
+    let count: usize =
+        contradicted.strip_suffix(" contradicted\n").and_then(|n| n.parse().ok()).expect("a number");
+    assert!(count > 1, "{out}");
+    assert_eq!(err, format!("error: the tracer finds another object at {count} pixels\n"));
+}

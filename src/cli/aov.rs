@@ -2,11 +2,12 @@
 
 use super::output::Output;
 use super::progress::Progress;
-use super::render::{self, finished};
+use super::render::finished;
 use super::{Failure, interrupt, messages};
 use crate::aov::Aov;
 use crate::model::Model;
 use crate::picture::Format;
+use crate::render::Renderer;
 use crate::sample::{self, Sampler};
 use std::ffi::OsStr;
 use std::io::{self, BufWriter, Write};
@@ -122,7 +123,7 @@ pub fn write(
     } else {
         model
     };
-    let renderer = render::threads(threads)?;
+    let renderer = Renderer::new(threads)?;
     let size = model.camera.value.pixels;
     for Files { aov, picture, exact } in files {
         let progress = Progress::new(size[1]);

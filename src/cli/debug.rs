@@ -1,8 +1,9 @@
 //! `tabray render --debug`: the notes' debug lines, for some pixels or for all.
 
-use super::{Failure, interrupt, probe, render};
+use super::{Failure, interrupt, probe};
 use crate::debug::{self, Line};
 use crate::model::Model;
+use crate::render::Renderer;
 use std::io::{self, BufWriter, Write};
 
 #[derive(clap::Args)]
@@ -45,7 +46,7 @@ pub fn print(model: &Model, args: &Args) -> Result<(), Failure> {
         Some([a, b]) => [probe::inside(model, a)?, probe::inside(model, b)?],
         None => [[0, 0], [width - 1, height - 1]],
     };
-    let printed = render::threads(1)?.run(|| {
+    let printed = Renderer::new(1)?.run(|| {
         let mut out = BufWriter::new(io::stderr());
         // The notes' order.
         for y in a[1].min(b[1])..=a[1].max(b[1]) {

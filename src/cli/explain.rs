@@ -4,6 +4,7 @@ use crate::compare::Pixel;
 use crate::model::Model;
 use crate::probe;
 use crate::render::Renderer;
+use crate::words;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
@@ -44,8 +45,9 @@ impl Place<'_> {
         self.model.camera.value.pixels = self.size();
         let (x, y) = (self.pixel.x as usize, self.pixel.y as usize);
         let mut out = Vec::new();
-        let renderer = Renderer::new(1).map_err(|error| error.to_string())?;
-        renderer.run(|| probe::pixel(&self.model, x, y, &mut out)).map_err(|error| error.to_string())?;
+        Renderer::new(1)
+            .and_then(|renderer| renderer.run(|| probe::pixel(&self.model, x, y, &mut out)))
+            .map_err(|error| words::reason(&error))?;
         Ok(String::from_utf8_lossy(&out).into_owned())
     }
 
@@ -59,7 +61,7 @@ impl Place<'_> {
             .args([self.pixel.x.to_string(), self.pixel.y.to_string()])
             .stdin(Stdio::null())
             .output()
-            .map_err(|error| format!("`{}` does not start: {error}", program.display()))?;
+            .map_err(|error| format!("`{}` does not start: {}", program.display(), words::reason(&error)))?;
         if !output.status.success() {
             return Err(format!("it says\n\n{}", String::from_utf8_lossy(&output.stderr).trim_end()));
         }

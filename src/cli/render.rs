@@ -12,7 +12,6 @@ use crate::registry::Registry;
 use crate::render::Renderer;
 use crate::sample::{self, Sampler};
 use crate::scene::Loaded;
-use crate::words;
 use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -107,7 +106,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let start = Instant::now();
     model.plan();
     stats.building += start.elapsed();
-    let renderer = self::threads(threads)?.on(cpu);
+    let renderer = Renderer::new(threads)?.on(cpu);
     let whole = Instant::now();
     let job = Job {
         model: &model,
@@ -132,13 +131,6 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         Err(report) => Err(Failure::Scene(report)),
     };
     aov::write(&model, exact, threads, format, beside)
-}
-
-/// This many threads to render with; 0 for one on each core.
-pub fn threads(count: usize) -> Result<Renderer, Failure> {
-    Renderer::new(count).map_err(|error| {
-        Failure::Failed(format!("cannot start threads to render with: {}", words::reason(&error)))
-    })
 }
 
 /// Puts a picture in its place, if it was written without an error.

@@ -85,7 +85,10 @@ impl Begun {
     /// Removes the checkpoint, as its picture is finished.
     pub fn remove(self) -> Result<(), Failure> {
         fs::remove_file(&self.path).map_err(|error| {
-            Failure::Failed(format!("cannot remove `{}`: {}", self.path.display(), words::reason(&error)))
+            let (path, reason) = (self.path.display(), words::reason(&error));
+            Failure::Failed(format!(
+                "cannot remove `{path}`: {reason}; the picture is finished: remove it by hand"
+            ))
         })
     }
 }
@@ -135,6 +138,9 @@ pub fn leave(job: &Job, written: Output, tiles: &Tiles) -> Result<PathBuf, Failu
 
 fn identity(model: &Model, part: &Part) -> Result<Identity, Failure> {
     Identity::of(model, &part.columns, &part.rows).map_err(|error| {
-        Failure::Failed(format!("cannot read the program's own file: {}", words::reason(&error)))
+        let reason = words::reason(&error);
+        Failure::Failed(format!(
+            "cannot read the program's own file, by which a checkpoint knows it: {reason}"
+        ))
     })
 }

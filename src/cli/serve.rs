@@ -54,20 +54,24 @@ pub struct Server {
 impl Server {
     /// Listens on this port, or on the first free one from 3000.
     pub fn open(port: Option<u16>) -> Result<Self, Failure> {
-        let listen = |port| TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(|error| (port, error));
-        let listener = match port {
+        let listen = |port| Self::listen(port).map_err(|error| (port, error));
+        let server = match port {
             Some(port) => listen(port),
             None => PORTS
                 .map(listen)
                 .find(|tried| !matches!(tried, Err((_, error)) if error.kind() == io::ErrorKind::AddrInUse))
                 .unwrap_or_else(|| Err((u16::MAX, io::ErrorKind::AddrInUse.into()))),
         };
-        let listener = listener.map_err(|(port, error)| match error.kind() {
+        server.map_err(|(port, error)| match error.kind() {
             io::ErrorKind::AddrInUse => Failure::Failed(format!(
                 "port {port} is taken; give `--port` another one, or leave it out for the first free one"
             )),
             _ => Failure::Failed(format!("cannot listen on port {port}: {}", words::reason(&error))),
-        })?;
+        })
+    }
+
+    fn listen(port: u16) -> io::Result<Self> {
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
         listener.set_nonblocking(true)?;
         let port = listener.local_addr()?.port();
         Ok(Self { listener, port })

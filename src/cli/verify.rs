@@ -2,9 +2,10 @@
 
 use super::output::Output;
 use super::progress::Progress;
-use super::render::{self, finished, named};
+use super::render::{finished, named};
 use super::{Failure, input, interrupt, messages, method, print};
 use crate::registry::Registry;
+use crate::render::Renderer;
 use crate::verify::{self, Verdict};
 use std::io::BufWriter;
 use std::iter;
@@ -38,7 +39,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     };
     let size = model.camera.value.pixels;
     let progress = Progress::new(size[1]);
-    let renderer = render::threads(args.threads.unwrap_or(0).into())?;
+    let renderer = Renderer::new(args.threads.unwrap_or(0).into())?;
     let verdicts = verify::picture(&renderer, &model, &|| {
         progress.step();
         interrupt::check()

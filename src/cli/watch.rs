@@ -7,7 +7,7 @@ mod files;
 mod frame;
 
 use super::serve::Server;
-use super::{Failure, input, interrupt, method};
+use super::{Failure, input, interrupt, messages, method};
 use crate::accuracy::Accuracy;
 use crate::model::Model;
 use crate::progressive;
@@ -91,11 +91,11 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
             }
         }
     });
-    eprintln!("watching {}: its page is {url} (Ctrl-C ends this)", args.scene.display());
+    messages::note(&format!("watching {}: its page is {url} (Ctrl-C ends this)", args.scene.display()));
     if args.open
         && let Err(error) = open::that(&url)
     {
-        eprintln!("cannot open a browser ({error}): open the page by hand");
+        messages::note(&format!("cannot open a browser: {}; open the page by hand", words::reason(&error)));
     }
     let mut watched =
         Watched { registry, path: args.scene, accuracy, named: Vec::new(), last: None, version: 0 };

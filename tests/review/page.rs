@@ -55,6 +55,30 @@ fn the_first_difference_is_explained_and_a_wrong_explanation_is_called_so() {
 }
 
 #[test]
+fn a_program_that_does_not_explain_is_told() {
+    let folder = with_pictures();
+    let scene = folder.path().join("scene.ray");
+    let eye = |size: &str| format!("camera eye {{ pixeldim {size}  worlddim 8 6  viewpoint 4 3 6 }}");
+    let explained = |size: &str, program: &str| {
+        fs::write(&scene, eye(size)).expect("room for a file");
+        let args =
+            ["diff", "old.png", "new.ppm", "-o", "a.html", "--scene", "scene.ray", "--before", program];
+        let (status, _, err) = tabray(folder.path(), &args);
+        assert_eq!(status, 1, "{err}");
+        let html = fs::read_to_string(folder.path().join("a.html")).expect("the page");
+        data(&html)["items"][0]["explanations"][0].to_string()
+    };
+    for (size, program, said) in [
+        ("4 3", "./no-such-program", "`./no-such-program` does not start: no such file or directory"),
+        ("8 6", "false", "the picture is not as large as its scene says"),
+        ("4 3", "false", "it says\\n\\n"),
+    ] {
+        let told = format!("[\"Before, by {program}\",\"no explanation: {said}\"]");
+        assert_eq!(explained(size, program), told);
+    }
+}
+
+#[test]
 fn a_browser_shows_the_page() {
     let folder = with_pictures();
     tabray(folder.path(), &["diff", "old.png", "new.ppm", "-o", "page.html"]);

@@ -1,6 +1,7 @@
 //! What is gathered, and the commands that decide about it.
 
 use crate::{data, files, folder, tabray, with_pending};
+use image::RgbImage;
 use serde_json::{Value, json};
 use std::fs;
 use std::process::Command;
@@ -37,6 +38,14 @@ fn a_review_gathers_what_is_pending() {
             ["+", null, 3, "</script>2"]
         ])
     );
+}
+
+#[test]
+fn a_picture_of_another_size_is_called_so() {
+    let folder = with_pending();
+    let path = folder.path().join("snapshots/it's <b>/ball.snap.new.png");
+    RgbImage::new(5, 3).save(path).expect("room for a picture");
+    assert_eq!(page_of(&folder)["items"][0]["summary"], "the size differs: 4 x 3 pixels became 5 x 3 pixels");
 }
 
 #[test]

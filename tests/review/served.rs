@@ -26,7 +26,8 @@ impl Served {
         let mut line = String::new();
         let mut told = BufReader::new(program.stderr.take().expect("it is piped"));
         told.read_line(&mut line).expect("a line");
-        let (_, url) = line.split_once("http://").expect("where the page is");
+        let (_, url) = line.split_once("review at http://").expect("where the page is");
+        assert!(url.ends_with("/ (Ctrl-C ends it)\n"), "{line}");
         let (host, _) = url.split_once('/').expect("an end");
         // What else it says must not stop it.
         std::thread::spawn(move || std::io::copy(&mut told, &mut std::io::sink()));
@@ -72,9 +73,20 @@ fn a_served_page_accepts_and_rejects_what_it_shows_and_then_ends() {
     assert_eq!(page["served"], true);
     let version = |index: usize| &page["items"][index]["decision"]["version"];
 
-    assert_eq!(served.decide("accept", "../../../etc/passwd", version(0)).0, 404);
-    assert_eq!(served.decide("accept", "ball.snap", version(1)).0, 409);
-    assert_eq!(served.decide("change", "ball.snap", version(0)).0, 404);
+    let told = |status: u16, text: &str| (status, text.to_owned());
+    assert_eq!(
+        served.decide("accept", "../../../etc/passwd", version(0)),
+        told(404, "snapshots/it's <b>/../../../etc/passwd is not pending any more")
+    );
+    assert_eq!(
+        served.decide("accept", "ball.snap", version(1)),
+        told(409, "snapshots/it's <b>/ball.snap is another since it was shown: load this page again")
+    );
+    assert_eq!(served.decide("change", "ball.snap", version(0)), told(404, "there is nothing here"));
+    let origin = format!("http://{}", served.host);
+    let headers = [("Host", served.host.as_str()), ("Origin", &origin)];
+    assert_eq!(served.ask("POST /accept", &headers, "ball"), told(400, "this names no snapshot"));
+    assert_eq!(served.ask("POST /accept", &headers, &" ".repeat(70_000)), told(413, "too much was sent"));
     assert_eq!(files(&folder), before, "nothing was decided yet");
 
     assert_eq!(served.decide("accept", "ball.snap", version(0)).0, 200);
@@ -91,6 +103,12 @@ fn a_served_page_accepts_and_rejects_what_it_shows_and_then_ends() {
 
     fs::write(folder.path().join("snapshots/it's <b>/later.snap.new"), "---\n---\nelse\n").expect("room");
     assert_eq!(served.decide("accept", "later.snap", version(2)).0, 409, "what was not seen is not accepted");
+    let later = folder.path().join("snapshots/it's <b>/later.snap.new");
+    let readable = fs::read(&later).expect("it is there");
+    fs::write(&later, "without a header").expect("room");
+    let told = (500, "the terminal says what is wrong".to_owned());
+    assert_eq!(served.decide("accept", "later.snap", version(2)), told);
+    fs::write(&later, readable).expect("room");
     let page = data(&served.ask("GET /", &[("Host", &served.host)], "").1);
     assert_eq!(served.decide("accept", "later.snap", &page["items"][0]["decision"]["version"]).0, 200);
     assert_eq!(files(&folder)["later.snap"], b"---\n---\nelse\n");
@@ -108,17 +126,18 @@ fn pages_and_names_from_elsewhere_are_refused() {
     let body = json!({ "snapshot": "snapshots/it's <b>/later.snap", "version": version }).to_string();
     let origin = format!("http://{ours}");
     let rebound = format!("evil.example:{port}");
-    for headers in [
-        &[("Host", rebound.as_str()), ("Origin", &origin)][..],
-        &[("Host", "127.0.0.1"), ("Origin", &origin)],
-        &[("Host", ours), ("Host", &rebound), ("Origin", &origin)],
-        &[("Origin", &origin)],
-        &[("Host", ours), ("Origin", "http://evil.example")],
-        &[("Host", ours), ("Origin", "null")],
-        &[("Host", ours), ("Origin", &origin), ("Origin", "null")],
-        &[("Host", ours)],
+    let (host, page) = ("this is not the host that was asked for", "a page from elsewhere may not ask this");
+    for (headers, said) in [
+        (&[("Host", rebound.as_str()), ("Origin", &origin)][..], host),
+        (&[("Host", "127.0.0.1"), ("Origin", &origin)], host),
+        (&[("Host", ours), ("Host", &rebound), ("Origin", &origin)], host),
+        (&[("Origin", &origin)], host),
+        (&[("Host", ours), ("Origin", "http://evil.example")], page),
+        (&[("Host", ours), ("Origin", "null")], page),
+        (&[("Host", ours), ("Origin", &origin), ("Origin", "null")], page),
+        (&[("Host", ours)], "a request that changes something must name its origin"),
     ] {
-        assert_eq!(served.ask("POST /accept", headers, &body).0, 403, "{headers:?}");
+        assert_eq!(served.ask("POST /accept", headers, &body), (403, said.to_owned()), "{headers:?}");
     }
     assert_eq!(served.ask("GET /", &[("Host", &rebound)], "").0, 403);
     assert_eq!(served.ask("GET /", &[("Host", ours), ("Origin", "http://evil.example")], "").0, 403);
@@ -134,5 +153,6 @@ fn a_port_that_is_taken_is_refused_when_it_was_asked_for() {
     let (_, port) = served.host.split_once(':').expect("a port");
     let (status, _, err) = tabray(folder.path(), &["review", "--serve", "--port", port]);
     assert_eq!(status, 1);
-    assert!(err.contains(&format!("error: port {port} is taken")), "{err}");
+    let said = "give `--port` another one, or leave it out for the first free one";
+    assert_eq!(err, format!("error: port {port} is taken; {said}\n"));
 }

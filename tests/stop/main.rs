@@ -8,6 +8,7 @@ mod common;
 mod damage;
 mod interrupted;
 mod limits;
+mod others;
 mod refused;
 mod resumed;
 
@@ -19,6 +20,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::thread;
+use std::time::Duration;
 use tempfile::TempDir;
 
 /// A scene whose picture takes some seconds.
@@ -55,14 +57,21 @@ impl Running {
 
     /// Waits until it has computed for a while: a tile is under way, or is done.
     fn until_it_renders(&mut self) {
+        self.until_it_has_computed(Duration::from_millis(200));
+    }
+
+    /// Waits until it has computed for so long, or has ended.
+    fn until_it_has_computed(&mut self, time: Duration) {
         let stat = format!("/proc/{}/stat", self.0.id());
         // After the name, which stands in brackets, the twelfth number is CPU time in hundredths of a second.
         let ticks = || {
             let stat = fs::read_to_string(&stat).ok()?;
             stat.rsplit_once(") ")?.1.split(' ').nth(11)?.parse::<u32>().ok()
         };
-        while ticks().expect("it runs") < 20 {
-            thread::yield_now();
+        while self.0.try_wait().expect("its status").is_none()
+            && u128::from(ticks().unwrap_or(u32::MAX)) < time.as_millis() / 10
+        {
+            thread::sleep(Duration::from_millis(1));
         }
     }
 

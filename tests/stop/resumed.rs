@@ -11,6 +11,22 @@ use std::os::unix::fs::symlink;
 use std::thread;
 use std::time::{Duration, Instant};
 
+#[test]
+fn a_checkpoint_that_cannot_be_removed_is_told_and_the_picture_is_whole() {
+    let folder = workplace();
+    let args = ["hall.ray", "--samples", "16", "-o", "a.png"];
+    stop_midway(&folder, &args);
+    let mut running = Running::render(&folder, &[&args[..], &["--resume"]].concat());
+    running.until_it_renders();
+    // Something else is in its place by the time it is to go.
+    let path = folder.path().join("a.png.checkpoint");
+    fs::remove_file(&path).and_then(|()| fs::create_dir(&path)).expect("a folder");
+    let said = "error: cannot remove `a.png.checkpoint`: is a directory; the picture is finished: remove it by hand\n";
+    assert_eq!(running.end(), (1, said.to_owned()));
+    assert_eq!(render(&folder, &[&args[..3], &["-o", "whole.png"]].concat()).0, 0);
+    assert!(bytes(&folder, "a.png") == bytes(&folder, "whole.png"));
+}
+
 /// Interrupts a render at ten random moments and goes on each time, with any number of threads; the picture is that of
 /// a render that was left alone.
 fn interrupted_ten_times(seed: u64, name: &str, scene: &str, options: &[&str], last: &[&str]) {

@@ -51,7 +51,10 @@ impl Watching {
         let mut stderr = BufReader::new(child.stderr.take().expect("its messages"));
         let mut line = String::new();
         stderr.read_line(&mut line).expect("text");
-        let (_, rest) = line.split_once("http://127.0.0.1:").unwrap_or_else(|| panic!("an address: {line}"));
+        let (_, rest) = line
+            .split_once("watching scene.ray: its page is http://127.0.0.1:")
+            .unwrap_or_else(|| panic!("an address: {line}"));
+        assert!(rest.ends_with("/ (Ctrl-C ends this)\n"), "{line}");
         let port = rest.split('/').next().and_then(|port| port.parse().ok()).expect("a port");
         // What comes later must have somewhere to go.
         thread::spawn(move || stderr.read_to_end(&mut Vec::new()));

@@ -2,12 +2,13 @@
 
 use crate::common::{load, model, render, root};
 use crate::program::{Watching, ball};
-use assert_cmd::cargo::cargo_bin_cmd;
+use assert_cmd::cargo::{cargo_bin, cargo_bin_cmd};
 use serde_json::Value;
 use std::fs;
-use std::io::{Read, Write};
+use std::io::{BufRead, BufReader, Read, Write};
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
 use std::ops::ControlFlow;
+use std::process::{Command, Stdio};
 use std::thread;
 use std::time::Duration;
 use tabray::aov::Aov;
@@ -151,10 +152,11 @@ fn a_pixel_is_explained_as_probe_does_with_the_lines_of_its_object() {
         assert_eq!((status, answer["text"].as_str()), (200, str::from_utf8(&told).ok()));
         assert_eq!(answer["lines"], lines);
     }
-    for path in ["probe/1/80/0", "probe/1/0/60", "probe/1/-1/0", "layer/1/nothing", "nothing"] {
-        assert_eq!(watching.get(path).0, 404, "{path}");
+    for path in ["probe/1/80/0", "probe/1/0/60", "probe/1/-1/0", "layer/1/nothing"] {
+        assert_eq!(watching.get(path), (404, b"the picture has no such part\n".to_vec()), "{path}");
     }
-    assert_eq!(watching.get("probe/2/0/0").0, 410);
+    assert_eq!(watching.get("nothing"), (404, b"there is no such page\n".to_vec()));
+    assert_eq!(watching.get("probe/2/0/0"), (410, b"this picture is not there any more\n".to_vec()));
 }
 
 #[test]
@@ -186,7 +188,9 @@ fn the_layers_are_those_of_aov() {
 fn a_picture_too_large_for_a_page_is_refused_with_the_size_that_is_not() {
     let watching = Watching::text(&ball("9 0 0").replace("80 60", "100000 100000"));
     let fault = watching.events().until("fault");
-    assert!(fault["report"].as_str().is_some_and(|report| report.contains("such as 4096 x 4096")), "{fault}");
+    let said = "error: a picture of 100000 x 100000 pixels is too large for a page\n\
+                help: it can have 16777216 pixels, such as 4096 x 4096";
+    assert_eq!(fault["report"], said);
 }
 
 #[test]
@@ -220,7 +224,10 @@ fn foreign_hosts_and_origins_are_refused() {
     let answer = raw(port, &format!("{post}\n"));
     assert!(answer.starts_with("HTTP/1.1 403 "), "{answer}");
     let answer = raw(port, &format!("{post}Origin: http://127.0.0.1:{port}\n\n"));
-    assert!(answer.starts_with("HTTP/1.1 405 "), "{answer}");
+    assert!(
+        answer.starts_with("HTTP/1.1 405 ") && answer.ends_with("this server is read only\n"),
+        "{answer}"
+    );
 }
 
 #[test]
@@ -300,6 +307,31 @@ fn what_cannot_be_watched_is_refused() {
         assert_eq!(output.status.code(), Some(2), "{err}");
         assert!(err.starts_with("error: ") && err.contains(reason), "{err}");
     }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn without_a_browser_the_page_is_to_be_opened_by_hand() {
+    let folder = TempDir::new().expect("a folder");
+    fs::write(folder.path().join("scene.ray"), ball("9 0 0")).expect("a file");
+    let mut watch = Command::new(cargo_bin!("tabray"));
+    watch.args(["watch", "scene.ray", "--port", "0", "--open", "--message-format", "json"]);
+    watch.current_dir(folder.path()).env("PATH", "").stderr(Stdio::piped());
+    let mut watch = watch.spawn().expect("the program runs");
+    let mut lines = BufReader::new(watch.stderr.take().expect("its messages")).lines();
+    let mut note = || {
+        let line = lines.next().expect("a line").expect("text");
+        let note: Value = serde_json::from_str(&line).expect("JSON");
+        note["message"].as_str().expect("a message").to_owned()
+    };
+    let (address, browser) = (note(), note());
+    let _ = watch.kill();
+    watch.wait().expect("it ends");
+    assert!(address.starts_with("watching scene.ray: "), "{address}");
+    assert!(
+        browser.starts_with("cannot open a browser: ") && browser.ends_with("; open the page by hand"),
+        "{browser}"
+    );
 }
 
 #[cfg(unix)]

@@ -1,9 +1,11 @@
 //! The files that a scene is read from, and who wants to know when one of them changes.
 
 use super::super::Failure;
+use crate::words;
 use notify::event::{AccessKind, AccessMode, EventKind, ModifyKind};
-use notify::{Event, RecommendedWatcher, RecursiveMode, Watcher};
+use notify::{ErrorKind, Event, RecommendedWatcher, RecursiveMode, Watcher};
 use std::collections::BTreeSet;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -33,7 +35,7 @@ impl Files {
             }
         };
         let watcher = notify::recommended_watcher(see)
-            .map_err(|error| Failure::Failed(format!("cannot watch files: {error}")))?;
+            .map_err(|error| Failure::Failed(format!("cannot watch files: {}", reason(&error))))?;
         Ok(Self { watcher, files, folders: BTreeSet::new() })
     }
 
@@ -48,7 +50,7 @@ impl Files {
         *self.files.lock().unwrap_or_else(PoisonError::into_inner) = files;
         for folder in folders.difference(&self.folders) {
             self.watcher.watch(folder, RecursiveMode::NonRecursive).map_err(|error| {
-                Failure::Failed(format!("cannot watch the folder `{}`: {error}", folder.display()))
+                Failure::Failed(format!("cannot watch the folder `{}`: {}", folder.display(), reason(&error)))
             })?;
         }
         for folder in self.folders.difference(&folders) {
@@ -57,6 +59,15 @@ impl Files {
         }
         self.folders = folders;
         Ok(())
+    }
+}
+
+/// Why the system does not watch a file.
+fn reason(error: &notify::Error) -> String {
+    match &error.kind {
+        ErrorKind::Io(error) => words::reason(error),
+        ErrorKind::MaxFilesWatch => "the system watches as many files as it may already".to_owned(),
+        _ => words::reason(&io::Error::other(error.to_string())),
     }
 }
 
