@@ -3,7 +3,7 @@
 use crate::cpu::Cpu;
 use crate::model::Model;
 use crate::picture::to_bytes;
-use crate::tiles::{BAND, Band, TILE};
+use crate::tiles::{self, BAND, Band, TILE};
 use crate::trace::{Rooms, Tracer};
 use crate::watch::Watch;
 use crate::words;
@@ -103,7 +103,7 @@ impl Renderer {
                     if (overseer.stops)() {
                         break;
                     }
-                    list(left..columns.end.min(left + TILE), top + 1 - tall..top + 1, &mut tile);
+                    tiles::list(left..columns.end.min(left + TILE), top + 1 - tall..top + 1, &mut tile);
                     let colours = tracer.pixels(&tile);
                     to_bytes(self.cpu, colours, &mut bytes[..tile.len()]);
                     for ([x, y], bytes) in tile.iter().zip(&bytes) {
@@ -142,18 +142,5 @@ impl Renderer {
     /// Runs something else on one of the threads, which have room for deep reflections.
     pub fn run<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
         self.pool.install(work)
-    }
-}
-
-/// Lists the pixels of a tile, those together that are near each other.
-fn list(columns: Range<usize>, rows: Range<usize>, pixels: &mut Vec<[usize; 2]>) {
-    const SIDE: usize = 8;
-    pixels.clear();
-    for bottom in rows.clone().step_by(SIDE) {
-        for left in columns.clone().step_by(SIDE) {
-            for y in bottom..rows.end.min(bottom + SIDE) {
-                pixels.extend((left..columns.end.min(left + SIDE)).map(|x| [x, y]));
-            }
-        }
     }
 }

@@ -6,6 +6,19 @@ use std::ops::Range;
 /// The width and height of a tile, whose rays go together, in pixels. Those at the right and lower edges may be smaller.
 pub(crate) const TILE: usize = 16;
 
+/// Lists the pixels of a tile, or of a part of one, those together that are near each other.
+pub(crate) fn list(columns: Range<usize>, rows: Range<usize>, pixels: &mut Vec<[usize; 2]>) {
+    const SIDE: usize = 8;
+    pixels.clear();
+    for low in rows.clone().step_by(SIDE) {
+        for left in columns.clone().step_by(SIDE) {
+            for y in low..rows.end.min(low + SIDE) {
+                pixels.extend((left..columns.end.min(left + SIDE)).map(|x| [x, y]));
+            }
+        }
+    }
+}
+
 /// Pixels of a picture that are in memory at one time, but for a picture of one longer row of tiles.
 pub const BAND: usize = 1 << 22;
 

@@ -72,6 +72,20 @@ fn tabray(arguments: &[&str], folder: &Path) -> String {
     String::from_utf8(output.stdout).expect("text")
 }
 
+/// However crowded a chart is. Of samples the names are numbers, which axes have, too; and a choice that finds nothing
+/// has no error, and no place.
+fn every_choice_has_its_name(table: &str, drawing: &str) {
+    let rows = table.lines().skip(1).filter(|row| !row.starts_with("\"samples"));
+    let has_error = |row: &str| row.rsplit(',').nth(8).is_some_and(|error| error != "NaN");
+    let mut names: Vec<_> =
+        rows.filter(|row| has_error(row)).filter_map(|row| row.split('"').nth(3)).collect();
+    names.sort_unstable();
+    for same in names.chunk_by(|one, other| one == other) {
+        let drawn = drawing.lines().filter(|line| line.starts_with(same[0])).count();
+        assert!(drawn >= same.len(), "{} names of {} points `{}`", drawn, same.len(), same[0]);
+    }
+}
+
 #[test]
 #[ignore = "runs for minutes; its times are a document"]
 fn the_gallery_of_charts_is_drawn() {
@@ -89,6 +103,11 @@ fn the_gallery_of_charts_is_drawn() {
             let file = Path::new(name).with_extension(extension);
             fs::copy(folder.path().join(&file), pictures.join(&file)).expect("a copy");
         }
+        let read = |extension| {
+            let file = folder.path().join(name).with_extension(extension);
+            fs::read_to_string(file).expect("it is written")
+        };
+        every_choice_has_its_name(&read("csv"), &read("svg"));
         println!("{title}\n{verdict}");
         write!(
             text,
@@ -133,7 +152,7 @@ the first; beside it stands of how many of all rays. The line is the Pareto fron
 those that none beats in both time and error. Times that differ by less than a tenth count as equal, and so do errors
 that differ by less than a half.
 
-- **Rays of the camera**: about 20000 pairs of a ray through a pixel and an object, in tiles of 8 by 8 pixels that are
+- **Rays of the camera**: about 20000 pairs of a ray through a pixel and an object, in tiles of 16 by 16 pixels that are
   spread evenly. Objects are apart by kind: those that are found by a search along the ray, and those that have a
   formula.
 - **Rays that graze silhouettes**: pairs beside an object's edge as the camera sees it, at distances from a pixel to
@@ -149,7 +168,7 @@ as undecided. Errors of colours are the root of the mean square over pixels and 
 
 Times are those of one thread, in CPU time, of the same work for each choice by turns, up to 15 rounds after one to warm
 up; the least round counts. Distances are timed on about 2000 of the pairs, pictures on some of their tiles. Both go as
-in a render: a packet of 64 rays at a time, with the best instructions that the processor has. Where a hit is searched
+in a render: up to 256 rays at a time, with the best instructions that the processor has. Where a hit is searched
 for, only `draft`, `exact` and `strict` take a packet's rays together; all others take them one by one, and a part of
 what the default is faster is owed to that. Of rays that graze silhouettes it takes most one by one, too.
 

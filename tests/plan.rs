@@ -116,7 +116,9 @@ fn samples_multiply_the_primary_rays_exactly() {
 #[test]
 fn what_scatters_no_light_casts_no_shadow_rays() {
     let floor = |look: &str| {
-        format!("material polished {{ {look} }} plane floor {{ material polished normal 0 1 0 point 0 0 0 }} {LAMP}")
+        format!(
+            "material polished {{ {look} }} plane floor {{ material polished normal 0 1 0 point 0 0 0 }} {LAMP}"
+        )
     };
     let (_, tally) = counted(&floor("ambient 1 1 1 specular 0.5"));
     assert_eq!(tally.rays(Shadow), 0, "a mirror without a glint");

@@ -5,7 +5,7 @@ use crate::cpu::Cpu;
 use crate::geometry::{MISS, Side};
 use crate::model::Model;
 use crate::packet::{Nearest, Rays, Vectors, WIDE};
-use crate::tiles::TILE;
+use crate::tiles::{self, TILE};
 use crate::trace::{self, Rooms, Tracer};
 use crate::watch::{Count, Kind, Watch};
 use std::hint::black_box;
@@ -57,7 +57,7 @@ pub struct Times {
 
 /// The packets of a model.
 pub(super) fn of(model: &Model, cpu: Cpu) -> Vec<Packet> {
-    let tiles: Vec<_> = tiles(model).collect();
+    let tiles: Vec<_> = split(model).collect();
     let step = tiles.len().div_ceil(TILES);
     tiles.iter().step_by(step).map(|tile| Packet::new(model, cpu, tile)).collect()
 }
@@ -176,13 +176,17 @@ pub(super) fn times(
 }
 
 /// The pixels of a frame, tile by tile as the renderer takes them: from the left and from the bottom.
-fn tiles(model: &Model) -> impl Iterator<Item = Vec<[usize; 2]>> {
+fn split(model: &Model) -> impl Iterator<Item = Vec<[usize; 2]>> {
     let [width, height] = model.camera.value.pixels;
     (0..height).step_by(TILE).flat_map(move |top| {
         (0..width).step_by(TILE).map(move |left| {
-            let rows = top..height.min(top + TILE);
-            let row = move |y| (left..width.min(left + TILE)).map(move |x| [x, height - 1 - y]);
-            rows.flat_map(row).collect()
+            let mut pixels = Vec::new();
+            tiles::list(
+                left..width.min(left + TILE),
+                height.saturating_sub(top + TILE)..height - top,
+                &mut pixels,
+            );
+            pixels
         })
     })
 }

@@ -4,6 +4,7 @@ use super::axis::Axis;
 use super::canvas::{Align, BLUE, Canvas, GREEN, GREY, LIGHT, Letters, Marker, ORANGE, PURPLE, VERMILION};
 use super::labels::{self, Area};
 use super::{Chart, Family, Panel, Point, Subject};
+use crate::packet::WIDE;
 use crate::picture::{Compression, Format};
 use plotters::prelude::{BLACK, BitMapBackend, DrawingBackend, IntoDrawingArea, RGBColor, SVGBackend};
 use std::io;
@@ -124,9 +125,11 @@ fn legend<D: DrawingBackend>(canvas: &Canvas<D>, chart: &Chart, y: f64) -> io::R
     let text = "hollow: some hits are missed, invented or not the first (percent of all rays); the line is the \
                 front: no choice without wrong hits is faster and more exact";
     canvas.text(text, (40.0, second), Align::Left, letters)?;
-    let text = "times: rays go in packets of 64 on one thread, as in a render; where a hit is searched for, all but \
-                tabray's own method take them one by one";
-    canvas.text(text, (26.0, second + 22.0), Align::Left, Letters { colour: GREY, ..letters })
+    let text = format!(
+        "times: rays go in packets of up to {WIDE} on one thread, as in a render; where a hit is searched for, all but \
+         tabray's own method take them one by one"
+    );
+    canvas.text(&text, (26.0, second + 22.0), Align::Left, Letters { colour: GREY, ..letters })
 }
 
 /// How the points of a family are drawn.

@@ -59,8 +59,11 @@ pub struct Place {
 /// Places labels of these sizes beside their points, the first ones best, and clear of lines; nothing for one that has
 /// no room.
 pub fn place(points: &[(f64, f64)], sizes: &[(f64, f64)], lines: &[Line], room: Area) -> Vec<Option<Place>> {
-    const ATTEMPTS: usize = 20;
+    const ATTEMPTS: usize = 60;
     let mut order: Vec<usize> = (0..points.len()).collect();
+    // What was bad about each, in all attempts: those that found no good place choose first, and one that never does
+    // comes before one that did not the last time.
+    let mut sums = vec![0.0; points.len()];
     let (mut best, mut least) = (vec![None; points.len()], f64::INFINITY);
     for _ in 0..ATTEMPTS {
         let (places, costs) = place_in_order(&order, points, sizes, lines, room);
@@ -71,8 +74,8 @@ pub fn place(points: &[(f64, f64)], sizes: &[(f64, f64)], lines: &[Line], room: 
         if costs.iter().all(|cost| *cost < CROSSING) {
             break;
         }
-        // Those that found no good place choose first.
-        order.sort_by(|a, b| costs[*b].total_cmp(&costs[*a]));
+        sums.iter_mut().zip(&costs).for_each(|(sum, cost)| *sum += cost);
+        order.sort_by(|a, b| sums[*b].total_cmp(&sums[*a]));
     }
     best
 }
@@ -81,7 +84,7 @@ pub fn place(points: &[(f64, f64)], sizes: &[(f64, f64)], lines: &[Line], room: 
 const NEAR: f64 = 13.0;
 
 /// How far a label may be from its point.
-const FAR: u32 = 250;
+const FAR: u32 = 330;
 
 /// What is bad about a label, in the length of lines: that its line crosses a marker or another line, or that it has no
 /// place.

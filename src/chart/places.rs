@@ -1,6 +1,6 @@
 //! The pixels that are looked at, spread evenly over a picture.
 
-use crate::tiles::TILE;
+use crate::tiles::{self, TILE};
 use glam::DVec2;
 
 /// Pixels, from the left and from the bottom.
@@ -21,8 +21,9 @@ pub fn spread([width, height]: [usize; 2], count: usize) -> Pixels {
 pub fn tiles([width, height]: [usize; 2], count: usize) -> Vec<Pixels> {
     let tile = |[column, row]: [usize; 2]| {
         let (left, low) = (column * TILE, row * TILE);
-        let row = |y| (left..width.min(left + TILE)).map(move |x| [x, y]);
-        (low..height.min(low + TILE)).flat_map(row).collect()
+        let mut pixels = Vec::new();
+        tiles::list(left..width.min(left + TILE), low..height.min(low + TILE), &mut pixels);
+        pixels
     };
     spread([width, height].map(|side| side.div_ceil(TILE)), count).into_iter().map(tile).collect()
 }
