@@ -66,9 +66,19 @@ impl<W: Watch> Tracer<'_, '_, W> {
         let material = &self.model.objects[surface.index].material;
         let Lighting { diffuse, places, toward, distances, cosines, emissivity, shines, shadows } = lighting;
         let (points, normals) = (surface.points.view(count), surface.normals.view(count));
-        self.places(light, index, group, surface, places);
-        let (far, cosines) = (room(distances, count), room(cosines, count));
-        if !light::face_light(cpu, points, normals, places.view(count), far, cosines, toward.room(count)) {
+        let (far, cosines, dir) = (room(distances, count), room(cosines, count), toward.room(count));
+        let (is_faced, source);
+        if light.size() == 0.0 {
+            let place = light.location();
+            source = Bounds { low: place, high: place };
+            is_faced = light::face_point(cpu, points, normals, place, far, cosines, dir);
+        } else {
+            self.places(light, index, group, surface, places);
+            let places = places.view(count);
+            source = bounds::around(cpu, places);
+            is_faced = light::face_light(cpu, points, normals, places, far, cosines, dir);
+        }
+        if !is_faced {
             if W::SEES {
                 self.watch.see(Event::Light(index, Outcome::Behind));
             }
@@ -82,11 +92,6 @@ impl<W: Watch> Tracer<'_, '_, W> {
             }
             return;
         }
-        let source = if light.size() == 0.0 {
-            Bounds { low: light.location(), high: light.location() }
-        } else {
-            bounds::around(cpu, places.view(count))
-        };
         let ways = Ways { from: *around, to: source, toward, distances: far };
         let mut tint = Rgb::ONE;
         if W::SEES || self.plan.has_glass {
@@ -133,9 +138,6 @@ impl<W: Watch> Tracer<'_, '_, W> {
     ) {
         let (middle, size) = (light.location(), light.size());
         places.fill(group.padded(), middle);
-        if size == 0.0 {
-            return;
-        }
         for lane in 0..group.padded() {
             let Some(sample) = self.rooms.samples.get(usize::from(group.camera[lane])) else { continue };
             let Some(axis) = (middle - surface.points.get(lane)).try_normalize() else { continue };

@@ -3,6 +3,7 @@
 use crate::cpu::kernels;
 use crate::geometry::Side;
 use crate::packet::{Rays, View, ViewMut};
+use glam::DVec3;
 
 /// Places that a light shines on.
 pub(super) struct Lit<'l> {
@@ -55,12 +56,28 @@ kernels! {
         let (mut toward, distances) = (toward.first(count), &mut distances[..count]);
         let mut any = 0;
         for lane in 0..count {
-            let between = places.get(lane) - points.get(lane);
-            let distance = between.length();
-            let dir = between * (1.0 / distance);
+            let dir;
+            (dir, distances[lane]) = from_to(points.get(lane), places.get(lane));
             toward.set(lane, dir);
-            distances[lane] = distance;
             // A light on the surface itself makes it NaN, and is behind.
+            cosines[lane] = dir.dot(normals.get(lane));
+            any |= u64::from(cosines[lane] > 0.0);
+        }
+        any != 0
+    }
+
+    /// As `face_light`, for one that is a point.
+    pub(super) fn face_point(
+        points: View, normals: View, place: DVec3, distances: &mut [f64], cosines: &mut [f64]
+    ) => toward -> bool {
+        let count = cosines.len();
+        let (points, normals) = (points.first(count), normals.first(count));
+        let (mut toward, distances) = (toward.first(count), &mut distances[..count]);
+        let mut any = 0;
+        for lane in 0..count {
+            let dir;
+            (dir, distances[lane]) = from_to(points.get(lane), place);
+            toward.set(lane, dir);
             cosines[lane] = dir.dot(normals.get(lane));
             any |= u64::from(cosines[lane] > 0.0);
         }
@@ -149,6 +166,14 @@ kernels! {
             out.set(lane, dir - 2.0 * dir.dot(normal) * normal);
         }
     }
+}
+
+/// The direction from one point to another, and how far that is.
+#[inline(always)]
+fn from_to(from: DVec3, to: DVec3) -> (DVec3, f64) {
+    let between = to - from;
+    let distance = between.length();
+    (between * (1.0 / distance), distance)
 }
 
 /// Powers up to this one are multiplied out.

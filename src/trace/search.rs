@@ -210,7 +210,13 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
         let (mut origins, mut dirs) = (Bounds::EMPTY, Bounds::EMPTY);
         for (part, bundle) in parts(group.padded()).zip(&mut bundles) {
             let rays = group.rays().part(part);
-            let (origin, dir) = (bounds::around(cpu, rays.origin), bounds::around(cpu, rays.dir));
+            let start = rays.origin.get(0);
+            // Those of the camera all start there.
+            let origin = match group.leaves {
+                None => Bounds { low: start, high: start },
+                Some(_) => bounds::around(cpu, rays.origin),
+            };
+            let dir = bounds::around(cpu, rays.dir);
             (origins, dirs) = (origins.and(&origin), dirs.and(&dir));
             *bundle = Some(Bundle::new(origin, dir));
         }

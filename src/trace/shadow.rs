@@ -11,6 +11,7 @@ use crate::cpu::kernels;
 use crate::geometry::Side;
 use crate::packet::{Rays, STEP, View};
 use crate::watch::{Count, Kind, Watch};
+use glam::DVec3;
 
 /// The ways from the places of a surface to a light.
 pub(super) struct Ways<'w> {
@@ -66,18 +67,16 @@ impl<W: Watch> Tracer<'_, '_, W> {
     ) {
         let (cpu, count) = (self.cpu, group.padded());
         let Shadows { ends, blocked, lanes, origin, dir, their_ends, sides } = shadows;
-        let ends = room(ends, count);
-        aim(cpu, surface.points.view(count), ways.distances, self.slack(), shines, ends);
+        let (ends, blocked) = (room(ends, count), room(blocked, count));
+        let (points, budget, slack) = (surface.points.view(count), &mut group.budget, self.slack());
         // A ray that has cost as many as it may finds nothing in the way.
-        let len = spend(cpu, &mut group.budget[..group.len], ends);
+        let len = set_out(cpu, points, ways.distances, slack, shines, group.len, budget, ends, blocked);
         if len == 0 {
             return;
         }
         self.watch.count(Count::Rays(Kind::Shadow, len));
         if 2 * len > group.len {
-            let blocked = room(blocked, count);
-            close(cpu, ends, blocked);
-            let rays = Rays { origin: surface.points.view(count), dir: ways.toward.view(count) };
+            let rays = Rays { origin: points, dir: ways.toward.view(count) };
             let sides = &surface.sides[..count];
             let leaving = Leaving { rays, len: group.len, ends, object: surface.index, sides };
             self.block(&leaving, &ways.from, &ways.to, blocked);
@@ -91,7 +90,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
         dir.pick(ways.toward, lanes, count);
         pick(their_ends, ends, lanes, count);
         pick(sides, &surface.sides, lanes, count);
-        let blocked = room(blocked, count);
+        let blocked = &mut blocked[..count];
         blocked.fill(0);
         let rays = Rays { origin: origin.view(count), dir: dir.view(count) };
         let (ends, sides) = (&their_ends[..count], &sides[..count]);
@@ -113,36 +112,48 @@ kernels! {
         }
     }
 
-    /// Where the ways from points to a light end, as far as its distances go; 0 for those that need not be gone.
+    /// Where the ways from points to a light end; 0 for those that need not be gone.
     pub(super) fn aim(points: View, distances: &[f64], slack: f64, shines: &[u64], ends: &mut [f64]) {
         let count = ends.len();
         let (points, shines, distances) = (points.first(count), &shines[..count], &distances[..count]);
         for lane in 0..count {
-            let reach = points.get(lane).abs();
-            let across = if reach.x > reach.y { reach.x } else { reach.y };
-            let reach = if across > reach.z { across } else { reach.z };
-            let end = distances[lane] - slack * (distances[lane] + reach);
+            let end = end(points.get(lane), distances[lane], slack);
             ends[lane] = if shines[lane] != 0 { end } else { 0.0 };
         }
     }
 
-    /// Counts a ray for each way, and leaves out those of rays that have cost as many as they may. Tells how many remain.
-    fn spend(budget: &mut [u32], ends: &mut [f64]) -> usize {
-        let (mut len, ends) = (0, &mut ends[..budget.len()]);
-        for lane in 0..budget.len() {
-            let goes = (ends[lane] > 0.0) & (budget[lane] > 0);
-            ends[lane] = if goes { ends[lane] } else { 0.0 };
+    /// As `aim`, and counts a ray for each. Those of rays that have cost as many as they may need not be gone. What need
+    /// not is blocked; tells how many of the first `len` are left.
+    fn set_out(
+        points: View,
+        distances: &[f64],
+        slack: f64,
+        shines: &[u64],
+        len: usize,
+        budget: &mut [u32],
+        ends: &mut [f64],
+        blocked: &mut [u64]
+    ) -> usize {
+        let (count, mut left) = (ends.len(), 0);
+        let (points, shines, distances) = (points.first(count), &shines[..count], &distances[..count]);
+        let (budget, blocked) = (&mut budget[..count], &mut blocked[..count]);
+        for lane in 0..count {
+            let end = end(points.get(lane), distances[lane], slack);
+            let goes = (shines[lane] != 0) & (end > 0.0) & (budget[lane] > 0);
+            ends[lane] = if goes { end } else { 0.0 };
+            blocked[lane] = u64::from(!goes);
             budget[lane] -= u32::from(goes);
-            len += usize::from(goes);
+            left += u64::from(goes & (lane < len));
         }
-        len
+        left as usize
     }
+}
 
-    /// Marks the ways that need not be gone.
-    fn close(ends: &[f64], blocked: &mut [u64]) {
-        let blocked = &mut blocked[..ends.len()];
-        for lane in 0..ends.len() {
-            blocked[lane] = u64::from(ends[lane] <= 0.0);
-        }
-    }
+/// Where the way from a point to a light so far away ends.
+#[inline(always)]
+fn end(point: DVec3, distance: f64, slack: f64) -> f64 {
+    let reach = point.abs();
+    let across = if reach.x > reach.y { reach.x } else { reach.y };
+    let reach = if across > reach.z { across } else { reach.z };
+    distance - slack * (distance + reach)
 }
