@@ -6,7 +6,7 @@
 //! copy of it, and is computed and ignored.
 
 use crate::cpu::kernels;
-use crate::geometry::{Bracket, Hittable, Light, Ray, Shader, Side, Span};
+use crate::geometry::{Bracket, Hittable, Light, MISS, Ray, Shader, Side, Span};
 use crate::material::{Material, Rgb};
 use glam::DVec3;
 use std::ops::Range;
@@ -371,9 +371,12 @@ fn merge(
         // Of two at the same distance the earlier one in the scene wins.
         let is_earlier = (low == far[lane]) & (met[lane] > id);
         let is_farther = (low >= far[lane]) & !is_earlier;
-        near[lane] = if is_nearer { low } else { near[lane] };
-        far[lane] = if is_nearer { high } else { far[lane] };
-        met[lane] = if is_nearer { id } else { met[lane] };
+        // As the lesser of two, not as one or the other: of that the compiler would make stores that leave some lanes
+        // out, which are slow where there is no AVX-512.
+        let (low, high) = if is_nearer { (low, high) } else { (MISS, MISS) };
+        near[lane] = if low < near[lane] { low } else { near[lane] };
+        far[lane] = if high < far[lane] { high } else { far[lane] };
+        met[lane] ^= if is_nearer { met[lane] ^ id } else { 0 };
         doubt[lane] = u64::from(!(is_nearer | is_farther));
         any |= doubt[lane];
     }
