@@ -88,10 +88,11 @@ impl Renderer {
         let [_, height] = model.camera.value.pixels;
         let Band { columns, rows, pixels, tiles } = band;
         let width = columns.len();
-        let strips = pixels.par_chunks_mut(TILE * width).zip(tiles.par_chunks_mut(width.div_ceil(TILE)));
-        let strips = strips.zip(rows.clone().into_par_iter().step_by(TILE));
+        let strips = pixels.chunks_mut(TILE * width).zip(tiles.chunks_mut(width.div_ceil(TILE)));
+        let strips = strips.zip(rows.clone().step_by(TILE));
         self.pool.install(|| {
-            strips.for_each_init(Rooms::default, |rooms, ((strip, tiles), from_top)| {
+            // Whoever is free takes the next one: in parts that are shared out beforehand, one would wait for the others.
+            strips.par_bridge().for_each_init(Rooms::default, |rooms, ((strip, tiles), from_top)| {
                 let (tall, mut watch) = (strip.len() / width, W::default());
                 let top = height - 1 - from_top;
                 let mut tracer = Tracer::new(model, self.cpu, rooms, &mut watch);
@@ -135,7 +136,7 @@ impl Renderer {
             }
             done()
         };
-        let finished = self.pool.install(|| pixels.par_chunks_mut(width).zip(rows).try_for_each(row));
+        let finished = self.pool.install(|| pixels.par_chunks_mut(width).with_max_len(1).zip(rows).try_for_each(row));
         finished.is_continue().then_some(pixels)
     }
 
