@@ -136,7 +136,8 @@ impl Renderer {
             }
             done()
         };
-        let finished = self.pool.install(|| pixels.par_chunks_mut(width).with_max_len(1).zip(rows).try_for_each(row));
+        let finished =
+            self.pool.install(|| pixels.par_chunks_mut(width).with_max_len(1).zip(rows).try_for_each(row));
         finished.is_continue().then_some(pixels)
     }
 

@@ -3,10 +3,9 @@
 use super::{Finish, Revolution};
 use crate::cpu::{Cpu, kernels};
 use crate::frame::Frame;
-use crate::geometry::Ray;
 use crate::number::Number;
 use crate::octet::{Octet, each};
-use crate::packet::{Rays, STEP};
+use crate::packet::{Rays, STEP, View};
 use crate::twofold::advance;
 
 /// Steps after which a root is taken as it is; a bracket that is only halved has none left.
@@ -43,25 +42,44 @@ kernels! {
     fn roots(surface: &Revolution, frame: &Frame, rays: Rays, near: &[f64], far: &[f64], out: &mut [f64]) {
         let count = out.len();
         for first in (0..count).step_by(STEP) {
-            let rays = rays.part(first..first + STEP);
-            let (near, far) = (&near[first..first + STEP], &far[first..first + STEP]);
+            let origin = eight_vectors(&rays.origin, first);
+            let from = frame.origin.to_array();
+            let origin = directions(frame, [0, 1, 2].map(|axis| origin[axis] - Octet::constant(from[axis])));
+            let dir = directions(frame, eight_vectors(&rays.dir, first));
+            let (near, far) = (eight(near, first), eight(far, first));
+            let from = [0, 1, 2].map(|axis| {
+                each!(origin = origin[axis], near = near, dir = dir[axis] => advance(origin, near, dir))
+            });
+            let width = each!(near = near, far = far => if near < far { far - near } else { 0.0 });
+            let along = surface.eight_roots(&Eight { from, dir, width });
             let out = &mut out[first..first + STEP];
-            let zero = Octet([0.0; STEP]);
-            let mut eight = Eight { from: [zero; 3], dir: [zero; 3], width: zero };
             for lane in 0..STEP {
-                let Ray { origin, dir } = frame.ray(&rays.get(lane));
-                for axis in 0..3 {
-                    eight.from[axis].0[lane] = advance(origin[axis], near[lane], dir[axis]);
-                    eight.dir[axis].0[lane] = dir[axis];
-                }
-                eight.width.0[lane] = if near[lane] < far[lane] { far[lane] - near[lane] } else { 0.0 };
-            }
-            let along = surface.eight_roots(&eight).0;
-            for lane in 0..STEP {
-                out[lane] = if near[lane] < far[lane] { near[lane] + along[lane] } else { out[lane] };
+                let (near, far) = (near.0[lane], far.0[lane]);
+                out[lane] = if near < far { near + along.0[lane] } else { out[lane] };
             }
         }
     }
+}
+
+/// The numbers from this one on.
+#[inline(always)]
+fn eight(of: &[f64], first: usize) -> Octet {
+    let mut all = [0.0; STEP];
+    all.copy_from_slice(&of[first..first + STEP]);
+    Octet(all)
+}
+
+/// The vectors from this one on.
+#[inline(always)]
+fn eight_vectors(of: &View, first: usize) -> [Octet; 3] {
+    [eight(of.x, first), eight(of.y, first), eight(of.z, first)]
+}
+
+/// What [`Frame::direction`] does.
+#[inline(always)]
+fn directions(frame: &Frame, [x, y, z]: [Octet; 3]) -> [Octet; 3] {
+    [frame.axes.x_axis, frame.axes.y_axis, frame.axes.z_axis]
+        .map(|axis| Octet::constant(axis.x) * x + Octet::constant(axis.y) * y + Octet::constant(axis.z) * z)
 }
 
 impl Revolution {
