@@ -225,7 +225,8 @@ fn draw_panel<D: DrawingBackend>(canvas: &Canvas<D>, panel: &Panel, corner: (f64
     let places: Vec<_> = points.iter().map(|point| place(point)).collect();
     let letters = |point: &Point| Letters { is_bold: point.is_default, ..Letters::new(12.0) };
     let names: Vec<String> = points.iter().map(|point| name(panel, point)).collect();
-    let size = |(name, point): (&String, &&Point)| (letters(point).width(name), 15.0);
+    // With a gap between neighbours, lest two numbers look like one.
+    let size = |(name, point): (&String, &&Point)| (letters(point).width(name) + 6.0, 15.0);
     let sizes: Vec<_> = names.iter().zip(&points).map(size).collect();
     let labels = labels::place(&places, &sizes, &lines, plot);
     for (label, place) in labels.iter().zip(&places) {

@@ -41,12 +41,17 @@ impl<W: Watch> Tracer<'_, '_, W> {
         shader.diffuses(cpu, material, points, lighting.diffuse.room(count));
         let scatters = light::is_anything(cpu, lighting.diffuse.view(count))
             || material.shininess != 0.0 && light::is_anything(cpu, surface.specular.view(count));
+        let budget = group.budget[0];
         // Where nothing is scattered lights make no difference. Whoever looks on is told of them all the same.
         if scatters || W::SEES {
             let around = bounds::around(cpu, points);
             for index in 0..self.model.lights.len() {
                 self.shine(index, group, surface, &around, &mut lighting, colours);
             }
+        }
+        if !scatters {
+            // And the ray costs what it does where nobody looks.
+            group.budget[0] = budget;
         }
         self.rooms.lighting = Some(lighting);
     }
