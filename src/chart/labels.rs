@@ -15,6 +15,10 @@ impl Area {
         Self { left: x - half, top: y - half, right: x + half, bottom: y + half }
     }
 
+    fn middle(&self) -> (f64, f64) {
+        (0.5 * (self.left + self.right), 0.5 * (self.top + self.bottom))
+    }
+
     fn overlaps(&self, other: &Self) -> bool {
         self.left < other.right
             && other.left < self.right
@@ -58,78 +62,101 @@ pub struct Place {
 
 /// Places labels of these sizes beside their points, the first ones best, and clear of lines; nothing for one that has
 /// no room.
+///
+/// They are placed one after the other. Then one that is badly placed is, again and again, taken away with some of its
+/// neighbours and chooses before them, and what is better stays.
 pub fn place(points: &[(f64, f64)], sizes: &[(f64, f64)], lines: &[Line], room: Area) -> Vec<Option<Place>> {
-    const ATTEMPTS: usize = 60;
-    let mut order: Vec<usize> = (0..points.len()).collect();
-    // What was bad about each, in all attempts: those that found no good place choose first, and one that never does
-    // comes before one that did not the last time.
-    let mut sums = vec![0.0; points.len()];
-    let (mut best, mut least) = (vec![None; points.len()], f64::INFINITY);
-    for _ in 0..ATTEMPTS {
-        let (places, costs) = place_in_order(&order, points, sizes, lines, room);
-        let cost = costs.iter().sum();
-        if cost < least {
-            (best, least) = (places, cost);
-        }
-        if costs.iter().all(|cost| *cost < CROSSING) {
+    const ROUNDS: usize = 100;
+    /// The most labels that are placed anew at one time.
+    const MOST: usize = 8;
+    let crowd = Crowd { points, sizes, lines, room };
+    let mut best = vec![None; points.len()];
+    let mut costs = vec![0.0; points.len()];
+    crowd.place(0..points.len(), &mut best, &mut costs);
+    for round in 0..ROUNDS {
+        let mut bad: Vec<usize> = (0..points.len()).filter(|index| costs[*index] > 0.0).collect();
+        if bad.is_empty() {
             break;
         }
-        sums.iter_mut().zip(&costs).for_each(|(sum, cost)| *sum += cost);
-        order.sort_by(|a, b| sums[*b].total_cmp(&sums[*a]));
+        bad.sort_by(|a, b| costs[*b].total_cmp(&costs[*a]));
+        let first = bad[round % bad.len()];
+        let far = |index: &usize| {
+            let label = best[*index].map_or(points[*index], |place: Place| place.area.middle());
+            distance(points[first], label).min(distance(points[first], points[*index]))
+        };
+        let mut near: Vec<usize> = (0..points.len()).filter(|index| *index != first).collect();
+        near.sort_by(|a, b| far(a).total_cmp(&far(b)));
+        near.truncate(1 + round % MOST);
+        let turn = (round / MOST) % near.len().max(1);
+        near.rotate_left(turn);
+        let (mut places, mut sums) = (best.clone(), costs.clone());
+        near.iter().chain([&first]).for_each(|index| places[*index] = None);
+        crowd.place([first].into_iter().chain(near), &mut places, &mut sums);
+        if sums.iter().sum::<f64>() < costs.iter().sum() {
+            (best, costs) = (places, sums);
+        }
     }
     best
+}
+
+/// How far two points are apart.
+fn distance(from: (f64, f64), to: (f64, f64)) -> f64 {
+    (to.0 - from.0).hypot(to.1 - from.1)
 }
 
 /// As far from its point a label needs no line to it.
 const NEAR: f64 = 13.0;
 
 /// How far a label may be from its point.
-const FAR: u32 = 330;
+const FAR: u32 = 250;
 
 /// What is bad about a label, in the length of lines: that its line crosses a marker or another line, or that it has no
 /// place.
 const CROSSING: f64 = 300.0;
 const MISSING: f64 = 3000.0;
 
-/// Places them one after the other, and tells what is bad about each.
-fn place_in_order(
-    order: &[usize],
-    points: &[(f64, f64)],
-    sizes: &[(f64, f64)],
-    lines: &[Line],
+/// Points, the sizes of their labels, and what those keep clear of and inside.
+struct Crowd<'c> {
+    points: &'c [(f64, f64)],
+    sizes: &'c [(f64, f64)],
+    lines: &'c [Line],
     room: Area,
-) -> (Vec<Option<Place>>, Vec<f64>) {
-    const MARKER: f64 = 8.0;
-    let markers: Vec<Area> = points.iter().map(|point| Area::around(*point, MARKER)).collect();
-    let mut placed: Vec<Option<Place>> = vec![None; points.len()];
-    let mut costs = vec![MISSING; points.len()];
-    for &index in order {
-        let point = points[index];
-        let there = || placed.iter().zip(points).filter_map(|(place, from)| Some((place.as_ref()?, *from)));
-        let leaders = || there().filter_map(|(place, from)| Some((from, place.leader?)));
-        let is_free = |place: &Place| {
-            place.area.is_within(&room)
-                && !markers.iter().any(|marker| marker.overlaps(&place.area))
-                && !lines.iter().any(|line| place.area.is_crossed(*line))
-                && !there().any(|(other, _)| other.area.overlaps(&place.area))
-                && !leaders().any(|leader| place.area.is_crossed(leader))
-                && !there()
-                    .any(|(other, _)| place.leader.is_some_and(|end| other.area.is_crossed((point, end))))
-        };
-        let cost = |place: &Place| {
-            let Some(end) = place.leader else { return 0.0 };
-            // The markers that it starts below are there in any case.
-            let others = markers.iter().filter(|marker| !marker.holds(point));
-            let crossed = others.filter(|marker| marker.is_crossed((point, end))).count()
-                + leaders().filter(|leader| do_cross(*leader, (point, end))).count();
-            (end.0 - point.0).hypot(end.1 - point.1) + CROSSING * crossed as f64
-        };
-        let free = around(point, sizes[index]).filter(is_free).map(|place| (cost(&place), place));
-        if let Some((cost, place)) = free.min_by(|a, b| a.0.total_cmp(&b.0)) {
-            (costs[index], placed[index]) = (cost, Some(place));
+}
+
+impl Crowd<'_> {
+    /// Places some beside those that are placed, one after the other, and tells what is bad about each.
+    fn place(&self, order: impl Iterator<Item = usize>, placed: &mut [Option<Place>], costs: &mut [f64]) {
+        const MARKER: f64 = 8.0;
+        let Self { points, sizes, lines, room } = *self;
+        let markers: Vec<Area> = points.iter().map(|point| Area::around(*point, MARKER)).collect();
+        for index in order {
+            let point = points[index];
+            let there =
+                || placed.iter().zip(points).filter_map(|(place, from)| Some((place.as_ref()?, *from)));
+            let leaders = || there().filter_map(|(place, from)| Some((from, place.leader?)));
+            let is_free = |place: &Place| {
+                place.area.is_within(&room)
+                    && !markers.iter().any(|marker| marker.overlaps(&place.area))
+                    && !lines.iter().any(|line| place.area.is_crossed(*line))
+                    && !there().any(|(other, _)| other.area.overlaps(&place.area))
+                    && !leaders().any(|leader| place.area.is_crossed(leader))
+                    && !there()
+                        .any(|(other, _)| place.leader.is_some_and(|end| other.area.is_crossed((point, end))))
+            };
+            let cost = |place: &Place| {
+                let Some(end) = place.leader else { return 0.0 };
+                // The markers that it starts below are there in any case.
+                let others = markers.iter().filter(|marker| !marker.holds(point));
+                let crossed = others.filter(|marker| marker.is_crossed((point, end))).count()
+                    + leaders().filter(|leader| do_cross(*leader, (point, end))).count();
+                distance(point, end) + CROSSING * crossed as f64
+            };
+            let free = around(point, sizes[index]).filter(is_free).map(|place| (cost(&place), place));
+            let best = free.min_by(|a, b| a.0.total_cmp(&b.0));
+            costs[index] = best.map_or(MISSING, |(cost, _)| cost);
+            placed[index] = best.map(|(_, place)| place);
         }
     }
-    (placed, costs)
 }
 
 /// The places for a label of this size around its point, the best first.
