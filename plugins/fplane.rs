@@ -147,6 +147,7 @@ impl Hittable for FinitePlane {
     }
 
     fn distances(&self, cpu: Cpu, rays: Rays, _: Option<&[Side]>, _: (&[f64], &[f64]), out: &mut [f64]) {
+        // It is asked of hits that are certain, and those are inside.
         self.plane.distances(cpu, rays, out);
     }
 
