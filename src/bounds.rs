@@ -1,11 +1,11 @@
-//! Boxes around shapes, and around all the ways that the rays of a packet go.
+//! Boxes around shapes.
 
 use crate::cpu::kernels;
 use crate::packet::{Rays, View};
 use glam::DVec3;
 
 /// What rounding may make of a place, as a part of how far it is from the world's origin; far more than it does.
-const SLACK: f64 = 1e-12;
+pub(crate) const SLACK: f64 = 1e-12;
 
 /// A box along the world's axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,63 +63,6 @@ impl Bounds {
     }
 }
 
-/// Everywhere that the rays of a packet may go.
-pub struct Bundle {
-    /// Where they start.
-    origin: Bounds,
-    /// The reciprocals of the least and of the greatest of their directions' coordinates.
-    least: DVec3,
-    greatest: DVec3,
-    inverse_least: DVec3,
-    inverse_greatest: DVec3,
-    reach: f64,
-}
-
-impl Bundle {
-    /// The bundle of rays that start and go within these boxes.
-    #[inline(always)]
-    pub fn new(origin: Bounds, dir: Bounds) -> Self {
-        Self {
-            origin,
-            least: dir.low,
-            greatest: dir.high,
-            inverse_least: dir.low.recip(),
-            inverse_greatest: dir.high.recip(),
-            reach: origin.low.abs().max(origin.high.abs()).max_element(),
-        }
-    }
-
-    /// Whether a ray of it may come into a box. Never wrong where it says no.
-    #[inline(always)]
-    pub fn may_meet(&self, bounds: &Bounds) -> bool {
-        let bounds = bounds.with_slack(self.reach);
-        let (mut enters, mut leaves) = (0.0_f64, f64::INFINITY);
-        for axis in 0..3 {
-            // How far the way is to the box's near and far walls, from where it is shortest and longest.
-            let up = bounds.low[axis] - self.origin.high[axis];
-            let down = bounds.high[axis] - self.origin.low[axis];
-            if up > 0.0 {
-                if self.greatest[axis] <= 0.0 {
-                    return false;
-                }
-                enters = enters.max(up * self.inverse_greatest[axis]);
-            }
-            if down < 0.0 {
-                if self.least[axis] >= 0.0 {
-                    return false;
-                }
-                enters = enters.max(down * self.inverse_least[axis]);
-            }
-            if self.least[axis] > 0.0 {
-                leaves = leaves.min(down * self.inverse_least[axis]);
-            } else if self.greatest[axis] < 0.0 {
-                leaves = leaves.min(up * self.inverse_greatest[axis]);
-            }
-        }
-        enters <= leaves * (1.0 + SLACK)
-    }
-}
-
 /// A number's place in the order of all numbers, as a whole number: of those the least is found several at a time,
 /// without a care for NaN.
 #[inline(always)]
@@ -134,19 +77,34 @@ pub(crate) fn from_order(place: i64) -> f64 {
     f64::from_bits((place ^ (((place >> 63) as u64) >> 1) as i64) as u64)
 }
 
+/// The least and the greatest of some numbers.
+#[inline(always)]
+pub(crate) fn range(of: &[f64]) -> (f64, f64) {
+    let (mut low, mut high) = (i64::MAX, i64::MIN);
+    for number in of {
+        low = low.min(order(*number));
+        high = high.max(order(*number));
+    }
+    (from_order(low), from_order(high))
+}
+
+/// The smaller of two numbers; the second one where either is NaN.
+#[inline(always)]
+pub(crate) fn smaller(one: f64, other: f64) -> f64 {
+    if one < other { one } else { other }
+}
+
+/// The larger of two numbers; the second one where either is NaN.
+#[inline(always)]
+pub(crate) fn larger(one: f64, other: f64) -> f64 {
+    if one > other { one } else { other }
+}
+
 kernels! {
     /// The box around some points.
     pub fn around(points: View) -> Bounds {
-        let range = |of: &[f64]| {
-            let (mut low, mut high) = (i64::MAX, i64::MIN);
-            for number in of {
-                low = low.min(order(*number));
-                high = high.max(order(*number));
-            }
-            (from_order(low), from_order(high))
-        };
-        let ((x0, x1), (y0, y1), (z0, z1)) = (range(points.x), range(points.y), range(points.z));
-        Bounds { low: DVec3::new(x0, y0, z0), high: DVec3::new(x1, y1, z1) }
+        let (x, y, z) = (range(points.x), range(points.y), range(points.z));
+        Bounds { low: DVec3::new(x.0, y.0, z.0), high: DVec3::new(x.1, y.1, z.1) }
     }
 
     /// Whether any ray may come into a box before its end. Never wrong where it says no.

@@ -230,14 +230,14 @@ pub trait Shader: Send + Sync {
         packet::ambients(cpu, self, material, points, out);
     }
 
-    /// What [`diffuse`](Self::diffuse) gives at many points.
-    fn diffuses(&self, cpu: Cpu, material: &Material, points: View, out: ViewMut) {
-        packet::diffuses(cpu, self, material, points, out);
+    /// What [`diffuse`](Self::diffuse) gives at many points; tells whether any is not 0.
+    fn diffuses(&self, cpu: Cpu, material: &Material, points: View, out: ViewMut) -> bool {
+        packet::diffuses(cpu, self, material, points, out)
     }
 
-    /// What [`specular`](Self::specular) gives at many points.
-    fn speculars(&self, cpu: Cpu, material: &Material, points: View, out: ViewMut) {
-        packet::speculars(cpu, self, material, points, out);
+    /// What [`specular`](Self::specular) gives at many points; tells whether any is not 0.
+    fn speculars(&self, cpu: Cpu, material: &Material, points: View, out: ViewMut) -> bool {
+        packet::speculars(cpu, self, material, points, out)
     }
 }
 
@@ -259,9 +259,10 @@ pub trait Light: Send + Sync {
         0.0
     }
 
-    /// What [`emissivity`](Self::emissivity) gives toward many points; 0 in `shines` where it gives nothing.
-    fn emissivities(&self, cpu: Cpu, toward: View, out: ViewMut, shines: &mut [u64]) {
-        packet::emissivities(cpu, self, toward, shines, out);
+    /// What [`emissivity`](Self::emissivity) gives toward many points. Where that is nothing, `shines` becomes 0; tells
+    /// whether any is left.
+    fn emissivities(&self, cpu: Cpu, toward: View, out: ViewMut, shines: &mut [u64]) -> bool {
+        packet::emissivities(cpu, self, toward, shines, out)
     }
 }
 

@@ -17,6 +17,7 @@ pub mod aov;
 pub mod ball;
 pub mod bench;
 pub mod bounds;
+mod bundles;
 pub mod camera;
 pub mod certify;
 pub mod chart;

@@ -273,34 +273,49 @@ kernels! {
         }
     }
 
-    /// Likewise for light from the scene's lights.
-    pub(crate) fn diffuses[T: Shader](shader: &T, material: &Material, points: View) => out {
-        let count = points.len();
+    /// Likewise for light from the scene's lights. Tells whether any is not 0.
+    pub(crate) fn diffuses[T: Shader](shader: &T, material: &Material, points: View) => out -> bool {
+        let (count, mut any) = (points.len(), 0);
         let mut out = out.first(count);
         for lane in 0..count {
-            out.set(lane, shader.diffuse(material, points.get(lane)));
+            let diffuse = shader.diffuse(material, points.get(lane));
+            out.set(lane, diffuse);
+            any |= is_any(diffuse);
         }
+        any != 0
     }
 
-    /// Likewise as a mirror.
-    pub(crate) fn speculars[T: Shader](shader: &T, material: &Material, points: View) => out {
-        let count = points.len();
+    /// Likewise as a mirror. Tells whether any is not 0.
+    pub(crate) fn speculars[T: Shader](shader: &T, material: &Material, points: View) => out -> bool {
+        let (count, mut any) = (points.len(), 0);
         let mut out = out.first(count);
         for lane in 0..count {
-            out.set(lane, shader.specular(material, points.get(lane)));
+            let specular = shader.specular(material, points.get(lane));
+            out.set(lane, specular);
+            any |= is_any(specular);
         }
+        any != 0
     }
 
-    /// The light that is sent toward points, and where there is none 0 in `shines`.
-    pub(crate) fn emissivities[T: Light](light: &T, points: View, shines: &mut [u64]) => out {
-        let count = points.len();
+    /// The light that is sent toward points. Where there is none takes `shines` away, which is 0 then. Tells whether it
+    /// is left to any.
+    pub(crate) fn emissivities[T: Light](light: &T, points: View, shines: &mut [u64]) => out -> bool {
+        let (count, mut any) = (points.len(), 0);
         let (mut out, shines) = (out.first(count), &mut shines[..count]);
         for lane in 0..count {
             let emissivity = light.emissivity(points.get(lane));
-            shines[lane] = u64::from(emissivity.is_some());
+            shines[lane] &= u64::from(emissivity.is_some());
+            any |= shines[lane];
             out.set(lane, emissivity.unwrap_or(Rgb::ZERO));
         }
+        any != 0
     }
+}
+
+/// 1 for a colour that is not black, else 0.
+#[inline(always)]
+pub(crate) fn is_any(colour: Rgb) -> u64 {
+    u64::from((colour.x != 0.0) | (colour.y != 0.0) | (colour.z != 0.0))
 }
 
 /// The brackets of rays, by lane. No closures: those are taken in only where it pleases the compiler.

@@ -200,7 +200,7 @@ impl Shader for Matt {
         self.0.ambients(cpu, material, points, out);
     }
 
-    fn diffuses(&self, cpu: Cpu, material: &Material, points: View, out: ViewMut) {
-        self.0.diffuses(cpu, material, points, out);
+    fn diffuses(&self, cpu: Cpu, material: &Material, points: View, out: ViewMut) -> bool {
+        self.0.diffuses(cpu, material, points, out)
     }
 }

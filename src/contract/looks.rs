@@ -95,9 +95,9 @@ pub fn light(light: &dyn Light, draw: &mut Draw) -> Result<(), Fault> {
         }
         let points = Vectors::<STEP> { x: [toward.x; STEP], y: [toward.y; STEP], z: [toward.z; STEP] };
         for cpu in Cpu::all() {
-            let (mut out, mut shines) = (Vectors::<STEP>::ZERO, [2; STEP]);
-            light.emissivities(cpu, points.view(STEP), out.view_mut(STEP), &mut shines);
-            let many = (shines[0] != 0).then_some(out.get(0));
+            let (mut out, mut shines) = (Vectors::<STEP>::ZERO, [1; STEP]);
+            let any = light.emissivities(cpu, points.view(STEP), out.view_mut(STEP), &mut shines);
+            let many = (any && shines[0] != 0).then_some(out.get(0));
             if many.map(|light| light.to_array().map(f64::to_bits))
                 != one.map(|light| light.to_array().map(f64::to_bits))
             {

@@ -6,7 +6,7 @@
 
 use super::Revolution;
 use super::slabs::Slab;
-use crate::bounds::{from_order, order};
+use crate::bounds::{from_order, larger, order, smaller};
 use crate::cpu::{Cpu, kernels};
 use crate::frame::Frame;
 use crate::geometry::{MISS, Ray, Side, Span};
@@ -318,16 +318,4 @@ fn first_not_positive(quadratic: (f64, f64, f64), from: f64, to: f64) -> (f64, b
     let is_there =
         if a > 0.0 { (discriminant >= 0.0) & (s >= from) & (s <= to) } else { at(quadratic, to) <= 0.0 };
     (smaller(larger(s, from), to), is_there)
-}
-
-/// The larger of two numbers, the second where one is NaN.
-#[inline(always)]
-fn larger(a: f64, b: f64) -> f64 {
-    if a > b { a } else { b }
-}
-
-/// The smaller of two numbers, the second where one is NaN.
-#[inline(always)]
-fn smaller(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
 }

@@ -10,7 +10,6 @@ use crate::bounds::{self, Bounds};
 use crate::geometry::Light;
 use crate::material::Rgb;
 use crate::model::Object;
-use crate::packet::Rays;
 use crate::watch::{Event, Outcome, Watch};
 use glam::DVec2;
 
@@ -38,9 +37,8 @@ impl<W: Watch> Tracer<'_, '_, W> {
         let (cpu, count) = (self.cpu, group.padded());
         let Object { material, shader, .. } = &self.model.objects[surface.index];
         let points = surface.points.view(count);
-        shader.diffuses(cpu, material, points, lighting.diffuse.room(count));
-        let scatters = light::is_anything(cpu, lighting.diffuse.view(count))
-            || material.shininess != 0.0 && light::is_anything(cpu, surface.specular.view(count));
+        let scatters = shader.diffuses(cpu, material, points, lighting.diffuse.room(count))
+            || material.shininess != 0.0 && surface.is_mirror;
         let budget = group.budget[0];
         // Where nothing is scattered lights make no difference. Whoever looks on is told of them all the same.
         if scatters || W::SEES {
@@ -72,16 +70,17 @@ impl<W: Watch> Tracer<'_, '_, W> {
         let Lighting { diffuse, places, toward, distances, cosines, emissivity, shines, shadows } = lighting;
         let (points, normals) = (surface.points.view(count), surface.normals.view(count));
         let (far, cosines, dir) = (room(distances, count), room(cosines, count), toward.room(count));
+        let shines = room(shines, count);
         let (is_faced, source);
         if light.size() == 0.0 {
             let place = light.location();
             source = Bounds { low: place, high: place };
-            is_faced = light::face_point(cpu, points, normals, place, far, cosines, dir);
+            is_faced = light::face_point(cpu, points, normals, place, far, cosines, shines, dir);
         } else {
             self.places(light, index, group, surface, places);
             let places = places.view(count);
             source = bounds::around(cpu, places);
-            is_faced = light::face_light(cpu, points, normals, places, far, cosines, dir);
+            is_faced = light::face_light(cpu, points, normals, places, far, cosines, shines, dir);
         }
         if !is_faced {
             if W::SEES {
@@ -89,9 +88,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
             }
             return;
         }
-        let shines = room(shines, count);
-        light.emissivities(cpu, points, emissivity.room(count), shines);
-        if !light::open(cpu, cosines, shines) {
+        if !light.emissivities(cpu, points, emissivity.room(count), shines) {
             if W::SEES {
                 self.watch.see(Event::Light(index, Outcome::Aside));
             }
@@ -112,8 +109,8 @@ impl<W: Watch> Tracer<'_, '_, W> {
             self.shadow(group, surface, &ways, shadows, shines);
         }
         let lit = Lit {
-            rays: Rays { origin: points, dir: toward.view(count) },
-            eyes: group.origin.view(count),
+            toward: toward.view(count),
+            looks: group.dir.view(count),
             normals,
             distances: far,
             cosines,

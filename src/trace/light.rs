@@ -2,15 +2,15 @@
 
 use crate::cpu::kernels;
 use crate::geometry::Side;
-use crate::packet::{Rays, View, ViewMut};
+use crate::packet::{Rays, View, ViewMut, is_any};
 use glam::DVec3;
 
 /// Places that a light shines on.
 pub(super) struct Lit<'l> {
     /// From each place to the light.
-    pub rays: Rays<'l>,
-    /// Where each is seen from.
-    pub eyes: View<'l>,
+    pub toward: View<'l>,
+    /// Along which each is seen.
+    pub looks: View<'l>,
     pub normals: View<'l>,
     /// To the light.
     pub distances: &'l [f64],
@@ -46,14 +46,19 @@ kernels! {
         }
     }
 
-    /// The directions and distances from places to a light, and the cosines of the angles there. Tells whether any
-    /// place faces the light.
+    /// The directions and distances from places to a light, and the cosines of the angles there; 0 in `shines` for those
+    /// that do not face the light. Tells whether any does.
     pub(super) fn face_light(
-        points: View, normals: View, places: View, distances: &mut [f64], cosines: &mut [f64]
+        points: View,
+        normals: View,
+        places: View,
+        distances: &mut [f64],
+        cosines: &mut [f64],
+        shines: &mut [u64],
     ) => toward -> bool {
         let count = cosines.len();
         let (points, normals, places) = (points.first(count), normals.first(count), places.first(count));
-        let (mut toward, distances) = (toward.first(count), &mut distances[..count]);
+        let (mut toward, distances, shines) = (toward.first(count), &mut distances[..count], &mut shines[..count]);
         let mut any = 0;
         for lane in 0..count {
             let dir;
@@ -61,25 +66,32 @@ kernels! {
             toward.set(lane, dir);
             // A light on the surface itself makes it NaN, and is behind.
             cosines[lane] = dir.dot(normals.get(lane));
-            any |= u64::from(cosines[lane] > 0.0);
+            shines[lane] = u64::from(cosines[lane] > 0.0);
+            any |= shines[lane];
         }
         any != 0
     }
 
     /// As `face_light`, for one that is a point.
     pub(super) fn face_point(
-        points: View, normals: View, place: DVec3, distances: &mut [f64], cosines: &mut [f64]
+        points: View,
+        normals: View,
+        place: DVec3,
+        distances: &mut [f64],
+        cosines: &mut [f64],
+        shines: &mut [u64],
     ) => toward -> bool {
         let count = cosines.len();
         let (points, normals) = (points.first(count), normals.first(count));
-        let (mut toward, distances) = (toward.first(count), &mut distances[..count]);
+        let (mut toward, distances, shines) = (toward.first(count), &mut distances[..count], &mut shines[..count]);
         let mut any = 0;
         for lane in 0..count {
             let dir;
             (dir, distances[lane]) = from_to(points.get(lane), place);
             toward.set(lane, dir);
             cosines[lane] = dir.dot(normals.get(lane));
-            any |= u64::from(cosines[lane] > 0.0);
+            shines[lane] = u64::from(cosines[lane] > 0.0);
+            any |= shines[lane];
         }
         any != 0
     }
@@ -97,45 +109,25 @@ kernels! {
         }
     }
 
-    /// Leaves the light where it comes from before the surface. Tells whether there is any.
-    pub(super) fn open(cosines: &[f64], shines: &mut [u64]) -> bool {
-        let (count, mut any) = (cosines.len(), 0);
-        let shines = &mut shines[..count];
-        for lane in 0..count {
-            shines[lane] &= u64::from(cosines[lane] > 0.0);
-            any |= shines[lane];
-        }
-        any != 0
-    }
-
-    /// Whether any vector is not 0.
-    pub(super) fn is_anything(vectors: View) -> bool {
-        let (count, mut any) = (vectors.len(), 0);
-        let vectors = vectors.first(count);
-        for lane in 0..count {
-            let vector = vectors.get(lane);
-            any |= u64::from((vector.x != 0.0) | (vector.y != 0.0) | (vector.z != 0.0));
-        }
-        any != 0
-    }
-
-    /// Which vectors are not 0. Tells whether any is.
-    pub(super) fn mirrors(specular: View, goes: &mut [u64]) -> bool {
-        let (count, mut any) = (goes.len(), 0);
-        let specular = specular.first(count);
-        for lane in 0..count {
-            let vector = specular.get(lane);
-            goes[lane] = u64::from((vector.x != 0.0) | (vector.y != 0.0) | (vector.z != 0.0));
-            any |= goes[lane];
-        }
-        any != 0
-    }
-
-    /// Leaves those out that have travelled farther.
+    /// Marks the rays that go on from a surface: those which have not travelled too far yet.
     pub(super) fn reach(travelled: &[f64], most: f64, goes: &mut [u64]) {
         let (count, travelled) = (goes.len(), &travelled[..goes.len()]);
         for lane in 0..count {
-            goes[lane] &= u64::from(travelled[lane] <= most);
+            goes[lane] = u64::from(travelled[lane] <= most);
+        }
+    }
+
+    /// Directions, mirrored. Marks the rays that go on there: likewise, where the surface is a mirror.
+    pub(super) fn mirror(
+        dir: View, normals: View, specular: View, travelled: &[f64], most: f64, goes: &mut [u64]
+    ) => out {
+        let count = dir.len();
+        let (normals, specular, mut out) = (normals.first(count), specular.first(count), out.first(count));
+        let (travelled, goes) = (&travelled[..count], &mut goes[..count]);
+        for lane in 0..count {
+            let (dir, normal) = (dir.get(lane), normals.get(lane));
+            out.set(lane, dir - 2.0 * dir.dot(normal) * normal);
+            goes[lane] = is_any(specular.get(lane)) & u64::from(travelled[lane] <= most);
         }
     }
 
@@ -154,16 +146,6 @@ kernels! {
         let (seen, mut colours) = (seen.first(count), colours.first(count));
         for lane in 0..count {
             colours.set(lane, colours.get(lane) + specular.get(lane) * seen.get(lane));
-        }
-    }
-
-    /// Directions, mirrored.
-    pub(super) fn mirror(dir: View, normals: View) => out {
-        let count = dir.len();
-        let (normals, mut out) = (normals.first(count), out.first(count));
-        for lane in 0..count {
-            let (dir, normal) = (dir.get(lane), normals.get(lane));
-            out.set(lane, dir - 2.0 * dir.dot(normal) * normal);
         }
     }
 }
@@ -194,7 +176,7 @@ fn whole_power(of: f64, power: u32) -> f64 {
 #[inline(always)]
 fn shine_all(lit: &Lit, glint: Option<impl Fn(f64) -> f64>, colours: ViewMut) {
     let (count, mut colours) = (lit.shines.len(), colours);
-    let (rays, eyes, normals) = (lit.rays.first(count), lit.eyes.first(count), lit.normals.first(count));
+    let (toward, looks, normals) = (lit.toward.first(count), lit.looks.first(count), lit.normals.first(count));
     let (diffuse, specular) = (lit.diffuse.first(count), lit.specular.first(count));
     let emissivity = lit.emissivity.first(count);
     let (distances, cosines, shines) = (&lit.distances[..count], &lit.cosines[..count], &lit.shines[..count]);
@@ -202,8 +184,7 @@ fn shine_all(lit: &Lit, glint: Option<impl Fn(f64) -> f64>, colours: ViewMut) {
         let light = emissivity.get(lane);
         let mut colour = diffuse.get(lane) * light * (cosines[lane] / distances[lane]);
         if let Some(glint) = &glint {
-            let to_eye = (eyes.get(lane) - rays.origin.get(lane)).normalize();
-            let half = (to_eye + rays.dir.get(lane)).normalize();
+            let half = (toward.get(lane) - looks.get(lane)).normalize();
             colour += light * specular.get(lane) * glint(half.dot(normals.get(lane)));
         }
         let before = colours.get(lane);

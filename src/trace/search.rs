@@ -3,10 +3,11 @@
 use super::Tracer;
 use super::group::Group;
 use super::room::{Vectors, room};
-use crate::bounds::{self, Bounds, Bundle};
+use crate::bounds::{self, Bounds};
+use crate::bundles::{self, Bundles};
 use crate::cpu::kernels;
 use crate::geometry::{Hittable, MISS, Ray, Side, Span};
-use crate::packet::{Nearest, Rays, WIDE};
+use crate::packet::{Nearest, Rays};
 use crate::tree::Visitor;
 use crate::watch::{Count, Event, Hit, Reason, Watch};
 use std::mem::take;
@@ -206,37 +207,19 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
     /// Looks at the objects with bounds that are listed, for those parts of the packet that come near each.
     fn bounded(&mut self) {
         let (cpu, group) = (self.tracer.cpu, self.group);
-        let mut bundles = [const { None }; WIDE / PART];
-        let (mut origins, mut dirs) = (Bounds::EMPTY, Bounds::EMPTY);
-        for (part, bundle) in parts(group.padded()).zip(&mut bundles) {
-            let rays = group.rays().part(part);
-            let start = rays.origin.get(0);
-            // Those of the camera all start there.
-            let origin = match group.leaves {
-                None => Bounds { low: start, high: start },
-                Some(_) => bounds::around(cpu, rays.origin),
-            };
-            let dir = bounds::around(cpu, rays.dir);
-            (origins, dirs) = (origins.and(&origin), dirs.and(&dir));
-            *bundle = Some(Bundle::new(origin, dir));
-        }
-        let whole = Bundle::new(origins, dirs);
+        let bundles = Bundles::around(cpu, group.rays());
         for (index, bounds) in &self.tracer.plan.bounded {
-            let mut tested = 0;
-            if whole.may_meet(bounds) {
-                let meets =
-                    bundles.each_ref().map(|bundle| bundle.as_ref().is_some_and(|it| it.may_meet(bounds)));
-                let mut end = 0;
+            let (mut meets, mut start, mut tested) = (bundles.meet(cpu, bounds), 0, 0);
+            while meets != 0 {
                 // Neighbours go together.
-                for run in meets.chunk_by(|one, other| one == other) {
-                    let start = end;
-                    end += PART * run.len();
-                    if run[0] {
-                        self.part = start..end.min(group.padded());
-                        tested += self.len();
-                        self.object(*index);
-                    }
-                }
+                start += bundles::PART * meets.trailing_zeros() as usize;
+                meets >>= meets.trailing_zeros();
+                let end = start + bundles::PART * meets.trailing_ones() as usize;
+                meets >>= meets.trailing_ones();
+                self.part = start..end.min(group.padded());
+                tested += self.len();
+                self.object(*index);
+                start = end;
             }
             if tested < group.len {
                 self.tracer.watch.count(Count::Culled(*index, group.len - tested));

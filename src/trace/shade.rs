@@ -22,8 +22,9 @@ pub(super) struct Surface {
     pub sides: Vec<Side>,
     /// How far the light has come from each.
     pub travelled: Vec<f64>,
-    /// What each mirrors.
+    /// What each mirrors, and whether any does.
     pub specular: Vectors,
+    pub is_mirror: bool,
 }
 
 /// Room for what one packet needs while others go on from it.
@@ -71,7 +72,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
         if W::SEES {
             self.watch.see(Event::Surface { normal: surface.normals.get(0), ambient: colours.get(0) });
         }
-        shader.speculars(cpu, material, points, surface.specular.room(count));
+        surface.is_mirror = shader.speculars(cpu, material, points, surface.specular.room(count));
         self.illuminate(group, surface, colours);
         light::fade(cpu, &surface.travelled[..count], colours.room(count));
         if W::SEES {
@@ -82,7 +83,9 @@ impl<W: Watch> Tracer<'_, '_, W> {
         if material.transparency != 0.0 {
             self.look_through(group, shading, colours);
         }
-        self.look_in_the_mirror(group, shading, colours);
+        if shading.surface.is_mirror {
+            self.look_in_the_mirror(group, shading, colours);
+        }
     }
 
     /// Adds what is seen through glass.
@@ -94,7 +97,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
             let tint = object.tint(surface.points.get(0));
             self.watch.see(Event::Begin(Purpose::Transmitted { tint, kept }));
         }
-        room(&mut shading.goes, count).fill(1);
+        light::reach(self.cpu, &surface.travelled[..count], MAX_DIST, room(&mut shading.goes, count));
         shading.dir.copy(group.dir.view(count));
         let turn = |sides: &mut [Side]| sides.iter_mut().for_each(|side| *side = side.opposite());
         turn(&mut surface.sides[..count]);
@@ -109,14 +112,14 @@ impl<W: Watch> Tracer<'_, '_, W> {
 
     /// Adds what is mirrored.
     fn look_in_the_mirror(&mut self, group: &mut Group, shading: &mut Shading, colours: &mut Vectors) {
-        let (cpu, count, surface) = (self.cpu, group.padded(), &shading.surface);
-        if !light::mirrors(cpu, surface.specular.view(count), room(&mut shading.goes, count)) {
-            return;
-        }
+        let Shading { surface, goes, dir, .. } = shading;
         if W::SEES {
             self.watch.see(Event::Begin(Purpose::Reflected { specular: surface.specular.get(0) }));
         }
-        light::mirror(cpu, group.dir.view(count), surface.normals.view(count), shading.dir.room(count));
+        let (cpu, count) = (self.cpu, group.padded());
+        let (normals, specular) = (surface.normals.view(count), surface.specular.view(count));
+        let (travelled, goes) = (&surface.travelled[..count], room(goes, count));
+        light::mirror(cpu, group.dir.view(count), normals, specular, travelled, MAX_DIST, goes, dir.room(count));
         self.onward(group, shading, Kind::Reflected);
         let specular = shading.surface.specular.view(count);
         light::reflect(cpu, specular, shading.behind.view(count), colours.room(count));
@@ -126,9 +129,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
     /// does, or which are too far away.
     fn onward(&mut self, group: &mut Group, shading: &mut Shading, kind: Kind) {
         let Shading { surface, dir, goes, lanes, onward, seen, behind, .. } = shading;
-        let goes = &mut goes[..group.len];
-        light::reach(self.cpu, &surface.travelled[..group.len], MAX_DIST, goes);
-        let lanes = list(goes, lanes);
+        let lanes = list(&goes[..group.len], lanes);
         behind.fill(group.padded(), DVec3::ZERO);
         if W::SEES && lanes.is_empty() {
             self.watch.see(Event::Dropped(Reason::TooFar));

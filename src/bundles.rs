@@ -1,0 +1,100 @@
+//! Which boxes the rays of a packet may come into, for each part of it: the rays of a part are nearer each other than
+//! all of them, and so come near fewer objects.
+
+use crate::bounds::{Bounds, SLACK, larger, range, smaller};
+use crate::cpu::{Cpu, kernels};
+use crate::packet::{Rays, WIDE};
+
+/// The most rays of a part.
+pub const PART: usize = 64;
+
+/// The most parts of a packet; they are looked at together.
+const PARTS: usize = WIDE / PART;
+
+/// A number for each part.
+type Each = [f64; PARTS];
+
+/// Everywhere that the rays of each part of a packet may go, by axes.
+pub struct Bundles {
+    /// A bit for each part that has rays.
+    parts: u32,
+    /// The least and the greatest coordinates of where they start.
+    low: [Each; 3],
+    high: [Each; 3],
+    /// What a way up to a box takes at least for each of its length, and a way down.
+    up: [Each; 3],
+    down: [Each; 3],
+    /// What a way out of it takes at most; NaN where a ray need not ever come out.
+    out_up: [Each; 3],
+    out_down: [Each; 3],
+    /// How far they start from the world's origin.
+    reach: f64,
+}
+
+impl Bundles {
+    /// Nowhere.
+    const NONE: Self = Self {
+        parts: 0,
+        low: [[0.0; PARTS]; 3],
+        high: [[0.0; PARTS]; 3],
+        up: [[0.0; PARTS]; 3],
+        down: [[0.0; PARTS]; 3],
+        out_up: [[f64::NAN; PARTS]; 3],
+        out_down: [[f64::NAN; PARTS]; 3],
+        reach: 0.0,
+    };
+
+    /// Where the rays of a packet may go.
+    pub fn around(cpu: Cpu, rays: Rays) -> Self {
+        around(cpu, rays)
+    }
+
+    /// The parts of which a ray may come into a box, a bit for each. Never wrong where it says no.
+    pub fn meet(&self, cpu: Cpu, bounds: &Bounds) -> u32 {
+        meet(cpu, self, &bounds.with_slack(self.reach)) & self.parts
+    }
+}
+
+kernels! {
+    fn around(rays: Rays) -> Bundles {
+        let (mut bundles, count) = (Bundles::NONE, rays.len());
+        for (part, start) in (0..count).step_by(PART).enumerate() {
+            let some = rays.part(start..count.min(start + PART));
+            let (origin, dir) = (some.origin, some.dir);
+            for (axis, (from, to)) in [(origin.x, dir.x), (origin.y, dir.y), (origin.z, dir.z)].into_iter().enumerate() {
+                let ((low, high), (least, greatest)) = (range(from), range(to));
+                bundles.low[axis][part] = low;
+                bundles.high[axis][part] = high;
+                // No box is ever reached by a way that leads away from it.
+                bundles.up[axis][part] = if greatest > 0.0 { smaller(1.0 / greatest, f64::MAX) } else { f64::INFINITY };
+                bundles.down[axis][part] = if least < 0.0 { larger(1.0 / least, f64::MIN) } else { f64::NEG_INFINITY };
+                bundles.out_up[axis][part] = if greatest < 0.0 { 1.0 / greatest } else { f64::NAN };
+                bundles.out_down[axis][part] = if least > 0.0 { 1.0 / least } else { f64::NAN };
+                bundles.reach = larger(larger(low.abs(), high.abs()), bundles.reach);
+            }
+            bundles.parts |= 1 << part;
+        }
+        bundles
+    }
+
+    fn meet(bundles: &Bundles, bounds: &Bounds) -> u32 {
+        let (mut enters, mut leaves) = ([0.0; PARTS], [f64::INFINITY; PARTS]);
+        for axis in 0..3 {
+            let (low, high) = (bounds.low[axis], bounds.high[axis]);
+            for part in 0..PARTS {
+                // How far the way is to the box's near and far walls, from where it is shortest and longest.
+                let (up, down) = (low - bundles.high[axis][part], high - bundles.low[axis][part]);
+                enters[part] = larger(up * bundles.up[axis][part], enters[part]);
+                enters[part] = larger(down * bundles.down[axis][part], enters[part]);
+                leaves[part] = smaller(down * bundles.out_down[axis][part], leaves[part]);
+                leaves[part] = smaller(up * bundles.out_up[axis][part], leaves[part]);
+            }
+        }
+        let mut meets = 0;
+        for part in 0..PARTS {
+            let may = (enters[part] <= leaves[part] * (1.0 + SLACK)) & (enters[part] < f64::INFINITY);
+            meets |= u32::from(may) << part;
+        }
+        meets
+    }
+}
