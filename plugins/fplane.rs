@@ -2,7 +2,7 @@
 
 use super::plane::{self, Plane};
 use crate::accuracy::Accuracy;
-use crate::bounds::Bounds;
+use crate::bounds::{Bounds, larger, smaller};
 use crate::certify::{self, Enclosure, Equation};
 use crate::cpu::Cpu;
 use crate::entity::{Args, Entity, Refusal};
@@ -106,15 +106,19 @@ impl FinitePlane {
     /// What rounding may make of the place where a ray crosses its plane.
     #[inline(always)]
     fn slack(&self, ray: &Ray, distance: f64) -> f64 {
-        4.0 * f64::EPSILON * (ray.origin.abs().max_element() + distance + self.reach)
+        {
+        let origin = ray.origin.abs();
+        let origin = larger(larger(origin.x, origin.y), origin.z);
+        4.0 * f64::EPSILON * (origin + distance + self.reach)
+    }
     }
 
     /// How far inside of its nearest side a ray crosses its plane; below 0 outside, NaN for none.
     #[inline(always)]
     fn inside(&self, ray: &Ray, distance: f64) -> f64 {
         let at = self.coordinates(ray.at(distance));
-        let DVec2 { x, y } = at.min(self.dimensions - at);
-        if x <= y { x } else { y }
+        let past = self.dimensions - at;
+        smaller(smaller(at.x, past.x), smaller(at.y, past.y))
     }
 }
 

@@ -5,6 +5,7 @@
 //! Newton's method, and what rounding could decide is decided in twice the precision.
 
 use crate::accuracy::Accuracy;
+use crate::bounds::larger;
 use crate::geometry::{Bracket, MISS};
 use crate::twofold::{Twofold, two_product};
 use glam::DVec3;
@@ -84,7 +85,7 @@ pub fn bracket(from: DVec3, dir: DVec3, inverse: f64, radius: f64) -> Bracket {
     let room = radius * radius - aside.dot(aside);
     let size = from.abs().element_sum() + radius;
     let error = ERROR * size * inverse.sqrt();
-    let half = (room.max(0.0) * inverse).sqrt();
+    let half = (larger(room, 0.0) * inverse).sqrt();
     let (near, far) = (middle - half, middle + half);
     let is_missed = (room < -ROOM * radius * size) | (far < -error);
     // From outside of it, or from inside.
@@ -116,7 +117,8 @@ fn corrected(line: &Line, radius: f64, distance: f64) -> f64 {
     let part = |axis: usize| line.from[axis] + Twofold::from(distance) * line.dir[axis];
     let at = [part(0), part(1), part(2)];
     let outside = dot(&at, &at) - square(radius);
-    distance - outside.high / (2.0 * dot(&at, &line.dir).high)
+    // How steeply it comes there need not be as exact.
+    distance - outside.high / (2.0 * high(&at).dot(high(&line.dir)))
 }
 
 /// All of it in twice the precision.

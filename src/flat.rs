@@ -5,10 +5,10 @@
 //! and where a sum of products cancels it is computed with what rounding took from each (Ogita, Rump and Oishi 2005).
 
 use crate::accuracy::Accuracy;
-use crate::bounds::Bounds;
+use crate::bounds::{Bounds, larger};
 use crate::cpu::{Cpu, kernels};
 use crate::geometry::{Bracket, MISS, Ray, Span};
-use crate::packet::{self, Rays};
+use crate::packet::{self, Rays, STEP};
 use crate::twofold::{Twofold, dot, two_sum};
 use glam::DVec3;
 
@@ -29,10 +29,12 @@ pub struct Plane {
 /// Where a ray crosses a plane, as far as it is known quickly.
 #[derive(Clone, Copy, Debug)]
 pub struct Rough {
-    /// The distance, or [`MISS`].
+    /// The distance.
     pub distance: f64,
     /// How far off that is at most.
     pub error: f64,
+    /// Whether there is none.
+    pub is_parallel: bool,
 }
 
 /// The products whose quotient is a crossing's distance, in plain arithmetic.
@@ -40,7 +42,7 @@ struct Products {
     /// Of the normal and the way from the ray's origin to the plane's point, and how large the parts of that sum are.
     away: f64,
     away_size: f64,
-    /// Of the normal and the ray's direction, likewise.
+    /// Of the normal and the ray's direction, likewise; no larger than 1.
     toward: f64,
     toward_size: f64,
 }
@@ -104,15 +106,12 @@ impl Plane {
     #[inline(always)]
     pub fn rough(&self, ray: &Ray) -> Rough {
         let products = self.products(ray);
-        let Products { away, away_size, toward, toward_size } = products;
+        let Products { away, away_size, toward, .. } = products;
         let inverse = reciprocal(toward);
         let distance = away * inverse;
-        let error = 8.0 * f64::EPSILON * (away_size + distance.abs() * toward_size) * inverse.abs();
-        let is_parallel = products.is_parallel();
-        Rough {
-            distance: if is_parallel { MISS } else { distance },
-            error: if is_parallel { 0.0 } else { error + RECIPROCAL_ERROR * distance.abs() },
-        }
+        let error = 8.0 * f64::EPSILON * inverse.abs() * (away_size + distance.abs());
+        let error = error + RECIPROCAL_ERROR * distance.abs();
+        Rough { distance, error, is_parallel: products.is_parallel() }
     }
 
     #[inline(always)]
@@ -130,15 +129,15 @@ impl Plane {
     /// Between which distances a crossing within a span is.
     #[inline(always)]
     pub fn bracket(&self, rough: &Rough, ray: &Ray, within: &Span) -> Bracket {
-        let Rough { distance, error } = *rough;
+        let Rough { distance, error, is_parallel } = *rough;
         let (low, high) = (distance - error, distance + error);
         let z = ray.origin.z + distance * ray.dir.z;
-        // Of z, and of the product in it.
-        let z_error = error + 4.0 * f64::EPSILON * (ray.origin.z.abs() + distance.abs());
-        let is_missed = (high <= within.near) | (low == MISS) | (z - z_error > SCREEN);
+        // Of z; that of the product in it is far less than a reciprocal's.
+        let z_error = error + 4.0 * f64::EPSILON * ray.origin.z.abs();
+        let is_missed = is_parallel | (high <= within.near) | (z - z_error > SCREEN);
         let is_there = (low > within.near) & (z + z_error < SCREEN);
         Bracket {
-            near: if is_missed { MISS } else { low.max(within.near) },
+            near: if is_missed { MISS } else { larger(low, within.near) },
             far: if is_there & !is_missed { high } else { MISS },
         }
     }
@@ -182,14 +181,27 @@ kernels! {
         }
     }
 
-    /// Distances where something may: computed in both ways, for a branch would take rays one by one.
+    /// Distances where something may: of eight rays, if it does for any, computed in both ways.
     fn compensated(plane: &Plane, rays: Rays, out: &mut [f64]) {
-        let (plane, rays) = (*plane, rays.first(out.len()));
-        for lane in 0..out.len() {
-            let ray = rays.get(lane);
-            let (products, fine) = (plane.products(&ray), plane.fine(&ray));
-            let distance = if products.cancel() { fine } else { products.distance() };
-            out[lane] = plane.keep(distance, &ray, &Span::RAY);
+        let plane = *plane;
+        for first in (0..out.len()).step_by(STEP) {
+            let (rays, out) = (rays.part(first..first + STEP), &mut out[first..first + STEP]);
+            let (mut cancel, mut any) = ([0; STEP], 0);
+            for lane in 0..STEP {
+                let products = plane.products(&rays.get(lane));
+                out[lane] = products.distance();
+                cancel[lane] = u64::from(products.cancel());
+                any |= cancel[lane];
+            }
+            if any != 0 {
+                for lane in 0..STEP {
+                    let fine = plane.fine(&rays.get(lane));
+                    out[lane] = if cancel[lane] != 0 { fine } else { out[lane] };
+                }
+            }
+            for lane in 0..STEP {
+                out[lane] = plane.keep(out[lane], &rays.get(lane), &Span::RAY);
+            }
         }
     }
 }

@@ -2,11 +2,13 @@
 
 use super::MAX_RAYS;
 use super::room::{Vectors, pick, room};
+use super::shade::Surface;
 use crate::camera::{self, Camera};
 use crate::cpu::Cpu;
 use crate::geometry::{Ray, Side};
 use crate::packet::{Rays, STEP};
 use glam::DVec3;
+use std::mem::swap;
 
 /// A packet of rays that leave the same object, or none.
 #[derive(Default)]
@@ -116,6 +118,19 @@ impl Group {
         pick(&mut self.camera, &from.camera, lanes, count);
         self.leaves = Some(onward.leaves);
         pick(&mut self.sides, onward.sides, lanes, count);
+    }
+
+    /// Becomes all the rays that go on, with the arrays of those that they have been until now, and of where they met an
+    /// object.
+    pub fn take(&mut self, from: &mut Self, surface: &mut Surface, dir: &mut Vectors) {
+        self.len = from.len;
+        swap(&mut self.origin, &mut surface.points);
+        swap(&mut self.dir, dir);
+        swap(&mut self.travelled, &mut surface.travelled);
+        swap(&mut self.budget, &mut from.budget);
+        swap(&mut self.camera, &mut from.camera);
+        self.leaves = Some(surface.index);
+        swap(&mut self.sides, &mut surface.sides);
     }
 
     /// What some of its rays, which have gone on as others, have cost.

@@ -161,10 +161,13 @@ impl<'m, 'w, W: Watch> Tracer<'m, 'w, W> {
         if met[0] != 0 && met.iter().all(|other| *other == met[0]) {
             self.shade(group, (&found.near, &found.far), met[0] as usize - 1, shading, colours);
         } else {
-            colours.fill(group.padded(), Rgb::ZERO);
+            colours.room(group.padded());
             parts.begin(group.len);
             while let Some((id, lanes)) = parts.next(met) {
-                let Some(object) = (id as usize).checked_sub(1) else { continue };
+                let Some(object) = (id as usize).checked_sub(1) else {
+                    lanes.iter().for_each(|lane| colours.set(usize::from(*lane), Rgb::ZERO));
+                    continue;
+                };
                 part.pick(group, lanes);
                 pick(near, &found.near, lanes, part.padded());
                 pick(far, &found.far, lanes, part.padded());

@@ -9,6 +9,7 @@ use crate::model::Object;
 use crate::packet::WIDE;
 use crate::watch::{Count, Event, Hit, Kind, Purpose, Reason, Watch};
 use glam::DVec3;
+use std::mem::swap;
 
 /// Places on one object, where the rays of a packet meet it.
 #[derive(Default)]
@@ -130,20 +131,28 @@ impl<W: Watch> Tracer<'_, '_, W> {
     fn onward(&mut self, group: &mut Group, shading: &mut Shading, kind: Kind) {
         let Shading { surface, dir, goes, lanes, onward, seen, behind, .. } = shading;
         let lanes = list(&goes[..group.len], lanes);
-        behind.fill(group.padded(), DVec3::ZERO);
         if W::SEES && lanes.is_empty() {
             self.watch.see(Event::Dropped(Reason::TooFar));
             self.watch.see(Event::Colour(DVec3::ZERO));
         }
         self.watch.count(Count::Rays(kind, lanes.len()));
-        let Surface { points, travelled, sides, index, .. } = &*surface;
-        let leaving = Onward { points, dir, travelled, leaves: *index, sides };
         self.depth += 1;
-        for lanes in lanes.chunks(if self.is_shallow() { WIDE } else { NARROW }) {
-            onward.go_on(group, &leaving, lanes);
-            self.trace(onward, seen);
-            behind.put(seen, lanes);
-            group.pay(onward, lanes);
+        let most = if self.is_shallow() { WIDE } else { NARROW };
+        if lanes.len() == group.len && kind == Kind::Reflected && group.len <= most {
+            // Nothing else is done with them here.
+            onward.take(group, surface, dir);
+            self.trace(onward, behind);
+            swap(&mut group.budget, &mut onward.budget);
+        } else {
+            let Surface { points, travelled, sides, index, .. } = &*surface;
+            let leaving = Onward { points, dir, travelled, leaves: *index, sides };
+            behind.fill(group.padded(), DVec3::ZERO);
+            for lanes in lanes.chunks(most) {
+                onward.go_on(group, &leaving, lanes);
+                self.trace(onward, seen);
+                behind.put(seen, lanes);
+                group.pay(onward, lanes);
+            }
         }
         self.depth -= 1;
     }
