@@ -9,6 +9,7 @@ use crate::geometry::{Ray, Side};
 use crate::packet::{Rays, STEP};
 use glam::DVec3;
 use std::mem::swap;
+use std::ops::Range;
 
 /// A packet of rays that leave the same object, or none.
 #[derive(Default)]
@@ -144,31 +145,36 @@ impl Group {
 /// Sorts rays by what they met: the rays of one object after those of another.
 #[derive(Default)]
 pub(super) struct Parts {
-    is_done: Vec<bool>,
+    /// What neighbours met, and where they end; 0 lanes of those that are done.
+    runs: Vec<(u64, Range<u16>)>,
     lanes: Vec<u8>,
     next: usize,
 }
 
 impl Parts {
-    /// Begins with so many rays.
-    pub fn begin(&mut self, count: usize) {
-        room(&mut self.is_done, count).fill(false);
-        self.next = 0;
+    /// Begins with rays that met these.
+    pub fn begin(&mut self, met: &[u64]) {
+        (self.next, _) = (0, self.runs.clear());
+        let mut start = 0;
+        for run in met.chunk_by(|one, other| one == other) {
+            let end = start + run.len() as u16;
+            self.runs.push((run[0], start..end));
+            start = end;
+        }
     }
 
-    /// What some rays met, of which `met` tells for each, and which rays those are.
-    pub fn next(&mut self, met: &[u64]) -> Option<(u64, &[u8])> {
-        let is_done = &mut self.is_done[..met.len()];
-        while is_done.get(self.next).is_some_and(|done| *done) {
+    /// What some rays met, and which rays those are.
+    pub fn next(&mut self) -> Option<(u64, &[u8])> {
+        while self.runs.get(self.next)?.1.is_empty() {
             self.next += 1;
         }
-        let id = *met.get(self.next)?;
-        let (lanes, mut count) = (room(&mut self.lanes, met.len()), 0);
-        for (lane, other) in met.iter().enumerate().skip(self.next) {
-            lanes[count] = lane as u8;
-            count += usize::from(*other == id);
-            is_done[lane] |= *other == id;
+        let id = self.runs[self.next].0;
+        self.lanes.clear();
+        for (other, run) in &mut self.runs[self.next..] {
+            if *other == id {
+                self.lanes.extend(std::mem::take(run).map(|lane| lane as u8));
+            }
         }
-        Some((id, &lanes[..count]))
+        Some((id, &self.lanes))
     }
 }

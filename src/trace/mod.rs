@@ -158,12 +158,12 @@ impl<'m, 'w, W: Watch> Tracer<'m, 'w, W> {
         let Level { found, parts, part, near, far, shading, seen } = &mut *level;
         self.closest(group, None, found);
         let met = &found.met[..group.len];
-        if met[0] != 0 && met.iter().all(|other| *other == met[0]) {
+        if met[0] != 0 && search::is_one(self.cpu, met) {
             self.shade(group, (&found.near, &found.far), met[0] as usize - 1, shading, colours);
         } else {
             colours.room(group.padded());
-            parts.begin(group.len);
-            while let Some((id, lanes)) = parts.next(met) {
+            parts.begin(met);
+            while let Some((id, lanes)) = parts.next() {
                 let Some(object) = (id as usize).checked_sub(1) else {
                     lanes.iter().for_each(|lane| colours.set(usize::from(*lane), Rgb::ZERO));
                     continue;

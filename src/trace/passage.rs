@@ -79,8 +79,8 @@ impl<W: Watch> Tracer<'_, '_, W> {
             self.watch.see(Event::Begin(Purpose::Shadow { distance: ends[0] }));
         }
         self.closest(group, Some(ends), found);
-        parts.begin(group.len);
-        while let Some((id, lanes)) = parts.next(&found.met[..group.len]) {
+        parts.begin(&found.met[..group.len]);
+        while let Some((id, lanes)) = parts.next() {
             let Some(index) = (id as usize).checked_sub(1) else { continue };
             if self.model.objects[index].material.transparency == 0.0 {
                 lanes.iter().for_each(|lane| blocker[usize::from(*lane)] = id);

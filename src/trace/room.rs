@@ -1,12 +1,13 @@
 //! Room for packets: arrays that are as long as the longest packet so far, and are kept from one to the next, so that a
 //! packet costs what its rays cost.
 
+use super::NARROW;
 use super::group::{Group, Parts};
 use super::illuminate::Lighting;
 use super::passage::Passage;
 use super::search::Found;
 use super::shade::Shading;
-use crate::packet::{View, ViewMut, WIDE};
+use crate::packet::{STEP, View, ViewMut, WIDE};
 use crate::sample::Sample;
 use glam::DVec3;
 
@@ -68,7 +69,8 @@ pub(super) struct Level {
 #[inline(always)]
 pub(super) fn room<T: Copy + Default>(array: &mut Vec<T>, count: usize) -> &mut [T] {
     if array.len() < count {
-        array.resize(count, T::default());
+        // Wide packets have room for the widest, for `pick`.
+        array.resize(if count > STEP * NARROW { WIDE } else { count }, T::default());
     }
     &mut array[..count]
 }
@@ -90,6 +92,11 @@ pub(super) fn pick<T: Copy + Default>(to: &mut Vec<T>, from: &[T], lanes: &[u8],
     let (picked, rest) = to.split_at_mut(lanes.len());
     if are_first(lanes) {
         picked.copy_from_slice(&from[..=last]);
+    } else if let Some(from) = from.first_chunk::<WIDE>() {
+        // No lane is beyond its end, and the compiler knows.
+        for (to, lane) in picked.iter_mut().zip(lanes) {
+            *to = from[usize::from(*lane)];
+        }
     } else {
         for (to, lane) in picked.iter_mut().zip(lanes) {
             *to = from[usize::from(*lane)];

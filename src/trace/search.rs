@@ -147,6 +147,11 @@ kernels! {
         }
     }
 
+    /// Whether all is the same.
+    pub(super) fn is_one(met: &[u64]) -> bool {
+        met.iter().fold(0, |other, id| other | (id ^ met[0])) == 0
+    }
+
     /// Puts distances that are known where they are. Tells whether any is no number.
     fn keep_known(near: &[f64], far: &[f64], distances: &mut [f64]) -> bool {
         let count = distances.len();
