@@ -58,7 +58,9 @@ impl Bounds {
     /// A box larger by what rounding may make of places in it, and of places at this distance.
     #[inline(always)]
     pub fn with_slack(&self, distance: f64) -> Self {
-        let slack = SLACK * (distance + self.low.abs().max(self.high.abs()).max_element());
+        let size = |of: f64| if of.is_finite() { of.abs() } else { 0.0 };
+        let largest = |of: DVec3| larger(larger(size(of.x), size(of.y)), size(of.z));
+        let slack = SLACK * (distance + larger(largest(self.low), largest(self.high)));
         Self { low: self.low - slack, high: self.high + slack }
     }
 }

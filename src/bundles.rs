@@ -4,6 +4,7 @@
 use crate::bounds::{Bounds, SLACK, larger, range, smaller};
 use crate::cpu::{Cpu, kernels};
 use crate::packet::{Rays, WIDE};
+use glam::DVec3;
 
 /// The most rays of a part.
 pub const PART: usize = 64;
@@ -49,7 +50,23 @@ impl Bundles {
         around(cpu, rays)
     }
 
-    /// The parts of which a ray may come into a box, a bit for each. Never wrong where it says no.
+    /// The parts of which a ray may come somewhere, of whose ways that is asked; a bit for each.
+    pub fn that(&self, may: impl Fn(&Bounds) -> bool) -> u32 {
+        let parts = 0..u32::BITS - self.parts.leading_zeros();
+        parts.map(|part| u32::from(may(&self.ways(part as usize))) << part).sum()
+    }
+
+    /// Everywhere that the rays of a part may go; mostly without an end.
+    fn ways(&self, part: usize) -> Bounds {
+        let low = |axis: usize| {
+            if self.down[axis][part] == f64::NEG_INFINITY { self.low[axis][part] } else { f64::NEG_INFINITY }
+        };
+        let high =
+            |axis: usize| if self.up[axis][part] == f64::INFINITY { self.high[axis][part] } else { f64::INFINITY };
+        Bounds { low: DVec3::new(low(0), low(1), low(2)), high: DVec3::new(high(0), high(1), high(2)) }
+    }
+
+    /// The parts of which a ray may come into a box, likewise. Never wrong where it says no.
     pub fn meet(&self, cpu: Cpu, bounds: &Bounds) -> u32 {
         meet(cpu, self, &bounds.with_slack(self.reach)) & self.parts
     }

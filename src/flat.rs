@@ -5,7 +5,7 @@
 //! and where a sum of products cancels it is computed with what rounding took from each (Ogita, Rump and Oishi 2005).
 
 use crate::accuracy::Accuracy;
-use crate::bounds::{Bounds, larger};
+use crate::bounds::{Bounds, larger, smaller};
 use crate::cpu::{Cpu, kernels};
 use crate::geometry::{Bracket, MISS, Ray, Span};
 use crate::packet::{self, Rays, STEP};
@@ -146,8 +146,16 @@ impl Plane {
     #[inline(always)]
     pub fn is_clear_of(&self, region: &Bounds) -> bool {
         let region = region.with_slack(self.point.abs().max_element());
-        let reach = self.normal.abs().dot(region.half_size());
-        self.accuracy != Accuracy::Classic && self.normal.dot(region.middle() - self.point).abs() > reach
+        let (mut least, mut most) = (0.0, 0.0);
+        for axis in 0..3 {
+            let normal = self.normal[axis];
+            let (one, other) =
+                (normal * (region.low[axis] - self.point[axis]), normal * (region.high[axis] - self.point[axis]));
+            // Regions may be without an end, which is no matter where the plane is.
+            least += if normal == 0.0 { 0.0 } else { smaller(one, other) };
+            most += if normal == 0.0 { 0.0 } else { larger(one, other) };
+        }
+        self.accuracy != Accuracy::Classic && (least > 0.0 || most < 0.0)
     }
 
     /// The crossing to a few units in the last place, whatever cancels.

@@ -194,11 +194,8 @@ struct Closest<'s, 'm, 'w, W> {
 impl<W: Watch> Closest<'_, '_, '_, W> {
     fn run(mut self, ahead: &mut Vec<usize>) {
         let plan = self.tracer.plan;
-        for index in &plan.unbounded {
-            self.object(*index);
-        }
-        if !plan.bounded.is_empty() {
-            self.bounded();
+        if !plan.unbounded.is_empty() || !plan.bounded.is_empty() {
+            self.listed();
         }
         let Some(tree) = &plan.tree else { return };
         for part in parts(self.group.padded()) {
@@ -209,26 +206,35 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
         }
     }
 
-    /// Looks at the objects with bounds that are listed, for those parts of the packet that come near each.
-    fn bounded(&mut self) {
-        let (cpu, group) = (self.tracer.cpu, self.group);
-        let bundles = Bundles::around(cpu, group.rays());
-        for (index, bounds) in &self.tracer.plan.bounded {
-            let (mut meets, mut start, mut tested) = (bundles.meet(cpu, bounds), 0, 0);
-            while meets != 0 {
-                // Neighbours go together.
-                start += bundles::PART * meets.trailing_zeros() as usize;
-                meets >>= meets.trailing_zeros();
-                let end = start + bundles::PART * meets.trailing_ones() as usize;
-                meets >>= meets.trailing_ones();
-                self.part = start..end.min(group.padded());
-                tested += self.len();
-                self.object(*index);
-                start = end;
-            }
-            if tested < group.len {
-                self.tracer.watch.count(Count::Culled(*index, group.len - tested));
-            }
+    /// Looks at the objects that are listed, each for those parts of the packet that may come there.
+    fn listed(&mut self) {
+        let (cpu, plan) = (self.tracer.cpu, self.tracer.plan);
+        let bundles = Bundles::around(cpu, self.group.rays());
+        for index in &plan.unbounded {
+            let shape = &*self.tracer.model.objects[*index].shape;
+            self.some(*index, bundles.that(|ways| !shape.is_clear_of(ways)));
+        }
+        for (index, bounds) in &plan.bounded {
+            self.some(*index, bundles.meet(cpu, bounds));
+        }
+    }
+
+    /// Looks at an object for some parts of the packet, which are the bits that are 1.
+    fn some(&mut self, index: usize, mut parts: u32) {
+        let (mut start, mut tested) = (0, 0);
+        while parts != 0 {
+            // Neighbours go together.
+            start += bundles::PART * parts.trailing_zeros() as usize;
+            parts >>= parts.trailing_zeros();
+            let end = start + bundles::PART * parts.trailing_ones() as usize;
+            parts >>= parts.trailing_ones();
+            self.part = start..end.min(self.group.padded());
+            tested += self.len();
+            self.object(index);
+            start = end;
+        }
+        if tested < self.group.len {
+            self.tracer.watch.count(Count::Culled(index, self.group.len - tested));
         }
     }
 
