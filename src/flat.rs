@@ -69,7 +69,9 @@ impl Plane {
             Accuracy::Draft => self.products(ray).distance(),
             Accuracy::Exact => {
                 let products = self.products(ray);
-                if products.cancel() { self.fine(ray) } else { products.distance() }
+                let away = if products.away_cancels() { self.fine_away(ray) } else { products.away };
+                let toward = if products.toward_cancels() { self.fine_toward(ray) } else { products.toward };
+                if products.is_parallel() { MISS } else { away / toward }
             }
             Accuracy::Strict => f64::NAN,
         }
@@ -158,15 +160,19 @@ impl Plane {
         self.accuracy != Accuracy::Classic && (least > 0.0 || most < 0.0)
     }
 
-    /// The crossing to a few units in the last place, whatever cancels.
+    /// The product of the normal and the way to the plane to a few units in the last place, whatever cancels.
     #[inline(always)]
-    fn fine(&self, ray: &Ray) -> f64 {
+    fn fine_away(&self, ray: &Ray) -> f64 {
         let (x, x_low) = two_sum(self.point.x, -ray.origin.x);
         let (y, y_low) = two_sum(self.point.y, -ray.origin.y);
         let (z, z_low) = two_sum(self.point.z, -ray.origin.z);
-        let normal = self.normal.to_array();
-        let away = dot(normal, [x, y, z], [x_low, y_low, z_low]);
-        away / dot(normal, ray.dir.to_array(), [0.0; 3])
+        dot(self.normal.to_array(), [x, y, z], [x_low, y_low, z_low])
+    }
+
+    /// Likewise of the normal and the ray's direction.
+    #[inline(always)]
+    fn fine_toward(&self, ray: &Ray) -> f64 {
+        dot(self.normal.to_array(), ray.dir.to_array(), [0.0; 3])
     }
 
     fn crossing_in_twice_the_precision(&self, ray: &Ray) -> f64 {
@@ -189,26 +195,35 @@ kernels! {
         }
     }
 
-    /// Distances where something may: of eight rays, if it does for any, computed in both ways.
+    /// Distances where something may: a sum is computed in both ways if it cancels for any of eight rays.
     fn compensated(plane: &Plane, rays: Rays, out: &mut [f64]) {
         let plane = *plane;
         for first in (0..out.len()).step_by(STEP) {
             let (rays, out) = (rays.part(first..first + STEP), &mut out[first..first + STEP]);
-            let (mut cancel, mut any) = ([0; STEP], 0);
+            let (mut away, mut toward, mut is_parallel) = ([0.0; STEP], [0.0; STEP], [0; STEP]);
+            let (mut away_cancels, mut toward_cancels) = ([0; STEP], [0; STEP]);
             for lane in 0..STEP {
                 let products = plane.products(&rays.get(lane));
-                out[lane] = products.distance();
-                cancel[lane] = u64::from(products.cancel());
-                any |= cancel[lane];
+                (away[lane], toward[lane]) = (products.away, products.toward);
+                away_cancels[lane] = u64::from(products.away_cancels());
+                toward_cancels[lane] = u64::from(products.toward_cancels());
+                is_parallel[lane] = u64::from(products.is_parallel());
             }
-            if any != 0 {
+            if away_cancels != [0; STEP] {
                 for lane in 0..STEP {
-                    let fine = plane.fine(&rays.get(lane));
-                    out[lane] = if cancel[lane] != 0 { fine } else { out[lane] };
+                    let fine = plane.fine_away(&rays.get(lane));
+                    away[lane] = if away_cancels[lane] != 0 { fine } else { away[lane] };
+                }
+            }
+            if toward_cancels != [0; STEP] {
+                for lane in 0..STEP {
+                    let fine = plane.fine_toward(&rays.get(lane));
+                    toward[lane] = if toward_cancels[lane] != 0 { fine } else { toward[lane] };
                 }
             }
             for lane in 0..STEP {
-                out[lane] = plane.keep(out[lane], &rays.get(lane), &Span::RAY);
+                let distance = if is_parallel[lane] != 0 { MISS } else { away[lane] / toward[lane] };
+                out[lane] = plane.keep(distance, &rays.get(lane), &Span::RAY);
             }
         }
     }
@@ -228,9 +243,14 @@ impl Products {
 
     /// Whether so much cancels in a sum that it should be computed better.
     #[inline(always)]
-    fn cancel(&self) -> bool {
-        let cancel = (self.toward_size > 1.3 * self.toward.abs()) | (self.away_size > 1.3 * self.away.abs());
-        cancel & !self.is_parallel()
+    fn away_cancels(&self) -> bool {
+        self.away_size > 1.3 * self.away.abs()
+    }
+
+    /// Likewise.
+    #[inline(always)]
+    fn toward_cancels(&self) -> bool {
+        self.toward_size > 1.3 * self.toward.abs()
     }
 }
 

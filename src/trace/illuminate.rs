@@ -21,7 +21,7 @@ pub(super) struct Lighting {
     places: Vectors,
     toward: Vectors,
     distances: Vec<f64>,
-    cosines: Vec<f64>,
+    falloffs: Vec<f64>,
     emissivity: Vectors,
     shines: Vec<u64>,
     shadows: Shadows,
@@ -67,20 +67,20 @@ impl<W: Watch> Tracer<'_, '_, W> {
         let (cpu, count) = (self.cpu, group.padded());
         let light = &*self.model.lights[index].value;
         let material = &self.model.objects[surface.index].material;
-        let Lighting { diffuse, places, toward, distances, cosines, emissivity, shines, shadows } = lighting;
+        let Lighting { diffuse, places, toward, distances, falloffs, emissivity, shines, shadows } = lighting;
         let (points, normals) = (surface.points.view(count), surface.normals.view(count));
-        let (far, cosines, dir) = (room(distances, count), room(cosines, count), toward.room(count));
+        let (far, falloffs, dir) = (room(distances, count), room(falloffs, count), toward.room(count));
         let shines = room(shines, count);
         let (is_faced, source);
         if light.size() == 0.0 {
             let place = light.location();
             source = Bounds { low: place, high: place };
-            is_faced = light::face_point(cpu, points, normals, place, far, cosines, shines, dir);
+            is_faced = light::face_point(cpu, points, normals, place, far, falloffs, shines, dir);
         } else {
             self.places(light, index, group, surface, places);
             let places = places.view(count);
             source = bounds::around(cpu, places);
-            is_faced = light::face_light(cpu, points, normals, places, far, cosines, shines, dir);
+            is_faced = light::face_light(cpu, points, normals, places, far, falloffs, shines, dir);
         }
         if !is_faced {
             if W::SEES {
@@ -112,8 +112,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
             toward: toward.view(count),
             looks: group.dir.view(count),
             normals,
-            distances: far,
-            cosines,
+            falloffs,
             shines,
             diffuse: diffuse.view(count),
             specular: surface.specular.view(count),

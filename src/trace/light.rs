@@ -12,10 +12,8 @@ pub(super) struct Lit<'l> {
     /// Along which each is seen.
     pub looks: View<'l>,
     pub normals: View<'l>,
-    /// To the light.
-    pub distances: &'l [f64],
-    /// Of the angles between the normals and the directions of the light.
-    pub cosines: &'l [f64],
+    /// The cosines of the angles between the normals and the directions of the light, divided by its distances.
+    pub falloffs: &'l [f64],
     /// 0 where no light comes.
     pub shines: &'l [u64],
     pub diffuse: View<'l>,
@@ -46,27 +44,26 @@ kernels! {
         }
     }
 
-    /// The directions and distances from places to a light, and the cosines of the angles there; 0 in `shines` for those
-    /// that do not face the light. Tells whether any does.
+    /// The directions and distances from places to a light, and the cosines of the angles there, divided by those; 0 in
+    /// `shines` for places that do not face the light. Tells whether any does.
     pub(super) fn face_light(
         points: View,
         normals: View,
         places: View,
         distances: &mut [f64],
-        cosines: &mut [f64],
+        falloffs: &mut [f64],
         shines: &mut [u64],
     ) => toward -> bool {
-        let count = cosines.len();
+        let count = falloffs.len();
         let (points, normals, places) = (points.first(count), normals.first(count), places.first(count));
         let (mut toward, distances, shines) = (toward.first(count), &mut distances[..count], &mut shines[..count]);
         let mut any = 0;
         for lane in 0..count {
             let dir;
-            (dir, distances[lane]) = from_to(points.get(lane), places.get(lane));
+            (dir, distances[lane], falloffs[lane]) = face_one(points.get(lane), normals.get(lane), places.get(lane));
             toward.set(lane, dir);
             // A light on the surface itself makes it NaN, and is behind.
-            cosines[lane] = dir.dot(normals.get(lane));
-            shines[lane] = u64::from(cosines[lane] > 0.0);
+            shines[lane] = u64::from(falloffs[lane] > 0.0);
             any |= shines[lane];
         }
         any != 0
@@ -78,19 +75,19 @@ kernels! {
         normals: View,
         place: DVec3,
         distances: &mut [f64],
-        cosines: &mut [f64],
+        falloffs: &mut [f64],
         shines: &mut [u64],
     ) => toward -> bool {
-        let count = cosines.len();
+        let count = falloffs.len();
         let (points, normals) = (points.first(count), normals.first(count));
         let (mut toward, distances, shines) = (toward.first(count), &mut distances[..count], &mut shines[..count]);
         let mut any = 0;
         for lane in 0..count {
             let dir;
-            (dir, distances[lane]) = from_to(points.get(lane), place);
+            (dir, distances[lane], falloffs[lane]) = face_one(points.get(lane), normals.get(lane), place);
             toward.set(lane, dir);
-            cosines[lane] = dir.dot(normals.get(lane));
-            shines[lane] = u64::from(cosines[lane] > 0.0);
+            // A light on the surface itself makes it NaN, and is behind.
+            shines[lane] = u64::from(falloffs[lane] > 0.0);
             any |= shines[lane];
         }
         any != 0
@@ -117,18 +114,21 @@ kernels! {
         }
     }
 
-    /// Directions, mirrored. Marks the rays that go on there: likewise, where the surface is a mirror.
+    /// Directions, mirrored. Marks the rays that go on there: likewise, where the surface is a mirror. Tells whether all
+    /// do.
     pub(super) fn mirror(
         dir: View, normals: View, specular: View, travelled: &[f64], most: f64, goes: &mut [u64]
-    ) => out {
-        let count = dir.len();
+    ) => out -> bool {
+        let (count, mut all) = (dir.len(), 1);
         let (normals, specular, mut out) = (normals.first(count), specular.first(count), out.first(count));
         let (travelled, goes) = (&travelled[..count], &mut goes[..count]);
         for lane in 0..count {
             let (dir, normal) = (dir.get(lane), normals.get(lane));
             out.set(lane, dir - 2.0 * dir.dot(normal) * normal);
             goes[lane] = is_any(specular.get(lane)) & u64::from(travelled[lane] <= most);
+            all &= goes[lane];
         }
+        all != 0
     }
 
     /// Divides colours by how far their light has travelled.
@@ -150,12 +150,14 @@ kernels! {
     }
 }
 
-/// The direction from one point to another, and how far that is.
+/// The direction and the distance from a place to a light, and the cosine of the angle there, divided by that.
 #[inline(always)]
-fn from_to(from: DVec3, to: DVec3) -> (DVec3, f64) {
-    let between = to - from;
+fn face_one(point: DVec3, normal: DVec3, light: DVec3) -> (DVec3, f64, f64) {
+    let between = light - point;
     let distance = between.length();
-    (between * (1.0 / distance), distance)
+    let inverse = 1.0 / distance;
+    let dir = between * inverse;
+    (dir, distance, dir.dot(normal) * inverse)
 }
 
 /// Powers up to this one are multiplied out.
@@ -179,10 +181,10 @@ fn shine_all(lit: &Lit, glint: Option<impl Fn(f64) -> f64>, colours: ViewMut) {
     let (toward, looks, normals) = (lit.toward.first(count), lit.looks.first(count), lit.normals.first(count));
     let (diffuse, specular) = (lit.diffuse.first(count), lit.specular.first(count));
     let emissivity = lit.emissivity.first(count);
-    let (distances, cosines, shines) = (&lit.distances[..count], &lit.cosines[..count], &lit.shines[..count]);
+    let (falloffs, shines) = (&lit.falloffs[..count], &lit.shines[..count]);
     for lane in 0..count {
         let light = emissivity.get(lane);
-        let mut colour = diffuse.get(lane) * light * (cosines[lane] / distances[lane]);
+        let mut colour = diffuse.get(lane) * light * falloffs[lane];
         if let Some(glint) = &glint {
             let half = (toward.get(lane) - looks.get(lane)).normalize();
             colour += light * specular.get(lane) * glint(half.dot(normals.get(lane)));

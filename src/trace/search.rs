@@ -5,7 +5,7 @@ use super::group::Group;
 use super::room::{Vectors, room};
 use crate::bounds::{self, Bounds};
 use crate::bundles::{self, Bundles};
-use crate::cpu::kernels;
+use crate::cpu::{Cpu, kernels};
 use crate::geometry::{Hittable, MISS, Ray, Side, Span};
 use crate::packet::{Nearest, Rays};
 use crate::tree::Visitor;
@@ -24,16 +24,15 @@ pub(super) struct Found {
 }
 
 impl Found {
-    /// Nothing yet, before these ends.
-    fn begin(&mut self, count: usize, ends: Option<&[f64]>) {
-        for distances in [&mut self.near, &mut self.far] {
-            let distances = room(distances, count);
-            match ends {
-                Some(ends) => distances.copy_from_slice(&ends[..count]),
-                None => distances.fill(MISS),
-            }
+    /// Nothing yet, before these ends, and counts the rays. Those that have cost as many as they may end where they
+    /// begin.
+    fn begin(&mut self, cpu: Cpu, budget: &mut [u32], count: usize, ends: Option<&[f64]>) {
+        let (near, far) = (room(&mut self.near, count), room(&mut self.far, count));
+        match ends {
+            Some(ends) => far.copy_from_slice(&ends[..count]),
+            None => far.fill(MISS),
         }
-        room(&mut self.met, count).fill(0);
+        begin(cpu, &mut budget[..count], near, far, room(&mut self.met, count));
         room(&mut self.doubt, count).fill(0);
     }
 
@@ -51,13 +50,13 @@ impl Found {
 impl<'m, W: Watch> Tracer<'m, '_, W> {
     /// What each ray meets first before its end, if it has one. A ray that has cost as many as it may meets nothing.
     pub(super) fn closest(&mut self, group: &mut Group, ends: Option<&[f64]>, found: &mut Found) {
-        found.begin(group.padded(), ends);
-        if W::SEES && group.budget[0] == 0 {
-            self.watch.see(Event::Dropped(Reason::TooMany));
-            return;
-        }
-        spend(self.cpu, &mut group.budget[..group.len], &mut found.near, &mut found.far);
+        let (is_over, count) = (group.budget[0] == 0, group.padded());
+        found.begin(self.cpu, &mut group.budget, count, ends);
         if W::SEES {
+            if is_over {
+                self.watch.see(Event::Dropped(Reason::TooMany));
+                return;
+            }
             self.closest_seen(group, found);
             return;
         }
@@ -135,14 +134,14 @@ pub(super) fn exact(shape: &dyn Hittable, ray: &Ray, leaves: Option<Side>, far: 
 }
 
 kernels! {
-    /// Counts the rays. Those that have cost as many as they may end where they begin.
-    fn spend(budget: &mut [u32], near: &mut [f64], far: &mut [f64]) {
+    /// Counts rays, which have met nothing yet.
+    fn begin(budget: &mut [u32], near: &mut [f64], far: &mut [f64], met: &mut [u64]) {
         let count = budget.len();
-        let (near, far) = (&mut near[..count], &mut far[..count]);
+        let (near, far, met) = (&mut near[..count], &mut far[..count], &mut met[..count]);
         for lane in 0..count {
             let is_over = budget[lane] == 0;
-            near[lane] = if is_over { 0.0 } else { near[lane] };
-            far[lane] = if is_over { 0.0 } else { far[lane] };
+            let end = if is_over { 0.0 } else { far[lane] };
+            (near[lane], far[lane], met[lane]) = (end, end, 0);
             budget[lane] -= u32::from(!is_over);
         }
     }

@@ -3,7 +3,7 @@
 use super::group::{Group, Onward};
 use super::light;
 use super::room::{Vectors, list, room};
-use super::{MAX_DIST, NARROW, Tracer};
+use super::{DEEP, MAX_DIST, NARROW, Tracer};
 use crate::geometry::Side;
 use crate::model::Object;
 use crate::packet::WIDE;
@@ -120,8 +120,13 @@ impl<W: Watch> Tracer<'_, '_, W> {
         let (cpu, count) = (self.cpu, group.padded());
         let (normals, specular) = (surface.normals.view(count), surface.specular.view(count));
         let (travelled, goes) = (&surface.travelled[..count], room(goes, count));
-        light::mirror(cpu, group.dir.view(count), normals, specular, travelled, MAX_DIST, goes, dir.room(count));
-        self.onward(group, shading, Kind::Reflected);
+        let dir = dir.room(count);
+        let all = light::mirror(cpu, group.dir.view(count), normals, specular, travelled, MAX_DIST, goes, dir);
+        if all && (group.len <= NARROW || self.depth + 1 < DEEP) {
+            self.onward_all(group, shading);
+        } else {
+            self.onward(group, shading, Kind::Reflected);
+        }
         let specular = shading.surface.specular.view(count);
         light::reflect(cpu, specular, shading.behind.view(count), colours.room(count));
     }
@@ -137,23 +142,26 @@ impl<W: Watch> Tracer<'_, '_, W> {
         }
         self.watch.count(Count::Rays(kind, lanes.len()));
         self.depth += 1;
-        let most = if self.is_shallow() { WIDE } else { NARROW };
-        if lanes.len() == group.len && kind == Kind::Reflected && group.len <= most {
-            // Nothing else is done with them here.
-            onward.take(group, surface, dir);
-            self.trace(onward, behind);
-            swap(&mut group.budget, &mut onward.budget);
-        } else {
-            let Surface { points, travelled, sides, index, .. } = &*surface;
-            let leaving = Onward { points, dir, travelled, leaves: *index, sides };
-            behind.fill(group.padded(), DVec3::ZERO);
-            for lanes in lanes.chunks(most) {
-                onward.go_on(group, &leaving, lanes);
-                self.trace(onward, seen);
-                behind.put(seen, lanes);
-                group.pay(onward, lanes);
-            }
+        let Surface { points, travelled, sides, index, .. } = &*surface;
+        let leaving = Onward { points, dir, travelled, leaves: *index, sides };
+        behind.fill(group.padded(), DVec3::ZERO);
+        for lanes in lanes.chunks(if self.is_shallow() { WIDE } else { NARROW }) {
+            onward.go_on(group, &leaving, lanes);
+            self.trace(onward, seen);
+            behind.put(seen, lanes);
+            group.pay(onward, lanes);
         }
+        self.depth -= 1;
+    }
+
+    /// As `onward` for rays all of which are mirrored, and with which nothing else is done here: they are not copied.
+    fn onward_all(&mut self, group: &mut Group, shading: &mut Shading) {
+        let Shading { surface, dir, onward, behind, .. } = shading;
+        self.watch.count(Count::Rays(Kind::Reflected, group.len));
+        self.depth += 1;
+        onward.take(group, surface, dir);
+        self.trace(onward, behind);
+        swap(&mut group.budget, &mut onward.budget);
         self.depth -= 1;
     }
 }
