@@ -61,8 +61,9 @@ impl Bundles {
         let low = |axis: usize| {
             if self.down[axis][part] == f64::NEG_INFINITY { self.low[axis][part] } else { f64::NEG_INFINITY }
         };
-        let high =
-            |axis: usize| if self.up[axis][part] == f64::INFINITY { self.high[axis][part] } else { f64::INFINITY };
+        let high = |axis: usize| {
+            if self.up[axis][part] == f64::INFINITY { self.high[axis][part] } else { f64::INFINITY }
+        };
         Bounds { low: DVec3::new(low(0), low(1), low(2)), high: DVec3::new(high(0), high(1), high(2)) }
     }
 

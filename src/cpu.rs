@@ -79,26 +79,39 @@ impl fmt::Display for Cpu {
 /// Defines functions that are compiled for every level; each takes the [`Cpu`] to use as its first argument.
 ///
 /// What such a function calls takes part in that where it is inlined. Vectors to be written are named behind `=>` and
-/// are its last argument. Inside, their arrays are arguments of their own, by which the compiler knows that none is
+/// are its last arguments. Inside, their arrays are arguments of their own, by which the compiler knows that none is
 /// part of another: else it looks at that at every call, and takes rays one by one where there are few.
 macro_rules! kernels {
     ($(
         $(#[$attribute:meta])*
         $visible:vis fn $name:ident$([$T:ident: $Bound:path])?($($argument:ident: $type:ty),* $(,)?)
-            $(=> $out:ident)? $(-> $result:ty)? $body:block
+            $(=> $out:ident $(, $second:ident)?)? $(-> $result:ty)? $body:block
     )*) => {$(
         $(#[$attribute])*
         #[allow(clippy::too_many_arguments, reason = "they are arrays")]
         $visible fn $name$(<$T: $Bound + ?Sized>)?(
-            cpu: $crate::cpu::Cpu, $($argument: $type,)* $($out: $crate::packet::ViewMut)?
+            cpu: $crate::cpu::Cpu, $($argument: $type,)*
+            $($out: $crate::packet::ViewMut, $($second: $crate::packet::ViewMut)?)?
         ) $(-> $result)? {
             #[inline(always)]
             #[allow(clippy::too_many_arguments, reason = "they are arrays")]
             fn body$(<$T: $Bound + ?Sized>)?(
                 $($argument: $type,)*
-                $(x: $crate::cpu::beside!($out, &mut [f64]), y: $crate::cpu::beside!($out, &mut [f64]), z: $crate::cpu::beside!($out, &mut [f64]))?
+                $(
+                    x: $crate::cpu::beside!($out, &mut [f64]),
+                    y: $crate::cpu::beside!($out, &mut [f64]),
+                    z: $crate::cpu::beside!($out, &mut [f64]),
+                    $(
+                        u: $crate::cpu::beside!($second, &mut [f64]),
+                        v: $crate::cpu::beside!($second, &mut [f64]),
+                        w: $crate::cpu::beside!($second, &mut [f64]),
+                    )?
+                )?
             ) $(-> $result)? {
-                $(let mut $out = $crate::packet::ViewMut { x, y, z };)?
+                $(
+                    let mut $out = $crate::packet::ViewMut { x, y, z };
+                    $(let mut $second = $crate::packet::ViewMut { x: u, y: v, z: w };)?
+                )?
                 $body
             }
 
@@ -107,9 +120,18 @@ macro_rules! kernels {
             #[allow(clippy::too_many_arguments, reason = "they are arrays")]
             fn avx512$(<$T: $Bound + ?Sized>)?(
                 $($argument: $type,)*
-                $(x: $crate::cpu::beside!($out, &mut [f64]), y: $crate::cpu::beside!($out, &mut [f64]), z: $crate::cpu::beside!($out, &mut [f64]))?
+                $(
+                    x: $crate::cpu::beside!($out, &mut [f64]),
+                    y: $crate::cpu::beside!($out, &mut [f64]),
+                    z: $crate::cpu::beside!($out, &mut [f64]),
+                    $(
+                        u: $crate::cpu::beside!($second, &mut [f64]),
+                        v: $crate::cpu::beside!($second, &mut [f64]),
+                        w: $crate::cpu::beside!($second, &mut [f64]),
+                    )?
+                )?
             ) $(-> $result)? {
-                body($($argument,)* $($crate::cpu::beside!($out, x), y, z)?)
+                body($($argument,)* $($crate::cpu::beside!($out, x), y, z, $($crate::cpu::beside!($second, u), v, w)?)?)
             }
 
             #[cfg(target_arch = "x86_64")]
@@ -117,20 +139,29 @@ macro_rules! kernels {
             #[allow(clippy::too_many_arguments, reason = "they are arrays")]
             fn avx2$(<$T: $Bound + ?Sized>)?(
                 $($argument: $type,)*
-                $(x: $crate::cpu::beside!($out, &mut [f64]), y: $crate::cpu::beside!($out, &mut [f64]), z: $crate::cpu::beside!($out, &mut [f64]))?
+                $(
+                    x: $crate::cpu::beside!($out, &mut [f64]),
+                    y: $crate::cpu::beside!($out, &mut [f64]),
+                    z: $crate::cpu::beside!($out, &mut [f64]),
+                    $(
+                        u: $crate::cpu::beside!($second, &mut [f64]),
+                        v: $crate::cpu::beside!($second, &mut [f64]),
+                        w: $crate::cpu::beside!($second, &mut [f64]),
+                    )?
+                )?
             ) $(-> $result)? {
-                body($($argument,)* $($crate::cpu::beside!($out, x), y, z)?)
+                body($($argument,)* $($crate::cpu::beside!($out, x), y, z, $($crate::cpu::beside!($second, u), v, w)?)?)
             }
 
             match cpu.level() {
                 // SAFETY: there is no `Cpu` of a level that the machine has not.
                 #[cfg(target_arch = "x86_64")]
                 #[allow(unsafe_code)]
-                $crate::cpu::Level::Avx512 => unsafe { avx512($($argument,)* $($out.x, $out.y, $out.z)?) },
+                $crate::cpu::Level::Avx512 => unsafe { avx512($($argument,)* $($out.x, $out.y, $out.z, $($second.x, $second.y, $second.z)?)?) },
                 #[cfg(target_arch = "x86_64")]
                 #[allow(unsafe_code)]
-                $crate::cpu::Level::Avx2 => unsafe { avx2($($argument,)* $($out.x, $out.y, $out.z)?) },
-                _ => body($($argument,)* $($out.x, $out.y, $out.z)?),
+                $crate::cpu::Level::Avx2 => unsafe { avx2($($argument,)* $($out.x, $out.y, $out.z, $($second.x, $second.y, $second.z)?)?) },
+                _ => body($($argument,)* $($out.x, $out.y, $out.z, $($second.x, $second.y, $second.z)?)?),
             }
         }
     )*};

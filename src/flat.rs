@@ -151,8 +151,10 @@ impl Plane {
         let (mut least, mut most) = (0.0, 0.0);
         for axis in 0..3 {
             let normal = self.normal[axis];
-            let (one, other) =
-                (normal * (region.low[axis] - self.point[axis]), normal * (region.high[axis] - self.point[axis]));
+            let (one, other) = (
+                normal * (region.low[axis] - self.point[axis]),
+                normal * (region.high[axis] - self.point[axis]),
+            );
             // Regions may be without an end, which is no matter where the plane is.
             least += if normal == 0.0 { 0.0 } else { smaller(one, other) };
             most += if normal == 0.0 { 0.0 } else { larger(one, other) };

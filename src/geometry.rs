@@ -3,6 +3,7 @@
 use crate::bounds::Bounds;
 use crate::certify::Enclosure;
 use crate::cpu::Cpu;
+use crate::facing::{self, Facing, Places};
 use crate::material::{Material, Rgb};
 use crate::packet::{self, Nearest, Rays, View, ViewMut};
 use crate::roots::Method;
@@ -259,10 +260,10 @@ pub trait Light: Send + Sync {
         0.0
     }
 
-    /// What [`emissivity`](Self::emissivity) gives toward many points. Where that is nothing, `shines` becomes 0; tells
-    /// whether any is left.
-    fn emissivities(&self, cpu: Cpu, toward: View, out: ViewMut, shines: &mut [u64]) -> bool {
-        packet::emissivities(cpu, self, toward, shines, out)
+    /// How it comes to many places, with what [`emissivity`](Self::emissivity) gives toward each.
+    fn face(&self, cpu: Cpu, places: &Places, facing: Facing) -> facing::Any {
+        let Facing { toward, emissivity, falloffs, ends, shines } = facing;
+        facing::face(cpu, self, places, falloffs, ends, shines, toward, emissivity)
     }
 }
 

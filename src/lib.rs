@@ -31,6 +31,7 @@ pub mod debug;
 pub mod dual;
 pub mod dump;
 pub mod entity;
+pub mod facing;
 pub mod flat;
 pub mod formula;
 pub mod frame;

@@ -6,7 +6,7 @@
 //! copy of it, and is computed and ignored.
 
 use crate::cpu::kernels;
-use crate::geometry::{Bracket, Hittable, Light, MISS, Ray, Shader, Side, Span};
+use crate::geometry::{Bracket, Hittable, MISS, Ray, Shader, Side, Span};
 use crate::material::{Material, Rgb};
 use glam::DVec3;
 use std::ops::Range;
@@ -293,20 +293,6 @@ kernels! {
             let specular = shader.specular(material, points.get(lane));
             out.set(lane, specular);
             any |= is_any(specular);
-        }
-        any != 0
-    }
-
-    /// The light that is sent toward points. Where there is none takes `shines` away, which is 0 then. Tells whether it
-    /// is left to any.
-    pub(crate) fn emissivities[T: Light](light: &T, points: View, shines: &mut [u64]) => out -> bool {
-        let (count, mut any) = (points.len(), 0);
-        let (mut out, shines) = (out.first(count), &mut shines[..count]);
-        for lane in 0..count {
-            let emissivity = light.emissivity(points.get(lane));
-            shines[lane] &= u64::from(emissivity.is_some());
-            any |= shines[lane];
-            out.set(lane, emissivity.unwrap_or(Rgb::ZERO));
         }
         any != 0
     }

@@ -5,6 +5,7 @@ use super::promise::{Fault, Promise};
 use crate::camera::Camera;
 use crate::cpu::Cpu;
 use crate::dump;
+use crate::facing::{Facing, Places};
 use crate::geometry::{Light, Shader};
 use crate::material::{Material, Rgb};
 use crate::model::Model;
@@ -93,14 +94,23 @@ pub fn light(light: &dyn Light, draw: &mut Draw) -> Result<(), Fault> {
         if one.is_some_and(|light| !light.is_finite()) {
             return Err(Promise::LightIsFinite.fault(format!("toward {toward} it sends {one:?}")));
         }
-        let points = Vectors::<STEP> { x: [toward.x; STEP], y: [toward.y; STEP], z: [toward.z; STEP] };
+        let all = |of: DVec3| Vectors::<STEP> { x: [of.x; STEP], y: [of.y; STEP], z: [of.z; STEP] };
+        // The light is in front of each place, but for the one that it is on.
+        let (points, normals) = (all(toward), all((location - toward).normalize_or_zero()));
+        let (points, normals) = (points.view(STEP), normals.view(STEP));
         for cpu in Cpu::all() {
-            let (mut out, mut shines) = (Vectors::<STEP>::ZERO, [1; STEP]);
-            let any = light.emissivities(cpu, points.view(STEP), out.view_mut(STEP), &mut shines);
-            let many = (any && shines[0] != 0).then_some(out.get(0));
-            if many.map(|light| light.to_array().map(f64::to_bits))
-                != one.map(|light| light.to_array().map(f64::to_bits))
-            {
+            let (mut dir, mut emissivity) = (Vectors::<STEP>::ZERO, Vectors::<STEP>::ZERO);
+            let (mut falloffs, mut ends, mut shines) = ([0.0; STEP], [0.0; STEP], [2; STEP]);
+            let facing = Facing {
+                toward: dir.view_mut(STEP),
+                emissivity: emissivity.view_mut(STEP),
+                falloffs: &mut falloffs,
+                ends: &mut ends,
+                shines: &mut shines,
+            };
+            light.face(cpu, &Places { points, normals, lights: None, slack: 0.0 }, facing);
+            let (many, does_shine) = (emissivity.get(STEP - 1), one.is_some() && toward != location);
+            if !same_bits(many, one.unwrap_or(Rgb::ZERO)) || shines[STEP - 1] != u64::from(does_shine) {
                 let found = format!("{many:?} in packets ({cpu}), {one:?} toward {toward}");
                 return Err(Promise::PacketsAgree.fault(found));
             }

@@ -7,6 +7,7 @@ use super::room::{Vectors, room};
 use super::shade::Surface;
 use super::shadow::{Shadows, Ways};
 use crate::bounds::{self, Bounds};
+use crate::facing::{Facing, Places};
 use crate::geometry::Light;
 use crate::material::Rgb;
 use crate::model::Object;
@@ -17,11 +18,11 @@ use glam::DVec2;
 #[derive(Default)]
 pub(super) struct Lighting {
     diffuse: Vectors,
-    /// Where each place sees the light.
-    places: Vectors,
+    /// Where each place sees the light, if that is no point.
+    lights: Vectors,
     toward: Vectors,
-    distances: Vec<f64>,
     falloffs: Vec<f64>,
+    ends: Vec<f64>,
     emissivity: Vectors,
     shines: Vec<u64>,
     shadows: Shadows,
@@ -67,37 +68,35 @@ impl<W: Watch> Tracer<'_, '_, W> {
         let (cpu, count) = (self.cpu, group.padded());
         let light = &*self.model.lights[index].value;
         let material = &self.model.objects[surface.index].material;
-        let Lighting { diffuse, places, toward, distances, falloffs, emissivity, shines, shadows } = lighting;
+        let Lighting { diffuse, lights, toward, falloffs, ends, emissivity, shines, shadows } = lighting;
         let (points, normals) = (surface.points.view(count), surface.normals.view(count));
-        let (far, falloffs, dir) = (room(distances, count), room(falloffs, count), toward.room(count));
-        let shines = room(shines, count);
-        let (is_faced, source);
-        if light.size() == 0.0 {
-            let place = light.location();
-            source = Bounds { low: place, high: place };
-            is_faced = light::face_point(cpu, points, normals, place, far, falloffs, shines, dir);
+        let is_point = light.size() == 0.0;
+        let source = if is_point {
+            Bounds { low: light.location(), high: light.location() }
         } else {
-            self.places(light, index, group, surface, places);
-            let places = places.view(count);
-            source = bounds::around(cpu, places);
-            is_faced = light::face_light(cpu, points, normals, places, far, falloffs, shines, dir);
-        }
-        if !is_faced {
+            self.places(light, index, group, surface, lights);
+            bounds::around(cpu, lights.view(count))
+        };
+        let lights = (!is_point).then(|| lights.view(count));
+        let (ends, shines) = (room(ends, count), room(shines, count));
+        let facing = Facing {
+            toward: toward.room(count),
+            emissivity: emissivity.room(count),
+            falloffs: room(falloffs, count),
+            ends,
+            shines,
+        };
+        let any = light.face(cpu, &Places { points, normals, lights, slack: self.slack() }, facing);
+        if !any.shines {
             if W::SEES {
-                self.watch.see(Event::Light(index, Outcome::Behind));
+                self.watch.see(Event::Light(index, if any.faces { Outcome::Aside } else { Outcome::Behind }));
             }
             return;
         }
-        if !light.emissivities(cpu, points, emissivity.room(count), shines) {
-            if W::SEES {
-                self.watch.see(Event::Light(index, Outcome::Aside));
-            }
-            return;
-        }
-        let ways = Ways { from: *around, to: source, toward, distances: far };
+        let ways = Ways { from: *around, to: source, toward };
         let mut tint = Rgb::ONE;
         if W::SEES || self.plan.has_glass {
-            let (blocker, passed) = self.pass(group, surface, &ways, shines, emissivity);
+            let (blocker, passed) = self.pass(group, surface, &ways, ends, shines, emissivity);
             if W::SEES
                 && let Some(blocker) = blocker
             {
@@ -106,13 +105,13 @@ impl<W: Watch> Tracer<'_, '_, W> {
             }
             tint = passed;
         } else {
-            self.shadow(group, surface, &ways, shadows, shines);
+            self.shadow(group, surface, &ways, ends, shadows, shines);
         }
         let lit = Lit {
             toward: toward.view(count),
             looks: group.dir.view(count),
             normals,
-            falloffs,
+            falloffs: &falloffs[..count],
             shines,
             diffuse: diffuse.view(count),
             specular: surface.specular.view(count),

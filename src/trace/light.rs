@@ -3,7 +3,6 @@
 use crate::cpu::kernels;
 use crate::geometry::Side;
 use crate::packet::{Rays, View, ViewMut, is_any};
-use glam::DVec3;
 
 /// Places that a light shines on.
 pub(super) struct Lit<'l> {
@@ -42,55 +41,6 @@ kernels! {
             sides[lane] = side;
             normals.set(lane, if is_two_sided & (side == Side::Inside) { -normal } else { normal });
         }
-    }
-
-    /// The directions and distances from places to a light, and the cosines of the angles there, divided by those; 0 in
-    /// `shines` for places that do not face the light. Tells whether any does.
-    pub(super) fn face_light(
-        points: View,
-        normals: View,
-        places: View,
-        distances: &mut [f64],
-        falloffs: &mut [f64],
-        shines: &mut [u64],
-    ) => toward -> bool {
-        let count = falloffs.len();
-        let (points, normals, places) = (points.first(count), normals.first(count), places.first(count));
-        let (mut toward, distances, shines) = (toward.first(count), &mut distances[..count], &mut shines[..count]);
-        let mut any = 0;
-        for lane in 0..count {
-            let dir;
-            (dir, distances[lane], falloffs[lane]) = face_one(points.get(lane), normals.get(lane), places.get(lane));
-            toward.set(lane, dir);
-            // A light on the surface itself makes it NaN, and is behind.
-            shines[lane] = u64::from(falloffs[lane] > 0.0);
-            any |= shines[lane];
-        }
-        any != 0
-    }
-
-    /// As `face_light`, for one that is a point.
-    pub(super) fn face_point(
-        points: View,
-        normals: View,
-        place: DVec3,
-        distances: &mut [f64],
-        falloffs: &mut [f64],
-        shines: &mut [u64],
-    ) => toward -> bool {
-        let count = falloffs.len();
-        let (points, normals) = (points.first(count), normals.first(count));
-        let (mut toward, distances, shines) = (toward.first(count), &mut distances[..count], &mut shines[..count]);
-        let mut any = 0;
-        for lane in 0..count {
-            let dir;
-            (dir, distances[lane], falloffs[lane]) = face_one(points.get(lane), normals.get(lane), place);
-            toward.set(lane, dir);
-            // A light on the surface itself makes it NaN, and is behind.
-            shines[lane] = u64::from(falloffs[lane] > 0.0);
-            any |= shines[lane];
-        }
-        any != 0
     }
 
     /// Adds the light that comes to places, where it does.
@@ -150,16 +100,6 @@ kernels! {
     }
 }
 
-/// The direction and the distance from a place to a light, and the cosine of the angle there, divided by that.
-#[inline(always)]
-fn face_one(point: DVec3, normal: DVec3, light: DVec3) -> (DVec3, f64, f64) {
-    let between = light - point;
-    let distance = between.length();
-    let inverse = 1.0 / distance;
-    let dir = between * inverse;
-    (dir, distance, dir.dot(normal) * inverse)
-}
-
 /// Powers up to this one are multiplied out.
 const MOST_MULTIPLIED: u32 = 1 << 16;
 
@@ -178,7 +118,8 @@ fn whole_power(of: f64, power: u32) -> f64 {
 #[inline(always)]
 fn shine_all(lit: &Lit, glint: Option<impl Fn(f64) -> f64>, colours: ViewMut) {
     let (count, mut colours) = (lit.shines.len(), colours);
-    let (toward, looks, normals) = (lit.toward.first(count), lit.looks.first(count), lit.normals.first(count));
+    let (toward, looks, normals) =
+        (lit.toward.first(count), lit.looks.first(count), lit.normals.first(count));
     let (diffuse, specular) = (lit.diffuse.first(count), lit.specular.first(count));
     let emissivity = lit.emissivity.first(count);
     let (falloffs, shines) = (&lit.falloffs[..count], &lit.shines[..count]);

@@ -4,7 +4,7 @@ use super::group::{Group, Parts};
 use super::room::{Vectors, list, pick, room};
 use super::search::Found;
 use super::shade::Surface;
-use super::shadow::{self, Ways};
+use super::shadow::Ways;
 use super::{NARROW, Tracer};
 use crate::geometry::Side;
 use crate::material::Rgb;
@@ -36,20 +36,11 @@ impl<W: Watch> Tracer<'_, '_, W> {
         group: &mut Group,
         surface: &Surface,
         ways: &Ways,
+        ends: &[f64],
         shines: &mut [u64],
         emissivity: &mut Vectors,
     ) -> (Option<usize>, Rgb) {
         let mut passage = self.rooms.passages.pop().unwrap_or_default();
-        let mut distances = std::mem::take(&mut passage.distances);
-        let ends = room(&mut distances, group.padded());
-        shadow::aim(
-            self.cpu,
-            surface.points.view(group.padded()),
-            ways.distances,
-            self.slack(),
-            shines,
-            ends,
-        );
         let mut lanes = Vec::new();
         let lanes = list(&shines[..group.len], &mut lanes);
         let Passage { group: part, ends: far, tint, blocker, .. } = &mut *passage;
@@ -66,7 +57,6 @@ impl<W: Watch> Tracer<'_, '_, W> {
         }
         group.pay(&passage.group, lanes);
         let first = ((passage.blocker[0] as usize).checked_sub(1), passage.tint.get(0));
-        passage.distances = distances;
         self.rooms.passages.push(passage);
         first
     }

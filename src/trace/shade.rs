@@ -121,7 +121,8 @@ impl<W: Watch> Tracer<'_, '_, W> {
         let (normals, specular) = (surface.normals.view(count), surface.specular.view(count));
         let (travelled, goes) = (&surface.travelled[..count], room(goes, count));
         let dir = dir.room(count);
-        let all = light::mirror(cpu, group.dir.view(count), normals, specular, travelled, MAX_DIST, goes, dir);
+        let all =
+            light::mirror(cpu, group.dir.view(count), normals, specular, travelled, MAX_DIST, goes, dir);
         if all && (group.len <= NARROW || self.depth + 1 < DEEP) {
             self.onward_all(group, shading);
         } else {

@@ -9,9 +9,8 @@ use crate::accuracy::Accuracy;
 use crate::bounds::Bounds;
 use crate::cpu::kernels;
 use crate::geometry::Side;
-use crate::packet::{Rays, STEP, View};
+use crate::packet::{Rays, STEP};
 use crate::watch::{Count, Kind, Watch};
-use glam::DVec3;
 
 /// The ways from the places of a surface to a light.
 pub(super) struct Ways<'w> {
@@ -21,8 +20,6 @@ pub(super) struct Ways<'w> {
     pub to: Bounds,
     /// The directions there.
     pub toward: &'w Vectors,
-    /// How far it is.
-    pub distances: &'w [f64],
 }
 
 impl<'w> Ways<'w> {
@@ -36,7 +33,6 @@ impl<'w> Ways<'w> {
 /// Room for the shadows of a packet.
 #[derive(Default)]
 pub(super) struct Shadows {
-    ends: Vec<f64>,
     blocked: Vec<u64>,
     /// Those that remain of a packet.
     lanes: Vec<u8>,
@@ -62,25 +58,25 @@ impl<W: Watch> Tracer<'_, '_, W> {
         group: &mut Group,
         surface: &Surface,
         ways: &Ways,
+        ends: &mut [f64],
         shadows: &mut Shadows,
         shines: &mut [u64],
     ) {
         let (cpu, count) = (self.cpu, group.padded());
-        let Shadows { ends, blocked, lanes, origin, dir, their_ends, sides } = shadows;
-        let (ends, blocked) = (room(ends, count), room(blocked, count));
-        let (points, budget, slack) = (surface.points.view(count), &mut group.budget, self.slack());
+        let Shadows { blocked, lanes, origin, dir, their_ends, sides } = shadows;
+        let blocked = room(blocked, count);
         // A ray that has cost as many as it may finds nothing in the way.
-        let len = set_out(cpu, points, ways.distances, slack, shines, group.len, budget, ends, blocked);
+        let len = set_out(cpu, group.len, &mut group.budget[..count], ends, blocked);
         if len == 0 {
             return;
         }
         self.watch.count(Count::Rays(Kind::Shadow, len));
         if 2 * len > group.len {
-            let rays = Rays { origin: points, dir: ways.toward.view(count) };
+            let rays = Rays { origin: surface.points.view(count), dir: ways.toward.view(count) };
             let sides = &surface.sides[..count];
             let leaving = Leaving { rays, len: group.len, ends, object: surface.index, sides };
             self.block(&leaving, &ways.from, &ways.to, blocked);
-            darken(cpu, blocked, shines);
+            darken(cpu, blocked, ends, shines);
             return;
         }
         lanes.clear();
@@ -103,57 +99,27 @@ impl<W: Watch> Tracer<'_, '_, W> {
 }
 
 kernels! {
-    /// Takes the light away where it is blocked.
-    fn darken(blocked: &[u64], shines: &mut [u64]) {
+    /// Takes the light away where it is blocked on a way that had to be gone.
+    fn darken(blocked: &[u64], ends: &[f64], shines: &mut [u64]) {
         let count = blocked.len();
-        let shines = &mut shines[..count];
+        let (ends, shines) = (&ends[..count], &mut shines[..count]);
         for lane in 0..count {
-            shines[lane] &= u64::from(blocked[lane] == 0);
+            shines[lane] &= u64::from((blocked[lane] == 0) | (ends[lane] == 0.0));
         }
     }
 
-    /// Where the ways from points to a light end; 0 for those that need not be gone.
-    pub(super) fn aim(points: View, distances: &[f64], slack: f64, shines: &[u64], ends: &mut [f64]) {
-        let count = ends.len();
-        let (points, shines, distances) = (points.first(count), &shines[..count], &distances[..count]);
-        for lane in 0..count {
-            let end = end(points.get(lane), distances[lane], slack);
-            ends[lane] = if shines[lane] != 0 { end } else { 0.0 };
-        }
-    }
-
-    /// As `aim`, and counts a ray for each. Those of rays that have cost as many as they may need not be gone. What need
+    /// Counts a ray for each way to a light. Those of rays that have cost as many as they may need not be gone. What need
     /// not is blocked; tells how many of the first `len` are left.
-    fn set_out(
-        points: View,
-        distances: &[f64],
-        slack: f64,
-        shines: &[u64],
-        len: usize,
-        budget: &mut [u32],
-        ends: &mut [f64],
-        blocked: &mut [u64]
-    ) -> usize {
+    fn set_out(len: usize, budget: &mut [u32], ends: &mut [f64], blocked: &mut [u64]) -> usize {
         let (count, mut left) = (ends.len(), 0);
-        let (points, shines, distances) = (points.first(count), &shines[..count], &distances[..count]);
         let (budget, blocked) = (&mut budget[..count], &mut blocked[..count]);
         for lane in 0..count {
-            let end = end(points.get(lane), distances[lane], slack);
-            let goes = (shines[lane] != 0) & (end > 0.0) & (budget[lane] > 0);
-            ends[lane] = if goes { end } else { 0.0 };
+            let goes = (ends[lane] > 0.0) & (budget[lane] > 0);
+            ends[lane] = if goes { ends[lane] } else { 0.0 };
             blocked[lane] = u64::from(!goes);
             budget[lane] -= u32::from(goes);
             left += u64::from(goes & (lane < len));
         }
         left as usize
     }
-}
-
-/// Where the way from a point to a light so far away ends.
-#[inline(always)]
-fn end(point: DVec3, distance: f64, slack: f64) -> f64 {
-    let reach = point.abs();
-    let across = if reach.x > reach.y { reach.x } else { reach.y };
-    let reach = if across > reach.z { across } else { reach.z };
-    distance - slack * (distance + reach)
 }
