@@ -8,6 +8,7 @@ use crate::cpu::Cpu;
 use crate::geometry::{Ray, Side};
 use crate::packet::{Rays, STEP};
 use glam::DVec3;
+use std::array;
 use std::mem::swap;
 use std::ops::Range;
 
@@ -145,8 +146,8 @@ impl Group {
 /// Sorts rays by what they met: the rays of one object after those of another.
 #[derive(Default)]
 pub(super) struct Parts {
-    /// What neighbours met, and where they end; 0 lanes of those that are done.
-    runs: Vec<(u64, Range<u16>)>,
+    /// What neighbours met, and which those are; none where they are done.
+    runs: Vec<(u64, Range<usize>)>,
     lanes: Vec<u8>,
     next: usize,
 }
@@ -154,13 +155,15 @@ pub(super) struct Parts {
 impl Parts {
     /// Begins with rays that met these.
     pub fn begin(&mut self, met: &[u64]) {
-        (self.next, _) = (0, self.runs.clear());
+        self.runs.clear();
         let mut start = 0;
         for run in met.chunk_by(|one, other| one == other) {
-            let end = start + run.len() as u16;
-            self.runs.push((run[0], start..end));
-            start = end;
+            self.runs.push((run[0], start..start + run.len()));
+            start += run.len();
         }
+        // Lanes are written by eights.
+        room(&mut self.lanes, met.len() + STEP);
+        self.next = 0;
     }
 
     /// What some rays met, and which rays those are.
@@ -168,13 +171,17 @@ impl Parts {
         while self.runs.get(self.next)?.1.is_empty() {
             self.next += 1;
         }
-        let id = self.runs[self.next].0;
-        self.lanes.clear();
+        let (id, mut count) = (self.runs[self.next].0, 0);
         for (other, run) in &mut self.runs[self.next..] {
             if *other == id {
-                self.lanes.extend(std::mem::take(run).map(|lane| lane as u8));
+                for first in run.clone().step_by(STEP) {
+                    let eight: [u8; STEP] = array::from_fn(|lane| (first + lane) as u8);
+                    self.lanes[count + first - run.start..][..STEP].copy_from_slice(&eight);
+                }
+                count += run.len();
+                run.end = run.start;
             }
         }
-        Some((id, &self.lanes))
+        Some((id, &self.lanes[..count]))
     }
 }

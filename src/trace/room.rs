@@ -70,7 +70,7 @@ pub(super) struct Level {
 pub(super) fn room<T: Copy + Default>(array: &mut Vec<T>, count: usize) -> &mut [T] {
     if array.len() < count {
         // Wide packets have room for the widest, for `pick`.
-        array.resize(if count > STEP * NARROW { WIDE } else { count }, T::default());
+        array.resize(if count > STEP * NARROW { count.max(WIDE) } else { count }, T::default());
     }
     &mut array[..count]
 }
