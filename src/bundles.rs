@@ -116,3 +116,79 @@ kernels! {
         meets
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::packet::{STEP, Vectors};
+    use proptest::prelude::*;
+
+    /// A number as those in scenes are, 0 among them.
+    fn number() -> impl Strategy<Value = f64> {
+        prop_oneof![Just(0.0), Just(-0.0), -10.0..10.0, -1e6..1e6]
+    }
+
+    fn vector() -> impl Strategy<Value = DVec3> {
+        (number(), number(), number()).prop_map(|(x, y, z)| DVec3::new(x, y, z))
+    }
+
+    /// Rays from places to others, copies of the last one behind them.
+    fn rays(ways: &[(DVec3, DVec3)]) -> (Vectors<WIDE>, Vectors<WIDE>, usize) {
+        let (mut origins, mut dirs) = (Vectors::ZERO, Vectors::ZERO);
+        let count = ways.len().next_multiple_of(STEP);
+        for lane in 0..count {
+            let (from, to) = ways[lane.min(ways.len() - 1)];
+            origins.set(lane, from);
+            dirs.set(lane, (to - from).try_normalize().unwrap_or(DVec3::X));
+        }
+        (origins, dirs, count)
+    }
+
+    proptest! {
+        #[test]
+        fn a_part_one_of_whose_rays_comes_into_a_box_is_told(
+            ways in prop::collection::vec((vector(), vector()), 1..WIDE),
+            chosen in any::<prop::sample::Index>(),
+            size in (0.0..1.0, 0.0..1.0, 0.0..1.0),
+        ) {
+            let chosen = chosen.index(ways.len());
+            let (from, to) = ways[chosen];
+            prop_assume!((to - from).try_normalize().is_some());
+            let half = 0.5 * DVec3::from(size);
+            let bounds = Bounds { low: to - half, high: to + half };
+            let (origins, dirs, count) = rays(&ways);
+            for cpu in Cpu::all() {
+                let bundles = Bundles::around(cpu, Rays { origin: origins.view(count), dir: dirs.view(count) });
+                let part = 1 << (chosen / PART);
+                prop_assert!(bundles.meet(cpu, &bounds) & part != 0, "{} to {}, {}", from, to, cpu);
+                let reached = bundles.that(|ways| ways.with_slack(1e6).overlaps(&bounds));
+                prop_assert!(reached & part != 0, "{} to {} on its ways, {}", from, to, cpu);
+            }
+        }
+    }
+
+    #[test]
+    fn parts_that_go_elsewhere_are_left_out() {
+        // The first part goes up, the second one down, and there are no others.
+        let ways: Vec<_> = (0..2 * PART)
+            .map(|lane| {
+                let from = DVec3::new(0.01 * lane as f64, 0.0, 0.0);
+                (from, from + if lane < PART { DVec3::Y } else { DVec3::NEG_Y } + 0.001 * from)
+            })
+            .collect();
+        let (origins, dirs, count) = rays(&ways);
+        for cpu in Cpu::all() {
+            let bundles = Bundles::around(cpu, Rays { origin: origins.view(count), dir: dirs.view(count) });
+            let at = |x: f64, y: f64| Bounds {
+                low: DVec3::new(x, y, -1.0),
+                high: DVec3::new(x + 2.0, y + 1.0, 1.0),
+            };
+            assert_eq!(bundles.meet(cpu, &at(0.0, 5.0)), 0b01);
+            assert_eq!(bundles.meet(cpu, &at(0.0, -5.0)), 0b10);
+            assert_eq!(bundles.meet(cpu, &at(0.0, -0.5)), 0b11);
+            assert_eq!(bundles.meet(cpu, &at(9.0, 5.0)), 0);
+            assert_eq!(bundles.that(|ways| ways.high.y == f64::INFINITY), 0b01);
+            assert_eq!(bundles.that(|ways| ways.high.y > -0.5), 0b11);
+        }
+    }
+}

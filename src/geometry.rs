@@ -121,7 +121,7 @@ pub trait Hittable: Send + Sync {
         None
     }
 
-    /// Whether no part of it lies in a region. A shape without bounds may know better.
+    /// Whether no part of it lies in a region, which may be without an end. A shape without bounds may know better.
     fn is_clear_of(&self, region: &Bounds) -> bool {
         self.bounds().is_some_and(|bounds| !bounds.overlaps(region))
     }

@@ -31,8 +31,10 @@ impl Tried<'_> {
 
     pub fn is_held(&self, at: DVec3) -> Result<(), Fault> {
         let around = Bounds { low: at - STRIDE, high: at + STRIDE };
-        if self.shape.is_clear_of(&around) {
-            let found = format!("it says that it is clear of {around:?}, and is hit at {at}");
+        let (up, down) =
+            (Bounds { high: DVec3::INFINITY, ..around }, Bounds { low: DVec3::NEG_INFINITY, ..around });
+        if let Some(region) = [around, up, down].iter().find(|region| self.shape.is_clear_of(region)) {
+            let found = format!("it says that it is clear of {region:?}, and is hit at {at}");
             return Err(Promise::BoundsHoldHits.fault(found));
         }
         match self.shape.bounds() {

@@ -3,6 +3,7 @@
 use super::{DOWN_Z, Random, distance, holds, refusal, shape, text, words};
 use crate::common::model;
 use glam::{DVec3, dvec3};
+use tabray::bounds::Bounds;
 use tabray::geometry::{MISS, Ray};
 use tabray::trace;
 
@@ -54,6 +55,18 @@ fn rays_along_any_plane_miss_it() {
         assert_eq!(hit, MISS, "normal {normal}, eye {eye}, along {dir}");
     }
     assert!(naive_hits * 5 > parallel, "{naive_hits} of {parallel}");
+}
+
+/// Most rays that leave a surface lead away from most planes, and those are not looked at.
+#[test]
+fn ways_without_an_end_are_clear_of_the_planes_that_they_lead_away_from() {
+    let up_from = |height: f64| Bounds { low: dvec3(-4.0, height, -9.0), high: DVec3::INFINITY };
+    let floor = shape(&plane(DVec3::Y, DVec3::ZERO));
+    assert!(floor.is_clear_of(&up_from(0.1)) && !floor.is_clear_of(&up_from(0.0)));
+    assert!(!floor.is_clear_of(&Bounds { low: DVec3::NEG_INFINITY, high: DVec3::INFINITY }));
+    let slope = shape(&plane(dvec3(0.0, 1.0, 1.0), DVec3::ZERO));
+    assert!(slope.is_clear_of(&up_from(9.1)) && !slope.is_clear_of(&up_from(8.9)));
+    assert!(!slope.is_clear_of(&Bounds { low: dvec3(0.0, 9.1, f64::NEG_INFINITY), high: DVec3::INFINITY }));
 }
 
 /// F08: `h_z > 0`, without room for rounding, drops pixels of a plane that lies in the screen.
