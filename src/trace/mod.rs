@@ -182,3 +182,44 @@ impl<'m, 'w, W: Watch> Tracer<'m, 'w, W> {
         self.rooms.levels.push(level);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::registry::Registry;
+    use crate::scene;
+    use std::path::Path;
+
+    const SCENE: &[u8] = b"camera eye { pixeldim 8 6 worlddim 8 6 viewpoint 4 3 7 }
+        material matt { diffuse 3 2 1 }
+        light lamp { location 4 5 -3 emissivity 2 2 2 }
+        plane floor { material matt normal 0 1 0 point 0 0 0 }
+        sphere ball { material matt center 4 1 -3 radius 1 }";
+
+    /// What rays along the scene's lowest row of pixels see that may cost so many rays each.
+    fn seen(model: &Model, pixels: &[usize], budgets: &[u32]) -> Vec<Rgb> {
+        let (mut x, mut y) = ([0.0; WIDE], [0.0; WIDE]);
+        for (lane, column) in pixels.iter().enumerate() {
+            (x[lane], y[lane]) = (*column as f64, 0.0);
+        }
+        let (mut rooms, mut nobody) = (Rooms::default(), ());
+        let (mut group, mut colours) = (Group::default(), Vectors::default());
+        group.look(Cpu::best(), &model.camera.value, &mut x, &mut y, pixels.len());
+        group.budget[..budgets.len()].copy_from_slice(budgets);
+        Tracer::new(model, Cpu::best(), &mut rooms, &mut nobody).colours(&mut group, &mut colours);
+        (0..pixels.len()).map(|lane| colours.get(lane)).collect()
+    }
+
+    #[test]
+    fn what_a_ray_sees_does_not_depend_on_what_others_may_cost() {
+        let registry = Registry::get().expect("sound types");
+        let model = scene::read(registry, "scene", Path::new(""), SCENE, None).expect("a sound scene").model;
+        let pixels: Vec<_> = (0..8).collect();
+        for budgets in [[1; 8], [9; 8], [9, 1, 9, 9, 1, 9, 9, 9], [1, 9, 1, 1, 9, 1, 1, 0]] {
+            let alone =
+                pixels.iter().zip(budgets).map(|(pixel, budget)| seen(&model, &[*pixel], &[budget])[0]);
+            assert_eq!(seen(&model, &pixels, &budgets), alone.collect::<Vec<_>>(), "{budgets:?}");
+        }
+        assert!(seen(&model, &[0], &[1])[0] != Rgb::ZERO, "without a ray to the light it shines");
+    }
+}
