@@ -1,6 +1,7 @@
 //! The decisions as text.
 
 use super::{Plan, TREE};
+use crate::accuracy::Accuracy;
 use crate::camera::Camera;
 use crate::material::Rgb;
 use crate::model::{Item, Model, Object};
@@ -125,7 +126,10 @@ fn textures(model: &Model) -> Vec<String> {
 fn search(model: &Model, plan: &Plan) -> String {
     let bounded = model.objects.len() - plan.unbounded.len();
     let listed = plan.unbounded.len() + plan.bounded.len();
-    let by_one = "a packet of rays passes those with bounds over that are not in its way";
+    let by_one = match model.camera.value.accuracy {
+        Accuracy::Classic => "every ray is tested against each",
+        _ => "a packet of rays passes those over that are not in its way",
+    };
     match (&plan.tree, bounded) {
         (Some(tree), _) => {
             let rest =
@@ -136,7 +140,7 @@ fn search(model: &Model, plan: &Plan) -> String {
             )
         }
         (None, 0) => format!(
-            "a list of {}: none has bounds, and every ray is tested against each",
+            "a list of {}: none has bounds; {by_one}",
             count(listed, "object")
         ),
         (None, _) => format!(
