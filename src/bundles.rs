@@ -67,9 +67,9 @@ impl Bundles {
         Bounds { low: DVec3::new(low(0), low(1), low(2)), high: DVec3::new(high(0), high(1), high(2)) }
     }
 
-    /// The parts of which a ray may come into a box, likewise. Never wrong where it says no.
-    pub fn meet(&self, cpu: Cpu, bounds: &Bounds) -> u32 {
-        meet(cpu, self, &bounds.with_slack(self.reach)) & self.parts
+    /// The parts of which a ray may come into each of some boxes, likewise. Never wrong where it says no.
+    pub fn meet(&self, cpu: Cpu, boxes: &[(usize, Bounds)], parts: &mut [u32]) {
+        meet(cpu, self, boxes, parts);
     }
 }
 
@@ -95,25 +95,28 @@ kernels! {
         bundles
     }
 
-    fn meet(bundles: &Bundles, bounds: &Bounds) -> u32 {
-        let (mut enters, mut leaves) = ([0.0; PARTS], [f64::INFINITY; PARTS]);
-        for axis in 0..3 {
-            let (low, high) = (bounds.low[axis], bounds.high[axis]);
-            for part in 0..PARTS {
-                // How far the way is to the box's near and far walls, from where it is shortest and longest.
-                let (up, down) = (low - bundles.high[axis][part], high - bundles.low[axis][part]);
-                enters[part] = larger(up * bundles.up[axis][part], enters[part]);
-                enters[part] = larger(down * bundles.down[axis][part], enters[part]);
-                leaves[part] = smaller(down * bundles.out_down[axis][part], leaves[part]);
-                leaves[part] = smaller(up * bundles.out_up[axis][part], leaves[part]);
+    fn meet(bundles: &Bundles, boxes: &[(usize, Bounds)], parts: &mut [u32]) {
+        for ((_, bounds), parts) in boxes.iter().zip(parts) {
+            let bounds = bounds.with_slack(bundles.reach);
+            let (mut enters, mut leaves) = ([0.0; PARTS], [f64::INFINITY; PARTS]);
+            for axis in 0..3 {
+                let (low, high) = (bounds.low[axis], bounds.high[axis]);
+                for part in 0..PARTS {
+                    // How far the way is to the box's near and far walls, from where it is shortest and longest.
+                    let (up, down) = (low - bundles.high[axis][part], high - bundles.low[axis][part]);
+                    enters[part] = larger(up * bundles.up[axis][part], enters[part]);
+                    enters[part] = larger(down * bundles.down[axis][part], enters[part]);
+                    leaves[part] = smaller(down * bundles.out_down[axis][part], leaves[part]);
+                    leaves[part] = smaller(up * bundles.out_up[axis][part], leaves[part]);
+                }
             }
+            *parts = 0;
+            for part in 0..PARTS {
+                let may = (enters[part] <= leaves[part] * (1.0 + SLACK)) & (enters[part] < f64::INFINITY);
+                *parts |= u32::from(may) << part;
+            }
+            *parts &= bundles.parts;
         }
-        let mut meets = 0;
-        for part in 0..PARTS {
-            let may = (enters[part] <= leaves[part] * (1.0 + SLACK)) & (enters[part] < f64::INFINITY);
-            meets |= u32::from(may) << part;
-        }
-        meets
     }
 }
 
@@ -159,8 +162,9 @@ mod tests {
             let (origins, dirs, count) = rays(&ways);
             for cpu in Cpu::all() {
                 let bundles = Bundles::around(cpu, Rays { origin: origins.view(count), dir: dirs.view(count) });
-                let part = 1 << (chosen / PART);
-                prop_assert!(bundles.meet(cpu, &bounds) & part != 0, "{} to {}, {}", from, to, cpu);
+                let (part, mut met) = (1 << (chosen / PART), [0]);
+                bundles.meet(cpu, &[(0, bounds)], &mut met);
+                prop_assert!(met[0] & part != 0, "{} to {}, {}", from, to, cpu);
                 let reached = bundles.that(|ways| ways.with_slack(1e6).overlaps(&bounds));
                 prop_assert!(reached & part != 0, "{} to {} on its ways, {}", from, to, cpu);
             }
@@ -183,10 +187,9 @@ mod tests {
                 low: DVec3::new(x, y, -1.0),
                 high: DVec3::new(x + 2.0, y + 1.0, 1.0),
             };
-            assert_eq!(bundles.meet(cpu, &at(0.0, 5.0)), 0b01);
-            assert_eq!(bundles.meet(cpu, &at(0.0, -5.0)), 0b10);
-            assert_eq!(bundles.meet(cpu, &at(0.0, -0.5)), 0b11);
-            assert_eq!(bundles.meet(cpu, &at(9.0, 5.0)), 0);
+            let (boxes, mut met) = ([at(0.0, 5.0), at(0.0, -5.0), at(0.0, -0.5), at(9.0, 5.0)], [9; 4]);
+            bundles.meet(cpu, &boxes.map(|bounds| (0, bounds)), &mut met);
+            assert_eq!(met, [0b01, 0b10, 0b11, 0]);
             assert_eq!(bundles.that(|ways| ways.high.y == f64::INFINITY), 0b01);
             assert_eq!(bundles.that(|ways| ways.high.y > -0.5), 0b11);
         }

@@ -226,19 +226,22 @@ pub trait Shader: Send + Sync {
         material.specular
     }
 
-    /// What [`ambient`](Self::ambient) gives at many points.
-    fn ambients(&self, cpu: Cpu, material: &Material, points: View, out: ViewMut) {
-        packet::ambients(cpu, self, material, points, out);
+    /// What [`ambient`](Self::ambient) and [`specular`](Self::specular) give at many points; tells whether any of the
+    /// second is not 0.
+    fn unlit(
+        &self,
+        cpu: Cpu,
+        material: &Material,
+        points: View,
+        ambients: ViewMut,
+        speculars: ViewMut,
+    ) -> bool {
+        packet::unlit(cpu, self, material, points, ambients, speculars)
     }
 
     /// What [`diffuse`](Self::diffuse) gives at many points; tells whether any is not 0.
     fn diffuses(&self, cpu: Cpu, material: &Material, points: View, out: ViewMut) -> bool {
         packet::diffuses(cpu, self, material, points, out)
-    }
-
-    /// What [`specular`](Self::specular) gives at many points; tells whether any is not 0.
-    fn speculars(&self, cpu: Cpu, material: &Material, points: View, out: ViewMut) -> bool {
-        packet::speculars(cpu, self, material, points, out)
     }
 }
 

@@ -264,13 +264,19 @@ kernels! {
         }
     }
 
-    /// The reflectivities at points of a surface.
-    pub(crate) fn ambients[T: Shader](shader: &T, material: &Material, points: View) => out {
-        let count = points.len();
-        let mut out = out.first(count);
+    /// The reflectivities at points of a surface: for light from nowhere in particular, and as a mirror. Tells whether
+    /// any of those is not 0.
+    pub(crate) fn unlit[T: Shader](shader: &T, material: &Material, points: View) => ambients, speculars -> bool {
+        let (count, mut any) = (points.len(), 0);
+        let (mut ambients, mut speculars) = (ambients.first(count), speculars.first(count));
         for lane in 0..count {
-            out.set(lane, shader.ambient(material, points.get(lane)));
+            let point = points.get(lane);
+            let specular = shader.specular(material, point);
+            ambients.set(lane, shader.ambient(material, point));
+            speculars.set(lane, specular);
+            any |= is_any(specular);
         }
+        any != 0
     }
 
     /// Likewise for light from the scene's lights. Tells whether any is not 0.
@@ -281,18 +287,6 @@ kernels! {
             let diffuse = shader.diffuse(material, points.get(lane));
             out.set(lane, diffuse);
             any |= is_any(diffuse);
-        }
-        any != 0
-    }
-
-    /// Likewise as a mirror. Tells whether any is not 0.
-    pub(crate) fn speculars[T: Shader](shader: &T, material: &Material, points: View) => out -> bool {
-        let (count, mut any) = (points.len(), 0);
-        let mut out = out.first(count);
-        for lane in 0..count {
-            let specular = shader.specular(material, points.get(lane));
-            out.set(lane, specular);
-            any |= is_any(specular);
         }
         any != 0
     }

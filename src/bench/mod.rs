@@ -196,8 +196,20 @@ impl Shader for Matt {
         Rgb::ZERO
     }
 
-    fn ambients(&self, cpu: Cpu, material: &Material, points: View, out: ViewMut) {
-        self.0.ambients(cpu, material, points, out);
+    fn unlit(
+        &self,
+        cpu: Cpu,
+        material: &Material,
+        points: View,
+        ambients: ViewMut,
+        mut speculars: ViewMut,
+    ) -> bool {
+        let count = points.len();
+        self.0.unlit(cpu, material, points, ambients, speculars.first(count));
+        for channel in [speculars.x, speculars.y, speculars.z] {
+            channel.fill(0.0);
+        }
+        false
     }
 
     fn diffuses(&self, cpu: Cpu, material: &Material, points: View, out: ViewMut) -> bool {

@@ -55,9 +55,8 @@ pub fn shader(shader: &dyn Shader, at: DVec3) -> Result<(), Fault> {
     for cpu in Cpu::all() {
         let mut many = [const { Vectors::<STEP>::ZERO }; 3];
         let [ambient, diffuse, specular] = &mut many;
-        shader.ambients(cpu, &material, points.view(STEP), ambient.view_mut(STEP));
+        shader.unlit(cpu, &material, points.view(STEP), ambient.view_mut(STEP), specular.view_mut(STEP));
         shader.diffuses(cpu, &material, points.view(STEP), diffuse.view_mut(STEP));
-        shader.speculars(cpu, &material, points.view(STEP), specular.view_mut(STEP));
         let many = many.map(|colours| colours.get(STEP - 1));
         if !many.iter().zip(&one).all(|(many, one)| same_bits(*many, *one)) {
             return Err(Promise::PacketsAgree.fault(format!("{many:?} in packets ({cpu}), {one:?} at {at}")));

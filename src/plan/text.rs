@@ -139,10 +139,7 @@ fn search(model: &Model, plan: &Plan) -> String {
                 tree.size()
             )
         }
-        (None, 0) => format!(
-            "a list of {}: none has bounds; {by_one}",
-            count(listed, "object")
-        ),
+        (None, 0) => format!("a list of {}: none has bounds; {by_one}", count(listed, "object")),
         (None, _) => format!(
             "a list of {}, {bounded} with bounds: a tree pays from {TREE} on; {by_one}",
             count(listed, "object")

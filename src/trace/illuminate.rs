@@ -25,6 +25,7 @@ pub(super) struct Lighting {
     ends: Vec<f64>,
     emissivity: Vectors,
     shines: Vec<u64>,
+    blocked: Vec<u64>,
     shadows: Shadows,
 }
 
@@ -68,7 +69,8 @@ impl<W: Watch> Tracer<'_, '_, W> {
         let (cpu, count) = (self.cpu, group.padded());
         let light = &*self.model.lights[index].value;
         let material = &self.model.objects[surface.index].material;
-        let Lighting { diffuse, lights, toward, falloffs, ends, emissivity, shines, shadows } = lighting;
+        let Lighting { diffuse, lights, toward, falloffs, ends, emissivity, shines, blocked, shadows } =
+            lighting;
         let (points, normals) = (surface.points.view(count), surface.normals.view(count));
         let is_point = light.size() == 0.0;
         let source = if is_point {
@@ -78,7 +80,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
             bounds::around(cpu, lights.view(count))
         };
         let lights = (!is_point).then(|| lights.view(count));
-        let (ends, shines) = (room(ends, count), room(shines, count));
+        let (ends, shines, blocked) = (room(ends, count), room(shines, count), room(blocked, count));
         let facing = Facing {
             toward: toward.room(count),
             emissivity: emissivity.room(count),
@@ -104,8 +106,9 @@ impl<W: Watch> Tracer<'_, '_, W> {
                 return;
             }
             tint = passed;
+            blocked.fill(0);
         } else {
-            self.shadow(group, surface, &ways, ends, shadows, shines);
+            self.shadow(group, surface, &ways, ends, shadows, blocked);
         }
         let lit = Lit {
             toward: toward.view(count),
@@ -113,6 +116,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
             normals,
             falloffs: &falloffs[..count],
             shines,
+            blocked,
             diffuse: diffuse.view(count),
             specular: surface.specular.view(count),
             emissivity: emissivity.view(count),

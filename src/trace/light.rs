@@ -15,6 +15,8 @@ pub(super) struct Lit<'l> {
     pub falloffs: &'l [f64],
     /// 0 where no light comes.
     pub shines: &'l [u64],
+    /// 1 where something stands in its way.
+    pub blocked: &'l [u64],
     pub diffuse: View<'l>,
     pub specular: View<'l>,
     pub emissivity: View<'l>,
@@ -122,7 +124,7 @@ fn shine_all(lit: &Lit, glint: Option<impl Fn(f64) -> f64>, colours: ViewMut) {
         (lit.toward.first(count), lit.looks.first(count), lit.normals.first(count));
     let (diffuse, specular) = (lit.diffuse.first(count), lit.specular.first(count));
     let emissivity = lit.emissivity.first(count);
-    let (falloffs, shines) = (&lit.falloffs[..count], &lit.shines[..count]);
+    let (falloffs, shines, blocked) = (&lit.falloffs[..count], &lit.shines[..count], &lit.blocked[..count]);
     for lane in 0..count {
         let light = emissivity.get(lane);
         let mut colour = diffuse.get(lane) * light * falloffs[lane];
@@ -131,6 +133,7 @@ fn shine_all(lit: &Lit, glint: Option<impl Fn(f64) -> f64>, colours: ViewMut) {
             colour += light * specular.get(lane) * glint(half.dot(normals.get(lane)));
         }
         let before = colours.get(lane);
-        colours.set(lane, if shines[lane] != 0 { before + colour } else { before });
+        let is_lit = (shines[lane] != 0) & (blocked[lane] != 1);
+        colours.set(lane, if is_lit { before + colour } else { before });
     }
 }

@@ -25,6 +25,8 @@ pub(crate) struct Rooms {
     /// For what is over before any go on.
     pub(super) lighting: Option<Box<Lighting>>,
     pub(super) doubt: Vec<u64>,
+    /// For each object that is listed with its bounds.
+    pub(super) parts: Vec<u32>,
     /// For the way through a tree.
     pub(super) ahead: Vec<usize>,
     pub(super) inverse: Vectors,

@@ -213,9 +213,12 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
             let shape = &*self.tracer.model.objects[*index].shape;
             self.some(*index, bundles.that(|ways| !shape.is_clear_of(ways)));
         }
-        for (index, bounds) in &plan.bounded {
-            self.some(*index, bundles.meet(cpu, bounds));
+        let mut parts = take(&mut self.tracer.rooms.parts);
+        bundles.meet(cpu, &plan.bounded, room(&mut parts, plan.bounded.len()));
+        for ((index, _), parts) in plan.bounded.iter().zip(&parts) {
+            self.some(*index, *parts);
         }
+        self.tracer.rooms.parts = parts;
     }
 
     /// Looks at an object for some parts of the packet, which are the bits that are 1.

@@ -69,11 +69,11 @@ impl<W: Watch> Tracer<'_, '_, W> {
         let (normals, sides) = (surface.normals.room(count), room(&mut surface.sides, count));
         light::face(cpu, group.dir.view(count), shape.is_two_sided(), sides, normals);
 
-        shader.ambients(cpu, material, points, colours.room(count));
+        surface.is_mirror =
+            shader.unlit(cpu, material, points, colours.room(count), surface.specular.room(count));
         if W::SEES {
             self.watch.see(Event::Surface { normal: surface.normals.get(0), ambient: colours.get(0) });
         }
-        surface.is_mirror = shader.speculars(cpu, material, points, surface.specular.room(count));
         self.illuminate(group, surface, colours);
         light::fade(cpu, &surface.travelled[..count], colours.room(count));
         if W::SEES {

@@ -30,15 +30,18 @@ impl<'w> Ways<'w> {
     }
 }
 
+/// Of a way that need not be gone, which nothing blocks.
+const NOT_GONE: u64 = 2;
+
 /// Room for the shadows of a packet.
 #[derive(Default)]
 pub(super) struct Shadows {
-    blocked: Vec<u64>,
     /// Those that remain of a packet.
     lanes: Vec<u8>,
     origin: Vectors,
     dir: Vectors,
     their_ends: Vec<f64>,
+    their_blocked: Vec<u64>,
     sides: Vec<Side>,
 }
 
@@ -52,7 +55,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
         }
     }
 
-    /// Takes the light away (0 in `shines`) where an object stands in its way, in a scene without glass.
+    /// Marks the places (1 in `blocked`) from which an object stands in the way of the light, in a scene without glass.
     pub(super) fn shadow(
         &mut self,
         group: &mut Group,
@@ -60,11 +63,10 @@ impl<W: Watch> Tracer<'_, '_, W> {
         ways: &Ways,
         ends: &mut [f64],
         shadows: &mut Shadows,
-        shines: &mut [u64],
+        blocked: &mut [u64],
     ) {
         let (cpu, count) = (self.cpu, group.padded());
-        let Shadows { blocked, lanes, origin, dir, their_ends, sides } = shadows;
-        let blocked = room(blocked, count);
+        let Shadows { lanes, origin, dir, their_ends, their_blocked, sides } = shadows;
         // A ray that has cost as many as it may finds nothing in the way.
         let len = set_out(cpu, group.len, &mut group.budget[..count], ends, blocked);
         if len == 0 {
@@ -76,7 +78,6 @@ impl<W: Watch> Tracer<'_, '_, W> {
             let sides = &surface.sides[..count];
             let leaving = Leaving { rays, len: group.len, ends, object: surface.index, sides };
             self.block(&leaving, &ways.from, &ways.to, blocked);
-            darken(cpu, blocked, ends, shines);
             return;
         }
         lanes.clear();
@@ -86,37 +87,28 @@ impl<W: Watch> Tracer<'_, '_, W> {
         dir.pick(ways.toward, lanes, count);
         pick(their_ends, ends, lanes, count);
         pick(sides, &surface.sides, lanes, count);
-        let blocked = &mut blocked[..count];
-        blocked.fill(0);
+        let theirs = room(their_blocked, count);
+        theirs.fill(0);
         let rays = Rays { origin: origin.view(count), dir: dir.view(count) };
         let (ends, sides) = (&their_ends[..count], &sides[..count]);
         let leaving = Leaving { rays, len, ends, object: surface.index, sides };
-        self.block(&leaving, &ways.from, &ways.to, blocked);
-        for (lane, blocked) in lanes.iter().zip(blocked) {
-            shines[usize::from(*lane)] &= u64::from(*blocked == 0);
+        self.block(&leaving, &ways.from, &ways.to, theirs);
+        for (lane, is_blocked) in lanes.iter().zip(theirs) {
+            blocked[usize::from(*lane)] = *is_blocked;
         }
     }
 }
 
 kernels! {
-    /// Takes the light away where it is blocked on a way that had to be gone.
-    fn darken(blocked: &[u64], ends: &[f64], shines: &mut [u64]) {
-        let count = blocked.len();
-        let (ends, shines) = (&ends[..count], &mut shines[..count]);
-        for lane in 0..count {
-            shines[lane] &= u64::from((blocked[lane] == 0) | (ends[lane] == 0.0));
-        }
-    }
-
     /// Counts a ray for each way to a light. Those of rays that have cost as many as they may need not be gone. What need
-    /// not is blocked; tells how many of the first `len` are left.
+    /// not is marked with [`NOT_GONE`]; tells how many of the first `len` are left.
     fn set_out(len: usize, budget: &mut [u32], ends: &mut [f64], blocked: &mut [u64]) -> usize {
         let (count, mut left) = (ends.len(), 0);
         let (budget, blocked) = (&mut budget[..count], &mut blocked[..count]);
         for lane in 0..count {
             let goes = (ends[lane] > 0.0) & (budget[lane] > 0);
             ends[lane] = if goes { ends[lane] } else { 0.0 };
-            blocked[lane] = u64::from(!goes);
+            blocked[lane] = if goes { 0 } else { NOT_GONE };
             budget[lane] -= u32::from(goes);
             left += u64::from(goes & (lane < len));
         }
