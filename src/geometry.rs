@@ -4,6 +4,7 @@ use crate::bounds::Bounds;
 use crate::certify::Enclosure;
 use crate::cpu::Cpu;
 use crate::facing::{self, Facing, Places};
+use crate::landing::{self, Landing};
 use crate::material::{Material, Rgb};
 use crate::packet::{self, Nearest, Rays, View, ViewMut};
 use crate::roots::Method;
@@ -201,9 +202,10 @@ pub trait Hittable: Send + Sync {
         packet::distances(cpu, self, rays, sides, out);
     }
 
-    /// The normals at many points.
-    fn normals(&self, cpu: Cpu, points: View, out: ViewMut) {
-        packet::normals(cpu, self, points, out);
+    /// Where the rays of a packet come to it after these distances, and its normals there.
+    fn land(&self, cpu: Cpu, rays: Rays, distances: &[f64], landing: Landing) {
+        let Landing { points, normals, sides, travelled } = landing;
+        landing::land(cpu, self, rays, distances, sides, travelled, points, normals);
     }
 }
 

@@ -39,6 +39,7 @@ pub mod geometry;
 pub mod grammar;
 pub mod implicit;
 pub mod interval;
+pub mod landing;
 pub mod material;
 pub mod model;
 pub mod number;

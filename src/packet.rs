@@ -110,6 +110,12 @@ pub struct ViewMut<'v> {
 }
 
 impl ViewMut<'_> {
+    /// As they are, to be read.
+    #[inline(always)]
+    pub fn view(&self) -> View<'_> {
+        View { x: self.x, y: self.y, z: self.z }
+    }
+
     /// The first of them, so many.
     #[inline(always)]
     pub fn first(&mut self, count: usize) -> ViewMut<'_> {
@@ -252,15 +258,6 @@ kernels! {
             Some(sides) => for lane in 0..count {
                 out[lane] = shape.quick_distance(&rays.get(lane), &Span { leaves: Some(sides[lane]), ..Span::RAY });
             },
-        }
-    }
-
-    /// The normals of a shape at points of it.
-    pub(crate) fn normals[T: Hittable](shape: &T, points: View) => out {
-        let count = points.len();
-        let mut out = out.first(count);
-        for lane in 0..count {
-            out.set(lane, shape.normal(points.get(lane)));
         }
     }
 

@@ -5,7 +5,8 @@ use super::looks::{same_bits, shader};
 use super::promise::{Fault, Promise};
 use crate::certify::Enclosure;
 use crate::cpu::Cpu;
-use crate::geometry::{Hittable, MISS, Ray, Span};
+use crate::geometry::{Hittable, MISS, Ray, Side, Span};
+use crate::landing::Landing;
 use crate::model::Object;
 use crate::packet::{Nearest, Rays, STEP, Vectors};
 use crate::value::Datum;
@@ -155,9 +156,8 @@ impl Tried<'_> {
         if !quick.is_nan() && quick.to_bits() != distance.to_bits() {
             return fault(format!("`distance` gives {distance}, and `quick_distance` {quick}"));
         }
-        let at = ray.at(if distance == MISS { 1.0 } else { distance });
         let lanes = |of: DVec3| Vectors::<STEP> { x: [of.x; STEP], y: [of.y; STEP], z: [of.z; STEP] };
-        let (origin, dir, points) = (lanes(ray.origin), lanes(ray.dir), lanes(at));
+        let (origin, dir) = (lanes(ray.origin), lanes(ray.dir));
         for cpu in Cpu::all() {
             let rays = Rays { origin: origin.view(STEP), dir: dir.view(STEP) };
             let (mut near, mut far) = ([MISS; STEP], [MISS; STEP]);
@@ -181,12 +181,25 @@ impl Tried<'_> {
                     ));
                 }
             }
-            let mut normals = Vectors::<STEP>::ZERO;
             if distance != MISS {
-                shape.normals(cpu, points.view(STEP), normals.view_mut(STEP));
-                let (one, many) = (shape.normal(at), normals.get(0));
+                let (mut points, mut normals) = (Vectors::<STEP>::ZERO, Vectors::<STEP>::ZERO);
+                let (mut sides, mut travelled) = ([Side::Inside; STEP], [1.0; STEP]);
+                let landing = Landing {
+                    points: points.view_mut(STEP),
+                    normals: normals.view_mut(STEP),
+                    sides: &mut sides,
+                    travelled: &mut travelled,
+                };
+                shape.land(cpu, rays, &[distance; STEP], landing);
+                let (at, normal) = (ray.at(distance), shape.normal(ray.at(distance)));
+                let side = Side::seen_along(ray.dir, normal);
+                let turned = shape.is_two_sided() && side == Side::Inside;
+                let (one, many) = (if turned { -normal } else { normal }, normals.get(0));
                 if !same_bits(one, many) && one.is_finite() {
                     return fault(format!("the normal {one} in single rays, and {many} in packets ({cpu})"));
+                }
+                if !same_bits(at, points.get(0)) || sides[0] != side || travelled[0] != 1.0 + distance {
+                    return fault(format!("`land` comes to {} in place of {at} ({cpu})", points.get(0)));
                 }
             }
         }

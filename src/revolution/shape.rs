@@ -7,7 +7,8 @@ use crate::certify::{self, Enclosure};
 use crate::cpu::Cpu;
 use crate::frame::Frame;
 use crate::geometry::{Hittable, Ray, Side, Span};
-use crate::packet::{self, Nearest, Rays, View, ViewMut};
+use crate::landing::{self, Landing};
+use crate::packet::{self, Nearest, Rays};
 use crate::roots::Method;
 use glam::DVec3;
 use std::ops::Range;
@@ -117,7 +118,11 @@ impl Hittable for InFrame<Revolution> {
         self.surface.roots(cpu, &self.frame, rays, brackets, out);
     }
 
-    fn normals(&self, cpu: Cpu, points: View, out: ViewMut) {
-        self.surface.normals(cpu, &self.frame, points, out);
+    fn land(&self, cpu: Cpu, rays: Rays, distances: &[f64], landing: Landing) {
+        let Landing { mut points, mut normals, sides, travelled } = landing;
+        let count = travelled.len();
+        landing::arrive(cpu, rays, distances, travelled, points.first(count));
+        self.surface.normals(cpu, &self.frame, points.view(), normals.first(count));
+        landing::face(cpu, rays.dir, self.is_two_sided(), sides, normals);
     }
 }

@@ -1,8 +1,7 @@
 //! The arithmetic of shading, for all places of a packet at once.
 
 use crate::cpu::kernels;
-use crate::geometry::Side;
-use crate::packet::{Rays, View, ViewMut, is_any};
+use crate::packet::{View, ViewMut, is_any};
 
 /// Places that a light shines on.
 pub(super) struct Lit<'l> {
@@ -23,28 +22,6 @@ pub(super) struct Lit<'l> {
 }
 
 kernels! {
-    /// Where rays come after these distances, and how far their light has then travelled.
-    pub(super) fn arrive(rays: Rays, distances: &[f64], travelled: &mut [f64]) => points {
-        let count = travelled.len();
-        let (rays, distances, mut points) = (rays.first(count), &distances[..count], points.first(count));
-        for lane in 0..count {
-            points.set(lane, rays.get(lane).at(distances[lane]));
-            travelled[lane] += distances[lane];
-        }
-    }
-
-    /// The sides that rays come to, and the normals turned there if both sides are lit.
-    pub(super) fn face(dir: View, is_two_sided: bool, sides: &mut [Side]) => normals {
-        let count = sides.len();
-        let (dir, mut normals) = (dir.first(count), normals.first(count));
-        for lane in 0..count {
-            let normal = normals.get(lane);
-            let side = Side::seen_along(dir.get(lane), normal);
-            sides[lane] = side;
-            normals.set(lane, if is_two_sided & (side == Side::Inside) { -normal } else { normal });
-        }
-    }
-
     /// Adds the light that comes to places, where it does.
     pub(super) fn shine(lit: &Lit, shininess: f64) => colours {
         let colours = colours.first(lit.shines.len());

@@ -5,6 +5,7 @@ use super::light;
 use super::room::{Vectors, list, room};
 use super::{DEEP, MAX_DIST, NARROW, Tracer};
 use crate::geometry::Side;
+use crate::landing::Landing;
 use crate::model::Object;
 use crate::packet::WIDE;
 use crate::watch::{Count, Event, Hit, Kind, Purpose, Reason, Watch};
@@ -63,12 +64,14 @@ impl<W: Watch> Tracer<'_, '_, W> {
         surface.index = index;
         let travelled = room(&mut surface.travelled, count);
         travelled.copy_from_slice(&group.travelled[..count]);
-        light::arrive(cpu, group.rays(), distances, travelled, surface.points.room(count));
+        let landing = Landing {
+            points: surface.points.room(count),
+            normals: surface.normals.room(count),
+            sides: room(&mut surface.sides, count),
+            travelled,
+        };
+        shape.land(cpu, group.rays(), distances, landing);
         let points = surface.points.view(count);
-        shape.normals(cpu, points, surface.normals.room(count));
-        let (normals, sides) = (surface.normals.room(count), room(&mut surface.sides, count));
-        light::face(cpu, group.dir.view(count), shape.is_two_sided(), sides, normals);
-
         surface.is_mirror =
             shader.unlit(cpu, material, points, colours.room(count), surface.specular.room(count));
         if W::SEES {
