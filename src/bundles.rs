@@ -76,21 +76,30 @@ impl Bundles {
 kernels! {
     fn around(rays: Rays) -> Bundles {
         let (mut bundles, count) = (Bundles::NONE, rays.len());
+        let (mut least, mut greatest) = ([[0.0; PARTS]; 3], [[0.0; PARTS]; 3]);
         for (part, start) in (0..count).step_by(PART).enumerate() {
             let some = rays.part(start..count.min(start + PART));
             let (origin, dir) = (some.origin, some.dir);
             for (axis, (from, to)) in [(origin.x, dir.x), (origin.y, dir.y), (origin.z, dir.z)].into_iter().enumerate() {
-                let ((low, high), (least, greatest)) = (range(from), range(to));
-                bundles.low[axis][part] = low;
-                bundles.high[axis][part] = high;
-                // No box is ever reached by a way that leads away from it.
-                bundles.up[axis][part] = if greatest > 0.0 { smaller(1.0 / greatest, f64::MAX) } else { f64::INFINITY };
-                bundles.down[axis][part] = if least < 0.0 { larger(1.0 / least, f64::MIN) } else { f64::NEG_INFINITY };
-                bundles.out_up[axis][part] = if greatest < 0.0 { 1.0 / greatest } else { f64::NAN };
-                bundles.out_down[axis][part] = if least > 0.0 { 1.0 / least } else { f64::NAN };
-                bundles.reach = larger(larger(low.abs(), high.abs()), bundles.reach);
+                (bundles.low[axis][part], bundles.high[axis][part]) = range(from);
+                (least[axis][part], greatest[axis][part]) = range(to);
             }
             bundles.parts |= 1 << part;
+        }
+        for axis in 0..3 {
+            for part in 0..PARTS {
+                let (least, greatest) = (least[axis][part], greatest[axis][part]);
+                let (down, up) = (1.0 / least, 1.0 / greatest);
+                // No box is ever reached by a way that leads away from it.
+                bundles.up[axis][part] = if greatest > 0.0 { smaller(up, f64::MAX) } else { f64::INFINITY };
+                bundles.down[axis][part] = if least < 0.0 { larger(down, f64::MIN) } else { f64::NEG_INFINITY };
+                bundles.out_up[axis][part] = if greatest < 0.0 { up } else { f64::NAN };
+                bundles.out_down[axis][part] = if least > 0.0 { down } else { f64::NAN };
+            }
+            for part in 0..PARTS {
+                let farthest = larger(bundles.low[axis][part].abs(), bundles.high[axis][part].abs());
+                bundles.reach = larger(farthest, bundles.reach);
+            }
         }
         bundles
     }
