@@ -28,8 +28,10 @@ kernels! {
         let whole = shininess as u32;
         if shininess == 0.0 {
             shine_all(lit, None::<fn(f64) -> f64>, colours);
-        } else if f64::from(whole) == shininess && whole <= MOST_MULTIPLIED {
-            shine_all(lit, Some(|cos| whole_power(cos, whole)), colours);
+        } else if f64::from(whole) == shininess && whole < 1 << 8 {
+            shine_all(lit, Some(|cos| whole_power::<8>(cos, whole)), colours);
+        } else if f64::from(whole) == shininess && whole < 1 << 17 {
+            shine_all(lit, Some(|cos| whole_power::<17>(cos, whole)), colours);
         } else {
             shine_all(lit, Some(|cos| libm::pow(cos, shininess)), colours);
         }
@@ -79,17 +81,14 @@ kernels! {
     }
 }
 
-/// Powers up to this one are multiplied out.
-const MOST_MULTIPLIED: u32 = 1 << 16;
-
-/// A power by repeated squaring: for many numbers at a time, which a general power is not.
+/// A power of less than so many bits by repeated squaring: of many numbers at a time, which a general power is not, nor
+/// one that ends with its last bit.
 #[inline(always)]
-fn whole_power(of: f64, power: u32) -> f64 {
-    let (mut product, mut square, mut left) = (1.0, of, power);
-    while left > 0 {
-        product = if left & 1 == 1 { product * square } else { product };
+fn whole_power<const BITS: u32>(of: f64, power: u32) -> f64 {
+    let (mut product, mut square) = (1.0, of);
+    for bit in 0..BITS {
+        product = if power >> bit & 1 == 1 { product * square } else { product };
         square *= square;
-        left >>= 1;
     }
     product
 }
