@@ -61,8 +61,13 @@ struct Block<'s, 'm, 'w, W> {
 impl<W: Watch> Block<'_, '_, '_, W> {
     fn run(mut self, to: &Bounds, ahead: &mut Vec<usize>) {
         let plan = self.tracer.plan;
-        for index in plan.unbounded.iter().chain(plan.bounded.iter().map(|(index, _)| index)) {
-            if self.tracer.model.objects[*index].shape.is_clear_of(&self.region) {
+        let unbounded = plan.unbounded.iter().map(|index| (index, None));
+        for (index, bounds) in
+            unbounded.chain(plan.bounded.iter().map(|(index, bounds)| (index, Some(bounds))))
+        {
+            if bounds.is_some_and(|bounds| !bounds.overlaps(&self.region))
+                || self.tracer.model.objects[*index].shape.is_clear_of(&self.region)
+            {
                 self.tracer.watch.count(Count::Culled(*index, self.len));
                 continue;
             }

@@ -45,21 +45,18 @@ kernels! {
         }
     }
 
-    /// Directions, mirrored. Marks the rays that go on there: likewise, where the surface is a mirror. Tells whether all
-    /// do.
+    /// Directions, mirrored. Marks the rays that go on there: likewise, where the surface is a mirror.
     pub(super) fn mirror(
         dir: View, normals: View, specular: View, travelled: &[f64], most: f64, goes: &mut [u64]
-    ) => out -> bool {
-        let (count, mut all) = (dir.len(), 1);
+    ) => out {
+        let count = dir.len();
         let (normals, specular, mut out) = (normals.first(count), specular.first(count), out.first(count));
         let (travelled, goes) = (&travelled[..count], &mut goes[..count]);
         for lane in 0..count {
             let (dir, normal) = (dir.get(lane), normals.get(lane));
             out.set(lane, dir - 2.0 * dir.dot(normal) * normal);
             goes[lane] = is_any(specular.get(lane)) & u64::from(travelled[lane] <= most);
-            all &= goes[lane];
         }
-        all != 0
     }
 
     /// Divides colours by how far their light has travelled.

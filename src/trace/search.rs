@@ -147,8 +147,8 @@ kernels! {
     }
 
     /// Whether all is the same.
-    pub(super) fn is_one(met: &[u64]) -> bool {
-        met.iter().fold(0, |other, id| other | (id ^ met[0])) == 0
+    pub(super) fn is_one(of: &[u64]) -> bool {
+        of.iter().fold(0, |other, one| other | (one ^ of[0])) == 0
     }
 
     /// Puts distances that are known where they are. Tells whether any is no number.

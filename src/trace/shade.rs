@@ -3,6 +3,7 @@
 use super::group::{Group, Onward};
 use super::light;
 use super::room::{Vectors, list, room};
+use super::search;
 use super::{DEEP, MAX_DIST, NARROW, Tracer};
 use crate::geometry::Side;
 use crate::landing::Landing;
@@ -124,9 +125,9 @@ impl<W: Watch> Tracer<'_, '_, W> {
         let (normals, specular) = (surface.normals.view(count), surface.specular.view(count));
         let (travelled, goes) = (&surface.travelled[..count], room(goes, count));
         let dir = dir.room(count);
-        let all =
-            light::mirror(cpu, group.dir.view(count), normals, specular, travelled, MAX_DIST, goes, dir);
-        if all && (group.len <= NARROW || self.depth + 1 < DEEP) {
+        light::mirror(cpu, group.dir.view(count), normals, specular, travelled, MAX_DIST, goes, dir);
+        let do_all = goes[0] != 0 && search::is_one(cpu, goes);
+        if do_all && (group.len <= NARROW || self.depth + 1 < DEEP) {
             self.onward_all(group, shading);
         } else {
             self.onward(group, shading, Kind::Reflected);
