@@ -106,11 +106,9 @@ impl FinitePlane {
     /// What rounding may make of the place where a ray crosses its plane.
     #[inline(always)]
     fn slack(&self, ray: &Ray, distance: f64) -> f64 {
-        {
-            let origin = ray.origin.abs();
-            let origin = larger(larger(origin.x, origin.y), origin.z);
-            4.0 * f64::EPSILON * (origin + distance + self.reach)
-        }
+        let origin = ray.origin.abs();
+        let farthest = larger(larger(origin.x, origin.y), origin.z);
+        4.0 * f64::EPSILON * (farthest + distance + self.reach)
     }
 
     /// How far inside of its nearest side a ray crosses its plane; below 0 outside, NaN for none.
