@@ -2,7 +2,7 @@
 
 use super::plane::{self, Plane};
 use crate::accuracy::Accuracy;
-use crate::bounds::{Bounds, larger, smaller};
+use crate::bounds::Bounds;
 use crate::certify::{self, Enclosure, Equation};
 use crate::cpu::Cpu;
 use crate::entity::{Args, Entity, Refusal};
@@ -11,6 +11,7 @@ use crate::interval::Interval;
 use crate::number::Number;
 use crate::packet::Rays;
 use crate::pparm::{Derived, Pparm, Row, Table};
+pub use crate::rectangle::FinitePlane;
 use crate::value::Value;
 use glam::{DMat3, DVec2, DVec3};
 
@@ -67,56 +68,12 @@ pub fn sides(args: &Args) -> Result<[DVec3; 2], Refusal> {
     Ok([x_axis, y_axis])
 }
 
-/// A rectangle. Other rectangles hold one.
-pub struct FinitePlane {
-    pub plane: Plane,
-    pub dimensions: DVec2,
-    sides: [DVec3; 2],
-    /// How far from the world's origin it reaches, about.
-    reach: f64,
-}
-
 impl FinitePlane {
     /// The rectangle of an entity whose table has the rows of a plane's and of [`TABLE`].
     pub fn new(args: &Args) -> Result<Self, Refusal> {
         let (plane, dimensions) = (Plane::new(args), args.get(&DIMENSIONS));
         let reach = plane.point.abs().max_element() + dimensions.element_sum();
         Ok(Self { plane, dimensions, sides: sides(args)?, reach })
-    }
-
-    /// How far along its two sides a point of its plane is, from its corner.
-    #[inline(always)]
-    pub fn coordinates(&self, at: DVec3) -> DVec2 {
-        let from_corner = at - self.plane.point;
-        DVec2::new(self.sides[0].dot(from_corner), self.sides[1].dot(from_corner))
-    }
-
-    /// Whether it has the point of its plane where a ray crosses that, its sides included.
-    ///
-    /// A side is as wide as rounding makes the point, so that nothing falls through between two rectangles.
-    #[inline(always)]
-    pub fn has_crossing(&self, ray: &Ray, distance: f64) -> bool {
-        let slack = match self.plane.accuracy {
-            Accuracy::Classic => 0.0,
-            _ => self.slack(ray, distance),
-        };
-        self.inside(ray, distance) >= -slack
-    }
-
-    /// What rounding may make of the place where a ray crosses its plane.
-    #[inline(always)]
-    fn slack(&self, ray: &Ray, distance: f64) -> f64 {
-        let origin = ray.origin.abs();
-        let farthest = larger(larger(origin.x, origin.y), origin.z);
-        4.0 * f64::EPSILON * (farthest + distance + self.reach)
-    }
-
-    /// How far inside of its nearest side a ray crosses its plane; below 0 outside, NaN for none.
-    #[inline(always)]
-    fn inside(&self, ray: &Ray, distance: f64) -> f64 {
-        let at = self.coordinates(ray.at(distance));
-        let past = self.dimensions - at;
-        smaller(smaller(at.x, past.x), smaller(at.y, past.y))
     }
 }
 
@@ -154,10 +111,7 @@ impl Hittable for FinitePlane {
     }
 
     fn bounds(&self) -> Option<Bounds> {
-        let corner = |x: f64, y: f64| self.plane.point + x * self.sides[0] + y * self.sides[1];
-        let DVec2 { x, y } = self.dimensions;
-        let bounds = Bounds::around(&[corner(0.0, 0.0), corner(x, 0.0), corner(0.0, y), corner(x, y)]);
-        (self.plane.accuracy != Accuracy::Classic).then_some(bounds)
+        (self.plane.accuracy != Accuracy::Classic).then(|| self.around())
     }
 
     fn is_clear_of(&self, region: &Bounds) -> bool {

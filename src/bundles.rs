@@ -2,8 +2,8 @@
 //! all of them, and so come near fewer objects.
 
 use crate::bounds::{Bounds, SLACK, larger, range, smaller};
-use crate::cpu::{Cpu, kernels};
-use crate::packet::{Rays, WIDE};
+use crate::cpu::kernels;
+use crate::packet::{Rays, WIDE, parts};
 use glam::DVec3;
 
 /// The most rays of a part.
@@ -22,13 +22,15 @@ pub struct Bundles {
     /// The least and the greatest coordinates of where they start.
     low: [Each; 3],
     high: [Each; 3],
-    /// What a way up to a box takes at least for each of its length, and a way down.
-    up: [Each; 3],
-    down: [Each; 3],
-    /// What a way out of it takes at most; NaN where a ray need not ever come out.
-    out_up: [Each; 3],
-    out_down: [Each; 3],
-    /// How far they start from the world's origin.
+    /// How far a ray goes at least to come up by 1; infinitely far where none comes up.
+    rises: [Each; 3],
+    /// Likewise down, below 0.
+    falls: [Each; 3],
+    /// How far it goes at most to come up by 1; NaN unless all come up.
+    rises_at_most: [Each; 3],
+    /// Likewise down, below 0.
+    falls_at_most: [Each; 3],
+    /// How far they start from the world's origin, in world units along an axis.
     reach: f64,
 }
 
@@ -38,48 +40,41 @@ impl Bundles {
         parts: 0,
         low: [[0.0; PARTS]; 3],
         high: [[0.0; PARTS]; 3],
-        up: [[0.0; PARTS]; 3],
-        down: [[0.0; PARTS]; 3],
-        out_up: [[f64::NAN; PARTS]; 3],
-        out_down: [[f64::NAN; PARTS]; 3],
+        rises: [[0.0; PARTS]; 3],
+        falls: [[0.0; PARTS]; 3],
+        rises_at_most: [[0.0; PARTS]; 3],
+        falls_at_most: [[0.0; PARTS]; 3],
         reach: 0.0,
     };
 
-    /// Where the rays of a packet may go.
-    pub fn around(cpu: Cpu, rays: Rays) -> Self {
-        around(cpu, rays)
-    }
-
-    /// The parts of which a ray may come somewhere, of whose ways that is asked; a bit for each.
-    pub fn that(&self, may: impl Fn(&Bounds) -> bool) -> u32 {
+    /// The parts of which the ways are such; a bit for each.
+    pub fn which(&self, are_such: impl Fn(&Bounds) -> bool) -> u32 {
         let parts = 0..u32::BITS - self.parts.leading_zeros();
-        parts.map(|part| u32::from(may(&self.ways(part as usize))) << part).sum()
+        parts.map(|part| u32::from(are_such(&self.ways(part as usize))) << part).sum()
     }
 
     /// Everywhere that the rays of a part may go; mostly without an end.
     fn ways(&self, part: usize) -> Bounds {
-        let low = |axis: usize| {
-            if self.down[axis][part] == f64::NEG_INFINITY { self.low[axis][part] } else { f64::NEG_INFINITY }
-        };
-        let high = |axis: usize| {
-            if self.up[axis][part] == f64::INFINITY { self.high[axis][part] } else { f64::INFINITY }
-        };
-        Bounds { low: DVec3::new(low(0), low(1), low(2)), high: DVec3::new(high(0), high(1), high(2)) }
-    }
-
-    /// The parts of which a ray may come into each of some boxes, likewise. Never wrong where it says no.
-    pub fn meet(&self, cpu: Cpu, boxes: &[(usize, Bounds)], parts: &mut [u32]) {
-        meet(cpu, self, boxes, parts);
+        let (mut low, mut high) = (DVec3::NEG_INFINITY, DVec3::INFINITY);
+        for axis in 0..3 {
+            if self.falls[axis][part] == f64::NEG_INFINITY {
+                low[axis] = self.low[axis][part];
+            }
+            if self.rises[axis][part] == f64::INFINITY {
+                high[axis] = self.high[axis][part];
+            }
+        }
+        Bounds { low, high }
     }
 }
 
 kernels! {
-    fn around(rays: Rays) -> Bundles {
+    /// Where the rays of a packet may go.
+    pub fn around(rays: Rays) -> Bundles {
         let (mut bundles, count) = (Bundles::NONE, rays.len());
         let (mut least, mut greatest) = ([[0.0; PARTS]; 3], [[0.0; PARTS]; 3]);
-        for (part, start) in (0..count).step_by(PART).enumerate() {
-            let some = rays.part(start..count.min(start + PART));
-            let (origin, dir) = (some.origin, some.dir);
+        for (part, lanes) in parts(count, PART).enumerate() {
+            let Rays { origin, dir } = rays.part(lanes);
             for (axis, (from, to)) in [(origin.x, dir.x), (origin.y, dir.y), (origin.z, dir.z)].into_iter().enumerate() {
                 (bundles.low[axis][part], bundles.high[axis][part]) = range(from);
                 (least[axis][part], greatest[axis][part]) = range(to);
@@ -90,11 +85,11 @@ kernels! {
             for part in 0..PARTS {
                 let (least, greatest) = (least[axis][part], greatest[axis][part]);
                 let (down, up) = (1.0 / least, 1.0 / greatest);
-                // No box is ever reached by a way that leads away from it.
-                bundles.up[axis][part] = if greatest > 0.0 { smaller(up, f64::MAX) } else { f64::INFINITY };
-                bundles.down[axis][part] = if least < 0.0 { larger(down, f64::MIN) } else { f64::NEG_INFINITY };
-                bundles.out_up[axis][part] = if greatest < 0.0 { up } else { f64::NAN };
-                bundles.out_down[axis][part] = if least > 0.0 { down } else { f64::NAN };
+                // What is infinite says that there is no way there, and no way is so long.
+                bundles.rises[axis][part] = if greatest > 0.0 { smaller(up, f64::MAX) } else { f64::INFINITY };
+                bundles.falls[axis][part] = if least < 0.0 { larger(down, f64::MIN) } else { f64::NEG_INFINITY };
+                bundles.rises_at_most[axis][part] = if least > 0.0 { down } else { f64::NAN };
+                bundles.falls_at_most[axis][part] = if greatest < 0.0 { up } else { f64::NAN };
             }
             for part in 0..PARTS {
                 let farthest = larger(bundles.low[axis][part].abs(), bundles.high[axis][part].abs());
@@ -104,7 +99,8 @@ kernels! {
         bundles
     }
 
-    fn meet(bundles: &Bundles, boxes: &[(usize, Bounds)], parts: &mut [u32]) {
+    /// The parts of which a ray may come into each of some boxes, a bit for each part. Never wrong where it says no.
+    pub fn meet(bundles: &Bundles, boxes: &[(usize, Bounds)], parts: &mut [u32]) {
         for ((_, bounds), parts) in boxes.iter().zip(parts) {
             let bounds = bounds.with_slack(bundles.reach);
             let (mut enters, mut leaves) = ([0.0; PARTS], [f64::INFINITY; PARTS]);
@@ -113,10 +109,10 @@ kernels! {
                 for part in 0..PARTS {
                     // How far the way is to the box's near and far walls, from where it is shortest and longest.
                     let (up, down) = (low - bundles.high[axis][part], high - bundles.low[axis][part]);
-                    enters[part] = larger(up * bundles.up[axis][part], enters[part]);
-                    enters[part] = larger(down * bundles.down[axis][part], enters[part]);
-                    leaves[part] = smaller(down * bundles.out_down[axis][part], leaves[part]);
-                    leaves[part] = smaller(up * bundles.out_up[axis][part], leaves[part]);
+                    enters[part] = larger(up * bundles.rises[axis][part], enters[part]);
+                    enters[part] = larger(down * bundles.falls[axis][part], enters[part]);
+                    leaves[part] = smaller(down * bundles.rises_at_most[axis][part], leaves[part]);
+                    leaves[part] = smaller(up * bundles.falls_at_most[axis][part], leaves[part]);
                 }
             }
             *parts = 0;
@@ -132,6 +128,7 @@ kernels! {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cpu::Cpu;
     use crate::packet::{STEP, Vectors};
     use proptest::prelude::*;
 
@@ -170,11 +167,11 @@ mod tests {
             let bounds = Bounds { low: to - half, high: to + half };
             let (origins, dirs, count) = rays(&ways);
             for cpu in Cpu::all() {
-                let bundles = Bundles::around(cpu, Rays { origin: origins.view(count), dir: dirs.view(count) });
+                let bundles = around(cpu, Rays { origin: origins.view(count), dir: dirs.view(count) });
                 let (part, mut met) = (1 << (chosen / PART), [0]);
-                bundles.meet(cpu, &[(0, bounds)], &mut met);
+                meet(cpu, &bundles, &[(0, bounds)], &mut met);
                 prop_assert!(met[0] & part != 0, "{} to {}, {}", from, to, cpu);
-                let reached = bundles.that(|ways| ways.with_slack(1e6).overlaps(&bounds));
+                let reached = bundles.which(|ways| ways.with_slack(1e6).overlaps(&bounds));
                 prop_assert!(reached & part != 0, "{} to {} on its ways, {}", from, to, cpu);
             }
         }
@@ -191,16 +188,16 @@ mod tests {
             .collect();
         let (origins, dirs, count) = rays(&ways);
         for cpu in Cpu::all() {
-            let bundles = Bundles::around(cpu, Rays { origin: origins.view(count), dir: dirs.view(count) });
+            let bundles = around(cpu, Rays { origin: origins.view(count), dir: dirs.view(count) });
             let at = |x: f64, y: f64| Bounds {
                 low: DVec3::new(x, y, -1.0),
                 high: DVec3::new(x + 2.0, y + 1.0, 1.0),
             };
             let (boxes, mut met) = ([at(0.0, 5.0), at(0.0, -5.0), at(0.0, -0.5), at(9.0, 5.0)], [9; 4]);
-            bundles.meet(cpu, &boxes.map(|bounds| (0, bounds)), &mut met);
+            meet(cpu, &bundles, &boxes.map(|bounds| (0, bounds)), &mut met);
             assert_eq!(met, [0b01, 0b10, 0b11, 0]);
-            assert_eq!(bundles.that(|ways| ways.high.y == f64::INFINITY), 0b01);
-            assert_eq!(bundles.that(|ways| ways.high.y > -0.5), 0b11);
+            assert_eq!(bundles.which(|ways| ways.high.y == f64::INFINITY), 0b01);
+            assert_eq!(bundles.which(|ways| ways.high.y > -0.5), 0b11);
         }
     }
 }

@@ -93,66 +93,31 @@ macro_rules! kernels {
             cpu: $crate::cpu::Cpu, $($argument: $type,)*
             $($out: $crate::packet::ViewMut, $($second: $crate::packet::ViewMut)?)?
         ) $(-> $result)? {
-            #[inline(always)]
-            #[allow(clippy::too_many_arguments, reason = "they are arrays")]
-            fn body$(<$T: $Bound + ?Sized>)?(
-                $($argument: $type,)*
-                $(
-                    x: $crate::cpu::beside!($out, &mut [f64]),
-                    y: $crate::cpu::beside!($out, &mut [f64]),
-                    z: $crate::cpu::beside!($out, &mut [f64]),
+            $crate::cpu::levels! {
+                ($(<$T: $Bound + ?Sized>)?) (
+                    $($argument: $type,)*
                     $(
-                        u: $crate::cpu::beside!($second, &mut [f64]),
-                        v: $crate::cpu::beside!($second, &mut [f64]),
-                        w: $crate::cpu::beside!($second, &mut [f64]),
+                        x: $crate::cpu::beside!($out, &mut [f64]),
+                        y: $crate::cpu::beside!($out, &mut [f64]),
+                        z: $crate::cpu::beside!($out, &mut [f64]),
+                        $(
+                            u: $crate::cpu::beside!($second, &mut [f64]),
+                            v: $crate::cpu::beside!($second, &mut [f64]),
+                            w: $crate::cpu::beside!($second, &mut [f64]),
+                        )?
                     )?
-                )?
-            ) $(-> $result)? {
-                $(
-                    let mut $out = $crate::packet::ViewMut { x, y, z };
-                    $(let mut $second = $crate::packet::ViewMut { x: u, y: v, z: w };)?
-                )?
-                $body
-            }
-
-            #[cfg(target_arch = "x86_64")]
-            #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw")]
-            #[allow(clippy::too_many_arguments, reason = "they are arrays")]
-            fn avx512$(<$T: $Bound + ?Sized>)?(
-                $($argument: $type,)*
-                $(
-                    x: $crate::cpu::beside!($out, &mut [f64]),
-                    y: $crate::cpu::beside!($out, &mut [f64]),
-                    z: $crate::cpu::beside!($out, &mut [f64]),
+                ) ($(-> $result)?)
+                {
                     $(
-                        u: $crate::cpu::beside!($second, &mut [f64]),
-                        v: $crate::cpu::beside!($second, &mut [f64]),
-                        w: $crate::cpu::beside!($second, &mut [f64]),
+                        let mut $out = $crate::packet::ViewMut { x, y, z };
+                        $(let mut $second = $crate::packet::ViewMut { x: u, y: v, z: w };)?
                     )?
-                )?
-            ) $(-> $result)? {
-                body($($argument,)* $($crate::cpu::beside!($out, x), y, z, $($crate::cpu::beside!($second, u), v, w)?)?)
+                    $body
+                }
+                {
+                    body($($argument,)* $($crate::cpu::beside!($out, x), y, z, $($crate::cpu::beside!($second, u), v, w)?)?)
+                }
             }
-
-            #[cfg(target_arch = "x86_64")]
-            #[target_feature(enable = "avx2")]
-            #[allow(clippy::too_many_arguments, reason = "they are arrays")]
-            fn avx2$(<$T: $Bound + ?Sized>)?(
-                $($argument: $type,)*
-                $(
-                    x: $crate::cpu::beside!($out, &mut [f64]),
-                    y: $crate::cpu::beside!($out, &mut [f64]),
-                    z: $crate::cpu::beside!($out, &mut [f64]),
-                    $(
-                        u: $crate::cpu::beside!($second, &mut [f64]),
-                        v: $crate::cpu::beside!($second, &mut [f64]),
-                        w: $crate::cpu::beside!($second, &mut [f64]),
-                    )?
-                )?
-            ) $(-> $result)? {
-                body($($argument,)* $($crate::cpu::beside!($out, x), y, z, $($crate::cpu::beside!($second, u), v, w)?)?)
-            }
-
             match cpu.level() {
                 // SAFETY: there is no `Cpu` of a level that the machine has not.
                 #[cfg(target_arch = "x86_64")]
@@ -167,9 +132,28 @@ macro_rules! kernels {
     )*};
 }
 
+/// A kernel's body, and the functions that it becomes part of for each level.
+macro_rules! levels {
+    (($($generics:tt)*) ($($arguments:tt)*) ($($result:tt)*) $body:block $call:block) => {
+        #[inline(always)]
+        #[allow(clippy::too_many_arguments, reason = "they are arrays")]
+        fn body$($generics)*($($arguments)*) $($result)* $body
+
+        #[cfg(target_arch = "x86_64")]
+        #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw")]
+        #[allow(clippy::too_many_arguments, reason = "they are arrays")]
+        fn avx512$($generics)*($($arguments)*) $($result)* $call
+
+        #[cfg(target_arch = "x86_64")]
+        #[target_feature(enable = "avx2")]
+        #[allow(clippy::too_many_arguments, reason = "they are arrays")]
+        fn avx2$($generics)*($($arguments)*) $($result)* $call
+    };
+}
+
 /// Something that is there where a kernel has vectors to be written.
 macro_rules! beside {
     ($out:ident, $($what:tt)*) => { $($what)* };
 }
 
-pub(crate) use {beside, kernels};
+pub(crate) use {beside, kernels, levels};

@@ -1,4 +1,6 @@
-//! A light as the places of a surface see it.
+//! A light as the places of a surface see it (the notes' `light_t::illuminate`, but for shadows).
+//!
+//! All arrays are as long as the packet's whose rays came to the places.
 
 use crate::bounds::larger;
 use crate::cpu::kernels;
@@ -9,7 +11,7 @@ use glam::DVec3;
 
 /// Places of a surface that may see a light.
 pub struct Places<'p> {
-    /// Where they are.
+    /// Where they are, in world coordinates.
     pub points: View<'p>,
     /// The unit normals there.
     pub normals: View<'p>,
@@ -22,24 +24,25 @@ pub struct Places<'p> {
 
 /// What a light sends to places, and how it comes there.
 pub struct Facing<'f> {
-    /// The directions to it.
+    /// The directions to it, unit vectors.
     pub toward: ViewMut<'f>,
-    /// What it sends.
+    /// The colours that it sends; black where it sends nothing.
     pub emissivity: ViewMut<'f>,
-    /// The cosines of the angles between those directions and the normals, divided by the distances to it.
+    /// The cosines of the angles between those directions and the normals, divided by the distances to it in world
+    /// units.
     pub falloffs: &'f mut [f64],
-    /// Where the ways to it end; 0 where none need be gone.
+    /// Where the ways to it end, in world units from the places; 0 where none need be gone.
     pub ends: &'f mut [f64],
     /// 0 for a place to which it sends nothing, or from behind; else 1.
     pub shines: &'f mut [u64],
 }
 
 /// What is so of any of some places.
-pub struct Any {
-    /// It faces the light.
-    pub faces: bool,
-    /// The light sends something to it, too.
-    pub shines: bool,
+pub struct Faced {
+    /// One faces the light.
+    pub any_faces: bool,
+    /// To one that does the light sends something, too.
+    pub any_shines: bool,
 }
 
 kernels! {
@@ -50,7 +53,7 @@ kernels! {
         falloffs: &mut [f64],
         ends: &mut [f64],
         shines: &mut [u64],
-    ) => toward, emissivity -> Any {
+    ) => toward, emissivity -> Faced {
         let (count, middle) = (places.points.len(), light.location());
         let out = (falloffs, ends, shines, toward.first(count), emissivity.first(count));
         match places.lights {
@@ -63,6 +66,7 @@ kernels! {
     }
 }
 
+/// As `face`, each place with the point of the light that it sees.
 #[inline(always)]
 fn face_all<T: Light + ?Sized>(
     light: &T,
@@ -75,7 +79,7 @@ fn face_all<T: Light + ?Sized>(
         ViewMut,
         ViewMut,
     ),
-) -> Any {
+) -> Faced {
     let (count, slack) = (places.points.len(), places.slack);
     let (points, normals) = (places.points.first(count), places.normals.first(count));
     let (falloffs, ends, shines) = (&mut falloffs[..count], &mut ends[..count], &mut shines[..count]);
@@ -100,7 +104,7 @@ fn face_all<T: Light + ?Sized>(
         any_faces |= faces;
         any_shines |= does_shine;
     }
-    Any { faces: any_faces != 0, shines: any_shines != 0 }
+    Faced { any_faces: any_faces != 0, any_shines: any_shines != 0 }
 }
 
 /// How far a point is from the world's origin along the axis where that is farthest.

@@ -3,7 +3,7 @@
 use crate::bounds::Bounds;
 use crate::certify::Enclosure;
 use crate::cpu::Cpu;
-use crate::facing::{self, Facing, Places};
+use crate::facing::{self, Faced, Facing, Places};
 use crate::landing::{self, Landing};
 use crate::material::{Material, Rgb};
 use crate::packet::{self, Nearest, Rays, View, ViewMut};
@@ -266,7 +266,7 @@ pub trait Light: Send + Sync {
     }
 
     /// How it comes to many places, with what [`emissivity`](Self::emissivity) gives toward each.
-    fn face(&self, cpu: Cpu, places: &Places, facing: Facing) -> facing::Any {
+    fn face(&self, cpu: Cpu, places: &Places, facing: Facing) -> Faced {
         let Facing { toward, emissivity, falloffs, ends, shines } = facing;
         facing::face(cpu, self, places, falloffs, ends, shines, toward, emissivity)
     }

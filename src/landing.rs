@@ -2,22 +2,23 @@
 
 use crate::cpu::kernels;
 use crate::geometry::{Hittable, Side};
-use crate::packet::{Rays, View, ViewMut};
+use crate::packet::{Rays, ViewMut};
+use glam::DVec3;
 
-/// Places on a surface, each where a ray comes to it.
+/// Places on a surface, each where a ray of a packet comes to it. All arrays are as long as the packet's.
 pub struct Landing<'l> {
-    /// Where they are.
+    /// Where they are, in world coordinates.
     pub points: ViewMut<'l>,
     /// The unit normals there, turned to the rays' side where both are lit.
     pub normals: ViewMut<'l>,
     /// The side that each ray comes to.
     pub sides: &'l mut [Side],
-    /// How far the light has come from the viewer: to where the rays start at first, and then to the places.
+    /// How far the way from the viewer is, in world units: to where the rays start at first, and then to the places.
     pub travelled: &'l mut [f64],
 }
 
 kernels! {
-    /// Where rays come to a shape after these distances.
+    /// Where rays come to a shape after these distances, and its normals there.
     pub(crate) fn land[T: Hittable](
         shape: &T, rays: Rays, distances: &[f64], sides: &mut [Side], travelled: &mut [f64]
     ) => points, normals {
@@ -27,34 +28,18 @@ kernels! {
         for lane in 0..count {
             let ray = rays.get(lane);
             let point = ray.at(distances[lane]);
-            let normal = shape.normal(point);
-            let side = Side::seen_along(ray.dir, normal);
+            let normal;
+            (sides[lane], normal) = turned(ray.dir, shape.normal(point), is_two_sided);
             points.set(lane, point);
-            normals.set(lane, if is_two_sided & (side == Side::Inside) { -normal } else { normal });
-            sides[lane] = side;
+            normals.set(lane, normal);
             travelled[lane] += distances[lane];
         }
     }
+}
 
-    /// Where rays come after these distances, and how far their light has then travelled.
-    pub(crate) fn arrive(rays: Rays, distances: &[f64], travelled: &mut [f64]) => points {
-        let count = travelled.len();
-        let (rays, distances, mut points) = (rays.first(count), &distances[..count], points.first(count));
-        for lane in 0..count {
-            points.set(lane, rays.get(lane).at(distances[lane]));
-            travelled[lane] += distances[lane];
-        }
-    }
-
-    /// The sides that rays come to, and the normals turned there if both sides are lit.
-    pub(crate) fn face(dir: View, is_two_sided: bool, sides: &mut [Side]) => normals {
-        let count = sides.len();
-        let (dir, mut normals) = (dir.first(count), normals.first(count));
-        for lane in 0..count {
-            let normal = normals.get(lane);
-            let side = Side::seen_along(dir.get(lane), normal);
-            sides[lane] = side;
-            normals.set(lane, if is_two_sided & (side == Side::Inside) { -normal } else { normal });
-        }
-    }
+/// The side that a ray along `dir` comes to of a surface with this normal, and the normal, turned there if both are lit.
+#[inline(always)]
+pub(crate) fn turned(dir: DVec3, normal: DVec3, is_two_sided: bool) -> (Side, DVec3) {
+    let side = Side::seen_along(dir, normal);
+    (side, if is_two_sided & (side == Side::Inside) { -normal } else { normal })
 }

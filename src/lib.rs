@@ -52,6 +52,7 @@ pub mod probe;
 pub mod profile;
 pub mod progressive;
 pub mod quadratic;
+pub mod rectangle;
 pub mod reference;
 pub mod registry;
 pub mod render;

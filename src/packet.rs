@@ -17,6 +17,11 @@ pub const STEP: usize = 8;
 /// The most rays of a packet.
 pub const WIDE: usize = 256;
 
+/// The lanes of so many rays in parts of at most so many, neighbours together.
+pub fn parts(count: usize, most: usize) -> impl Iterator<Item = Range<usize>> {
+    (0..count).step_by(most).map(move |first| first..count.min(first + most))
+}
+
 /// Vectors, an array for each coordinate.
 #[derive(Clone)]
 pub struct Vectors<const N: usize> {
@@ -110,10 +115,10 @@ pub struct ViewMut<'v> {
 }
 
 impl ViewMut<'_> {
-    /// As they are, to be read.
+    /// Some of them.
     #[inline(always)]
-    pub fn view(&self) -> View<'_> {
-        View { x: self.x, y: self.y, z: self.z }
+    pub fn part(&mut self, Range { start, end }: Range<usize>) -> ViewMut<'_> {
+        ViewMut { x: &mut self.x[start..end], y: &mut self.y[start..end], z: &mut self.z[start..end] }
     }
 
     /// The first of them, so many.

@@ -1,11 +1,13 @@
 //! The normals of a surface of revolution.
 
 use super::Revolution;
-use crate::cpu::{Cpu, kernels};
+use crate::cpu::kernels;
 use crate::dual::Dual;
 use crate::frame::Frame;
+use crate::geometry::Side;
 use crate::interval::Interval;
-use crate::packet::{STEP, Vectors, View, ViewMut};
+use crate::landing;
+use crate::packet::{Rays, STEP, Vectors};
 use glam::DVec3;
 
 impl Revolution {
@@ -22,11 +24,6 @@ impl Revolution {
         let twice = self.square.at(Dual::variable(at.y)).slope;
         let DVec3 { x, z, .. } = outward(at);
         DVec3::new(x * value, -0.5 * twice, z * value).try_normalize().unwrap_or(DVec3::Y)
-    }
-
-    /// The normals at many points of the world, in a frame.
-    pub(super) fn normals(&self, cpu: Cpu, frame: &Frame, points: View, out: ViewMut) {
-        normals(cpu, self, frame, points, out);
     }
 
     /// The normal in the world at a point of it.
@@ -71,15 +68,22 @@ fn upright(at: DVec3, slope: f64) -> DVec3 {
 }
 
 kernels! {
-    fn normals(surface: &Revolution, frame: &Frame, points: View) => out {
-        let count = points.len();
-        let mut out = out.first(count);
+    /// Where rays come to a surface after these distances, both of whose sides are lit.
+    pub(super) fn land(
+        surface: &Revolution, frame: &Frame, rays: Rays, distances: &[f64], sides: &mut [Side], travelled: &mut [f64]
+    ) => points, normals {
         let is_smooth = surface.slabs.is_smooth();
-        for first in (0..count).step_by(STEP) {
-            let eight = points.part(first..first + STEP);
+        for first in (0..travelled.len()).step_by(STEP) {
+            let eight = first..first + STEP;
+            let (rays, distances) = (rays.part(eight.clone()), &distances[eight.clone()]);
+            let (mut points, mut normals) = (points.part(eight.clone()), normals.part(eight.clone()));
+            let (sides, travelled) = (&mut sides[eight.clone()], &mut travelled[eight]);
             let (mut at, mut normal) = (Vectors::<STEP>::ZERO, Vectors::<STEP>::ZERO);
             for lane in 0..STEP {
-                at.set(lane, frame.point(eight.get(lane)));
+                let point = rays.get(lane).at(distances[lane]);
+                points.set(lane, point);
+                at.set(lane, frame.point(point));
+                travelled[lane] += distances[lane];
             }
             let slope = surface.profile.at_eight(at.y).slope.0;
             let mut any = 0;
@@ -88,13 +92,15 @@ kernels! {
                 // Of what is infinite, or no number.
                 any |= u64::from(0.0 * slope[lane] != 0.0);
             }
-            out.x[first..first + STEP].copy_from_slice(&normal.x);
-            out.y[first..first + STEP].copy_from_slice(&normal.y);
-            out.z[first..first + STEP].copy_from_slice(&normal.z);
             if (any != 0) | !is_smooth {
-                for lane in first..first + STEP {
-                    out.set(lane, surface.normal_in(frame, points.get(lane)));
+                for lane in 0..STEP {
+                    normal.set(lane, surface.normal_in(frame, points.get(lane)));
                 }
+            }
+            for lane in 0..STEP {
+                let turned;
+                (sides[lane], turned) = landing::turned(rays.dir.get(lane), normal.get(lane), true);
+                normals.set(lane, turned);
             }
         }
     }

@@ -1,22 +1,16 @@
 //! Surfaces of revolution as shapes, wherever they stand.
 
 use super::bracket::{Lanes, MOST};
-use super::{Classic, Revolution};
+use super::{Classic, Revolution, normal};
 use crate::bounds::Bounds;
 use crate::certify::{self, Enclosure};
 use crate::cpu::Cpu;
 use crate::frame::Frame;
 use crate::geometry::{Hittable, Ray, Side, Span};
-use crate::landing::{self, Landing};
-use crate::packet::{self, Nearest, Rays};
+use crate::landing::Landing;
+use crate::packet::{self, Nearest, Rays, parts};
 use crate::roots::Method;
 use glam::DVec3;
-use std::ops::Range;
-
-/// So many rays, as many at a time as are bracketed together.
-fn parts(count: usize) -> impl Iterator<Item = Range<usize>> {
-    (0..count).step_by(MOST).map(move |first| first..count.min(first + MOST))
-}
 
 /// A surface around the y axis of a frame.
 pub struct InFrame<S> {
@@ -79,7 +73,7 @@ impl Hittable for InFrame<Revolution> {
 
     fn meet(&self, cpu: Cpu, rays: Rays, sides: Option<&[Side]>, id: u64, mut nearest: Nearest) -> bool {
         let (mut any, mut lanes) = (false, Lanes::none());
-        for part in parts(rays.len()) {
+        for part in parts(rays.len(), MOST) {
             let (rays, sides) = (rays.part(part.clone()), sides.map(|sides| &sides[part.clone()]));
             let nearest = nearest.part(part);
             self.surface.bracket(cpu, &self.frame, rays, sides, nearest.far, &mut lanes);
@@ -98,7 +92,7 @@ impl Hittable for InFrame<Revolution> {
         doubt: &mut [u64],
     ) -> bool {
         let (mut any, mut lanes) = (false, Lanes::none());
-        for part in parts(ends.len()) {
+        for part in parts(ends.len(), MOST) {
             let (rays, sides) = (rays.part(part.clone()), sides.map(|sides| &sides[part.clone()]));
             let (ends, blocked, doubt) = (&ends[part.clone()], &mut blocked[part.clone()], &mut doubt[part]);
             self.surface.bracket(cpu, &self.frame, rays, sides, ends, &mut lanes);
@@ -119,10 +113,7 @@ impl Hittable for InFrame<Revolution> {
     }
 
     fn land(&self, cpu: Cpu, rays: Rays, distances: &[f64], landing: Landing) {
-        let Landing { mut points, mut normals, sides, travelled } = landing;
-        let count = travelled.len();
-        landing::arrive(cpu, rays, distances, travelled, points.first(count));
-        self.surface.normals(cpu, &self.frame, points.view(), normals.first(count));
-        landing::face(cpu, rays.dir, self.is_two_sided(), sides, normals);
+        let Landing { points, normals, sides, travelled } = landing;
+        normal::land(cpu, &self.surface, &self.frame, rays, distances, sides, travelled, points, normals);
     }
 }

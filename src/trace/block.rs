@@ -2,10 +2,11 @@
 
 use super::Tracer;
 use super::room::{Vectors, room};
-use super::search::{exact, invert, parts};
+use super::search::{exact, invert};
 use crate::bounds::{self, Bounds};
+use crate::bundles::PART;
 use crate::geometry::Side;
-use crate::packet::Rays;
+use crate::packet::{Rays, parts};
 use crate::tree::Visitor;
 use crate::watch::{Count, Watch};
 use std::mem::take;
@@ -77,7 +78,7 @@ impl<W: Watch> Block<'_, '_, '_, W> {
             }
         }
         let Some(tree) = &plan.tree else { return };
-        for part in parts(self.leaving.ends.len()) {
+        for part in parts(self.leaving.ends.len(), PART) {
             let rays = self.leaving.rays.part(part.clone());
             self.len = self.leaving.count(&part);
             self.part = part;

@@ -88,10 +88,11 @@ impl<W: Watch> Tracer<'_, '_, W> {
             ends,
             shines,
         };
-        let any = light.face(cpu, &Places { points, normals, lights, slack: self.slack() }, facing);
-        if !any.shines {
+        let faced = light.face(cpu, &Places { points, normals, lights, slack: self.slack() }, facing);
+        if !faced.any_shines {
             if W::SEES {
-                self.watch.see(Event::Light(index, if any.faces { Outcome::Aside } else { Outcome::Behind }));
+                self.watch
+                    .see(Event::Light(index, if faced.any_faces { Outcome::Aside } else { Outcome::Behind }));
             }
             return;
         }

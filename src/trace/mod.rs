@@ -147,9 +147,9 @@ impl<'m, 'w, W: Watch> Tracer<'m, 'w, W> {
         self.trace(group, colours);
     }
 
-    /// Whether wide packets may go on.
-    fn is_shallow(&self) -> bool {
-        self.depth < DEEP
+    /// The most rays of a packet that goes on from the present one.
+    fn most(&self) -> usize {
+        if self.depth < DEEP { WIDE } else { NARROW }
     }
 
     /// The light that comes back along the rays of a packet.

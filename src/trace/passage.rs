@@ -1,14 +1,13 @@
 //! How much of a light comes through glass.
 
+use super::Tracer;
 use super::group::{Group, Parts};
 use super::room::{Vectors, list, pick, room};
 use super::search::Found;
 use super::shade::Surface;
 use super::shadow::Ways;
-use super::{NARROW, Tracer};
 use crate::geometry::Side;
 use crate::material::Rgb;
-use crate::packet::WIDE;
 use crate::watch::{Count, Event, Kind, Purpose, Watch};
 
 /// Rays on their way to a light.
@@ -77,7 +76,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
                 continue;
             }
             let mut onward = self.rooms.passages.pop().unwrap_or_default();
-            for lanes in lanes.chunks(if self.is_shallow() { WIDE } else { NARROW }) {
+            for lanes in lanes.chunks(self.most()) {
                 onward.group.pick(group, lanes);
                 let count = onward.group.padded();
                 pick(&mut onward.near, &found.near, lanes, count);

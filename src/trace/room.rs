@@ -7,7 +7,7 @@ use super::illuminate::Lighting;
 use super::passage::Passage;
 use super::search::Found;
 use super::shade::Shading;
-use crate::packet::{STEP, View, ViewMut, WIDE};
+use crate::packet::{View, ViewMut, WIDE};
 use crate::sample::Sample;
 use glam::DVec3;
 
@@ -71,8 +71,8 @@ pub(super) struct Level {
 #[inline(always)]
 pub(super) fn room<T: Copy + Default>(array: &mut Vec<T>, count: usize) -> &mut [T] {
     if array.len() < count {
-        // Wide packets have room for the widest, for `pick`.
-        array.resize(if count > STEP * NARROW { count.max(WIDE) } else { count }, T::default());
+        // All but narrow packets have room for the widest one, which `pick` makes use of.
+        array.resize(if count > NARROW { count.max(WIDE) } else { count }, T::default());
     }
     &mut array[..count]
 }

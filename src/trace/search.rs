@@ -4,10 +4,10 @@ use super::Tracer;
 use super::group::Group;
 use super::room::{Vectors, room};
 use crate::bounds::{self, Bounds};
-use crate::bundles::{self, Bundles};
+use crate::bundles::{self, PART};
 use crate::cpu::{Cpu, kernels};
 use crate::geometry::{Hittable, MISS, Ray, Side, Span};
-use crate::packet::{Nearest, Rays};
+use crate::packet::{Nearest, Rays, parts};
 use crate::tree::Visitor;
 use crate::watch::{Count, Event, Hit, Reason, Watch};
 use std::mem::take;
@@ -164,14 +164,6 @@ kernels! {
     }
 }
 
-/// The most rays of a part of a packet.
-const PART: usize = 64;
-
-/// The rays of a packet in parts, which are nearer each other than all of them, and so come near fewer objects.
-pub(super) fn parts(count: usize) -> impl Iterator<Item = Range<usize>> {
-    (0..count).step_by(PART).map(move |first| first..count.min(first + PART))
-}
-
 /// The reciprocals of rays' directions.
 pub(super) fn invert(rays: Rays, inverse: &mut Vectors) {
     let mut inverse = inverse.room(rays.len());
@@ -197,7 +189,7 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
             self.listed();
         }
         let Some(tree) = &plan.tree else { return };
-        for part in parts(self.group.padded()) {
+        for part in parts(self.group.padded(), PART) {
             let rays = self.group.rays().part(part.clone());
             self.part = part;
             invert(rays, self.inverse);
@@ -208,27 +200,27 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
     /// Looks at the objects that are listed, each for those parts of the packet that may come there.
     fn listed(&mut self) {
         let (cpu, plan) = (self.tracer.cpu, self.tracer.plan);
-        let bundles = Bundles::around(cpu, self.group.rays());
+        let bundles = bundles::around(cpu, self.group.rays());
         for index in &plan.unbounded {
             let shape = &*self.tracer.model.objects[*index].shape;
-            self.some(*index, bundles.that(|ways| !shape.is_clear_of(ways)));
+            self.in_parts(*index, bundles.which(|ways| !shape.is_clear_of(ways)));
         }
         let mut parts = take(&mut self.tracer.rooms.parts);
-        bundles.meet(cpu, &plan.bounded, room(&mut parts, plan.bounded.len()));
+        bundles::meet(cpu, &bundles, &plan.bounded, room(&mut parts, plan.bounded.len()));
         for ((index, _), parts) in plan.bounded.iter().zip(&parts) {
-            self.some(*index, *parts);
+            self.in_parts(*index, *parts);
         }
         self.tracer.rooms.parts = parts;
     }
 
-    /// Looks at an object for some parts of the packet, which are the bits that are 1.
-    fn some(&mut self, index: usize, mut parts: u32) {
+    /// Looks at an object for some parts of the packet, whose bits are 1.
+    fn in_parts(&mut self, index: usize, mut parts: u32) {
         let (mut start, mut tested) = (0, 0);
         while parts != 0 {
             // Neighbours go together.
-            start += bundles::PART * parts.trailing_zeros() as usize;
+            start += PART * parts.trailing_zeros() as usize;
             parts >>= parts.trailing_zeros();
-            let end = start + bundles::PART * parts.trailing_ones() as usize;
+            let end = start + PART * parts.trailing_ones() as usize;
             parts >>= parts.trailing_ones();
             self.part = start..end.min(self.group.padded());
             tested += self.len();

@@ -4,11 +4,10 @@ use super::group::{Group, Onward};
 use super::light;
 use super::room::{Vectors, list, room};
 use super::search;
-use super::{DEEP, MAX_DIST, NARROW, Tracer};
+use super::{MAX_DIST, Tracer};
 use crate::geometry::Side;
 use crate::landing::Landing;
 use crate::model::Object;
-use crate::packet::WIDE;
 use crate::watch::{Count, Event, Hit, Kind, Purpose, Reason, Watch};
 use glam::DVec3;
 use std::mem::swap;
@@ -127,7 +126,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
         let dir = dir.room(count);
         light::mirror(cpu, group.dir.view(count), normals, specular, travelled, MAX_DIST, goes, dir);
         let do_all = goes[0] != 0 && search::is_one(cpu, goes);
-        if do_all && (group.len <= NARROW || self.depth + 1 < DEEP) {
+        if do_all && group.len <= self.most() {
             self.onward_all(group, shading);
         } else {
             self.onward(group, shading, Kind::Reflected);
@@ -146,11 +145,12 @@ impl<W: Watch> Tracer<'_, '_, W> {
             self.watch.see(Event::Colour(DVec3::ZERO));
         }
         self.watch.count(Count::Rays(kind, lanes.len()));
-        self.depth += 1;
         let Surface { points, travelled, sides, index, .. } = &*surface;
         let leaving = Onward { points, dir, travelled, leaves: *index, sides };
         behind.fill(group.padded(), DVec3::ZERO);
-        for lanes in lanes.chunks(if self.is_shallow() { WIDE } else { NARROW }) {
+        let most = self.most();
+        self.depth += 1;
+        for lanes in lanes.chunks(most) {
             onward.go_on(group, &leaving, lanes);
             self.trace(onward, seen);
             behind.put(seen, lanes);
