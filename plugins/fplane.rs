@@ -69,7 +69,7 @@ pub fn sides(args: &Args) -> Result<[DVec3; 2], Refusal> {
 }
 
 impl FinitePlane {
-    /// The rectangle of an entity whose table has the rows of a plane's and of [`TABLE`].
+    /// The rectangle of an entity whose table has the rows of a plane's and of this file's; refused as its sides are.
     pub fn new(args: &Args) -> Result<Self, Refusal> {
         let (plane, dimensions) = (Plane::new(args), args.get(&DIMENSIONS));
         let reach = plane.point.abs().max_element() + dimensions.element_sum();
