@@ -66,13 +66,16 @@ impl<W: Watch> Block<'_, '_, '_, W> {
         for (index, bounds) in
             unbounded.chain(plan.bounded.iter().map(|(index, bounds)| (index, Some(bounds))))
         {
-            if bounds.is_some_and(|bounds| !bounds.overlaps(&self.region))
-                || self.tracer.model.objects[*index].shape.is_clear_of(&self.region)
+            if !self.tracer.may_meet(Some(self.leaving.object), *index) {
+                continue;
+            }
+            let shape = &*self.tracer.model.objects[*index].shape;
+            if bounds.is_some_and(|bounds| !bounds.overlaps(&self.region)) || shape.is_clear_of(&self.region)
             {
                 self.tracer.watch.count(Count::Culled(*index, self.len));
                 continue;
             }
-            self.object(*index);
+            self.test(*index);
             if self.blocked.iter().all(|blocked| *blocked != 0) {
                 return;
             }
@@ -87,23 +90,13 @@ impl<W: Watch> Block<'_, '_, '_, W> {
             tree.visit(rays.dir.get(0), ahead, &mut self);
         }
     }
-}
 
-impl<W: Watch> Visitor for Block<'_, '_, '_, W> {
-    fn enters(&mut self, bounds: &Bounds) -> bool {
-        let (rays, ends) = (self.leaving.rays.part(self.part.clone()), &self.leaving.ends[self.part.clone()]);
-        bounds.overlaps(&self.region)
-            && bounds::any_meets(self.tracer.cpu, rays, self.inverse.view(ends.len()), ends, bounds)
-    }
-
-    fn object(&mut self, index: usize) {
+    /// Looks at an object.
+    fn test(&mut self, index: usize) {
         let Leaving { rays, ends, object, sides, .. } = *self.leaving;
         let (rays, ends) = (rays.part(self.part.clone()), &ends[self.part.clone()]);
         let shape = &*self.tracer.model.objects[index].shape;
         let sides = (index == object).then(|| &sides[self.part.clone()]);
-        if sides.is_some() && shape.is_convex() {
-            return;
-        }
         self.tracer.watch.count(Count::Tested(index, self.len));
         let (blocked, doubt) = (&mut self.blocked[self.part.clone()], &mut self.doubt[self.part.clone()]);
         if shape.block(self.tracer.cpu, rays, sides, ends, blocked, doubt) {
@@ -114,6 +107,20 @@ impl<W: Watch> Visitor for Block<'_, '_, '_, W> {
                     blocked[lane] |= u64::from(distance < ends[lane]);
                 }
             }
+        }
+    }
+}
+
+impl<W: Watch> Visitor for Block<'_, '_, '_, W> {
+    fn enters(&mut self, bounds: &Bounds) -> bool {
+        let (rays, ends) = (self.leaving.rays.part(self.part.clone()), &self.leaving.ends[self.part.clone()]);
+        bounds.overlaps(&self.region)
+            && bounds::any_meets(self.tracer.cpu, rays, self.inverse.view(ends.len()), ends, bounds)
+    }
+
+    fn object(&mut self, index: usize) {
+        if self.tracer.may_meet(Some(self.leaving.object), index) {
+            self.test(index);
         }
     }
 }

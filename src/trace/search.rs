@@ -92,6 +92,11 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
         self.watch.see(Event::Met(hit.as_ref()));
     }
 
+    /// Whether rays may meet an object at all: to a convex one that they leave they do not come back.
+    pub(super) fn may_meet(&self, leaves: Option<usize>, index: usize) -> bool {
+        leaves != Some(index) || !self.model.objects[index].shape.is_convex()
+    }
+
     /// The distances at which the rays of a packet meet an object, known to lie between `near` and `far`.
     pub(super) fn settle(
         &mut self,
@@ -203,12 +208,16 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
         let bundles = bundles::around(cpu, self.group.rays());
         for index in &plan.unbounded {
             let shape = &*self.tracer.model.objects[*index].shape;
-            self.in_parts(*index, bundles.which(|ways| !shape.is_clear_of(ways)));
+            if self.tracer.may_meet(self.group.leaves, *index) {
+                self.in_parts(*index, bundles.which(|ways| !shape.is_clear_of(ways)));
+            }
         }
         let mut parts = take(&mut self.tracer.rooms.parts);
         bundles::meet(cpu, &bundles, &plan.bounded, room(&mut parts, plan.bounded.len()));
         for ((index, _), parts) in plan.bounded.iter().zip(&parts) {
-            self.in_parts(*index, *parts);
+            if self.tracer.may_meet(self.group.leaves, *index) {
+                self.in_parts(*index, *parts);
+            }
         }
         self.tracer.rooms.parts = parts;
     }
@@ -224,7 +233,7 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
             parts >>= parts.trailing_ones();
             self.part = start..end.min(self.group.padded());
             tested += self.len();
-            self.object(index);
+            self.test(index);
             start = end;
         }
         if tested < self.group.len {
@@ -257,6 +266,21 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
             (*near, *far, *met) = (distance, distance, id);
         }
     }
+
+    /// Looks at an object.
+    fn test(&mut self, index: usize) {
+        let shape = &*self.tracer.model.objects[index].shape;
+        let sides = self.group.sides_of(index).map(|sides| &sides[self.part.clone()]);
+        self.tracer.watch.count(Count::Tested(index, self.len()));
+        let rays = self.group.rays().part(self.part.clone());
+        if shape.meet(self.tracer.cpu, rays, sides, index as u64 + 1, self.found.part(self.part.clone())) {
+            for lane in 0..self.len() {
+                if self.found.doubt[self.part.start + lane] != 0 {
+                    self.decide(self.part.start + lane, index, sides.map(|sides| sides[lane]));
+                }
+            }
+        }
+    }
 }
 
 impl<W: Watch> Visitor for Closest<'_, '_, '_, W> {
@@ -267,19 +291,8 @@ impl<W: Watch> Visitor for Closest<'_, '_, '_, W> {
     }
 
     fn object(&mut self, index: usize) {
-        let shape = &*self.tracer.model.objects[index].shape;
-        let sides = self.group.sides_of(index).map(|sides| &sides[self.part.clone()]);
-        if sides.is_some() && shape.is_convex() {
-            return;
-        }
-        self.tracer.watch.count(Count::Tested(index, self.len()));
-        let rays = self.group.rays().part(self.part.clone());
-        if shape.meet(self.tracer.cpu, rays, sides, index as u64 + 1, self.found.part(self.part.clone())) {
-            for lane in 0..self.len() {
-                if self.found.doubt[self.part.start + lane] != 0 {
-                    self.decide(self.part.start + lane, index, sides.map(|sides| sides[lane]));
-                }
-            }
+        if self.tracer.may_meet(self.group.leaves, index) {
+            self.test(index);
         }
     }
 }
