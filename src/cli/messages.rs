@@ -2,7 +2,8 @@
 
 use crate::scene::{self, Report};
 use annotate_snippets::{Group, Level, Renderer};
-use std::io::Write;
+use anstream::AutoStream;
+use std::io::{self, Write};
 use std::sync::OnceLock;
 
 /// How messages are written.
@@ -62,7 +63,9 @@ fn json(level: &str, message: &str, help: Option<&str>, rendered: &str) -> Strin
     scene::message(level, message, help, Vec::new(), rendered).to_string() + "\n"
 }
 
-/// Where standard error is closed there is nobody to tell.
+/// In one piece, whatever else writes there. Where standard error is closed there is nobody to tell.
 fn say(text: &str) {
-    let _ = anstream::stderr().write_all(text.as_bytes());
+    let stderr = io::stderr();
+    let mut said = AutoStream::new(Vec::new(), AutoStream::choice(&stderr));
+    let _ = said.write_all(text.as_bytes()).and_then(|()| stderr.lock().write_all(&said.into_inner()));
 }
