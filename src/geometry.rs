@@ -5,7 +5,7 @@ use crate::certify::Enclosure;
 use crate::cpu::Cpu;
 use crate::facing::{self, Faced, Facing, Places};
 use crate::landing::{self, Landing};
-use crate::material::{Material, Rgb};
+use crate::material::{Look, Material, Rgb};
 use crate::packet::{self, Nearest, Rays, View, ViewMut};
 use crate::roots::Method;
 use crate::shading::{Anchor, ProceduralShader};
@@ -228,6 +228,11 @@ pub trait Shader: Send + Sync {
         material.specular
     }
 
+    /// What those give where that is the same at all points, which are then not asked for one by one.
+    fn even(&self, _material: &Material) -> Option<Look> {
+        None
+    }
+
     /// What [`ambient`](Self::ambient) and [`specular`](Self::specular) give at many points; tells whether any of the
     /// second is not 0.
     fn unlit(
@@ -250,7 +255,12 @@ pub trait Shader: Send + Sync {
 /// The shader of an object that has none of its own: the material everywhere.
 pub struct Plain;
 
-impl Shader for Plain {}
+impl Shader for Plain {
+    fn even(&self, material: &Material) -> Option<Look> {
+        let Material { ambient, diffuse, specular, .. } = *material;
+        Some(Look { ambient, diffuse, specular })
+    }
+}
 
 /// A source of light.
 pub trait Light: Send + Sync {

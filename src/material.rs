@@ -19,3 +19,14 @@ pub struct Material {
     /// The part of light that passes through it, from 0 to 1.
     pub transparency: f64,
 }
+
+/// What a surface answers to light that is the same all over it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Look {
+    /// The reflectivity for light from nowhere in particular.
+    pub ambient: Rgb,
+    /// The reflectivity for light from the scene's lights, scattered evenly.
+    pub diffuse: Rgb,
+    /// The reflectivity as a mirror.
+    pub specular: Rgb,
+}

@@ -11,7 +11,7 @@ pub use packets::Times;
 
 use crate::cpu::Cpu;
 use crate::geometry::Shader;
-use crate::material::{Material, Rgb};
+use crate::material::{Look, Material, Rgb};
 use crate::model::{Model, Object};
 use crate::packet::{View, ViewMut};
 use crate::render::{Overseer, Renderer};
@@ -194,6 +194,10 @@ impl Shader for Matt {
 
     fn specular(&self, _material: &Material, _at: DVec3) -> Rgb {
         Rgb::ZERO
+    }
+
+    fn even(&self, material: &Material) -> Option<Look> {
+        self.0.even(material).map(|look| Look { specular: Rgb::ZERO, ..look })
     }
 
     fn unlit(

@@ -7,7 +7,7 @@ use crate::cpu::Cpu;
 use crate::dump;
 use crate::facing::{Facing, Places};
 use crate::geometry::{Light, Shader};
-use crate::material::{Material, Rgb};
+use crate::material::{Look, Material, Rgb};
 use crate::model::Model;
 use crate::packet::{STEP, Vectors};
 use crate::profile::Profile;
@@ -50,6 +50,12 @@ pub fn shader(shader: &dyn Shader, at: DVec3) -> Result<(), Fault> {
         if !colour.is_finite() || colour.min_element() < 0.0 {
             return Err(Promise::ReflectivityIsSound.fault(format!("`{what}` is {colour} at {at}")));
         }
+    }
+    if let Some(Look { ambient, diffuse, specular }) = shader.even(&material)
+        && one != [ambient, diffuse, specular]
+    {
+        let even = [ambient, diffuse, specular];
+        return Err(Promise::PacketsAgree.fault(format!("`even` is {even:?}, it answers {one:?} at {at}")));
     }
     let points = Vectors::<STEP> { x: [at.x; STEP], y: [at.y; STEP], z: [at.z; STEP] };
     for cpu in Cpu::all() {

@@ -178,8 +178,8 @@ fn of_choice(what: &str, choice: ChoiceName, outcome: Result<(), Fault>) -> Opti
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Shader;
-    use crate::material::{Material, Rgb};
+    use crate::geometry::{Plain, Shader};
+    use crate::material::{Look, Material, Rgb};
     use crate::shading::Anchor;
     use glam::DVec3;
 
@@ -196,6 +196,19 @@ mod tests {
         }
     }
 
+    struct Uneven;
+
+    impl Shader for Uneven {
+        fn ambient(&self, _material: &Material, at: DVec3) -> Rgb {
+            Rgb::splat(at.x.abs())
+        }
+
+        fn even(&self, material: &Material) -> Option<Look> {
+            Plain.even(material)
+        }
+    }
+
+    static UNEVEN: ProceduralShader = ProceduralShader::new("uneven", "not even", |_| Box::new(Uneven));
     static SPOKES: ProceduralShader =
         ProceduralShader::new("spokes", "spokes", |anchor| Box::new(Spokes(anchor)));
 
@@ -221,5 +234,12 @@ mod tests {
         let breach = of_procedural_shader(&SPOKES).expect("a breach");
         assert_eq!(breach.promise, Promise::ReflectivityIsSound);
         assert_eq!(breach.found, "`ambient` is [NaN, NaN, NaN] at [4, 3, -2.5]");
+    }
+
+    #[test]
+    fn a_shader_that_says_it_is_even_and_is_not_is_found() {
+        let breach = of_procedural_shader(&UNEVEN).expect("a breach");
+        assert_eq!(breach.promise, Promise::PacketsAgree);
+        assert!(breach.found.starts_with("`even` is ["), "{breach}");
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Tracer;
 use super::group::Group;
-use super::light::{self, Lit};
+use super::light::{self, Lit, Looks};
 use super::room::{Vectors, room};
 use super::shade::Surface;
 use super::shadow::{Shadows, Ways};
@@ -39,8 +39,11 @@ impl<W: Watch> Tracer<'_, '_, W> {
         let (cpu, count) = (self.cpu, group.padded());
         let Object { material, shader, .. } = &self.model.objects[surface.index];
         let points = surface.points.view(count);
-        let scatters = shader.diffuses(cpu, material, points, lighting.diffuse.room(count))
-            || material.shininess != 0.0 && surface.is_mirror;
+        let is_matt = match surface.look {
+            Some(look) => look.diffuse != Rgb::ZERO,
+            None => shader.diffuses(cpu, material, points, lighting.diffuse.room(count)),
+        };
+        let scatters = is_matt || material.shininess != 0.0 && surface.is_mirror;
         let budget = group.budget[0];
         // Where nothing is scattered lights make no difference. Whoever looks on is told of them all the same.
         if scatters || W::SEES {
@@ -113,14 +116,16 @@ impl<W: Watch> Tracer<'_, '_, W> {
         }
         let lit = Lit {
             toward: toward.view(count),
-            looks: group.dir.view(count),
+            seen: group.dir.view(count),
             normals,
             falloffs: &falloffs[..count],
             shines,
             blocked,
-            diffuse: diffuse.view(count),
-            specular: surface.specular.view(count),
             emissivity: emissivity.view(count),
+            looks: match surface.look {
+                Some(look) => Looks::Even(look),
+                None => Looks::Each { diffuse: diffuse.view(count), specular: surface.specular.view(count) },
+            },
         };
         light::shine(cpu, &lit, material.shininess, colours.room(count));
         if W::SEES {

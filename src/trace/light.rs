@@ -1,6 +1,7 @@
 //! The arithmetic of shading, for all places of a packet at once.
 
 use crate::cpu::kernels;
+use crate::material::{Look, Rgb};
 use crate::packet::{View, ViewMut, is_any};
 
 /// Places that a light shines on.
@@ -8,7 +9,7 @@ pub(super) struct Lit<'l> {
     /// From each place to the light.
     pub toward: View<'l>,
     /// Along which each is seen.
-    pub looks: View<'l>,
+    pub seen: View<'l>,
     pub normals: View<'l>,
     /// The cosines of the angles between the normals and the directions of the light, divided by its distances.
     pub falloffs: &'l [f64],
@@ -16,24 +17,41 @@ pub(super) struct Lit<'l> {
     pub shines: &'l [u64],
     /// 1 where something stands in its way.
     pub blocked: &'l [u64],
-    pub diffuse: View<'l>,
-    pub specular: View<'l>,
     pub emissivity: View<'l>,
+    pub looks: Looks<'l>,
+}
+
+/// What places of a surface answer to light.
+#[derive(Clone, Copy)]
+pub(super) enum Looks<'l> {
+    /// All the same.
+    Even(Look),
+    /// Each something else.
+    Each { diffuse: View<'l>, specular: View<'l> },
+}
+
+/// What places of a surface mirror.
+#[derive(Clone, Copy)]
+pub(super) enum Reflectivity<'r> {
+    /// The same at all.
+    Even(Rgb),
+    /// That of each.
+    Each(View<'r>),
 }
 
 kernels! {
     /// Adds the light that comes to places, where it does.
     pub(super) fn shine(lit: &Lit, shininess: f64) => colours {
-        let colours = colours.first(lit.shines.len());
-        let whole = shininess as u32;
+        let (count, whole) = (lit.shines.len(), shininess as u32);
+        let colours = colours.first(count);
         if shininess == 0.0 {
-            shine_all(lit, None::<fn(f64) -> f64>, colours);
+            shine_each(lit, None::<fn(f64) -> f64>, colours);
         } else if f64::from(whole) == shininess && whole < 1 << 8 {
-            shine_all(lit, Some(|cos| whole_power::<8>(cos, whole)), colours);
+            shine_each(lit, Some(|cos| whole_power::<8>(cos, whole)), colours);
         } else if f64::from(whole) == shininess && whole < 1 << 17 {
-            shine_all(lit, Some(|cos| whole_power::<17>(cos, whole)), colours);
+            shine_each(lit, Some(|cos| whole_power::<17>(cos, whole)), colours);
         } else {
-            shine_all(lit, Some(|cos| libm::pow(cos, shininess)), colours);
+            shine_each(lit, Some(|cos| libm::pow(cos, shininess)), colours);
         }
     }
 
@@ -47,15 +65,21 @@ kernels! {
 
     /// Directions, mirrored. Marks the rays that go on there: likewise, where the surface is a mirror.
     pub(super) fn mirror(
-        dir: View, normals: View, specular: View, travelled: &[f64], most: f64, goes: &mut [u64]
+        dir: View, normals: View, specular: Reflectivity, travelled: &[f64], most: f64, goes: &mut [u64]
     ) => out {
         let count = dir.len();
-        let (normals, specular, mut out) = (normals.first(count), specular.first(count), out.first(count));
+        let (normals, mut out) = (normals.first(count), out.first(count));
         let (travelled, goes) = (&travelled[..count], &mut goes[..count]);
         for lane in 0..count {
             let (dir, normal) = (dir.get(lane), normals.get(lane));
             out.set(lane, dir - 2.0 * dir.dot(normal) * normal);
-            goes[lane] = is_any(specular.get(lane)) & u64::from(travelled[lane] <= most);
+            goes[lane] = u64::from(travelled[lane] <= most);
+        }
+        if let Reflectivity::Each(specular) = specular {
+            let specular = specular.first(count);
+            for lane in 0..count {
+                goes[lane] &= is_any(specular.get(lane));
+            }
         }
     }
 
@@ -69,11 +93,19 @@ kernels! {
     }
 
     /// Adds what is mirrored.
-    pub(super) fn reflect(specular: View, seen: View) => colours {
-        let count = specular.len();
-        let (seen, mut colours) = (seen.first(count), colours.first(count));
-        for lane in 0..count {
-            colours.set(lane, colours.get(lane) + specular.get(lane) * seen.get(lane));
+    pub(super) fn reflect(specular: Reflectivity, seen: View) => colours {
+        let count = seen.len();
+        let mut colours = colours.first(count);
+        match specular {
+            Reflectivity::Even(specular) => for lane in 0..count {
+                colours.set(lane, colours.get(lane) + specular * seen.get(lane));
+            },
+            Reflectivity::Each(specular) => {
+                let specular = specular.first(count);
+                for lane in 0..count {
+                    colours.set(lane, colours.get(lane) + specular.get(lane) * seen.get(lane));
+                }
+            }
         }
     }
 }
@@ -90,20 +122,39 @@ fn whole_power<const BITS: u32>(of: f64, power: u32) -> f64 {
     product
 }
 
+/// As `shine`, with what a glint is of the cosine of its angle.
 #[inline(always)]
-fn shine_all(lit: &Lit, glint: Option<impl Fn(f64) -> f64>, colours: ViewMut) {
-    let (count, mut colours) = (lit.shines.len(), colours);
-    let (toward, looks, normals) =
-        (lit.toward.first(count), lit.looks.first(count), lit.normals.first(count));
-    let (diffuse, specular) = (lit.diffuse.first(count), lit.specular.first(count));
+fn shine_each(lit: &Lit, glint: Option<impl Fn(f64) -> f64>, colours: ViewMut) {
+    let count = lit.shines.len();
+    match lit.looks {
+        Looks::Even(Look { diffuse, specular, .. }) => {
+            shine_all(lit, |_| diffuse, |_| specular, glint, colours);
+        }
+        Looks::Each { diffuse, specular } => {
+            let (diffuse, specular) = (diffuse.first(count), specular.first(count));
+            shine_all(lit, |lane| diffuse.get(lane), |lane| specular.get(lane), glint, colours);
+        }
+    }
+}
+
+#[inline(always)]
+fn shine_all(
+    lit: &Lit,
+    diffuse: impl Fn(usize) -> Rgb,
+    specular: impl Fn(usize) -> Rgb,
+    glint: Option<impl Fn(f64) -> f64>,
+    mut colours: ViewMut,
+) {
+    let count = lit.shines.len();
+    let (toward, seen, normals) = (lit.toward.first(count), lit.seen.first(count), lit.normals.first(count));
     let emissivity = lit.emissivity.first(count);
     let (falloffs, shines, blocked) = (&lit.falloffs[..count], &lit.shines[..count], &lit.blocked[..count]);
     for lane in 0..count {
         let light = emissivity.get(lane);
-        let mut colour = diffuse.get(lane) * light * falloffs[lane];
+        let mut colour = diffuse(lane) * light * falloffs[lane];
         if let Some(glint) = &glint {
-            let half = (toward.get(lane) - looks.get(lane)).normalize();
-            colour += light * specular.get(lane) * glint(half.dot(normals.get(lane)));
+            let half = (toward.get(lane) - seen.get(lane)).normalize();
+            colour += light * specular(lane) * glint(half.dot(normals.get(lane)));
         }
         let before = colours.get(lane);
         let is_lit = (shines[lane] != 0) & (blocked[lane] != 1);

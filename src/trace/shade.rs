@@ -1,12 +1,13 @@
 //! The colours of the places that a packet's rays meet on one object.
 
 use super::group::{Group, Onward};
-use super::light;
+use super::light::{self, Reflectivity};
 use super::room::{Vectors, list, room};
 use super::search;
 use super::{MAX_DIST, Tracer};
 use crate::geometry::Side;
 use crate::landing::Landing;
+use crate::material::{Look, Rgb};
 use crate::model::Object;
 use crate::watch::{Count, Event, Hit, Kind, Purpose, Reason, Watch};
 use glam::DVec3;
@@ -24,9 +25,21 @@ pub(super) struct Surface {
     pub sides: Vec<Side>,
     /// How far the light has come from each.
     pub travelled: Vec<f64>,
-    /// What each mirrors, and whether any does.
+    /// What all answer to light, where that is the same.
+    pub look: Option<Look>,
+    /// Else what each mirrors.
     pub specular: Vectors,
+    /// Whether any mirrors anything.
     pub is_mirror: bool,
+}
+
+impl Surface {
+    fn mirrors(&self, count: usize) -> Reflectivity<'_> {
+        match self.look {
+            Some(look) => Reflectivity::Even(look.specular),
+            None => Reflectivity::Each(self.specular.view(count)),
+        }
+    }
 }
 
 /// Room for what one packet needs while others go on from it.
@@ -72,8 +85,14 @@ impl<W: Watch> Tracer<'_, '_, W> {
         };
         shape.land(cpu, group.rays(), distances, landing);
         let points = surface.points.view(count);
-        surface.is_mirror =
-            shader.unlit(cpu, material, points, colours.room(count), surface.specular.room(count));
+        surface.look = shader.even(material);
+        surface.is_mirror = match surface.look {
+            Some(look) => {
+                colours.fill(count, look.ambient);
+                look.specular != Rgb::ZERO
+            }
+            None => shader.unlit(cpu, material, points, colours.room(count), surface.specular.room(count)),
+        };
         if W::SEES {
             self.watch.see(Event::Surface { normal: surface.normals.get(0), ambient: colours.get(0) });
         }
@@ -118,10 +137,14 @@ impl<W: Watch> Tracer<'_, '_, W> {
     fn look_in_the_mirror(&mut self, group: &mut Group, shading: &mut Shading, colours: &mut Vectors) {
         let Shading { surface, goes, dir, .. } = shading;
         if W::SEES {
-            self.watch.see(Event::Begin(Purpose::Reflected { specular: surface.specular.get(0) }));
+            let specular = match surface.look {
+                Some(look) => look.specular,
+                None => surface.specular.get(0),
+            };
+            self.watch.see(Event::Begin(Purpose::Reflected { specular }));
         }
         let (cpu, count) = (self.cpu, group.padded());
-        let (normals, specular) = (surface.normals.view(count), surface.specular.view(count));
+        let (normals, specular) = (surface.normals.view(count), surface.mirrors(count));
         let (travelled, goes) = (&surface.travelled[..count], room(goes, count));
         let dir = dir.room(count);
         light::mirror(cpu, group.dir.view(count), normals, specular, travelled, MAX_DIST, goes, dir);
@@ -131,7 +154,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
         } else {
             self.onward(group, shading, Kind::Reflected);
         }
-        let specular = shading.surface.specular.view(count);
+        let specular = shading.surface.mirrors(count);
         light::reflect(cpu, specular, shading.behind.view(count), colours.room(count));
     }
 
