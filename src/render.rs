@@ -104,11 +104,16 @@ impl Renderer {
                     if (overseer.stops)() {
                         break;
                     }
-                    tiles::list(left..columns.end.min(left + TILE), top + 1 - tall..top + 1, &mut tile);
+                    let (wide, rows) = (left..columns.end.min(left + TILE), top + 1 - tall..top + 1);
+                    tiles::list(wide.clone(), rows.clone(), &mut tile);
                     let colours = tracer.pixels(&tile);
                     to_bytes(self.cpu, colours, &mut bytes[..tile.len()]);
-                    for ([x, y], bytes) in tile.iter().zip(&bytes) {
-                        strip[(top - y) * width + x - columns.start] = *bytes;
+                    let mut rest = &bytes[..];
+                    for (run, y) in tiles::runs(wide, rows) {
+                        let (bytes, others) = rest.split_at(run.len());
+                        strip[(top - y) * width + run.start - columns.start..][..run.len()]
+                            .copy_from_slice(bytes);
+                        rest = others;
                     }
                     *is_done = true;
                 }

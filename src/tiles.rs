@@ -6,16 +6,23 @@ use std::ops::Range;
 /// The width and height of a tile, whose rays go together, in pixels. Those at the right and lower edges may be smaller.
 pub(crate) const TILE: usize = 16;
 
-/// Lists the pixels of a tile, or of a part of one, those together that are near each other.
-pub(crate) fn list(columns: Range<usize>, rows: Range<usize>, pixels: &mut Vec<[usize; 2]>) {
+/// The pixels of a tile, or of a part of one, a few side by side at a time, those together that are near each other.
+pub(crate) fn runs(columns: Range<usize>, rows: Range<usize>) -> impl Iterator<Item = (Range<usize>, usize)> {
     const SIDE: usize = 8;
+    rows.clone().step_by(SIDE).flat_map(move |low| {
+        let (columns, end) = (columns.clone(), rows.end.min(low + SIDE));
+        columns.clone().step_by(SIDE).flat_map(move |left| {
+            let run = left..columns.end.min(left + SIDE);
+            (low..end).map(move |y| (run.clone(), y))
+        })
+    })
+}
+
+/// Lists them.
+pub(crate) fn list(columns: Range<usize>, rows: Range<usize>, pixels: &mut Vec<[usize; 2]>) {
     pixels.clear();
-    for low in rows.clone().step_by(SIDE) {
-        for left in columns.clone().step_by(SIDE) {
-            for y in low..rows.end.min(low + SIDE) {
-                pixels.extend((left..columns.end.min(left + SIDE)).map(|x| [x, y]));
-            }
-        }
+    for (columns, y) in runs(columns, rows) {
+        pixels.extend(columns.map(|x| [x, y]));
     }
 }
 
