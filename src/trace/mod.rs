@@ -105,7 +105,8 @@ impl<'m, 'w, W: Watch> Tracer<'m, 'w, W> {
         if camera.samples == 1 {
             for (pixels, first) in pixels.chunks(WIDE).zip((0..).step_by(WIDE)) {
                 for (lane, [column, row]) in pixels.iter().enumerate() {
-                    (x[lane], y[lane]) = (*column as f64, *row as f64);
+                    // As signed numbers, which processors convert in one step.
+                    (x[lane], y[lane]) = (*column as i64 as f64, *row as i64 as f64);
                 }
                 group.look(self.cpu, camera, x, y, pixels.len());
                 self.colours(group, seen);
