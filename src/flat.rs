@@ -5,7 +5,7 @@
 //! and where a sum of products cancels it is computed with what rounding took from each (Ogita, Rump and Oishi 2005).
 
 use crate::accuracy::Accuracy;
-use crate::bounds::{Bounds, larger, smaller};
+use crate::bounds::{Bounds, SLACK, larger};
 use crate::cpu::{Cpu, kernels};
 use crate::geometry::{Bracket, MISS, Ray, Span};
 use crate::packet::{self, Rays, STEP};
@@ -147,19 +147,23 @@ impl Plane {
     /// Whether it does not come into a region.
     #[inline(always)]
     pub fn is_clear_of(&self, region: &Bounds) -> bool {
-        let region = region.with_slack(self.point.abs().max_element());
-        let (mut least, mut most) = (0.0, 0.0);
+        // How far the region's nearest and farthest corners are in front of it, and the sizes of what adds up to that.
+        let (mut nearest, mut near_size, mut farthest, mut far_size) = (0.0, 0.0, 0.0, 0.0);
         for axis in 0..3 {
-            let normal = self.normal[axis];
-            let (one, other) = (
-                normal * (region.low[axis] - self.point[axis]),
-                normal * (region.high[axis] - self.point[axis]),
-            );
+            let (normal, point) = (self.normal[axis], self.point[axis]);
             // Regions may be without an end, which is no matter where the plane is.
-            least += if normal == 0.0 { 0.0 } else { smaller(one, other) };
-            most += if normal == 0.0 { 0.0 } else { larger(one, other) };
+            if normal != 0.0 {
+                let low = normal * (region.low[axis] - point);
+                let high = normal * (region.high[axis] - point);
+                let (near, far) = if normal > 0.0 { (low, high) } else { (high, low) };
+                let size = 2.0 * (normal * point).abs();
+                nearest += near;
+                near_size += near.abs() + size;
+                farthest += far;
+                far_size += far.abs() + size;
+            }
         }
-        self.accuracy != Accuracy::Classic && (least > 0.0 || most < 0.0)
+        self.accuracy != Accuracy::Classic && (nearest > SLACK * near_size || farthest < -SLACK * far_size)
     }
 
     /// The product of the normal and the way to the plane to a few units in the last place, whatever cancels.
