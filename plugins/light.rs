@@ -47,6 +47,10 @@ impl Light for PointLight {
         Some(self.emissivity)
     }
 
+    fn even(&self) -> Option<Rgb> {
+        Some(self.emissivity)
+    }
+
     fn size(&self) -> f64 {
         self.size
     }

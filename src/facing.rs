@@ -26,7 +26,7 @@ pub struct Places<'p> {
 pub struct Facing<'f> {
     /// The directions to it, unit vectors.
     pub toward: ViewMut<'f>,
-    /// The colours that it sends; black where it sends nothing.
+    /// The colours that it sends, black where it sends nothing; of a light that is even they are left as they are.
     pub emissivity: ViewMut<'f>,
     /// The cosines of the angles between those directions and the normals, divided by the distances to it in world
     /// units.
@@ -80,7 +80,7 @@ fn face_all<T: Light + ?Sized>(
         ViewMut,
     ),
 ) -> Faced {
-    let (count, slack) = (places.points.len(), places.slack);
+    let (count, slack, is_even) = (places.points.len(), places.slack, light.even().is_some());
     let (points, normals) = (places.points.first(count), places.normals.first(count));
     let (falloffs, ends, shines) = (&mut falloffs[..count], &mut ends[..count], &mut shines[..count]);
     let (mut any_faces, mut any_shines) = (0, 0);
@@ -93,11 +93,13 @@ fn face_all<T: Light + ?Sized>(
         let cosine = dir.dot(normals.get(lane));
         // A light on the surface itself makes it NaN, and is behind.
         let faces = u64::from(cosine > 0.0);
-        let light = light.emissivity(point);
-        let does_shine = faces & u64::from(light.is_some());
+        let sent = light.emissivity(point);
+        let does_shine = faces & u64::from(sent.is_some());
         let end = distance - slack * (distance + reach(point));
         toward.set(lane, dir);
-        emissivity.set(lane, light.unwrap_or(Rgb::ZERO));
+        if !is_even {
+            emissivity.set(lane, sent.unwrap_or(Rgb::ZERO));
+        }
         falloffs[lane] = cosine * inverse;
         ends[lane] = if does_shine != 0 { end } else { 0.0 };
         shines[lane] = does_shine;

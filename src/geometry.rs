@@ -270,6 +270,11 @@ pub trait Light: Send + Sync {
     /// The light that it sends toward a point, or nothing where it does not point there (the notes' `vischeck`).
     fn emissivity(&self, toward: DVec3) -> Option<Rgb>;
 
+    /// The light that it sends, where that is the same toward all points, which are then not asked for one by one.
+    fn even(&self) -> Option<Rgb> {
+        None
+    }
+
     /// The radius of a ball that shines; 0 for a point, whose shadows have sharp edges.
     fn size(&self) -> f64 {
         0.0

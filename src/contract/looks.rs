@@ -99,6 +99,12 @@ pub fn light(light: &dyn Light, draw: &mut Draw) -> Result<(), Fault> {
         if one.is_some_and(|light| !light.is_finite()) {
             return Err(Promise::LightIsFinite.fault(format!("toward {toward} it sends {one:?}")));
         }
+        if let Some(even) = light.even()
+            && one != Some(even)
+        {
+            let found = format!("`even` is {even}, and toward {toward} it sends {one:?}");
+            return Err(Promise::PacketsAgree.fault(found));
+        }
         let all = |of: DVec3| Vectors::<STEP> { x: [of.x; STEP], y: [of.y; STEP], z: [of.z; STEP] };
         // The light is in front of each place, but for the one that it is on.
         let (points, normals) = (all(toward), all((location - toward).normalize_or_zero()));
@@ -114,7 +120,8 @@ pub fn light(light: &dyn Light, draw: &mut Draw) -> Result<(), Fault> {
                 shines: &mut shines,
             };
             light.face(cpu, &Places { points, normals, lights: None, slack: 0.0 }, facing);
-            let (many, does_shine) = (emissivity.get(STEP - 1), one.is_some() && toward != location);
+            let many = light.even().unwrap_or(emissivity.get(STEP - 1));
+            let does_shine = one.is_some() && toward != location;
             if !same_bits(many, one.unwrap_or(Rgb::ZERO)) || shines[STEP - 1] != u64::from(does_shine) {
                 let found = format!("{many:?} in packets ({cpu}), {one:?} toward {toward}");
                 return Err(Promise::PacketsAgree.fault(found));

@@ -178,7 +178,7 @@ fn of_choice(what: &str, choice: ChoiceName, outcome: Result<(), Fault>) -> Opti
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Plain, Shader};
+    use crate::geometry::{Light, Plain, Shader};
     use crate::material::{Look, Material, Rgb};
     use crate::shading::Anchor;
     use glam::DVec3;
@@ -205,6 +205,20 @@ mod tests {
 
         fn even(&self, material: &Material) -> Option<Look> {
             Plain.even(material)
+        }
+    }
+
+    impl Light for Uneven {
+        fn location(&self) -> DVec3 {
+            DVec3::ZERO
+        }
+
+        fn emissivity(&self, toward: DVec3) -> Option<Rgb> {
+            (toward.y < 0.0).then_some(Rgb::ONE)
+        }
+
+        fn even(&self) -> Option<Rgb> {
+            Some(Rgb::ONE)
         }
     }
 
@@ -241,5 +255,12 @@ mod tests {
         let breach = of_procedural_shader(&UNEVEN).expect("a breach");
         assert_eq!(breach.promise, Promise::PacketsAgree);
         assert!(breach.found.starts_with("`even` is ["), "{breach}");
+    }
+
+    #[test]
+    fn a_light_that_says_it_is_even_and_is_not_is_found() {
+        let fault = looks::light(&Uneven, &mut Draw::new("uneven")).expect_err("a fault");
+        assert_eq!(fault.promise, Promise::PacketsAgree);
+        assert_eq!(fault.found, "`even` is [1, 1, 1], and toward [0, 0, 0] it sends None");
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Tracer;
 use super::group::Group;
-use super::light::{self, Lit, Looks};
+use super::light::{self, Colours, Lit, Looks};
 use super::room::{Vectors, room};
 use super::shade::Surface;
 use super::shadow::{Shadows, Ways};
@@ -100,8 +100,11 @@ impl<W: Watch> Tracer<'_, '_, W> {
             return;
         }
         let ways = Ways { from: *around, to: source, toward };
-        let mut tint = Rgb::ONE;
+        let (mut sent, mut tint) = (light.even(), Rgb::ONE);
         if W::SEES || self.plan.has_glass {
+            if let Some(sent) = sent.take() {
+                emissivity.fill(count, sent);
+            }
             let (blocker, passed) = self.pass(group, surface, &ways, ends, shines, emissivity);
             if W::SEES
                 && let Some(blocker) = blocker
@@ -121,7 +124,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
             falloffs: &falloffs[..count],
             shines,
             blocked,
-            emissivity: emissivity.view(count),
+            emissivity: sent.map_or(Colours::Each(emissivity.view(count)), Colours::Even),
             looks: match surface.look {
                 Some(look) => Looks::Even(look),
                 None => Looks::Each { diffuse: diffuse.view(count), specular: surface.specular.view(count) },

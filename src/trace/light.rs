@@ -17,7 +17,8 @@ pub(super) struct Lit<'l> {
     pub shines: &'l [u64],
     /// 1 where something stands in its way.
     pub blocked: &'l [u64],
-    pub emissivity: View<'l>,
+    /// What it sends there.
+    pub emissivity: Colours<'l>,
     pub looks: Looks<'l>,
 }
 
@@ -30,13 +31,13 @@ pub(super) enum Looks<'l> {
     Each { diffuse: View<'l>, specular: View<'l> },
 }
 
-/// What places of a surface mirror.
+/// Of places of a surface.
 #[derive(Clone, Copy)]
-pub(super) enum Reflectivity<'r> {
+pub(super) enum Colours<'c> {
     /// The same at all.
     Even(Rgb),
     /// That of each.
-    Each(View<'r>),
+    Each(View<'c>),
 }
 
 kernels! {
@@ -65,7 +66,7 @@ kernels! {
 
     /// Directions, mirrored. Marks the rays that go on there: likewise, where the surface is a mirror.
     pub(super) fn mirror(
-        dir: View, normals: View, specular: Reflectivity, travelled: &[f64], most: f64, goes: &mut [u64]
+        dir: View, normals: View, specular: Colours, travelled: &[f64], most: f64, goes: &mut [u64]
     ) => out {
         let count = dir.len();
         let (normals, mut out) = (normals.first(count), out.first(count));
@@ -75,7 +76,7 @@ kernels! {
             out.set(lane, dir - 2.0 * dir.dot(normal) * normal);
             goes[lane] = u64::from(travelled[lane] <= most);
         }
-        if let Reflectivity::Each(specular) = specular {
+        if let Colours::Each(specular) = specular {
             let specular = specular.first(count);
             for lane in 0..count {
                 goes[lane] &= is_any(specular.get(lane));
@@ -93,14 +94,14 @@ kernels! {
     }
 
     /// Adds what is mirrored.
-    pub(super) fn reflect(specular: Reflectivity, seen: View) => colours {
+    pub(super) fn reflect(specular: Colours, seen: View) => colours {
         let count = seen.len();
         let mut colours = colours.first(count);
         match specular {
-            Reflectivity::Even(specular) => for lane in 0..count {
+            Colours::Even(specular) => for lane in 0..count {
                 colours.set(lane, colours.get(lane) + specular * seen.get(lane));
             },
-            Reflectivity::Each(specular) => {
+            Colours::Each(specular) => {
                 let specular = specular.first(count);
                 for lane in 0..count {
                     colours.set(lane, colours.get(lane) + specular.get(lane) * seen.get(lane));
@@ -128,18 +129,38 @@ fn shine_each(lit: &Lit, glint: Option<impl Fn(f64) -> f64>, colours: ViewMut) {
     let count = lit.shines.len();
     match lit.looks {
         Looks::Even(Look { diffuse, specular, .. }) => {
-            shine_all(lit, |_| diffuse, |_| specular, glint, colours);
+            shine_sent(lit, |_| diffuse, |_| specular, glint, colours);
         }
         Looks::Each { diffuse, specular } => {
             let (diffuse, specular) = (diffuse.first(count), specular.first(count));
-            shine_all(lit, |lane| diffuse.get(lane), |lane| specular.get(lane), glint, colours);
+            shine_sent(lit, |lane| diffuse.get(lane), |lane| specular.get(lane), glint, colours);
         }
     }
 }
 
+/// Likewise, with the reflectivities.
+#[inline(always)]
+fn shine_sent(
+    lit: &Lit,
+    diffuse: impl Fn(usize) -> Rgb,
+    specular: impl Fn(usize) -> Rgb,
+    glint: Option<impl Fn(f64) -> f64>,
+    colours: ViewMut,
+) {
+    match lit.emissivity {
+        Colours::Even(sent) => shine_all(lit, |_| sent, diffuse, specular, glint, colours),
+        Colours::Each(sent) => {
+            let sent = sent.first(lit.shines.len());
+            shine_all(lit, |lane| sent.get(lane), diffuse, specular, glint, colours);
+        }
+    }
+}
+
+/// Likewise, with what the light sends.
 #[inline(always)]
 fn shine_all(
     lit: &Lit,
+    sent: impl Fn(usize) -> Rgb,
     diffuse: impl Fn(usize) -> Rgb,
     specular: impl Fn(usize) -> Rgb,
     glint: Option<impl Fn(f64) -> f64>,
@@ -147,10 +168,9 @@ fn shine_all(
 ) {
     let count = lit.shines.len();
     let (toward, seen, normals) = (lit.toward.first(count), lit.seen.first(count), lit.normals.first(count));
-    let emissivity = lit.emissivity.first(count);
     let (falloffs, shines, blocked) = (&lit.falloffs[..count], &lit.shines[..count], &lit.blocked[..count]);
     for lane in 0..count {
-        let light = emissivity.get(lane);
+        let light = sent(lane);
         let mut colour = diffuse(lane) * light * falloffs[lane];
         if let Some(glint) = &glint {
             let half = (toward.get(lane) - seen.get(lane)).normalize();

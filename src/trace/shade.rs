@@ -1,7 +1,7 @@
 //! The colours of the places that a packet's rays meet on one object.
 
 use super::group::{Group, Onward};
-use super::light::{self, Reflectivity};
+use super::light::{self, Colours};
 use super::room::{Vectors, list, room};
 use super::search;
 use super::{MAX_DIST, Tracer};
@@ -34,10 +34,10 @@ pub(super) struct Surface {
 }
 
 impl Surface {
-    fn mirrors(&self, count: usize) -> Reflectivity<'_> {
+    fn mirrors(&self, count: usize) -> Colours<'_> {
         match self.look {
-            Some(look) => Reflectivity::Even(look.specular),
-            None => Reflectivity::Each(self.specular.view(count)),
+            Some(look) => Colours::Even(look.specular),
+            None => Colours::Each(self.specular.view(count)),
         }
     }
 }
