@@ -6,6 +6,7 @@ use crate::packet::View;
 use glam::DVec3;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Write};
+use std::iter;
 use std::path::Path;
 
 /// The byte of a channel: 1 and more is 255, 0 and less is 0, and between them it is cut, not rounded.
@@ -174,8 +175,7 @@ fn write_png(
         writer.write_image_data(&first)?;
     } else {
         let mut stream = writer.stream_writer()?;
-        stream.write_all(&first)?;
-        for bytes in rows {
+        for bytes in iter::once(Ok(first)).chain(rows) {
             stream.write_all(&bytes?)?;
         }
         stream.finish()?;
