@@ -31,7 +31,7 @@ pub(super) enum Looks<'l> {
     Each { diffuse: View<'l>, specular: View<'l> },
 }
 
-/// Of places of a surface.
+/// Colours at places of a surface.
 #[derive(Clone, Copy)]
 pub(super) enum Colours<'c> {
     /// The same at all.
