@@ -83,7 +83,7 @@ impl Promise {
             }
             Self::DistanceIsTheSameAgain => "let `distance` depend on the shape, the ray and the span alone",
             Self::PacketsAgree => {
-                "`bracket` holds `distance`, `quick_distance` is it to the last bit or NaN; leave both out, or the packets' methods, if in doubt"
+                "`bracket` holds `distance`, `quick_distance` is it to the last bit or NaN; leave both out, or `even` and the packets' methods, if in doubt"
             }
             Self::NormalIsUnit => "end `normal` with `.normalize()`, and say what it is where there is none",
             Self::HitIsOnTheSurface => {
