@@ -253,7 +253,8 @@ impl Slab {
             let reach = (high - middle).max(middle - low);
             let at = |y: Interval| {
                 let y = Dual::variable_twice(y);
-                (square.at(y), square.at(y) - parabola(y))
+                let value = square.at(y);
+                (value, value - parabola(y))
             };
             let (_, thin) = at(Interval::constant(middle));
             let (value, wide) = at(Interval { low, high });
