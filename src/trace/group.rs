@@ -22,7 +22,7 @@ pub(super) struct Group {
     pub travelled: Vec<f64>,
     /// The rays that each may still cost.
     pub budget: Vec<u32>,
-    /// The camera ray that each comes from.
+    /// The camera ray that each comes from; empty where no pixel has more than one.
     pub camera: Vec<u8>,
     /// The object that they leave, by its index, and on which side of it each goes.
     pub leaves: Option<usize>,
@@ -43,14 +43,14 @@ impl Group {
     /// One ray from a viewer.
     pub fn primary(ray: &Ray) -> Self {
         let mut group = Self::default();
-        group.begin(ray.origin, 1);
+        group.begin(ray.origin, 1, true);
         group.dir.fill(STEP, ray.dir);
         group
     }
 
     /// The rays that look through so many places, in pixels from the left and from the bottom.
     pub fn look(&mut self, cpu: Cpu, camera: &Camera, x: &mut [f64], y: &mut [f64], len: usize) {
-        self.begin(camera.viewpoint, len);
+        self.begin(camera.viewpoint, len, camera.samples > 1);
         let count = self.padded();
         let last = (x[len - 1], y[len - 1]);
         x[len..count].fill(last.0);
@@ -59,15 +59,19 @@ impl Group {
     }
 
     /// Rays from a viewpoint, with their directions yet to be given.
-    fn begin(&mut self, viewpoint: DVec3, len: usize) {
+    fn begin(&mut self, viewpoint: DVec3, len: usize, is_sampled: bool) {
         self.len = len;
         let count = self.padded();
         self.origin.fill(count, viewpoint);
         room(&mut self.travelled, count).fill(0.0);
         room(&mut self.budget, count).fill(MAX_RAYS as u32);
-        for (lane, camera) in room(&mut self.camera, count).iter_mut().enumerate() {
-            // The copies that fill the arrays up are of the last ray, its sample of a light too.
-            *camera = lane.min(len - 1) as u8;
+        if is_sampled {
+            for (lane, camera) in room(&mut self.camera, count).iter_mut().enumerate() {
+                // The copies that fill the arrays up are of the last ray, its sample of a light too.
+                *camera = lane.min(len - 1) as u8;
+            }
+        } else {
+            self.camera.clear();
         }
         self.leaves = None;
     }

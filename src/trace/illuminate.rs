@@ -152,7 +152,8 @@ impl<W: Watch> Tracer<'_, '_, W> {
         let (middle, size) = (light.location(), light.size());
         places.fill(group.padded(), middle);
         for lane in 0..group.padded() {
-            let Some(sample) = self.rooms.samples.get(usize::from(group.camera[lane])) else { continue };
+            let camera = group.camera.get(lane).map(|camera| usize::from(*camera));
+            let Some(sample) = camera.and_then(|camera| self.rooms.samples.get(camera)) else { continue };
             let Some(axis) = (middle - surface.points.get(lane)).try_normalize() else { continue };
             let (across, up) = axis.any_orthonormal_pair();
             let DVec2 { x, y } = sample.on_light(index);

@@ -87,8 +87,13 @@ pub(super) fn list<'l>(of: &[u64], lanes: &'l mut Vec<u8>) -> &'l [u8] {
     &lanes[..len]
 }
 
-/// Puts some elements of an array into another one, the last of them repeated to make so many. Lanes rise.
+/// Puts some elements of an array into another one, the last of them repeated to make so many; none of one that is
+/// empty. Lanes rise.
 pub(super) fn pick<T: Copy + Default>(to: &mut Vec<T>, from: &[T], lanes: &[u8], count: usize) {
+    if from.is_empty() {
+        to.clear();
+        return;
+    }
     let to = room(to, count);
     let Some(last) = lanes.last().map(|last| usize::from(*last)) else { return };
     let (picked, rest) = to.split_at_mut(lanes.len());
