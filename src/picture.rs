@@ -151,6 +151,9 @@ fn write_ppm(
     out.flush()
 }
 
+/// A picture of up to so many bytes is encoded at once.
+const AT_ONCE: usize = 1 << 20;
+
 fn write_png(
     out: impl Write,
     width: usize,
@@ -170,8 +173,8 @@ fn write_png(
     let mut writer = encoder.write_header()?;
     let mut rows = rows.into_iter();
     let first = rows.next().transpose()?.unwrap_or_default();
-    if first.len() == 3 * width * height {
-        // What is there as a whole is encoded in two thirds of the time.
+    if first.len() == 3 * width * height && first.len() <= AT_ONCE {
+        // Without the stream it takes two thirds of the time, and room for all that is encoded.
         writer.write_image_data(&first)?;
     } else {
         let mut stream = writer.stream_writer()?;
@@ -186,6 +189,27 @@ fn write_png(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_png_is_the_same_picture_at_once_and_in_bands() {
+        for (width, height) in [(37, 29), (640, 640)] {
+            let pixels: Vec<u8> = (0..3 * width * height).map(|byte| (byte * byte / 977) as u8).collect();
+            for compression in [Compression::Fast, Compression::Balanced, Compression::High] {
+                for rows in [height, height - 1, 7] {
+                    let (mut png, bands) =
+                        (Vec::new(), pixels.chunks(3 * width * rows).map(|band| Ok(band.to_vec())));
+                    Format::Png(compression)
+                        .write(&mut png, [width, height], bands)
+                        .expect("memory takes it");
+                    let read = image::load_from_memory(&png).expect("a PNG").into_rgb8();
+                    assert!(
+                        read.into_raw() == pixels,
+                        "{width} x {height}, {rows} rows at a time, {compression:?}"
+                    );
+                }
+            }
+        }
+    }
 
     #[test]
     fn many_channels_have_the_bytes_of_single_ones() {
