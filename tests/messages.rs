@@ -112,3 +112,32 @@ fn an_error_without_a_place_is_a_line_too() {
     let (status, _, err) = outcome(tabray(&folder()).args(["list", "spere", "--message-format", "short"]));
     assert_eq!((status, err.as_str()), (2, "error: there is no entity type `spere`\n"));
 }
+
+/// Each write to a socket of datagrams is one to be received.
+#[cfg(unix)]
+#[test]
+fn a_message_is_one_write() {
+    use std::os::fd::OwnedFd;
+    use std::os::unix::net::UnixDatagram;
+    use std::process::{Command, Stdio};
+    use std::time::Duration;
+
+    let folder = folder();
+    fs::write(folder.path().join("faulty.ray"), FAULTY).expect("room for a scene");
+    let (stderr, told) = UnixDatagram::pair().expect("sockets");
+    told.set_read_timeout(Some(Duration::from_millis(20))).expect("a time limit");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_tabray"));
+    command.current_dir(folder.path()).args(["check", "faulty.ray"]);
+    let mut program = command.stderr(Stdio::from(OwnedFd::from(stderr))).spawn().expect("the program runs");
+    let (mut messages, mut room) = (Vec::new(), [0; 1 << 16]);
+    loop {
+        let is_over = program.try_wait().expect("a status").is_some();
+        match told.recv(&mut room) {
+            Ok(count) if count > 0 => messages.push(String::from_utf8_lossy(&room[..count]).into_owned()),
+            _ if is_over => break,
+            _ => {}
+        }
+    }
+    let [message] = messages.as_slice() else { panic!("{messages:#?}") };
+    assert!(message.starts_with("error: ") && message.contains("must be positive"), "{message}");
+}
