@@ -228,7 +228,7 @@ pub trait Shader: Send + Sync {
         material.specular
     }
 
-    /// What those give where that is the same at all points, which are then not asked for one by one.
+    /// What those three give at every point, if that is the same: then they are not asked at each. `None` is never wrong.
     fn even(&self, _material: &Material) -> Option<Look> {
         None
     }
@@ -270,7 +270,8 @@ pub trait Light: Send + Sync {
     /// The light that it sends toward a point, or nothing where it does not point there (the notes' `vischeck`).
     fn emissivity(&self, toward: DVec3) -> Option<Rgb>;
 
-    /// The light that it sends, where that is the same toward all points, which are then not asked for one by one.
+    /// What [`emissivity`](Self::emissivity) gives toward every point, if that is the same and never nothing: then it is
+    /// not asked for each. `None` is never wrong.
     fn even(&self) -> Option<Rgb> {
         None
     }

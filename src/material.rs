@@ -20,7 +20,7 @@ pub struct Material {
     pub transparency: f64,
 }
 
-/// What a surface answers to light that is the same all over it.
+/// How a surface answers light, per channel, where that is the same all over it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Look {
     /// The reflectivity for light from nowhere in particular.

@@ -6,7 +6,8 @@ use std::ops::Range;
 /// The width and height of a tile, whose rays go together, in pixels. Those at the right and lower edges may be smaller.
 pub(crate) const TILE: usize = 16;
 
-/// The pixels of a tile, or of a part of one, a few side by side at a time, those together that are near each other.
+/// The pixels of a tile, or of a part of one: up to eight side by side at a time, by their columns and their row; those
+/// together that are near each other.
 pub(crate) fn runs(columns: Range<usize>, rows: Range<usize>) -> impl Iterator<Item = (Range<usize>, usize)> {
     const SIDE: usize = 8;
     rows.clone().step_by(SIDE).flat_map(move |low| {
@@ -18,7 +19,7 @@ pub(crate) fn runs(columns: Range<usize>, rows: Range<usize>) -> impl Iterator<I
     })
 }
 
-/// Lists them.
+/// Lists the pixels of all [`runs`], by column and row.
 pub(crate) fn list(columns: Range<usize>, rows: Range<usize>, pixels: &mut Vec<[usize; 2]>) {
     pixels.clear();
     for (columns, y) in runs(columns, rows) {
