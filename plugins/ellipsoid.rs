@@ -4,11 +4,12 @@ use super::sphere::{self, Sphere};
 use crate::accuracy::Accuracy;
 use crate::ball::{self, Line};
 use crate::bounds::Bounds;
-use crate::certify::{self, Enclosure, Equation};
+use crate::certify::{self, Enclosure, Equation, Precision};
 use crate::entity::Entity;
 use crate::geometry::{Body, Bracket, Hittable, Ray, Span};
 use crate::number::Number;
 use crate::pparm::{Pparm, Row, Table};
+use crate::sight::Sight;
 use crate::twofold::Twofold;
 use glam::DVec3;
 
@@ -84,12 +85,14 @@ impl Hittable for Ellipsoid {
         ball::method(self.ball.accuracy).to_owned()
     }
 
-    fn certify(&self, ray: &Ray) -> Enclosure {
-        certify::first_hit(self, ray)
+    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        certify::first_hit(self, sight, precision)
     }
 }
 
 impl Equation for Ellipsoid {
+    const IS_QUADRATIC: bool = true;
+
     fn value<N: Number>(&self, at: [N; 3]) -> N {
         let part = |axis: usize| {
             ((at[axis] - N::constant(self.ball.center[axis])) / N::constant(self.scale[axis])).powi(2)

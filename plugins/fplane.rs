@@ -3,15 +3,15 @@
 use super::plane::{self, Plane};
 use crate::accuracy::Accuracy;
 use crate::bounds::Bounds;
-use crate::certify::{self, Enclosure, Equation};
+use crate::certify::{self, Enclosure, Equation, Precision};
 use crate::cpu::Cpu;
 use crate::entity::{Args, Entity, Refusal};
 use crate::geometry::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
-use crate::interval::Interval;
-use crate::number::Number;
+use crate::number::{Number, cross, dot};
 use crate::packet::Rays;
 use crate::pparm::{Derived, Pparm, Row, Table};
 pub use crate::rectangle::FinitePlane;
+use crate::sight::Sight;
 use crate::value::Value;
 use glam::{DMat3, DVec2, DVec3};
 
@@ -73,7 +73,7 @@ impl FinitePlane {
     pub fn new(args: &Args) -> Result<Self, Refusal> {
         let (plane, dimensions) = (Plane::new(args), args.get(&DIMENSIONS));
         let reach = plane.point.abs().max_element() + dimensions.element_sum();
-        Ok(Self { plane, dimensions, sides: sides(args)?, reach })
+        Ok(Self { plane, dimensions, sides: sides(args)?, given_xdir: args.get(&XDIR), reach })
     }
 }
 
@@ -126,23 +126,32 @@ impl Hittable for FinitePlane {
         self.plane.method().to_owned()
     }
 
-    fn certify(&self, ray: &Ray) -> Enclosure {
-        certify::first_hit(self, ray)
+    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        certify::first_hit(self, sight, precision)
     }
 }
 
 impl Equation for FinitePlane {
+    const IS_QUADRATIC: bool = true;
+
     fn value<N: Number>(&self, at: [N; 3]) -> N {
         self.plane.value(at)
     }
 
-    fn kept(&self, at: [Interval; 3]) -> Interval {
-        let from_corner = [0, 1, 2].map(|axis| at[axis] - Interval::constant(self.plane.point[axis]));
-        let inside = |side: usize| {
-            let part = |axis: usize| from_corner[axis] * Interval::constant(self.sides[side][axis]);
-            let along = part(0) + part(1) + part(2);
-            along.min(Interval::constant(self.dimensions[side]) - along)
+    /// How far inside of the four sides, each in a measure of its own: unit vectors would need more roots.
+    fn kept<N: Number>(&self, at: [N; 3]) -> N {
+        let n = |of: DVec3| of.to_array().map(N::constant);
+        let (normal, xdir) = (n(self.plane.given_normal), n(self.given_xdir));
+        let (square, along) = (dot(normal, normal), dot(normal, xdir));
+        let x = [0, 1, 2].map(|axis| square * xdir[axis] - along * normal[axis]);
+        let y = cross(normal, x);
+        let corner = n(self.plane.point);
+        let from_corner = [0, 1, 2].map(|axis| at[axis] - corner[axis]);
+        let inside = |side: [N; 3], length: f64| {
+            let along = dot(side, from_corner);
+            along.min(N::constant(length) * dot(side, side).sqrt() - along)
         };
-        self.plane.kept(at).min(inside(0)).min(inside(1))
+        let [width, height] = self.dimensions.to_array();
+        self.plane.kept(at).min(inside(x, width)).min(inside(y, height))
     }
 }

@@ -2,15 +2,15 @@
 
 use crate::accuracy::Accuracy;
 use crate::bounds::Bounds;
-use crate::certify::{self, Enclosure, Equation};
+use crate::certify::{self, Enclosure, Equation, Precision};
 use crate::cpu::Cpu;
 use crate::entity::{Args, Entity};
 pub use crate::flat::Plane;
 use crate::geometry::{Body, Bracket, Hittable, Ray, Side, Span};
-use crate::interval::Interval;
 use crate::number::Number;
 use crate::packet::Rays;
 use crate::pparm::{Pparm, Table};
+use crate::sight::Sight;
 use glam::DVec3;
 
 pub static NORMAL: Pparm<DVec3> =
@@ -29,8 +29,9 @@ inventory::submit! {
 impl Plane {
     /// The plane of an entity whose table has a plane's rows.
     pub fn new(args: &Args) -> Self {
-        let normal = args.get(&NORMAL).normalize();
-        Self { normal, point: args.get(&POINT), accuracy: args.accuracy() }
+        let given_normal = args.get(&NORMAL);
+        let (point, accuracy) = (args.get(&POINT), args.accuracy());
+        Self { normal: given_normal.normalize(), given_normal, point, accuracy }
     }
 }
 
@@ -70,18 +71,21 @@ impl Hittable for Plane {
         Plane::distances(self, cpu, rays, out);
     }
 
-    fn certify(&self, ray: &Ray) -> Enclosure {
-        certify::first_hit(self, ray)
+    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        certify::first_hit(self, sight, precision)
     }
 }
 
 impl Equation for Plane {
+    const IS_QUADRATIC: bool = true;
+
     fn value<N: Number>(&self, at: [N; 3]) -> N {
-        let part = |axis: usize| (at[axis] - N::constant(self.point[axis])) * N::constant(self.normal[axis]);
+        let part =
+            |axis: usize| (at[axis] - N::constant(self.point[axis])) * N::constant(self.given_normal[axis]);
         part(0) + part(1) + part(2)
     }
 
-    fn kept(&self, [_, _, z]: [Interval; 3]) -> Interval {
-        Interval::constant(0.01) - z
+    fn kept<N: Number>(&self, [_, _, z]: [N; 3]) -> N {
+        N::constant(0.01) - z
     }
 }

@@ -2,13 +2,13 @@
 
 use crate::accuracy::Accuracy;
 use crate::bounds::Bounds;
-use crate::certify::{self, Enclosure, Equation};
+use crate::certify::{self, Enclosure, Equation, Precision};
 use crate::entity::{Entity, Refusal};
 use crate::geometry::{Body, Hittable, MISS, Ray, Side, Span};
-use crate::interval::Interval;
 use crate::number::Number;
 use crate::pparm::{Pparm, Table};
 use crate::quadratic;
+use crate::sight::Sight;
 use crate::twofold::advance;
 use glam::{DMat3, DVec3};
 
@@ -140,12 +140,14 @@ impl Hittable for Quadric {
         method.to_owned()
     }
 
-    fn certify(&self, ray: &Ray) -> Enclosure {
-        certify::first_hit(self, ray)
+    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        certify::first_hit(self, sight, precision)
     }
 }
 
 impl Equation for Quadric {
+    const IS_QUADRATIC: bool = true;
+
     fn value<N: Number>(&self, at: [N; 3]) -> N {
         let from_center = [0, 1, 2].map(|axis| at[axis] - N::constant(self.center[axis]));
         let sum = |part: &dyn Fn(usize) -> N| part(0) + part(1) + part(2);
@@ -156,10 +158,10 @@ impl Equation for Quadric {
         sum(&row) + N::constant(self.constant)
     }
 
-    fn kept(&self, at: [Interval; 3]) -> Interval {
+    fn kept<N: Number>(&self, at: [N; 3]) -> N {
         let inside = |axis: usize| {
-            let from_center = at[axis] - Interval::constant(self.center[axis]);
-            let (low, high) = (Interval::constant(self.low[axis]), Interval::constant(self.high[axis]));
+            let from_center = at[axis] - N::constant(self.center[axis]);
+            let (low, high) = (N::constant(self.low[axis]), N::constant(self.high[axis]));
             (from_center - low).min(high - from_center)
         };
         inside(0).min(inside(1)).min(inside(2))

@@ -3,11 +3,12 @@
 use crate::accuracy::Accuracy;
 use crate::ball::{self, Line};
 use crate::bounds::Bounds;
-use crate::certify::{self, Enclosure, Equation};
+use crate::certify::{self, Enclosure, Equation, Precision};
 use crate::entity::{Args, Entity};
 use crate::geometry::{Body, Bracket, Hittable, MISS, Ray, Span};
 use crate::number::Number;
 use crate::pparm::{Pparm, Table};
+use crate::sight::Sight;
 use crate::twofold::Twofold;
 use glam::DVec3;
 
@@ -94,12 +95,14 @@ impl Hittable for Sphere {
         ball::method(self.accuracy).to_owned()
     }
 
-    fn certify(&self, ray: &Ray) -> Enclosure {
-        certify::first_hit(self, ray)
+    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        certify::first_hit(self, sight, precision)
     }
 }
 
 impl Equation for Sphere {
+    const IS_QUADRATIC: bool = true;
+
     fn value<N: Number>(&self, at: [N; 3]) -> N {
         let part = |axis: usize| (at[axis] - N::constant(self.center[axis])).powi(2);
         part(0) + part(1) + part(2) - N::constant(self.radius).powi(2)

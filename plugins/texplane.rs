@@ -3,11 +3,12 @@
 use super::fplane::{self, FinitePlane};
 use super::plane;
 use crate::bounds::Bounds;
-use crate::certify::Enclosure;
+use crate::certify::{Enclosure, Precision};
 use crate::entity::{Args, Entity, Refusal};
 use crate::geometry::{Body, Bracket, Hittable, Ray, Shader, Span};
 use crate::material::{Material, Rgb};
 use crate::pparm::{Pparm, Table};
+use crate::sight::Sight;
 use crate::texture::Texture;
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
@@ -98,8 +99,8 @@ impl Hittable for Rectangle {
         self.0.rectangle.method()
     }
 
-    fn certify(&self, ray: &Ray) -> Enclosure {
-        self.0.rectangle.certify(ray)
+    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        self.0.rectangle.certify(sight, precision)
     }
 }
 

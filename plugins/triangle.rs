@@ -2,13 +2,13 @@
 
 use crate::accuracy::Accuracy;
 use crate::bounds::Bounds;
-use crate::certify::{self, Enclosure, Equation};
+use crate::certify::{self, Enclosure, Equation, Precision};
 use crate::entity::{Entity, Refusal};
 use crate::flat::Plane;
 use crate::geometry::{Body, Bracket, Hittable, MISS, Ray, Span};
-use crate::interval::Interval;
-use crate::number::Number;
+use crate::number::{Number, cross, dot};
 use crate::pparm::{Pparm, Table};
+use crate::sight::Sight;
 use crate::twofold::Twofold;
 use glam::DVec3;
 
@@ -34,7 +34,7 @@ inventory::submit! {
             message: "has its corners in one line".to_owned(),
             help: "three corners that are not in one line make a triangle",
         })?;
-        let plane = Plane { normal, point: a, accuracy: args.accuracy() };
+        let plane = Plane { normal, given_normal: normal, point: a, accuracy: args.accuracy() };
         Ok(Body::plain(Triangle { plane, corners }))
     })
 }
@@ -99,30 +99,40 @@ impl Hittable for Triangle {
         self.plane.method().to_owned()
     }
 
-    fn certify(&self, ray: &Ray) -> Enclosure {
-        certify::first_hit(self, ray)
+    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        certify::first_hit(self, sight, precision)
     }
 }
 
 impl Equation for Triangle {
+    const IS_QUADRATIC: bool = true;
+
     fn value<N: Number>(&self, at: [N; 3]) -> N {
-        self.plane.value(at)
+        let corner = self.corners[0].to_array();
+        dot(self.upright(), [0, 1, 2].map(|axis| at[axis] - N::constant(corner[axis])))
     }
 
-    fn kept(&self, at: [Interval; 3]) -> Interval {
-        let [a, b, c] = self.corners;
-        let inside = |from: DVec3, to: DVec3| {
+    fn kept<N: Number>(&self, at: [N; 3]) -> N {
+        let normal = self.upright();
+        let corners = self.corners.map(|corner| corner.to_array().map(N::constant));
+        let inside = |from: [N; 3], to: [N; 3]| {
             // Upright on the edge, in the plane, toward the inside.
-            let inward = self.plane.normal.cross(to - from);
-            let part =
-                |axis: usize| (at[axis] - Interval::constant(from[axis])) * Interval::constant(inward[axis]);
-            part(0) + part(1) + part(2)
+            let inward = cross(normal, [0, 1, 2].map(|axis| to[axis] - from[axis]));
+            dot(inward, [0, 1, 2].map(|axis| at[axis] - from[axis]))
         };
+        let [a, b, c] = corners;
         self.plane.kept(at).min(inside(a, b)).min(inside(b, c)).min(inside(c, a))
     }
 }
 
 impl Triangle {
+    /// A vector upright on it, as long as twice its area.
+    fn upright<N: Number>(&self) -> [N; 3] {
+        let [a, b, c] = self.corners.map(|corner| corner.to_array().map(N::constant));
+        let from_a = |corner: [N; 3]| [0, 1, 2].map(|axis| corner[axis] - a[axis]);
+        cross(from_a(b), from_a(c))
+    }
+
     /// Whether a point of the plane is to the left of every edge.
     #[inline(always)]
     fn contains(&self, at: DVec3) -> bool {

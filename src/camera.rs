@@ -4,6 +4,7 @@ use crate::accuracy::Accuracy;
 use crate::cpu::kernels;
 use crate::geometry::Ray;
 use crate::sample::{Sample, Sampler};
+use crate::sight::Sight;
 use glam::{DVec2, DVec3};
 
 /// The viewer and a screen in the plane z = 0, whose lower left corner is the world's origin.
@@ -51,6 +52,14 @@ impl Camera {
         let on_screen =
             DVec3::new(fraction(x, width) * self.screen.x, fraction(y, height) * self.screen.y, 0.0);
         Ray { origin: self.viewpoint, dir: (on_screen - self.viewpoint).normalize() }
+    }
+
+    /// That ray before anything is rounded.
+    pub fn sight(&self, x: f64, y: f64) -> Sight {
+        let place = |at: f64, pixels: usize| if pixels > 1 { (at, (pixels - 1) as f64) } else { (1.0, 2.0) };
+        let [width, height] = self.pixels;
+        let ((x, last_x), (y, last_y)) = (place(x, width), place(y, height));
+        Sight::through(self.viewpoint, DVec2::new(x, y), DVec2::new(last_x, last_y), self.screen)
     }
 }
 

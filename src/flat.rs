@@ -20,6 +20,8 @@ const SCREEN: f64 = 0.01;
 pub struct Plane {
     /// The unit vector that stands on its lit side.
     pub normal: DVec3,
+    /// A vector in the same direction, of any length: of what the scene gives, nothing is rounded in it.
+    pub given_normal: DVec3,
     /// A point of it.
     pub point: DVec3,
     /// How exactly it is crossed.

@@ -2,6 +2,8 @@
 
 use crate::bounds::Bounds;
 use crate::geometry::Ray;
+use crate::number::{Number, dot};
+use crate::sight::Line;
 use glam::{DMat3, DVec3};
 
 /// An origin, and three unit vectors upright on each other.
@@ -11,19 +13,20 @@ pub struct Frame {
     pub origin: DVec3,
     /// The directions in the world of its own x, y and z.
     pub axes: DMat3,
+    /// The vector along its y that it was made from, of any length; nothing where its axes are the world's.
+    axis: Option<DVec3>,
 }
 
 impl Frame {
     /// As the world's, from another origin.
     pub fn at(origin: DVec3) -> Self {
-        Self { origin, axes: DMat3::IDENTITY }
+        Self { origin, axes: DMat3::IDENTITY, axis: None }
     }
 
     /// With its y along a vector that is not 0. Around that axis it is turned anyhow: for shapes that are round.
     pub fn around(origin: DVec3, axis: DVec3) -> Self {
-        let up = axis.normalize();
-        let (across, away) = up.any_orthonormal_pair();
-        Self { origin, axes: DMat3::from_cols(away, up, across) }
+        let axes = upright(axis.normalize().to_array(), sign(axis)).map(DVec3::from);
+        Self { origin, axes: DMat3::from_cols(axes[0], axes[1], axes[2]), axis: Some(axis) }
     }
 
     /// A direction of the world in the shape's own coordinates.
@@ -44,6 +47,16 @@ impl Frame {
         Ray { origin: self.point(ray.origin), dir: self.direction(ray.dir) }
     }
 
+    /// A line of the world likewise, from the numbers that the frame was made from.
+    pub fn line<N: Number>(&self, line: Line<N>) -> Line<N> {
+        let origin = [0, 1, 2].map(|axis| line.origin[axis] - N::constant(self.origin[axis]));
+        let Some(axis) = self.axis else { return Line { origin, dir: line.dir } };
+        let given = axis.to_array().map(N::constant);
+        let length = dot(given, given).sqrt();
+        let axes = upright(given.map(|part| part / length), sign(axis));
+        Line { origin: axes.map(|axis| dot(axis, origin)), dir: axes.map(|axis| dot(axis, line.dir)) }
+    }
+
     /// The box in the world around one in the shape's own coordinates.
     pub fn bounds(&self, own: &Bounds) -> Bounds {
         let DMat3 { x_axis, y_axis, z_axis } = self.axes;
@@ -51,4 +64,18 @@ impl Frame {
         let reach = DMat3::from_cols(x_axis.abs(), y_axis.abs(), z_axis.abs()) * own.half_size();
         Bounds { low: middle - reach, high: middle + reach }
     }
+}
+
+/// 1 or -1, of whose sum with the vector's z little cancels.
+fn sign(axis: DVec3) -> f64 {
+    axis.z.signum()
+}
+
+/// Three unit vectors upright on each other, the second of which is this one (Duff et al., "Building an Orthonormal Basis,
+/// Revisited", 2017).
+fn upright<N: Number>(up: [N; 3], sign: f64) -> [[N; 3]; 3] {
+    let ([x, y, z], sign) = (up, N::constant(sign));
+    let a = N::constant(-1.0) / (sign + z);
+    let b = x * y * a;
+    [[b, sign + y * y * a, -y], up, [N::constant(1.0) + sign * x * x * a, sign * b, -sign * x]]
 }

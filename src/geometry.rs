@@ -1,7 +1,7 @@
 //! Rays, and what a plugin implements: [`Hittable`] shapes, [`Shader`]s and [`Light`]s.
 
 use crate::bounds::Bounds;
-use crate::certify::Enclosure;
+use crate::certify::{Enclosure, Precision};
 use crate::cpu::Cpu;
 use crate::facing::{self, Faced, Facing, Places};
 use crate::landing::{self, Landing};
@@ -9,6 +9,7 @@ use crate::material::{Look, Material, Rgb};
 use crate::packet::{self, Nearest, Rays, View, ViewMut};
 use crate::roots::Method;
 use crate::shading::{Anchor, ProceduralShader};
+use crate::sight::Sight;
 use glam::DVec3;
 
 /// A half line.
@@ -163,10 +164,10 @@ pub trait Hittable: Send + Sync {
         None
     }
 
-    /// What is certain about the first hit of a ray from afar. A shape that says nothing of it cannot be verified;
+    /// What is certain about the first hit of a ray. A shape that says nothing of it cannot be verified;
     /// [`certify::first_hit`](crate::certify::first_hit) proves it for shapes that have an equation.
-    fn certify(&self, _ray: &Ray) -> Enclosure {
-        Enclosure::Doubtful(0.0)
+    fn certify(&self, _sight: &Sight, _precision: Precision) -> Enclosure {
+        Enclosure::UNKNOWN
     }
 
     /// Compares the hits of a packet with the nearest so far, and tells whether any is in doubt. `sides` are those of

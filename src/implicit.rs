@@ -5,14 +5,14 @@
 //! numbers give the normal.
 
 use crate::bounds::Bounds;
-use crate::certify::{self, Enclosure, Equation};
+use crate::certify::{self, Enclosure, Equation, Precision};
 use crate::dual::Dual;
 use crate::frame::Frame;
 use crate::geometry::{Body, Hittable, MISS, Ray, Span};
-use crate::interval::Interval;
 use crate::number::Number;
 use crate::roots::Method;
-use crate::roots::taylor::Line;
+use crate::roots::taylor;
+use crate::sight::{Line, Sight};
 use crate::twofold::{two_product, two_sum};
 use glam::DVec3;
 
@@ -82,8 +82,8 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
         "its first root isolated by bounds that certainly hold, then polished".to_owned()
     }
 
-    fn certify(&self, ray: &Ray) -> Enclosure {
-        certify::first_hit(self, ray)
+    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        certify::first_hit(self, sight, precision)
     }
 }
 
@@ -112,29 +112,27 @@ impl<T: Implicit> ImplicitShape<T> {
             None => MISS,
         }
     }
-
-    /// A point in the shape's own coordinates, with any number type.
-    fn own<N: Number>(&self, at: [N; 3]) -> [N; 3] {
-        let from_origin = [0, 1, 2].map(|axis| at[axis] - N::constant(self.frame.origin[axis]));
-        [0, 1, 2].map(|axis| {
-            let part = |world: usize| from_origin[world] * N::constant(self.frame.axes.col(axis)[world]);
-            part(0) + part(1) + part(2)
-        })
-    }
 }
 
 impl<T: Implicit> Equation for ImplicitShape<T> {
-    fn value<N: Number>(&self, at: [N; 3]) -> N {
-        self.formula.value(self.own(at))
+    fn own<N: Number>(&self, line: Line<N>) -> Line<N> {
+        self.frame.line(line)
     }
 
-    fn kept(&self, at: [Interval; 3]) -> Interval {
-        let own = self.own(at);
+    fn value<N: Number>(&self, at: [N; 3]) -> N {
+        self.formula.value(at)
+    }
+
+    fn kept<N: Number>(&self, at: [N; 3]) -> N {
         let inside = |axis: usize| {
-            let (low, high) = (Interval::constant(self.low[axis]), Interval::constant(self.high[axis]));
-            (own[axis] - low).min(high - own[axis])
+            let (low, high) = (N::constant(self.low[axis]), N::constant(self.high[axis]));
+            (at[axis] - low).min(high - at[axis])
         };
         inside(0).min(inside(1)).min(inside(2))
+    }
+
+    fn extent(&self) -> [DVec3; 2] {
+        [self.low, self.high]
     }
 }
 
@@ -150,7 +148,7 @@ struct OnRay<'s, T> {
     dir: DVec3,
 }
 
-impl<T: Implicit> Line for OnRay<'_, T> {
+impl<T: Implicit> taylor::Line for OnRay<'_, T> {
     fn at<N: Number>(&self, t: N) -> N {
         let along = |axis: usize| N::constant(self.base[axis]) + N::constant(self.dir[axis]) * t;
         self.formula.value([along(0), along(1), along(2)])

@@ -62,6 +62,7 @@ pub mod sample;
 pub mod scene;
 pub mod schema;
 pub mod shading;
+pub mod sight;
 pub mod syntax;
 pub mod tables;
 pub mod tally;

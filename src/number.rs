@@ -60,6 +60,19 @@ pub trait Number:
     fn is_zero(self) -> bool;
 }
 
+/// The product of two vectors, a number.
+pub fn dot<N: Number>(a: [N; 3], b: [N; 3]) -> N {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// The product of two vectors, a vector upright on both.
+pub fn cross<N: Number>(a: [N; 3], b: [N; 3]) -> [N; 3] {
+    [0, 1, 2].map(|axis| {
+        let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
+        a[next] * b[last] - a[last] * b[next]
+    })
+}
+
 impl Number for f64 {
     #[inline(always)]
     fn constant(value: f64) -> Self {

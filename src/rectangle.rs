@@ -15,6 +15,8 @@ pub struct FinitePlane {
     pub dimensions: DVec2,
     /// Where they go from the corner, unit vectors.
     pub sides: [DVec3; 2],
+    /// The vector right above the first of them that the scene gives, of any length.
+    pub given_xdir: DVec3,
     /// How far from the world's origin it reaches, about, in world units.
     pub reach: f64,
 }

@@ -10,10 +10,11 @@ use image::{Rgb, RgbImage};
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use tabray::certify::Enclosure;
+use tabray::certify::{Enclosure, Precision};
 use tabray::geometry::Ray;
 use tabray::model::Model;
 use tabray::profile::Profile;
+use tabray::sight::Sight;
 use tabray::trace;
 use tabray::watch::{Event, Watch};
 
@@ -148,7 +149,10 @@ fn is_explained(classic: &Model, exact: &Model, x: usize, y: usize) -> bool {
             };
             if !is_same {
                 let object = &exact.objects[*index];
-                let is_doubtful = matches!(object.shape.certify(ray), Enclosure::Doubtful(_));
+                let is_doubtful = {
+                    let proven = object.shape.certify(&Sight::along(ray), Precision::Double);
+                    matches!(proven, Enclosure::Doubtful(_))
+                };
                 return object.args.entity.name == "revsurf" || is_doubtful;
             }
         }

@@ -8,13 +8,14 @@ use std::fs;
 use std::sync::atomic::{AtomicU32, Ordering};
 use tabray::bounds::Bounds;
 use tabray::camera::Camera;
-use tabray::certify::Enclosure;
+use tabray::certify::{Enclosure, Precision};
 use tabray::contract::{self, Breach, Promise};
 use tabray::entity::{Args, Entity, Kind, Refusal};
 use tabray::geometry::{Body, Bracket, Hittable, Light, MISS, Ray, Shader, Span};
 use tabray::material::{Material, Rgb};
 use tabray::pparm::{Derived, Pparm, Row, Table};
 use tabray::registry::Registry;
+use tabray::sight::Sight;
 
 #[test]
 fn every_plugin_keeps_its_contract() {
@@ -141,8 +142,8 @@ impl Hittable for Ball {
         !matches!(self.flaw, Flaw::MeetsItsStart | Flaw::MeetsNothingAgain)
     }
 
-    fn certify(&self, _ray: &Ray) -> Enclosure {
-        if self.flaw == Flaw::Proof { Enclosure::Misses } else { Enclosure::Doubtful(0.0) }
+    fn certify(&self, _sight: &Sight, _precision: Precision) -> Enclosure {
+        if self.flaw == Flaw::Proof { Enclosure::Misses } else { Enclosure::UNKNOWN }
     }
 }
 

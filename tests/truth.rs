@@ -11,10 +11,11 @@ use oracle::revolution::Revolution;
 use oracle::shapes::{self, Plane, Quadric};
 use oracle::tally::{Tally, Tolerance, ulp};
 use oracle::{Crossings, Hit, Truth};
-use tabray::certify::Enclosure;
+use tabray::certify::{self, Enclosure, Precision};
 use tabray::geometry::{MISS, Ray, Side, Span};
-use tabray::interval::Interval;
+use tabray::interval::Float;
 use tabray::model::Model;
+use tabray::sight::Sight;
 
 /// The rays of each set.
 const RAYS: usize = 10_000;
@@ -637,20 +638,21 @@ fn what_is_certain_is_true() {
         let (mut doubtful, mut wrong) = (0, Vec::new());
         let around = rays::aimed(RAYS, MIDDLE, REACH, 10.0).chain(rays::aimed(RAYS, MIDDLE, REACH, 1e6));
         for ray in rays::camera(RAYS, 1.0).chain(rays::inside(RAYS, MIDDLE, REACH)).chain(around) {
-            let (certain, truth) = (shape.certify(&ray), truth(&ray, 0.0));
+            let (certain, truth) = (shape.certify(&Sight::along(&ray), Precision::Double), truth(&ray, 0.0));
             let at = truth.hit().map(|hit| hit.t.high);
             // The program counts from the shape's own place, which rounds where the ray starts.
             let slack = 8.0 * ulp(ray.origin.length());
             let is_true = match certain {
                 Enclosure::Misses => at.is_none(),
-                Enclosure::Hits(Interval { low, high }, nearest) => {
-                    let is_near = |hit: Hit| (nearest - hit.t).high.abs() <= slack;
+                Enclosure::Hits(hits) => {
+                    let is_near = |hit: Hit| (certify::middle(hits) - hit.t).high.abs() <= slack;
+                    let (low, high) = (hits.low.to_f64(), hits.high.to_f64());
                     at.map_or(truth == Truth::Undecided, |at| low - slack <= at && at <= high + slack)
                         && truth.hit().is_none_or(is_near)
                 }
                 Enclosure::Doubtful(nearest) => {
                     doubtful += 1;
-                    at.is_none_or(|at| at >= nearest - slack)
+                    at.is_none_or(|at| at >= nearest.to_f64() - slack)
                 }
             };
             if !is_true {

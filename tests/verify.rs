@@ -28,7 +28,7 @@ fn counts(model: &tabray::model::Model, step: usize) -> [usize; 3] {
         for x in (0..width).step_by(step) {
             counts[match verify::pixel(model, x, y) {
                 Verdict::Proven => 0,
-                Verdict::Undecided => 1,
+                Verdict::Tie => 1,
                 Verdict::Contradicted => 2,
             }] += 1;
         }
@@ -81,7 +81,7 @@ fn the_program_counts_and_shows_what_is_proven() {
     assert!(said.contains("pixels proven (") && said.ends_with(" 0 contradicted\n"), "{said}");
     let colours = |name: &str| image::open(folder.path().join(name)).expect("a picture").into_rgb8();
     let white = colours("a.png").pixels().filter(|pixel| pixel.0 == [255; 3]).count();
-    assert!(said.contains(&format!(", {white} undecided,")), "{said}");
+    assert!(said.contains(&format!(", {white} tie")), "{said}");
     let (status, said) = run(&["--method", "classic", "-o", "b.png"]);
     assert_eq!(status, Some(1), "{said}");
     let red = colours("b.png").pixels().filter(|pixel| pixel.0 == [255, 0, 0]).count();

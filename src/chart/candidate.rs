@@ -3,11 +3,12 @@
 use super::{Family, Load};
 use crate::accuracy::Accuracy;
 use crate::bounds::Bounds;
-use crate::certify::Enclosure;
+use crate::certify::{Enclosure, Precision};
 use crate::choice::Choice;
 use crate::geometry::{Hittable, MISS, Ray, Span};
 use crate::model::{Model, Object};
 use crate::roots::Method;
+use crate::sight::Sight;
 use glam::DVec3;
 use std::io;
 
@@ -103,7 +104,7 @@ impl Hittable for By {
         self.shape.is_two_sided()
     }
 
-    fn certify(&self, ray: &Ray) -> Enclosure {
-        self.shape.certify(ray)
+    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        self.shape.certify(sight, precision)
     }
 }

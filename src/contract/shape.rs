@@ -3,12 +3,14 @@
 use super::draw::Draw;
 use super::looks::{same_bits, shader};
 use super::promise::{Fault, Promise};
-use crate::certify::Enclosure;
+use crate::certify::{Enclosure, Precision};
 use crate::cpu::Cpu;
 use crate::geometry::{Hittable, MISS, Ray, Side, Span};
+use crate::interval::Float;
 use crate::landing::Landing;
 use crate::model::Object;
 use crate::packet::{Nearest, Rays, STEP, Vectors};
+use crate::sight::Sight;
 use crate::value::Datum;
 use glam::DVec3;
 
@@ -228,12 +230,14 @@ impl Tried<'_> {
     }
 
     fn agrees_with_its_proof(&self, distance: f64) -> Result<(), Fault> {
-        let proven = self.shape.certify(&self.ray);
+        let proven = self.shape.certify(&Sight::along(&self.ray), Precision::Double);
         let slack = SLACK * self.size(if distance == MISS { 0.0 } else { distance });
         let agrees = match proven {
             Enclosure::Misses => distance == MISS,
-            Enclosure::Hits(hit, _) => hit.low - slack <= distance && distance <= hit.high + slack,
-            Enclosure::Doubtful(from) => from - slack <= distance,
+            Enclosure::Hits(hit) => {
+                hit.low.to_f64() - slack <= distance && distance <= hit.high.to_f64() + slack
+            }
+            Enclosure::Doubtful(from) => from.to_f64() - slack <= distance,
         };
         if agrees {
             return Ok(());

@@ -136,13 +136,20 @@ impl fmt::Display for Revolution {
 }
 
 impl Equation for Revolution {
+    /// Beyond its ends the profile may be anything, and rounding must not ask.
     fn value<N: Number>(&self, [x, y, z]: [N; 3]) -> N {
-        x.powi(2) + z.powi(2) - self.square.at(y)
+        let height = y.max(N::constant(0.0)).min(N::constant(self.height));
+        x.powi(2) + z.powi(2) - self.square.at(height)
     }
 
-    fn kept(&self, [_, y, _]: [Interval; 3]) -> Interval {
-        let below_the_top = Interval::constant(self.height) - y;
+    fn kept<N: Number>(&self, [_, y, _]: [N; 3]) -> N {
+        let below_the_top = N::constant(self.height) - y;
         y.min(below_the_top).min(self.profile.at(y))
+    }
+
+    fn extent(&self) -> [DVec3; 2] {
+        let Bounds { low, high } = self.bounds();
+        [low, high]
     }
 }
 

@@ -3,13 +3,15 @@
 use super::bracket::{Lanes, MOST};
 use super::{Classic, Revolution, normal};
 use crate::bounds::Bounds;
-use crate::certify::{self, Enclosure};
+use crate::certify::{self, Enclosure, Equation, Precision};
 use crate::cpu::Cpu;
 use crate::frame::Frame;
 use crate::geometry::{Hittable, Ray, Side, Span};
 use crate::landing::Landing;
+use crate::number::Number;
 use crate::packet::{self, Nearest, Rays, parts};
 use crate::roots::Method;
+use crate::sight::{Line, Sight};
 use glam::DVec3;
 
 /// A surface around the y axis of a frame.
@@ -18,6 +20,24 @@ pub struct InFrame<S> {
     pub surface: S,
     /// Where it stands.
     pub frame: Frame,
+}
+
+impl<S: Equation> Equation for InFrame<S> {
+    fn own<N: Number>(&self, line: Line<N>) -> Line<N> {
+        self.frame.line(line)
+    }
+
+    fn value<N: Number>(&self, at: [N; 3]) -> N {
+        self.surface.value(at)
+    }
+
+    fn kept<N: Number>(&self, at: [N; 3]) -> N {
+        self.surface.kept(at)
+    }
+
+    fn extent(&self) -> [DVec3; 2] {
+        self.surface.extent()
+    }
 }
 
 impl Hittable for InFrame<Classic> {
@@ -33,8 +53,8 @@ impl Hittable for InFrame<Classic> {
         "bisection to 1e-4, from the ray's origin to its point closest to the axis".to_owned()
     }
 
-    fn certify(&self, ray: &Ray) -> Enclosure {
-        certify::first_hit(&self.surface, &self.frame.ray(ray))
+    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        certify::first_hit(self, sight, precision)
     }
 }
 
@@ -67,8 +87,8 @@ impl Hittable for InFrame<Revolution> {
         self.surface.to_string()
     }
 
-    fn certify(&self, ray: &Ray) -> Enclosure {
-        certify::first_hit(&self.surface, &self.frame.ray(ray))
+    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        certify::first_hit(self, sight, precision)
     }
 
     fn meet(&self, cpu: Cpu, rays: Rays, sides: Option<&[Side]>, id: u64, mut nearest: Nearest) -> bool {

@@ -192,7 +192,7 @@ impl<L: Line> Search<'_, L> {
 
 /// How far `away + slope u + bend u²/2` certainly stays above 0, for u from 0 on.
 fn reach(away: f64, slope: f64, bend: f64) -> f64 {
-    let [away, slope, bend] = [away, slope, bend].map(Interval::constant);
+    let [away, slope, bend] = [away, slope, bend].map(Interval::<f64>::constant);
     let two = Interval::constant(2.0);
     let discriminant = slope * slope - two * bend * away;
     if discriminant.high < 0.0 {
