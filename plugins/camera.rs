@@ -49,7 +49,8 @@ inventory::submit! {
             viewpoint: args.get(&VIEWPOINT),
             samples: args.get(&SAMPLES) as u32,
             sampler: Sampler::default(),
-            accuracy: args.get(&ACCURACY),
+            // The notes' way of calling has a default of its own.
+            accuracy: args.get_given(&ACCURACY).unwrap_or(args.accuracy()),
         })
     })
 }

@@ -29,7 +29,7 @@ bright as a picture can show, after the light has been divided by the distance t
 
 The same scenes can be written in TOML, in files whose names end in `.toml`: `sphere ball { radius 2 }` is
 `[sphere.ball]` and below it `radius = 2` there; several values stand in brackets, `center = [4, 2, -4]`, and names in
-quotes, `material = "red"`. Entities that share a name are `[[sphere.ball]]` each. The order of the text counts in
+quotes, `material = "red"`. Lights that share a name are `[[light.lamp]]` each. The order of the text counts in
 TOML, too. `tabray convert` turns each spelling into the other, and `tabray schema` prints a JSON Schema for editors.
 "#;
 
