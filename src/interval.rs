@@ -91,6 +91,23 @@ impl Interval {
         }
     }
 
+    /// The quotient by what may be 0. Where 0 is the end of the divisor and not in the dividend, one end is known.
+    fn over_zero(self, other: Self) -> Self {
+        if other.is_zero() {
+            Self::WHOLE
+        } else if self.is_zero() {
+            Self::constant(0.0)
+        } else if other.high == 0.0 {
+            -self.over_zero(-other)
+        } else if other.low == 0.0 && self.low > 0.0 {
+            Self { high: f64::INFINITY, ..Self::outward(self.low / other.high, self.low) }
+        } else if other.low == 0.0 && self.high < 0.0 {
+            Self { low: f64::NEG_INFINITY, ..Self::outward(self.high, self.high / other.high) }
+        } else {
+            Self::WHOLE
+        }
+    }
+
     /// The least and the greatest of four, those that are not numbers left out.
     #[inline(always)]
     fn of_four(a: f64, b: f64, c: f64, d: f64) -> (f64, f64) {
@@ -163,7 +180,7 @@ impl Div for Interval {
     #[inline(always)]
     fn div(self, other: Self) -> Self {
         if other.has_zero() {
-            return if self.is_zero() && !other.is_zero() { Self::constant(0.0) } else { Self::WHOLE };
+            return self.over_zero(other);
         }
         if !other.is_bounded() {
             return self
@@ -211,7 +228,14 @@ impl Number for Interval {
     }
 
     fn ln(self) -> Self {
-        if self.low > 0.0 { Self::around(libm::log(self.low), libm::log(self.high)) } else { Self::WHOLE }
+        if self.low > 0.0 {
+            Self::around(libm::log(self.low), libm::log(self.high))
+        } else if self.low == 0.0 {
+            let high = libm::log(self.high);
+            Self { low: f64::NEG_INFINITY, ..Self::around(high, high) }
+        } else {
+            Self::WHOLE
+        }
     }
 
     #[inline(always)]
@@ -249,10 +273,17 @@ impl Number for Interval {
         if self.low > 0.0 {
             return (exponent * self.ln()).exp();
         }
-        // A root of what may be 0: 0 stays 0.
-        if self.low == 0.0 && exponent.low > 0.0 {
-            let high = (exponent * Self::constant(self.high).ln()).exp();
-            return Self { low: 0.0, high: high.high.max(if self.high == 0.0 { 0.0 } else { high.high }) };
+        // What may be 0: 0 to the power of 0 is 1, and to a power below 0 it has no end.
+        if self.low == 0.0 {
+            let most = (exponent * Self::constant(self.high).ln()).exp().high;
+            let high = if exponent.low > 0.0 {
+                most
+            } else if exponent.low == 0.0 {
+                most.max(1.0)
+            } else {
+                f64::INFINITY
+            };
+            return Self { low: 0.0, high };
         }
         Self::WHOLE
     }
@@ -298,5 +329,33 @@ impl Number for Interval {
     #[inline(always)]
     fn is_zero(self) -> bool {
         self.low == 0.0 && self.high == 0.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn over(low: f64, high: f64) -> Interval {
+        Interval { low, high }
+    }
+
+    #[test]
+    fn what_touches_zero_keeps_the_end_that_is_known() {
+        let one = Interval::constant(1.0);
+        let inverse = one / over(0.0, 4.0);
+        assert!(inverse.low <= 0.25 && inverse.low > 0.2499 && inverse.high == f64::INFINITY, "{inverse:?}");
+        let inverse = -one / over(-4.0, 0.0);
+        assert!(inverse.low <= 0.25 && inverse.low > 0.2499 && inverse.high == f64::INFINITY, "{inverse:?}");
+        let inverse = one / over(-4.0, 0.0);
+        assert!(inverse.high >= -0.25 && inverse.low == f64::NEG_INFINITY, "{inverse:?}");
+        assert_eq!(over(-1.0, 1.0) / over(0.0, 1.0), Interval::WHOLE);
+        assert_eq!(one / over(-1.0, 1.0), Interval::WHOLE);
+        let ln = over(0.0, 1.0).ln();
+        assert!(ln.low == f64::NEG_INFINITY && (0.0..1e-300).contains(&ln.high), "{ln:?}");
+        let power = over(0.0, 0.5).pow(over(0.0, 0.5));
+        assert!(power.low == 0.0 && (1.0..1.0 + 1e-14).contains(&power.high), "{power:?}");
+        assert_eq!(over(0.0, 2.0).pow(Interval::constant(-1.0)), over(0.0, f64::INFINITY));
+        assert_eq!(over(-0.1, 2.0).pow(Interval::constant(0.5)), Interval::WHOLE);
     }
 }
