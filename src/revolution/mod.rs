@@ -7,12 +7,16 @@
 //! ([`taylor`](crate::roots::taylor)). No hit is lost or invented, whatever the profile, and nothing has to be tuned.
 
 mod bracket;
+mod budget;
 mod classic;
 mod local;
 mod normal;
+mod ranges;
 mod root;
 mod shape;
 mod slabs;
+#[cfg(test)]
+mod tests;
 mod walk;
 
 pub use classic::Classic;
