@@ -51,7 +51,7 @@ impl Revolution {
                 }
             }
             from = from.max(to);
-            if is_last || from >= local.to {
+            if is_last || from >= local.to.min(local.until) {
                 return None;
             }
             index = if is_upward { index + 1 } else { index - 1 };
@@ -121,7 +121,8 @@ impl Revolution {
     fn first_crossing(&self, local: &Local, from: f64, to: f64, wanted: Option<Side>) -> Option<f64> {
         // The piece's own ends may be crossings: they are where shells begin and end.
         let (from, to) = (from.next_down(), to.next_up());
-        taylor::first_root(&OnRay { surface: self, local }, from..to, 4.0 * local.tolerance(), wanted)
+        let line = OnRay { surface: self, local };
+        taylor::first_root(&line, from..to, from..to, 4.0 * local.tolerance(), wanted)
     }
 
     /// The one root of a bracket.

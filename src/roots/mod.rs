@@ -13,6 +13,7 @@ mod steps;
 pub mod taylor;
 mod tracing;
 mod turning;
+pub mod twice;
 
 use crate::dual::Dual;
 use crate::geometry::Side;
@@ -69,7 +70,10 @@ impl Method {
         Self::Taylor,
     ];
 
-    /// The first root in a span, its ends excluded but for rounding.
+    /// The first root in a span, which lies between the two ends of `wanted`, themselves excluded.
+    ///
+    /// [`taylor`] cuts the span into pieces that do not depend on what is wanted of it; the others look at no more than
+    /// that.
     ///
     /// A line that starts on the surface itself `leaves` it on a side, and no root where it starts is meant then.
     /// `shortest` is a few units in the last place of the greatest numbers on the line.
@@ -77,9 +81,14 @@ impl Method {
         self,
         line: &impl Line,
         span: Range<f64>,
+        wanted: Range<f64>,
         shortest: f64,
         leaves: Option<Side>,
     ) -> Option<f64> {
+        if self == Self::Taylor {
+            return taylor::first_root(line, span, wanted, shortest, leaves);
+        }
+        let span = span.start.max(wanted.start)..span.end.min(wanted.end);
         if span.is_empty() {
             return None;
         }
@@ -91,7 +100,7 @@ impl Method {
             Self::Turning(count) => turning::first_root(line, span, shortest, leaves, count),
             Self::Tracing => tracing::first_root(line, span, leaves),
             Self::Intervals => intervals::first_root(line, span, shortest, leaves),
-            Self::Taylor => taylor::first_root(line, span, shortest, leaves),
+            Self::Taylor => unreachable!("it has been asked"),
         }
     }
 
@@ -210,7 +219,7 @@ mod tests {
     }
 
     fn root(method: Method, line: &impl Line, span: Range<f64>, leaves: Option<Side>) -> Option<f64> {
-        method.first_root(line, span, 1e-14, leaves)
+        method.first_root(line, span.clone(), span, 1e-14, leaves)
     }
 
     #[test]
