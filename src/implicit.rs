@@ -108,8 +108,7 @@ impl<T: Implicit> ImplicitShape<T> {
         }
         let line = OnRay { shape: self, base, dir, ray, closest };
         let shortest = 4.0 * f64::EPSILON * start.abs().max(end.abs());
-        let wanted = within.near - closest..within.far - closest;
-        match method.first_root(&line, start..end, wanted, shortest, within.leaves) {
+        match method.first_root(&line, start..end, closest, within, shortest) {
             Some(root) => within.keep(closest + root),
             None => MISS,
         }

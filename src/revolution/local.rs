@@ -21,8 +21,8 @@ pub struct Local {
     pub to: f64,
     /// How far the base is from the ray's origin.
     pub base: f64,
-    /// Where the search ends, along the ray from the base: only what lies before that is of interest.
-    pub until: f64,
+    /// Where the search ends, from the ray's origin: only what lies before that is of interest.
+    pub far: f64,
     /// The ray in the world, and where the surface stands there.
     pub ray: Ray,
     pub frame: Frame,
@@ -73,11 +73,10 @@ impl Local {
         } else if c > widest {
             return None;
         }
-        let until = within.far - base;
-        if from > to || (to - from).is_nan() || from >= until {
+        if from > to || (to - from).is_nan() || base + from >= within.far {
             return None;
         }
-        Some(Self { origin: moved, dir, a, b, c, from, to, base, until, ray: *ray, frame: *frame })
+        Some(Self { origin: moved, dir, a, b, c, from, to, base, far: within.far, ray: *ray, frame: *frame })
     }
 
     /// The height at a place along the ray.

@@ -96,8 +96,7 @@ impl Revolution {
         let Some(local) = Local::new(frame, ray, within, self.height, widest) else { return MISS };
         let line = Uncut { surface: self, local: &local };
         let shortest = 4.0 * local.tolerance();
-        match method.first_root(&line, local.from..local.to, local.from..local.until, shortest, within.leaves)
-        {
+        match method.first_root(&line, local.from..local.to, local.base, within, shortest) {
             Some(along) => within.keep(local.base + along),
             None => MISS,
         }

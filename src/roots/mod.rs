@@ -16,7 +16,7 @@ mod turning;
 pub mod twice;
 
 use crate::dual::Dual;
-use crate::geometry::Side;
+use crate::geometry::{Side, Span};
 use std::fmt;
 use std::ops::Range;
 use taylor::Line;
@@ -70,25 +70,25 @@ impl Method {
         Self::Taylor,
     ];
 
-    /// The first root in a span, which lies between the two ends of `wanted`, themselves excluded.
+    /// The first root in a piece of a line whose distance, counted from `base`, lies within a span.
     ///
-    /// [`taylor`] cuts the span into pieces that do not depend on what is wanted of it; the others look at no more than
-    /// that.
+    /// [`taylor`] cuts the piece in a way that does not depend on the span; the others look at no more than that.
     ///
-    /// A line that starts on the surface itself `leaves` it on a side, and no root where it starts is meant then.
+    /// A line that starts on the surface itself leaves it on a side, and no root where it starts is meant then.
     /// `shortest` is a few units in the last place of the greatest numbers on the line.
     pub fn first_root(
         self,
         line: &impl Line,
         span: Range<f64>,
-        wanted: Range<f64>,
+        base: f64,
+        within: &Span,
         shortest: f64,
-        leaves: Option<Side>,
     ) -> Option<f64> {
+        let leaves = within.leaves;
         if self == Self::Taylor {
-            return taylor::first_root(line, span, wanted, shortest, leaves);
+            return taylor::first_root(line, span, base, within, shortest);
         }
-        let span = span.start.max(wanted.start)..span.end.min(wanted.end);
+        let span = span.start.max(within.near - base)..span.end.min(within.far - base);
         if span.is_empty() {
             return None;
         }
@@ -219,7 +219,7 @@ mod tests {
     }
 
     fn root(method: Method, line: &impl Line, span: Range<f64>, leaves: Option<Side>) -> Option<f64> {
-        method.first_root(line, span.clone(), span, 1e-14, leaves)
+        method.first_root(line, span, 0.0, &Span { leaves, ..Span::RAY }, 1e-14)
     }
 
     #[test]
