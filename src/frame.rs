@@ -3,7 +3,8 @@
 use crate::bounds::Bounds;
 use crate::geometry::Ray;
 use crate::number::{Number, dot};
-use crate::sight::Line;
+use crate::sight::{Line, Sight};
+use crate::twofold::{Twofold, offset};
 use glam::{DMat3, DVec3};
 
 /// An origin, and three unit vectors upright on each other.
@@ -13,7 +14,7 @@ pub struct Frame {
     pub origin: DVec3,
     /// The directions in the world of its own x, y and z.
     pub axes: DMat3,
-    /// The vector along its y that it was made from, of any length; nothing where its axes are the world's.
+    /// A vector along its y as the scene has it, but for a power of two; nothing where its axes are the world's.
     axis: Option<DVec3>,
 }
 
@@ -26,7 +27,9 @@ impl Frame {
     /// With its y along a vector that is not 0. Around that axis it is turned anyhow: for shapes that are round.
     pub fn around(origin: DVec3, axis: DVec3) -> Self {
         let axes = upright(axis.normalize().to_array(), sign(axis)).map(DVec3::from);
-        Self { origin, axes: DMat3::from_cols(axes[0], axes[1], axes[2]), axis: Some(axis) }
+        // A power of two: no digit is lost, and no square of it overflows.
+        let scale = 2.0_f64.powi(-(axis.abs().max_element().log2() as i32).clamp(-1000, 1000));
+        Self { origin, axes: DMat3::from_cols(axes[0], axes[1], axes[2]), axis: Some(axis * scale) }
     }
 
     /// A direction of the world in the shape's own coordinates.
@@ -55,6 +58,21 @@ impl Frame {
         let length = dot(given, given).sqrt();
         let axes = upright(given.map(|part| part / length), sign(axis));
         Line { origin: axes.map(|axis| dot(axis, origin)), dir: axes.map(|axis| dot(axis, line.dir)) }
+    }
+
+    /// The way from the frame's origin to the point at a distance along a ray, in the world: rounded about once, however
+    /// far away the ray's origin is.
+    #[inline(always)]
+    pub fn from_origin(&self, ray: &Ray, distance: f64) -> DVec3 {
+        let along = |axis: usize| offset(ray.origin[axis], distance, ray.dir[axis], self.origin[axis]);
+        DVec3::new(along(0), along(1), along(2))
+    }
+
+    /// A ray in the shape's own coordinates in twice the precision, from the point at a distance along it.
+    pub fn exactly(&self, ray: &Ray, distance: f64) -> Line<Twofold> {
+        let Line { origin, dir } = Sight::along(ray).line::<Twofold>();
+        let start = Line { origin, dir }.at(Twofold::from(distance));
+        self.line(Line { origin: start, dir })
     }
 
     /// The box in the world around one in the shape's own coordinates.

@@ -8,12 +8,11 @@ use crate::bounds::Bounds;
 use crate::certify::{self, Enclosure, Equation, Precision};
 use crate::dual::Dual;
 use crate::frame::Frame;
-use crate::geometry::{Body, Hittable, MISS, Ray, Span};
+use crate::geometry::{Body, Hittable, MISS, Ray, Side, Span};
+use crate::interval::Interval;
 use crate::number::Number;
-use crate::roots::Method;
-use crate::roots::taylor;
+use crate::roots::{Method, taylor, twice};
 use crate::sight::{Line, Sight};
-use crate::twofold::{two_product, two_sum};
 use glam::DVec3;
 
 /// A shape by its formula, in coordinates of its own.
@@ -89,25 +88,26 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
 
 impl<T: Implicit> ImplicitShape<T> {
     /// From the point of the ray that is closest to the shape's origin, so that a shape far away is met as exactly
-    /// as a near one.
+    /// as a near one. The ray is looked at from its origin, or where it comes into the box, to where it leaves the box,
+    /// wherever the span ends: a hit is the same in every span that holds it.
     fn first_hit(&self, method: Method, ray: &Ray, within: &Span) -> f64 {
         let closest = (self.frame.origin - ray.origin).dot(ray.dir);
-        let base = self.frame.direction(offset(ray, closest, self.frame.origin));
+        let base = self.frame.direction(self.frame.from_origin(ray, closest));
         let dir = self.frame.direction(ray.dir);
-        let (mut near, mut far) = (within.near - closest, within.far - closest);
+        let (mut start, mut end) = (-closest, f64::INFINITY);
         for axis in 0..3 {
             let (base, dir) = (base[axis], dir[axis]);
             if dir != 0.0 {
                 let (one, other) = ((self.low[axis] - base) / dir, (self.high[axis] - base) / dir);
-                near = near.max(one.min(other));
-                far = far.min(one.max(other));
+                start = start.max(one.min(other));
+                end = end.min(one.max(other));
             } else if base < self.low[axis] || base > self.high[axis] {
                 return MISS;
             }
         }
-        let line = OnRay { formula: &self.formula, base, dir };
-        let shortest = 4.0 * f64::EPSILON * near.abs().max(far.abs());
-        match method.first_root(&line, near..far, shortest, within.leaves) {
+        let line = OnRay { shape: self, base, dir, ray, closest };
+        let shortest = 4.0 * f64::EPSILON * start.abs().max(end.abs());
+        match method.first_root(&line, start..end, closest, within, shortest) {
             Some(root) => within.keep(closest + root),
             None => MISS,
         }
@@ -143,26 +143,24 @@ fn direction(vector: DVec3) -> Option<DVec3> {
 
 /// A formula along a ray.
 struct OnRay<'s, T> {
-    formula: &'s T,
+    shape: &'s ImplicitShape<T>,
+    /// The ray in the shape's own coordinates, from its point closest to the shape's origin.
     base: DVec3,
     dir: DVec3,
+    /// The ray in the world, and how far along it that point is.
+    ray: &'s Ray,
+    closest: f64,
 }
 
 impl<T: Implicit> taylor::Line for OnRay<'_, T> {
     fn at<N: Number>(&self, t: N) -> N {
         let along = |axis: usize| N::constant(self.base[axis]) + N::constant(self.dir[axis]) * t;
-        self.formula.value([along(0), along(1), along(2)])
+        self.shape.formula.value([along(0), along(1), along(2)])
     }
-}
 
-/// The point at a distance along a ray, as seen from another one: rounded as one operation is, however far away the
-/// ray's origin is.
-fn offset(ray: &Ray, distance: f64, from: DVec3) -> DVec3 {
-    let along = |axis: usize| {
-        let (way, way_low) = two_product(distance, ray.dir[axis]);
-        let (place, place_low) = two_sum(ray.origin[axis], way);
-        let (offset, offset_low) = two_sum(place, -from[axis]);
-        offset + (way_low + place_low + offset_low)
-    };
-    DVec3::new(along(0), along(1), along(2))
+    /// Twice the precision, from the ray in the world, tells nearly all touches from misses.
+    fn undecided(&self, piece: Interval, leaves: Option<Side>) -> Option<f64> {
+        let exact = self.shape.frame.exactly(self.ray, self.closest);
+        twice::first_root(|t| self.shape.formula.value(exact.along(t)), piece, leaves)
+    }
 }

@@ -1,5 +1,6 @@
 //! Rays of which every digit is known, so that something can be proven of them.
 
+use crate::dual::Dual;
 use crate::geometry::Ray;
 use crate::number::Number;
 use glam::{DVec2, DVec3};
@@ -64,5 +65,10 @@ impl<N: Number> Line<N> {
     /// The point at t.
     pub fn at(&self, t: N) -> [N; 3] {
         [0, 1, 2].map(|axis| self.origin[axis] + t * self.dir[axis])
+    }
+
+    /// The point at t, which depends on a variable.
+    pub fn along(&self, t: Dual<N>) -> [Dual<N>; 3] {
+        [0, 1, 2].map(|axis| Dual::fixed(self.origin[axis]) + t * Dual::fixed(self.dir[axis]))
     }
 }

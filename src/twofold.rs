@@ -38,6 +38,16 @@ pub fn advance(start: f64, distance: f64, step: f64) -> f64 {
     sum + (product_low + sum_low)
 }
 
+/// `start + distance * step - from`, rounded about once: to a unit in the last place of the result, however far `start`
+/// is from there.
+#[inline(always)]
+pub fn offset(start: f64, distance: f64, step: f64, from: f64) -> f64 {
+    let (way, way_low) = two_product(distance, step);
+    let (place, place_low) = two_sum(start, way);
+    let (offset, offset_low) = two_sum(place, -from);
+    offset + (way_low + place_low + offset_low)
+}
+
 /// A sum of three products, the second factors with what rounding took from them: rounded about once, however much of
 /// it cancels (Ogita, Rump and Oishi 2005).
 #[inline(always)]

@@ -101,9 +101,7 @@ impl<S: Equation, F: Float> Search<'_, S, F> {
 
     /// The value, with its slope.
     fn slope(&self, t: Interval<F>) -> Dual<Interval<F>> {
-        let t = Dual::variable(t);
-        let Line { origin, dir } = self.line;
-        self.shape.value([0, 1, 2].map(|axis| Dual::fixed(origin[axis]) + t * Dual::fixed(dir[axis])))
+        self.shape.value(self.line.along(Dual::variable(t)))
     }
 
     /// How fast the slope changes.

@@ -12,7 +12,7 @@ use crate::model::Model;
 use crate::packet::{STEP, Vectors};
 use crate::profile::Profile;
 use crate::registry::Registry;
-use crate::revolution::{Finish, NoSurface, Revolution};
+use crate::revolution::{Finish, Revolution};
 use crate::scene;
 use crate::shading::{Anchor, ProceduralShader};
 use crate::syntax::Syntax;
@@ -171,10 +171,8 @@ pub fn material(material: &Material) -> Result<(), Fault> {
 pub fn profile(profile: &Profile) -> Result<(), Fault> {
     let line = profile.line();
     let fault = |found: String| Promise::ProfileIsFinite.fault(found);
-    Revolution::new(&line.radius, 4.0, Finish::Root).map_err(|none| match none {
-        NoSurface::Unbounded { near } => fault(format!("it has no bound near y = {near:.6}")),
-        NoSurface::Nowhere => fault("it is nowhere above 0".to_owned()),
-    })?;
+    Revolution::new(&line.radius, 4.0, Finish::Root)
+        .map_err(|none| fault(format!("it is one {}", none.told().0)))?;
     let mut heights = (0..=400).map(|part| f64::from(part) / 100.0);
     match heights.find(|y| !line.slope_at(*y).is_finite()) {
         Some(y) => Err(fault(format!("its slope is {} at y = {y}", line.slope_at(y)))),

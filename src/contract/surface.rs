@@ -59,7 +59,8 @@ impl Tried<'_> {
             let way = met.at - origin;
             let ray = Ray { origin, dir: way.normalize() };
             let distance = self.in_span(&ray, &Span::RAY)?;
-            if distance > way.length() + SLACK * self.size(met.distance) {
+            let is_farther = |slack: f64| distance > way.length() + slack;
+            if is_farther(0.0) && is_farther(self.tolerance(&ray, &Span::RAY, distance)) {
                 return Err(Promise::HitIsOnTheSurface.fault(format!(
                     "it is hit at {}, {}; but `distance` gives {distance} for that point, which is {} away, {}",
                     met.at,
@@ -161,15 +162,11 @@ impl Tried<'_> {
             if leaving <= SLACK * self.size(met.distance) {
                 return found(format!("on leaving its {side:?} `distance` gives {leaving}"));
             }
-            // What lies closer by than the step, and what is only grazed, is left alone.
+            // What lies closer by than the step is left alone.
             let is_near = |distance: f64| distance < 3.0 * stride;
-            let grazes = |distance: f64| {
-                distance != MISS && dir.dot(self.shape.normal(ray.at(distance))).abs() < GRAZING
-            };
-            let differ = leaving != from_ahead
-                && (leaving - from_ahead).abs() > SLACK * self.size(from_ahead.min(leaving));
-            let is_told =
-                ![leaving, from_ahead].iter().any(|distance| is_near(*distance) || grazes(*distance));
+            let apart = if leaving == from_ahead { 0.0 } else { (leaving - from_ahead).abs() };
+            let is_told = !is_near(leaving) && !is_near(from_ahead);
+            let differ = apart > 0.0 && apart > self.tolerance(&ahead, &Span::RAY, from_ahead - stride);
             if differ && is_told {
                 return found(format!(
                     "on leaving its {side:?} `distance` gives {leaving}, and from a little farther {from_ahead}"

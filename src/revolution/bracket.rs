@@ -141,7 +141,7 @@ impl Revolution {
             self.roots(Cpu::best(), frame, rays, (&[near; STEP], &[far; STEP]), &mut root);
             within.keep(root[0])
         } else {
-            self.first_hit(&frame.ray(ray), within)
+            self.first_hit(frame, ray, within)
         }
     }
 }
@@ -163,7 +163,11 @@ kernels! {
             let closest = -(origin.x * dir.x + origin.z * dir.z) * inverse_a;
             let base = if is_free & (closest > 0.0) { closest } else { 0.0 };
             let moved = origin + base * dir;
-            let off = 8.0 * f64::EPSILON * (origin.abs().element_sum() + base);
+            // How far rounding moves that point, in units of EPSILON. Each coordinate of the origin: 1/2 in its difference
+            // from the frame's, 3 in the axes, 3/2 in the turning; sqrt(3) of these 5 across three axes are below 9. The
+            // direction: sqrt(3) of 3 in the axes and 3/2 in the turning, 1 for the ray of a real camera, which is that
+            // far from one of f64, and 1 for the point on the way: below 10.
+            let off = 12.0 * f64::EPSILON * (origin.abs().element_sum() + base);
             let (b, c) = (moved.x * dir.x + moved.z * dir.z, moved.x * moved.x + moved.z * moved.z);
 
             let inverse_dy = 1.0 / dir.y;

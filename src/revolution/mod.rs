@@ -7,12 +7,16 @@
 //! ([`taylor`](crate::roots::taylor)). No hit is lost or invented, whatever the profile, and nothing has to be tuned.
 
 mod bracket;
+mod budget;
 mod classic;
 mod local;
 mod normal;
+mod ranges;
 mod root;
 mod shape;
 mod slabs;
+#[cfg(test)]
+mod tests;
 mod walk;
 
 pub use classic::Classic;
@@ -23,11 +27,14 @@ use crate::bounds::Bounds;
 use crate::certify::Equation;
 use crate::dual::Dual;
 use crate::formula::Formula;
+use crate::frame::Frame;
 use crate::geometry::{MISS, Ray, Side, Span};
 use crate::interval::Interval;
 use crate::number::Number;
 use crate::roots::Method;
 use crate::roots::taylor::Line;
+use crate::roots::twice;
+use crate::twofold::Twofold;
 use crate::words;
 use glam::DVec3;
 use local::Local;
@@ -66,8 +73,10 @@ impl Revolution {
     }
 
     /// The distance of a ray's first hit within a span, whatever the ray does.
-    pub fn first_hit(&self, ray: &Ray, within: &Span) -> f64 {
-        let Some(local) = Local::new(ray, within, self.height, self.slabs.widest()) else { return MISS };
+    pub fn first_hit(&self, frame: &Frame, ray: &Ray, within: &Span) -> f64 {
+        let Some(local) = Local::new(frame, ray, within, self.height, self.slabs.widest()) else {
+            return MISS;
+        };
         match self.walk(&local, within.leaves) {
             Some(along) => within.keep(local.base + along),
             None => MISS,
@@ -82,12 +91,12 @@ impl Revolution {
 
     /// As [`first_hit`](Self::first_hit), by another method and in the same bounding cylinder; but the notes' steps, as
     /// in the notes, go all the way between the surface's heights.
-    pub fn first_hit_by(&self, method: Method, ray: &Ray, within: &Span) -> f64 {
+    pub fn first_hit_by(&self, method: Method, frame: &Frame, ray: &Ray, within: &Span) -> f64 {
         let widest = if method == Method::Steps { f64::INFINITY } else { self.slabs.widest() };
-        let Some(local) = Local::new(ray, within, self.height, widest) else { return MISS };
+        let Some(local) = Local::new(frame, ray, within, self.height, widest) else { return MISS };
         let line = Uncut { surface: self, local: &local };
         let shortest = 4.0 * local.tolerance();
-        match method.first_root(&line, local.from..local.to, shortest, within.leaves) {
+        match method.first_root(&line, local.from..local.to, local.base, within, shortest) {
             Some(along) => within.keep(local.base + along),
             None => MISS,
         }
@@ -174,6 +183,18 @@ impl Line for OnRay<'_> {
         let height = Interval::constant(self.local.origin.y) + piece * dir[1];
         let of_square = self.surface.square.at(Dual::variable_twice(height)).second();
         Interval::constant(2.0) * (dir[0].powi(2) + dir[2].powi(2)) - of_square * dir[1].powi(2)
+    }
+
+    /// Twice the precision, from the ray in the world and the axis as the scene has it, tells nearly all touches from
+    /// misses.
+    fn undecided(&self, piece: Interval, leaves: Option<Side>) -> Option<f64> {
+        let exact = self.local.frame.exactly(&self.local.ray, self.local.base);
+        let outside = |along: Dual<Twofold>| {
+            let [x, y, z] = exact.along(along);
+            let height = y.max(Dual::constant(0.0)).min(Dual::constant(self.surface.height));
+            x.powi(2) + z.powi(2) - self.surface.square.at(height)
+        };
+        twice::first_root(outside, piece, leaves)
     }
 }
 

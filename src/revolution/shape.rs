@@ -64,7 +64,7 @@ impl Hittable for InFrame<Revolution> {
     }
 
     fn distance_by(&self, method: Method, ray: &Ray, within: &Span) -> Option<f64> {
-        Some(self.surface.first_hit_by(method, &self.frame.ray(ray), within))
+        Some(self.surface.first_hit_by(method, &self.frame, ray, within))
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {
