@@ -283,8 +283,8 @@ mod tests {
 
     #[test]
     fn a_touch_is_a_root_and_no_way_in() {
-        let first = first(&Cubic, 0.0..9.0, None).expect("a touch");
-        assert!((first - 1.0).abs() < 1e-7, "{first:e}");
+        let touch = first(&Cubic, 0.0..9.0, None).expect("a touch");
+        assert!((touch - 1.0).abs() < 1e-7, "{touch:e}");
         assert_eq!(first(&Cubic, 0.0..9.0, Some(Side::Outside)), Some(3.0));
         assert_eq!(first(&Cubic, 0.0..9.0, Some(Side::Inside)), None);
         assert_eq!(first(&Cubic, 1.5..2.9, None), None);

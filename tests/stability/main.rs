@@ -13,6 +13,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod leaning;
 mod leaving;
 mod lessons;
 mod looks;
