@@ -1,7 +1,7 @@
 //! Shapes that are one formula: the points where f(x, y, z) = 0.
 //!
 //! A plugin gives the formula, once, for every number type, and a box around it. The rest follows:
-//! [`taylor`](crate::roots::taylor) finds what a ray meets first and proves that nothing lies before, and [`Dual`]
+//! [`taylor`](crate::roots::taylor) isolates what a ray meets first by interval arithmetic, and [`Dual`]
 //! numbers give the normal.
 
 use crate::bounds::Bounds;
@@ -78,7 +78,7 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
     }
 
     fn method(&self) -> String {
-        "its first root isolated by bounds that certainly hold, then polished".to_owned()
+        "its first root isolated by interval arithmetic, then polished".to_owned()
     }
 
     fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {

@@ -235,6 +235,12 @@ const CHECKS: &[Check] = &[
     ("The middle of a rainbow", |scene| {
         assert!(scene.colour(Exact).is_finite() && scene.lit(Exact) == 1);
     }),
+    ("The far edge of a texture", |scene| {
+        for accuracy in [Classic, Exact] {
+            let picture = scene.picture(accuracy);
+            assert!((0..31).all(|row| is_lit(picture.get_pixel(40, row))));
+        }
+    }),
     ("The third shader", |scene| {
         let colours: BTreeSet<_> = scene.picture(Exact).pixels().map(|pixel| pixel.0).collect();
         assert!(colours.len() > 100);
@@ -314,6 +320,20 @@ const CHECKS: &[Check] = &[
         let dump = dump::notes(&scene.model(Exact));
         assert!(["samples", "accuracy", "size"].iter().all(|word| !dump.contains(word)), "{dump}");
     }),
+    ("Alternate tiles", |scene| {
+        assert_eq!(scene.picture(Exact), scene.with("specular 1", "specular 0").picture(Exact));
+        assert_ne!(scene.picture(Exact), scene.with("ambient 1 1 2", "ambient 5 5 5").picture(Exact));
+    }),
+    ("Projectors", |scene| {
+        assert!(scene.lit(Exact) > 100);
+        let behind = scene.with("point 3 2 -3", "point 3 2 -9");
+        assert_eq!(behind.lit(Exact), 0, "behind the wall");
+    }),
+    ("Triangles", |scene| {
+        let bare = scene.with("normal 1 0 0  point 9 9 9 ", "");
+        assert_eq!(scene.picture(Exact), bare.picture(Exact));
+        assert!(scene.lit(Exact) > 50);
+    }),
     ("The debug listing", |scene| {
         let model = scene.model(Exact);
         let mut out = Vec::new();
@@ -328,10 +348,10 @@ const CHECKS: &[Check] = &[
     }),
     ("The dump", |scene| {
         let dump = dump::notes(&scene.model(Exact));
-        assert!(
-            dump.contains("\ndimensions     8.0   6.0\n") && dump.contains("\nrotation matrix\n"),
-            "{dump}"
-        );
+        assert!(dump.contains("\ndimensions     8.0   6.0\n"), "{dump}");
+        assert!(dump.contains("\nrotation matrix\n"), "{dump}");
+        let pfplane = scene.with("fplane wall {", "pfplane wall { shader 0 ");
+        assert_eq!(dump::notes(&pfplane.model(Exact)).matches("\nnormal ").count(), 1);
     }),
     ("The file", |scene| {
         let folder = folder();

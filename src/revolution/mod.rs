@@ -1,10 +1,11 @@
-//! Surfaces of revolution of any profile: every point at the distance g(y) from the axis, for heights y from 0 to
+//! Surfaces of revolution of a profile that has a bound: every point at the distance g(y) from the axis, for heights y from 0 to
 //! the surface's own, wherever g is not negative.
 //!
 //! Each is cut, when it is made, into slabs in which the profile's square is a parabola but for a proven error
 //! (`slabs`). A ray meets the quadrics of revolution around those in closed form, which brackets its first hit or
 //! proves that there is none (`walk`); where it grazes the error's shell, bounds of the second derivative decide
-//! ([`taylor`](crate::roots::taylor)). No hit is lost or invented, whatever the profile, and nothing has to be tuned.
+//! ([`taylor`](crate::roots::taylor)). Nothing has to be tuned. The rounding of a ray's own arithmetic is held by margins
+//! that are derived where they stand, and tried against the truth in `tests/truth.rs`.
 
 mod bracket;
 mod budget;

@@ -6,6 +6,7 @@ use crate::entity::{Entity, Kind};
 use crate::registry::Registry;
 use crate::value::Datum;
 use crate::words::{self, nearest};
+use std::collections::hash_map::Entry;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 
@@ -14,6 +15,12 @@ type Name = (Kind, String);
 
 /// What only the first of several entities of one name is: an object of its type, or a thing of its kind.
 type Title = &'static str;
+
+/// Where a name was claimed, and for what: first, and again.
+struct Claims {
+    first: (Title, Place),
+    again: Vec<(Title, Place)>,
+}
 
 /// How many faults of one sort are told one by one.
 const FEW: usize = 8;
@@ -24,8 +31,8 @@ pub struct Names {
     places: HashMap<Name, Place>,
     /// Names of entities of no known type: they may be what a reference means.
     doubtful: HashSet<String>,
-    /// Where each name was claimed so far, and for which of the things that must not share it.
-    claimed: BTreeMap<Name, BTreeMap<Title, Vec<Place>>>,
+    /// The names that were claimed so far.
+    claimed: HashMap<Name, Claims>,
     /// What can be referred to so far.
     defined: HashMap<Name, Datum>,
     /// References to what is not there (yet), each with all its places.
@@ -50,7 +57,7 @@ impl Names {
         Self {
             places,
             doubtful,
-            claimed: BTreeMap::new(),
+            claimed: HashMap::new(),
             defined: HashMap::new(),
             unresolved: BTreeMap::new(),
         }
@@ -78,24 +85,42 @@ impl Names {
         }
         // The course's own pictures show a sphere `left` and an fplane `left` in one scene.
         let title = if kind == Kind::Object { entity.name } else { "" };
-        let places = self.claimed.entry((kind, text.to_string())).or_default().entry(title).or_default();
-        places.push(place.clone());
-        places.len() == 1 || kind == Kind::Light
+        match self.claimed.entry((kind, text.to_string())) {
+            Entry::Vacant(free) => {
+                free.insert(Claims { first: (title, place.clone()), again: Vec::new() });
+                true
+            }
+            Entry::Occupied(mut taken) => {
+                let Claims { first, again } = taken.get_mut();
+                let is_first = first.0 != title && again.iter().all(|(other, _)| *other != title);
+                again.push((title, place.clone()));
+                is_first || kind == Kind::Light
+            }
+        }
     }
 
     /// Warns of names that several entities have: once for each name, and once for all of them where they are many.
     pub fn report_repeated(&self, report: &mut Report) {
         let (mut left_out, mut shared) = (Vec::new(), Vec::new());
-        for ((kind, text), titles) in &self.claimed {
-            let mut first = Vec::new();
-            for (title, places) in titles {
-                first.push(&places[0]);
-                let what = if title.is_empty() { kind.to_string() } else { (*title).to_owned() };
-                let repeated = Repeated { what, text, places: places.iter().collect() };
-                if *kind == Kind::Light { &mut shared } else { &mut left_out }.push(repeated);
+        for ((kind, text), Claims { first, again }) in
+            self.claimed.iter().filter(|(_, all)| !all.again.is_empty())
+        {
+            let mut titles: BTreeMap<Title, Vec<&Place>> = BTreeMap::new();
+            let mut firsts = Vec::new();
+            for (title, place) in [first].into_iter().chain(again) {
+                let places = titles.entry(title).or_default();
+                places.push(place);
+                firsts.extend((places.len() == 1).then_some(place));
             }
-            first.sort_by_key(|place| start(place));
-            shared.push(Repeated { what: kind.to_string(), text, places: first });
+            for (title, places) in titles {
+                let what = if title.is_empty() { kind.to_string() } else { title.to_owned() };
+                if *kind == Kind::Light { &mut shared } else { &mut left_out }.push(Repeated {
+                    what,
+                    text,
+                    places,
+                });
+            }
+            shared.push(Repeated { what: kind.to_string(), text, places: firsts });
         }
         for (Repeated { what, text, places }, names, more) in few(left_out) {
             let message = match (names, places.len()) {
@@ -182,14 +207,10 @@ struct Repeated<'n> {
     places: Vec<&'n Place>,
 }
 
-fn start(place: &Place) -> usize {
-    place.as_ref().map_or(0, |place| place.start)
-}
-
 /// Those that are repeated, each with the names and the places that are not told of it; of many only the first one.
 fn few(mut all: Vec<Repeated<'_>>) -> Vec<(Repeated<'_>, usize, usize)> {
     all.retain(|repeated| repeated.places.len() > 1);
-    all.sort_by_key(|repeated| start(repeated.places[1]));
+    all.sort_by_key(|repeated| (repeated.places[1].as_ref().map(|place| place.start), repeated.text));
     let (names, later) = (all.len(), all.iter().map(|repeated| repeated.places.len() - 1).sum::<usize>());
     if names > FEW {
         return all.into_iter().take(1).map(|first| (first, names - 1, later - 1)).collect();
