@@ -156,10 +156,6 @@ impl Number for Fast {
         Self { low: self.low, high: self.low }
     }
 
-    fn high(&self) -> Self {
-        Self { low: self.high, high: self.high }
-    }
-
     fn is_narrow(&self, size: &Self) -> bool {
         self.high - self.low <= 1e-15 * (self.low.abs() + size.high)
     }

@@ -12,6 +12,7 @@ mod curved;
 mod dyadic;
 mod fast;
 mod formula;
+mod looks;
 mod number;
 mod oracle;
 mod program;
@@ -25,6 +26,7 @@ mod wide;
 use classes::{CLASSES, Class};
 use random::Random;
 use std::env;
+use std::fs;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
@@ -84,8 +86,44 @@ fn hits_and_proofs_of_a_few_scenes_of_each_class_are_right() {
 }
 
 #[test]
+fn surfaces_meet_their_own_rays_as_they_should() {
+    let wrong = looks::all(6);
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
 #[ignore = "takes minutes"]
 fn hits_and_proofs_of_many_scenes_of_each_class_are_right() {
     let wrong = all(0);
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn surfaces_meet_their_own_rays_in_many_scenes() {
+    let wrong = looks::all((500.0 * setting("FALSIFY_RAYS", 1.0)).ceil() as u64);
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Judges every pixel of the scenes that FALSIFY_SCENES names, with blanks between them.
+#[test]
+#[ignore = "takes scenes from the environment"]
+fn hits_and_proofs_of_given_scenes_are_right() {
+    let Ok(scenes) = env::var("FALSIFY_SCENES") else { return };
+    println!("{}", tally::HEADING);
+    let renderer = Renderer::new(0).expect("threads");
+    let mut wrong = Vec::new();
+    for path in scenes.split_whitespace() {
+        let text = fs::read_to_string(path).unwrap_or_else(|error| panic!("{path}: {error}"));
+        let [width, height] = text::Scene::read(&text).pixels.map(|side| side as usize);
+        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| [x, y])).collect();
+        let question = scenes::Question { text, pixels, is_picture: false };
+        let (start, mut tally) = (Instant::now(), Tally::default());
+        tally.judge(&CLASSES[0], &question, 0, &renderer);
+        println!("{}", tally.row(path, start.elapsed()));
+        if !tally.is_sound() {
+            wrong.push(format!("{path}: {}", tally.worst()));
+        }
+    }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }

@@ -32,7 +32,6 @@ pub trait Number: Clone {
     /// A point of it, not quite in its middle.
     fn inner(&self) -> Self;
     fn low(&self) -> Self;
-    fn high(&self) -> Self;
     /// Whether it is as narrow as is worth while at numbers of this size.
     fn is_narrow(&self, size: &Self) -> bool;
     /// Whether it is less than half as wide as another.

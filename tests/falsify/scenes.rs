@@ -69,10 +69,6 @@ impl Aim {
         of.map(|length| self.length(length)).join(" ")
     }
 
-    pub fn power(&self) -> f64 {
-        self.scale
-    }
-
     /// The scene with these objects, each its type and attributes without the material; a single pixel.
     pub fn question(self, objects: &[String]) -> Question {
         let pixels = vec![[0, 0]];

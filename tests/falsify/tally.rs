@@ -17,9 +17,9 @@ use tabray::render::Renderer;
 
 /// The first lines of the table.
 pub const HEADING: &str = "\
-| class | rays | wrong hits | rays rounded | ties | ties lost | proofs | wrong proofs | undecided | packets differ | \
+| class | rays | wrong hits | wrong distances | rays rounded | ties | ties lost | proofs | wrong proofs | undecided | packets differ | \
 largest error (ulp) | off the surface (ulp) | refused | seconds |
-|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|";
+|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|";
 
 /// A hit this far off the surface, in units in the last place of its distance, is another one: an error of rounding
 /// would be a few of them.
@@ -29,8 +29,10 @@ const OFF: f64 = 1000.0;
 #[derive(Default)]
 pub struct Tally {
     rays: usize,
-    /// Hits that are right neither for the real ray nor for the rounded one.
+    /// Hits of an object that is first neither for the real ray nor for the rounded one.
     wrong: usize,
+    /// Hits of the right object, which are far from its first point for either ray.
+    late: usize,
     /// Hits that are right for the rounded ray alone.
     rounded: usize,
     /// Rays that touch something, or meet several things at one distance.
@@ -102,6 +104,9 @@ impl Tally {
         } else if !by_real.is_right() {
             if by_rounded.is_right() {
                 self.rounded += 1;
+            } else if by_real.is_hit || by_rounded.is_hit {
+                self.late += 1;
+                self.keep("late", number, question, pixel);
             } else {
                 self.wrong += 1;
                 self.keep("wrong", number, question, pixel);
@@ -157,6 +162,7 @@ impl Tally {
         for (mine, its) in [
             (&mut self.rays, other.rays),
             (&mut self.wrong, other.wrong),
+            (&mut self.late, other.late),
             (&mut self.rounded, other.rounded),
             (&mut self.ties, other.ties),
             (&mut self.lost, other.lost),
@@ -175,7 +181,7 @@ impl Tally {
 
     /// Whether nothing is wrong.
     pub fn is_sound(&self) -> bool {
-        self.wrong + self.wrong_proofs + self.differ == 0 && (self.lost == 0 || !self.strict)
+        self.wrong + self.late + self.wrong_proofs + self.differ == 0 && (self.lost == 0 || !self.strict)
     }
 
     /// A line of the table. Scenes with faults are written to the folder that FALSIFY_KEEP names.
@@ -189,10 +195,21 @@ impl Tally {
             }
         }
         let Self {
-            rays, wrong, rounded, ties, lost, proofs, wrong_proofs, undecided, differ, refused, ..
+            rays,
+            wrong,
+            late,
+            rounded,
+            ties,
+            lost,
+            proofs,
+            wrong_proofs,
+            undecided,
+            differ,
+            refused,
+            ..
         } = self;
         format!(
-            "| {name} | {rays} | {wrong} | {rounded} | {ties} | {lost} | {proofs} | {wrong_proofs} | {undecided} | \
+            "| {name} | {rays} | {wrong} | {late} | {rounded} | {ties} | {lost} | {proofs} | {wrong_proofs} | {undecided} | \
              {differ} | {:.1} | {:.1} | {refused} | {:.1} |",
             self.error,
             self.off,
@@ -202,15 +219,17 @@ impl Tally {
 
     /// The counts of what is wrong, and a scene.
     pub fn worst(&self) -> String {
-        let rank = |kind: &str| ["proof", "wrong", "packets", "lost"].iter().position(|other| *other == kind);
+        let rank = |kind: &str| {
+            ["proof", "wrong", "late", "packets", "lost"].iter().position(|other| *other == kind)
+        };
         let worst = self.kept.iter().filter(|(kind, ..)| rank(kind).is_some());
         let worst = worst.min_by_key(|(kind, number, ..)| (rank(kind), *number));
         let scene = worst.map_or(String::new(), |(kind, number, text, pixel)| {
             format!("; {kind}, scene {number}, pixel {pixel:?}:\n{text}")
         });
         format!(
-            "{} wrong hits, {} wrong proofs, {} lost ties and {} pixels of packets in {} rays{scene}",
-            self.wrong, self.wrong_proofs, self.lost, self.differ, self.rays
+            "{} wrong hits, {} wrong distances, {} wrong proofs, {} lost ties and {} pixels of packets in {} rays{scene}",
+            self.wrong, self.late, self.wrong_proofs, self.lost, self.differ, self.rays
         )
     }
 }
@@ -240,6 +259,10 @@ impl Off {
     fn of(scene: &Scene, ray: &Ray, truth: &Truth, found: &Found) -> Self {
         let mut off = Self { is_hit: truth.first == found.first, error: 0.0, off: 0.0 };
         if let (true, Some(first), Some(place)) = (off.is_hit, truth.first, &truth.place) {
+            if !found.distance.is_finite() {
+                off.is_hit = false;
+                return off;
+            }
             let distance = ray.distance(place);
             let apart = Number::abs(&distance.sub(&Wide::point(&Dyadic::from(found.distance))));
             let near = distance.near();

@@ -377,10 +377,6 @@ impl Number for Wide {
         Self(self.0.as_ref().map(|(low, _)| (low.clone(), low.clone())))
     }
 
-    fn high(&self) -> Self {
-        Self(self.0.as_ref().map(|(_, high)| (high.clone(), high.clone())))
-    }
-
     fn is_narrow(&self, size: &Self) -> bool {
         let (low, high) = self.ends().expect("a box with ends");
         let size = size.ends().map_or(0, |(_, high)| high.size());

@@ -38,7 +38,8 @@ pub fn parallel(random: &mut Random) -> Question {
     let side = turned(aim.u, aim.angle(random));
     let tilt = random.offset();
     let n = unit(moved(side, tilt, aim.u));
-    let n = if random.once_in(2) { n } else { n.map(|part| part * random.power(-2.0, 2.0)) };
+    let length = if random.once_in(2) { 1.0 } else { random.power(-2.0, 2.0) };
+    let n = n.map(|part| part * length);
     let at = match random.below(3) {
         0 => aim.target,
         1 => moved(aim.eye, random.offset() * 10.0, side),
@@ -172,7 +173,10 @@ pub fn rugs(random: &mut Random) -> Question {
         let at = place(random);
         let size = [random.whole(2, 12), random.whole(2, 12)];
         match random.below(4) {
-            0 => plane(n.map(|part| part * random.whole(1, 3)), at),
+            0 => {
+                let many = random.whole(1, 3);
+                plane(n.map(|part| part * many), at)
+            }
             1 => plane(n, at),
             2 => triangle([at, moved(at, random.whole(1, 4), along), moved(at, random.whole(1, 4), across)]),
             _ => rectangle(n, moved(along, random.whole(0, 2), n), at, size),

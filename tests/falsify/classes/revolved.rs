@@ -117,7 +117,8 @@ pub fn tangents(random: &mut Random) -> Question {
         return surfers(random);
     }
     let base = moved(moved(aim.target, -radius * by, out), -y, axis);
-    let axis = axis.map(|part| part * random.power(-1.0, 1.0));
+    let length = random.power(-1.0, 1.0);
+    let axis = axis.map(|part| part * length);
     aim.question(&[revolved(&text, axis, base, height)])
 }
 

@@ -7,12 +7,6 @@ fn sphere(aim: &Aim, center: Point, radius: f64) -> String {
     format!("sphere center {} radius {}", aim.lengths(center), aim.length(radius))
 }
 
-/// A ball that the ray through the middle meets somewhere.
-fn met(random: &mut Random, aim: &Aim, radius: f64) -> Point {
-    let side = turned(aim.u, aim.angle(random));
-    moved(aim.target, radius * random.between(0.0, 1.05), side)
-}
-
 /// A size that suits the distance of what has it.
 fn size(random: &mut Random, aim: &Aim) -> f64 {
     match random.below(3) {
