@@ -53,7 +53,7 @@ impl Program {
         match verify::pixel(&self.0, x, y) {
             Verdict::Proven => Claim::Right,
             Verdict::Contradicted => Claim::Wrong,
-            Verdict::Undecided => Claim::Unknown,
+            Verdict::Tie => Claim::Unknown,
         }
     }
 
