@@ -29,8 +29,7 @@ inventory::submit! {
 impl Plane {
     /// The plane of an entity whose table has a plane's rows.
     pub fn new(args: &Args) -> Self {
-        let normal = args.get(&NORMAL).normalize();
-        Self { normal, point: args.get(&POINT), accuracy: args.accuracy() }
+        Self::with_normal(args.get(&NORMAL), args.get(&POINT), args.accuracy())
     }
 }
 
@@ -51,7 +50,7 @@ impl Hittable for Plane {
     #[inline(always)]
     fn quick_distance(&self, ray: &Ray, within: &Span) -> f64 {
         let distance = self.quick_crossing(ray);
-        if distance.is_nan() { distance } else { self.keep(distance, ray, within) }
+        if distance.is_nan() { distance } else { self.quick_keep(distance, ray, within) }
     }
 
     fn normal(&self, _at: DVec3) -> DVec3 {

@@ -257,7 +257,7 @@ fn two_truths_of_a_cone_agree() {
     };
     let grazing = rays::grazing(RAYS, 1.0, |random| rays::place_on(&surface, random));
     for ray in rays::camera(RAYS, 1.0).chain(grazing) {
-        let (one, other) = (surface.first_hit(&ray, 0.0, Crossings::All), quadric.first_hit(&ray, 0.0));
+        let (one, other) = (surface.first_hit(&ray, 0.0, Crossings::All), quadric.first_hit(&(&ray).into(), 0.0));
         match (one, other) {
             (Truth::Hit(one), Truth::Hit(other)) => {
                 let apart = (one.t - other.t).high.abs();
@@ -300,7 +300,7 @@ type Spelt = (String, Box<dyn Fn(&Ray, f64) -> Truth>);
 fn sphere(scale: f64) -> Spelt {
     let (center, radius) = (scale * MIDDLE, scale * 2.0);
     let text = format!("sphere s {{ material m center {} radius {radius:?} }}", spelt(center));
-    (text, Box::new(move |ray, near| shapes::sphere(center, radius, ray, near)))
+    (text, Box::new(move |ray, near| shapes::sphere(center, radius, &ray.into(), near)))
 }
 
 fn ellipsoid(scale: f64) -> Spelt {
@@ -310,7 +310,7 @@ fn ellipsoid(scale: f64) -> Spelt {
         spelt(center),
         spelt(stretch)
     );
-    (text, Box::new(move |ray, near| shapes::ellipsoid(center, radius, stretch, ray, near)))
+    (text, Box::new(move |ray, near| shapes::ellipsoid(center, radius, stretch, &ray.into(), near)))
 }
 
 /// A hyperboloid of one sheet, cut to a box.
@@ -325,14 +325,14 @@ fn quadric(scale: f64) -> Spelt {
         spelt(corners[0]),
         spelt(corners[1]),
     );
-    (text, Box::new(move |ray, near| quadric.first_hit(ray, near)))
+    (text, Box::new(move |ray, near| quadric.first_hit(&ray.into(), near)))
 }
 
 fn plane(scale: f64) -> Spelt {
     let (normal, point) = (dvec3(0.3, 1.0, 0.5), scale * MIDDLE);
     let text = format!("plane p {{ material m normal {} point {} }}", spelt(normal), spelt(point));
     let plane = Plane::new(normal, point);
-    (text, Box::new(move |ray, near| beyond(plane.first_hit(ray), near)))
+    (text, Box::new(move |ray, near| beyond(plane.first_hit(&ray.into()), near)))
 }
 
 fn fplane(scale: f64) -> Spelt {
@@ -347,7 +347,7 @@ fn fplane(scale: f64) -> Spelt {
         dimensions.y
     );
     let plane = Plane::new(normal, point);
-    (text, Box::new(move |ray, near| beyond(shapes::rectangle(&plane, xdir, dimensions, ray), near)))
+    (text, Box::new(move |ray, near| beyond(shapes::rectangle(&plane, xdir, dimensions, &ray.into()), near)))
 }
 
 fn triangle(scale: f64) -> Spelt {
@@ -355,7 +355,7 @@ fn triangle(scale: f64) -> Spelt {
     let corners = corners.map(|corner| scale * (MIDDLE + corner));
     let [a, b, c] = corners.map(spelt);
     let text = format!("triangle t {{ material m vertex1 {a} vertex2 {b} vertex3 {c} }}");
-    (text, Box::new(move |ray, near| beyond(shapes::triangle(corners, ray), near)))
+    (text, Box::new(move |ray, near| beyond(shapes::triangle(corners, &ray.into()), near)))
 }
 
 /// What is farther than a distance of a shape that is met at most once.
