@@ -5,7 +5,7 @@
 //! whether there is a hit, which one is first or whether a box keeps it, all of it is done again in twice the precision.
 
 use crate::geometry::MISS;
-use crate::twofold::{Twofold, exponent_to_one, product, times_power_of_two, two_product, two_sum};
+use crate::twofold::{Exact, Twofold, exponent_to_one, product, times_power_of_two, two_product, two_sum};
 use glam::{DMat3, DVec3};
 
 /// The part in a box of what solves `p·Sp + l·p + c = 0`.
@@ -58,6 +58,17 @@ struct Along {
     a_error: f64,
     b_error: f64,
     c_error: f64,
+}
+
+/// A hit in twice the precision, and what it is off at most.
+#[derive(Clone, Copy)]
+struct Fine {
+    at: Twofold,
+    error: f64,
+}
+
+impl Fine {
+    const NONE: Self = Self { at: Twofold { high: f64::NAN, low: 0.0 }, error: 0.0 };
 }
 
 /// What a number is off at most after about ten operations in twice the precision, against the size of its parts: each
@@ -236,41 +247,54 @@ impl Quadratic {
         if error <= 0.125 * f64::EPSILON * (t * slope).abs() { (t - step) / self.scale } else { f64::NAN }
     }
 
-    /// The first hit beyond `near`, in twice the precision. What is as near to touching, or to the box, as rounding there is
-    /// touches it.
+    /// The first hit beyond `near`, in twice the precision, and where that could decide without rounding. What is as near to
+    /// the box as twice the precision tells touches it, and a line that touches the surface meets it there.
     #[inline(never)]
     pub fn exact_hit(&self, ray: &OwnRay, near: f64) -> f64 {
         let near = Twofold::from(near * self.scale);
-        let mut hits = self.exact_hits(ray);
-        if hits[1].0 < hits[0].0 {
+        let hits = self.fine_hits(ray).and_then(|hits| self.first_kept(ray, near, hits, false));
+        let hits = hits.or_else(|| self.first_kept(ray, near, self.exact_hits(ray), true));
+        times_power_of_two(hits.unwrap_or(MISS), -self.exponent)
+    }
+
+    /// The first of two hits, each with what it is off at most, that is beyond `near` and in the box; nothing where that is in
+    /// doubt and must be certain.
+    fn first_kept(&self, ray: &OwnRay, near: Twofold, mut hits: [Fine; 2], is_final: bool) -> Option<f64> {
+        if hits[1].at < hits[0].at {
             hits.swap(0, 1);
         }
-        let hit = hits
-            .into_iter()
-            .find(|(hit, error)| hit.high.is_finite() && *hit > near && self.keeps(ray, *hit, *error));
-        hit.map_or(MISS, |(hit, _)| times_power_of_two(hit.high, -self.exponent))
+        for Fine { at: hit, error } in hits {
+            // None is no number.
+            if !hit.high.is_finite() {
+                continue;
+            }
+            let ahead = (hit - near).high;
+            let depth = self.depth(ray, hit, error);
+            let is_doubtful = ahead.abs() <= error || depth.abs() <= 1.0;
+            if is_doubtful && !is_final && (ahead >= -error && depth >= -1.0) {
+                return None;
+            }
+            if ahead > 0.0 && depth >= -1.0 {
+                return Some(hit.high);
+            }
+        }
+        Some(MISS)
     }
 
     /// The other hit of a ray that starts on one; [`MISS`] where it lies behind or out of the box.
     pub fn other_hit(&self, ray: &OwnRay) -> f64 {
         let (a, [b, ..]) = (self.bend(ray), self.at(ray, Twofold::from(0.0)));
         let hit = Twofold::from(-2.0) * b / a;
-        let is_there =
-            hit.high.is_finite() && hit.high > 0.0 && self.keeps(ray, hit, f64::EPSILON * hit.high);
-        if is_there { times_power_of_two(hit.high, -self.exponent) } else { MISS }
+        let is_there = hit.high.is_finite() && hit.high > 0.0;
+        let is_kept = is_there && self.depth(ray, hit, f64::EPSILON * hit.high) >= -1.0;
+        if is_kept { times_power_of_two(hit.high, -self.exponent) } else { MISS }
     }
 
-    /// Both hits, or one and NaN, each with what it is off at most.
-    fn exact_hits(&self, ray: &OwnRay) -> [(Twofold, f64); 2] {
-        let none = (Twofold::from(f64::NAN), 0.0);
+    /// Both hits in twice the precision, no numbers where there are none; nothing where rounding could decide that.
+    fn fine_hits(&self, ray: &OwnRay) -> Option<[Fine; 2]> {
         let a = self.bend(ray);
         let dir = ray.dir.abs();
         let a_error = FINE * dir.dot(self.sizes * dir);
-        let [b, c, b_error, c_error] = self.at(ray, Twofold::from(0.0));
-        if a.high.abs() <= a_error {
-            let is_parallel = b.high.abs() <= b_error.high;
-            return if is_parallel { [none; 2] } else { [self.polished(ray, -c / (b + b)), none] };
-        }
         let room = |b: Twofold, c: Twofold, b_error: f64, c_error: f64| {
             let (square, product) = (b * b, a * c);
             let error = 2.0 * b_error * b.high.abs()
@@ -280,51 +304,102 @@ impl Quadratic {
                 + FINE * (square.high + product.high.abs());
             (square - product, error)
         };
+        // From where the ray starts, and if that does not tell, from the middle of both.
+        let [b, c, b_error, c_error] = self.at(ray, Twofold::from(0.0));
         let (whole, whole_error) = room(b, c, b_error.high, c_error.high);
         if whole.high < -whole_error {
-            return [none; 2];
+            return Some([Fine::NONE; 2]);
         }
-        // Clearly two, seen from where the ray starts: then the middle may be far behind both.
-        if whole.high > 1e15 * whole_error {
+        let is_clear = whole.high > 1e15 * whole_error;
+        // Nothing is bent along this ray: of a plane, or of a bowl along its axis.
+        if a_error == 0.0 {
+            return Some([self.polished(ray, -c / (b + b))?, Fine::NONE]);
+        }
+        if a.high.abs() <= 1e15 * a_error {
+            return None;
+        }
+        let hits = if is_clear {
             let root = whole.sqrt();
             let larger = if b.high > 0.0 { -b - root } else { root - b };
-            return [self.polished(ray, larger / a), self.polished(ray, c / larger)];
-        }
-        let base = Twofold::from((-b / a).high);
-        let [b, c, b_error, c_error] = self.at(ray, base);
-        let middle = base - b / a;
-        let (room, room_error) = room(b, c, b_error.high, c_error.high);
-        if room.high < -room_error {
-            [none; 2]
-        } else if room.high <= room_error {
-            let error = FINE * (middle.high.abs() + ray.from.iter().map(|part| part.high.abs()).sum::<f64>());
-            [(middle, error), none]
+            [larger / a, c / larger]
         } else {
-            let half = room.sqrt() / a;
-            [self.polished(ray, middle - half), self.polished(ray, middle + half)]
-        }
+            let base = Twofold::from((-b / a).high);
+            let [b, c, b_error, c_error] = self.at(ray, base);
+            let (room, room_error) = room(b, c, b_error.high, c_error.high);
+            if room.high < -room_error {
+                return Some([Fine::NONE; 2]);
+            }
+            if room.high <= 1e15 * room_error {
+                return None;
+            }
+            let (middle, half) = (base - b / a, room.sqrt() / a);
+            [middle - half, middle + half]
+        };
+        let [one, other] = hits.map(|hit| self.polished(ray, hit));
+        Some([one?, other?])
     }
 
-    /// A hit, after a step of Newton's method where that does not make it worse, and what it is off at most.
-    fn polished(&self, ray: &OwnRay, hit: Twofold) -> (Twofold, f64) {
+    /// A hit after a step of Newton's method; nothing where that could make it worse.
+    fn polished(&self, ray: &OwnRay, hit: Twofold) -> Option<Fine> {
         let [b, c, b_error, c_error] = self.at(ray, hit);
-        let rounding = FINE * hit.high.abs();
-        if b.high.abs() > 1e15 * b_error.high {
-            (hit - c / (b + b), c_error.high / b.high.abs() + rounding)
-        } else {
-            (hit, (c_error.high / self.bend(ray).high.abs()).sqrt() + rounding)
-        }
+        let error = c_error.high / b.high.abs() + FINE * hit.high.abs();
+        (b.high.abs() > 1e15 * b_error.high).then(|| Fine { at: hit - c / (b + b), error })
     }
 
-    /// Whether the box has the point of a ray at a distance that may be off by this.
-    fn keeps(&self, ray: &OwnRay, distance: Twofold, error: f64) -> bool {
-        (0..3).all(|axis| {
+    /// Both hits of the polynomial without rounding, but for that of the roots: no numbers where there are none.
+    #[cold]
+    fn exact_hits(&self, ray: &OwnRay) -> [Fine; 2] {
+        let [a, b, c] = self.exact_polynomial(ray);
+        let room = Exact::sum(b.times(&b).chain(a.times(&c).map(|term| -term))).rounded();
+        let [a, b, c] = [a, b, c].map(|part| part.rounded());
+        let fine = |at: Twofold| Fine { at, error: FINE * at.high.abs() };
+        if room.high < 0.0 {
+            return [Fine::NONE; 2];
+        }
+        if a.high == 0.0 {
+            // A line in it, or one that is nowhere on it, has none.
+            return [if b.high == 0.0 { Fine::NONE } else { fine(-c / (b + b)) }, Fine::NONE];
+        }
+        let root = room.sqrt();
+        let larger = if b.high > 0.0 { -b - root } else { root - b };
+        // Both are 0 where b and c are.
+        let other = if larger.high == 0.0 { larger } else { c / larger };
+        [fine(larger / a), fine(other)]
+    }
+
+    /// The polynomial `a t^2 + 2 b t + c` along a ray from where it starts.
+    fn exact_polynomial(&self, ray: &OwnRay) -> [Exact; 3] {
+        let parts = |of: Twofold| Exact::sum([of.high, of.low]);
+        let (from, dir) = (ray.from.map(parts), ray.dir.to_array().map(|part| Exact::sum([part])));
+        let second = |one: &[Exact; 3], other: &[Exact; 3]| {
+            Exact::sum((0..9).flat_map(|index| {
+                let (row, column) = (index / 3, index % 3);
+                let product = Exact::sum(one[row].times(&other[column]));
+                let coefficient = Exact::sum([self.square.col(column)[row]]);
+                product.times(&coefficient).collect::<Vec<_>>()
+            }))
+        };
+        let first = |of: &[Exact; 3], factor: f64| {
+            let part =
+                |axis: usize| Exact::sum([factor * self.linear[axis]]).times(&of[axis]).collect::<Vec<_>>();
+            Exact::sum((0..3).flat_map(part))
+        };
+        let sum = |parts: &[&Exact]| Exact::sum(parts.iter().flat_map(|part| part.parts().iter().copied()));
+        let b = sum(&[&second(&from, &dir), &first(&dir, 0.5)]);
+        let c = sum(&[&second(&from, &from), &first(&from, 1.0), &Exact::sum([self.constant])]);
+        [second(&dir, &dir), b, c]
+    }
+
+    /// How deep in the box the point of a ray is at a distance that may be off by this, in units of what it is off then, or of
+    /// what twice the precision tells.
+    fn depth(&self, ray: &OwnRay, distance: Twofold, error: f64) -> f64 {
+        let depths = (0..3).map(|axis| {
             let place = ray.from[axis] + distance * Twofold::from(ray.dir[axis]);
             let size = ray.from[axis].high.abs() + (distance.high * ray.dir[axis]).abs();
-            let least = -(FINE * size + error * ray.dir[axis].abs());
-            (place - self.low[axis].into()).high >= least
-                && (Twofold::from(self.high[axis]) - place).high >= least
-        })
+            let past = [place - self.low[axis].into(), Twofold::from(self.high[axis]) - place];
+            past[0].high.min(past[1].high) / (FINE * size + error * ray.dir[axis].abs() + f64::MIN_POSITIVE)
+        });
+        depths.fold(f64::INFINITY, f64::min)
     }
 
     /// The `a` of a ray.

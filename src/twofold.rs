@@ -52,28 +52,54 @@ pub fn dot(a: [Twofold; 3], b: [f64; 3], b_low: [f64; 3]) -> f64 {
     sum + ((first_low + second_low + third_low) + (sum_low + rest_low) + (of_low + of_a_low))
 }
 
-/// A sum of at most 96 numbers, rounded once to twice the precision: 0 where it is 0, however much of it cancels
-/// (Shewchuk 1997).
-pub fn exact_sum(terms: impl IntoIterator<Item = f64>) -> Twofold {
-    // Parts whose digits do not overlap, the least first; their sum is that of all terms so far, without rounding.
-    let (mut parts, mut count) = ([0.0; 96], 0);
-    for term in terms {
-        let (mut carry, mut kept) = (term, 0);
-        for index in 0..count {
-            let (sum, low) = two_sum(carry, parts[index]);
-            if low != 0.0 {
-                parts[kept] = low;
-                kept += 1;
+/// A number without rounding: the sum of parts whose digits do not overlap, the least first (Shewchuk 1997).
+#[derive(Clone, Debug, Default)]
+pub struct Exact {
+    parts: Vec<f64>,
+}
+
+impl Exact {
+    /// The sum of some numbers.
+    pub fn sum(terms: impl IntoIterator<Item = f64>) -> Self {
+        let mut parts = Vec::with_capacity(16);
+        for term in terms {
+            let (mut carry, mut kept) = (term, 0);
+            for index in 0..parts.len() {
+                let (sum, low) = two_sum(carry, parts[index]);
+                if low != 0.0 {
+                    parts[kept] = low;
+                    kept += 1;
+                }
+                carry = sum;
             }
-            carry = sum;
+            parts.truncate(kept);
+            if carry != 0.0 {
+                parts.push(carry);
+            }
         }
-        if carry != 0.0 {
-            parts[kept] = carry;
-            kept += 1;
-        }
-        count = kept;
+        Self { parts }
     }
-    parts[..count].iter().rev().fold(Twofold::from(0.0), |sum, part| sum + Twofold::from(*part))
+
+    /// What it is the sum of.
+    pub fn parts(&self) -> &[f64] {
+        &self.parts
+    }
+
+    /// What its product with another one is the sum of.
+    pub fn times<'e>(&'e self, other: &'e Self) -> impl Iterator<Item = f64> + 'e {
+        let pairs = self.parts.iter().flat_map(|one| other.parts.iter().map(move |other| (*one, *other)));
+        pairs.flat_map(|(one, other)| <[f64; 2]>::from(two_product(one, other)))
+    }
+
+    /// It, rounded once to twice the precision.
+    pub fn rounded(&self) -> Twofold {
+        self.parts.iter().rev().fold(Twofold::from(0.0), |sum, part| sum + Twofold::from(*part))
+    }
+}
+
+/// A sum, rounded once to twice the precision: 0 where it is 0, however much of it cancels.
+pub fn exact_sum(terms: impl IntoIterator<Item = f64>) -> Twofold {
+    Exact::sum(terms).rounded()
 }
 
 /// The power of two that brings numbers of this magnitude to between 1/2 and 1, as its exponent; 0 for 0.

@@ -36,9 +36,8 @@ impl From<&Ray> for Line {
 impl Line {
     /// The real ray from a viewer through a pixel of a screen, both as a scene's camera has them.
     pub fn of_pixel(viewpoint: DVec3, world: DVec2, pixels: [u32; 2], pixel: [u32; 2]) -> Self {
-        let place = |axis: usize| {
-            big(f64::from(pixel[axis])) / big(f64::from(pixels[axis] - 1)) * big(world[axis])
-        };
+        let place =
+            |axis: usize| big(f64::from(pixel[axis])) / big(f64::from(pixels[axis] - 1)) * big(world[axis]);
         let origin = vector(viewpoint);
         let dir = unit(&difference(&[place(0), place(1), big(0.0)], &origin));
         Self { origin, dir }
@@ -227,13 +226,11 @@ impl Quadric {
             let t = -constant / (&two * &half);
             return self.first_kept(line, &from, [t], near, |_| half.to_f64().value());
         }
-        let size = magnitude(&constant) * magnitude(&quadratic) + &half * &half;
-        match roots(&quadratic, &half, &constant, &size) {
+        match roots(&quadratic, &half, &constant, &magnitude(&constant)) {
             Roots::None => Truth::Miss,
             Roots::Two(None) => Truth::Undecided,
-            Roots::Two(Some(roots)) => self.first_kept(line, &from, roots, near, |t| {
-                (&two * (&quadratic * t + &half)).to_f64().value()
-            }),
+            Roots::Two(Some(roots)) => self
+                .first_kept(line, &from, roots, near, |t| (&two * (&quadratic * t + &half)).to_f64().value()),
         }
     }
 
@@ -275,11 +272,11 @@ enum Roots {
     Two(Option<[Big; 2]>),
 }
 
-/// The roots of `a t^2 + 2 b t + c`, whose parts are of this size.
+/// The roots of `a t^2 + 2 b t + c`, the parts of whose `c` are of this size.
 fn roots(a: &Big, b: &Big, c: &Big, size: &Big) -> Roots {
     let (square, product) = (b * b, a * c);
     let discriminant = &square - &product;
-    if is_tiny(&discriminant, &(square + magnitude(&product) + a * size)) {
+    if is_tiny(&discriminant, &(square + magnitude(&product) + magnitude(a) * size)) {
         return Roots::Two(None);
     }
     if discriminant < Big::ZERO {
