@@ -10,7 +10,7 @@ use crate::geometry::{Body, Bracket, Hittable, Ray, Span};
 use crate::number::Number;
 use crate::pparm::{Pparm, Row, Table};
 use crate::sight::Sight;
-use crate::twofold::Twofold;
+use crate::twofold::{Twofold, exponent_to_one, times_power_of_two};
 use glam::DVec3;
 
 static SCALE: Pparm<DVec3> = Pparm::required("scale", "how much it is stretched along x, y and z")
@@ -20,7 +20,7 @@ const TABLE: Table = &[&SCALE as &dyn Row];
 
 inventory::submit! {
     Entity::shape("ellipsoid", "a ball stretched along the axes", &[sphere::TABLE, TABLE], |args| {
-        Ok(Body::plain(Ellipsoid { ball: Sphere::new(args), scale: args.get(&SCALE) }))
+        Ok(Body::plain(Ellipsoid::new(Sphere::new(args), args.get(&SCALE))))
     })
 }
 
@@ -28,9 +28,22 @@ struct Ellipsoid {
     /// The sphere that it is where space is squeezed by `scale` around its centre.
     ball: Sphere,
     scale: DVec3,
+    /// One over the least of `scale`.
+    most_squeezed: f64,
 }
 
 impl Ellipsoid {
+    /// A sphere, stretched.
+    fn new(mut ball: Sphere, mut scale: DVec3) -> Self {
+        // A power of two more in the radius and less in the scale changes nothing but how large the squares become.
+        if ball.accuracy != Accuracy::Classic {
+            let exponent = exponent_to_one(scale.min_element());
+            scale = DVec3::from(scale.to_array().map(|part| times_power_of_two(part, exponent)));
+            ball.radius = times_power_of_two(ball.radius, -exponent);
+        }
+        Self { ball, scale, most_squeezed: 1.0 / scale.min_element() }
+    }
+
     /// A ray, squeezed: its direction is no unit vector any more, so that distances stay what they were.
     #[inline(always)]
     fn squeezed(&self, ray: &Ray) -> (DVec3, DVec3) {
@@ -63,8 +76,24 @@ impl Hittable for Ellipsoid {
         let (from, dir) = self.squeezed(ray);
         match self.ball.accuracy {
             Accuracy::Classic => Bracket::exactly(within.keep(sphere::classic(from, dir, self.ball.radius))),
-            _ => ball::bracket(from, dir, 1.0 / dir.dot(dir), self.ball.radius),
+            _ => {
+                let inverse = 1.0 / dir.dot(dir);
+                ball::bracket(from, dir, inverse, self.most_squeezed * inverse.sqrt(), self.ball.radius)
+            }
         }
+    }
+
+    #[inline(always)]
+    fn quick_distance(&self, ray: &Ray, within: &Span) -> f64 {
+        let Sphere { radius, accuracy, .. } = self.ball;
+        let distance = match accuracy {
+            Accuracy::Classic => {
+                let (from, dir) = self.squeezed(ray);
+                sphere::classic(from, dir, radius)
+            }
+            _ => ball::quick_hit(&self.line(ray), radius, accuracy),
+        };
+        if distance.is_nan() { distance } else { within.keep(distance) }
     }
 
     fn bounds(&self) -> Option<Bounds> {

@@ -10,6 +10,7 @@ use crate::geometry::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
 use crate::number::{Number, cross, dot};
 use crate::packet::Rays;
 use crate::pparm::{Derived, Pparm, Row, Table};
+use crate::rectangle;
 pub use crate::rectangle::FinitePlane;
 use crate::sight::Sight;
 use crate::value::Value;
@@ -73,7 +74,13 @@ impl FinitePlane {
     pub fn new(args: &Args) -> Result<Self, Refusal> {
         let (plane, dimensions) = (Plane::new(args), args.get(&DIMENSIONS));
         let reach = plane.point.abs().max_element() + dimensions.element_sum();
-        Ok(Self { plane, dimensions, sides: sides(args)?, given_xdir: args.get(&XDIR), reach })
+        let (given_xdir, given_sides) = (args.get(&XDIR), sides(args)?);
+        let exact_sides = rectangle::exact_sides(plane.upright, given_xdir);
+        let sides = match plane.accuracy {
+            Accuracy::Classic => given_sides,
+            _ => exact_sides.map(|side| DVec3::from(side.map(|part| part.high))),
+        };
+        Ok(Self { plane, dimensions, sides, exact_sides, given_xdir, reach })
     }
 }
 
@@ -91,10 +98,11 @@ impl Hittable for FinitePlane {
         }
         let rough = self.plane.rough(ray);
         let inside = self.inside(ray, rough.distance);
-        let slack = rough.error + 8.0 * self.slack(ray, rough.distance);
+        // A camera's direction is off by 3 units of 2^-53 in each component, which is less than half of the slack.
+        let slack = rough.error + 2.0 * self.slack(ray, rough.distance);
         let Bracket { near, far } = self.plane.bracket(&rough, ray, within);
         Bracket {
-            near: if inside < -slack { MISS } else { near },
+            near: if (inside < -slack) & !rough.is_unknown { MISS } else { near },
             far: if inside > slack { far } else { MISS },
         }
     }
@@ -102,7 +110,16 @@ impl Hittable for FinitePlane {
     #[inline(always)]
     fn quick_distance(&self, ray: &Ray, within: &Span) -> f64 {
         let distance = self.plane.quick_distance(ray, within);
-        if distance.is_nan() | self.has_crossing(ray, distance) { distance } else { MISS }
+        match self.quickly_has_crossing(ray, distance) {
+            Some(is_inside) => {
+                if distance.is_nan() | is_inside {
+                    distance
+                } else {
+                    MISS
+                }
+            }
+            None => f64::NAN,
+        }
     }
 
     fn distances(&self, cpu: Cpu, rays: Rays, _: Option<&[Side]>, _: (&[f64], &[f64]), out: &mut [f64]) {
@@ -141,7 +158,7 @@ impl Equation for FinitePlane {
     /// How far inside of the four sides, each in a measure of its own: unit vectors would need more roots.
     fn kept<N: Number>(&self, at: [N; 3]) -> N {
         let n = |of: DVec3| of.to_array().map(N::constant);
-        let (normal, xdir) = (n(self.plane.given_normal), n(self.given_xdir));
+        let (normal, xdir) = (self.plane.given_normal(), n(self.given_xdir));
         let (square, along) = (dot(normal, normal), dot(normal, xdir));
         let x = [0, 1, 2].map(|axis| square * xdir[axis] - along * normal[axis]);
         let y = cross(normal, x);

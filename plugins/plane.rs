@@ -7,7 +7,7 @@ use crate::cpu::Cpu;
 use crate::entity::{Args, Entity};
 pub use crate::flat::Plane;
 use crate::geometry::{Body, Bracket, Hittable, Ray, Side, Span};
-use crate::number::Number;
+use crate::number::{Number, dot};
 use crate::packet::Rays;
 use crate::pparm::{Pparm, Table};
 use crate::sight::Sight;
@@ -29,9 +29,7 @@ inventory::submit! {
 impl Plane {
     /// The plane of an entity whose table has a plane's rows.
     pub fn new(args: &Args) -> Self {
-        let given_normal = args.get(&NORMAL);
-        let (point, accuracy) = (args.get(&POINT), args.accuracy());
-        Self { normal: given_normal.normalize(), given_normal, point, accuracy }
+        Self::with_normal(args.get(&NORMAL), args.get(&POINT), args.accuracy())
     }
 }
 
@@ -52,7 +50,7 @@ impl Hittable for Plane {
     #[inline(always)]
     fn quick_distance(&self, ray: &Ray, within: &Span) -> f64 {
         let distance = self.quick_crossing(ray);
-        if distance.is_nan() { distance } else { self.keep(distance, ray, within) }
+        if distance.is_nan() { distance } else { self.quick_keep(distance, ray, within) }
     }
 
     fn normal(&self, _at: DVec3) -> DVec3 {
@@ -80,9 +78,7 @@ impl Equation for Plane {
     const IS_QUADRATIC: bool = true;
 
     fn value<N: Number>(&self, at: [N; 3]) -> N {
-        let part =
-            |axis: usize| (at[axis] - N::constant(self.point[axis])) * N::constant(self.given_normal[axis]);
-        part(0) + part(1) + part(2)
+        dot(self.given_normal(), [0, 1, 2].map(|axis| at[axis] - N::constant(self.point[axis])))
     }
 
     fn kept<N: Number>(&self, [_, _, z]: [N; 3]) -> N {

@@ -4,12 +4,11 @@ use crate::accuracy::Accuracy;
 use crate::bounds::Bounds;
 use crate::certify::{self, Enclosure, Equation, Precision};
 use crate::entity::{Entity, Refusal};
-use crate::geometry::{Body, Hittable, MISS, Ray, Side, Span};
+use crate::geometry::{Body, Bracket, Hittable, MISS, Ray, Span};
 use crate::number::Number;
 use crate::pparm::{Pparm, Table};
-use crate::quadratic;
+use crate::quadratic::{self, CAMERA, OwnRay, Quadratic, Quick};
 use crate::sight::Sight;
-use crate::twofold::advance;
 use glam::{DMat3, DVec3};
 
 static COEFFICIENTS: Pparm<[f64; 10]> =
@@ -29,7 +28,8 @@ const TABLE: Table = &[&COEFFICIENTS, &CENTER, &BOX];
 
 inventory::submit! {
     Entity::shape("quadric", "a surface of the second degree, such as a cone, a cylinder or a saddle", &[TABLE], |args| {
-        let [a, b, c, d, e, f, g, h, i, j] = args.get(&COEFFICIENTS);
+        let coefficients = args.get(&COEFFICIENTS);
+        let [a, b, c, d, e, f, g, h, i, j] = coefficients;
         let [x1, y1, z1, x2, y2, z2] = args.get(&BOX);
         let (low, high) = (DVec3::new(x1, y1, z1), DVec3::new(x2, y2, z2));
         if !low.cmplt(high).all() {
@@ -51,7 +51,8 @@ inventory::submit! {
             center: args.get(&CENTER),
             low,
             high,
-            is_classic: args.accuracy() == Accuracy::Classic,
+            own: Quadratic::new(coefficients, low, high),
+            accuracy: args.accuracy(),
         }))
     })
 }
@@ -64,7 +65,9 @@ struct Quadric {
     center: DVec3,
     low: DVec3,
     high: DVec3,
-    is_classic: bool,
+    /// The same surface, as it is solved.
+    own: Quadratic,
+    accuracy: Accuracy,
 }
 
 impl Quadric {
@@ -73,36 +76,26 @@ impl Quadric {
         self.low.cmple(from_center).all() && from_center.cmple(self.high).all()
     }
 
-    /// The coefficients of `a t^2 + 2 b t + c`, which is 0 where a line meets it.
-    #[inline(always)]
-    fn along(&self, origin: DVec3, dir: DVec3) -> [f64; 3] {
-        let turned = self.square * dir;
-        [
-            dir.dot(turned),
-            origin.dot(turned) + 0.5 * self.linear.dot(dir),
+    /// The notes' formula.
+    fn classic_distance(&self, ray: &Ray, within: &Span) -> f64 {
+        let origin = ray.origin - self.center;
+        let turned = self.square * ray.dir;
+        let [a, b, c] = [
+            ray.dir.dot(turned),
+            origin.dot(turned) + 0.5 * self.linear.dot(ray.dir),
             origin.dot(self.square * origin) + self.linear.dot(origin) + self.constant,
-        ]
+        ];
+        let crossings = quadratic::classic_roots(a, b, c).map(|distance| within.keep(distance));
+        crossings.into_iter().find(|distance| self.keeps(ray.at(*distance))).unwrap_or(MISS)
     }
 
-    /// The distances of both hits, the nearer first; what is none is no number.
     #[inline(always)]
-    fn crossings(&self, ray: &Ray, leaves: Option<Side>) -> [f64; 2] {
-        let origin = ray.origin - self.center;
-        if self.is_classic {
-            let [a, b, c] = self.along(origin, ray.dir);
-            return quadratic::classic_roots(a, b, c);
-        }
-        // Counted from near the center, so that nothing far away is left in the arithmetic.
-        let base = if leaves.is_some() { 0.0 } else { -origin.dot(ray.dir) };
-        let moved = [0, 1, 2].map(|axis| advance(origin[axis], base, ray.dir[axis]));
-        let [a, b, c] = self.along(DVec3::from(moved), ray.dir);
-        // A direction along which it is straight, but for rounding: the far root would be made of that.
-        let dir = ray.dir.abs();
-        let size = dir.dot(DMat3::from_cols_array(&self.square.to_cols_array().map(f64::abs)) * dir);
-        let a = if a.abs() <= 4.0 * f64::EPSILON * size { 0.0 } else { a };
-        // A ray that leaves it starts on one root: the other one is what is left.
-        let c = if leaves.is_some() { 0.0 } else { c };
-        quadratic::roots(a, b, c).map(|root| base + root)
+    fn own_ray(&self, ray: &Ray) -> OwnRay {
+        self.own.own(ray.origin, ray.dir, self.center)
+    }
+
+    fn is_classic(&self) -> bool {
+        self.accuracy == Accuracy::Classic
     }
 }
 
@@ -110,33 +103,73 @@ impl Hittable for Quadric {
     /// The nearer hit that lies in the box, or the farther one.
     #[inline(always)]
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        let crossings = self.crossings(ray, within.leaves).map(|distance| within.keep(distance));
-        let kept = crossings.into_iter().find(|distance| self.keeps(ray.at(*distance)));
-        kept.unwrap_or(MISS)
+        let quick = self.quick_distance(ray, within);
+        if quick.is_nan() { within.keep(self.own.exact_hit(&self.own_ray(ray), within.near)) } else { quick }
+    }
+
+    #[inline(always)]
+    fn quick_distance(&self, ray: &Ray, within: &Span) -> f64 {
+        if self.is_classic() {
+            return self.classic_distance(ray, within);
+        }
+        let own = self.own_ray(ray);
+        // A ray that leaves it starts on one hit: the other one is what is left.
+        if within.leaves.is_some() {
+            return within.keep(self.own.other_hit(&own));
+        }
+        if self.accuracy == Accuracy::Strict {
+            return f64::NAN;
+        }
+        match self.own.quick_hit(&own, within.near, 0.0) {
+            Quick::Miss => MISS,
+            Quick::Unknown => f64::NAN,
+            Quick::Hit(distance, _) => {
+                let corrected = self.own.corrected(&own, distance);
+                if corrected.is_nan() { corrected } else { within.keep(corrected) }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
+        if self.is_classic() || within.leaves.is_some() {
+            return Bracket::exactly(self.quick_distance(ray, within));
+        }
+        match self.own.quick_hit(&self.own_ray(ray), within.near, CAMERA) {
+            Quick::Miss => Bracket::MISS,
+            Quick::Unknown => Bracket::UNKNOWN,
+            Quick::Hit(distance, error) => Bracket { near: distance - error, far: distance + error },
+        }
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {
-        let normal = 2.0 * (self.square * (at - self.center)) + self.linear;
-        // A cone's apex has none; any will do.
-        normal.try_normalize().unwrap_or(DVec3::Y)
+        if self.is_classic() {
+            let normal = 2.0 * (self.square * (at - self.center)) + self.linear;
+            // A cone's apex has none; any will do.
+            return normal.try_normalize().unwrap_or(DVec3::Y);
+        }
+        self.own.normal(at, self.center)
     }
 
     fn bounds(&self) -> Option<Bounds> {
         let bounds = Bounds { low: self.center + self.low, high: self.center + self.high };
-        (!self.is_classic).then_some(bounds)
+        (!self.is_classic()).then_some(bounds)
     }
 
     fn is_convex(&self) -> bool {
-        self.is_classic
+        self.is_classic()
     }
 
     fn is_two_sided(&self) -> bool {
-        !self.is_classic
+        !self.is_classic()
     }
 
     fn method(&self) -> String {
-        let method =
-            if self.is_classic { "the notes' formula" } else { "a closed form, from near its center" };
+        let method = if self.is_classic() {
+            "the notes' formula"
+        } else {
+            "a closed form and a step of Newton's method, in twice the precision where rounding could decide"
+        };
         method.to_owned()
     }
 

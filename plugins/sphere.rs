@@ -65,7 +65,7 @@ impl Hittable for Sphere {
         let from = ray.origin - self.center;
         match self.accuracy {
             Accuracy::Classic => Bracket::exactly(within.keep(classic(from, ray.dir, self.radius))),
-            _ => ball::bracket(from, ray.dir, 1.0, self.radius),
+            _ => ball::bracket(from, ray.dir, 1.0, 1.0, self.radius),
         }
     }
 

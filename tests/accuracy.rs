@@ -291,12 +291,12 @@ another crossing; *ulp* is the greatest error of the others in units in the last
     .expect("text grows");
     distance_table(
         "sphere s { material m center 4 3 -4 radius 2 }",
-        |ray, near| shapes::sphere(MIDDLE, 2.0, ray, near),
+        |ray, near| shapes::sphere(MIDDLE, 2.0, &ray.into(), near),
         &mut text,
     );
     text += "\n### A plane\n\n";
     let plane = Plane::new(dvec3(0.3, 1.0, 0.5), MIDDLE);
-    let truth = |ray: &Ray, near: f64| match plane.first_hit(ray) {
+    let truth = |ray: &Ray, near: f64| match plane.first_hit(&ray.into()) {
         Truth::Hit(hit) if hit.t <= near.into() => Truth::Miss,
         truth => truth,
     };

@@ -1,6 +1,7 @@
 //! The truth that tests compare the program with: first hits in twice the precision of `f64`, and rays to ask for.
 #![allow(dead_code, reason = "each test program uses a part of it")]
 
+pub mod hard;
 pub mod rays;
 pub mod revolution;
 pub mod shapes;

@@ -1,127 +1,193 @@
-//! Where a ray first meets the shapes that have a formula for it, in [`Twofold`].
+//! Where a ray first meets the shapes that have a formula for it, in numbers of 300 bits.
 //!
-//! The numbers are those of a scene's text; a plane's unit normal and sides are what the program makes of them.
+//! All comes from the numbers of a scene's text, which are taken as they are, and from a ray: of the program, its numbers
+//! taken as they are, too, or the real one through a place of the screen. Nothing that the program has derived is used.
 
 use super::{Hit, Truth};
+use dashu_float::FBig;
+use dashu_float::round::mode::HalfEven;
 use glam::{DVec2, DVec3};
 use tabray::geometry::Ray;
-use tabray::number::Number;
 use tabray::twofold::Twofold;
 
-type Vector = [Twofold; 3];
+/// A number of 300 bits.
+pub type Big = FBig<HalfEven, 2>;
 
-/// A plane, or a part of one.
+type Vector = [Big; 3];
+
+/// How near to touching, or to an edge, it cannot be told on which side something is, against the size of the numbers
+/// that it was computed from: 2^-230, far above what some fifty operations of 300 bits make.
+const EDGE: f64 = 5.8e-70;
+
+/// The half line that a truth is about.
+#[derive(Clone)]
+pub struct Line {
+    origin: Vector,
+    /// Distances are counted in its length.
+    dir: Vector,
+}
+
+impl From<&Ray> for Line {
+    fn from(ray: &Ray) -> Self {
+        Self { origin: vector(ray.origin), dir: vector(ray.dir) }
+    }
+}
+
+impl Line {
+    /// The real ray from a viewer through a pixel of a screen, both as a scene's camera has them.
+    pub fn of_pixel(viewpoint: DVec3, world: DVec2, pixels: [u32; 2], pixel: [u32; 2]) -> Self {
+        let place =
+            |axis: usize| big(f64::from(pixel[axis])) / big(f64::from(pixels[axis] - 1)) * big(world[axis]);
+        let origin = vector(viewpoint);
+        let dir = unit(&difference(&[place(0), place(1), big(0.0)], &origin));
+        Self { origin, dir }
+    }
+
+    fn at(&self, t: &Big) -> Vector {
+        std::array::from_fn(|axis| &self.origin[axis] + t * &self.dir[axis])
+    }
+}
+
+/// A plane, or what a part of one is cut out of.
 #[derive(Clone, Copy)]
 pub struct Plane {
-    /// A unit vector that stands upright on it.
+    /// A vector that stands upright on it, of any length.
     pub normal: DVec3,
     /// A point of it.
     pub point: DVec3,
 }
 
-/// How near to the edge of a part of a plane a point is neither in it nor out of it, against the size of the numbers
-/// that it was computed from: the hit of a ray is a rounded number, too.
-const EDGE: f64 = 8.0 * f64::EPSILON;
-
 impl Plane {
     /// The plane through a point with a normal of any length.
     pub fn new(normal: DVec3, point: DVec3) -> Self {
-        Self { normal: normal.normalize(), point }
+        Self { normal, point }
     }
 
     /// Where a ray crosses it. On the viewer's side of the screen there are no planes (the notes).
-    pub fn first_hit(&self, ray: &Ray) -> Truth {
-        const SCREEN: f64 = 0.01;
-        let normal = vector(self.normal);
-        let toward = dot(normal, vector(ray.dir));
-        // A unit vector is not exactly one, nor upright on another.
-        if toward.high.abs() <= 8.0 * f64::EPSILON {
-            return Truth::Undecided;
-        }
-        let t = dot(normal, difference(self.point, ray.origin)) / toward;
-        if t <= 0.0.into() {
-            return Truth::Miss;
-        }
-        let z = (Twofold::difference(ray.origin.z, SCREEN) + t * ray.dir.z.into()).high;
-        if z.abs() <= EDGE * (ray.origin.z.abs() + t.high) {
-            Truth::Undecided
-        } else if z > 0.0 {
-            Truth::Miss
-        } else {
-            Truth::Hit(Hit { t, slope: toward.high })
-        }
+    pub fn first_hit(&self, line: &Line) -> Truth {
+        self.crossing(line, &vector(self.normal)).truth()
     }
 
-    /// As [`first_hit`](Self::first_hit), for the part of it that is left of these edges, each given by a point and
-    /// by a vector across it.
-    fn part_hit(&self, ray: &Ray, edges: &[(DVec3, DVec3)]) -> Truth {
-        let Truth::Hit(hit) = self.first_hit(ray) else { return self.first_hit(ray) };
-        let size = ray.origin.abs().max_element() + self.point.abs().max_element() + hit.t.high;
-        let inward = |(point, across): &(DVec3, DVec3)| {
-            let from_edge = add(difference(ray.origin, *point), times(vector(ray.dir), hit.t));
-            (dot(from_edge, vector(*across)).high, EDGE * size * across.length())
-        };
-        let inward: Vec<_> = edges.iter().map(inward).collect();
-        if inward.iter().any(|(depth, edge)| *depth < -edge) {
+    fn crossing(&self, line: &Line, normal: &Vector) -> Crossing {
+        const SCREEN: f64 = 0.01;
+        let (toward, from) = (dot(normal, &line.dir), difference(&vector(self.point), &line.origin));
+        if toward == Big::ZERO {
+            return Crossing::Decided(Truth::Miss);
+        }
+        if is_tiny(&toward, &sizes(normal, &line.dir)) {
+            return Crossing::Decided(Truth::Undecided);
+        }
+        let away = dot(normal, &from);
+        if away == Big::ZERO {
+            return Crossing::Decided(Truth::Miss);
+        }
+        if is_tiny(&away, &sizes(normal, &from)) {
+            return Crossing::Decided(Truth::Undecided);
+        }
+        let t = away / &toward;
+        if t < Big::ZERO {
+            return Crossing::Decided(Truth::Miss);
+        }
+        let onward = &t * &line.dir[2];
+        let beyond = &line.origin[2] + &onward - big(SCREEN);
+        let size = magnitude(&line.origin[2]) + magnitude(&onward);
+        // What lies on the screen is there.
+        if is_tiny(&beyond, &size) {
+            return Crossing::Decided(Truth::Undecided);
+        }
+        if beyond > Big::ZERO {
+            return Crossing::Decided(Truth::Miss);
+        }
+        let slope = (toward / dot(normal, normal).sqrt()).to_f64().value();
+        Crossing::At(t, slope)
+    }
+
+    /// As [`first_hit`](Self::first_hit), for the part of it on which none of these numbers of a point is below 0.
+    fn part_hit(&self, line: &Line, normal: &Vector, depths: impl Fn(&Vector) -> Vec<(Big, Big)>) -> Truth {
+        let crossing = self.crossing(line, normal);
+        let Crossing::At(t, _) = &crossing else { return crossing.truth() };
+        let depths = depths(&difference(&line.at(t), &vector(self.point)));
+        if depths.iter().any(|(depth, size)| *depth < Big::ZERO && !is_tiny(depth, size)) {
             Truth::Miss
-        } else if inward.iter().any(|(depth, edge)| *depth <= *edge) {
+        } else if depths.iter().any(|(depth, size)| is_tiny(depth, size)) {
             Truth::Undecided
         } else {
-            Truth::Hit(hit)
+            crossing.truth()
+        }
+    }
+}
+
+/// What is known of a line and a plane.
+enum Crossing {
+    Decided(Truth),
+    /// The distance, and the slope.
+    At(Big, f64),
+}
+
+impl Crossing {
+    fn truth(self) -> Truth {
+        match self {
+            Self::Decided(truth) => truth,
+            Self::At(t, slope) => hit(&t, slope),
         }
     }
 }
 
 /// A rectangle of these dimensions.
-pub fn rectangle(plane: &Plane, xdir: DVec3, dimensions: DVec2, ray: &Ray) -> Truth {
-    let x = (xdir - plane.normal.dot(xdir) * plane.normal).normalize();
-    let y = plane.normal.cross(x);
-    let corner = plane.point;
-    let opposite = corner + dimensions.x * x + dimensions.y * y;
-    plane.part_hit(ray, &[(corner, x), (corner, y), (opposite, -x), (opposite, -y)])
+pub fn rectangle(plane: &Plane, xdir: DVec3, dimensions: DVec2, line: &Line) -> Truth {
+    let normal = vector(plane.normal);
+    let y = cross(&normal, &vector(xdir));
+    let sides = [unit(&cross(&y, &normal)), unit(&y)];
+    plane.part_hit(line, &normal, |at| {
+        let depth = |side: usize| {
+            let (along, whole) = (dot(&sides[side], at), big(dimensions[side]));
+            let size = sizes(&sides[side], at) + &whole;
+            [(along.clone(), size.clone()), (whole - along, size)]
+        };
+        [depth(0), depth(1)].concat()
+    })
 }
 
 /// A triangle.
-pub fn triangle([a, b, c]: [DVec3; 3], ray: &Ray) -> Truth {
-    let plane = Plane::new((b - a).cross(c - a), a);
-    let edge = |from: DVec3, to: DVec3| (from, plane.normal.cross(to - from));
-    plane.part_hit(ray, &[edge(a, b), edge(b, c), edge(c, a)])
+pub fn triangle(corners: [DVec3; 3], line: &Line) -> Truth {
+    let plane = Plane::new(DVec3::ZERO, corners[0]);
+    let corners = corners.map(vector);
+    let start = corners[0].clone();
+    let [a, b, c] = corners.map(|corner| difference(&corner, &start));
+    let normal = cross(&b, &c);
+    plane.part_hit(line, &normal, |at| {
+        let depth = |from: &Vector, to: &Vector| {
+            let inward = cross(&normal, &difference(to, from));
+            let from_edge = difference(at, from);
+            (dot(&inward, &from_edge), sizes(&inward, &from_edge))
+        };
+        vec![depth(&a, &b), depth(&b, &c), depth(&c, &a)]
+    })
 }
 
 /// A sphere stretched along the axes, as far as it is farther than `near`: rays that start inside meet its far wall.
-pub fn ellipsoid(center: DVec3, radius: f64, scale: DVec3, ray: &Ray, near: f64) -> Truth {
-    let squeezed = |vector: Vector| {
-        let scale = scale.to_array();
-        std::array::from_fn(|axis| vector[axis] / scale[axis].into())
-    };
-    let (origin, dir): (Vector, Vector) =
-        (squeezed(difference(ray.origin, center)), squeezed(vector(ray.dir)));
-    // From the point nearest to the center no digits are lost.
-    let square = dot(dir, dir);
-    let nearest = -dot(origin, dir) / square;
-    let at = add(origin, times(dir, nearest));
-    let radius = Twofold::from(radius);
-    let room = radius * radius - dot(at, at);
-    if room.high.abs() < 1e-24 * radius.powi(2).high {
-        return Truth::Undecided;
+pub fn ellipsoid(center: DVec3, radius: f64, scale: DVec3, line: &Line, near: f64) -> Truth {
+    let scale = vector(scale);
+    let squeezed = |of: &Vector| -> Vector { std::array::from_fn(|axis| &of[axis] / &scale[axis]) };
+    let (origin, dir) = (squeezed(&difference(&line.origin, &vector(center))), squeezed(&line.dir));
+    let radius = big(radius);
+    let [a, b] = [dot(&dir, &dir), dot(&origin, &dir)];
+    let c = dot(&origin, &origin) - &radius * &radius;
+    let size = dot(&origin, &origin);
+    let Roots::Two(roots) = roots(&a, &b, &c, &size) else { return Truth::Miss };
+    let Some(roots) = roots else { return Truth::Undecided };
+    for t in roots {
+        if t > big(near) {
+            let slope = big(2.0) * (&a * &t + &b);
+            return hit(&t, slope.to_f64().value());
+        }
     }
-    if room.is_negative() {
-        return Truth::Miss;
-    }
-    let half = (room / square).sqrt();
-    let slope = 2.0 * (half * square).high;
-    if nearest - half > near.into() {
-        Truth::Hit(Hit { t: nearest - half, slope: -slope })
-    } else if nearest + half > near.into() {
-        Truth::Hit(Hit { t: nearest + half, slope })
-    } else {
-        Truth::Miss
-    }
+    Truth::Miss
 }
 
 /// A sphere, likewise.
-pub fn sphere(center: DVec3, radius: f64, ray: &Ray, near: f64) -> Truth {
-    ellipsoid(center, radius, DVec3::ONE, ray, near)
+pub fn sphere(center: DVec3, radius: f64, line: &Line, near: f64) -> Truth {
+    ellipsoid(center, radius, DVec3::ONE, line, near)
 }
 
 /// The part in a box of what solves Axx + Byy + Czz + Dxy + Exz + Fyz + Gx + Hy + Iz = J, counted from a center.
@@ -136,75 +202,137 @@ pub struct Quadric {
 
 impl Quadric {
     /// The first hit of a ray farther than `near`.
-    pub fn first_hit(&self, ray: &Ray, near: f64) -> Truth {
-        let [a, b, c, d, e, f, g, h, i, j] = self.coefficients.map(Twofold::from);
-        let half = Twofold::from(0.5);
-        let square = |[x, y, z]: Vector| {
-            [a * x + half * (d * y + e * z), b * y + half * (d * x + f * z), c * z + half * (e * x + f * y)]
+    pub fn first_hit(&self, line: &Line, near: f64) -> Truth {
+        let [a, b, c, d, e, f, g, h, i, j] = self.coefficients.map(big);
+        // Twice the symmetric matrix of the second degree times a vector.
+        let two = big(2.0);
+        let turned = |[x, y, z]: &Vector| -> Vector {
+            [
+                &two * &a * x + &d * y + &e * z,
+                &d * x + &two * &b * y + &f * z,
+                &e * x + &f * y + &two * &c * z,
+            ]
         };
-        let dir = vector(ray.dir);
-        let origin = difference(ray.origin, self.center);
-        // From the point nearest to the center few digits are lost.
-        let nearest = -dot(origin, dir) / dot(dir, dir);
-        let at = add(origin, times(dir, nearest));
-        let quadratic = dot(dir, square(dir));
-        let linear = (Twofold::from(2.0) * dot(at, square(dir)) + dot([g, h, i], dir)) * half;
-        let constant = dot(at, square(at)) + dot([g, h, i], at) - j;
-        let discriminant = linear * linear - quadratic * constant;
-        let size = linear.powi(2).high + (quadratic * constant).high.abs();
-        if discriminant.high.abs() < 1e-24 * size {
-            return Truth::Undecided;
+        let linear = [g.clone(), h.clone(), i.clone()];
+        let from = difference(&line.origin, &vector(self.center));
+        let across = turned(&line.dir);
+        let quadratic = dot(&line.dir, &across) / &two;
+        let half = (dot(&from, &across) + dot(&linear, &line.dir)) / &two;
+        let constant = dot(&from, &turned(&from)) / &two + dot(&linear, &from) - j;
+        if quadratic == Big::ZERO {
+            if half == Big::ZERO {
+                return Truth::Miss;
+            }
+            let t = -constant / (&two * &half);
+            return self.first_kept(line, &from, [t], near, |_| half.to_f64().value());
         }
-        if discriminant.is_negative() {
-            return Truth::Miss;
+        match roots(&quadratic, &half, &constant, &magnitude(&constant)) {
+            Roots::None => Truth::Miss,
+            Roots::Two(None) => Truth::Undecided,
+            Roots::Two(Some(roots)) => self
+                .first_kept(line, &from, roots, near, |t| (&two * (&quadratic * t + &half)).to_f64().value()),
         }
-        // Neither root is a difference of like numbers (Press et al., "Numerical Recipes", 5.6).
-        let root = discriminant.sqrt();
-        let sum = if linear.is_negative() { root - linear } else { -root - linear };
-        let mut roots = [sum / quadratic, constant / sum].map(|root| root + nearest);
-        roots.sort_by(|one, other| one.high.total_cmp(&other.high));
-        for t in roots.into_iter().filter(|t| t.high.is_finite() && *t > near.into()) {
-            let from_start = t - nearest;
-            match self.keeps(add(at, times(dir, from_start)), t.high + ray.origin.abs().max_element()) {
-                Some(true) => {
-                    let slope = Twofold::from(2.0) * (quadratic * from_start + linear);
-                    return Truth::Hit(Hit { t, slope: slope.high });
+    }
+
+    fn first_kept<const N: usize>(
+        &self,
+        line: &Line,
+        from: &Vector,
+        roots: [Big; N],
+        near: f64,
+        slope: impl Fn(&Big) -> f64,
+    ) -> Truth {
+        for t in roots.into_iter().filter(|t| *t > big(near)) {
+            let onward: Vector = std::array::from_fn(|axis| &t * &line.dir[axis]);
+            let at = add(from, &onward);
+            let (mut is_in, mut is_near) = (true, false);
+            for axis in 0..3 {
+                let size = magnitude(&from[axis]) + magnitude(&onward[axis]);
+                let [low, high] = self.corners.map(|corner| big(corner[axis]));
+                for depth in [&at[axis] - low, high - &at[axis]] {
+                    let is_tie = is_tiny(&depth, &size);
+                    is_near |= is_tie;
+                    is_in &= depth >= Big::ZERO || is_tie;
                 }
-                Some(false) => {}
-                None => return Truth::Undecided,
+            }
+            match (is_in, is_near) {
+                (false, _) => {}
+                (true, false) => return hit(&t, slope(&t)),
+                (true, true) => return Truth::Undecided,
             }
         }
         Truth::Miss
     }
+}
 
-    /// Whether a point, counted from the center, is in the box, as far as numbers of this size tell.
-    fn keeps(&self, at: Vector, size: f64) -> Option<bool> {
-        let [low, high] = self.corners.map(|corner| corner.to_array());
-        let depth =
-            (0..3).map(|axis| (at[axis] - low[axis].into()).min(Twofold::from(high[axis]) - at[axis]));
-        let depth = depth.map(|number| number.high).fold(f64::INFINITY, f64::min);
-        if depth.abs() <= EDGE * size { None } else { Some(depth > 0.0) }
+/// The real roots of a quadratic equation.
+enum Roots {
+    None,
+    /// The lesser first, or nothing where it cannot be told whether they are there.
+    Two(Option<[Big; 2]>),
+}
+
+/// The roots of `a t^2 + 2 b t + c`, the parts of whose `c` are of this size.
+fn roots(a: &Big, b: &Big, c: &Big, size: &Big) -> Roots {
+    let (square, product) = (b * b, a * c);
+    let discriminant = &square - &product;
+    if is_tiny(&discriminant, &(square + magnitude(&product) + magnitude(a) * size)) {
+        return Roots::Two(None);
     }
+    if discriminant < Big::ZERO {
+        return Roots::None;
+    }
+    let root = discriminant.sqrt();
+    // 300 bits have digits to spare for what cancels here, at distances below 1e15.
+    let [one, other] = [(-b - &root) / a, (root - b) / a];
+    Roots::Two(Some(if one < other { [one, other] } else { [other, one] }))
+}
+
+fn hit(t: &Big, slope: f64) -> Truth {
+    let high = t.to_f64().value();
+    let low = (t - big(high)).to_f64().value();
+    Truth::Hit(Hit { t: Twofold { high, low }, slope })
+}
+
+/// A number as it is, with room for 300 bits.
+pub fn big(number: f64) -> Big {
+    Big::try_from(number).expect("a finite number").with_precision(300).value()
+}
+
+fn is_tiny(value: &Big, size: &Big) -> bool {
+    magnitude(value) <= size * big(EDGE)
+}
+
+fn magnitude(value: &Big) -> Big {
+    if *value < Big::ZERO { -value } else { value.clone() }
 }
 
 fn vector(vector: DVec3) -> Vector {
-    vector.to_array().map(Twofold::from)
+    vector.to_array().map(big)
 }
 
-/// The way from one point to another, exactly.
-fn difference(to: DVec3, from: DVec3) -> Vector {
-    let (to, from) = (to.to_array(), from.to_array());
-    std::array::from_fn(|axis| Twofold::difference(to[axis], from[axis]))
+fn difference(to: &Vector, from: &Vector) -> Vector {
+    std::array::from_fn(|axis| &to[axis] - &from[axis])
 }
 
-fn dot(a: Vector, b: Vector) -> Twofold {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+fn add(a: &Vector, b: &Vector) -> Vector {
+    std::array::from_fn(|axis| &a[axis] + &b[axis])
 }
 
-fn add(a: Vector, b: Vector) -> Vector {
-    std::array::from_fn(|axis| a[axis] + b[axis])
+fn dot(a: &Vector, b: &Vector) -> Big {
+    &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
 }
 
-fn times(a: Vector, factor: Twofold) -> Vector {
-    a.map(|part| part * factor)
+/// The sum of the magnitudes of a product's parts.
+fn sizes(a: &Vector, b: &Vector) -> Big {
+    magnitude(&(&a[0] * &b[0])) + magnitude(&(&a[1] * &b[1])) + magnitude(&(&a[2] * &b[2]))
+}
+
+fn cross(a: &Vector, b: &Vector) -> Vector {
+    [(1, 2), (2, 0), (0, 1)].map(|(one, other)| &a[one] * &b[other] - &a[other] * &b[one])
+}
+
+fn unit(of: &Vector) -> Vector {
+    let length = dot(of, of).sqrt();
+    std::array::from_fn(|axis| &of[axis] / &length)
 }

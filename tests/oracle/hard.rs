@@ -1,0 +1,335 @@
+//! Random shapes with a formula for their hits, and rays that are hard for them: from afar, along their edges, past their
+//! silhouettes, almost in their planes.
+
+use super::Truth;
+use super::rays::{Random, toward};
+use super::shapes::{self, Line, Plane, Quadric};
+use super::tally::{Tally, Tolerance, ulp};
+use glam::{DMat3, DVec2, DVec3};
+use tabray::geometry::{Hittable, Ray, Span};
+
+/// A shape as a scene spells it, and its truth.
+pub struct Subject {
+    /// The entity, of a material `m`.
+    pub text: String,
+    /// The first hit of a ray that is farther than a distance.
+    truth: Box<dyn Fn(&Line, f64) -> Truth>,
+    /// A ball that holds what there is to aim at.
+    middle: DVec3,
+    reach: f64,
+    /// What a ray that is hard for it comes near.
+    brink: Brink,
+}
+
+/// What decides between a hit and a miss.
+enum Brink {
+    /// The silhouette: rays touch it.
+    Round(Box<dyn Fn(&mut Random) -> Option<(DVec3, DVec3)>>),
+    /// The edges of a part of a plane: from, to, and inward.
+    Edges(Vec<(DVec3, DVec3, DVec3)>),
+    /// The directions in a plane with this unit normal.
+    Endless(DVec3),
+}
+
+/// The kinds of shapes.
+pub const KINDS: [&str; 6] = ["sphere", "ellipsoid", "quadric", "triangle", "plane", "fplane"];
+
+/// The sets of rays.
+pub const SETS: [&str; 3] = ["camera", "far", "grazing"];
+
+fn spelt(vector: DVec3) -> String {
+    format!("{:?} {:?} {:?}", vector.x, vector.y, vector.z)
+}
+
+fn vector(random: &mut Random, most: f64) -> DVec3 {
+    DVec3::from([0; 3].map(|_| random.between(-most, most)))
+}
+
+/// 10 to a random power.
+fn magnitude(random: &mut Random, from: f64, to: f64) -> f64 {
+    10_f64.powf(random.between(from, to))
+}
+
+/// A random place, mostly behind the screen.
+fn place(random: &mut Random) -> DVec3 {
+    vector(random, 8.0) - DVec3::new(0.0, 0.0, 12.0)
+}
+
+/// A random shape of a kind.
+pub fn subject(kind: &str, random: &mut Random) -> Subject {
+    match kind {
+        "sphere" => ellipsoid(random, true),
+        "ellipsoid" => ellipsoid(random, false),
+        "quadric" => quadric(random),
+        "triangle" => triangle(random),
+        "plane" => plane(random),
+        "fplane" => rectangle(random),
+        _ => panic!("no kind {kind}"),
+    }
+}
+
+fn ellipsoid(random: &mut Random, is_sphere: bool) -> Subject {
+    let center = place(random);
+    // Half axes of 1e9 : 1 at most.
+    let (radius, scale, text) = if is_sphere {
+        let radius = magnitude(random, -3.0, 2.0);
+        (radius, DVec3::ONE, format!("sphere s {{ material m center {} radius {radius:?} }}", spelt(center)))
+    } else {
+        let radius = magnitude(random, -1.0, 1.0);
+        let widest = if random.below(2) == 0 { 1.0 } else { 4.5 };
+        let scale = DVec3::from([0; 3].map(|_| magnitude(random, -widest, widest)));
+        let (center, stretch) = (spelt(center), spelt(scale));
+        (
+            radius,
+            scale,
+            format!("ellipsoid e {{ material m center {center} radius {radius:?} scale {stretch} }}"),
+        )
+    };
+    let round = move |random: &mut Random| {
+        let at = random.direction();
+        Some((center + radius * scale * at, (at / scale).normalize()))
+    };
+    Subject {
+        text,
+        truth: Box::new(move |line, near| shapes::ellipsoid(center, radius, scale, line, near)),
+        middle: center,
+        reach: radius * scale.max_element(),
+        brink: Brink::Round(Box::new(round)),
+    }
+}
+
+/// The coefficients of `(p - m)·S(p - m) = j`.
+fn moved(square: DMat3, middle: DVec3, j: f64) -> [f64; 10] {
+    let linear = -2.0 * (square * middle);
+    let [a, b, c] = [square.x_axis.x, square.y_axis.y, square.z_axis.z];
+    let [d, e, f] = [2.0 * square.x_axis.y, 2.0 * square.x_axis.z, 2.0 * square.y_axis.z];
+    [a, b, c, d, e, f, linear.x, linear.y, linear.z, j - middle.dot(square * middle)]
+}
+
+fn quadric(random: &mut Random) -> Subject {
+    let mut coefficients: [f64; 10];
+    let (mut middle, mut reach, mut boxed) = (DVec3::ZERO, 3.0, 1e9);
+    match random.below(5) {
+        // A ball or what is stretched and leans, its middle up to 1e4 away from its center.
+        0 => {
+            middle = magnitude(random, 0.0, 4.0) * random.direction();
+            let axes = DMat3::from_cols(random.direction(), random.direction(), random.direction());
+            let square = if random.below(2) == 0 { DMat3::IDENTITY } else { axes * axes.transpose() };
+            coefficients = moved(square, middle, magnitude(random, -1.0, 1.0));
+        }
+        // Whole numbers: bowls, saddles, cones, cylinders, planes, cut by a box.
+        1 => {
+            coefficients = [0; 10].map(|_| f64::from(random.below(7)) - 3.0);
+            boxed = 4.0;
+        }
+        // A ball that touches its box.
+        2 => {
+            let radius = random.between(0.1, 2.0);
+            coefficients = [1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, radius * radius];
+            boxed = radius;
+        }
+        // Two planes, next to each other.
+        3 => {
+            let normal = DVec3::from([0; 3].map(|_| f64::from(random.below(5)) - 2.0));
+            let normal = if normal == DVec3::ZERO { DVec3::ONE } else { normal };
+            let square = DMat3::from_cols(normal.x * normal, normal.y * normal, normal.z * normal);
+            coefficients = moved(square, DVec3::ZERO, magnitude(random, -16.0, 0.0));
+            boxed = 50.0;
+        }
+        // Any.
+        _ => {
+            coefficients = [0; 10].map(|_| random.between(-1.0, 1.0));
+            boxed = 6.0;
+        }
+    }
+    if coefficients[..9].iter().all(|coefficient| *coefficient == 0.0) {
+        coefficients[0] = 1.0;
+    }
+    if boxed < 50.0 {
+        reach = 1.5 * boxed;
+    }
+    let factor = if random.below(4) == 0 { magnitude(random, -150.0, 150.0) } else { 1.0 };
+    coefficients = coefficients.map(|coefficient| coefficient * factor);
+    let center = place(random);
+    let corners = [DVec3::splat(-boxed), DVec3::splat(boxed)];
+    let text = format!(
+        "quadric q {{ material m coefficients {} center {} box {} {} }}",
+        coefficients.map(|coefficient| format!("{coefficient:?}")).join(" "),
+        spelt(center),
+        spelt(corners[0]),
+        spelt(corners[1]),
+    );
+    let quadric = Quadric { coefficients, center, corners };
+    let truth = move |line: &Line, near: f64| quadric.first_hit(line, near);
+    let middle = center + middle;
+    let probe = Quadric { coefficients, center, corners };
+    let round = move |random: &mut Random| {
+        let ray = toward(middle + 5.0 * reach * random.direction(), random.in_ball(middle, reach));
+        let hit = probe.first_hit(&(&ray).into(), 0.0).hit()?;
+        let [a, b, c, d, e, f, g, h, i, _] = coefficients.map(|coefficient| coefficient / factor);
+        let at = ray.at(hit.t.high);
+        let DVec3 { x, y, z } = at - center;
+        let normal = DVec3::new(
+            2.0 * a * x + d * y + e * z + g,
+            d * x + 2.0 * b * y + f * z + h,
+            e * x + f * y + 2.0 * c * z + i,
+        );
+        Some((at, normal.try_normalize()?))
+    };
+    Subject { text, truth: Box::new(truth), middle, reach, brink: Brink::Round(Box::new(round)) }
+}
+
+fn triangle(random: &mut Random) -> Subject {
+    let a = place(random);
+    let b = a + magnitude(random, -2.0, 2.0) * random.direction();
+    // As thin as 1e-12 of its length.
+    let width = magnitude(random, -12.0, 0.0) * (b - a).length();
+    let c = a + random.between(-0.5, 1.5) * (b - a) + width * random.direction();
+    let text =
+        format!("triangle t {{ material m vertex1 {} vertex2 {} vertex3 {} }}", spelt(a), spelt(b), spelt(c));
+    let normal = (b - a).cross(c - a).normalize_or(DVec3::Y);
+    let edge = |from: DVec3, to: DVec3| (from, to, normal.cross(to - from).normalize_or(DVec3::X));
+    Subject {
+        text,
+        truth: beyond(move |line| shapes::triangle([a, b, c], line)),
+        middle: (a + b + c) / 3.0,
+        reach: (b - a).length().max((c - a).length()),
+        brink: Brink::Edges(vec![edge(a, b), edge(b, c), edge(c, a)]),
+    }
+}
+
+/// A vector that no axis is along, or one that is.
+fn normal(random: &mut Random) -> DVec3 {
+    match random.below(3) {
+        0 => random.direction() * magnitude(random, -3.0, 3.0),
+        1 => {
+            let whole = DVec3::from([0; 3].map(|_| f64::from(random.below(7)) - 3.0));
+            if whole == DVec3::ZERO { DVec3::ONE } else { whole }
+        }
+        _ => [DVec3::X, DVec3::NEG_Y, DVec3::Z][random.below(3) as usize],
+    }
+}
+
+fn plane(random: &mut Random) -> Subject {
+    let (normal, point) = (normal(random), place(random));
+    let plane = Plane::new(normal, point);
+    Subject {
+        text: format!("plane p {{ material m normal {} point {} }}", spelt(normal), spelt(point)),
+        truth: beyond(move |line| plane.first_hit(line)),
+        middle: point,
+        reach: 3.0,
+        brink: Brink::Endless(normal.normalize()),
+    }
+}
+
+fn rectangle(random: &mut Random) -> Subject {
+    let (normal, point) = (normal(random), place(random));
+    let dimensions = DVec2::new(magnitude(random, -2.0, 1.5), magnitude(random, -2.0, 1.5));
+    let unit = normal.normalize();
+    let xdir = loop {
+        let xdir = random.direction();
+        if unit.cross(xdir).length() > 1e-3 {
+            break xdir;
+        }
+    };
+    let plane = Plane::new(normal, point);
+    let text = format!(
+        "fplane f {{ material m normal {} point {} xdir {} dimensions {:?} {:?} }}",
+        spelt(normal),
+        spelt(point),
+        spelt(xdir),
+        dimensions.x,
+        dimensions.y
+    );
+    let y = unit.cross(xdir).normalize();
+    let x = y.cross(unit);
+    let corner = |along: f64, up: f64| point + along * dimensions.x * x + up * dimensions.y * y;
+    let edges = vec![
+        (corner(0.0, 0.0), corner(1.0, 0.0), y),
+        (corner(0.0, 0.0), corner(0.0, 1.0), x),
+        (corner(1.0, 1.0), corner(1.0, 0.0), -x),
+        (corner(1.0, 1.0), corner(0.0, 1.0), -y),
+    ];
+    Subject {
+        text,
+        truth: beyond(move |line| shapes::rectangle(&plane, xdir, dimensions, line)),
+        middle: corner(0.5, 0.5),
+        reach: 0.7 * dimensions.length(),
+        brink: Brink::Edges(edges),
+    }
+}
+
+/// The truth of what is met at most once.
+fn beyond(truth: impl Fn(&Line) -> Truth + 'static) -> Box<dyn Fn(&Line, f64) -> Truth> {
+    Box::new(move |line, near| match truth(line) {
+        Truth::Hit(hit) if hit.t <= near.into() => Truth::Miss,
+        truth => truth,
+    })
+}
+
+impl Subject {
+    /// The first hit of a ray that is farther than a distance.
+    pub fn truth(&self, line: &Line, near: f64) -> Truth {
+        (self.truth)(line, near)
+    }
+
+    /// A random ray of a set.
+    pub fn ray(&self, set: &str, random: &mut Random) -> Ray {
+        match set {
+            "camera" => {
+                let origin = self.middle + self.reach * random.between(1.5, 8.0) * random.direction();
+                toward(origin, random.in_ball(self.middle, self.reach))
+            }
+            "far" => {
+                let distance = self.reach.min(100.0) * magnitude(random, 1.0, 9.0);
+                toward(self.middle + distance * random.direction(), random.in_ball(self.middle, self.reach))
+            }
+            _ => self.grazing(random),
+        }
+    }
+
+    /// A ray that passes what decides by 1e-2 to 1e-15, from next to it to far away.
+    fn grazing(&self, random: &mut Random) -> Ray {
+        let apart = magnitude(random, -15.0, -2.0) * if random.below(2) == 0 { 1.0 } else { -1.0 };
+        let farthest = if random.below(4) == 0 { 9.0 } else { 1.3 };
+        let distance = magnitude(random, 0.0, farthest);
+        match &self.brink {
+            Brink::Round(place) => {
+                let Some((at, normal)) = place(random) else { return self.ray("camera", random) };
+                let (along, across) = normal.any_orthonormal_pair();
+                let (sin, cos) = random.between(0.0, std::f64::consts::TAU).sin_cos();
+                let dir = (cos * along + sin * across).normalize();
+                Ray { origin: at + apart * normal - distance * dir, dir }
+            }
+            Brink::Edges(edges) => {
+                let (from, to, inward) = edges[random.below(edges.len() as u32) as usize];
+                let at = from + random.between(-0.01, 1.01) * (to - from) + apart * inward;
+                toward(at + distance * random.direction(), at)
+            }
+            Brink::Endless(normal) => {
+                let (along, across) = normal.any_orthonormal_pair();
+                let (sin, cos) = random.between(0.0, std::f64::consts::TAU).sin_cos();
+                let dir = (cos * along + sin * across + apart * *normal).normalize();
+                let above = magnitude(random, -15.0, 1.0) * if random.below(2) == 0 { 1.0 } else { -1.0 };
+                Ray { origin: self.middle + distance * along + above * *normal, dir }
+            }
+        }
+    }
+
+    /// Counts a ray's hit by the program.
+    pub fn count(&self, tally: &mut Tally, shape: &dyn Hittable, ray: &Ray) {
+        let line = Line::from(ray);
+        let truth = self.truth(&line, 0.0);
+        let found = shape.distance(ray, &Span::RAY);
+        let sure = truth.hit().map_or(0.0, |hit| 64.0 * ulp(hit.t.high));
+        let slant = truth.hit().map_or(1.0, |hit| shape.normal(ray.at(hit.t.high)).dot(ray.dir).abs());
+        let off = |found: f64| truth.hit().map_or(0.0, |hit| (hit.t - found.into()).high.abs() * slant);
+        tally.count(
+            truth,
+            found,
+            Tolerance { sure, most: f64::INFINITY },
+            |near| self.truth(&line, near),
+            off,
+        );
+    }
+}
