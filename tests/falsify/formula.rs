@@ -51,7 +51,7 @@ impl Formula {
                     '-' => a.sub(&b),
                     '*' => a.mul(&b),
                     '/' => a.div(&b),
-                    _ => a.ln().mul(&b).exp(),
+                    _ => a.power(&b),
                 }
             }
             Self::Call(name, of) => {
