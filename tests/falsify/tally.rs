@@ -17,9 +17,9 @@ use tabray::render::Renderer;
 
 /// The first lines of the table.
 pub const HEADING: &str = "\
-| class | rays | wrong hits | wrong distances | rays rounded | ties | ties lost | proofs | wrong proofs | undecided | packets differ | \
+| sound | class | rays | wrong hits | wrong distances | rays rounded | ties | ties lost | proofs | wrong proofs | undecided | packets differ | \
 largest error (ulp) | off the surface (ulp) | refused | seconds |
-|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|";
+|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|";
 
 /// A hit this far off the surface, in units in the last place of its distance, is another one: an error of rounding
 /// would be a few of them.
@@ -75,7 +75,7 @@ impl Tally {
         for pixel in &question.pixels {
             let found = program.find(*pixel);
             let truth = self.ray(&scene, question, number, *pixel, &found);
-            if self.rays as u64 % proofs == 0 {
+            if (self.rays as u64).is_multiple_of(proofs) {
                 self.proof(question, number, *pixel, &found, &truth, &program);
             }
             if let Some(picture) = &picture {
@@ -220,8 +220,9 @@ impl Tally {
             ..
         } = self;
         format!(
-            "| {name} | {rays} | {wrong} | {late} | {rounded} | {ties} | {lost} | {proofs} | {wrong_proofs} | {undecided} | \
+            "| {} | {name} | {rays} | {wrong} | {late} | {rounded} | {ties} | {lost} | {proofs} | {wrong_proofs} | {undecided} | \
              {differ} | {:.1} | {:.1} | {refused} | {:.1} |",
+            if self.is_sound() { "yes" } else { "NO" },
             self.error,
             self.off,
             time.as_secs_f64(),

@@ -1,4 +1,5 @@
 //! Surfaces of revolution, tori and hearts.
+#![allow(clippy::approx_constant, reason = "the notes' vase is 6.28 high")]
 
 use crate::oracle;
 use crate::random::{Point, Random, cross, dot, moved, turned, unit};
@@ -24,7 +25,7 @@ fn formula(random: &mut Random) -> Profile {
     let middle = (random.between(0.5, 5.5) * 100.0).round() / 100.0;
     match random.below(12) {
         0 => {
-            let thin = 10_f64.powf(random.whole(2, 14) as f64);
+            let thin = 10_f64.powf(random.whole(2, 14));
             let text = quoted(format!("max(0.3 - y, 2 - {thin:?}*(y-{middle})^2)"));
             (text, Box::new(move |y| (0.3 - y).max(2.0 - thin * (y - middle).powi(2))), 6.0)
         }
@@ -177,8 +178,11 @@ pub fn hearts(random: &mut Random) -> Question {
 
 /// Any of these shapes, moved until it is between hit and missed but for an offset.
 pub fn silhouettes(random: &mut Random) -> Question {
-    let far = if random.once_in(2) { 1.0 } else { 7.0 };
-    let aim = Aim::new(random, far);
+    let aim = match random.below(3) {
+        0 => Aim::new(random, 1.0),
+        1 => Aim::new(random, 7.0),
+        _ => Aim::plain(random, 9.0),
+    };
     let (axis, side) = (random.axis(), turned(aim.u, aim.angle(random)));
     let inside = moved(aim.target, random.between(0.0, 0.5), random.direction());
     let (before, after, reach) = match random.below(3) {
