@@ -121,11 +121,12 @@ impl<T: Number> Jet<T> {
         if self.value.sign() == Some(Ordering::Greater) {
             return self.ln().mul(exponent).exp();
         }
+        let value = self.value.ln().mul(&exponent.value).exp();
         // From 0 to less than 1, to a power that is not negative: from 0 to 1.
         let (zero, one) = (T::int(0), T::int(1));
         let is_small = self.value.max(&one).sub(&one).sign() == Some(Ordering::Equal);
         let is_up = exponent.value.min(&zero).sign() == Some(Ordering::Equal);
-        let value = if is_small && is_up { zero.hull(&one) } else { T::any() };
+        let value = if is_small && is_up { value.meet(&zero.hull(&one)).unwrap_or(value) } else { value };
         Self { value, slope: T::any() }
     }
 

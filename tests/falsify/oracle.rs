@@ -172,7 +172,7 @@ mod tests {
             ("ellipsoid e { center 4 3 -4 radius 2 scale 1 1 0.5 }", Some(0), 9.0),
             ("quadric q { coefficients 1 1 1 0 0 0 0 0 0 4 center 4 3 -4 box -2 -2 -2 2 2 3 }", Some(0), 8.0),
             (
-                "quadric q { coefficients 1 1 1 0 0 0 0 0 0 4 center 4 3 -4 box -2 -2 -2 2 2 1 }",
+                "quadric q { coefficients 1 1 1 0 0 0 0 0 0 4 center 4 3 -4 box -2 -2 -3 2 2 1 }",
                 Some(0),
                 12.0,
             ),

@@ -162,6 +162,9 @@ fn sin_cos(of: &Dyadic) -> (Dyadic, Dyadic) {
 
 /// The exponential of one number below 2^20, right but for a part of 2^-390.
 fn exp(of: &Dyadic) -> Wide {
+    if of.size() > 20 && of.sign() == Ordering::Less {
+        return Wide::between(Dyadic::zero(), Dyadic::int(1).shifted(-1_000_000));
+    }
     if of.size() > 20 {
         return Wide::any();
     }
