@@ -235,15 +235,30 @@ impl OnPolynomial {
     }
 }
 
-fn horner<T: Number>(coefficients: &[T], at: &Jet<T>) -> Jet<T> {
-    let constant = |of: &T| Jet::constant(of.clone());
+fn horner<T: Number>(coefficients: &[T], at: &T) -> T {
     let (last, others) = coefficients.split_last().expect("a coefficient");
-    others.iter().rev().fold(constant(last), |sum, next| sum.mul(at).add(&constant(next)))
+    others.iter().rev().fold(last.clone(), |sum, next| sum.mul(at).add(next))
+}
+
+/// The coefficients of a polynomial as seen from another place.
+fn moved<T: Number>(coefficients: &[T], to: &T) -> Vec<T> {
+    let mut all = coefficients.to_vec();
+    for first in 0..all.len() {
+        for of in (first..all.len() - 1).rev() {
+            all[of] = all[of].add(&all[of + 1].mul(to));
+        }
+    }
+    all
 }
 
 impl Along for OnPolynomial {
     fn at<T: Number>(&self, place: &Jet<T>, known: &Known<T>) -> Jet<T> {
-        horner(&known.0[..=self.degree], place)
+        // From a point of the piece, so that bounds are narrow where the piece is.
+        let inner = place.value.inner();
+        let from = place.value.sub(&inner);
+        let all = moved(&known.0[..=self.degree], &inner);
+        let slopes: Vec<T> = (1..all.len()).map(|of| all[of].mul(&T::int(of as i64))).collect();
+        Jet { value: horner(&all, &from), slope: horner(&slopes, &from).mul(&place.slope) }
     }
 
     fn kept<T: Number>(&self, place: &T, known: &Known<T>) -> Option<bool> {
@@ -251,7 +266,7 @@ impl Along for OnPolynomial {
         if rest.is_empty() {
             return Some(true);
         }
-        horner(rest, &Jet::constant(place.clone())).value.sign().map(|sign| sign != Ordering::Less)
+        horner(rest, place).sign().map(|sign| sign != Ordering::Less)
     }
 
     fn known(&self) -> &Known<Wide> {

@@ -64,6 +64,9 @@ impl Number for Fast {
 
     fn div(&self, other: &Self) -> Self {
         let (a, b) = (self, other);
+        if b.low == 0.0 && b.high > 0.0 && a.low > 0.0 {
+            return Self { low: (a.low / b.high).next_down(), high: f64::INFINITY };
+        }
         if b.low <= 0.0 && b.high >= 0.0 {
             return Self::any();
         }
@@ -105,7 +108,11 @@ impl Number for Fast {
     }
 
     fn ln(&self) -> Self {
-        if self.low <= 0.0 { Self::any() } else { Self::roughly(self.low.ln(), self.high.ln()) }
+        match (self.low > 0.0, self.high > 0.0) {
+            (true, _) => Self::roughly(self.low.ln(), self.high.ln()),
+            (_, true) => Self { low: f64::NEG_INFINITY, high: Self::roughly(0.0, self.high.ln()).high },
+            _ => Self::any(),
+        }
     }
 
     fn abs(&self) -> Self {

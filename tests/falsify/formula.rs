@@ -30,19 +30,14 @@ impl Formula {
             Self::Neg(of) => of.at(y).neg(),
             Self::Whole(of, exponent) => {
                 let of = of.at(y);
-                let half = |power: &Jet<T>| power.square();
-                let mut power = Jet::constant(T::int(1));
+                let mut power: Option<Jet<T>> = None;
                 for bit in (0..32 - exponent.leading_zeros()).rev() {
-                    power = half(&power);
+                    power = power.map(|power| power.square());
                     if exponent >> bit & 1 == 1 {
-                        power = if power.value.sub(&T::int(1)).sign().is_some_and(|sign| sign.is_eq()) {
-                            of.clone()
-                        } else {
-                            power.mul(&of)
-                        };
+                        power = Some(power.map_or(of.clone(), |power| power.mul(&of)));
                     }
                 }
-                power
+                power.expect("an exponent from 1")
             }
             Self::Two(operation, of) => {
                 let (a, b) = (of[0].at(y), of[1].at(y));
@@ -51,7 +46,7 @@ impl Formula {
                     '-' => a.sub(&b),
                     '*' => a.mul(&b),
                     '/' => a.div(&b),
-                    _ => a.ln().mul(&b).exp(),
+                    _ => a.power(&b),
                 }
             }
             Self::Call(name, of) => {

@@ -40,7 +40,7 @@ fn setting(name: &str, default: f64) -> f64 {
 }
 
 /// Asks about scenes of a class until enough rays have been asked for, on all cores.
-fn run(class: &Class, rays: usize, seed: u64) -> Tally {
+fn run(class: &Class, rays: usize, seed: u64, proofs: u64) -> Tally {
     let (next, asked, total) = (AtomicUsize::new(0), AtomicUsize::new(0), Mutex::new(Tally::default()));
     let threads = thread::available_parallelism().map_or(1, usize::from);
     thread::scope(|scope| {
@@ -52,7 +52,7 @@ fn run(class: &Class, rays: usize, seed: u64) -> Tally {
                     let number = next.fetch_add(1, Ordering::Relaxed) as u64;
                     let question = (class.ask)(&mut Random::new(class.name, seed << 40 | number));
                     asked.fetch_add(question.pixels.len(), Ordering::Relaxed);
-                    tally.judge(class, &question, number, &renderer);
+                    tally.judge(class, &question, number, &renderer, proofs);
                 }
                 total.lock().expect("no panic").merge(tally);
             });
@@ -65,12 +65,14 @@ fn run(class: &Class, rays: usize, seed: u64) -> Tally {
 fn all(size: usize) -> Vec<String> {
     let (times, seed) = (setting("FALSIFY_RAYS", 1.0), setting("FALSIFY_SEED", 0.0) as u64);
     let only = env::var("FALSIFY_CLASS").unwrap_or_default();
+    // One ray in so many is asked for its proof, too, which takes longest.
+    let proofs = setting("FALSIFY_PROOFS", [4.0, 1.0][size]) as u64;
     println!("{}", tally::HEADING);
     let mut wrong = Vec::new();
     for class in CLASSES.iter().filter(|class| class.name.starts_with(&only)) {
         let start = Instant::now();
         let rays = (class.rays[size] as f64 * times).ceil() as usize;
-        let tally = run(class, rays, seed);
+        let tally = run(class, rays, seed, proofs);
         println!("{}", tally.row(class.name, start.elapsed()));
         if !tally.is_sound() {
             wrong.push(format!("{}: {}", class.name, tally.worst()));
@@ -119,7 +121,7 @@ fn hits_and_proofs_of_given_scenes_are_right() {
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| [x, y])).collect();
         let question = scenes::Question { text, pixels, is_picture: false };
         let (start, mut tally) = (Instant::now(), Tally::default());
-        tally.judge(&CLASSES[0], &question, 0, &renderer);
+        tally.judge(&CLASSES[0], &question, 0, &renderer, 1);
         println!("{}", tally.row(path, start.elapsed()));
         if !tally.is_sound() {
             wrong.push(format!("{path}: {}", tally.worst()));

@@ -116,6 +116,20 @@ impl<T: Number> Jet<T> {
         Self { value: self.value.ln(), slope: self.slope.div(&self.value) }
     }
 
+    /// For what is not negative.
+    pub fn power(&self, exponent: &Self) -> Self {
+        if self.value.sign() == Some(Ordering::Greater) {
+            return self.ln().mul(exponent).exp();
+        }
+        let value = self.value.ln().mul(&exponent.value).exp();
+        // From 0 to less than 1, to a power that is not negative: from 0 to 1.
+        let (zero, one) = (T::int(0), T::int(1));
+        let is_small = self.value.max(&one).sub(&one).sign() == Some(Ordering::Equal);
+        let is_up = exponent.value.min(&zero).sign() == Some(Ordering::Equal);
+        let value = if is_small && is_up { value.meet(&zero.hull(&one)).unwrap_or(value) } else { value };
+        Self { value, slope: T::any() }
+    }
+
     pub fn abs(&self) -> Self {
         match self.value.sign() {
             Some(Ordering::Greater) => self.clone(),

@@ -148,3 +148,70 @@ fn unit(of: [f64; 3]) -> [f64; 3] {
     let length = dot(of, of).sqrt();
     of.map(|part| part / length)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The first hit of the middle pixel, and its distance.
+    fn seen(objects: &str) -> (Option<usize>, f64, bool) {
+        let text = format!("camera c {{ pixeldim 1 1 worlddim 8 6 viewpoint 4 3 6 }}\n{objects}");
+        let scene = Scene::read(&text);
+        let ray = Ray::of_pixel(&scene, 0, 0);
+        let truth = first(&scene, &ray);
+        let distance = truth.place.as_ref().map_or(0.0, |place| ray.distance(place).near());
+        (truth.first, distance, truth.is_shared || truth.is_touch)
+    }
+
+    #[test]
+    fn the_oracle_knows_what_can_be_reckoned_by_hand() {
+        for (objects, first, distance) in [
+            ("sphere s { center 4 3 -4 radius 2 }", Some(0), 8.0),
+            ("sphere s { center 4 5 -4 radius 1.9999999999999998 }", None, 0.0),
+            ("sphere s { center 4 3 6 radius 2 }", Some(0), 2.0),
+            ("ellipsoid e { center 4 3 -4 radius 2 scale 1 1 0.5 }", Some(0), 9.0),
+            ("quadric q { coefficients 1 1 1 0 0 0 0 0 0 4 center 4 3 -4 box -2 -2 -2 2 2 3 }", Some(0), 8.0),
+            (
+                "quadric q { coefficients 1 1 1 0 0 0 0 0 0 4 center 4 3 -4 box -2 -2 -3 2 2 1 }",
+                Some(0),
+                12.0,
+            ),
+            ("quadric q { coefficients 0 0 0 0 0 0 0 0 1 0 center 4 3 -4 }", Some(0), 10.0),
+            ("plane p { normal 0 0 3 point 9 9 -4 } plane q { normal 0 0 1 point 0 0 -3 }", Some(1), 9.0),
+            ("plane p { normal 0 0 1 point 0 0 0.02 }", None, 0.0),
+            ("fplane p { normal 0 0 2 point 3 2 -1 xdir 1 0 7 dimensions 2 2 }", Some(0), 7.0),
+            ("fplane p { normal 0 0 2 point 4.1 2 -1 xdir 1 0 7 dimensions 2 2 }", None, 0.0),
+            ("triangle t { vertex1 3 2 -1 vertex2 5 2 -1 vertex3 4 5 -1 }", Some(0), 7.0),
+            ("triangle t { vertex1 3 2 -1 vertex2 5 2 -1 vertex3 4 2.9 -1 }", None, 0.0),
+            ("revsurf r { profile \"2\" direction 0 5 0 base 4 0 -4 height 6 }", Some(0), 8.0),
+            (
+                "revsurf r { profile \"max(1, 2 - 1e14*(y-3)^2)\" direction 0 1 0 base 4 0 -4 height 6 }",
+                Some(0),
+                8.0,
+            ),
+            ("revsurf r { profile \"y^2 - 7 + exp(0)\" direction 0 1 0 base 4 0 -4 height 6 }", Some(0), 7.0),
+            ("revsurf r { profile \"2 - y\" direction 0 1 0 base 4 0 -4 height 6 }", None, 0.0),
+            ("torus t { center 4 3 -4 radius 2 tube 0.5 }", Some(0), 7.5),
+            ("torus t { center 4 3 -4 direction 0 0 1 radius 2 tube 0.5 }", None, 0.0),
+        ] {
+            let (found, at, is_tie) = seen(objects);
+            assert_eq!((found, is_tie), (first, false), "{objects}");
+            assert!((at - distance).abs() < 1e-14, "{objects}: {at}");
+        }
+    }
+
+    #[test]
+    fn ties_are_named() {
+        for objects in [
+            "sphere s { center 4 5 -4 radius 2 }",
+            "plane p { normal 0 0 1 point 0 0 -3 } plane q { normal 0 0 7 point 9 9 -3 }",
+            "plane p { normal 0 0 1 point 0 0 -3 } sphere s { center 4 3 -4 radius 1 }",
+            "triangle t { vertex1 3 2 -1 vertex2 5 2 -1 vertex3 4 3 -1 }",
+            "torus t { center 4 3 -4 direction 0 0 1 radius 2 tube 2 }",
+            // Where y is 0 the heart's polynomial has a threefold root.
+            "heart h { center 4 3 -4 size 3 }",
+        ] {
+            assert!(seen(objects).2, "{objects}");
+        }
+    }
+}

@@ -70,27 +70,27 @@ impl Aim {
     }
 
     /// The scene with these objects, each its type and attributes without the material; a single pixel.
-    pub fn question(self, objects: &[String]) -> Question {
+    pub fn question(&self, objects: &[String]) -> Question {
         let pixels = vec![[0, 0]];
         self.with(objects, [1, 1], pixels, false)
     }
 
     /// The scene with some pixels of a fine grid.
-    pub fn many(self, random: &mut Random, objects: &[String]) -> Question {
+    pub fn many(&self, random: &mut Random, objects: &[String]) -> Question {
         let size = [random.whole(2, 3000) as usize, random.whole(2, 3000) as usize];
         let pixels = (0..24).map(|_| size.map(|side| random.below(side as u64) as usize)).collect();
         self.with(objects, size, pixels, false)
     }
 
     /// The scene with the whole of a small picture.
-    pub fn picture(self, objects: &[String]) -> Question {
+    pub fn picture(&self, objects: &[String]) -> Question {
         let [width, height] = [16, 12];
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| [x, y])).collect();
         self.with(objects, [width, height], pixels, true)
     }
 
     fn with(
-        self,
+        &self,
         objects: &[String],
         [width, height]: [usize; 2],
         pixels: Vec<[usize; 2]>,

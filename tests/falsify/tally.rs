@@ -17,9 +17,9 @@ use tabray::render::Renderer;
 
 /// The first lines of the table.
 pub const HEADING: &str = "\
-| class | rays | wrong hits | wrong distances | rays rounded | ties | ties lost | proofs | wrong proofs | undecided | packets differ | \
+| sound | class | rays | wrong hits | wrong distances | rays rounded | ties | ties lost | proofs | wrong proofs | undecided | packets differ | \
 largest error (ulp) | off the surface (ulp) | refused | seconds |
-|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|";
+|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|";
 
 /// A hit this far off the surface, in units in the last place of its distance, is another one: an error of rounding
 /// would be a few of them.
@@ -55,7 +55,15 @@ pub struct Tally {
 }
 
 impl Tally {
-    pub fn judge(&mut self, class: &Class, question: &Question, number: u64, renderer: &Renderer) {
+    /// Judges what the program says of a scene; one ray in `proofs` is asked for its proof.
+    pub fn judge(
+        &mut self,
+        class: &Class,
+        question: &Question,
+        number: u64,
+        renderer: &Renderer,
+        proofs: u64,
+    ) {
         self.strict = class.is_first_seen;
         let Some(program) = Program::read(&question.text) else {
             self.refused += question.pixels.len();
@@ -66,7 +74,10 @@ impl Tally {
         let picture = question.is_picture.then(|| program.picture(renderer));
         for pixel in &question.pixels {
             let found = program.find(*pixel);
-            self.ray(&scene, question, number, *pixel, &found, &program);
+            let truth = self.ray(&scene, question, number, *pixel, &found);
+            if (self.rays as u64).is_multiple_of(proofs) {
+                self.proof(question, number, *pixel, &found, &truth, &program);
+            }
             if let Some(picture) = &picture {
                 let [width, height] = program.size();
                 let seen = picture[(height - 1 - pixel[1]) * width + pixel[0]];
@@ -85,8 +96,7 @@ impl Tally {
         number: u64,
         pixel: [usize; 2],
         found: &Found,
-        program: &Program,
-    ) {
+    ) -> Truth {
         self.rays += 1;
         let real = Ray::of_pixel(scene, pixel[0] as i64, pixel[1] as i64);
         let truth = oracle::first(scene, &real);
@@ -97,6 +107,7 @@ impl Tally {
         let by_rounded = Off::of(scene, &rounded, &of_rounded, found);
         if truth.is_touch || truth.is_shared || of_rounded.is_touch || of_rounded.is_shared {
             self.ties += 1;
+            self.keep("tie", number, question, pixel);
             if !truth.is_touch && !of_rounded.is_touch && !by_real.is_hit && !by_rounded.is_hit {
                 self.lost += 1;
                 self.keep("lost", number, question, pixel);
@@ -120,7 +131,7 @@ impl Tally {
             self.error = self.error.max(least(|off| off.error));
             self.off = self.off.max(least(|off| off.off));
         }
-        self.proof(question, number, pixel, found, &truth, program);
+        truth
     }
 
     fn proof(
@@ -209,8 +220,9 @@ impl Tally {
             ..
         } = self;
         format!(
-            "| {name} | {rays} | {wrong} | {late} | {rounded} | {ties} | {lost} | {proofs} | {wrong_proofs} | {undecided} | \
+            "| {} | {name} | {rays} | {wrong} | {late} | {rounded} | {ties} | {lost} | {proofs} | {wrong_proofs} | {undecided} | \
              {differ} | {:.1} | {:.1} | {refused} | {:.1} |",
+            if self.is_sound() { "yes" } else { "NO" },
             self.error,
             self.off,
             time.as_secs_f64(),

@@ -70,6 +70,11 @@ fn tiny() -> Dyadic {
     Dyadic::int(1).shifted(SLACK)
 }
 
+/// What stands for infinity at one end.
+fn huge() -> Dyadic {
+    Dyadic::int(1).shifted(100_000)
+}
+
 fn halved(value: &IBig, bits: i64) -> IBig {
     value.div_euclid(IBig::from(1) << bits as usize)
 }
@@ -157,6 +162,9 @@ fn sin_cos(of: &Dyadic) -> (Dyadic, Dyadic) {
 
 /// The exponential of one number below 2^20, right but for a part of 2^-390.
 fn exp(of: &Dyadic) -> Wide {
+    if of.size() > 20 && of.sign() == Ordering::Less {
+        return Wide::between(Dyadic::zero(), Dyadic::int(1).shifted(-1_000_000));
+    }
     if of.size() > 20 {
         return Wide::any();
     }
@@ -260,7 +268,10 @@ impl Number for Wide {
     }
 
     fn div(&self, other: &Self) -> Self {
-        let (Some(_), Some(b)) = (self.ends(), other.ends()) else { return Self::any() };
+        let (Some(a), Some(b)) = (self.ends(), other.ends()) else { return Self::any() };
+        if b.0.is_zero() && b.1.sign() == Ordering::Greater && a.0.sign() == Ordering::Greater {
+            return Self(Some((a.0.divided(b.1, BITS, false), huge())));
+        }
         if !matches!(other.sign(), Some(Ordering::Less | Ordering::Greater)) {
             return Self::any();
         }
@@ -310,6 +321,7 @@ impl Number for Wide {
     fn ln(&self) -> Self {
         match self.ends() {
             Some((low, high)) if low.sign() == Ordering::Greater => ln(low).hull(&ln(high)),
+            Some((_, high)) if high.sign() == Ordering::Greater => Self::point(&huge().neg()).hull(&ln(high)),
             _ => Self::any(),
         }
     }

@@ -1,7 +1,11 @@
 //! Surfaces of revolution, tori and hearts.
+#![allow(clippy::approx_constant, reason = "the notes' vase is 6.28 high")]
 
+use crate::oracle;
 use crate::random::{Point, Random, cross, dot, moved, turned, unit};
+use crate::ray::Ray;
 use crate::scenes::{Aim, Question, numbers};
+use crate::text::Scene;
 
 /// A profile, its formula in Rust, and a height that suits it.
 type Profile = (String, Box<dyn Fn(f64) -> f64>, f64);
@@ -21,7 +25,7 @@ fn formula(random: &mut Random) -> Profile {
     let middle = (random.between(0.5, 5.5) * 100.0).round() / 100.0;
     match random.below(12) {
         0 => {
-            let thin = 10_f64.powf(random.whole(2, 14) as f64);
+            let thin = 10_f64.powf(random.whole(2, 14));
             let text = quoted(format!("max(0.3 - y, 2 - {thin:?}*(y-{middle})^2)"));
             (text, Box::new(move |y| (0.3 - y).max(2.0 - thin * (y - middle).powi(2))), 6.0)
         }
@@ -170,4 +174,49 @@ pub fn hearts(random: &mut Random) -> Question {
     }
     let center = moved(aim.target, size * random.between(0.0, 1.0), random.direction());
     if random.once_in(16) { aim.picture(&[object(center)]) } else { aim.many(random, &[object(center)]) }
+}
+
+/// Any of these shapes, moved until it is between hit and missed but for an offset.
+pub fn silhouettes(random: &mut Random) -> Question {
+    let aim = match random.below(3) {
+        0 => Aim::new(random, 1.0),
+        1 => Aim::new(random, 7.0),
+        _ => Aim::plain(random, 9.0),
+    };
+    let (axis, side) = (random.axis(), turned(aim.u, aim.angle(random)));
+    let inside = moved(aim.target, random.between(0.0, 0.5), random.direction());
+    let (before, after, reach) = match random.below(3) {
+        0 => {
+            let size = random.power(-0.5, 0.5);
+            ("heart center ".to_owned(), format!("size {size:?}"), 4.0 * size)
+        }
+        1 => {
+            let (radius, tube) = (random.power(-0.3, 0.5), random.power(-1.5, 0.0));
+            let after = format!("direction {} radius {radius:?} tube {tube:?}", numbers(axis));
+            ("torus center ".to_owned(), after, 3.0 * (radius + tube))
+        }
+        _ => {
+            let (text, _, height) = if random.once_in(2) { surfer(random) } else { formula(random) };
+            let after = format!("direction {} height {height:?} {text}", numbers(axis));
+            ("revsurf base ".to_owned(), after, 2.0 * height + 20.0)
+        }
+    };
+    let question = |by: f64| {
+        let at = moved(inside, by, side);
+        aim.question(&[format!("{before}{} {after}", numbers(at))])
+    };
+    let is_met = |by: f64| {
+        let scene = Scene::read(&question(by).text);
+        let truth = oracle::first(&scene, &Ray::of_pixel(&scene, 0, 0));
+        truth.first.is_some()
+    };
+    let (mut near, mut far) = (0.0, reach);
+    if !is_met(near) || is_met(far) {
+        return question(near);
+    }
+    for _ in 0..random.below(60) {
+        let middle = 0.5 * (near + far);
+        if is_met(middle) { near = middle } else { far = middle }
+    }
+    question(if random.once_in(2) { near } else { far })
 }
