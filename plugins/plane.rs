@@ -11,6 +11,7 @@ use crate::interval::Interval;
 use crate::number::Number;
 use crate::packet::Rays;
 use crate::pparm::{Pparm, Table};
+use crate::twofold::Twofold;
 use glam::DVec3;
 
 pub static NORMAL: Pparm<DVec3> =
@@ -29,8 +30,8 @@ inventory::submit! {
 impl Plane {
     /// The plane of an entity whose table has a plane's rows.
     pub fn new(args: &Args) -> Self {
-        let normal = args.get(&NORMAL).normalize();
-        Self { normal, point: args.get(&POINT), accuracy: args.accuracy() }
+        let given = args.get(&NORMAL);
+        Self { normal: given.normalize(), given, point: args.get(&POINT), accuracy: args.accuracy() }
     }
 }
 
@@ -44,7 +45,7 @@ impl Hittable for Plane {
     fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
         match self.accuracy {
             Accuracy::Classic => Bracket::exactly(self.quick_distance(ray, within)),
-            _ => Plane::bracket(self, &self.rough(ray), ray, within),
+            _ => Plane::bracket(self, &self.rough(ray, within.origin_error), ray, within),
         }
     }
 
@@ -60,6 +61,22 @@ impl Hittable for Plane {
 
     fn is_clear_of(&self, region: &Bounds) -> bool {
         Plane::is_clear_of(self, region)
+    }
+
+    fn meets_itself(&self, _leaving: Side) -> bool {
+        false
+    }
+
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        Plane::touches(self, at, error)
+    }
+
+    fn reach(&self) -> f64 {
+        self.point.abs().max_element()
+    }
+
+    fn fine_distance(&self, ray: &Ray, _distance: f64) -> Option<Twofold> {
+        (self.accuracy != Accuracy::Classic).then(|| self.fine_crossing(ray))
     }
 
     fn method(&self) -> String {

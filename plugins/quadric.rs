@@ -3,13 +3,14 @@
 use crate::accuracy::Accuracy;
 use crate::bounds::Bounds;
 use crate::certify::{self, Enclosure, Equation};
+use crate::coincidence;
 use crate::entity::{Entity, Refusal};
 use crate::geometry::{Body, Hittable, MISS, Ray, Side, Span};
 use crate::interval::Interval;
 use crate::number::Number;
 use crate::pparm::{Pparm, Table};
 use crate::quadratic;
-use crate::twofold::advance;
+use crate::twofold::{Twofold, advance};
 use glam::{DMat3, DVec3};
 
 static COEFFICIENTS: Pparm<[f64; 10]> =
@@ -100,8 +101,13 @@ impl Quadric {
         let dir = ray.dir.abs();
         let size = dir.dot(DMat3::from_cols_array(&self.square.to_cols_array().map(f64::abs)) * dir);
         let a = if a.abs() <= 4.0 * f64::EPSILON * size { 0.0 } else { a };
-        // A ray that leaves it starts on one root: the other one is what is left.
-        let c = if leaves.is_some() { 0.0 } else { c };
+        // A ray that leaves it starts on one root: the other one is what is left. On the outside the values rise from
+        // there, on the inside they fall, whatever rounding says.
+        let (b, c) = match leaves {
+            None => (b, c),
+            Some(Side::Outside) => (b.max(0.0), 0.0),
+            Some(Side::Inside) => (b.min(0.0), 0.0),
+        };
         quadratic::roots(a, b, c).map(|root| base + root)
     }
 }
@@ -126,8 +132,21 @@ impl Hittable for Quadric {
         (!self.is_classic).then_some(bounds)
     }
 
-    fn is_convex(&self) -> bool {
-        self.is_classic
+    fn meets_itself(&self, _leaving: Side) -> bool {
+        !self.is_classic
+    }
+
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        coincidence::touches(self, at, error)
+    }
+
+    fn reach(&self) -> f64 {
+        // The box may be far larger than what is seen of it, and cuts only.
+        self.center.abs().max_element()
+    }
+
+    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold> {
+        if self.is_classic { None } else { coincidence::distance(self, ray, distance) }
     }
 
     fn is_two_sided(&self) -> bool {

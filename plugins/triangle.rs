@@ -4,8 +4,8 @@ use crate::accuracy::Accuracy;
 use crate::bounds::Bounds;
 use crate::certify::{self, Enclosure, Equation};
 use crate::entity::{Entity, Refusal};
-use crate::flat::Plane;
-use crate::geometry::{Body, Bracket, Hittable, MISS, Ray, Span};
+use crate::flat::{self, Plane};
+use crate::geometry::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
 use crate::interval::Interval;
 use crate::number::Number;
 use crate::pparm::{Pparm, Table};
@@ -29,12 +29,13 @@ inventory::submit! {
     Entity::shape("triangle", "a triangle", &[TABLE], |args| {
         let corners = [args.get(&VERTEX1), args.get(&VERTEX2), args.get(&VERTEX3)];
         let [a, b, c] = corners;
-        let normal = (b - a).cross(c - a).try_normalize().ok_or_else(|| Refusal {
+        let given = (b - a).cross(c - a);
+        let normal = given.try_normalize().ok_or_else(|| Refusal {
             attribute: Some("vertex3"),
             message: "has its corners in one line".to_owned(),
             help: "three corners that are not in one line make a triangle",
         })?;
-        let plane = Plane { normal, point: a, accuracy: args.accuracy() };
+        let plane = Plane { normal, given, point: a, accuracy: args.accuracy() };
         Ok(Body::plain(Triangle { plane, corners }))
     })
 }
@@ -60,7 +61,7 @@ impl Hittable for Triangle {
         if self.plane.accuracy == Accuracy::Classic {
             return Bracket::exactly(self.quick_distance(ray, within));
         }
-        let rough = self.plane.rough(ray);
+        let rough = self.plane.rough(ray, within.origin_error);
         let Bracket { near, far } = self.plane.bracket(&rough, ray, within);
         let passed = self.passed(ray);
         Bracket {
@@ -89,6 +90,26 @@ impl Hittable for Triangle {
 
     fn is_clear_of(&self, region: &Bounds) -> bool {
         self.plane.is_clear_of(region) || self.bounds().is_some_and(|bounds| !bounds.overlaps(region))
+    }
+
+    fn meets_itself(&self, leaving: Side) -> bool {
+        self.plane.meets_itself(leaving)
+    }
+
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        self.plane.touches(at, error)
+    }
+
+    fn fine_distance(&self, ray: &Ray, _distance: f64) -> Option<Twofold> {
+        let [a, b, c] = self.corners;
+        let edge = |to: DVec3| [0, 1, 2].map(|axis| Twofold::difference(to[axis], a[axis]));
+        let (one, other) = (edge(b), edge(c));
+        let part = |axis: usize| {
+            let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
+            one[next] * other[last] - one[last] * other[next]
+        };
+        (self.plane.accuracy != Accuracy::Classic)
+            .then(|| flat::crossing([part(0), part(1), part(2)], a, ray))
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {

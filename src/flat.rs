@@ -20,6 +20,8 @@ const SCREEN: f64 = 0.01;
 pub struct Plane {
     /// The unit vector that stands on its lit side.
     pub normal: DVec3,
+    /// The vector that the scene gives for that, of any length: it is not rounded.
+    pub given: DVec3,
     /// A point of it.
     pub point: DVec3,
     /// How exactly it is crossed.
@@ -98,20 +100,34 @@ impl Plane {
         }
     }
 
-    /// The distance within a span; none on the viewer's side of the screen.
+    /// The distance within a span; none on the viewer's side of the screen, and none for a ray that leaves it.
     #[inline(always)]
     pub fn keep(&self, distance: f64, ray: &Ray, within: &Span) -> f64 {
-        if ray.at(distance).z > SCREEN { MISS } else { within.keep(distance) }
+        if within.leaves.is_some() | (ray.at(distance).z > SCREEN) { MISS } else { within.keep(distance) }
     }
 
-    /// The crossing but for a few of its last places, and what rounding may make of it.
+    /// Whether a point lies on it, but for an error and what rounding makes of how far off it is: half a unit in the last
+    /// place for each of three operations in each part of that sum, and of the normal.
     #[inline(always)]
-    pub fn rough(&self, ray: &Ray) -> Rough {
+    pub fn touches(&self, at: DVec3, error: f64) -> bool {
+        let between = self.point - at;
+        let size = (self.normal * between).abs().element_sum();
+        self.normal.dot(between).abs() <= error + 4.0 * f64::EPSILON * size
+    }
+
+    /// The crossing in twice the precision, of the plane that the scene gives.
+    pub fn fine_crossing(&self, ray: &Ray) -> Twofold {
+        crossing(self.given.to_array().map(Twofold::from), self.point, ray)
+    }
+
+    /// The crossing but for a few of its last places, and what rounding may make of it, the ray's origin included.
+    #[inline(always)]
+    pub fn rough(&self, ray: &Ray, origin_error: f64) -> Rough {
         let products = self.products(ray);
         let Products { away, away_size, toward, .. } = products;
         let inverse = reciprocal(toward);
         let distance = away * inverse;
-        let error = 8.0 * f64::EPSILON * inverse.abs() * (away_size + distance.abs());
+        let error = inverse.abs() * (8.0 * f64::EPSILON * (away_size + distance.abs()) + origin_error);
         let error = error + RECIPROCAL_ERROR * distance.abs();
         Rough { distance, error, is_parallel: products.is_parallel() }
     }
@@ -182,13 +198,15 @@ impl Plane {
     }
 
     fn crossing_in_twice_the_precision(&self, ray: &Ray) -> f64 {
-        let product = |of: [Twofold; 3]| {
-            let part = |axis: usize| Twofold::from(self.normal[axis]) * of[axis];
-            part(0) + part(1) + part(2)
-        };
-        let between = [0, 1, 2].map(|axis| Twofold::difference(self.point[axis], ray.origin[axis]));
-        (product(between) / product(ray.dir.to_array().map(Twofold::from))).high
+        crossing(self.normal.to_array().map(Twofold::from), self.point, ray).high
     }
+}
+
+/// Where a ray crosses the plane through a point that stands upright on a vector, in twice the precision.
+pub fn crossing(normal: [Twofold; 3], point: DVec3, ray: &Ray) -> Twofold {
+    let product = |of: [Twofold; 3]| normal[0] * of[0] + normal[1] * of[1] + normal[2] * of[2];
+    let between = [0, 1, 2].map(|axis| Twofold::difference(point[axis], ray.origin[axis]));
+    product(between) / product(ray.dir.to_array().map(Twofold::from))
 }
 
 kernels! {

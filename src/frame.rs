@@ -2,6 +2,7 @@
 
 use crate::bounds::Bounds;
 use crate::geometry::Ray;
+use crate::number::Number;
 use glam::{DMat3, DVec3};
 
 /// An origin, and three unit vectors upright on each other.
@@ -36,6 +37,15 @@ impl Frame {
     #[inline(always)]
     pub fn point(&self, at: DVec3) -> DVec3 {
         self.direction(at - self.origin)
+    }
+
+    /// Likewise, with any number type.
+    pub fn point_of<N: Number>(&self, at: [N; 3]) -> [N; 3] {
+        let from_origin = [0, 1, 2].map(|axis| at[axis] - N::constant(self.origin[axis]));
+        [0, 1, 2].map(|axis| {
+            let part = |world: usize| from_origin[world] * N::constant(self.axes.col(axis)[world]);
+            part(0) + part(1) + part(2)
+        })
     }
 
     /// A ray of the world likewise.

@@ -6,6 +6,7 @@
 
 use crate::bounds::Bounds;
 use crate::certify::{self, Enclosure, Equation};
+use crate::coincidence;
 use crate::dual::Dual;
 use crate::frame::Frame;
 use crate::geometry::{Body, Hittable, MISS, Ray, Span};
@@ -13,7 +14,7 @@ use crate::interval::Interval;
 use crate::number::Number;
 use crate::roots::Method;
 use crate::roots::taylor::Line;
-use crate::twofold::{two_product, two_sum};
+use crate::twofold::{Twofold, two_product, two_sum};
 use glam::DVec3;
 
 /// A shape by its formula, in coordinates of its own.
@@ -70,8 +71,12 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
         Some(self.frame.bounds(&own))
     }
 
-    fn is_convex(&self) -> bool {
-        false
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        coincidence::touches(self, at, error)
+    }
+
+    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold> {
+        coincidence::distance(self, ray, distance)
     }
 
     fn is_two_sided(&self) -> bool {
@@ -112,24 +117,15 @@ impl<T: Implicit> ImplicitShape<T> {
             None => MISS,
         }
     }
-
-    /// A point in the shape's own coordinates, with any number type.
-    fn own<N: Number>(&self, at: [N; 3]) -> [N; 3] {
-        let from_origin = [0, 1, 2].map(|axis| at[axis] - N::constant(self.frame.origin[axis]));
-        [0, 1, 2].map(|axis| {
-            let part = |world: usize| from_origin[world] * N::constant(self.frame.axes.col(axis)[world]);
-            part(0) + part(1) + part(2)
-        })
-    }
 }
 
 impl<T: Implicit> Equation for ImplicitShape<T> {
     fn value<N: Number>(&self, at: [N; 3]) -> N {
-        self.formula.value(self.own(at))
+        self.formula.value(self.frame.point_of(at))
     }
 
     fn kept(&self, at: [Interval; 3]) -> Interval {
-        let own = self.own(at);
+        let own = self.frame.point_of(at);
         let inside = |axis: usize| {
             let (low, high) = (Interval::constant(self.low[axis]), Interval::constant(self.high[axis]));
             (own[axis] - low).min(high - own[axis])

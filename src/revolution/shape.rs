@@ -3,13 +3,16 @@
 use super::bracket::{Lanes, MOST};
 use super::{Classic, Revolution, normal};
 use crate::bounds::Bounds;
-use crate::certify::{self, Enclosure};
+use crate::certify::{self, Enclosure, Equation};
+use crate::coincidence;
 use crate::cpu::Cpu;
 use crate::frame::Frame;
 use crate::geometry::{Hittable, Ray, Side, Span};
 use crate::landing::Landing;
+use crate::number::Number;
 use crate::packet::{self, Nearest, Rays, parts};
 use crate::roots::Method;
+use crate::twofold::Twofold;
 use glam::DVec3;
 
 /// A surface around the y axis of a frame.
@@ -29,12 +32,25 @@ impl Hittable for InFrame<Classic> {
         (self.frame.axes * self.surface.normal(self.frame.point(at))).normalize()
     }
 
+    fn meets_itself(&self, _leaving: Side) -> bool {
+        false
+    }
+
     fn method(&self) -> String {
         "bisection to 1e-4, from the ray's origin to its point closest to the axis".to_owned()
     }
 
     fn certify(&self, ray: &Ray) -> Enclosure {
         certify::first_hit(&self.surface, &self.frame.ray(ray))
+    }
+}
+
+/// A surface's equation in the coordinates of the world.
+struct InWorld<'s>(&'s InFrame<Revolution>);
+
+impl Equation for InWorld<'_> {
+    fn value<N: Number>(&self, at: [N; 3]) -> N {
+        self.0.surface.value(self.0.frame.point_of(at))
     }
 }
 
@@ -55,8 +71,14 @@ impl Hittable for InFrame<Revolution> {
         Some(self.frame.bounds(&self.surface.bounds()))
     }
 
-    fn is_convex(&self) -> bool {
-        false
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        // Rounding moves the point once more on its way into the frame.
+        let moved = 8.0 * f64::EPSILON * (at - self.frame.origin).abs().max_element();
+        self.surface.touches(self.frame.point(at), error + moved)
+    }
+
+    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold> {
+        coincidence::distance(&InWorld(self), ray, distance)
     }
 
     fn is_two_sided(&self) -> bool {
