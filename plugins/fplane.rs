@@ -13,6 +13,7 @@ use crate::pparm::{Derived, Pparm, Row, Table};
 use crate::rectangle;
 pub use crate::rectangle::FinitePlane;
 use crate::sight::Sight;
+use crate::twofold::Twofold;
 use crate::value::Value;
 use glam::{DMat3, DVec2, DVec3};
 
@@ -96,7 +97,7 @@ impl Hittable for FinitePlane {
         if self.plane.accuracy == Accuracy::Classic {
             return Bracket::exactly(self.quick_distance(ray, within));
         }
-        let rough = self.plane.rough(ray);
+        let rough = self.plane.rough(ray, within.origin_error);
         let inside = self.inside(ray, rough.distance);
         // A camera's direction is off by 3 units of 2^-53 in each component, which is less than half of the slack.
         let slack = rough.error + 2.0 * self.slack(ray, rough.distance);
@@ -133,6 +134,23 @@ impl Hittable for FinitePlane {
 
     fn is_clear_of(&self, region: &Bounds) -> bool {
         self.plane.is_clear_of(region) || self.bounds().is_some_and(|bounds| !bounds.overlaps(region))
+    }
+
+    fn meets_itself(&self, leaving: Side) -> bool {
+        self.plane.meets_itself(leaving)
+    }
+
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        // What starts on the plane beside the rectangle does not meet it either.
+        self.plane.touches(at, error)
+    }
+
+    fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold> {
+        self.plane.fine_distance(ray, distance)
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {

@@ -11,6 +11,7 @@ use crate::number::{Number, dot};
 use crate::packet::Rays;
 use crate::pparm::{Pparm, Table};
 use crate::sight::Sight;
+use crate::twofold::Twofold;
 use glam::DVec3;
 
 pub static NORMAL: Pparm<DVec3> =
@@ -43,7 +44,7 @@ impl Hittable for Plane {
     fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
         match self.accuracy {
             Accuracy::Classic => Bracket::exactly(self.quick_distance(ray, within)),
-            _ => Plane::bracket(self, &self.rough(ray), ray, within),
+            _ => Plane::bracket(self, &self.rough(ray, within.origin_error), ray, within),
         }
     }
 
@@ -59,6 +60,22 @@ impl Hittable for Plane {
 
     fn is_clear_of(&self, region: &Bounds) -> bool {
         Plane::is_clear_of(self, region)
+    }
+
+    fn meets_itself(&self, _leaving: Side) -> bool {
+        false
+    }
+
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        Plane::touches(self, at, error)
+    }
+
+    fn reach(&self) -> f64 {
+        self.point.abs().max_element()
+    }
+
+    fn fine_distance(&self, ray: &Ray, _distance: f64) -> Option<Twofold> {
+        (self.accuracy != Accuracy::Classic).then(|| self.exact_crossing(ray))
     }
 
     fn method(&self) -> String {

@@ -3,12 +3,14 @@
 use crate::accuracy::Accuracy;
 use crate::bounds::Bounds;
 use crate::certify::{self, Enclosure, Equation, Precision};
+use crate::coincidence;
 use crate::entity::{Entity, Refusal};
-use crate::geometry::{Body, Bracket, Hittable, MISS, Ray, Span};
+use crate::geometry::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
 use crate::number::Number;
 use crate::pparm::{Pparm, Table};
 use crate::quadratic::{self, CAMERA, OwnRay, Quadratic, Quick};
 use crate::sight::Sight;
+use crate::twofold::Twofold;
 use glam::{DMat3, DVec3};
 
 static COEFFICIENTS: Pparm<[f64; 10]> =
@@ -114,8 +116,8 @@ impl Hittable for Quadric {
         }
         let own = self.own_ray(ray);
         // A ray that leaves it starts on one hit: the other one is what is left.
-        if within.leaves.is_some() {
-            return within.keep(self.own.other_hit(&own));
+        if let Some(side) = within.leaves {
+            return within.keep(self.own.other_hit(&own, side));
         }
         if self.accuracy == Accuracy::Strict {
             return f64::NAN;
@@ -134,6 +136,9 @@ impl Hittable for Quadric {
     fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
         if self.is_classic() || within.leaves.is_some() {
             return Bracket::exactly(self.quick_distance(ray, within));
+        }
+        if within.origin_error > 0.0 && self.touches(ray.origin, within.origin_error) {
+            return Bracket::UNKNOWN;
         }
         match self.own.quick_hit(&self.own_ray(ray), within.near, CAMERA) {
             Quick::Miss => Bracket::MISS,
@@ -156,8 +161,21 @@ impl Hittable for Quadric {
         (!self.is_classic()).then_some(bounds)
     }
 
-    fn is_convex(&self) -> bool {
-        self.is_classic()
+    fn meets_itself(&self, _leaving: Side) -> bool {
+        !self.is_classic()
+    }
+
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        coincidence::touches(self, at, error)
+    }
+
+    fn reach(&self) -> f64 {
+        // The box may be far larger than what is seen of it, and cuts only.
+        self.center.abs().max_element()
+    }
+
+    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold> {
+        if self.is_classic() { None } else { coincidence::distance(self, ray, distance) }
     }
 
     fn is_two_sided(&self) -> bool {

@@ -5,7 +5,7 @@ use crate::ball::{self, Line};
 use crate::bounds::Bounds;
 use crate::certify::{self, Enclosure, Equation, Precision};
 use crate::entity::{Args, Entity};
-use crate::geometry::{Body, Bracket, Hittable, MISS, Ray, Span};
+use crate::geometry::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
 use crate::number::Number;
 use crate::pparm::{Pparm, Table};
 use crate::sight::Sight;
@@ -54,9 +54,11 @@ impl Sphere {
 impl Hittable for Sphere {
     #[inline(always)]
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        within.keep(match self.accuracy {
-            Accuracy::Classic => classic(ray.origin - self.center, ray.dir, self.radius),
-            _ => ball::first_hit(&self.line(ray), self.radius, self.accuracy),
+        within.keep(match (self.accuracy, within.leaves) {
+            (Accuracy::Classic, _) => classic(ray.origin - self.center, ray.dir, self.radius),
+            (_, None) => ball::first_hit(&self.line(ray), self.radius, self.accuracy),
+            (_, Some(Side::Inside)) => ball::far_hit(&self.line(ray), self.radius, self.accuracy),
+            (_, Some(Side::Outside)) => MISS,
         })
     }
 
@@ -65,15 +67,17 @@ impl Hittable for Sphere {
         let from = ray.origin - self.center;
         match self.accuracy {
             Accuracy::Classic => Bracket::exactly(within.keep(classic(from, ray.dir, self.radius))),
-            _ => ball::bracket(from, ray.dir, 1.0, 1.0, self.radius),
+            _ => ball::bracket(from, ray.dir, 1.0, 1.0, self.radius, within.leaves, within.origin_error),
         }
     }
 
     #[inline(always)]
     fn quick_distance(&self, ray: &Ray, within: &Span) -> f64 {
-        let distance = match self.accuracy {
-            Accuracy::Classic => classic(ray.origin - self.center, ray.dir, self.radius),
-            _ => ball::quick_hit(&self.line(ray), self.radius, self.accuracy),
+        let distance = match (self.accuracy, within.leaves) {
+            (Accuracy::Classic, _) => classic(ray.origin - self.center, ray.dir, self.radius),
+            (_, None) => ball::quick_hit(&self.line(ray), self.radius, self.accuracy),
+            (_, Some(Side::Inside)) => ball::far_hit(&self.line(ray), self.radius, self.accuracy),
+            (_, Some(Side::Outside)) => MISS,
         };
         if distance.is_nan() { distance } else { within.keep(distance) }
     }
@@ -85,6 +89,22 @@ impl Hittable for Sphere {
 
     fn normal(&self, at: DVec3) -> DVec3 {
         (at - self.center).normalize()
+    }
+
+    fn meets_itself(&self, leaving: Side) -> bool {
+        self.accuracy != Accuracy::Classic && leaving == Side::Inside
+    }
+
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        ball::touches(at - self.center, self.radius, error)
+    }
+
+    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold> {
+        if self.accuracy == Accuracy::Classic {
+            None
+        } else {
+            crate::coincidence::distance(self, ray, distance)
+        }
     }
 
     fn is_two_sided(&self) -> bool {

@@ -5,11 +5,12 @@ use super::plane;
 use crate::bounds::Bounds;
 use crate::certify::{Enclosure, Precision};
 use crate::entity::{Args, Entity, Refusal};
-use crate::geometry::{Body, Bracket, Hittable, Ray, Shader, Span};
+use crate::geometry::{Body, Bracket, Hittable, Ray, Shader, Side, Span};
 use crate::material::{Material, Rgb};
 use crate::pparm::{Pparm, Table};
 use crate::sight::Sight;
 use crate::texture::Texture;
+use crate::twofold::Twofold;
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
 
@@ -89,6 +90,22 @@ impl Hittable for Rectangle {
 
     fn is_clear_of(&self, region: &Bounds) -> bool {
         self.0.rectangle.is_clear_of(region)
+    }
+
+    fn meets_itself(&self, leaving: Side) -> bool {
+        self.0.rectangle.meets_itself(leaving)
+    }
+
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        self.0.rectangle.touches(at, error)
+    }
+
+    fn reach(&self) -> f64 {
+        self.0.rectangle.reach()
+    }
+
+    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold> {
+        self.0.rectangle.fine_distance(ray, distance)
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {

@@ -5,7 +5,7 @@ use crate::bounds::Bounds;
 use crate::certify::{self, Enclosure, Equation, Precision};
 use crate::entity::{Entity, Refusal};
 use crate::flat::Plane;
-use crate::geometry::{Body, Bracket, Hittable, MISS, Ray, Span};
+use crate::geometry::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
 use crate::number::{Number, cross, dot};
 use crate::pparm::{Pparm, Table};
 use crate::sight::Sight;
@@ -81,7 +81,7 @@ impl Hittable for Triangle {
         if self.plane.accuracy == Accuracy::Classic {
             return Bracket::exactly(self.quick_distance(ray, within));
         }
-        let rough = self.plane.rough(ray);
+        let rough = self.plane.rough(ray, within.origin_error);
         let Bracket { near, far } = self.plane.bracket(&rough, ray, within);
         let passed = self.passed(ray);
         Bracket {
@@ -110,6 +110,18 @@ impl Hittable for Triangle {
 
     fn is_clear_of(&self, region: &Bounds) -> bool {
         self.plane.is_clear_of(region) || self.bounds().is_some_and(|bounds| !bounds.overlaps(region))
+    }
+
+    fn meets_itself(&self, leaving: Side) -> bool {
+        self.plane.meets_itself(leaving)
+    }
+
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        self.plane.touches(at, error)
+    }
+
+    fn fine_distance(&self, ray: &Ray, _distance: f64) -> Option<Twofold> {
+        (self.plane.accuracy != Accuracy::Classic).then(|| self.plane.exact_crossing(ray))
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {

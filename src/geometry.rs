@@ -2,6 +2,7 @@
 
 use crate::bounds::Bounds;
 use crate::certify::{Enclosure, Precision};
+use crate::coincidence;
 use crate::cpu::Cpu;
 use crate::facing::{self, Faced, Facing, Places};
 use crate::landing::{self, Landing};
@@ -10,6 +11,7 @@ use crate::packet::{self, Nearest, Rays, View, ViewMut};
 use crate::roots::Method;
 use crate::shading::{Anchor, ProceduralShader};
 use crate::sight::Sight;
+use crate::twofold::Twofold;
 use glam::DVec3;
 
 /// A half line.
@@ -64,8 +66,11 @@ pub struct Span {
     /// Hits must lie nearer.
     pub far: f64,
     /// The side of the shape's own surface that the ray starts on and leaves, if it does: where it starts is no hit,
-    /// however rounding has it. Only shapes that are not convex are asked then.
+    /// however rounding has it. Only shapes that may meet themselves on that side are asked then.
     pub leaves: Option<Side>,
+    /// How far at most the ray's origin is from the point that it stands for, in world units. 0 for a ray from the
+    /// viewer. A [`bracket`](Hittable::bracket) is certain only where the shape does not touch the origin within it.
+    pub origin_error: f64,
 }
 
 /// The distance of a ray that hits nothing.
@@ -73,7 +78,7 @@ pub const MISS: f64 = f64::INFINITY;
 
 impl Span {
     /// All of a ray but its origin.
-    pub const RAY: Span = Span { near: 0.0, far: f64::INFINITY, leaves: None };
+    pub const RAY: Span = Span { near: 0.0, far: f64::INFINITY, leaves: None, origin_error: 0.0 };
 
     /// The distance itself if it lies in the span, else [`MISS`]; so is a NaN.
     #[inline(always)]
@@ -130,9 +135,12 @@ pub trait Hittable: Send + Sync {
 
     /// Between which distances [`distance`](Self::distance) is. Where that is dear, plain arithmetic without branches
     /// says quickly which shape a ray may meet first, and the rest is computed for that one alone.
+    ///
+    /// Where the ray may start on the shape, that is where it [`touches`](Self::touches) the origin within the span's
+    /// `origin_error`, it is a bracket without a certain end.
     #[inline(always)]
     fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        Bracket::exactly(self.distance(ray, within))
+        coincidence::bracket(self, ray, within)
     }
 
     /// What [`distance`](Self::distance) gives, to the last bit, or NaN where it takes more than plain arithmetic
@@ -142,9 +150,29 @@ pub trait Hittable: Send + Sync {
         self.distance(ray, within)
     }
 
-    /// Whether no ray that leaves it can meet it again. Then it is not asked.
-    fn is_convex(&self) -> bool {
+    /// Whether a ray that leaves it on this side may meet it again. Where it may not, it is not asked. A plane is never
+    /// met again, a ball only from inside; `true` is never wrong, as long as [`distance`](Self::distance) heeds
+    /// `within.leaves`.
+    fn meets_itself(&self, _leaving: Side) -> bool {
         true
+    }
+
+    /// Whether a point lies on its surface, but for an error of so many world units and for what rounding makes of the
+    /// shape's own numbers. Rays that start there leave it.
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        coincidence::is_met_within(self, at, error)
+    }
+
+    /// How large the coordinates are that its hits are computed from, in world units: its own, not the ray's.
+    fn reach(&self) -> f64 {
+        self.bounds().map_or(0.0, |bounds| bounds.low.abs().max(bounds.high.abs()).max_element())
+    }
+
+    /// The distance of the hit at about this one, in twice the precision: it tells which of two surfaces that lie
+    /// together is nearer. Nothing where it is not to be had;
+    /// [`coincidence::distance`] gives it for shapes that have an equation.
+    fn fine_distance(&self, _ray: &Ray, _distance: f64) -> Option<Twofold> {
+        None
     }
 
     /// Whether both its sides are lit: then its normal is turned to the side that a ray comes from. A plane shows

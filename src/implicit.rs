@@ -6,6 +6,7 @@
 
 use crate::bounds::Bounds;
 use crate::certify::{self, Enclosure, Equation, Precision};
+use crate::coincidence;
 use crate::dual::Dual;
 use crate::frame::Frame;
 use crate::geometry::{Body, Hittable, MISS, Ray, Side, Span};
@@ -13,6 +14,7 @@ use crate::interval::Interval;
 use crate::number::Number;
 use crate::roots::{Method, taylor, twice};
 use crate::sight::{Line, Sight};
+use crate::twofold::Twofold;
 use glam::DVec3;
 
 /// A shape by its formula, in coordinates of its own.
@@ -69,8 +71,12 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
         Some(self.frame.bounds(&own))
     }
 
-    fn is_convex(&self) -> bool {
-        false
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        coincidence::touches(self, at, error)
+    }
+
+    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold> {
+        coincidence::distance(self, ray, distance)
     }
 
     fn is_two_sided(&self) -> bool {

@@ -24,6 +24,7 @@ pub mod chart;
 pub mod checkpoint;
 pub mod choice;
 pub mod cli;
+pub mod coincidence;
 pub mod compare;
 pub mod contract;
 pub mod cpu;

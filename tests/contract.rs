@@ -12,7 +12,7 @@ use tabray::certify::{Enclosure, Precision};
 use tabray::contract::{self, Breach, Promise};
 use tabray::entity::{Args, Entity, Kind, Refusal};
 use tabray::frame::Frame;
-use tabray::geometry::{Body, Bracket, Hittable, Light, MISS, Ray, Shader, Span};
+use tabray::geometry::{Body, Bracket, Hittable, Light, MISS, Ray, Shader, Side, Span};
 use tabray::implicit::Implicit;
 use tabray::material::{Material, Rgb};
 use tabray::number::Number;
@@ -99,6 +99,7 @@ enum Flaw {
     Proof,
     Bounds,
     Clear,
+    Untouched,
     Leaning,
     Flipping,
     Inward,
@@ -128,6 +129,10 @@ impl Ball {
 
     fn hit(&self, ray: &Ray, within: &Span) -> f64 {
         let mut roots = self.roots(ray, self.radius).to_vec();
+        if within.leaves == Some(Side::Inside) {
+            // The near root is where it starts.
+            roots.remove(0);
+        }
         if matches!(self.flaw, Flaw::Shell | Flaw::MeetsNothingAgain) {
             roots.extend(self.roots(ray, 2.0 * self.radius));
         }
@@ -177,6 +182,12 @@ impl Hittable for Ball {
     }
 
     fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
+        if within.leaves.is_none()
+            && within.origin_error > 0.0
+            && self.touches(ray.origin, within.origin_error)
+        {
+            return Bracket::UNKNOWN;
+        }
         let distance = self.distance(ray, within);
         Bracket::exactly(if self.flaw == Flaw::Bracket { distance + 1.0 } else { distance })
     }
@@ -186,8 +197,14 @@ impl Hittable for Ball {
         if self.flaw == Flaw::Quick { distance.next_up() } else { distance }
     }
 
-    fn is_convex(&self) -> bool {
-        !matches!(self.flaw, Flaw::MeetsItsStart | Flaw::MeetsNothingAgain)
+    fn meets_itself(&self, leaving: Side) -> bool {
+        leaving == Side::Inside || matches!(self.flaw, Flaw::MeetsItsStart | Flaw::MeetsNothingAgain)
+    }
+
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        let off = at.distance(self.center) - self.radius;
+        let on_the_shell = (off - self.radius).abs() <= error + 1e-12;
+        self.flaw != Flaw::Untouched && (off.abs() <= error + 1e-12 || on_the_shell)
     }
 
     fn certify(&self, _sight: &Sight, _precision: Precision) -> Enclosure {
@@ -241,7 +258,7 @@ const fn shape(name: &'static str, construct: fn(&Args) -> Result<Body, Refusal>
 
 static SOUND: Entity = shape("sound", |args| ball(args, Flaw::None));
 
-static BROKEN: [(Promise, Entity); 26] = [
+static BROKEN: [(Promise, Entity); 27] = [
     (Promise::DistanceIsInItsSpan, shape("nan", |args| ball(args, Flaw::Nan))),
     (Promise::DistanceIsInItsSpan, shape("no_span", |args| ball(args, Flaw::NoSpan))),
     (Promise::DistanceIsTheSameAgain, shape("restless", |args| ball(args, Flaw::Restless))),
@@ -254,10 +271,11 @@ static BROKEN: [(Promise, Entity); 26] = [
     (Promise::AgreesWithItsProof, shape("proof", |args| ball(args, Flaw::Proof))),
     (Promise::BoundsHoldHits, shape("bounds", |args| ball(args, Flaw::Bounds))),
     (Promise::BoundsHoldHits, shape("clear", |args| ball(args, Flaw::Clear))),
+    (Promise::HitIsTouched, shape("untouched", |args| ball(args, Flaw::Untouched))),
     (Promise::NormalIsUpright, shape("leaning", |args| ball(args, Flaw::Leaning))),
     (Promise::NormalsAgree, shape("flipping", |args| ball(args, Flaw::Flipping))),
     (Promise::NormalsPointOut, shape("inward", |args| ball(args, Flaw::Inward))),
-    (Promise::ConvexIsNotMetAgain, shape("shell", |args| ball(args, Flaw::Shell))),
+    (Promise::IsNotMetAgain, shape("shell", |args| ball(args, Flaw::Shell))),
     (Promise::StartIsNoHit, shape("meets_its_start", |args| ball(args, Flaw::MeetsItsStart))),
     (Promise::StartIsNoHit, shape("meets_nothing_again", |args| ball(args, Flaw::MeetsNothingAgain))),
     (Promise::IsMet, shape("invisible", |args| ball(args, Flaw::Invisible))),

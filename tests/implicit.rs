@@ -154,10 +154,6 @@ impl Hittable for Quartics {
         (at - RADIUS * at.reject_from_normalized(axis).normalize()).normalize()
     }
 
-    fn is_convex(&self) -> bool {
-        false
-    }
-
     fn is_two_sided(&self) -> bool {
         true
     }

@@ -8,10 +8,11 @@ use tabray::verify::{self, Verdict};
 use tempfile::TempDir;
 
 /// Scenes in which many pixels look at an edge on purpose, or at two surfaces in one place.
-const AT_EDGES: [&str; 9] = [
+const AT_EDGES: [&str; 10] = [
     "camera/edges-of-the-screen.ray", // two rectangles in one plane
     "plane/equal-distance.ray",       // two planes in one place
     "fplane/seam.ray",                // a column of pixels looks at the seam
+    "hard/rug.ray",                   // a rug on a floor
     "hard/seam.ray",
     "hard/light-on-the-surface.ray", // a row of pixels looks at the corner of floor and wall
     "hard/tangent.ray",              // a column of pixels looks at the rim

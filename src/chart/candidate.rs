@@ -5,7 +5,7 @@ use crate::accuracy::Accuracy;
 use crate::bounds::Bounds;
 use crate::certify::{Enclosure, Precision};
 use crate::choice::Choice;
-use crate::geometry::{Hittable, MISS, Ray, Span};
+use crate::geometry::{Hittable, MISS, Ray, Side, Span};
 use crate::model::{Model, Object};
 use crate::roots::Method;
 use crate::sight::Sight;
@@ -96,8 +96,12 @@ impl Hittable for By {
         self.shape.bounds()
     }
 
-    fn is_convex(&self) -> bool {
-        self.shape.is_convex()
+    fn meets_itself(&self, leaving: Side) -> bool {
+        self.shape.meets_itself(leaving)
+    }
+
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        self.shape.touches(at, error)
     }
 
     fn is_two_sided(&self) -> bool {

@@ -51,7 +51,7 @@ impl Packet {
     /// With the copies that fill it up.
     fn all(&self) -> Rays<'_> {
         let count = self.len.next_multiple_of(STEP);
-        Rays { origin: self.origin.view(count), dir: self.dir.view(count) }
+        Rays { origin: self.origin.view(count), dir: self.dir.view(count), origin_error: 0.0 }
     }
 
     /// The distances at which its rays first meet the object; [`MISS`] where they do not.

@@ -117,11 +117,11 @@ fn try_ray(tried: &Tried, draw: &mut Draw) -> Result<Option<DVec3>, Fault> {
     }
     if !tried.is_exact && met.normal.dot(tried.ray.dir).abs() >= GRAZING {
         tried.stands_upright(&met)?;
-        if tried.shape.is_convex() {
-            tried.is_convex(&met, draw)?;
-        } else {
-            tried.leaves(&met, draw)?;
+        if !tried.shape.meets_itself(Side::Outside) {
+            tried.is_convex(&met)?;
         }
+        tried.leaves(&met, draw)?;
+        tried.is_touched(&met, draw)?;
     }
     Ok(Some(met.at))
 }
@@ -181,7 +181,7 @@ impl Tried<'_> {
         let lanes = |of: DVec3| Vectors::<STEP> { x: [of.x; STEP], y: [of.y; STEP], z: [of.z; STEP] };
         let (origin, dir) = (lanes(ray.origin), lanes(ray.dir));
         for cpu in Cpu::all() {
-            let rays = Rays { origin: origin.view(STEP), dir: dir.view(STEP) };
+            let rays = Rays { origin: origin.view(STEP), dir: dir.view(STEP), origin_error: 0.0 };
             let (mut near, mut far) = ([MISS; STEP], [MISS; STEP]);
             let (mut met, mut doubt) = ([0; STEP], [0; STEP]);
             let nearest = Nearest { near: &mut near, far: &mut far, met: &mut met, doubt: &mut doubt };

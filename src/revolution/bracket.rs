@@ -118,7 +118,7 @@ impl Revolution {
                     to: if index + 1 == self.slabs.count() { f64::INFINITY } else { slab.to },
                     ..*slab
                 };
-                cross(cpu, lanes, &slab, self.height, rays.len());
+                cross(cpu, lanes, &slab, self.height, rays.origin_error, widest, rays.len());
             }
         }
         leave(cpu, lanes, rays.len());
@@ -128,7 +128,7 @@ impl Revolution {
     pub(super) fn distance(&self, frame: &Frame, ray: &Ray, within: &Span) -> f64 {
         let splat = |v: DVec3| Vectors::<STEP> { x: [v.x; STEP], y: [v.y; STEP], z: [v.z; STEP] };
         let (origin, dir) = (splat(ray.origin), splat(ray.dir));
-        let rays = Rays { origin: origin.view(STEP), dir: dir.view(STEP) };
+        let rays = Rays { origin: origin.view(STEP), dir: dir.view(STEP), origin_error: 0.0 };
         let sides = within.leaves.map(|side| [side; STEP]);
         let sides = sides.as_ref().map(|sides| &sides[..]);
         let mut lanes = Lanes::none();
@@ -208,7 +208,7 @@ kernels! {
     }
 
     /// Compares the brackets with those of a slab.
-    fn cross(lanes: &mut Lanes, slab: &Slab, height: f64, count: usize) {
+    fn cross(lanes: &mut Lanes, slab: &Slab, height: f64, origin_error: f64, widest: f64, count: usize) {
         let count = count.min(MOST);
         let mut is_close = [0; MOST];
         let mut any = 0;
@@ -247,7 +247,8 @@ kernels! {
             let side = if is_start { 1.0_f64.copysign(at_start) } else { lanes.side[lane] };
             // In the shell it may be either; and rays that rise and that fall go through slabs in one order, so that
             // some come to a slab before their side is known.
-            let is_side_unknown = (is_start & (at_start.abs() <= error)) | (side * at_start < -error);
+            let start_error = error + 4.0 * origin_error * (widest + slope);
+            let is_side_unknown = (is_start & (at_start.abs() <= start_error)) | (side * at_start < -error);
             let (a, b, c) = (side * a, side * b, side * c);
             // A crossing to the other side falls: begin where it can.
             let rises = 2.0 * (a * from + b) - slope_error - rounding;

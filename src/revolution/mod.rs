@@ -84,6 +84,14 @@ impl Revolution {
         }
     }
 
+    /// Whether it comes into the box of so many units around a point. Beyond the surface's ends the profile may be
+    /// anything, and is not asked.
+    pub fn touches(&self, at: DVec3, error: f64) -> bool {
+        let [x, y, z] = at.to_array().map(|place| Interval { low: place - error, high: place + error });
+        let y = Interval { low: y.low.max(0.0), high: y.high.min(self.height) };
+        y.low <= y.high && self.value([x, y, z]).has_zero()
+    }
+
     /// A box around it.
     pub fn bounds(&self) -> Bounds {
         let widest = self.slabs.widest();

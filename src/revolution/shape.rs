@@ -4,6 +4,7 @@ use super::bracket::{Lanes, MOST};
 use super::{Classic, Revolution, normal};
 use crate::bounds::Bounds;
 use crate::certify::{self, Enclosure, Equation, Precision};
+use crate::coincidence;
 use crate::cpu::Cpu;
 use crate::frame::Frame;
 use crate::geometry::{Hittable, Ray, Side, Span};
@@ -12,6 +13,7 @@ use crate::number::Number;
 use crate::packet::{self, Nearest, Rays, parts};
 use crate::roots::Method;
 use crate::sight::{Line, Sight};
+use crate::twofold::Twofold;
 use glam::DVec3;
 
 /// A surface around the y axis of a frame.
@@ -49,6 +51,10 @@ impl Hittable for InFrame<Classic> {
         (self.frame.axes * self.surface.normal(self.frame.point(at))).normalize()
     }
 
+    fn meets_itself(&self, _leaving: Side) -> bool {
+        false
+    }
+
     fn method(&self) -> String {
         "bisection to 1e-4, from the ray's origin to its point closest to the axis".to_owned()
     }
@@ -75,8 +81,14 @@ impl Hittable for InFrame<Revolution> {
         Some(self.frame.bounds(&self.surface.bounds()))
     }
 
-    fn is_convex(&self) -> bool {
-        false
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        // Rounding moves the point once more on its way into the frame.
+        let moved = 8.0 * f64::EPSILON * (at - self.frame.origin).abs().max_element();
+        self.surface.touches(self.frame.point(at), error + moved)
+    }
+
+    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold> {
+        coincidence::distance(self, ray, distance)
     }
 
     fn is_two_sided(&self) -> bool {

@@ -122,7 +122,7 @@ impl Revolution {
         // The piece's own ends may be crossings: they are where shells begin and end.
         let (from, to) = (from.next_down(), to.next_up());
         let line = OnRay { surface: self, local };
-        let all = Span { near: f64::NEG_INFINITY, far: f64::INFINITY, leaves: wanted };
+        let all = Span { near: f64::NEG_INFINITY, leaves: wanted, ..Span::RAY };
         taylor::first_root(&line, from..to, 0.0, &all, 4.0 * local.tolerance())
     }
 

@@ -2,6 +2,7 @@
 
 use super::MAX_RAYS;
 use super::room::{Vectors, pick, room};
+use super::search::Start;
 use super::shade::Surface;
 use crate::camera::{self, Camera};
 use crate::cpu::Cpu;
@@ -27,6 +28,10 @@ pub(super) struct Group {
     /// The object that they leave, by its index, and on which side of it each goes.
     pub leaves: Option<usize>,
     pub sides: Vec<Side>,
+    /// How far the origin of each may be from the point that it stands for, in world units, and the most of any; empty
+    /// and 0 where they come from the viewer.
+    pub errors: Vec<f64>,
+    pub most_error: f64,
 }
 
 /// Of a group's rays, by their lanes.
@@ -37,6 +42,9 @@ pub(super) struct Onward<'o> {
     /// The object that they leave.
     pub leaves: usize,
     pub sides: &'o [Side],
+    /// How far those points may be from where they should be.
+    pub errors: &'o [f64],
+    pub most_error: f64,
 }
 
 impl Group {
@@ -74,6 +82,8 @@ impl Group {
             self.camera.clear();
         }
         self.leaves = None;
+        self.errors.clear();
+        self.most_error = 0.0;
     }
 
     /// How many rays there are with the copies that fill the arrays up.
@@ -85,7 +95,20 @@ impl Group {
     #[inline(always)]
     pub fn rays(&self) -> Rays<'_> {
         let count = self.padded();
-        Rays { origin: self.origin.view(count), dir: self.dir.view(count) }
+        let origin_error = self.most_error;
+        Rays { origin: self.origin.view(count), dir: self.dir.view(count), origin_error }
+    }
+
+    /// One of them.
+    #[inline(always)]
+    pub fn start(&self, lane: usize) -> Start {
+        Start { ray: self.rays().get(lane), error: self.errors.get(lane).copied().unwrap_or(0.0) }
+    }
+
+    /// The object that they leave, and the sides.
+    #[inline(always)]
+    pub fn left(&self) -> Option<(usize, &[Side])> {
+        self.leaves.map(|object| (object, &self.sides[..self.padded()]))
     }
 
     /// The sides of an object that they leave, if that is the one.
@@ -102,6 +125,8 @@ impl Group {
         pick(&mut self.budget, &from.budget, lanes, count);
         pick(&mut self.camera, &from.camera, lanes, count);
         self.leaves = from.leaves;
+        pick(&mut self.errors, &from.errors, lanes, count);
+        self.most_error = from.most_error;
         if self.leaves.is_some() {
             self.origin.pick(&from.origin, lanes, count);
             pick(&mut self.travelled, &from.travelled, lanes, count);
@@ -124,6 +149,8 @@ impl Group {
         pick(&mut self.camera, &from.camera, lanes, count);
         self.leaves = Some(onward.leaves);
         pick(&mut self.sides, onward.sides, lanes, count);
+        pick(&mut self.errors, onward.errors, lanes, count);
+        self.most_error = onward.most_error;
     }
 
     /// Becomes all the rays that go on, with the arrays of those that they have been until now, and of where they met an
@@ -137,6 +164,8 @@ impl Group {
         swap(&mut self.camera, &mut from.camera);
         self.leaves = Some(surface.index);
         swap(&mut self.sides, &mut surface.sides);
+        swap(&mut self.errors, &mut surface.errors);
+        self.most_error = surface.most_error;
     }
 
     /// What some of its rays, which have gone on as others, have cost.

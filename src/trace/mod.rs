@@ -14,6 +14,7 @@ mod search;
 mod shade;
 mod shadow;
 
+use crate::accuracy::Accuracy;
 use crate::cpu::Cpu;
 use crate::geometry::Ray;
 use crate::material::Rgb;
@@ -146,6 +147,11 @@ impl<'m, 'w, W: Watch> Tracer<'m, 'w, W> {
             self.watch.see(Event::Begin(Purpose::Primary));
         }
         self.trace(group, colours);
+    }
+
+    /// Whether the notes' own methods are asked for.
+    fn is_classic(&self) -> bool {
+        self.model.camera.value.accuracy == Accuracy::Classic
     }
 
     /// The most rays of a packet that goes on from the present one.

@@ -5,6 +5,7 @@ use super::light::{self, Colours};
 use super::room::{Vectors, list, room};
 use super::search;
 use super::{MAX_DIST, Tracer};
+use crate::coincidence;
 use crate::geometry::Side;
 use crate::landing::Landing;
 use crate::material::{Look, Rgb};
@@ -25,6 +26,10 @@ pub(super) struct Surface {
     pub sides: Vec<Side>,
     /// How far the light has come from each.
     pub travelled: Vec<f64>,
+    /// How far each may be from where it should be, in world units, and the most of any; empty and 0 where that makes no
+    /// difference.
+    pub errors: Vec<f64>,
+    pub most_error: f64,
     /// What all answer to light, where that is the same.
     pub look: Option<Look>,
     /// Else what each mirrors.
@@ -34,6 +39,12 @@ pub(super) struct Surface {
 }
 
 impl Surface {
+    /// Rays in these directions from its places.
+    pub fn onward<'o>(&'o self, dir: &'o Vectors) -> Onward<'o> {
+        let Self { index, points, sides, travelled, errors, most_error, .. } = self;
+        Onward { points, dir, travelled, leaves: *index, sides, errors, most_error: *most_error }
+    }
+
     fn mirrors(&self, count: usize) -> Colours<'_> {
         match self.look {
             Some(look) => Colours::Even(look.specular),
@@ -84,6 +95,15 @@ impl<W: Watch> Tracer<'_, '_, W> {
             travelled,
         };
         shape.land(cpu, group.rays(), distances, landing);
+        surface.most_error = 0.0;
+        if self.is_classic() {
+            surface.errors.clear();
+        } else {
+            let normals = surface.normals.view(count);
+            let errors = room(&mut surface.errors, count);
+            surface.most_error =
+                coincidence::errors(cpu, group.rays(), distances, normals, shape.reach(), errors);
+        }
         let points = surface.points.view(count);
         surface.look = shader.even(material);
         surface.is_mirror = match surface.look {
@@ -168,8 +188,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
             self.watch.see(Event::Colour(DVec3::ZERO));
         }
         self.watch.count(Count::Rays(kind, lanes.len()));
-        let Surface { points, travelled, sides, index, .. } = &*surface;
-        let leaving = Onward { points, dir, travelled, leaves: *index, sides };
+        let leaving = surface.onward(dir);
         behind.fill(group.padded(), DVec3::ZERO);
         let most = self.most();
         self.depth += 1;

@@ -21,6 +21,7 @@ mod planes;
 mod profiles;
 mod revolved;
 mod spheres;
+mod together;
 
 use common::{model, registry};
 use glam::{DVec3, dvec3};
