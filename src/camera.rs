@@ -48,13 +48,11 @@ impl Camera {
     /// outermost pixels lie on the edges of the screen.
     #[inline(always)]
     pub fn ray(&self, x: f64, y: f64) -> Ray {
-        let [width, height] = self.pixels;
-        let on_screen =
-            DVec3::new(fraction(x, width) * self.screen.x, fraction(y, height) * self.screen.y, 0.0);
-        Ray { origin: self.viewpoint, dir: (on_screen - self.viewpoint).normalize() }
+        self.sight(x, y).ray()
     }
 
-    /// That ray before anything is rounded.
+    /// That ray before anything is rounded. A single pixel looks through the middle.
+    #[inline(always)]
     pub fn sight(&self, x: f64, y: f64) -> Sight {
         let place = |at: f64, pixels: usize| if pixels > 1 { (at, (pixels - 1) as f64) } else { (1.0, 2.0) };
         let [width, height] = self.pixels;
@@ -72,10 +70,4 @@ kernels! {
             out.set(lane, camera.ray(x[lane], y[lane]).dir);
         }
     }
-}
-
-/// How far across a row of pixels one of them is; a single pixel looks through the middle.
-#[inline(always)]
-fn fraction(at: f64, pixels: usize) -> f64 {
-    if pixels > 1 { at / (pixels - 1) as f64 } else { 0.5 }
 }

@@ -108,6 +108,12 @@ impl Bracket {
         Self { near: distance, far: distance }
     }
 
+    /// Whether it leaves open if there is a hit.
+    #[inline(always)]
+    pub fn is_doubtful(&self) -> bool {
+        (self.near < MISS) & (self.far == MISS)
+    }
+
     /// Of a ray of which plain arithmetic tells nothing.
     pub const UNKNOWN: Self = Self { near: 0.0, far: MISS };
 }

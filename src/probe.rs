@@ -26,7 +26,7 @@ pub fn pixel(model: &Model, x: usize, y: usize, out: &mut impl Write) -> io::Res
     }
     let mut probe =
         Probe { model, out, outcome: Ok(()), depth: 0, search: None, light: None, held: String::new() };
-    let colour = trace::watch_colour(model, &camera.ray(x as f64, y as f64), None, &mut probe);
+    let colour = trace::watch_colour(model, &camera.sight(x as f64, y as f64), None, &mut probe);
     probe.outcome?;
     writeln!(out)?;
     conclude(colour, out)?;

@@ -32,6 +32,7 @@ pub struct Line<N> {
 impl Sight {
     /// The ray from a viewpoint through a place of a screen, `at / last` of its width and height from its lower left
     /// corner.
+    #[inline(always)]
     pub fn through(viewpoint: DVec3, at: DVec2, last: DVec2, size: DVec2) -> Self {
         Self { origin: viewpoint, toward: Toward::Screen { at, last, size } }
     }
@@ -39,6 +40,16 @@ impl Sight {
     /// A ray taken for exactly what its numbers are, the length of its direction included.
     pub fn along(ray: &Ray) -> Self {
         Self { origin: ray.origin, toward: Toward::Direction(ray.dir) }
+    }
+
+    /// The ray, rounded.
+    #[inline(always)]
+    pub fn ray(&self) -> Ray {
+        let dir = match self.toward {
+            Toward::Direction(dir) => dir,
+            Toward::Screen { at, last, size } => ((at / last * size).extend(0.0) - self.origin).normalize(),
+        };
+        Ray { origin: self.origin, dir }
     }
 
     /// The line that it runs along, from t = 0 on.

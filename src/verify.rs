@@ -34,9 +34,9 @@ enum First {
 
 /// The verdict on a pixel, counted from the left and from the bottom.
 pub fn pixel(model: &Model, x: usize, y: usize) -> Verdict {
-    let camera = &model.camera.value;
-    let found = trace::first_hit(model, &camera.ray(x as f64, y as f64)).map(|hit| hit.index);
-    match first_of(model, &camera.sight(x as f64, y as f64)) {
+    let sight = model.camera.value.sight(x as f64, y as f64);
+    let found = trace::first_hit(model, &sight).map(|hit| hit.index);
+    match first_of(model, &sight) {
         First::Certain(first) if first == found => Verdict::Proven,
         First::OneOf(any) if any.contains(&found) => Verdict::Tie,
         _ => Verdict::Contradicted,

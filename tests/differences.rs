@@ -43,7 +43,7 @@ impl Scene {
     /// The distance of what the first pixel shows.
     fn distance(&self, accuracy: Accuracy) -> f64 {
         let model = self.model(accuracy);
-        let hit = trace::first_hit(&model, &model.camera.value.ray(0.0, 0.0));
+        let hit = trace::first_hit(&model, &model.camera.value.sight(0.0, 0.0));
         hit.map_or(MISS, |hit| hit.distance)
     }
 

@@ -72,7 +72,7 @@ impl Packet {
             let ray = camera.ray(x as f64, y as f64);
             view.origin.set(lane, ray.origin);
             view.dir.set(lane, ray.dir);
-            hits.extend(trace::first_hit(model, &ray).map(|hit| (ray, hit)));
+            hits.extend(trace::first_hit(model, &camera.sight(x as f64, y as f64)).map(|hit| (ray, hit)));
         }
         let count = |object| hits.iter().filter(|(_, hit)| hit.index == object).count();
         let most = hits.iter().map(|(_, hit)| hit.index).max_by_key(|object| (count(*object), *object));

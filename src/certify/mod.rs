@@ -8,6 +8,7 @@
 mod closed;
 mod search;
 
+use crate::geometry::Hittable;
 use crate::interval::{Float, Interval, Wide};
 use crate::number::Number;
 use crate::sight::{Line, Sight};
@@ -29,6 +30,15 @@ pub enum Enclosure {
 impl Enclosure {
     /// Of a shape that says nothing.
     pub const UNKNOWN: Self = Self::Doubtful(f256::ZERO);
+}
+
+/// Whether a ray meets one shape before another, with 237 bits; nothing where these do not tell.
+pub fn is_before(one: &dyn Hittable, other: &dyn Hittable, sight: &Sight) -> Option<bool> {
+    match [one, other].map(|shape| shape.certify(sight, Precision::Octuple)) {
+        [Enclosure::Hits(one), Enclosure::Hits(other)] if one.high < other.low => Some(true),
+        [Enclosure::Hits(one), Enclosure::Hits(other)] if other.high < one.low => Some(false),
+        _ => None,
+    }
 }
 
 /// A distance in lengths of a sight's direction, in world units: the middle of what it may be.

@@ -80,10 +80,10 @@ fn slabs_are_what_they_say_of_any_profile() {
             if y == slab.from || y == slab.to {
                 continue;
             }
-            let radius = surface.profile.at(Interval::constant(y));
+            let radius = surface.profile.at(Interval::<f64>::constant(y));
             assert!(!slab.is_void || radius.low <= 0.0, "{profile} is lost at {y:?}: {radius:?}");
             assert!(slab.is_void || radius.high >= 0.0, "{profile} is invented at {y:?}: {radius:?}");
-            let square = surface.square.at(Interval::constant(y));
+            let square = surface.square.at(Interval::<f64>::constant(y));
             // Exactly at a pole a formula has no value.
             if !slab.is_void && square.is_bounded() {
                 let parabola = slab.parabola(y - slab.middle);

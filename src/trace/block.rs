@@ -111,7 +111,8 @@ impl<W: Watch> Block<'_, '_, '_, W> {
                 if doubt[lane] != 0 {
                     let leaves = sides.map(|sides| sides[lane]);
                     let error = errors.get(self.part.start + lane).copied().unwrap_or(0.0);
-                    let distance = exact(shape, &Start { ray: rays.get(lane), error }, leaves, ends[lane]);
+                    let distance =
+                        exact(shape, &Start { ray: rays.get(lane), error, sight: None }, leaves, ends[lane]);
                     blocked[lane] |= u64::from(distance < ends[lane]);
                 }
             }

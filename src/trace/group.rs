@@ -6,8 +6,9 @@ use super::search::Start;
 use super::shade::Surface;
 use crate::camera::{self, Camera};
 use crate::cpu::Cpu;
-use crate::geometry::{Ray, Side};
+use crate::geometry::Side;
 use crate::packet::{Rays, STEP};
+use crate::sight::Sight;
 use glam::DVec3;
 use std::array;
 use std::mem::swap;
@@ -23,6 +24,11 @@ pub(super) struct Group {
     pub travelled: Vec<f64>,
     /// The rays that each may still cost.
     pub budget: Vec<u32>,
+    /// The one ray from the viewer, before anything was rounded.
+    pub sight: Option<Sight>,
+    /// Of several rays from the viewer, the x and y of the places of the picture that they look through, in pixels; empty
+    /// of rays that have been picked from others or go on.
+    pub places: [Vec<f64>; 2],
     /// The camera ray that each comes from; empty where no pixel has more than one.
     pub camera: Vec<u8>,
     /// The object that they leave, by its index, and on which side of it each goes.
@@ -48,11 +54,12 @@ pub(super) struct Onward<'o> {
 }
 
 impl Group {
-    /// One ray from a viewer.
-    pub fn primary(ray: &Ray) -> Self {
-        let mut group = Self::default();
+    /// One ray from the viewer.
+    pub fn primary(sight: &Sight) -> Self {
+        let (mut group, ray) = (Self::default(), sight.ray());
         group.begin(ray.origin, 1, true);
         group.dir.fill(STEP, ray.dir);
+        group.sight = Some(*sight);
         group
     }
 
@@ -64,6 +71,8 @@ impl Group {
         x[len..count].fill(last.0);
         y[len..count].fill(last.1);
         camera::look(cpu, camera, &x[..count], &y[..count], self.dir.room(count));
+        room(&mut self.places[0], count).copy_from_slice(&x[..count]);
+        room(&mut self.places[1], count).copy_from_slice(&y[..count]);
     }
 
     /// Rays from a viewpoint, with their directions yet to be given.
@@ -86,6 +95,12 @@ impl Group {
         self.most_error = 0.0;
     }
 
+    /// For rays whose numbers are only known as they are.
+    fn forget_sights(&mut self) {
+        self.sight = None;
+        self.places.iter_mut().for_each(Vec::clear);
+    }
+
     /// How many rays there are with the copies that fill the arrays up.
     #[inline(always)]
     pub fn padded(&self) -> usize {
@@ -101,8 +116,12 @@ impl Group {
 
     /// One of them.
     #[inline(always)]
-    pub fn start(&self, lane: usize) -> Start {
-        Start { ray: self.rays().get(lane), error: self.errors.get(lane).copied().unwrap_or(0.0) }
+    pub fn start(&self, camera: &Camera, lane: usize) -> Start {
+        let error = self.errors.get(lane).copied().unwrap_or(0.0);
+        let [x, y] = &self.places;
+        let place = x.get(lane).zip(y.get(lane));
+        let sight = place.map_or(self.sight, |(x, y)| Some(camera.sight(*x, *y)));
+        Start { ray: self.rays().get(lane), error, sight }
     }
 
     /// The object that they leave, and the sides.
@@ -120,6 +139,7 @@ impl Group {
     /// Becomes some rays of another group.
     pub fn pick(&mut self, from: &Self, lanes: &[u8]) {
         self.len = lanes.len();
+        self.forget_sights();
         let count = self.padded();
         self.dir.pick(&from.dir, lanes, count);
         pick(&mut self.budget, &from.budget, lanes, count);
@@ -141,6 +161,7 @@ impl Group {
     /// Becomes rays that go on where those of another group have met an object.
     pub fn go_on(&mut self, from: &Self, onward: &Onward, lanes: &[u8]) {
         self.len = lanes.len();
+        self.forget_sights();
         let count = self.padded();
         self.origin.pick(onward.points, lanes, count);
         self.dir.pick(onward.dir, lanes, count);
@@ -157,6 +178,7 @@ impl Group {
     /// object.
     pub fn take(&mut self, from: &mut Self, surface: &mut Surface, dir: &mut Vectors) {
         self.len = from.len;
+        self.forget_sights();
         swap(&mut self.origin, &mut surface.points);
         swap(&mut self.dir, dir);
         swap(&mut self.travelled, &mut surface.travelled);

@@ -16,12 +16,12 @@ mod shadow;
 
 use crate::accuracy::Accuracy;
 use crate::cpu::Cpu;
-use crate::geometry::Ray;
 use crate::material::Rgb;
 use crate::model::Model;
 use crate::packet::{View, WIDE};
 use crate::plan::Plan;
 use crate::sample::Sample;
+use crate::sight::Sight;
 use crate::watch::{Count, Event, Hit, Kind, Purpose, Watch};
 use group::Group;
 pub(crate) use room::Rooms;
@@ -50,34 +50,36 @@ pub fn pixel(model: &Model, x: usize, y: usize) -> Rgb {
 /// As [`pixel`], and `watch` sees how it comes about.
 pub fn watch_pixel(model: &Model, x: usize, y: usize, watch: &mut impl Watch) -> Rgb {
     let camera = &model.camera.value;
-    let colours = camera.rays(x, y).map(|(ray, sample)| watch_colour(model, &ray, sample, watch));
+    let colours = camera
+        .places(x, y)
+        .map(|(place, sample)| watch_colour(model, &camera.sight(place.x, place.y), sample, watch));
     colours.sum::<Rgb>() / f64::from(camera.samples)
 }
 
-/// The colour that a ray sees, before it is clamped. Lights with a size are met where `sample` says, or in
-/// their middle.
-pub fn colour(model: &Model, ray: &Ray, sample: Option<Sample>) -> Rgb {
-    watch_colour(model, ray, sample, &mut ())
+/// The colour that a ray sees, before it is clamped. Lights with a size are met where `sample` says, or in their middle.
+pub fn colour(model: &Model, sight: &Sight, sample: Option<Sample>) -> Rgb {
+    watch_colour(model, sight, sample, &mut ())
 }
 
 /// As [`colour`], and `watch` sees how it comes about.
-pub fn watch_colour(model: &Model, ray: &Ray, sample: Option<Sample>, watch: &mut impl Watch) -> Rgb {
+pub fn watch_colour(model: &Model, sight: &Sight, sample: Option<Sample>, watch: &mut impl Watch) -> Rgb {
     let (mut rooms, mut colours) = (Rooms::default(), Vectors::default());
     rooms.samples.extend(sample);
-    let mut tracer = Tracer::new(model, Cpu::best(), &mut rooms, watch);
-    tracer.colours(&mut Group::primary(ray), &mut colours);
+    let mut group = Group::primary(sight);
+    Tracer::new(model, Cpu::best(), &mut rooms, watch).colours(&mut group, &mut colours);
     colours.get(0)
 }
 
 /// What a ray from the viewer meets first.
-pub fn first_hit<'m>(model: &'m Model, ray: &Ray) -> Option<Hit<'m>> {
+pub fn first_hit<'m>(model: &'m Model, sight: &Sight) -> Option<Hit<'m>> {
     let (mut rooms, mut nobody) = (Rooms::default(), ());
     let mut tracer = Tracer::new(model, Cpu::best(), &mut rooms, &mut nobody);
-    let (mut group, mut found, mut distances) = (Group::primary(ray), Found::default(), Vec::new());
+    let mut group = Group::primary(sight);
+    let (mut found, mut distances) = (Found::default(), Vec::new());
     tracer.closest(&mut group, None, &mut found);
     let object = (found.met[0] as usize).checked_sub(1)?;
     tracer.settle(&group, (&found.near, &found.far), object, &mut distances);
-    let distance = distances[0];
+    let (distance, ray) = (distances[0], group.rays().get(0));
     Some(Hit { index: object, object: &model.objects[object], distance, point: ray.at(distance) })
 }
 

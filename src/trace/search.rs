@@ -5,10 +5,12 @@ use super::group::Group;
 use super::room::{Vectors, room};
 use crate::bounds::{self, Bounds};
 use crate::bundles::{self, PART};
+use crate::certify::{self, Enclosure, Precision};
 use crate::coincidence;
 use crate::cpu::{Cpu, kernels};
 use crate::geometry::{Hittable, MISS, Ray, Side, Span};
 use crate::packet::{Nearest, Rays, parts};
+use crate::sight::Sight;
 use crate::tree::Visitor;
 use crate::watch::{Count, Event, Hit, Reason, Watch};
 use std::mem::take;
@@ -69,7 +71,7 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
 
     /// What one ray meets first, with all that leads to it told.
     fn closest_seen(&mut self, group: &Group, found: &mut Found) {
-        let start = group.start(0);
+        let start = group.start(&self.model.camera.value, 0);
         self.watch.see(Event::Search(&start.ray));
         for index in 0..self.model.objects.len() {
             let shape = &*self.model.objects[index].shape;
@@ -114,7 +116,8 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
         }
         let shape = |index: usize| &*self.model.objects[index].shape;
         let (one, other) = ((shape(index), distance), (shape(rival), far));
-        let is_before = coincidence::is_before(&start.ray, start.error, one, other);
+        let is_before = coincidence::is_before(&start.ray, start.error, one, other)
+            .or_else(|| certify::is_before(one.0, other.0, start.sight.as_ref()?));
         is_before.unwrap_or(index < rival)
     }
 
@@ -137,7 +140,8 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
                 for lane in 0..len {
                     if distances[lane].is_nan() {
                         let leaves = sides.map(|sides| sides[lane]);
-                        distances[lane] = exact(shape, &group.start(lane), leaves, MISS);
+                        distances[lane] =
+                            exact(shape, &group.start(&self.model.camera.value, lane), leaves, MISS);
                     }
                 }
             }
@@ -154,10 +158,13 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
     }
 }
 
-/// A ray, and how far its origin may be from the point that it stands for, in world units.
+/// A ray, and what is known of the one that it stands for.
 pub(super) struct Start {
     pub ray: Ray,
+    /// How far its origin may be from the point that it stands for, in world units.
     pub error: f64,
+    /// The ray before anything was rounded, where it comes from the viewer.
+    pub sight: Option<Sight>,
 }
 
 impl Start {
@@ -173,9 +180,30 @@ impl Start {
 /// A shape's exact distance on one ray, which leaves it on a side if it is the object that the packet leaves.
 pub(super) fn exact(shape: &dyn Hittable, start: &Start, leaves: Option<Side>, far: f64) -> f64 {
     match start.leaves(shape, leaves) {
-        Some(side) if !shape.meets_itself(side) => MISS,
-        leaves => shape.distance(&start.ray, &Span { far, leaves, ..Span::RAY }),
+        Some(side) if !shape.meets_itself(side) => return MISS,
+        None => {}
+        leaves => return shape.distance(&start.ray, &Span { far, leaves, ..Span::RAY }),
     }
+    let distance = shape.distance(&start.ray, &Span { far, ..Span::RAY });
+    // Where what was rounded of the ray may decide whether it meets the shape, the ray does that was not rounded.
+    match &start.sight {
+        Some(sight) if shape.bracket(&start.ray, &Span::RAY).is_doubtful() => match proven(shape, sight) {
+            Some(right) if (right == MISS) != (distance == MISS) => right,
+            _ => distance,
+        },
+        _ => distance,
+    }
+}
+
+/// The distance of what is proven of a ray's first hit, or [`MISS`]; nothing where 237 bits do not tell.
+fn proven(shape: &dyn Hittable, sight: &Sight) -> Option<f64> {
+    [Precision::Double, Precision::Octuple].into_iter().find_map(|precision| {
+        match shape.certify(sight, precision) {
+            Enclosure::Misses => Some(MISS),
+            Enclosure::Hits(at) => Some(certify::in_world_units(at, sight).high),
+            Enclosure::Doubtful(_) => None,
+        }
+    })
 }
 
 kernels! {
@@ -289,7 +317,7 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
     /// Which of two objects one ray meets first, where brackets do not tell.
     fn decide(&mut self, lane: usize, index: usize, leaves: Option<Side>) {
         let objects = &self.tracer.model.objects;
-        let start = self.group.start(lane);
+        let start = self.group.start(&self.tracer.model.camera.value, lane);
         let distance = exact(&*objects[index].shape, &start, leaves, MISS);
         if distance == MISS {
             return;

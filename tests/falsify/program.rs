@@ -40,7 +40,7 @@ impl Program {
 
     pub fn find(&self, [x, y]: [usize; 2]) -> Found {
         let ray = self.0.camera.value.ray(x as f64, y as f64);
-        let hit = trace::first_hit(&self.0, &ray);
+        let hit = trace::first_hit(&self.0, &self.0.camera.value.sight(x as f64, y as f64));
         Found {
             first: hit.as_ref().map(|hit| hit.index),
             distance: hit.map_or(f64::INFINITY, |hit| hit.distance),
