@@ -88,6 +88,8 @@ pub(crate) struct Tracer<'m, 'w, W> {
     model: &'m Model,
     plan: &'m Plan,
     cpu: Cpu,
+    /// How far along an axis the viewer is from the world's origin, in world units.
+    viewer: f64,
     /// How many mirrors and panes of glass the present packet has behind it.
     depth: usize,
     rooms: &'w mut Rooms,
@@ -96,7 +98,7 @@ pub(crate) struct Tracer<'m, 'w, W> {
 
 impl<'m, 'w, W: Watch> Tracer<'m, 'w, W> {
     pub(crate) fn new(model: &'m Model, cpu: Cpu, rooms: &'w mut Rooms, watch: &'w mut W) -> Self {
-        Self { model, plan: model.plan(), cpu, depth: 0, rooms, watch }
+        Self { model, plan: model.plan(), cpu, viewer: 0.0, depth: 0, rooms, watch }
     }
 
     /// The colours of some pixels, up to [`WIDE`] rays of which are traced together.
@@ -145,6 +147,7 @@ impl<'m, 'w, W: Watch> Tracer<'m, 'w, W> {
     /// The colours that rays from the viewer see.
     fn colours(&mut self, group: &mut Group, colours: &mut Vectors) {
         self.watch.count(Count::Rays(Kind::Primary, group.len));
+        self.viewer = group.origin.get(0).abs().max_element();
         if W::SEES {
             self.watch.see(Event::Begin(Purpose::Primary));
         }

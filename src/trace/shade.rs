@@ -99,10 +99,11 @@ impl<W: Watch> Tracer<'_, '_, W> {
         if self.is_classic() {
             surface.errors.clear();
         } else {
-            let normals = surface.normals.view(count);
+            let reach = shape.reach() + self.viewer;
+            let (dir, normals) = (group.dir.view(count), surface.normals.view(count));
             let errors = room(&mut surface.errors, count);
             surface.most_error =
-                coincidence::errors(cpu, group.rays(), distances, normals, shape.reach(), errors);
+                coincidence::errors(cpu, dir, normals, &surface.travelled[..count], reach, errors);
         }
         let points = surface.points.view(count);
         surface.look = shader.even(material);
