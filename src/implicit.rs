@@ -162,8 +162,8 @@ impl<T: Implicit> Line for OnRay<'_, T> {
     }
 
     /// Twice the precision, from the ray in the world, tells nearly all touches from misses.
-    fn undecided(&self, piece: Interval, leaves: Option<Side>) -> Option<f64> {
+    fn undecided(&self, piece: Interval, leaves: Option<Side>, hidden: f64) -> Option<f64> {
         let exact = self.shape.frame.exactly(self.ray, self.closest);
-        twice::first_root(|t| self.shape.formula.value(exact.at(t)), piece, leaves)
+        twice::first_root(|t| self.shape.formula.value(exact.at(t)), piece, leaves, hidden)
     }
 }

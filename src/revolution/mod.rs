@@ -180,14 +180,14 @@ impl Line for OnRay<'_> {
 
     /// Twice the precision, from the ray in the world and the axis as the scene has it, tells nearly all touches from
     /// misses.
-    fn undecided(&self, piece: Interval, leaves: Option<Side>) -> Option<f64> {
+    fn undecided(&self, piece: Interval, leaves: Option<Side>, hidden: f64) -> Option<f64> {
         let exact = self.local.frame.exactly(&self.local.ray, self.local.base);
         let outside = |along: Dual<Twofold>| {
             let [x, y, z] = exact.at(along);
             let height = y.max(Dual::constant(0.0)).min(Dual::constant(self.surface.height));
             x.powi(2) + z.powi(2) - self.surface.square.at(height)
         };
-        twice::first_root(outside, piece, leaves)
+        twice::first_root(outside, piece, leaves, hidden)
     }
 }
 
