@@ -4,7 +4,9 @@
 //! Each is cut, when it is made, into slabs in which the profile's square is a parabola but for a proven error
 //! (`slabs`). A ray meets the quadrics of revolution around those in closed form, which brackets its first hit or
 //! proves that there is none (`walk`); where it grazes the error's shell, bounds of the second derivative decide
-//! ([`taylor`](crate::roots::taylor)). No hit is lost or invented, whatever the profile, and nothing has to be tuned.
+//! ([`taylor`](crate::roots::taylor)), and where rounding hides what they say, twice the precision
+//! ([`twice`](crate::roots::twice)). Nothing has to be tuned. A profile of which all that cannot be proven within a
+//! stated number of operations is refused, with the reason ([`NoSurface`]).
 
 mod bracket;
 mod budget;
@@ -65,7 +67,7 @@ impl Revolution {
     /// The surface of a profile.
     ///
     /// # Errors
-    /// Where the profile has no bound, and where it is nowhere above 0.
+    /// Where the profile has no bound, where it is nowhere above 0, and where it takes too long to prove what it is.
     pub fn new(profile: &Formula, height: f64, finish: Finish) -> Result<Self, NoSurface> {
         let square = profile.squared();
         let slabs = Slabs::new(profile, &square, height)?;
