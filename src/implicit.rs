@@ -7,7 +7,7 @@
 use crate::bounds::Bounds;
 use crate::certify::{self, Enclosure, Equation};
 use crate::dual::Dual;
-use crate::frame::Frame;
+use crate::frame::{BLUR, Frame};
 use crate::geometry::{Body, Hittable, MISS, Ray, Side, Span};
 use crate::interval::Interval;
 use crate::number::Number;
@@ -157,7 +157,9 @@ struct OnRay<'s, T> {
 
 impl<T: Implicit> Line for OnRay<'_, T> {
     fn at<N: Number>(&self, t: N) -> N {
-        let along = |axis: usize| N::constant(self.base[axis]) + N::constant(self.dir[axis]) * t;
+        // Bounds hold the values along the ray which this one was rounded from.
+        let blur = BLUR * self.base.abs().element_sum();
+        let along = |axis: usize| N::about(self.base[axis], blur) + N::about(self.dir[axis], BLUR) * t;
         self.shape.formula.value([along(0), along(1), along(2)])
     }
 

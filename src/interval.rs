@@ -205,6 +205,11 @@ impl Number for Interval {
         Self { low: value, high: value }
     }
 
+    #[inline(always)]
+    fn about(value: f64, error: f64) -> Self {
+        Self::outward(value - error, value + error)
+    }
+
     fn sin_cos(self) -> (Self, Self) {
         let (sin_low, cos_low) = libm::sincos(self.low);
         let is_point = self.low == self.high;

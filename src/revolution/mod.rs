@@ -29,7 +29,7 @@ use crate::bounds::Bounds;
 use crate::certify::Equation;
 use crate::dual::Dual;
 use crate::formula::Formula;
-use crate::frame::Frame;
+use crate::frame::{BLUR, Frame};
 use crate::geometry::{MISS, Ray, Side, Span};
 use crate::interval::Interval;
 use crate::number::Number;
@@ -166,16 +166,15 @@ struct OnRay<'s> {
 impl Line for OnRay<'_> {
     #[inline(always)]
     fn at<N: Number>(&self, along: N) -> N {
-        let place =
-            |axis: usize| N::constant(self.local.origin[axis]) + along * N::constant(self.local.dir[axis]);
+        let place = |axis: usize| self.local.place(axis, along);
         let height = place(1).max(N::constant(0.0)).min(N::constant(self.surface.height));
         place(0).powi(2) + place(2).powi(2) - self.surface.square.at(height)
     }
 
     /// That of the squared distance from the axis is the same everywhere.
     fn curvature(&self, piece: Interval) -> Interval {
-        let dir = self.local.dir.to_array().map(Interval::constant);
-        let height = Interval::constant(self.local.origin.y) + piece * dir[1];
+        let dir = self.local.dir.to_array().map(|part| Interval::about(part, BLUR));
+        let height = self.local.place(1, piece);
         let of_square = self.surface.square.at(Dual::variable_twice(height)).second();
         Interval::constant(2.0) * (dir[0].powi(2) + dir[2].powi(2)) - of_square * dir[1].powi(2)
     }
