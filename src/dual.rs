@@ -111,6 +111,11 @@ impl<N: Number> Number for Dual<N> {
     }
 
     #[inline(always)]
+    fn about(value: f64, error: f64) -> Self {
+        Self { value: N::about(value, error), slope: N::constant(0.0) }
+    }
+
+    #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         let (sin, cos) = self.value.sin_cos();
         (self.chain(sin, cos), self.chain(cos, -sin))

@@ -7,6 +7,11 @@ use crate::sight::{Line, Sight};
 use crate::twofold::{Twofold, offset};
 use glam::{DMat3, DVec3};
 
+/// How far rounding moves each coordinate of a point that is turned into a frame, as a part of its distance from the
+/// frame's origin: by 3 units of EPSILON in the axes, 3/2 in the turning and 1 in the way from the origin; and of a
+/// direction, less.
+pub const BLUR: f64 = 6.0 * f64::EPSILON;
+
 /// An origin, and three unit vectors upright on each other.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame {

@@ -8,7 +8,7 @@ use crate::bounds::Bounds;
 use crate::certify::{self, Enclosure, Equation, Precision};
 use crate::coincidence;
 use crate::dual::Dual;
-use crate::frame::Frame;
+use crate::frame::{BLUR, Frame};
 use crate::geometry::{Body, Hittable, MISS, Ray, Side, Span};
 use crate::interval::Interval;
 use crate::number::Number;
@@ -160,13 +160,15 @@ struct OnRay<'s, T> {
 
 impl<T: Implicit> taylor::Line for OnRay<'_, T> {
     fn at<N: Number>(&self, t: N) -> N {
-        let along = |axis: usize| N::constant(self.base[axis]) + N::constant(self.dir[axis]) * t;
+        // Bounds hold the values along the ray which this one was rounded from.
+        let blur = BLUR * self.base.abs().element_sum();
+        let along = |axis: usize| N::about(self.base[axis], blur) + N::about(self.dir[axis], BLUR) * t;
         self.shape.formula.value([along(0), along(1), along(2)])
     }
 
     /// Twice the precision, from the ray in the world, tells nearly all touches from misses.
-    fn undecided(&self, piece: Interval, leaves: Option<Side>) -> Option<f64> {
+    fn undecided(&self, piece: Interval, leaves: Option<Side>, hidden: f64) -> Option<f64> {
         let exact = self.shape.frame.exactly(self.ray, self.closest);
-        twice::first_root(|t| self.shape.formula.value(exact.along(t)), piece, leaves)
+        twice::first_root(|t| self.shape.formula.value(exact.along(t)), piece, leaves, hidden)
     }
 }

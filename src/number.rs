@@ -15,6 +15,11 @@ pub trait Number:
 {
     /// A number that does not depend on anything.
     fn constant(value: f64) -> Self;
+    /// A number that is known but for an error: with bounds where there are bounds, else the number itself.
+    #[inline(always)]
+    fn about(value: f64, _error: f64) -> Self {
+        Self::constant(value)
+    }
     /// The sine and the cosine.
     fn sin_cos(self) -> (Self, Self);
     /// The sine.

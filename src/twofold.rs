@@ -38,14 +38,13 @@ pub fn advance(start: f64, distance: f64, step: f64) -> f64 {
     sum + (product_low + sum_low)
 }
 
-/// `start + distance * step - from`, rounded about once: to a unit in the last place of the result, however far `start`
-/// is from there.
+/// `start + distance * step - from`: to a unit in the last place of the result, however far `start` is from there. The
+/// difference is exact where it cancels, and rounded once where it does not.
 #[inline(always)]
 pub fn offset(start: f64, distance: f64, step: f64, from: f64) -> f64 {
     let (way, way_low) = two_product(distance, step);
     let (place, place_low) = two_sum(start, way);
-    let (offset, offset_low) = two_sum(place, -from);
-    offset + (way_low + place_low + offset_low)
+    (place - from) + (way_low + place_low)
 }
 
 /// A sum of three products, the factors with what rounding took from them: rounded about once, and off by at most

@@ -215,6 +215,43 @@ fn a_tube_is_found() {
     finds_the_revolution("tube", TUBE.0, TUBE.1);
 }
 
+/// Thin discs, poles that are cut, roots and waves: all rays find what is there and nothing else.
+#[test]
+fn profiles_that_hide_in_thin_parts_are_found() {
+    let mut faults = Vec::new();
+    for (formula, height) in [
+        ("max(0.3 - y, 2 - 1e14*(y-3.1)^2)", 6.0),
+        ("max(0.2, 2 - 1e8*(y-3.1)^2)", 6.0),
+        ("min(2, 1/abs(y-3))", 6.0),
+        ("max(0.2, ln(y))", 6.0),
+        ("y^y/10", 3.0),
+        ("0.5 + sin(9*y)", 6.0),
+        ("abs(y-3)^0.5 + 0.1", 6.0),
+        ("y^2 - 6*y + 9", 6.0),
+        ("2 - 1e3*abs(y-2)", 4.0),
+    ] {
+        let (surface, model) = revolution("exact", formula, height, 1.0);
+        let subject = Subject {
+            name: formula,
+            model: &model,
+            scale: 1.0,
+            most: 1e-5,
+            truth: &|ray, near| surface.first_hit(ray, near, Crossings::All),
+            off_surface: &|ray, distance| surface.off_surface(ray, distance),
+        };
+        let middle = BASE + dvec3(0.0, height / 2.0, 0.0);
+        let reach = 2.0_f64.hypot(height / 2.0);
+        for (set, rays) in [
+            ("camera", rays::camera(500, 1.0).collect::<Vec<Ray>>()),
+            ("inside", rays::inside(250, middle, reach).collect()),
+            ("far 1e4", rays::aimed(250, middle, reach, 1e4).collect()),
+        ] {
+            faults.extend(subject.faults(set, &rays, 1e-13 + rounding(&rays, middle), f64::INFINITY));
+        }
+    }
+    assert_none(&faults);
+}
+
 /// The truth itself: no sign changes before the hit, and it is where the sign changes.
 #[test]
 fn the_truth_of_a_revolution_is_where_the_function_first_changes_its_sign() {

@@ -230,6 +230,12 @@ impl<F: Float> Number for Interval<F> {
         Self::point(F::of(value))
     }
 
+    #[inline(always)]
+    fn about(value: f64, error: f64) -> Self {
+        let (value, error) = (F::of(value), F::of(error));
+        Self::outward_sum(value - error, value + error)
+    }
+
     fn sin_cos(self) -> (Self, Self) {
         let half_turn = F::PI;
         if !self.is_narrower(half_turn + half_turn) {

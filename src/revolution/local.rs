@@ -1,8 +1,9 @@
 //! A ray clipped to a surface's bounding cylinder and counted from a base near it, so that nothing far away is left
 //! in the arithmetic.
 
-use crate::frame::Frame;
+use crate::frame::{BLUR, Frame};
 use crate::geometry::{Ray, Span};
+use crate::number::Number;
 use glam::DVec3;
 
 /// The part of a ray that is inside of a bounding cylinder.
@@ -90,6 +91,14 @@ impl Local {
     pub fn around(&self, along: f64) -> f64 {
         let (x, z) = (self.origin.x + along * self.dir.x, self.origin.z + along * self.dir.z);
         x * x + z * z
+    }
+
+    /// A coordinate of the place along the ray. Its bounds, where a number has any, hold that of the ray which this one
+    /// was rounded from.
+    #[inline(always)]
+    pub fn place<N: Number>(&self, axis: usize, along: N) -> N {
+        let blur = BLUR * self.origin.abs().element_sum();
+        N::about(self.origin[axis], blur) + along * N::about(self.dir[axis], BLUR)
     }
 
     /// What full precision is along this part of the ray.

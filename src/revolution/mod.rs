@@ -4,8 +4,10 @@
 //! Each is cut, when it is made, into slabs in which the profile's square is a parabola but for a proven error
 //! (`slabs`). A ray meets the quadrics of revolution around those in closed form, which brackets its first hit or
 //! proves that there is none (`walk`); where it grazes the error's shell, bounds of the second derivative decide
-//! ([`taylor`](crate::roots::taylor)). Nothing has to be tuned. The rounding of a ray's own arithmetic is held by margins
-//! that are derived where they stand, and tried against the truth in `tests/truth.rs`.
+//! ([`taylor`](crate::roots::taylor)), and where rounding hides what they say, twice the precision
+//! ([`twice`](crate::roots::twice)). Nothing has to be tuned. A profile of which all that cannot be proven within a
+//! stated number of operations is refused, with the reason ([`NoSurface`]). The rounding of a ray's own arithmetic is held
+//! by margins that are derived where they stand, and tried against the truth in `tests/truth.rs`.
 
 mod bracket;
 mod budget;
@@ -28,7 +30,7 @@ use crate::bounds::Bounds;
 use crate::certify::Equation;
 use crate::dual::Dual;
 use crate::formula::Formula;
-use crate::frame::Frame;
+use crate::frame::{BLUR, Frame};
 use crate::geometry::{MISS, Ray, Side, Span};
 use crate::interval::Interval;
 use crate::number::Number;
@@ -66,7 +68,7 @@ impl Revolution {
     /// The surface of a profile.
     ///
     /// # Errors
-    /// Where the profile has no bound, and where it is nowhere above 0.
+    /// Where the profile has no bound, where it is nowhere above 0, and where it takes too long to prove what it is.
     pub fn new(profile: &Formula, height: f64, finish: Finish) -> Result<Self, NoSurface> {
         let square = profile.squared();
         let slabs = Slabs::new(profile, &square, height)?;
@@ -180,30 +182,29 @@ struct OnRay<'s> {
 impl Line for OnRay<'_> {
     #[inline(always)]
     fn at<N: Number>(&self, along: N) -> N {
-        let place =
-            |axis: usize| N::constant(self.local.origin[axis]) + along * N::constant(self.local.dir[axis]);
+        let place = |axis: usize| self.local.place(axis, along);
         let height = place(1).max(N::constant(0.0)).min(N::constant(self.surface.height));
         place(0).powi(2) + place(2).powi(2) - self.surface.square.at(height)
     }
 
     /// That of the squared distance from the axis is the same everywhere.
     fn curvature(&self, piece: Interval) -> Interval {
-        let dir = self.local.dir.to_array().map(Interval::constant);
-        let height = Interval::constant(self.local.origin.y) + piece * dir[1];
+        let dir = self.local.dir.to_array().map(|part| Interval::about(part, BLUR));
+        let height = self.local.place(1, piece);
         let of_square = self.surface.square.at(Dual::variable_twice(height)).second();
         Interval::constant(2.0) * (dir[0].powi(2) + dir[2].powi(2)) - of_square * dir[1].powi(2)
     }
 
     /// Twice the precision, from the ray in the world and the axis as the scene has it, tells nearly all touches from
     /// misses.
-    fn undecided(&self, piece: Interval, leaves: Option<Side>) -> Option<f64> {
+    fn undecided(&self, piece: Interval, leaves: Option<Side>, hidden: f64) -> Option<f64> {
         let exact = self.local.frame.exactly(&self.local.ray, self.local.base);
         let outside = |along: Dual<Twofold>| {
             let [x, y, z] = exact.along(along);
             let height = y.max(Dual::constant(0.0)).min(Dual::constant(self.surface.height));
             x.powi(2) + z.powi(2) - self.surface.square.at(height)
         };
-        twice::first_root(outside, piece, leaves)
+        twice::first_root(outside, piece, leaves, hidden)
     }
 }
 

@@ -47,8 +47,7 @@ kernels! {
             // Moved in the world and turned then: what is turned is as small as the surface.
             let from = frame.origin.to_array();
             let from = [0, 1, 2].map(|axis| {
-                each!(origin = origin[axis], near = near, dir = dir[axis] =>
-                    if near < f64::INFINITY { offset(origin, near, dir, from[axis]) } else { 0.0 })
+                each!(origin = origin[axis], near = near, dir = dir[axis] => offset(origin, near, dir, from[axis]))
             });
             let (from, dir) = (directions(frame, from), directions(frame, dir));
             let width = each!(near = near, far = far => if near < far { far - near } else { 0.0 });

@@ -94,7 +94,7 @@ impl NoSurface {
             ),
             Self::Signs { from } => (
                 format!("whose parts below 0 are too many to be told apart from y = {from:.6} upward"),
-                "a lower height, or a profile that crosses 0 less often, such as `max(0, ...)` around it",
+                "a lower height, or a profile that crosses 0 less often",
             ),
             Self::Bends { from } => (
                 format!("that bends too often to be followed from y = {from:.6} upward"),

@@ -25,11 +25,10 @@ pub trait Line {
     }
 
     /// The root on a piece of which bounds in f64 do not tell whether it has one, and more of them would not: where
-    /// rounding hides the function's sign, or after more proofs than are made. A line that can be computed with more
-    /// precision answers with that. Of one that cannot, a touch counts as a root, and is none for a line that leaves
-    /// the surface.
-    fn undecided(&self, piece: Interval, leaves: Option<Side>) -> Option<f64> {
-        leaves.is_none().then(|| piece.middle())
+    /// rounding, of values up to `hidden`, hides the function's sign, or after more proofs than are made. A line that is
+    /// itself rounded says it of the one that it stands for.
+    fn undecided(&self, piece: Interval, leaves: Option<Side>, hidden: f64) -> Option<f64> {
+        twice::first_root(|t| self.at(t), piece, leaves, hidden)
     }
 }
 
@@ -172,12 +171,15 @@ impl<L: Line> Search<'_, L> {
         }
         let at = |t| if rises { self.value(t) } else { -self.value(t) };
         let (at_low, at_high) = (at(low), at(high));
-        // What is 0 but for rounding is 0; but a line that leaves the surface starts there.
+        // A line that leaves the surface starts there.
         let starts = self.leaves.is_some() && low == self.start && at_low.has_zero();
         if at_low.low > 0.0 || at_high.high < 0.0 || starts {
-            return Judgement::Free;
+            Judgement::Free
+        } else if at_low.high < 0.0 && at_high.low > 0.0 {
+            Judgement::Root(self.newton(low, high, rises, guess))
+        } else {
+            self.undecided(low, high)
         }
-        Judgement::Root(self.newton(low, high, rises, guess))
     }
 
     /// The root of a piece by Newton's method, from a guess that may be any number.
@@ -223,7 +225,9 @@ impl<L: Line> Search<'_, L> {
             return Judgement::Free;
         }
         twice::count();
-        match self.line.undecided(Interval { low, high }, self.leaves) {
+        let piece = Interval { low, high };
+        let hidden = self.value(piece.middle()).width();
+        match self.line.undecided(piece, self.leaves, hidden) {
             Some(root) => Judgement::Root(root.clamp(low, high)),
             None => Judgement::Free,
         }

@@ -1,14 +1,17 @@
 //! Roots on short pieces where bounds in f64 end: in twice the precision.
 //!
 //! Where a line only touches a surface, as far as f64 tells, the function has one turn there: its value at the turn
-//! tells whether the line goes in. With 106 bits that is right unless the line comes nearer than about 1e-28 of the
-//! numbers it is computed from; what is nearer counts as the computed sign has it.
+//! tells whether the line goes in. What twice the precision does not tell from 0 either counts as a touch: a line that
+//! touches meets the surface, and one that leaves it does not.
 
 use crate::dual::Dual;
 use crate::geometry::Side;
 use crate::interval::Interval;
 use crate::twofold::Twofold;
 use std::sync::atomic::{AtomicU64, Ordering};
+
+/// How much of what rounding in f64 hides is hidden in twice the precision, too: 2^-53 but for five digits.
+const STILL_HIDDEN: f64 = 1.0 / 281_474_976_710_656.0;
 
 /// Steps that halve a piece below what twice the precision tells apart.
 const MOST: usize = 120;
@@ -25,12 +28,13 @@ pub(super) fn count() {
     ASKED.fetch_add(1, Ordering::Relaxed);
 }
 
-/// The first root on a piece that has at most one turn; of a line that leaves a surface, the first one where the
+/// The first root on a piece that has at most one turn, where rounding in f64 hides values up to `hidden`; of a line that leaves a surface, the first one where the
 /// function falls (from outside) or rises (from inside).
 pub fn first_root(
     f: impl Fn(Dual<Twofold>) -> Dual<Twofold>,
     piece: Interval,
     leaves: Option<Side>,
+    hidden: f64,
 ) -> Option<f64> {
     let at = |t: Twofold| f(Dual::variable(t));
     let (low, high) = (Twofold::from(piece.low), Twofold::from(piece.high));
@@ -48,7 +52,11 @@ pub fn first_root(
         return None;
     }
     let turn = Twofold::from(change(|t| !approaches(at(t).slope), low, high));
-    if !is_in(at(turn).value) {
+    let at_turn = at(turn).value;
+    if at_turn.high.abs() <= STILL_HIDDEN * hidden {
+        return leaves.is_none().then_some(turn.high);
+    }
+    if !is_in(at_turn) {
         return None;
     }
     if is_wanted(is_outside) {
