@@ -52,7 +52,8 @@ kernels! {
         } else if f64::from(whole) == shininess && whole < 1 << 17 {
             shine_each(lit, Some(|cos| whole_power::<17>(cos, whole)), colours);
         } else {
-            shine_each(lit, Some(|cos| libm::pow(cos, shininess)), colours);
+            // Rounding may make a cosine more than 1, and a large power of that anything.
+            shine_each(lit, Some(|cos: f64| libm::pow(cos.min(1.0), shininess)), colours);
         }
     }
 
@@ -174,7 +175,10 @@ fn shine_all(
         let mut colour = diffuse(lane) * light * falloffs[lane];
         if let Some(glint) = &glint {
             let half = (toward.get(lane) - seen.get(lane)).normalize();
-            colour += light * specular(lane) * glint(half.dot(normals.get(lane)));
+            let cosine = half.dot(normals.get(lane));
+            // From the wrong side there is none: powers of what is below 0 are light of the wrong sign, or no numbers.
+            let lustre = light * specular(lane) * glint(cosine);
+            colour = if cosine > 0.0 { colour + lustre } else { colour };
         }
         let before = colours.get(lane);
         let is_lit = (shines[lane] != 0) & (blocked[lane] != 1);
