@@ -1,7 +1,7 @@
 //! A plane: every point in two directions, without end.
 
 use crate::accuracy::Accuracy;
-use crate::bounds::Bounds;
+use crate::bounds::{Bounds, SLACK};
 use crate::certify::{self, Enclosure, Equation};
 use crate::cpu::Cpu;
 use crate::entity::{Args, Entity};
@@ -60,6 +60,15 @@ impl Hittable for Plane {
 
     fn is_clear_of(&self, region: &Bounds) -> bool {
         Plane::is_clear_of(self, region)
+    }
+
+    fn clearance(&self, from: DVec3) -> f64 {
+        let rounding = SLACK * (from.length() + self.point.length());
+        (self.normal.dot(from - self.point).abs() - rounding).max(0.0)
+    }
+
+    fn plane(&self) -> Option<[DVec3; 2]> {
+        Some([self.point, self.normal])
     }
 
     fn method(&self) -> String {

@@ -1,8 +1,13 @@
 //! The arithmetic of shading, for all places of a packet at once.
 
+use super::MAX_RAYS;
 use crate::cpu::kernels;
 use crate::material::{Look, Rgb};
 use crate::packet::{View, ViewMut, is_any};
+use crate::plan::depth::{Branch, MANY};
+
+/// Of rays that may cost so few more, [`MANY`] have been followed.
+pub(super) const FEW: u32 = MAX_RAYS as u32 - MANY;
 
 /// Places that a light shines on.
 pub(super) struct Lit<'l> {
@@ -29,6 +34,18 @@ pub(super) enum Looks<'l> {
     Even(Look),
     /// Each something else.
     Each { diffuse: View<'l>, specular: View<'l> },
+}
+
+/// What rays that meet a surface are worth.
+pub(super) struct Worth<'w> {
+    /// What their light has been multiplied by on its way, at most.
+    pub weight: &'w [f64],
+    /// The part that each may leave out of what its camera ray may.
+    pub share: &'w [f64],
+    /// The rays that each may still cost; nothing where none has cost [`MANY`].
+    pub budget: Option<&'w [u32]>,
+    /// How they go on from there.
+    pub branch: Branch,
 }
 
 /// Colours at places of a surface.
@@ -63,6 +80,37 @@ kernels! {
         for lane in 0..count {
             goes[lane] = u64::from(travelled[lane] <= most);
         }
+    }
+
+    /// Takes the mark from rays that can bring back too little to be seen.
+    pub(super) fn leave_out(travelled: &[f64], worth: &Worth, goes: &mut [u64]) {
+        let (count, Branch { faint, faint_alone, .. }) = (goes.len(), worth.branch);
+        let (travelled, weight, share) = (&travelled[..count], &worth.weight[..count], &worth.share[..count]);
+        for lane in 0..count {
+            let is_faint = weight[lane] * faint < share[lane] * travelled[lane];
+            goes[lane] &= u64::from(!is_faint);
+        }
+        if let Some(budget) = worth.budget {
+            let budget = &budget[..count];
+            for lane in 0..count {
+                let is_faint = (budget[lane] < FEW) & (weight[lane] * faint_alone < travelled[lane]);
+                goes[lane] &= u64::from(!is_faint);
+            }
+        }
+    }
+
+    /// Multiplies what rays are worth which go on.
+    pub(super) fn branch(by: &Branch, weight: &mut [f64], share: &mut [f64]) {
+        let (count, share) = (weight.len(), &mut share[..weight.len()]);
+        for lane in 0..count {
+            weight[lane] *= by.weight;
+            share[lane] *= by.share;
+        }
+    }
+
+    /// The fewest rays that any may still cost.
+    pub(super) fn fewest(budget: &[u32]) -> u32 {
+        budget.iter().fold(u32::MAX, |fewest, budget| fewest.min(*budget))
     }
 
     /// Directions, mirrored. Marks the rays that go on there: likewise, where the surface is a mirror.
