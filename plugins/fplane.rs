@@ -157,6 +157,10 @@ impl Hittable for FinitePlane {
         self.plane.normal(at)
     }
 
+    fn plane(&self) -> Option<[DVec3; 2]> {
+        Hittable::plane(&self.plane)
+    }
+
     fn method(&self) -> String {
         self.plane.method().to_owned()
     }

@@ -1,7 +1,7 @@
 //! A plane: every point in two directions, without end.
 
 use crate::accuracy::Accuracy;
-use crate::bounds::Bounds;
+use crate::bounds::{Bounds, SLACK};
 use crate::certify::{self, Enclosure, Equation, Precision};
 use crate::cpu::Cpu;
 use crate::entity::{Args, Entity};
@@ -76,6 +76,15 @@ impl Hittable for Plane {
 
     fn fine_distance(&self, ray: &Ray, _distance: f64) -> Option<Twofold> {
         (self.accuracy != Accuracy::Classic).then(|| self.exact_crossing(ray))
+    }
+
+    fn clearance(&self, from: DVec3) -> f64 {
+        let rounding = SLACK * (from.length() + self.point.length());
+        (self.normal.dot(from - self.point).abs() - rounding).max(0.0)
+    }
+
+    fn plane(&self) -> Option<[DVec3; 2]> {
+        Some([self.point, self.normal])
     }
 
     fn method(&self) -> String {

@@ -1,7 +1,7 @@
 //! A quadric: every point that solves an equation of the second degree (the notes' "General Quadric Surfaces").
 
 use crate::accuracy::Accuracy;
-use crate::bounds::Bounds;
+use crate::bounds::{self, Bounds, SLACK};
 use crate::certify::{self, Enclosure, Equation, Precision};
 use crate::coincidence;
 use crate::entity::{Entity, Refusal};
@@ -145,6 +145,21 @@ impl Hittable for Quadric {
             Quick::Unknown => Bracket::UNKNOWN,
             Quick::Hit(distance, error) => Bracket { near: distance - error, far: distance + error },
         }
+    }
+
+    /// At `r` from a point the equation's value differs from that at the point by at most `|gradient| r + |square| r^2`.
+    fn clearance(&self, from: DVec3) -> f64 {
+        let at = from - self.center;
+        let abs = DMat3::from_cols_array(&self.square.to_cols_array().map(f64::abs));
+        let terms = at.abs().dot(abs * at.abs()) + self.linear.abs().dot(at.abs()) + self.constant.abs();
+        let value = at.dot(self.square * at) + self.linear.dot(at) + self.constant;
+        let value = value.abs() - SLACK * terms;
+        let rounding = SLACK * (abs * at.abs() + self.linear.abs()).length();
+        let gradient = (2.0 * (self.square * at) + self.linear).length() + rounding;
+        let square = (abs * DVec3::ONE).length();
+        let radius = 2.0 * value / (gradient + (gradient * gradient + 4.0 * square * value).sqrt());
+        let by_value = if value > 0.0 && radius.is_finite() { radius * (1.0 - 1e-6) } else { 0.0 };
+        by_value.max(bounds::clearance(from, self.bounds(), |region| self.is_clear_of(region)))
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {

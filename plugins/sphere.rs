@@ -2,7 +2,7 @@
 
 use crate::accuracy::Accuracy;
 use crate::ball::{self, Line};
-use crate::bounds::Bounds;
+use crate::bounds::{Bounds, SLACK};
 use crate::certify::{self, Enclosure, Equation, Precision};
 use crate::entity::{Args, Entity};
 use crate::geometry::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
@@ -85,6 +85,12 @@ impl Hittable for Sphere {
     fn bounds(&self) -> Option<Bounds> {
         let bounds = Bounds { low: self.center - self.radius, high: self.center + self.radius };
         (self.accuracy != Accuracy::Classic).then_some(bounds)
+    }
+
+    fn clearance(&self, from: DVec3) -> f64 {
+        let away = (from - self.center).length();
+        let rounding = SLACK * (from.length() + self.center.length() + self.radius);
+        ((away - self.radius).abs() - rounding).max(0.0)
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {

@@ -6,7 +6,7 @@ use crate::bounds::Bounds;
 use crate::certify::{Enclosure, Precision};
 use crate::entity::{Args, Entity, Refusal};
 use crate::geometry::{Body, Bracket, Hittable, Ray, Shader, Side, Span};
-use crate::material::{Material, Rgb};
+use crate::material::{Look, Material, Rgb};
 use crate::pparm::{Pparm, Table};
 use crate::sight::Sight;
 use crate::texture::Texture;
@@ -112,6 +112,10 @@ impl Hittable for Rectangle {
         self.0.rectangle.normal(at)
     }
 
+    fn plane(&self) -> Option<[DVec3; 2]> {
+        self.0.rectangle.plane()
+    }
+
     fn method(&self) -> String {
         self.0.rectangle.method()
     }
@@ -130,5 +134,11 @@ impl Shader for Textured {
 
     fn diffuse(&self, material: &Material, at: DVec3) -> Rgb {
         material.diffuse * self.0.colour(at)
+    }
+
+    /// No texel is above 1, nor below 0.
+    fn brightest(&self, material: &Material) -> Option<Look> {
+        let Material { ambient, diffuse, specular, .. } = *material;
+        (diffuse.min_element() >= 0.0).then_some(Look { ambient, diffuse, specular })
     }
 }

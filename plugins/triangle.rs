@@ -128,6 +128,10 @@ impl Hittable for Triangle {
         self.plane.normal(at)
     }
 
+    fn plane(&self) -> Option<[DVec3; 2]> {
+        Hittable::plane(&self.plane)
+    }
+
     fn method(&self) -> String {
         self.plane.method().to_owned()
     }

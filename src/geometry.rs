@@ -1,6 +1,6 @@
 //! Rays, and what a plugin implements: [`Hittable`] shapes, [`Shader`]s and [`Light`]s.
 
-use crate::bounds::Bounds;
+use crate::bounds::{self, Bounds};
 use crate::certify::{Enclosure, Precision};
 use crate::coincidence;
 use crate::cpu::Cpu;
@@ -139,6 +139,17 @@ pub trait Hittable: Send + Sync {
         self.bounds().is_some_and(|bounds| !bounds.overlaps(region))
     }
 
+    /// A point and the unit normal of the plane that all of it lies in, if there is one: rays that leave it stay on their
+    /// side of that.
+    fn plane(&self) -> Option<[DVec3; 2]> {
+        None
+    }
+
+    /// How far from a point all of it is, at least; 0 where that is not known.
+    fn clearance(&self, from: DVec3) -> f64 {
+        bounds::clearance(from, self.bounds(), |region| self.is_clear_of(region))
+    }
+
     /// Between which distances [`distance`](Self::distance) is. Where that is dear, plain arithmetic without branches
     /// says quickly which shape a ray may meet first, and the rest is computed for that one alone.
     ///
@@ -268,6 +279,13 @@ pub trait Shader: Send + Sync {
         None
     }
 
+    /// The largest that those three give anywhere, whatever the sign, from which follows how deep mirrors and glass are
+    /// looked into; nothing where that is not known, or where a surface that is not even has a diffuse colour below 0.
+    /// `None` is never wrong.
+    fn brightest(&self, material: &Material) -> Option<Look> {
+        self.even(material)
+    }
+
     /// What [`ambient`](Self::ambient) and [`specular`](Self::specular) give at many points; tells whether any of the
     /// second is not 0.
     fn unlit(
@@ -309,6 +327,12 @@ pub trait Light: Send + Sync {
     /// not asked for each. `None` is never wrong.
     fn even(&self) -> Option<Rgb> {
         None
+    }
+
+    /// The largest that [`emissivity`](Self::emissivity) gives toward any point, whatever the sign; nothing where that is
+    /// not known. `None` is never wrong.
+    fn brightest(&self) -> Option<Rgb> {
+        self.even()
     }
 
     /// The radius of a ball that shines; 0 for a point, whose shadows have sharp edges.

@@ -221,6 +221,7 @@ impl<W: Write> Probe<'_, W> {
 fn dropped(reason: Reason) -> String {
     match reason {
         Reason::TooFar => format!("light that has travelled more than {MAX_DIST} is black"),
+        Reason::TooFaint => "all that it can add to the pixel is below 1/1024 of a level".to_owned(),
         Reason::TooMany => format!("the pixel has cost {MAX_RAYS} rays, and no more are followed"),
     }
 }

@@ -57,6 +57,13 @@ pub fn shader(shader: &dyn Shader, at: DVec3) -> Result<(), Fault> {
         let even = [ambient, diffuse, specular];
         return Err(Promise::PacketsAgree.fault(format!("`even` is {even:?}, it answers {one:?} at {at}")));
     }
+    if let Some(Look { ambient, diffuse, specular }) = shader.brightest(&material)
+        && let most = [ambient, diffuse, specular]
+        && one.iter().zip(most).any(|(colour, most)| !colour.abs().cmple(most.abs()).all())
+    {
+        let found = format!("`brightest` is {most:?}, it answers {one:?} at {at}");
+        return Err(Promise::ReflectivityIsSound.fault(found));
+    }
     let points = Vectors::<STEP> { x: [at.x; STEP], y: [at.y; STEP], z: [at.z; STEP] };
     for cpu in Cpu::all() {
         let mut many = [const { Vectors::<STEP>::ZERO }; 3];
@@ -104,6 +111,12 @@ pub fn light(light: &dyn Light, draw: &mut Draw) -> Result<(), Fault> {
         {
             let found = format!("`even` is {even}, and toward {toward} it sends {one:?}");
             return Err(Promise::PacketsAgree.fault(found));
+        }
+        if let (Some(most), Some(one)) = (light.brightest(), one)
+            && !one.abs().cmple(most.abs()).all()
+        {
+            let found = format!("`brightest` is {most}, and toward {toward} it sends {one}");
+            return Err(Promise::LightIsFinite.fault(found));
         }
         let all = |of: DVec3| Vectors::<STEP> { x: [of.x; STEP], y: [of.y; STEP], z: [of.z; STEP] };
         // The light is in front of each place, but for the one that it is on.

@@ -1,6 +1,7 @@
 //! Rays that go together.
 
 use super::MAX_RAYS;
+use super::light::{self, Worth};
 use super::room::{Vectors, pick, room};
 use super::search::Start;
 use super::shade::Surface;
@@ -8,6 +9,7 @@ use crate::camera::{self, Camera};
 use crate::cpu::Cpu;
 use crate::geometry::Side;
 use crate::packet::{Rays, STEP};
+use crate::plan::depth::{Branch, Depth};
 use crate::sight::Sight;
 use glam::DVec3;
 use std::array;
@@ -29,7 +31,11 @@ pub(super) struct Group {
     /// Of several rays from the viewer, the x and y of the places of the picture that they look through, in pixels; empty
     /// of rays that have been picked from others or go on.
     pub places: [Vec<f64>; 2],
-    /// The camera ray that each comes from; empty where no pixel has more than one.
+    /// What the light of each is multiplied by on its way, at most, and the part that it may leave out of what its camera
+    /// ray may; empty where no ray goes on, or nothing bounds what that can bring back.
+    pub weight: Vec<f64>,
+    pub share: Vec<f64>,
+    /// The camera ray that each comes from; empty where none goes on and no pixel has more than one.
     pub camera: Vec<u8>,
     /// The object that they leave, by its index, and on which side of it each goes.
     pub leaves: Option<usize>,
@@ -55,17 +61,25 @@ pub(super) struct Onward<'o> {
 
 impl Group {
     /// One ray from the viewer.
-    pub fn primary(sight: &Sight) -> Self {
+    pub fn primary(sight: &Sight, depth: Option<&Depth>) -> Self {
         let (mut group, ray) = (Self::default(), sight.ray());
-        group.begin(ray.origin, 1, true);
+        group.begin(ray.origin, 1, true, depth);
         group.dir.fill(STEP, ray.dir);
         group.sight = Some(*sight);
         group
     }
 
     /// The rays that look through so many places, in pixels from the left and from the bottom.
-    pub fn look(&mut self, cpu: Cpu, camera: &Camera, x: &mut [f64], y: &mut [f64], len: usize) {
-        self.begin(camera.viewpoint, len, camera.samples > 1);
+    pub fn look(
+        &mut self,
+        cpu: Cpu,
+        camera: &Camera,
+        depth: Option<&Depth>,
+        x: &mut [f64],
+        y: &mut [f64],
+        len: usize,
+    ) {
+        self.begin(camera.viewpoint, len, camera.samples > 1, depth);
         let count = self.padded();
         let last = (x[len - 1], y[len - 1]);
         x[len..count].fill(last.0);
@@ -76,13 +90,21 @@ impl Group {
     }
 
     /// Rays from a viewpoint, with their directions yet to be given.
-    fn begin(&mut self, viewpoint: DVec3, len: usize, is_sampled: bool) {
+    fn begin(&mut self, viewpoint: DVec3, len: usize, is_sampled: bool, depth: Option<&Depth>) {
         self.len = len;
         let count = self.padded();
         self.origin.fill(count, viewpoint);
         room(&mut self.travelled, count).fill(0.0);
-        room(&mut self.budget, count).fill(MAX_RAYS as u32);
-        if is_sampled {
+        // Where no ray goes on, each costs one and those to the lights.
+        room(&mut self.budget, count).fill(if depth.is_some() { MAX_RAYS as u32 } else { u32::MAX });
+        if depth.is_some_and(|depth| depth.most.is_finite()) {
+            room(&mut self.weight, count).fill(1.0);
+            room(&mut self.share, count).fill(1.0);
+        } else {
+            self.weight.clear();
+            self.share.clear();
+        }
+        if is_sampled || depth.is_some() {
             for (lane, camera) in room(&mut self.camera, count).iter_mut().enumerate() {
                 // The copies that fill the arrays up are of the last ray, its sample of a light too.
                 *camera = lane.min(len - 1) as u8;
@@ -99,6 +121,24 @@ impl Group {
     fn forget_sights(&mut self) {
         self.sight = None;
         self.places.iter_mut().for_each(Vec::clear);
+    }
+
+    /// Takes the mark from those that would bring back too little to be seen, so far from the viewer.
+    pub fn leave_out(&self, cpu: Cpu, branch: &Branch, travelled: &[f64], goes: &mut [u64]) {
+        if self.weight.is_empty() || branch.faint_alone == f64::INFINITY {
+            return;
+        }
+        let (count, Self { weight, share, budget, .. }) = (goes.len(), self);
+        let budget = (light::fewest(cpu, &budget[..count]) < light::FEW).then_some(&budget[..count]);
+        light::leave_out(cpu, travelled, &Worth { weight, share, budget, branch: *branch }, goes);
+    }
+
+    /// What its rays are worth from here on, which go on in one of the ways of a surface.
+    pub fn branch(&mut self, cpu: Cpu, branch: &Branch) {
+        if !self.weight.is_empty() {
+            let count = self.padded();
+            light::branch(cpu, branch, &mut self.weight[..count], &mut self.share[..count]);
+        }
     }
 
     /// How many rays there are with the copies that fill the arrays up.
@@ -143,6 +183,8 @@ impl Group {
         let count = self.padded();
         self.dir.pick(&from.dir, lanes, count);
         pick(&mut self.budget, &from.budget, lanes, count);
+        pick(&mut self.weight, &from.weight, lanes, count);
+        pick(&mut self.share, &from.share, lanes, count);
         pick(&mut self.camera, &from.camera, lanes, count);
         self.leaves = from.leaves;
         pick(&mut self.errors, &from.errors, lanes, count);
@@ -167,6 +209,8 @@ impl Group {
         self.dir.pick(onward.dir, lanes, count);
         pick(&mut self.travelled, onward.travelled, lanes, count);
         pick(&mut self.budget, &from.budget, lanes, count);
+        pick(&mut self.weight, &from.weight, lanes, count);
+        pick(&mut self.share, &from.share, lanes, count);
         pick(&mut self.camera, &from.camera, lanes, count);
         self.leaves = Some(onward.leaves);
         pick(&mut self.sides, onward.sides, lanes, count);
@@ -183,6 +227,8 @@ impl Group {
         swap(&mut self.dir, dir);
         swap(&mut self.travelled, &mut surface.travelled);
         swap(&mut self.budget, &mut from.budget);
+        swap(&mut self.weight, &mut from.weight);
+        swap(&mut self.share, &mut from.share);
         swap(&mut self.camera, &mut from.camera);
         self.leaves = Some(surface.index);
         swap(&mut self.sides, &mut surface.sides);

@@ -8,6 +8,7 @@ mod block;
 mod group;
 mod illuminate;
 mod light;
+mod missing;
 mod passage;
 mod room;
 mod search;
@@ -65,8 +66,9 @@ pub fn colour(model: &Model, sight: &Sight, sample: Option<Sample>) -> Rgb {
 pub fn watch_colour(model: &Model, sight: &Sight, sample: Option<Sample>, watch: &mut impl Watch) -> Rgb {
     let (mut rooms, mut colours) = (Rooms::default(), Vectors::default());
     rooms.samples.extend(sample);
-    let mut group = Group::primary(sight);
-    Tracer::new(model, Cpu::best(), &mut rooms, watch).colours(&mut group, &mut colours);
+    let mut tracer = Tracer::new(model, Cpu::best(), &mut rooms, watch);
+    let depth = tracer.plan.depth.as_ref();
+    tracer.colours(&mut Group::primary(sight, depth), &mut colours);
     colours.get(0)
 }
 
@@ -74,7 +76,7 @@ pub fn watch_colour(model: &Model, sight: &Sight, sample: Option<Sample>, watch:
 pub fn first_hit<'m>(model: &'m Model, sight: &Sight) -> Option<Hit<'m>> {
     let (mut rooms, mut nobody) = (Rooms::default(), ());
     let mut tracer = Tracer::new(model, Cpu::best(), &mut rooms, &mut nobody);
-    let mut group = Group::primary(sight);
+    let mut group = Group::primary(sight, None);
     let (mut found, mut distances) = (Found::default(), Vec::new());
     tracer.closest(&mut group, None, &mut found);
     let object = (found.met[0] as usize).checked_sub(1)?;
@@ -104,23 +106,28 @@ impl<'m, 'w, W: Watch> Tracer<'m, 'w, W> {
     /// The colours of some pixels, up to [`WIDE`] rays of which are traced together.
     pub(crate) fn pixels(&mut self, pixels: &[[usize; 2]]) -> View<'_> {
         let camera = &self.model.camera.value;
+        let depth = self.plan.depth.as_ref();
         let mut room = self.rooms.primary.take().unwrap_or_default();
         let Primary { x, y, group, seen, colours } = &mut *room;
         let mut colours = colours.room(pixels.len());
         if camera.samples == 1 {
+            self.rooms.samples.clear();
             for (pixels, first) in pixels.chunks(WIDE).zip((0..).step_by(WIDE)) {
                 for (lane, [column, row]) in pixels.iter().enumerate() {
                     // As signed numbers, which processors convert in one step.
                     (x[lane], y[lane]) = (*column as i64 as f64, *row as i64 as f64);
                 }
-                group.look(self.cpu, camera, x, y, pixels.len());
+                group.look(self.cpu, camera, depth, x, y, pixels.len());
                 self.colours(group, seen);
                 colours.put(first, seen.view(pixels.len()));
+                if self.rooms.any_missing {
+                    (0..pixels.len()).for_each(|lane| self.cut(self.missing(lane)));
+                }
             }
         } else {
             let samples = camera.samples as usize;
             let mut rays = pixels.iter().flat_map(|&[x, y]| camera.places(x, y));
-            let (mut sum, mut count) = (Rgb::ZERO, 0);
+            let (mut sum, mut missing, mut count) = (Rgb::ZERO, 0.0, 0);
             while count < samples * pixels.len() {
                 let mut len = 0;
                 self.rooms.samples.clear();
@@ -129,14 +136,16 @@ impl<'m, 'w, W: Watch> Tracer<'m, 'w, W> {
                     self.rooms.samples.extend(sample);
                     len += 1;
                 }
-                group.look(self.cpu, camera, x, y, len);
+                group.look(self.cpu, camera, depth, x, y, len);
                 self.colours(group, seen);
                 for lane in 0..len {
                     sum += seen.get(lane);
+                    missing += self.missing(lane);
                     count += 1;
                     if count % samples == 0 {
                         colours.set(count / samples - 1, sum / f64::from(camera.samples));
-                        sum = Rgb::ZERO;
+                        self.cut(missing / f64::from(camera.samples));
+                        (sum, missing) = (Rgb::ZERO, 0.0);
                     }
                 }
             }
@@ -144,10 +153,18 @@ impl<'m, 'w, W: Watch> Tracer<'m, 'w, W> {
         self.rooms.primary.insert(room).colours.view(pixels.len())
     }
 
+    /// Counts a pixel if it lacks light, at most so much.
+    fn cut(&mut self, missing: f64) {
+        if missing > 0.0 {
+            self.watch.count(Count::Cut(missing));
+        }
+    }
+
     /// The colours that rays from the viewer see.
     fn colours(&mut self, group: &mut Group, colours: &mut Vectors) {
         self.watch.count(Count::Rays(Kind::Primary, group.len));
         self.viewer = group.origin.get(0).abs().max_element();
+        self.begin_missing(group.len);
         if W::SEES {
             self.watch.see(Event::Begin(Purpose::Primary));
         }
@@ -216,7 +233,8 @@ mod tests {
         }
         let (mut rooms, mut nobody) = (Rooms::default(), ());
         let (mut group, mut colours) = (Group::default(), Vectors::default());
-        group.look(Cpu::best(), &model.camera.value, &mut x, &mut y, pixels.len());
+        let depth = model.plan().depth.as_ref();
+        group.look(Cpu::best(), &model.camera.value, depth, &mut x, &mut y, pixels.len());
         group.budget[..budgets.len()].copy_from_slice(budgets);
         Tracer::new(model, Cpu::best(), &mut rooms, &mut nobody).colours(&mut group, &mut colours);
         (0..pixels.len()).map(|lane| colours.get(lane)).collect()

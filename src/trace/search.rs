@@ -28,15 +28,15 @@ pub(super) struct Found {
 
 impl Found {
     /// Nothing yet, before these ends, and counts the rays. Those that have cost as many as they may end where they
-    /// begin.
-    fn begin(&mut self, cpu: Cpu, budget: &mut [u32], count: usize, ends: Option<&[f64]>) {
+    /// begin; tells whether any has.
+    fn begin(&mut self, cpu: Cpu, budget: &mut [u32], count: usize, ends: Option<&[f64]>) -> bool {
         let (near, far) = (room(&mut self.near, count), room(&mut self.far, count));
         match ends {
             Some(ends) => far.copy_from_slice(&ends[..count]),
             None => far.fill(MISS),
         }
-        begin(cpu, &mut budget[..count], near, far, room(&mut self.met, count));
         room(&mut self.doubt, count).fill(0);
+        begin(cpu, &mut budget[..count], near, far, room(&mut self.met, count))
     }
 
     /// Of some of the rays.
@@ -54,7 +54,9 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
     /// What each ray meets first before its end, if it has one. A ray that has cost as many as it may meets nothing.
     pub(super) fn closest(&mut self, group: &mut Group, ends: Option<&[f64]>, found: &mut Found) {
         let (is_over, count) = (group.budget[0] == 0, group.padded());
-        found.begin(self.cpu, &mut group.budget, count, ends);
+        if found.begin(self.cpu, &mut group.budget, count, ends) && ends.is_none() {
+            self.miss_beyond(group, found);
+        }
         if W::SEES {
             if is_over {
                 self.watch.see(Event::Dropped(Reason::TooMany));
@@ -207,16 +209,18 @@ fn proven(shape: &dyn Hittable, sight: &Sight) -> Option<f64> {
 }
 
 kernels! {
-    /// Counts rays, which have met nothing yet.
-    fn begin(budget: &mut [u32], near: &mut [f64], far: &mut [f64], met: &mut [u64]) {
-        let count = budget.len();
+    /// Counts rays, which have met nothing yet. Tells whether any has cost as many as it may.
+    fn begin(budget: &mut [u32], near: &mut [f64], far: &mut [f64], met: &mut [u64]) -> bool {
+        let (count, mut any_over) = (budget.len(), 0);
         let (near, far, met) = (&mut near[..count], &mut far[..count], &mut met[..count]);
         for lane in 0..count {
             let is_over = budget[lane] == 0;
             let end = if is_over { 0.0 } else { far[lane] };
             (near[lane], far[lane], met[lane]) = (end, end, 0);
             budget[lane] -= u32::from(!is_over);
+            any_over |= u32::from(is_over);
         }
+        any_over != 0
     }
 
     /// Whether all is the same.
