@@ -122,14 +122,11 @@ impl Hittable for Quadric {
         if self.accuracy == Accuracy::Strict {
             return f64::NAN;
         }
-        match self.own.quick_hit(&own, within.near, 0.0) {
-            Quick::Miss => MISS,
-            Quick::Unknown => f64::NAN,
-            Quick::Hit(distance, _) => {
-                let corrected = self.own.corrected(&own, distance);
-                if corrected.is_nan() { corrected } else { within.keep(corrected) }
-            }
-        }
+        let quick = self.own.quick_hit(&own, within.near, 0.0);
+        let corrected = self.own.corrected(&own, quick.distance);
+        let is_unknown = quick.is_unknown | corrected.is_nan();
+        let hit = if is_unknown { f64::NAN } else { within.keep(corrected) };
+        if quick.is_missed { MISS } else { hit }
     }
 
     #[inline(always)]
@@ -140,11 +137,10 @@ impl Hittable for Quadric {
         if within.origin_error > 0.0 && self.touches(ray.origin, within.origin_error) {
             return Bracket::UNKNOWN;
         }
-        match self.own.quick_hit(&self.own_ray(ray), within.near, CAMERA) {
-            Quick::Miss => Bracket::MISS,
-            Quick::Unknown => Bracket::UNKNOWN,
-            Quick::Hit(distance, error) => Bracket { near: distance - error, far: distance + error },
-        }
+        let Quick { is_missed, is_unknown, distance, error } =
+            self.own.quick_hit(&self.own_ray(ray), within.near, CAMERA);
+        let (near, far) = if is_unknown { (within.near, MISS) } else { (distance - error, distance + error) };
+        if is_missed { Bracket::MISS } else { Bracket { near, far } }
     }
 
     /// At `r` from a point the equation's value differs from that at the point by at most `|gradient| r + |square| r^2`.

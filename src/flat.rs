@@ -87,8 +87,16 @@ impl Plane {
             Accuracy::Draft => self.products(self.high(), ray).draft_distance(),
             Accuracy::Exact => {
                 let products = self.products(self.high(), ray);
-                let away = if products.away_cancels() { self.fine_away(ray) } else { products.away };
-                let toward = if products.toward_cancels() { self.fine_toward(ray) } else { products.toward };
+                let away = if products.away_cancels() {
+                    self.fine_away(ray, |of| self.rest(of))
+                } else {
+                    products.away
+                };
+                let toward = if products.toward_cancels() {
+                    self.fine_toward(ray, |of| self.rest(of))
+                } else {
+                    products.toward
+                };
                 products.quotient(away, toward)
             }
             Accuracy::Strict => f64::NAN,
@@ -97,10 +105,9 @@ impl Plane {
 
     /// The distances of a packet's hits, as [`crossing`](Self::crossing) and [`keep`](Self::keep) have them, or NaN.
     pub fn distances(&self, cpu: Cpu, rays: Rays, out: &mut [f64]) {
-        // Upright on an axis, sums have one part, and nothing cancels.
-        let is_upright = self.high().to_array().into_iter().filter(|part| *part != 0.0).count() == 1;
         match self.accuracy {
-            Accuracy::Exact if !is_upright => compensated(cpu, self, rays, out),
+            // Upright on an axis, sums have one part, and nothing cancels.
+            Accuracy::Exact if !self.is_upright() => compensated(cpu, self, rays, out),
             Accuracy::Exact | Accuracy::Draft => plain(cpu, self, rays, out),
             _ => packet::distances(cpu, self, rays, None, out),
         }
@@ -174,13 +181,15 @@ impl Plane {
     /// That `toward` is more than 3 times its error makes 14 of the quotient's 9, less than the 16 here.
     #[inline(always)]
     pub fn rough(&self, ray: &Ray, origin_error: f64) -> Rough {
-        let Products { away, away_size, toward, toward_size } = self.products(self.normal, ray);
+        let Products { away, away_size, toward, .. } = self.products(self.normal, ray);
         let inverse = reciprocal(toward);
         let distance = away * inverse;
         let error = inverse.abs() * (8.0 * f64::EPSILON * (away_size + distance.abs()) + origin_error);
         let error = error + RECIPROCAL_ERROR * distance.abs();
-        let is_unknown = toward.abs() <= 16.0 * f64::EPSILON;
-        Rough { distance, error, is_parallel: toward_size == 0.0, is_unknown }
+        // Upright on an axis, it is one component of the direction, and nothing that cancels.
+        let is_parallel = (toward == 0.0) & self.is_upright();
+        let is_unknown = (toward.abs() <= 16.0 * f64::EPSILON) & !is_parallel;
+        Rough { distance, error, is_parallel, is_unknown }
     }
 
     /// The products with a normal of some length.
@@ -194,6 +203,13 @@ impl Plane {
             toward: normal.dot(ray.dir),
             toward_size: size(ray.dir),
         }
+    }
+
+    /// Whether an axis stands upright on it.
+    #[inline(always)]
+    fn is_upright(&self) -> bool {
+        let is_0 = |axis: usize| u8::from(self.upright[axis].high == 0.0);
+        is_0(0) + is_0(1) + is_0(2) == 2
     }
 
     /// The scene's normal, rounded.
@@ -242,19 +258,25 @@ impl Plane {
     }
 
     /// The product of the normal and the way to the plane, but for a few units in the last place and for
-    /// 2^-102 of the size of its parts.
+    /// 2^-102 of the size of its parts. `rest` is what the low parts of the normal add.
     #[inline(always)]
-    fn fine_away(&self, ray: &Ray) -> f64 {
+    fn fine_away(&self, ray: &Ray, rest: impl Fn([f64; 3]) -> f64) -> f64 {
         let (x, x_low) = two_sum(self.point.x, -ray.origin.x);
         let (y, y_low) = two_sum(self.point.y, -ray.origin.y);
         let (z, z_low) = two_sum(self.point.z, -ray.origin.z);
-        dot(self.upright, [x, y, z], [x_low, y_low, z_low])
+        dot(self.high().to_array(), [x, y, z], [x_low, y_low, z_low], rest([x, y, z]))
     }
 
     /// Likewise of the normal and the ray's direction.
     #[inline(always)]
-    fn fine_toward(&self, ray: &Ray) -> f64 {
-        dot(self.upright, ray.dir.to_array(), [0.0; 3])
+    fn fine_toward(&self, ray: &Ray, rest: impl Fn([f64; 3]) -> f64) -> f64 {
+        dot(self.high().to_array(), ray.dir.to_array(), [0.0; 3], rest(ray.dir.to_array()))
+    }
+
+    /// The product of a vector and what rounding took from the normal: 0 but for triangles.
+    #[inline(always)]
+    fn rest(&self, of: [f64; 3]) -> f64 {
+        self.upright[0].low * of[0] + self.upright[1].low * of[1] + self.upright[2].low * of[2]
     }
 
     /// Both products, each rounded once however much cancels: 0 only where they are.
@@ -291,7 +313,7 @@ kernels! {
         }
     }
 
-    /// Distances where something may: a sum is computed in both ways if it cancels for any of eight rays.
+    /// Distances where something may, of planes whose normal has no low parts: a sum is computed in both ways if it cancels for any of eight rays.
     fn compensated(plane: &Plane, rays: Rays, out: &mut [f64]) {
         let plane = *plane;
         for first in (0..out.len()).step_by(STEP) {
@@ -308,13 +330,13 @@ kernels! {
             }
             if away_cancels != [0; STEP] {
                 for lane in 0..STEP {
-                    let fine = plane.fine_away(&rays.get(lane));
+                    let fine = plane.fine_away(&rays.get(lane), |_| 0.0);
                     away[lane] = if away_cancels[lane] != 0 { fine } else { away[lane] };
                 }
             }
             if toward_cancels != [0; STEP] {
                 for lane in 0..STEP {
-                    let fine = plane.fine_toward(&rays.get(lane));
+                    let fine = plane.fine_toward(&rays.get(lane), |_| 0.0);
                     toward[lane] = if toward_cancels[lane] != 0 { fine } else { toward[lane] };
                 }
             }

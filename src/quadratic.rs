@@ -4,6 +4,7 @@
 //! place that the equation counts from need be near. Every number has a bound of its rounding. Where that could decide
 //! whether there is a hit, which one is first or whether a box keeps it, all of it is done again in twice the precision.
 
+use crate::bounds::smaller;
 use crate::geometry::MISS;
 use crate::geometry::Side;
 use crate::number::Number;
@@ -19,14 +20,16 @@ pub struct Quadratic {
     square: DMat3,
     linear: DVec3,
     constant: f64,
-    /// The magnitudes of `square`.
-    sizes: DMat3,
+    /// The sums of the magnitudes of each row of `square`, or column: `|x|·|S||y|` is at most the root of the sums of
+    /// `size x^2` and of `size y^2`, multiplied.
+    sizes: DVec3,
     low: DVec3,
     high: DVec3,
     /// The power of two that a length of the world is multiplied by, as its exponent.
     exponent: i32,
-    /// That power of two.
+    /// That power of two, and one over it.
     scale: f64,
+    unscale: f64,
 }
 
 /// A ray, in the surface's own lengths and counted from its centre.
@@ -36,15 +39,17 @@ pub struct OwnRay {
     dir: DVec3,
 }
 
-/// What is known quickly of a ray's first hit, in the world's lengths.
+/// What is known quickly of a ray's first hit.
 #[derive(Clone, Copy, Debug)]
-pub enum Quick {
-    /// There is none.
-    Miss,
-    /// Rounding could decide it.
-    Unknown,
-    /// The distance, and by how much that is off at most.
-    Hit(f64, f64),
+pub struct Quick {
+    /// Whether there is certainly none.
+    pub is_missed: bool,
+    /// Whether rounding could decide it, if it is not missed.
+    pub is_unknown: bool,
+    /// Else its distance, in the world's lengths.
+    pub distance: f64,
+    /// By how much that is off at most.
+    pub error: f64,
 }
 
 /// The polynomial `a t^2 + 2 b t + c` along a ray in plain arithmetic, and by how much each is off at most.
@@ -115,11 +120,12 @@ impl Quadratic {
             square,
             linear: DVec3::new(of_linear(6), of_linear(7), of_linear(8)),
             constant: -times_power_of_two(coefficients[9], factor),
-            sizes: DMat3::from_cols_array(&square.to_cols_array().map(f64::abs)),
+            sizes: square.x_axis.abs() + square.y_axis.abs() + square.z_axis.abs(),
             low: own(low),
             high: own(high),
             exponent: -length,
             scale: times_power_of_two(1.0, -length),
+            unscale: times_power_of_two(1.0, length),
         }
     }
 
@@ -143,26 +149,26 @@ impl Quadratic {
         const ROUNDING: f64 = 8.0 * f64::EPSILON;
         let OwnRay { from, dir } = *ray;
         let high = DVec3::new(from[0].high, from[1].high, from[2].high);
-        let (turned, reach) = (self.square * dir, self.sizes * dir.abs());
-        let (a, a_size) = (dir.dot(turned), dir.abs().dot(reach));
+        let turned = self.square * dir;
+        let (a, a_size) = (dir.dot(turned), self.sizes.dot(dir * dir));
         let slope = 0.5 * self.linear.dot(dir);
         // Any base will do; without a middle, the point closest to the centre.
         let is_bent = a.abs() > 1e-9 * a_size;
         let middle = -(high.dot(turned) + slope) / a;
         let base = if is_bent { middle } else { -high.dot(dir) };
-        let at = DVec3::from([0, 1, 2].map(|axis| {
+        let along = |axis: usize| {
             let (product, product_low) = two_product(base, dir[axis]);
             let (sum, sum_low) = two_sum(from[axis].high, product);
             sum + (product_low + sum_low + from[axis].low)
-        }));
-        let at_size = at.abs();
-        let steepness = self.sizes * at_size;
+        };
+        let at = DVec3::new(along(0), along(1), along(2));
+        let at_size = self.sizes.dot(at * at);
         let linear = self.linear.abs();
-        let gradient = (2.0 * steepness + linear).element_sum();
+        let gradient = 2.0 * self.sizes.dot(at.abs()) + linear.element_sum();
         let at_error = FINE * (high.abs().element_sum() + base.abs()) + dir_error * base.abs();
-        let b_size = at_size.dot(reach) + 0.5 * linear.dot(dir.abs());
-        let c_size = at_size.dot(steepness) + linear.dot(at_size) + self.constant.abs();
-        let reach = reach.element_sum();
+        let b_size = (at_size * a_size).sqrt() + 0.5 * linear.dot(dir.abs());
+        let c_size = at_size + linear.dot(at.abs()) + self.constant.abs();
+        let reach = self.sizes.dot(dir.abs());
         Along {
             base,
             at,
@@ -177,56 +183,60 @@ impl Quadratic {
         }
     }
 
-    /// The first hit beyond `near` in plain arithmetic, of a ray whose direction may be off by this in each component.
+    /// The first hit beyond `near` in plain arithmetic without branches, of a ray whose direction may be off by this in
+    /// each component.
     #[inline(always)]
     pub fn quick_hit(&self, ray: &OwnRay, near: f64, dir_error: f64) -> Quick {
         let along = self.along(ray, dir_error);
-        let Along { base, at, at_error, a, b, c, a_error, b_error, c_error } = along;
+        let Along { a, b, c, a_error, b_error, c_error, .. } = along;
         let (square, product) = (b * b, a * c);
         let room = square - product;
         let error = b_error * (2.0 * b.abs() + b_error)
             + a.abs() * c_error
             + a_error * (c.abs() + c_error)
             + 2.0 * f64::EPSILON * (square + product.abs());
-        if room < -error {
-            return Quick::Miss;
-        }
         // With that much to spare, roots are off by what is below.
         const SPARE: f64 = 1024.0;
-        if !(room > SPARE * error) | !(a.abs() > SPARE * a_error) {
-            return Quick::Unknown;
-        }
+        let is_clear = (room > SPARE * error) & (a.abs() > SPARE * a_error);
         let root = room.sqrt();
         let larger = if b > 0.0 { -b - root } else { root - b };
         let (one, other) = (larger / a, c / larger);
+        let (nearer, farther) = if one < other { (one, other) } else { (other, one) };
         let near = near * self.scale;
-        let hits = if one < other { [one, other] } else { [other, one] };
-        for hit in hits {
-            // The polynomial's error there by its slope, twice: it is bent.
-            let off = a_error * hit * hit + 2.0 * b_error * hit.abs() + c_error;
-            let hit_error = off / root + 4.0 * f64::EPSILON * hit.abs();
-            if !(4.0 * a.abs() * off < room) {
-                return Quick::Unknown;
-            }
-            let distance = base + hit;
-            let error = hit_error + f64::EPSILON * distance.abs();
-            if distance + error < near {
-                continue;
-            }
-            let place = at + hit * ray.dir;
-            let rounding = 2.0 * f64::EPSILON * (at.abs() + (hit * ray.dir).abs());
-            let place_error = rounding + DVec3::splat(at_error) + hit_error * ray.dir.abs();
-            let (past_low, past_high) = (place - self.low, self.high - place);
-            if past_low.cmplt(-place_error).any() || past_high.cmplt(-place_error).any() {
-                continue;
-            }
-            let is_inside = past_low.cmpgt(place_error).all() && past_high.cmpgt(place_error).all();
-            if !is_inside || distance - error <= near {
-                return Quick::Unknown;
-            }
-            return Quick::Hit(distance / self.scale, error / self.scale);
+        let (first, second) =
+            (self.met(&along, ray, near, nearer, root), self.met(&along, ray, near, farther, root));
+        let is_first = !first.is_missed;
+        Quick {
+            is_missed: (room < -error) | (is_clear & first.is_missed & second.is_missed),
+            is_unknown: !is_clear | first.is_unknown | (first.is_missed & second.is_unknown),
+            distance: self.unscale * if is_first { first.distance } else { second.distance },
+            error: self.unscale * if is_first { first.error } else { second.error },
         }
-        Quick::Miss
+    }
+
+    /// Whether one of two hits counts, as far as plain arithmetic tells, in the surface's own lengths: it must be beyond
+    /// `near` and in the box.
+    #[inline(always)]
+    fn met(&self, along: &Along, ray: &OwnRay, near: f64, hit: f64, root: f64) -> Quick {
+        let Along { base, at, at_error, a, a_error, b_error, c_error, .. } = *along;
+        // The polynomial's error there by its slope, twice: it is bent.
+        let off = a_error * hit * hit + 2.0 * b_error * hit.abs() + c_error;
+        let hit_error = off / root + 4.0 * f64::EPSILON * hit.abs();
+        let distance = base + hit;
+        let error = hit_error + f64::EPSILON * distance.abs();
+        let onward = hit * ray.dir;
+        let place = at + onward;
+        let place_error =
+            2.0 * f64::EPSILON * (at.abs() + onward.abs()) + at_error + hit_error * ray.dir.abs();
+        let (past_low, past_high) = (place - self.low, self.high - place);
+        let depth = |axis: usize| smaller(past_low[axis], past_high[axis]) - place_error[axis];
+        let inside = smaller(smaller(depth(0), depth(1)), depth(2));
+        let depth = |axis: usize| smaller(past_low[axis], past_high[axis]) + place_error[axis];
+        let outside = smaller(smaller(depth(0), depth(1)), depth(2));
+        let is_missed = (distance + error < near) | (outside < 0.0);
+        let is_certain =
+            (4.0 * a.abs() * off < root * root) & (is_missed | ((inside > 0.0) & (distance - error > near)));
+        Quick { is_missed: is_certain & is_missed, is_unknown: !is_certain, distance, error }
     }
 
     /// A quick hit, corrected to half a unit in its last place by a step of Newton's method in twice the precision; NaN
@@ -234,19 +244,28 @@ impl Quadratic {
     #[inline(always)]
     pub fn corrected(&self, ray: &OwnRay, quick: f64) -> f64 {
         let t = quick * self.scale;
-        let place = [0, 1, 2].map(|axis| {
-            let (high, low) = two_product(t, ray.dir[axis]);
-            ray.from[axis] + Twofold { high, low }
-        });
-        let value = self.value(place).high;
-        let at = DVec3::new(place[0].high, place[1].high, place[2].high);
-        let slope = (2.0 * (self.square * at) + self.linear).dot(ray.dir);
+        let place = |axis: usize| {
+            let (product, product_low) = two_product(t, ray.dir[axis]);
+            let (sum, sum_low) = two_sum(ray.from[axis].high, product);
+            two_sum(sum, product_low + sum_low + ray.from[axis].low)
+        };
+        let ((x, x_low), (y, y_low), (z, z_low)) = (place(0), place(1), place(2));
+        let (at, low) = (DVec3::new(x, y, z), DVec3::new(x_low, y_low, z_low));
+        let (s, l) = (&self.square, self.linear);
+        // As x (Ax + Dy + Ez + G) + y (By + Fz + H) + z (Cz + I) - J, each sum with what rounding takes from it.
+        let (of_x, of_x_low) = compensated([s.x_axis.x, 2.0 * s.y_axis.x, 2.0 * s.z_axis.x], [x, y, z], l.x);
+        let (of_y, of_y_low) = compensated([s.y_axis.y, 2.0 * s.z_axis.y, 0.0], [y, z, 0.0], l.y);
+        let (of_z, of_z_low) = compensated([s.z_axis.z, 0.0, 0.0], [z, 0.0, 0.0], l.z);
+        let (value, value_low) = compensated([of_x, of_y, of_z], [x, y, z], self.constant);
+        let gradient = 2.0 * (self.square * at) + l;
+        let value = value + (value_low + (of_x_low * x + of_y_low * y + of_z_low * z) + gradient.dot(low));
+        let slope = gradient.dot(ray.dir);
         let step = value / slope;
         let bend = ray.dir.dot(self.square * ray.dir) * step * step;
-        let size =
-            at.abs().dot(self.sizes * at.abs()) + self.linear.abs().dot(at.abs()) + self.constant.abs();
+        let size = self.sizes.dot(at * at) + l.abs().dot(at.abs()) + self.constant.abs();
         let error = bend.abs() + FINE * size;
-        if error <= 0.125 * f64::EPSILON * (t * slope).abs() { (t - step) / self.scale } else { f64::NAN }
+        let is_enough = error <= 0.125 * f64::EPSILON * (t * slope).abs();
+        if is_enough { (t - step) * self.unscale } else { f64::NAN }
     }
 
     /// The first hit beyond `near`, in twice the precision, and where that could decide without rounding. What is as near to
@@ -302,7 +321,7 @@ impl Quadratic {
     fn fine_hits(&self, ray: &OwnRay) -> Option<[Fine; 2]> {
         let a = self.bend(ray);
         let dir = ray.dir.abs();
-        let a_error = FINE * dir.dot(self.sizes * dir);
+        let a_error = FINE * self.sizes.dot(dir * dir);
         let room = |b: Twofold, c: Twofold, b_error: f64, c_error: f64| {
             let (square, product) = (b * b, a * c);
             let error = 2.0 * b_error * b.high.abs()
@@ -423,16 +442,17 @@ impl Quadratic {
         let linear = self.linear.to_array().map(Twofold::from);
         let b = product(place, self.turned(dir)) + Twofold::from(0.5) * product(linear, dir);
         let size = DVec3::from(place.map(|part| part.high.abs()));
-        let (steepness, linear) = (self.sizes * size, self.linear.abs());
+        let linear = self.linear.abs();
         // The point itself is off by a few parts of what it was computed from.
         let moved = (0..3).map(|axis| ray.from[axis].high.abs() + (distance.high * ray.dir[axis]).abs());
         let moved = moved.sum::<f64>();
-        let dir = ray.dir.abs();
-        let b_size = size.dot(self.sizes * dir) + linear.dot(dir) + moved * (self.sizes * dir).element_sum();
-        let c_size = size.dot(steepness)
+        let (dir, at_size) = (ray.dir.abs(), self.sizes.dot(size * size));
+        let b_size =
+            (at_size * self.sizes.dot(dir * dir)).sqrt() + linear.dot(dir) + moved * self.sizes.dot(dir);
+        let c_size = at_size
             + linear.dot(size)
             + self.constant.abs()
-            + moved * (2.0 * steepness + linear).element_sum();
+            + moved * (2.0 * self.sizes.dot(size) + linear.element_sum());
         [b, self.value(place), (FINE * b_size).into(), (FINE * c_size).into()]
     }
 
@@ -457,7 +477,7 @@ impl Quadratic {
         let OwnRay { from, .. } = self.own(at, DVec3::ZERO, center);
         let place = DVec3::from(from.map(|part| part.high));
         let gradient = 2.0 * (self.square * place) + self.linear;
-        let size = (2.0 * (self.sizes * place.abs()) + self.linear.abs()).max_element();
+        let size = (2.0 * self.sizes * place.abs().max_element() + self.linear.abs()).max_element();
         if gradient.abs().max_element() > 1e-3 * size {
             return gradient.normalize();
         }
@@ -473,6 +493,18 @@ impl Quadratic {
             .max_by(|one, other| one.length().total_cmp(&other.length()));
         gradient.try_normalize().or(longest.and_then(DVec3::try_normalize)).unwrap_or(DVec3::Y)
     }
+}
+
+/// A sum of three products and a number, and what rounding takes from it, but for what it takes from that.
+#[inline(always)]
+fn compensated(a: [f64; 3], b: [f64; 3], more: f64) -> (f64, f64) {
+    let (first, first_low) = two_product(a[0], b[0]);
+    let (second, second_low) = two_product(a[1], b[1]);
+    let (third, third_low) = two_product(a[2], b[2]);
+    let (sum, one_low) = two_sum(first, second);
+    let (sum, other_low) = two_sum(sum, third);
+    let (sum, more_low) = two_sum(sum, more);
+    (sum, (first_low + second_low + third_low) + (one_low + other_low + more_low))
 }
 
 /// The roots by the well-known formula, which the notes have: it loses digits, and double roots.
@@ -497,17 +529,13 @@ mod tests {
         let surface = Quadratic::new(coefficients, low, high);
         let ray = surface.own(origin, dir, DVec3::ZERO);
         let exact = surface.exact_hit(&ray, 0.0);
-        match surface.quick_hit(&ray, 0.0, 0.0) {
-            Quick::Unknown => {}
-            Quick::Miss => assert_eq!(exact, MISS),
-            Quick::Hit(quick, error) => {
-                assert!((quick - exact).abs() <= error, "{quick} {exact} {error:e}");
-                let corrected = surface.corrected(&ray, quick);
-                assert!(
-                    corrected.is_nan() || (corrected - exact).abs() <= 1e-15 * exact,
-                    "{corrected} {exact}"
-                );
-            }
+        let quick = surface.quick_hit(&ray, 0.0, 0.0);
+        if quick.is_missed {
+            assert_eq!(exact, MISS);
+        } else if !quick.is_unknown {
+            assert!((quick.distance - exact).abs() <= quick.error, "{quick:?} {exact}");
+            let corrected = surface.corrected(&ray, quick.distance);
+            assert!(corrected.is_nan() || (corrected - exact).abs() <= 1e-15 * exact, "{corrected} {exact}");
         }
         exact
     }

@@ -47,18 +47,17 @@ pub fn offset(start: f64, distance: f64, step: f64, from: f64) -> f64 {
     (place - from) + (way_low + place_low)
 }
 
-/// A sum of three products, the factors with what rounding took from them: rounded about once, and off by at most
-/// 2^-102 of the size of its parts, however much of it cancels (Ogita, Rump and Oishi 2005).
+/// A sum of three products, the second factors with what rounding took from them, and of something small: rounded about
+/// once, and off by at most 2^-102 of the size of its parts, however much of it cancels (Ogita, Rump and Oishi 2005).
 #[inline(always)]
-pub fn dot(a: [Twofold; 3], b: [f64; 3], b_low: [f64; 3]) -> f64 {
-    let (first, first_low) = two_product(a[0].high, b[0]);
-    let (second, second_low) = two_product(a[1].high, b[1]);
-    let (third, third_low) = two_product(a[2].high, b[2]);
+pub fn dot(a: [f64; 3], b: [f64; 3], b_low: [f64; 3], small: f64) -> f64 {
+    let (first, first_low) = two_product(a[0], b[0]);
+    let (second, second_low) = two_product(a[1], b[1]);
+    let (third, third_low) = two_product(a[2], b[2]);
     let (sum, sum_low) = two_sum(first, second);
     let (sum, rest_low) = two_sum(sum, third);
-    let of_low = a[0].high * b_low[0] + a[1].high * b_low[1] + a[2].high * b_low[2];
-    let of_a_low = a[0].low * b[0] + a[1].low * b[1] + a[2].low * b[2];
-    sum + ((first_low + second_low + third_low) + (sum_low + rest_low) + (of_low + of_a_low))
+    let of_low = a[0] * b_low[0] + a[1] * b_low[1] + a[2] * b_low[2];
+    sum + ((first_low + second_low + third_low) + (sum_low + rest_low) + (of_low + small))
 }
 
 /// A number without rounding: the sum of parts whose digits do not overlap, the least first (Shewchuk 1997).

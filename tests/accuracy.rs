@@ -7,13 +7,15 @@ mod common;
 mod oracle;
 
 use glam::{DVec3, dvec3};
-use oracle::rays::{self, BASE};
+use oracle::hard::{self, KINDS, SETS};
+use oracle::rays::{self, BASE, Random};
 use oracle::revolution::Revolution;
 use oracle::shapes::{self, Plane};
 use oracle::tally::{Tally, Tolerance};
 use oracle::{Crossings, Truth};
 use std::fmt::Write;
 use std::hint::black_box;
+use std::sync::Mutex;
 use std::time::{Duration, Instant};
 use tabray::formula::Formula;
 use tabray::geometry::{Hittable, MISS, Ray, Span};
@@ -23,6 +25,10 @@ const RAYS: usize = 1_000_000;
 
 /// Those for each distance of a sphere and of a plane.
 const FAR_RAYS: usize = 100_000;
+
+/// Random shapes of a kind for each set of rays, and the rays for each of them.
+const HARD_SHAPES: usize = 7_000;
+const HARD_RAYS: usize = 50;
 
 /// How often each method's time is taken; the least counts.
 const ROUNDS: usize = 5;
@@ -224,6 +230,39 @@ fn distance_table(object: &str, truth: impl Fn(&Ray, f64) -> Truth, text: &mut S
     }
 }
 
+/// One table: random shapes with a formula for their hits, and rays that are hard for them.
+fn hard_table(text: &mut String) {
+    *text += "| shape | rays | hits | ties |";
+    for method in METHODS {
+        write!(text, " `{method}` wrong | ulp |").expect("text grows");
+    }
+    *text += &format!("\n|---|---|---:|---:|{}\n", "---:|---:|".repeat(METHODS.len()));
+    for kind in KINDS {
+        for set in SETS {
+            let mut random = Random::new(23);
+            let mut tallies = METHODS.map(|_| Tally::default());
+            for _ in 0..HARD_SHAPES {
+                let subject = hard::subject(kind, &mut random);
+                let shapes = METHODS.map(|method| shape(method, &subject.text));
+                for _ in 0..HARD_RAYS {
+                    let ray = subject.ray(set, &mut random);
+                    let truth = subject.truth(&(&ray).into(), 0.0);
+                    for (tally, shape) in tallies.iter_mut().zip(&shapes) {
+                        subject.count(tally, &**shape, &ray, truth);
+                    }
+                }
+            }
+            write!(text, "| {kind} | {set} | {} | {} |", tallies[0].hits, tallies[0].undecided)
+                .expect("text grows");
+            for (method, tally) in METHODS.iter().zip(&tallies) {
+                println!("{kind}, {set}, {method}: {tally}");
+                write!(text, " {} | {} |", tally.wrong(), short(tally.ulps)).expect("text grows");
+            }
+            *text += "\n";
+        }
+    }
+}
+
 /// A number with two digits.
 fn short(number: f64) -> String {
     if number < 100.0 { format!("{number:.1}") } else { format!("{number:.1e}") }
@@ -231,9 +270,47 @@ fn short(number: f64) -> String {
 
 const MIDDLE: DVec3 = dvec3(4.0, 3.0, -4.0);
 
+/// The document is measured and written in two parts, one after the other: either can be measured alone.
+static PART: Mutex<()> = Mutex::new(());
+
+/// What the second part of the document begins with.
+const SECOND_PART: &str = "## Shapes with a formula\n";
+
+/// Puts one of the two parts of the document in its place.
+fn write_part(change: impl FnOnce(&str, &str) -> String) {
+    let path = common::root().join("docs/accuracy.md");
+    let text = std::fs::read_to_string(&path).expect("the document is there");
+    let (first, second) = text.split_once(SECOND_PART).unwrap_or((&text, ""));
+    std::fs::write(&path, change(first, second)).expect("the folder of the documents is there");
+    println!("wrote {}", path.display());
+}
+
+#[test]
+#[ignore = "runs for many minutes; its numbers are a document"]
+fn hard_rays_are_measured() {
+    let _alone = PART.lock();
+    let rays = HARD_SHAPES * HARD_RAYS;
+    let mut table = format!(
+        "
+{rays} rays of each set for each kind of shape, {HARD_RAYS} for each of {HARD_SHAPES} random ones: spheres and ellipsoids with half
+axes up to 1e9 : 1; quadrics whose middle is up to 1e4 from their center, that touch their box, that are two planes next to
+each other or that are multiplied by up to 1e150; triangles as thin as 1e-12 of their length; planes and rectangles that
+lean. *Camera* rays are aimed at them from nearby and *far* ones from up to 1e9; *grazing* ones pass a silhouette or an edge by
+1e-2 to 1e-15, or go along a plane but for that angle, from up to 1e9 away. The truth has 300 bits; it starts from the
+numbers of the scene's text and takes a ray's numbers as they are. *Ties* are rays that touch a shape or an edge as far
+as 300 bits tell. *Wrong* are hits missed, invented or at another crossing than the first; *ulp* is the greatest error of the
+others in units in the last place of the distance.
+
+"
+    );
+    hard_table(&mut table);
+    write_part(|first, _| format!("{}\n\n{SECOND_PART}{table}", first.trim_end()));
+}
+
 #[test]
 #[ignore = "runs for many minutes; its numbers are a document"]
 fn the_accuracy_of_each_method_is_measured() {
+    let _alone = PART.lock();
     let mut text = format!(
         "# How exact the methods are
 
@@ -301,7 +378,5 @@ another crossing; *ulp* is the greatest error of the others in units in the last
         truth => truth,
     };
     distance_table("plane p { material m normal 0.3 1 0.5 point 4 3 -4 }", truth, &mut text);
-    let path = common::root().join("docs/accuracy.md");
-    std::fs::write(&path, text).expect("the folder of the documents is there");
-    println!("wrote {}", path.display());
+    write_part(|_, second| format!("{text}\n{SECOND_PART}{second}"));
 }

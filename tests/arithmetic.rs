@@ -57,11 +57,11 @@ fn finds(kind: &str, ulps: f64) {
             for _ in 0..RAYS {
                 let ray = subject.ray(set, &mut random);
                 let before = tally.wrong();
-                subject.count(&mut tally, &*shape, &ray);
+                let truth = subject.truth(&Line::from(&ray), 0.0);
+                subject.count(&mut tally, &*shape, &ray, truth);
                 let found = shape.distance(&ray, &Span::RAY);
                 let quick = shape.quick_distance(&ray, &Span::RAY);
                 let bracket = shape.bracket(&ray, &Span::RAY);
-                let truth = subject.truth(&Line::from(&ray), 0.0);
                 if tally.wrong() > before {
                     faults.push(format!("wrong: {}\n  {ray:?}: {truth:?}, not {found:?}", subject.text));
                 }

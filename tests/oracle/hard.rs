@@ -278,13 +278,25 @@ impl Subject {
         match set {
             "camera" => {
                 let origin = self.middle + self.reach * random.between(1.5, 8.0) * random.direction();
-                toward(origin, random.in_ball(self.middle, self.reach))
+                toward(origin, self.target(random))
             }
             "far" => {
                 let distance = self.reach.min(100.0) * magnitude(random, 1.0, 9.0);
-                toward(self.middle + distance * random.direction(), random.in_ball(self.middle, self.reach))
+                toward(self.middle + distance * random.direction(), self.target(random))
             }
             _ => self.grazing(random),
+        }
+    }
+
+    /// A point of it or around it.
+    fn target(&self, random: &mut Random) -> DVec3 {
+        match &self.brink {
+            Brink::Edges(edges) if random.below(4) != 0 => {
+                let weights: Vec<f64> = edges.iter().map(|_| random.between(0.0, 1.0)).collect();
+                let sum: DVec3 = edges.iter().zip(&weights).map(|((from, ..), weight)| *weight * *from).sum();
+                sum / weights.iter().sum::<f64>()
+            }
+            _ => random.in_ball(self.middle, self.reach),
         }
     }
 
@@ -316,20 +328,15 @@ impl Subject {
         }
     }
 
-    /// Counts a ray's hit by the program.
-    pub fn count(&self, tally: &mut Tally, shape: &dyn Hittable, ray: &Ray) {
-        let line = Line::from(ray);
-        let truth = self.truth(&line, 0.0);
+    /// Counts a ray's hit by the program, against its truth.
+    pub fn count(&self, tally: &mut Tally, shape: &dyn Hittable, ray: &Ray, truth: Truth) {
         let found = shape.distance(ray, &Span::RAY);
-        let sure = truth.hit().map_or(0.0, |hit| 64.0 * ulp(hit.t.high));
-        let slant = truth.hit().map_or(1.0, |hit| shape.normal(ray.at(hit.t.high)).dot(ray.dir).abs());
-        let off = |found: f64| truth.hit().map_or(0.0, |hit| (hit.t - found.into()).high.abs() * slant);
-        tally.count(
-            truth,
-            found,
-            Tolerance { sure, most: f64::INFINITY },
-            |near| self.truth(&line, near),
-            off,
-        );
+        let hit = truth.hit();
+        // What is nearer to another hit is that one, but for what rounding makes of two that are almost one.
+        let sure = hit.map_or(0.0, |hit| 64.0 * ulp(hit.t.high));
+        let slant = hit.map_or(1.0, |hit| shape.normal(ray.at(hit.t.high)).dot(ray.dir).abs());
+        let off_surface = |found: f64| hit.map_or(0.0, |hit| (hit.t - found.into()).high.abs() * slant);
+        let next = |near: f64| self.truth(&ray.into(), near);
+        tally.count(truth, found, Tolerance { sure, most: f64::INFINITY }, next, off_surface);
     }
 }

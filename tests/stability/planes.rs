@@ -149,7 +149,7 @@ fn no_ray_falls_through_the_seam_of_two_rectangles() {
     let normal = tilted.normalize();
     let across = projected(normal, dvec3(3.0, 0.0, -4.0));
     let up = normal.cross(across);
-    let corners = [dvec3(0.5, 0.75, -1.25), dvec3(0.5, 0.75, -1.25) + dvec3(1.5, 0.0, -2.0)];
+    let corners = [dvec3(-37.5, 20.75, -41.25), dvec3(-36.0, 20.75, -43.25)];
     let panes = corners.map(|corner| {
         let object = format!(
             "fplane f {{ material m normal {} point {} xdir 3 0 -4 dimensions 2.5 2 }}",
