@@ -136,7 +136,7 @@ impl Plane {
         }
     }
 
-    /// As [`keep`](Self::keep), or NaN where the point is on the screen but for rounding.
+    /// As [`keep`](Self::keep), or NaN where the point is on the screen but for rounding, or the distance is NaN.
     #[inline(always)]
     pub fn quick_keep(&self, distance: f64, ray: &Ray, within: &Span) -> f64 {
         let z = ray.at(distance).z;
@@ -149,7 +149,8 @@ impl Plane {
         };
         let kept = if (z > SCREEN) | within.leaves.is_some() { MISS } else { within.keep(distance) };
         let is_there = (distance < MISS) & within.leaves.is_none();
-        if ((z - SCREEN).abs() <= error) & is_there { f64::NAN } else { kept }
+        let is_on_the_screen = ((z - SCREEN).abs() <= error) & is_there;
+        if is_on_the_screen | distance.is_nan() { f64::NAN } else { kept }
     }
 
     /// Whether a ray crosses it on the viewer's side of the screen: where z, which is the origin's and

@@ -60,7 +60,8 @@ fn balls(center: Point, radius: f64) -> [String; 5] {
     let foot = numbers(moved(center, -radius, [0.0, 1.0, 0.0]));
     [
         format!("sphere ball {{ material m center {at} radius {radius:?} }}"),
-        format!("psphere ball {{ material m center {at} radius {radius:?} shader 0 }}"),
+        // Of the material's ambient colour it leaves nothing, as there is none.
+        format!("psphere ball {{ material m center {at} radius {radius:?} shader tiles }}"),
         format!("ellipsoid ball {{ material m center {at} radius {radius:?} scale 1 1 1 }}"),
         format!(
             "quadric ball {{ material m coefficients 1 1 1 0 0 0 0 0 0 {:?} center {at} box {} }}",
