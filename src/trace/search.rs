@@ -9,6 +9,7 @@ use crate::certify::{self, Enclosure, Precision};
 use crate::coincidence;
 use crate::cpu::{Cpu, kernels};
 use crate::geometry::{Hittable, MISS, Ray, Side, Span};
+use crate::interval::Wide;
 use crate::packet::{Nearest, Rays, parts};
 use crate::sight::Sight;
 use crate::tree::Visitor;
@@ -189,23 +190,25 @@ pub(super) fn exact(shape: &dyn Hittable, start: &Start, leaves: Option<Side>, f
     let distance = shape.distance(&start.ray, &Span { far, ..Span::RAY });
     // Where what was rounded of the ray may decide whether it meets the shape, the ray does that was not rounded.
     match &start.sight {
-        Some(sight) if shape.bracket(&start.ray, &Span::RAY).is_doubtful() => match proven(shape, sight) {
-            Some(right) if (right == MISS) != (distance == MISS) => right,
-            _ => distance,
-        },
+        Some(sight) if shape.bracket(&start.ray, &Span::RAY).is_doubtful() => decided(shape, sight, distance),
         _ => distance,
     }
 }
 
-/// The distance of what is proven of a ray's first hit, or [`MISS`]; nothing where 237 bits do not tell.
-fn proven(shape: &dyn Hittable, sight: &Sight) -> Option<f64> {
-    [Precision::Double, Precision::Octuple].into_iter().find_map(|precision| {
-        match shape.certify(sight, precision) {
-            Enclosure::Misses => Some(MISS),
-            Enclosure::Hits(at) => Some(certify::in_world_units(at, sight).high),
-            Enclosure::Doubtful(_) => None,
-        }
-    })
+/// A distance, if the ray before anything was rounded has a hit there as far as 237 bits tell, or [`MISS`].
+fn decided(shape: &dyn Hittable, sight: &Sight, distance: f64) -> f64 {
+    let in_world_units = |at: Wide| certify::in_world_units(at, sight).high;
+    let enclosure = match shape.certify(sight, Precision::Double) {
+        Enclosure::Doubtful(_) => shape.certify(sight, Precision::Octuple),
+        certain => certain,
+    };
+    match enclosure {
+        Enclosure::Misses => MISS,
+        Enclosure::Hits(at) if distance == MISS => in_world_units(at),
+        // As of a plane that the ray runs along but for rounding.
+        Enclosure::Doubtful(from) if in_world_units(Wide::point(from)) > distance => MISS,
+        Enclosure::Hits(_) | Enclosure::Doubtful(_) => distance,
+    }
 }
 
 kernels! {

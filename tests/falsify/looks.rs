@@ -167,13 +167,31 @@ fn slope(random: &mut Random) -> Point {
 
 /// The pixels of a scene that are black: where it has only lit surfaces, and no shadows.
 fn black(text: String, renderer: &Renderer) -> Looks {
+    dark(text, renderer, |_, _| true)
+}
+
+/// Those that are black between two that are not: where it has shadows, which are wider.
+fn dots(text: String, renderer: &Renderer) -> Looks {
+    dark(text, renderer, |[x, y], is_black| {
+        let is_lit = |x: usize, y: usize| !is_black(x, y);
+        is_lit(x.wrapping_sub(1), y) && is_lit(x + 1, y) || is_lit(x, y.wrapping_sub(1)) && is_lit(x, y + 1)
+    })
+}
+
+/// The pixels that show an object, are black and should not be. What lies beyond the picture counts as black.
+fn dark(
+    text: String,
+    renderer: &Renderer,
+    is_wrong: impl Fn([usize; 2], &dyn Fn(usize, usize) -> bool) -> bool,
+) -> Looks {
     let program = Program::read(&text).unwrap_or_else(|| panic!("refused:\n{text}"));
     let (seen, [width, height]) = (program.picture(renderer), program.size());
+    let is_black = |x: usize, y: usize| x >= width || y >= height || seen[y * width + x] == [0; 3];
     let mut looks = Looks { pixels: 0, wrong: 0, text };
-    for (index, seen) in seen.iter().enumerate() {
-        if program.find([index % width, height - 1 - index / width]).first.is_some() {
+    for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+        if program.find([x, height - 1 - y]).first.is_some() {
             looks.pixels += 1;
-            looks.wrong += usize::from(*seen == [0; 3]);
+            looks.wrong += usize::from(is_black(x, y) && is_wrong([x, y], &is_black));
         }
     }
     looks
@@ -233,7 +251,8 @@ fn seam(random: &mut Random, renderer: &Renderer) -> Looks {
         numbers(on_wall),
         numbers(lamp),
     );
-    black(text, renderer)
+    // Through the part of the floor before the screen, which is not seen, there are shadows of the part behind it.
+    dots(text, renderer)
 }
 
 /// A triangle that stands with an edge on a floor.
