@@ -89,6 +89,16 @@ impl Quadric {
         crossings.into_iter().find(|distance| self.keeps(ray.at(*distance))).unwrap_or(MISS)
     }
 
+    /// The distance where there is nothing to decide: by the notes' formula, or of a ray that leaves it.
+    #[inline(never)]
+    fn other_distance(&self, ray: &Ray, within: &Span) -> f64 {
+        if self.is_classic() {
+            return self.classic_distance(ray, within);
+        }
+        // It starts on one hit: the other one is what is left.
+        within.keep(self.own.other_hit(&self.own_ray(ray)))
+    }
+
     #[inline(always)]
     fn own_ray(&self, ray: &Ray) -> OwnRay {
         self.own.own(ray.origin, ray.dir, self.center)
@@ -109,14 +119,10 @@ impl Hittable for Quadric {
 
     #[inline(always)]
     fn quick_distance(&self, ray: &Ray, within: &Span) -> f64 {
-        if self.is_classic() {
-            return self.classic_distance(ray, within);
+        if self.is_classic() || within.leaves.is_some() {
+            return self.other_distance(ray, within);
         }
         let own = self.own_ray(ray);
-        // A ray that leaves it starts on one hit: the other one is what is left.
-        if within.leaves.is_some() {
-            return within.keep(self.own.other_hit(&own));
-        }
         if self.accuracy == Accuracy::Strict {
             return f64::NAN;
         }
@@ -130,7 +136,7 @@ impl Hittable for Quadric {
     #[inline(always)]
     fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
         if self.is_classic() || within.leaves.is_some() {
-            return Bracket::exactly(self.quick_distance(ray, within));
+            return Bracket::exactly(self.other_distance(ray, within));
         }
         let Quick { is_missed, is_unknown, distance, error } =
             self.own.quick_hit(&self.own_ray(ray), within.near, CAMERA);
