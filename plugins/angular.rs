@@ -2,7 +2,7 @@
 
 use super::rainbow;
 use crate::geometry::Shader;
-use crate::material::{Material, Rgb};
+use crate::material::{Look, Material, Rgb};
 use crate::shading::{Anchor, ProceduralShader};
 use glam::{DVec2, DVec3};
 
@@ -17,5 +17,9 @@ impl Shader for Angular {
     fn ambient(&self, _material: &Material, at: DVec3) -> Rgb {
         let DVec3 { x, y, .. } = at - self.0.origin;
         rainbow::colour(DVec2::new(x, -y.abs()))
+    }
+
+    fn brightest(&self, material: &Material) -> Option<Look> {
+        rainbow::brightest(1.0, material)
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::accuracy::Accuracy;
 use crate::camera::Camera;
-use crate::entity::Entity;
+use crate::entity::{Entity, Refusal};
 use crate::pparm::{Pparm, Table};
 use crate::sample::{MOST, Sampler};
 use glam::{DVec2, DVec3};
@@ -35,6 +35,13 @@ const TABLE: Table = &[&PIXELDIM, &WORLDDIM, &VIEWPOINT, &SAMPLES, &ACCURACY];
 
 inventory::submit! {
     Entity::camera("camera", "the viewer, and a screen from the world's origin to the right and up", &[TABLE], |args| {
+        if args.get(&VIEWPOINT).abs().max_element() < 1e-152 {
+            return Err(Refusal {
+                attribute: Some("viewpoint"),
+                message: "is so near to the screen that the squares of distances vanish".to_owned(),
+                help: "1e-152 world units is the least distance that can be squared",
+            });
+        }
         Ok(Camera {
             // The rules keep the whole numbers in range.
             pixels: args.get(&PIXELDIM).map(|side| side as usize),
@@ -42,7 +49,8 @@ inventory::submit! {
             viewpoint: args.get(&VIEWPOINT),
             samples: args.get(&SAMPLES) as u32,
             sampler: Sampler::default(),
-            accuracy: args.get(&ACCURACY),
+            // The notes' way of calling has a default of its own.
+            accuracy: args.get_given(&ACCURACY).unwrap_or(args.accuracy()),
         })
     })
 }

@@ -4,11 +4,13 @@ use super::sphere::{self, Sphere};
 use crate::accuracy::Accuracy;
 use crate::ball::{self, Line};
 use crate::bounds::Bounds;
-use crate::certify::{self, Enclosure, Equation};
+use crate::certify::{self, Enclosure, Equation, Precision};
+use crate::coincidence;
 use crate::entity::Entity;
-use crate::geometry::{Body, Bracket, Hittable, Ray, Span};
+use crate::geometry::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
 use crate::number::Number;
 use crate::pparm::{Pparm, Row, Table};
+use crate::sight::Sight;
 use crate::twofold::{Twofold, exponent_to_one, times_power_of_two};
 use glam::DVec3;
 
@@ -67,7 +69,11 @@ impl Hittable for Ellipsoid {
             let (from, dir) = self.squeezed(ray);
             return within.keep(sphere::classic(from, dir, radius));
         }
-        within.keep(ball::first_hit(&self.line(ray), radius, accuracy))
+        within.keep(match within.leaves {
+            None => ball::first_hit(&self.line(ray), radius, accuracy),
+            Some(Side::Inside) => ball::far_hit(&self.line(ray), radius, accuracy),
+            Some(Side::Outside) => MISS,
+        })
     }
 
     #[inline(always)]
@@ -76,8 +82,9 @@ impl Hittable for Ellipsoid {
         match self.ball.accuracy {
             Accuracy::Classic => Bracket::exactly(within.keep(sphere::classic(from, dir, self.ball.radius))),
             _ => {
-                let inverse = 1.0 / dir.dot(dir);
-                ball::bracket(from, dir, inverse, self.most_squeezed * inverse.sqrt(), self.ball.radius)
+                let (inverse, error) = (1.0 / dir.dot(dir), within.origin_error / self.scale.min_element());
+                let spread = self.most_squeezed * inverse.sqrt();
+                ball::bracket(from, dir, inverse, spread, self.ball.radius, within.leaves, error)
             }
         }
     }
@@ -105,6 +112,25 @@ impl Hittable for Ellipsoid {
         ((at - self.ball.center) / (self.scale * self.scale)).normalize()
     }
 
+    fn meets_itself(&self, leaving: Side) -> bool {
+        self.ball.meets_itself(leaving)
+    }
+
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        // Where it is squeezed most, an error is largest.
+        let from = (at - self.ball.center) / self.scale;
+        let squeezed = (from / self.scale).length() / from.length();
+        ball::touches(from, self.ball.radius, error * squeezed)
+    }
+
+    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold> {
+        if self.ball.accuracy == Accuracy::Classic {
+            None
+        } else {
+            coincidence::distance(self, ray, distance)
+        }
+    }
+
     fn is_two_sided(&self) -> bool {
         self.ball.is_two_sided()
     }
@@ -113,12 +139,14 @@ impl Hittable for Ellipsoid {
         ball::method(self.ball.accuracy).to_owned()
     }
 
-    fn certify(&self, ray: &Ray) -> Enclosure {
-        certify::first_hit(self, ray)
+    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        certify::first_hit(self, sight, precision)
     }
 }
 
 impl Equation for Ellipsoid {
+    const IS_QUADRATIC: bool = true;
+
     fn value<N: Number>(&self, at: [N; 3]) -> N {
         let part = |axis: usize| {
             ((at[axis] - N::constant(self.ball.center[axis])) / N::constant(self.scale[axis])).powi(2)

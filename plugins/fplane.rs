@@ -3,16 +3,17 @@
 use super::plane::{self, Plane};
 use crate::accuracy::Accuracy;
 use crate::bounds::Bounds;
-use crate::certify::{self, Enclosure, Equation};
+use crate::certify::{self, Enclosure, Equation, Precision};
 use crate::cpu::Cpu;
 use crate::entity::{Args, Entity, Refusal};
 use crate::geometry::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
-use crate::interval::Interval;
-use crate::number::Number;
+use crate::number::{Number, cross, dot};
 use crate::packet::Rays;
 use crate::pparm::{Derived, Pparm, Row, Table};
 use crate::rectangle;
 pub use crate::rectangle::FinitePlane;
+use crate::sight::Sight;
+use crate::twofold::Twofold;
 use crate::value::Value;
 use glam::{DMat3, DVec2, DVec3};
 
@@ -74,12 +75,13 @@ impl FinitePlane {
     pub fn new(args: &Args) -> Result<Self, Refusal> {
         let (plane, dimensions) = (Plane::new(args), args.get(&DIMENSIONS));
         let reach = plane.point.abs().max_element() + dimensions.element_sum();
-        let (sides, exact_sides) = (sides(args)?, rectangle::exact_sides(plane.upright, args.get(&XDIR)));
+        let (given_xdir, given_sides) = (args.get(&XDIR), sides(args)?);
+        let exact_sides = rectangle::exact_sides(plane.upright, given_xdir);
         let sides = match plane.accuracy {
-            Accuracy::Classic => sides,
+            Accuracy::Classic => given_sides,
             _ => exact_sides.map(|side| DVec3::from(side.map(|part| part.high))),
         };
-        Ok(Self { plane, dimensions, sides, exact_sides, reach })
+        Ok(Self { plane, dimensions, sides, exact_sides, given_xdir, reach })
     }
 }
 
@@ -95,7 +97,7 @@ impl Hittable for FinitePlane {
         if self.plane.accuracy == Accuracy::Classic {
             return Bracket::exactly(self.quick_distance(ray, within));
         }
-        let rough = self.plane.rough(ray);
+        let rough = self.plane.rough(ray, within.origin_error);
         let inside = self.inside(ray, rough.distance);
         // A camera's direction is off by 3 units of 2^-53 in each component, which is less than half of the slack.
         let slack = rough.error + 2.0 * self.slack(ray, rough.distance);
@@ -134,31 +136,61 @@ impl Hittable for FinitePlane {
         self.plane.is_clear_of(region) || self.bounds().is_some_and(|bounds| !bounds.overlaps(region))
     }
 
+    fn meets_itself(&self, leaving: Side) -> bool {
+        self.plane.meets_itself(leaving)
+    }
+
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        // What starts on the plane beside the rectangle does not meet it either.
+        self.plane.touches(at, error)
+    }
+
+    fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold> {
+        self.plane.fine_distance(ray, distance)
+    }
+
     fn normal(&self, at: DVec3) -> DVec3 {
         self.plane.normal(at)
+    }
+
+    fn plane(&self) -> Option<[DVec3; 2]> {
+        Hittable::plane(&self.plane)
     }
 
     fn method(&self) -> String {
         self.plane.method().to_owned()
     }
 
-    fn certify(&self, ray: &Ray) -> Enclosure {
-        certify::first_hit(self, ray)
+    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        certify::first_hit(self, sight, precision)
     }
 }
 
 impl Equation for FinitePlane {
+    const IS_QUADRATIC: bool = true;
+
     fn value<N: Number>(&self, at: [N; 3]) -> N {
         self.plane.value(at)
     }
 
-    fn kept(&self, at: [Interval; 3]) -> Interval {
-        let from_corner = [0, 1, 2].map(|axis| at[axis] - Interval::constant(self.plane.point[axis]));
-        let inside = |side: usize| {
-            let part = |axis: usize| from_corner[axis] * Interval::constant(self.sides[side][axis]);
-            let along = part(0) + part(1) + part(2);
-            along.min(Interval::constant(self.dimensions[side]) - along)
+    /// How far inside of the four sides, each in a measure of its own: unit vectors would need more roots.
+    fn kept<N: Number>(&self, at: [N; 3]) -> N {
+        let n = |of: DVec3| of.to_array().map(N::constant);
+        let (normal, xdir) = (self.plane.given_normal(), n(self.given_xdir));
+        let (square, along) = (dot(normal, normal), dot(normal, xdir));
+        let x = [0, 1, 2].map(|axis| square * xdir[axis] - along * normal[axis]);
+        let y = cross(normal, x);
+        let corner = n(self.plane.point);
+        let from_corner = [0, 1, 2].map(|axis| at[axis] - corner[axis]);
+        let inside = |side: [N; 3], length: f64| {
+            let along = dot(side, from_corner);
+            along.min(N::constant(length) * dot(side, side).sqrt() - along)
         };
-        self.plane.kept(at).min(inside(0)).min(inside(1))
+        let [width, height] = self.dimensions.to_array();
+        self.plane.kept(at).min(inside(x, width)).min(inside(y, height))
     }
 }

@@ -33,7 +33,7 @@ impl Implicit for Heart {
         let [x, y, z] = at.map(|coordinate| coordinate / n(self.size));
         let ball = x.powi(2) + y.powi(2) + n(2.25) * z.powi(2) - n(1.0);
         // The cube root of Taubin's formula, whose slope is not 0 where ball and y are.
-        ball - (x.powi(2) + n(0.1125) * z.powi(2)).pow(n(1.0 / 3.0)) * y
+        ball - (x.powi(2) + n(9.0) / n(80.0) * z.powi(2)).pow(n(1.0) / n(3.0)) * y
     }
 
     fn bounds(&self) -> [DVec3; 2] {

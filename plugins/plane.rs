@@ -1,16 +1,17 @@
 //! A plane: every point in two directions, without end.
 
 use crate::accuracy::Accuracy;
-use crate::bounds::Bounds;
-use crate::certify::{self, Enclosure, Equation};
+use crate::bounds::{Bounds, SLACK};
+use crate::certify::{self, Enclosure, Equation, Precision};
 use crate::cpu::Cpu;
 use crate::entity::{Args, Entity};
 pub use crate::flat::Plane;
 use crate::geometry::{Body, Bracket, Hittable, Ray, Side, Span};
-use crate::interval::Interval;
-use crate::number::Number;
+use crate::number::{Number, dot};
 use crate::packet::Rays;
 use crate::pparm::{Pparm, Table};
+use crate::sight::Sight;
+use crate::twofold::Twofold;
 use glam::DVec3;
 
 pub static NORMAL: Pparm<DVec3> =
@@ -43,7 +44,7 @@ impl Hittable for Plane {
     fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
         match self.accuracy {
             Accuracy::Classic => Bracket::exactly(self.quick_distance(ray, within)),
-            _ => Plane::bracket(self, &self.rough(ray), ray, within),
+            _ => Plane::bracket(self, &self.rough(ray, within.origin_error), ray, within),
         }
     }
 
@@ -61,6 +62,31 @@ impl Hittable for Plane {
         Plane::is_clear_of(self, region)
     }
 
+    fn meets_itself(&self, _leaving: Side) -> bool {
+        false
+    }
+
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        Plane::touches(self, at, error)
+    }
+
+    fn reach(&self) -> f64 {
+        self.point.abs().max_element()
+    }
+
+    fn fine_distance(&self, ray: &Ray, _distance: f64) -> Option<Twofold> {
+        (self.accuracy != Accuracy::Classic).then(|| self.exact_crossing(ray))
+    }
+
+    fn clearance(&self, from: DVec3) -> f64 {
+        let rounding = SLACK * (from.length() + self.point.length());
+        (self.normal.dot(from - self.point).abs() - rounding).max(0.0)
+    }
+
+    fn plane(&self) -> Option<[DVec3; 2]> {
+        Some([self.point, self.normal])
+    }
+
     fn method(&self) -> String {
         Plane::method(self).to_owned()
     }
@@ -69,18 +95,19 @@ impl Hittable for Plane {
         Plane::distances(self, cpu, rays, out);
     }
 
-    fn certify(&self, ray: &Ray) -> Enclosure {
-        certify::first_hit(self, ray)
+    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        certify::first_hit(self, sight, precision)
     }
 }
 
 impl Equation for Plane {
+    const IS_QUADRATIC: bool = true;
+
     fn value<N: Number>(&self, at: [N; 3]) -> N {
-        let part = |axis: usize| (at[axis] - N::constant(self.point[axis])) * N::constant(self.normal[axis]);
-        part(0) + part(1) + part(2)
+        dot(self.given_normal(), [0, 1, 2].map(|axis| at[axis] - N::constant(self.point[axis])))
     }
 
-    fn kept(&self, [_, _, z]: [Interval; 3]) -> Interval {
-        Interval::constant(0.01) - z
+    fn kept<N: Number>(&self, [_, _, z]: [N; 3]) -> N {
+        N::constant(0.01) - z
     }
 }

@@ -43,6 +43,11 @@ impl Light for Projector {
             .then(|| self.light.emissivity * self.picture.colour(at))
     }
 
+    /// No texel is above 1.
+    fn brightest(&self) -> Option<Rgb> {
+        self.light.even()
+    }
+
     fn size(&self) -> f64 {
         self.light.size()
     }

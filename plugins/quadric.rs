@@ -1,14 +1,16 @@
 //! A quadric: every point that solves an equation of the second degree (the notes' "General Quadric Surfaces").
 
 use crate::accuracy::Accuracy;
-use crate::bounds::Bounds;
-use crate::certify::{self, Enclosure, Equation};
+use crate::bounds::{self, Bounds, SLACK};
+use crate::certify::{self, Enclosure, Equation, Precision};
+use crate::coincidence;
 use crate::entity::{Entity, Refusal};
-use crate::geometry::{Body, Bracket, Hittable, MISS, Ray, Span};
-use crate::interval::Interval;
+use crate::geometry::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
 use crate::number::Number;
 use crate::pparm::{Pparm, Table};
 use crate::quadratic::{self, CAMERA, OwnRay, Quadratic, Quick};
+use crate::sight::Sight;
+use crate::twofold::Twofold;
 use glam::{DMat3, DVec3};
 
 static COEFFICIENTS: Pparm<[f64; 10]> =
@@ -92,11 +94,11 @@ impl Quadric {
     /// The distance where there is nothing to decide: by the notes' formula, or of a ray that leaves it.
     #[inline(never)]
     fn other_distance(&self, ray: &Ray, within: &Span) -> f64 {
-        if self.is_classic() {
-            return self.classic_distance(ray, within);
+        match within.leaves {
+            // It starts on one hit: the other one is what is left.
+            Some(side) if !self.is_classic() => within.keep(self.own.other_hit(&self.own_ray(ray), side)),
+            _ => self.classic_distance(ray, within),
         }
-        // It starts on one hit: the other one is what is left.
-        within.keep(self.own.other_hit(&self.own_ray(ray)))
     }
 
     #[inline(always)]
@@ -138,10 +140,28 @@ impl Hittable for Quadric {
         if self.is_classic() || within.leaves.is_some() {
             return Bracket::exactly(self.other_distance(ray, within));
         }
+        if within.origin_error > 0.0 && self.touches(ray.origin, within.origin_error) {
+            return Bracket::UNKNOWN;
+        }
         let Quick { is_missed, is_unknown, distance, error } =
             self.own.quick_hit(&self.own_ray(ray), within.near, CAMERA);
         let (near, far) = if is_unknown { (within.near, MISS) } else { (distance - error, distance + error) };
         if is_missed { Bracket::MISS } else { Bracket { near, far } }
+    }
+
+    /// At `r` from a point the equation's value differs from that at the point by at most `|gradient| r + |square| r^2`.
+    fn clearance(&self, from: DVec3) -> f64 {
+        let at = from - self.center;
+        let abs = DMat3::from_cols_array(&self.square.to_cols_array().map(f64::abs));
+        let terms = at.abs().dot(abs * at.abs()) + self.linear.abs().dot(at.abs()) + self.constant.abs();
+        let value = at.dot(self.square * at) + self.linear.dot(at) + self.constant;
+        let value = value.abs() - SLACK * terms;
+        let rounding = SLACK * (abs * at.abs() + self.linear.abs()).length();
+        let gradient = (2.0 * (self.square * at) + self.linear).length() + rounding;
+        let square = (abs * DVec3::ONE).length();
+        let radius = 2.0 * value / (gradient + (gradient * gradient + 4.0 * square * value).sqrt());
+        let by_value = if value > 0.0 && radius.is_finite() { radius * (1.0 - 1e-6) } else { 0.0 };
+        by_value.max(bounds::clearance(from, self.bounds(), |region| self.is_clear_of(region)))
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {
@@ -158,8 +178,21 @@ impl Hittable for Quadric {
         (!self.is_classic()).then_some(bounds)
     }
 
-    fn is_convex(&self) -> bool {
-        self.is_classic()
+    fn meets_itself(&self, _leaving: Side) -> bool {
+        !self.is_classic()
+    }
+
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        coincidence::touches(self, at, error)
+    }
+
+    fn reach(&self) -> f64 {
+        // The box may be far larger than what is seen of it, and cuts only.
+        self.center.abs().max_element()
+    }
+
+    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold> {
+        if self.is_classic() { None } else { coincidence::distance(self, ray, distance) }
     }
 
     fn is_two_sided(&self) -> bool {
@@ -175,12 +208,14 @@ impl Hittable for Quadric {
         method.to_owned()
     }
 
-    fn certify(&self, ray: &Ray) -> Enclosure {
-        certify::first_hit(self, ray)
+    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        certify::first_hit(self, sight, precision)
     }
 }
 
 impl Equation for Quadric {
+    const IS_QUADRATIC: bool = true;
+
     fn value<N: Number>(&self, at: [N; 3]) -> N {
         let from_center = [0, 1, 2].map(|axis| at[axis] - N::constant(self.center[axis]));
         let sum = |part: &dyn Fn(usize) -> N| part(0) + part(1) + part(2);
@@ -191,10 +226,10 @@ impl Equation for Quadric {
         sum(&row) + N::constant(self.constant)
     }
 
-    fn kept(&self, at: [Interval; 3]) -> Interval {
+    fn kept<N: Number>(&self, at: [N; 3]) -> N {
         let inside = |axis: usize| {
-            let from_center = at[axis] - Interval::constant(self.center[axis]);
-            let (low, high) = (Interval::constant(self.low[axis]), Interval::constant(self.high[axis]));
+            let from_center = at[axis] - N::constant(self.center[axis]);
+            let (low, high) = (N::constant(self.low[axis]), N::constant(self.high[axis]));
             (from_center - low).min(high - from_center)
         };
         inside(0).min(inside(1)).min(inside(2))

@@ -2,7 +2,7 @@
 
 use super::{rainbow, tiles};
 use crate::geometry::Shader;
-use crate::material::{Material, Rgb};
+use crate::material::{Look, Material, Rgb};
 use crate::shading::{Anchor, ProceduralShader};
 use glam::DVec3;
 
@@ -15,5 +15,10 @@ struct RainbowTiles(Anchor);
 impl Shader for RainbowTiles {
     fn ambient(&self, material: &Material, at: DVec3) -> Rgb {
         if tiles::is_odd(at) { material.ambient } else { 6.0 * rainbow::around(&self.0, at) }
+    }
+
+    fn brightest(&self, material: &Material) -> Option<Look> {
+        let look = rainbow::brightest(6.0, material)?;
+        Some(Look { ambient: look.ambient.max(material.ambient.abs()), ..look })
     }
 }

@@ -7,7 +7,7 @@ use crate::frame::Frame;
 use crate::geometry::Body;
 use crate::pparm::{Pparm, Table};
 use crate::profile::{Line, Profile};
-use crate::revolution::{Classic, Finish, InFrame, NoSurface, Revolution};
+use crate::revolution::{Classic, Finish, InFrame, Revolution};
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -40,13 +40,10 @@ inventory::submit! {
             Accuracy::Draft => Finish::Bracket,
             Accuracy::Exact | Accuracy::Strict => Finish::Root,
         };
-        let surface = Revolution::new(&line.radius, height, finish).map_err(|fault| Refusal {
-            attribute: Some(if args.get(&SURFER).is_some() { "surfer" } else { "profile" }),
-            message: match fault {
-                NoSurface::Unbounded { near } => format!("has a profile without a bound near y = {near:.6}"),
-                NoSurface::Nowhere => "has a profile that is nowhere above 0".to_owned(),
-            },
-            help: "a profile is the distance from the axis, finite at each height from 0 to the surface's own",
+        let surface = Revolution::new(&line.radius, height, finish).map_err(|fault| {
+            let attribute = Some(if args.get(&SURFER).is_some() { "surfer" } else { "profile" });
+            let (what, help) = fault.told();
+            Refusal { attribute, message: format!("has a profile {what}"), help }
         })?;
         Ok(Body::plain(InFrame { surface, frame }))
     })

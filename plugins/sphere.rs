@@ -2,12 +2,13 @@
 
 use crate::accuracy::Accuracy;
 use crate::ball::{self, Line};
-use crate::bounds::Bounds;
-use crate::certify::{self, Enclosure, Equation};
+use crate::bounds::{Bounds, SLACK};
+use crate::certify::{self, Enclosure, Equation, Precision};
 use crate::entity::{Args, Entity};
-use crate::geometry::{Body, Bracket, Hittable, MISS, Ray, Span};
+use crate::geometry::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
 use crate::number::Number;
 use crate::pparm::{Pparm, Table};
+use crate::sight::Sight;
 use crate::twofold::Twofold;
 use glam::DVec3;
 
@@ -53,9 +54,11 @@ impl Sphere {
 impl Hittable for Sphere {
     #[inline(always)]
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        within.keep(match self.accuracy {
-            Accuracy::Classic => classic(ray.origin - self.center, ray.dir, self.radius),
-            _ => ball::first_hit(&self.line(ray), self.radius, self.accuracy),
+        within.keep(match (self.accuracy, within.leaves) {
+            (Accuracy::Classic, _) => classic(ray.origin - self.center, ray.dir, self.radius),
+            (_, None) => ball::first_hit(&self.line(ray), self.radius, self.accuracy),
+            (_, Some(Side::Inside)) => ball::far_hit(&self.line(ray), self.radius, self.accuracy),
+            (_, Some(Side::Outside)) => MISS,
         })
     }
 
@@ -64,15 +67,17 @@ impl Hittable for Sphere {
         let from = ray.origin - self.center;
         match self.accuracy {
             Accuracy::Classic => Bracket::exactly(within.keep(classic(from, ray.dir, self.radius))),
-            _ => ball::bracket(from, ray.dir, 1.0, 1.0, self.radius),
+            _ => ball::bracket(from, ray.dir, 1.0, 1.0, self.radius, within.leaves, within.origin_error),
         }
     }
 
     #[inline(always)]
     fn quick_distance(&self, ray: &Ray, within: &Span) -> f64 {
-        let distance = match self.accuracy {
-            Accuracy::Classic => classic(ray.origin - self.center, ray.dir, self.radius),
-            _ => ball::quick_hit(&self.line(ray), self.radius, self.accuracy),
+        let distance = match (self.accuracy, within.leaves) {
+            (Accuracy::Classic, _) => classic(ray.origin - self.center, ray.dir, self.radius),
+            (_, None) => ball::quick_hit(&self.line(ray), self.radius, self.accuracy),
+            (_, Some(Side::Inside)) => ball::far_hit(&self.line(ray), self.radius, self.accuracy),
+            (_, Some(Side::Outside)) => MISS,
         };
         if distance.is_nan() { distance } else { within.keep(distance) }
     }
@@ -82,8 +87,30 @@ impl Hittable for Sphere {
         (self.accuracy != Accuracy::Classic).then_some(bounds)
     }
 
+    fn clearance(&self, from: DVec3) -> f64 {
+        let away = (from - self.center).length();
+        let rounding = SLACK * (from.length() + self.center.length() + self.radius);
+        ((away - self.radius).abs() - rounding).max(0.0)
+    }
+
     fn normal(&self, at: DVec3) -> DVec3 {
         (at - self.center).normalize()
+    }
+
+    fn meets_itself(&self, leaving: Side) -> bool {
+        self.accuracy != Accuracy::Classic && leaving == Side::Inside
+    }
+
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        ball::touches(at - self.center, self.radius, error)
+    }
+
+    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold> {
+        if self.accuracy == Accuracy::Classic {
+            None
+        } else {
+            crate::coincidence::distance(self, ray, distance)
+        }
     }
 
     fn is_two_sided(&self) -> bool {
@@ -94,12 +121,14 @@ impl Hittable for Sphere {
         ball::method(self.accuracy).to_owned()
     }
 
-    fn certify(&self, ray: &Ray) -> Enclosure {
-        certify::first_hit(self, ray)
+    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        certify::first_hit(self, sight, precision)
     }
 }
 
 impl Equation for Sphere {
+    const IS_QUADRATIC: bool = true;
+
     fn value<N: Number>(&self, at: [N; 3]) -> N {
         let part = |axis: usize| (at[axis] - N::constant(self.center[axis])).powi(2);
         part(0) + part(1) + part(2) - N::constant(self.radius).powi(2)

@@ -54,6 +54,10 @@ impl Light for Spotlight {
         (cos > self.cos_edge).then_some(self.light.emissivity)
     }
 
+    fn brightest(&self) -> Option<Rgb> {
+        self.light.even()
+    }
+
     fn size(&self) -> f64 {
         self.light.size()
     }

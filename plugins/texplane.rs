@@ -3,12 +3,14 @@
 use super::fplane::{self, FinitePlane};
 use super::plane;
 use crate::bounds::Bounds;
-use crate::certify::Enclosure;
+use crate::certify::{Enclosure, Precision};
 use crate::entity::{Args, Entity, Refusal};
-use crate::geometry::{Body, Bracket, Hittable, Ray, Shader, Span};
-use crate::material::{Material, Rgb};
+use crate::geometry::{Body, Bracket, Hittable, Ray, Shader, Side, Span};
+use crate::material::{Look, Material, Rgb};
 use crate::pparm::{Pparm, Table};
+use crate::sight::Sight;
 use crate::texture::Texture;
+use crate::twofold::Twofold;
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
 
@@ -90,16 +92,36 @@ impl Hittable for Rectangle {
         self.0.rectangle.is_clear_of(region)
     }
 
+    fn meets_itself(&self, leaving: Side) -> bool {
+        self.0.rectangle.meets_itself(leaving)
+    }
+
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        self.0.rectangle.touches(at, error)
+    }
+
+    fn reach(&self) -> f64 {
+        self.0.rectangle.reach()
+    }
+
+    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold> {
+        self.0.rectangle.fine_distance(ray, distance)
+    }
+
     fn normal(&self, at: DVec3) -> DVec3 {
         self.0.rectangle.normal(at)
+    }
+
+    fn plane(&self) -> Option<[DVec3; 2]> {
+        self.0.rectangle.plane()
     }
 
     fn method(&self) -> String {
         self.0.rectangle.method()
     }
 
-    fn certify(&self, ray: &Ray) -> Enclosure {
-        self.0.rectangle.certify(ray)
+    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        self.0.rectangle.certify(sight, precision)
     }
 }
 
@@ -112,5 +134,11 @@ impl Shader for Textured {
 
     fn diffuse(&self, material: &Material, at: DVec3) -> Rgb {
         material.diffuse * self.0.colour(at)
+    }
+
+    /// No texel is above 1, nor below 0.
+    fn brightest(&self, material: &Material) -> Option<Look> {
+        let Material { ambient, diffuse, specular, .. } = *material;
+        (diffuse.min_element() >= 0.0).then_some(Look { ambient, diffuse, specular })
     }
 }

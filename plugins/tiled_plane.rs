@@ -4,7 +4,7 @@ use super::fplane::{self, DIMENSIONS, sides};
 use super::plane::{self, Plane};
 use crate::entity::Entity;
 use crate::geometry::{Body, Shader};
-use crate::material::{Material, Rgb};
+use crate::material::{Look, Material, Rgb};
 use crate::pparm::{Pparm, Table};
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
@@ -49,5 +49,15 @@ impl Shader for Tiles {
 
     fn diffuse(&self, material: &Material, at: DVec3) -> Rgb {
         self.pick(material, at).diffuse
+    }
+
+    fn brightest(&self, material: &Material) -> Option<Look> {
+        let [one, other] = [material, &*self.other];
+        let is_sound = one.diffuse.min(other.diffuse).min_element() >= 0.0;
+        is_sound.then(|| Look {
+            ambient: one.ambient.abs().max(other.ambient.abs()),
+            diffuse: one.diffuse.max(other.diffuse),
+            specular: one.specular,
+        })
     }
 }

@@ -1,7 +1,7 @@
 //! The notes' tiled shading: cyan and yellow tiles half a unit wide, along x and z.
 
 use crate::geometry::Shader;
-use crate::material::{Material, Rgb};
+use crate::material::{Look, Material, Rgb};
 use crate::shading::ProceduralShader;
 use glam::DVec3;
 
@@ -15,6 +15,11 @@ impl Shader for Tiles {
     fn ambient(&self, material: &Material, at: DVec3) -> Rgb {
         let Rgb { x: red, y: green, z: blue } = material.ambient;
         if is_odd(at) { Rgb::new(0.0, green, blue) } else { Rgb::new(red, green, 0.0) }
+    }
+
+    fn brightest(&self, material: &Material) -> Option<Look> {
+        let Material { ambient, diffuse, specular, .. } = *material;
+        (diffuse.min_element() >= 0.0).then_some(Look { ambient, diffuse, specular })
     }
 }
 

@@ -2,14 +2,14 @@
 
 use crate::accuracy::Accuracy;
 use crate::bounds::Bounds;
-use crate::certify::{self, Enclosure, Equation};
+use crate::certify::{self, Enclosure, Equation, Precision};
 use crate::entity::{Entity, Refusal};
 use crate::flat::Plane;
-use crate::geometry::{Body, Bracket, Hittable, MISS, Ray, Span};
-use crate::interval::Interval;
-use crate::number::Number;
+use crate::geometry::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
+use crate::number::{Number, cross, dot};
 use crate::pparm::{Pparm, Table};
-use crate::twofold::{Twofold, cross, exponent_to_one, times_power_of_two, triple_product, unit};
+use crate::sight::Sight;
+use crate::twofold::{self, Twofold, exponent_to_one, times_power_of_two, triple_product, unit};
 use glam::DVec3;
 
 static VERTEX1: Pparm<DVec3> = Pparm::required("vertex1", "its first corner").unit("world coordinates");
@@ -44,7 +44,7 @@ fn plane_through([a, b, c]: [DVec3; 3], accuracy: Accuracy) -> Option<Plane> {
         scaled_to_one(edge)
     };
     // Each component is rounded once, however thin the triangle is.
-    let upright = scaled_to_one(cross(edge(b), edge(c)));
+    let upright = scaled_to_one(twofold::cross(edge(b), edge(c)));
     let normal = match accuracy {
         Accuracy::Classic => (b - a).cross(c - a).try_normalize()?,
         _ if upright.iter().all(|part| part.high == 0.0) => return None,
@@ -81,7 +81,7 @@ impl Hittable for Triangle {
         if self.plane.accuracy == Accuracy::Classic {
             return Bracket::exactly(self.quick_distance(ray, within));
         }
-        let rough = self.plane.rough(ray);
+        let rough = self.plane.rough(ray, within.origin_error);
         let Bracket { near, far } = self.plane.bracket(&rough, ray, within);
         let passed = self.passed(ray);
         Bracket {
@@ -112,38 +112,64 @@ impl Hittable for Triangle {
         self.plane.is_clear_of(region) || self.bounds().is_some_and(|bounds| !bounds.overlaps(region))
     }
 
+    fn meets_itself(&self, leaving: Side) -> bool {
+        self.plane.meets_itself(leaving)
+    }
+
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        self.plane.touches(at, error)
+    }
+
+    fn fine_distance(&self, ray: &Ray, _distance: f64) -> Option<Twofold> {
+        (self.plane.accuracy != Accuracy::Classic).then(|| self.plane.exact_crossing(ray))
+    }
+
     fn normal(&self, at: DVec3) -> DVec3 {
         self.plane.normal(at)
+    }
+
+    fn plane(&self) -> Option<[DVec3; 2]> {
+        Hittable::plane(&self.plane)
     }
 
     fn method(&self) -> String {
         self.plane.method().to_owned()
     }
 
-    fn certify(&self, ray: &Ray) -> Enclosure {
-        certify::first_hit(self, ray)
+    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        certify::first_hit(self, sight, precision)
     }
 }
 
 impl Equation for Triangle {
+    const IS_QUADRATIC: bool = true;
+
     fn value<N: Number>(&self, at: [N; 3]) -> N {
-        self.plane.value(at)
+        let corner = self.corners[0].to_array();
+        dot(self.upright(), [0, 1, 2].map(|axis| at[axis] - N::constant(corner[axis])))
     }
 
-    fn kept(&self, at: [Interval; 3]) -> Interval {
-        let [a, b, c] = self.corners;
-        let inside = |from: DVec3, to: DVec3| {
+    fn kept<N: Number>(&self, at: [N; 3]) -> N {
+        let normal = self.upright();
+        let corners = self.corners.map(|corner| corner.to_array().map(N::constant));
+        let inside = |from: [N; 3], to: [N; 3]| {
             // Upright on the edge, in the plane, toward the inside.
-            let inward = self.plane.normal.cross(to - from);
-            let part =
-                |axis: usize| (at[axis] - Interval::constant(from[axis])) * Interval::constant(inward[axis]);
-            part(0) + part(1) + part(2)
+            let inward = cross(normal, [0, 1, 2].map(|axis| to[axis] - from[axis]));
+            dot(inward, [0, 1, 2].map(|axis| at[axis] - from[axis]))
         };
+        let [a, b, c] = corners;
         self.plane.kept(at).min(inside(a, b)).min(inside(b, c)).min(inside(c, a))
     }
 }
 
 impl Triangle {
+    /// A vector upright on it, as long as twice its area.
+    fn upright<N: Number>(&self) -> [N; 3] {
+        let [a, b, c] = self.corners.map(|corner| corner.to_array().map(N::constant));
+        let from_a = |corner: [N; 3]| [0, 1, 2].map(|axis| corner[axis] - a[axis]);
+        cross(from_a(b), from_a(c))
+    }
+
     /// Whether a point of the plane is to the left of every edge.
     #[inline(always)]
     fn contains(&self, at: DVec3) -> bool {

@@ -9,9 +9,9 @@ use std::panic::Location;
 pub enum Accuracy {
     /// The course notes' methods, with the hits that they lose and the artefacts that they make.
     Classic,
-    /// Right hits, their distances to about 1/1000 of a unit where that saves time.
+    /// As exact, with points only within about 1/1000 of a unit of the surface where that saves time.
     Draft,
-    /// Right hits, their distances to a few units in the last place.
+    /// First hits by error bounds, their points on the surface but for rounding.
     #[default]
     Exact,
     /// As exact, and in twice the precision wherever that exists.
@@ -41,9 +41,11 @@ impl Choice for Accuracy {
     fn option(&self) -> ChoiceName {
         let (name, meaning) = match self {
             Self::Classic => ("classic", "the course notes' own methods"),
-            Self::Draft => ("draft", "the right objects, at distances right to about 1/1000 of a unit"),
+            Self::Draft => {
+                ("draft", "as exact, with points only within about 1/1000 of a unit of the surface")
+            }
             Self::Exact => {
-                ("exact", "the right objects, at distances right to a few units in the last place")
+                ("exact", "first hits by error bounds, their points on the surface but for rounding")
             }
             Self::Strict => ("strict", "as exact, in twice the precision wherever a shape has it"),
         };

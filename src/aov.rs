@@ -1,10 +1,10 @@
 //! Pictures of what a renderer works with beside colours: depth, normals, objects, what each pixel costs, and how
 //! wrong it is.
 
-use crate::geometry::Ray;
 use crate::model::Model;
 use crate::picture::{shown, to_byte};
 use crate::render::Renderer;
+use crate::sight::Sight;
 use crate::trace;
 use crate::watch::{Event, Watch};
 use glam::DVec3;
@@ -144,8 +144,8 @@ fn each<T: Clone + Default + Send>(
     renderer.pixels(model, 0..height, done, pixel).ok_or_else(|| io::ErrorKind::Interrupted.into())
 }
 
-fn middle(model: &Model, x: usize, y: usize) -> Ray {
-    model.camera.value.ray(x as f64, y as f64)
+fn middle(model: &Model, x: usize, y: usize) -> Sight {
+    model.camera.value.sight(x as f64, y as f64)
 }
 
 fn shown_all(colours: impl Iterator<Item = DVec3>) -> Vec<u8> {
@@ -214,8 +214,7 @@ struct Off {
 impl Off {
     fn of(model: &Model, truth: &Model, x: usize, y: usize) -> Self {
         let colours = [model, truth].map(|model| shown(trace::pixel(model, x, y)));
-        let ray = middle(model, x, y);
-        let [found, right] = [model, truth].map(|model| trace::first_hit(model, &ray));
+        let [found, right] = [model, truth].map(|model| trace::first_hit(model, &middle(model, x, y)));
         let [found, right] = [found, right].map(|hit| hit.map(|hit| (hit.index, hit.distance)));
         let is_other = found.map(|(index, _)| index) != right.map(|(index, _)| index);
         let distance = match (found, right) {

@@ -6,7 +6,7 @@
 
 use crate::accuracy::Accuracy;
 use crate::bounds::larger;
-use crate::geometry::{Bracket, MISS};
+use crate::geometry::{Bracket, MISS, Side};
 use crate::twofold::{Twofold, exponent_to_one, times_power_of_two, two_product};
 use glam::DVec3;
 
@@ -76,15 +76,55 @@ pub fn quick_hit(line: &Line, radius: f64, accuracy: Accuracy) -> f64 {
     }
 }
 
-/// Between which distances the first hit is, of a line whose direction has the length `1 / sqrt(inverse)`.
+/// The distance at which a line from the inner side of a ball's wall meets the wall again; [`MISS`] where it does not go
+/// inward.
+///
+/// The equation's other root is where it starts. Where what rounding makes of the start is not small beside the way into
+/// the ball, the start is taken for a point of the wall, whose far root is twice as far as the middle.
+#[inline(always)]
+pub fn far_hit(line: &Line, radius: f64, accuracy: Accuracy) -> f64 {
+    let (from, dir) = (high(&line.from), high(&line.dir));
+    let a = dir.dot(dir);
+    let toward = -from.dot(dir);
+    let outside = a * (from.dot(from) - radius * radius);
+    let is_deep = outside.abs() <= 0.25 * toward * toward;
+    let half = if is_deep { toward * toward - outside } else { 0.0 }.sqrt();
+    let distance = (toward + if is_deep { half } else { toward }) / a;
+    let does_correct = is_deep & (accuracy != Accuracy::Draft);
+    let distance = if does_correct { corrected(line, radius, distance) } else { distance };
+    if toward > 0.0 { distance } else { MISS }
+}
+
+/// Whether a point so far from the centre lies on a ball's wall, but for an error in the ball's own units and for what
+/// rounding makes of both distances from the centre.
+#[inline(always)]
+pub fn touches(from: DVec3, radius: f64, error: f64) -> bool {
+    (from.length() - radius).abs() <= error + 4.0 * f64::EPSILON * radius
+}
+
+/// Between which distances the first hit is, of a line whose direction has the length `1 / sqrt(inverse)` and whose
+/// origin may be off by an error, in the ball's own units.
 ///
 /// `spread` is by how much the direction's components may be further off, against its length, than those of a unit
 /// vector: 1 for one. It is wide, and plain arithmetic tells it quickly: most rays miss most balls.
 #[inline(always)]
-pub fn bracket(from: DVec3, dir: DVec3, inverse: f64, spread: f64, radius: f64) -> Bracket {
+pub fn bracket(
+    from: DVec3,
+    dir: DVec3,
+    inverse: f64,
+    spread: f64,
+    radius: f64,
+    leaves: Option<Side>,
+    origin_error: f64,
+) -> Bracket {
     // Far more than rounding makes of the root where there is room enough.
     const ERROR: f64 = 1.0 / (1 << 29) as f64;
     const ROOM: f64 = 32_768.0 * f64::EPSILON;
+    // A line that starts within an error e of the wall has one root no farther from its origin than `2 r e` divided by
+    // the other, which is at least `sqrt(ROOM r size)`: less than `ERROR size` where the size is so many e.
+    const ORIGIN_ERRORS: f64 = (1_u64 << 49) as f64;
+    // A line that goes so far inward, as a part of the size, does so by far more than it may start off the wall.
+    const INWARD: f64 = 1.0 / (1 << 20) as f64;
 
     let middle = -from.dot(dir) * inverse;
     let aside = from + middle * dir;
@@ -92,11 +132,22 @@ pub fn bracket(from: DVec3, dir: DVec3, inverse: f64, spread: f64, radius: f64) 
     // Of what `aside` is off by: 14 units of 2^-53 of the way from the centre, as in `quick_hit`, and 3 in each
     // component for a camera's direction. ROOM is thousands of times as much, so that the half chord is off by less
     // than ERROR where there is that room.
-    let size = spread * (from.abs().element_sum() + radius);
+    let size = spread * (from.abs().element_sum() + radius) + ORIGIN_ERRORS * origin_error;
     let error = ERROR * size * inverse.sqrt();
     let doubt = ROOM * size * (radius + ROOM * size);
     let half = (larger(room, 0.0) * inverse).sqrt();
     let (near, far) = (middle - half, middle + half);
+    match leaves {
+        None => {}
+        Some(Side::Outside) => return Bracket::MISS,
+        Some(Side::Inside) => {
+            let is_there = (room > doubt) & (middle > INWARD * size * inverse.sqrt()) & (far > error);
+            return Bracket {
+                near: if is_there { far - error } else { 0.0 },
+                far: if is_there { far + error } else { MISS },
+            };
+        }
+    }
     let is_missed = (room < -doubt) | (far < -error);
     // From outside of it, or from inside.
     let is_ahead = near > error;

@@ -65,6 +65,26 @@ impl Bounds {
     }
 }
 
+/// How far a point is from a shape with these bounds, at least, where the shape tells of which regions it is clear.
+pub(crate) fn clearance(from: DVec3, bounds: Option<Bounds>, is_clear_of: impl Fn(&Bounds) -> bool) -> f64 {
+    let scale = from.abs().max_element();
+    let outside = bounds.map_or(0.0, |bounds| {
+        let Bounds { low, high } = bounds.with_slack(scale);
+        (low - from).max(from - high).max(DVec3::ZERO).length()
+    });
+    if outside > 0.0 {
+        return outside * (1.0 - SLACK);
+    }
+    // The largest cube around it that is clear, to an eighth: of a size that is more than rounding makes of its sides.
+    let clear = |half: &f64| is_clear_of(&Bounds { low: from - *half, high: from + *half });
+    let least = (1e4 * SLACK * scale).max(1e-12);
+    let sizes = (-40..60).rev().map(|power| f64::from(power).exp2()).take_while(|half| *half > least);
+    sizes.into_iter().find(clear).map_or(0.0, |half| {
+        let eighths = (9..16).rev().map(|eighths| half * f64::from(eighths) / 8.0);
+        eighths.into_iter().find(clear).unwrap_or(half) * (1.0 - 1e-6)
+    })
+}
+
 /// A number's place in the order of all numbers, as a whole number: of those the least is found several at a time,
 /// without a care for NaN.
 #[inline(always)]

@@ -74,7 +74,7 @@ kernels! {
         let (mut bundles, count) = (Bundles::NONE, rays.len());
         let (mut least, mut greatest) = ([[0.0; PARTS]; 3], [[0.0; PARTS]; 3]);
         for (part, lanes) in parts(count, PART).enumerate() {
-            let Rays { origin, dir } = rays.part(lanes);
+            let Rays { origin, dir, .. } = rays.part(lanes);
             for (axis, (from, to)) in [(origin.x, dir.x), (origin.y, dir.y), (origin.z, dir.z)].into_iter().enumerate() {
                 (bundles.low[axis][part], bundles.high[axis][part]) = range(from);
                 (least[axis][part], greatest[axis][part]) = range(to);
@@ -167,7 +167,7 @@ mod tests {
             let bounds = Bounds { low: to - half, high: to + half };
             let (origins, dirs, count) = rays(&ways);
             for cpu in Cpu::all() {
-                let bundles = around(cpu, Rays { origin: origins.view(count), dir: dirs.view(count) });
+                let bundles = around(cpu, Rays { origin: origins.view(count), dir: dirs.view(count), origin_error: 0.0 });
                 let (part, mut met) = (1 << (chosen / PART), [0]);
                 meet(cpu, &bundles, &[(0, bounds)], &mut met);
                 prop_assert!(met[0] & part != 0, "{} to {}, {}", from, to, cpu);
@@ -188,7 +188,8 @@ mod tests {
             .collect();
         let (origins, dirs, count) = rays(&ways);
         for cpu in Cpu::all() {
-            let bundles = around(cpu, Rays { origin: origins.view(count), dir: dirs.view(count) });
+            let bundles =
+                around(cpu, Rays { origin: origins.view(count), dir: dirs.view(count), origin_error: 0.0 });
             let at = |x: f64, y: f64| Bounds {
                 low: DVec3::new(x, y, -1.0),
                 high: DVec3::new(x + 2.0, y + 1.0, 1.0),

@@ -4,6 +4,7 @@ use crate::accuracy::Accuracy;
 use crate::cpu::kernels;
 use crate::geometry::Ray;
 use crate::sample::{Sample, Sampler};
+use crate::sight::Sight;
 use glam::{DVec2, DVec3};
 
 /// The viewer and a screen in the plane z = 0, whose lower left corner is the world's origin.
@@ -47,10 +48,16 @@ impl Camera {
     /// outermost pixels lie on the edges of the screen.
     #[inline(always)]
     pub fn ray(&self, x: f64, y: f64) -> Ray {
+        self.sight(x, y).ray()
+    }
+
+    /// That ray before anything is rounded. A single pixel looks through the middle.
+    #[inline(always)]
+    pub fn sight(&self, x: f64, y: f64) -> Sight {
+        let place = |at: f64, pixels: usize| if pixels > 1 { (at, (pixels - 1) as f64) } else { (1.0, 2.0) };
         let [width, height] = self.pixels;
-        let on_screen =
-            DVec3::new(fraction(x, width) * self.screen.x, fraction(y, height) * self.screen.y, 0.0);
-        Ray { origin: self.viewpoint, dir: (on_screen - self.viewpoint).normalize() }
+        let ((x, last_x), (y, last_y)) = (place(x, width), place(y, height));
+        Sight::through(self.viewpoint, DVec2::new(x, y), DVec2::new(last_x, last_y), self.screen)
     }
 }
 
@@ -63,10 +70,4 @@ kernels! {
             out.set(lane, camera.ray(x[lane], y[lane]).dir);
         }
     }
-}
-
-/// How far across a row of pixels one of them is; a single pixel looks through the middle.
-#[inline(always)]
-fn fraction(at: f64, pixels: usize) -> f64 {
-    if pixels > 1 { at / (pixels - 1) as f64 } else { 0.5 }
 }

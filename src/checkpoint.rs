@@ -6,7 +6,7 @@
 use crate::choice::Choice;
 use crate::dump;
 use crate::model::Model;
-use crate::picture::Rows;
+use crate::picture::{AS_SHOWN, Rows};
 use crate::sample::Sampler;
 use crate::syntax::Syntax;
 use crate::tiles::{Band, TILE, Tiles};
@@ -139,6 +139,7 @@ pub fn write(
     encoder.set_color(png::ColorType::Rgba);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::Fast);
+    encoder.set_source_srgb(AS_SHOWN);
     encoder.add_itxt_chunk(KEYWORD.to_owned(), identity.to_json())?;
     let mut writer = encoder.write_header()?;
     let mut stream = writer.stream_writer()?;

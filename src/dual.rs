@@ -19,6 +19,12 @@ impl<N: Number> Dual<N> {
         Self { value, slope: N::constant(1.0) }
     }
 
+    /// A number that does not depend on the variable.
+    #[inline(always)]
+    pub fn fixed(value: N) -> Self {
+        Self { value, slope: N::constant(0.0) }
+    }
+
     /// A function of it, by the function's value and derivative there.
     #[inline(always)]
     fn chain(self, value: N, derivative: N) -> Self {
@@ -31,6 +37,12 @@ impl<N: Number> Dual<Dual<N>> {
     #[inline(always)]
     pub fn variable_twice(value: N) -> Self {
         Self::variable(Dual::variable(value))
+    }
+
+    /// A number that does not depend on the variable.
+    #[inline(always)]
+    pub fn fixed_twice(value: N) -> Self {
+        Self::fixed(Dual::fixed(value))
     }
 
     /// The first derivative.
@@ -96,6 +108,11 @@ impl<N: Number> Number for Dual<N> {
     #[inline(always)]
     fn constant(value: f64) -> Self {
         Self { value: N::constant(value), slope: N::constant(0.0) }
+    }
+
+    #[inline(always)]
+    fn about(value: f64, error: f64) -> Self {
+        Self { value: N::about(value, error), slope: N::constant(0.0) }
     }
 
     #[inline(always)]

@@ -240,6 +240,16 @@ impl Args {
         }
     }
 
+    /// The value of the attribute that `key` describes, if the scene gives it.
+    ///
+    /// # Panics
+    /// As [`get`](Self::get) does.
+    #[track_caller]
+    pub fn get_given<T: Value>(&self, key: &Pparm<T>) -> Option<T> {
+        let value = self.get(key);
+        self.given().any(|(attribute, _)| attribute.name() == key.name()).then_some(value)
+    }
+
     /// The value of an attribute as it was checked.
     #[track_caller]
     pub(crate) fn datum(&self, attribute: &str) -> &Datum {

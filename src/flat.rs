@@ -10,6 +10,7 @@ use crate::accuracy::Accuracy;
 use crate::bounds::{Bounds, SLACK, larger};
 use crate::cpu::{Cpu, kernels};
 use crate::geometry::{Bracket, MISS, Ray, Span};
+use crate::number::Number;
 use crate::packet::{self, Rays, STEP};
 use crate::twofold::{Twofold, dot, exact_sum, exponent_to_one, times_power_of_two, two_product, two_sum};
 use glam::DVec3;
@@ -57,6 +58,11 @@ impl Plane {
         let exponent = exponent_to_one(normal.abs().max_element());
         let upright = normal.to_array().map(|part| Twofold::from(times_power_of_two(part, exponent)));
         Self { normal: normal.normalize(), upright, point, accuracy }
+    }
+
+    /// The normal that the scene gives, but for a power of two: exactly, as nothing of it was rounded.
+    pub fn given_normal<N: Number>(&self) -> [N; 3] {
+        self.upright.map(|part| N::constant(part.high))
     }
 
     /// The distance at which a ray crosses it, forward or backward; [`MISS`] for one that runs along it.
@@ -115,7 +121,7 @@ impl Plane {
         }
     }
 
-    /// The distance within a span; none on the viewer's side of the screen.
+    /// The distance within a span; none on the viewer's side of the screen, and none for a ray that leaves it.
     #[inline(always)]
     pub fn keep(&self, distance: f64, ray: &Ray, within: &Span) -> f64 {
         let quick = self.quick_keep(distance, ray, within);
@@ -139,9 +145,10 @@ impl Plane {
             Accuracy::Draft => DRAFT_ERROR * (distance * ray.dir.z).abs() + f64::EPSILON * SCREEN,
             _ => 8.0 * f64::EPSILON * ((distance * ray.dir.z).abs() + SCREEN),
         };
-        let kept = if z > SCREEN { MISS } else { within.keep(distance) };
+        let leaves = within.leaves.is_some();
+        let kept = if (z > SCREEN) | leaves { MISS } else { within.keep(distance) };
         let is_doubtful = ((z - SCREEN).abs() <= error) & (distance < MISS);
-        if is_doubtful | distance.is_nan() { f64::NAN } else { kept }
+        if (is_doubtful | distance.is_nan()) & !leaves { f64::NAN } else { kept }
     }
 
     /// Whether a ray crosses it on the viewer's side of the screen: where z, which is the origin's and
@@ -156,18 +163,27 @@ impl Plane {
         beyond > 2_f64.powi(-98) * (one.high.abs() + other.high.abs())
     }
 
-    /// The crossing but for a few of its last places, and what rounding may make of it.
+    /// Whether a point lies on it, but for an error and what rounding makes of how far off it is: half a unit in the last
+    /// place for each of three operations in each part of that sum, and of the normal.
+    #[inline(always)]
+    pub fn touches(&self, at: DVec3, error: f64) -> bool {
+        let between = self.point - at;
+        let size = (self.normal * between).abs().element_sum();
+        self.normal.dot(between).abs() <= error + 4.0 * f64::EPSILON * size
+    }
+
+    /// The crossing but for a few of its last places, and what rounding may make of it, the ray's origin included.
     ///
     /// Units of 2^-53: the normal's components are off by 1 against each other, what is between the points by 1, a
     /// product by 1 and the sum of three by 2, so that `away` is off by 5 of its size and `toward` by 4; by 5 more
     /// because a camera's direction is off by 3 in each component, which is one of a vector of at most 1.74 in sum.
     /// That `toward` is more than 3 times its error makes 14 of the quotient's 9, less than the 16 here.
     #[inline(always)]
-    pub fn rough(&self, ray: &Ray) -> Rough {
+    pub fn rough(&self, ray: &Ray, origin_error: f64) -> Rough {
         let Products { away, away_size, toward, .. } = self.products(self.normal, ray);
         let inverse = reciprocal(toward);
         let distance = away * inverse;
-        let error = 8.0 * f64::EPSILON * inverse.abs() * (away_size + distance.abs());
+        let error = inverse.abs() * (8.0 * f64::EPSILON * (away_size + distance.abs()) + origin_error);
         let error = error + RECIPROCAL_ERROR * distance.abs();
         // Upright on an axis, it is one component of the direction, and nothing that cancels.
         let is_parallel = (toward == 0.0) & self.is_upright();

@@ -1,7 +1,8 @@
 //! Rays, and what a plugin implements: [`Hittable`] shapes, [`Shader`]s and [`Light`]s.
 
-use crate::bounds::Bounds;
-use crate::certify::Enclosure;
+use crate::bounds::{self, Bounds};
+use crate::certify::{Enclosure, Precision};
+use crate::coincidence;
 use crate::cpu::Cpu;
 use crate::facing::{self, Faced, Facing, Places};
 use crate::landing::{self, Landing};
@@ -9,6 +10,8 @@ use crate::material::{Look, Material, Rgb};
 use crate::packet::{self, Nearest, Rays, View, ViewMut};
 use crate::roots::Method;
 use crate::shading::{Anchor, ProceduralShader};
+use crate::sight::Sight;
+use crate::twofold::Twofold;
 use glam::DVec3;
 
 /// A half line.
@@ -63,8 +66,11 @@ pub struct Span {
     /// Hits must lie nearer.
     pub far: f64,
     /// The side of the shape's own surface that the ray starts on and leaves, if it does: where it starts is no hit,
-    /// however rounding has it. Only shapes that are not convex are asked then.
+    /// however rounding has it. Only shapes that may meet themselves on that side are asked then.
     pub leaves: Option<Side>,
+    /// How far at most the ray's origin is from the point that it stands for, in world units. 0 for a ray from the
+    /// viewer. A [`bracket`](Hittable::bracket) is certain only where the shape does not touch the origin within it.
+    pub origin_error: f64,
 }
 
 /// The distance of a ray that hits nothing.
@@ -72,7 +78,7 @@ pub const MISS: f64 = f64::INFINITY;
 
 impl Span {
     /// All of a ray but its origin.
-    pub const RAY: Span = Span { near: 0.0, far: f64::INFINITY, leaves: None };
+    pub const RAY: Span = Span { near: 0.0, far: f64::INFINITY, leaves: None, origin_error: 0.0 };
 
     /// The distance itself if it lies in the span, else [`MISS`]; so is a NaN.
     #[inline(always)]
@@ -102,6 +108,12 @@ impl Bracket {
         Self { near: distance, far: distance }
     }
 
+    /// Whether it leaves open if there is a hit.
+    #[inline(always)]
+    pub fn is_doubtful(&self) -> bool {
+        (self.near < MISS) & (self.far == MISS)
+    }
+
     /// Of a ray of which plain arithmetic tells nothing.
     pub const UNKNOWN: Self = Self { near: 0.0, far: MISS };
 }
@@ -127,11 +139,25 @@ pub trait Hittable: Send + Sync {
         self.bounds().is_some_and(|bounds| !bounds.overlaps(region))
     }
 
+    /// A point and the unit normal of the plane that all of it lies in, if there is one: rays that leave it stay on their
+    /// side of that.
+    fn plane(&self) -> Option<[DVec3; 2]> {
+        None
+    }
+
+    /// How far from a point all of it is, at least; 0 where that is not known.
+    fn clearance(&self, from: DVec3) -> f64 {
+        bounds::clearance(from, self.bounds(), |region| self.is_clear_of(region))
+    }
+
     /// Between which distances [`distance`](Self::distance) is. Where that is dear, plain arithmetic without branches
     /// says quickly which shape a ray may meet first, and the rest is computed for that one alone.
+    ///
+    /// Where the ray may start on the shape, that is where it [`touches`](Self::touches) the origin within the span's
+    /// `origin_error`, it is a bracket without a certain end.
     #[inline(always)]
     fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        Bracket::exactly(self.distance(ray, within))
+        coincidence::bracket(self, ray, within)
     }
 
     /// What [`distance`](Self::distance) gives, to the last bit, or NaN where it takes more than plain arithmetic
@@ -141,9 +167,29 @@ pub trait Hittable: Send + Sync {
         self.distance(ray, within)
     }
 
-    /// Whether no ray that leaves it can meet it again. Then it is not asked.
-    fn is_convex(&self) -> bool {
+    /// Whether a ray that leaves it on this side may meet it again. Where it may not, it is not asked. A plane is never
+    /// met again, a ball only from inside; `true` is never wrong, as long as [`distance`](Self::distance) heeds
+    /// `within.leaves`.
+    fn meets_itself(&self, _leaving: Side) -> bool {
         true
+    }
+
+    /// Whether a point lies on its surface, but for an error of so many world units and for what rounding makes of the
+    /// shape's own numbers. Rays that start there leave it.
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        coincidence::is_met_within(self, at, error)
+    }
+
+    /// How large the coordinates are that its hits are computed from, in world units: its own, not the ray's.
+    fn reach(&self) -> f64 {
+        self.bounds().map_or(0.0, |bounds| bounds.low.abs().max(bounds.high.abs()).max_element())
+    }
+
+    /// The distance of the hit at about this one, in twice the precision: it tells which of two surfaces that lie
+    /// together is nearer. Nothing where it is not to be had;
+    /// [`coincidence::distance`] gives it for shapes that have an equation.
+    fn fine_distance(&self, _ray: &Ray, _distance: f64) -> Option<Twofold> {
+        None
     }
 
     /// Whether both its sides are lit: then its normal is turned to the side that a ray comes from. A plane shows
@@ -163,10 +209,10 @@ pub trait Hittable: Send + Sync {
         None
     }
 
-    /// What is certain about the first hit of a ray from afar. A shape that says nothing of it cannot be verified;
+    /// What is certain about the first hit of a ray. A shape that says nothing of it cannot be verified;
     /// [`certify::first_hit`](crate::certify::first_hit) proves it for shapes that have an equation.
-    fn certify(&self, _ray: &Ray) -> Enclosure {
-        Enclosure::Doubtful(0.0)
+    fn certify(&self, _sight: &Sight, _precision: Precision) -> Enclosure {
+        Enclosure::UNKNOWN
     }
 
     /// Compares the hits of a packet with the nearest so far, and tells whether any is in doubt. `sides` are those of
@@ -233,6 +279,13 @@ pub trait Shader: Send + Sync {
         None
     }
 
+    /// The largest that those three give anywhere, whatever the sign, from which follows how deep mirrors and glass are
+    /// looked into; nothing where that is not known, or where a surface that is not even has a diffuse colour below 0.
+    /// `None` is never wrong.
+    fn brightest(&self, material: &Material) -> Option<Look> {
+        self.even(material)
+    }
+
     /// What [`ambient`](Self::ambient) and [`specular`](Self::specular) give at many points; tells whether any of the
     /// second is not 0.
     fn unlit(
@@ -274,6 +327,12 @@ pub trait Light: Send + Sync {
     /// not asked for each. `None` is never wrong.
     fn even(&self) -> Option<Rgb> {
         None
+    }
+
+    /// The largest that [`emissivity`](Self::emissivity) gives toward any point, whatever the sign; nothing where that is
+    /// not known. `None` is never wrong.
+    fn brightest(&self) -> Option<Rgb> {
+        self.even()
     }
 
     /// The radius of a ball that shines; 0 for a point, whose shadows have sharp edges.

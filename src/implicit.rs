@@ -1,19 +1,20 @@
 //! Shapes that are one formula: the points where f(x, y, z) = 0.
 //!
 //! A plugin gives the formula, once, for every number type, and a box around it. The rest follows:
-//! [`taylor`](crate::roots::taylor) finds what a ray meets first and proves that nothing lies before, and [`Dual`]
+//! [`taylor`](crate::roots::taylor) isolates what a ray meets first by interval arithmetic, and [`Dual`]
 //! numbers give the normal.
 
 use crate::bounds::Bounds;
-use crate::certify::{self, Enclosure, Equation};
+use crate::certify::{self, Enclosure, Equation, Precision};
+use crate::coincidence;
 use crate::dual::Dual;
-use crate::frame::Frame;
-use crate::geometry::{Body, Hittable, MISS, Ray, Span};
+use crate::frame::{BLUR, Frame};
+use crate::geometry::{Body, Hittable, MISS, Ray, Side, Span};
 use crate::interval::Interval;
 use crate::number::Number;
-use crate::roots::Method;
-use crate::roots::taylor::Line;
-use crate::twofold::{two_product, two_sum};
+use crate::roots::{Method, taylor, twice};
+use crate::sight::{Line, Sight};
+use crate::twofold::Twofold;
 use glam::DVec3;
 
 /// A shape by its formula, in coordinates of its own.
@@ -70,8 +71,12 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
         Some(self.frame.bounds(&own))
     }
 
-    fn is_convex(&self) -> bool {
-        false
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        coincidence::touches(self, at, error)
+    }
+
+    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold> {
+        coincidence::distance(self, ray, distance)
     }
 
     fn is_two_sided(&self) -> bool {
@@ -79,62 +84,61 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
     }
 
     fn method(&self) -> String {
-        "its first root isolated by bounds that certainly hold, then polished".to_owned()
+        "its first root isolated by interval arithmetic, then polished".to_owned()
     }
 
-    fn certify(&self, ray: &Ray) -> Enclosure {
-        certify::first_hit(self, ray)
+    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        certify::first_hit(self, sight, precision)
     }
 }
 
 impl<T: Implicit> ImplicitShape<T> {
     /// From the point of the ray that is closest to the shape's origin, so that a shape far away is met as exactly
-    /// as a near one.
+    /// as a near one. The ray is looked at from its origin, or where it comes into the box, to where it leaves the box,
+    /// wherever the span ends: a hit is the same in every span that holds it.
     fn first_hit(&self, method: Method, ray: &Ray, within: &Span) -> f64 {
         let closest = (self.frame.origin - ray.origin).dot(ray.dir);
-        let base = self.frame.direction(offset(ray, closest, self.frame.origin));
+        let base = self.frame.direction(self.frame.from_origin(ray, closest));
         let dir = self.frame.direction(ray.dir);
-        let (mut near, mut far) = (within.near - closest, within.far - closest);
+        let (mut start, mut end) = (-closest, f64::INFINITY);
         for axis in 0..3 {
             let (base, dir) = (base[axis], dir[axis]);
             if dir != 0.0 {
                 let (one, other) = ((self.low[axis] - base) / dir, (self.high[axis] - base) / dir);
-                near = near.max(one.min(other));
-                far = far.min(one.max(other));
+                start = start.max(one.min(other));
+                end = end.min(one.max(other));
             } else if base < self.low[axis] || base > self.high[axis] {
                 return MISS;
             }
         }
-        let line = OnRay { formula: &self.formula, base, dir };
-        let shortest = 4.0 * f64::EPSILON * near.abs().max(far.abs());
-        match method.first_root(&line, near..far, shortest, within.leaves) {
+        let line = OnRay { shape: self, base, dir, ray, closest };
+        let shortest = 4.0 * f64::EPSILON * start.abs().max(end.abs());
+        match method.first_root(&line, start..end, closest, within, shortest) {
             Some(root) => within.keep(closest + root),
             None => MISS,
         }
     }
-
-    /// A point in the shape's own coordinates, with any number type.
-    fn own<N: Number>(&self, at: [N; 3]) -> [N; 3] {
-        let from_origin = [0, 1, 2].map(|axis| at[axis] - N::constant(self.frame.origin[axis]));
-        [0, 1, 2].map(|axis| {
-            let part = |world: usize| from_origin[world] * N::constant(self.frame.axes.col(axis)[world]);
-            part(0) + part(1) + part(2)
-        })
-    }
 }
 
 impl<T: Implicit> Equation for ImplicitShape<T> {
-    fn value<N: Number>(&self, at: [N; 3]) -> N {
-        self.formula.value(self.own(at))
+    fn own<N: Number>(&self, line: Line<N>) -> Line<N> {
+        self.frame.line(line)
     }
 
-    fn kept(&self, at: [Interval; 3]) -> Interval {
-        let own = self.own(at);
+    fn value<N: Number>(&self, at: [N; 3]) -> N {
+        self.formula.value(at)
+    }
+
+    fn kept<N: Number>(&self, at: [N; 3]) -> N {
         let inside = |axis: usize| {
-            let (low, high) = (Interval::constant(self.low[axis]), Interval::constant(self.high[axis]));
-            (own[axis] - low).min(high - own[axis])
+            let (low, high) = (N::constant(self.low[axis]), N::constant(self.high[axis]));
+            (at[axis] - low).min(high - at[axis])
         };
         inside(0).min(inside(1)).min(inside(2))
+    }
+
+    fn extent(&self) -> [DVec3; 2] {
+        [self.low, self.high]
     }
 }
 
@@ -145,26 +149,26 @@ fn direction(vector: DVec3) -> Option<DVec3> {
 
 /// A formula along a ray.
 struct OnRay<'s, T> {
-    formula: &'s T,
+    shape: &'s ImplicitShape<T>,
+    /// The ray in the shape's own coordinates, from its point closest to the shape's origin.
     base: DVec3,
     dir: DVec3,
+    /// The ray in the world, and how far along it that point is.
+    ray: &'s Ray,
+    closest: f64,
 }
 
-impl<T: Implicit> Line for OnRay<'_, T> {
+impl<T: Implicit> taylor::Line for OnRay<'_, T> {
     fn at<N: Number>(&self, t: N) -> N {
-        let along = |axis: usize| N::constant(self.base[axis]) + N::constant(self.dir[axis]) * t;
-        self.formula.value([along(0), along(1), along(2)])
+        // Bounds hold the values along the ray which this one was rounded from.
+        let blur = BLUR * self.base.abs().element_sum();
+        let along = |axis: usize| N::about(self.base[axis], blur) + N::about(self.dir[axis], BLUR) * t;
+        self.shape.formula.value([along(0), along(1), along(2)])
     }
-}
 
-/// The point at a distance along a ray, as seen from another one: rounded as one operation is, however far away the
-/// ray's origin is.
-fn offset(ray: &Ray, distance: f64, from: DVec3) -> DVec3 {
-    let along = |axis: usize| {
-        let (way, way_low) = two_product(distance, ray.dir[axis]);
-        let (place, place_low) = two_sum(ray.origin[axis], way);
-        let (offset, offset_low) = two_sum(place, -from[axis]);
-        offset + (way_low + place_low + offset_low)
-    };
-    DVec3::new(along(0), along(1), along(2))
+    /// Twice the precision, from the ray in the world, tells nearly all touches from misses.
+    fn undecided(&self, piece: Interval, leaves: Option<Side>, hidden: f64) -> Option<f64> {
+        let exact = self.shape.frame.exactly(self.ray, self.closest);
+        twice::first_root(|t| self.shape.formula.value(exact.along(t)), piece, leaves, hidden)
+    }
 }

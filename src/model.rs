@@ -27,7 +27,7 @@ pub struct Model {
 impl Model {
     /// What tracing it needs, decided when it is first asked for.
     pub fn plan(&self) -> &Plan {
-        self.plan.get_or_init(|| Plan::new(&self.objects))
+        self.plan.get_or_init(|| Plan::new(self))
     }
 
     /// The entities of a kind as they were given, in the order of the scene.

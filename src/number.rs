@@ -15,6 +15,11 @@ pub trait Number:
 {
     /// A number that does not depend on anything.
     fn constant(value: f64) -> Self;
+    /// A number that is known but for an error: with bounds where there are bounds, else the number itself.
+    #[inline(always)]
+    fn about(value: f64, _error: f64) -> Self {
+        Self::constant(value)
+    }
     /// The sine and the cosine.
     fn sin_cos(self) -> (Self, Self);
     /// The sine.
@@ -58,6 +63,19 @@ pub trait Number:
     fn jump(self) -> Self;
     /// Whether it is 0 and nothing else.
     fn is_zero(self) -> bool;
+}
+
+/// The product of two vectors, a number.
+pub fn dot<N: Number>(a: [N; 3], b: [N; 3]) -> N {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// The product of two vectors, a vector upright on both.
+pub fn cross<N: Number>(a: [N; 3], b: [N; 3]) -> [N; 3] {
+    [0, 1, 2].map(|axis| {
+        let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
+        a[next] * b[last] - a[last] * b[next]
+    })
 }
 
 impl Number for f64 {

@@ -155,6 +155,8 @@ pub struct Rays<'r> {
     pub origin: View<'r>,
     /// Where each goes, a unit vector.
     pub dir: View<'r>,
+    /// How far at most any origin is from the point that it stands for, in world units; 0 for rays from the viewer.
+    pub origin_error: f64,
 }
 
 impl Rays<'_> {
@@ -178,13 +180,13 @@ impl Rays<'_> {
     /// The first of them, so many.
     #[inline(always)]
     pub fn first(&self, count: usize) -> Self {
-        Self { origin: self.origin.first(count), dir: self.dir.first(count) }
+        Self { origin: self.origin.first(count), dir: self.dir.first(count), ..*self }
     }
 
     /// Some of them.
     #[inline(always)]
     pub fn part(&self, range: Range<usize>) -> Self {
-        Self { origin: self.origin.part(range.clone()), dir: self.dir.part(range) }
+        Self { origin: self.origin.part(range.clone()), dir: self.dir.part(range), ..*self }
     }
 }
 
@@ -328,7 +330,8 @@ struct Sought<'b, T: ?Sized> {
 impl<T: Hittable + ?Sized> Brackets for Sought<'_, T> {
     #[inline(always)]
     fn get(&self, lane: usize, far: f64) -> Bracket {
-        self.shape.bracket(&self.rays.get(lane), &Span { far, ..Span::RAY })
+        let origin_error = self.rays.origin_error;
+        self.shape.bracket(&self.rays.get(lane), &Span { far, origin_error, ..Span::RAY })
     }
 }
 
@@ -342,8 +345,12 @@ struct Leaving<'b, T: ?Sized> {
 impl<T: Hittable + ?Sized> Brackets for Leaving<'_, T> {
     #[inline(always)]
     fn get(&self, lane: usize, far: f64) -> Bracket {
-        let leaves = Some(self.sides[lane]);
-        self.shape.bracket(&self.rays.get(lane), &Span { far, leaves, ..Span::RAY })
+        let leaves = self.sides[lane];
+        if !self.shape.meets_itself(leaves) {
+            return Bracket::MISS;
+        }
+        let (leaves, origin_error) = (Some(leaves), self.rays.origin_error);
+        self.shape.bracket(&self.rays.get(lane), &Span { far, leaves, origin_error, ..Span::RAY })
     }
 }
 

@@ -151,6 +151,15 @@ fn write_ppm(
     out.flush()
 }
 
+/// What a PNG says of its bytes: that they are shown as sRGB has it, as those of a PPM are and those of the notes'
+/// pictures.
+///
+/// No transfer function is applied: the byte of a channel is 255 times what the notes' formulas give, cut. So the formulas
+/// work in the values that a screen is given, and not in light, of which half as much would be byte 188. That is how scenes
+/// were made and looked at: their numbers were chosen for a screen that takes the bytes as they are. `gAMA` 1 would say
+/// that bytes are in proportion to light, and whoever heeds it would show the same scene far brighter than its PPM.
+pub(crate) const AS_SHOWN: png::SrgbRenderingIntent = png::SrgbRenderingIntent::RelativeColorimetric;
+
 /// A picture of up to so many bytes is encoded at once.
 const AT_ONCE: usize = 1 << 20;
 
@@ -165,6 +174,7 @@ fn write_png(
     let mut encoder = png::Encoder::new(out, size(width)?, size(height)?);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_source_srgb(AS_SHOWN);
     encoder.set_compression(match compression {
         Compression::Fast => png::Compression::Fastest,
         Compression::Balanced => png::Compression::Balanced,
@@ -208,6 +218,17 @@ mod tests {
                     );
                 }
             }
+        }
+    }
+
+    #[test]
+    fn a_png_says_how_its_bytes_are_shown() {
+        for bytes in [12, AT_ONCE + 3] {
+            let mut png = Vec::new();
+            let rows = [Ok(vec![7; 3 * (bytes / 3)])];
+            Format::Png(Compression::Fast).write(&mut png, [bytes / 3, 1], rows).expect("memory takes it");
+            let read = png::Decoder::new(io::Cursor::new(png)).read_info().expect("a PNG");
+            assert_eq!(read.info().srgb, Some(AS_SHOWN));
         }
     }
 

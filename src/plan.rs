@@ -1,17 +1,19 @@
 //! What a scene needs, decided once before any ray is traced: everything else is left out.
 
+pub(crate) mod depth;
 mod text;
 
+use depth::{Depth, Onward};
 pub use text::Decision;
 
 use crate::bounds::Bounds;
-use crate::model::{Model, Object};
+use crate::model::Model;
 use crate::tree::Tree;
 
 /// From so many objects with bounds on, a tree finds them faster than a list.
 const TREE: usize = 24;
 
-/// The decisions that depend on a scene's objects.
+/// The decisions that depend on a scene's objects and lights.
 pub struct Plan {
     /// The objects without bounds, by their indices: each is looked at for each ray.
     pub(crate) unbounded: Vec<usize>,
@@ -21,11 +23,14 @@ pub struct Plan {
     pub(crate) tree: Option<Tree>,
     /// Whether any object lets light through, so that shadows have more than two shades.
     pub(crate) has_glass: bool,
+    /// How deep rays are followed; nothing where none goes on.
+    pub(crate) depth: Option<Depth>,
 }
 
 impl Plan {
-    /// The plan for a scene with these objects.
-    pub fn new(objects: &[Object]) -> Self {
+    /// The plan for a scene.
+    pub fn new(model: &Model) -> Self {
+        let objects = &model.objects;
         let (mut unbounded, mut bounded) = (Vec::new(), Vec::new());
         for (index, object) in objects.iter().enumerate() {
             match object.shape.bounds() {
@@ -38,7 +43,16 @@ impl Plan {
             Tree::new(boxes.map(|(index, bounds)| (index as u32, bounds.with_slack(0.0))).collect())
         });
         let has_glass = objects.iter().any(|object| object.material.transparency != 0.0);
-        Self { unbounded, bounded, tree, has_glass }
+        Self { unbounded, bounded, tree, has_glass, depth: Depth::new(model) }
+    }
+
+    /// How rays go on from an object, by its index.
+    pub(crate) fn onward(&self, index: usize) -> Onward {
+        match &self.depth {
+            Some(depth) => depth.objects[index],
+            // Where no ray goes on, nobody asks.
+            None => Onward::NONE,
+        }
     }
 
     /// All decisions about a model, each with its reason.

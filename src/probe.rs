@@ -26,7 +26,7 @@ pub fn pixel(model: &Model, x: usize, y: usize, out: &mut impl Write) -> io::Res
     }
     let mut probe =
         Probe { model, out, outcome: Ok(()), depth: 0, search: None, light: None, held: String::new() };
-    let colour = trace::watch_colour(model, &camera.ray(x as f64, y as f64), None, &mut probe);
+    let colour = trace::watch_colour(model, &camera.sight(x as f64, y as f64), None, &mut probe);
     probe.outcome?;
     writeln!(out)?;
     conclude(colour, out)?;
@@ -221,6 +221,7 @@ impl<W: Write> Probe<'_, W> {
 fn dropped(reason: Reason) -> String {
     match reason {
         Reason::TooFar => format!("light that has travelled more than {MAX_DIST} is black"),
+        Reason::TooFaint => "all that it can add to the pixel is below 1/1024 of a level".to_owned(),
         Reason::TooMany => format!("the pixel has cost {MAX_RAYS} rays, and no more are followed"),
     }
 }

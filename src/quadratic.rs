@@ -6,6 +6,8 @@
 
 use crate::bounds::smaller;
 use crate::geometry::MISS;
+use crate::geometry::Side;
+use crate::number::Number;
 use crate::twofold::{Exact, Twofold, exponent_to_one, product, times_power_of_two, two_product, two_sum};
 use glam::{DMat3, DVec3};
 
@@ -300,9 +302,15 @@ impl Quadratic {
         Some(MISS)
     }
 
-    /// The other hit of a ray that starts on one; [`MISS`] where it lies behind or out of the box.
-    pub fn other_hit(&self, ray: &OwnRay) -> f64 {
+    /// The other hit of a ray that starts on one and leaves it on a side; [`MISS`] where it lies behind or out of the box.
+    pub fn other_hit(&self, ray: &OwnRay, side: Side) -> f64 {
         let (a, [b, ..]) = (self.bend(ray), self.at(ray, Twofold::from(0.0)));
+        // On the outside the values rise from there, on the inside they fall, whatever rounding says.
+        let zero = Twofold::from(0.0);
+        let b = match side {
+            Side::Outside => Number::max(b, zero),
+            Side::Inside => Number::min(b, zero),
+        };
         let hit = Twofold::from(-2.0) * b / a;
         let is_there = hit.high.is_finite() && hit.high > 0.0;
         let is_kept = is_there && self.depth(ray, hit, f64::EPSILON * hit.high) >= -1.0;

@@ -18,6 +18,8 @@ pub struct FinitePlane {
     pub sides: [DVec3; 2],
     /// The same in twice the precision.
     pub exact_sides: [[Twofold; 3]; 2],
+    /// The vector right above the first of them that the scene gives, of any length.
+    pub given_xdir: DVec3,
     /// How far from the world's origin it reaches, about, in world units.
     pub reach: f64,
 }

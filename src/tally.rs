@@ -5,11 +5,40 @@ use crate::watch::{Count, Kind, Watch};
 use std::collections::BTreeMap;
 
 /// Counts of rays and tests. It is a watcher that leaves packets together, and so counts what plain rendering does.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tally {
     rays: [u64; Kind::ALL.len()],
     /// By the objects' indices.
     tests: Vec<Tests>,
+    /// The pixels that have cost as many rays as they may.
+    pub cuts: Cuts,
+}
+
+/// Pixels that have cost as many rays as they may. It is a watcher, too, which counts nothing else.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Cuts {
+    /// How many they are.
+    pub pixels: u64,
+    /// How much light one of them lacks at most, in any channel; infinite where nothing bounds it.
+    pub most: f64,
+}
+
+impl Cuts {
+    /// Adds those of another part of the picture.
+    pub fn add(&mut self, other: Self) {
+        self.pixels += other.pixels;
+        self.most = self.most.max(other.most);
+    }
+}
+
+impl Watch for Cuts {
+    const SEES: bool = false;
+
+    fn count(&mut self, count: Count) {
+        if let Count::Cut(most) = count {
+            self.add(Self { pixels: 1, most });
+        }
+    }
 }
 
 /// What became of the tests of an object, or of all objects of an entity type.
@@ -34,6 +63,7 @@ impl Watch for Tally {
             Count::Rays(kind, rays) => self.rays[kind as usize] += rays as u64,
             Count::Tested(object, rays) => self.of(object).tested += rays as u64,
             Count::Culled(object, rays) => self.of(object).culled += rays as u64,
+            Count::Cut(_) => self.cuts.count(count),
         }
     }
 }
@@ -51,6 +81,7 @@ impl Tally {
         for (sum, part) in self.rays.iter_mut().zip(other.rays) {
             *sum += part;
         }
+        self.cuts.add(other.cuts);
         for (object, part) in other.tests.iter().enumerate() {
             let sum = self.of(object);
             (sum.tested, sum.culled) = (sum.tested + part.tested, sum.culled + part.culled);

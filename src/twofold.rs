@@ -38,6 +38,15 @@ pub fn advance(start: f64, distance: f64, step: f64) -> f64 {
     sum + (product_low + sum_low)
 }
 
+/// `start + distance * step - from`: to a unit in the last place of the result, however far `start` is from there. The
+/// difference is exact where it cancels, and rounded once where it does not.
+#[inline(always)]
+pub fn offset(start: f64, distance: f64, step: f64, from: f64) -> f64 {
+    let (way, way_low) = two_product(distance, step);
+    let (place, place_low) = two_sum(start, way);
+    (place - from) + (way_low + place_low)
+}
+
 /// A sum of three products, the second factors with what rounding took from them, and of something small: rounded about
 /// once, and off by at most 2^-102 of the size of its parts, however much of it cancels (Ogita, Rump and Oishi 2005).
 #[inline(always)]

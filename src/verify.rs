@@ -1,57 +1,82 @@
 //! Which object a pixel's ray meets first, proven, and compared with what the tracer finds.
 
-use crate::certify::Enclosure;
+use crate::certify::{Enclosure, Precision};
+use crate::interval::{Float, Wide};
 use crate::model::Model;
 use crate::render::Renderer;
+use crate::sight::Sight;
 use crate::trace;
+use f256::f256;
 use std::io;
 use std::ops::ControlFlow;
 
-/// What is proven of a pixel, of the ray through its middle.
+/// What is proven of a pixel, of the real ray through its middle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Verdict {
     /// The tracer finds the object that is certainly met first, or nothing where nothing is.
     Proven,
-    /// Rounding hides which object that is.
+    /// 237 bits do not tell which of several objects is met first, or whether one is touched: a tie, as where two lie in
+    /// one place. The tracer finds one of those.
     #[default]
-    Undecided,
+    Tie,
     /// The tracer finds another one.
     Contradicted,
 }
 
+/// What may be met first.
+#[derive(Debug, PartialEq)]
+enum First {
+    /// This object, by its index, or none: for certain.
+    Certain(Option<usize>),
+    /// One of these.
+    OneOf(Vec<Option<usize>>),
+}
+
 /// The verdict on a pixel, counted from the left and from the bottom.
 pub fn pixel(model: &Model, x: usize, y: usize) -> Verdict {
-    let ray = model.camera.value.ray(x as f64, y as f64);
-    let found = trace::first_hit(model, &ray).map(|hit| hit.index);
-    let enclosures = model.objects.iter().map(|object| object.shape.certify(&ray));
-    match first(enclosures) {
-        Some(first) if first == found => Verdict::Proven,
-        Some(_) => Verdict::Contradicted,
-        None => Verdict::Undecided,
+    let sight = model.camera.value.sight(x as f64, y as f64);
+    let found = trace::first_hit(model, &sight).map(|hit| hit.index);
+    match first_of(model, &sight) {
+        First::Certain(first) if first == found => Verdict::Proven,
+        First::OneOf(any) if any.contains(&found) => Verdict::Tie,
+        _ => Verdict::Contradicted,
     }
 }
 
-/// The object that is certainly met first, by its index, or that none is met; nothing where that is not certain.
-fn first(enclosures: impl Iterator<Item = Enclosure>) -> Option<Option<usize>> {
-    // The surest hit, and the nearest that anything else may be.
-    let mut nearest: Option<(usize, f64, f64)> = None;
-    let mut others = f64::INFINITY;
-    for (index, enclosure) in enclosures.enumerate() {
-        match enclosure {
-            Enclosure::Misses => {}
-            Enclosure::Doubtful(low) => others = others.min(low),
-            Enclosure::Hits(at, _) => match nearest {
-                Some((_, _, high)) if high <= at.high => others = others.min(at.low),
-                _ => {
-                    others = others.min(nearest.map_or(f64::INFINITY, |(_, low, _)| low));
-                    nearest = Some((index, at.low, at.high));
-                }
-            },
+fn first_of(model: &Model, sight: &Sight) -> First {
+    let certify = |index: usize, precision| (index, model.objects[index].shape.certify(sight, precision));
+    let all: Vec<_> = (0..model.objects.len()).map(|index| certify(index, Precision::Double)).collect();
+    match first(&all) {
+        First::OneOf(any) => {
+            let any: Vec<_> =
+                any.into_iter().flatten().map(|index| certify(index, Precision::Octuple)).collect();
+            first(&any)
         }
+        certain => certain,
     }
-    match nearest {
-        Some((index, _, high)) => (high < others).then_some(Some(index)),
-        None => (others == f64::INFINITY).then_some(None),
+}
+
+/// What is met first of some objects.
+fn first(enclosures: &[(usize, Enclosure)]) -> First {
+    // No farther than this something is met for certain.
+    let end = enclosures.iter().filter_map(|(_, enclosure)| match enclosure {
+        Enclosure::Hits(at) => Some(at.high),
+        _ => None,
+    });
+    let end = end.fold(f256::INFINITY, Float::min);
+    let mut candidates = enclosures.iter().filter(|(_, enclosure)| match enclosure {
+        Enclosure::Misses => false,
+        Enclosure::Hits(Wide { low, .. }) | Enclosure::Doubtful(low) => *low <= end,
+    });
+    let is_something = end < f256::INFINITY;
+    match (candidates.next(), candidates.next()) {
+        (None, _) => First::Certain(None),
+        (Some((index, Enclosure::Hits(_))), None) => First::Certain(Some(*index)),
+        (Some((one, _)), other) => {
+            let others = other.into_iter().chain(candidates).map(|(index, _)| *index);
+            let any = [*one].into_iter().chain(others).map(Some);
+            First::OneOf(any.chain((!is_something).then_some(None)).collect())
+        }
     }
 }
 
@@ -73,31 +98,33 @@ pub fn picture(
 mod tests {
     use super::*;
     use crate::interval::Interval;
-    use crate::twofold::Twofold;
 
-    const NEAR: Enclosure = hits(1.0, 2.0);
-    const FAR: Enclosure = hits(3.0, 4.0);
-    const BETWEEN: Enclosure = hits(1.5, 3.5);
+    fn hits(low: f64, high: f64) -> Enclosure {
+        Enclosure::Hits(Interval { low, high }.into())
+    }
 
-    const fn hits(low: f64, high: f64) -> Enclosure {
-        Enclosure::Hits(Interval { low, high }, Twofold { high: 0.5 * (low + high), low: 0.0 })
+    fn doubtful(from: f64) -> Enclosure {
+        Enclosure::Doubtful(from.into())
     }
 
     #[test]
     fn the_first_is_certain_only_where_nothing_may_lie_before() {
-        for (enclosures, certain) in [
-            (&[][..], Some(None)),
-            (&[Enclosure::Misses], Some(None)),
-            (&[FAR, Enclosure::Misses, NEAR], Some(Some(2))),
-            (&[NEAR, FAR], Some(Some(0))),
-            (&[NEAR, BETWEEN], None),
-            (&[BETWEEN, NEAR], None),
-            (&[FAR, BETWEEN, NEAR], None),
-            (&[NEAR, Enclosure::Doubtful(2.5)], Some(Some(0))),
-            (&[Enclosure::Doubtful(1.5), NEAR], None),
-            (&[Enclosure::Doubtful(1.5)], None),
+        let (near, far, between) = (hits(1.0, 2.0), hits(3.0, 4.0), hits(1.5, 3.5));
+        let one_of = |any: &[Option<usize>]| First::OneOf(any.to_vec());
+        for (enclosures, right) in [
+            (&[][..], First::Certain(None)),
+            (&[Enclosure::Misses], First::Certain(None)),
+            (&[far, Enclosure::Misses, near], First::Certain(Some(2))),
+            (&[near, far], First::Certain(Some(0))),
+            (&[near, between], one_of(&[Some(0), Some(1)])),
+            (&[between, near], one_of(&[Some(0), Some(1)])),
+            (&[far, between, near], one_of(&[Some(1), Some(2)])),
+            (&[near, doubtful(2.5)], First::Certain(Some(0))),
+            (&[doubtful(1.5), near], one_of(&[Some(0), Some(1)])),
+            (&[doubtful(1.5)], one_of(&[Some(0), None])),
         ] {
-            assert_eq!(first(enclosures.iter().copied()), certain, "{enclosures:?}");
+            let numbered: Vec<_> = enclosures.iter().copied().enumerate().collect();
+            assert_eq!(first(&numbered), right, "{enclosures:?}");
         }
     }
 }

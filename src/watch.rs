@@ -25,7 +25,7 @@ impl Watch for () {
 }
 
 /// Work that was done, or spared. Rays go in packets; it is their rays that are counted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Count {
     /// So many rays of a kind were cast.
     Rays(Kind, usize),
@@ -33,6 +33,8 @@ pub enum Count {
     Tested(usize, usize),
     /// So many rays were not, as the object's bounds are not in their way.
     Culled(usize, usize),
+    /// A pixel has cost as many rays as it may, and lacks so much light at most, in any channel.
+    Cut(f64),
 }
 
 /// The kinds of rays.
@@ -134,6 +136,8 @@ pub enum Purpose {
 pub enum Reason {
     /// Its light has travelled too far to be seen.
     TooFar,
+    /// What it can add to the pixel is too little to be seen.
+    TooFaint,
     /// The pixel has cost as many rays as it may.
     TooMany,
 }

@@ -59,6 +59,23 @@ pub fn list<'w>(words: impl IntoIterator<Item = &'w str>) -> String {
     words.into_iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ")
 }
 
+/// A number that is not below 0 to three digits.
+pub fn short(number: f64) -> String {
+    if number == 0.0 || (1e-3..1e6).contains(&number) {
+        let digits = if number < 1e-2 {
+            5
+        } else if number < 100.0 {
+            3
+        } else {
+            0
+        };
+        let text = format!("{number:.digits$}");
+        if digits > 0 { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+    } else {
+        format!("{number:.2e}")
+    }
+}
+
 /// A count with its noun: `1 error`, `2 errors`.
 pub fn count(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })

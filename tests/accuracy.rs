@@ -315,7 +315,7 @@ fn the_accuracy_of_each_method_is_measured() {
         "# How exact the methods are
 
 A camera's `accuracy` chooses how shapes find their hits. Here is what each choice gets wrong, counted against the
-truth: every crossing of a ray and a surface isolated by bounds that certainly hold, its distance to 30 digits. All
+truth: every crossing of a ray and a surface isolated by interval arithmetic, its distance to 30 digits. All
 numbers are those of one run of
 
 ```sh

@@ -167,7 +167,9 @@ fn what_is_chosen_is_a_command_line_that_renders() {
     let chosen = choose(&["--max-error", "0.01"]);
     let text = String::from_utf8(chosen.stdout).expect("UTF-8");
     assert!(
-        text.contains("\nThe one marked is the fastest with an error of at most 0.01. The others "),
+        text.contains(
+            "\nThe one marked is the fastest whose error was measured to be at most 0.01. The others "
+        ),
         "{text}"
     );
     let line = text.lines().last().expect("a command line");
@@ -186,14 +188,16 @@ fn what_is_chosen_is_a_command_line_that_renders() {
     assert_eq!(never.status.code(), Some(1));
     assert!(
         String::from_utf8_lossy(&never.stderr)
-            .starts_with("error: no choice has an error of at most 1e-12; the least is"),
+            .starts_with("error: no choice has a measured error of at most 1e-12; the least is"),
     );
     let text = String::from_utf8(choose(&["--max-time", "1000"]).stdout).expect("UTF-8");
     assert!(text.contains("\nThe one marked is the one with the least error within 1000 s on "), "{text}");
     let never = choose(&["--max-time", "1e-9"]);
     assert_eq!(never.status.code(), Some(1));
     let said = String::from_utf8_lossy(&never.stderr).into_owned();
-    let least = said.strip_prefix("error: no choice takes at most 0.000000001 s; the fastest takes about ");
+    let least = said.strip_prefix(
+        "error: no choice is estimated to take at most 0.000000001 s; the fastest takes about ",
+    );
     assert!(least.is_some_and(|least| least.ends_with("s\n") && !least.starts_with("0.00")), "{said}");
     for wrong in [&["--max-error", "0"][..], &[], &["--max-time", "1", "--max-error", "1"]] {
         assert_eq!(choose(wrong).status.code(), Some(2), "{wrong:?}");

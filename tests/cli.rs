@@ -332,12 +332,18 @@ fn a_method_is_chosen_by_the_scene_or_by_an_option() {
 }
 
 #[test]
-fn without_a_command_the_notes_methods_are_used() {
+fn without_a_command_the_notes_methods_are_used_unless_the_camera_says_otherwise() {
     let folder = folder();
     let text = fs::read_to_string(scene("revsurf/leaning.ray")).expect("a scene");
-    let (status, notes, _) = outcome(tabray(&folder).write_stdin(text));
+    let (status, notes, _) = outcome(tabray(&folder).write_stdin(text.as_str()));
     assert_eq!(status, 0);
     let path = scene("revsurf/leaning.ray");
-    let args = ["--method", "classic", "-o", "-"];
-    assert_eq!(notes, outcome(tabray(&folder).arg("render").arg(path).args(args)).1);
+    let rendered =
+        |method| outcome(tabray(&folder).arg("render").arg(&path).args(["--method", method, "-o", "-"])).1;
+    assert_eq!(notes, rendered("classic"));
+
+    let asked = text.replace("pixeldim", "accuracy exact\n    pixeldim");
+    let (status, asked, _) = outcome(tabray(&folder).write_stdin(asked));
+    assert_eq!(status, 0);
+    assert!(asked == rendered("exact") && asked != notes, "the camera has its say");
 }

@@ -78,7 +78,7 @@ proptest! {
 
 /// Whether a fault is one that only a constructor finds, or the warning that may stand beside it.
 fn of_a_constructor(fault: &Fault) -> bool {
-    let found = ["parallel", "in one line", "empty box", "points at itself", "have the name"];
+    let found = ["parallel", "in one line", "empty box", "points at itself", "have the name", "is defined"];
     found.iter().any(|words| fault.message.contains(words))
 }
 

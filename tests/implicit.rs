@@ -3,6 +3,8 @@
 mod common;
 
 use common::{model, render};
+use dashu_float::FBig;
+use dashu_float::round::mode::HalfEven;
 use glam::DVec3;
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
@@ -152,10 +154,6 @@ impl Hittable for Quartics {
     fn normal(&self, at: DVec3) -> DVec3 {
         let (axis, at) = (AXIS.normalize(), at - CENTER);
         (at - RADIUS * at.reject_from_normalized(axis).normalize()).normalize()
-    }
-
-    fn is_convex(&self) -> bool {
-        false
     }
 
     fn is_two_sided(&self) -> bool {
@@ -371,6 +369,51 @@ fn the_box_cuts_and_shows_the_inside() {
     // Along a face of the box.
     assert_eq!(hit(DVec3::new(-3.0, -1.0, 0.5), DVec3::X, None), MISS);
     assert!((hit(DVec3::new(-3.0, 0.0, 0.0), DVec3::X, None) - 2.0).abs() < 1e-15);
+}
+
+/// What `tabray new plugin` starts from.
+struct RoundCube;
+
+impl Formula for RoundCube {
+    fn value<N: Number>(&self, [x, y, z]: [N; 3]) -> N {
+        x.powi(4) + y.powi(4) + z.powi(4) - N::constant(1.0)
+    }
+}
+
+/// The function along such a ray is x^4 and a constant, which is computed in 300 bits: all of 1e-2 to 1e-18 is tried.
+#[test]
+fn a_tangency_of_the_fourth_order_is_told_from_a_miss() {
+    let real = |value: f64| FBig::<HalfEven>::try_from(value).expect("finite").with_precision(300).value();
+    let fourth = |value: f64| real(value) * real(value) * real(value) * real(value);
+    let (cube, mut dice) = (shape(RoundCube, DVec3::splat(-1.0), DVec3::splat(1.0)), Dice::new());
+    let (mut hits, mut misses) = (0, 0);
+    for _ in 0..5_000 {
+        let z = dice.within(-0.9..0.9);
+        let y = (1.0 - z.powi(4)).sqrt().sqrt();
+        let y =
+            y + 0.1_f64.powf(dice.within(2.0..18.0)) * if dice.within(0.0..1.0) < 0.5 { 1.0 } else { -1.0 };
+        let below = (real(1.0) - fourth(y) - fourth(z)).to_f64().value();
+        let ray = Ray { origin: DVec3::new(-10.0, y, z), dir: DVec3::X };
+        let found = cube.distance(&ray, &Span::RAY);
+        assert_eq!(found < MISS, below >= 0.0, "{y:?} {z:?}: {found}, {below:e}");
+        if found < MISS {
+            let half = below.sqrt().sqrt();
+            // As far as the function's rounding moves its root, where that is told in f64.
+            let slack = 1e-14 + 8.0 * f64::EPSILON / (4.0 * half.powi(3));
+            assert!((found - (10.0 - half)).abs() <= slack.min(1e-3), "{y:?} {z:?}: {found}, {half:e}");
+            hits += 1;
+        } else {
+            misses += 1;
+        }
+        for far in [found.next_up(), 10.5, 11.5] {
+            let until = cube.distance(&ray, &Span { far, ..Span::RAY });
+            assert!(
+                until == found || found >= far && until == MISS,
+                "{y:?} {z:?}: {found}, {until} to {far}"
+            );
+        }
+    }
+    assert!(hits > 1_000 && misses > 1_000, "{hits} {misses}");
 }
 
 struct Cone;

@@ -133,7 +133,7 @@ fn depth_and_normal_are_written_exactly() {
     let mut hits = 0;
     for (column, row, depth) in depths.enumerate_pixels() {
         let (x, y) = (column as usize, height - 1 - row as usize);
-        let hit = trace::first_hit(&model, &model.camera.value.ray(x as f64, y as f64));
+        let hit = trace::first_hit(&model, &model.camera.value.sight(x as f64, y as f64));
         let expected = hit.as_ref().map_or(f32::INFINITY, |hit| hit.distance as f32);
         assert_eq!(depth.0, [expected; 3], "{x} {y}");
         let normal = hit.as_ref().map_or(DVec3::ZERO, |hit| hit.object.shape.normal(hit.point));
@@ -158,7 +158,7 @@ fn objects_differ_in_colour_and_near_is_brighter_than_far() {
     let mut seen = Vec::new();
     for (column, row, colour) in objects.enumerate_pixels() {
         let (x, y) = (column as usize, height - 1 - row as usize);
-        let hit = trace::first_hit(&model, &model.camera.value.ray(x as f64, y as f64));
+        let hit = trace::first_hit(&model, &model.camera.value.sight(x as f64, y as f64));
         seen.push((hit.map(|hit| (hit.index, hit.distance)), colour.0, depths.get_pixel(column, row).0[0]));
     }
     assert_eq!(seen.len(), width * height);

@@ -86,9 +86,17 @@ fn without_mirrors_no_rays_are_reflected() {
         counted(&format!("{FLOOR} {LAMP} sphere ball {{ material matt center 4 2 -4 radius 2 }}"));
     assert_eq!(tally.rays(Reflected), 0);
     assert!(line(&matt, "mirrors").contains("none: "));
-    let (mirror, tally) = counted("plane wall { material mirror normal 0 0 1 point 0 0 -4 }");
-    assert_eq!(tally.rays(Reflected), PIXELS, "every ray meets the wall, and what it mirrors is empty");
+    let wall = "plane wall { material mirror normal 0 0 1 point 0 0 -4 }";
+    let behind = "sphere behind { material matt center 4 3 20 radius 1 }";
+    let (mirror, tally) = counted(&format!("{wall} {behind}"));
+    assert_eq!(
+        tally.rays(Reflected),
+        PIXELS,
+        "every ray meets the wall, and nearly all that it mirrors is empty"
+    );
     assert!(line(&mirror, "mirrors").contains("`wall`"));
+    let (_, tally) = counted(wall);
+    assert_eq!(tally.rays(Reflected), 0, "there is nothing that it could mirror");
 }
 
 #[test]
@@ -96,7 +104,11 @@ fn without_glass_no_rays_are_transmitted() {
     let (opaque, tally) = counted(&format!("{FLOOR} {LAMP}"));
     assert_eq!(tally.rays(Transmitted), 0);
     assert!(line(&opaque, "glass").contains("none: ") && line(&opaque, "shadows").contains("two shades"));
-    let (pane, tally) = counted(&format!("{LAMP} plane pane {{ material glass normal 0 0 1 point 0 0 -4 }}"));
+    let pane = "plane pane { material glass normal 0 0 1 point 0 0 -4 }";
+    let (_, tally) = counted(&format!("{LAMP} {pane}"));
+    assert_eq!(tally.rays(Transmitted), 0, "there is nothing behind it");
+    let behind = "sphere behind { material matt center 4 3 -20 radius 1 }";
+    let (pane, tally) = counted(&format!("{LAMP} {pane} {behind}"));
     assert_eq!(tally.rays(Transmitted), PIXELS);
     assert!(line(&pane, "glass").contains("`pane`") && line(&pane, "shadows").contains("tinted"));
 }
@@ -367,6 +379,60 @@ fn statistics_go_to_standard_error_and_change_nothing_else() {
     {
         assert!(err.contains(word), "{word}: {err}");
     }
+}
+
+/// Three panes half a unit apart that mirror so much of their light, in a new folder: what `render` says of them.
+fn panes(specular: &str, method: &str) -> (Value, String) {
+    let folder = TempDir::new().expect("a folder");
+    let path = folder.path().join("pane.ray");
+    let pane = |index: usize, z: f64| format!("plane p{index} {{ material g normal 0 0 1 point 0 0 {z} }}");
+    let panes =
+        [-1.0, -1.5, -2.0].into_iter().enumerate().map(|(index, z)| pane(index, z)).collect::<String>();
+    let scene = format!(
+        "camera c {{ pixeldim 3 3 worlddim 8 6 viewpoint 4 3 6 }}
+         material g {{ ambient 0.5 0.6 0.7 diffuse 1 1 1 specular {specular} transparency 0.5 }} {panes}"
+    );
+    fs::write(&path, scene).expect("a file");
+    let args = ["render", &path.display().to_string(), "-o", "-", "--method", method, "--stats", "json"];
+    let (status, _, err) = outcome(&args);
+    assert_eq!(status, 0, "{err}");
+    let (said, stats) = err.trim_end().rsplit_once('\n').unwrap_or(("", &err));
+    (serde_json::from_str(stats).expect("an object"), said.to_owned())
+}
+
+#[test]
+fn pixels_that_are_cut_off_are_counted_and_told_of_with_what_they_lack() {
+    let (stats, said) = panes("0.1", "exact");
+    assert_eq!((stats["cut"]["pixels"].as_u64(), said.as_str()), (Some(0), ""));
+    let rays = stats["rays"]["reflected"].as_u64();
+    assert!(rays < Some(2000), "{rays:?}");
+    // The notes leave nothing out.
+    let (stats, said) = panes("0.4", "classic");
+    let levels = stats["cut"]["levels"].as_f64().expect("a bound");
+    assert!(stats["cut"]["pixels"].as_u64() > Some(0) && levels > 0.1 && levels < 255.0, "{stats}");
+    assert!(said.starts_with("warning: ") && said.contains("cut off after 20000 rays"), "{said}");
+    assert!(said.contains("off by at most ") && said.contains("of 255 levels"), "{said}");
+    // More is given on than there was.
+    let (stats, said) = panes("1", "exact");
+    assert!(stats["cut"]["pixels"].as_u64() > Some(0) && stats["cut"]["levels"].is_null(), "{stats}");
+    assert!(said.contains("nothing bounds"), "{said}");
+}
+
+#[test]
+fn a_plan_says_how_deep_rays_are_followed() {
+    let pane = "plane wall { material matt normal 0 0 1 point 0 0 -9 }
+        plane one { material glass normal 0 0 1 point 0 0 -4 }";
+    let depth = |entities: &str| line(&counted(entities).0, "depth");
+    assert!(!text(&counted(FLOOR).0).contains("depth "), "no ray goes on");
+    let bounded = depth(pane);
+    assert!(bounded.contains("1/1024 of a level") && bounded.contains("20000 rays"), "{bounded}");
+    let mirrors = format!(
+        "{FLOOR} material all {{ specular 1 }} plane a {{ material all normal 0 0 1 point 0 0 -4 }}
+        plane b {{ material all normal 0 1 0 point 0 9 0 }}"
+    );
+    assert!(depth(&mirrors).contains("as much light as they get"), "{}", depth(&mirrors));
+    let touched = depth(&format!("{pane} light l {{ location 4 3 -9 emissivity 1 1 1 }}"));
+    assert!(touched.contains("`wall` may be of any brightness"), "{touched}");
 }
 
 #[test]

@@ -82,6 +82,8 @@ fn a_plugin_is_one_file_dropped_in() {
         fs::write(path, text).expect("room for a file");
     }
     copy.build();
+    // What is dropped in and what `tabray new` writes keeps its contract, of each kind.
+    copy.keeps_contracts();
     let dropped: BTreeSet<_> = copy.files().difference(&before).map(|(path, _)| path.clone()).collect();
     assert_eq!(dropped, plugins.into_iter().map(|(path, _)| path).collect(), "no other file changes");
 

@@ -4,8 +4,10 @@ mod oracle;
 
 use dashu_float::FBig;
 use dashu_float::round::mode::HalfEven;
+use dashu_int::{IBig, UBig};
+use f256::f256;
 use oracle::rays::Random;
-use tabray::interval::Interval;
+use tabray::interval::{Float, Interval, Wide};
 use tabray::number::Number;
 use tabray::twofold::Twofold;
 
@@ -155,4 +157,85 @@ fn intervals_hold_the_true_results() {
             assert!(held, "{name} of {inside:?} in {piece:?}: {exact:?} not in {bounds:?}");
         }
     }
+}
+
+/// A number of 237 bits, exactly.
+fn widest(of: f256) -> Bits {
+    let (sign, exponent, (high, low)) = of.as_sign_exp_signif();
+    let whole = (UBig::from(high) << 128) + UBig::from(low);
+    let whole = if sign == 0 { IBig::from(whole) } else { -IBig::from(whole) };
+    Bits::from_parts(whole, exponent as isize)
+}
+
+type Bits = FBig<HalfEven, 2>;
+
+/// That an interval of 237 bits holds a number of 400, and is no wider than so many units in the last place.
+#[track_caller]
+fn holds(interval: Wide, right: &Bits, units: f64, what: &str) {
+    let (low, high) = (widest(interval.low), widest(interval.high));
+    assert!(low <= *right && *right <= high, "{what}: {interval:?} does not hold {right}");
+    let width = ((high - low) / right).to_f64().value().abs();
+    assert!(width <= units * 2_f64.powi(-236), "{what}: {width:e} wide");
+}
+
+#[test]
+fn wide_intervals_hold_the_right_results() {
+    const BITS: usize = 400;
+    let mut random = Random::new(9);
+    let exactly = |of: f256| widest(of).with_precision(BITS).value();
+    for _ in 0..300 {
+        // All digits of an argument are drawn.
+        let mut number = |low: f64, high: f64| {
+            let part = f256::from(random.between(1.0, 2.0)) / f256::from(random.between(1.0, 2.0));
+            f256::from(random.between(low, high)) * part
+        };
+        let (a, b) = (number(-9.0, 9.0), number(-9.0, 9.0));
+        let (x, y) = (Wide::point(a), Wide::point(b));
+        let (big_a, big_b) = (exactly(a), exactly(b));
+        // A sum that cancels is exact, and any other one is within a unit of it.
+        let (low, high) = (widest((x + y).low), widest((x + y).high));
+        assert!(low <= &big_a + &big_b && &big_a + &big_b <= high, "{a} + {b}");
+        holds(x * y, &(&big_a * &big_b), 4.0, "product");
+        holds(x / y, &(&big_a / &big_b), 4.0, "quotient");
+        holds(x.powi(2), &(&big_a * &big_a), 4.0, "square");
+        let (p, q) = (number(1e-3, 90.0), number(0.1, 3.0));
+        let (wide, big) = (Wide::point(p), exactly(p));
+        holds(wide.sqrt(), &big.sqrt(), 4.0, "square root");
+        // Where a logarithm is near 0, or a sine, its units are small.
+        holds(wide.exp(), &big.exp(), 40.0, "exp");
+        holds(wide.ln(), &big.ln(), 40.0, "ln");
+        holds(wide.sin(), &big.sin(), 40.0, "sin");
+        holds(wide.cos(), &big.cos(), 40.0, "cos");
+        holds(wide.tan(), &big.tan(), 40.0, "tan");
+        let power = (exactly(q) * big.ln()).exp();
+        // The error of the logarithm counts as often as the exponent is large.
+        holds(wide.pow(Wide::point(q)), &power, 1000.0, "power");
+    }
+}
+
+#[test]
+fn wide_numbers_become_numbers_of_f64() {
+    for number in [0.0, 1.0, -1.5, 1e-300, -1e300, 5e-324, f64::MAX, f64::INFINITY] {
+        assert_eq!(f256::from(number).to_f64(), number);
+    }
+    assert_eq!((f256::from(1e300) * f256::from(1e300)).to_f64(), f64::INFINITY);
+    assert_eq!((f256::from(1.0) / f256::from(3.0)).to_f64(), 1.0 / 3.0);
+}
+
+/// What lies on one side of a pole has a bound there, and what a bounded function makes of it has two.
+#[test]
+fn poles_have_one_sided_bounds() {
+    let n = |value: f64| <Interval>::constant(value);
+    let from_zero = Interval { low: 0.0, high: 2.0 };
+    let inverse = n(1.0) / from_zero;
+    assert!(inverse.low > 0.49 && inverse.high == f64::INFINITY, "{inverse:?}");
+    let capped = n(2.0).min(inverse);
+    assert!(capped.low > 0.49 && capped.high == 2.0, "{capped:?}");
+    let inverse = n(-1.0) / from_zero;
+    assert!(inverse.low == f64::NEG_INFINITY && inverse.high < -0.49, "{inverse:?}");
+    assert_eq!(n(1.0) / Interval { low: -1.0, high: 1.0 }, Interval::WHOLE);
+    let ln = n(0.2).max(from_zero.ln());
+    assert!(ln.low == 0.2 && ln.high > 0.69 && ln.high < 0.7, "{ln:?}");
+    let power = from_zero.pow(from_zero);
+    assert!(power.low == 0.0 && power.high >= 4.0 && power.high < 4.1, "{power:?}");
 }

@@ -40,7 +40,7 @@ struct Bundle {
 
 impl Bundle {
     fn rays(&self) -> Rays<'_> {
-        Rays { origin: self.origin.view(WIDE), dir: self.dir.view(WIDE) }
+        Rays { origin: self.origin.view(WIDE), dir: self.dir.view(WIDE), origin_error: 0.0 }
     }
 }
 
@@ -72,7 +72,7 @@ impl Packet {
             let ray = camera.ray(x as f64, y as f64);
             view.origin.set(lane, ray.origin);
             view.dir.set(lane, ray.dir);
-            hits.extend(trace::first_hit(model, &ray).map(|hit| (ray, hit)));
+            hits.extend(trace::first_hit(model, &camera.sight(x as f64, y as f64)).map(|hit| (ray, hit)));
         }
         let count = |object| hits.iter().filter(|(_, hit)| hit.index == object).count();
         let most = hits.iter().map(|(_, hit)| hit.index).max_by_key(|object| (count(*object), *object));
@@ -120,7 +120,8 @@ pub(super) fn times(
         .filter_map(|packet| Some((packet.met.as_ref()?, wanted(&packet.tested.shadow))))
         .filter(|(met, _)| met.ends.iter().any(|end| *end > 0.0))
         .map(|(met, mut tested)| {
-            tested.retain(|object| *object != met.object || !shape(*object).is_convex());
+            let may_meet_itself = met.sides.iter().any(|side| shape(met.object).meets_itself(*side));
+            tested.retain(|object| *object != met.object || may_meet_itself);
             (met, tested)
         })
         .collect();

@@ -3,11 +3,12 @@
 use super::{Family, Load};
 use crate::accuracy::Accuracy;
 use crate::bounds::Bounds;
-use crate::certify::Enclosure;
+use crate::certify::{Enclosure, Precision};
 use crate::choice::Choice;
-use crate::geometry::{Hittable, MISS, Ray, Span};
+use crate::geometry::{Hittable, MISS, Ray, Side, Span};
 use crate::model::{Model, Object};
 use crate::roots::Method;
+use crate::sight::Sight;
 use glam::DVec3;
 use std::io;
 
@@ -95,15 +96,19 @@ impl Hittable for By {
         self.shape.bounds()
     }
 
-    fn is_convex(&self) -> bool {
-        self.shape.is_convex()
+    fn meets_itself(&self, leaving: Side) -> bool {
+        self.shape.meets_itself(leaving)
+    }
+
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        self.shape.touches(at, error)
     }
 
     fn is_two_sided(&self) -> bool {
         self.shape.is_two_sided()
     }
 
-    fn certify(&self, ray: &Ray) -> Enclosure {
-        self.shape.certify(ray)
+    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        self.shape.certify(sight, precision)
     }
 }

@@ -6,11 +6,12 @@ use super::clock;
 use super::packets::Packet;
 use super::places::{spread, tiles};
 use super::{Panel, Point, Progress, Study, Subject, Wrong};
-use crate::certify::Enclosure;
+use crate::certify::{self, Enclosure, Precision};
 use crate::cpu::Cpu;
 use crate::geometry::{Hittable, MISS, Ray, Side, Span};
 use crate::model::Model;
 use crate::packet::WIDE;
+use crate::sight::Sight;
 use crate::twofold::Twofold;
 use std::hint::black_box;
 use std::ops::ControlFlow;
@@ -153,12 +154,15 @@ fn each<T: Sync, U: Send>(of: &[T], work: impl Fn(&T) -> U + Sync + Send) -> Vec
 
 fn truths_of(model: &Model, packet: &Packet) -> Vec<Truth> {
     let shape = &*model.objects[packet.object].shape;
-    let truth = |ray: Ray| match shape.certify(&ray) {
-        Enclosure::Hits(_, at) => Truth::Hit(at, side(shape, &ray, at.high)),
+    let truth = |(ray, sight): (Ray, &Sight)| match shape.certify(sight, Precision::Octuple) {
+        Enclosure::Hits(at) => {
+            let at = certify::in_world_units(at, sight);
+            Truth::Hit(at, side(shape, &ray, at.high))
+        }
         Enclosure::Misses => Truth::Miss,
         Enclosure::Doubtful(_) => Truth::Undecided,
     };
-    packet.rays().map(truth).collect()
+    packet.sights().map(truth).collect()
 }
 
 /// The side of its surface on which a ray meets a shape.
@@ -203,7 +207,11 @@ fn is_provable(model: &Model, shape: &dyn Hittable) -> bool {
     const LOOKS: usize = 64;
     let camera = &model.camera.value;
     let mut places = spread(camera.pixels, LOOKS).into_iter();
-    places.any(|[x, y]| !matches!(shape.certify(&camera.ray(x as f64, y as f64)), Enclosure::Doubtful(_)))
+    let is_certain = |[x, y]: [usize; 2]| {
+        let sight = camera.sight(x as f64, y as f64);
+        !matches!(shape.certify(&sight, Precision::Double), Enclosure::Doubtful(_))
+    };
+    places.any(is_certain)
 }
 
 /// Rays through the middles of pixels, in the packets in which a render has them.
@@ -212,8 +220,8 @@ fn camera(model: &Model, group: &[usize]) -> Vec<Packet> {
     let count = CAMERA.div_ceil(group.len() * WIDE);
     let mut packets = Vec::new();
     for tile in tiles(camera.pixels, count) {
-        let rays: Vec<_> = tile.into_iter().map(|[x, y]| camera.ray(x as f64, y as f64)).collect();
-        packets.extend(group.iter().flat_map(|index| Packet::of(*index, &rays)));
+        let places: Vec<_> = tile.into_iter().map(|place| place.map(|at| at as f64)).collect();
+        packets.extend(group.iter().flat_map(|index| Packet::of(*index, camera, &places)));
     }
     packets
 }
@@ -241,7 +249,7 @@ fn grazing(model: &Model, group: &[usize]) -> Vec<Packet> {
     }
     let rays = 2 * (DIGITS as usize + 1);
     let step = edges.len().div_ceil(GRAZING / rays).max(1);
-    let mut rays_of = vec![Vec::new(); model.objects.len()];
+    let mut places_of = vec![Vec::new(); model.objects.len()];
     for (x, y, index, here) in edges.into_iter().step_by(step) {
         let (y, mut low, mut high) = (y as f64, x as f64 - 1.0, x as f64);
         loop {
@@ -253,11 +261,12 @@ fn grazing(model: &Model, group: &[usize]) -> Vec<Packet> {
         }
         for digits in 0..=DIGITS {
             for beside in [-1.0, 1.0] {
-                rays_of[index].push(camera.ray(high + beside * 0.1_f64.powi(digits), y));
+                places_of[index].push([high + beside * 0.1_f64.powi(digits), y]);
             }
         }
     }
-    group.iter().flat_map(|index| Packet::of(*index, &rays_of[*index]).collect::<Vec<_>>()).collect()
+    let packets = |index: &usize| Packet::of(*index, camera, &places_of[*index]).collect::<Vec<_>>();
+    group.iter().flat_map(packets).collect()
 }
 
 /// Names, each once, in words.

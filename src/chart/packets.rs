@@ -1,8 +1,10 @@
 //! Packets of rays, and where they first meet an object: found as a render finds it.
 
+use crate::camera::Camera;
 use crate::cpu::Cpu;
 use crate::geometry::{Hittable, MISS, Ray, Span};
 use crate::packet::{Nearest, Rays, STEP, Vectors, WIDE};
+use crate::sight::Sight;
 
 /// Rays that are asked about an object.
 pub struct Packet {
@@ -11,15 +13,19 @@ pub struct Packet {
     len: usize,
     origin: Vectors<WIDE>,
     dir: Vectors<WIDE>,
+    sights: Vec<Sight>,
 }
 
 impl Packet {
-    /// As many packets as these rays need.
-    pub fn of(object: usize, rays: &[Ray]) -> impl Iterator<Item = Self> {
-        rays.chunks(WIDE).map(move |rays| {
-            let mut packet = Self { object, len: rays.len(), origin: Vectors::ZERO, dir: Vectors::ZERO };
+    /// As many packets as the rays through these places of a picture need, in pixels from the left and from the bottom.
+    pub fn of(object: usize, camera: &Camera, places: &[[f64; 2]]) -> impl Iterator<Item = Self> {
+        places.chunks(WIDE).map(move |places| {
+            let (origin, dir) = (Vectors::ZERO, Vectors::ZERO);
+            let sights = places.iter().map(|[x, y]| camera.sight(*x, *y)).collect();
+            let mut packet = Self { object, len: places.len(), origin, dir, sights };
             for lane in 0..WIDE {
-                let ray = rays[lane.min(rays.len() - 1)];
+                let [x, y] = places[lane.min(places.len() - 1)];
+                let ray = camera.ray(x, y);
                 packet.origin.set(lane, ray.origin);
                 packet.dir.set(lane, ray.dir);
             }
@@ -37,10 +43,15 @@ impl Packet {
         (0..self.len).map(|lane| self.all().get(lane))
     }
 
+    /// Its rays, and what they are before anything is rounded.
+    pub fn sights(&self) -> impl Iterator<Item = (Ray, &Sight)> {
+        self.rays().zip(&self.sights)
+    }
+
     /// With the copies that fill it up.
     fn all(&self) -> Rays<'_> {
         let count = self.len.next_multiple_of(STEP);
-        Rays { origin: self.origin.view(count), dir: self.dir.view(count) }
+        Rays { origin: self.origin.view(count), dir: self.dir.view(count), origin_error: 0.0 }
     }
 
     /// The distances at which its rays first meet the object; [`MISS`] where they do not.

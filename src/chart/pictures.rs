@@ -15,6 +15,7 @@ use crate::render::Renderer;
 use crate::sample::{Sample, Sampler};
 use crate::trace::{self, Rooms, Tracer};
 use crate::watch::{Event, Watch};
+use glam::DVec2;
 use std::hint::black_box;
 use std::ops::ControlFlow;
 
@@ -244,7 +245,7 @@ fn colour(model: &Model, [x, y]: [usize; 2], seen: Seen) -> Rgb {
     }
     let camera = &model.camera.value;
     if camera.samples == 1 {
-        return trace::colour(model, &camera.ray(x as f64, y as f64), None);
+        return trace::colour(model, &camera.sight(x as f64, y as f64), None);
     }
     let pixel = (y * camera.pixels[0] + x) as u32;
     let sample = |index| Sample { sampler: camera.sampler, index, pixel };
@@ -256,10 +257,10 @@ fn colour(model: &Model, [x, y]: [usize; 2], seen: Seen) -> Rgb {
 fn colour_of(model: &Model, [x, y]: [usize; 2], sample: Sample, seen: Seen) -> Rgb {
     let jitter = match seen {
         Seen::Picture => sample.jitter(),
-        Seen::Shadows => glam::DVec2::ZERO,
+        Seen::Shadows => DVec2::ZERO,
     };
-    let ray = model.camera.value.ray(x as f64 + jitter.x, y as f64 + jitter.y);
-    trace::colour(model, &ray, Some(sample))
+    let sight = model.camera.value.sight(x as f64 + jitter.x, y as f64 + jitter.y);
+    trace::colour(model, &sight, Some(sample))
 }
 
 /// Something of each of these pixels, on all threads of a renderer.

@@ -16,7 +16,8 @@ use std::time::Duration;
 
 /// Choose accuracy and samples for an error or a time
 ///
-/// It measures quickly what they make of the scene, says what it weighed, and prints the command line to use.
+/// It measures what they make of a part of the picture, says what it weighed, and prints the command line to use. The
+/// whole picture may come out a little worse or take a little longer.
 #[derive(clap::Args)]
 #[command(group = ArgGroup::new("limit").args(["max_error", "max_time"]).required(true))]
 pub struct Args {
@@ -55,7 +56,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let cores = thread::available_parallelism().map_or(1, usize::from);
     let choice = Weighed { estimates: &estimates, cores };
     let (chosen, why) = if let Some(error) = args.max_error {
-        (choice.for_error(error)?, format!("the fastest with an error of at most {error}"))
+        (choice.for_error(error)?, format!("the fastest whose error was measured to be at most {error}"))
     } else {
         // One of the two is given.
         let time = args.max_time.unwrap_or(f64::INFINITY);
@@ -79,7 +80,9 @@ impl<'e> Weighed<'e> {
         let fit: Vec<_> = self.estimates.iter().filter(|estimate| estimate.rmse <= error).collect();
         let fastest = fit.iter().min_by(|a, b| a.seconds.total_cmp(&b.seconds)).ok_or_else(|| {
             let least = self.estimates.iter().map(|estimate| estimate.rmse).fold(f64::INFINITY, f64::min);
-            Failure::Failed(format!("no choice has an error of at most {error:e}; the least is {least:.2e}"))
+            Failure::Failed(format!(
+                "no choice has a measured error of at most {error:e}; the least is {least:.2e}"
+            ))
         })?;
         Ok(fit
             .iter()
@@ -93,7 +96,9 @@ impl<'e> Weighed<'e> {
             let least =
                 self.estimates.iter().map(|estimate| self.time(estimate)).fold(f64::INFINITY, f64::min);
             let least = Duration::from_secs_f64(least);
-            Failure::Failed(format!("no choice takes at most {time} s; the fastest takes about {least:.2?}"))
+            Failure::Failed(format!(
+                "no choice is estimated to take at most {time} s; the fastest takes about {least:.2?}"
+            ))
         })?;
         Ok(fit
             .iter()
@@ -119,7 +124,8 @@ impl<'e> Weighed<'e> {
         };
         let _ = write!(
             text,
-            "\nThe one marked is {why}. The others have less error and take longer, or less time and more error.\n\n\
+            "\nThe one marked is {why}. The others have less error and take longer, or less time and more error. \
+             All was measured on a part of the picture.\n\n\
              {} render {} {how} --samples {}\n",
             program::name(),
             scene.display(),

@@ -4,7 +4,7 @@ use super::{Failure, messages};
 use crate::accuracy::Accuracy;
 use crate::model::Model;
 use crate::registry::Registry;
-use crate::scene::{self, Loaded, Report};
+use crate::scene::{self, Chosen, Loaded, Report};
 use crate::words;
 use std::fs::File;
 use std::io::{self, Read};
@@ -51,7 +51,12 @@ impl Source {
 
     /// A model of it, of this accuracy or of its own, and the warnings that it gave rise to.
     pub fn load(&self, registry: &Registry, accuracy: Option<Accuracy>) -> Result<Loaded, Report> {
-        scene::read(registry, &self.name, &self.folder, &self.bytes, accuracy)
+        self.load_by(registry, Chosen { above_all: accuracy, ..Chosen::default() })
+    }
+
+    /// As [`load`](Self::load), with a say in what its accuracy is where it has none of its own.
+    pub fn load_by(&self, registry: &Registry, accuracy: Chosen) -> Result<Loaded, Report> {
+        scene::read_by(registry, &self.name, &self.folder, &self.bytes, accuracy)
     }
 }
 

@@ -11,9 +11,13 @@ use super::{Failure, messages};
 use crate::model::Model;
 use crate::picture::Format;
 use crate::render::{Overseer, Renderer};
+use crate::tally::{Cuts, Tally};
 use crate::tiles::{Band, Tiles};
+use crate::trace::MAX_RAYS;
+use crate::words::{count, short};
 use std::io::{self, BufWriter};
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 
 /// A part of a model's picture, and how it is made.
 pub struct Job<'a> {
@@ -36,6 +40,7 @@ impl Job<'_> {
         let Part { columns, rows } = self.part;
         let progress = Progress::new(rows.len());
         let mut tiles = Tiles::none(self.part.size());
+        let cuts = Mutex::new(Cuts::default());
         let (mut broken, mut told) = (None, false);
         let mut out = BufWriter::with_capacity(1 << 16, output);
         let bands = Band::split(columns, rows, self.band).map(|rows| {
@@ -46,7 +51,7 @@ impl Job<'_> {
                 broken = Some(failure);
                 return Err(io::ErrorKind::InvalidData.into());
             }
-            self.fill(&mut band, &progress);
+            self.fill(&mut band, &progress, &cuts);
             tiles.add(&band);
             if !band.is_whole() && !told {
                 told = true;
@@ -57,6 +62,7 @@ impl Job<'_> {
         });
         let written = self.format.write(&mut out, self.part.size(), bands);
         progress.end();
+        warn_of(cuts.into_inner().unwrap_or_else(PoisonError::into_inner));
         match broken {
             Some(failure) => Err(failure),
             None if written.is_ok() && !tiles.is_whole() => self.leave(out, &tiles),
@@ -67,13 +73,18 @@ impl Job<'_> {
         }
     }
 
-    fn fill(&self, band: &mut Band, progress: &Progress) {
+    fn fill(&self, band: &mut Band, progress: &Progress, cuts: &Mutex<Cuts>) {
+        let cut = |part| cuts.lock().unwrap_or_else(PoisonError::into_inner).add(part);
         let overseer = Overseer { stops: &|| self.stop.is_due(), row: &|| progress.step() };
         match self.stats {
-            None => self.renderer.fill(self.model, band, overseer, &|()| {}),
+            None => self.renderer.fill(self.model, band, overseer, &cut),
             Some(stats) => {
                 let sum = &stats.tally;
-                stats.timed(|| self.renderer.fill(self.model, band, overseer, &|tally| sum.add(&tally)));
+                let add = |tally: Tally| {
+                    cut(tally.cuts);
+                    sum.add(&tally);
+                };
+                stats.timed(|| self.renderer.fill(self.model, band, overseer, &add));
             }
         }
     }
@@ -104,4 +115,24 @@ impl Job<'_> {
         });
         Err(Failure::Stopped)
     }
+}
+
+/// Says which pixels are not as the scene has them, if there are any.
+fn warn_of(cuts: Cuts) {
+    if cuts.pixels == 0 {
+        return;
+    }
+    let levels = 255.0 * cuts.most;
+    let most = if levels.is_finite() {
+        format!("off by at most {} of 255 levels", short(levels))
+    } else {
+        "off by nobody knows how much: nothing bounds the light beyond".to_owned()
+    };
+    messages::warning(
+        &format!(
+            "{} cut off after {MAX_RAYS} rays for one look from the viewer, and {most}",
+            count(cuts.pixels as usize, "pixel")
+        ),
+        Some("mirrors or glass send too many rays on: less of `specular` or `transparency` ends them sooner"),
+    );
 }

@@ -40,14 +40,23 @@ pub fn report(report: &Report) {
 
 /// An error that is no fault of a scene, and what would be right if that can be said.
 pub fn error(message: &str, help: Option<&str>) {
+    titled("error", Level::ERROR, message, help);
+}
+
+/// Something about a picture that its viewer should know, and what there is to do about it.
+pub fn warning(message: &str, help: Option<&str>) {
+    titled("warning", Level::WARNING, message, help);
+}
+
+fn titled(word: &str, level: Level, message: &str, help: Option<&str>) {
     let rendered = |renderer: Renderer| {
         let help = help.map(|help| Level::HELP.message(help));
-        renderer.render(&[Group::with_title(Level::ERROR.primary_title(message)).elements(help)])
+        renderer.render(&[Group::with_title(level.clone().primary_title(message)).elements(help)])
     };
     say(&match form() {
         Form::Human => rendered(Renderer::styled()) + "\n",
-        Form::Short => format!("error: {message}\n"),
-        Form::Json => json("error", message, help, &rendered(Renderer::plain())),
+        Form::Short => format!("{word}: {message}\n"),
+        Form::Json => json(word, message, help, &rendered(Renderer::plain())),
     });
 }
 

@@ -16,17 +16,17 @@ pub struct Args {
 
 #[derive(Clone, Copy, clap::ValueEnum)]
 enum MethodName {
-    /// By the course notes' own methods, with the hits that they lose
+    /// By the course notes' own methods, with the hits that they lose and the course's own pictures
     Classic,
-    /// Every first hit, and no other
+    /// By bounds on their errors, the default
     Exact,
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
 enum AccuracyName {
-    /// Distances right to about 1/1000 of a unit
+    /// Points within about 1/1000 of a unit of the surface, where that saves time
     Draft,
-    /// Distances right to a few units in the last place
+    /// Points on the surface but for rounding
     Exact,
     /// As exact, in twice the precision wherever a shape has it
     Strict,

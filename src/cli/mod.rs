@@ -53,7 +53,8 @@ use std::process::ExitCode;
 /// A ray tracer in which a scene is data and every entity type is a plugin
 ///
 /// Without a command it does what the course notes' program does: it reads a scene from standard input, prints
-/// its dump to standard error and writes its picture, a PPM, to standard output.
+/// its dump to standard error and writes its picture, a PPM, to standard output. It uses the notes' own methods unless
+/// the scene's camera says otherwise.
 #[derive(Parser)]
 #[command(version, after_help = EXIT_STATUS)]
 struct Cli {

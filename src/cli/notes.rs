@@ -1,15 +1,17 @@
 //! Without a command: the notes' program, a filter from a scene to its dump and its picture.
 
+use super::input::{self, Source};
 use super::job::Job;
 use super::output::Output;
 use super::size::Part;
 use super::stop::Stop;
-use super::{Failure, input, interrupt};
+use super::{Failure, interrupt};
 use crate::accuracy::Accuracy;
 use crate::dump;
 use crate::picture::Format;
 use crate::registry::Registry;
 use crate::render::Renderer;
+use crate::scene::Chosen;
 use crate::tiles::BAND;
 use std::io::Write;
 use std::path::Path;
@@ -17,7 +19,9 @@ use std::path::Path;
 pub fn run(registry: &Registry) -> Result<(), Failure> {
     let standard = Path::new("-");
     let output = Output::open(standard)?;
-    let model = input::load(registry, standard, Some(Accuracy::Classic))?;
+    // The course's own picture, unless the camera asks for another.
+    let accuracy = Chosen { by_default: Accuracy::Classic, above_all: None };
+    let model = input::told(Source::read(standard)?.load_by(registry, accuracy))?.model;
     interrupt::catch()?;
     let _ = write!(std::io::stderr(), "{}", dump::notes(&model));
     let job = Job {

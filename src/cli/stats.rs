@@ -2,8 +2,9 @@
 
 use super::memory;
 use crate::model::Model;
-use crate::tally::Tally;
+use crate::tally::{Cuts, Tally};
 use crate::watch::Kind;
+use crate::words::short;
 use serde_json::json;
 use std::cell::Cell;
 use std::fmt::Write as _;
@@ -14,8 +15,8 @@ use std::time::{Duration, Instant};
 #[derive(clap::Args)]
 #[group(id = "statistics")]
 pub struct Args {
-    /// Print what the picture took to standard error, as a table or as JSON: its rays by kind, their tests by entity
-    /// type, the time of each stage and the memory
+    /// Print what the picture took to standard error, as a table or as JSON: its rays by kind, the pixels that were cut
+    /// off, tests by entity type, the time of each stage and the memory
     #[arg(long, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "table")]
     stats: Option<Format>,
 }
@@ -99,6 +100,9 @@ impl Stats {
         for kind in Kind::ALL {
             let _ = writeln!(out, "{kind:<12} {:>14}", tally.rays(kind));
         }
+        let Cuts { pixels, most } = tally.cuts;
+        let _ = writeln!(out, "\n{:<12} {:>14} {:>14}", "cut off", "pixels", "levels");
+        let _ = writeln!(out, "{:<12} {pixels:>14} {:>14}", "at most", short(255.0 * most));
         let _ = writeln!(
             out,
             "\n{:<12} {:>14} {:>14} {:>14} {:>14}",
@@ -129,6 +133,7 @@ impl Stats {
         let mut all = json!({
             "rays": serde_json::Map::from_iter(rays),
             "tests": serde_json::Map::from_iter(tests),
+            "cut": {"pixels": tally.cuts.pixels, "levels": 255.0 * tally.cuts.most},
             "seconds": serde_json::Map::from_iter(self.stages().map(|(stage, time)| (stage.to_owned(), time.into()))),
         });
         if let Some(bytes) = memory::peak() {

@@ -7,19 +7,22 @@ use super::{Failure, input, interrupt, messages, method, print};
 use crate::registry::Registry;
 use crate::render::Renderer;
 use crate::verify::{self, Verdict};
+use crate::words;
 use std::io::BufWriter;
 use std::iter;
 use std::path::PathBuf;
 
 /// Prove for each pixel which object is seen
 ///
-/// The proof is of the ray through the pixel's middle, with intervals that hold every rounding error, and knows
-/// nothing of the methods that make the picture. It ends with status 1 where those find another object.
+/// The proof is of the real ray through the pixel's middle and of the numbers of the scene as they are written, with
+/// intervals of 53 bits that hold all rounding errors, and where these leave something open, of 237 bits. It knows
+/// nothing of the methods that make the picture. What 237 bits leave open is a tie, as where two objects lie in one
+/// place. It ends with status 1 where the tracer finds an object that is not the first, nor one of a tie.
 #[derive(clap::Args)]
 pub struct Args {
     /// The scene; `-` reads it from standard input
     scene: PathBuf,
-    /// Where to write a picture of what is proven: black where it is, white where rounding hides it, red where the
+    /// Where to write a picture of what is proven: black where it is, white where there is a tie, red where the
     /// tracer finds another object; a .png or .ppm file
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -47,17 +50,18 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     progress.end();
     let verdicts = verdicts.map_err(|_| Failure::Interrupted("the picture was not finished"))?;
     let count = |wanted| verdicts.iter().filter(|verdict| **verdict == wanted).count();
-    let (undecided, contradicted) = (count(Verdict::Undecided), count(Verdict::Contradicted));
-    let proven = verdicts.len() - undecided - contradicted;
+    let (ties, contradicted) = (count(Verdict::Tie), count(Verdict::Contradicted));
+    let proven = verdicts.len() - ties - contradicted;
     let percent = 100.0 * proven as f64 / verdicts.len() as f64;
     print(&format!(
-        "{proven} of {} pixels proven ({percent:.4} %), {undecided} undecided, {contradicted} contradicted\n",
-        verdicts.len()
+        "{proven} of {} pixels proven ({percent:.4} %), {}, {contradicted} contradicted\n",
+        verdicts.len(),
+        words::count(ties, "tie"),
     ))?;
     if let Some((path, format, output)) = picture {
         let colour = |verdict: &Verdict| match verdict {
             Verdict::Proven => [0; 3],
-            Verdict::Undecided => [255; 3],
+            Verdict::Tie => [255; 3],
             Verdict::Contradicted => [255, 0, 0],
         };
         let bytes = verdicts.iter().flat_map(colour).collect();

@@ -12,7 +12,7 @@ use crate::model::Model;
 use crate::packet::{STEP, Vectors};
 use crate::profile::Profile;
 use crate::registry::Registry;
-use crate::revolution::{Finish, NoSurface, Revolution};
+use crate::revolution::{Finish, Revolution};
 use crate::scene;
 use crate::shading::{Anchor, ProceduralShader};
 use crate::syntax::Syntax;
@@ -56,6 +56,13 @@ pub fn shader(shader: &dyn Shader, at: DVec3) -> Result<(), Fault> {
     {
         let even = [ambient, diffuse, specular];
         return Err(Promise::PacketsAgree.fault(format!("`even` is {even:?}, it answers {one:?} at {at}")));
+    }
+    if let Some(Look { ambient, diffuse, specular }) = shader.brightest(&material)
+        && let most = [ambient, diffuse, specular]
+        && one.iter().zip(most).any(|(colour, most)| !colour.abs().cmple(most.abs()).all())
+    {
+        let found = format!("`brightest` is {most:?}, it answers {one:?} at {at}");
+        return Err(Promise::ReflectivityIsSound.fault(found));
     }
     let points = Vectors::<STEP> { x: [at.x; STEP], y: [at.y; STEP], z: [at.z; STEP] };
     for cpu in Cpu::all() {
@@ -104,6 +111,12 @@ pub fn light(light: &dyn Light, draw: &mut Draw) -> Result<(), Fault> {
         {
             let found = format!("`even` is {even}, and toward {toward} it sends {one:?}");
             return Err(Promise::PacketsAgree.fault(found));
+        }
+        if let (Some(most), Some(one)) = (light.brightest(), one)
+            && !one.abs().cmple(most.abs()).all()
+        {
+            let found = format!("`brightest` is {most}, and toward {toward} it sends {one}");
+            return Err(Promise::LightIsFinite.fault(found));
         }
         let all = |of: DVec3| Vectors::<STEP> { x: [of.x; STEP], y: [of.y; STEP], z: [of.z; STEP] };
         // The light is in front of each place, but for the one that it is on.
@@ -171,10 +184,8 @@ pub fn material(material: &Material) -> Result<(), Fault> {
 pub fn profile(profile: &Profile) -> Result<(), Fault> {
     let line = profile.line();
     let fault = |found: String| Promise::ProfileIsFinite.fault(found);
-    Revolution::new(&line.radius, 4.0, Finish::Root).map_err(|none| match none {
-        NoSurface::Unbounded { near } => fault(format!("it has no bound near y = {near:.6}")),
-        NoSurface::Nowhere => fault("it is nowhere above 0".to_owned()),
-    })?;
+    Revolution::new(&line.radius, 4.0, Finish::Root)
+        .map_err(|none| fault(format!("it is one {}", none.told().0)))?;
     let mut heights = (0..=400).map(|part| f64::from(part) / 100.0);
     match heights.find(|y| !line.slope_at(*y).is_finite()) {
         Some(y) => Err(fault(format!("its slope is {} at y = {y}", line.slope_at(y)))),

@@ -230,8 +230,8 @@ mod tests {
     fn a_profile_that_is_not_finite_or_empty_is_found() {
         assert!(of_profile(&SOUND).is_none());
         for (profile, found) in [
-            (&UNBOUNDED, "it has no bound near y = 0.0"),
-            (&EMPTY, "it is nowhere above 0"),
+            (&UNBOUNDED, "it is one without a bound near y = 0.0"),
+            (&EMPTY, "it is one that is nowhere above 0"),
             (&STEEP, "its slope is inf at y = 2"),
         ] {
             let breach = of_profile(profile).expect("a breach");

@@ -29,10 +29,12 @@ pub enum Promise {
     NormalsAgree,
     /// The normals of a convex shape point out of it.
     NormalsPointOut,
-    /// A convex shape does not meet its own rays.
-    ConvexIsNotMetAgain,
+    /// A shape does not meet its own rays on a side where it says so.
+    IsNotMetAgain,
     /// A ray does not meet the surface where it leaves it.
     StartIsNoHit,
+    /// A shape knows what lies on it.
+    HitIsTouched,
     /// There is something to see.
     IsMet,
     /// Reflectivities are finite and not below 0.
@@ -47,7 +49,7 @@ pub enum Promise {
 
 impl Promise {
     /// All of them, the gravest first.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 20] = [
         Self::TakesWhatItsTableAllows,
         Self::DumpLoadsAgain,
         Self::DistanceIsInItsSpan,
@@ -60,8 +62,9 @@ impl Promise {
         Self::NormalIsUpright,
         Self::NormalsAgree,
         Self::NormalsPointOut,
-        Self::ConvexIsNotMetAgain,
+        Self::IsNotMetAgain,
         Self::StartIsNoHit,
+        Self::HitIsTouched,
         Self::IsMet,
         Self::ReflectivityIsSound,
         Self::LightIsFinite,
@@ -93,6 +96,9 @@ impl Promise {
                 "let `distance` and the shape's `Equation` (or `certify`) describe one surface, with the same part kept"
             }
             Self::BoundsHoldHits => "make `bounds` hold every point of the shape; give none if in doubt",
+            Self::HitIsTouched => {
+                "let `touches` hold within the error that it is given at least, and `bracket` be without a certain end there; leave both out if in doubt"
+            }
             Self::NormalIsUpright => {
                 "let `normal` be the gradient of the surface's formula, made a unit vector"
             }
@@ -100,7 +106,7 @@ impl Promise {
                 "let `normal` depend on the point alone, without a jump on a smooth surface"
             }
             Self::NormalsPointOut => "turn `normal` around: it points out of a closed shape",
-            Self::ConvexIsNotMetAgain => "answer `is_convex` with `false`; the default is `true`",
+            Self::IsNotMetAgain => "answer `meets_itself` with `true` for that side, which is the default",
             Self::StartIsNoHit => {
                 "where `within.leaves` is given, leave the root out at which the ray starts, however rounding has it"
             }
@@ -133,10 +139,11 @@ impl fmt::Display for Promise {
             Self::HitIsOnTheSurface => "a hit is one wherever its ray starts",
             Self::AgreesWithItsProof => "the distance is where `certify` proves the first hit",
             Self::BoundsHoldHits => "the bounds hold every hit",
+            Self::HitIsTouched => "a shape touches the points where it is hit",
             Self::NormalIsUpright => "a normal stands upright on the surface",
             Self::NormalsAgree => "normals close together point to the same side",
             Self::NormalsPointOut => "the normals of a convex shape point out of it",
-            Self::ConvexIsNotMetAgain => "a shape that is convex meets no ray that leaves it",
+            Self::IsNotMetAgain => "a shape that does not meet itself meets no ray that leaves it",
             Self::StartIsNoHit => "a ray that leaves the surface meets what lies beyond, and not its start",
             Self::IsMet => "rays meet the shape",
             Self::ReflectivityIsSound => {

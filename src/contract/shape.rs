@@ -3,16 +3,22 @@
 use super::draw::Draw;
 use super::looks::{same_bits, shader};
 use super::promise::{Fault, Promise};
-use crate::certify::Enclosure;
+use crate::certify::{Enclosure, Precision};
 use crate::cpu::Cpu;
 use crate::geometry::{Hittable, MISS, Ray, Side, Span};
+use crate::interval::Float;
 use crate::landing::Landing;
 use crate::model::Object;
 use crate::packet::{Nearest, Rays, STEP, Vectors};
+use crate::sight::Sight;
 use crate::value::Datum;
 use glam::DVec3;
 
-/// How far off a distance may be, as a part of the numbers that it is computed from.
+/// How far aside rounding may move a ray, as a part of the numbers that its distance is computed from: generously, for
+/// methods that lose a third of the digits. How far off its distance may be follows from that.
+const ASIDE: f64 = 1e-10;
+
+/// A step beyond what rounding does to a hit that is not grazed, likewise.
 pub const SLACK: f64 = 1e-7;
 
 /// Rays that meet a surface at a smaller cosine graze it: rounding tells how they fare.
@@ -106,14 +112,16 @@ fn try_ray(tried: &Tried, draw: &mut Draw) -> Result<Option<DVec3>, Fault> {
     }
     let met = tried.met(distance)?;
     tried.is_held(met.at)?;
-    if !tried.is_exact && met.normal.dot(tried.ray.dir).abs() >= GRAZING {
+    if !tried.is_exact {
         tried.is_met_from_elsewhere(&met, draw)?;
+    }
+    if !tried.is_exact && met.normal.dot(tried.ray.dir).abs() >= GRAZING {
         tried.stands_upright(&met)?;
-        if tried.shape.is_convex() {
-            tried.is_convex(&met, draw)?;
-        } else {
-            tried.leaves(&met, draw)?;
+        if !tried.shape.meets_itself(Side::Outside) {
+            tried.is_convex(&met)?;
         }
+        tried.leaves(&met, draw)?;
+        tried.is_touched(&met, draw)?;
     }
     Ok(Some(met.at))
 }
@@ -122,6 +130,20 @@ impl Tried<'_> {
     /// How exact distances are where the ray is.
     pub fn size(&self, distance: f64) -> f64 {
         1.0 + self.ray.origin.abs().max_element() + distance
+    }
+
+    /// How far off the distance of a ray may be where rounding moves it aside a little: as far as its neighbours' are
+    /// from it, and anything where one of them meets what others miss.
+    pub fn tolerance(&self, ray: &Ray, within: &Span, distance: f64) -> f64 {
+        let step = ASIDE * self.size(if distance == MISS { 0.0 } else { distance });
+        let (across, up) = ray.dir.any_orthonormal_pair();
+        let apart = [across, -across, up, -up].map(|aside| {
+            let neighbour = Ray { origin: ray.origin + step * aside, ..*ray };
+            let its = self.shape.distance(&neighbour, within);
+            if its == distance { 0.0 } else { (its - distance).abs() }
+        });
+        // The direction in which it moves most is half a right angle from one of these at most.
+        step + 2.0 * apart.into_iter().fold(0.0, f64::max)
     }
 
     /// The distance along a ray, which is a sound one.
@@ -159,7 +181,7 @@ impl Tried<'_> {
         let lanes = |of: DVec3| Vectors::<STEP> { x: [of.x; STEP], y: [of.y; STEP], z: [of.z; STEP] };
         let (origin, dir) = (lanes(ray.origin), lanes(ray.dir));
         for cpu in Cpu::all() {
-            let rays = Rays { origin: origin.view(STEP), dir: dir.view(STEP) };
+            let rays = Rays { origin: origin.view(STEP), dir: dir.view(STEP), origin_error: 0.0 };
             let (mut near, mut far) = ([MISS; STEP], [MISS; STEP]);
             let (mut met, mut doubt) = ([0; STEP], [0; STEP]);
             let nearest = Nearest { near: &mut near, far: &mut far, met: &mut met, doubt: &mut doubt };
@@ -217,25 +239,31 @@ impl Tried<'_> {
         ] {
             self.in_span(&self.ray, &within)?;
         }
-        let until = self.in_span(&self.ray, &Span { far: middle + slack, ..Span::RAY })?;
-        if distance != MISS && (until - distance).abs() > slack {
-            return Err(Promise::HitIsOnTheSurface.fault(format!(
-                "`distance` gives {distance}, and {until} where the span ends behind that, {}",
-                told(&self.ray)
-            )));
+        // Where the span ends has no part in what is met before.
+        let ends =
+            if distance == MISS { [middle, 2.0 * middle] } else { [distance.next_up(), distance + slack] };
+        for far in ends {
+            let until = self.in_span(&self.ray, &Span { far, ..Span::RAY })?;
+            if until != distance {
+                return Err(Promise::HitIsOnTheSurface.fault(format!(
+                    "`distance` gives {distance}, and {until} where the span ends at {far}, {}",
+                    told(&self.ray)
+                )));
+            }
         }
         Ok(())
     }
 
     fn agrees_with_its_proof(&self, distance: f64) -> Result<(), Fault> {
-        let proven = self.shape.certify(&self.ray);
-        let slack = SLACK * self.size(if distance == MISS { 0.0 } else { distance });
-        let agrees = match proven {
-            Enclosure::Misses => distance == MISS,
-            Enclosure::Hits(hit, _) => hit.low - slack <= distance && distance <= hit.high + slack,
-            Enclosure::Doubtful(from) => from - slack <= distance,
+        let proven = self.shape.certify(&Sight::along(&self.ray), Precision::Double);
+        let agrees = |slack: f64| match proven {
+            Enclosure::Misses => distance == MISS || slack == MISS,
+            Enclosure::Hits(hit) => {
+                hit.low.to_f64() - slack <= distance && distance <= hit.high.to_f64() + slack
+            }
+            Enclosure::Doubtful(from) => from.to_f64() - slack <= distance,
         };
-        if agrees {
+        if agrees(0.0) || agrees(self.tolerance(&self.ray, &Span::RAY, distance)) {
             return Ok(());
         }
         let found = format!("`distance` gives {distance}, and `certify` {proven:?}, {}", told(&self.ray));

@@ -4,6 +4,7 @@ use super::draw::Draw;
 use super::promise::{Fault, Promise};
 use super::shape::{GRAZING, SLACK, Tried, told};
 use crate::bounds::Bounds;
+use crate::coincidence;
 use crate::geometry::{MISS, Ray, Side, Span};
 use glam::DVec3;
 
@@ -59,7 +60,8 @@ impl Tried<'_> {
             let way = met.at - origin;
             let ray = Ray { origin, dir: way.normalize() };
             let distance = self.in_span(&ray, &Span::RAY)?;
-            if distance > way.length() + SLACK * self.size(met.distance) {
+            let is_farther = |slack: f64| distance > way.length() + slack;
+            if is_farther(0.0) && is_farther(self.tolerance(&ray, &Span::RAY, distance)) {
                 return Err(Promise::HitIsOnTheSurface.fault(format!(
                     "it is hit at {}, {}; but `distance` gives {distance} for that point, which is {} away, {}",
                     met.at,
@@ -105,8 +107,8 @@ impl Tried<'_> {
         Ok(())
     }
 
-    /// What is convex is met by no ray that leaves it; a ray that goes through it comes in from outside.
-    pub fn is_convex(&self, met: &Met, draw: &mut Draw) -> Result<(), Fault> {
+    /// A shape whose outside no ray meets again is convex: a ray that goes through it comes in from outside.
+    pub fn is_convex(&self, met: &Met) -> Result<(), Fault> {
         let (Ray { dir, .. }, stride) = (self.ray, STRIDE * self.size(met.distance));
         let beyond = Ray { origin: met.at + stride * dir, dir };
         let through = self.in_span(&beyond, &Span::RAY)?;
@@ -126,24 +128,42 @@ impl Tried<'_> {
                 }
                 _ => {
                     let found = format!("a ray goes in or comes out twice, {}", told(&self.ray));
-                    return Err(Promise::ConvexIsNotMetAgain.fault(found));
+                    return Err(Promise::IsNotMetAgain.fault(found));
                 }
-            }
-        }
-        for _ in 0..4 {
-            let dir = draw.direction();
-            let dir = if dir.dot(met.normal) < 0.0 { -dir } else { dir };
-            let ray = Ray { origin: met.at + stride * dir, dir };
-            if dir.dot(met.normal) >= GRAZING && self.in_span(&ray, &Span::RAY)? != MISS {
-                let found =
-                    format!("`is_convex` says so, and a ray that leaves it meets it again, {}", told(&ray));
-                return Err(Promise::ConvexIsNotMetAgain.fault(found));
             }
         }
         Ok(())
     }
 
-    /// A ray that leaves the surface meets what it meets from a little farther.
+    /// The point of a hit lies on the shape but for its error; and a ray that starts there, for all that its origin
+    /// tells, is bracketed as one that leaves it.
+    pub fn is_touched(&self, met: &Met, draw: &mut Draw) -> Result<(), Fault> {
+        let Self { shape, ray, .. } = self;
+        let origin_error = coincidence::error(ray, met.distance, met.normal, shape.reach());
+        let fault = |what: String| Err(Promise::HitIsTouched.fault(what));
+        if !shape.touches(met.at, origin_error) {
+            return fault(format!("it is hit at {}, {}; `touches` says no there", met.at, told(ray)));
+        }
+        for _ in 0..4 {
+            let onward = Ray { origin: met.at, dir: draw.direction() };
+            let bracket = shape.bracket(&onward, &Span { origin_error, ..Span::RAY });
+            let side = Side::seen_along(onward.dir, met.normal).opposite();
+            let distance = match shape.meets_itself(side) {
+                true => self.in_span(&onward, &Span { leaves: Some(side), ..Span::RAY })?,
+                false => MISS,
+            };
+            if !(bracket.near <= distance && distance <= bracket.far) {
+                return fault(format!(
+                    "`touches` says that a ray starts on it and leaves it, which gives {distance}; `bracket` is {bracket:?} with an `origin_error` of {origin_error:e}, {}",
+                    told(&onward)
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// A ray that leaves the surface meets what it meets from a little farther, and that is nothing where the shape says
+    /// so.
     pub fn leaves(&self, met: &Met, draw: &mut Draw) -> Result<(), Fault> {
         let stride = STRIDE * self.size(met.distance);
         for _ in 0..4 {
@@ -154,22 +174,28 @@ impl Tried<'_> {
             }
             let side = if cos > 0.0 { Side::Outside } else { Side::Inside };
             let ray = Ray { origin: met.at, dir };
-            let leaving = self.in_span(&ray, &Span { leaves: Some(side), ..Span::RAY })?;
             let ahead = Ray { origin: ray.at(stride), dir };
+            if !self.shape.meets_itself(side) {
+                if self.in_span(&ahead, &Span::RAY)? != MISS {
+                    let found = format!(
+                        "`meets_itself` says no for its {side:?}, and a ray that leaves it meets it again, {}",
+                        told(&ahead)
+                    );
+                    return Err(Promise::IsNotMetAgain.fault(found));
+                }
+                continue;
+            }
+            let leaving = self.in_span(&ray, &Span { leaves: Some(side), ..Span::RAY })?;
             let from_ahead = self.in_span(&ahead, &Span::RAY)? + stride;
             let found = |what: String| Err(Promise::StartIsNoHit.fault(format!("{what}, {}", told(&ray))));
             if leaving <= SLACK * self.size(met.distance) {
                 return found(format!("on leaving its {side:?} `distance` gives {leaving}"));
             }
-            // What lies closer by than the step, and what is only grazed, is left alone.
+            // What lies closer by than the step is left alone.
             let is_near = |distance: f64| distance < 3.0 * stride;
-            let grazes = |distance: f64| {
-                distance != MISS && dir.dot(self.shape.normal(ray.at(distance))).abs() < GRAZING
-            };
-            let differ = leaving != from_ahead
-                && (leaving - from_ahead).abs() > SLACK * self.size(from_ahead.min(leaving));
-            let is_told =
-                ![leaving, from_ahead].iter().any(|distance| is_near(*distance) || grazes(*distance));
+            let apart = if leaving == from_ahead { 0.0 } else { (leaving - from_ahead).abs() };
+            let is_told = !is_near(leaving) && !is_near(from_ahead);
+            let differ = apart > 0.0 && apart > self.tolerance(&ahead, &Span::RAY, from_ahead - stride);
             if differ && is_told {
                 return found(format!(
                     "on leaving its {side:?} `distance` gives {leaving}, and from a little farther {from_ahead}"

@@ -103,6 +103,18 @@ impl Formula {
         if self.needs <= FEW { self.run::<N, FEW>(y) } else { self.run::<N, DEPTH>(y) }
     }
 
+    /// How many operations one evaluation takes, a function of `libm` counted as eight.
+    pub fn cost(&self) -> u64 {
+        let cost = |step: &Step| match step {
+            Step::Call(Function::Abs | Function::Floor | Function::Min | Function::Max) => 1,
+            Step::Call(Function::Pow) => 24,
+            Step::Call(_) => 8,
+            Step::Powi(exponent) => u64::from(exponent.unsigned_abs().max(1)),
+            _ => 1,
+        };
+        self.steps.iter().map(cost).sum()
+    }
+
     fn run<N: Number, const ROOM: usize>(&self, y: N) -> N {
         self.done::<N, ROOM>(y)
     }

@@ -1,5 +1,6 @@
 //! The decisions as text.
 
+use super::depth::Depth;
 use super::{Plan, TREE};
 use crate::accuracy::Accuracy;
 use crate::camera::Camera;
@@ -7,7 +8,8 @@ use crate::material::Rgb;
 use crate::model::{Item, Model, Object};
 use crate::sample::Sampler;
 use crate::texture::Texture;
-use crate::words::{count, list};
+use crate::trace::{MAX_DIST, MAX_RAYS};
+use crate::words::{count, list, short};
 use std::fmt;
 use std::sync::Arc;
 
@@ -43,6 +45,7 @@ pub fn decisions(model: &Model) -> Vec<Decision> {
     }
     all.push(decision("glass", glass(&model.objects)));
     all.push(decision("mirrors", mirrors(&model.objects)));
+    all.extend(plan.depth.as_ref().map(|depth| decision("depth", self::depth(model, depth))));
     all.extend(textures(model).into_iter().map(|text| decision("texture", text)));
     all.push(decision("search", search(model, plan)));
     all.extend(objects(model, plan));
@@ -99,6 +102,25 @@ fn mirrors(objects: &[Object]) -> String {
             "none: no object is of a specular material, and no rays are reflected".to_owned()
         }
         names => format!("{names}: each ray that meets one is reflected"),
+    }
+}
+
+fn depth(model: &Model, depth: &Depth) -> String {
+    let ends = format!("after {MAX_DIST} units of way, and at {MAX_RAYS} rays for one look from the viewer");
+    let bound = || format!("nothing is brighter than {} divided by the way of its light", short(depth.most));
+    match (model.camera.value.accuracy, depth.most.is_finite()) {
+        (Accuracy::Classic, true) => format!("as in the notes, branches end {ends}; {}", bound()),
+        (_, true) => {
+            format!("a branch ends where it can add less than 1/1024 of a level, as {}; {ends}", bound())
+        }
+        (_, false) => {
+            let bright = model.objects.iter().zip(&depth.objects).find(|(_, onward)| !onward.own.is_finite());
+            let reason = match bright {
+                Some((object, _)) => format!("`{}` may be of any brightness", object.args.name),
+                None => "mirrors and glass give on as much light as they get".to_owned(),
+            };
+            format!("branches end {ends}: {reason}, and nothing bounds what they add")
+        }
     }
 }
 

@@ -118,7 +118,7 @@ impl Revolution {
                     to: if index + 1 == self.slabs.count() { f64::INFINITY } else { slab.to },
                     ..*slab
                 };
-                cross(cpu, lanes, &slab, self.height, rays.len());
+                cross(cpu, lanes, &slab, self.height, rays.origin_error, widest, rays.len());
             }
         }
         leave(cpu, lanes, rays.len());
@@ -128,7 +128,7 @@ impl Revolution {
     pub(super) fn distance(&self, frame: &Frame, ray: &Ray, within: &Span) -> f64 {
         let splat = |v: DVec3| Vectors::<STEP> { x: [v.x; STEP], y: [v.y; STEP], z: [v.z; STEP] };
         let (origin, dir) = (splat(ray.origin), splat(ray.dir));
-        let rays = Rays { origin: origin.view(STEP), dir: dir.view(STEP) };
+        let rays = Rays { origin: origin.view(STEP), dir: dir.view(STEP), origin_error: 0.0 };
         let sides = within.leaves.map(|side| [side; STEP]);
         let sides = sides.as_ref().map(|sides| &sides[..]);
         let mut lanes = Lanes::none();
@@ -141,7 +141,7 @@ impl Revolution {
             self.roots(Cpu::best(), frame, rays, (&[near; STEP], &[far; STEP]), &mut root);
             within.keep(root[0])
         } else {
-            self.first_hit(&frame.ray(ray), within)
+            self.first_hit(frame, ray, within)
         }
     }
 }
@@ -163,7 +163,11 @@ kernels! {
             let closest = -(origin.x * dir.x + origin.z * dir.z) * inverse_a;
             let base = if is_free & (closest > 0.0) { closest } else { 0.0 };
             let moved = origin + base * dir;
-            let off = 8.0 * f64::EPSILON * (origin.abs().element_sum() + base);
+            // How far rounding moves that point, in units of EPSILON. Each coordinate of the origin: 1/2 in its difference
+            // from the frame's, 3 in the axes, 3/2 in the turning; sqrt(3) of these 5 across three axes are below 9. The
+            // direction: sqrt(3) of 3 in the axes and 3/2 in the turning, 1 for the ray of a real camera, which is that
+            // far from one of f64, and 1 for the point on the way: below 10.
+            let off = 12.0 * f64::EPSILON * (origin.abs().element_sum() + base);
             let (b, c) = (moved.x * dir.x + moved.z * dir.z, moved.x * moved.x + moved.z * moved.z);
 
             let inverse_dy = 1.0 / dir.y;
@@ -204,7 +208,7 @@ kernels! {
     }
 
     /// Compares the brackets with those of a slab.
-    fn cross(lanes: &mut Lanes, slab: &Slab, height: f64, count: usize) {
+    fn cross(lanes: &mut Lanes, slab: &Slab, height: f64, origin_error: f64, widest: f64, count: usize) {
         let count = count.min(MOST);
         let mut is_close = [0; MOST];
         let mut any = 0;
@@ -243,7 +247,8 @@ kernels! {
             let side = if is_start { 1.0_f64.copysign(at_start) } else { lanes.side[lane] };
             // In the shell it may be either; and rays that rise and that fall go through slabs in one order, so that
             // some come to a slab before their side is known.
-            let is_side_unknown = (is_start & (at_start.abs() <= error)) | (side * at_start < -error);
+            let start_error = error + 4.0 * origin_error * (widest + slope);
+            let is_side_unknown = (is_start & (at_start.abs() <= start_error)) | (side * at_start < -error);
             let (a, b, c) = (side * a, side * b, side * c);
             // A crossing to the other side falls: begin where it can.
             let rises = 2.0 * (a * from + b) - slope_error - rounding;

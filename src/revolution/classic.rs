@@ -59,7 +59,12 @@ impl Equation for Classic {
         x.powi(2) + z.powi(2) - self.line.radius.squared().at(y)
     }
 
-    fn kept(&self, [_, y, _]: [Interval; 3]) -> Interval {
-        y.min(Interval::constant(self.height) - y)
+    fn kept<N: Number>(&self, [_, y, _]: [N; 3]) -> N {
+        y.min(N::constant(self.height) - y)
+    }
+
+    fn extent(&self) -> [DVec3; 2] {
+        let widest = self.line.radius.at(Interval { low: 0.0, high: self.height }).magnitude();
+        [DVec3::new(-widest, 0.0, -widest), DVec3::new(widest, self.height, widest)]
     }
 }

@@ -1,8 +1,9 @@
 //! A ray clipped to a surface's bounding cylinder and counted from a base near it, so that nothing far away is left
 //! in the arithmetic.
 
+use crate::frame::{BLUR, Frame};
 use crate::geometry::{Ray, Span};
-use crate::twofold::advance;
+use crate::number::Number;
 use glam::DVec3;
 
 /// The part of a ray that is inside of a bounding cylinder.
@@ -21,17 +22,23 @@ pub struct Local {
     pub to: f64,
     /// How far the base is from the ray's origin.
     pub base: f64,
+    /// Where the search ends, from the ray's origin: only what lies before that is of interest.
+    pub far: f64,
+    /// The ray in the world, and where the surface stands there.
+    pub ray: Ray,
+    pub frame: Frame,
 }
 
 impl Local {
-    /// Clips a ray to heights from 0 to `height` and to `widest` around the axis.
+    /// Clips a ray of the world to heights from 0 to `height` and to `widest` around a frame's y.
     #[inline(always)]
-    pub fn new(ray: &Ray, within: &Span, height: f64, widest: f64) -> Option<Self> {
-        let Ray { origin, dir } = *ray;
+    pub fn new(frame: &Frame, ray: &Ray, within: &Span, height: f64, widest: f64) -> Option<Self> {
+        let Ray { origin, dir } = frame.ray(ray);
         let a = dir.x * dir.x + dir.z * dir.z;
         // Far away the next distance is farther on than what is to be told apart: these ends only say where the base
-        // lies, and all others are counted from there.
-        let (mut near, mut far) = (within.near, within.far);
+        // lies, and all others are counted from there. Where the span ends has no part in it, so that a hit is the same
+        // in every span that holds it.
+        let (mut near, mut far) = (within.near, f64::INFINITY);
         if dir.y != 0.0 {
             let (bottom, top) = (-origin.y / dir.y, (height - origin.y) / dir.y);
             near = near.max(bottom.min(top));
@@ -42,14 +49,11 @@ impl Local {
         if !base.is_finite() {
             return None;
         }
-        let moved = DVec3::new(
-            advance(origin.x, base, dir.x),
-            advance(origin.y, base, dir.y),
-            advance(origin.z, base, dir.z),
-        );
+        // Moved in the world and turned then: what is turned is as small as the surface.
+        let moved = frame.direction(frame.from_origin(ray, base));
         let b = moved.x * dir.x + moved.z * dir.z;
         let c = moved.x * moved.x + moved.z * moved.z;
-        let (mut from, mut to) = (within.near - base, within.far - base);
+        let (mut from, mut to) = (within.near - base, f64::INFINITY);
         if dir.y != 0.0 {
             let (bottom, top) = (-moved.y / dir.y, (height - moved.y) / dir.y);
             from = from.max(bottom.min(top));
@@ -70,10 +74,10 @@ impl Local {
         } else if c > widest {
             return None;
         }
-        if from > to || (to - from).is_nan() {
+        if from > to || (to - from).is_nan() || base + from >= within.far {
             return None;
         }
-        Some(Self { origin: moved, dir, a, b, c, from, to, base })
+        Some(Self { origin: moved, dir, a, b, c, from, to, base, far: within.far, ray: *ray, frame: *frame })
     }
 
     /// The height at a place along the ray.
@@ -87,6 +91,14 @@ impl Local {
     pub fn around(&self, along: f64) -> f64 {
         let (x, z) = (self.origin.x + along * self.dir.x, self.origin.z + along * self.dir.z);
         x * x + z * z
+    }
+
+    /// A coordinate of the place along the ray. Its bounds, where a number has any, hold that of the ray which this one
+    /// was rounded from.
+    #[inline(always)]
+    pub fn place<N: Number>(&self, axis: usize, along: N) -> N {
+        let blur = BLUR * self.origin.abs().element_sum();
+        N::about(self.origin[axis], blur) + along * N::about(self.dir[axis], BLUR)
     }
 
     /// What full precision is along this part of the ray.

@@ -1,18 +1,25 @@
-//! Surfaces of revolution of any profile: every point at the distance g(y) from the axis, for heights y from 0 to
+//! Surfaces of revolution of a profile that has a bound: every point at the distance g(y) from the axis, for heights y from 0 to
 //! the surface's own, wherever g is not negative.
 //!
 //! Each is cut, when it is made, into slabs in which the profile's square is a parabola but for a proven error
 //! (`slabs`). A ray meets the quadrics of revolution around those in closed form, which brackets its first hit or
 //! proves that there is none (`walk`); where it grazes the error's shell, bounds of the second derivative decide
-//! ([`taylor`](crate::roots::taylor)). No hit is lost or invented, whatever the profile, and nothing has to be tuned.
+//! ([`taylor`](crate::roots::taylor)), and where rounding hides what they say, twice the precision
+//! ([`twice`](crate::roots::twice)). Nothing has to be tuned. A profile of which all that cannot be proven within a
+//! stated number of operations is refused, with the reason ([`NoSurface`]). The rounding of a ray's own arithmetic is held
+//! by margins that are derived where they stand, and tried against the truth in `tests/truth.rs`.
 
 mod bracket;
+mod budget;
 mod classic;
 mod local;
 mod normal;
+mod ranges;
 mod root;
 mod shape;
 mod slabs;
+#[cfg(test)]
+mod tests;
 mod walk;
 
 pub use classic::Classic;
@@ -23,11 +30,14 @@ use crate::bounds::Bounds;
 use crate::certify::Equation;
 use crate::dual::Dual;
 use crate::formula::Formula;
+use crate::frame::{BLUR, Frame};
 use crate::geometry::{MISS, Ray, Side, Span};
 use crate::interval::Interval;
 use crate::number::Number;
 use crate::roots::Method;
 use crate::roots::taylor::Line;
+use crate::roots::twice;
+use crate::twofold::Twofold;
 use crate::words;
 use glam::DVec3;
 use local::Local;
@@ -58,7 +68,7 @@ impl Revolution {
     /// The surface of a profile.
     ///
     /// # Errors
-    /// Where the profile has no bound, and where it is nowhere above 0.
+    /// Where the profile has no bound, where it is nowhere above 0, and where it takes too long to prove what it is.
     pub fn new(profile: &Formula, height: f64, finish: Finish) -> Result<Self, NoSurface> {
         let square = profile.squared();
         let slabs = Slabs::new(profile, &square, height)?;
@@ -66,12 +76,22 @@ impl Revolution {
     }
 
     /// The distance of a ray's first hit within a span, whatever the ray does.
-    pub fn first_hit(&self, ray: &Ray, within: &Span) -> f64 {
-        let Some(local) = Local::new(ray, within, self.height, self.slabs.widest()) else { return MISS };
+    pub fn first_hit(&self, frame: &Frame, ray: &Ray, within: &Span) -> f64 {
+        let Some(local) = Local::new(frame, ray, within, self.height, self.slabs.widest()) else {
+            return MISS;
+        };
         match self.walk(&local, within.leaves) {
             Some(along) => within.keep(local.base + along),
             None => MISS,
         }
+    }
+
+    /// Whether it comes into the box of so many units around a point. Beyond the surface's ends the profile may be
+    /// anything, and is not asked.
+    pub fn touches(&self, at: DVec3, error: f64) -> bool {
+        let [x, y, z] = at.to_array().map(|place| Interval { low: place - error, high: place + error });
+        let y = Interval { low: y.low.max(0.0), high: y.high.min(self.height) };
+        y.low <= y.high && self.value([x, y, z]).has_zero()
     }
 
     /// A box around it.
@@ -82,12 +102,12 @@ impl Revolution {
 
     /// As [`first_hit`](Self::first_hit), by another method and in the same bounding cylinder; but the notes' steps, as
     /// in the notes, go all the way between the surface's heights.
-    pub fn first_hit_by(&self, method: Method, ray: &Ray, within: &Span) -> f64 {
+    pub fn first_hit_by(&self, method: Method, frame: &Frame, ray: &Ray, within: &Span) -> f64 {
         let widest = if method == Method::Steps { f64::INFINITY } else { self.slabs.widest() };
-        let Some(local) = Local::new(ray, within, self.height, widest) else { return MISS };
+        let Some(local) = Local::new(frame, ray, within, self.height, widest) else { return MISS };
         let line = Uncut { surface: self, local: &local };
         let shortest = 4.0 * local.tolerance();
-        match method.first_root(&line, local.from..local.to, shortest, within.leaves) {
+        match method.first_root(&line, local.from..local.to, local.base, within, shortest) {
             Some(along) => within.keep(local.base + along),
             None => MISS,
         }
@@ -136,13 +156,20 @@ impl fmt::Display for Revolution {
 }
 
 impl Equation for Revolution {
+    /// Beyond its ends the profile may be anything, and rounding must not ask.
     fn value<N: Number>(&self, [x, y, z]: [N; 3]) -> N {
-        x.powi(2) + z.powi(2) - self.square.at(y)
+        let height = y.max(N::constant(0.0)).min(N::constant(self.height));
+        x.powi(2) + z.powi(2) - self.square.at(height)
     }
 
-    fn kept(&self, [_, y, _]: [Interval; 3]) -> Interval {
-        let below_the_top = Interval::constant(self.height) - y;
+    fn kept<N: Number>(&self, [_, y, _]: [N; 3]) -> N {
+        let below_the_top = N::constant(self.height) - y;
         y.min(below_the_top).min(self.profile.at(y))
+    }
+
+    fn extent(&self) -> [DVec3; 2] {
+        let Bounds { low, high } = self.bounds();
+        [low, high]
     }
 }
 
@@ -155,18 +182,29 @@ struct OnRay<'s> {
 impl Line for OnRay<'_> {
     #[inline(always)]
     fn at<N: Number>(&self, along: N) -> N {
-        let place =
-            |axis: usize| N::constant(self.local.origin[axis]) + along * N::constant(self.local.dir[axis]);
+        let place = |axis: usize| self.local.place(axis, along);
         let height = place(1).max(N::constant(0.0)).min(N::constant(self.surface.height));
         place(0).powi(2) + place(2).powi(2) - self.surface.square.at(height)
     }
 
     /// That of the squared distance from the axis is the same everywhere.
     fn curvature(&self, piece: Interval) -> Interval {
-        let dir = self.local.dir.to_array().map(Interval::constant);
-        let height = Interval::constant(self.local.origin.y) + piece * dir[1];
+        let dir = self.local.dir.to_array().map(|part| Interval::about(part, BLUR));
+        let height = self.local.place(1, piece);
         let of_square = self.surface.square.at(Dual::variable_twice(height)).second();
         Interval::constant(2.0) * (dir[0].powi(2) + dir[2].powi(2)) - of_square * dir[1].powi(2)
+    }
+
+    /// Twice the precision, from the ray in the world and the axis as the scene has it, tells nearly all touches from
+    /// misses.
+    fn undecided(&self, piece: Interval, leaves: Option<Side>, hidden: f64) -> Option<f64> {
+        let exact = self.local.frame.exactly(&self.local.ray, self.local.base);
+        let outside = |along: Dual<Twofold>| {
+            let [x, y, z] = exact.along(along);
+            let height = y.max(Dual::constant(0.0)).min(Dual::constant(self.surface.height));
+            x.powi(2) + z.powi(2) - self.surface.square.at(height)
+        };
+        twice::first_root(outside, piece, leaves, hidden)
     }
 }
 

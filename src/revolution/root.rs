@@ -6,7 +6,7 @@ use crate::frame::Frame;
 use crate::number::Number;
 use crate::octet::{Octet, each};
 use crate::packet::{Rays, STEP, View};
-use crate::twofold::advance;
+use crate::twofold::offset;
 
 /// Steps after which a root is taken as it is; a bracket that is only halved has none left.
 const MOST: usize = 100;
@@ -42,14 +42,14 @@ kernels! {
     fn roots(surface: &Revolution, frame: &Frame, rays: Rays, near: &[f64], far: &[f64], out: &mut [f64]) {
         let count = out.len();
         for first in (0..count).step_by(STEP) {
-            let origin = eight_vectors(&rays.origin, first);
-            let from = frame.origin.to_array();
-            let origin = directions(frame, [0, 1, 2].map(|axis| origin[axis] - Octet::constant(from[axis])));
-            let dir = directions(frame, eight_vectors(&rays.dir, first));
+            let (origin, dir) = (eight_vectors(&rays.origin, first), eight_vectors(&rays.dir, first));
             let (near, far) = (eight(near, first), eight(far, first));
+            // Moved in the world and turned then: what is turned is as small as the surface.
+            let from = frame.origin.to_array();
             let from = [0, 1, 2].map(|axis| {
-                each!(origin = origin[axis], near = near, dir = dir[axis] => advance(origin, near, dir))
+                each!(origin = origin[axis], near = near, dir = dir[axis] => offset(origin, near, dir, from[axis]))
             });
+            let (from, dir) = (directions(frame, from), directions(frame, dir));
             let width = each!(near = near, far = far => if near < far { far - near } else { 0.0 });
             let along = surface.eight_roots(&Eight { from, dir, width });
             let out = &mut out[first..first + STEP];

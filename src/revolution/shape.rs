@@ -3,13 +3,17 @@
 use super::bracket::{Lanes, MOST};
 use super::{Classic, Revolution, normal};
 use crate::bounds::Bounds;
-use crate::certify::{self, Enclosure};
+use crate::certify::{self, Enclosure, Equation, Precision};
+use crate::coincidence;
 use crate::cpu::Cpu;
 use crate::frame::Frame;
 use crate::geometry::{Hittable, Ray, Side, Span};
 use crate::landing::Landing;
+use crate::number::Number;
 use crate::packet::{self, Nearest, Rays, parts};
 use crate::roots::Method;
+use crate::sight::{Line, Sight};
+use crate::twofold::Twofold;
 use glam::DVec3;
 
 /// A surface around the y axis of a frame.
@@ -18,6 +22,24 @@ pub struct InFrame<S> {
     pub surface: S,
     /// Where it stands.
     pub frame: Frame,
+}
+
+impl<S: Equation> Equation for InFrame<S> {
+    fn own<N: Number>(&self, line: Line<N>) -> Line<N> {
+        self.frame.line(line)
+    }
+
+    fn value<N: Number>(&self, at: [N; 3]) -> N {
+        self.surface.value(at)
+    }
+
+    fn kept<N: Number>(&self, at: [N; 3]) -> N {
+        self.surface.kept(at)
+    }
+
+    fn extent(&self) -> [DVec3; 2] {
+        self.surface.extent()
+    }
 }
 
 impl Hittable for InFrame<Classic> {
@@ -29,12 +51,16 @@ impl Hittable for InFrame<Classic> {
         (self.frame.axes * self.surface.normal(self.frame.point(at))).normalize()
     }
 
+    fn meets_itself(&self, _leaving: Side) -> bool {
+        false
+    }
+
     fn method(&self) -> String {
         "bisection to 1e-4, from the ray's origin to its point closest to the axis".to_owned()
     }
 
-    fn certify(&self, ray: &Ray) -> Enclosure {
-        certify::first_hit(&self.surface, &self.frame.ray(ray))
+    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        certify::first_hit(self, sight, precision)
     }
 }
 
@@ -44,7 +70,7 @@ impl Hittable for InFrame<Revolution> {
     }
 
     fn distance_by(&self, method: Method, ray: &Ray, within: &Span) -> Option<f64> {
-        Some(self.surface.first_hit_by(method, &self.frame.ray(ray), within))
+        Some(self.surface.first_hit_by(method, &self.frame, ray, within))
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {
@@ -55,8 +81,14 @@ impl Hittable for InFrame<Revolution> {
         Some(self.frame.bounds(&self.surface.bounds()))
     }
 
-    fn is_convex(&self) -> bool {
-        false
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        // Rounding moves the point once more on its way into the frame.
+        let moved = 8.0 * f64::EPSILON * (at - self.frame.origin).abs().max_element();
+        self.surface.touches(self.frame.point(at), error + moved)
+    }
+
+    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold> {
+        coincidence::distance(self, ray, distance)
     }
 
     fn is_two_sided(&self) -> bool {
@@ -67,8 +99,8 @@ impl Hittable for InFrame<Revolution> {
         self.surface.to_string()
     }
 
-    fn certify(&self, ray: &Ray) -> Enclosure {
-        certify::first_hit(&self.surface, &self.frame.ray(ray))
+    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        certify::first_hit(self, sight, precision)
     }
 
     fn meet(&self, cpu: Cpu, rays: Rays, sides: Option<&[Side]>, id: u64, mut nearest: Nearest) -> bool {

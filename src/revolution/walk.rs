@@ -7,7 +7,7 @@
 use super::local::Local;
 use super::slabs::Slab;
 use super::{Finish, OnRay, Revolution, sign};
-use crate::geometry::Side;
+use crate::geometry::{Side, Span};
 use crate::roots::{newton, taylor};
 
 /// `sg * (a s^2 + 2 b s + c)`, which is positive where the ray is still on its side of a slab's parabola.
@@ -51,7 +51,7 @@ impl Revolution {
                 }
             }
             from = from.max(to);
-            if is_last || from >= local.to {
+            if is_last || from >= local.to || local.base + from >= local.far {
                 return None;
             }
             index = if is_upward { index + 1 } else { index - 1 };
@@ -121,7 +121,9 @@ impl Revolution {
     fn first_crossing(&self, local: &Local, from: f64, to: f64, wanted: Option<Side>) -> Option<f64> {
         // The piece's own ends may be crossings: they are where shells begin and end.
         let (from, to) = (from.next_down(), to.next_up());
-        taylor::first_root(&OnRay { surface: self, local }, from..to, 4.0 * local.tolerance(), wanted)
+        let line = OnRay { surface: self, local };
+        let all = Span { near: f64::NEG_INFINITY, leaves: wanted, ..Span::RAY };
+        taylor::first_root(&line, from..to, 0.0, &all, 4.0 * local.tolerance())
     }
 
     /// The one root of a bracket.

@@ -13,9 +13,10 @@ mod steps;
 pub mod taylor;
 mod tracing;
 mod turning;
+pub mod twice;
 
 use crate::dual::Dual;
-use crate::geometry::Side;
+use crate::geometry::{Side, Span};
 use std::fmt;
 use std::ops::Range;
 use taylor::Line;
@@ -69,17 +70,25 @@ impl Method {
         Self::Taylor,
     ];
 
-    /// The first root in a span, its ends excluded but for rounding.
+    /// The first root in a piece of a line whose distance, counted from `base`, lies within a span.
     ///
-    /// A line that starts on the surface itself `leaves` it on a side, and no root where it starts is meant then.
+    /// [`taylor`] cuts the piece in a way that does not depend on the span; the others look at no more than that.
+    ///
+    /// A line that starts on the surface itself leaves it on a side, and no root where it starts is meant then.
     /// `shortest` is a few units in the last place of the greatest numbers on the line.
     pub fn first_root(
         self,
         line: &impl Line,
         span: Range<f64>,
+        base: f64,
+        within: &Span,
         shortest: f64,
-        leaves: Option<Side>,
     ) -> Option<f64> {
+        let leaves = within.leaves;
+        if self == Self::Taylor {
+            return taylor::first_root(line, span, base, within, shortest);
+        }
+        let span = span.start.max(within.near - base)..span.end.min(within.far - base);
         if span.is_empty() {
             return None;
         }
@@ -91,7 +100,7 @@ impl Method {
             Self::Turning(count) => turning::first_root(line, span, shortest, leaves, count),
             Self::Tracing => tracing::first_root(line, span, leaves),
             Self::Intervals => intervals::first_root(line, span, shortest, leaves),
-            Self::Taylor => taylor::first_root(line, span, shortest, leaves),
+            Self::Taylor => unreachable!("it has been asked"),
         }
     }
 
@@ -210,7 +219,7 @@ mod tests {
     }
 
     fn root(method: Method, line: &impl Line, span: Range<f64>, leaves: Option<Side>) -> Option<f64> {
-        method.first_root(line, span, 1e-14, leaves)
+        method.first_root(line, span, 0.0, &Span { leaves, ..Span::RAY }, 1e-14)
     }
 
     #[test]

@@ -8,10 +8,10 @@
 //! are of the first order and which shrink more slowly where a ray grazes.
 
 use crate::dual::Dual;
-use crate::geometry::Side;
+use crate::geometry::{Side, Span};
 use crate::interval::Interval;
 use crate::number::Number;
-use crate::roots::newton;
+use crate::roots::{newton, twice};
 use std::ops::Range;
 
 /// The values of a function along a line: above 0 outside of something, below 0 inside.
@@ -23,36 +23,61 @@ pub trait Line {
     fn curvature(&self, piece: Interval) -> Interval {
         self.at(Dual::variable_twice(piece)).second()
     }
+
+    /// The root on a piece of which bounds in f64 do not tell whether it has one, and more of them would not: where
+    /// rounding, of values up to `hidden`, hides the function's sign, or after more proofs than are made. A line that is
+    /// itself rounded says it of the one that it stands for.
+    fn undecided(&self, piece: Interval, leaves: Option<Side>, hidden: f64) -> Option<f64> {
+        twice::first_root(|t| self.at(t), piece, leaves, hidden)
+    }
 }
 
 /// The pieces looked at before proofs are given up: far more than any but the wildest function takes.
-const PIECES: usize = 4096;
+const PIECES: usize = 16_384;
+
+/// Bounds of this many times an evaluation's rounding error are not worth halving their piece for: the part that they
+/// owe to its length is at most three times the part that stays.
+const HIDDEN: f64 = 4.0;
 
 /// The pieces that can wait: as a cut halves a piece at least, and few units in the last place are not cut, no more
 /// ever wait.
 const WAITING: usize = 64;
 
-/// The first root in a span, its ends excluded but for rounding.
+/// The first root in a piece of a line whose distance, counted from `base`, lies within a span.
 ///
-/// A line that starts on the surface itself does so on a side of it, `leaves`, and no root where it starts is meant
-/// then: from outside, only a root where the values fall from above 0 to below, from inside only one where they rise.
+/// The piece is cut in the same way whatever the span is, so that a root is the same in every span that holds it.
+///
+/// A line that starts on the surface itself leaves it on a side, which the span tells, and no root where it starts is
+/// meant then: from outside, only a root where the values fall from above 0 to below, from inside only one where they rise.
 ///
 /// Pieces not longer than `shortest` are not cut: a few units in the last place of the greatest numbers on the line.
 ///
-/// A function whose curvature has no bounds anywhere may need more proofs than are made, a few thousand; then only
-/// the signs at the ends of the remaining pieces tell.
-pub fn first_root(line: &impl Line, span: Range<f64>, shortest: f64, leaves: Option<Side>) -> Option<f64> {
-    if !(span.start < span.end && span.start.is_finite() && span.end.is_finite()) {
+/// What bounds in f64 do not tell, the line is [asked](Line::undecided), and [`twice::asked`] counts it.
+pub fn first_root(
+    line: &impl Line,
+    span: Range<f64>,
+    base: f64,
+    within: &Span,
+    shortest: f64,
+) -> Option<f64> {
+    if !(span.start <= span.end && span.start.is_finite() && span.end.is_finite()) {
         return None;
     }
-    let search = Search { line, start: span.start, leaves, shortest };
-    let is_root = |root: &f64| span.start < *root && *root < span.end;
+    let search = Search { line, start: span.start, leaves: within.leaves, shortest };
+    let is_root = |root: &f64| within.near < base + root && base + root < within.far;
     let mut waiting = [(0.0, 0.0); WAITING];
     waiting[0] = (span.start, span.end);
     let (mut count, mut judged) = (1, 0);
     while count > 0 {
         count -= 1;
         let (low, high) = waiting[count];
+        // Sums that are rounded keep their order.
+        if base + high <= within.near {
+            continue;
+        }
+        if base + low >= within.far {
+            return None;
+        }
         judged += 1;
         let may_cut = judged < PIECES && count + 2 <= WAITING && high - low > search.shortest;
         let judgement = if may_cut { search.judge(low, high) } else { search.last_word(low, high) };
@@ -118,6 +143,10 @@ impl<L: Line> Search<'_, L> {
         if !slopes.has_zero() {
             return self.cross(low, high, slopes.low > 0.0, middle - value.low / slope.low);
         }
+        // Little more than rounding is left: shorter pieces say no more.
+        if value.has_zero() && values.magnitude() <= HIDDEN * value.magnitude() {
+            return self.undecided(low, high);
+        }
         // |value| from the middle on is above `away + slope u + curvature u²/2`, as its mirror image is to the left.
         let (away, slope, bend) = if value.low > 0.0 {
             (value.low, slope, curvature.low)
@@ -142,12 +171,15 @@ impl<L: Line> Search<'_, L> {
         }
         let at = |t| if rises { self.value(t) } else { -self.value(t) };
         let (at_low, at_high) = (at(low), at(high));
-        // What is 0 but for rounding is 0; but a line that leaves the surface starts there.
+        // A line that leaves the surface starts there.
         let starts = self.leaves.is_some() && low == self.start && at_low.has_zero();
         if at_low.low > 0.0 || at_high.high < 0.0 || starts {
-            return Judgement::Free;
+            Judgement::Free
+        } else if at_low.high < 0.0 && at_high.low > 0.0 {
+            Judgement::Root(self.newton(low, high, rises, guess))
+        } else {
+            self.undecided(low, high)
         }
-        Judgement::Root(self.newton(low, high, rises, guess))
     }
 
     /// The root of a piece by Newton's method, from a guess that may be any number.
@@ -160,28 +192,45 @@ impl<L: Line> Search<'_, L> {
         newton::root(value_and_slope, (low, high), if rises { -1.0 } else { 1.0 }, guess, 0.5 * self.shortest)
     }
 
-    /// What a piece has that is not cut any more: a root if the sign changes, or if it is so short that its values
-    /// are 0 but for rounding. A pole is no root.
+    /// What a piece has that is not cut any more: a root if the sign changes; none if it is so short that only a jump
+    /// or a pole makes bounds of it hold 0.
     fn last_word(&self, low: f64, high: f64) -> Judgement {
-        let over = self.line.at(Interval { low, high });
-        if !over.has_zero() || !over.is_bounded() {
+        let piece = Interval { low, high };
+        let over = self.line.at(piece);
+        if !over.has_zero() {
             return Judgement::Free;
         }
+        let is_short = high - low <= self.shortest;
         let (at_low, at_high) = (self.line.at(low), self.line.at(high));
         let (falls, rises) = (at_low > 0.0 && at_high <= 0.0, at_low < 0.0 && at_high >= 0.0);
-        let middle = low + 0.5 * (high - low);
         let crosses = match self.leaves {
             None => falls || rises,
             Some(Side::Outside) => falls,
             Some(Side::Inside) => rises,
         };
-        if crosses {
-            return Judgement::Root(self.newton(low, high, rises, middle));
+        if is_short && over.is_bounded() && crosses {
+            return Judgement::Root(self.newton(low, high, rises, piece.middle()));
         }
-        // Where the function jumps, bounds hold 0 though it is far from it on both sides.
-        let jumps = || !self.line.at(Dual::variable(Interval { low, high })).slope.is_bounded();
-        let touches = self.leaves.is_none() && high - low <= self.shortest && !jumps();
-        if touches { Judgement::Root(middle) } else { Judgement::Free }
+        let jumps = || !self.line.at(Dual::variable(piece)).slope.is_bounded();
+        if is_short && (!over.is_bounded() || jumps()) {
+            return Judgement::Free;
+        }
+        self.undecided(low, high)
+    }
+
+    /// What the line itself says of a piece.
+    fn undecided(&self, low: f64, high: f64) -> Judgement {
+        // A line that leaves the surface starts there.
+        if self.leaves.is_some() && low == self.start {
+            return Judgement::Free;
+        }
+        twice::count();
+        let piece = Interval { low, high };
+        let hidden = self.value(piece.middle()).width();
+        match self.line.undecided(piece, self.leaves, hidden) {
+            Some(root) => Judgement::Root(root.clamp(low, high)),
+            None => Judgement::Free,
+        }
     }
 
     /// The value at a place and how far rounding can have moved it.
@@ -192,7 +241,7 @@ impl<L: Line> Search<'_, L> {
 
 /// How far `away + slope u + bend u²/2` certainly stays above 0, for u from 0 on.
 fn reach(away: f64, slope: f64, bend: f64) -> f64 {
-    let [away, slope, bend] = [away, slope, bend].map(Interval::constant);
+    let [away, slope, bend] = [away, slope, bend].map(Interval::<f64>::constant);
     let two = Interval::constant(2.0);
     let discriminant = slope * slope - two * bend * away;
     if discriminant.high < 0.0 {
@@ -232,21 +281,25 @@ mod tests {
         }
     }
 
+    fn first(line: &impl Line, span: Range<f64>, leaves: Option<Side>) -> Option<f64> {
+        first_root(line, span, 0.0, &Span { leaves, ..Span::RAY }, f64::EPSILON * 36.0)
+    }
+
     #[test]
     fn a_touch_is_a_root_and_no_way_in() {
-        let first = first_root(&Cubic, 0.0..9.0, f64::EPSILON * 36.0, None).expect("a touch");
-        assert!((first - 1.0).abs() < 1e-7, "{first:e}");
-        assert_eq!(first_root(&Cubic, 0.0..9.0, f64::EPSILON * 36.0, Some(Side::Outside)), Some(3.0));
-        assert_eq!(first_root(&Cubic, 0.0..9.0, f64::EPSILON * 36.0, Some(Side::Inside)), None);
-        assert_eq!(first_root(&Cubic, 1.5..2.9, f64::EPSILON * 36.0, None), None);
+        let touch = first(&Cubic, 0.0..9.0, None).expect("a touch");
+        assert!((touch - 1.0).abs() < 1e-7, "{touch:e}");
+        assert_eq!(first(&Cubic, 0.0..9.0, Some(Side::Outside)), Some(3.0));
+        assert_eq!(first(&Cubic, 0.0..9.0, Some(Side::Inside)), None);
+        assert_eq!(first(&Cubic, 1.5..2.9, None), None);
     }
 
     #[test]
     fn kinks_and_jumps_are_met_and_poles_are_not() {
-        let kink = first_root(&Broken, 0.3..9.0, f64::EPSILON * 36.0, None).expect("a kink");
+        let kink = first(&Broken, 0.3..9.0, None).expect("a kink");
         assert!((kink - 2.0).abs() < 1e-14, "{kink}");
-        let jump = first_root(&Broken, 2.3..9.0, f64::EPSILON * 36.0, None).expect("a jump");
+        let jump = first(&Broken, 2.3..9.0, None).expect("a jump");
         assert!((jump - 3.0).abs() < 1e-14, "{jump}");
-        assert_eq!(first_root(&Broken, 3.3..9.0, f64::EPSILON * 36.0, None), None);
+        assert_eq!(first(&Broken, 3.3..9.0, None), None);
     }
 }

@@ -19,16 +19,17 @@ use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
 /// Makes a model of entities as written and reports all their faults. Without faults there is a model. File
-/// names start from `folder`; `accuracy`, if there is one, counts in place of the scene's own.
+/// names start from `folder`.
 pub fn model(
     registry: &Registry,
     folder: &Path,
-    accuracy: Option<Accuracy>,
+    accuracy: Chosen,
     written: Vec<Written<'_>>,
     report: &mut Report,
 ) -> Option<Model> {
     let names = Names::of(registry, &written);
-    let setting = Setting { camera: Camera::default(), folder: folder.to_owned() };
+    let camera = Camera { accuracy: accuracy.by_default, ..Camera::default() };
+    let setting = Setting { camera, folder: folder.to_owned() };
     let mut check = Check {
         registry,
         report,
@@ -36,7 +37,7 @@ pub fn model(
         unknown: BTreeMap::new(),
         first_camera: None,
         setting: Arc::new(setting),
-        accuracy,
+        accuracy: accuracy.above_all,
         camera: None,
         materials: Vec::new(),
         textures: Vec::new(),
@@ -51,6 +52,15 @@ pub fn model(
     }
     check.textures_can_be_read(&written);
     check.finish(&written)
+}
+
+/// How exactly a scene is traced, as far as others than itself have a say.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Chosen {
+    /// What counts in place of the scene's own.
+    pub above_all: Option<Accuracy>,
+    /// What counts where the scene says nothing.
+    pub by_default: Accuracy,
 }
 
 /// An entity's checked values, and how it was written.
@@ -83,7 +93,7 @@ impl Check<'_> {
             return None;
         };
         let Word { text, place, .. } = &written.name;
-        self.names.claim(entity.kind(), &written.name, self.report);
+        let counts = self.names.claim(entity, &written.name, self.report);
         if entity.kind() == Kind::Camera
             && let Some(first) = self.first_camera.replace(place.clone())
         {
@@ -95,6 +105,9 @@ impl Check<'_> {
         }
         let values = Against { entity, names: &mut self.names, report: self.report }.values(written);
         let args = values.map(|values| Args::new(entity, text.to_string(), order, values));
+        if !counts {
+            return None;
+        }
         if matches!(entity.kind(), Kind::Object | Kind::Light) {
             return args.map(|args| (written, args));
         }
@@ -214,6 +227,7 @@ impl Check<'_> {
             self.report.add(fault.label(suggestion(near, &places)).help(format!("the types are {known}")));
         }
         self.names.report_unresolved(self.registry, self.report);
+        self.names.report_repeated(self.report);
         if let Some(first) = written.first()
             && self.first_camera.is_none()
             && !camera_misspelt

@@ -10,6 +10,7 @@ mod toml;
 mod values;
 mod written;
 
+pub use check::Chosen;
 pub use fault::{Fault, Place, Report, Severity};
 pub use machine::message;
 pub use written::{Values, Written};
@@ -35,9 +36,7 @@ pub struct Loaded {
     pub places: Vec<Place>,
 }
 
-/// Reads a scene, in TOML if its name ends in `.toml` or its text begins as TOML does, and in the notes'
-/// spelling if not. `name` is what messages call it, and its own file names start from `folder`. An accuracy that is
-/// given here counts in place of the scene's own.
+/// Reads a scene, as [`read_by`] does. An accuracy that is given here counts in place of the scene's own.
 ///
 /// # Errors
 /// Every fault of the scene, warnings among them, in the order of the text.
@@ -47,6 +46,21 @@ pub fn read(
     folder: &Path,
     bytes: &[u8],
     accuracy: Option<Accuracy>,
+) -> Result<Loaded, Report> {
+    read_by(registry, name, folder, bytes, Chosen { above_all: accuracy, ..Chosen::default() })
+}
+
+/// Reads a scene, in TOML if its name ends in `.toml` or its text begins as TOML does, and in the notes'
+/// spelling if not. `name` is what messages call it, and its own file names start from `folder`.
+///
+/// # Errors
+/// Every fault of the scene, warnings among them, in the order of the text.
+pub fn read_by(
+    registry: &Registry,
+    name: &str,
+    folder: &Path,
+    bytes: &[u8],
+    accuracy: Chosen,
 ) -> Result<Loaded, Report> {
     let text = decode(name, bytes)?;
     let syntax = match Syntax::of_name(name) {
@@ -93,13 +107,13 @@ pub fn build(
     written: impl IntoIterator<Item = Written<'static>>,
 ) -> Result<Loaded, Report> {
     let report = Report::new("model", "", Syntax::Notes);
-    finish(registry, Path::new(""), None, written.into_iter().collect(), report)
+    finish(registry, Path::new(""), Chosen::default(), written.into_iter().collect(), report)
 }
 
 fn finish(
     registry: &Registry,
     folder: &Path,
-    accuracy: Option<Accuracy>,
+    accuracy: Chosen,
     written: Vec<Written<'_>>,
     mut report: Report,
 ) -> Result<Loaded, Report> {

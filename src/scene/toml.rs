@@ -100,7 +100,7 @@ fn fault_of(place: Range<usize>, message: &str, text: &str) -> Fault {
     let (place, message, help) = match message {
         DUPLICATE => {
             let key = text[place.clone()].to_owned();
-            let help = "a title or an attribute stands once; entities of one name are `[[TYPE.NAME]]` each";
+            let help = "a title or an attribute stands once; lights of one name are `[[TYPE.NAME]]` each";
             (place, format!("a second `{key}`"), help)
         }
         _ if message.contains("array") && (begins_line || place.start == text.len()) => {

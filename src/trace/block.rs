@@ -2,7 +2,7 @@
 
 use super::Tracer;
 use super::room::{Vectors, room};
-use super::search::{exact, invert};
+use super::search::{Start, exact, invert};
 use crate::bounds::{self, Bounds};
 use crate::bundles::PART;
 use crate::geometry::Side;
@@ -21,6 +21,8 @@ pub(super) struct Leaving<'r> {
     pub ends: &'r [f64],
     pub object: usize,
     pub sides: &'r [Side],
+    /// How far the origin of each may be from the point that it stands for; empty where that is 0.
+    pub errors: &'r [f64],
 }
 
 impl Leaving<'_> {
@@ -66,7 +68,7 @@ impl<W: Watch> Block<'_, '_, '_, W> {
         for (index, bounds) in
             unbounded.chain(plan.bounded.iter().map(|(index, bounds)| (index, Some(bounds))))
         {
-            if !self.tracer.may_meet(Some(self.leaving.object), *index) {
+            if !self.tracer.may_meet(self.left(), *index) {
                 continue;
             }
             let shape = &*self.tracer.model.objects[*index].shape;
@@ -91,9 +93,14 @@ impl<W: Watch> Block<'_, '_, '_, W> {
         }
     }
 
+    /// The object that the rays leave, and the sides.
+    fn left(&self) -> Option<(usize, &[Side])> {
+        Some((self.leaving.object, self.leaving.sides))
+    }
+
     /// Looks at an object.
     fn test(&mut self, index: usize) {
-        let Leaving { rays, ends, object, sides, .. } = *self.leaving;
+        let Leaving { rays, ends, object, sides, errors, .. } = *self.leaving;
         let (rays, ends) = (rays.part(self.part.clone()), &ends[self.part.clone()]);
         let shape = &*self.tracer.model.objects[index].shape;
         let sides = (index == object).then(|| &sides[self.part.clone()]);
@@ -103,7 +110,9 @@ impl<W: Watch> Block<'_, '_, '_, W> {
             for lane in 0..ends.len() {
                 if doubt[lane] != 0 {
                     let leaves = sides.map(|sides| sides[lane]);
-                    let distance = exact(shape, &rays.get(lane), leaves, ends[lane]);
+                    let error = errors.get(self.part.start + lane).copied().unwrap_or(0.0);
+                    let distance =
+                        exact(shape, &Start { ray: rays.get(lane), error, sight: None }, leaves, ends[lane]);
                     blocked[lane] |= u64::from(distance < ends[lane]);
                 }
             }
@@ -119,7 +128,7 @@ impl<W: Watch> Visitor for Block<'_, '_, '_, W> {
     }
 
     fn object(&mut self, index: usize) {
-        if self.tracer.may_meet(Some(self.leaving.object), index) {
+        if self.tracer.may_meet(self.left(), index) {
             self.test(index);
         }
     }

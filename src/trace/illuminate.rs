@@ -51,6 +51,9 @@ impl<W: Watch> Tracer<'_, '_, W> {
             for index in 0..self.model.lights.len() {
                 self.shine(index, group, surface, &around, &mut lighting, colours);
             }
+            if scatters {
+                self.miss_shadows(group, surface);
+            }
         }
         if !scatters {
             // And the ray costs what it does where nobody looks.

@@ -1,8 +1,13 @@
 //! The arithmetic of shading, for all places of a packet at once.
 
+use super::MAX_RAYS;
 use crate::cpu::kernels;
 use crate::material::{Look, Rgb};
 use crate::packet::{View, ViewMut, is_any};
+use crate::plan::depth::{Branch, MANY};
+
+/// Of rays that may cost so few more, [`MANY`] have been followed.
+pub(super) const FEW: u32 = MAX_RAYS as u32 - MANY;
 
 /// Places that a light shines on.
 pub(super) struct Lit<'l> {
@@ -31,6 +36,18 @@ pub(super) enum Looks<'l> {
     Each { diffuse: View<'l>, specular: View<'l> },
 }
 
+/// What rays that meet a surface are worth.
+pub(super) struct Worth<'w> {
+    /// What their light has been multiplied by on its way, at most.
+    pub weight: &'w [f64],
+    /// The part that each may leave out of what its camera ray may.
+    pub share: &'w [f64],
+    /// The rays that each may still cost; nothing where none has cost [`MANY`].
+    pub budget: Option<&'w [u32]>,
+    /// How they go on from there.
+    pub branch: Branch,
+}
+
 /// Colours at places of a surface.
 #[derive(Clone, Copy)]
 pub(super) enum Colours<'c> {
@@ -52,7 +69,8 @@ kernels! {
         } else if f64::from(whole) == shininess && whole < 1 << 17 {
             shine_each(lit, Some(|cos| whole_power::<17>(cos, whole)), colours);
         } else {
-            shine_each(lit, Some(|cos| libm::pow(cos, shininess)), colours);
+            // Rounding may make a cosine more than 1, and a large power of that anything.
+            shine_each(lit, Some(|cos: f64| libm::pow(cos.min(1.0), shininess)), colours);
         }
     }
 
@@ -62,6 +80,37 @@ kernels! {
         for lane in 0..count {
             goes[lane] = u64::from(travelled[lane] <= most);
         }
+    }
+
+    /// Takes the mark from rays that can bring back too little to be seen.
+    pub(super) fn leave_out(travelled: &[f64], worth: &Worth, goes: &mut [u64]) {
+        let (count, Branch { faint, faint_alone, .. }) = (goes.len(), worth.branch);
+        let (travelled, weight, share) = (&travelled[..count], &worth.weight[..count], &worth.share[..count]);
+        for lane in 0..count {
+            let is_faint = weight[lane] * faint < share[lane] * travelled[lane];
+            goes[lane] &= u64::from(!is_faint);
+        }
+        if let Some(budget) = worth.budget {
+            let budget = &budget[..count];
+            for lane in 0..count {
+                let is_faint = (budget[lane] < FEW) & (weight[lane] * faint_alone < travelled[lane]);
+                goes[lane] &= u64::from(!is_faint);
+            }
+        }
+    }
+
+    /// Multiplies what rays are worth which go on.
+    pub(super) fn branch(by: &Branch, weight: &mut [f64], share: &mut [f64]) {
+        let (count, share) = (weight.len(), &mut share[..weight.len()]);
+        for lane in 0..count {
+            weight[lane] *= by.weight;
+            share[lane] *= by.share;
+        }
+    }
+
+    /// The fewest rays that any may still cost.
+    pub(super) fn fewest(budget: &[u32]) -> u32 {
+        budget.iter().fold(u32::MAX, |fewest, budget| fewest.min(*budget))
     }
 
     /// Directions, mirrored. Marks the rays that go on there: likewise, where the surface is a mirror.
@@ -174,7 +223,10 @@ fn shine_all(
         let mut colour = diffuse(lane) * light * falloffs[lane];
         if let Some(glint) = &glint {
             let half = (toward.get(lane) - seen.get(lane)).normalize();
-            colour += light * specular(lane) * glint(half.dot(normals.get(lane)));
+            let cosine = half.dot(normals.get(lane));
+            // From the wrong side there is none: powers of what is below 0 are light of the wrong sign, or no numbers.
+            let lustre = light * specular(lane) * glint(cosine);
+            colour = if cosine > 0.0 { colour + lustre } else { colour };
         }
         let before = colours.get(lane);
         let is_lit = (shines[lane] != 0) & (blocked[lane] != 1);

@@ -8,19 +8,21 @@ mod block;
 mod group;
 mod illuminate;
 mod light;
+mod missing;
 mod passage;
 mod room;
 mod search;
 mod shade;
 mod shadow;
 
+use crate::accuracy::Accuracy;
 use crate::cpu::Cpu;
-use crate::geometry::Ray;
 use crate::material::Rgb;
 use crate::model::Model;
 use crate::packet::{View, WIDE};
 use crate::plan::Plan;
 use crate::sample::Sample;
+use crate::sight::Sight;
 use crate::watch::{Count, Event, Hit, Kind, Purpose, Watch};
 use group::Group;
 pub(crate) use room::Rooms;
@@ -49,34 +51,37 @@ pub fn pixel(model: &Model, x: usize, y: usize) -> Rgb {
 /// As [`pixel`], and `watch` sees how it comes about.
 pub fn watch_pixel(model: &Model, x: usize, y: usize, watch: &mut impl Watch) -> Rgb {
     let camera = &model.camera.value;
-    let colours = camera.rays(x, y).map(|(ray, sample)| watch_colour(model, &ray, sample, watch));
+    let colours = camera
+        .places(x, y)
+        .map(|(place, sample)| watch_colour(model, &camera.sight(place.x, place.y), sample, watch));
     colours.sum::<Rgb>() / f64::from(camera.samples)
 }
 
-/// The colour that a ray sees, before it is clamped. Lights with a size are met where `sample` says, or in
-/// their middle.
-pub fn colour(model: &Model, ray: &Ray, sample: Option<Sample>) -> Rgb {
-    watch_colour(model, ray, sample, &mut ())
+/// The colour that a ray sees, before it is clamped. Lights with a size are met where `sample` says, or in their middle.
+pub fn colour(model: &Model, sight: &Sight, sample: Option<Sample>) -> Rgb {
+    watch_colour(model, sight, sample, &mut ())
 }
 
 /// As [`colour`], and `watch` sees how it comes about.
-pub fn watch_colour(model: &Model, ray: &Ray, sample: Option<Sample>, watch: &mut impl Watch) -> Rgb {
+pub fn watch_colour(model: &Model, sight: &Sight, sample: Option<Sample>, watch: &mut impl Watch) -> Rgb {
     let (mut rooms, mut colours) = (Rooms::default(), Vectors::default());
     rooms.samples.extend(sample);
     let mut tracer = Tracer::new(model, Cpu::best(), &mut rooms, watch);
-    tracer.colours(&mut Group::primary(ray), &mut colours);
+    let depth = tracer.plan.depth.as_ref();
+    tracer.colours(&mut Group::primary(sight, depth), &mut colours);
     colours.get(0)
 }
 
 /// What a ray from the viewer meets first.
-pub fn first_hit<'m>(model: &'m Model, ray: &Ray) -> Option<Hit<'m>> {
+pub fn first_hit<'m>(model: &'m Model, sight: &Sight) -> Option<Hit<'m>> {
     let (mut rooms, mut nobody) = (Rooms::default(), ());
     let mut tracer = Tracer::new(model, Cpu::best(), &mut rooms, &mut nobody);
-    let (mut group, mut found, mut distances) = (Group::primary(ray), Found::default(), Vec::new());
+    let mut group = Group::primary(sight, None);
+    let (mut found, mut distances) = (Found::default(), Vec::new());
     tracer.closest(&mut group, None, &mut found);
     let object = (found.met[0] as usize).checked_sub(1)?;
     tracer.settle(&group, (&found.near, &found.far), object, &mut distances);
-    let distance = distances[0];
+    let (distance, ray) = (distances[0], group.rays().get(0));
     Some(Hit { index: object, object: &model.objects[object], distance, point: ray.at(distance) })
 }
 
@@ -85,6 +90,8 @@ pub(crate) struct Tracer<'m, 'w, W> {
     model: &'m Model,
     plan: &'m Plan,
     cpu: Cpu,
+    /// How far along an axis the viewer is from the world's origin, in world units.
+    viewer: f64,
     /// How many mirrors and panes of glass the present packet has behind it.
     depth: usize,
     rooms: &'w mut Rooms,
@@ -93,29 +100,34 @@ pub(crate) struct Tracer<'m, 'w, W> {
 
 impl<'m, 'w, W: Watch> Tracer<'m, 'w, W> {
     pub(crate) fn new(model: &'m Model, cpu: Cpu, rooms: &'w mut Rooms, watch: &'w mut W) -> Self {
-        Self { model, plan: model.plan(), cpu, depth: 0, rooms, watch }
+        Self { model, plan: model.plan(), cpu, viewer: 0.0, depth: 0, rooms, watch }
     }
 
     /// The colours of some pixels, up to [`WIDE`] rays of which are traced together.
     pub(crate) fn pixels(&mut self, pixels: &[[usize; 2]]) -> View<'_> {
         let camera = &self.model.camera.value;
+        let depth = self.plan.depth.as_ref();
         let mut room = self.rooms.primary.take().unwrap_or_default();
         let Primary { x, y, group, seen, colours } = &mut *room;
         let mut colours = colours.room(pixels.len());
         if camera.samples == 1 {
+            self.rooms.samples.clear();
             for (pixels, first) in pixels.chunks(WIDE).zip((0..).step_by(WIDE)) {
                 for (lane, [column, row]) in pixels.iter().enumerate() {
                     // As signed numbers, which processors convert in one step.
                     (x[lane], y[lane]) = (*column as i64 as f64, *row as i64 as f64);
                 }
-                group.look(self.cpu, camera, x, y, pixels.len());
+                group.look(self.cpu, camera, depth, x, y, pixels.len());
                 self.colours(group, seen);
                 colours.put(first, seen.view(pixels.len()));
+                if self.rooms.any_missing {
+                    (0..pixels.len()).for_each(|lane| self.cut(self.missing(lane)));
+                }
             }
         } else {
             let samples = camera.samples as usize;
             let mut rays = pixels.iter().flat_map(|&[x, y]| camera.places(x, y));
-            let (mut sum, mut count) = (Rgb::ZERO, 0);
+            let (mut sum, mut missing, mut count) = (Rgb::ZERO, 0.0, 0);
             while count < samples * pixels.len() {
                 let mut len = 0;
                 self.rooms.samples.clear();
@@ -124,14 +136,16 @@ impl<'m, 'w, W: Watch> Tracer<'m, 'w, W> {
                     self.rooms.samples.extend(sample);
                     len += 1;
                 }
-                group.look(self.cpu, camera, x, y, len);
+                group.look(self.cpu, camera, depth, x, y, len);
                 self.colours(group, seen);
                 for lane in 0..len {
                     sum += seen.get(lane);
+                    missing += self.missing(lane);
                     count += 1;
                     if count % samples == 0 {
                         colours.set(count / samples - 1, sum / f64::from(camera.samples));
-                        sum = Rgb::ZERO;
+                        self.cut(missing / f64::from(camera.samples));
+                        (sum, missing) = (Rgb::ZERO, 0.0);
                     }
                 }
             }
@@ -139,13 +153,27 @@ impl<'m, 'w, W: Watch> Tracer<'m, 'w, W> {
         self.rooms.primary.insert(room).colours.view(pixels.len())
     }
 
+    /// Counts a pixel if it lacks light, at most so much.
+    fn cut(&mut self, missing: f64) {
+        if missing > 0.0 {
+            self.watch.count(Count::Cut(missing));
+        }
+    }
+
     /// The colours that rays from the viewer see.
     fn colours(&mut self, group: &mut Group, colours: &mut Vectors) {
         self.watch.count(Count::Rays(Kind::Primary, group.len));
+        self.viewer = group.origin.get(0).abs().max_element();
+        self.begin_missing(group.len);
         if W::SEES {
             self.watch.see(Event::Begin(Purpose::Primary));
         }
         self.trace(group, colours);
+    }
+
+    /// Whether the notes' own methods are asked for.
+    fn is_classic(&self) -> bool {
+        self.model.camera.value.accuracy == Accuracy::Classic
     }
 
     /// The most rays of a packet that goes on from the present one.
@@ -205,7 +233,8 @@ mod tests {
         }
         let (mut rooms, mut nobody) = (Rooms::default(), ());
         let (mut group, mut colours) = (Group::default(), Vectors::default());
-        group.look(Cpu::best(), &model.camera.value, &mut x, &mut y, pixels.len());
+        let depth = model.plan().depth.as_ref();
+        group.look(Cpu::best(), &model.camera.value, depth, &mut x, &mut y, pixels.len());
         group.budget[..budgets.len()].copy_from_slice(budgets);
         Tracer::new(model, Cpu::best(), &mut rooms, &mut nobody).colours(&mut group, &mut colours);
         (0..pixels.len()).map(|lane| colours.get(lane)).collect()

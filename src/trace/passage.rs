@@ -6,7 +6,9 @@ use super::room::{Vectors, list, pick, room};
 use super::search::Found;
 use super::shade::Surface;
 use super::shadow::Ways;
-use crate::geometry::Side;
+use crate::bounds::larger;
+use crate::coincidence;
+use crate::geometry::{Ray, Side};
 use crate::material::Rgb;
 use crate::watch::{Count, Event, Kind, Purpose, Watch};
 
@@ -43,7 +45,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
         let mut lanes = Vec::new();
         let lanes = list(&shines[..group.len], &mut lanes);
         let Passage { group: part, ends: far, tint, blocker, .. } = &mut *passage;
-        part.go_on(group, &ways.onward(surface), lanes);
+        part.go_on(group, &surface.onward(ways.toward), lanes);
         let count = part.padded();
         pick(far, ends, lanes, count);
         tint.fill(count, Rgb::ONE);
@@ -100,12 +102,17 @@ impl<W: Watch> Tracer<'_, '_, W> {
         let Passage { group, ends, tint, near, far, distances, .. } = passage;
         self.settle(group, (near, far), index, distances);
         let object = &self.model.objects[index];
-        let count = group.padded();
-        let sides = room(&mut group.sides, count);
+        let (count, reach, is_classic) = (group.padded(), object.shape.reach(), self.is_classic());
+        let (sides, errors) = (room(&mut group.sides, count), room(&mut group.errors, count));
+        group.most_error = 0.0;
         for lane in 0..count {
-            let (origin, dir) = (group.origin.get(lane), group.dir.get(lane));
-            let point = origin + distances[lane] * dir;
-            sides[lane] = Side::seen_along(dir, object.shape.normal(point)).opposite();
+            let ray = Ray { origin: group.origin.get(lane), dir: group.dir.get(lane) };
+            let point = ray.at(distances[lane]);
+            let normal = object.shape.normal(point);
+            sides[lane] = Side::seen_along(ray.dir, normal).opposite();
+            errors[lane] =
+                if is_classic { 0.0 } else { coincidence::error(&ray, distances[lane], normal, reach) };
+            group.most_error = larger(errors[lane], group.most_error);
             group.origin.set(lane, point);
             tint.set(lane, tint.get(lane) * object.tint(point));
             ends[lane] -= distances[lane];

@@ -30,6 +30,10 @@ pub(crate) struct Rooms {
     /// For the way through a tree.
     pub(super) ahead: Vec<usize>,
     pub(super) inverse: Vectors,
+    /// How much light each camera ray under way lacks at most, as it has cost as many rays as it may.
+    pub(super) missing: Vec<f64>,
+    /// Whether any lacks some.
+    pub(super) any_missing: bool,
 }
 
 /// Rays from the viewer.

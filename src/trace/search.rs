@@ -5,9 +5,12 @@ use super::group::Group;
 use super::room::{Vectors, room};
 use crate::bounds::{self, Bounds};
 use crate::bundles::{self, PART};
+use crate::certify::{self, Enclosure, Precision};
+use crate::coincidence;
 use crate::cpu::{Cpu, kernels};
 use crate::geometry::{Hittable, MISS, Ray, Side, Span};
 use crate::packet::{Nearest, Rays, parts};
+use crate::sight::Sight;
 use crate::tree::Visitor;
 use crate::watch::{Count, Event, Hit, Reason, Watch};
 use std::mem::take;
@@ -25,15 +28,15 @@ pub(super) struct Found {
 
 impl Found {
     /// Nothing yet, before these ends, and counts the rays. Those that have cost as many as they may end where they
-    /// begin.
-    fn begin(&mut self, cpu: Cpu, budget: &mut [u32], count: usize, ends: Option<&[f64]>) {
+    /// begin; tells whether any has.
+    fn begin(&mut self, cpu: Cpu, budget: &mut [u32], count: usize, ends: Option<&[f64]>) -> bool {
         let (near, far) = (room(&mut self.near, count), room(&mut self.far, count));
         match ends {
             Some(ends) => far.copy_from_slice(&ends[..count]),
             None => far.fill(MISS),
         }
-        begin(cpu, &mut budget[..count], near, far, room(&mut self.met, count));
         room(&mut self.doubt, count).fill(0);
+        begin(cpu, &mut budget[..count], near, far, room(&mut self.met, count))
     }
 
     /// Of some of the rays.
@@ -51,7 +54,9 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
     /// What each ray meets first before its end, if it has one. A ray that has cost as many as it may meets nothing.
     pub(super) fn closest(&mut self, group: &mut Group, ends: Option<&[f64]>, found: &mut Found) {
         let (is_over, count) = (group.budget[0] == 0, group.padded());
-        found.begin(self.cpu, &mut group.budget, count, ends);
+        if found.begin(self.cpu, &mut group.budget, count, ends) && ends.is_none() {
+            self.miss_beyond(group, found);
+        }
         if W::SEES {
             if is_over {
                 self.watch.see(Event::Dropped(Reason::TooMany));
@@ -68,18 +73,19 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
 
     /// What one ray meets first, with all that leads to it told.
     fn closest_seen(&mut self, group: &Group, found: &mut Found) {
-        let ray = group.rays().get(0);
-        self.watch.see(Event::Search(&ray));
+        let start = group.start(&self.model.camera.value, 0);
+        self.watch.see(Event::Search(&start.ray));
         for index in 0..self.model.objects.len() {
             let shape = &*self.model.objects[index].shape;
-            let leaves = group.sides_of(index).map(|sides| sides[0]);
-            if leaves.is_some() && shape.is_convex() {
+            let leaves = start.leaves(shape, group.sides_of(index).map(|sides| sides[0]));
+            if leaves.is_some_and(|side| !shape.meets_itself(side)) {
                 self.watch.see(Event::Tested(index, None));
                 continue;
             }
-            let distance = shape.distance(&ray, &Span { far: found.far[0], leaves, ..Span::RAY });
-            self.watch.see(Event::Tested(index, Some(distance)));
-            if distance < found.far[0] {
+            let distance = exact(shape, &start, leaves, MISS);
+            let is_first = self.is_first(&start, (index, distance), (found.met[0], found.far[0]));
+            self.watch.see(Event::Tested(index, Some(if is_first { distance } else { MISS })));
+            if is_first {
                 (found.near[0], found.far[0], found.met[0]) = (distance, distance, index as u64 + 1);
             }
         }
@@ -87,14 +93,34 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
             index,
             object: &self.model.objects[index],
             distance: found.far[0],
-            point: ray.at(found.far[0]),
+            point: start.ray.at(found.far[0]),
         });
         self.watch.see(Event::Met(hit.as_ref()));
     }
 
-    /// Whether rays may meet an object at all: to a convex one that they leave they do not come back.
-    pub(super) fn may_meet(&self, leaves: Option<usize>, index: usize) -> bool {
-        leaves != Some(index) || !self.model.objects[index].shape.is_convex()
+    /// Whether rays may meet an object at all: to most that they leave they do not come back.
+    pub(super) fn may_meet(&self, left: Option<(usize, &[Side])>, index: usize) -> bool {
+        let Some((_, sides)) = left.filter(|(object, _)| *object == index) else { return true };
+        let shape = &*self.model.objects[index].shape;
+        match [Side::Outside, Side::Inside].map(|side| shape.meets_itself(side)) {
+            [true, true] => true,
+            [false, false] => false,
+            [from_outside, _] => sides.contains(if from_outside { &Side::Outside } else { &Side::Inside }),
+        }
+    }
+
+    /// Whether a ray meets an object before what it has met so far, by its index and 1, or nothing before the end of the
+    /// search. Of two that lie together the earlier one in the scene is first.
+    fn is_first(&self, start: &Start, (index, distance): (usize, f64), (met, far): (u64, f64)) -> bool {
+        let Some(rival) = (met as usize).checked_sub(1) else { return distance < far };
+        if distance == MISS {
+            return false;
+        }
+        let shape = |index: usize| &*self.model.objects[index].shape;
+        let (one, other) = ((shape(index), distance), (shape(rival), far));
+        let is_before = coincidence::is_before(&start.ray, start.error, one, other)
+            .or_else(|| certify::is_before(one.0, other.0, start.sight.as_ref()?));
+        is_before.unwrap_or(index < rival)
     }
 
     /// The distances at which the rays of a packet meet an object, known to lie between `near` and `far`.
@@ -116,7 +142,8 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
                 for lane in 0..len {
                     if distances[lane].is_nan() {
                         let leaves = sides.map(|sides| sides[lane]);
-                        distances[lane] = exact(shape, &group.rays().get(lane), leaves, MISS);
+                        distances[lane] =
+                            exact(shape, &group.start(&self.model.camera.value, lane), leaves, MISS);
                     }
                 }
             }
@@ -133,22 +160,67 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
     }
 }
 
-/// A shape's exact distance on one ray.
-pub(super) fn exact(shape: &dyn Hittable, ray: &Ray, leaves: Option<Side>, far: f64) -> f64 {
-    shape.distance(ray, &Span { far, leaves, ..Span::RAY })
+/// A ray, and what is known of the one that it stands for.
+pub(super) struct Start {
+    pub ray: Ray,
+    /// How far its origin may be from the point that it stands for, in world units.
+    pub error: f64,
+    /// The ray before anything was rounded, where it comes from the viewer.
+    pub sight: Option<Sight>,
+}
+
+impl Start {
+    /// The side of a shape that the ray leaves: of its own object's it is known; another one that lies through the same
+    /// point is left, too.
+    fn leaves(&self, shape: &dyn Hittable, own: Option<Side>) -> Option<Side> {
+        let Ray { origin, dir } = self.ray;
+        let touched = || Side::seen_along(dir, shape.normal(origin)).opposite();
+        own.or_else(|| (self.error > 0.0 && shape.touches(origin, self.error)).then(touched))
+    }
+}
+
+/// A shape's exact distance on one ray, which leaves it on a side if it is the object that the packet leaves.
+pub(super) fn exact(shape: &dyn Hittable, start: &Start, leaves: Option<Side>, far: f64) -> f64 {
+    match start.leaves(shape, leaves) {
+        Some(side) if !shape.meets_itself(side) => return MISS,
+        None => {}
+        leaves => return shape.distance(&start.ray, &Span { far, leaves, ..Span::RAY }),
+    }
+    let distance = shape.distance(&start.ray, &Span { far, ..Span::RAY });
+    // Where what was rounded of the ray may decide whether it meets the shape, the ray does that was not rounded.
+    match &start.sight {
+        Some(sight) if shape.bracket(&start.ray, &Span::RAY).is_doubtful() => match proven(shape, sight) {
+            Some(right) if (right == MISS) != (distance == MISS) => right,
+            _ => distance,
+        },
+        _ => distance,
+    }
+}
+
+/// The distance of what is proven of a ray's first hit, or [`MISS`]; nothing where 237 bits do not tell.
+fn proven(shape: &dyn Hittable, sight: &Sight) -> Option<f64> {
+    [Precision::Double, Precision::Octuple].into_iter().find_map(|precision| {
+        match shape.certify(sight, precision) {
+            Enclosure::Misses => Some(MISS),
+            Enclosure::Hits(at) => Some(certify::in_world_units(at, sight).high),
+            Enclosure::Doubtful(_) => None,
+        }
+    })
 }
 
 kernels! {
-    /// Counts rays, which have met nothing yet.
-    fn begin(budget: &mut [u32], near: &mut [f64], far: &mut [f64], met: &mut [u64]) {
-        let count = budget.len();
+    /// Counts rays, which have met nothing yet. Tells whether any has cost as many as it may.
+    fn begin(budget: &mut [u32], near: &mut [f64], far: &mut [f64], met: &mut [u64]) -> bool {
+        let (count, mut any_over) = (budget.len(), 0);
         let (near, far, met) = (&mut near[..count], &mut far[..count], &mut met[..count]);
         for lane in 0..count {
             let is_over = budget[lane] == 0;
             let end = if is_over { 0.0 } else { far[lane] };
             (near[lane], far[lane], met[lane]) = (end, end, 0);
             budget[lane] -= u32::from(!is_over);
+            any_over |= u32::from(is_over);
         }
+        any_over != 0
     }
 
     /// Whether all is the same.
@@ -208,14 +280,14 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
         let bundles = bundles::around(cpu, self.group.rays());
         for index in &plan.unbounded {
             let shape = &*self.tracer.model.objects[*index].shape;
-            if self.tracer.may_meet(self.group.leaves, *index) {
+            if self.tracer.may_meet(self.group.left(), *index) {
                 self.in_parts(*index, bundles.which(|ways| !shape.is_clear_of(ways)));
             }
         }
         let mut parts = take(&mut self.tracer.rooms.parts);
         bundles::meet(cpu, &bundles, &plan.bounded, room(&mut parts, plan.bounded.len()));
         for ((index, _), parts) in plan.bounded.iter().zip(&parts) {
-            if self.tracer.may_meet(self.group.leaves, *index) {
+            if self.tracer.may_meet(self.group.left(), *index) {
                 self.in_parts(*index, *parts);
             }
         }
@@ -249,21 +321,21 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
     /// Which of two objects one ray meets first, where brackets do not tell.
     fn decide(&mut self, lane: usize, index: usize, leaves: Option<Side>) {
         let objects = &self.tracer.model.objects;
-        let ray = self.group.rays().get(lane);
+        let start = self.group.start(&self.tracer.model.camera.value, lane);
+        let distance = exact(&*objects[index].shape, &start, leaves, MISS);
+        if distance == MISS {
+            return;
+        }
         let (near, far, met) =
             (&mut self.found.near[lane], &mut self.found.far[lane], &mut self.found.met[lane]);
         if near != far {
             let rival = *met as usize - 1;
             let rival_leaves = self.group.sides_of(rival).map(|sides| sides[lane]);
-            *near = exact(&*objects[rival].shape, &ray, rival_leaves, MISS);
+            *near = exact(&*objects[rival].shape, &start, rival_leaves, MISS);
             *far = *near;
         }
-        // Of two at the same distance the earlier one in the scene wins.
-        let id = index as u64 + 1;
-        let end = if *met > id { far.next_up() } else { *far };
-        let distance = exact(&*objects[index].shape, &ray, leaves, end);
-        if distance < end {
-            (*near, *far, *met) = (distance, distance, id);
+        if self.tracer.is_first(&start, (index, distance), (*met, *far)) {
+            (*near, *far, *met) = (distance, distance, index as u64 + 1);
         }
     }
 
@@ -291,7 +363,7 @@ impl<W: Watch> Visitor for Closest<'_, '_, '_, W> {
     }
 
     fn object(&mut self, index: usize) {
-        if self.tracer.may_meet(self.group.leaves, index) {
+        if self.tracer.may_meet(self.group.left(), index) {
             self.test(index);
         }
     }

@@ -5,10 +5,12 @@ use super::light::{self, Colours};
 use super::room::{Vectors, list, room};
 use super::search;
 use super::{MAX_DIST, Tracer};
+use crate::coincidence;
 use crate::geometry::Side;
 use crate::landing::Landing;
 use crate::material::{Look, Rgb};
 use crate::model::Object;
+use crate::plan::depth::Branch;
 use crate::watch::{Count, Event, Hit, Kind, Purpose, Reason, Watch};
 use glam::DVec3;
 use std::mem::swap;
@@ -25,6 +27,10 @@ pub(super) struct Surface {
     pub sides: Vec<Side>,
     /// How far the light has come from each.
     pub travelled: Vec<f64>,
+    /// How far each may be from where it should be, in world units, and the most of any; empty and 0 where that makes no
+    /// difference.
+    pub errors: Vec<f64>,
+    pub most_error: f64,
     /// What all answer to light, where that is the same.
     pub look: Option<Look>,
     /// Else what each mirrors.
@@ -34,6 +40,12 @@ pub(super) struct Surface {
 }
 
 impl Surface {
+    /// Rays in these directions from its places.
+    pub fn onward<'o>(&'o self, dir: &'o Vectors) -> Onward<'o> {
+        let Self { index, points, sides, travelled, errors, most_error, .. } = self;
+        Onward { points, dir, travelled, leaves: *index, sides, errors, most_error: *most_error }
+    }
+
     fn mirrors(&self, count: usize) -> Colours<'_> {
         match self.look {
             Some(look) => Colours::Even(look.specular),
@@ -84,6 +96,16 @@ impl<W: Watch> Tracer<'_, '_, W> {
             travelled,
         };
         shape.land(cpu, group.rays(), distances, landing);
+        surface.most_error = 0.0;
+        if self.is_classic() {
+            surface.errors.clear();
+        } else {
+            let reach = shape.reach() + self.viewer;
+            let (dir, normals) = (group.dir.view(count), surface.normals.view(count));
+            let errors = room(&mut surface.errors, count);
+            surface.most_error =
+                coincidence::errors(cpu, dir, normals, &surface.travelled[..count], reach, errors);
+        }
         let points = surface.points.view(count);
         surface.look = shader.even(material);
         surface.is_mirror = match surface.look {
@@ -120,11 +142,14 @@ impl<W: Watch> Tracer<'_, '_, W> {
             let tint = object.tint(surface.points.get(0));
             self.watch.see(Event::Begin(Purpose::Transmitted { tint, kept }));
         }
-        light::reach(self.cpu, &surface.travelled[..count], MAX_DIST, room(&mut shading.goes, count));
+        let branch = self.plan.onward(surface.index).through;
+        let (travelled, goes) = (&surface.travelled[..count], room(&mut shading.goes, count));
+        light::reach(self.cpu, travelled, MAX_DIST, goes);
+        group.leave_out(self.cpu, &branch, travelled, goes);
         shading.dir.copy(group.dir.view(count));
         let turn = |sides: &mut [Side]| sides.iter_mut().for_each(|side| *side = side.opposite());
         turn(&mut surface.sides[..count]);
-        self.onward(group, shading, Kind::Transmitted);
+        self.onward(group, shading, Kind::Transmitted, branch);
         let surface = &mut shading.surface;
         turn(&mut surface.sides[..count]);
         for lane in 0..group.len {
@@ -147,34 +172,37 @@ impl<W: Watch> Tracer<'_, '_, W> {
         let (normals, specular) = (surface.normals.view(count), surface.mirrors(count));
         let (travelled, goes) = (&surface.travelled[..count], room(goes, count));
         let dir = dir.room(count);
+        let branch = self.plan.onward(surface.index).mirrored;
         light::mirror(cpu, group.dir.view(count), normals, specular, travelled, MAX_DIST, goes, dir);
+        group.leave_out(cpu, &branch, travelled, goes);
         let do_all = goes[0] != 0 && search::is_one(cpu, goes);
         if do_all && group.len <= self.most() {
-            self.onward_all(group, shading);
+            self.onward_all(group, shading, branch);
         } else {
-            self.onward(group, shading, Kind::Reflected);
+            self.onward(group, shading, Kind::Reflected, branch);
         }
         let specular = shading.surface.mirrors(count);
         light::reflect(cpu, specular, shading.behind.view(count), colours.room(count));
     }
 
     /// What comes to the places of a surface along the rays that go on from there; nothing to those from which none
-    /// does, or which are too far away.
-    fn onward(&mut self, group: &mut Group, shading: &mut Shading, kind: Kind) {
+    /// does, which are too far away, or which can bring back too little.
+    fn onward(&mut self, group: &mut Group, shading: &mut Shading, kind: Kind, branch: Branch) {
         let Shading { surface, dir, goes, lanes, onward, seen, behind, .. } = shading;
         let lanes = list(&goes[..group.len], lanes);
         if W::SEES && lanes.is_empty() {
-            self.watch.see(Event::Dropped(Reason::TooFar));
+            let is_far = surface.travelled[0] > MAX_DIST;
+            self.watch.see(Event::Dropped(if is_far { Reason::TooFar } else { Reason::TooFaint }));
             self.watch.see(Event::Colour(DVec3::ZERO));
         }
         self.watch.count(Count::Rays(kind, lanes.len()));
-        let Surface { points, travelled, sides, index, .. } = &*surface;
-        let leaving = Onward { points, dir, travelled, leaves: *index, sides };
+        let leaving = surface.onward(dir);
         behind.fill(group.padded(), DVec3::ZERO);
         let most = self.most();
         self.depth += 1;
         for lanes in lanes.chunks(most) {
             onward.go_on(group, &leaving, lanes);
+            onward.branch(self.cpu, &branch);
             self.trace(onward, seen);
             behind.put(seen, lanes);
             group.pay(onward, lanes);
@@ -183,11 +211,12 @@ impl<W: Watch> Tracer<'_, '_, W> {
     }
 
     /// As `onward` for rays all of which are mirrored, and with which nothing else is done here: they are not copied.
-    fn onward_all(&mut self, group: &mut Group, shading: &mut Shading) {
+    fn onward_all(&mut self, group: &mut Group, shading: &mut Shading, branch: Branch) {
         let Shading { surface, dir, onward, behind, .. } = shading;
         self.watch.count(Count::Rays(Kind::Reflected, group.len));
         self.depth += 1;
         onward.take(group, surface, dir);
+        onward.branch(self.cpu, &branch);
         self.trace(onward, behind);
         swap(&mut group.budget, &mut onward.budget);
         self.depth -= 1;

@@ -2,10 +2,9 @@
 
 use super::Tracer;
 use super::block::Leaving;
-use super::group::{Group, Onward};
+use super::group::Group;
 use super::room::{Vectors, pick, room};
 use super::shade::Surface;
-use crate::accuracy::Accuracy;
 use crate::bounds::Bounds;
 use crate::cpu::kernels;
 use crate::geometry::Side;
@@ -22,14 +21,6 @@ pub(super) struct Ways<'w> {
     pub toward: &'w Vectors,
 }
 
-impl<'w> Ways<'w> {
-    /// As ways on from a surface.
-    pub fn onward(&self, surface: &'w Surface) -> Onward<'w> {
-        let Surface { index, points, sides, travelled, .. } = surface;
-        Onward { points, dir: self.toward, travelled, leaves: *index, sides }
-    }
-}
-
 /// Of a way that need not be gone, which nothing blocks.
 const NOT_GONE: u64 = 2;
 
@@ -43,16 +34,14 @@ pub(super) struct Shadows {
     their_ends: Vec<f64>,
     their_blocked: Vec<u64>,
     sides: Vec<Side>,
+    errors: Vec<f64>,
 }
 
 impl<W: Watch> Tracer<'_, '_, W> {
     /// What the ends of the ways are short of the light, as a part of how far that is: a surface that the light lies
     /// on is no blocker, however rounding has it.
     pub(super) fn slack(&self) -> f64 {
-        match self.model.camera.value.accuracy {
-            Accuracy::Classic => 0.0,
-            _ => 16.0 * f64::EPSILON,
-        }
+        if self.is_classic() { 0.0 } else { 16.0 * f64::EPSILON }
     }
 
     /// Marks the places (1 in `blocked`) from which an object stands in the way of the light, in a scene without glass.
@@ -66,7 +55,8 @@ impl<W: Watch> Tracer<'_, '_, W> {
         blocked: &mut [u64],
     ) {
         let (cpu, count) = (self.cpu, group.padded());
-        let Shadows { lanes, origin, dir, their_ends, their_blocked, sides } = shadows;
+        let Shadows { lanes, origin, dir, their_ends, their_blocked, sides, errors } = shadows;
+        let origin_error = surface.most_error;
         // A ray that has cost as many as it may finds nothing in the way.
         let len = set_out(cpu, group.len, &mut group.budget[..count], ends, blocked);
         if len == 0 {
@@ -74,9 +64,10 @@ impl<W: Watch> Tracer<'_, '_, W> {
         }
         self.watch.count(Count::Rays(Kind::Shadow, len));
         if 2 * len > group.len {
-            let rays = Rays { origin: surface.points.view(count), dir: ways.toward.view(count) };
-            let sides = &surface.sides[..count];
-            let leaving = Leaving { rays, len: group.len, ends, object: surface.index, sides };
+            let rays =
+                Rays { origin: surface.points.view(count), dir: ways.toward.view(count), origin_error };
+            let (sides, errors) = (&surface.sides[..count], &surface.errors[..]);
+            let leaving = Leaving { rays, len: group.len, ends, object: surface.index, sides, errors };
             self.block(&leaving, &ways.from, &ways.to, blocked);
             return;
         }
@@ -87,11 +78,12 @@ impl<W: Watch> Tracer<'_, '_, W> {
         dir.pick(ways.toward, lanes, count);
         pick(their_ends, ends, lanes, count);
         pick(sides, &surface.sides, lanes, count);
+        pick(errors, &surface.errors, lanes, count);
         let theirs = room(their_blocked, count);
         theirs.fill(0);
-        let rays = Rays { origin: origin.view(count), dir: dir.view(count) };
+        let rays = Rays { origin: origin.view(count), dir: dir.view(count), origin_error };
         let (ends, sides) = (&their_ends[..count], &sides[..count]);
-        let leaving = Leaving { rays, len, ends, object: surface.index, sides };
+        let leaving = Leaving { rays, len, ends, object: surface.index, sides, errors };
         self.block(&leaving, &ways.from, &ways.to, theirs);
         for (lane, is_blocked) in lanes.iter().zip(theirs) {
             blocked[usize::from(*lane)] = *is_blocked;

@@ -88,7 +88,13 @@ fn meet(bencher: Bencher, name: &str) {
             let (mut near, mut far) = ([MISS; WIDE], [MISS; WIDE]);
             let (mut met, mut doubt) = ([0; WIDE], [0; WIDE]);
             let nearest = Nearest { near: &mut near, far: &mut far, met: &mut met, doubt: &mut doubt };
-            shape.meet(cpu, Rays { origin: origin.view(WIDE), dir: dir.view(WIDE) }, None, 1, nearest);
+            shape.meet(
+                cpu,
+                Rays { origin: origin.view(WIDE), dir: dir.view(WIDE), origin_error: 0.0 },
+                None,
+                1,
+                nearest,
+            );
             black_box((&near, &far, &met));
         }
     });

@@ -82,6 +82,18 @@ impl Copy {
         })
     }
 
+    /// Builds its program with one more beside it, which tries the contracts of all its plugins, and runs that.
+    pub fn keeps_contracts(&self) {
+        let (folder, program) = (self.folder.join("src/bin"), "contracts");
+        fs::create_dir_all(&folder).expect("room for a folder");
+        let path = folder.join(program).with_extension("rs");
+        fs::write(&path, "//! Contracts.\nfn main() {\n    tabray::contract::assert_kept();\n}\n")
+            .expect("room");
+        self.cargo(&self.folder, &["build", "--locked", "--bin", program]);
+        self.program_prints(program, &[]);
+        fs::remove_dir_all(&folder).expect("it was there");
+    }
+
     /// What the program prints.
     pub fn prints(&self, args: &[&str]) -> String {
         self.program_prints("tabray", args)

@@ -60,7 +60,7 @@ fn sampled(line: &Line, start: &Start) -> Option<f64> {
 /// `rounding` is how far from the surface starts may lie.
 fn leaves_without_meeting_itself(line: &Line, away: f64, rounding: f64) {
     let shape = line.shape();
-    assert!(!shape.is_convex(), "a surface of revolution can meet what leaves it");
+    assert!(shape.meets_itself(Side::Outside), "a surface of revolution can meet what leaves it");
     let starts = starts(line, &*shape, away);
     let (mut judged_inside, mut again) = (0, 0);
     let (mut met_itself, mut lost) = (Vec::new(), Vec::new());

@@ -4,10 +4,13 @@ use super::{DOWN_Z, Random, shape, text};
 use crate::common::{model, render};
 use glam::{DVec3, dvec3};
 use std::f64::consts::{PI, TAU};
+use tabray::accuracy::Accuracy;
+use tabray::choice::Choice;
 use tabray::geometry::Ray;
 use tabray::material::Rgb;
 use tabray::model::Model;
 use tabray::picture::to_byte;
+use tabray::sight::Sight;
 use tabray::trace;
 
 /// The ambient colour of the first object at a point.
@@ -182,7 +185,7 @@ fn a_light_on_the_surface_blinds_nobody() {
             );
             let scene = model(&text("", &object));
             let ray = Ray { origin: 2.0 * DVec3::Z, dir: DOWN_Z };
-            let colour = trace::colour(&scene, &ray, None);
+            let colour = trace::colour(&scene, &Sight::along(&ray), None);
             assert!(!colour.is_nan(), "{colour} of {emissivity} from {above:e} above");
             assert!(
                 colour.min_element() >= 0.5,
@@ -212,7 +215,7 @@ fn a_light_on_a_wall_lights_the_floor_evenly() {
         let wall = (-4.0 - target.z) / to_light.normalize().z;
         naive_dark += u32::from(wall < to_light.length());
         let ray = Ray { origin: eye, dir: (target - eye).normalize() };
-        dark += u32::from(trace::colour(&scene, &ray, None).x == 0.0);
+        dark += u32::from(trace::colour(&scene, &Sight::along(&ray), None).x == 0.0);
     }
     assert!(naive_dark > 50, "{naive_dark}");
     assert_eq!(dark, 0, "of 2000 points of the floor lie in the shadow of the wall");
@@ -224,7 +227,7 @@ fn an_eye_on_the_surface_has_a_colour() {
     let scene = model(&text("", "plane p { material m normal 0 0 1 point 0 0 0 }"));
     for above in [0.0, 1e-310, 1e-200, 1e-20] {
         let ray = Ray { origin: dvec3(0.0, 0.0, above), dir: DOWN_Z };
-        assert!(!trace::colour(&scene, &ray, None).is_nan(), "from {above:e} above");
+        assert!(!trace::colour(&scene, &Sight::along(&ray), None).is_nan(), "from {above:e} above");
     }
 }
 
@@ -248,7 +251,56 @@ fn a_ball_is_lit_by_a_light_in_its_middle_on_no_side() {
         "",
         "sphere s { material m center 0 0 0 radius 1 } light l { location 0 0 0 emissivity 9 9 9 }",
     ));
-    let outside = trace::colour(&scene, &Ray { origin: 3.0 * DVec3::Z, dir: DOWN_Z }, None);
+    let outside = trace::colour(&scene, &Sight::along(&Ray { origin: 3.0 * DVec3::Z, dir: DOWN_Z }), None);
     assert_eq!(outside, Rgb::splat(0.5), "ambient 1 over a distance of 2");
     assert!(shape("sphere s { material m center 0 0 0 radius 1 }").normal(DVec3::Z).is_normalized());
+}
+
+/// The colour of a place with a light on the other side of it from which it is seen: of half vectors below the surface.
+fn glint_from_behind(shininess: &str, lamp: &str, method: Accuracy) -> Rgb {
+    let scene = format!(
+        "camera c {{ pixeldim 3 3 worlddim 8 6 viewpoint 4 3 6 accuracy {} }}
+         material shiny {{ ambient 1 1 1 diffuse 1 1 1 specular 1 shininess {shininess} }}
+         plane p {{ material shiny normal 0 0 -1 point 0 0 -1 }}
+         light l {{ location {lamp} emissivity 9 9 9 }}",
+        method.option().name
+    );
+    trace::colour(&model(&scene), &Sight::along(&Ray { origin: dvec3(4.0, 3.0, 6.0), dir: DOWN_Z }), None)
+}
+
+#[test]
+fn there_is_no_glint_from_the_wrong_side() {
+    assert!((-0.5_f64).powf(12.5).is_nan() && (-0.5_f64).powf(2.0) > 0.0);
+    for method in [Accuracy::Classic, Accuracy::Exact] {
+        // Beside the line of sight, and on it: there the half vector is 0.
+        for lamp in ["9 3 -2", "4.5 3 -4", "4 3 -4"] {
+            let matt = glint_from_behind("0", lamp, method);
+            assert!(matt.min_element() > 1.0 / 7.0, "{matt}: the light comes to that side");
+            for shininess in ["0.3", "0.5", "1", "1.5", "2", "12.5", "100", "300", "1e5", "1e10", "1e300"] {
+                let shiny = glint_from_behind(shininess, lamp, method);
+                assert_eq!(shiny, matt, "shininess {shininess}, {method:?}, from {lamp}");
+            }
+        }
+    }
+}
+
+/// A cosine may be rounded to more than 1, of which a large power may be anything.
+#[test]
+fn no_glint_is_brighter_than_its_light() {
+    assert!(1.0_f64.next_up().powf(1e18) > 1e90);
+    let mut random = Random(7);
+    for _ in 0..300 {
+        let lamp = dvec3(random.between(-5.0, 5.0), random.between(-5.0, 5.0), random.between(1.0, 5.0));
+        let scene = format!(
+            "camera c {{ pixeldim 3 3 worlddim 8 6 viewpoint 4 3 6 }} material m {{ specular 1 shininess 1e18 }}
+             sphere p {{ material m center 0 0 0 radius 1 }}
+             light l {{ location {} {} {} emissivity 1 1 1 }}",
+            lamp.x, lamp.y, lamp.z
+        );
+        // Along the line on which the light is mirrored back.
+        let ray = Ray { origin: 0.9 * lamp, dir: -lamp.normalize() };
+        let colour = trace::colour(&model(&scene), &Sight::along(&ray), None);
+        let way = 0.9 * lamp.length() - 1.0;
+        assert!(colour.max_element() <= 1.000001 / way, "{colour} after {way} from {lamp}");
+    }
 }

@@ -13,6 +13,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod leaning;
 mod leaving;
 mod lessons;
 mod looks;
@@ -20,6 +21,7 @@ mod planes;
 mod profiles;
 mod revolved;
 mod spheres;
+mod together;
 
 use common::{model, registry};
 use glam::{DVec3, dvec3};

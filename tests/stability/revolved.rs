@@ -6,6 +6,7 @@ use crate::common::model;
 use glam::{DVec3, dvec3};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_6};
 use tabray::geometry::{Hittable, MISS, Ray};
+use tabray::sight::Sight;
 use tabray::trace;
 
 /// The notes' cone, 6 high; a greater height goes beyond its apex.
@@ -272,7 +273,8 @@ fn a_ledge_is_dark_from_below() {
         let target = random.around(DVec3::Z, 0.9) * 1.2;
         let target = dvec3(target.x, 3.0, target.z);
         let eye = dvec3(0.0, -4.0, 8.0);
-        trace::colour(&scene, &Ray { origin: eye, dir: (target - eye).normalize() }, None).x > 0.0
+        trace::colour(&scene, &Sight::along(&Ray { origin: eye, dir: (target - eye).normalize() }), None).x
+            > 0.0
     });
     assert_eq!(lit.count(), 0, "of 2000 points of the ledge are lit through it");
 }

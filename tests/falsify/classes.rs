@@ -1,0 +1,51 @@
+//! Classes of scenes: shapes, and rays that are aimed where arithmetic is hard.
+
+mod flat;
+mod revolved;
+mod round;
+
+use super::random::Random;
+use super::scenes::Question;
+
+/// A class of scenes.
+pub struct Class {
+    pub name: &'static str,
+    /// The rays of a whole run, and of a small one.
+    pub rays: [usize; 2],
+    pub ask: fn(&mut Random) -> Question,
+    /// Whether the first in the scene must be seen of those that are met at one distance.
+    pub is_first_seen: bool,
+}
+
+const fn class(name: &'static str, rays: [usize; 2], ask: fn(&mut Random) -> Question) -> Class {
+    Class { name, rays, ask, is_first_seen: false }
+}
+
+/// All of them.
+pub const CLASSES: [Class; 25] = [
+    class("sphere", [600_000, 4000], round::spheres),
+    class("sphere, tangents", [400_000, 4000], round::sphere_tangents),
+    class("sphere, from inside", [100_000, 1000], round::inside),
+    class("sphere, 1e-150 to 1e150", [100_000, 1000], round::scales),
+    class("ellipsoid", [600_000, 4000], round::ellipsoids),
+    class("ellipsoid, tangents", [400_000, 4000], round::ellipsoid_tangents),
+    class("quadric", [500_000, 4000], round::quadrics),
+    class("quadric, tangents", [200_000, 2000], round::quadric_tangents),
+    class("quadric, far from its center", [100_000, 2000], round::quadric_moved),
+    class("quadric, box that touches", [100_000, 2000], round::quadric_boxes),
+    class("quadric, pairs of planes", [50_000, 1000], round::quadric_pairs),
+    class("quadric, cones and tiny numbers", [100_000, 2000], round::quadric_cones),
+    class("plane", [600_000, 4000], flat::planes),
+    class("plane, nearly parallel", [400_000, 4000], flat::parallel),
+    class("fplane, edges", [1_000_000, 4000], flat::rectangles),
+    class("triangle", [700_000, 4000], flat::triangles),
+    class("triangle, slivers", [300_000, 4000], flat::slivers),
+    Class { name: "coincident", rays: [200_000, 2000], ask: flat::rugs, is_first_seen: true },
+    class("mixed, equal distances", [100_000, 2000], round::meeting),
+    class("revsurf, surfers", [900_000, 800], revolved::surfers),
+    class("revsurf, formulas", [80_000, 600], revolved::formulas),
+    class("revsurf, tangents and rims", [50_000, 600], revolved::tangents),
+    class("torus", [1_000_000, 800], revolved::tori),
+    class("heart", [1_000_000, 500], revolved::hearts),
+    class("curved, silhouettes", [20_000, 200], revolved::silhouettes),
+];

@@ -1,0 +1,219 @@
+//! First hits of planes, triangles, balls and quadrics: signs of whole numbers, without any rounding.
+
+use super::dyadic::Dyadic;
+use super::number::Number;
+use super::ray::{Ray, cross, dot, minus, times};
+use super::text::{Sides, Vector};
+use super::wide::Wide;
+use std::cmp::Ordering::{self, Equal, Greater, Less};
+
+/// Where a ray first meets a shape.
+#[derive(Clone, Debug)]
+pub enum Hit {
+    Miss,
+    /// At this part of its direction.
+    At(Wide),
+    /// It touches an edge or the surface, exactly: a tie between the hits on its sides.
+    Touch,
+}
+
+/// A point of a ray at `top / bottom` of its direction; `bottom` is above 0.
+struct Crossing {
+    top: Dyadic,
+    bottom: Dyadic,
+}
+
+/// Where a ray crosses a plane, before the screen or behind.
+fn crossing(ray: &Ray, normal: &Vector, point: &Vector) -> Result<Crossing, Hit> {
+    let bottom = dot(normal, &ray.dir);
+    let top = dot(normal, &minus(point, &ray.origin));
+    let (top, bottom) = match bottom.sign() {
+        Equal => return Err(Hit::Miss),
+        Less => (top.neg(), bottom.neg()),
+        Greater => (top, bottom),
+    };
+    if top.sign() != Greater {
+        return Err(Hit::Miss);
+    }
+    // On the viewer's side of the screen there are no planes: z > 1/100, or than its nearest f64.
+    let z = ray.origin[2].mul(&bottom).add(&ray.dir[2].mul(&top));
+    let real = z.mul(&Dyadic::int(100)).compare(&bottom);
+    let nearest = z.compare(&Dyadic::from(0.01).mul(&bottom));
+    match (real == Greater, nearest == Greater) {
+        (true, true) => Err(Hit::Miss),
+        (false, false) => Ok(Crossing { top, bottom }),
+        _ => Err(Hit::Touch),
+    }
+}
+
+impl Crossing {
+    fn hit(&self) -> Hit {
+        Hit::At(Wide::quotient(&self.top, &self.bottom))
+    }
+}
+
+pub fn plane(ray: &Ray, normal: &Vector, point: &Vector, sides: Option<&Sides>) -> Hit {
+    let crossing = match crossing(ray, normal, point) {
+        Ok(crossing) => crossing,
+        Err(hit) => return hit,
+    };
+    let Some(Sides { xdir, dimensions }) = sides else { return crossing.hit() };
+    // The first side is xdir without its part along the normal, times that one's square.
+    let first = minus(&times(xdir, &dot(normal, normal)), &times(normal, &dot(normal, xdir)));
+    let second = cross(normal, &first);
+    let from_corner = [0, 1, 2].map(|axis| {
+        let origin = ray.origin[axis].sub(&point[axis]);
+        origin.mul(&crossing.bottom).add(&ray.dir[axis].mul(&crossing.top))
+    });
+    let mut touches = false;
+    for (side, dimension) in [(first, &dimensions[0]), (second, &dimensions[1])] {
+        let along = dot(&side, &from_corner);
+        // Of unit length, times the denominator: along <= dimension * |side| * bottom.
+        let most = dimension.mul(&crossing.bottom).square().mul(&dot(&side, &side));
+        let (low, high) = (along.sign(), along.square().compare(&most));
+        if low == Less || (low == Greater && high == Greater) {
+            return Hit::Miss;
+        }
+        touches |= low == Equal || high == Equal;
+    }
+    if touches { Hit::Touch } else { crossing.hit() }
+}
+
+pub fn triangle(ray: &Ray, corners: &[Vector; 3]) -> Hit {
+    let [a, b, c] = corners;
+    let normal = cross(&minus(b, a), &minus(c, a));
+    let crossing = match crossing(ray, &normal, a) {
+        Ok(crossing) => crossing,
+        Err(hit) => return hit,
+    };
+    let side = |from: &Vector, to: &Vector| {
+        dot(&cross(&minus(from, &ray.origin), &minus(to, &ray.origin)), &ray.dir).sign()
+    };
+    let sides = [side(a, b), side(b, c), side(c, a)];
+    if sides.contains(&Less) && sides.contains(&Greater) {
+        Hit::Miss
+    } else if sides.contains(&Equal) {
+        Hit::Touch
+    } else {
+        crossing.hit()
+    }
+}
+
+/// The sign of `p + q * root(square)`.
+fn sign_with_root(p: &Dyadic, q: &Dyadic, square: &Dyadic) -> Ordering {
+    let by_root = if square.is_zero() { Equal } else { q.sign() };
+    match (p.sign(), by_root) {
+        (one, two) if one == two || two == Equal => one,
+        (Equal, two) => two,
+        (one, two) => match p.square().compare(&q.square().mul(square)) {
+            Greater => one,
+            Less => two,
+            Equal => Equal,
+        },
+    }
+}
+
+/// The first of the places where `a s^2 + 2 b s + c` is 0 that is ahead and between two bounds on each axis.
+fn quadratic(ray: &Ray, [a, b, c]: [Dyadic; 3], bounds: Option<(&Vector, &Vector, &Vector)>) -> Hit {
+    if a.is_zero() {
+        if b.is_zero() {
+            return if c.is_zero() { Hit::Touch } else { Hit::Miss };
+        }
+        // One crossing: in the other terms, (0 * root - c) / 2b.
+        let [b, c] = if b.sign() == Less { [b.neg(), c.neg()] } else { [b, c] };
+        let root = Root { p: c.neg(), q: Dyadic::zero(), square: Dyadic::zero(), a: b.shifted(1) };
+        return match root.kept(ray, bounds) {
+            Equal => Hit::Touch,
+            Greater => Hit::At(root.place(&Dyadic::zero())),
+            Less => Hit::Miss,
+        };
+    }
+    let [a, b, c] = if a.sign() == Less { [a.neg(), b.neg(), c.neg()] } else { [a, b, c] };
+    let square = b.square().sub(&a.mul(&c));
+    match square.sign() {
+        Less => return Hit::Miss,
+        Equal => return Hit::Touch,
+        Greater => {}
+    }
+    for q in [-1, 1] {
+        let root = Root { p: b.neg(), q: Dyadic::int(q), square: square.clone(), a: a.clone() };
+        match root.kept(ray, bounds) {
+            Greater => return Hit::At(root.place(&c)),
+            Equal => return Hit::Touch,
+            Less => {}
+        }
+    }
+    Hit::Miss
+}
+
+/// `(p + q root(square)) / a`, where a is above 0.
+struct Root {
+    p: Dyadic,
+    q: Dyadic,
+    square: Dyadic,
+    a: Dyadic,
+}
+
+impl Root {
+    /// Whether it is ahead and inside of the bounds: above 0 if so, 0 just at one of them.
+    fn kept(&self, ray: &Ray, bounds: Option<(&Vector, &Vector, &Vector)>) -> Ordering {
+        let mut worst = sign_with_root(&self.p, &self.q, &self.square);
+        let Some((center, low, high)) = bounds else { return worst };
+        for axis in 0..3 {
+            let (origin, dir) = (ray.origin[axis].sub(&center[axis]), &ray.dir[axis]);
+            for (bound, is_low) in [(&low[axis], true), (&high[axis], false)] {
+                // (origin - bound) a + dir (p + q root)
+                let p = origin.sub(bound).mul(&self.a).add(&dir.mul(&self.p));
+                let sign = sign_with_root(&p, &dir.mul(&self.q), &self.square);
+                worst = worst.min(if is_low { sign } else { sign.reverse() });
+            }
+        }
+        worst
+    }
+
+    /// Its value; of two roots, by their product where a difference would cancel.
+    fn place(&self, c: &Dyadic) -> Wide {
+        if self.q.is_zero() {
+            return Wide::quotient(&self.p, &self.a);
+        }
+        let root = Wide::root_of(&self.square);
+        let part = Wide::exact(&self.q).mul(&root);
+        let together = self.p.sign() != self.q.sign().reverse();
+        if together {
+            Wide::exact(&self.p).add(&part).div(&Wide::exact(&self.a))
+        } else {
+            Wide::exact(c).div(&Wide::exact(&self.p).sub(&part))
+        }
+    }
+}
+
+pub fn ball(ray: &Ray, center: &Vector, radius: &Dyadic, scale: &Vector) -> Hit {
+    let [x, y, z] = scale;
+    // Squeezed by each axis, times all of them.
+    let others = [y.mul(z), x.mul(z), x.mul(y)];
+    let from = minus(&ray.origin, center);
+    let from = [0, 1, 2].map(|axis| from[axis].mul(&others[axis]));
+    let dir = [0, 1, 2].map(|axis| ray.dir[axis].mul(&others[axis]));
+    let all = x.mul(&others[0]).mul(radius);
+    quadratic(ray, [dot(&dir, &dir), dot(&from, &dir), dot(&from, &from).sub(&all.square())], None)
+}
+
+pub fn quadric(ray: &Ray, k: &[Dyadic], center: &Vector, low: &Vector, high: &Vector) -> Hit {
+    let from = minus(&ray.origin, center);
+    // Twice the square form of two vectors.
+    let twice = |a: &Vector, b: &Vector| {
+        let mut sum = Dyadic::zero();
+        for axis in 0..3 {
+            sum = sum.add(&k[axis].mul(&a[axis]).mul(&b[axis]).shifted(1));
+        }
+        for (of, (i, j)) in [(3, (0, 1)), (4, (0, 2)), (5, (1, 2))] {
+            sum = sum.add(&k[of].mul(&a[i].mul(&b[j]).add(&a[j].mul(&b[i]))));
+        }
+        sum
+    };
+    let linear = [k[6].clone(), k[7].clone(), k[8].clone()];
+    let a = twice(&ray.dir, &ray.dir).shifted(-1);
+    let b = twice(&from, &ray.dir).add(&dot(&linear, &ray.dir)).shifted(-1);
+    let c = twice(&from, &from).shifted(-1).add(&dot(&linear, &from)).sub(&k[9]);
+    quadratic(ray, [a, b, c], Some((center, low, high)))
+}

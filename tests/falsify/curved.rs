@@ -1,0 +1,337 @@
+//! First hits of surfaces of revolution, tori and hearts: pieces of a ray in which the surface's function certainly has
+//! no root, or rises or falls all the way; in `f64` first, then in 320 bits.
+
+use super::closed::Hit;
+use super::dyadic::Dyadic;
+use super::fast::Fast;
+use super::formula::Formula;
+use super::number::{Jet, Number};
+use super::ray::{Ray, cross, dot, minus};
+use super::text::Vector;
+use super::wide::Wide;
+use std::cmp::Ordering;
+
+/// A function along a ray, which is 0 where it meets a surface.
+trait Along {
+    fn at<T: Number>(&self, place: &Jet<T>, known: &Known<T>) -> Jet<T>;
+    /// Whether what is met in a piece of the ray is a part of the surface, as far as that is certain.
+    fn kept<T: Number>(&self, place: &T, known: &Known<T>) -> Option<bool>;
+    fn known(&self) -> &Known<Wide>;
+}
+
+/// The numbers that the function is made of.
+struct Known<T>(Vec<T>);
+
+enum Search {
+    None,
+    Root(Wide),
+    Unknown,
+}
+
+fn first_root<T: Number>(along: &impl Along, known: &Known<T>, from: T, to: T, most: usize) -> Search {
+    let size = Number::abs(&from).max(&Number::abs(&to));
+    let mut waiting = vec![(from, to)];
+    for _ in 0..most {
+        let Some((low, high)) = waiting.pop() else { return Search::None };
+        let piece = low.hull(&high);
+        if along.kept(&piece, known) == Some(false) {
+            continue;
+        }
+        let value = |at: &T| along.at(&Jet::constant(at.clone()), known).value;
+        let all = along.at(&Jet::variable(piece.clone()), known);
+        if is_not_zero(&all.value) {
+            continue;
+        }
+        let inner = piece.inner();
+        if is_not_zero(&value(&inner).add(&all.slope.mul(&piece.sub(&inner)))) {
+            continue;
+        }
+        if is_not_zero(&all.slope) {
+            match (value(&low).sign(), value(&high).sign()) {
+                (Some(one), Some(other)) if one == other && one != Ordering::Equal => continue,
+                (Some(Ordering::Less | Ordering::Greater), Some(Ordering::Less | Ordering::Greater)) => {
+                    let root = narrowed(along, known, piece.clone());
+                    match along.kept(&root, known) {
+                        Some(true) => return Search::Root(root.to_wide()),
+                        Some(false) => continue,
+                        None => return Search::Unknown,
+                    }
+                }
+                _ => {}
+            }
+        }
+        if piece.is_narrow(&size) {
+            return Search::Unknown;
+        }
+        waiting.push((inner.clone(), high));
+        waiting.push((low, inner));
+    }
+    Search::Unknown
+}
+
+fn is_not_zero<T: Number>(of: &T) -> bool {
+    matches!(of.sign(), Some(Ordering::Less | Ordering::Greater))
+}
+
+/// The only root of a piece, by Newton's method with bounds.
+fn narrowed<T: Number>(along: &impl Along, known: &Known<T>, mut piece: T) -> T {
+    loop {
+        let slope = along.at(&Jet::variable(piece.clone()), known).slope;
+        let inner = piece.inner();
+        let value = along.at(&Jet::constant(inner.clone()), known).value;
+        let Some(next) = inner.sub(&value.div(&slope)).meet(&piece) else { return piece };
+        let has_shrunk = next.is_half(&piece);
+        piece = next;
+        if !has_shrunk {
+            return piece;
+        }
+    }
+}
+
+/// A ray told from a point of it near a shape, in steps of about the world's unit: `s = start + step * place`.
+struct Local {
+    start: Dyadic,
+    power: i64,
+    /// The point that places are told from, from the shape's own.
+    from: Vector,
+    /// How it goes on from there with the place.
+    dir: Vector,
+}
+
+impl Local {
+    /// From near the point of the ray that is closest to `middle`; the shape's own point is `own`.
+    fn new(ray: &Ray, middle: &Vector, own: &Vector) -> Self {
+        let closest = dot(&minus(middle, &ray.origin), &ray.dir);
+        let square = dot(&ray.dir, &ray.dir);
+        let start = closest.divided(&square, 53, false);
+        let power = -((square.size() - 1) / 2);
+        let from = minus(&ray.origin, own);
+        let from = [0, 1, 2].map(|axis| from[axis].add(&ray.dir[axis].mul(&start)));
+        let dir = [0, 1, 2].map(|axis| ray.dir[axis].shifted(power));
+        Self { start, power, from, dir }
+    }
+
+    /// The first hit within so far of the point in the middle.
+    fn first_hit(&self, along: &impl Along, reach: f64) -> Hit {
+        // Steps are from half the unit to twice as long.
+        let reach = 4.0 * reach;
+        let begin = self.start.neg().shifted(-self.power);
+        let end = Dyadic::from(reach);
+        let from = if begin.compare(&end.neg()).is_gt() { begin } else { end.neg() };
+        if from.compare(&end).is_ge() {
+            return Hit::Miss;
+        }
+        // As far as f64 goes, to the nearer side: the piece between is in front of the ray's origin or out of reach.
+        let known = along.known();
+        let fast = Known(known.0.iter().map(Fast::of).collect());
+        let ends = |at: &Dyadic| Fast::exact(at);
+        let search = match (ends(&from), ends(&end)) {
+            (one, other) if one.low == one.high && one.low.is_finite() => {
+                first_root(along, &fast, one, other, 4000)
+            }
+            _ => Search::Unknown,
+        };
+        let root = match search {
+            Search::None => return Hit::Miss,
+            Search::Root(root) => narrowed(along, known, root),
+            Search::Unknown => {
+                match first_root(along, known, Wide::point(&from), Wide::point(&end), 20_000) {
+                    Search::None => return Hit::Miss,
+                    Search::Root(root) => root,
+                    Search::Unknown => return Hit::Touch,
+                }
+            }
+        };
+        let step = Wide::point(&Dyadic::int(1).shifted(self.power));
+        Hit::At(Wide::point(&self.start).add(&root.mul(&step)))
+    }
+}
+
+/// A surface of revolution: heights `h0 + h1 s`, squared distances from the axis `q0 + q1 s + q2 s^2`.
+struct OnRevolved<'s> {
+    profile: &'s Formula,
+    known: Known<Wide>,
+}
+
+const HEIGHT: usize = 5;
+
+impl OnRevolved<'_> {
+    fn height<T: Number>(place: &Jet<T>, known: &Known<T>) -> Jet<T> {
+        let constant = |of: usize| Jet::constant(known.0[of].clone());
+        constant(0).add(&constant(1).mul(place))
+    }
+}
+
+impl Along for OnRevolved<'_> {
+    fn at<T: Number>(&self, place: &Jet<T>, known: &Known<T>) -> Jet<T> {
+        let constant = |of: usize| Jet::constant(known.0[of].clone());
+        let zero = Jet::constant(T::int(0));
+        // Beyond its ends the profile may be anything.
+        let height = Self::height(place, known).max(&zero).min(&constant(HEIGHT));
+        let around = constant(2).add(&constant(3).mul(place)).add(&constant(4).mul(&place.square()));
+        around.sub(&self.profile.squared_at(&height))
+    }
+
+    fn kept<T: Number>(&self, place: &T, known: &Known<T>) -> Option<bool> {
+        let height = Self::height(&Jet::constant(place.clone()), known).value;
+        let above = height.sign();
+        let below = known.0[HEIGHT].sub(&height).sign();
+        if above == Some(Ordering::Less) || below == Some(Ordering::Less) {
+            return Some(false);
+        }
+        let within = height.max(&T::int(0)).min(&known.0[HEIGHT]);
+        let radius = self.profile.sign_at(&within).sign();
+        if radius == Some(Ordering::Less) {
+            return Some(false);
+        }
+        (above.is_some() && below.is_some() && radius.is_some()).then_some(true)
+    }
+
+    fn known(&self) -> &Known<Wide> {
+        &self.known
+    }
+}
+
+pub fn revolved(ray: &Ray, profile: &Formula, axis: &Vector, base: &Vector, height: &Dyadic) -> Hit {
+    let square = dot(axis, axis);
+    let length = Wide::root_of(&square);
+    let part = height.to_f64(true) / square.to_f64(false).sqrt();
+    let middle = [0, 1, 2].map(|of| base[of].add(&axis[of].mul(&Dyadic::from(0.5 * part))));
+    let local = Local::new(ray, &middle, base);
+    let (one, other) = (cross(&local.from, axis), cross(&local.dir, axis));
+    let over = |of: Dyadic, by: &Wide| Wide::exact(&of).div(by);
+    let whole = Wide::exact(&square);
+    let known = vec![
+        over(dot(&local.from, axis), &length),
+        over(dot(&local.dir, axis), &length),
+        over(dot(&one, &one), &whole),
+        over(dot(&one, &other).shifted(1), &whole),
+        over(dot(&other, &other), &whole),
+        Wide::exact(height),
+    ];
+    // A bound of the profile, from pieces of it.
+    const PIECES: usize = 64;
+    let height = height.to_f64(true);
+    let widest = (0..PIECES).map(|piece| {
+        let at = |end: usize| height * end as f64 / PIECES as f64;
+        let y = Fast { low: at(piece), high: at(piece + 1).min(height) };
+        profile.at(&Jet::constant(y)).value.high
+    });
+    let widest = widest.fold(0.0, f64::max).min(1e150);
+    local.first_hit(&OnRevolved { profile, known: Known(known) }, (0.6 * height).hypot(widest) * 1.01)
+}
+
+/// A polynomial, and for some shapes another one that is negative where it is cut off.
+struct OnPolynomial {
+    known: Known<Wide>,
+    degree: usize,
+}
+
+impl OnPolynomial {
+    fn new(polynomial: Polynomial, kept: Option<Polynomial>) -> Self {
+        let degree = polynomial.0.len() - 1;
+        let all = polynomial.0.iter().chain(kept.iter().flat_map(|kept| &kept.0));
+        Self { known: Known(all.map(Wide::exact).collect()), degree }
+    }
+}
+
+fn horner<T: Number>(coefficients: &[T], at: &T) -> T {
+    let (last, others) = coefficients.split_last().expect("a coefficient");
+    others.iter().rev().fold(last.clone(), |sum, next| sum.mul(at).add(next))
+}
+
+/// The coefficients of a polynomial as seen from another place.
+fn moved<T: Number>(coefficients: &[T], to: &T) -> Vec<T> {
+    let mut all = coefficients.to_vec();
+    for first in 0..all.len() {
+        for of in (first..all.len() - 1).rev() {
+            all[of] = all[of].add(&all[of + 1].mul(to));
+        }
+    }
+    all
+}
+
+impl Along for OnPolynomial {
+    fn at<T: Number>(&self, place: &Jet<T>, known: &Known<T>) -> Jet<T> {
+        // From a point of the piece, so that bounds are narrow where the piece is.
+        let inner = place.value.inner();
+        let from = place.value.sub(&inner);
+        let all = moved(&known.0[..=self.degree], &inner);
+        let slopes: Vec<T> = (1..all.len()).map(|of| all[of].mul(&T::int(of as i64))).collect();
+        Jet { value: horner(&all, &from), slope: horner(&slopes, &from).mul(&place.slope) }
+    }
+
+    fn kept<T: Number>(&self, place: &T, known: &Known<T>) -> Option<bool> {
+        let rest = &known.0[self.degree + 1..];
+        if rest.is_empty() {
+            return Some(true);
+        }
+        horner(rest, place).sign().map(|sign| sign != Ordering::Less)
+    }
+
+    fn known(&self) -> &Known<Wide> {
+        &self.known
+    }
+}
+
+/// Coefficients, the lowest first.
+#[derive(Clone)]
+struct Polynomial(Vec<Dyadic>);
+
+impl Polynomial {
+    fn constant(of: Dyadic) -> Self {
+        Self(vec![of])
+    }
+
+    fn add(&self, other: &Self) -> Self {
+        let of = |all: &Self, at: usize| all.0.get(at).cloned().unwrap_or_else(Dyadic::zero);
+        Self((0..self.0.len().max(other.0.len())).map(|at| of(self, at).add(&of(other, at))).collect())
+    }
+
+    fn mul(&self, other: &Self) -> Self {
+        let mut product = vec![Dyadic::zero(); self.0.len() + other.0.len() - 1];
+        for (i, one) in self.0.iter().enumerate() {
+            for (j, two) in other.0.iter().enumerate() {
+                product[i + j] = product[i + j].add(&one.mul(two));
+            }
+        }
+        Self(product)
+    }
+
+    fn times(&self, by: &Dyadic) -> Self {
+        self.mul(&Self::constant(by.clone()))
+    }
+
+    fn square(&self) -> Self {
+        self.mul(self)
+    }
+}
+
+pub fn torus(ray: &Ray, center: &Vector, axis: &Vector, radius: &Dyadic, tube: &Dyadic) -> Hit {
+    let local = Local::new(ray, center, center);
+    let (p, d) = (&local.from, &local.dir);
+    let square = dot(axis, axis);
+    // Of the points of the ray: their squares, and their heights times the length of the axis.
+    let point = Polynomial(vec![dot(p, p), dot(p, d).shifted(1), dot(d, d)]);
+    let height = Polynomial(vec![dot(p, axis), dot(d, axis)]);
+    // |p|^2 + R^2 - r^2 = 2 R * the distance from the axis; squared.
+    let left = point.add(&Polynomial::constant(radius.square().sub(&tube.square())));
+    let around = point.times(&square).add(&height.square().times(&Dyadic::int(-1)));
+    let right = around.times(&radius.square().shifted(2));
+    let all = left.square().times(&square).add(&right.times(&Dyadic::int(-1)));
+    let kept = radius.compare(tube).is_lt().then_some(left);
+    local.first_hit(&OnPolynomial::new(all, kept), radius.to_f64(true) + tube.to_f64(true))
+}
+
+pub fn heart(ray: &Ray, center: &Vector, size: &Dyadic) -> Hit {
+    let local = Local::new(ray, center, center);
+    let [x, y, z] = [0, 1, 2].map(|axis| Polynomial(vec![local.from[axis].clone(), local.dir[axis].clone()]));
+    let [x2, y2, z2] = [x.square(), y.square(), z.square()];
+    // (x^2 + y^2 + 9/4 z^2 - 1)^3 = (x^2 + 9/80 z^2) y^3, times 80 and size^6.
+    let ball = x2.add(&y2).add(&z2.times(&Dyadic::from(2.25)));
+    let ball = ball.add(&Polynomial::constant(size.square().neg()));
+    let right = x2.times(&Dyadic::int(80)).add(&z2.times(&Dyadic::int(9)));
+    let right = right.mul(&y2).mul(&y).times(&size.neg());
+    let all = ball.square().mul(&ball).times(&Dyadic::int(80)).add(&right);
+    local.first_hit(&OnPolynomial::new(all, None), 1.5 * size.to_f64(true))
+}

@@ -1,0 +1,201 @@
+//! Whole numbers times powers of two: sums and products of `f64` numbers without any rounding.
+
+use dashu_int::ops::{BitTest, DivEuclid, SquareRoot};
+use dashu_int::{IBig, Sign, UBig};
+use std::cmp::Ordering;
+
+/// `whole * 2^power`.
+#[derive(Clone, Debug)]
+pub struct Dyadic {
+    whole: IBig,
+    power: i64,
+}
+
+impl Dyadic {
+    pub fn zero() -> Self {
+        Self { whole: IBig::ZERO, power: 0 }
+    }
+
+    pub fn int(number: i64) -> Self {
+        Self { whole: IBig::from(number), power: 0 }
+    }
+
+    pub fn parts(whole: IBig, power: i64) -> Self {
+        Self { whole, power }
+    }
+
+    /// The value of a finite number, all of it.
+    pub fn from(number: f64) -> Self {
+        assert!(number.is_finite(), "{number} is no number");
+        if number == 0.0 {
+            return Self::zero();
+        }
+        let bits = number.to_bits();
+        let field = (bits >> 52 & 0x7ff) as i64;
+        let fraction = bits & ((1 << 52) - 1);
+        let (mantissa, power) =
+            if field == 0 { (fraction, -1074) } else { (fraction | 1 << 52, field - 1075) };
+        let low = mantissa.trailing_zeros();
+        let whole = (mantissa >> low) as i64;
+        Self { whole: IBig::from(if number < 0.0 { -whole } else { whole }), power: power + i64::from(low) }
+    }
+
+    pub fn sign(&self) -> Ordering {
+        if self.whole.is_zero() {
+            Ordering::Equal
+        } else if self.whole.sign() == Sign::Negative {
+            Ordering::Less
+        } else {
+            Ordering::Greater
+        }
+    }
+
+    pub fn is_zero(&self) -> bool {
+        self.whole.is_zero()
+    }
+
+    /// The power of two just above its size; of 0, a very small one.
+    pub fn size(&self) -> i64 {
+        if self.is_zero() { i64::MIN / 4 } else { self.whole.bit_len() as i64 + self.power }
+    }
+
+    pub fn neg(&self) -> Self {
+        Self { whole: -&self.whole, power: self.power }
+    }
+
+    pub fn add(&self, other: &Self) -> Self {
+        if self.is_zero() {
+            return other.clone();
+        }
+        if other.is_zero() {
+            return self.clone();
+        }
+        let power = self.power.min(other.power);
+        let lift = |of: &Self| match (of.power - power) as usize {
+            0 => of.whole.clone(),
+            more => &of.whole << more,
+        };
+        Self { whole: lift(self) + lift(other), power }
+    }
+
+    pub fn sub(&self, other: &Self) -> Self {
+        self.add(&other.neg())
+    }
+
+    pub fn mul(&self, other: &Self) -> Self {
+        Self { whole: &self.whole * &other.whole, power: self.power + other.power }
+    }
+
+    pub fn square(&self) -> Self {
+        self.mul(self)
+    }
+
+    /// Times a power of two.
+    pub fn shifted(&self, power: i64) -> Self {
+        Self { whole: self.whole.clone(), power: self.power + power }
+    }
+
+    pub fn compare(&self, other: &Self) -> Ordering {
+        match (self.sign(), other.sign()) {
+            (one, two) if one != two => one.cmp(&two),
+            (Ordering::Equal, _) => Ordering::Equal,
+            (sign, _) if self.size() != other.size() => {
+                let larger = self.size().cmp(&other.size());
+                if sign == Ordering::Greater { larger } else { larger.reverse() }
+            }
+            _ => self.sub(other).sign(),
+        }
+    }
+
+    /// To so many bits, toward plus or minus infinity.
+    pub fn rounded(self, bits: i64, up: bool) -> Self {
+        let extra = self.whole.bit_len() as i64 - bits;
+        if extra <= 0 {
+            return self;
+        }
+        let cut = IBig::from(1) << extra as usize;
+        // Euclidean division by a positive number is rounding down.
+        let mut whole = self.whole.div_euclid(&cut);
+        if up {
+            whole += IBig::from(1);
+        }
+        Self { whole, power: self.power + extra }
+    }
+
+    /// A quotient to about so many bits, toward plus or minus infinity.
+    pub fn divided(&self, by: &Self, bits: i64, up: bool) -> Self {
+        assert!(!by.is_zero(), "division by 0");
+        if self.is_zero() {
+            return Self::zero();
+        }
+        let (top, bottom) = match by.sign() {
+            Ordering::Less => (-&self.whole, -&by.whole),
+            _ => (self.whole.clone(), by.whole.clone()),
+        };
+        let more = (bits + bottom.bit_len() as i64 - top.bit_len() as i64 + 1).max(0);
+        let top = top << more as usize;
+        let mut whole = (&top).div_euclid(&bottom);
+        if up && &whole * &bottom != top {
+            whole += IBig::from(1);
+        }
+        Self { whole, power: self.power - by.power - more }.rounded(bits, up)
+    }
+
+    /// The root of what is not negative, to about so many bits, toward plus or minus infinity.
+    pub fn root(&self, bits: i64, up: bool) -> Self {
+        assert!(self.sign() != Ordering::Less, "a root of a negative number");
+        if self.is_zero() {
+            return Self::zero();
+        }
+        let mut more = (2 * bits - self.whole.bit_len() as i64 + 2).max(0);
+        if (self.power - more) % 2 != 0 {
+            more += 1;
+        }
+        let square = &self.whole << more as usize;
+        let square: UBig = square.into_parts().1;
+        let mut root = square.sqrt();
+        if up && &root * &root != square {
+            root += UBig::from(1_u8);
+        }
+        Self { whole: root.into(), power: (self.power - more) / 2 }.rounded(bits, up)
+    }
+
+    /// As a whole number of so small parts of 1, rounded down.
+    pub fn fixed(&self, bits: i64) -> IBig {
+        let shift = self.power + bits;
+        if shift >= 0 {
+            &self.whole << shift as usize
+        } else {
+            (&self.whole).div_euclid(&(IBig::from(1) << (-shift) as usize))
+        }
+    }
+
+    /// An `f64` that is not above it, or not below it, and next to it.
+    pub fn to_f64(&self, up: bool) -> f64 {
+        let size = self.size();
+        if self.is_zero() {
+            return 0.0;
+        }
+        if size > 1024 {
+            return match (self.sign(), up) {
+                (Ordering::Less, true) => f64::MIN,
+                (Ordering::Less, false) => f64::NEG_INFINITY,
+                (_, true) => f64::INFINITY,
+                (_, false) => f64::MAX,
+            };
+        }
+        if size < -1000 {
+            return match (self.sign(), up) {
+                (Ordering::Less, true) => 0.0,
+                (Ordering::Less, false) => -f64::MIN_POSITIVE,
+                (_, true) => f64::MIN_POSITIVE,
+                (_, false) => 0.0,
+            };
+        }
+        let Self { whole, power } = self.clone().rounded(53, up);
+        // At most 54 bits, of which the last is 0.
+        let value = whole.to_f64().value();
+        let half = (power / 2) as i32;
+        value * 2_f64.powi(half) * 2_f64.powi(power as i32 - half)
+    }
+}

@@ -1,0 +1,180 @@
+//! Formulas in y, read and evaluated apart from the program.
+
+use super::dyadic::Dyadic;
+use super::number::{Jet, Number};
+
+/// A formula. Its numbers are the nearest `f64`, and all else is real.
+#[derive(Clone, Debug)]
+pub enum Formula {
+    Y,
+    Number(Dyadic),
+    Neg(Box<Formula>),
+    Two(char, Box<[Formula; 2]>),
+    Whole(Box<Formula>, u32),
+    Call(String, Vec<Formula>),
+}
+
+impl Formula {
+    /// Reads one that has no mistakes.
+    pub fn read(text: &str) -> Self {
+        let mut reader = Reader { rest: text };
+        let formula = reader.sum();
+        assert!(reader.peek().is_none(), "{text}: {}", reader.rest);
+        formula
+    }
+
+    pub fn at<T: Number>(&self, y: &Jet<T>) -> Jet<T> {
+        match self {
+            Self::Y => y.clone(),
+            Self::Number(number) => Jet::constant(T::exact(number)),
+            Self::Neg(of) => of.at(y).neg(),
+            Self::Whole(of, exponent) => {
+                let of = of.at(y);
+                let mut power: Option<Jet<T>> = None;
+                for bit in (0..32 - exponent.leading_zeros()).rev() {
+                    power = power.map(|power| power.square());
+                    if exponent >> bit & 1 == 1 {
+                        power = Some(power.map_or(of.clone(), |power| power.mul(&of)));
+                    }
+                }
+                power.expect("an exponent from 1")
+            }
+            Self::Two(operation, of) => {
+                let (a, b) = (of[0].at(y), of[1].at(y));
+                match operation {
+                    '+' => a.add(&b),
+                    '-' => a.sub(&b),
+                    '*' => a.mul(&b),
+                    '/' => a.div(&b),
+                    _ => a.power(&b),
+                }
+            }
+            Self::Call(name, of) => {
+                let a = of[0].at(y);
+                match name.as_str() {
+                    "sin" => a.sin(),
+                    "cos" => a.cos(),
+                    "exp" => a.exp(),
+                    "ln" => a.ln(),
+                    "sqrt" => a.root(),
+                    "abs" => a.abs(),
+                    "min" => a.min(&of[1].at(y)),
+                    "max" => a.max(&of[1].at(y)),
+                    _ => panic!("no oracle for `{name}`"),
+                }
+            }
+        }
+    }
+
+    /// The square of its value; of a root, what is under it.
+    pub fn squared_at<T: Number>(&self, y: &Jet<T>) -> Jet<T> {
+        match self {
+            Self::Call(name, of) if name == "sqrt" => of[0].at(y),
+            _ => self.at(y).square(),
+        }
+    }
+
+    /// A number with its sign.
+    pub fn sign_at<T: Number>(&self, y: &T) -> T {
+        match self {
+            Self::Call(name, of) if name == "sqrt" => of[0].at(&Jet::constant(y.clone())).value,
+            _ => self.at(&Jet::constant(y.clone())).value,
+        }
+    }
+}
+
+struct Reader<'t> {
+    rest: &'t str,
+}
+
+impl Reader<'_> {
+    fn peek(&mut self) -> Option<char> {
+        self.rest = self.rest.trim_start();
+        self.rest.chars().next()
+    }
+
+    fn take(&mut self, one: char) -> bool {
+        let is_there = self.peek() == Some(one);
+        if is_there {
+            self.rest = &self.rest[one.len_utf8()..];
+        }
+        is_there
+    }
+
+    fn sum(&mut self) -> Formula {
+        let mut left = self.product();
+        loop {
+            let operation = match self.peek() {
+                Some(sign @ ('+' | '-')) => sign,
+                _ => return left,
+            };
+            self.take(operation);
+            left = Formula::Two(operation, Box::new([left, self.product()]));
+        }
+    }
+
+    fn product(&mut self) -> Formula {
+        let mut left = self.signed();
+        loop {
+            let operation = match self.peek() {
+                Some(sign @ ('*' | '/')) => sign,
+                _ => return left,
+            };
+            self.take(operation);
+            left = Formula::Two(operation, Box::new([left, self.signed()]));
+        }
+    }
+
+    fn signed(&mut self) -> Formula {
+        if self.take('-') { Formula::Neg(Box::new(self.signed())) } else { self.power() }
+    }
+
+    fn power(&mut self) -> Formula {
+        let base = self.atom();
+        if !self.take('^') {
+            return base;
+        }
+        let exponent = self.signed();
+        if let Formula::Number(number) = &exponent {
+            let whole = number.to_f64(false);
+            if whole.fract() == 0.0 && (1.0..=1000.0).contains(&whole) {
+                return Formula::Whole(Box::new(base), whole as u32);
+            }
+        }
+        Formula::Two('^', Box::new([base, exponent]))
+    }
+
+    fn atom(&mut self) -> Formula {
+        if self.take('(') {
+            let inner = self.sum();
+            assert!(self.take(')'), "a `)` at {}", self.rest);
+            return inner;
+        }
+        let bytes = self.rest.as_bytes();
+        if bytes[0].is_ascii_alphabetic() {
+            let end = bytes.iter().position(|byte| !byte.is_ascii_alphanumeric()).unwrap_or(bytes.len());
+            let (name, rest) = self.rest.split_at(end);
+            self.rest = rest;
+            if name == "y" {
+                return Formula::Y;
+            }
+            assert!(self.take('('), "a `(` after {name}");
+            let mut of = vec![self.sum()];
+            while self.take(',') {
+                of.push(self.sum());
+            }
+            assert!(self.take(')'), "a `)` at {}", self.rest);
+            return Formula::Call(name.to_owned(), of);
+        }
+        let is_part = |at: usize| {
+            let byte = bytes[at];
+            byte.is_ascii_alphanumeric()
+                || byte == b'.'
+                || (matches!(byte, b'+' | b'-') && matches!(bytes[at - 1], b'e' | b'E'))
+        };
+        let end = (0..bytes.len()).find(|at| !is_part(*at)).unwrap_or(bytes.len());
+        let (word, rest) = self.rest.split_at(end);
+        self.rest = rest;
+        Formula::Number(Dyadic::from(word.parse().unwrap_or_else(|_| panic!("a number, not `{word}`"))))
+    }
+}

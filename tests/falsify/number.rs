@@ -1,0 +1,162 @@
+//! What the search for roots computes with: numbers that are only known to lie between two others.
+
+use super::dyadic::Dyadic;
+use super::wide::Wide;
+use std::cmp::Ordering;
+
+/// A number between two others.
+pub trait Number: Clone {
+    fn exact(value: &Dyadic) -> Self;
+    fn of(value: &Wide) -> Self;
+    /// All numbers.
+    fn any() -> Self;
+    fn add(&self, other: &Self) -> Self;
+    fn mul(&self, other: &Self) -> Self;
+    fn div(&self, other: &Self) -> Self;
+    fn neg(&self) -> Self;
+    fn square(&self) -> Self;
+    /// Of its part that is not negative.
+    fn root(&self) -> Self;
+    fn sin_cos(&self) -> (Self, Self);
+    fn exp(&self) -> Self;
+    fn ln(&self) -> Self;
+    fn abs(&self) -> Self;
+    fn min(&self, other: &Self) -> Self;
+    fn max(&self, other: &Self) -> Self;
+    /// From the low end of one to the high end of the other.
+    fn hull(&self, other: &Self) -> Self;
+    /// What both have in common, if anything.
+    fn meet(&self, other: &Self) -> Option<Self>;
+    /// The sign, where it is certain.
+    fn sign(&self) -> Option<Ordering>;
+    /// A point of it, not quite in its middle.
+    fn inner(&self) -> Self;
+    fn low(&self) -> Self;
+    /// Whether it is as narrow as is worth while at numbers of this size.
+    fn is_narrow(&self, size: &Self) -> bool;
+    /// Whether it is less than half as wide as another.
+    fn is_half(&self, other: &Self) -> bool;
+    fn to_wide(&self) -> Wide;
+
+    fn sub(&self, other: &Self) -> Self {
+        self.add(&other.neg())
+    }
+
+    fn int(number: i64) -> Self {
+        Self::exact(&Dyadic::int(number))
+    }
+}
+
+/// A number and how fast it grows.
+#[derive(Clone)]
+pub struct Jet<T> {
+    pub value: T,
+    pub slope: T,
+}
+
+impl<T: Number> Jet<T> {
+    pub fn constant(value: T) -> Self {
+        Self { value, slope: T::int(0) }
+    }
+
+    pub fn variable(value: T) -> Self {
+        Self { value, slope: T::int(1) }
+    }
+
+    pub fn add(&self, other: &Self) -> Self {
+        Self { value: self.value.add(&other.value), slope: self.slope.add(&other.slope) }
+    }
+
+    pub fn sub(&self, other: &Self) -> Self {
+        self.add(&other.neg())
+    }
+
+    pub fn neg(&self) -> Self {
+        Self { value: self.value.neg(), slope: self.slope.neg() }
+    }
+
+    pub fn mul(&self, other: &Self) -> Self {
+        let slope = self.value.mul(&other.slope).add(&self.slope.mul(&other.value));
+        Self { value: self.value.mul(&other.value), slope }
+    }
+
+    pub fn square(&self) -> Self {
+        let slope = self.value.mul(&self.slope).mul(&T::int(2));
+        Self { value: self.value.square(), slope }
+    }
+
+    pub fn div(&self, other: &Self) -> Self {
+        let value = self.value.div(&other.value);
+        let slope = self.slope.sub(&value.mul(&other.slope)).div(&other.value);
+        Self { value, slope }
+    }
+
+    pub fn root(&self) -> Self {
+        let value = self.value.root();
+        let slope = self.slope.div(&value.mul(&T::int(2)));
+        Self { value, slope }
+    }
+
+    pub fn sin(&self) -> Self {
+        let (sin, cos) = self.value.sin_cos();
+        Self { value: sin, slope: cos.mul(&self.slope) }
+    }
+
+    pub fn cos(&self) -> Self {
+        let (sin, cos) = self.value.sin_cos();
+        Self { value: cos, slope: sin.neg().mul(&self.slope) }
+    }
+
+    pub fn exp(&self) -> Self {
+        let value = self.value.exp();
+        Self { slope: value.mul(&self.slope), value }
+    }
+
+    pub fn ln(&self) -> Self {
+        Self { value: self.value.ln(), slope: self.slope.div(&self.value) }
+    }
+
+    /// For what is not negative.
+    pub fn power(&self, exponent: &Self) -> Self {
+        if self.value.sign() == Some(Ordering::Greater) {
+            return self.ln().mul(exponent).exp();
+        }
+        let value = self.value.ln().mul(&exponent.value).exp();
+        // From 0 to less than 1, to a power that is not negative: from 0 to 1.
+        let (zero, one) = (T::int(0), T::int(1));
+        let is_small = self.value.max(&one).sub(&one).sign() == Some(Ordering::Equal);
+        let is_up = exponent.value.min(&zero).sign() == Some(Ordering::Equal);
+        let value = if is_small && is_up { value.meet(&zero.hull(&one)).unwrap_or(value) } else { value };
+        Self { value, slope: T::any() }
+    }
+
+    pub fn abs(&self) -> Self {
+        match self.value.sign() {
+            Some(Ordering::Greater) => self.clone(),
+            Some(Ordering::Less) => self.neg(),
+            _ => Self { value: self.value.abs(), slope: self.slope.hull_of(&self.slope.neg()) },
+        }
+    }
+
+    pub fn min(&self, other: &Self) -> Self {
+        self.neg().max(&other.neg()).neg()
+    }
+
+    pub fn max(&self, other: &Self) -> Self {
+        match self.value.sub(&other.value).sign() {
+            Some(Ordering::Greater) => self.clone(),
+            Some(Ordering::Less) => other.clone(),
+            _ => Self { value: self.value.max(&other.value), slope: self.slope.hull_of(&other.slope) },
+        }
+    }
+}
+
+/// What all numbers can besides.
+trait Around: Number {
+    /// All between two numbers, whichever is the greater.
+    fn hull_of(&self, other: &Self) -> Self {
+        self.min(other).hull(&self.max(other))
+    }
+}
+
+impl<T: Number> Around for T {}

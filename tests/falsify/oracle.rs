@@ -1,0 +1,217 @@
+//! What a ray certainly meets first, from the text of a scene.
+
+use super::closed::{self, Hit};
+use super::curved;
+use super::dyadic::Dyadic;
+use super::fast::Fast;
+use super::formula::Formula;
+use super::number::{Jet, Number};
+use super::ray::Ray;
+use super::text::{Scene, Shape, Vector};
+use super::wide::Wide;
+use std::cmp::Ordering;
+
+/// What a ray meets first.
+#[derive(Debug)]
+pub struct Truth {
+    /// The first in the scene of those met at the least distance.
+    pub first: Option<usize>,
+    /// That distance's part of the ray's direction.
+    pub place: Option<Wide>,
+    /// Whether others are met at the same distance, to 2^-200 of it.
+    pub is_shared: bool,
+    /// Whether the ray touches something exactly, so that what is first is anyone's choice.
+    pub is_touch: bool,
+}
+
+pub fn first(scene: &Scene, ray: &Ray) -> Truth {
+    let mut truth = Truth { first: None, place: None, is_shared: false, is_touch: false };
+    for (index, shape) in scene.objects.iter().enumerate() {
+        let place = match hit(shape, ray) {
+            Hit::Miss => continue,
+            Hit::Touch => {
+                truth.is_touch = true;
+                continue;
+            }
+            Hit::At(place) => place,
+        };
+        let nearer = truth.place.as_ref().map_or(Some(Ordering::Less), |nearest| order(&place, nearest));
+        match nearer {
+            Some(Ordering::Less) => {
+                (truth.first, truth.place, truth.is_shared) = (Some(index), Some(place), false);
+            }
+            Some(_) => {}
+            None => truth.is_shared = true,
+        }
+    }
+    truth
+}
+
+/// Which of two places is the nearer, unless they are one to 2^-200.
+fn order(one: &Wide, other: &Wide) -> Option<Ordering> {
+    let apart = one.sub(other);
+    let (low, high) = apart.ends()?;
+    let size = other.ends()?.1.size();
+    match apart.sign() {
+        Some(sign @ (Ordering::Less | Ordering::Greater)) => {
+            let least = if sign == Ordering::Less { high } else { low };
+            (least.size() > size - 200).then_some(sign)
+        }
+        _ => None,
+    }
+}
+
+fn hit(shape: &Shape, ray: &Ray) -> Hit {
+    match shape {
+        Shape::Plane { normal, point, sides } => closed::plane(ray, normal, point, sides.as_ref()),
+        Shape::Triangle { corners } => closed::triangle(ray, corners),
+        Shape::Ball { center, radius, scale } => closed::ball(ray, center, radius, scale),
+        Shape::Quadric { coefficients, center, low, high } => {
+            closed::quadric(ray, coefficients, center, low, high)
+        }
+        Shape::Revolved { profile, direction, base, height } => {
+            curved::revolved(ray, profile, direction, base, height)
+        }
+        Shape::Torus { center, direction, radius, tube } => {
+            curved::torus(ray, center, direction, radius, tube)
+        }
+        Shape::Heart { center, size } => curved::heart(ray, center, size),
+    }
+}
+
+/// The cosine between a ray and a shape's normal at a place, about: how far off the surface an error of the distance
+/// leads.
+pub fn cosine(shape: &Shape, ray: &Ray, place: &Wide) -> f64 {
+    let place = place.near();
+    let near = |from: &Vector| ray.near(place, from);
+    let f64s = |of: &Vector| [0, 1, 2].map(|axis| of[axis].to_f64(false));
+    let normal = match shape {
+        Shape::Plane { normal, .. } => f64s(normal),
+        Shape::Triangle { corners: [a, b, c] } => {
+            f64s(&super::ray::cross(&super::ray::minus(b, a), &super::ray::minus(c, a)))
+        }
+        Shape::Ball { center, scale, .. } => {
+            let (at, scale) = (near(center), f64s(scale));
+            [0, 1, 2].map(|axis| at[axis] / scale[axis] / scale[axis])
+        }
+        Shape::Quadric { coefficients, center, .. } => {
+            let [x, y, z] = near(center);
+            let k: Vec<_> = coefficients.iter().map(|of| of.to_f64(false)).collect();
+            [
+                2.0 * k[0] * x + k[3] * y + k[4] * z + k[6],
+                2.0 * k[1] * y + k[3] * x + k[5] * z + k[7],
+                2.0 * k[2] * z + k[4] * x + k[5] * y + k[8],
+            ]
+        }
+        Shape::Revolved { profile, direction, base, height } => {
+            let (at, axis) = (near(base), unit(f64s(direction)));
+            let y = dot(at, axis);
+            let out = [0, 1, 2].map(|of| at[of] - y * axis[of]);
+            let slope = slope_of(profile, y.clamp(0.0, height.to_f64(false)));
+            let radius = dot(out, out).sqrt();
+            [0, 1, 2].map(|of| out[of] - radius * slope * axis[of])
+        }
+        Shape::Torus { center, direction, radius, .. } => {
+            let (at, axis) = (near(center), unit(f64s(direction)));
+            let y = dot(at, axis);
+            let out = [0, 1, 2].map(|of| at[of] - y * axis[of]);
+            let to_circle = 1.0 - radius.to_f64(false) / dot(out, out).sqrt();
+            [0, 1, 2].map(|of| out[of] * to_circle + y * axis[of])
+        }
+        Shape::Heart { center, size } => {
+            let [x, y, z] = near(center).map(|of| of / size.to_f64(false));
+            let ball = x * x + y * y + 2.25 * z * z - 1.0;
+            [
+                6.0 * ball * ball * x - 2.0 * x * y.powi(3),
+                6.0 * ball * ball * y - 3.0 * (x * x + 0.1125 * z * z) * y * y,
+                13.5 * ball * ball * z - 0.225 * z * y.powi(3),
+            ]
+        }
+    };
+    let cosine = dot(unit(normal), unit(f64s(&ray.dir))).abs();
+    if cosine.is_nan() { 1.0 } else { cosine }
+}
+
+fn slope_of(profile: &Formula, y: f64) -> f64 {
+    let at = Jet::variable(Fast::exact(&Dyadic::from(y)));
+    let Fast { low, high } = profile.at(&at).slope;
+    if (high - low).is_finite() { 0.5 * (low + high) } else { 1e6 }
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn unit(of: [f64; 3]) -> [f64; 3] {
+    let most = of.iter().fold(0.0_f64, |most, part| most.max(part.abs()));
+    let of = of.map(|part| part / most);
+    let length = dot(of, of).sqrt();
+    of.map(|part| part / length)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The first hit of the middle pixel, and its distance.
+    fn seen(objects: &str) -> (Option<usize>, f64, bool) {
+        let text = format!("camera c {{ pixeldim 1 1 worlddim 8 6 viewpoint 4 3 6 }}\n{objects}");
+        let scene = Scene::read(&text);
+        let ray = Ray::of_pixel(&scene, 0, 0);
+        let truth = first(&scene, &ray);
+        let distance = truth.place.as_ref().map_or(0.0, |place| ray.distance(place).near());
+        (truth.first, distance, truth.is_shared || truth.is_touch)
+    }
+
+    #[test]
+    fn the_oracle_knows_what_can_be_reckoned_by_hand() {
+        for (objects, first, distance) in [
+            ("sphere s { center 4 3 -4 radius 2 }", Some(0), 8.0),
+            ("sphere s { center 4 5 -4 radius 1.9999999999999998 }", None, 0.0),
+            ("sphere s { center 4 3 6 radius 2 }", Some(0), 2.0),
+            ("ellipsoid e { center 4 3 -4 radius 2 scale 1 1 0.5 }", Some(0), 9.0),
+            ("quadric q { coefficients 1 1 1 0 0 0 0 0 0 4 center 4 3 -4 box -2 -2 -2 2 2 3 }", Some(0), 8.0),
+            (
+                "quadric q { coefficients 1 1 1 0 0 0 0 0 0 4 center 4 3 -4 box -2 -2 -3 2 2 1 }",
+                Some(0),
+                12.0,
+            ),
+            ("quadric q { coefficients 0 0 0 0 0 0 0 0 1 0 center 4 3 -4 }", Some(0), 10.0),
+            ("plane p { normal 0 0 3 point 9 9 -4 } plane q { normal 0 0 1 point 0 0 -3 }", Some(1), 9.0),
+            ("plane p { normal 0 0 1 point 0 0 0.02 }", None, 0.0),
+            ("fplane p { normal 0 0 2 point 3 2 -1 xdir 1 0 7 dimensions 2 2 }", Some(0), 7.0),
+            ("fplane p { normal 0 0 2 point 4.1 2 -1 xdir 1 0 7 dimensions 2 2 }", None, 0.0),
+            ("triangle t { vertex1 3 2 -1 vertex2 5 2 -1 vertex3 4 5 -1 }", Some(0), 7.0),
+            ("triangle t { vertex1 3 2 -1 vertex2 5 2 -1 vertex3 4 2.9 -1 }", None, 0.0),
+            ("revsurf r { profile \"2\" direction 0 5 0 base 4 0 -4 height 6 }", Some(0), 8.0),
+            (
+                "revsurf r { profile \"max(1, 2 - 1e14*(y-3)^2)\" direction 0 1 0 base 4 0 -4 height 6 }",
+                Some(0),
+                8.0,
+            ),
+            ("revsurf r { profile \"y^2 - 7 + exp(0)\" direction 0 1 0 base 4 0 -4 height 6 }", Some(0), 7.0),
+            ("revsurf r { profile \"2 - y\" direction 0 1 0 base 4 0 -4 height 6 }", None, 0.0),
+            ("torus t { center 4 3 -4 radius 2 tube 0.5 }", Some(0), 7.5),
+            ("torus t { center 4 3 -4 direction 0 0 1 radius 2 tube 0.5 }", None, 0.0),
+        ] {
+            let (found, at, is_tie) = seen(objects);
+            assert_eq!((found, is_tie), (first, false), "{objects}");
+            assert!((at - distance).abs() < 1e-14, "{objects}: {at}");
+        }
+    }
+
+    #[test]
+    fn ties_are_named() {
+        for objects in [
+            "sphere s { center 4 5 -4 radius 2 }",
+            "plane p { normal 0 0 1 point 0 0 -3 } plane q { normal 0 0 7 point 9 9 -3 }",
+            "plane p { normal 0 0 1 point 0 0 -3 } sphere s { center 4 3 -4 radius 1 }",
+            "triangle t { vertex1 3 2 -1 vertex2 5 2 -1 vertex3 4 3 -1 }",
+            "torus t { center 4 3 -4 direction 0 0 1 radius 2 tube 2 }",
+            // Where y is 0 the heart's polynomial has a threefold root.
+            "heart h { center 4 3 -4 size 3 }",
+        ] {
+            assert!(seen(objects).2, "{objects}");
+        }
+    }
+}
