@@ -103,7 +103,7 @@ impl Hittable for FinitePlane {
         let slack = rough.error + 2.0 * self.slack(ray, rough.distance);
         let Bracket { near, far } = self.plane.bracket(&rough, ray, within);
         Bracket {
-            near: if (inside < -slack) & !rough.is_unknown { MISS } else { near },
+            near: if inside < -slack { MISS } else { near },
             far: if inside > slack { far } else { MISS },
         }
     }

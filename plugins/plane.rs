@@ -51,7 +51,7 @@ impl Hittable for Plane {
     #[inline(always)]
     fn quick_distance(&self, ray: &Ray, within: &Span) -> f64 {
         let distance = self.quick_crossing(ray);
-        if distance.is_nan() { distance } else { self.quick_keep(distance, ray, within) }
+        self.quick_keep(distance, ray, within)
     }
 
     fn normal(&self, _at: DVec3) -> DVec3 {

@@ -91,6 +91,16 @@ impl Quadric {
         crossings.into_iter().find(|distance| self.keeps(ray.at(*distance))).unwrap_or(MISS)
     }
 
+    /// The distance where there is nothing to decide: by the notes' formula, or of a ray that leaves it.
+    #[inline(never)]
+    fn other_distance(&self, ray: &Ray, within: &Span) -> f64 {
+        match within.leaves {
+            // It starts on one hit: the other one is what is left.
+            Some(side) if !self.is_classic() => within.keep(self.own.other_hit(&self.own_ray(ray), side)),
+            _ => self.classic_distance(ray, within),
+        }
+    }
+
     #[inline(always)]
     fn own_ray(&self, ray: &Ray) -> OwnRay {
         self.own.own(ray.origin, ray.dir, self.center)
@@ -111,14 +121,10 @@ impl Hittable for Quadric {
 
     #[inline(always)]
     fn quick_distance(&self, ray: &Ray, within: &Span) -> f64 {
-        if self.is_classic() {
-            return self.classic_distance(ray, within);
+        if self.is_classic() || within.leaves.is_some() {
+            return self.other_distance(ray, within);
         }
         let own = self.own_ray(ray);
-        // A ray that leaves it starts on one hit: the other one is what is left.
-        if let Some(side) = within.leaves {
-            return within.keep(self.own.other_hit(&own, side));
-        }
         if self.accuracy == Accuracy::Strict {
             return f64::NAN;
         }
@@ -132,7 +138,7 @@ impl Hittable for Quadric {
     #[inline(always)]
     fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
         if self.is_classic() || within.leaves.is_some() {
-            return Bracket::exactly(self.quick_distance(ray, within));
+            return Bracket::exactly(self.other_distance(ray, within));
         }
         if within.origin_error > 0.0 && self.touches(ray.origin, within.origin_error) {
             return Bracket::UNKNOWN;

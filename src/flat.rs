@@ -36,12 +36,10 @@ pub struct Plane {
 pub struct Rough {
     /// The distance.
     pub distance: f64,
-    /// How far off that is at most.
+    /// How far off that is at most; without end where the ray is parallel but for rounding.
     pub error: f64,
     /// Whether the ray runs along the plane.
     pub is_parallel: bool,
-    /// Whether it does so but for rounding, so that nothing is known.
-    pub is_unknown: bool,
 }
 
 /// The products whose quotient is a crossing's distance, in plain arithmetic.
@@ -136,7 +134,7 @@ impl Plane {
         }
     }
 
-    /// As [`keep`](Self::keep), or NaN where the point is on the screen but for rounding, or the distance is NaN.
+    /// As [`keep`](Self::keep), or NaN where the point is on the screen but for rounding, and of NaN.
     #[inline(always)]
     pub fn quick_keep(&self, distance: f64, ray: &Ray, within: &Span) -> f64 {
         let z = ray.at(distance).z;
@@ -147,10 +145,10 @@ impl Plane {
             Accuracy::Draft => DRAFT_ERROR * (distance * ray.dir.z).abs() + f64::EPSILON * SCREEN,
             _ => 8.0 * f64::EPSILON * ((distance * ray.dir.z).abs() + SCREEN),
         };
-        let kept = if (z > SCREEN) | within.leaves.is_some() { MISS } else { within.keep(distance) };
-        let is_there = (distance < MISS) & within.leaves.is_none();
-        let is_on_the_screen = ((z - SCREEN).abs() <= error) & is_there;
-        if is_on_the_screen | distance.is_nan() { f64::NAN } else { kept }
+        let leaves = within.leaves.is_some();
+        let kept = if (z > SCREEN) | leaves { MISS } else { within.keep(distance) };
+        let is_doubtful = ((z - SCREEN).abs() <= error) & (distance < MISS);
+        if (is_doubtful | distance.is_nan()) & !leaves { f64::NAN } else { kept }
     }
 
     /// Whether a ray crosses it on the viewer's side of the screen: where z, which is the origin's and
@@ -189,8 +187,8 @@ impl Plane {
         let error = error + RECIPROCAL_ERROR * distance.abs();
         // Upright on an axis, it is one component of the direction, and nothing that cancels.
         let is_parallel = (toward == 0.0) & self.is_upright();
-        let is_unknown = (toward.abs() <= 16.0 * f64::EPSILON) & !is_parallel;
-        Rough { distance, error, is_parallel, is_unknown }
+        let error = if toward.abs() <= 16.0 * f64::EPSILON { f64::INFINITY } else { error };
+        Rough { distance, error, is_parallel }
     }
 
     /// The products with a normal of some length.
@@ -222,14 +220,14 @@ impl Plane {
     /// Between which distances a crossing within a span is.
     #[inline(always)]
     pub fn bracket(&self, rough: &Rough, ray: &Ray, within: &Span) -> Bracket {
-        let Rough { distance, error, is_parallel, is_unknown } = *rough;
+        let Rough { distance, error, is_parallel } = *rough;
         let (low, high) = (distance - error, distance + error);
         let z = ray.origin.z + distance * ray.dir.z;
         // Of z; that of the product in it is far less than a reciprocal's.
         let z_error = error + 4.0 * f64::EPSILON * ray.origin.z.abs();
-        let is_missed = is_parallel | (!is_unknown & ((high <= within.near) | (z - z_error > SCREEN)));
-        let is_there = !is_unknown & (low > within.near) & (z + z_error < SCREEN);
-        let low = if is_unknown { within.near } else { low };
+        // Where the error has no end, or the distance is no number, none of these is so.
+        let is_missed = is_parallel | (high <= within.near) | (z - z_error > SCREEN);
+        let is_there = (low > within.near) & (z + z_error < SCREEN);
         Bracket {
             near: if is_missed { MISS } else { larger(low, within.near) },
             far: if is_there & !is_missed { high } else { MISS },
