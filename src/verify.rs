@@ -66,7 +66,9 @@ fn first(enclosures: &[(usize, Enclosure)]) -> First {
     let end = end.fold(f256::INFINITY, Float::min);
     let mut candidates = enclosures.iter().filter(|(_, enclosure)| match enclosure {
         Enclosure::Misses => false,
-        Enclosure::Hits(Wide { low, .. }) | Enclosure::Doubtful(low) => *low <= end,
+        Enclosure::Hits(Wide { low, .. }) | Enclosure::Edge(Wide { low, .. }) | Enclosure::Doubtful(low) => {
+            *low <= end
+        }
     });
     let is_something = end < f256::INFINITY;
     match (candidates.next(), candidates.next()) {

@@ -154,7 +154,7 @@ fn is_explained(classic: &Model, exact: &Model, x: usize, y: usize) -> bool {
             };
             if !is_same {
                 let proven = object.shape.certify(&Sight::along(ray), Precision::Double);
-                let is_doubtful = matches!(proven, Enclosure::Doubtful(_));
+                let is_doubtful = matches!(proven, Enclosure::Edge(_) | Enclosure::Doubtful(_));
                 return object.args.entity.name == "revsurf" || is_doubtful;
             }
         }

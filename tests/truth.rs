@@ -15,7 +15,7 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 use tabray::certify::{self, Enclosure, Precision};
 use tabray::geometry::{MISS, Ray, Side, Span};
-use tabray::interval::Float;
+use tabray::interval::{Float, Wide};
 use tabray::model::Model;
 use tabray::sight::Sight;
 
@@ -697,7 +697,7 @@ fn what_is_certain_is_true() {
                     at.map_or(truth == Truth::Undecided, |at| low - slack <= at && at <= high + slack)
                         && truth.hit().is_none_or(is_near)
                 }
-                Enclosure::Doubtful(nearest) => {
+                Enclosure::Edge(Wide { low: nearest, .. }) | Enclosure::Doubtful(nearest) => {
                     doubtful += 1;
                     at.is_none_or(|at| at >= nearest.to_f64() - slack)
                 }

@@ -30,6 +30,7 @@ pub fn first_hit<F: Float>(shape: &impl Equation, line: &Line<Interval<F>>) -> F
         }
         match is_kept(shape, line, at) {
             Some(true) if is_there => return Found::Hits(at),
+            None if is_there => return Found::Edge(at),
             Some(false) => {}
             _ => return Found::Doubtful(at.low),
         }

@@ -23,6 +23,8 @@ pub enum Enclosure {
     Misses,
     /// There is one, at one of these distances.
     Hits(Wide),
+    /// There is one, at one of these distances, if the edge of the surface belongs to it: the ray goes through that.
+    Edge(Wide),
     /// There may be one, not nearer than this.
     Doubtful(f256),
 }
@@ -34,11 +36,12 @@ impl Enclosure {
 
 /// Whether a ray meets one shape before another, with 237 bits; nothing where these do not tell.
 pub fn is_before(one: &dyn Hittable, other: &dyn Hittable, sight: &Sight) -> Option<bool> {
-    match [one, other].map(|shape| shape.certify(sight, Precision::Octuple)) {
-        [Enclosure::Hits(one), Enclosure::Hits(other)] if one.high < other.low => Some(true),
-        [Enclosure::Hits(one), Enclosure::Hits(other)] if other.high < one.low => Some(false),
-        _ => None,
-    }
+    let distance = |shape: &dyn Hittable| match shape.certify(sight, Precision::Octuple) {
+        Enclosure::Hits(at) | Enclosure::Edge(at) => Some(at),
+        Enclosure::Misses | Enclosure::Doubtful(_) => None,
+    };
+    let (one, other) = (distance(one)?, distance(other)?);
+    (one.high < other.low || other.high < one.low).then_some(one.high < other.low)
 }
 
 /// A distance in lengths of a sight's direction, in world units: the middle of what it may be.
@@ -94,6 +97,7 @@ pub trait Equation {
 enum Found<F> {
     Misses,
     Hits(Interval<F>),
+    Edge(Interval<F>),
     Doubtful(F),
 }
 
@@ -103,11 +107,13 @@ pub fn first_hit(shape: &impl Equation, sight: &Sight, precision: Precision) -> 
         Precision::Double => match solve::<f64>(shape, sight) {
             Found::Misses => Enclosure::Misses,
             Found::Hits(at) => Enclosure::Hits(at.into()),
+            Found::Edge(at) => Enclosure::Edge(at.into()),
             Found::Doubtful(from) => Enclosure::Doubtful(from.into()),
         },
         Precision::Octuple => match solve::<f256>(shape, sight) {
             Found::Misses => Enclosure::Misses,
             Found::Hits(at) => Enclosure::Hits(at),
+            Found::Edge(at) => Enclosure::Edge(at),
             Found::Doubtful(from) => Enclosure::Doubtful(from),
         },
     }

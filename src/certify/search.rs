@@ -40,7 +40,7 @@ pub fn first_hit<F: Float>(shape: &impl Equation, line: &Line<Interval<F>>) -> F
                 match is_kept(shape, &near, root) {
                     Some(true) => return Found::Hits(distance),
                     Some(false) => {}
-                    None => return Found::Doubtful(distance.low),
+                    None => return Found::Edge(distance),
                 }
             }
             Judgement::Open if high - low > shortest => {

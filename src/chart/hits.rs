@@ -160,7 +160,7 @@ fn truths_of(model: &Model, packet: &Packet) -> Vec<Truth> {
             Truth::Hit(at, side(shape, &ray, at.high))
         }
         Enclosure::Misses => Truth::Miss,
-        Enclosure::Doubtful(_) => Truth::Undecided,
+        Enclosure::Edge(_) | Enclosure::Doubtful(_) => Truth::Undecided,
     };
     packet.sights().map(truth).collect()
 }
@@ -209,7 +209,7 @@ fn is_provable(model: &Model, shape: &dyn Hittable) -> bool {
     let mut places = spread(camera.pixels, LOOKS).into_iter();
     let is_certain = |[x, y]: [usize; 2]| {
         let sight = camera.sight(x as f64, y as f64);
-        !matches!(shape.certify(&sight, Precision::Double), Enclosure::Doubtful(_))
+        matches!(shape.certify(&sight, Precision::Double), Enclosure::Misses | Enclosure::Hits(_))
     };
     places.any(is_certain)
 }

@@ -6,7 +6,7 @@ use super::promise::{Fault, Promise};
 use crate::certify::{Enclosure, Precision};
 use crate::cpu::Cpu;
 use crate::geometry::{Hittable, MISS, Ray, Side, Span};
-use crate::interval::Float;
+use crate::interval::{Float, Wide};
 use crate::landing::Landing;
 use crate::model::Object;
 use crate::packet::{Nearest, Rays, STEP, Vectors};
@@ -261,7 +261,7 @@ impl Tried<'_> {
             Enclosure::Hits(hit) => {
                 hit.low.to_f64() - slack <= distance && distance <= hit.high.to_f64() + slack
             }
-            Enclosure::Doubtful(from) => from.to_f64() - slack <= distance,
+            Enclosure::Edge(Wide { low, .. }) | Enclosure::Doubtful(low) => low.to_f64() - slack <= distance,
         };
         if agrees(0.0) || agrees(self.tolerance(&self.ray, &Span::RAY, distance)) {
             return Ok(());

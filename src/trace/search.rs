@@ -199,15 +199,16 @@ pub(super) fn exact(shape: &dyn Hittable, start: &Start, leaves: Option<Side>, f
 fn decided(shape: &dyn Hittable, sight: &Sight, distance: f64) -> f64 {
     let in_world_units = |at: Wide| certify::in_world_units(at, sight).high;
     let enclosure = match shape.certify(sight, Precision::Double) {
-        Enclosure::Doubtful(_) => shape.certify(sight, Precision::Octuple),
+        Enclosure::Edge(_) | Enclosure::Doubtful(_) => shape.certify(sight, Precision::Octuple),
         certain => certain,
     };
     match enclosure {
         Enclosure::Misses => MISS,
-        Enclosure::Hits(at) if distance == MISS => in_world_units(at),
+        // What has edges has them inclusive.
+        Enclosure::Hits(at) | Enclosure::Edge(at) if distance == MISS => in_world_units(at),
         // As of a plane that the ray runs along but for rounding.
         Enclosure::Doubtful(from) if in_world_units(Wide::point(from)) > distance => MISS,
-        Enclosure::Hits(_) | Enclosure::Doubtful(_) => distance,
+        Enclosure::Hits(_) | Enclosure::Edge(_) | Enclosure::Doubtful(_) => distance,
     }
 }
 
