@@ -3,7 +3,7 @@
 use crate::accuracy::Accuracy;
 use crate::camera::Camera;
 use crate::entity::{Entity, Refusal};
-use crate::pparm::{Pparm, Table};
+use crate::pparm::{LEAST_LENGTH, Pparm, Table};
 use crate::sample::{MOST, Sampler};
 use glam::{DVec2, DVec3};
 
@@ -35,7 +35,7 @@ const TABLE: Table = &[&PIXELDIM, &WORLDDIM, &VIEWPOINT, &SAMPLES, &ACCURACY];
 
 inventory::submit! {
     Entity::camera("camera", "the viewer, and a screen from the world's origin to the right and up", &[TABLE], |args| {
-        if args.get(&VIEWPOINT).abs().max_element() < 1e-152 {
+        if args.get(&VIEWPOINT).abs().max_element() < LEAST_LENGTH {
             return Err(Refusal {
                 attribute: Some("viewpoint"),
                 message: "is so near to the screen that the squares of distances vanish".to_owned(),

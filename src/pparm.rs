@@ -17,6 +17,12 @@ pub trait Row: Sync {
 /// Rows that belong together, so that tables compose: a finite plane's are the plane's and its own.
 pub type Table = &'static [&'static dyn Row];
 
+/// The least length in world units whose square does not vanish.
+pub const LEAST_LENGTH: f64 = 1e-152;
+
+/// The greatest length or coordinate in world units of whose squares a few can be added without an overflow.
+pub const MOST_LENGTH: f64 = 1e152;
+
 /// An attribute, whatever the Rust type of its values.
 pub trait Attribute: Sync {
     /// Its name in the scene language.
@@ -37,6 +43,24 @@ pub trait Attribute: Sync {
     fn rule(&self) -> &'static str;
     /// Whether values of the right type and number keep the rule.
     fn allows(&self, datum: &Datum) -> bool;
+
+    /// The first of its values, by its index, that is a length or a coordinate which cannot be squared, and why.
+    fn beyond_squares(&self, datum: &Datum) -> Option<(usize, &'static str)> {
+        let Datum::Numbers(numbers) = datum else { return None };
+        let is_length = self.unit() == "world units";
+        // The sides of a rectangle or a screen, which come in twos, are not squared.
+        let is_alone = is_length && numbers.len() == 1;
+        let why = |number: f64| match number.abs() {
+            size if size > MOST_LENGTH && (is_length || self.unit() == "world coordinates") => {
+                Some("so large that its square overflows")
+            }
+            size if size > 0.0 && size < LEAST_LENGTH && is_alone => {
+                Some("so small that its square vanishes")
+            }
+            _ => None,
+        };
+        numbers.iter().enumerate().find_map(|(index, number)| Some((index, why(*number)?)))
+    }
 
     /// How many values of which type it takes: "1 or 3 numbers".
     fn takes(&self) -> String {

@@ -161,9 +161,10 @@ that differ by less than a half.
 - **Samples for each pixel**: the error of the picture against 1024 other samples. `sobol` is spread evenly, `random` is
   the notes'.
 
-Errors of distances are the 99th percentile of all right hits. The truth is proven: a hit is isolated by intervals that
-hold every rounding error, and computed to 30 digits. Where the proof does not tell, the pair is left out and counted
-as undecided. Errors of colours are the root of the mean square over pixels and channels, of what a picture shows, from
+Errors of distances are the 99th percentile of all right hits. The truth is of the real ray through the place of the
+picture and of the numbers of the scene as they are written: a hit is isolated by intervals of 237 bits, as in
+`tabray verify`, and the error of a distance has in it what rounding the ray made of it. Where the intervals do not tell,
+the pair is left out and counted as undecided. Errors of colours are the root of the mean square over pixels and channels, of what a picture shows, from
 0 to 1. Errors depend on the scene alone: two runs give the same to the last digit.
 
 Times are those of one thread, in CPU time, of the same work for each choice by turns, up to 15 rounds after one to warm

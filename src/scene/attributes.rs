@@ -5,7 +5,7 @@ use super::names::Names;
 use super::values;
 use super::written::{Form, Word, Written};
 use crate::entity::{Entity, Given};
-use crate::pparm::Attribute;
+use crate::pparm::{Attribute, LEAST_LENGTH, MOST_LENGTH};
 use crate::value::{Datum, Type};
 use crate::words::{list, nearest};
 
@@ -147,41 +147,16 @@ impl Against<'_> {
             )));
             return None;
         }
-        if let Some((word, why)) = beyond_squares(attribute, &datum, words) {
+        if let Some((index, why)) = attribute.beyond_squares(&datum) {
             let message = format!("`{}` of {title} is {why}", attribute.name());
-            self.report.add(
-                Fault::error(word.place.clone(), message)
-                    .help(format!("lengths and coordinates go from {LEAST:e} to {MOST:e} world units")),
-            );
+            let place = words.get(index).map_or(word.place.clone(), |word| word.place.clone());
+            self.report.add(Fault::error(place, message).help(format!(
+                "lengths and coordinates go from {LEAST_LENGTH:e} to {MOST_LENGTH:e} world units"
+            )));
             return None;
         }
         Some(datum)
     }
-}
-
-/// The lengths and coordinates whose squares, and sums of a few of these, neither overflow nor underflow.
-const LEAST: f64 = 1e-152;
-const MOST: f64 = 1e152;
-
-/// A length or coordinate in world units that cannot be computed with, and why.
-fn beyond_squares<'w, 't>(
-    attribute: &dyn Attribute,
-    datum: &Datum,
-    words: &'w [Word<'t>],
-) -> Option<(&'w Word<'t>, &'static str)> {
-    let Datum::Numbers(numbers) = datum else { return None };
-    let is_length = attribute.unit() == "world units";
-    let why = |number: f64| match number.abs() {
-        size if size > MOST && (is_length || attribute.unit() == "world coordinates") => {
-            Some("so large that its square overflows")
-        }
-        // A rectangle's sides and a screen's are not squared.
-        size if size > 0.0 && size < LEAST && is_length && numbers.len() == 1 => {
-            Some("so small that its square vanishes")
-        }
-        _ => None,
-    };
-    words.iter().zip(numbers).find_map(|(word, number)| Some((word, why(*number)?)))
 }
 
 /// The attribute of this name or alias.
