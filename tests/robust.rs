@@ -109,10 +109,10 @@ fn light_on_a_surface_and_extreme_sizes_give_bytes() {
         "camera eye { pixeldim 40 30 worlddim 8 6 viewpoint 4 3 6 }
          material m { ambient 1 1 1 diffuse 1 1 1 specular 1 shininess 2.5 }
          sphere big { material m center 1e150 0 0 radius 1e150 }
-         sphere small { material m center 4 3 -1 radius 1e-300 }
+         sphere small { material m center 4 3 -1 radius 1e-150 }
          plane wall { material m normal 1e-100 0 1e-100 point 0 0 -4 }
          light on_the_wall { location 4 3 -8 emissivity 1 1 1 }
-         light far_away { location 1e300 1e300 1e300 emissivity 1e300 1 1 }",
+         light far_away { location 1e150 1e150 1e150 emissivity 1e300 1 1 }",
     );
     common::render(&model);
 }
