@@ -1,7 +1,7 @@
 //! Shapes that are one formula: the points where f(x, y, z) = 0.
 //!
 //! A plugin gives the formula, once, for every number type, and a box around it. The rest follows:
-//! [`taylor`](crate::roots::taylor) isolates what a ray meets first by interval arithmetic, and [`Dual`]
+//! [`taylor`] isolates what a ray meets first by interval arithmetic, and [`Dual`]
 //! numbers give the normal.
 
 use crate::bounds::Bounds;

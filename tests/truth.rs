@@ -10,7 +10,7 @@ use oracle::rays::{self, BASE, Random};
 use oracle::revolution::Revolution;
 use oracle::shapes::{self, Plane, Quadric};
 use oracle::tally::{Tally, Tolerance, ulp};
-use oracle::{Crossings, Hit, Truth};
+use oracle::{Crossings, Truth};
 use std::cell::RefCell;
 use std::collections::HashMap;
 use tabray::certify::{self, Enclosure, Precision};

@@ -5,7 +5,7 @@
 //! (`slabs`). A ray meets the quadrics of revolution around those in closed form, which brackets its first hit or
 //! proves that there is none (`walk`); where it grazes the error's shell, bounds of the second derivative decide
 //! ([`taylor`](crate::roots::taylor)), and where rounding hides what they say, twice the precision
-//! ([`twice`](crate::roots::twice)). Nothing has to be tuned. A profile of which all that cannot be proven within a
+//! ([`twice`]). Nothing has to be tuned. A profile of which all that cannot be proven within a
 //! stated number of operations is refused, with the reason ([`NoSurface`]). The rounding of a ray's own arithmetic is held
 //! by margins that are derived where they stand, and tried against the truth in `tests/truth.rs`.
 

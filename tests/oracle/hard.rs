@@ -8,12 +8,18 @@ use super::tally::{Tally, Tolerance, ulp};
 use glam::{DMat3, DVec2, DVec3};
 use tabray::geometry::{Hittable, Ray, Span};
 
+/// The first hit of a line beyond a distance.
+type FirstHit = Box<dyn Fn(&Line, f64) -> Truth>;
+
+/// A random point of a surface with its normal, where there is one.
+type RandomPlace = dyn Fn(&mut Random) -> Option<(DVec3, DVec3)>;
+
 /// A shape as a scene spells it, and its truth.
 pub struct Subject {
     /// The entity, of a material `m`.
     pub text: String,
     /// The first hit of a ray that is farther than a distance.
-    truth: Box<dyn Fn(&Line, f64) -> Truth>,
+    truth: FirstHit,
     /// A ball that holds what there is to aim at.
     middle: DVec3,
     reach: f64,
@@ -24,7 +30,7 @@ pub struct Subject {
 /// What decides between a hit and a miss.
 enum Brink {
     /// The silhouette: rays touch it.
-    Round(Box<dyn Fn(&mut Random) -> Option<(DVec3, DVec3)>>),
+    Round(Box<RandomPlace>),
     /// The edges of a part of a plane: from, to, and inward.
     Edges(Vec<(DVec3, DVec3, DVec3)>),
     /// The directions in a plane with this unit normal.
@@ -260,7 +266,7 @@ fn rectangle(random: &mut Random) -> Subject {
 }
 
 /// The truth of what is met at most once.
-fn beyond(truth: impl Fn(&Line) -> Truth + 'static) -> Box<dyn Fn(&Line, f64) -> Truth> {
+fn beyond(truth: impl Fn(&Line) -> Truth + 'static) -> FirstHit {
     Box::new(move |line, near| match truth(line) {
         Truth::Hit(hit) if hit.t <= near.into() => Truth::Miss,
         truth => truth,
