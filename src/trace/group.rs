@@ -3,7 +3,6 @@
 use super::MAX_RAYS;
 use super::light::{self, Worth};
 use super::room::{Vectors, pick, room};
-use super::search::Start;
 use super::shade::Surface;
 use crate::camera::{self, Camera};
 use crate::cpu::Cpu;
@@ -28,9 +27,8 @@ pub(super) struct Group {
     pub budget: Vec<u32>,
     /// The one ray from the viewer, before anything was rounded.
     pub sight: Option<Sight>,
-    /// Of several rays from the viewer, the x and y of the places of the picture that they look through, in pixels; empty
-    /// of rays that have been picked from others or go on.
-    pub places: [Vec<f64>; 2],
+    /// Whether they look through the places that are under way, each through its own.
+    pub looks: bool,
     /// What the light of each is multiplied by on its way, at most, and the part that it may leave out of what its camera
     /// ray may; empty where no ray goes on, or nothing bounds what that can bring back.
     pub weight: Vec<f64>,
@@ -75,8 +73,7 @@ impl Group {
         cpu: Cpu,
         camera: &Camera,
         depth: Option<&Depth>,
-        x: &mut [f64],
-        y: &mut [f64],
+        [x, y]: &mut [Vec<f64>; 2],
         len: usize,
     ) {
         self.begin(camera.viewpoint, len, camera.samples > 1, depth);
@@ -85,8 +82,7 @@ impl Group {
         x[len..count].fill(last.0);
         y[len..count].fill(last.1);
         camera::look(cpu, camera, &x[..count], &y[..count], self.dir.room(count));
-        room(&mut self.places[0], count).copy_from_slice(&x[..count]);
-        room(&mut self.places[1], count).copy_from_slice(&y[..count]);
+        self.looks = true;
     }
 
     /// Rays from a viewpoint, with their directions yet to be given.
@@ -119,8 +115,7 @@ impl Group {
 
     /// For rays whose numbers are only known as they are.
     fn forget_sights(&mut self) {
-        self.sight = None;
-        self.places.iter_mut().for_each(Vec::clear);
+        (self.sight, self.looks) = (None, false);
     }
 
     /// Takes the mark from those that would bring back too little to be seen, so far from the viewer.
@@ -152,16 +147,6 @@ impl Group {
         let count = self.padded();
         let origin_error = self.most_error;
         Rays { origin: self.origin.view(count), dir: self.dir.view(count), origin_error }
-    }
-
-    /// One of them.
-    #[inline(always)]
-    pub fn start(&self, camera: &Camera, lane: usize) -> Start {
-        let error = self.errors.get(lane).copied().unwrap_or(0.0);
-        let [x, y] = &self.places;
-        let place = x.get(lane).zip(y.get(lane));
-        let sight = place.map_or(self.sight, |(x, y)| Some(camera.sight(*x, *y)));
-        Start { ray: self.rays().get(lane), error, sight }
     }
 
     /// The object that they leave, and the sides.

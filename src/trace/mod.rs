@@ -108,16 +108,18 @@ impl<'m, 'w, W: Watch> Tracer<'m, 'w, W> {
         let camera = &self.model.camera.value;
         let depth = self.plan.depth.as_ref();
         let mut room = self.rooms.primary.take().unwrap_or_default();
-        let Primary { x, y, group, seen, colours } = &mut *room;
+        let Primary { group, seen, colours } = &mut *room;
+        self.rooms.places.iter_mut().for_each(|places| places.resize(WIDE, 0.0));
         let mut colours = colours.room(pixels.len());
         if camera.samples == 1 {
             self.rooms.samples.clear();
             for (pixels, first) in pixels.chunks(WIDE).zip((0..).step_by(WIDE)) {
+                let [x, y] = &mut self.rooms.places;
                 for (lane, [column, row]) in pixels.iter().enumerate() {
                     // As signed numbers, which processors convert in one step.
                     (x[lane], y[lane]) = (*column as i64 as f64, *row as i64 as f64);
                 }
-                group.look(self.cpu, camera, depth, x, y, pixels.len());
+                group.look(self.cpu, camera, depth, &mut self.rooms.places, pixels.len());
                 self.colours(group, seen);
                 colours.put(first, seen.view(pixels.len()));
                 if self.rooms.any_missing {
@@ -132,11 +134,12 @@ impl<'m, 'w, W: Watch> Tracer<'m, 'w, W> {
                 let mut len = 0;
                 self.rooms.samples.clear();
                 for (place, sample) in rays.by_ref().take(WIDE) {
+                    let [x, y] = &mut self.rooms.places;
                     (x[len], y[len]) = (place.x, place.y);
                     self.rooms.samples.extend(sample);
                     len += 1;
                 }
-                group.look(self.cpu, camera, depth, x, y, len);
+                group.look(self.cpu, camera, depth, &mut self.rooms.places, len);
                 self.colours(group, seen);
                 for lane in 0..len {
                     sum += seen.get(lane);
@@ -227,14 +230,14 @@ mod tests {
 
     /// What rays along the scene's lowest row of pixels see that may cost so many rays each.
     fn seen(model: &Model, pixels: &[usize], budgets: &[u32]) -> Vec<Rgb> {
-        let (mut x, mut y) = ([0.0; WIDE], [0.0; WIDE]);
-        for (lane, column) in pixels.iter().enumerate() {
-            (x[lane], y[lane]) = (*column as f64, 0.0);
-        }
         let (mut rooms, mut nobody) = (Rooms::default(), ());
+        rooms.places = [vec![0.0; WIDE], vec![0.0; WIDE]];
+        for (lane, column) in pixels.iter().enumerate() {
+            rooms.places[0][lane] = *column as f64;
+        }
         let (mut group, mut colours) = (Group::default(), Vectors::default());
         let depth = model.plan().depth.as_ref();
-        group.look(Cpu::best(), &model.camera.value, depth, &mut x, &mut y, pixels.len());
+        group.look(Cpu::best(), &model.camera.value, depth, &mut rooms.places, pixels.len());
         group.budget[..budgets.len()].copy_from_slice(budgets);
         Tracer::new(model, Cpu::best(), &mut rooms, &mut nobody).colours(&mut group, &mut colours);
         (0..pixels.len()).map(|lane| colours.get(lane)).collect()

@@ -15,6 +15,8 @@ use glam::DVec3;
 #[derive(Default)]
 pub(crate) struct Rooms {
     pub(super) primary: Option<Box<Primary>>,
+    /// The x and y of the places of the picture that the camera rays under way look through, in pixels.
+    pub(super) places: [Vec<f64>; 2],
     /// Of the camera rays under way, where pixels have more than one.
     pub(super) samples: Vec<Sample>,
     /// For packets that wait for those which have gone on from them, the foremost one last.
@@ -37,26 +39,12 @@ pub(crate) struct Rooms {
 }
 
 /// Rays from the viewer.
+#[derive(Default)]
 pub(super) struct Primary {
-    /// The places that they look through.
-    pub x: [f64; WIDE],
-    pub y: [f64; WIDE],
     pub group: Group,
     pub seen: Vectors,
     /// Of pixels.
     pub colours: Vectors,
-}
-
-impl Default for Primary {
-    fn default() -> Self {
-        Self {
-            x: [0.0; WIDE],
-            y: [0.0; WIDE],
-            group: Group::default(),
-            seen: Vectors::default(),
-            colours: Vectors::default(),
-        }
-    }
 }
 
 /// The rays of a packet that meet the same object, while they are followed.

@@ -74,7 +74,7 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
 
     /// What one ray meets first, with all that leads to it told.
     fn closest_seen(&mut self, group: &Group, found: &mut Found) {
-        let start = group.start(&self.model.camera.value, 0);
+        let start = self.start(group, 0);
         self.watch.see(Event::Search(&start.ray));
         for index in 0..self.model.objects.len() {
             let shape = &*self.model.objects[index].shape;
@@ -97,6 +97,14 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
             point: start.ray.at(found.far[0]),
         });
         self.watch.see(Event::Met(hit.as_ref()));
+    }
+
+    /// One ray of a packet.
+    fn start(&self, group: &Group, lane: usize) -> Start {
+        let [x, y] = &self.rooms.places;
+        let sight = group.looks.then(|| self.model.camera.value.sight(x[lane], y[lane])).or(group.sight);
+        let error = group.errors.get(lane).copied().unwrap_or(0.0);
+        Start { ray: group.rays().get(lane), error, sight }
     }
 
     /// Whether rays may meet an object at all: to most that they leave they do not come back.
@@ -143,8 +151,7 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
                 for lane in 0..len {
                     if distances[lane].is_nan() {
                         let leaves = sides.map(|sides| sides[lane]);
-                        distances[lane] =
-                            exact(shape, &group.start(&self.model.camera.value, lane), leaves, MISS);
+                        distances[lane] = exact(shape, &self.start(group, lane), leaves, MISS);
                     }
                 }
             }
@@ -325,7 +332,7 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
     /// Which of two objects one ray meets first, where brackets do not tell.
     fn decide(&mut self, lane: usize, index: usize, leaves: Option<Side>) {
         let objects = &self.tracer.model.objects;
-        let start = self.group.start(&self.tracer.model.camera.value, lane);
+        let start = self.tracer.start(self.group, lane);
         let distance = exact(&*objects[index].shape, &start, leaves, MISS);
         if distance == MISS {
             return;

@@ -96,16 +96,6 @@ impl<W: Watch> Tracer<'_, '_, W> {
             travelled,
         };
         shape.land(cpu, group.rays(), distances, landing);
-        surface.most_error = 0.0;
-        if self.is_classic() {
-            surface.errors.clear();
-        } else {
-            let reach = shape.reach() + self.viewer;
-            let (dir, normals) = (group.dir.view(count), surface.normals.view(count));
-            let errors = room(&mut surface.errors, count);
-            surface.most_error =
-                coincidence::errors(cpu, dir, normals, &surface.travelled[..count], reach, errors);
-        }
         let points = surface.points.view(count);
         surface.look = shader.even(material);
         surface.is_mirror = match surface.look {
@@ -115,6 +105,17 @@ impl<W: Watch> Tracer<'_, '_, W> {
             }
             None => shader.unlit(cpu, material, points, colours.room(count), surface.specular.room(count)),
         };
+        surface.most_error = 0.0;
+        let goes_on = !self.model.lights.is_empty() || surface.is_mirror || material.transparency != 0.0;
+        if self.is_classic() || !goes_on {
+            surface.errors.clear();
+        } else {
+            let reach = shape.reach() + self.viewer;
+            let (dir, normals) = (group.dir.view(count), surface.normals.view(count));
+            let errors = room(&mut surface.errors, count);
+            surface.most_error =
+                coincidence::errors(cpu, dir, normals, &surface.travelled[..count], reach, errors);
+        }
         if W::SEES {
             self.watch.see(Event::Surface { normal: surface.normals.get(0), ambient: colours.get(0) });
         }
