@@ -4,7 +4,7 @@ use crate::accuracy::Accuracy;
 use crate::cpu::kernels;
 use crate::geometry::Ray;
 use crate::sample::{Sample, Sampler};
-use crate::sight::Sight;
+use crate::sight::{self, Sight};
 use glam::{DVec2, DVec3};
 
 /// The viewer and a screen in the plane z = 0, whose lower left corner is the world's origin.
@@ -48,16 +48,22 @@ impl Camera {
     /// outermost pixels lie on the edges of the screen.
     #[inline(always)]
     pub fn ray(&self, x: f64, y: f64) -> Ray {
-        self.sight(x, y).ray()
+        let (at, last) = self.place(x, y);
+        Ray { origin: self.viewpoint, dir: sight::direction(self.viewpoint, at, last, self.screen) }
     }
 
-    /// That ray before anything is rounded. A single pixel looks through the middle.
-    #[inline(always)]
+    /// That ray before anything is rounded.
     pub fn sight(&self, x: f64, y: f64) -> Sight {
-        let place = |at: f64, pixels: usize| if pixels > 1 { (at, (pixels - 1) as f64) } else { (1.0, 2.0) };
-        let [width, height] = self.pixels;
-        let ((x, last_x), (y, last_y)) = (place(x, width), place(y, height));
-        Sight::through(self.viewpoint, DVec2::new(x, y), DVec2::new(last_x, last_y), self.screen)
+        let (at, last) = self.place(x, y);
+        Sight::through(self.viewpoint, at, last, self.screen)
+    }
+
+    /// A pixel's place as parts of the last pixel's. A single pixel looks through the middle.
+    #[inline(always)]
+    fn place(&self, x: f64, y: f64) -> (DVec2, DVec2) {
+        let part = |at: f64, pixels: usize| if pixels > 1 { (at, (pixels - 1) as f64) } else { (1.0, 2.0) };
+        let ((x, last_x), (y, last_y)) = (part(x, self.pixels[0]), part(y, self.pixels[1]));
+        (DVec2::new(x, y), DVec2::new(last_x, last_y))
     }
 }
 

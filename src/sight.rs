@@ -47,7 +47,7 @@ impl Sight {
     pub fn ray(&self) -> Ray {
         let dir = match self.toward {
             Toward::Direction(dir) => dir,
-            Toward::Screen { at, last, size } => ((at / last * size).extend(0.0) - self.origin).normalize(),
+            Toward::Screen { at, last, size } => direction(self.origin, at, last, size),
         };
         Ray { origin: self.origin, dir }
     }
@@ -70,6 +70,12 @@ impl Sight {
         let [x, y, z] = self.line::<N>().dir.map(|part| part.powi(2));
         (x + y + z).sqrt()
     }
+}
+
+/// The unit vector, rounded, from a viewpoint to a place of the screen.
+#[inline(always)]
+pub(crate) fn direction(viewpoint: DVec3, at: DVec2, last: DVec2, size: DVec2) -> DVec3 {
+    ((at / last * size).extend(0.0) - viewpoint).normalize()
 }
 
 impl<N: Number> Line<N> {
