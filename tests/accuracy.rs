@@ -315,12 +315,14 @@ fn the_accuracy_of_each_method_is_measured() {
         "# How exact the methods are
 
 A camera's `accuracy` chooses how shapes find their hits. Here is what each choice gets wrong, counted against the
-truth: every crossing of a ray and a surface isolated by interval arithmetic, its distance to 30 digits. All
-numbers are those of one run of
+truth: every crossing of a ray and a surface isolated by interval arithmetic, its distance to 30 digits. The
+numbers of each part are those of one run of its own of
 
 ```sh
 {COMMAND}
 ```
+
+with `hard_rays` behind it for the second part alone.
 
 *Missed* are hits that were not found, *invented* ones that are none, *later* ones at another crossing than the
 first. The errors are those of the distances of all other hits, in world units; *off the surface* is how far the
