@@ -103,3 +103,67 @@ fn a_contradiction_is_a_failure_that_counts_it() {
     assert!(count > 1, "{out}");
     assert_eq!(err, format!("error: the tracer finds another object at {count} pixels\n"));
 }
+
+/// The wrong proof that rounding the normals and edges of a sliver gave: 156 of 606 such pixels.
+#[test]
+fn a_sliver_before_another_triangle_is_proven_from_its_corners() {
+    let model = model(
+        "camera eye { pixeldim 1 1 worlddim 8 6 viewpoint 4 3 6 }
+         material red { ambient 10 0 0 }
+         material green { ambient 0 10 0 }
+         triangle sliver { material red vertex1 74.02008166032914 181.20698666173578 -180.57992796863354
+             vertex2 2.5709057906925388 -0.6368328987687811 -1.037175155326901
+             vertex3 2.571131692559333 -0.6369216588530878 -1.037123002404182 }
+         triangle other { material green vertex1 0 0 -4.628004657281974 vertex2 10 0 -4.628004657281974
+             vertex3 4 9 -4.628004657281974 }",
+    );
+    assert_eq!(verify::pixel(&model, 0, 0), Verdict::Proven);
+    let sight = model.camera.value.sight(0.0, 0.0);
+    let met = tabray::trace::first_hit(&model, &sight).expect("a triangle").index;
+    assert_eq!(met, 0, "rational arithmetic says that the sliver is nearer, by 6e-10");
+}
+
+/// Numbers whose squares nearly overflow or vanish are no reason for a doubt, in any kind of shape.
+#[test]
+fn scenes_of_any_scale_are_proven() {
+    for scale in ["e-150", "", "e150"] {
+        let n = |number: &str| format!("{number}{scale}");
+        let (one, two, three, four, half) = (n("1"), n("2"), n("3"), n("4"), n("0.5"));
+        let model = model(&format!(
+            "camera eye {{ pixeldim 24 18 worlddim {} {} viewpoint {four} {three} {} }}
+             material m {{ ambient 1 0 0 }}
+             sphere s {{ material m center {four} {three} -{four} radius {two} }}
+             torus t {{ material m center {four} {three} -{four} direction 1 2 3 radius {three} tube {half} }}
+             triangle q {{ material m vertex1 0 0 -{three} vertex2 {} 0 -{three} vertex3 {four} {} -{} }}
+             revsurf v {{ material m profile \"{one} + 0*y\" direction 0.1 1 0 base {two} {one} -{three} height {three} }}
+             quadric w {{ material m coefficients 1 1 -1 0 0 0 0 0 0 0 center {} {three} -{four}
+                 box -{one} -{one} -{one} {one} {one} {one} }}",
+            n("8"),
+            n("6"),
+            n("6"),
+            n("8"),
+            n("6"),
+            n("5"),
+            n("6"),
+        ));
+        let [_, ties, contradicted] = counts(&model, 1);
+        assert_eq!((ties, contradicted), (0, 0), "{scale}");
+    }
+}
+
+/// Two surfaces in one place are told from two that are apart, however little.
+#[test]
+fn a_tie_is_a_tie_and_nothing_near_it() {
+    let verdicts = |apart: &str| {
+        let model = model(&format!(
+            "camera eye {{ pixeldim 16 12 worlddim 8 5 viewpoint 4 3 6 }}
+             material m {{ ambient 1 0 0 }}
+             fplane rug {{ material m normal 0 2 1 point 2 {apart} -3 xdir 1 0 0 dimensions 4 4 }}
+             plane floor {{ material m normal 0 2 1 point 0 0 -3 }}"
+        ));
+        counts(&model, 1)
+    };
+    assert!(verdicts("0")[1] > 5, "the rug lies on the floor");
+    assert_eq!(verdicts("1e-30")[1..], [0, 0], "it floats");
+    assert_eq!(verdicts("-1e-30")[1..], [0, 0], "it lies below");
+}
