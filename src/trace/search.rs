@@ -8,7 +8,7 @@ use crate::bundles::{self, PART};
 use crate::certify::{self, Enclosure, Precision};
 use crate::coincidence;
 use crate::cpu::{Cpu, kernels};
-use crate::geometry::{Hittable, MISS, Ray, Side, Span};
+use crate::geometry::{Bracket, Hittable, MISS, Ray, Side, Span};
 use crate::interval::Wide;
 use crate::packet::{Nearest, Rays, parts};
 use crate::sight::Sight;
@@ -339,14 +339,25 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
         }
         let (near, far, met) =
             (&mut self.found.near[lane], &mut self.found.far[lane], &mut self.found.met[lane]);
-        if near != far {
+        let rival_distance = if near == far {
+            *far
+        } else {
             let rival = *met as usize - 1;
             let rival_leaves = self.group.sides_of(rival).map(|sides| sides[lane]);
-            *near = exact(&*objects[rival].shape, &start, rival_leaves, MISS);
-            *far = *near;
-        }
-        if self.tracer.is_first(&start, (index, distance), (*met, *far)) {
-            (*near, *far, *met) = (distance, distance, index as u64 + 1);
+            exact(&*objects[rival].shape, &start, rival_leaves, MISS)
+        };
+        let is_first = self.tracer.is_first(&start, (index, distance), (*met, rival_distance));
+        let nearest = if is_first { distance } else { rival_distance };
+        // The ray from the viewer that was not rounded meets it anywhere in its bracket, and may meet others there.
+        let bracket = match start.sight {
+            Some(_) if is_first => objects[index].shape.bracket(&start.ray, &Span::RAY),
+            Some(_) => Bracket { near: *near, far: *far },
+            None => Bracket::exactly(nearest),
+        };
+        let is_known = bracket.near <= nearest && nearest <= bracket.far && bracket.far < MISS;
+        (*near, *far) = if is_known { (bracket.near, bracket.far) } else { (nearest, nearest) };
+        if is_first {
+            *met = index as u64 + 1;
         }
     }
 
