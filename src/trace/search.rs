@@ -147,19 +147,15 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
             let shape = &*self.model.objects[object].shape;
             let sides = group.sides_of(object);
             shape.distances(self.cpu, group.rays(), sides, (near, far), distances);
-            if keep_known(self.cpu, near, far, distances) {
+            if keep_in_brackets(self.cpu, near, far, distances) {
                 for lane in 0..len {
                     if distances[lane].is_nan() {
                         let leaves = sides.map(|sides| sides[lane]);
-                        distances[lane] = exact(shape, &self.start(group, lane), leaves, MISS);
+                        let distance = exact(shape, &self.start(group, lane), leaves, MISS);
+                        distances[lane] = distance.max(near[lane]).min(far[lane]);
                     }
                 }
             }
-            debug_assert!(
-                (0..len).all(|lane| near[lane] <= distances[lane] && distances[lane] <= far[lane]),
-                "brackets of `{}` do not hold what is in them",
-                self.model.objects[object].args.entity.name,
-            );
         }
         // What is beyond the last ray goes on as a copy of it: what plain arithmetic left open there is no number, and
         // would make no box of the places.
@@ -219,6 +215,17 @@ fn decided(shape: &dyn Hittable, sight: &Sight, distance: f64) -> f64 {
     }
 }
 
+/// The bracket of a distance and of that of the ray before anything was rounded.
+fn around(shape: &dyn Hittable, sight: &Sight, distance: f64) -> Bracket {
+    match shape.certify(sight, Precision::Octuple) {
+        Enclosure::Hits(at) | Enclosure::Edge(at) => {
+            let real = certify::in_world_units(at, sight).high;
+            Bracket { near: real.min(distance).next_down(), far: real.max(distance).next_up() }
+        }
+        Enclosure::Misses | Enclosure::Doubtful(_) => Bracket::exactly(distance),
+    }
+}
+
 kernels! {
     /// Counts rays, which have met nothing yet. Tells whether any has cost as many as it may.
     fn begin(budget: &mut [u32], near: &mut [f64], far: &mut [f64], met: &mut [u64]) -> bool {
@@ -239,13 +246,16 @@ kernels! {
         of.iter().fold(0, |other, one| other | (one ^ of[0])) == 0
     }
 
-    /// Puts distances that are known where they are. Tells whether any is no number.
-    fn keep_known(near: &[f64], far: &[f64], distances: &mut [f64]) -> bool {
+    /// Keeps distances in their brackets, which are of no width where they are known. Tells whether any is no number.
+    fn keep_in_brackets(near: &[f64], far: &[f64], distances: &mut [f64]) -> bool {
         let count = distances.len();
         let (near, far) = (&near[..count], &far[..count]);
         let mut any = 0;
         for lane in 0..count {
-            distances[lane] = if near[lane] == far[lane] { near[lane] } else { distances[lane] };
+            // A ray that was rounded may miss what the real one touches, or meet it elsewhere.
+            let (low, high) = (near[lane], far[lane]);
+            let held = if distances[lane] < low { low } else { distances[lane] };
+            distances[lane] = if held > high { high } else { held };
             any |= u64::from(distances[lane].is_nan());
         }
         any != 0
@@ -350,7 +360,11 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
         let nearest = if is_first { distance } else { rival_distance };
         // The ray from the viewer that was not rounded meets it anywhere in its bracket, and may meet others there.
         let bracket = match start.sight {
-            Some(_) if is_first => objects[index].shape.bracket(&start.ray, &Span::RAY),
+            Some(sight) if is_first => {
+                let shape = &*objects[index].shape;
+                let bracket = shape.bracket(&start.ray, &Span::RAY);
+                if bracket.is_doubtful() { around(shape, &sight, distance) } else { bracket }
+            }
             Some(_) => Bracket { near: *near, far: *far },
             None => Bracket::exactly(nearest),
         };
