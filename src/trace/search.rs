@@ -220,7 +220,7 @@ fn around(shape: &dyn Hittable, sight: &Sight, distance: f64) -> Bracket {
     match shape.certify(sight, Precision::Octuple) {
         Enclosure::Hits(at) | Enclosure::Edge(at) => {
             let real = certify::in_world_units(at, sight).high;
-            Bracket { near: real.min(distance).next_down(), far: real.max(distance).next_up() }
+            Bracket { near: real.min(distance), far: real.max(distance) }
         }
         Enclosure::Misses | Enclosure::Doubtful(_) => Bracket::exactly(distance),
     }
