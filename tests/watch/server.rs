@@ -91,7 +91,10 @@ fn a_texture_is_watched_even_one_that_is_not_there_yet() {
     fs::write(&texture, b"P6 1 1 255 \xff\x00\x00").expect("a file");
     assert_eq!(events.until("scene")["version"], 1);
     events.until("done");
-    fs::write(&texture, b"P6 1 1 255 \x00\xff\x00").expect("a file");
+    // As editors do: a file that is written in place may be read in between.
+    let other = texture.with_extension("new");
+    fs::write(&other, b"P6 1 1 255 \x00\xff\x00").expect("a file");
+    fs::rename(&other, &texture).expect("a file in its place");
     assert_eq!(events.until("scene")["version"], 2);
     let parts = events.parts();
     let last = parts.last().expect("a part");
