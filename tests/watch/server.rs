@@ -91,15 +91,13 @@ fn a_texture_is_watched_even_one_that_is_not_there_yet() {
     fs::write(&texture, b"P6 1 1 255 \xff\x00\x00").expect("a file");
     assert_eq!(events.until("scene")["version"], 1);
     events.until("done");
-    // As editors do: a file that is written in place may be read in between.
-    let other = texture.with_extension("new");
-    fs::write(&other, b"P6 1 1 255 \x00\xff\x00").expect("a file");
-    fs::rename(&other, &texture).expect("a file in its place");
+    fs::write(&texture, b"P6 1 1 255 \x00\xff\x00").expect("a file");
     assert_eq!(events.until("scene")["version"], 2);
     let parts = events.parts();
-    let last = parts.last().expect("a part");
-    assert_eq!((last.channels[0], last.channels[2]), (0.0, 0.0));
-    assert!(last.channels[1] > 0.0);
+    // Which part comes last is up to the threads, and its first pixel may look past the wall.
+    let (colours, _) = parts.last().expect("a part").channels.as_chunks::<3>();
+    assert!(colours.iter().all(|[red, _, blue]| (*red, *blue) == (0.0, 0.0)));
+    assert!(colours.iter().any(|[_, green, _]| *green > 0.0));
 }
 
 #[test]
