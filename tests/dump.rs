@@ -86,6 +86,7 @@ fn of_a_constructor(fault: &Fault) -> bool {
         "have the name",
         "is defined",
         "squares",
+        "has a profile",
     ];
     found.iter().any(|words| fault.message.contains(words))
 }
