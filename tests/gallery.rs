@@ -190,8 +190,8 @@ scene chooses with `accuracy`; see [how exact the methods are](accuracy.md).
 | [`16 + turning points`](../src/roots/turning.rs) | samples, and the places between them where the function turns | what turns twice between two samples |
 | [`sphere tracing`](../src/roots/tracing.rs) | steps that a bound of the slope allows | hits what it only comes near to; slow at silhouettes |
 | [`intervals`](../src/roots/intervals.rs) | bounds of values and slopes (Mitchell 1990) | slow at silhouettes |
-| [`Taylor bounds`](../src/roots/taylor.rs) | bounds of the curvature, too; how shapes of one formula are found | no case is known |
-| `draft`, `exact`, `strict` | for surfaces of revolution quadrics with a proven error, then Newton; Taylor bounds where a ray grazes | no case is known |
+| [`Taylor bounds`](../src/roots/taylor.rs) | bounds of the curvature, too; how shapes of one formula are found | a few of a hundred thousand rays that nearly touch: [the falsifier](falsify.md) counts them |
+| `draft`, `exact`, `strict` | for surfaces of revolution quadrics with a proven error, then Newton; Taylor bounds where a ray grazes | a few of a hundred thousand rays that nearly touch: [the falsifier](falsify.md) counts them |
 
 The counts here differ from those of [accuracy.md](accuracy.md) and of other tables, as the rays do. There all rays of
 a kind go through one scene and each profile has a million; here they are those of the scene's own camera, and grazing
