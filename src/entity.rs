@@ -8,6 +8,7 @@ use crate::pparm::{Attribute, Pparm, Row, Table};
 use crate::texture::Texture;
 use crate::value::{Datum, Value};
 use crate::words;
+use serde::Serialize;
 use std::panic::Location;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -40,7 +41,8 @@ impl fmt::Debug for Entity {
 }
 
 /// The kinds of entity that a scene is made of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Kind {
     /// The viewer and the screen; a scene has one.
     Camera,

@@ -1,6 +1,7 @@
-//! Small helps for messages: the word that was meant, lists of words, and reasons.
+//! Small helps for messages: the word that was meant, lists of words, reasons, and texts for programs.
 
 use image::ImageError;
+use serde::Serialize;
 use std::io;
 use std::panic::Location;
 use std::path::Path;
@@ -80,3 +81,15 @@ pub fn short(number: f64) -> String {
 pub fn count(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
+
+/// A value as JSON, on one line. Its type says which fields it has, in the order in which they are written.
+pub fn json(value: &impl Serialize) -> String {
+    serde_json::to_string(value).expect(NAMED)
+}
+
+/// A value as JSON, with a field on each line, the last one ended.
+pub fn json_in_lines(value: &impl Serialize) -> String {
+    serde_json::to_string_pretty(value).expect(NAMED) + "\n"
+}
+
+const NAMED: &str = "only a map whose keys are no names has no JSON";

@@ -1,13 +1,13 @@
 //! `tabray grammar`: what editors need to colour scenes in the notes' spelling.
 
 use super::{Failure, print};
-use crate::grammar;
 use crate::registry::Registry;
+use crate::{grammar, words};
 
 /// Print a TextMate grammar of scenes, for editors
 #[derive(clap::Args)]
 pub struct Args {}
 
 pub fn run(registry: &Registry) -> Result<(), Failure> {
-    print(&format!("{:#}\n", grammar::of(registry)))
+    print(&words::json_in_lines(&grammar::of(registry)))
 }

@@ -5,8 +5,9 @@ use crate::entity::Entity;
 use crate::pparm::Attribute;
 use crate::reference;
 use crate::registry::Registry;
-use crate::tables;
+use crate::tables::Tables;
 use crate::value::Datum;
+use crate::words;
 
 /// List the entity types, or the attributes of one
 #[derive(clap::Args)]
@@ -26,7 +27,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         return print(&reference::markdown(registry));
     }
     if args.json {
-        return print(&format!("{:#}\n", tables::json(registry)));
+        return print(&words::json_in_lines(&Tables::of(registry)));
     }
     let Some(name) = args.entity else {
         return print(&columns(

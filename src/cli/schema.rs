@@ -2,12 +2,12 @@
 
 use super::{Failure, print};
 use crate::registry::Registry;
-use crate::schema;
+use crate::{schema, words};
 
 /// Print a JSON Schema of scenes in TOML, for editors
 #[derive(clap::Args)]
 pub struct Args {}
 
 pub fn run(registry: &Registry) -> Result<(), Failure> {
-    print(&format!("{:#}\n", schema::of(registry)))
+    print(&words::json_in_lines(&schema::of(registry)))
 }

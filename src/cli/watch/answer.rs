@@ -6,11 +6,12 @@ use crate::aov::Aov;
 use crate::cli::serve::{self, Body};
 use crate::probe;
 use crate::render::Renderer;
+use crate::words;
 use http_body_util::BodyExt;
 use http_body_util::channel::Channel;
 use hyper::body::Bytes;
 use hyper::{Method, Request, Response, StatusCode};
-use serde_json::json;
+use serde::Serialize;
 use std::io;
 use std::sync::Arc;
 
@@ -76,10 +77,20 @@ fn pixel(frame: Arc<Frame>, x: &str, y: &str) -> Option<Job> {
         Renderer::new(1)?.run(|| {
             let mut text = Vec::new();
             probe::pixel(&frame.model, x, y, &mut text)?;
-            let data = json!({ "text": String::from_utf8_lossy(&text), "lines": frame.lines_of([x, y]) });
-            Ok(("application/json", data.to_string().into_bytes()))
+            let explained =
+                Explained { lines: frame.lines_of([x, y]), text: &String::from_utf8_lossy(&text) };
+            Ok(("application/json", words::json(&explained).into_bytes()))
         })
     }))
+}
+
+/// How a pixel came about.
+#[derive(Serialize)]
+struct Explained<'e> {
+    /// The first and the last line of the object that it shows, counted from 1; null where it shows none.
+    lines: Option<[usize; 2]>,
+    /// What `tabray probe` prints.
+    text: &'e str,
 }
 
 /// A picture beside the main one: red, green and blue of each pixel.
