@@ -60,12 +60,23 @@ kernels! {
 /// The bracket of a shape that has no quicker one than its distance.
 #[inline(always)]
 pub(crate) fn bracket<T: Hittable + ?Sized>(shape: &T, ray: &Ray, within: &Span) -> Bracket {
+    bracket_by(shape, ray, within, |within| Some(shape.distance(ray, within)))
+}
+
+/// As [`bracket`], of a shape's distance where rounding does not decide it.
+#[inline(always)]
+pub(crate) fn bracket_by<T: Hittable + ?Sized>(
+    shape: &T,
+    ray: &Ray,
+    within: &Span,
+    distance: impl FnOnce(&Span) -> Option<f64>,
+) -> Bracket {
     let Span { far, leaves, origin_error, .. } = *within;
     if leaves.is_none() && origin_error > 0.0 && shape.touches(ray.origin, origin_error) {
         return Bracket::UNKNOWN;
     }
     let close = if far < MISS { CLOSE * far } else { 0.0 };
-    let distance = shape.distance(ray, &Span { far: far + close, ..*within });
+    let Some(distance) = distance(&Span { far: far + close, ..*within }) else { return Bracket::UNKNOWN };
     // At the distance of another surface, more digits tell which comes first.
     if (distance - far).abs() <= close {
         return Bracket { near: distance - close, far: distance + close };

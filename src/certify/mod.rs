@@ -49,6 +49,12 @@ pub fn in_world_units(distance: Wide, sight: &Sight) -> Twofold {
     middle(distance * sight.length())
 }
 
+/// Bounds of a distance in lengths of a sight's direction, in world units.
+pub fn bounds_in_world_units(distance: Wide, sight: &Sight) -> Interval {
+    let Interval { low, high } = distance * sight.length();
+    Interval { low: low.to_f64().next_down(), high: high.to_f64().next_up() }
+}
+
 /// The middle of an interval, in twice the precision of `f64`.
 pub fn middle(of: Wide) -> Twofold {
     let middle = of.middle();

@@ -35,7 +35,7 @@ use crate::geometry::{MISS, Ray, Side, Span};
 use crate::interval::Interval;
 use crate::number::Number;
 use crate::roots::Method;
-use crate::roots::taylor::Line;
+use crate::roots::taylor::{Found, Line};
 use crate::roots::twice;
 use crate::twofold::Twofold;
 use crate::words;
@@ -75,15 +75,14 @@ impl Revolution {
         Ok(Self { profile: profile.clone(), square, height, slabs, finish })
     }
 
-    /// The distance of a ray's first hit within a span, whatever the ray does.
-    pub fn first_hit(&self, frame: &Frame, ray: &Ray, within: &Span) -> f64 {
+    /// The distance of a ray's first hit within a span, whatever the ray does, and whether it is that of all rays that
+    /// this one was rounded from.
+    pub fn first_hit(&self, frame: &Frame, ray: &Ray, within: &Span) -> (f64, bool) {
         let Some(local) = Local::new(frame, ray, within, self.height, self.slabs.widest()) else {
-            return MISS;
+            return (MISS, true);
         };
-        match self.walk(&local, within.leaves) {
-            Some(along) => within.keep(local.base + along),
-            None => MISS,
-        }
+        let Found { root, is_certain } = self.walk(&local, within.leaves);
+        (root.map_or(MISS, |along| within.keep(local.base + along)), is_certain)
     }
 
     /// Whether it comes into the box of so many units around a point. Beyond the surface's ends the profile may be
@@ -144,8 +143,7 @@ impl Revolution {
 /// How its hits are found.
 impl fmt::Display for Revolution {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let slabs = (0..self.slabs.count()).map(|index| self.slabs.get(index));
-        let error = slabs.map(|slab| slab.error).fold(0.0, f64::max);
+        let error = self.slabs.coarsest();
         let count = words::count(self.slabs.count(), "slab");
         let finish = match self.finish {
             Finish::Bracket => "left in the middle of their brackets",

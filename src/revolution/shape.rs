@@ -7,7 +7,7 @@ use crate::certify::{self, Enclosure, Equation, Precision};
 use crate::coincidence;
 use crate::cpu::Cpu;
 use crate::frame::Frame;
-use crate::geometry::{Hittable, Ray, Side, Span};
+use crate::geometry::{Bracket, Hittable, Ray, Side, Span};
 use crate::landing::Landing;
 use crate::number::Number;
 use crate::packet::{self, Nearest, Rays, parts};
@@ -66,7 +66,7 @@ impl Hittable for InFrame<Classic> {
 
 impl Hittable for InFrame<Revolution> {
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        self.surface.distance(&self.frame, ray, within)
+        self.surface.distance(&self.frame, ray, within).0
     }
 
     fn distance_by(&self, method: Method, ray: &Ray, within: &Span) -> Option<f64> {
@@ -89,6 +89,13 @@ impl Hittable for InFrame<Revolution> {
 
     fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold> {
         coincidence::distance(self, ray, distance)
+    }
+
+    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
+        coincidence::bracket_by(self, ray, within, |within| {
+            let (distance, is_certain) = self.surface.distance(&self.frame, ray, within);
+            is_certain.then_some(distance)
+        })
     }
 
     fn is_two_sided(&self) -> bool {
