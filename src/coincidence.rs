@@ -24,7 +24,7 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 const LEAST_COSINE: f64 = 1.0 / (1 << 26) as f64;
 
 /// Distances that differ by less than this part of them may be the same but for rounding.
-const CLOSE: f64 = 1.0 / (1 << 30) as f64;
+pub(crate) const CLOSE: f64 = 1.0 / (1 << 30) as f64;
 
 /// What is left of the difference of two distances in twice the precision where they are the same, as a part of the
 /// coordinates: a few thousand of its last places.

@@ -218,8 +218,11 @@ fn decided(shape: &dyn Hittable, sight: &Sight, distance: f64) -> (f64, Bracket)
             let Interval { low, high } = certify::bounds_in_world_units(at, sight);
             (distance.clamp(low, high), Bracket { near: low, far: high })
         }
-        // As of a plane that the ray runs along but for rounding.
-        Enclosure::Doubtful(from) if certify::in_world_units(Wide::point(from), sight).high > distance => {
+        // As of a plane that the ray runs along but for rounding: what is undecided lies farther on.
+        Enclosure::Doubtful(from)
+            if certify::in_world_units(Wide::point(from), sight).high * (1.0 - coincidence::CLOSE)
+                > distance =>
+        {
             (MISS, Bracket::MISS)
         }
         Enclosure::Doubtful(_) => (distance, Bracket::exactly(distance)),
