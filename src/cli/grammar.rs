@@ -1,8 +1,9 @@
 //! `tabray grammar`: what editors need to colour scenes in the notes' spelling.
 
 use super::{Failure, print};
-use crate::registry::Registry;
-use crate::{grammar, words};
+use crate::scene::grammar;
+use crate::scene::registry::Registry;
+use crate::words;
 
 /// Print a TextMate grammar of scenes, for editors
 #[derive(clap::Args)]

@@ -1,6 +1,6 @@
 //! What the program says on standard error, in the form that was asked for.
 
-use crate::scene::{Message, Report};
+use crate::scene::reader::{Message, Report};
 use annotate_snippets::{Group, Level, Renderer};
 use anstream::AutoStream;
 use std::io::{self, Write};

@@ -1,9 +1,9 @@
 //! `--stats`: what a picture took, in rays, tests, time and memory.
 
 use super::memory;
-use crate::model::Model;
-use crate::tally::{Cuts, Tally, Tests};
-use crate::watch::Kind;
+use crate::render::tally::{Cuts, Tally, Tests};
+use crate::render::watch::Kind;
+use crate::scene::model::Model;
 use crate::words::{json, short};
 use serde::Serialize;
 use std::cell::Cell;

@@ -9,10 +9,10 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
-use tabray::model::Model;
-use tabray::registry::Registry;
-use tabray::render::Renderer;
-use tabray::scene;
+use tabray::render::renderer::Renderer;
+use tabray::scene::model::Model;
+use tabray::scene::reader;
+use tabray::scene::registry::Registry;
 
 /// The entity types of the program.
 pub fn registry() -> &'static Registry {
@@ -31,7 +31,7 @@ pub fn model(text: &str) -> Model {
 
 /// The model of a scene's text, whose file names start from `folder`.
 pub fn model_in(folder: &Path, text: &str) -> Model {
-    match scene::read(registry(), "scene", folder, text.as_bytes(), None) {
+    match reader::read(registry(), "scene", folder, text.as_bytes(), None) {
         Ok(loaded) => loaded.model,
         Err(report) => panic!("{report}\n{text}"),
     }
