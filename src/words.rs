@@ -1,5 +1,6 @@
 //! Small helps for messages: the word that was meant, lists of words, reasons, and texts for programs.
 
+use clap::ValueEnum;
 use image::ImageError;
 use serde::Serialize;
 use std::io;
@@ -93,3 +94,14 @@ pub fn json_in_lines(value: &impl Serialize) -> String {
 }
 
 const NAMED: &str = "only a map whose keys are no names has no JSON";
+
+/// What the command line calls one of several values.
+pub fn name(value: &impl ValueEnum) -> String {
+    value.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
+}
+
+/// A text with a capital for its first letter.
+pub fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
+}

@@ -5,6 +5,7 @@ mod common;
 use common::program::{folder, names_in, outcome, scene, tabray};
 use common::{assert_tells_fields, registry, root};
 use serde_json::Value;
+use std::collections::BTreeSet;
 use std::fs;
 
 fn printed(args: &[&str]) -> String {
@@ -119,5 +120,34 @@ fn the_readme_names_every_command() {
         let command = line.split_whitespace().next().expect("a name");
         let is_told = [' ', '`'].iter().any(|end| readme.contains(&format!("`tabray {command}{end}")));
         assert!(is_told, "the README has no {command}");
+    }
+}
+
+/// The names of the crates in a table of `Cargo.toml`, and in those of the same name for one system.
+fn named(manifest: &toml::Table, table: &str) -> BTreeSet<String> {
+    let targets = manifest["target"].as_table().expect("targets").values().filter_map(toml::Value::as_table);
+    let tables = targets.chain([manifest]).filter_map(|target| target.get(table)?.as_table());
+    tables.flat_map(toml::Table::keys).cloned().collect()
+}
+
+#[test]
+fn every_dependency_has_its_reason() {
+    let read = |file| fs::read_to_string(root().join(file)).expect("a text");
+    let manifest: toml::Table = toml::from_str(&read("Cargo.toml")).expect("a manifest");
+    let page = read("docs/dependencies.md");
+    let sections: Vec<_> = page.split("\n## ").skip(1).collect();
+    for (section, table) in sections.into_iter().zip(["dependencies", "dev-dependencies"]) {
+        let rows: Vec<Vec<_>> = section
+            .lines()
+            .filter_map(|line| line.strip_prefix("| `"))
+            .map(|row| {
+                row.split(" | ").map(|cell| cell.trim_end_matches(['`', '|', ' ']).to_owned()).collect()
+            })
+            .collect();
+        assert!(
+            rows.iter().all(|row| matches!(&row[..], [_, what, why] if !what.is_empty() && !why.is_empty()))
+        );
+        let told: BTreeSet<_> = rows.into_iter().map(|mut row| row.swap_remove(0)).collect();
+        assert_eq!(told, named(&manifest, table), "docs/dependencies.md, of the {table} of Cargo.toml");
     }
 }

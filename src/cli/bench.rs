@@ -87,8 +87,8 @@ impl About {
         let Self { name, size: [width, height], objects, lights, cpu } = self;
         let mut text = format!(
             "{name}: {width} x {height} pixels, {}, {}, {cpu}, one core\n\n",
-            count(*objects, "object"),
-            count(*lights, "light"),
+            words::count(*objects, "object"),
+            words::count(*lights, "light"),
         );
         let mut line = |cells: [&str; 6]| {
             let [first, cells @ ..] = cells;
@@ -234,10 +234,6 @@ impl Times {
             tests: tests.number,
         }
     }
-}
-
-fn count(number: usize, of: &str) -> String {
-    format!("{number} {of}{}", if number == 1 { "" } else { "s" })
 }
 
 fn number(value: Option<f64>, digits: usize) -> String {

@@ -11,7 +11,7 @@ use std::io::{self, BufWriter, Write};
 pub struct Args {
     /// Print the course notes' debug lines to standard error before rendering
     #[arg(long, value_name = "LINES", value_delimiter = ',')]
-    debug: Vec<LineName>,
+    debug: Vec<Line>,
     /// Print them for one pixel or for a rectangle, both corners included: columns count from 0 at the left, rows
     /// from 0 at the bottom
     #[arg(long, value_name = "X,Y|X0,Y0,X1,Y1", requires = "debug", value_parser = corners)]
@@ -19,28 +19,11 @@ pub struct Args {
     at: Option<[[i64; 2]; 2]>,
 }
 
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum LineName {
-    /// The pixel: its row and its column
-    Pix,
-    /// What a ray meets, and where
-    Hit,
-    /// The colour of what it meets
-    Drgb,
-    /// The pixel's bytes
-    Irgb,
-    /// The pixel's place in the picture's file
-    Offset,
-    /// Each object that a search finds, and its distance
-    Find,
-}
-
 /// Prints the lines that are asked for.
 pub fn print(model: &Model, args: &Args) -> Result<(), Failure> {
     if args.debug.is_empty() {
         return Ok(());
     }
-    let lines: Vec<_> = args.debug.iter().copied().map(line).collect();
     let [width, height] = model.camera.value.pixels;
     let [a, b] = match args.at {
         Some([a, b]) => [probe::inside(model, a)?, probe::inside(model, b)?],
@@ -51,7 +34,7 @@ pub fn print(model: &Model, args: &Args) -> Result<(), Failure> {
         // The notes' order.
         for y in a[1].min(b[1])..=a[1].max(b[1]) {
             for x in a[0].min(b[0])..=a[0].max(b[0]) {
-                debug::pixel(model, x, y, &lines, &mut out)?;
+                debug::pixel(model, x, y, &args.debug, &mut out)?;
                 if interrupt::check().is_break() {
                     return Err(io::ErrorKind::Interrupted.into());
                 }
@@ -67,17 +50,6 @@ pub fn print(model: &Model, args: &Args) -> Result<(), Failure> {
         }
         // Where standard error is closed there is nobody to tell.
         _ => Ok(()),
-    }
-}
-
-fn line(name: LineName) -> Line {
-    match name {
-        LineName::Pix => Line::Pix,
-        LineName::Hit => Line::Hit,
-        LineName::Drgb => Line::Drgb,
-        LineName::Irgb => Line::Irgb,
-        LineName::Offset => Line::Offset,
-        LineName::Find => Line::Find,
     }
 }
 

@@ -1,8 +1,7 @@
 //! A picture being made: rendered and written, or stopped and left to be gone on with.
 
-use super::output::Output;
+use super::output::{Output, finished};
 use super::progress::Progress;
-use super::render::finished;
 use super::resume::{self, Begun};
 use super::size::Part;
 use super::stats::Stats;

@@ -12,7 +12,6 @@ use crate::scene::reader::Loaded;
 use crate::scene::registry::Registry;
 use crate::world::accuracy::Accuracy;
 use crate::world::sample::{self, Sampler};
-use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -27,16 +26,16 @@ pub struct Args {
     output: Option<PathBuf>,
     /// The picture's format, whatever the file's extension
     #[arg(long)]
-    format: Option<FormatName>,
+    format: Option<Format>,
     /// How hard a PNG is compressed
     #[arg(long, value_name = "HOW", default_value = "fast")]
-    compress: CompressionName,
+    compress: Compression,
     /// How many rays look through each pixel, to smooth edges; by default what the scene's camera says
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(sample::MOST)))]
     samples: Option<u32>,
     /// Where the rays of a pixel lie
     #[arg(long, value_name = "NAME", default_value = "sobol")]
-    sampler: SamplerName,
+    sampler: Sampler,
     /// How many threads to use; by default one on each core
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -56,30 +55,6 @@ pub struct Args {
     stop: stop::Args,
 }
 
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum FormatName {
-    Ppm,
-    Png,
-}
-
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum CompressionName {
-    /// As quickly as possible
-    Fast,
-    /// Smaller
-    Default,
-    /// As small as possible
-    Best,
-}
-
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum SamplerName {
-    /// Spread evenly
-    Sobol,
-    /// Anywhere, as in the course notes
-    Random,
-}
-
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let path = target(&args)?;
     let format = format(&args, &path)?;
@@ -92,10 +67,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let mut stats = Stats { reading: start.elapsed() - building, building, ..Stats::default() };
     let camera = &mut model.camera.value;
     camera.samples = args.samples.unwrap_or(camera.samples);
-    camera.sampler = match args.sampler {
-        SamplerName::Sobol => Sampler::Sobol,
-        SamplerName::Random => Sampler::Random,
-    };
+    camera.sampler = args.sampler;
     let part = args.size.apply(camera)?;
     interrupt::catch()?;
     let output = Output::open(&path)?;
@@ -133,19 +105,11 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     aov::write(&model, exact, threads, format, beside)
 }
 
-/// Puts a picture in its place, if it was written without an error.
-pub fn finished(path: &Path, written: io::Result<()>, out: BufWriter<Output>) -> Result<(), Failure> {
-    match written.and_then(|()| out.into_inner().map_err(|error| error.into_error())?.finish()) {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::cannot_write(path, &error)),
-        _ => Ok(()),
-    }
-}
-
 fn target(args: &Args) -> Result<PathBuf, Failure> {
     match (&args.output, args.scene.file_name()) {
         (Some(path), _) => Ok(path.clone()),
         (None, Some(name)) if !input::is_standard(&args.scene) => {
-            let extension = if matches!(args.format, Some(FormatName::Ppm)) { "ppm" } else { "png" };
+            let extension = if args.format == Some(Format::Ppm) { "ppm" } else { "png" };
             Ok(Path::new(name).with_extension(extension))
         }
         _ => Err(Failure::Usage(
@@ -156,20 +120,15 @@ fn target(args: &Args) -> Result<PathBuf, Failure> {
 }
 
 fn format(args: &Args, path: &Path) -> Result<Format, Failure> {
-    let compression = match args.compress {
-        CompressionName::Fast => Compression::Fast,
-        CompressionName::Default => Compression::Balanced,
-        CompressionName::Best => Compression::High,
+    let format = match args.format {
+        Some(format) => format,
+        None if path == Path::new("-") => Format::Ppm,
+        None => named(path, "end it in .png or .ppm, or give `--format png` or `--format ppm`")?,
     };
-    match args.format {
-        Some(FormatName::Ppm) => Ok(Format::Ppm),
-        Some(FormatName::Png) => Ok(Format::Png(compression)),
-        None if path == Path::new("-") => Ok(Format::Ppm),
-        None => match named(path, "end it in .png or .ppm, or give `--format png` or `--format ppm`")? {
-            Format::Png(_) => Ok(Format::Png(compression)),
-            Format::Ppm => Ok(Format::Ppm),
-        },
-    }
+    Ok(match format {
+        Format::Png(_) => Format::Png(args.compress),
+        Format::Ppm => Format::Ppm,
+    })
 }
 
 /// The format that a file's name says, or what would be right.

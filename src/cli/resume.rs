@@ -1,7 +1,7 @@
 //! Checkpoints beside pictures: left where a render stops, and gone on from by `--resume`.
 
 use super::job::Job;
-use super::output::Output;
+use super::output::{self, Output};
 use super::size::Part;
 use super::{Failure, messages};
 use crate::output::checkpoint::{self, Checkpoint, Identity};
@@ -21,9 +21,7 @@ pub struct Begun {
 
 /// Where the checkpoint of a picture is.
 pub fn beside(picture: &Path) -> PathBuf {
-    let mut path = picture.to_owned().into_os_string();
-    path.push(".checkpoint");
-    path.into()
+    output::ended(picture, ".checkpoint")
 }
 
 impl Begun {

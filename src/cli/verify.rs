@@ -1,14 +1,13 @@
 //! `tabray verify`: a proof, pixel by pixel, of which object is seen.
 
-use super::output::Output;
+use super::output::{self, Output};
 use super::progress::Progress;
-use super::render::{finished, named};
-use super::{Failure, input, interrupt, messages, method, print};
+use super::render::named;
+use super::{Failure, input, interrupt, method, print};
 use crate::render::renderer::Renderer;
 use crate::scene::registry::Registry;
 use crate::tools::verify::{self, Verdict};
 use crate::words;
-use std::io::BufWriter;
 use std::iter;
 use std::path::PathBuf;
 
@@ -65,10 +64,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
             Verdict::Contradicted => [255, 0, 0],
         };
         let bytes = verdicts.iter().flat_map(colour).collect();
-        let mut out = BufWriter::new(output);
-        let written = format.write(&mut out, size, iter::once(Ok(bytes)));
-        finished(path, written, out)?;
-        messages::note(&format!("wrote {}", path.display()));
+        output::put(path, output, |out| format.write(out, size, iter::once(Ok(bytes))))?;
     }
     if contradicted > 0 {
         return Err(Failure::Failed(format!("the tracer finds another object at {contradicted} pixels")));

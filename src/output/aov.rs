@@ -7,6 +7,7 @@ use crate::render::renderer::Renderer;
 use crate::render::trace;
 use crate::render::watch::{Event, Watch};
 use crate::scene::model::Model;
+use clap::ValueEnum;
 use glam::DVec3;
 use image::codecs::openexr::OpenExrEncoder;
 use image::{ExtendedColorType, ImageEncoder};
@@ -15,7 +16,7 @@ use std::ops::ControlFlow;
 
 /// A picture beside the main one (an arbitrary output variable). All but the cost look along the middle of each
 /// pixel, however many samples it has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Aov {
     /// How far the first hit is: the nearest white, the farthest dark grey, nothing black.
     Depth,
@@ -25,7 +26,8 @@ pub enum Aov {
     Object,
     /// How many rays a pixel costs, the most expensive one white.
     Cost,
-    /// How far a pixel's colour is from the true one, the worst one white; red where another object is seen.
+    /// How far a pixel's colour is from that of four times its samples, at least 64, exactly traced: the worst one white;
+    /// red where another object is seen.
     Error,
 }
 
@@ -49,17 +51,6 @@ pub struct Layer {
 const FARTHEST: f64 = 0.1;
 
 impl Aov {
-    /// Its name, to tell its file from the others.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Depth => "depth",
-            Self::Normal => "normal",
-            Self::Object => "object",
-            Self::Cost => "cost",
-            Self::Error => "error",
-        }
-    }
-
     /// Whether its layer has exact numbers.
     pub fn is_exact(self) -> bool {
         matches!(self, Self::Depth | Self::Normal | Self::Error)

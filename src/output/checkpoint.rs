@@ -10,7 +10,6 @@ use crate::scene::dump;
 use crate::scene::model::Model;
 use crate::scene::syntax::Syntax;
 use crate::words;
-use crate::world::sample::Sampler;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -59,10 +58,6 @@ impl Identity {
         let camera = &model.camera.value;
         let [width, height] = camera.pixels;
         let is_whole = (columns.len(), rows.len()) == (width, height);
-        let sampler = match camera.sampler {
-            Sampler::Sobol => "sobol",
-            Sampler::Random => "random",
-        };
         let textures = model.textures.iter().map(|texture| {
             let [width, height] = texture.value.size();
             let texels = texture.value.load().map_or(&[][..], |picture| picture.as_raw());
@@ -72,7 +67,7 @@ impl Identity {
             accuracy: camera.accuracy.option().name.to_owned(),
             crop: (!is_whole).then(|| [columns.start, height - rows.end, columns.len(), rows.len()]),
             program: program()?,
-            sampler: sampler.to_owned(),
+            sampler: words::name(&camera.sampler),
             samples: camera.samples,
             scene: hash(dump::scene(model, Syntax::Notes).as_bytes()),
             size: camera.pixels,

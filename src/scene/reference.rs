@@ -6,6 +6,7 @@ use crate::scene::pparm::Attribute;
 use crate::scene::profile::Profile;
 use crate::scene::registry::Registry;
 use crate::scene::value::{Datum, Type, Value};
+use crate::words;
 use crate::world::shading::{OnPlane, OnSphere};
 
 const INTRODUCTION: &str = r#"# The scene language
@@ -85,7 +86,7 @@ fn entity_section(entity: &'static Entity) -> String {
         "\n### {name}\n\n{}{also}. [This scene](../scenes/entities/{name}.ray):\n\n\
          ![a picture of {name}](entities/{name}.png)\n\n\
          | attribute | values | if not given | what it is |\n|---|---|---|---|\n{rows}",
-        capital(entity.meaning)
+        words::capital(entity.meaning)
     )
 }
 
@@ -118,9 +119,4 @@ fn choices<T: Choice + Value>(number: &str) -> String {
     };
     let rows: String = choices.all().into_iter().map(row).collect();
     format!("| {} | {number} | what it is |\n|---|---|---|\n{rows}", choices.what)
-}
-
-fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
 }

@@ -3,13 +3,15 @@
 use crate::scene::entity::Entity;
 use crate::scene::pparm::Attribute;
 use crate::scene::value::{Datum, Type};
+use clap::ValueEnum;
 use std::path::Path;
 
 /// A spelling of the scene language.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Syntax {
-    /// The notes' one, `sphere ball { radius 2 }`.
+    /// That of the course notes, `sphere ball { radius 2 }`.
     #[default]
+    #[value(name = "ray")]
     Notes,
     /// TOML, `[sphere.ball]` and below it `radius = 2`.
     Toml,

@@ -5,13 +5,14 @@ use crate::render::trace;
 use crate::render::watch::{Event, Purpose, Watch};
 use crate::scene::model::Model;
 use crate::world::hittable::{Ray, Span};
+use clap::ValueEnum;
 use std::fmt;
 use std::io::{self, Write};
 
 /// One of the notes' debug aids.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Line {
-    /// The pixel, its row first.
+    /// The pixel: its row and its column.
     Pix,
     /// The object that a ray from the viewer, a mirror or glass meets, and where.
     Hit,

@@ -1,5 +1,6 @@
 //! The random numbers of a pixel's samples: the same for any number of threads.
 
+use clap::ValueEnum;
 use glam::DVec2;
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
@@ -8,14 +9,18 @@ use rand_pcg::rand_core::Rng;
 pub const MOST: u32 = 1 << 16;
 
 /// Where a pixel's samples lie.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Sampler {
-    /// Anywhere (the notes): each sample is drawn for itself.
-    Random,
-    /// Spread evenly: Sobol's sequence with Owen scrambling (Burley, "Practical Hash-based Owen Scrambling",
-    /// 2020), scrambled anew for each pixel.
+    /// Spread evenly.
+    ///
+    /// Sobol's sequence with Owen scrambling (Burley, "Practical Hash-based Owen Scrambling", 2020), scrambled anew for
+    /// each pixel.
     #[default]
     Sobol,
+    /// Anywhere, as in the course notes.
+    ///
+    /// Each sample is drawn for itself.
+    Random,
 }
 
 /// One of several samples of a pixel.

@@ -15,6 +15,7 @@ use tabray::output::aov::Aov;
 use tabray::output::picture::to_byte;
 use tabray::render::renderer::Renderer;
 use tabray::tools::probe;
+use tabray::words;
 use tempfile::TempDir;
 
 /// The whole answer to a request as it is written here.
@@ -181,7 +182,7 @@ fn the_layers_are_those_of_aov() {
         let model = model(&ball("9 0 0"));
         let layer = aov.render(&renderer, &model, &model, &|| ControlFlow::Continue(()));
         let expected = layer.unwrap_or_else(|_| panic!("nobody interrupts {aov:?}")).bytes;
-        assert_eq!(watching.get(&format!("layer/1/{}", aov.name())), (200, expected));
+        assert_eq!(watching.get(&format!("layer/1/{}", words::name(&aov))), (200, expected));
     }
 }
 

@@ -4,12 +4,11 @@
 //! that the snapshot is binary, it is in a file of its own, `ball.snap.png` beside `ball.snap` and `ball.snap.new.png`
 //! beside `ball.snap.new`.
 
-use crate::cli::Failure;
-use crate::cli::output::Output;
+use crate::cli::{Failure, output};
 use crate::words;
 use std::fs;
 use std::hash::{DefaultHasher, Hash, Hasher};
-use std::io::{self, Write};
+use std::io;
 use std::path::{Path, PathBuf};
 
 /// A snapshot that waits for a decision.
@@ -37,7 +36,7 @@ pub enum Content {
 pub fn find(path: &Path) -> Result<Vec<PathBuf>, Failure> {
     if !path.is_dir() {
         let snapshot = if path.extension() == Some("new".as_ref()) { &path.with_extension("") } else { path };
-        return match with(snapshot, ".new") {
+        return match output::ended(snapshot, ".new") {
             new if new.is_file() => Ok(vec![new]),
             _ if snapshot.is_file() => {
                 Err(Failure::Usage(format!("nothing is pending for `{}`", path.display()), None))
@@ -95,22 +94,22 @@ impl Pending {
     /// Puts what is new in the place of what is old.
     pub fn accept(&self) -> Result<(), Failure> {
         if let Content::Binary(bytes, extension) = &self.new {
-            put(&with(&self.path, &format!(".{extension}")), bytes)?;
+            output::replace(&output::ended(&self.path, format!(".{extension}")), bytes)?;
         }
         // The line of the test's source is for reviewing alone: it changes too often to be kept.
         let kept = |line: &&str| !line.starts_with("assertion_line:");
         let (header, text) = parts(&self.file).unwrap_or_default();
         let header: String = header.split_inclusive('\n').filter(kept).collect();
-        put(&self.path, format!("---\n{header}---\n{text}").as_bytes())?;
+        output::replace(&self.path, format!("---\n{header}---\n{text}").as_bytes())?;
         self.reject()
     }
 
     /// Removes what is new.
     pub fn reject(&self) -> Result<(), Failure> {
-        let new = with(&self.path, ".new");
+        let new = output::ended(&self.path, ".new");
         let binary = match &self.new {
             Content::Text(_) => None,
-            Content::Binary(_, extension) => Some(with(&new, &format!(".{extension}"))),
+            Content::Binary(_, extension) => Some(output::ended(&new, format!(".{extension}"))),
         };
         [Some(new), binary].into_iter().flatten().try_for_each(|file| {
             fs::remove_file(&file).map_err(|error| {
@@ -131,7 +130,7 @@ fn content(path: &Path, file: &str) -> Result<Option<Content>, String> {
     }
     let extension = field("extension").filter(|extension| extension.chars().all(char::is_alphanumeric));
     let extension = extension.ok_or("its header names no extension")?;
-    match fs::read(with(path, &format!(".{extension}"))) {
+    match fs::read(output::ended(path, format!(".{extension}"))) {
         Ok(bytes) => Ok(Some(Content::Binary(bytes, extension.to_owned()))),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
         Err(error) => Err(format!("its .{extension} file: {}", words::reason(&error))),
@@ -149,20 +148,4 @@ fn parts(file: &str) -> Option<(&str, &str)> {
         end += line.len();
     }
     None
-}
-
-/// A path with something appended: `with_extension` would cut what the name ends in.
-fn with(path: &Path, end: &str) -> PathBuf {
-    let mut path = path.as_os_str().to_owned();
-    path.push(end);
-    path.into()
-}
-
-/// Writes a file in the place of another, or of none.
-fn put(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    let mut output = Output::open(path)?;
-    output
-        .write_all(bytes)
-        .and_then(|()| output.finish())
-        .map_err(|error| Failure::cannot_write(path, &error))
 }

@@ -7,6 +7,7 @@ use crate::output::aov::Aov;
 use crate::render::renderer::Renderer;
 use crate::tools::probe;
 use crate::words;
+use clap::ValueEnum;
 use http_body_util::BodyExt;
 use http_body_util::channel::Channel;
 use hyper::body::Bytes;
@@ -95,7 +96,8 @@ struct Explained<'e> {
 
 /// A picture beside the main one: red, green and blue of each pixel.
 fn layer(frame: Arc<Frame>, name: &str) -> Option<Job> {
-    let aov = [Aov::Depth, Aov::Normal, Aov::Object, Aov::Cost].into_iter().find(|aov| aov.name() == name)?;
+    // An error is seen against the truth, which there is none of here.
+    let aov = Aov::from_str(name, false).ok().filter(|aov| *aov != Aov::Error)?;
     Some(Box::new(move || {
         let layer = aov.render(&Renderer::new(0)?, &frame.model, &frame.model, &|| frame.check())?;
         Ok(("application/octet-stream", layer.bytes))
