@@ -177,20 +177,19 @@ impl Equation for FinitePlane {
         self.plane.value(at)
     }
 
-    /// How far inside of the four sides, each in a measure of its own: unit vectors would need more roots.
+    /// How far inside of the four sides, each in a measure of its own, of a point of the plane. By squares: lengths and
+    /// unit vectors would need roots, which are dear with so many bits.
     fn kept<N: Number>(&self, at: [N; 3]) -> N {
         let n = |of: DVec3| of.to_array().map(N::constant);
-        let (normal, xdir) = (self.plane.given_normal(), n(self.given_xdir));
-        let (square, along) = (dot(normal, normal), dot(normal, xdir));
-        let x = [0, 1, 2].map(|axis| square * xdir[axis] - along * normal[axis]);
-        let y = cross(normal, x);
-        let corner = n(self.plane.point);
+        let (normal, xdir, corner) = (self.plane.given_normal(), n(self.given_xdir), n(self.plane.point));
         let from_corner = [0, 1, 2].map(|axis| at[axis] - corner[axis]);
-        let inside = |side: [N; 3], length: f64| {
-            let along = dot(side, from_corner);
-            along.min(N::constant(length) * dot(side, side).sqrt() - along)
-        };
+        // Of the first side, which is right below `xdir`, the normal is upright on all that is on the plane.
+        let ydir = cross(normal, xdir);
+        let (x, y, square) = (dot(xdir, from_corner), dot(ydir, from_corner), dot(ydir, ydir));
+        let inside = |along: N, part: N, length: f64| along.min(N::constant(length).powi(2) * square - part);
         let [width, height] = self.dimensions.to_array();
-        self.plane.kept(at).min(inside(x, width)).min(inside(y, height))
+        let (inside_x, inside_y) =
+            (inside(x, dot(normal, normal) * x.powi(2), width), inside(y, y.powi(2), height));
+        self.plane.kept(at).min(inside_x).min(inside_y)
     }
 }

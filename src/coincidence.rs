@@ -11,7 +11,6 @@ use crate::dual::Dual;
 use crate::geometry::{Bracket, Hittable, MISS, Ray, Span};
 use crate::interval::Interval;
 use crate::number::Number;
-use crate::packet::View;
 use crate::sight::{Line, Sight};
 use crate::twofold::Twofold;
 use glam::DVec3;
@@ -39,21 +38,27 @@ pub fn error(ray: &Ray, distance: f64, normal: DVec3, reach: f64) -> f64 {
     ROUNDING * size / larger(ray.dir.dot(normal).abs(), LEAST_COSINE)
 }
 
+/// A bound of the error of a point that a ray comes to, as [`error`] has it, from the cosine of its angle with the normal.
+/// `reach` is that of the shape and of the viewer together: no ray starts farther from the viewer than its light has
+/// `travelled`.
+#[inline(always)]
+pub(crate) fn error_after(travelled: f64, reach: f64, cosine: f64) -> f64 {
+    // A division of single precision takes a third of the time, and what it rounds is nothing to a bound.
+    ROUNDING * (travelled + reach) * f64::from(1.0 / larger(cosine.abs(), LEAST_COSINE) as f32)
+}
+
 kernels! {
-    /// Bounds of the errors of points that rays come to, as [`error`] has them, and the greatest of them. `reach` is that
-    /// of the shape and of the viewer together: no ray starts farther from the viewer than its light has `travelled`.
-    pub(crate) fn errors(dir: View, normals: View, travelled: &[f64], reach: f64, out: &mut [f64]) -> f64 {
-        let count = out.len();
-        let (dir, normals, travelled) = (dir.first(count), normals.first(count), &travelled[..count]);
-        let mut most = 0;
-        for lane in 0..count {
-            let cosine = larger(dir.get(lane).dot(normals.get(lane)).abs(), LEAST_COSINE);
-            // A division of single precision takes a third of the time, and what it rounds is nothing to a bound.
-            out[lane] = ROUNDING * (travelled[lane] + reach) * f64::from(1.0 / cosine as f32);
-            // None is below 0, and so their bits are in their order.
-            most = most.max(out[lane].to_bits() as i64);
+    /// No less than [`error_after`] of any of some points: it rises with the way, and falls as the cosine rises, after
+    /// rounding as before.
+    pub(crate) fn most_error(travelled: &[f64], reach: f64, cosines: &[f64]) -> f64 {
+        let travelled = &travelled[..cosines.len()];
+        let (mut most, mut least) = (0, i64::MAX);
+        for lane in 0..cosines.len() {
+            // None of these is below 0, and so their bits are in their order.
+            most = most.max(travelled[lane].to_bits() as i64);
+            least = least.min(larger(cosines[lane].abs(), LEAST_COSINE).to_bits() as i64);
         }
-        f64::from_bits(most as u64)
+        error_after(f64::from_bits(most as u64), reach, f64::from_bits(least as u64))
     }
 }
 

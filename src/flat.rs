@@ -101,7 +101,8 @@ impl Plane {
         }
     }
 
-    /// The distances of a packet's hits, as [`crossing`](Self::crossing) and [`keep`](Self::keep) have them, or NaN.
+    /// The distances of a packet's hits that are certain, as [`crossing`](Self::crossing) has them, or NaN. None of those
+    /// is one that [`keep`](Self::keep) would not.
     pub fn distances(&self, cpu: Cpu, rays: Rays, out: &mut [f64]) {
         match self.accuracy {
             // Upright on an axis, sums have one part, and nothing cancels.
@@ -306,9 +307,7 @@ kernels! {
     fn plain(plane: &Plane, rays: Rays, out: &mut [f64]) {
         let (plane, rays) = (*plane, rays.first(out.len()));
         for lane in 0..out.len() {
-            let ray = rays.get(lane);
-            let distance = plane.products(plane.high(), &ray).draft_distance();
-            out[lane] = plane.quick_keep(distance, &ray, &Span::RAY);
+            out[lane] = plane.products(plane.high(), &rays.get(lane)).draft_distance();
         }
     }
 
@@ -340,8 +339,7 @@ kernels! {
                 }
             }
             for lane in 0..STEP {
-                let distance = quotient((away[lane], away_size[lane]), (toward[lane], toward_size[lane]));
-                out[lane] = plane.quick_keep(distance, &rays.get(lane), &Span::RAY);
+                out[lane] = quotient((away[lane], away_size[lane]), (toward[lane], toward_size[lane]));
             }
         }
     }

@@ -46,7 +46,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
     /// Adds so much light, of the end of a ray.
     fn miss(&mut self, group: &Group, lane: usize, light: f64) {
         let missing = &mut self.rooms.missing[usize::from(group.camera[lane])];
-        let more = group.weight.get(lane).map_or(f64::INFINITY, |weight| weight * light);
+        let more = group.worth.map_or(f64::INFINITY, |worth| worth.weight * light);
         // What is no number bounds nothing.
         *missing = if more >= 0.0 { *missing + more } else { f64::INFINITY };
         self.rooms.any_missing = true;

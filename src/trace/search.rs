@@ -32,12 +32,9 @@ impl Found {
     /// begin; tells whether any has.
     fn begin(&mut self, cpu: Cpu, budget: &mut [u32], count: usize, ends: Option<&[f64]>) -> bool {
         let (near, far) = (room(&mut self.near, count), room(&mut self.far, count));
-        match ends {
-            Some(ends) => far.copy_from_slice(&ends[..count]),
-            None => far.fill(MISS),
-        }
-        room(&mut self.doubt, count).fill(0);
-        begin(cpu, &mut budget[..count], near, far, room(&mut self.met, count))
+        // What is in doubt is written by each shape that is looked at.
+        room(&mut self.doubt, count);
+        begin(cpu, &mut budget[..count], ends, near, far, room(&mut self.met, count))
     }
 
     /// Of some of the rays.
@@ -103,8 +100,7 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
     fn start(&self, group: &Group, lane: usize) -> Start {
         let [x, y] = &self.rooms.places;
         let sight = group.looks.then(|| self.model.camera.value.sight(x[lane], y[lane])).or(group.sight);
-        let error = group.errors.get(lane).copied().unwrap_or(0.0);
-        Start { ray: group.rays().get(lane), error, sight }
+        Start { ray: group.rays().get(lane), error: group.error(lane), sight }
     }
 
     /// Whether rays may meet an object at all: to most that they leave they do not come back.
@@ -185,26 +181,35 @@ impl Start {
 
 /// A shape's exact distance on one ray, which leaves it on a side if it is the object that the packet leaves.
 pub(super) fn exact(shape: &dyn Hittable, start: &Start, leaves: Option<Side>, far: f64) -> f64 {
+    proven(shape, start, leaves, far).0
+}
+
+/// Likewise, and what was proven of it with 237 bits on the way.
+fn proven(shape: &dyn Hittable, start: &Start, leaves: Option<Side>, far: f64) -> (f64, Option<Enclosure>) {
     match start.leaves(shape, leaves) {
-        Some(side) if !shape.meets_itself(side) => return MISS,
+        Some(side) if !shape.meets_itself(side) => return (MISS, None),
         None => {}
-        leaves => return shape.distance(&start.ray, &Span { far, leaves, ..Span::RAY }),
+        leaves => return (shape.distance(&start.ray, &Span { far, leaves, ..Span::RAY }), None),
     }
     let distance = shape.distance(&start.ray, &Span { far, ..Span::RAY });
     // Where what was rounded of the ray may decide whether it meets the shape, the ray does that was not rounded.
     match &start.sight {
-        Some(sight) if shape.bracket(&start.ray, &Span::RAY).is_doubtful() => decided(shape, sight, distance),
-        _ => distance,
+        Some(sight) if shape.bracket(&start.ray, &Span::RAY).is_doubtful() => {
+            match shape.certify(sight, Precision::Double) {
+                Enclosure::Edge(_) | Enclosure::Doubtful(_) => {
+                    let enclosure = shape.certify(sight, Precision::Octuple);
+                    (decided(enclosure, sight, distance), Some(enclosure))
+                }
+                certain => (decided(certain, sight, distance), None),
+            }
+        }
+        _ => (distance, None),
     }
 }
 
-/// A distance, if the ray before anything was rounded has a hit there as far as 237 bits tell, or [`MISS`].
-fn decided(shape: &dyn Hittable, sight: &Sight, distance: f64) -> f64 {
+/// A distance, if the ray before anything was rounded has a hit there as far as is proven, or [`MISS`].
+fn decided(enclosure: Enclosure, sight: &Sight, distance: f64) -> f64 {
     let in_world_units = |at: Wide| certify::in_world_units(at, sight).high;
-    let enclosure = match shape.certify(sight, Precision::Double) {
-        Enclosure::Edge(_) | Enclosure::Doubtful(_) => shape.certify(sight, Precision::Octuple),
-        certain => certain,
-    };
     match enclosure {
         Enclosure::Misses => MISS,
         // What has edges has them inclusive.
@@ -215,9 +220,9 @@ fn decided(shape: &dyn Hittable, sight: &Sight, distance: f64) -> f64 {
     }
 }
 
-/// The bracket of a distance and of that of the ray before anything was rounded.
-fn around(shape: &dyn Hittable, sight: &Sight, distance: f64) -> Bracket {
-    match shape.certify(sight, Precision::Octuple) {
+/// The bracket of a distance and of that of the ray before anything was rounded, of which this is proven.
+fn around(enclosure: Enclosure, sight: &Sight, distance: f64) -> Bracket {
+    match enclosure {
         Enclosure::Hits(at) | Enclosure::Edge(at) => {
             let real = certify::in_world_units(at, sight).high;
             Bracket { near: real.min(distance), far: real.max(distance) }
@@ -228,9 +233,15 @@ fn around(shape: &dyn Hittable, sight: &Sight, distance: f64) -> Bracket {
 
 kernels! {
     /// Counts rays, which have met nothing yet. Tells whether any has cost as many as it may.
-    fn begin(budget: &mut [u32], near: &mut [f64], far: &mut [f64], met: &mut [u64]) -> bool {
+    fn begin(
+        budget: &mut [u32], ends: Option<&[f64]>, near: &mut [f64], far: &mut [f64], met: &mut [u64]
+    ) -> bool {
         let (count, mut any_over) = (budget.len(), 0);
         let (near, far, met) = (&mut near[..count], &mut far[..count], &mut met[..count]);
+        match ends {
+            Some(ends) => far.copy_from_slice(&ends[..count]),
+            None => far.fill(MISS),
+        }
         for lane in 0..count {
             let is_over = budget[lane] == 0;
             let end = if is_over { 0.0 } else { far[lane] };
@@ -298,7 +309,8 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
     /// Looks at the objects that are listed, each for those parts of the packet that may come there.
     fn listed(&mut self) {
         let (cpu, plan) = (self.tracer.cpu, self.tracer.plan);
-        let bundles = bundles::around(cpu, self.group.rays());
+        // Those from the viewer all start there.
+        let bundles = bundles::around(cpu, self.group.rays(), self.group.leaves.is_none());
         for index in &plan.unbounded {
             let shape = &*self.tracer.model.objects[*index].shape;
             if self.tracer.may_meet(self.group.left(), *index) {
@@ -343,7 +355,7 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
     fn decide(&mut self, lane: usize, index: usize, leaves: Option<Side>) {
         let objects = &self.tracer.model.objects;
         let start = self.tracer.start(self.group, lane);
-        let distance = exact(&*objects[index].shape, &start, leaves, MISS);
+        let (distance, enclosure) = proven(&*objects[index].shape, &start, leaves, MISS);
         if distance == MISS {
             return;
         }
@@ -363,7 +375,12 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
             Some(sight) if is_first => {
                 let shape = &*objects[index].shape;
                 let bracket = shape.bracket(&start.ray, &Span::RAY);
-                if bracket.is_doubtful() { around(shape, &sight, distance) } else { bracket }
+                if bracket.is_doubtful() {
+                    let certify = || shape.certify(&sight, Precision::Octuple);
+                    around(enclosure.unwrap_or_else(certify), &sight, distance)
+                } else {
+                    bracket
+                }
             }
             Some(_) => Bracket { near: *near, far: *far },
             None => Bracket::exactly(nearest),
