@@ -132,9 +132,11 @@ pub fn bracket(
     // Of what `aside` is off by: 14 units of 2^-53 of the way from the centre, as in `quick_hit`, and 3 in each
     // component for a camera's direction. ROOM is thousands of times as much, so that the half chord is off by less
     // than ERROR where there is that room.
-    let size = spread * (from.abs().element_sum() + radius) + ORIGIN_ERRORS * origin_error;
+    // The sum of what all rays of a packet have in common comes first.
+    let size = spread * from.abs().element_sum() + (spread * radius + ORIGIN_ERRORS * origin_error);
     let error = ERROR * size * inverse.sqrt();
-    let doubt = ROOM * size * (radius + ROOM * size);
+    let room_error = ROOM * size;
+    let doubt = room_error * (radius + room_error);
     let half = (larger(room, 0.0) * inverse).sqrt();
     let (near, far) = (middle - half, middle + half);
     match leaves {

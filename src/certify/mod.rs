@@ -46,14 +46,29 @@ pub fn is_before(one: &dyn Hittable, other: &dyn Hittable, sight: &Sight) -> Opt
 
 /// A distance in lengths of a sight's direction, in world units: the middle of what it may be.
 pub fn in_world_units(distance: Wide, sight: &Sight) -> Twofold {
-    middle(distance * sight.length())
+    rounded(distance.middle() * root(sight.squared_length::<Wide>().middle()))
 }
 
 /// The middle of an interval, in twice the precision of `f64`.
 pub fn middle(of: Wide) -> Twofold {
-    let middle = of.middle();
-    let high = middle.to_f64();
-    Twofold { high, low: (middle - f256::from(high)).to_f64() }
+    rounded(of.middle())
+}
+
+/// A number in twice the precision of `f64`.
+fn rounded(of: f256) -> Twofold {
+    let high = of.to_f64();
+    Twofold { high, low: (of - f256::from(high)).to_f64() }
+}
+
+/// The square root to some 200 bits: a step of Newton's method from half of them takes a part of the time that all 237 do.
+fn root(of: f256) -> f256 {
+    let Twofold { high, low } = rounded(of).sqrt();
+    // Of what `f64` does not hold.
+    if !high.is_normal() || !low.is_finite() {
+        return of.sqrt();
+    }
+    let start = f256::from(high) + f256::from(low);
+    f256::from(0.5) * (start + of / start)
 }
 
 /// How many bits a proof is tried with.
