@@ -6,7 +6,7 @@
 
 use crate::accuracy::Accuracy;
 use crate::bounds::larger;
-use crate::geometry::{Bracket, MISS, Side};
+use crate::geometry::{Bracket, MISS, Ray, Side};
 use crate::twofold::{Twofold, exponent_to_one, times_power_of_two, two_product};
 use glam::DVec3;
 
@@ -17,6 +17,25 @@ pub struct Line {
     pub from: [Twofold; 3],
     /// Where it goes; of any length. Distances are counted in this length.
     pub dir: [Twofold; 3],
+}
+
+impl Line {
+    /// A ray, counted from the centre.
+    #[inline(always)]
+    pub fn new(ray: &Ray, center: DVec3) -> Self {
+        let from = |axis: usize| Twofold::difference(ray.origin[axis], center[axis]);
+        let dir = |axis: usize| Twofold::from(ray.dir[axis]);
+        Self { from: [from(0), from(1), from(2)], dir: [dir(0), dir(1), dir(2)] }
+    }
+
+    /// A ray where space around the centre is squeezed by this much along each axis.
+    #[inline(always)]
+    pub fn squeezed(ray: &Ray, center: DVec3, scale: DVec3) -> Self {
+        let Self { from, dir } = Self::new(ray, center);
+        let scaled = |of: [Twofold; 3], axis: usize| of[axis] / Twofold::from(scale[axis]);
+        let scaled = |of| [scaled(of, 0), scaled(of, 1), scaled(of, 2)];
+        Self { from: scaled(from), dir: scaled(dir) }
+    }
 }
 
 /// How hits are computed, in a few words.

@@ -71,6 +71,7 @@ pub mod texture;
 pub mod tiles;
 pub mod trace;
 pub mod tree;
+pub mod triangle;
 pub mod twofold;
 pub mod value;
 pub mod verify;

@@ -6,13 +6,15 @@
 
 mod exact;
 mod fine;
+mod quadric;
 mod quick;
 #[cfg(test)]
 mod tests;
 
 use crate::twofold::{Twofold, exponent_to_one, times_power_of_two, two_sum};
 use glam::{DMat3, DVec3};
-pub use quick::Quick;
+pub use quadric::Quadric;
+use quick::Quick;
 
 /// The part in a box of what solves `p·Sp + l·p + c = 0`.
 ///
@@ -47,7 +49,7 @@ pub struct OwnRay {
 const FINE: f64 = 1.0 / (1_u128 << 98) as f64;
 
 /// By what a component of a camera's direction may be off: three units of 2^-53.
-pub const CAMERA: f64 = 1.5 * f64::EPSILON;
+const CAMERA: f64 = 1.5 * f64::EPSILON;
 
 impl Quadratic {
     /// The surface with `Axx + Byy + Czz + Dxy + Exz + Fyz + Gx + Hy + Iz = J`, kept in a box.
@@ -128,7 +130,7 @@ impl Quadratic {
 
 /// The roots by the well-known formula, which the notes have: it loses digits, and double roots.
 #[inline(always)]
-pub fn classic_roots(a: f64, half_b: f64, c: f64) -> [f64; 2] {
+fn classic_roots(a: f64, half_b: f64, c: f64) -> [f64; 2] {
     let b = 2.0 * half_b;
     if a == 0.0 {
         return [-c / b, f64::NAN];
