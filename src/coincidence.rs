@@ -138,3 +138,26 @@ pub(crate) fn is_before(
     }
     (distance != far).then_some(distance < far)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cpu::Cpu;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn the_most_error_is_no_less_than_any(
+            points in prop::collection::vec((0.0..1e3, prop_oneof![-1.0..1.0, -1e-7..1e-7, Just(0.0), Just(f64::NAN)]), 1..20),
+            reach in 0.0..1e3,
+        ) {
+            let (travelled, cosines): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
+            for cpu in Cpu::all() {
+                let most = most_error(cpu, &travelled, reach, &cosines);
+                for (travelled, cosine) in travelled.iter().zip(&cosines) {
+                    prop_assert!(error_after(*travelled, reach, *cosine) <= most, "{} {} {}", travelled, cosine, cpu);
+                }
+            }
+        }
+    }
+}
