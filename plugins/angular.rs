@@ -1,9 +1,9 @@
 //! The notes' shading of a sphere: colours that change with the angle around its centre.
 
 use super::rainbow;
-use crate::geometry::Shader;
-use crate::material::{Look, Material, Rgb};
-use crate::shading::{Anchor, ProceduralShader};
+use crate::world::hittable::Shader;
+use crate::world::material::{Look, Material, Rgb};
+use crate::world::shading::{Anchor, ProceduralShader};
 use glam::{DVec2, DVec3};
 
 inventory::submit! {

@@ -1,10 +1,10 @@
 //! The camera: the viewer, and the screen in the plane z = 0 that the viewer looks through.
 
-use crate::accuracy::Accuracy;
-use crate::camera::Camera;
-use crate::entity::{Entity, Refusal};
-use crate::pparm::{LEAST_LENGTH, Pparm, Table};
-use crate::sample::{MOST, Sampler};
+use crate::scene::entity::{Entity, Refusal};
+use crate::scene::pparm::{LEAST_LENGTH, Pparm, Table};
+use crate::world::accuracy::Accuracy;
+use crate::world::camera::Camera;
+use crate::world::sample::{MOST, Sampler};
 use glam::{DVec2, DVec3};
 
 static PIXELDIM: Pparm<[i64; 2]> = Pparm::required("pixeldim", "the width and height of the picture")

@@ -1,17 +1,17 @@
 //! An ellipsoid: a sphere stretched along the axes.
 
 use super::sphere::{self, Sphere};
-use crate::accuracy::Accuracy;
-use crate::ball::{self, Line};
-use crate::bounds::Bounds;
-use crate::certify::{self, Enclosure, Equation, Precision};
-use crate::coincidence;
-use crate::entity::Entity;
-use crate::geometry::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
-use crate::number::Number;
-use crate::pparm::{Pparm, Row, Table};
-use crate::sight::Sight;
-use crate::twofold::{Twofold, exponent_to_one, times_power_of_two};
+use crate::geometry::bounds::Bounds;
+use crate::geometry::sight::Sight;
+use crate::numeric::number::Number;
+use crate::numeric::twofold::{Twofold, exponent_to_one, times_power_of_two};
+use crate::scene::entity::Entity;
+use crate::scene::pparm::{Pparm, Row, Table};
+use crate::shapes::ball::{self, Line};
+use crate::world::accuracy::Accuracy;
+use crate::world::certify::{self, Enclosure, Equation, Precision};
+use crate::world::coincidence;
+use crate::world::hittable::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
 use glam::DVec3;
 
 static SCALE: Pparm<DVec3> = Pparm::required("scale", "how much it is stretched along x, y and z")

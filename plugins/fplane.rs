@@ -1,20 +1,20 @@
 //! A finite plane: a rectangle.
 
 use super::plane::{self, Plane};
-use crate::accuracy::Accuracy;
-use crate::bounds::Bounds;
-use crate::certify::{self, Enclosure, Equation, Precision};
-use crate::cpu::Cpu;
-use crate::entity::{Args, Entity, Refusal};
-use crate::geometry::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
-use crate::number::Number;
-use crate::packet::Rays;
-use crate::pparm::{Derived, Pparm, Row, Table};
-use crate::rectangle;
-pub use crate::rectangle::FinitePlane;
-use crate::sight::Sight;
-use crate::twofold::Twofold;
-use crate::value::Value;
+use crate::geometry::bounds::Bounds;
+use crate::geometry::packet::Rays;
+use crate::geometry::sight::Sight;
+use crate::numeric::number::Number;
+use crate::numeric::twofold::Twofold;
+use crate::scene::entity::{Args, Entity, Refusal};
+use crate::scene::pparm::{Derived, Pparm, Row, Table};
+use crate::scene::value::Value;
+use crate::shapes::rectangle;
+pub use crate::shapes::rectangle::FinitePlane;
+use crate::simd::cpu::Cpu;
+use crate::world::accuracy::Accuracy;
+use crate::world::certify::{self, Enclosure, Equation, Precision};
+use crate::world::hittable::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
 use glam::{DMat3, DVec2, DVec3};
 
 pub static DIMENSIONS: Pparm<DVec2> = Pparm::required("dimensions", "its size along xdir and across it")

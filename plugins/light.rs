@@ -1,9 +1,9 @@
 //! A light: a point that shines evenly in all directions.
 
-use crate::entity::{Args, Entity};
-use crate::geometry::Light;
-use crate::material::Rgb;
-use crate::pparm::{Pparm, Table};
+use crate::scene::entity::{Args, Entity};
+use crate::scene::pparm::{Pparm, Table};
+use crate::world::hittable::Light;
+use crate::world::material::Rgb;
 use glam::DVec3;
 
 static LOCATION: Pparm<DVec3> = Pparm::required("location", "where it is").unit("world coordinates");

@@ -1,9 +1,9 @@
 //! A material: how a surface answers light.
 
-use crate::entity::Entity;
-use crate::material::{Material, Rgb};
-use crate::pparm::{Pparm, Table};
-use crate::value::PerChannel;
+use crate::scene::entity::Entity;
+use crate::scene::pparm::{Pparm, Table};
+use crate::scene::value::PerChannel;
+use crate::world::material::{Material, Rgb};
 
 static AMBIENT: Pparm<Rgb> =
     Pparm::or("ambient", "red, green and blue of the light that it sends by itself", Rgb::ZERO);

@@ -1,17 +1,17 @@
 //! A plane: every point in two directions, without end.
 
-use crate::accuracy::Accuracy;
-use crate::bounds::{Bounds, SLACK};
-use crate::certify::{self, Enclosure, Equation, Precision};
-use crate::cpu::Cpu;
-use crate::entity::{Args, Entity};
-pub use crate::flat::Plane;
-use crate::geometry::{Body, Bracket, Hittable, Ray, Side, Span};
-use crate::number::{Number, dot};
-use crate::packet::Rays;
-use crate::pparm::{Pparm, Table};
-use crate::sight::Sight;
-use crate::twofold::Twofold;
+use crate::geometry::bounds::{Bounds, SLACK};
+use crate::geometry::packet::Rays;
+use crate::geometry::sight::Sight;
+use crate::numeric::number::{Number, dot};
+use crate::numeric::twofold::Twofold;
+use crate::scene::entity::{Args, Entity};
+use crate::scene::pparm::{Pparm, Table};
+pub use crate::shapes::flat::Plane;
+use crate::simd::cpu::Cpu;
+use crate::world::accuracy::Accuracy;
+use crate::world::certify::{self, Enclosure, Equation, Precision};
+use crate::world::hittable::{Body, Bracket, Hittable, Ray, Side, Span};
 use glam::DVec3;
 
 pub static NORMAL: Pparm<DVec3> =

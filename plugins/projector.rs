@@ -3,11 +3,11 @@
 use super::light::{self, PointLight};
 use super::texplane::{self, Picture};
 use super::{fplane, plane};
-use crate::entity::Entity;
-use crate::geometry::{Light, Ray};
-use crate::material::Rgb;
-use crate::pparm::{Derived, Row, Table};
-use crate::value::Datum;
+use crate::scene::entity::Entity;
+use crate::scene::pparm::{Derived, Row, Table};
+use crate::scene::value::Datum;
+use crate::world::hittable::{Light, Ray};
+use crate::world::material::Rgb;
 use glam::DVec3;
 
 static HEADING: Derived = Derived(|_| Datum::Word(String::new()).line("projector", " \n"));

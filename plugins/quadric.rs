@@ -1,15 +1,15 @@
 //! A quadric: every point that solves an equation of the second degree (the notes' "General Quadric Surfaces").
 
-use crate::bounds::{self, Bounds};
-use crate::certify::{self, Enclosure, Equation, Precision};
-use crate::coincidence;
-use crate::entity::{Entity, Refusal};
-use crate::geometry::{Body, Bracket, Hittable, Ray, Side, Span};
-use crate::number::Number;
-use crate::pparm::{Pparm, Table};
-use crate::quadratic::Quadric;
-use crate::sight::Sight;
-use crate::twofold::Twofold;
+use crate::geometry::bounds::{self, Bounds};
+use crate::geometry::sight::Sight;
+use crate::numeric::number::Number;
+use crate::numeric::twofold::Twofold;
+use crate::scene::entity::{Entity, Refusal};
+use crate::scene::pparm::{Pparm, Table};
+use crate::shapes::quadratic::Quadric;
+use crate::world::certify::{self, Enclosure, Equation, Precision};
+use crate::world::coincidence;
+use crate::world::hittable::{Body, Bracket, Hittable, Ray, Side, Span};
 use glam::DVec3;
 
 static COEFFICIENTS: Pparm<[f64; 10]> =

@@ -1,9 +1,9 @@
 //! Continuous modulation combined with tiles, as the notes suggest for their third shader.
 
 use super::{rainbow, tiles};
-use crate::geometry::Shader;
-use crate::material::{Look, Material, Rgb};
-use crate::shading::{Anchor, ProceduralShader};
+use crate::world::hittable::Shader;
+use crate::world::material::{Look, Material, Rgb};
+use crate::world::shading::{Anchor, ProceduralShader};
 use glam::DVec3;
 
 inventory::submit! {

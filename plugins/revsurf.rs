@@ -1,13 +1,13 @@
 //! A surface of revolution: a line turned around an axis.
 
-use crate::accuracy::Accuracy;
-use crate::entity::{Args, Entity, Refusal};
-use crate::formula::Formula;
-use crate::frame::Frame;
-use crate::geometry::Body;
-use crate::pparm::{Pparm, Table};
-use crate::profile::{Line, Profile};
-use crate::revolution::{Classic, Finish, InFrame, Revolution};
+use crate::geometry::frame::Frame;
+use crate::numeric::formula::Formula;
+use crate::scene::entity::{Args, Entity, Refusal};
+use crate::scene::pparm::{Pparm, Table};
+use crate::scene::profile::{Line, Profile};
+use crate::shapes::revolution::{Classic, Finish, InFrame, Revolution};
+use crate::world::accuracy::Accuracy;
+use crate::world::hittable::Body;
 use glam::DVec3;
 use std::sync::Arc;
 

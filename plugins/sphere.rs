@@ -1,15 +1,15 @@
 //! A sphere: every point at one distance from a centre.
 
-use crate::accuracy::Accuracy;
-use crate::ball::{self, Line};
-use crate::bounds::{Bounds, SLACK};
-use crate::certify::{self, Enclosure, Equation, Precision};
-use crate::entity::{Args, Entity};
-use crate::geometry::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
-use crate::number::Number;
-use crate::pparm::{Pparm, Table};
-use crate::sight::Sight;
-use crate::twofold::Twofold;
+use crate::geometry::bounds::{Bounds, SLACK};
+use crate::geometry::sight::Sight;
+use crate::numeric::number::Number;
+use crate::numeric::twofold::Twofold;
+use crate::scene::entity::{Args, Entity};
+use crate::scene::pparm::{Pparm, Table};
+use crate::shapes::ball::{self, Line};
+use crate::world::accuracy::Accuracy;
+use crate::world::certify::{self, Enclosure, Equation, Precision};
+use crate::world::hittable::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
 use glam::DVec3;
 
 static CENTER: Pparm<DVec3> =
@@ -107,7 +107,7 @@ impl Hittable for Sphere {
         if self.accuracy == Accuracy::Classic {
             None
         } else {
-            crate::coincidence::distance(self, ray, distance)
+            crate::world::coincidence::distance(self, ray, distance)
         }
     }
 

@@ -1,11 +1,11 @@
 //! A spotlight: a light that shines into a cone.
 
 use super::light::{self, PointLight};
-use crate::entity::{Args, Entity, Refusal};
-use crate::geometry::Light;
-use crate::material::Rgb;
-use crate::pparm::{Derived, Pparm, Table};
-use crate::value::Value;
+use crate::scene::entity::{Args, Entity, Refusal};
+use crate::scene::pparm::{Derived, Pparm, Table};
+use crate::scene::value::Value;
+use crate::world::hittable::Light;
+use crate::world::material::Rgb;
 use glam::DVec3;
 
 static POINT: Pparm<DVec3> =

@@ -2,15 +2,15 @@
 
 use super::fplane::{self, FinitePlane};
 use super::plane;
-use crate::bounds::Bounds;
-use crate::certify::{Enclosure, Precision};
-use crate::entity::{Args, Entity, Refusal};
-use crate::geometry::{Body, Bracket, Hittable, Ray, Shader, Side, Span};
-use crate::material::{Look, Material, Rgb};
-use crate::pparm::{Pparm, Table};
-use crate::sight::Sight;
-use crate::texture::Texture;
-use crate::twofold::Twofold;
+use crate::geometry::bounds::Bounds;
+use crate::geometry::sight::Sight;
+use crate::numeric::twofold::Twofold;
+use crate::scene::entity::{Args, Entity, Refusal};
+use crate::scene::pparm::{Pparm, Table};
+use crate::world::certify::{Enclosure, Precision};
+use crate::world::hittable::{Body, Bracket, Hittable, Ray, Shader, Side, Span};
+use crate::world::material::{Look, Material, Rgb};
+use crate::world::texture::Texture;
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
 

@@ -1,8 +1,8 @@
 //! A texture: a picture from a file.
 
-use crate::entity::Entity;
-use crate::pparm::{Pparm, Table};
-use crate::texture::Texture;
+use crate::scene::entity::Entity;
+use crate::scene::pparm::{Pparm, Table};
+use crate::world::texture::Texture;
 
 static FILENAME: Pparm<String> =
     Pparm::required("filename", "the file of the picture, a PPM or PNG, from the scene's folder");

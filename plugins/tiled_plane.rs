@@ -2,10 +2,10 @@
 
 use super::fplane::{self, DIMENSIONS, sides};
 use super::plane::{self, Plane};
-use crate::entity::Entity;
-use crate::geometry::{Body, Shader};
-use crate::material::{Look, Material, Rgb};
-use crate::pparm::{Pparm, Table};
+use crate::scene::entity::Entity;
+use crate::scene::pparm::{Pparm, Table};
+use crate::world::hittable::{Body, Shader};
+use crate::world::material::{Look, Material, Rgb};
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
 

@@ -1,8 +1,8 @@
 //! The notes' tiled shading: cyan and yellow tiles half a unit wide, along x and z.
 
-use crate::geometry::Shader;
-use crate::material::{Look, Material, Rgb};
-use crate::shading::ProceduralShader;
+use crate::world::hittable::Shader;
+use crate::world::material::{Look, Material, Rgb};
+use crate::world::shading::ProceduralShader;
 use glam::DVec3;
 
 inventory::submit! {

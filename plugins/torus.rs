@@ -1,11 +1,11 @@
 //! A torus: a ball's way around a circle.
 
-use crate::entity::Entity;
-use crate::frame::Frame;
-use crate::geometry::Body;
-use crate::implicit::Implicit;
-use crate::number::Number;
-use crate::pparm::{Pparm, Table};
+use crate::geometry::frame::Frame;
+use crate::numeric::number::Number;
+use crate::scene::entity::Entity;
+use crate::scene::pparm::{Pparm, Table};
+use crate::shapes::implicit::Implicit;
+use crate::world::hittable::Body;
 use glam::DVec3;
 
 static CENTER: Pparm<DVec3> =

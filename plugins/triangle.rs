@@ -1,15 +1,15 @@
 //! A triangle.
 
-use crate::accuracy::Accuracy;
-use crate::bounds::Bounds;
-use crate::certify::{self, Enclosure, Equation, Precision};
-use crate::entity::{Entity, Refusal};
-use crate::geometry::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
-use crate::number::{Number, dot};
-use crate::pparm::{Pparm, Table};
-use crate::sight::Sight;
-use crate::triangle::Triangle;
-use crate::twofold::Twofold;
+use crate::geometry::bounds::Bounds;
+use crate::geometry::sight::Sight;
+use crate::numeric::number::{Number, dot};
+use crate::numeric::twofold::Twofold;
+use crate::scene::entity::{Entity, Refusal};
+use crate::scene::pparm::{Pparm, Table};
+use crate::shapes::triangle::Triangle;
+use crate::world::accuracy::Accuracy;
+use crate::world::certify::{self, Enclosure, Equation, Precision};
+use crate::world::hittable::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
 use glam::DVec3;
 
 static VERTEX1: Pparm<DVec3> = Pparm::required("vertex1", "its first corner").unit("world coordinates");

@@ -10,8 +10,8 @@ use oracle::hard::{self, SETS};
 use oracle::rays::Random;
 use oracle::shapes::{self, Line, Plane, Quadric};
 use oracle::tally::Tally;
-use tabray::geometry::{Bracket, Hittable, MISS, Ray, Span};
-use tabray::model::Model;
+use tabray::scene::model::Model;
+use tabray::world::hittable::{Bracket, Hittable, MISS, Ray, Span};
 
 /// The shapes of each kind, and the rays for each set and shape.
 const SHAPES: usize = 200;
@@ -249,7 +249,7 @@ fn a_ball_in_the_box_around_it_is_whole() {
     for step in 1..=60 {
         let radius = 0.05 * f64::from(step);
         // Its real radius is the root of a rounded square: where that is more than the box has, both poles are cut off.
-        let is_wider = tabray::twofold::two_product(radius, radius).1 < 0.0;
+        let is_wider = tabray::numeric::twofold::two_product(radius, radius).1 < 0.0;
         let found = distance(&*ball(radius), dvec3(4.0, 3.0, 6.0), DVec3::NEG_Z);
         let is_right = if is_wider { found == MISS } else { (found - (10.13 - radius)).abs() < 1e-14 };
         assert!(is_right, "of radius {radius}: {found}");

@@ -6,19 +6,19 @@ use common::{block_with, load, registry, root};
 use glam::DVec3;
 use std::fs;
 use std::sync::atomic::{AtomicU32, Ordering};
-use tabray::bounds::Bounds;
-use tabray::camera::Camera;
-use tabray::certify::{Enclosure, Precision};
-use tabray::contract::{self, Breach, Promise};
-use tabray::entity::{Args, Entity, Kind, Refusal};
-use tabray::frame::Frame;
-use tabray::geometry::{Body, Bracket, Hittable, Light, MISS, Ray, Shader, Side, Span};
-use tabray::implicit::Implicit;
-use tabray::material::{Material, Rgb};
-use tabray::number::Number;
-use tabray::pparm::{Derived, Pparm, Row, Table};
-use tabray::registry::Registry;
-use tabray::sight::Sight;
+use tabray::geometry::bounds::Bounds;
+use tabray::geometry::frame::Frame;
+use tabray::geometry::sight::Sight;
+use tabray::numeric::number::Number;
+use tabray::scene::entity::{Args, Entity, Kind, Refusal};
+use tabray::scene::pparm::{Derived, Pparm, Row, Table};
+use tabray::scene::registry::Registry;
+use tabray::shapes::implicit::Implicit;
+use tabray::tools::contract::{self, Breach, Promise};
+use tabray::world::camera::Camera;
+use tabray::world::certify::{Enclosure, Precision};
+use tabray::world::hittable::{Body, Bracket, Hittable, Light, MISS, Ray, Shader, Side, Span};
+use tabray::world::material::{Material, Rgb};
 
 #[test]
 fn every_plugin_keeps_its_contract() {

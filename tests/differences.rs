@@ -10,13 +10,13 @@ use std::collections::BTreeSet;
 use std::f64::consts::PI;
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use tabray::accuracy::Accuracy::{self, Classic, Exact};
-use tabray::debug::{self, Line};
-use tabray::dump;
-use tabray::geometry::{MISS, Span};
-use tabray::model::Model;
-use tabray::scene::{self, Loaded, Report};
-use tabray::trace;
+use tabray::render::trace;
+use tabray::scene::dump;
+use tabray::scene::model::Model;
+use tabray::scene::reader::{self, Loaded, Report};
+use tabray::tools::debug::{self, Line};
+use tabray::world::accuracy::Accuracy::{self, Classic, Exact};
+use tabray::world::hittable::{MISS, Span};
 
 /// The scene of a difference.
 #[derive(Clone)]
@@ -24,7 +24,7 @@ struct Scene(String);
 
 impl Scene {
     fn read(&self, accuracy: Option<Accuracy>) -> Result<Loaded, Report> {
-        scene::read(registry(), "scene", &root().join("docs"), self.0.as_bytes(), accuracy)
+        reader::read(registry(), "scene", &root().join("docs"), self.0.as_bytes(), accuracy)
     }
 
     fn model(&self, accuracy: Accuracy) -> Model {

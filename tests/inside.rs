@@ -8,9 +8,9 @@ use glam::DVec3;
 use insta::Settings;
 use std::fs;
 use std::path::Path;
-use tabray::debug::{self, Line};
-use tabray::probe;
-use tabray::trace;
+use tabray::render::trace;
+use tabray::tools::debug::{self, Line};
+use tabray::tools::probe;
 use tempfile::TempDir;
 
 const ALL: [Line; 6] = [Line::Pix, Line::Hit, Line::Drgb, Line::Irgb, Line::Offset, Line::Find];

@@ -3,9 +3,9 @@
 mod common;
 
 use common::{model, registry, render};
-use tabray::dump;
-use tabray::scene::{self, Written};
-use tabray::syntax::Syntax;
+use tabray::scene::dump;
+use tabray::scene::reader::{self, Written};
+use tabray::scene::syntax::Syntax;
 
 const TEXT: &str = "
 camera cam1 { pixeldim 80 60 worlddim 8 6 viewpoint 4 3 6 }
@@ -43,7 +43,7 @@ fn modelstat() -> Vec<Written<'static>> {
 
 #[test]
 fn a_built_model_gives_the_same_picture_and_dump_as_its_text() {
-    let built = scene::build(registry(), modelstat()).unwrap_or_else(|report| panic!("{report}")).model;
+    let built = reader::build(registry(), modelstat()).unwrap_or_else(|report| panic!("{report}")).model;
     let read = model(TEXT);
     assert_eq!(dump::scene(&built, Syntax::Notes), dump::scene(&read, Syntax::Notes));
     let picture = render(&built);
@@ -58,7 +58,7 @@ fn a_built_model_is_checked_as_a_text_is() {
     entities.push(
         Written::new("sphere", "a\nball").set("material", "gray").set("center", [0.0; 3]).set("radius", -1.0),
     );
-    let Err(report) = scene::build(registry(), entities) else { panic!("faults") };
+    let Err(report) = reader::build(registry(), entities) else { panic!("faults") };
     let messages: Vec<_> = report.faults().iter().map(|fault| fault.message.as_str()).collect();
     assert_eq!(
         messages,

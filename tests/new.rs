@@ -6,7 +6,7 @@ use common::program::{folder, names_in, outcome, tabray};
 use common::{load, render};
 use std::fs;
 use std::path::Path;
-use tabray::dump;
+use tabray::scene::dump;
 use tempfile::TempDir;
 
 #[test]

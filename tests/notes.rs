@@ -4,8 +4,9 @@ mod common;
 
 use common::model;
 use glam::{DMat3, DVec3, dvec3};
-use tabray::geometry::{Hittable, MISS, Ray, Span};
-use tabray::{dump, trace};
+use tabray::render::trace;
+use tabray::scene::dump;
+use tabray::world::hittable::{Hittable, MISS, Ray, Span};
 
 /// Whether two vectors agree to this many printed decimals.
 #[track_caller]
@@ -49,7 +50,7 @@ fn the_sample_driver_prints_its_numbers() {
 // "Translating from pixel to world coordinates", "An alternative world view", "Computing the direction of a ray"
 
 /// A scene with nothing but a camera of this many pixels.
-fn camera(pixels: &str) -> tabray::camera::Camera {
+fn camera(pixels: &str) -> tabray::world::camera::Camera {
     model(&format!("camera c {{ pixeldim {pixels} worlddim 8 6 viewpoint 4 3 6 }}")).camera.value
 }
 

@@ -47,7 +47,7 @@ fn the_pictures_of_the_docs_are_fresh() {
 fn the_reference_of_the_language_is_fresh() {
     let written = fs::read_to_string(root().join("docs/language.md")).expect("the reference");
     assert!(
-        written == tabray::reference::markdown(common::registry()),
+        written == tabray::scene::reference::markdown(common::registry()),
         "docs/language.md is stale: its first lines say how to make it"
     );
 }
@@ -154,9 +154,9 @@ fn contradictions_are_told_with_their_places(copy: &Copy) {
 
 const RIVAL: &str = "//! What others have already.
 
-use crate::entity::Entity;
-use crate::profile::Profile;
-use crate::shading::ProceduralShader;
+use crate::scene::entity::Entity;
+use crate::scene::profile::Profile;
+use crate::world::shading::ProceduralShader;
 
 inventory::submit! { Entity::shape(\"sphere\", \"another ball\", &[], |_| unreachable!()) }
 inventory::submit! { Profile::new(\"cone\", \"another cone\", \"1\") }
@@ -166,7 +166,7 @@ inventory::submit! { ProceduralShader::new(\"checks\", \"its number is that of t
 
 const BARREL: &str = "//! A barrel.
 
-use crate::profile::Profile;
+use crate::scene::profile::Profile;
 
 inventory::submit! {
     Profile::new(\"barrel\", \"a barrel 4 high\", \"1.5 - 0.1 * (y - 2)^2\")
@@ -175,9 +175,9 @@ inventory::submit! {
 
 const STRIPES: &str = "//! Stripes, as wide as a tenth of the anchor's unit.
 
-use crate::geometry::Shader;
-use crate::material::{Material, Rgb};
-use crate::shading::{Anchor, ProceduralShader};
+use crate::world::hittable::Shader;
+use crate::world::material::{Material, Rgb};
+use crate::world::shading::{Anchor, ProceduralShader};
 use glam::DVec3;
 
 inventory::submit! {

@@ -7,9 +7,9 @@ use common::{load, model, registry, render, root, scenes};
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
-use tabray::dump;
-use tabray::schema;
-use tabray::syntax::Syntax;
+use tabray::scene::dump;
+use tabray::scene::schema;
+use tabray::scene::syntax::Syntax;
 use tempfile::TempDir;
 
 const NOTES: &str = "

@@ -7,9 +7,9 @@ use dashu_float::round::mode::HalfEven;
 use dashu_int::{IBig, UBig};
 use f256::f256;
 use oracle::rays::Random;
-use tabray::interval::{Float, Interval, Wide};
-use tabray::number::Number;
-use tabray::twofold::Twofold;
+use tabray::numeric::interval::{Float, Interval, Wide};
+use tabray::numeric::number::Number;
+use tabray::numeric::twofold::Twofold;
 
 type Big = FBig<HalfEven, 2>;
 

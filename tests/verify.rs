@@ -4,7 +4,7 @@ mod common;
 
 use assert_cmd::cargo::cargo_bin_cmd;
 use common::{load, model, root, scenes};
-use tabray::verify::{self, Verdict};
+use tabray::tools::verify::{self, Verdict};
 use tempfile::TempDir;
 
 /// Scenes in which many pixels look at an edge on purpose, or at two surfaces in one place.
@@ -22,7 +22,7 @@ const AT_EDGES: [&str; 10] = [
 ];
 
 /// Counts of proven, undecided and contradicted pixels: of every `step`-th, both ways.
-fn counts(model: &tabray::model::Model, step: usize) -> [usize; 3] {
+fn counts(model: &tabray::scene::model::Model, step: usize) -> [usize; 3] {
     let [width, height] = model.camera.value.pixels;
     let mut counts = [0; 3];
     for y in (0..height).step_by(step) {
@@ -119,7 +119,7 @@ fn a_sliver_before_another_triangle_is_proven_from_its_corners() {
     );
     assert_eq!(verify::pixel(&model, 0, 0), Verdict::Proven);
     let sight = model.camera.value.sight(0.0, 0.0);
-    let met = tabray::trace::first_hit(&model, &sight).expect("a triangle").index;
+    let met = tabray::render::trace::first_hit(&model, &sight).expect("a triangle").index;
     assert_eq!(met, 0, "rational arithmetic says that the sliver is nearer, by 6e-10");
 }
 

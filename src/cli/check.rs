@@ -1,7 +1,7 @@
 //! `tabray check`: the faults of scenes, and nothing else.
 
 use super::{Failure, input, messages, tell};
-use crate::registry::Registry;
+use crate::scene::registry::Registry;
 use std::path::PathBuf;
 
 /// Look for faults in scenes

@@ -3,10 +3,10 @@
 use super::chart::{Work, all_accuracies};
 use super::input::{self, Source};
 use super::{Failure, interrupt, print, program};
-use crate::accuracy::Accuracy;
-use crate::chart::{self, Estimate};
-use crate::choice::Choice;
-use crate::registry::Registry;
+use crate::scene::choice::Choice;
+use crate::scene::registry::Registry;
+use crate::tools::chart::{self, Estimate};
+use crate::world::accuracy::Accuracy;
 use clap::ArgGroup;
 use std::fmt::Write;
 use std::io;

@@ -1,7 +1,7 @@
 //! `tabray completions`: what shells need to complete the command line.
 
 use super::{Failure, print, program};
-use crate::registry::Registry;
+use crate::scene::registry::Registry;
 use clap_complete::Shell;
 
 /// Print a script that completes the command line, for a shell

@@ -1,9 +1,9 @@
 //! `tabray render --debug`: the notes' debug lines, for some pixels or for all.
 
 use super::{Failure, interrupt, probe};
-use crate::debug::{self, Line};
-use crate::model::Model;
-use crate::render::Renderer;
+use crate::render::renderer::Renderer;
+use crate::scene::model::Model;
+use crate::tools::debug::{self, Line};
 use std::io::{self, BufWriter, Write};
 
 #[derive(clap::Args)]

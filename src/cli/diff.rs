@@ -3,8 +3,8 @@
 use super::explain::Place;
 use super::report::{Change, Item, Page};
 use super::{Failure, input, picture, print, tell};
-use crate::compare::Comparison;
-use crate::registry::Registry;
+use crate::output::compare::Comparison;
+use crate::scene::registry::Registry;
 use image::RgbImage;
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -1,9 +1,9 @@
 //! What `probe` says of a picture's pixel, for reports: by this program, and by one from before.
 
-use crate::compare::Pixel;
-use crate::model::Model;
-use crate::probe;
-use crate::render::Renderer;
+use crate::output::compare::Pixel;
+use crate::render::renderer::Renderer;
+use crate::scene::model::Model;
+use crate::tools::probe;
 use crate::words;
 use std::path::Path;
 use std::process::{Command, Stdio};

@@ -2,7 +2,7 @@
 
 use super::output::{self, Output};
 use super::{Failure, messages, program};
-use crate::registry::Registry;
+use crate::scene::registry::Registry;
 use clap::Command;
 use clap_mangen::Man;
 use std::io::Write;

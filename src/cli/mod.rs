@@ -42,8 +42,8 @@ mod temporary;
 mod verify;
 mod watch;
 
-use crate::registry::Registry;
-use crate::scene::Report;
+use crate::scene::reader::Report;
+use crate::scene::registry::Registry;
 use crate::words;
 use clap::{FromArgMatches, Parser, Subcommand};
 use std::io::{self, IsTerminal, Write};

@@ -1,9 +1,9 @@
 //! `tabray plan`: what a scene needs, and why.
 
 use super::{Failure, input, method, print};
-use crate::cpu::Cpu;
-use crate::plan::{Decision, Plan};
-use crate::registry::Registry;
+use crate::render::plan::{Decision, Plan};
+use crate::scene::registry::Registry;
+use crate::simd::cpu::Cpu;
 use std::path::PathBuf;
 
 /// Print how a scene would be rendered, each decision with its reason

@@ -1,10 +1,10 @@
 //! `tabray probe`: one pixel, explained.
 
 use super::{Failure, input, method};
-use crate::model::Model;
-use crate::probe;
-use crate::registry::Registry;
-use crate::render::Renderer;
+use crate::render::renderer::Renderer;
+use crate::scene::model::Model;
+use crate::scene::registry::Registry;
+use crate::tools::probe;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 

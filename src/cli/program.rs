@@ -1,7 +1,7 @@
 //! What the program is called, and its command line under that name.
 
 use super::Cli;
-use crate::registry::Registry;
+use crate::scene::registry::Registry;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Command, CommandFactory};
 use std::env::{self, consts};

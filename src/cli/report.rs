@@ -3,7 +3,7 @@
 use super::explain::Explanation;
 use super::output::Output;
 use super::{Failure, messages};
-use crate::compare::Comparison;
+use crate::output::compare::Comparison;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use image::{ImageFormat, RgbImage};

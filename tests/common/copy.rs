@@ -87,7 +87,7 @@ impl Copy {
         let (folder, program) = (self.folder.join("src/bin"), "contracts");
         fs::create_dir_all(&folder).expect("room for a folder");
         let path = folder.join(program).with_extension("rs");
-        fs::write(&path, "//! Contracts.\nfn main() {\n    tabray::contract::assert_kept();\n}\n")
+        fs::write(&path, "//! Contracts.\nfn main() {\n    tabray::tools::contract::assert_kept();\n}\n")
             .expect("room");
         self.cargo(&self.folder, &["build", "--locked", "--bin", program]);
         self.program_prints(program, &[]);

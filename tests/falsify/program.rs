@@ -2,10 +2,11 @@
 
 use crate::common::registry;
 use std::path::Path;
-use tabray::model::Model;
-use tabray::render::Renderer;
-use tabray::verify::{self, Verdict};
-use tabray::{scene, trace};
+use tabray::render::renderer::Renderer;
+use tabray::render::trace;
+use tabray::scene::model::Model;
+use tabray::scene::reader;
+use tabray::tools::verify::{self, Verdict};
 
 /// A scene as the program has it.
 pub struct Program(Model);
@@ -33,7 +34,7 @@ pub struct Found {
 impl Program {
     /// The scene, unless the program refuses it.
     pub fn read(text: &str) -> Option<Self> {
-        scene::read(registry(), "scene", Path::new(""), text.as_bytes(), None)
+        reader::read(registry(), "scene", Path::new(""), text.as_bytes(), None)
             .ok()
             .map(|loaded| Self(loaded.model))
     }

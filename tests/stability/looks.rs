@@ -4,14 +4,14 @@ use super::{DOWN_Z, Random, shape, text};
 use crate::common::{model, render};
 use glam::{DVec3, dvec3};
 use std::f64::consts::{PI, TAU};
-use tabray::accuracy::Accuracy;
-use tabray::choice::Choice;
-use tabray::geometry::Ray;
-use tabray::material::Rgb;
-use tabray::model::Model;
-use tabray::picture::to_byte;
-use tabray::sight::Sight;
-use tabray::trace;
+use tabray::geometry::sight::Sight;
+use tabray::output::picture::to_byte;
+use tabray::render::trace;
+use tabray::scene::choice::Choice;
+use tabray::scene::model::Model;
+use tabray::world::accuracy::Accuracy;
+use tabray::world::hittable::Ray;
+use tabray::world::material::Rgb;
 
 /// The ambient colour of the first object at a point.
 fn look(model: &Model, at: DVec3) -> Rgb {

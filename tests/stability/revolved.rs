@@ -5,9 +5,9 @@ use super::{DOWN_Z, Random, distance, holds, refusal, shape, text};
 use crate::common::model;
 use glam::{DVec3, dvec3};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_6};
-use tabray::geometry::{Hittable, MISS, Ray};
-use tabray::sight::Sight;
-use tabray::trace;
+use tabray::geometry::sight::Sight;
+use tabray::render::trace;
+use tabray::world::hittable::{Hittable, MISS, Ray};
 
 /// The notes' cone, 6 high; a greater height goes beyond its apex.
 fn cone(camera: &str, height: f64) -> Box<dyn Hittable> {

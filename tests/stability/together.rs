@@ -4,10 +4,10 @@ use super::Random;
 use super::common::{model, render};
 use glam::{DVec3, dvec3};
 use image::RgbImage;
-use tabray::geometry::{Ray, Side, Span};
-use tabray::picture::to_byte;
-use tabray::trace;
-use tabray::watch::{Event, Watch};
+use tabray::output::picture::to_byte;
+use tabray::render::trace;
+use tabray::render::watch::{Event, Watch};
+use tabray::world::hittable::{Ray, Side, Span};
 
 const BLUE: [u8; 3] = [0, 0, 255];
 
@@ -332,7 +332,7 @@ fn what_may_start_on_a_shape_is_in_doubt() {
                 continue;
             }
             let (point, normal) = (ray.at(distance), shape.normal(ray.at(distance)));
-            let origin_error = tabray::coincidence::error(&ray, distance, normal, shape.reach());
+            let origin_error = tabray::world::coincidence::error(&ray, distance, normal, shape.reach());
             assert!(shape.touches(point, origin_error), "{text} is not where it is hit: {ray:?}");
             let cosine = random.between(-1.0, 1.0);
             let dir = random.around(normal, cosine);

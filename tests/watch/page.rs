@@ -6,7 +6,7 @@ use crate::program::{Watching, ball};
 use image::RgbImage;
 use std::fs;
 use std::time::{SystemTime, UNIX_EPOCH};
-use tabray::probe;
+use tabray::tools::probe;
 use tempfile::TempDir;
 
 /// The page of a scene in a browser, once its picture is whole.

@@ -11,10 +11,10 @@ use std::ops::ControlFlow;
 use std::process::{Command, Stdio};
 use std::thread;
 use std::time::Duration;
-use tabray::aov::Aov;
-use tabray::picture::to_byte;
-use tabray::probe;
-use tabray::render::Renderer;
+use tabray::output::aov::Aov;
+use tabray::output::picture::to_byte;
+use tabray::render::renderer::Renderer;
+use tabray::tools::probe;
 use tempfile::TempDir;
 
 /// The whole answer to a request as it is written here.

@@ -1,12 +1,12 @@
 //! A tangle: a closed surface of the fourth degree with a hole in each side of a cube.
 
-use tabray::entity::Entity;
-use tabray::frame::Frame;
-use tabray::geometry::Body;
+use tabray::geometry::frame::Frame;
 use tabray::glam::DVec3;
-use tabray::implicit::Implicit;
-use tabray::number::Number;
-use tabray::pparm::{Pparm, Table};
+use tabray::numeric::number::Number;
+use tabray::scene::entity::Entity;
+use tabray::scene::pparm::{Pparm, Table};
+use tabray::shapes::implicit::Implicit;
+use tabray::world::hittable::Body;
 
 static CENTER: Pparm<DVec3> = Pparm::required("center", "the point in its middle").unit("world coordinates");
 static SIZE: Pparm<f64> = Pparm::required("size", "the distance from its center to its sides")

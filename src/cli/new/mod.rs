@@ -4,7 +4,7 @@ mod plugin;
 mod scene;
 
 use super::Failure;
-use crate::registry::Registry;
+use crate::scene::registry::Registry;
 
 /// Write a scene or a plugin to start from
 #[derive(clap::Args)]

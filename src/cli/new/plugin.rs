@@ -1,10 +1,10 @@
 //! `tabray new plugin`: a plugin that works, and its scenes.
 
-use crate::choice::Choice;
 use crate::cli::{Failure, messages, output};
-use crate::profile::Profile;
-use crate::registry::Registry;
-use crate::shading::OnPlane;
+use crate::scene::choice::Choice;
+use crate::scene::profile::Profile;
+use crate::scene::registry::Registry;
+use crate::world::shading::OnPlane;
 use std::fs;
 use std::path::Path;
 use toml::de::DeTable;

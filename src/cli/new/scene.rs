@@ -1,7 +1,7 @@
 //! `tabray new scene`: a scene that explains itself.
 
 use crate::cli::{Failure, messages, output, program};
-use crate::syntax::Syntax;
+use crate::scene::syntax::Syntax;
 use std::path::PathBuf;
 
 /// Write a scene that explains itself and can be rendered at once

@@ -4,7 +4,7 @@ use super::Args;
 use super::pending::{self, Pending};
 use crate::cli::serve::{self, Server};
 use crate::cli::{Failure, messages, report, tell};
-use crate::registry::Registry;
+use crate::scene::registry::Registry;
 use crate::words;
 use hyper::body::Bytes;
 use hyper::{Request, Response, StatusCode};

@@ -2,10 +2,10 @@
 
 use super::board::Board;
 use super::frame::Frame;
-use crate::aov::Aov;
 use crate::cli::serve::{self, Body};
-use crate::probe;
-use crate::render::Renderer;
+use crate::output::aov::Aov;
+use crate::render::renderer::Renderer;
+use crate::tools::probe;
 use http_body_util::BodyExt;
 use http_body_util::channel::Channel;
 use hyper::body::Bytes;

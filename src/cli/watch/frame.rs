@@ -1,8 +1,8 @@
 //! A scene as it was when it was last sound.
 
-use crate::model::Model;
-use crate::scene::Place;
-use crate::trace;
+use crate::render::trace;
+use crate::scene::model::Model;
+use crate::scene::reader::Place;
 use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicBool, Ordering};
 

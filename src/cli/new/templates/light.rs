@@ -1,10 +1,10 @@
 //! A template: a lamp with a shade, which shines downward. Say here what it is.
 
 use super::light::{self, PointLight};
-use crate::entity::Entity;
-use crate::geometry::Light;
-use crate::material::Rgb;
-use crate::pparm::{Pparm, Table};
+use crate::scene::entity::Entity;
+use crate::scene::pparm::{Pparm, Table};
+use crate::world::hittable::Light;
+use crate::world::material::Rgb;
 use glam::DVec3;
 
 // Each attribute is one of these: its name, what it is, its unit and its rule. `required` has to be given; `or`

@@ -1,11 +1,11 @@
 //! A template: a cube with round edges. Say here what it is, and where its formula comes from.
 
-use crate::entity::Entity;
-use crate::frame::Frame;
-use crate::geometry::Body;
-use crate::implicit::Implicit;
-use crate::number::Number;
-use crate::pparm::{Pparm, Table};
+use crate::geometry::frame::Frame;
+use crate::numeric::number::Number;
+use crate::scene::entity::Entity;
+use crate::scene::pparm::{Pparm, Table};
+use crate::shapes::implicit::Implicit;
+use crate::world::hittable::Body;
 use glam::DVec3;
 
 // Each attribute is one of these: its name, what it is, its unit and its rule. `required` has to be given; `or`

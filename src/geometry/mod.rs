@@ -1,0 +1,6 @@
+//! Rays, boxes and frames: space without shapes.
+
+pub mod bounds;
+pub mod frame;
+pub mod packet;
+pub mod sight;

@@ -1,0 +1,11 @@
+//! From a model to colours: the plan, the tree of boxes, the tracer, and who watches it.
+
+mod bundles;
+pub mod plan;
+pub mod progressive;
+pub mod renderer;
+pub mod tally;
+pub mod tiles;
+pub mod trace;
+pub mod tree;
+pub mod watch;

@@ -1,0 +1,315 @@
+//! Entity types: what a plugin registers, and what its constructor is given.
+
+use crate::scene::pparm::{Attribute, Pparm, Row, Table};
+use crate::scene::value::{Datum, Value};
+use crate::words;
+use crate::world::accuracy::Accuracy;
+use crate::world::camera::Camera;
+use crate::world::hittable::{Body, Light};
+use crate::world::material::Material;
+use crate::world::texture::Texture;
+use std::panic::Location;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::{fmt, iter};
+
+/// An entity type of the scene language: a name, a table of attributes and a constructor.
+///
+/// A plugin registers one with `inventory::submit!`.
+pub struct Entity {
+    /// Its name in the scene language.
+    pub name: &'static str,
+    /// What it is, in a few words.
+    pub meaning: &'static str,
+    /// Other names that a scene may use for it.
+    pub aliases: &'static [&'static str],
+    /// Makes the entity from its checked values.
+    pub construct: Construct,
+    /// The name that the notes' dump gives it.
+    pub dump_name: &'static str,
+    tables: &'static [Table],
+    place: &'static Location<'static>,
+}
+
+inventory::collect!(Entity);
+
+impl fmt::Debug for Entity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "`{}` of {}", self.name, self.place())
+    }
+}
+
+/// The kinds of entity that a scene is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Kind {
+    /// The viewer and the screen; a scene has one.
+    Camera,
+    /// How a surface answers light.
+    Material,
+    /// A picture that colours surfaces or light.
+    Texture,
+    /// A shape made of a material.
+    Object,
+    /// A source of light, itself not visible.
+    Light,
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Kind::Camera => "camera",
+            Kind::Material => "material",
+            Kind::Texture => "texture",
+            Kind::Object => "object",
+            Kind::Light => "light",
+        })
+    }
+}
+
+/// The constructor of an entity type, by kind.
+#[derive(Clone, Copy)]
+pub enum Construct {
+    /// Makes a camera.
+    Camera(fn(&Args) -> Result<Camera, Refusal>),
+    /// Makes a material.
+    Material(fn(&Args) -> Result<Material, Refusal>),
+    /// Makes a texture.
+    Texture(fn(&Args) -> Result<Texture, Refusal>),
+    /// Makes an object's shape and, if it has one, its shader.
+    Object(fn(&Args) -> Result<Body, Refusal>),
+    /// Makes a light.
+    Light(fn(&Args) -> Result<Box<dyn Light>, Refusal>),
+}
+
+/// What every object has beside its own attributes.
+pub static MATERIAL: Pparm<Arc<Material>> =
+    Pparm::required("material", "what it is made of, a material defined above it");
+
+const OBJECT: Table = &[&MATERIAL];
+
+impl Entity {
+    /// A camera's type.
+    #[track_caller]
+    pub const fn camera(
+        name: &'static str,
+        meaning: &'static str,
+        tables: &'static [Table],
+        construct: fn(&Args) -> Result<Camera, Refusal>,
+    ) -> Self {
+        Self::new(name, meaning, tables, Construct::Camera(construct))
+    }
+
+    /// A material's type.
+    #[track_caller]
+    pub const fn material(
+        name: &'static str,
+        meaning: &'static str,
+        tables: &'static [Table],
+        construct: fn(&Args) -> Result<Material, Refusal>,
+    ) -> Self {
+        Self::new(name, meaning, tables, Construct::Material(construct))
+    }
+
+    /// A texture's type.
+    #[track_caller]
+    pub const fn texture(
+        name: &'static str,
+        meaning: &'static str,
+        tables: &'static [Table],
+        construct: fn(&Args) -> Result<Texture, Refusal>,
+    ) -> Self {
+        Self::new(name, meaning, tables, Construct::Texture(construct))
+    }
+
+    /// A shape. Its table gets the attribute `material` of its own accord.
+    #[track_caller]
+    pub const fn shape(
+        name: &'static str,
+        meaning: &'static str,
+        tables: &'static [Table],
+        construct: fn(&Args) -> Result<Body, Refusal>,
+    ) -> Self {
+        Self::new(name, meaning, tables, Construct::Object(construct))
+    }
+
+    /// A light's type.
+    #[track_caller]
+    pub const fn light(
+        name: &'static str,
+        meaning: &'static str,
+        tables: &'static [Table],
+        construct: fn(&Args) -> Result<Box<dyn Light>, Refusal>,
+    ) -> Self {
+        Self::new(name, meaning, tables, Construct::Light(construct))
+    }
+
+    #[track_caller]
+    const fn new(
+        name: &'static str,
+        meaning: &'static str,
+        tables: &'static [Table],
+        construct: Construct,
+    ) -> Self {
+        Self { name, meaning, aliases: &[], construct, dump_name: name, tables, place: Location::caller() }
+    }
+
+    /// Other names that a scene may use for it.
+    pub const fn alias(mut self, aliases: &'static [&'static str]) -> Self {
+        self.aliases = aliases;
+        self
+    }
+
+    /// The name that the notes' dump gives it, where that is not its own.
+    pub const fn dumped_as(mut self, name: &'static str) -> Self {
+        self.dump_name = name;
+        self
+    }
+
+    /// The kind of thing that it is.
+    pub fn kind(&self) -> Kind {
+        match self.construct {
+            Construct::Camera(_) => Kind::Camera,
+            Construct::Material(_) => Kind::Material,
+            Construct::Texture(_) => Kind::Texture,
+            Construct::Object(_) => Kind::Object,
+            Construct::Light(_) => Kind::Light,
+        }
+    }
+
+    /// The rows of its table, in the order of the dump.
+    pub fn rows(&self) -> impl Iterator<Item = &'static dyn Row> + use<> {
+        let common = if self.kind() == Kind::Object { OBJECT } else { &[] };
+        iter::once(common).chain(self.tables.iter().copied()).flatten().copied()
+    }
+
+    /// Its attributes, in the order of its table.
+    pub fn attributes(&self) -> impl Iterator<Item = &'static dyn Attribute> + use<> {
+        self.rows().filter_map(|row| row.attribute())
+    }
+
+    /// The file and line that registers it.
+    pub fn place(&self) -> String {
+        words::place(self.place)
+    }
+}
+
+/// What a constructor may know of the scene beside its own values.
+#[derive(Clone, Debug, Default)]
+pub struct Setting {
+    /// The scene's camera; objects and lights alone are constructed after it.
+    pub camera: Camera,
+    /// The folder that the scene's file names start from.
+    pub folder: PathBuf,
+}
+
+/// The values of an attribute, and whether the scene gives them: if not, they are the default.
+pub(crate) type Given = (Datum, bool);
+
+/// An entity of a scene as a constructor sees it: its type, its name and its checked values.
+#[derive(Clone)]
+pub struct Args {
+    /// Its type.
+    pub entity: &'static Entity,
+    /// Its name.
+    pub name: String,
+    /// Its place among the scene's entities, from 0.
+    pub order: usize,
+    /// The scene around it.
+    pub setting: Arc<Setting>,
+    /// A value for each attribute of the type, in that order.
+    values: Vec<Given>,
+}
+
+impl Args {
+    /// `values` holds those of each of the entity type's attributes, in their order.
+    pub(crate) fn new(entity: &'static Entity, name: String, order: usize, values: Vec<Given>) -> Self {
+        debug_assert_eq!(values.len(), entity.attributes().count());
+        Self { entity, name, order, setting: Arc::default(), values }
+    }
+
+    /// The value of the attribute that `key` describes.
+    ///
+    /// # Panics
+    /// Where the plugin asks for an attribute that is not in the table it registered.
+    #[track_caller]
+    pub fn get<T: Value>(&self, key: &Pparm<T>) -> T {
+        match self.find(key.name()).and_then(T::from_datum) {
+            Some(value) => value,
+            // No closure: the message is to name the plugin's line.
+            None => self.not_in_table(key.name()),
+        }
+    }
+
+    /// The value of the attribute that `key` describes, if the scene gives it.
+    ///
+    /// # Panics
+    /// As [`get`](Self::get) does.
+    #[track_caller]
+    pub fn get_given<T: Value>(&self, key: &Pparm<T>) -> Option<T> {
+        let value = self.get(key);
+        self.given().any(|(attribute, _)| attribute.name() == key.name()).then_some(value)
+    }
+
+    /// The value of an attribute as it was checked.
+    #[track_caller]
+    pub(crate) fn datum(&self, attribute: &str) -> &Datum {
+        self.find(attribute).unwrap_or_else(|| self.not_in_table(attribute))
+    }
+
+    /// Every attribute with its value, in the order of the table.
+    pub fn values(&self) -> impl Iterator<Item = (&'static dyn Attribute, &Datum)> {
+        self.entity.attributes().zip(self.values.iter().map(|(datum, _)| datum))
+    }
+
+    /// The attributes that the scene gives, with their values.
+    pub fn given(&self) -> impl Iterator<Item = (&'static dyn Attribute, &Datum)> {
+        let values = self.entity.attributes().zip(&self.values);
+        values.filter(|(_, (_, given))| *given).map(|(attribute, (datum, _))| (attribute, datum))
+    }
+
+    /// The names of the textures that it refers to.
+    pub fn textures(&self) -> impl Iterator<Item = &str> {
+        self.values().filter_map(|(_, datum)| match datum {
+            Datum::Texture { name, .. } => Some(&**name),
+            _ => None,
+        })
+    }
+
+    /// How exactly the scene is traced.
+    pub fn accuracy(&self) -> Accuracy {
+        self.setting.camera.accuracy
+    }
+
+    fn find(&self, attribute: &str) -> Option<&Datum> {
+        self.values().find(|(known, _)| known.name() == attribute).map(|(_, datum)| datum)
+    }
+
+    /// Whether the attribute that a refusal marks, if it marks one, is in the type's table.
+    pub(crate) fn has_what_is_refused(&self, refusal: &Refusal) -> bool {
+        refusal.attribute.is_none_or(|attribute| self.find(attribute).is_some())
+    }
+
+    #[track_caller]
+    fn not_in_table(&self, attribute: &str) -> ! {
+        let (name, place) = (self.entity.name, self.entity.place());
+        match self.find(attribute) {
+            Some(_) => panic!(
+                "the plugin `{name}` asks for `{attribute}` as a type that is not the one in the table it registers at {place}: give both the same type"
+            ),
+            None => panic!(
+                "the plugin `{name}` asks for `{attribute}`, which is not in the table it registers at {place}: add it there"
+            ),
+        }
+    }
+}
+
+/// Why a constructor refuses values that are sound one by one.
+#[derive(Debug)]
+pub struct Refusal {
+    /// The attribute to mark; the entity's name where there is none.
+    pub attribute: Option<&'static str>,
+    /// What is wrong, to follow the entity's name: "has an xdir parallel to its normal".
+    pub message: String,
+    /// What would be right.
+    pub help: &'static str,
+}

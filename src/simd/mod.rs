@@ -1,0 +1,3 @@
+//! Loops that are compiled for each level of instructions.
+
+pub mod cpu;

@@ -1,0 +1,13 @@
+//! What a scene is made of: the traits of shapes, looks and lights, and what they are told.
+
+pub mod accuracy;
+pub mod camera;
+pub mod certify;
+pub mod coincidence;
+pub mod facing;
+pub mod hittable;
+pub mod landing;
+pub mod material;
+pub mod sample;
+pub mod shading;
+pub mod texture;
