@@ -7,3 +7,4 @@ pub mod quadratic;
 pub mod rectangle;
 pub mod revolution;
 pub mod roots;
+pub mod triangle;

@@ -250,8 +250,8 @@ pub trait Hittable: Send + Sync {
 
     /// Where the rays of a packet come to it after these distances, and its normals there.
     fn land(&self, cpu: Cpu, rays: Rays, distances: &[f64], landing: Landing) {
-        let Landing { points, normals, sides, travelled } = landing;
-        landing::land(cpu, self, rays, distances, sides, travelled, points, normals);
+        let Landing { points, normals, sides, cosines, travelled } = landing;
+        landing::land(cpu, self, rays, distances, sides, cosines, travelled, points, normals);
     }
 }
 

@@ -32,12 +32,9 @@ impl Found {
     /// begin; tells whether any has.
     fn begin(&mut self, cpu: Cpu, budget: &mut [u32], count: usize, ends: Option<&[f64]>) -> bool {
         let (near, far) = (room(&mut self.near, count), room(&mut self.far, count));
-        match ends {
-            Some(ends) => far.copy_from_slice(&ends[..count]),
-            None => far.fill(MISS),
-        }
-        room(&mut self.doubt, count).fill(0);
-        begin(cpu, &mut budget[..count], near, far, room(&mut self.met, count))
+        // What is in doubt is written by each shape that is looked at.
+        room(&mut self.doubt, count);
+        begin(cpu, &mut budget[..count], ends, near, far, room(&mut self.met, count))
     }
 
     /// Of some of the rays.
@@ -103,8 +100,7 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
     fn start(&self, group: &Group, lane: usize) -> Start {
         let [x, y] = &self.rooms.places;
         let sight = group.looks.then(|| self.model.camera.value.sight(x[lane], y[lane])).or(group.sight);
-        let error = group.errors.get(lane).copied().unwrap_or(0.0);
-        Start { ray: group.rays().get(lane), error, sight }
+        Start { ray: group.rays().get(lane), error: group.error(lane), sight }
     }
 
     /// Whether rays may meet an object at all: to most that they leave they do not come back.
@@ -231,9 +227,15 @@ fn decided(shape: &dyn Hittable, sight: &Sight, distance: f64) -> (f64, Bracket)
 
 kernels! {
     /// Counts rays, which have met nothing yet. Tells whether any has cost as many as it may.
-    fn begin(budget: &mut [u32], near: &mut [f64], far: &mut [f64], met: &mut [u64]) -> bool {
+    fn begin(
+        budget: &mut [u32], ends: Option<&[f64]>, near: &mut [f64], far: &mut [f64], met: &mut [u64]
+    ) -> bool {
         let (count, mut any_over) = (budget.len(), 0);
         let (near, far, met) = (&mut near[..count], &mut far[..count], &mut met[..count]);
+        match ends {
+            Some(ends) => far.copy_from_slice(&ends[..count]),
+            None => far.fill(MISS),
+        }
         for lane in 0..count {
             let is_over = budget[lane] == 0;
             let end = if is_over { 0.0 } else { far[lane] };
@@ -301,7 +303,8 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
     /// Looks at the objects that are listed, each for those parts of the packet that may come there.
     fn listed(&mut self) {
         let (cpu, plan) = (self.tracer.cpu, self.tracer.plan);
-        let bundles = bundles::around(cpu, self.group.rays());
+        // Those from the viewer all start there.
+        let bundles = bundles::around(cpu, self.group.rays(), self.group.leaves.is_none());
         for index in &plan.unbounded {
             let shape = &*self.tracer.model.objects[*index].shape;
             if self.tracer.may_meet(self.group.left(), *index) {

@@ -1,6 +1,6 @@
 //! The colours of the places that a packet's rays meet on one object.
 
-use super::group::{Group, Onward};
+use super::group::{Errors, Group, Onward};
 use super::light::{self, Colours};
 use super::room::{Vectors, list, room};
 use super::search;
@@ -9,7 +9,7 @@ use crate::render::plan::depth::Branch;
 use crate::render::watch::{Count, Event, Hit, Kind, Purpose, Reason, Watch};
 use crate::scene::model::Object;
 use crate::world::coincidence;
-use crate::world::hittable::Side;
+use crate::world::hittable::{Hittable, Side};
 use crate::world::landing::Landing;
 use crate::world::material::{Look, Rgb};
 use glam::DVec3;
@@ -27,10 +27,10 @@ pub(super) struct Surface {
     pub sides: Vec<Side>,
     /// How far the light has come from each.
     pub travelled: Vec<f64>,
-    /// How far each may be from where it should be, in world units, and the most of any; empty and 0 where that makes no
-    /// difference.
-    pub errors: Vec<f64>,
-    pub most_error: f64,
+    /// The cosines of the angles between the rays and the normals.
+    pub cosines: Vec<f64>,
+    /// What the places are computed from, and how far any may be from where it should be; see [`Errors`].
+    pub errors: Errors,
     /// What all answer to light, where that is the same.
     pub look: Option<Look>,
     /// Else what each mirrors.
@@ -42,8 +42,13 @@ pub(super) struct Surface {
 impl Surface {
     /// Rays in these directions from its places.
     pub fn onward<'o>(&'o self, dir: &'o Vectors) -> Onward<'o> {
-        let Self { index, points, sides, travelled, errors, most_error, .. } = self;
-        Onward { points, dir, travelled, leaves: *index, sides, errors, most_error: *most_error }
+        let Self { index, points, sides, travelled, cosines, errors, .. } = self;
+        Onward { points, dir, travelled, leaves: *index, sides, cosines, errors: *errors }
+    }
+
+    /// How far one of the places may be from where it should be, in world units.
+    pub fn error(&self, lane: usize) -> f64 {
+        self.errors.of(&self.travelled, &self.cosines, lane)
     }
 
     fn mirrors(&self, count: usize) -> Colours<'_> {
@@ -93,6 +98,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
             points: surface.points.room(count),
             normals: surface.normals.room(count),
             sides: room(&mut surface.sides, count),
+            cosines: room(&mut surface.cosines, count),
             travelled,
         };
         shape.land(cpu, group.rays(), distances, landing);
@@ -105,17 +111,12 @@ impl<W: Watch> Tracer<'_, '_, W> {
             }
             None => shader.unlit(cpu, material, points, colours.room(count), surface.specular.room(count)),
         };
-        surface.most_error = 0.0;
         let goes_on = !self.model.lights.is_empty() || surface.is_mirror || material.transparency != 0.0;
-        if self.is_classic() || !goes_on {
-            surface.errors.clear();
+        surface.errors = if goes_on {
+            self.errors(&**shape, &surface.travelled[..count], &surface.cosines[..count])
         } else {
-            let reach = shape.reach() + self.viewer;
-            let (dir, normals) = (group.dir.view(count), surface.normals.view(count));
-            let errors = room(&mut surface.errors, count);
-            surface.most_error =
-                coincidence::errors(cpu, dir, normals, &surface.travelled[..count], reach, errors);
-        }
+            Errors::NONE
+        };
         if W::SEES {
             self.watch.see(Event::Surface { normal: surface.normals.get(0), ambient: colours.get(0) });
         }
@@ -132,6 +133,15 @@ impl<W: Watch> Tracer<'_, '_, W> {
         if shading.surface.is_mirror {
             self.look_in_the_mirror(group, shading, colours);
         }
+    }
+
+    /// The errors of places where rays have come to a shape.
+    pub(super) fn errors(&self, shape: &dyn Hittable, travelled: &[f64], cosines: &[f64]) -> Errors {
+        if self.is_classic() {
+            return Errors::NONE;
+        }
+        let reach = shape.reach() + self.viewer;
+        Errors { reach: Some(reach), most: coincidence::most_error(self.cpu, travelled, reach, cosines) }
     }
 
     /// Adds what is seen through glass.
@@ -203,7 +213,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
         self.depth += 1;
         for lanes in lanes.chunks(most) {
             onward.go_on(group, &leaving, lanes);
-            onward.branch(self.cpu, &branch);
+            onward.branch(&branch);
             self.trace(onward, seen);
             behind.put(seen, lanes);
             group.pay(onward, lanes);
@@ -217,7 +227,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
         self.watch.count(Count::Rays(Kind::Reflected, group.len));
         self.depth += 1;
         onward.take(group, surface, dir);
-        onward.branch(self.cpu, &branch);
+        onward.branch(&branch);
         self.trace(onward, behind);
         swap(&mut group.budget, &mut onward.budget);
         self.depth -= 1;
