@@ -2,10 +2,11 @@
 //!
 //! Fields stand in the order in which they are written.
 
-use crate::scene::choice::{Choice, ChoiceName};
+use crate::scene::choice::ChoiceName;
 use crate::scene::entity::{self, Kind};
 use crate::scene::pparm;
 use crate::scene::profile::Profile;
+use crate::scene::reference::by_name;
 use crate::scene::registry::Registry;
 use crate::scene::schema::Constant;
 use crate::scene::value::Type;
@@ -165,10 +166,4 @@ impl Shader {
             number_on_spheres: on_sphere.number,
         }
     }
-}
-
-fn by_name<T: Choice>() -> impl Iterator<Item = ChoiceName> {
-    let mut all: Vec<_> = T::all().iter().map(T::option).collect();
-    all.sort_by_key(|choice| choice.name);
-    all.into_iter()
 }

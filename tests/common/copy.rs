@@ -23,6 +23,9 @@ impl Copy {
         for file in ["Cargo.toml", "Cargo.lock"] {
             fs::copy(root().join(file), copy.folder.join(file)).expect("a copy");
         }
+        // The reference begins with it.
+        fs::create_dir(copy.folder.join("docs")).expect("room for a folder");
+        fs::copy(root().join("docs/language.md"), copy.folder.join("docs/language.md")).expect("a copy");
         for folder in ["src", "plugins"] {
             copy_all(&root().join(folder), &copy.folder.join(folder));
         }

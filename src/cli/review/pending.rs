@@ -32,6 +32,25 @@ pub enum Content {
     Binary(Vec<u8>, String),
 }
 
+impl Content {
+    /// The text that it is, if it is one: a page of Markdown is, in a file of its own.
+    pub fn text(&self) -> Option<&str> {
+        match self {
+            Self::Binary(bytes, extension) if extension == "md" => str::from_utf8(bytes).ok(),
+            Self::Binary(..) => None,
+            Self::Text(text) => Some(text),
+        }
+    }
+
+    /// Its bytes.
+    pub fn bytes(&self) -> &[u8] {
+        match self {
+            Self::Text(text) => text.as_bytes(),
+            Self::Binary(bytes, _) => bytes,
+        }
+    }
+}
+
 /// The files of pending snapshots at a path: below a folder, sorted, or the one of a snapshot.
 pub fn find(path: &Path) -> Result<Vec<PathBuf>, Failure> {
     if !path.is_dir() {
