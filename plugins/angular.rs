@@ -7,7 +7,7 @@ use crate::shading::{Anchor, ProceduralShader};
 use glam::{DVec2, DVec3};
 
 inventory::submit! {
-    ProceduralShader::new("angular", "colours around the centre, whatever the material", |anchor| Box::new(Angular(anchor))).on_sphere(0)
+    ProceduralShader::new("angular", "hues around the centre, independent of the material", |anchor| Box::new(Angular(anchor))).on_sphere(0)
 }
 
 struct Angular(Anchor);

@@ -7,7 +7,7 @@ use crate::entity::Entity;
 inventory::submit! {
     Entity::shape(
         "pfplane",
-        "a rectangle that looks as a rule has it",
+        "a rectangle with a procedural shader",
         &[plane::TABLE, pplane::TABLE, fplane::TABLE, fplane::ROTATION],
         |args| {
             let rectangle = FinitePlane::new(args)?;

@@ -7,13 +7,13 @@ use crate::pparm::{Pparm, Row, Table};
 use crate::shading::{Anchor, OnPlane};
 use glam::DVec3;
 
-static SHADER: Pparm<OnPlane> = Pparm::required("shader", "the rule for its look");
+static SHADER: Pparm<OnPlane> = Pparm::required("shader", "the procedural shader");
 
 /// What planes with a rule for their look take.
 pub const TABLE: Table = &[&SHADER as &dyn Row];
 
 inventory::submit! {
-    Entity::shape("pplane", "a plane without end that looks as a rule has it", &[plane::TABLE, TABLE], |args| {
+    Entity::shape("pplane", "an infinite plane with a procedural shader", &[plane::TABLE, TABLE], |args| {
         let plane = Plane::new(args);
         let origin = plane.point;
         Ok(body(args, plane, origin))

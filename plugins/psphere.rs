@@ -6,12 +6,12 @@ use crate::geometry::Body;
 use crate::pparm::{Pparm, Row, Table};
 use crate::shading::{Anchor, OnSphere};
 
-static SHADER: Pparm<OnSphere> = Pparm::required("shader", "the rule for its look");
+static SHADER: Pparm<OnSphere> = Pparm::required("shader", "the procedural shader");
 
 const TABLE: Table = &[&SHADER as &dyn Row];
 
 inventory::submit! {
-    Entity::shape("psphere", "a ball that looks as a rule has it", &[sphere::TABLE, TABLE], |args| {
+    Entity::shape("psphere", "a sphere with a procedural shader", &[sphere::TABLE, TABLE], |args| {
         let sphere = Sphere::new(args);
         let anchor = Anchor { origin: sphere.center, unit: 2.0 * sphere.radius };
         Ok(Body::procedural(sphere, args.get(&SHADER).0, anchor))

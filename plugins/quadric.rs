@@ -13,15 +13,19 @@ use crate::sight::Sight;
 use crate::twofold::Twofold;
 use glam::{DMat3, DVec3};
 
-static COEFFICIENTS: Pparm<[f64; 10]> =
-    Pparm::required("coefficients", "A to J of Axx + Byy + Czz + Dxy + Exz + Fyz + Gx + Hy + Iz = J")
-        .must("not all zero but for J", |c: &[f64; 10]| c[..9].iter().any(|coefficient| *coefficient != 0.0));
-static CENTER: Pparm<DVec3> = Pparm::or("center", "where the equation's x, y and z are 0", DVec3::ZERO)
+static COEFFICIENTS: Pparm<[f64; 10]> = Pparm::required(
+    "coefficients",
+    "the coefficients A to J of Axx + Byy + Czz + Dxy + Exz + Fyz + Gx + Hy + Iz = J",
+)
+.must("nonzero in at least one of A to I", |c: &[f64; 10]| {
+    c[..9].iter().any(|coefficient| *coefficient != 0.0)
+});
+static CENTER: Pparm<DVec3> = Pparm::or("center", "the origin of the equation's coordinates", DVec3::ZERO)
     .alias(&["centre"])
     .unit("world coordinates");
 static BOX: Pparm<[f64; 6]> = Pparm::or(
     "box",
-    "what is kept of it: from x y z to x y z, counted from its center",
+    "the box that clips it, as its low and its high corner relative to `center`",
     [-1e9, -1e9, -1e9, 1e9, 1e9, 1e9],
 )
 .not_dumped();
@@ -29,7 +33,7 @@ static BOX: Pparm<[f64; 6]> = Pparm::or(
 const TABLE: Table = &[&COEFFICIENTS, &CENTER, &BOX];
 
 inventory::submit! {
-    Entity::shape("quadric", "a surface of the second degree, such as a cone, a cylinder or a saddle", &[TABLE], |args| {
+    Entity::shape("quadric", "a quadric surface, such as a cone, a cylinder or a saddle", &[TABLE], |args| {
         let coefficients = args.get(&COEFFICIENTS);
         let [a, b, c, d, e, f, g, h, i, j] = coefficients;
         let [x1, y1, z1, x2, y2, z2] = args.get(&BOX);
@@ -38,7 +42,7 @@ inventory::submit! {
             return Err(Refusal {
                 attribute: Some("box"),
                 message: "has an empty box".to_owned(),
-                help: "the box goes from its low corner to its high one: x, y and z must all grow",
+                help: "the low corner must be below the high corner in x, y and z",
             });
         }
         let square = DMat3::from_cols(

@@ -13,8 +13,8 @@ use crate::twofold::Twofold;
 use glam::DVec3;
 
 static CENTER: Pparm<DVec3> =
-    Pparm::required("center", "the point in its middle").alias(&["centre"]).unit("world coordinates");
-static RADIUS: Pparm<f64> = Pparm::required("radius", "the distance from its centre to its surface")
+    Pparm::required("center", "the position of the centre").alias(&["centre"]).unit("world coordinates");
+static RADIUS: Pparm<f64> = Pparm::required("radius", "the distance from the centre to the surface")
     .unit("world units")
     .must("positive", |radius| *radius > 0.0)
     .dumped("radius", "\n");
@@ -23,7 +23,7 @@ static RADIUS: Pparm<f64> = Pparm::required("radius", "the distance from its cen
 pub const TABLE: Table = &[&CENTER, &RADIUS];
 
 inventory::submit! {
-    Entity::shape("sphere", "a ball", &[TABLE], |args| Ok(Body::plain(Sphere::new(args))))
+    Entity::shape("sphere", "a sphere", &[TABLE], |args| Ok(Body::plain(Sphere::new(args))))
 }
 
 /// A sphere. Other round shapes hold one.

@@ -40,14 +40,14 @@ impl Choice for Accuracy {
 
     fn option(&self) -> ChoiceName {
         let (name, meaning) = match self {
-            Self::Classic => ("classic", "the course notes' own methods"),
+            Self::Classic => ("classic", "the course notes' methods"),
             Self::Draft => {
-                ("draft", "as exact, with points only within about 1/1000 of a unit of the surface")
+                ("draft", "like exact, but with hit points only within about 1/1000 of a unit of the surface")
             }
             Self::Exact => {
-                ("exact", "first hits by error bounds, their points on the surface but for rounding")
+                ("exact", "first hits found with error bounds, hit points on the surface up to rounding")
             }
-            Self::Strict => ("strict", "as exact, in twice the precision wherever a shape has it"),
+            Self::Strict => ("strict", "like exact, in twice the precision wherever a shape supports it"),
         };
         ChoiceName { name, number: None, meaning, place: Self::PLACE }
     }

@@ -83,7 +83,7 @@ pub enum Construct {
 
 /// What every object has beside its own attributes.
 pub static MATERIAL: Pparm<Arc<Material>> =
-    Pparm::required("material", "what it is made of, a material defined above it");
+    Pparm::required("material", "the material, defined earlier in the scene");
 
 const OBJECT: Table = &[&MATERIAL];
 
@@ -294,7 +294,7 @@ impl Args {
         let (name, place) = (self.entity.name, self.entity.place());
         match self.find(attribute) {
             Some(_) => panic!(
-                "the plugin `{name}` asks for `{attribute}` as a type that is not the one in the table it registers at {place}: give both the same type"
+                "the plugin `{name}` asks for `{attribute}` with another type than in the table it registers at {place}: give both the same type"
             ),
             None => panic!(
                 "the plugin `{name}` asks for `{attribute}`, which is not in the table it registers at {place}: add it there"

@@ -55,7 +55,7 @@ pub trait Attribute: Sync {
                 Some("so large that its square overflows")
             }
             size if size > 0.0 && size < LEAST_LENGTH && is_alone => {
-                Some("so small that its square vanishes")
+                Some("so small that its square underflows")
             }
             _ => None,
         };
@@ -72,7 +72,10 @@ pub trait Attribute: Sync {
             Type::Number => format!("{counts} number{plural}"),
             Type::Word => "a word".to_owned(),
             Type::Name(kind) => format!("the name of a {kind}"),
-            Type::Choice(choices) => format!("the name or number of a {}", choices.what),
+            Type::Choice(choices) if choices.all().iter().any(|choice| choice.number.is_some()) => {
+                format!("the name or number of a {}", choices.what)
+            }
+            Type::Choice(choices) => format!("the name of an {}", choices.what),
             Type::Formula => "a formula in y, in quotes".to_owned(),
         }
     }
