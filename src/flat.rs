@@ -116,7 +116,7 @@ impl Plane {
         match self.accuracy {
             Accuracy::Classic => "the notes' formula",
             Accuracy::Draft => "plain arithmetic",
-            Accuracy::Exact => "plain arithmetic, and what rounding takes from it where sums cancel",
+            Accuracy::Exact => "plain arithmetic, compensated for rounding where sums cancel",
             Accuracy::Strict => "twice the precision",
         }
     }

@@ -84,7 +84,7 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
     }
 
     fn method(&self) -> String {
-        "its first root isolated by interval arithmetic, then polished".to_owned()
+        "first root isolated by interval arithmetic, then polished".to_owned()
     }
 
     fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {

@@ -130,7 +130,7 @@ fn finish(
 /// What a scene looks like, for those who have none.
 fn first_steps(registry: &Registry, syntax: Syntax) -> String {
     let camera = registry.example(Kind::Camera, "NAME", syntax);
-    format!("a scene begins with a camera, {camera}; then come materials, objects and lights")
+    format!("a scene begins with a camera, {camera}; materials, objects and lights follow")
 }
 
 /// The text of a file.
@@ -141,8 +141,8 @@ fn decode<'b>(name: &str, bytes: &'b [u8]) -> Result<&'b str, Report> {
     let nul = bytes.iter().position(|byte| *byte == 0);
     let not_utf8 = std::str::from_utf8(bytes).err().map(|error| error.valid_up_to());
     let (place, message) = match (nul, not_utf8) {
-        (Some(nul), bad) if bad.is_none_or(|bad| nul < bad) => (nul..nul + 1, "a NUL byte"),
-        (_, Some(bad)) => (bad..bad + char::REPLACEMENT_CHARACTER.len_utf8(), "not UTF-8"),
+        (Some(nul), bad) if bad.is_none_or(|bad| nul < bad) => (nul..nul + 1, "unexpected NUL byte"),
+        (_, Some(bad)) => (bad..bad + char::REPLACEMENT_CHARACTER.len_utf8(), "invalid UTF-8"),
         _ => {
             let text = std::str::from_utf8(bytes).unwrap_or_default();
             return Ok(text.strip_prefix('\u{feff}').unwrap_or(text));
@@ -150,7 +150,7 @@ fn decode<'b>(name: &str, bytes: &'b [u8]) -> Result<&'b str, Report> {
     };
     // Up to the fault the lossy text has the same bytes.
     let mut report = Report::new(name, String::from_utf8_lossy(bytes), Syntax::default());
-    let help = "a scene is a text of entities, `TYPE NAME { ATTRIBUTES }`";
+    let help = "a scene is plain text, a sequence of entities `TYPE NAME { ATTRIBUTES }`";
     report.add(Fault::error(Some(place), message).help(help));
     Err(report)
 }
