@@ -4,7 +4,7 @@ use super::{Failure, print, program};
 use crate::registry::Registry;
 use clap_complete::Shell;
 
-/// Print a script that completes the command line, for a shell
+/// Print a completion script for a shell
 #[derive(clap::Args)]
 pub struct Args {
     /// The shell

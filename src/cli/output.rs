@@ -34,10 +34,10 @@ pub fn create(path: &Path, text: &str) -> Result<(), Failure> {
 pub fn folder(path: &Path) -> Result<(), Failure> {
     fs::create_dir_all(path).map_err(|error| {
         let reason = match error.kind() {
-            io::ErrorKind::AlreadyExists => "a file has this name".to_owned(),
+            io::ErrorKind::AlreadyExists => "a file of this name exists".to_owned(),
             _ => words::reason(&error),
         };
-        Failure::Failed(format!("cannot make the folder `{}`: {reason}", path.display()))
+        Failure::Failed(format!("cannot create the folder `{}`: {reason}", path.display()))
     })
 }
 
@@ -48,8 +48,8 @@ pub fn is_new(path: &Path) -> Result<(), Failure> {
 
 fn is_there(path: &Path) -> Failure {
     Failure::Usage(
-        format!("there is a `{}` already", path.display()),
-        Some("nothing is written in its place: choose another name".to_owned()),
+        format!("`{}` already exists", path.display()),
+        Some("existing files are not overwritten: choose another name".to_owned()),
     )
 }
 
@@ -59,8 +59,8 @@ impl Output {
         if path == Path::new("-") {
             if io::stdout().is_terminal() {
                 return Err(Failure::Usage(
-                    "standard output is a terminal, which shows no pictures".to_owned(),
-                    Some("send it on with `> FILE` or `|`, or name a file with `-o FILE`".to_owned()),
+                    "standard output is a terminal, which cannot show images".to_owned(),
+                    Some("redirect it with `> FILE` or `|`, or name a file with `-o FILE`".to_owned()),
                 ));
             }
             return Ok(Self::Standard);
