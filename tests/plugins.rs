@@ -33,7 +33,7 @@ fn the_pages_plugin_is_made_as_it_says_and_its_mistakes_are_told() {
         .replace("0.5 * args.get(&SIZE)", "DVec3::splat(0.5 * args.get(&WIDE))");
     fs::write(copy.folder.join("plugins/slab.rs"), confused.replace("\"box\"", "\"slab\"")).expect("room");
     let said = copy.build();
-    let warning = "plugins/box.rs registers nothing, so that no scene can use it";
+    let warning = "plugins/box.rs registers nothing, so no scene can use it";
     assert!(said.contains(warning) && tells(warning), "{said}");
     assert!(!copy.prints(&["list"]).contains("box "));
 
@@ -51,7 +51,7 @@ fn the_pages_plugin_is_made_as_it_says_and_its_mistakes_are_told() {
         &["check", "-"],
         &scene.replace("brick b", "slab b").replace("center 1 1 1", "center 1 1 1 size 1 1 1"),
     );
-    let message = "the plugin `slab` asks for `size` as a type that is not the one in the table it registers at plugins/slab.rs:19: give both the same type";
+    let message = "the plugin `slab` asks for `size` with another type than in the table it registers at plugins/slab.rs:19: give both the same type";
     assert!(said.contains("panicked at src/../plugins/slab.rs:") && said.contains(message), "{said}");
     for plugin in ["brick.rs", "slab.rs"] {
         fs::remove_file(copy.folder.join("plugins").join(plugin)).expect("it was there");

@@ -88,8 +88,8 @@ fn a_plugin_is_one_file_dropped_in() {
     assert_eq!(dropped, plugins.into_iter().map(|(path, _)| path).collect(), "no other file changes");
 
     let disc = copy.prints(&["list"]).lines().find(|line| line.starts_with("disc ")).map(str::to_owned);
-    assert!(disc.expect("the list has it").contains("a round piece of a plane"));
-    assert!(copy.prints(&["list", "disc"]).contains("the distance from its middle to its rim"));
+    assert!(disc.expect("the list has it").contains("a circular piece of a plane"));
+    assert!(copy.prints(&["list", "disc"]).contains("the distance from the centre to the rim"));
 
     let scene = copy.outside("disc.ray");
     fs::write(&scene, block_with(&readme(), "disc target")).expect("room for a file");
@@ -112,7 +112,7 @@ fn a_plugin_is_one_file_dropped_in() {
     let named = "camera eye { pixeldim 8 6 worlddim 8 6 viewpoint 4 3 6 } material m { ambient 5 5 5 }
         revsurf cask { material m surfer barrel base 4 0 -4 direction 0 1 0 height 4 }
         psphere ball { material m shader stripes center 4 3 -3 radius 1 }";
-    assert!(copy.run(&["check", "-"], named).contains("-: sound"));
+    assert!(copy.run(&["check", "-"], named).contains("-: no errors"));
 
     let message = copy.run(&["check", "-"], "disc d { radius 0 }");
     assert!(message.contains("`radius` of disc `d` must be positive, not 0"), "{message}");
@@ -139,7 +139,7 @@ fn contradictions_are_told_with_their_places(copy: &Copy) {
     let plugin = |name: &str| copy.folder.join("plugins").join(name);
     fs::write(plugin("Bad-Name.rs"), "").expect("room for a file");
     let message = copy.cargo_build().expect_err("no module can have this name");
-    assert!(message.contains("Bad-Name.rs: a plugin's file name is a Rust module name"), "{message}");
+    assert!(message.contains("Bad-Name.rs: a plugin's file name must be a Rust module name"), "{message}");
     fs::remove_file(plugin("Bad-Name.rs")).expect("it was there");
 
     fs::write(plugin("rival.rs"), RIVAL).expect("room for a file");
