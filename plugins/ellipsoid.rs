@@ -2,6 +2,7 @@
 
 use super::sphere::{self, Sphere};
 use crate::geometry::bounds::Bounds;
+use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
 use crate::geometry::sight::Sight;
 use crate::numeric::number::Number;
 use crate::numeric::twofold::{Twofold, exponent_to_one, times_power_of_two};
@@ -11,7 +12,7 @@ use crate::shapes::ball::{self, Line};
 use crate::world::accuracy::Accuracy;
 use crate::world::certify::{self, Enclosure, Equation, Precision};
 use crate::world::coincidence;
-use crate::world::hittable::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
+use crate::world::hittable::{Body, Hittable};
 use glam::DVec3;
 
 static SCALE: Pparm<DVec3> = Pparm::required("scale", "how much it is stretched along x, y and z")

@@ -3,6 +3,7 @@
 use super::plane::{self, Plane};
 use crate::geometry::bounds::Bounds;
 use crate::geometry::packet::Rays;
+use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
 use crate::geometry::sight::Sight;
 use crate::numeric::number::{Number, cross, dot};
 use crate::numeric::twofold::Twofold;
@@ -14,7 +15,7 @@ pub use crate::shapes::rectangle::FinitePlane;
 use crate::simd::cpu::Cpu;
 use crate::world::accuracy::Accuracy;
 use crate::world::certify::{self, Enclosure, Equation, Precision};
-use crate::world::hittable::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
+use crate::world::hittable::{Body, Hittable};
 use glam::{DMat3, DVec2, DVec3};
 
 pub static DIMENSIONS: Pparm<DVec2> = Pparm::required("dimensions", "its size along xdir and across it")

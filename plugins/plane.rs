@@ -2,6 +2,7 @@
 
 use crate::geometry::bounds::{Bounds, SLACK};
 use crate::geometry::packet::Rays;
+use crate::geometry::ray::{Bracket, Ray, Side, Span};
 use crate::geometry::sight::Sight;
 use crate::numeric::number::{Number, dot};
 use crate::numeric::twofold::Twofold;
@@ -11,7 +12,7 @@ pub use crate::shapes::flat::Plane;
 use crate::simd::cpu::Cpu;
 use crate::world::accuracy::Accuracy;
 use crate::world::certify::{self, Enclosure, Equation, Precision};
-use crate::world::hittable::{Body, Bracket, Hittable, Ray, Side, Span};
+use crate::world::hittable::{Body, Hittable};
 use glam::DVec3;
 
 pub static NORMAL: Pparm<DVec3> =

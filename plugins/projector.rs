@@ -3,10 +3,11 @@
 use super::light::{self, PointLight};
 use super::texplane::{self, Picture};
 use super::{fplane, plane};
+use crate::geometry::ray::Ray;
 use crate::scene::entity::Entity;
 use crate::scene::pparm::{Derived, Row, Table};
 use crate::scene::value::Datum;
-use crate::world::hittable::{Light, Ray};
+use crate::world::hittable::Light;
 use crate::world::material::Rgb;
 use glam::DVec3;
 

@@ -1,6 +1,7 @@
 //! A sphere: every point at one distance from a centre.
 
 use crate::geometry::bounds::{Bounds, SLACK};
+use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
 use crate::geometry::sight::Sight;
 use crate::numeric::number::Number;
 use crate::numeric::twofold::Twofold;
@@ -9,7 +10,7 @@ use crate::scene::pparm::{Pparm, Table};
 use crate::shapes::ball::{self, Line};
 use crate::world::accuracy::Accuracy;
 use crate::world::certify::{self, Enclosure, Equation, Precision};
-use crate::world::hittable::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
+use crate::world::hittable::{Body, Hittable};
 use glam::DVec3;
 
 static CENTER: Pparm<DVec3> =

@@ -3,12 +3,13 @@
 use super::fplane::{self, FinitePlane};
 use super::plane;
 use crate::geometry::bounds::Bounds;
+use crate::geometry::ray::{Bracket, Ray, Side, Span};
 use crate::geometry::sight::Sight;
 use crate::numeric::twofold::Twofold;
 use crate::scene::entity::{Args, Entity, Refusal};
 use crate::scene::pparm::{Pparm, Table};
 use crate::world::certify::{Enclosure, Precision};
-use crate::world::hittable::{Body, Bracket, Hittable, Ray, Shader, Side, Span};
+use crate::world::hittable::{Body, Hittable, Shader};
 use crate::world::material::{Look, Material, Rgb};
 use crate::world::texture::Texture;
 use glam::{DVec2, DVec3};

@@ -1,6 +1,7 @@
 //! A triangle.
 
 use crate::geometry::bounds::Bounds;
+use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
 use crate::geometry::sight::Sight;
 use crate::numeric::number::{Number, cross, dot};
 use crate::numeric::twofold::{self, Twofold, exponent_to_one, times_power_of_two, triple_product, unit};
@@ -9,7 +10,7 @@ use crate::scene::pparm::{Pparm, Table};
 use crate::shapes::flat::Plane;
 use crate::world::accuracy::Accuracy;
 use crate::world::certify::{self, Enclosure, Equation, Precision};
-use crate::world::hittable::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
+use crate::world::hittable::{Body, Hittable};
 use glam::DVec3;
 
 static VERTEX1: Pparm<DVec3> = Pparm::required("vertex1", "its first corner").unit("world coordinates");

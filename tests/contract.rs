@@ -8,6 +8,7 @@ use std::fs;
 use std::sync::atomic::{AtomicU32, Ordering};
 use tabray::geometry::bounds::Bounds;
 use tabray::geometry::frame::Frame;
+use tabray::geometry::ray::{Bracket, MISS, Ray, Side, Span};
 use tabray::geometry::sight::Sight;
 use tabray::numeric::number::Number;
 use tabray::scene::entity::{Args, Entity, Kind, Refusal};
@@ -17,7 +18,7 @@ use tabray::shapes::implicit::Implicit;
 use tabray::tools::contract::{self, Breach, Promise};
 use tabray::world::camera::Camera;
 use tabray::world::certify::{Enclosure, Precision};
-use tabray::world::hittable::{Body, Bracket, Hittable, Light, MISS, Ray, Shader, Side, Span};
+use tabray::world::hittable::{Body, Hittable, Light, Shader};
 use tabray::world::material::{Material, Rgb};
 
 #[test]

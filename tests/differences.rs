@@ -10,13 +10,13 @@ use std::collections::BTreeSet;
 use std::f64::consts::PI;
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use tabray::geometry::ray::{MISS, Span};
 use tabray::render::trace;
 use tabray::scene::dump;
 use tabray::scene::model::Model;
 use tabray::scene::reader::{self, Loaded, Report};
 use tabray::tools::debug::{self, Line};
 use tabray::world::accuracy::Accuracy::{self, Classic, Exact};
-use tabray::world::hittable::{MISS, Span};
 
 /// The scene of a difference.
 #[derive(Clone)]

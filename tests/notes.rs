@@ -4,9 +4,10 @@ mod common;
 
 use common::model;
 use glam::{DMat3, DVec3, dvec3};
+use tabray::geometry::ray::{MISS, Ray, Span};
 use tabray::render::trace;
 use tabray::scene::dump;
-use tabray::world::hittable::{Hittable, MISS, Ray, Span};
+use tabray::world::hittable::Hittable;
 
 /// Whether two vectors agree to this many printed decimals.
 #[track_caller]

@@ -13,11 +13,11 @@ use oracle::tally::{Tally, Tolerance, ulp};
 use oracle::{Crossings, Truth};
 use std::cell::RefCell;
 use std::collections::HashMap;
+use tabray::geometry::ray::{MISS, Ray, Side, Span};
 use tabray::geometry::sight::Sight;
 use tabray::numeric::interval::{Float, Wide};
 use tabray::scene::model::Model;
 use tabray::world::certify::{self, Enclosure, Precision};
-use tabray::world::hittable::{MISS, Ray, Side, Span};
 
 /// The rays of each set.
 const RAYS: usize = 10_000;

@@ -3,4 +3,5 @@
 pub mod bounds;
 pub mod frame;
 pub mod packet;
+pub mod ray;
 pub mod sight;

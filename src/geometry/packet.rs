@@ -5,8 +5,9 @@
 //! instructions ([`cpu`](crate::simd::cpu)). Arrays are as long as a multiple of [`STEP`]; what is beyond the last ray is a
 //! copy of it, and is computed and ignored.
 
+use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
 use crate::simd::cpu::kernels;
-use crate::world::hittable::{Bracket, Hittable, MISS, Ray, Shader, Side, Span};
+use crate::world::hittable::{Hittable, Shader};
 use crate::world::material::{Material, Rgb};
 use glam::DVec3;
 use std::ops::Range;

@@ -8,13 +8,13 @@
 
 use crate::geometry::bounds::{Bounds, SLACK, larger};
 use crate::geometry::packet::{self, Rays, STEP};
+use crate::geometry::ray::{Bracket, MISS, Ray, Span};
 use crate::numeric::number::Number;
 use crate::numeric::twofold::{
     Twofold, dot, exact_sum, exponent_to_one, times_power_of_two, two_product, two_sum,
 };
 use crate::simd::cpu::{Cpu, kernels};
 use crate::world::accuracy::Accuracy;
-use crate::world::hittable::{Bracket, MISS, Ray, Span};
 use glam::DVec3;
 
 /// On the viewer's side of the screen there are no planes (the notes' "wrong side").

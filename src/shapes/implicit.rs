@@ -6,6 +6,7 @@
 
 use crate::geometry::bounds::Bounds;
 use crate::geometry::frame::{BLUR, Frame};
+use crate::geometry::ray::{MISS, Ray, Side, Span};
 use crate::geometry::sight::{Line, Sight};
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
@@ -14,7 +15,7 @@ use crate::numeric::twofold::Twofold;
 use crate::shapes::roots::{Method, taylor, twice};
 use crate::world::certify::{self, Enclosure, Equation, Precision};
 use crate::world::coincidence;
-use crate::world::hittable::{Body, Hittable, MISS, Ray, Side, Span};
+use crate::world::hittable::{Body, Hittable};
 use glam::DVec3;
 
 /// A shape by its formula, in coordinates of its own.

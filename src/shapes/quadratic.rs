@@ -5,12 +5,11 @@
 //! whether there is a hit, which one is first or whether a box keeps it, all of it is done again in twice the precision.
 
 use crate::geometry::bounds::smaller;
+use crate::geometry::ray::{MISS, Side};
 use crate::numeric::number::Number;
 use crate::numeric::twofold::{
     Exact, Twofold, exponent_to_one, product, times_power_of_two, two_product, two_sum,
 };
-use crate::world::hittable::MISS;
-use crate::world::hittable::Side;
 use glam::{DMat3, DVec3};
 
 /// The part in a box of what solves `p·Sp + l·p + c = 0`.

@@ -1,10 +1,10 @@
 //! The notes' debug lines (`DBG_PIX` and so on): what they print, in their order and their format.
 
+use crate::geometry::ray::{Ray, Span};
 use crate::output::picture::to_byte;
 use crate::render::trace;
 use crate::render::watch::{Event, Purpose, Watch};
 use crate::scene::model::Model;
-use crate::world::hittable::{Ray, Span};
 use std::fmt;
 use std::io::{self, Write};
 

@@ -1,10 +1,10 @@
 //! One pixel explained: its rays as an indented tree, with all that was tested, met and added up on the way.
 
+use crate::geometry::ray::{MISS, Ray, Span};
 use crate::output::picture::to_byte;
 use crate::render::trace::{self, MAX_DIST, MAX_RAYS};
 use crate::render::watch::{Event, Hit, Outcome, Purpose, Reason, Watch};
 use crate::scene::model::Model;
-use crate::world::hittable::{MISS, Ray, Span};
 use crate::world::material::Rgb;
 use glam::DVec3;
 use std::io::{self, Write};

@@ -1,9 +1,9 @@
 //! The camera: from a pixel to the ray that it looks along.
 
+use crate::geometry::ray::Ray;
 use crate::geometry::sight::{self, Sight};
 use crate::simd::cpu::kernels;
 use crate::world::accuracy::Accuracy;
-use crate::world::hittable::Ray;
 use crate::world::sample::{Sample, Sampler};
 use glam::{DVec2, DVec3};
 

@@ -6,6 +6,7 @@
 
 use crate::geometry::bounds::larger;
 use crate::geometry::packet::View;
+use crate::geometry::ray::{Bracket, MISS, Ray, Span};
 use crate::geometry::sight::{Line, Sight};
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
@@ -13,7 +14,7 @@ use crate::numeric::number::Number;
 use crate::numeric::twofold::Twofold;
 use crate::simd::cpu::kernels;
 use crate::world::certify::Equation;
-use crate::world::hittable::{Bracket, Hittable, MISS, Ray, Span};
+use crate::world::hittable::Hittable;
 use glam::DVec3;
 
 /// What rounding may make of a point, as a part of the coordinates that it is computed from: 8 units in the last place

@@ -1,8 +1,9 @@
 //! Where rays come to a surface.
 
 use crate::geometry::packet::{Rays, ViewMut};
+use crate::geometry::ray::Side;
 use crate::simd::cpu::kernels;
-use crate::world::hittable::{Hittable, Side};
+use crate::world::hittable::Hittable;
 use glam::DVec3;
 
 /// Places on a surface, each where a ray of a packet comes to it. All arrays are as long as the packet's.

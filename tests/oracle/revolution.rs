@@ -6,12 +6,12 @@
 
 use super::{Crossings, Hit, Truth};
 use glam::DVec3;
+use tabray::geometry::ray::Ray;
 use tabray::numeric::dual::Dual;
 use tabray::numeric::formula::Formula;
 use tabray::numeric::interval::Interval;
 use tabray::numeric::number::Number;
 use tabray::numeric::twofold::Twofold;
-use tabray::world::hittable::Ray;
 
 /// A line x = g(y) turned around the y axis through a base. Where g is below 0 there is nothing.
 pub struct Revolution {

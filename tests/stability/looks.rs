@@ -4,13 +4,13 @@ use super::{DOWN_Z, Random, shape, text};
 use crate::common::{model, render};
 use glam::{DVec3, dvec3};
 use std::f64::consts::{PI, TAU};
+use tabray::geometry::ray::Ray;
 use tabray::geometry::sight::Sight;
 use tabray::output::picture::to_byte;
 use tabray::render::trace;
 use tabray::scene::choice::Choice;
 use tabray::scene::model::Model;
 use tabray::world::accuracy::Accuracy;
-use tabray::world::hittable::Ray;
 use tabray::world::material::Rgb;
 
 /// The ambient colour of the first object at a point.

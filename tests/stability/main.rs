@@ -26,9 +26,10 @@ mod together;
 use common::{model, registry};
 use glam::{DVec3, dvec3};
 use std::path::Path;
+use tabray::geometry::ray::{Ray, Span};
 use tabray::scene::model::Model;
 use tabray::scene::reader;
-use tabray::world::hittable::{Hittable, Ray, Span};
+use tabray::world::hittable::Hittable;
 
 const DOWN_Z: DVec3 = DVec3::NEG_Z;
 

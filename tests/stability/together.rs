@@ -4,10 +4,10 @@ use super::Random;
 use super::common::{model, render};
 use glam::{DVec3, dvec3};
 use image::RgbImage;
+use tabray::geometry::ray::{Ray, Side, Span};
 use tabray::output::picture::to_byte;
 use tabray::render::trace;
 use tabray::render::watch::{Event, Watch};
-use tabray::world::hittable::{Ray, Side, Span};
 
 const BLUE: [u8; 3] = [0, 0, 255];
 

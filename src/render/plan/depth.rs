@@ -36,10 +36,10 @@
 //! also left out where `weight * beyond / d < FAINT` by itself.
 
 use crate::geometry::bounds::SLACK;
+use crate::geometry::ray::Side;
 use crate::render::trace::MAX_DIST;
 use crate::scene::model::{Model, Object};
 use crate::world::accuracy::Accuracy;
-use crate::world::hittable::Side;
 use crate::world::material::{Look, Rgb};
 use glam::DVec3;
 

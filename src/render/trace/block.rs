@@ -5,10 +5,10 @@ use super::room::{Vectors, room};
 use super::search::{Start, exact, invert};
 use crate::geometry::bounds::{self, Bounds};
 use crate::geometry::packet::{Rays, parts};
+use crate::geometry::ray::Side;
 use crate::render::bundles::PART;
 use crate::render::tree::Visitor;
 use crate::render::watch::{Count, Watch};
-use crate::world::hittable::Side;
 use std::mem::take;
 use std::ops::Range;
 

@@ -7,9 +7,9 @@ use super::search::Found;
 use super::shade::Surface;
 use super::shadow::Ways;
 use crate::geometry::bounds::larger;
+use crate::geometry::ray::{Ray, Side};
 use crate::render::watch::{Count, Event, Kind, Purpose, Watch};
 use crate::world::coincidence;
-use crate::world::hittable::{Ray, Side};
 use crate::world::material::Rgb;
 
 /// Rays on their way to a light.

@@ -5,6 +5,7 @@ use super::group::Group;
 use super::room::{Vectors, room};
 use crate::geometry::bounds::{self, Bounds};
 use crate::geometry::packet::{Nearest, Rays, parts};
+use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
 use crate::geometry::sight::Sight;
 use crate::numeric::interval::Wide;
 use crate::render::bundles::{self, PART};
@@ -13,7 +14,7 @@ use crate::render::watch::{Count, Event, Hit, Reason, Watch};
 use crate::simd::cpu::{Cpu, kernels};
 use crate::world::certify::{self, Enclosure, Precision};
 use crate::world::coincidence;
-use crate::world::hittable::{Bracket, Hittable, MISS, Ray, Side, Span};
+use crate::world::hittable::Hittable;
 use std::mem::take;
 use std::ops::Range;
 

@@ -7,9 +7,9 @@ use super::room::{Vectors, pick, room};
 use super::shade::Surface;
 use crate::geometry::bounds::Bounds;
 use crate::geometry::packet::{Rays, STEP};
+use crate::geometry::ray::Side;
 use crate::render::watch::{Count, Kind, Watch};
 use crate::simd::cpu::kernels;
-use crate::world::hittable::Side;
 
 /// The ways from the places of a surface to a light.
 pub(super) struct Ways<'w> {

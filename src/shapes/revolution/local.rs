@@ -2,8 +2,8 @@
 //! in the arithmetic.
 
 use crate::geometry::frame::{BLUR, Frame};
+use crate::geometry::ray::{Ray, Span};
 use crate::numeric::number::Number;
-use crate::world::hittable::{Ray, Span};
 use glam::DVec3;
 
 /// The part of a ray that is inside of a bounding cylinder.

@@ -28,6 +28,7 @@ pub use slabs::NoSurface;
 
 use crate::geometry::bounds::Bounds;
 use crate::geometry::frame::{BLUR, Frame};
+use crate::geometry::ray::{MISS, Ray, Side, Span};
 use crate::numeric::dual::Dual;
 use crate::numeric::formula::Formula;
 use crate::numeric::interval::Interval;
@@ -38,7 +39,6 @@ use crate::shapes::roots::taylor::Line;
 use crate::shapes::roots::twice;
 use crate::words;
 use crate::world::certify::Equation;
-use crate::world::hittable::{MISS, Ray, Side, Span};
 use glam::DVec3;
 use local::Local;
 use slabs::Slabs;

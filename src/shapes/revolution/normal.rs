@@ -3,10 +3,10 @@
 use super::Revolution;
 use crate::geometry::frame::Frame;
 use crate::geometry::packet::{Rays, STEP, Vectors};
+use crate::geometry::ray::Side;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
 use crate::simd::cpu::kernels;
-use crate::world::hittable::Side;
 use crate::world::landing;
 use glam::DVec3;
 

@@ -5,6 +5,7 @@ use super::{Classic, Revolution, normal};
 use crate::geometry::bounds::Bounds;
 use crate::geometry::frame::Frame;
 use crate::geometry::packet::{self, Nearest, Rays, parts};
+use crate::geometry::ray::{Ray, Side, Span};
 use crate::geometry::sight::{Line, Sight};
 use crate::numeric::number::Number;
 use crate::numeric::twofold::Twofold;
@@ -12,7 +13,7 @@ use crate::shapes::roots::Method;
 use crate::simd::cpu::Cpu;
 use crate::world::certify::{self, Enclosure, Equation, Precision};
 use crate::world::coincidence;
-use crate::world::hittable::{Hittable, Ray, Side, Span};
+use crate::world::hittable::Hittable;
 use crate::world::landing::Landing;
 use glam::DVec3;
 

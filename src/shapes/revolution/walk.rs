@@ -7,8 +7,8 @@
 use super::local::Local;
 use super::slabs::Slab;
 use super::{Finish, OnRay, Revolution, sign};
+use crate::geometry::ray::{Side, Span};
 use crate::shapes::roots::{newton, taylor};
-use crate::world::hittable::{Side, Span};
 
 /// `sg * (a s^2 + 2 b s + c)`, which is positive where the ray is still on its side of a slab's parabola.
 #[derive(Clone, Copy)]

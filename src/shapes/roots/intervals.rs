@@ -6,9 +6,9 @@
 
 use super::taylor::Line;
 use super::{Refiner, value_and_slope};
+use crate::geometry::ray::Side;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
-use crate::world::hittable::Side;
 use std::ops::Range;
 
 /// The pieces after which a ray is given up.

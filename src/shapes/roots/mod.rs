@@ -15,8 +15,8 @@ mod tracing;
 mod turning;
 pub mod twice;
 
+use crate::geometry::ray::{Side, Span};
 use crate::numeric::dual::Dual;
-use crate::world::hittable::{Side, Span};
 use std::fmt;
 use std::ops::Range;
 use taylor::Line;

@@ -6,7 +6,7 @@
 
 use super::taylor::Line;
 use super::{Refiner, evenly, sign_change};
-use crate::world::hittable::Side;
+use crate::geometry::ray::Side;
 use std::ops::Range;
 
 pub fn first_root(

@@ -6,7 +6,7 @@
 
 use super::taylor::Line;
 use super::{bisection, sign_change};
-use crate::world::hittable::Side;
+use crate::geometry::ray::Side;
 use std::ops::Range;
 
 const STEP: f64 = 0.1;

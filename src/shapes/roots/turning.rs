@@ -6,8 +6,8 @@
 
 use super::taylor::Line;
 use super::{Refiner, evenly, newton, value_and_slope};
+use crate::geometry::ray::Side;
 use crate::numeric::dual::Dual;
-use crate::world::hittable::Side;
 use std::ops::Range;
 
 pub fn first_root(

@@ -4,10 +4,10 @@
 //! tells whether the line goes in. What twice the precision does not tell from 0 either counts as a touch: a line that
 //! touches meets the surface, and one that leaves it does not.
 
+use crate::geometry::ray::Side;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
 use crate::numeric::twofold::Twofold;
-use crate::world::hittable::Side;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// How much of what rounding in f64 hides is hidden in twice the precision, too: 2^-53 but for five digits.

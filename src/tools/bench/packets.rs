@@ -2,12 +2,12 @@
 
 use super::clock;
 use crate::geometry::packet::{Nearest, Rays, Vectors, WIDE};
+use crate::geometry::ray::{MISS, Side};
 use crate::render::tiles::{self, TILE};
 use crate::render::trace::{self, Rooms, Tracer};
 use crate::render::watch::{Count, Kind, Watch};
 use crate::scene::model::Model;
 use crate::simd::cpu::Cpu;
-use crate::world::hittable::{MISS, Side};
 use std::hint::black_box;
 use std::time::Duration;
 
