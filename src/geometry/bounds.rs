@@ -1,7 +1,8 @@
 //! Boxes around shapes.
 
-use crate::geometry::packet::{Rays, View};
+use crate::geometry::packet::Rays;
 use crate::simd::cpu::kernels;
+use crate::simd::soa::View;
 use glam::DVec3;
 
 /// What rounding may make of a place, as a part of how far it is from the world's origin; far more than it does.

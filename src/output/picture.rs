@@ -1,7 +1,7 @@
 //! Colours to bytes, and bytes to picture files.
 
-use crate::geometry::packet::View;
 use crate::simd::cpu::{Cpu, kernels};
+use crate::simd::soa::View;
 use crate::world::material::Rgb;
 use glam::DVec3;
 use std::fs::File;

@@ -7,13 +7,14 @@
 //! comes from the scene's own one, not from the unit vector that rounding makes of it.
 
 use crate::geometry::bounds::{Bounds, SLACK, larger};
-use crate::geometry::packet::{self, Rays, STEP};
+use crate::geometry::packet::{self, Rays};
 use crate::geometry::ray::{Bracket, MISS, Ray, Span};
 use crate::numeric::number::Number;
 use crate::numeric::twofold::{
     Twofold, dot, exact_sum, exponent_to_one, times_power_of_two, two_product, two_sum,
 };
 use crate::simd::cpu::{Cpu, kernels};
+use crate::simd::soa::STEP;
 use crate::world::accuracy::Accuracy;
 use glam::DVec3;
 

@@ -5,7 +5,6 @@
 //! where they meet. How far off the point is follows from the numbers that it was computed from; nothing is chosen.
 
 use crate::geometry::bounds::larger;
-use crate::geometry::packet::View;
 use crate::geometry::ray::{Bracket, MISS, Ray, Span};
 use crate::geometry::sight::{Line, Sight};
 use crate::numeric::dual::Dual;
@@ -13,6 +12,7 @@ use crate::numeric::interval::Interval;
 use crate::numeric::number::Number;
 use crate::numeric::twofold::Twofold;
 use crate::simd::cpu::kernels;
+use crate::simd::soa::View;
 use crate::world::certify::Equation;
 use crate::world::hittable::Hittable;
 use glam::DVec3;

@@ -3,8 +3,8 @@
 //! All arrays are as long as the packet's whose rays came to the places.
 
 use crate::geometry::bounds::larger;
-use crate::geometry::packet::{View, ViewMut};
 use crate::simd::cpu::kernels;
+use crate::simd::soa::{View, ViewMut};
 use crate::world::hittable::Light;
 use crate::world::material::Rgb;
 use glam::DVec3;

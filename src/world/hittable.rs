@@ -1,12 +1,13 @@
 //! What a plugin implements: [`Hittable`] shapes, [`Shader`]s and [`Light`]s.
 
 use crate::geometry::bounds::{self, Bounds};
-use crate::geometry::packet::{self, Nearest, Rays, View, ViewMut};
+use crate::geometry::packet::{self, Nearest, Rays};
 use crate::geometry::ray::{Bracket, Ray, Side, Span};
 use crate::geometry::sight::Sight;
 use crate::numeric::twofold::Twofold;
 use crate::shapes::roots::Method;
 use crate::simd::cpu::Cpu;
+use crate::simd::soa::{View, ViewMut};
 use crate::world::certify::{Enclosure, Precision};
 use crate::world::coincidence;
 use crate::world::facing::{self, Faced, Facing, Places};

@@ -1,8 +1,9 @@
 //! Where rays come to a surface.
 
-use crate::geometry::packet::{Rays, ViewMut};
+use crate::geometry::packet::Rays;
 use crate::geometry::ray::Side;
 use crate::simd::cpu::kernels;
+use crate::simd::soa::ViewMut;
 use crate::world::hittable::Hittable;
 use glam::DVec3;
 

@@ -5,12 +5,13 @@
 use divan::{Bencher, black_box, counter::ItemsCount};
 use std::fs;
 use std::path::Path;
-use tabray::geometry::packet::{Nearest, Rays, Vectors};
+use tabray::geometry::packet::{Nearest, Rays};
 use tabray::geometry::ray::{MISS, Ray, Span};
 use tabray::scene::model::Model;
 use tabray::scene::reader;
 use tabray::scene::registry::Registry;
 use tabray::simd::cpu::Cpu;
+use tabray::simd::soa::Vectors;
 
 /// The rays of a packet.
 const WIDE: usize = 64;

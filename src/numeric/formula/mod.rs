@@ -2,10 +2,10 @@
 
 mod parser;
 
-use crate::geometry::packet::STEP;
 use crate::numeric::dual::Dual;
 use crate::numeric::number::Number;
 use crate::numeric::octet::Octet;
+use crate::simd::soa::STEP;
 use std::fmt;
 use std::ops::Range;
 

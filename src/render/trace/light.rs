@@ -1,9 +1,10 @@
 //! The arithmetic of shading, for all places of a packet at once.
 
 use super::MAX_RAYS;
-use crate::geometry::packet::{View, ViewMut, is_any};
+use crate::geometry::packet::is_any;
 use crate::render::plan::depth::{Branch, MANY};
 use crate::simd::cpu::kernels;
+use crate::simd::soa::{View, ViewMut};
 use crate::world::material::{Look, Rgb};
 
 /// Of rays that may cost so few more, [`MANY`] have been followed.

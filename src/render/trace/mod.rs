@@ -15,12 +15,13 @@ mod search;
 mod shade;
 mod shadow;
 
-use crate::geometry::packet::{View, WIDE};
+use crate::geometry::packet::WIDE;
 use crate::geometry::sight::Sight;
 use crate::render::plan::Plan;
 use crate::render::watch::{Count, Event, Hit, Kind, Purpose, Watch};
 use crate::scene::model::Model;
 use crate::simd::cpu::Cpu;
+use crate::simd::soa::View;
 use crate::world::accuracy::Accuracy;
 use crate::world::material::Rgb;
 use crate::world::sample::Sample;

@@ -7,7 +7,8 @@ use super::illuminate::Lighting;
 use super::passage::Passage;
 use super::search::Found;
 use super::shade::Shading;
-use crate::geometry::packet::{View, ViewMut, WIDE};
+use crate::geometry::packet::WIDE;
+use crate::simd::soa::{View, ViewMut};
 use crate::world::sample::Sample;
 use glam::DVec3;
 

@@ -6,10 +6,11 @@ use super::group::Group;
 use super::room::{Vectors, pick, room};
 use super::shade::Surface;
 use crate::geometry::bounds::Bounds;
-use crate::geometry::packet::{Rays, STEP};
+use crate::geometry::packet::Rays;
 use crate::geometry::ray::Side;
 use crate::render::watch::{Count, Kind, Watch};
 use crate::simd::cpu::kernels;
+use crate::simd::soa::STEP;
 
 /// The ways from the places of a surface to a light.
 pub(super) struct Ways<'w> {

@@ -8,9 +8,10 @@ use super::Revolution;
 use super::slabs::Slab;
 use crate::geometry::bounds::{from_order, larger, order, smaller};
 use crate::geometry::frame::Frame;
-use crate::geometry::packet::{Rays, STEP, Vectors};
+use crate::geometry::packet::Rays;
 use crate::geometry::ray::{MISS, Ray, Side, Span};
 use crate::simd::cpu::{Cpu, kernels};
+use crate::simd::soa::{STEP, Vectors};
 use glam::DVec3;
 
 /// A direction with less than this of an axis is taken for upright on it.

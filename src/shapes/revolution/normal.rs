@@ -2,11 +2,12 @@
 
 use super::Revolution;
 use crate::geometry::frame::Frame;
-use crate::geometry::packet::{Rays, STEP, Vectors};
+use crate::geometry::packet::Rays;
 use crate::geometry::ray::Side;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
 use crate::simd::cpu::kernels;
+use crate::simd::soa::{STEP, Vectors};
 use crate::world::landing;
 use glam::DVec3;
 

@@ -2,11 +2,12 @@
 
 use super::{Finish, Revolution};
 use crate::geometry::frame::Frame;
-use crate::geometry::packet::{Rays, STEP, View};
+use crate::geometry::packet::Rays;
 use crate::numeric::number::Number;
 use crate::numeric::octet::{Octet, each};
 use crate::numeric::twofold::offset;
 use crate::simd::cpu::{Cpu, kernels};
+use crate::simd::soa::{STEP, View};
 
 /// Steps after which a root is taken as it is; a bracket that is only halved has none left.
 const MOST: usize = 100;

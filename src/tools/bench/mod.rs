@@ -9,13 +9,13 @@ pub mod scenes;
 
 pub use packets::Times;
 
-use crate::geometry::packet::{View, ViewMut};
 use crate::render::renderer::{Overseer, Renderer};
 use crate::render::tally::Tally;
 use crate::render::tiles::{BAND, Band};
 use crate::render::watch::Kind;
 use crate::scene::model::{Model, Object};
 use crate::simd::cpu::Cpu;
+use crate::simd::soa::{View, ViewMut};
 use crate::world::hittable::Shader;
 use crate::world::material::{Look, Material, Rgb};
 use ceiling::Bare;

@@ -1,13 +1,14 @@
 //! A scene's own packets, to time the functions of its shapes with.
 
 use super::clock;
-use crate::geometry::packet::{Nearest, Rays, Vectors, WIDE};
+use crate::geometry::packet::{Nearest, Rays, WIDE};
 use crate::geometry::ray::{MISS, Side};
 use crate::render::tiles::{self, TILE};
 use crate::render::trace::{self, Rooms, Tracer};
 use crate::render::watch::{Count, Kind, Watch};
 use crate::scene::model::Model;
 use crate::simd::cpu::Cpu;
+use crate::simd::soa::Vectors;
 use std::hint::black_box;
 use std::time::Duration;
 

@@ -2,7 +2,6 @@
 
 use super::draw::Draw;
 use super::promise::{Fault, Promise};
-use crate::geometry::packet::{STEP, Vectors};
 use crate::scene::dump;
 use crate::scene::model::Model;
 use crate::scene::profile::Profile;
@@ -11,6 +10,7 @@ use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
 use crate::shapes::revolution::{Finish, Revolution};
 use crate::simd::cpu::Cpu;
+use crate::simd::soa::{STEP, Vectors};
 use crate::world::camera::Camera;
 use crate::world::facing::{Facing, Places};
 use crate::world::hittable::{Light, Shader};

@@ -3,13 +3,14 @@
 use super::draw::Draw;
 use super::looks::{same_bits, shader};
 use super::promise::{Fault, Promise};
-use crate::geometry::packet::{Nearest, Rays, STEP, Vectors};
+use crate::geometry::packet::{Nearest, Rays};
 use crate::geometry::ray::{MISS, Ray, Side, Span};
 use crate::geometry::sight::Sight;
 use crate::numeric::interval::{Float, Wide};
 use crate::scene::model::Object;
 use crate::scene::value::Datum;
 use crate::simd::cpu::Cpu;
+use crate::simd::soa::{STEP, Vectors};
 use crate::world::certify::{Enclosure, Precision};
 use crate::world::hittable::Hittable;
 use crate::world::landing::Landing;
