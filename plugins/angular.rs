@@ -1,9 +1,9 @@
 //! The notes' shading of a sphere: colours that change with the angle around its centre.
 
 use super::rainbow;
-use crate::world::hittable::Shader;
+use crate::scene::procedural::{Anchor, ProceduralShader};
 use crate::world::material::{Look, Material, Rgb};
-use crate::world::shading::{Anchor, ProceduralShader};
+use crate::world::shader::Shader;
 use glam::{DVec2, DVec3};
 
 inventory::submit! {

@@ -10,9 +10,10 @@ use crate::scene::entity::Entity;
 use crate::scene::pparm::{Pparm, Row, Table};
 use crate::shapes::ball::{self, Line};
 use crate::world::accuracy::Accuracy;
+use crate::world::body::Body;
 use crate::world::certify::{self, Enclosure, Equation, Precision};
 use crate::world::coincidence;
-use crate::world::hittable::{Body, Hittable};
+use crate::world::hittable::Hittable;
 use glam::DVec3;
 
 static SCALE: Pparm<DVec3> = Pparm::required("scale", "how much it is stretched along x, y and z")

@@ -14,8 +14,9 @@ use crate::shapes::rectangle;
 pub use crate::shapes::rectangle::FinitePlane;
 use crate::simd::cpu::Cpu;
 use crate::world::accuracy::Accuracy;
+use crate::world::body::Body;
 use crate::world::certify::{self, Enclosure, Equation, Precision};
-use crate::world::hittable::{Body, Hittable};
+use crate::world::hittable::Hittable;
 use glam::{DMat3, DVec2, DVec3};
 
 pub static DIMENSIONS: Pparm<DVec2> = Pparm::required("dimensions", "its size along xdir and across it")

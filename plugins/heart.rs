@@ -5,7 +5,7 @@ use crate::numeric::number::Number;
 use crate::scene::entity::Entity;
 use crate::scene::pparm::{Pparm, Table};
 use crate::shapes::implicit::Implicit;
-use crate::world::hittable::Body;
+use crate::world::body::Body;
 use glam::DVec3;
 
 static CENTER: Pparm<DVec3> =

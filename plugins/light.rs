@@ -2,7 +2,7 @@
 
 use crate::scene::entity::{Args, Entity};
 use crate::scene::pparm::{Pparm, Table};
-use crate::world::hittable::Light;
+use crate::world::light::Light;
 use crate::world::material::Rgb;
 use glam::DVec3;
 

@@ -11,8 +11,9 @@ use crate::scene::pparm::{Pparm, Table};
 pub use crate::shapes::flat::Plane;
 use crate::simd::cpu::Cpu;
 use crate::world::accuracy::Accuracy;
+use crate::world::body::Body;
 use crate::world::certify::{self, Enclosure, Equation, Precision};
-use crate::world::hittable::{Body, Hittable};
+use crate::world::hittable::Hittable;
 use glam::DVec3;
 
 pub static NORMAL: Pparm<DVec3> =

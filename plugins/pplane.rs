@@ -3,8 +3,9 @@
 use super::plane::{self, Plane};
 use crate::scene::entity::{Args, Entity};
 use crate::scene::pparm::{Pparm, Row, Table};
-use crate::world::hittable::{Body, Hittable};
-use crate::world::shading::{Anchor, OnPlane};
+use crate::scene::procedural::{Anchor, OnPlane};
+use crate::world::body::Body;
+use crate::world::hittable::Hittable;
 use glam::DVec3;
 
 static SHADER: Pparm<OnPlane> = Pparm::required("shader", "the rule for its look");

@@ -7,7 +7,7 @@ use crate::geometry::ray::Ray;
 use crate::scene::entity::Entity;
 use crate::scene::pparm::{Derived, Row, Table};
 use crate::scene::value::Datum;
-use crate::world::hittable::Light;
+use crate::world::light::Light;
 use crate::world::material::Rgb;
 use glam::DVec3;
 

@@ -3,8 +3,8 @@
 use super::sphere::{self, Sphere};
 use crate::scene::entity::Entity;
 use crate::scene::pparm::{Pparm, Row, Table};
-use crate::world::hittable::Body;
-use crate::world::shading::{Anchor, OnSphere};
+use crate::scene::procedural::{Anchor, OnSphere};
+use crate::world::body::Body;
 
 static SHADER: Pparm<OnSphere> = Pparm::required("shader", "the rule for its look");
 

@@ -9,9 +9,10 @@ use crate::scene::entity::{Entity, Refusal};
 use crate::scene::pparm::{Pparm, Table};
 use crate::shapes::quadratic::{self, CAMERA, OwnRay, Quadratic, Quick};
 use crate::world::accuracy::Accuracy;
+use crate::world::body::Body;
 use crate::world::certify::{self, Enclosure, Equation, Precision};
 use crate::world::coincidence;
-use crate::world::hittable::{Body, Hittable};
+use crate::world::hittable::Hittable;
 use glam::{DMat3, DVec3};
 
 static COEFFICIENTS: Pparm<[f64; 10]> =

@@ -1,8 +1,8 @@
 //! The notes' continuously modulated shading: colours that change with the angle around a point.
 
-use crate::world::hittable::Shader;
+use crate::scene::procedural::{Anchor, ProceduralShader};
 use crate::world::material::{Look, Material, Rgb};
-use crate::world::shading::{Anchor, ProceduralShader};
+use crate::world::shader::Shader;
 use glam::{DVec2, DVec3};
 
 inventory::submit! {

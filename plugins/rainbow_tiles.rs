@@ -1,9 +1,9 @@
 //! Continuous modulation combined with tiles, as the notes suggest for their third shader.
 
 use super::{rainbow, tiles};
-use crate::world::hittable::Shader;
+use crate::scene::procedural::{Anchor, ProceduralShader};
 use crate::world::material::{Look, Material, Rgb};
-use crate::world::shading::{Anchor, ProceduralShader};
+use crate::world::shader::Shader;
 use glam::DVec3;
 
 inventory::submit! {

@@ -7,7 +7,7 @@ use crate::scene::pparm::{Pparm, Table};
 use crate::scene::profile::{Line, Profile};
 use crate::shapes::revolution::{Classic, Finish, InFrame, Revolution};
 use crate::world::accuracy::Accuracy;
-use crate::world::hittable::Body;
+use crate::world::body::Body;
 use glam::DVec3;
 use std::sync::Arc;
 

@@ -9,8 +9,9 @@ use crate::scene::entity::{Args, Entity};
 use crate::scene::pparm::{Pparm, Table};
 use crate::shapes::ball::{self, Line};
 use crate::world::accuracy::Accuracy;
+use crate::world::body::Body;
 use crate::world::certify::{self, Enclosure, Equation, Precision};
-use crate::world::hittable::{Body, Hittable};
+use crate::world::hittable::Hittable;
 use glam::DVec3;
 
 static CENTER: Pparm<DVec3> =

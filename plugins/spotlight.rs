@@ -4,7 +4,7 @@ use super::light::{self, PointLight};
 use crate::scene::entity::{Args, Entity, Refusal};
 use crate::scene::pparm::{Derived, Pparm, Table};
 use crate::scene::value::Value;
-use crate::world::hittable::Light;
+use crate::world::light::Light;
 use crate::world::material::Rgb;
 use glam::DVec3;
 

@@ -1,8 +1,8 @@
 //! The notes' tiled shading: cyan and yellow tiles half a unit wide, along x and z.
 
-use crate::world::hittable::Shader;
+use crate::scene::procedural::ProceduralShader;
 use crate::world::material::{Look, Material, Rgb};
-use crate::world::shading::ProceduralShader;
+use crate::world::shader::Shader;
 use glam::DVec3;
 
 inventory::submit! {

@@ -9,8 +9,9 @@ use crate::scene::entity::{Entity, Refusal};
 use crate::scene::pparm::{Pparm, Table};
 use crate::shapes::flat::Plane;
 use crate::world::accuracy::Accuracy;
+use crate::world::body::Body;
 use crate::world::certify::{self, Enclosure, Equation, Precision};
-use crate::world::hittable::{Body, Hittable};
+use crate::world::hittable::Hittable;
 use glam::DVec3;
 
 static VERTEX1: Pparm<DVec3> = Pparm::required("vertex1", "its first corner").unit("world coordinates");

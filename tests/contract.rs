@@ -16,10 +16,13 @@ use tabray::scene::pparm::{Derived, Pparm, Row, Table};
 use tabray::scene::registry::Registry;
 use tabray::shapes::implicit::Implicit;
 use tabray::tools::contract::{self, Breach, Promise};
+use tabray::world::body::Body;
 use tabray::world::camera::Camera;
 use tabray::world::certify::{Enclosure, Precision};
-use tabray::world::hittable::{Body, Hittable, Light, Shader};
+use tabray::world::hittable::Hittable;
+use tabray::world::light::Light;
 use tabray::world::material::{Material, Rgb};
+use tabray::world::shader::Shader;
 
 #[test]
 fn every_plugin_keeps_its_contract() {

@@ -14,7 +14,8 @@ use tabray::geometry::ray::{MISS, Ray, Side, Span};
 use tabray::numeric::number::Number;
 use tabray::scene::model::Model;
 use tabray::shapes::implicit::Implicit;
-use tabray::world::hittable::{Body, Hittable};
+use tabray::world::body::Body;
+use tabray::world::hittable::Hittable;
 
 const CENTER: DVec3 = DVec3::new(4.1, 2.9, -2.7);
 const AXIS: DVec3 = DVec3::new(0.4, 1.0, -0.3);

@@ -155,8 +155,8 @@ fn contradictions_are_told_with_their_places(copy: &Copy) {
 const RIVAL: &str = "//! What others have already.
 
 use crate::scene::entity::Entity;
+use crate::scene::procedural::ProceduralShader;
 use crate::scene::profile::Profile;
-use crate::world::shading::ProceduralShader;
 
 inventory::submit! { Entity::shape(\"sphere\", \"another ball\", &[], |_| unreachable!()) }
 inventory::submit! { Profile::new(\"cone\", \"another cone\", \"1\") }
@@ -175,9 +175,9 @@ inventory::submit! {
 
 const STRIPES: &str = "//! Stripes, as wide as a tenth of the anchor's unit.
 
-use crate::world::hittable::Shader;
+use crate::scene::procedural::{Anchor, ProceduralShader};
 use crate::world::material::{Material, Rgb};
-use crate::world::shading::{Anchor, ProceduralShader};
+use crate::world::shader::Shader;
 use glam::DVec3;
 
 inventory::submit! {

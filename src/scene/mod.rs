@@ -6,6 +6,7 @@ pub mod entity;
 pub mod grammar;
 pub mod model;
 pub mod pparm;
+pub mod procedural;
 pub mod profile;
 pub mod reader;
 pub mod reference;

@@ -3,8 +3,10 @@
 use crate::render::plan::Plan;
 use crate::scene::entity::{Args, Kind};
 use crate::world::camera::Camera;
-use crate::world::hittable::{Hittable, Light, Shader};
+use crate::world::hittable::Hittable;
+use crate::world::light::Light;
 use crate::world::material::{Material, Rgb};
+use crate::world::shader::Shader;
 use crate::world::texture::Texture;
 use glam::DVec3;
 use std::sync::{Arc, OnceLock};

@@ -3,10 +3,10 @@
 use crate::scene::choice::{Choice, ChoiceName};
 use crate::scene::entity::{Entity, Kind};
 use crate::scene::pparm::Attribute;
+use crate::scene::procedural::{OnPlane, OnSphere};
 use crate::scene::profile::Profile;
 use crate::scene::registry::Registry;
 use crate::scene::value::{Datum, Type, Value};
-use crate::world::shading::{OnPlane, OnSphere};
 
 const INTRODUCTION: &str = r#"# The scene language
 

@@ -2,10 +2,10 @@
 
 use crate::scene::choice::contradictions;
 use crate::scene::entity::{Entity, Kind};
+use crate::scene::procedural::{OnPlane, OnSphere};
 use crate::scene::profile::Profile;
 use crate::scene::syntax::Syntax;
 use crate::words::nearest;
-use crate::world::shading::{OnPlane, OnSphere};
 use std::collections::{BTreeMap, BTreeSet};
 use std::iter;
 use std::sync::LazyLock;
@@ -123,7 +123,7 @@ mod tests {
     use super::*;
     use crate::scene::pparm::{Pparm, Row, Table};
     use crate::scene::value::Type;
-    use crate::world::hittable::Body;
+    use crate::world::body::Body;
 
     static SIZE: Pparm<f64> = Pparm::required("size", "how large it is").alias(&["extent"]);
     static EXTENT: Pparm<f64> = Pparm::required("extent", "how far it reaches");

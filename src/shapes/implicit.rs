@@ -13,9 +13,10 @@ use crate::numeric::interval::Interval;
 use crate::numeric::number::Number;
 use crate::numeric::twofold::Twofold;
 use crate::shapes::roots::{Method, taylor, twice};
+use crate::world::body::Body;
 use crate::world::certify::{self, Enclosure, Equation, Precision};
 use crate::world::coincidence;
-use crate::world::hittable::{Body, Hittable};
+use crate::world::hittable::Hittable;
 use glam::DVec3;
 
 /// A shape by its formula, in coordinates of its own.

@@ -1,19 +1,15 @@
-//! What a plugin implements: [`Hittable`] shapes, [`Shader`]s and [`Light`]s.
+//! Shapes: the trait that a plugin implements for one ray, and what follows from it for packets of rays.
 
 use crate::geometry::bounds::{self, Bounds};
-use crate::geometry::packet::{self, Nearest, Rays};
-use crate::geometry::ray::{Bracket, Ray, Side, Span};
+use crate::geometry::packet::{Brackets, Nearest, Rays, mark, merge};
+use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
 use crate::geometry::sight::Sight;
 use crate::numeric::twofold::Twofold;
 use crate::shapes::roots::Method;
-use crate::simd::cpu::Cpu;
-use crate::simd::soa::{View, ViewMut};
+use crate::simd::cpu::{Cpu, kernels};
 use crate::world::certify::{Enclosure, Precision};
-use crate::world::coincidence;
-use crate::world::facing::{self, Faced, Facing, Places};
-use crate::world::landing::{self, Landing};
-use crate::world::material::{Look, Material, Rgb};
-use crate::world::shading::{Anchor, ProceduralShader};
+use crate::world::coincidence::{CLOSE, ROUNDING};
+use crate::world::landing::{Landing, turned};
 use glam::DVec3;
 
 /// A shape that rays can hit. Shapes do not change while a picture is made.
@@ -21,8 +17,7 @@ use glam::DVec3;
 /// A plugin implements `distance` and `normal`, and of the others what is not as their defaults have it. The last
 /// ones, which take packets, are there for every shape.
 pub trait Hittable: Send + Sync {
-    /// The distance from the ray's origin to its first hit of the shape within the span, or
-    /// [`MISS`](crate::geometry::ray::MISS).
+    /// The distance from the ray's origin to its first hit of the shape within the span, or [`MISS`].
     fn distance(&self, ray: &Ray, within: &Span) -> f64;
 
     /// The unit normal of the shape at a point of it.
@@ -56,7 +51,7 @@ pub trait Hittable: Send + Sync {
     /// `origin_error`, it is a bracket without a certain end.
     #[inline(always)]
     fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        coincidence::bracket(self, ray, within)
+        plain_bracket(self, ray, within)
     }
 
     /// What [`distance`](Self::distance) gives, to the last bit, or NaN where it takes more than plain arithmetic
@@ -76,7 +71,7 @@ pub trait Hittable: Send + Sync {
     /// Whether a point lies on its surface, but for an error of so many world units and for what rounding makes of the
     /// shape's own numbers. Rays that start there leave it.
     fn touches(&self, at: DVec3, error: f64) -> bool {
-        coincidence::is_met_within(self, at, error)
+        is_met_within(self, at, error)
     }
 
     /// How large the coordinates are that its hits are computed from, in world units: its own, not the ray's.
@@ -86,7 +81,7 @@ pub trait Hittable: Send + Sync {
 
     /// The distance of the hit at about this one, in twice the precision: it tells which of two surfaces that lie
     /// together is nearer. Nothing where it is not to be had;
-    /// [`coincidence::distance`] gives it for shapes that have an equation.
+    /// [`coincidence::distance`](crate::world::coincidence::distance) gives it for shapes that have an equation.
     fn fine_distance(&self, _ray: &Ray, _distance: f64) -> Option<Twofold> {
         None
     }
@@ -117,7 +112,7 @@ pub trait Hittable: Send + Sync {
     /// Compares the hits of a packet with the nearest so far, and tells whether any is in doubt. `sides` are those of
     /// this shape that the rays leave, if they do; `id` is its index in the scene and 1.
     fn meet(&self, cpu: Cpu, rays: Rays, sides: Option<&[Side]>, id: u64, nearest: Nearest) -> bool {
-        packet::meet(cpu, self, rays, sides, id, nearest)
+        meet(cpu, self, rays, sides, id, nearest)
     }
 
     /// Marks the rays of a packet that it blocks before their ends, and those of which that is in doubt; tells
@@ -131,7 +126,7 @@ pub trait Hittable: Send + Sync {
         blocked: &mut [u64],
         doubt: &mut [u64],
     ) -> bool {
-        packet::block(cpu, self, rays, sides, ends, blocked, doubt)
+        block(cpu, self, rays, sides, ends, blocked, doubt)
     }
 
     /// The distances of hits that are certain, each between two distances where [`meet`](Self::meet) has bracketed it;
@@ -144,129 +139,125 @@ pub trait Hittable: Send + Sync {
         _brackets: (&[f64], &[f64]),
         out: &mut [f64],
     ) {
-        packet::distances(cpu, self, rays, sides, out);
+        distances(cpu, self, rays, sides, out);
     }
 
     /// Where the rays of a packet come to it after these distances, and its normals there.
     fn land(&self, cpu: Cpu, rays: Rays, distances: &[f64], landing: Landing) {
         let Landing { points, normals, sides, travelled } = landing;
-        landing::land(cpu, self, rays, distances, sides, travelled, points, normals);
+        land(cpu, self, rays, distances, sides, travelled, points, normals);
     }
 }
 
-/// How a surface answers light where its material alone does not say.
-///
-/// The defaults are the notes' `material_getamb`, `material_getdiff` and `material_getspec`.
-pub trait Shader: Send + Sync {
-    /// The reflectivity for light from nowhere in particular.
-    fn ambient(&self, material: &Material, _at: DVec3) -> Rgb {
-        material.ambient
+/// The bracket of a shape that has no quicker one than its distance.
+#[inline(always)]
+fn plain_bracket<T: Hittable + ?Sized>(shape: &T, ray: &Ray, within: &Span) -> Bracket {
+    let Span { far, leaves, origin_error, .. } = *within;
+    if leaves.is_none() && origin_error > 0.0 && shape.touches(ray.origin, origin_error) {
+        return Bracket::UNKNOWN;
+    }
+    let close = if far < MISS { CLOSE * far } else { 0.0 };
+    let distance = shape.distance(ray, &Span { far: far + close, ..*within });
+    // At the distance of another surface, more digits tell which comes first.
+    if (distance - far).abs() <= close {
+        return Bracket { near: distance - close, far: distance + close };
+    }
+    Bracket::exactly(distance)
+}
+
+/// Whether a short ray through a point, upright on a shape, meets the shape within an error.
+fn is_met_within<T: Hittable + ?Sized>(shape: &T, at: DVec3, error: f64) -> bool {
+    let dir = shape.normal(at);
+    let short = 2.0 * error + ROUNDING * at.abs().max_element();
+    let ray = Ray { origin: at - short * dir, dir };
+    shape.distance(&ray, &Span { far: 2.0 * short, ..Span::RAY }) < MISS
+}
+
+kernels! {
+    /// Compares a shape's hits with the nearest so far. Tells whether any is in doubt.
+    fn meet[T: Hittable](shape: &T, rays: Rays, sides: Option<&[Side]>, id: u64, nearest: Nearest) -> bool {
+        let (count, rays) = (rays.len(), rays.first(rays.len()));
+        let Nearest { near, far, met, doubt } = nearest;
+        match sides {
+            None => merge(count, &Sought { shape, rays }, id, near, far, met, doubt),
+            Some(sides) => {
+                merge(count, &Leaving { shape, rays, sides: &sides[..count] }, id, near, far, met, doubt)
+            }
+        }
     }
 
-    /// The reflectivity for light from the scene's lights, scattered evenly.
-    fn diffuse(&self, material: &Material, _at: DVec3) -> Rgb {
-        material.diffuse
-    }
-
-    /// The reflectivity of the surface as a mirror.
-    fn specular(&self, material: &Material, _at: DVec3) -> Rgb {
-        material.specular
-    }
-
-    /// What those three give at every point, if that is the same: then they are not asked at each. `None` is never wrong.
-    fn even(&self, _material: &Material) -> Option<Look> {
-        None
-    }
-
-    /// The largest that those three give anywhere, whatever the sign, from which follows how deep mirrors and glass are
-    /// looked into; nothing where that is not known, or where a surface that is not even has a diffuse colour below 0.
-    /// `None` is never wrong.
-    fn brightest(&self, material: &Material) -> Option<Look> {
-        self.even(material)
-    }
-
-    /// What [`ambient`](Self::ambient) and [`specular`](Self::specular) give at many points; tells whether any of the
-    /// second is not 0.
-    fn unlit(
-        &self,
-        cpu: Cpu,
-        material: &Material,
-        points: View,
-        ambients: ViewMut,
-        speculars: ViewMut,
+    /// Marks the rays that a shape's hits block before they come to their ends. Tells whether any is in doubt.
+    fn block[T: Hittable](
+        shape: &T, rays: Rays, sides: Option<&[Side]>, ends: &[f64], blocked: &mut [u64], doubt: &mut [u64]
     ) -> bool {
-        packet::unlit(cpu, self, material, points, ambients, speculars)
+        let (count, rays) = (ends.len(), rays.first(ends.len()));
+        match sides {
+            None => mark(&Sought { shape, rays }, ends, blocked, doubt),
+            Some(sides) => mark(&Leaving { shape, rays, sides: &sides[..count] }, ends, blocked, doubt),
+        }
     }
 
-    /// What [`diffuse`](Self::diffuse) gives at many points; tells whether any is not 0.
-    fn diffuses(&self, cpu: Cpu, material: &Material, points: View, out: ViewMut) -> bool {
-        packet::diffuses(cpu, self, material, points, out)
-    }
-}
-
-/// The shader of an object that has none of its own: the material everywhere.
-pub struct Plain;
-
-impl Shader for Plain {
-    fn even(&self, material: &Material) -> Option<Look> {
-        let Material { ambient, diffuse, specular, .. } = *material;
-        Some(Look { ambient, diffuse, specular })
-    }
-}
-
-/// A source of light.
-pub trait Light: Send + Sync {
-    /// Where it is, in world coordinates.
-    fn location(&self) -> DVec3;
-
-    /// The light that it sends toward a point, or nothing where it does not point there (the notes' `vischeck`).
-    fn emissivity(&self, toward: DVec3) -> Option<Rgb>;
-
-    /// What [`emissivity`](Self::emissivity) gives toward every point, if that is the same and never nothing: then it is
-    /// not asked for each. `None` is never wrong.
-    fn even(&self) -> Option<Rgb> {
-        None
+    /// The distances of a shape's hits, as [`Hittable::quick_distance`] gives them.
+    pub(crate) fn distances[T: Hittable](shape: &T, rays: Rays, sides: Option<&[Side]>, out: &mut [f64]) {
+        let (count, rays) = (out.len(), rays.first(out.len()));
+        match sides {
+            None => for lane in 0..count {
+                out[lane] = shape.quick_distance(&rays.get(lane), &Span::RAY);
+            },
+            Some(sides) => for lane in 0..count {
+                out[lane] = shape.quick_distance(&rays.get(lane), &Span { leaves: Some(sides[lane]), ..Span::RAY });
+            },
+        }
     }
 
-    /// The largest that [`emissivity`](Self::emissivity) gives toward any point, whatever the sign; nothing where that is
-    /// not known. `None` is never wrong.
-    fn brightest(&self) -> Option<Rgb> {
-        self.even()
-    }
-
-    /// The radius of a ball that shines; 0 for a point, whose shadows have sharp edges.
-    fn size(&self) -> f64 {
-        0.0
-    }
-
-    /// How it comes to many places, with what [`emissivity`](Self::emissivity) gives toward each.
-    fn face(&self, cpu: Cpu, places: &Places, facing: Facing) -> Faced {
-        let Facing { toward, emissivity, falloffs, ends, shines } = facing;
-        facing::face(cpu, self, places, falloffs, ends, shines, toward, emissivity)
+    /// Where rays come to a shape after these distances, and its normals there.
+    fn land[T: Hittable](
+        shape: &T, rays: Rays, distances: &[f64], sides: &mut [Side], travelled: &mut [f64]
+    ) => points, normals {
+        let (count, is_two_sided) = (travelled.len(), shape.is_two_sided());
+        let (rays, distances, sides) = (rays.first(count), &distances[..count], &mut sides[..count]);
+        let (mut points, mut normals) = (points.first(count), normals.first(count));
+        for lane in 0..count {
+            let ray = rays.get(lane);
+            let point = ray.at(distances[lane]);
+            let normal;
+            (sides[lane], normal) = turned(ray.dir, shape.normal(point), is_two_sided);
+            points.set(lane, point);
+            normals.set(lane, normal);
+            travelled[lane] += distances[lane];
+        }
     }
 }
 
-/// What the constructor of an object makes: its shape and its shader.
-pub struct Body {
-    /// Where it is.
-    pub shape: Box<dyn Hittable>,
-    /// What it looks like.
-    pub shader: Box<dyn Shader>,
+/// Those that a shape gives.
+struct Sought<'b, T: ?Sized> {
+    shape: &'b T,
+    rays: Rays<'b>,
 }
 
-impl Body {
-    /// An object that looks like its material.
-    pub fn plain(shape: impl Hittable + 'static) -> Self {
-        Self::shaded(shape, Plain)
+impl<T: Hittable + ?Sized> Brackets for Sought<'_, T> {
+    #[inline(always)]
+    fn get(&self, lane: usize, far: f64) -> Bracket {
+        let origin_error = self.rays.origin_error;
+        self.shape.bracket(&self.rays.get(lane), &Span { far, origin_error, ..Span::RAY })
     }
+}
 
-    /// An object with a look of its own.
-    pub fn shaded(shape: impl Hittable + 'static, shader: impl Shader + 'static) -> Self {
-        Self { shape: Box::new(shape), shader: Box::new(shader) }
-    }
+/// Those that a shape gives for rays that leave it.
+struct Leaving<'b, T: ?Sized> {
+    shape: &'b T,
+    rays: Rays<'b>,
+    sides: &'b [Side],
+}
 
-    /// An object that looks as a procedural shader has it.
-    pub fn procedural(shape: impl Hittable + 'static, shader: &ProceduralShader, anchor: Anchor) -> Self {
-        Self { shape: Box::new(shape), shader: (shader.make)(anchor) }
+impl<T: Hittable + ?Sized> Brackets for Leaving<'_, T> {
+    #[inline(always)]
+    fn get(&self, lane: usize, far: f64) -> Bracket {
+        let leaves = self.sides[lane];
+        if !self.shape.meets_itself(leaves) {
+            return Bracket::MISS;
+        }
+        let (leaves, origin_error) = (Some(leaves), self.rays.origin_error);
+        self.shape.bracket(&self.rays.get(lane), &Span { far, leaves, origin_error, ..Span::RAY })
     }
 }

@@ -6,7 +6,7 @@ use tabray::numeric::number::Number;
 use tabray::scene::entity::Entity;
 use tabray::scene::pparm::{Pparm, Table};
 use tabray::shapes::implicit::Implicit;
-use tabray::world::hittable::Body;
+use tabray::world::body::Body;
 
 static CENTER: Pparm<DVec3> = Pparm::required("center", "the point in its middle").unit("world coordinates");
 static SIZE: Pparm<f64> = Pparm::required("size", "the distance from its center to its sides")

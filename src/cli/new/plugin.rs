@@ -2,9 +2,9 @@
 
 use crate::cli::{Failure, messages, output};
 use crate::scene::choice::Choice;
+use crate::scene::procedural::OnPlane;
 use crate::scene::profile::Profile;
 use crate::scene::registry::Registry;
-use crate::world::shading::OnPlane;
 use std::fs;
 use std::path::Path;
 use toml::de::DeTable;

@@ -10,7 +10,7 @@ use crate::geometry::bounds::{self, Bounds};
 use crate::render::watch::{Event, Outcome, Watch};
 use crate::scene::model::Object;
 use crate::world::facing::{Facing, Places};
-use crate::world::hittable::Light;
+use crate::world::light::Light;
 use crate::world::material::Rgb;
 use glam::DVec2;
 

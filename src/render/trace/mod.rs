@@ -9,6 +9,7 @@ mod group;
 mod illuminate;
 mod light;
 mod missing;
+mod order;
 mod passage;
 mod room;
 mod search;

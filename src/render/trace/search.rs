@@ -2,6 +2,7 @@
 
 use super::Tracer;
 use super::group::Group;
+use super::order;
 use super::room::{Vectors, room};
 use crate::geometry::bounds::{self, Bounds};
 use crate::geometry::packet::{Nearest, Rays, parts};
@@ -13,7 +14,6 @@ use crate::render::tree::Visitor;
 use crate::render::watch::{Count, Event, Hit, Reason, Watch};
 use crate::simd::cpu::{Cpu, kernels};
 use crate::world::certify::{self, Enclosure, Precision};
-use crate::world::coincidence;
 use crate::world::hittable::Hittable;
 use std::mem::take;
 use std::ops::Range;
@@ -128,8 +128,8 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
         }
         let shape = |index: usize| &*self.model.objects[index].shape;
         let (one, other) = ((shape(index), distance), (shape(rival), far));
-        let is_before = coincidence::is_before(&start.ray, start.error, one, other)
-            .or_else(|| certify::is_before(one.0, other.0, start.sight.as_ref()?));
+        let is_before = order::is_before(&start.ray, start.error, one, other)
+            .or_else(|| order::is_certainly_before(one.0, other.0, start.sight.as_ref()?));
         is_before.unwrap_or(index < rival)
     }
 

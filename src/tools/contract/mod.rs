@@ -16,12 +16,12 @@ use crate::scene::choice::{Choice, ChoiceName};
 use crate::scene::dump;
 use crate::scene::entity::{Entity, Kind};
 use crate::scene::model::Model;
+use crate::scene::procedural::{OnPlane, ProceduralShader};
 use crate::scene::profile::Profile;
 use crate::scene::reader;
 use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
 use crate::world::accuracy::Accuracy;
-use crate::world::shading::{OnPlane, ProceduralShader};
 use draw::{Draw, Room};
 use promise::Fault;
 use std::fmt;
@@ -178,9 +178,10 @@ fn of_choice(what: &str, choice: ChoiceName, outcome: Result<(), Fault>) -> Opti
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::hittable::{Light, Plain, Shader};
+    use crate::scene::procedural::Anchor;
+    use crate::world::light::Light;
     use crate::world::material::{Look, Material, Rgb};
-    use crate::world::shading::Anchor;
+    use crate::world::shader::{Plain, Shader};
     use glam::DVec3;
 
     static SOUND: Profile = Profile::new("sound", "a cone", "4 - y");

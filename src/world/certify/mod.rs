@@ -12,7 +12,6 @@ use crate::geometry::sight::{Line, Sight};
 use crate::numeric::interval::{Float, Interval, Wide};
 use crate::numeric::number::Number;
 use crate::numeric::twofold::Twofold;
-use crate::world::hittable::Hittable;
 use f256::f256;
 use glam::DVec3;
 
@@ -32,16 +31,6 @@ pub enum Enclosure {
 impl Enclosure {
     /// Of a shape that says nothing.
     pub const UNKNOWN: Self = Self::Doubtful(f256::ZERO);
-}
-
-/// Whether a ray meets one shape before another, with 237 bits; nothing where these do not tell.
-pub fn is_before(one: &dyn Hittable, other: &dyn Hittable, sight: &Sight) -> Option<bool> {
-    let distance = |shape: &dyn Hittable| match shape.certify(sight, Precision::Octuple) {
-        Enclosure::Hits(at) | Enclosure::Edge(at) => Some(at),
-        Enclosure::Misses | Enclosure::Doubtful(_) => None,
-    };
-    let (one, other) = (distance(one)?, distance(other)?);
-    (one.high < other.low || other.high < one.low).then_some(one.high < other.low)
 }
 
 /// A distance in lengths of a sight's direction, in world units: the middle of what it may be.

@@ -3,7 +3,7 @@
 use super::light::{self, PointLight};
 use crate::scene::entity::Entity;
 use crate::scene::pparm::{Pparm, Table};
-use crate::world::hittable::Light;
+use crate::world::light::Light;
 use crate::world::material::Rgb;
 use glam::DVec3;
 

@@ -1,8 +1,8 @@
 //! A template: rings. Say here what it looks like.
 
-use crate::world::hittable::Shader;
+use crate::scene::procedural::{Anchor, ProceduralShader};
 use crate::world::material::{Material, Rgb};
-use crate::world::shading::{Anchor, ProceduralShader};
+use crate::world::shader::Shader;
 use glam::DVec3;
 
 // What scenes call it, what it is, and how it is made for one object.

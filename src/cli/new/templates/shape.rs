@@ -5,7 +5,7 @@ use crate::numeric::number::Number;
 use crate::scene::entity::Entity;
 use crate::scene::pparm::{Pparm, Table};
 use crate::shapes::implicit::Implicit;
-use crate::world::hittable::Body;
+use crate::world::body::Body;
 use glam::DVec3;
 
 // Each attribute is one of these: its name, what it is, its unit and its rule. `required` has to be given; `or`
