@@ -1,5 +1,6 @@
 //! Entity types: what a plugin registers, and what its constructor is given.
 
+use crate::scene::kind::Kind;
 use crate::scene::pparm::{Attribute, Pparm, Row, Table};
 use crate::scene::value::{Datum, Value};
 use crate::words;
@@ -37,33 +38,6 @@ inventory::collect!(Entity);
 impl fmt::Debug for Entity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "`{}` of {}", self.name, self.place())
-    }
-}
-
-/// The kinds of entity that a scene is made of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Kind {
-    /// The viewer and the screen; a scene has one.
-    Camera,
-    /// How a surface answers light.
-    Material,
-    /// A picture that colours surfaces or light.
-    Texture,
-    /// A shape made of a material.
-    Object,
-    /// A source of light, itself not visible.
-    Light,
-}
-
-impl fmt::Display for Kind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            Kind::Camera => "camera",
-            Kind::Material => "material",
-            Kind::Texture => "texture",
-            Kind::Object => "object",
-            Kind::Light => "light",
-        })
     }
 }
 

@@ -4,6 +4,7 @@ pub mod choice;
 pub mod dump;
 pub mod entity;
 pub mod grammar;
+pub mod kind;
 pub mod model;
 pub mod pparm;
 pub mod procedural;

@@ -1,7 +1,8 @@
 //! A scene ready to be traced. It does not change while a picture is made.
 
 use crate::render::plan::Plan;
-use crate::scene::entity::{Args, Kind};
+use crate::scene::entity::Args;
+use crate::scene::kind::Kind;
 use crate::world::camera::Camera;
 use crate::world::hittable::Hittable;
 use crate::world::light::Light;

@@ -1,7 +1,8 @@
 //! The registry: all entity types of the program, by name.
 
 use crate::scene::choice::contradictions;
-use crate::scene::entity::{Entity, Kind};
+use crate::scene::entity::Entity;
+use crate::scene::kind::Kind;
 use crate::scene::procedural::{OnPlane, OnSphere};
 use crate::scene::profile::Profile;
 use crate::scene::syntax::Syntax;

@@ -15,7 +15,7 @@ pub use fault::{Fault, Place, Report, Severity};
 pub use machine::message;
 pub use written::{Values, Written};
 
-use crate::scene::entity::Kind;
+use crate::scene::kind::Kind;
 use crate::scene::model::Model;
 use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;

@@ -14,7 +14,8 @@ pub use promise::Promise;
 
 use crate::scene::choice::{Choice, ChoiceName};
 use crate::scene::dump;
-use crate::scene::entity::{Entity, Kind};
+use crate::scene::entity::Entity;
+use crate::scene::kind::Kind;
 use crate::scene::model::Model;
 use crate::scene::procedural::{OnPlane, ProceduralShader};
 use crate::scene::profile::Profile;
