@@ -8,7 +8,7 @@ use crate::geometry::sight::Sight;
 use crate::numeric::number::{Number, cross, dot};
 use crate::numeric::twofold::Twofold;
 use crate::scene::entity::{Args, Entity, Refusal};
-use crate::scene::pparm::{Derived, Pparm, Row, Table};
+use crate::scene::pparm::{Attributes, Derived, Pparm, Row, Table};
 use crate::scene::value::Value;
 use crate::shapes::rectangle;
 pub use crate::shapes::rectangle::FinitePlane;
@@ -47,7 +47,7 @@ inventory::submit! {
 
 /// The directions of a rectangle's two sides and its normal, as columns, all unit vectors: the rows of the
 /// notes' rotation matrix.
-fn frame(args: &Args) -> DMat3 {
+fn frame(args: &Attributes) -> DMat3 {
     let normal = args.get(&plane::NORMAL).normalize();
     let xdir = args.get(&XDIR);
     let x = (xdir - normal.dot(xdir) * normal).normalize();

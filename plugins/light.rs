@@ -1,7 +1,7 @@
 //! A light: a point that shines evenly in all directions.
 
-use crate::scene::entity::{Args, Entity};
-use crate::scene::pparm::{Pparm, Table};
+use crate::scene::entity::Entity;
+use crate::scene::pparm::{Attributes, Pparm, Table};
 use crate::world::light::Light;
 use crate::world::material::Rgb;
 use glam::DVec3;
@@ -33,7 +33,7 @@ pub struct PointLight {
 
 impl PointLight {
     /// The light of an entity whose table has [`TABLE`]'s rows.
-    pub fn new(args: &Args) -> Self {
+    pub fn new(args: &Attributes) -> Self {
         Self { location: args.get(&LOCATION), emissivity: args.get(&EMISSIVITY), size: args.get(&SIZE) }
     }
 }

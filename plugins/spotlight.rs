@@ -1,8 +1,8 @@
 //! A spotlight: a light that shines into a cone.
 
 use super::light::{self, PointLight};
-use crate::scene::entity::{Args, Entity, Refusal};
-use crate::scene::pparm::{Derived, Pparm, Table};
+use crate::scene::entity::{Entity, Refusal};
+use crate::scene::pparm::{Attributes, Derived, Pparm, Table};
 use crate::scene::value::Value;
 use crate::world::light::Light;
 use crate::world::material::Rgb;
@@ -34,7 +34,7 @@ inventory::submit! {
 }
 
 /// The unit vector along the middle of the beam; NaN where there is none.
-fn axis(args: &Args) -> DVec3 {
+fn axis(args: &Attributes) -> DVec3 {
     (args.get(&POINT) - PointLight::new(args).location).normalize()
 }
 

@@ -200,7 +200,7 @@ impl Check<'_> {
     fn textures_can_be_read(&mut self, written: &[Written<'_>]) {
         let users =
             self.objects.iter().map(|object| &object.args).chain(self.lights.iter().map(|light| &light.args));
-        let used: BTreeSet<_> = users.flat_map(Args::textures).collect();
+        let used: BTreeSet<_> = users.flat_map(|args| args.textures()).collect();
         for Item { args, value } in &self.textures {
             if used.contains(args.name.as_str())
                 && let Err(reason) = value.load()
