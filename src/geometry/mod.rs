@@ -4,4 +4,5 @@ pub mod bounds;
 pub mod frame;
 pub mod packet;
 pub mod ray;
+pub mod roots;
 pub mod sight;

@@ -98,6 +98,12 @@ impl Registry {
         entity.map(|entity| syntax.entity_usage(entity, name)).unwrap_or_default()
     }
 
+    /// What a scene looks like, for those who have none.
+    pub(crate) fn first_steps(&self, syntax: Syntax) -> String {
+        let camera = self.example(Kind::Camera, "NAME", syntax);
+        format!("a scene begins with a camera, {camera}; then come materials, objects and lights")
+    }
+
     /// All entity types, sorted by name.
     pub fn iter(&self) -> impl Iterator<Item = &'static Entity> {
         self.entities.values().copied()

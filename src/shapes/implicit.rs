@@ -7,12 +7,12 @@
 use crate::geometry::bounds::Bounds;
 use crate::geometry::frame::{BLUR, Frame};
 use crate::geometry::ray::{MISS, Ray, Side, Span};
+use crate::geometry::roots::{Method, taylor, twice};
 use crate::geometry::sight::{Line, Sight};
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
 use crate::numeric::number::Number;
 use crate::numeric::twofold::Twofold;
-use crate::shapes::roots::{Method, taylor, twice};
 use crate::world::body::Body;
 use crate::world::certify::{self, Enclosure, Equation, Precision};
 use crate::world::coincidence;

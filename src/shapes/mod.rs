@@ -6,4 +6,3 @@ pub mod implicit;
 pub mod quadratic;
 pub mod rectangle;
 pub mod revolution;
-pub mod roots;

@@ -3,9 +3,9 @@
 use crate::geometry::bounds::{self, Bounds};
 use crate::geometry::packet::{Brackets, Nearest, Rays, mark, merge};
 use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
+use crate::geometry::roots::Method;
 use crate::geometry::sight::Sight;
 use crate::numeric::twofold::Twofold;
-use crate::shapes::roots::Method;
 use crate::simd::cpu::{Cpu, kernels};
 use crate::world::certify::{Enclosure, Precision};
 use crate::world::coincidence::{CLOSE, ROUNDING};

@@ -15,7 +15,6 @@ pub use fault::{Fault, Place, Report, Severity};
 pub use machine::message;
 pub use written::{Values, Written};
 
-use crate::scene::kind::Kind;
 use crate::scene::model::Model;
 use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
@@ -74,7 +73,7 @@ pub fn read_by(
     };
     let written = parse(registry, text, &mut report);
     if written.is_empty() && !report.is_fatal() {
-        report.add(Fault::error(Some(0..0), "the scene is empty").help(first_steps(registry, syntax)));
+        report.add(Fault::error(Some(0..0), "the scene is empty").help(registry.first_steps(syntax)));
     }
     finish(registry, folder, accuracy, written, report)
 }
@@ -127,12 +126,6 @@ fn finish(
         }
         _ => Err(report),
     }
-}
-
-/// What a scene looks like, for those who have none.
-fn first_steps(registry: &Registry, syntax: Syntax) -> String {
-    let camera = registry.example(Kind::Camera, "NAME", syntax);
-    format!("a scene begins with a camera, {camera}; then come materials, objects and lights")
 }
 
 /// The text of a file.

@@ -4,8 +4,8 @@
 //! the error's shell, starts in it, runs along the axis or upright on it, or crosses the surface where slabs meet, the
 //! bracket says no more than where that begins, and the ray goes its way alone.
 
-use super::Revolution;
 use super::slabs::Slab;
+use super::surface::{Revolution, sign};
 use crate::geometry::bounds::{from_order, larger, order, smaller};
 use crate::geometry::frame::Frame;
 use crate::geometry::packet::Rays;
@@ -84,7 +84,7 @@ impl Lanes {
             }
             Some(sides) => {
                 for (lane, side) in sides.iter().enumerate() {
-                    self.side[lane] = super::sign(*side);
+                    self.side[lane] = sign(*side);
                 }
                 self.is_free[..count].fill(0.0);
             }

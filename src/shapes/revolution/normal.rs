@@ -1,6 +1,6 @@
 //! The normals of a surface of revolution.
 
-use super::Revolution;
+use super::surface::Revolution;
 use crate::geometry::frame::Frame;
 use crate::geometry::packet::Rays;
 use crate::geometry::ray::Side;

@@ -1,15 +1,17 @@
 //! Surfaces of revolution as shapes, wherever they stand.
 
 use super::bracket::{Lanes, MOST};
-use super::{Classic, Revolution, normal};
+use super::classic::Classic;
+use super::normal;
+use super::surface::Revolution;
 use crate::geometry::bounds::Bounds;
 use crate::geometry::frame::Frame;
 use crate::geometry::packet::{self, Nearest, Rays, parts};
 use crate::geometry::ray::{Ray, Side, Span};
+use crate::geometry::roots::Method;
 use crate::geometry::sight::{Line, Sight};
 use crate::numeric::number::Number;
 use crate::numeric::twofold::Twofold;
-use crate::shapes::roots::Method;
 use crate::simd::cpu::Cpu;
 use crate::world::certify::{self, Enclosure, Equation, Precision};
 use crate::world::coincidence;

@@ -3,10 +3,10 @@
 use super::{Family, Load};
 use crate::geometry::bounds::Bounds;
 use crate::geometry::ray::{MISS, Ray, Side, Span};
+use crate::geometry::roots::Method;
 use crate::geometry::sight::Sight;
 use crate::scene::choice::Choice;
 use crate::scene::model::{Model, Object};
-use crate::shapes::roots::Method;
 use crate::world::accuracy::Accuracy;
 use crate::world::certify::{Enclosure, Precision};
 use crate::world::hittable::Hittable;

@@ -8,10 +8,10 @@
 //! are of the first order and which shrink more slowly where a ray grazes.
 
 use crate::geometry::ray::{Side, Span};
+use crate::geometry::roots::{newton, twice};
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
 use crate::numeric::number::Number;
-use crate::shapes::roots::{newton, twice};
 use std::ops::Range;
 
 /// The values of a function along a line: above 0 outside of something, below 0 inside.
