@@ -12,6 +12,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use tabray::geometry::ray::{MISS, Ray};
 use tabray::geometry::sight::Sight;
+use tabray::render::plan::Plan;
 use tabray::render::trace;
 use tabray::render::watch::{Event, Watch};
 use tabray::scene::model::Model;
@@ -134,7 +135,7 @@ impl Watch for Searches {
 
 fn searches(model: &Model, x: usize, y: usize) -> Searches {
     let mut searches = Searches::default();
-    trace::watch_pixel(model, x, y, &mut searches);
+    trace::watch_pixel(&Plan::new(model), x, y, &mut searches);
     searches
 }
 

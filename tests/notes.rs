@@ -5,6 +5,7 @@ mod common;
 use common::model;
 use glam::{DMat3, DVec3, dvec3};
 use tabray::geometry::ray::{MISS, Ray, Span};
+use tabray::render::plan::Plan;
 use tabray::render::trace;
 use tabray::scene::dump;
 use tabray::world::hittable::Hittable;
@@ -199,7 +200,7 @@ fn a_lit_surface_sends_back_what_the_notes_compute() {
          plane wall { material m normal 0 0 1 point 0 0 0 }
          light l { location 12.660254037844387 3 5 emissivity 8 8 2 }",
     );
-    prints(trace::pixel(&scene, 0, 0), 12, "0.400000000000 0.800000000000 1.000000000000");
+    prints(trace::pixel(&Plan::new(&scene), 0, 0), 12, "0.400000000000 0.800000000000 1.000000000000");
 }
 
 // "Producing a formatted dump of the object list", "Type specific dumpers"

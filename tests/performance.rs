@@ -9,6 +9,7 @@ use nix::sys::resource::{UsageWho, getrusage};
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
+use tabray::render::plan::Plan;
 use tabray::scene::reader::{self, Written};
 use tabray::simd::cpu::Cpu;
 use tabray::tools::bench::{Speed, scenes};
@@ -52,7 +53,7 @@ fn many_objects() {
             let start = Instant::now();
             let built = reader::build(common::registry(), scene(10_usize.pow(exponent)));
             let model = built.map(|built| built.model).unwrap_or_else(|report| panic!("{report}"));
-            model.plan();
+            drop(Plan::new(&model));
             let building = start.elapsed().as_secs_f64();
             let speed = Speed::measure(model, Cpu::best(), Duration::from_millis(200)).expect("a thread");
             let milliseconds = 1e3 * speed.frame.seconds;

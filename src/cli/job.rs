@@ -9,19 +9,19 @@ use super::stats::Stats;
 use super::stop::Stop;
 use super::{Failure, messages};
 use crate::output::picture::Format;
+use crate::render::limits::MAX_RAYS;
+use crate::render::plan::Plan;
 use crate::render::renderer::{Overseer, Renderer};
 use crate::render::tally::{Cuts, Tally};
 use crate::render::tiles::{Band, Tiles};
-use crate::render::trace::MAX_RAYS;
-use crate::scene::model::Model;
 use crate::words::{count, short};
 use std::io::{self, BufWriter};
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
-/// A part of a model's picture, and how it is made.
+/// A part of a plan's picture, and how it is made.
 pub struct Job<'a> {
-    pub model: &'a Model,
+    pub plan: &'a Plan<'a>,
     pub part: &'a Part,
     pub renderer: &'a Renderer,
     pub format: Format,
@@ -77,14 +77,14 @@ impl Job<'_> {
         let cut = |part| cuts.lock().unwrap_or_else(PoisonError::into_inner).add(part);
         let overseer = Overseer { stops: &|| self.stop.is_due(), row: &|| progress.step() };
         match self.stats {
-            None => self.renderer.fill(self.model, band, overseer, &cut),
+            None => self.renderer.fill(self.plan, band, overseer, &cut),
             Some(stats) => {
                 let sum = &stats.tally;
                 let add = |tally: Tally| {
                     cut(tally.cuts);
                     sum.add(&tally);
                 };
-                stats.timed(|| self.renderer.fill(self.model, band, overseer, &add));
+                stats.timed(|| self.renderer.fill(self.plan, band, overseer, &add));
             }
         }
     }

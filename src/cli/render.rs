@@ -7,6 +7,7 @@ use super::resume::Begun;
 use super::stats::{self, Stats};
 use super::{Failure, aov, cpu, debug, input, interrupt, messages, method, size, stop};
 use crate::output::picture::{Compression, Format};
+use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::scene::reader::Loaded;
 use crate::scene::registry::Registry;
@@ -104,12 +105,12 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     debug::print(&model, &args.debug)?;
     let threads = args.threads.unwrap_or(0).into();
     let start = Instant::now();
-    model.plan();
+    let plan = Plan::new(&model);
     stats.building += start.elapsed();
     let renderer = Renderer::new(threads)?.on(cpu);
     let whole = Instant::now();
     let job = Job {
-        model: &model,
+        plan: &plan,
         part: &part,
         renderer: &renderer,
         format,
@@ -130,7 +131,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         Ok(loaded) => Ok(loaded.model),
         Err(report) => Err(Failure::Scene(report)),
     };
-    aov::write(&model, exact, threads, format, beside)
+    aov::write(&plan, exact, threads, format, beside)
 }
 
 /// Puts a picture in its place, if it was written without an error.

@@ -111,7 +111,7 @@ pub fn leave(job: &Job, written: Output, tiles: &Tiles) -> Result<PathBuf, Failu
     let path = beside(job.path);
     let cannot_write = |error: io::Error| Failure::cannot_write(&path, &error);
     let mut checkpoint = Output::open(&path)?;
-    let identity = identity(job.model, job.part)?;
+    let identity = identity(job.plan.model, job.part)?;
     written
         .read()
         .and_then(|file| job.format.read(file))

@@ -1,6 +1,9 @@
 //! From a model to colours: the plan, the tree of boxes, the tracer, and who watches it.
 
 mod bundles;
+pub mod bytes;
+pub mod decisions;
+pub mod limits;
 pub mod plan;
 pub mod progressive;
 pub mod renderer;

@@ -2,6 +2,7 @@
 
 use divan::{Bencher, black_box, counter::ItemsCount};
 use tabray::output::picture::{Compression, Format};
+use tabray::render::plan::Plan;
 use tabray::render::renderer::Renderer;
 use tabray::scene::model::Model;
 use tabray::scene::reader;
@@ -28,15 +29,16 @@ fn model(name: &str) -> Model {
 #[divan::bench(args = SCENES, consts = [1, 2])]
 fn frame<const THREADS: usize>(bencher: Bencher, name: &str) {
     let (renderer, model) = (Renderer::new(THREADS).expect("threads"), model(name));
-    let [width, height] = model.camera.value.pixels;
-    bencher.counter(ItemsCount::new(width * height)).bench_local(|| renderer.picture(&model));
+    let plan = Plan::new(&model);
+    let [width, height] = plan.camera.pixels;
+    bencher.counter(ItemsCount::new(width * height)).bench_local(|| renderer.picture(&plan));
 }
 
 /// A PNG or a PPM of the first scene, in memory.
 #[divan::bench(args = ["ppm", "png fast", "png default", "png best"])]
 fn encode(bencher: Bencher, format: &str) {
     let model = model(SCENES[0]);
-    let picture = Renderer::new(0).expect("threads").picture(&model);
+    let picture = Renderer::new(0).expect("threads").picture(&Plan::new(&model));
     let format = match format {
         "ppm" => Format::Ppm,
         "png fast" => Format::Png(Compression::Fast),

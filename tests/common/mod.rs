@@ -7,6 +7,7 @@ pub mod program;
 use image::RgbImage;
 use std::fs;
 use std::path::{Path, PathBuf};
+use tabray::render::plan::Plan;
 use tabray::render::renderer::Renderer;
 use tabray::scene::model::Model;
 use tabray::scene::reader;
@@ -50,7 +51,7 @@ pub fn block_with(page: &str, text: &str) -> String {
 /// The picture of a model.
 pub fn render(model: &Model) -> RgbImage {
     let [width, height] = model.camera.value.pixels.map(|side| side as u32);
-    let bytes = Renderer::new(0).expect("threads").picture(model);
+    let bytes = Renderer::new(0).expect("threads").picture(&Plan::new(model));
     RgbImage::from_raw(width, height, bytes).expect("three bytes for each pixel")
 }
 

@@ -2,6 +2,7 @@
 
 use crate::common::registry;
 use std::path::Path;
+use tabray::render::plan::Plan;
 use tabray::render::renderer::Renderer;
 use tabray::render::trace;
 use tabray::scene::model::Model;
@@ -41,7 +42,7 @@ impl Program {
 
     pub fn find(&self, [x, y]: [usize; 2]) -> Found {
         let ray = self.0.camera.value.ray(x as f64, y as f64);
-        let hit = trace::first_hit(&self.0, &self.0.camera.value.sight(x as f64, y as f64));
+        let hit = trace::first_hit(&Plan::new(&self.0), &self.0.camera.value.sight(x as f64, y as f64));
         Found {
             first: hit.as_ref().map(|hit| hit.index),
             distance: hit.map_or(f64::INFINITY, |hit| hit.distance),
@@ -51,7 +52,7 @@ impl Program {
     }
 
     pub fn claim(&self, [x, y]: [usize; 2]) -> Claim {
-        match verify::pixel(&self.0, x, y) {
+        match verify::pixel(&Plan::new(&self.0), x, y) {
             Verdict::Proven => Claim::Right,
             Verdict::Contradicted => Claim::Wrong,
             Verdict::Tie => Claim::Unknown,
@@ -64,6 +65,6 @@ impl Program {
 
     /// The picture that packets of rays make, from the top and from the left: red, green and blue of each pixel.
     pub fn picture(&self, renderer: &Renderer) -> Vec<[u8; 3]> {
-        renderer.picture(&self.0).chunks(3).map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect()
+        renderer.picture(&Plan::new(&self.0)).chunks(3).map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect()
     }
 }

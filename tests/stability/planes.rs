@@ -6,6 +6,7 @@ use glam::{DVec3, dvec3};
 use tabray::geometry::bounds::Bounds;
 use tabray::geometry::ray::{MISS, Ray};
 use tabray::geometry::sight::Sight;
+use tabray::render::plan::Plan;
 use tabray::render::trace;
 
 /// The notes' `hits_plane`: N.Q is computed once, and a ray is parallel if N.D is exactly 0.
@@ -214,6 +215,9 @@ fn a_floor_has_a_colour_up_to_the_horizon() {
     let scene = model(&text("", floor));
     for slope in [1e-3, 1e-9, 1e-15, 1e-17, 1e-300, 0.0] {
         let ray = Ray { origin: DVec3::Y, dir: dvec3(0.6, -slope, -0.8) };
-        assert!(trace::colour(&scene, &Sight::along(&ray), None).is_finite(), "at a slope of {slope:e}");
+        assert!(
+            trace::colour(&Plan::new(&scene), &Sight::along(&ray), None).is_finite(),
+            "at a slope of {slope:e}"
+        );
     }
 }

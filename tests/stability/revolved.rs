@@ -7,6 +7,7 @@ use glam::{DVec3, dvec3};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_6};
 use tabray::geometry::ray::{MISS, Ray};
 use tabray::geometry::sight::Sight;
+use tabray::render::plan::Plan;
 use tabray::render::trace;
 use tabray::world::hittable::Hittable;
 
@@ -274,8 +275,12 @@ fn a_ledge_is_dark_from_below() {
         let target = random.around(DVec3::Z, 0.9) * 1.2;
         let target = dvec3(target.x, 3.0, target.z);
         let eye = dvec3(0.0, -4.0, 8.0);
-        trace::colour(&scene, &Sight::along(&Ray { origin: eye, dir: (target - eye).normalize() }), None).x
-            > 0.0
+        trace::colour(
+            &Plan::new(&scene),
+            &Sight::along(&Ray { origin: eye, dir: (target - eye).normalize() }),
+            None,
+        )
+        .x > 0.0
     });
     assert_eq!(lit.count(), 0, "of 2000 points of the ledge are lit through it");
 }

@@ -1,12 +1,12 @@
 //! Rays that go together.
 
-use super::MAX_RAYS;
 use super::light::{self, Worth};
 use super::room::{Vectors, pick, room};
 use super::shade::Surface;
 use crate::geometry::packet::Rays;
 use crate::geometry::ray::Side;
 use crate::geometry::sight::Sight;
+use crate::render::limits::MAX_RAYS;
 use crate::render::plan::depth::{Branch, Depth};
 use crate::simd::cpu::Cpu;
 use crate::simd::soa::STEP;

@@ -1,6 +1,6 @@
 //! The arithmetic of shading, for all places of a packet at once.
 
-use super::MAX_RAYS;
+use crate::render::limits::MAX_RAYS;
 use crate::render::plan::depth::{Branch, MANY};
 use crate::simd::cpu::kernels;
 use crate::simd::soa::{View, ViewMut};

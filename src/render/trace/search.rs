@@ -103,7 +103,7 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
     /// One ray of a packet.
     fn start(&self, group: &Group, lane: usize) -> Start {
         let [x, y] = &self.rooms.places;
-        let sight = group.looks.then(|| self.model.camera.value.sight(x[lane], y[lane])).or(group.sight);
+        let sight = group.looks.then(|| self.plan.camera.sight(x[lane], y[lane])).or(group.sight);
         let error = group.errors.get(lane).copied().unwrap_or(0.0);
         Start { ray: group.rays().get(lane), error, sight }
     }

@@ -1,11 +1,12 @@
 //! The colours of the places that a packet's rays meet on one object.
 
+use super::Tracer;
 use super::group::{Group, Onward};
 use super::light::{self, Colours};
 use super::room::{Vectors, list, room};
 use super::search;
-use super::{MAX_DIST, Tracer};
 use crate::geometry::ray::Side;
+use crate::render::limits::MAX_DIST;
 use crate::render::plan::depth::Branch;
 use crate::render::watch::{Count, Event, Hit, Kind, Purpose, Reason, Watch};
 use crate::scene::model::Object;

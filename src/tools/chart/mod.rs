@@ -153,7 +153,7 @@ pub type Load<'l> = &'l dyn Fn(Option<Accuracy>) -> io::Result<Model>;
 /// # Errors
 /// Those of `load`, and of threads that are not to be had.
 pub fn measure(scene: &str, load: Load, progress: &mut dyn Progress) -> io::Result<Chart> {
-    let mut study = Study::new(load)?;
+    let study = Study::new(load)?;
     let mut chart =
         Chart { scene: scene.to_owned(), machine: Machine::here(), panels: Vec::new(), is_whole: false };
     chart.is_whole = study.run(&mut chart.panels, progress).is_continue();
@@ -182,7 +182,7 @@ impl Study {
         Ok(Self { default, strict, candidates, threads: Renderer::new(0)?, thread: Renderer::new(1)? })
     }
 
-    fn run(&mut self, panels: &mut Vec<Panel>, progress: &mut dyn Progress) -> ControlFlow<()> {
+    fn run(&self, panels: &mut Vec<Panel>, progress: &mut dyn Progress) -> ControlFlow<()> {
         let sets = hits::sets(&self.candidates[self.strict].model);
         let candidates = self.candidates.len();
         let works = sets.iter().map(|set| hits::work(set, candidates)).sum::<usize>();
