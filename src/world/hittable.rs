@@ -51,7 +51,7 @@ pub trait Hittable: Send + Sync {
     /// `origin_error`, it is a bracket without a certain end.
     #[inline(always)]
     fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        plain_bracket(self, ray, within)
+        bracket_by(self, ray, within, |within| Some(self.distance(ray, within)))
     }
 
     /// What [`distance`](Self::distance) gives, to the last bit, or NaN where it takes more than plain arithmetic
@@ -149,15 +149,20 @@ pub trait Hittable: Send + Sync {
     }
 }
 
-/// The bracket of a shape that has no quicker one than its distance.
+/// The bracket of a shape that has no quicker one than its distance, where rounding does not decide that.
 #[inline(always)]
-fn plain_bracket<T: Hittable + ?Sized>(shape: &T, ray: &Ray, within: &Span) -> Bracket {
+pub(crate) fn bracket_by<T: Hittable + ?Sized>(
+    shape: &T,
+    ray: &Ray,
+    within: &Span,
+    distance: impl FnOnce(&Span) -> Option<f64>,
+) -> Bracket {
     let Span { far, leaves, origin_error, .. } = *within;
     if leaves.is_none() && origin_error > 0.0 && shape.touches(ray.origin, origin_error) {
         return Bracket::UNKNOWN;
     }
     let close = if far < MISS { CLOSE * far } else { 0.0 };
-    let distance = shape.distance(ray, &Span { far: far + close, ..*within });
+    let Some(distance) = distance(&Span { far: far + close, ..*within }) else { return Bracket::UNKNOWN };
     // At the distance of another surface, more digits tell which comes first.
     if (distance - far).abs() <= close {
         return Bracket { near: distance - close, far: distance + close };

@@ -8,12 +8,13 @@ use crate::geometry::bounds::{self, Bounds};
 use crate::geometry::packet::{Nearest, Rays, parts};
 use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
 use crate::geometry::sight::Sight;
-use crate::numeric::interval::Wide;
+use crate::numeric::interval::{Interval, Wide};
 use crate::render::bundles::{self, PART};
 use crate::render::tree::Visitor;
 use crate::render::watch::{Count, Event, Hit, Reason, Watch};
 use crate::simd::cpu::{Cpu, kernels};
 use crate::world::certify::{self, Enclosure, Precision};
+use crate::world::coincidence::CLOSE;
 use crate::world::hittable::Hittable;
 use std::mem::take;
 use std::ops::Range;
@@ -186,44 +187,46 @@ impl Start {
 
 /// A shape's exact distance on one ray, which leaves it on a side if it is the object that the packet leaves.
 pub(super) fn exact(shape: &dyn Hittable, start: &Start, leaves: Option<Side>, far: f64) -> f64 {
-    match start.leaves(shape, leaves) {
-        Some(side) if !shape.meets_itself(side) => return MISS,
-        None => {}
-        leaves => return shape.distance(&start.ray, &Span { far, leaves, ..Span::RAY }),
-    }
-    let distance = shape.distance(&start.ray, &Span { far, ..Span::RAY });
-    // Where what was rounded of the ray may decide whether it meets the shape, the ray does that was not rounded.
-    match &start.sight {
-        Some(sight) if shape.bracket(&start.ray, &Span::RAY).is_doubtful() => decided(shape, sight, distance),
-        _ => distance,
-    }
+    located(shape, start, leaves, far).0
 }
 
-/// A distance, if the ray before anything was rounded has a hit there as far as 237 bits tell, or [`MISS`].
-fn decided(shape: &dyn Hittable, sight: &Sight, distance: f64) -> f64 {
-    let in_world_units = |at: Wide| certify::in_world_units(at, sight).high;
+/// A shape's exact distance, as [`exact`] gives it, and a bracket of that and of the distance of the ray before anything
+/// was rounded.
+fn located(shape: &dyn Hittable, start: &Start, leaves: Option<Side>, far: f64) -> (f64, Bracket) {
+    let known = |distance| (distance, Bracket::exactly(distance));
+    match start.leaves(shape, leaves) {
+        Some(side) if !shape.meets_itself(side) => return (MISS, Bracket::MISS),
+        None => {}
+        leaves => return known(shape.distance(&start.ray, &Span { far, leaves, ..Span::RAY })),
+    }
+    let distance = shape.distance(&start.ray, &Span { far, ..Span::RAY });
+    let Some(sight) = &start.sight else { return known(distance) };
+    let bracket = shape.bracket(&start.ray, &Span::RAY);
+    // Where what was rounded of the ray may decide whether it meets the shape, the ray does that was not rounded.
+    if bracket.is_doubtful() { decided(shape, sight, distance) } else { (distance, bracket) }
+}
+
+/// A distance and a bracket of it, if the ray before anything was rounded has a hit there as far as 237 bits tell, or
+/// [`MISS`].
+fn decided(shape: &dyn Hittable, sight: &Sight, distance: f64) -> (f64, Bracket) {
     let enclosure = match shape.certify(sight, Precision::Double) {
         Enclosure::Edge(_) | Enclosure::Doubtful(_) => shape.certify(sight, Precision::Octuple),
         certain => certain,
     };
     match enclosure {
-        Enclosure::Misses => MISS,
+        Enclosure::Misses => (MISS, Bracket::MISS),
         // What has edges has them inclusive.
-        Enclosure::Hits(at) | Enclosure::Edge(at) if distance == MISS => in_world_units(at),
-        // As of a plane that the ray runs along but for rounding.
-        Enclosure::Doubtful(from) if in_world_units(Wide::point(from)) > distance => MISS,
-        Enclosure::Hits(_) | Enclosure::Edge(_) | Enclosure::Doubtful(_) => distance,
-    }
-}
-
-/// The bracket of a distance and of that of the ray before anything was rounded.
-fn around(shape: &dyn Hittable, sight: &Sight, distance: f64) -> Bracket {
-    match shape.certify(sight, Precision::Octuple) {
         Enclosure::Hits(at) | Enclosure::Edge(at) => {
-            let real = certify::in_world_units(at, sight).high;
-            Bracket { near: real.min(distance), far: real.max(distance) }
+            let Interval { low, high } = certify::bounds_in_world_units(at, sight);
+            (distance.clamp(low, high), Bracket { near: low, far: high })
         }
-        Enclosure::Misses | Enclosure::Doubtful(_) => Bracket::exactly(distance),
+        // As of a plane that the ray runs along but for rounding: what is undecided lies farther on.
+        Enclosure::Doubtful(from)
+            if certify::in_world_units(Wide::point(from), sight).high * (1.0 - CLOSE) > distance =>
+        {
+            (MISS, Bracket::MISS)
+        }
+        Enclosure::Doubtful(_) => (distance, Bracket::exactly(distance)),
     }
 }
 
@@ -344,7 +347,7 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
     fn decide(&mut self, lane: usize, index: usize, leaves: Option<Side>) {
         let objects = &self.tracer.model.objects;
         let start = self.tracer.start(self.group, lane);
-        let distance = exact(&*objects[index].shape, &start, leaves, MISS);
+        let (distance, own) = located(&*objects[index].shape, &start, leaves, MISS);
         if distance == MISS {
             return;
         }
@@ -361,11 +364,7 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
         let nearest = if is_first { distance } else { rival_distance };
         // The ray from the viewer that was not rounded meets it anywhere in its bracket, and may meet others there.
         let bracket = match start.sight {
-            Some(sight) if is_first => {
-                let shape = &*objects[index].shape;
-                let bracket = shape.bracket(&start.ray, &Span::RAY);
-                if bracket.is_doubtful() { around(shape, &sight, distance) } else { bracket }
-            }
+            Some(_) if is_first => own,
             Some(_) => Bracket { near: *near, far: *far },
             None => Bracket::exactly(nearest),
         };

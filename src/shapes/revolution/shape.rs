@@ -7,7 +7,7 @@ use super::surface::Revolution;
 use crate::geometry::bounds::Bounds;
 use crate::geometry::frame::Frame;
 use crate::geometry::packet::{self, Nearest, Rays, parts};
-use crate::geometry::ray::{Ray, Side, Span};
+use crate::geometry::ray::{Bracket, Ray, Side, Span};
 use crate::geometry::roots::Method;
 use crate::geometry::sight::{Line, Sight};
 use crate::numeric::number::Number;
@@ -15,7 +15,7 @@ use crate::numeric::twofold::Twofold;
 use crate::simd::cpu::Cpu;
 use crate::world::certify::{self, Enclosure, Equation, Precision};
 use crate::world::coincidence;
-use crate::world::hittable::Hittable;
+use crate::world::hittable::{Hittable, bracket_by};
 use crate::world::landing::Landing;
 use glam::DVec3;
 
@@ -69,7 +69,7 @@ impl Hittable for InFrame<Classic> {
 
 impl Hittable for InFrame<Revolution> {
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        self.surface.distance(&self.frame, ray, within)
+        self.surface.distance(&self.frame, ray, within).0
     }
 
     fn distance_by(&self, method: Method, ray: &Ray, within: &Span) -> Option<f64> {
@@ -92,6 +92,13 @@ impl Hittable for InFrame<Revolution> {
 
     fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold> {
         coincidence::distance(self, ray, distance)
+    }
+
+    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
+        bracket_by(self, ray, within, |within| {
+            let (distance, is_certain) = self.surface.distance(&self.frame, ray, within);
+            is_certain.then_some(distance)
+        })
     }
 
     fn is_two_sided(&self) -> bool {

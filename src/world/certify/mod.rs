@@ -12,7 +12,7 @@ mod search;
 pub use equation::Equation;
 
 use crate::geometry::sight::Sight;
-use crate::numeric::interval::{Float, Wide};
+use crate::numeric::interval::{Float, Interval, Wide};
 use crate::numeric::twofold::Twofold;
 use equation::Found;
 use f256::f256;
@@ -38,6 +38,12 @@ impl Enclosure {
 /// A distance in lengths of a sight's direction, in world units: the middle of what it may be.
 pub fn in_world_units(distance: Wide, sight: &Sight) -> Twofold {
     middle(distance * sight.length())
+}
+
+/// Bounds of a distance in lengths of a sight's direction, in world units.
+pub fn bounds_in_world_units(distance: Wide, sight: &Sight) -> Interval {
+    let Interval { low, high } = distance * sight.length();
+    Interval { low: low.to_f64().next_down(), high: high.to_f64().next_up() }
 }
 
 /// The middle of an interval, in twice the precision of `f64`.
