@@ -1,9 +1,9 @@
 //! `tabray render --aov`: pictures beside the main one, and exact numbers.
 
-use super::output::Output;
+use super::failure::Failure;
+use super::output::{Output, finished};
 use super::progress::Progress;
-use super::render::finished;
-use super::{Failure, interrupt, messages};
+use super::{interrupt, messages};
 use crate::output::aov::Aov;
 use crate::output::picture::Format;
 use crate::render::plan::Plan;

@@ -1,6 +1,7 @@
 //! `tabray render --debug`: the notes' debug lines, for some pixels or for all.
 
-use super::{Failure, interrupt, probe};
+use super::failure::Failure;
+use super::{interrupt, probe};
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::scene::model::Model;

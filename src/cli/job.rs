@@ -1,13 +1,13 @@
 //! A picture being made: rendered and written, or stopped and left to be gone on with.
 
-use super::output::Output;
+use super::failure::Failure;
+use super::messages;
+use super::output::{Output, finished};
 use super::progress::Progress;
-use super::render::finished;
 use super::resume::{self, Begun};
 use super::size::Part;
 use super::stats::Stats;
 use super::stop::Stop;
-use super::{Failure, messages};
 use crate::output::picture::Format;
 use crate::render::limits::MAX_RAYS;
 use crate::render::plan::Plan;
@@ -101,7 +101,8 @@ impl Job<'_> {
                 "nothing is rendered yet, and nothing is written".to_owned()
             }
             Output::File(..) => {
-                let checkpoint = resume::leave(self, output, tiles)?;
+                let checkpoint =
+                    resume::leave(self.plan.model, self.part, (self.path, self.format), output, tiles)?;
                 let [picture, checkpoint] = [self.path, &checkpoint].map(Path::display);
                 format!(
                     "wrote {share:.1} % of {picture}, and {checkpoint}, from which `--resume` makes the rest"

@@ -1,11 +1,12 @@
 //! Without a command: the notes' program, a filter from a scene to its dump and its picture.
 
+use super::failure::Failure;
 use super::input::{self, Source};
+use super::interrupt;
 use super::job::Job;
 use super::output::Output;
 use super::size::Part;
 use super::stop::Stop;
-use super::{Failure, interrupt};
 use crate::output::picture::Format;
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;

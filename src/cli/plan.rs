@@ -1,6 +1,7 @@
 //! `tabray plan`: what a scene needs, and why.
 
-use super::{Failure, input, method, print};
+use super::failure::{Failure, print};
+use super::{input, method};
 use crate::render::decisions::{self, Decision};
 use crate::render::plan::Plan;
 use crate::scene::registry::Registry;

@@ -1,6 +1,7 @@
 //! `tabray probe`: one pixel, explained.
 
-use super::{Failure, input, method};
+use super::failure::Failure;
+use super::{input, method};
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::scene::model::Model;

@@ -1,11 +1,12 @@
 //! `tabray render`: a scene's picture.
 
+use super::failure::Failure;
 use super::input::Source;
 use super::job::Job;
-use super::output::Output;
+use super::output::{Output, named};
 use super::resume::Begun;
 use super::stats::{self, Stats};
-use super::{Failure, aov, cpu, debug, input, interrupt, messages, method, size, stop};
+use super::{aov, cpu, debug, input, interrupt, messages, method, size, stop};
 use crate::output::picture::{Compression, Format};
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
@@ -13,7 +14,6 @@ use crate::scene::reader::Loaded;
 use crate::scene::registry::Registry;
 use crate::world::accuracy::Accuracy;
 use crate::world::sample::{self, Sampler};
-use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -134,14 +134,6 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     aov::write(&plan, exact, threads, format, beside)
 }
 
-/// Puts a picture in its place, if it was written without an error.
-pub fn finished(path: &Path, written: io::Result<()>, out: BufWriter<Output>) -> Result<(), Failure> {
-    match written.and_then(|()| out.into_inner().map_err(|error| error.into_error())?.finish()) {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::cannot_write(path, &error)),
-        _ => Ok(()),
-    }
-}
-
 fn target(args: &Args) -> Result<PathBuf, Failure> {
     match (&args.output, args.scene.file_name()) {
         (Some(path), _) => Ok(path.clone()),
@@ -171,12 +163,4 @@ fn format(args: &Args, path: &Path) -> Result<Format, Failure> {
             Format::Ppm => Ok(Format::Ppm),
         },
     }
-}
-
-/// The format that a file's name says, or what would be right.
-pub fn named(path: &Path, help: &str) -> Result<Format, Failure> {
-    Format::of(path).ok_or_else(|| {
-        let message = format!("the name `{}` does not say which format the picture has", path.display());
-        Failure::Usage(message, Some(help.to_owned()))
-    })
 }

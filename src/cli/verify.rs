@@ -1,9 +1,9 @@
 //! `tabray verify`: a proof, pixel by pixel, of which object is seen.
 
-use super::output::Output;
+use super::failure::{Failure, print};
+use super::output::{Output, finished, named};
 use super::progress::Progress;
-use super::render::{finished, named};
-use super::{Failure, input, interrupt, messages, method, print};
+use super::{input, interrupt, messages, method};
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::scene::registry::Registry;

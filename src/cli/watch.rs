@@ -6,8 +6,9 @@ mod events;
 mod files;
 mod frame;
 
+use super::failure::Failure;
 use super::serve::Server;
-use super::{Failure, input, interrupt, messages, method};
+use super::{input, interrupt, messages, method};
 use crate::render::plan::Plan;
 use crate::render::progressive;
 use crate::render::renderer::Renderer;

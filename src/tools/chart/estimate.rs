@@ -1,9 +1,10 @@
 //! A quick measurement of what accuracy and samples make of a scene, to choose from.
 
+use super::candidate::Load;
 use super::colours::difference;
 use super::pictures::{self, Seen, TRUE_SAMPLES, TRUE_TESTS, count, each, render, tests, timed};
 use super::places::{Pixels, spread};
-use super::{Load, Progress};
+use super::progress::Progress;
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::render::trace;

@@ -5,8 +5,10 @@
 
 use super::clock::{self, Times};
 use super::colours::{Difference, difference};
+use super::data::{Family, Panel, Point, Subject, Wrong};
 use super::places::{Pixels, spread, tiles};
-use super::{Family, Panel, Point, Progress, Study, Subject, Wrong};
+use super::progress::Progress;
+use super::study::Study;
 use crate::geometry::packet::WIDE;
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
@@ -292,4 +294,13 @@ pub(super) fn tests(plan: &Plan, threads: &Renderer) -> f64 {
     };
     let all: usize = each(threads, &pixels, count).into_iter().sum();
     (all as f64 / (pixels.len() * samples) as f64).max(1.0)
+}
+
+impl Sampler {
+    fn family(self) -> Family {
+        match self {
+            Self::Random => Family::Random,
+            Self::Sobol => Family::Sobol,
+        }
+    }
 }
