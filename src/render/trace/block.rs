@@ -1,7 +1,7 @@
 //! Which rays of a packet something blocks.
 
-use super::Tracer;
-use super::room::{Vectors, room};
+use super::arrays::{Vectors, room};
+use super::context::Tracer;
 use super::search::{Start, exact, invert};
 use crate::geometry::bounds::{self, Bounds};
 use crate::geometry::packet::{Rays, parts};

@@ -1,8 +1,8 @@
 //! Rays that go together.
 
+use super::arrays::{Vectors, pick, room};
 use super::light::{self, Worth};
-use super::room::{Vectors, pick, room};
-use super::shade::Surface;
+use super::surface::{Onward, Surface};
 use crate::geometry::packet::Rays;
 use crate::geometry::ray::Side;
 use crate::geometry::sight::Sight;
@@ -42,19 +42,6 @@ pub(super) struct Group {
     /// How far the origin of each may be from the point that it stands for, in world units, and the most of any; empty
     /// and 0 where they come from the viewer.
     pub errors: Vec<f64>,
-    pub most_error: f64,
-}
-
-/// Of a group's rays, by their lanes.
-pub(super) struct Onward<'o> {
-    pub points: &'o Vectors,
-    pub dir: &'o Vectors,
-    pub travelled: &'o [f64],
-    /// The object that they leave.
-    pub leaves: usize,
-    pub sides: &'o [Side],
-    /// How far those points may be from where they should be.
-    pub errors: &'o [f64],
     pub most_error: f64,
 }
 

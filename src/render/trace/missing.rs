@@ -1,11 +1,11 @@
 //! What is missing where a pixel has cost as many rays as it may.
 
-use super::Tracer;
+use super::arrays::room;
+use super::context::Tracer;
+use super::found::Found;
 use super::group::Group;
 use super::light;
-use super::room::room;
-use super::search::Found;
-use super::shade::Surface;
+use super::surface::Surface;
 use crate::render::watch::Watch;
 
 impl<W: Watch> Tracer<'_, '_, W> {
@@ -62,7 +62,7 @@ mod tests {
     use crate::render::renderer::Renderer;
     use crate::render::tally::Tally;
     use crate::render::trace::Rooms;
-    use crate::render::trace::room::Vectors;
+    use crate::render::trace::arrays::Vectors;
     use crate::scene::model::Model;
     use crate::scene::reader;
     use crate::scene::registry::Registry;

@@ -4,38 +4,37 @@
 //! object go on together, as a smaller packet, and so do their shadows (`shadow`), what they see through glass and in
 //! mirrors (`shade`). One ray is a packet of one. A ray's colour does not depend on which others go with it.
 
+mod arrays;
 mod block;
+mod context;
+mod found;
 mod group;
 mod illuminate;
 mod light;
 mod missing;
 mod order;
 mod passage;
-mod room;
+mod scratch;
 mod search;
 mod shade;
 mod shadow;
+mod surface;
+
+pub(crate) use context::Tracer;
+pub(crate) use scratch::Rooms;
 
 use crate::geometry::packet::WIDE;
 use crate::geometry::sight::Sight;
 use crate::render::plan::Plan;
 use crate::render::watch::{Count, Event, Hit, Kind, Purpose, Watch};
-use crate::scene::model::Model;
 use crate::simd::cpu::Cpu;
 use crate::simd::soa::View;
-use crate::world::accuracy::Accuracy;
 use crate::world::material::Rgb;
 use crate::world::sample::Sample;
+use arrays::Vectors;
+use found::Found;
 use group::Group;
-pub(crate) use room::Rooms;
-use room::{Level, Primary, Vectors, pick};
-use search::Found;
-
-/// The rays of a packet where there are few.
-const NARROW: usize = 8;
-
-/// From so many reflections on, packets are narrow: a deep hall of mirrors would fill the memory with wide ones.
-const DEEP: usize = 24;
+use scratch::Primary;
 
 /// The colour of a pixel, before it is clamped to what a picture can show: `x` counts from the left and `y`
 /// from the bottom.
@@ -80,24 +79,7 @@ pub fn first_hit<'m>(plan: &Plan<'m>, sight: &Sight) -> Option<Hit<'m>> {
     Some(Hit { index: object, object: &plan.model.objects[object], distance, point: ray.at(distance) })
 }
 
-/// Traces packets of rays through a model, as planned.
-pub(crate) struct Tracer<'m, 'w, W> {
-    model: &'m Model,
-    plan: &'m Plan<'m>,
-    cpu: Cpu,
-    /// How far along an axis the viewer is from the world's origin, in world units.
-    viewer: f64,
-    /// How many mirrors and panes of glass the present packet has behind it.
-    depth: usize,
-    rooms: &'w mut Rooms,
-    watch: &'w mut W,
-}
-
-impl<'m, 'w, W: Watch> Tracer<'m, 'w, W> {
-    pub(crate) fn new(plan: &'m Plan, cpu: Cpu, rooms: &'w mut Rooms, watch: &'w mut W) -> Self {
-        Self { model: plan.model, plan, cpu, viewer: 0.0, depth: 0, rooms, watch }
-    }
-
+impl<W: Watch> Tracer<'_, '_, W> {
     /// The colours of some pixels, up to [`WIDE`] rays of which are traced together.
     pub(crate) fn pixels(&mut self, pixels: &[[usize; 2]]) -> View<'_> {
         let camera = &self.plan.camera;
@@ -167,46 +149,6 @@ impl<'m, 'w, W: Watch> Tracer<'m, 'w, W> {
             self.watch.see(Event::Begin(Purpose::Primary));
         }
         self.trace(group, colours);
-    }
-
-    /// Whether the notes' own methods are asked for.
-    fn is_classic(&self) -> bool {
-        self.plan.camera.accuracy == Accuracy::Classic
-    }
-
-    /// The most rays of a packet that goes on from the present one.
-    fn most(&self) -> usize {
-        if self.depth < DEEP { WIDE } else { NARROW }
-    }
-
-    /// The light that comes back along the rays of a packet.
-    fn trace(&mut self, group: &mut Group, colours: &mut Vectors) {
-        let mut level = self.rooms.levels.pop().unwrap_or_default();
-        let Level { found, parts, part, near, far, shading, seen } = &mut *level;
-        self.closest(group, None, found);
-        let met = &found.met[..group.len];
-        if met[0] != 0 && search::is_one(self.cpu, met) {
-            self.shade(group, (&found.near, &found.far), met[0] as usize - 1, shading, colours);
-        } else {
-            colours.room(group.padded());
-            parts.begin(met);
-            while let Some((id, lanes)) = parts.next() {
-                let Some(object) = (id as usize).checked_sub(1) else {
-                    lanes.iter().for_each(|lane| colours.set(usize::from(*lane), Rgb::ZERO));
-                    continue;
-                };
-                part.pick(group, lanes);
-                pick(near, &found.near, lanes, part.padded());
-                pick(far, &found.far, lanes, part.padded());
-                self.shade(part, (near, far), object, shading, seen);
-                colours.put(seen, lanes);
-                group.pay(part, lanes);
-            }
-        }
-        if W::SEES {
-            self.watch.see(Event::Colour(colours.get(0)));
-        }
-        self.rooms.levels.push(level);
     }
 }
 

@@ -1,13 +1,13 @@
 //! How much of a light comes to the places of a surface.
 
-use super::Tracer;
+use super::arrays::{Vectors, pick, room};
 use super::block::Leaving;
+use super::context::Tracer;
 use super::group::Group;
-use super::room::{Vectors, pick, room};
-use super::shade::Surface;
+use super::scratch::Shadows;
+use super::surface::Surface;
 use crate::geometry::bounds::Bounds;
 use crate::geometry::packet::Rays;
-use crate::geometry::ray::Side;
 use crate::render::watch::{Count, Kind, Watch};
 use crate::simd::cpu::kernels;
 use crate::simd::soa::STEP;
@@ -24,19 +24,6 @@ pub(super) struct Ways<'w> {
 
 /// Of a way that need not be gone, which nothing blocks.
 const NOT_GONE: u64 = 2;
-
-/// Room for the shadows of a packet.
-#[derive(Default)]
-pub(super) struct Shadows {
-    /// Those that remain of a packet.
-    lanes: Vec<u8>,
-    origin: Vectors,
-    dir: Vectors,
-    their_ends: Vec<f64>,
-    their_blocked: Vec<u64>,
-    sides: Vec<Side>,
-    errors: Vec<f64>,
-}
 
 impl<W: Watch> Tracer<'_, '_, W> {
     /// What the ends of the ways are short of the light, as a part of how far that is: a surface that the light lies
