@@ -1,23 +1,9 @@
 //! A finite plane: a rectangle.
 
 use super::plane::{self, Plane};
-use crate::geometry::bounds::Bounds;
-use crate::geometry::packet::Rays;
-use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
-use crate::geometry::sight::Sight;
-use crate::numeric::number::{Number, cross, dot};
-use crate::numeric::twofold::Twofold;
-use crate::scene::entity::{Args, Entity, Refusal};
-use crate::scene::pparm::{Attributes, Derived, Pparm, Row, Table};
-use crate::scene::value::Value;
+use crate::prelude::*;
 use crate::shapes::rectangle;
 pub use crate::shapes::rectangle::FinitePlane;
-use crate::simd::cpu::Cpu;
-use crate::world::accuracy::Accuracy;
-use crate::world::body::Body;
-use crate::world::certify::{self, Enclosure, Equation, Precision};
-use crate::world::hittable::Hittable;
-use glam::{DMat3, DVec2, DVec3};
 
 pub static DIMENSIONS: Pparm<DVec2> = Pparm::required("dimensions", "its size along xdir and across it")
     .unit("world units")

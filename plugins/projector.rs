@@ -3,13 +3,7 @@
 use super::light::{self, PointLight};
 use super::texplane::{self, Picture};
 use super::{fplane, plane};
-use crate::geometry::ray::Ray;
-use crate::scene::entity::Entity;
-use crate::scene::pparm::{Derived, Row, Table};
-use crate::scene::value::Datum;
-use crate::world::light::Light;
-use crate::world::material::Rgb;
-use glam::DVec3;
+use crate::prelude::*;
 
 static HEADING: Derived = Derived(|_| Datum::Word(String::new()).line("projector", " \n"));
 

@@ -1,19 +1,7 @@
 //! A quadric: every point that solves an equation of the second degree (the notes' "General Quadric Surfaces").
 
-use crate::geometry::bounds::{self, Bounds, SLACK};
-use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
-use crate::geometry::sight::Sight;
-use crate::numeric::number::Number;
-use crate::numeric::twofold::Twofold;
-use crate::scene::entity::{Entity, Refusal};
-use crate::scene::pparm::{Pparm, Table};
+use crate::prelude::*;
 use crate::shapes::quadratic::{self, CAMERA, OwnRay, Quadratic, Quick};
-use crate::world::accuracy::Accuracy;
-use crate::world::body::Body;
-use crate::world::certify::{self, Enclosure, Equation, Precision};
-use crate::world::coincidence;
-use crate::world::hittable::Hittable;
-use glam::{DMat3, DVec3};
 
 static COEFFICIENTS: Pparm<[f64; 10]> =
     Pparm::required("coefficients", "A to J of Axx + Byy + Czz + Dxy + Exz + Fyz + Gx + Hy + Iz = J")

@@ -1,18 +1,8 @@
 //! A triangle.
 
-use crate::geometry::bounds::Bounds;
-use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
-use crate::geometry::sight::Sight;
-use crate::numeric::number::{Number, cross, dot};
-use crate::numeric::twofold::{self, Twofold, exponent_to_one, times_power_of_two, triple_product, unit};
-use crate::scene::entity::{Entity, Refusal};
-use crate::scene::pparm::{Pparm, Table};
+use crate::numeric::twofold::{self, exponent_to_one, times_power_of_two, triple_product, unit};
+use crate::prelude::*;
 use crate::shapes::flat::Plane;
-use crate::world::accuracy::Accuracy;
-use crate::world::body::Body;
-use crate::world::certify::{self, Enclosure, Equation, Precision};
-use crate::world::hittable::Hittable;
-use glam::DVec3;
 
 static VERTEX1: Pparm<DVec3> = Pparm::required("vertex1", "its first corner").unit("world coordinates");
 static VERTEX2: Pparm<DVec3> =

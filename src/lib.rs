@@ -9,13 +9,14 @@
 //! of [`world::hittable`]. No other file knows its name. A plugin outside of this package does the same, and its
 //! program is [`cli::run`] (see `docs/plugins.md`).
 
-// What a plugin outside of this package writes its types and its registration with.
-pub use {glam, inventory};
+// What positions and colours are written with.
+pub use glam;
 
 pub mod cli;
 pub mod geometry;
 pub mod numeric;
 pub mod output;
+pub mod prelude;
 pub mod render;
 pub mod scene;
 pub mod shapes;

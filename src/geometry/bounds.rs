@@ -6,7 +6,7 @@ use crate::simd::soa::View;
 use glam::DVec3;
 
 /// What rounding may make of a place, as a part of how far it is from the world's origin; far more than it does.
-pub(crate) const SLACK: f64 = 1e-12;
+pub const SLACK: f64 = 1e-12;
 
 /// A box along the world's axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
