@@ -20,7 +20,7 @@ static VIEWPOINT: Pparm<DVec3> = Pparm::required("viewpoint", "where the viewer 
 
 static SAMPLES: Pparm<i64> =
     Pparm::or("samples", "how many rays look through each pixel, to smooth edges", 1)
-        .must("from 1 to 65536", |samples| (1..=sample::MOST.into()).contains(samples))
+        .must("from 1 to 65536", |samples| (1..=Sampler::MOST.into()).contains(samples))
         .not_dumped();
 
 static ACCURACY: Pparm<Accuracy> =

@@ -1,7 +1,7 @@
 //! A plane: every point in two directions, without end.
 
 use crate::prelude::*;
-pub use crate::shapes::flat::Plane;
+pub use crate::shapes::Plane;
 
 pub static NORMAL: Pparm<DVec3> =
     Pparm::required("normal", "a vector that stands upright on it, on its lit side")

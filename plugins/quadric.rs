@@ -1,5 +1,6 @@
 //! A quadric: every point that solves an equation of the second degree (the notes' "General Quadric Surfaces").
 
+use crate::geometry::clearance;
 use crate::prelude::*;
 use crate::shapes::quadratic::{self, CAMERA, OwnRay, Quadratic, Quick};
 
@@ -151,7 +152,7 @@ impl Hittable for Quadric {
         let square = (abs * DVec3::ONE).length();
         let radius = 2.0 * value / (gradient + (gradient * gradient + 4.0 * square * value).sqrt());
         let by_value = if value > 0.0 && radius.is_finite() { radius * (1.0 - 1e-6) } else { 0.0 };
-        by_value.max(bounds::clearance(from, self.bounds(), |region| self.is_clear_of(region)))
+        by_value.max(clearance(from, self.bounds(), |region| self.is_clear_of(region)))
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {

@@ -1,7 +1,7 @@
 //! A surface of revolution: a line turned around an axis.
 
 use crate::prelude::*;
-use crate::shapes::revolution::{Classic, Finish, InFrame, Revolution};
+use crate::shapes::{Classic, Finish, InFrame, Revolution};
 use std::sync::Arc;
 
 static SURFER: Pparm<Option<&'static Profile>> =
@@ -43,10 +43,10 @@ inventory::submit! {
 }
 
 /// The line that an entity names or spells out.
-fn line(args: &Args) -> Result<profile::Line, Refusal> {
+fn line(args: &Args) -> Result<ProfileLine, Refusal> {
     match (args.get(&SURFER), args.get(&PROFILE)) {
         (Some(profile), None) => Ok(profile.line()),
-        (None, Some(formula)) => Ok(profile::Line { radius: (*formula).clone(), slope: None }),
+        (None, Some(formula)) => Ok(ProfileLine { radius: (*formula).clone(), slope: None }),
         (Some(_), Some(_)) => Err(Refusal {
             attribute: Some("profile"),
             message: "has a surfer and a profile".to_owned(),

@@ -2,7 +2,7 @@
 
 use crate::numeric::twofold::{self, exponent_to_one, times_power_of_two, triple_product, unit};
 use crate::prelude::*;
-use crate::shapes::flat::Plane;
+use crate::shapes::Plane;
 
 static VERTEX1: Pparm<DVec3> = Pparm::required("vertex1", "its first corner").unit("world coordinates");
 static VERTEX2: Pparm<DVec3> =

@@ -16,17 +16,17 @@ pub use crate::world::camera::Camera;
 pub use crate::world::hittable::Hittable;
 pub use crate::world::light::Light;
 pub use crate::world::material::{Look, Material, Rgb};
-pub use crate::world::sample::{self, Sampler};
+pub use crate::world::sample::Sampler;
 pub use crate::world::shader::Shader;
 pub use crate::world::texture::Texture;
 
 // What scenes choose one of: looks that change from place to place, and profiles.
 pub use crate::numeric::formula::Formula;
 pub use crate::scene::procedural::{Anchor, OnPlane, OnSphere, ProceduralShader};
-pub use crate::scene::profile::{self, Profile};
+pub use crate::scene::profile::{Line as ProfileLine, Profile};
 
 // What shapes are asked, and answer.
-pub use crate::geometry::bounds::{self, Bounds, SLACK};
+pub use crate::geometry::bounds::{Bounds, SLACK};
 pub use crate::geometry::frame::Frame;
 pub use crate::geometry::packet::Rays;
 pub use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};

@@ -10,13 +10,9 @@ use image::{Rgb, RgbImage};
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use tabray::geometry::ray::{MISS, Ray};
-use tabray::geometry::sight::Sight;
-use tabray::render::plan::Plan;
-use tabray::render::trace;
-use tabray::render::watch::{Event, Watch};
-use tabray::scene::model::Model;
-use tabray::scene::profile::Profile;
+use tabray::geometry::{MISS, Ray, Sight};
+use tabray::render::{Event, Plan, Watch, trace};
+use tabray::scene::{Model, Profile};
 use tabray::world::certify::{Enclosure, Precision};
 
 /// A scene, and the percentage of its pixels that must be right to 1 of 255 in every channel. What is short

@@ -10,14 +10,11 @@ use std::collections::BTreeSet;
 use std::f64::consts::PI;
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use tabray::geometry::ray::{MISS, Span};
-use tabray::render::plan::Plan;
-use tabray::render::trace;
-use tabray::scene::dump;
-use tabray::scene::model::Model;
-use tabray::scene::reader::{self, Loaded, Report};
+use tabray::geometry::{MISS, Span};
+use tabray::render::{Plan, trace};
+use tabray::scene::{self, Loaded, Model, Report, dump};
 use tabray::tools::debug::{self, Line};
-use tabray::world::accuracy::Accuracy::{self, Classic, Exact};
+use tabray::world::Accuracy::{self, Classic, Exact};
 
 /// The scene of a difference.
 #[derive(Clone)]
@@ -25,7 +22,7 @@ struct Scene(String);
 
 impl Scene {
     fn read(&self, accuracy: Option<Accuracy>) -> Result<Loaded, Report> {
-        reader::read(registry(), "scene", &root().join("docs"), self.0.as_bytes(), accuracy)
+        scene::read(registry(), "scene", &root().join("docs"), self.0.as_bytes(), accuracy)
     }
 
     fn model(&self, accuracy: Accuracy) -> Model {

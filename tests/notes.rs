@@ -4,11 +4,10 @@ mod common;
 
 use common::model;
 use glam::{DMat3, DVec3, dvec3};
-use tabray::geometry::ray::{MISS, Ray, Span};
-use tabray::render::plan::Plan;
-use tabray::render::trace;
+use tabray::geometry::{MISS, Ray, Span};
+use tabray::render::{Plan, trace};
 use tabray::scene::dump;
-use tabray::world::hittable::Hittable;
+use tabray::world::Hittable;
 
 /// Whether two vectors agree to this many printed decimals.
 #[track_caller]
@@ -52,7 +51,7 @@ fn the_sample_driver_prints_its_numbers() {
 // "Translating from pixel to world coordinates", "An alternative world view", "Computing the direction of a ray"
 
 /// A scene with nothing but a camera of this many pixels.
-fn camera(pixels: &str) -> tabray::world::camera::Camera {
+fn camera(pixels: &str) -> tabray::world::Camera {
     model(&format!("camera c {{ pixeldim {pixels} worlddim 8 6 viewpoint 4 3 6 }}")).camera.value
 }
 

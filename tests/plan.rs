@@ -9,18 +9,11 @@ use serde_json::Value;
 use std::fs;
 use std::path::Path;
 use std::sync::Mutex;
-use tabray::render::bytes::to_byte;
-use tabray::render::decisions;
-use tabray::render::plan::Plan;
-use tabray::render::renderer::Renderer;
-use tabray::render::tally::{Tally, Tests};
-use tabray::render::trace;
-use tabray::render::watch::Kind::{Primary, Reflected, Shadow, Transmitted};
-use tabray::render::watch::Watch;
-use tabray::scene::model::Model;
-use tabray::scene::reader;
-use tabray::simd::cpu::Cpu;
-use tabray::world::accuracy::Accuracy;
+use tabray::render::Kind::{Primary, Reflected, Shadow, Transmitted};
+use tabray::render::{Plan, Renderer, Tally, Tests, Watch, decisions, to_byte, trace};
+use tabray::scene::{self, Model};
+use tabray::simd::Cpu;
+use tabray::world::Accuracy;
 use tempfile::TempDir;
 
 /// What a scene's picture of 40 x 30 pixels takes.
@@ -212,8 +205,7 @@ fn no_ray_is_counted_twice() {
 fn small(path: &Path, accuracy: Option<Accuracy>) -> Model {
     let bytes = fs::read(path).expect("a scene");
     let name = path.display().to_string();
-    let mut model = match reader::read(registry(), &name, path.parent().expect("a folder"), &bytes, accuracy)
-    {
+    let mut model = match scene::read(registry(), &name, path.parent().expect("a folder"), &bytes, accuracy) {
         Ok(loaded) => loaded.model,
         Err(report) => panic!("{report}"),
     };
@@ -277,7 +269,7 @@ fn plans_are_as_before() {
         }
         let classic = fs::read(root().join("scenes/entities/revsurf.ray")).expect("a scene");
         let accuracy = Some(Accuracy::Classic);
-        let classic = reader::read(registry(), "revsurf.ray", Path::new(""), &classic, accuracy);
+        let classic = scene::read(registry(), "revsurf.ray", Path::new(""), &classic, accuracy);
         insta::assert_snapshot!("classic", text(&classic.unwrap_or_else(|report| panic!("{report}")).model));
     });
 }

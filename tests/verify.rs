@@ -4,7 +4,7 @@ mod common;
 
 use assert_cmd::cargo::cargo_bin_cmd;
 use common::{load, model, root, scenes};
-use tabray::render::plan::Plan;
+use tabray::render::Plan;
 use tabray::tools::verify::{self, Verdict};
 use tempfile::TempDir;
 
@@ -23,7 +23,7 @@ const AT_EDGES: [&str; 10] = [
 ];
 
 /// Counts of proven, undecided and contradicted pixels: of every `step`-th, both ways.
-fn counts(model: &tabray::scene::model::Model, step: usize) -> [usize; 3] {
+fn counts(model: &tabray::scene::Model, step: usize) -> [usize; 3] {
     let [width, height] = model.camera.value.pixels;
     let plan = Plan::new(model);
     let mut counts = [0; 3];

@@ -9,7 +9,7 @@ use crate::output::picture::Format;
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::scene::model::Model;
-use crate::world::sample::{self, Sampler};
+use crate::world::sample::Sampler;
 use std::ffi::OsStr;
 use std::io::{self, BufWriter, Write};
 use std::iter;
@@ -118,7 +118,7 @@ pub fn write(
     let truth = if files.iter().any(|file| file.aov == Aov::Error) {
         exact_model = exact()?;
         let mut exact = Plan::new(&exact_model);
-        let samples = (TRUE_TIMES * plan.camera.samples).clamp(TRUE_LEAST, sample::MOST);
+        let samples = (TRUE_TIMES * plan.camera.samples).clamp(TRUE_LEAST, Sampler::MOST);
         (exact.camera.samples, exact.camera.sampler) = (samples, Sampler::Sobol);
         own = exact;
         &own

@@ -13,7 +13,7 @@ use crate::render::renderer::Renderer;
 use crate::scene::reader::Loaded;
 use crate::scene::registry::Registry;
 use crate::world::accuracy::Accuracy;
-use crate::world::sample::{self, Sampler};
+use crate::world::sample::Sampler;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -33,7 +33,7 @@ pub struct Args {
     #[arg(long, value_name = "HOW", default_value = "fast")]
     compress: CompressionName,
     /// How many rays look through each pixel, to smooth edges; by default what the scene's camera says
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(sample::MOST)))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(Sampler::MOST)))]
     samples: Option<u32>,
     /// Where the rays of a pixel lie
     #[arg(long, value_name = "NAME", default_value = "sobol")]

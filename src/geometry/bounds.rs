@@ -67,7 +67,7 @@ impl Bounds {
 }
 
 /// How far a point is from a shape with these bounds, at least, where the shape tells of which regions it is clear.
-pub(crate) fn clearance(from: DVec3, bounds: Option<Bounds>, is_clear_of: impl Fn(&Bounds) -> bool) -> f64 {
+pub fn clearance(from: DVec3, bounds: Option<Bounds>, is_clear_of: impl Fn(&Bounds) -> bool) -> f64 {
     let scale = from.abs().max_element();
     let outside = bounds.map_or(0.0, |bounds| {
         let Bounds { low, high } = bounds.with_slack(scale);

@@ -1,8 +1,12 @@
 //! Arithmetic that several shapes share.
 
 pub mod ball;
-pub mod flat;
-pub mod implicit;
+pub(crate) mod flat;
+pub(crate) mod implicit;
 pub mod quadratic;
 pub mod rectangle;
-pub mod revolution;
+pub(crate) mod revolution;
+
+pub use flat::Plane;
+pub use implicit::Implicit;
+pub use revolution::{Classic, Finish, InFrame, Revolution};

@@ -1,12 +1,9 @@
 //! `cargo bench --bench frames`: whole frames without files being written, on one core and on two, and what a file adds.
 
 use divan::{Bencher, black_box, counter::ItemsCount};
-use tabray::output::picture::{Compression, Format};
-use tabray::render::plan::Plan;
-use tabray::render::renderer::Renderer;
-use tabray::scene::model::Model;
-use tabray::scene::reader;
-use tabray::scene::registry::Registry;
+use tabray::output::{Compression, Format};
+use tabray::render::{Plan, Renderer};
+use tabray::scene::{self, Model, Registry};
 use tabray::tools::bench::scenes;
 
 fn main() {
@@ -19,7 +16,7 @@ const SCENES: [&str; 4] = ["3 planes and 2 spheres", "a vase", "1000 spheres", "
 fn model(name: &str) -> Model {
     let registry = Registry::get().expect("no two plugins claim one name");
     let scene = scenes::all().into_iter().find(|scene| scene.0 == name).expect("a scene of this name").1;
-    match reader::build(registry, scene) {
+    match scene::build(registry, scene) {
         Ok(built) => built.model,
         Err(report) => panic!("{report}"),
     }

@@ -7,11 +7,8 @@ pub mod program;
 use image::RgbImage;
 use std::fs;
 use std::path::{Path, PathBuf};
-use tabray::render::plan::Plan;
-use tabray::render::renderer::Renderer;
-use tabray::scene::model::Model;
-use tabray::scene::reader;
-use tabray::scene::registry::Registry;
+use tabray::render::{Plan, Renderer};
+use tabray::scene::{self, Model, Registry};
 
 /// The entity types of the program.
 pub fn registry() -> &'static Registry {
@@ -30,7 +27,7 @@ pub fn model(text: &str) -> Model {
 
 /// The model of a scene's text, whose file names start from `folder`.
 pub fn model_in(folder: &Path, text: &str) -> Model {
-    match reader::read(registry(), "scene", folder, text.as_bytes(), None) {
+    match scene::read(registry(), "scene", folder, text.as_bytes(), None) {
         Ok(loaded) => loaded.model,
         Err(report) => panic!("{report}\n{text}"),
     }

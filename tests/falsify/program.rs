@@ -2,11 +2,8 @@
 
 use crate::common::registry;
 use std::path::Path;
-use tabray::render::plan::Plan;
-use tabray::render::renderer::Renderer;
-use tabray::render::trace;
-use tabray::scene::model::Model;
-use tabray::scene::reader;
+use tabray::render::{Plan, Renderer, trace};
+use tabray::scene::{self, Model};
 use tabray::tools::verify::{self, Verdict};
 
 /// A scene as the program has it.
@@ -35,7 +32,7 @@ pub struct Found {
 impl Program {
     /// The scene, unless the program refuses it.
     pub fn read(text: &str) -> Option<Self> {
-        reader::read(registry(), "scene", Path::new(""), text.as_bytes(), None)
+        scene::read(registry(), "scene", Path::new(""), text.as_bytes(), None)
             .ok()
             .map(|loaded| Self(loaded.model))
     }

@@ -4,15 +4,10 @@ use super::{DOWN_Z, Random, shape, text};
 use crate::common::{model, render};
 use glam::{DVec3, dvec3};
 use std::f64::consts::{PI, TAU};
-use tabray::geometry::ray::Ray;
-use tabray::geometry::sight::Sight;
-use tabray::render::bytes::to_byte;
-use tabray::render::plan::Plan;
-use tabray::render::trace;
-use tabray::scene::choice::Choice;
-use tabray::scene::model::Model;
-use tabray::world::accuracy::Accuracy;
-use tabray::world::material::Rgb;
+use tabray::geometry::{Ray, Sight};
+use tabray::render::{Plan, to_byte, trace};
+use tabray::scene::{Choice, Model};
+use tabray::world::{Accuracy, Rgb};
 
 /// The ambient colour of the first object at a point.
 fn look(model: &Model, at: DVec3) -> Rgb {

@@ -5,11 +5,9 @@ use super::{DOWN_Z, Random, distance, holds, refusal, shape, text};
 use crate::common::model;
 use glam::{DVec3, dvec3};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_6};
-use tabray::geometry::ray::{MISS, Ray};
-use tabray::geometry::sight::Sight;
-use tabray::render::plan::Plan;
-use tabray::render::trace;
-use tabray::world::hittable::Hittable;
+use tabray::geometry::{MISS, Ray, Sight};
+use tabray::render::{Plan, trace};
+use tabray::world::Hittable;
 
 /// The notes' cone, 6 high; a greater height goes beyond its apex.
 fn cone(camera: &str, height: f64) -> Box<dyn Hittable> {

@@ -3,11 +3,9 @@
 use super::{DOWN_Z, Random, distance, holds, shape, shape_of, text, words};
 use crate::common::model;
 use glam::{DVec3, dvec3};
-use tabray::geometry::ray::{MISS, Ray};
-use tabray::geometry::sight::Sight;
-use tabray::render::plan::Plan;
-use tabray::render::trace;
-use tabray::world::hittable::Hittable;
+use tabray::geometry::{MISS, Ray, Sight};
+use tabray::render::{Plan, trace};
+use tabray::world::Hittable;
 
 /// The notes' `hits_sphere`: the nearer root of the quadratic, if its discriminant is positive.
 fn naive(origin: DVec3, dir: DVec3, center: DVec3, radius: f64) -> Option<f64> {

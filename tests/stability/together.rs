@@ -4,11 +4,8 @@ use super::Random;
 use super::common::{model, render};
 use glam::{DVec3, dvec3};
 use image::RgbImage;
-use tabray::geometry::ray::{Ray, Side, Span};
-use tabray::render::bytes::to_byte;
-use tabray::render::plan::Plan;
-use tabray::render::trace;
-use tabray::render::watch::{Event, Watch};
+use tabray::geometry::{Ray, Side, Span};
+use tabray::render::{Event, Plan, Watch, to_byte, trace};
 
 const BLUE: [u8; 3] = [0, 0, 255];
 

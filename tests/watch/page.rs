@@ -6,7 +6,7 @@ use crate::program::{Watching, ball};
 use image::RgbImage;
 use std::fs;
 use std::time::{SystemTime, UNIX_EPOCH};
-use tabray::render::plan::Plan;
+use tabray::render::Plan;
 use tabray::tools::probe;
 use tempfile::TempDir;
 

@@ -11,10 +11,8 @@ use std::ops::ControlFlow;
 use std::process::{Command, Stdio};
 use std::thread;
 use std::time::Duration;
-use tabray::output::aov::Aov;
-use tabray::render::bytes::to_byte;
-use tabray::render::plan::Plan;
-use tabray::render::renderer::Renderer;
+use tabray::output::Aov;
+use tabray::render::{Plan, Renderer, to_byte};
 use tabray::tools::probe;
 use tempfile::TempDir;
 

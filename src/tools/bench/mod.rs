@@ -1,9 +1,9 @@
 //! How fast a scene is traced on one core, and what the arithmetic alone would take there.
 //!
-//! Times are the core's own for the thread that traces ([`clock`]), the least of several rounds.
+//! Times are the core's own for the thread that traces (`clock`), the least of several rounds.
 
-pub mod ceiling;
-pub mod clock;
+mod ceiling;
+pub(crate) mod clock;
 mod packets;
 pub mod scenes;
 
@@ -39,7 +39,7 @@ pub struct Speed {
     /// The tests by the type of the entity, sorted.
     pub tests: Vec<Tests>,
     /// What the frame's tests take as bare arithmetic, in seconds, if each has a formula of textbooks
-    /// ([`ceiling`]).
+    /// (`ceiling`).
     pub bare: Option<f64>,
 }
 
