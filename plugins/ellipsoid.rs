@@ -1,18 +1,9 @@
 //! An ellipsoid: a sphere stretched along the axes.
 
 use super::sphere::{self, Sphere};
-use crate::geometry::bounds::Bounds;
-use crate::geometry::sight::Sight;
-use crate::numeric::number::Number;
-use crate::numeric::twofold::{Twofold, exponent_to_one, times_power_of_two};
-use crate::scene::entity::Entity;
-use crate::scene::pparm::{Pparm, Row, Table};
+use crate::numeric::twofold::{exponent_to_one, times_power_of_two};
+use crate::prelude::*;
 use crate::shapes::ball::{self, Line};
-use crate::world::accuracy::Accuracy;
-use crate::world::certify::{self, Enclosure, Equation, Precision};
-use crate::world::coincidence;
-use crate::world::hittable::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
-use glam::DVec3;
 
 static SCALE: Pparm<DVec3> = Pparm::required("scale", "how much it is stretched along x, y and z")
     .must("positive each way", |scale: &DVec3| scale.min_element() > 0.0);

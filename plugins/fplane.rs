@@ -1,21 +1,9 @@
 //! A finite plane: a rectangle.
 
 use super::plane::{self, Plane};
-use crate::geometry::bounds::Bounds;
-use crate::geometry::packet::Rays;
-use crate::geometry::sight::Sight;
-use crate::numeric::number::Number;
-use crate::numeric::twofold::Twofold;
-use crate::scene::entity::{Args, Entity, Refusal};
-use crate::scene::pparm::{Derived, Pparm, Row, Table};
-use crate::scene::value::Value;
+use crate::prelude::*;
 use crate::shapes::rectangle;
 pub use crate::shapes::rectangle::FinitePlane;
-use crate::simd::cpu::Cpu;
-use crate::world::accuracy::Accuracy;
-use crate::world::certify::{self, Enclosure, Equation, Precision};
-use crate::world::hittable::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
-use glam::{DMat3, DVec2, DVec3};
 
 pub static DIMENSIONS: Pparm<DVec2> = Pparm::required("dimensions", "its size along xdir and across it")
     .unit("world units")
@@ -36,7 +24,7 @@ pub const TABLE: Table = &[&DIMENSIONS, &XDIR, &PROJECTED];
 /// The notes' rotation matrix, for the dump.
 pub const ROTATION: Table = &[&ROTATION_ROWS as &dyn Row];
 
-fn frame(args: &Args) -> DMat3 {
+fn frame(args: &Attributes) -> DMat3 {
     rectangle::frame(args.get(&plane::NORMAL), args.get(&XDIR))
 }
 

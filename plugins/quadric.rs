@@ -1,16 +1,8 @@
 //! A quadric: every point that solves an equation of the second degree (the notes' "General Quadric Surfaces").
 
-use crate::geometry::bounds::{self, Bounds};
-use crate::geometry::sight::Sight;
-use crate::numeric::number::Number;
-use crate::numeric::twofold::Twofold;
-use crate::scene::entity::{Entity, Refusal};
-use crate::scene::pparm::{Pparm, Table};
+use crate::geometry::clearance;
+use crate::prelude::*;
 use crate::shapes::quadratic::Quadric;
-use crate::world::certify::{self, Enclosure, Equation, Precision};
-use crate::world::coincidence;
-use crate::world::hittable::{Body, Bracket, Hittable, Ray, Side, Span};
-use glam::DVec3;
 
 static COEFFICIENTS: Pparm<[f64; 10]> =
     Pparm::required("coefficients", "A to J of Axx + Byy + Czz + Dxy + Exz + Fyz + Gx + Hy + Iz = J")
@@ -65,7 +57,7 @@ impl Hittable for Quadric {
     }
 
     fn clearance(&self, from: DVec3) -> f64 {
-        let by_box = bounds::clearance(from, self.bounds(), |region| self.is_clear_of(region));
+        let by_box = clearance(from, self.bounds(), |region| self.is_clear_of(region));
         self.clearance_by_value(from).max(by_box)
     }
 

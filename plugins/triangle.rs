@@ -1,16 +1,7 @@
 //! A triangle.
 
-use crate::geometry::bounds::Bounds;
-use crate::geometry::sight::Sight;
-use crate::numeric::number::{Number, dot};
-use crate::numeric::twofold::Twofold;
-use crate::scene::entity::{Entity, Refusal};
-use crate::scene::pparm::{Pparm, Table};
+use crate::prelude::*;
 use crate::shapes::triangle::Triangle;
-use crate::world::accuracy::Accuracy;
-use crate::world::certify::{self, Enclosure, Equation, Precision};
-use crate::world::hittable::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
-use glam::DVec3;
 
 static VERTEX1: Pparm<DVec3> = Pparm::required("vertex1", "its first corner").unit("world coordinates");
 static VERTEX2: Pparm<DVec3> =

@@ -10,8 +10,9 @@ use oracle::hard::{self, SETS};
 use oracle::rays::Random;
 use oracle::shapes::{self, Line, Plane, Quadric};
 use oracle::tally::Tally;
-use tabray::scene::model::Model;
-use tabray::world::hittable::{Bracket, Hittable, MISS, Ray, Span};
+use tabray::geometry::{Bracket, MISS, Ray, Span};
+use tabray::scene::Model;
+use tabray::world::Hittable;
 
 /// The shapes of each kind, and the rays for each set and shape.
 const SHAPES: usize = 200;

@@ -5,9 +5,9 @@
 //! Newton's method, and what rounding could decide is decided in twice the precision.
 
 use crate::geometry::bounds::larger;
+use crate::geometry::ray::{Bracket, MISS, Ray, Side};
 use crate::numeric::twofold::{Twofold, exponent_to_one, times_power_of_two, two_product};
 use crate::world::accuracy::Accuracy;
-use crate::world::hittable::{Bracket, MISS, Ray, Side};
 use glam::DVec3;
 
 /// A half line from a point, in twice the precision.

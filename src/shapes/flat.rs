@@ -7,14 +7,16 @@
 //! comes from the scene's own one, not from the unit vector that rounding makes of it.
 
 use crate::geometry::bounds::{Bounds, SLACK, larger};
-use crate::geometry::packet::{self, Rays, STEP};
+use crate::geometry::packet::Rays;
+use crate::geometry::ray::{Bracket, MISS, Ray, Span};
 use crate::numeric::number::Number;
 use crate::numeric::twofold::{
     Twofold, dot, exact_sum, exponent_to_one, times_power_of_two, two_product, two_sum,
 };
 use crate::simd::cpu::{Cpu, kernels};
+use crate::simd::soa::STEP;
 use crate::world::accuracy::Accuracy;
-use crate::world::hittable::{Bracket, MISS, Ray, Span};
+use crate::world::hittable;
 use glam::DVec3;
 
 /// On the viewer's side of the screen there are no planes (the notes' "wrong side").
@@ -110,7 +112,7 @@ impl Plane {
             // Upright on an axis, sums have one part, and nothing cancels.
             Accuracy::Exact if !self.is_upright() => compensated(cpu, self, rays, out),
             Accuracy::Exact | Accuracy::Draft => plain(cpu, self, rays, out),
-            _ => packet::distances(cpu, self, rays, None, out),
+            _ => hittable::distances(cpu, self, rays, None, out),
         }
     }
 

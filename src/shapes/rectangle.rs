@@ -1,11 +1,11 @@
 //! A rectangle cut out of a plane: the arithmetic behind those shapes that have one.
 
 use crate::geometry::bounds::{Bounds, larger, smaller};
+use crate::geometry::ray::{Bracket, MISS, Ray, Span};
 use crate::numeric::number::{self, Number, dot};
 use crate::numeric::twofold::{Twofold, cross, exponent_to_one, product, times_power_of_two, unit};
 use crate::shapes::flat::{DRAFT_ERROR, Plane};
 use crate::world::accuracy::Accuracy;
-use crate::world::hittable::{Bracket, MISS, Ray, Span};
 use glam::{DMat3, DVec2, DVec3};
 
 /// A part of a plane. Other rectangles hold one.

@@ -1,10 +1,10 @@
 //! Where a ray passes the edges of a triangle: the arithmetic behind triangles.
 
+use crate::geometry::ray::Ray;
 use crate::numeric::number::{Number, cross, dot};
 use crate::numeric::twofold::{self, Twofold, exponent_to_one, times_power_of_two, triple_product, unit};
 use crate::shapes::flat::Plane;
 use crate::world::accuracy::Accuracy;
-use crate::world::hittable::Ray;
 use glam::DVec3;
 
 /// A triangle.

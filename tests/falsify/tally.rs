@@ -13,7 +13,7 @@ use std::env;
 use std::fs;
 use std::path::Path;
 use std::time::Duration;
-use tabray::render::renderer::Renderer;
+use tabray::render::Renderer;
 
 /// The first lines of the table.
 pub const HEADING: &str = "\

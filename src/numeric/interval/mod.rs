@@ -38,12 +38,6 @@ impl<F: Float> Interval<F> {
         Self { low: -F::INFINITY, high: F::INFINITY }
     }
 
-    /// The numbers between two, in any order.
-    #[inline(always)]
-    pub fn hull(a: F, b: F) -> Self {
-        if a < b { Self { low: a, high: b } } else { Self { low: b, high: a } }
-    }
-
     /// One number.
     #[inline(always)]
     pub fn point(at: F) -> Self {

@@ -1,15 +1,15 @@
 //! Which rays of a packet something blocks.
 
-use super::Tracer;
-use super::room::{Vectors, room};
+use super::arrays::{Vectors, room};
+use super::context::Tracer;
 use super::search::{Start, exact, invert};
-use super::shade::Surface;
+use super::surface::Surface;
 use crate::geometry::bounds::{self, Bounds};
 use crate::geometry::packet::{Rays, parts};
+use crate::geometry::ray::Side;
 use crate::render::bundles::PART;
 use crate::render::tree::Visitor;
 use crate::render::watch::{Count, Watch};
-use crate::world::hittable::Side;
 use std::mem::take;
 use std::ops::Range;
 

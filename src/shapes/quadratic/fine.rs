@@ -1,9 +1,9 @@
 //! Hits of a surface of the second degree in twice the precision, and what is decided there.
 
 use super::{FINE, OwnRay, Quadratic};
+use crate::geometry::ray::{MISS, Side};
 use crate::numeric::number::Number;
 use crate::numeric::twofold::{Twofold, product, times_power_of_two};
-use crate::world::hittable::{MISS, Side};
 use glam::DVec3;
 
 /// A hit in twice the precision, and what it is off at most.

@@ -3,9 +3,9 @@
 
 use super::{CAMERA, OwnRay, Quadratic, Quick, classic_roots};
 use crate::geometry::bounds::SLACK;
+use crate::geometry::ray::{Bracket, MISS, Ray, Span};
 use crate::numeric::number::Number;
 use crate::world::accuracy::Accuracy;
-use crate::world::hittable::{Bracket, MISS, Ray, Span};
 use glam::{DMat3, DVec3};
 
 /// `p·Sp + l·p + c = 0`, for points `p` from the center.

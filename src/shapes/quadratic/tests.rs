@@ -1,5 +1,5 @@
 use super::*;
-use crate::world::hittable::MISS;
+use crate::geometry::ray::MISS;
 
 const BOX: [DVec3; 2] = [DVec3::splat(-1e9), DVec3::splat(1e9)];
 
