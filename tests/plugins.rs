@@ -42,7 +42,7 @@ fn the_pages_plugin_is_made_as_it_says_and_its_mistakes_are_told() {
     let said = copy.run(&["check", "-"], scene);
     let message = |name: &str| {
         format!(
-            "the plugin `{name}` asks for `size`, which is not in the table it registers at plugins/{name}.rs:17: add it there"
+            "the plugin `{name}` asks for `size`, which is not in the table it registers at plugins/{name}.rs:13: add it there"
         )
     };
     assert!(said.contains("panicked at src/../plugins/brick.rs:"), "the plugin's own line is told: {said}");
@@ -51,7 +51,7 @@ fn the_pages_plugin_is_made_as_it_says_and_its_mistakes_are_told() {
         &["check", "-"],
         &scene.replace("brick b", "slab b").replace("center 1 1 1", "center 1 1 1 size 1 1 1"),
     );
-    let message = "the plugin `slab` asks for `size` as a type that is not the one in the table it registers at plugins/slab.rs:19: give both the same type";
+    let message = "the plugin `slab` asks for `size` as a type that is not the one in the table it registers at plugins/slab.rs:15: give both the same type";
     assert!(said.contains("panicked at src/../plugins/slab.rs:") && said.contains(message), "{said}");
     for plugin in ["brick.rs", "slab.rs"] {
         fs::remove_file(copy.folder.join("plugins").join(plugin)).expect("it was there");
@@ -61,7 +61,7 @@ fn the_pages_plugin_is_made_as_it_says_and_its_mistakes_are_told() {
     copy.build();
     let said = copy.run(&["list"], "");
     let message =
-        "the entity type `sphere` is registered twice, at plugins/box.rs:17 and at plugins/sphere.rs:";
+        "the entity type `sphere` is registered twice, at plugins/box.rs:13 and at plugins/sphere.rs:";
     assert!(said.contains(message) && tells(message), "{said}");
 
     fs::write(&plugin, block_with(&page(), "struct Brick")).expect("room for a file");
