@@ -270,7 +270,7 @@ impl Reader<'_> {
                 path.pop();
             }
             self.take(token.span().start().line, &path);
-            if let (Some(is_seen), Some(target)) = (visible, self.from_root(&path)) {
+            if let (Some(is_seen), Some(target)) = (visible, self.rooted(&path)) {
                 self.file.exports.insert(name, (target, is_seen));
             }
         }
@@ -309,7 +309,7 @@ impl Reader<'_> {
     }
 
     /// A path in this crate, from its root.
-    fn from_root(&self, path: &[String]) -> Option<Module> {
+    fn rooted(&self, path: &[String]) -> Option<Module> {
         let up = path.iter().take_while(|word| *word == "super").count();
         match path.first()?.as_str() {
             "crate" => Some(path[1..].to_vec()),
@@ -323,7 +323,7 @@ impl Reader<'_> {
     }
 
     fn take(&mut self, line: usize, path: &[String]) {
-        if let Some(path) = self.from_root(path).filter(|path| !path.is_empty()) {
+        if let Some(path) = self.rooted(path).filter(|path| !path.is_empty()) {
             self.file.paths.push((line, path));
         }
     }
