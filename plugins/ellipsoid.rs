@@ -41,15 +41,6 @@ impl Ellipsoid {
     fn squeezed(&self, ray: &Ray) -> (DVec3, DVec3) {
         ((ray.origin - self.ball.center) / self.scale, ray.dir / self.scale)
     }
-
-    /// Likewise in twice the precision.
-    #[inline(always)]
-    fn line(&self, ray: &Ray) -> Line {
-        let scale = |axis: usize| Twofold::from(self.scale[axis]);
-        let from = |axis: usize| Twofold::difference(ray.origin[axis], self.ball.center[axis]) / scale(axis);
-        let dir = |axis: usize| Twofold::from(ray.dir[axis]) / scale(axis);
-        Line { from: [from(0), from(1), from(2)], dir: [dir(0), dir(1), dir(2)] }
-    }
 }
 
 impl Hittable for Ellipsoid {
@@ -60,9 +51,10 @@ impl Hittable for Ellipsoid {
             let (from, dir) = self.squeezed(ray);
             return within.keep(sphere::classic(from, dir, radius));
         }
+        let line = Line::squeezed(ray, self.ball.center, self.scale);
         within.keep(match within.leaves {
-            None => ball::first_hit(&self.line(ray), radius, accuracy),
-            Some(Side::Inside) => ball::far_hit(&self.line(ray), radius, accuracy),
+            None => ball::first_hit(&line, radius, accuracy),
+            Some(Side::Inside) => ball::far_hit(&line, radius, accuracy),
             Some(Side::Outside) => MISS,
         })
     }
@@ -88,7 +80,7 @@ impl Hittable for Ellipsoid {
                 let (from, dir) = self.squeezed(ray);
                 sphere::classic(from, dir, radius)
             }
-            _ => ball::quick_hit(&self.line(ray), radius, accuracy),
+            _ => ball::quick_hit(&Line::squeezed(ray, self.ball.center, self.scale), radius, accuracy),
         };
         if distance.is_nan() { distance } else { within.keep(distance) }
     }
@@ -115,11 +107,8 @@ impl Hittable for Ellipsoid {
     }
 
     fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold> {
-        if self.ball.accuracy == Accuracy::Classic {
-            None
-        } else {
-            coincidence::distance(self, ray, distance)
-        }
+        let is_classic = self.ball.accuracy == Accuracy::Classic;
+        if is_classic { None } else { coincidence::distance(self, ray, distance) }
     }
 
     fn is_two_sided(&self) -> bool {

@@ -36,9 +36,7 @@ impl Sphere {
     /// A ray, counted from the centre.
     #[inline(always)]
     fn line(&self, ray: &Ray) -> Line {
-        let from = |axis: usize| Twofold::difference(ray.origin[axis], self.center[axis]);
-        let dir = |axis: usize| Twofold::from(ray.dir[axis]);
-        Line { from: [from(0), from(1), from(2)], dir: [dir(0), dir(1), dir(2)] }
+        Line::new(ray, self.center)
     }
 }
 

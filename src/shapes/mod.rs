@@ -6,6 +6,7 @@ pub(crate) mod implicit;
 pub mod quadratic;
 pub mod rectangle;
 pub(crate) mod revolution;
+pub(crate) mod triangle;
 
 pub use flat::Plane;
 pub use implicit::Implicit;

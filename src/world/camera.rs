@@ -63,6 +63,15 @@ impl Camera {
 }
 
 kernels! {
+    /// The places in the middles of pixels, by column and row.
+    pub(crate) fn middles(pixels: &[[usize; 2]], x: &mut [f64], y: &mut [f64]) {
+        let (x, y) = (&mut x[..pixels.len()], &mut y[..pixels.len()]);
+        for (lane, [column, row]) in pixels.iter().enumerate() {
+            // As signed numbers, which processors convert in one step.
+            (x[lane], y[lane]) = (*column as i64 as f64, *row as i64 as f64);
+        }
+    }
+
     /// The directions of the rays through these places.
     pub(crate) fn look(camera: &Camera, x: &[f64], y: &[f64]) => out {
         let count = x.len();

@@ -144,8 +144,8 @@ pub trait Hittable: Send + Sync {
 
     /// Where the rays of a packet come to it after these distances, and its normals there.
     fn land(&self, cpu: Cpu, rays: Rays, distances: &[f64], landing: Landing) {
-        let Landing { points, normals, sides, travelled } = landing;
-        land(cpu, self, rays, distances, sides, travelled, points, normals);
+        let Landing { points, normals, sides, cosines, travelled } = landing;
+        land(cpu, self, rays, distances, sides, cosines, travelled, points, normals);
     }
 }
 
@@ -217,16 +217,17 @@ kernels! {
 
     /// Where rays come to a shape after these distances, and its normals there.
     fn land[T: Hittable](
-        shape: &T, rays: Rays, distances: &[f64], sides: &mut [Side], travelled: &mut [f64]
+        shape: &T, rays: Rays, distances: &[f64], sides: &mut [Side], cosines: &mut [f64], travelled: &mut [f64]
     ) => points, normals {
         let (count, is_two_sided) = (travelled.len(), shape.is_two_sided());
-        let (rays, distances, sides) = (rays.first(count), &distances[..count], &mut sides[..count]);
+        let (rays, distances) = (rays.first(count), &distances[..count]);
+        let (sides, cosines) = (&mut sides[..count], &mut cosines[..count]);
         let (mut points, mut normals) = (points.first(count), normals.first(count));
         for lane in 0..count {
             let ray = rays.get(lane);
             let point = ray.at(distances[lane]);
             let normal;
-            (sides[lane], normal) = turned(ray.dir, shape.normal(point), is_two_sided);
+            (sides[lane], cosines[lane], normal) = turned(ray.dir, shape.normal(point), is_two_sided);
             points.set(lane, point);
             normals.set(lane, normal);
             travelled[lane] += distances[lane];

@@ -178,6 +178,11 @@ impl<F: Float> Mul for Interval<F> {
         if touches(self, other) || touches(other, self) {
             return Self::outward(low.min(F::of(0.0)), high.max(F::of(0.0)));
         }
+        // No product of what is not negative is: a root can be taken of it.
+        let zero = F::of(0.0);
+        if self.low >= zero && other.low >= zero && low == zero {
+            return Self { low, ..Self::outward(low, high) };
+        }
         Self::outward(low, high)
     }
 }

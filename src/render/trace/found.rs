@@ -21,12 +21,9 @@ impl Found {
     /// begin; tells whether any has.
     pub fn begin(&mut self, cpu: Cpu, budget: &mut [u32], count: usize, ends: Option<&[f64]>) -> bool {
         let (near, far) = (room(&mut self.near, count), room(&mut self.far, count));
-        match ends {
-            Some(ends) => far.copy_from_slice(&ends[..count]),
-            None => far.fill(MISS),
-        }
-        room(&mut self.doubt, count).fill(0);
-        begin(cpu, &mut budget[..count], near, far, room(&mut self.met, count))
+        // What is in doubt is written by each shape that is looked at.
+        room(&mut self.doubt, count);
+        begin(cpu, &mut budget[..count], ends, near, far, room(&mut self.met, count))
     }
 
     /// Of some of the rays.
@@ -42,9 +39,15 @@ impl Found {
 
 kernels! {
     /// Counts rays, which have met nothing yet. Tells whether any has cost as many as it may.
-    fn begin(budget: &mut [u32], near: &mut [f64], far: &mut [f64], met: &mut [u64]) -> bool {
+    fn begin(
+        budget: &mut [u32], ends: Option<&[f64]>, near: &mut [f64], far: &mut [f64], met: &mut [u64]
+    ) -> bool {
         let (count, mut any_over) = (budget.len(), 0);
         let (near, far, met) = (&mut near[..count], &mut far[..count], &mut met[..count]);
+        match ends {
+            Some(ends) => far.copy_from_slice(&ends[..count]),
+            None => far.fill(MISS),
+        }
         for lane in 0..count {
             let is_over = budget[lane] == 0;
             let end = if is_over { 0.0 } else { far[lane] };

@@ -11,7 +11,7 @@ use crate::render::watch::Watch;
 impl<W: Watch> Tracer<'_, '_, W> {
     /// Nothing yet, of so many camera rays.
     pub(super) fn begin_missing(&mut self, count: usize) {
-        room(&mut self.rooms.missing, count).fill(0.0);
+        room(&mut self.rooms.missing, count);
         self.rooms.any_missing = false;
     }
 
@@ -45,8 +45,11 @@ impl<W: Watch> Tracer<'_, '_, W> {
 
     /// Adds so much light, of the end of a ray.
     fn miss(&mut self, group: &Group, lane: usize, light: f64) {
+        if !self.rooms.any_missing {
+            self.rooms.missing.fill(0.0);
+        }
         let missing = &mut self.rooms.missing[usize::from(group.camera[lane])];
-        let more = group.weight.get(lane).map_or(f64::INFINITY, |weight| weight * light);
+        let more = group.worth.map_or(f64::INFINITY, |worth| worth.weight * light);
         // What is no number bounds nothing.
         *missing = if more >= 0.0 { *missing + more } else { f64::INFINITY };
         self.rooms.any_missing = true;

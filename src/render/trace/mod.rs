@@ -29,6 +29,7 @@ use crate::render::plan::Plan;
 use crate::render::watch::{Count, Event, Hit, Kind, Purpose, Watch};
 use crate::simd::cpu::Cpu;
 use crate::simd::soa::View;
+use crate::world::camera;
 use crate::world::material::Rgb;
 use crate::world::sample::Sample;
 use arrays::Vectors;
@@ -92,10 +93,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
             self.rooms.samples.clear();
             for (pixels, first) in pixels.chunks(WIDE).zip((0..).step_by(WIDE)) {
                 let [x, y] = &mut self.rooms.places;
-                for (lane, [column, row]) in pixels.iter().enumerate() {
-                    // As signed numbers, which processors convert in one step.
-                    (x[lane], y[lane]) = (*column as i64 as f64, *row as i64 as f64);
-                }
+                camera::middles(self.cpu, pixels, x, y);
                 group.look(self.cpu, camera, depth, &mut self.rooms.places, pixels.len());
                 self.colours(group, seen);
                 colours.put(first, seen.view(pixels.len()));

@@ -6,10 +6,8 @@ use super::group::Group;
 use super::scratch::Passage;
 use super::shadow::Ways;
 use super::surface::Surface;
-use crate::geometry::bounds::larger;
 use crate::geometry::ray::{Ray, Side};
 use crate::render::watch::{Count, Event, Kind, Purpose, Watch};
-use crate::world::coincidence;
 use crate::world::material::Rgb;
 
 impl<W: Watch> Tracer<'_, '_, W> {
@@ -85,21 +83,20 @@ impl<W: Watch> Tracer<'_, '_, W> {
         let Passage { group, ends, tint, near, far, distances, .. } = passage;
         self.settle(group, (near, far), index, distances);
         let object = &self.model.objects[index];
-        let (count, reach, is_classic) = (group.padded(), object.shape.reach(), self.is_classic());
-        let (sides, errors) = (room(&mut group.sides, count), room(&mut group.errors, count));
-        group.most_error = 0.0;
+        let count = group.padded();
+        let (sides, cosines) = (room(&mut group.sides, count), room(&mut group.cosines, count));
         for lane in 0..count {
             let ray = Ray { origin: group.origin.get(lane), dir: group.dir.get(lane) };
             let point = ray.at(distances[lane]);
             let normal = object.shape.normal(point);
             sides[lane] = Side::seen_along(ray.dir, normal).opposite();
-            errors[lane] =
-                if is_classic { 0.0 } else { coincidence::error(&ray, distances[lane], normal, reach) };
-            group.most_error = larger(errors[lane], group.most_error);
+            cosines[lane] = ray.dir.dot(normal);
+            group.travelled[lane] += distances[lane];
             group.origin.set(lane, point);
             tint.set(lane, tint.get(lane) * object.tint(point));
             ends[lane] -= distances[lane];
         }
+        group.errors = self.errors(&*object.shape, &group.travelled[..count], &group.cosines[..count]);
         group.leaves = Some(index);
         self.depth += 1;
         self.walk(passage);

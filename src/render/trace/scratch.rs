@@ -97,7 +97,6 @@ pub(super) struct Shadows {
     pub their_ends: Vec<f64>,
     pub their_blocked: Vec<u64>,
     pub sides: Vec<Side>,
-    pub errors: Vec<f64>,
 }
 
 /// Rays on their way to a light.

@@ -72,8 +72,7 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
     fn start(&self, group: &Group, lane: usize) -> Start {
         let [x, y] = &self.rooms.places;
         let sight = group.looks.then(|| self.plan.camera.sight(x[lane], y[lane])).or(group.sight);
-        let error = group.errors.get(lane).copied().unwrap_or(0.0);
-        Start { ray: group.rays().get(lane), error, sight }
+        Start { ray: group.rays().get(lane), error: group.error(lane), sight }
     }
 
     /// Whether rays may meet an object at all: to most that they leave they do not come back.
@@ -255,7 +254,8 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
     /// Looks at the objects that are listed, each for those parts of the packet that may come there.
     fn listed(&mut self) {
         let (cpu, plan) = (self.tracer.cpu, self.tracer.plan);
-        let bundles = bundles::around(cpu, self.group.rays());
+        // Those from the viewer all start there.
+        let bundles = bundles::around(cpu, self.group.rays(), self.group.leaves.is_none());
         for index in &plan.unbounded {
             let shape = &*self.tracer.model.objects[*index].shape;
             if self.tracer.may_meet(self.group.left(), *index) {

@@ -6,12 +6,14 @@ use super::group::Group;
 use super::light;
 use super::scratch::{Level, Shading};
 use super::search;
+use super::surface::Errors;
 use crate::geometry::ray::Side;
 use crate::render::limits::MAX_DIST;
 use crate::render::plan::depth::Branch;
 use crate::render::watch::{Count, Event, Hit, Kind, Purpose, Reason, Watch};
 use crate::scene::model::Object;
 use crate::world::coincidence;
+use crate::world::hittable::Hittable;
 use crate::world::landing::Landing;
 use crate::world::material::Rgb;
 use glam::DVec3;
@@ -69,6 +71,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
             points: surface.points.room(count),
             normals: surface.normals.room(count),
             sides: room(&mut surface.sides, count),
+            cosines: room(&mut surface.cosines, count),
             travelled,
         };
         shape.land(cpu, group.rays(), distances, landing);
@@ -81,17 +84,12 @@ impl<W: Watch> Tracer<'_, '_, W> {
             }
             None => shader.unlit(cpu, material, points, colours.room(count), surface.specular.room(count)),
         };
-        surface.most_error = 0.0;
         let goes_on = !self.model.lights.is_empty() || surface.is_mirror || material.transparency != 0.0;
-        if self.is_classic() || !goes_on {
-            surface.errors.clear();
+        surface.errors = if goes_on {
+            self.errors(&**shape, &surface.travelled[..count], &surface.cosines[..count])
         } else {
-            let reach = shape.reach() + self.viewer;
-            let (dir, normals) = (group.dir.view(count), surface.normals.view(count));
-            let errors = room(&mut surface.errors, count);
-            surface.most_error =
-                coincidence::errors(cpu, dir, normals, &surface.travelled[..count], reach, errors);
-        }
+            Errors::NONE
+        };
         if W::SEES {
             self.watch.see(Event::Surface { normal: surface.normals.get(0), ambient: colours.get(0) });
         }
@@ -108,6 +106,15 @@ impl<W: Watch> Tracer<'_, '_, W> {
         if shading.surface.is_mirror {
             self.look_in_the_mirror(group, shading, colours);
         }
+    }
+
+    /// The errors of places where rays have come to a shape.
+    pub(super) fn errors(&self, shape: &dyn Hittable, travelled: &[f64], cosines: &[f64]) -> Errors {
+        if self.is_classic() {
+            return Errors::NONE;
+        }
+        let reach = shape.reach() + self.viewer;
+        Errors { reach: Some(reach), most: coincidence::most_error(self.cpu, travelled, reach, cosines) }
     }
 
     /// Adds what is seen through glass.
@@ -179,7 +186,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
         self.depth += 1;
         for lanes in lanes.chunks(most) {
             onward.go_on(group, &leaving, lanes);
-            onward.branch(self.cpu, &branch);
+            onward.branch(&branch);
             self.trace(onward, seen);
             behind.put(seen, lanes);
             group.pay(onward, lanes);
@@ -193,7 +200,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
         self.watch.count(Count::Rays(Kind::Reflected, group.len));
         self.depth += 1;
         onward.take(group, surface, dir);
-        onward.branch(self.cpu, &branch);
+        onward.branch(&branch);
         self.trace(onward, behind);
         swap(&mut group.budget, &mut onward.budget);
         self.depth -= 1;

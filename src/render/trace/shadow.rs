@@ -43,8 +43,8 @@ impl<W: Watch> Tracer<'_, '_, W> {
         blocked: &mut [u64],
     ) {
         let (cpu, count) = (self.cpu, group.padded());
-        let Shadows { lanes, origin, dir, their_ends, their_blocked, sides, errors } = shadows;
-        let origin_error = surface.most_error;
+        let Shadows { lanes, origin, dir, their_ends, their_blocked, sides } = shadows;
+        let origin_error = surface.errors.most;
         // A ray that has cost as many as it may finds nothing in the way.
         let len = set_out(cpu, group.len, &mut group.budget[..count], ends, blocked);
         if len == 0 {
@@ -54,8 +54,8 @@ impl<W: Watch> Tracer<'_, '_, W> {
         if 2 * len > group.len {
             let rays =
                 Rays { origin: surface.points.view(count), dir: ways.toward.view(count), origin_error };
-            let (sides, errors) = (&surface.sides[..count], &surface.errors[..]);
-            let leaving = Leaving { rays, len: group.len, ends, object: surface.index, sides, errors };
+            let sides = &surface.sides[..count];
+            let leaving = Leaving { rays, len: group.len, going: len, ends, surface, lanes: None, sides };
             self.block(&leaving, &ways.from, &ways.to, blocked);
             return;
         }
@@ -66,12 +66,11 @@ impl<W: Watch> Tracer<'_, '_, W> {
         dir.pick(ways.toward, lanes, count);
         pick(their_ends, ends, lanes, count);
         pick(sides, &surface.sides, lanes, count);
-        pick(errors, &surface.errors, lanes, count);
         let theirs = room(their_blocked, count);
         theirs.fill(0);
         let rays = Rays { origin: origin.view(count), dir: dir.view(count), origin_error };
         let (ends, sides) = (&their_ends[..count], &sides[..count]);
-        let leaving = Leaving { rays, len, ends, object: surface.index, sides, errors };
+        let leaving = Leaving { rays, len, going: len, ends, surface, lanes: Some(lanes), sides };
         self.block(&leaving, &ways.from, &ways.to, theirs);
         for (lane, is_blocked) in lanes.iter().zip(theirs) {
             blocked[usize::from(*lane)] = *is_blocked;

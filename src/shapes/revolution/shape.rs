@@ -155,7 +155,8 @@ impl Hittable for InFrame<Revolution> {
     }
 
     fn land(&self, cpu: Cpu, rays: Rays, distances: &[f64], landing: Landing) {
-        let Landing { points, normals, sides, travelled } = landing;
-        normal::land(cpu, &self.surface, &self.frame, rays, distances, sides, travelled, points, normals);
+        let Landing { points, normals, sides, cosines, travelled } = landing;
+        let (surface, frame) = (&self.surface, &self.frame);
+        normal::land(cpu, surface, frame, rays, distances, sides, cosines, travelled, points, normals);
     }
 }

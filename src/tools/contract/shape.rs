@@ -110,11 +110,13 @@ impl Tried<'_> {
             }
             if distance != MISS {
                 let (mut points, mut normals) = (Vectors::<STEP>::ZERO, Vectors::<STEP>::ZERO);
-                let (mut sides, mut travelled) = ([Side::Inside; STEP], [1.0; STEP]);
+                let (mut sides, mut cosines) = ([Side::Inside; STEP], [0.0; STEP]);
+                let mut travelled = [1.0; STEP];
                 let landing = Landing {
                     points: points.view_mut(STEP),
                     normals: normals.view_mut(STEP),
                     sides: &mut sides,
+                    cosines: &mut cosines,
                     travelled: &mut travelled,
                 };
                 shape.land(cpu, rays, &[distance; STEP], landing);
@@ -127,6 +129,13 @@ impl Tried<'_> {
                 }
                 if !same_bits(at, points.get(0)) || sides[0] != side || travelled[0] != 1.0 + distance {
                     return fault(format!("`land` comes to {} in place of {at} ({cpu})", points.get(0)));
+                }
+                let cosine = ray.dir.dot(normal);
+                if cosine.to_bits() != cosines[0].to_bits() && cosine.is_finite() {
+                    return fault(format!(
+                        "the cosine {cosine} in single rays, and {} in packets ({cpu})",
+                        cosines[0]
+                    ));
                 }
             }
         }
