@@ -2,7 +2,7 @@
 
 use crate::geometry::clearance;
 use crate::prelude::*;
-use crate::shapes::quadratic::Quadric;
+use crate::shapes::Quadric;
 
 static COEFFICIENTS: Pparm<[f64; 10]> =
     Pparm::required("coefficients", "A to J of Axx + Byy + Czz + Dxy + Exz + Fyz + Gx + Hy + Iz = J")

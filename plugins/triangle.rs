@@ -1,7 +1,7 @@
 //! A triangle.
 
 use crate::prelude::*;
-use crate::shapes::triangle::Triangle;
+use crate::shapes::Triangle;
 
 static VERTEX1: Pparm<DVec3> = Pparm::required("vertex1", "its first corner").unit("world coordinates");
 static VERTEX2: Pparm<DVec3> =

@@ -12,8 +12,6 @@ use crate::render::limits::MAX_DIST;
 use crate::render::plan::depth::Branch;
 use crate::render::watch::{Count, Event, Hit, Kind, Purpose, Reason, Watch};
 use crate::scene::model::Object;
-use crate::world::coincidence;
-use crate::world::hittable::Hittable;
 use crate::world::landing::Landing;
 use crate::world::material::Rgb;
 use glam::DVec3;
@@ -106,15 +104,6 @@ impl<W: Watch> Tracer<'_, '_, W> {
         if shading.surface.is_mirror {
             self.look_in_the_mirror(group, shading, colours);
         }
-    }
-
-    /// The errors of places where rays have come to a shape.
-    pub(super) fn errors(&self, shape: &dyn Hittable, travelled: &[f64], cosines: &[f64]) -> Errors {
-        if self.is_classic() {
-            return Errors::NONE;
-        }
-        let reach = shape.reach() + self.viewer;
-        Errors { reach: Some(reach), most: coincidence::most_error(self.cpu, travelled, reach, cosines) }
     }
 
     /// Adds what is seen through glass.

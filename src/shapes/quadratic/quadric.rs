@@ -1,12 +1,16 @@
 //! A quadric in a box: its equation in the numbers of the scene, for the notes' formula and for proofs, and the same surface
 //! as it is solved.
 
-use super::{CAMERA, OwnRay, Quadratic, Quick, classic_roots};
+use super::quick::Quick;
+use super::surface::{OwnRay, Quadratic};
 use crate::geometry::bounds::SLACK;
 use crate::geometry::ray::{Bracket, MISS, Ray, Span};
 use crate::numeric::number::Number;
 use crate::world::accuracy::Accuracy;
 use glam::{DMat3, DVec3};
+
+/// By what a component of a camera's direction may be off: three units of 2^-53.
+const CAMERA: f64 = 1.5 * f64::EPSILON;
 
 /// `p·Sp + l·p + c = 0`, for points `p` from the center.
 #[derive(Clone, Debug)]
@@ -155,4 +159,16 @@ impl Quadric {
         };
         inside(0).min(inside(1)).min(inside(2))
     }
+}
+
+/// The roots by the well-known formula, which the notes have: it loses digits, and double roots.
+#[inline(always)]
+fn classic_roots(a: f64, half_b: f64, c: f64) -> [f64; 2] {
+    let b = 2.0 * half_b;
+    if a == 0.0 {
+        return [-c / b, f64::NAN];
+    }
+    let root = (b * b - 4.0 * a * c).sqrt();
+    let (one, other) = ((-b - root) / (2.0 * a), (-b + root) / (2.0 * a));
+    [one.min(other), one.max(other)]
 }
