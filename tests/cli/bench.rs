@@ -1,9 +1,8 @@
 //! `tabray bench`: what it counts. How long things take is for people to judge.
 
-mod common;
-
+use crate::common;
+use crate::common::root;
 use assert_cmd::cargo::cargo_bin_cmd;
-use common::root;
 use serde_json::Value;
 use tabray::scene::reader;
 use tabray::simd::cpu::Cpu;
@@ -26,7 +25,7 @@ fn rays(scene: &Value, kind: &str) -> u64 {
 }
 
 #[test]
-fn without_scenes_it_measures_those_that_are_built_in() {
+fn bench_without_scenes_measures_those_that_are_built_in() {
     let measured = measured(&[]);
     let names: Vec<_> = measured.iter().map(|scene| scene["scene"].as_str().expect("a name")).collect();
     assert_eq!(names, ["3 planes and 2 spheres", "a vase", "1000 spheres", "20000 triangles"]);

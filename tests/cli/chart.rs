@@ -1,9 +1,7 @@
 //! Charts of speed against accuracy: what they say of scenes where that is known.
 
-mod common;
-
+use crate::common::{registry, root};
 use assert_cmd::cargo::cargo_bin_cmd;
-use common::{registry, root};
 use serde_json::Value;
 use std::io;
 use std::ops::ControlFlow;

@@ -1,8 +1,7 @@
 //! The program as people run it: what it prints where, what it writes, and how it ends.
 
-mod common;
-
-use common::program::{folder, names_in, outcome, scene, tabray};
+use crate::common;
+use crate::common::program::{folder, names_in, outcome, scene, tabray};
 use std::fs;
 use std::io::Write;
 use std::process::Stdio;
@@ -59,7 +58,7 @@ fn standard_output_carries_the_picture_and_nothing_else() {
 }
 
 #[test]
-fn without_a_command_it_is_the_notes_program() {
+fn the_program_without_a_command_is_the_notes_program() {
     let folder = folder();
     let path = scene("material/glint.ray");
     let (status, picture, dump) = outcome(tabray(&folder).write_stdin(fs::read(&path).expect("a scene")));
@@ -70,7 +69,7 @@ fn without_a_command_it_is_the_notes_program() {
 }
 
 #[test]
-fn without_a_command_a_faulty_scene_gives_messages_alone() {
+fn a_faulty_scene_without_a_command_gives_messages_alone() {
     let (status, out, err) = outcome(tabray(&folder()).write_stdin("sphere ball {"));
     assert_eq!((status, out.len()), (2, 0));
     assert!(err.contains("--> <stdin>:1:1"), "{err}");
@@ -332,7 +331,7 @@ fn a_method_is_chosen_by_the_scene_or_by_an_option() {
 }
 
 #[test]
-fn without_a_command_the_notes_methods_are_used_unless_the_camera_says_otherwise() {
+fn the_program_without_a_command_uses_the_notes_methods_unless_the_camera_says_otherwise() {
     let folder = folder();
     let text = fs::read_to_string(scene("revsurf/leaning.ray")).expect("a scene");
     let (status, notes, _) = outcome(tabray(&folder).write_stdin(text.as_str()));

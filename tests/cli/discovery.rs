@@ -1,9 +1,7 @@
 //! What the program tells of itself and of its language: the tables as JSON, completions, manual pages.
 
-mod common;
-
-use common::program::{folder, names_in, outcome, tabray};
-use common::{registry, root};
+use crate::common::program::{folder, names_in, outcome, tabray};
+use crate::common::{registry, root};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;

@@ -1,10 +1,8 @@
 //! What the program says where the system does not give it what it needs.
 #![cfg(target_os = "linux")]
 
-mod common;
-
+use crate::common::program::{folder, scene};
 use assert_cmd::cargo::cargo_bin;
-use common::program::{folder, scene};
 use std::collections::BTreeSet;
 use std::fs;
 use std::io::{BufRead, BufReader, Read};

@@ -1,8 +1,6 @@
 //! `--message-format`: the same messages for people, for editors and for programs.
 
-mod common;
-
-use common::program::{folder, outcome, scene, tabray};
+use crate::common::program::{folder, outcome, scene, tabray};
 use serde_json::Value;
 use std::fs;
 
@@ -82,7 +80,7 @@ fn the_three_forms_say_the_same() {
 }
 
 #[test]
-fn with_json_all_that_is_said_is_json() {
+fn all_that_is_said_with_json_is_json() {
     let scene = scene("sphere/in-front.ray");
     let scene = scene.to_str().expect("UTF-8");
     for (status, level, args) in [

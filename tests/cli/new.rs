@@ -1,9 +1,7 @@
 //! `tabray new`: what it writes works at once, and nothing is written in the place of something else.
 
-mod common;
-
-use common::program::{folder, names_in, outcome, tabray};
-use common::{load, render};
+use crate::common::program::{folder, names_in, outcome, tabray};
+use crate::common::{load, render};
 use std::fs;
 use std::path::Path;
 use tabray::scene::dump;

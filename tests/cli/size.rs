@@ -1,8 +1,6 @@
 //! `render --size`, `--quick` and `--crop`: how large the picture is, and which part of it is made.
 
-mod common;
-
-use common::program::{folder, names_in, outcome, scene, tabray};
+use crate::common::program::{folder, names_in, outcome, scene, tabray};
 use image::{RgbImage, imageops};
 
 /// The picture that these options give of a scene.

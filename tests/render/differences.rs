@@ -1,9 +1,7 @@
 //! `docs/differences.md`: each difference has a scene that loads, and what the page says of it is so.
 
-mod common;
-
-use common::program::{folder, outcome, tabray};
-use common::{registry, render, root};
+use crate::common::program::{folder, outcome, tabray};
+use crate::common::{registry, render, root};
 use glam::{DVec3, dvec3};
 use image::{Rgb, RgbImage};
 use std::collections::BTreeSet;

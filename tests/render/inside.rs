@@ -1,9 +1,7 @@
 //! Looking inside a pixel: `probe`, the notes' debug lines, and the pictures beside the main one.
 
-mod common;
-
+use crate::common::{load, model, render, root, scenes};
 use assert_cmd::cargo::cargo_bin_cmd;
-use common::{load, model, render, root, scenes};
 use glam::DVec3;
 use insta::Settings;
 use std::fs;

@@ -1,9 +1,8 @@
 //! No more than a scene needs: the plan says so, the counts prove it, and the picture is the same whoever makes it.
 
-mod common;
-
+use crate::common;
+use crate::common::{model, model_in, registry, root, scenes};
 use assert_cmd::cargo::cargo_bin_cmd;
-use common::{model, model_in, registry, root, scenes};
 use insta::Settings;
 use serde_json::Value;
 use std::fs;
@@ -60,7 +59,7 @@ const LAMP: &str = "light lamp { location 1 7 2 emissivity 5 5 5 }";
 const PIXELS: u64 = 40 * 30;
 
 #[test]
-fn without_lights_no_shadow_rays_are_cast() {
+fn no_shadow_rays_are_cast_without_lights() {
     let (dark, tally) = counted(FLOOR);
     assert_eq!([Primary, Shadow].map(|kind| tally.rays(kind)), [PIXELS, 0]);
     assert!(line(&dark, "lights").contains("none: ") && !text(&dark).contains("shadows "));
@@ -81,7 +80,7 @@ fn without_lights_no_shadow_rays_are_cast() {
 }
 
 #[test]
-fn without_mirrors_no_rays_are_reflected() {
+fn no_rays_are_reflected_without_mirrors() {
     let (matt, tally) =
         counted(&format!("{FLOOR} {LAMP} sphere ball {{ material matt center 4 2 -4 radius 2 }}"));
     assert_eq!(tally.rays(Reflected), 0);
@@ -100,7 +99,7 @@ fn without_mirrors_no_rays_are_reflected() {
 }
 
 #[test]
-fn without_glass_no_rays_are_transmitted() {
+fn no_rays_are_transmitted_without_glass() {
     let (opaque, tally) = counted(&format!("{FLOOR} {LAMP}"));
     assert_eq!(tally.rays(Transmitted), 0);
     assert!(line(&opaque, "glass").contains("none: ") && line(&opaque, "shadows").contains("two shades"));

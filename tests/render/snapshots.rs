@@ -3,9 +3,7 @@
 //! A scene is added by adding its file. Look at what it gives with `cargo run --release -- review --serve`, and accept
 //! it there.
 
-mod common;
-
-use common::{load, registry, render, root};
+use crate::common::{load, registry, render, root};
 use image::RgbImage;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use insta::internals::SnapshotContents;
@@ -18,7 +16,7 @@ use tabray::scene::reader;
 
 #[test]
 fn every_scene_dumps_as_before() {
-    insta::glob!("../scenes", "**/*.{ray,toml}", |path| {
+    insta::glob!("../../scenes", "**/*.{ray,toml}", |path| {
         if let Some(settings) = settings(path) {
             let name = format!("{}.dump", stem(path));
             settings.bind(|| insta::assert_snapshot!(name, dump::notes(&load(path))));
@@ -28,7 +26,7 @@ fn every_scene_dumps_as_before() {
 
 #[test]
 fn every_scene_looks_as_before() {
-    insta::glob!("../scenes", "**/*.{ray,toml}", |path| {
+    insta::glob!("../../scenes", "**/*.{ray,toml}", |path| {
         if let Some(mut settings) = settings(path) {
             let mut model = load(path);
             if path.starts_with(root().join("scenes/gallery")) {
@@ -48,7 +46,7 @@ fn every_scene_looks_as_before() {
 
 #[test]
 fn every_mistake_is_explained_as_before() {
-    insta::glob!("../scenes/wrong", "*.{ray,toml}", |path| {
+    insta::glob!("../../scenes/wrong", "*.{ray,toml}", |path| {
         let name = path.strip_prefix(root()).expect("a scene of this package").display().to_string();
         let report = match reader::read(
             registry(),

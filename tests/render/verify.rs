@@ -1,9 +1,7 @@
 //! What the tracer finds first is what is proven to be first, in every scene.
 
-mod common;
-
+use crate::common::{load, model, root, scenes};
 use assert_cmd::cargo::cargo_bin_cmd;
-use common::{load, model, root, scenes};
 use tabray::tools::verify::{self, Verdict};
 use tempfile::TempDir;
 

@@ -1,8 +1,7 @@
 //! A dump as a scene, in either spelling, loads again to the identical model.
 
-mod common;
-
-use common::{load, model, model_in, registry, root, scenes};
+use crate::common;
+use crate::common::{load, model, model_in, registry, root, scenes};
 use proptest::prelude::*;
 use std::path::Path;
 use tabray::scene::dump;

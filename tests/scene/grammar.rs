@@ -1,8 +1,6 @@
 //! The TextMate grammar: what it takes each word of a scene for is what the reader takes it for.
 
-mod common;
-
-use common::{registry, root, scenes};
+use crate::common::{registry, root, scenes};
 use fancy_regex::Regex;
 use serde_json::Value;
 use std::collections::HashMap;

@@ -1,8 +1,6 @@
 //! A model built in Rust is the model that a text gives (the notes' `modelstat.c`).
 
-mod common;
-
-use common::{model, registry, render};
+use crate::common::{model, registry, render};
 use tabray::scene::dump;
 use tabray::scene::reader::{self, Written};
 use tabray::scene::syntax::Syntax;

@@ -1,9 +1,7 @@
 //! Names that several entities have.
 
-mod common;
-
-use common::program::{folder, outcome, tabray};
-use common::{model, registry, render};
+use crate::common::program::{folder, outcome, tabray};
+use crate::common::{model, registry, render};
 use std::path::Path;
 use tabray::scene::reader::{self, Report, Severity};
 

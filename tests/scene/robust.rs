@@ -1,8 +1,7 @@
 //! Bad input of any kind ends in messages: no panic, no endless run.
 
-mod common;
-
-use common::{model, registry};
+use crate::common;
+use crate::common::{model, registry};
 use proptest::prelude::*;
 use std::path::Path;
 use tabray::scene::reader::{self, Severity};

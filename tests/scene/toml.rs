@@ -1,9 +1,7 @@
 //! Scenes in TOML: the same language in another spelling, and its JSON Schema.
 
-mod common;
-
+use crate::common::{load, model, registry, render, root, scenes};
 use assert_cmd::cargo::cargo_bin_cmd;
-use common::{load, model, registry, render, root, scenes};
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};

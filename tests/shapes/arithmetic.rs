@@ -1,15 +1,13 @@
 //! The hits of random shapes against true ones that start from the numbers of the scene's text, of rays that are hard for
 //! them; and that the packets' brackets hold those, and the hits of a camera's real rays.
 
-mod common;
-mod oracle;
-
+use crate::common;
+use crate::oracle::Truth;
+use crate::oracle::hard::{self, SETS};
+use crate::oracle::rays::Random;
+use crate::oracle::shapes::{self, Line, Plane, Quadric};
+use crate::oracle::tally::Tally;
 use glam::{DVec3, dvec2, dvec3};
-use oracle::Truth;
-use oracle::hard::{self, SETS};
-use oracle::rays::Random;
-use oracle::shapes::{self, Line, Plane, Quadric};
-use oracle::tally::Tally;
 use tabray::scene::model::Model;
 use tabray::world::hittable::{Bracket, Hittable, MISS, Ray, Span};
 

@@ -1,8 +1,6 @@
 //! Every plugin keeps the contract of its trait, and each way to break it is found.
 
-mod common;
-
-use common::{block_with, load, registry, root};
+use crate::common::{block_with, load, registry, root};
 use glam::DVec3;
 use std::fs;
 use std::sync::atomic::{AtomicU32, Ordering};

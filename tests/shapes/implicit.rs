@@ -1,8 +1,6 @@
 //! Shapes that are one formula: what is hit is what the formula says, and nothing is lost or made up.
 
-mod common;
-
-use common::{model, render};
+use crate::common::{model, render};
 use dashu_float::FBig;
 use dashu_float::round::mode::HalfEven;
 use glam::DVec3;

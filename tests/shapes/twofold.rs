@@ -1,13 +1,11 @@
 //! The numbers of the truth, against correctly rounded ones of 160 bits.
 
-mod oracle;
-
+use crate::oracle::rays::Random;
 use dashu_float::FBig;
 use dashu_float::round::mode::HalfEven;
 use dashu_int::{IBig, UBig};
 use f256::f256;
-use oracle::rays::Random;
-use tabray::numeric::interval::{Float, Interval, Wide};
+use tabray::numeric::interval::{Interval, Wide};
 use tabray::numeric::number::Number;
 use tabray::numeric::twofold::Twofold;
 
@@ -211,15 +209,6 @@ fn wide_intervals_hold_the_right_results() {
         // The error of the logarithm counts as often as the exponent is large.
         holds(wide.pow(Wide::point(q)), &power, 1000.0, "power");
     }
-}
-
-#[test]
-fn wide_numbers_become_numbers_of_f64() {
-    for number in [0.0, 1.0, -1.5, 1e-300, -1e300, 5e-324, f64::MAX, f64::INFINITY] {
-        assert_eq!(f256::from(number).to_f64(), number);
-    }
-    assert_eq!((f256::from(1e300) * f256::from(1e300)).to_f64(), f64::INFINITY);
-    assert_eq!((f256::from(1.0) / f256::from(3.0)).to_f64(), 1.0 / 3.0);
 }
 
 /// What lies on one side of a pole has a bound there, and what a bounded function makes of it has two.

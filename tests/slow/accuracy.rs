@@ -1,18 +1,16 @@
 //! How exact each method is and what it costs: writes `docs/accuracy.md`.
 //!
-//! `cargo test --release --test accuracy -- --ignored --nocapture`
+//! `cargo test --profile dist --test slow -- --ignored --nocapture accuracy`
 #![allow(clippy::approx_constant, reason = "the notes' vase is 6.28 high")]
 
-mod common;
-mod oracle;
-
+use crate::common;
+use crate::oracle::hard::{self, KINDS, SETS};
+use crate::oracle::rays::{self, BASE, Random};
+use crate::oracle::revolution::Revolution;
+use crate::oracle::shapes::{self, Plane};
+use crate::oracle::tally::{Tally, Tolerance};
+use crate::oracle::{Crossings, Truth};
 use glam::{DVec3, dvec3};
-use oracle::hard::{self, KINDS, SETS};
-use oracle::rays::{self, BASE, Random};
-use oracle::revolution::Revolution;
-use oracle::shapes::{self, Plane};
-use oracle::tally::{Tally, Tolerance};
-use oracle::{Crossings, Truth};
 use std::fmt::Write;
 use std::hint::black_box;
 use std::sync::Mutex;
@@ -36,7 +34,7 @@ const ROUNDS: usize = 5;
 /// The rays that are traced between two looks at the clock.
 const ROUND: usize = 20_000;
 
-const COMMAND: &str = "cargo test --release --test accuracy -- --ignored --nocapture";
+const COMMAND: &str = "cargo test --profile dist --test slow -- --ignored --nocapture accuracy";
 
 /// The methods, by the names that a camera's `accuracy` has for them.
 const METHODS: [&str; 4] = ["classic", "draft", "exact", "strict"];
@@ -322,7 +320,7 @@ numbers of each part are those of one run of its own of
 {COMMAND}
 ```
 
-with `hard_rays` behind it for the second part alone.
+with `hard_rays` in place of its last word for the second part alone.
 
 *Missed* are hits that were not found, *invented* ones that are none, *later* ones at another crossing than the
 first. The errors are those of the distances of all other hits, in world units; *off the surface* is how far the

@@ -1,17 +1,15 @@
 //! The gallery of charts: writes `docs/charts.md` and the pictures that it shows.
 //!
-//! `cargo test --release --test gallery -- --ignored --nocapture`
+//! `cargo test --profile dist --test slow -- --ignored --nocapture gallery`
 
-mod common;
-
+use crate::common::root;
 use assert_cmd::cargo::cargo_bin_cmd;
-use common::root;
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
 
-const COMMAND: &str = "cargo test --release --test gallery -- --ignored --nocapture";
+const COMMAND: &str = "cargo test --profile dist --test slow -- --ignored --nocapture gallery";
 
 /// Scenes, what they are and what to look for.
 const SCENES: [(&str, &str, &str); 8] = [

@@ -1,10 +1,9 @@
 //! What takes minutes to measure: tables of `docs/performance.md`, printed in Markdown.
 //!
-//! `cargo test --release --test performance -- --ignored --nocapture NAME`, where the name is that of one function here
+//! `cargo test --profile dist --test slow -- --ignored --nocapture NAME`, where the name is that of one function here
 #![cfg(target_os = "linux")]
 
-mod common;
-
+use crate::common;
 use nix::sys::resource::{UsageWho, getrusage};
 use std::path::Path;
 use std::process::{Command, Stdio};

@@ -1,16 +1,13 @@
 //! The program's hits against the true ones, with every digit that the program has.
 #![allow(clippy::approx_constant, reason = "the notes' vase is 6.28 high")]
 
-mod common;
-mod oracle;
-
-use common::model;
+use crate::common::model;
+use crate::oracle::rays::{self, BASE, Random};
+use crate::oracle::revolution::Revolution;
+use crate::oracle::shapes::{self, Plane, Quadric};
+use crate::oracle::tally::{Tally, Tolerance, ulp};
+use crate::oracle::{Crossings, Truth};
 use glam::{DMat3, DVec3, dvec2, dvec3};
-use oracle::rays::{self, BASE, Random};
-use oracle::revolution::Revolution;
-use oracle::shapes::{self, Plane, Quadric};
-use oracle::tally::{Tally, Tolerance, ulp};
-use oracle::{Crossings, Truth};
 use std::cell::RefCell;
 use std::collections::HashMap;
 use tabray::geometry::sight::Sight;
@@ -160,7 +157,7 @@ fn finds_the_revolution(name: &str, formula: &str, height: f64) {
             let off_surface = 1e-14 * scale + rounding(&rays, middle);
             faults.extend(subject.faults(set, &rays, off_surface, f64::INFINITY));
         };
-        // At its own size a surface is asked as often as is bearable here; `tests/accuracy.rs` asks a million times.
+        // At its own size a surface is asked as often as is bearable here; `tests/slow/accuracy.rs` asks a million times.
         let many = if scale == 1.0 { MANY_RAYS } else { RAYS };
         check("camera", &mut rays::camera(many, scale));
         check("grazing", &mut rays::grazing(many, scale, |random| rays::place_on(&surface, random)));

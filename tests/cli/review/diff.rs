@@ -1,6 +1,6 @@
 //! The numbers, and the statuses.
 
-use crate::{pictures, tabray, with_pictures};
+use crate::review::{pictures, tabray, with_pictures};
 use image::{DynamicImage, RgbImage};
 use std::fs;
 

@@ -1,8 +1,5 @@
 //! `tabray diff` and `tabray review`: what they count, what their pages hold, and what accepting and rejecting does.
 
-#[path = "../common/mod.rs"]
-mod common;
-
 mod diff;
 mod page;
 mod pending;

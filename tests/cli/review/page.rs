@@ -1,7 +1,7 @@
 //! The page of a comparison.
 
 use crate::common::root;
-use crate::{data, folder, pictures, tabray, with_pictures};
+use crate::review::{data, folder, pictures, tabray, with_pictures};
 use assert_cmd::cargo::cargo_bin;
 use image::Rgb;
 use serde_json::json;

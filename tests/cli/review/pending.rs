@@ -1,6 +1,6 @@
 //! What is gathered, and the commands that decide about it.
 
-use crate::{data, files, folder, tabray, with_pending};
+use crate::review::{data, files, folder, tabray, with_pending};
 use image::RgbImage;
 use serde_json::{Value, json};
 use std::fs;

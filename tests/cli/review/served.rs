@@ -1,6 +1,6 @@
 //! The page that accepts and rejects, and who may ask it to.
 
-use crate::{data, files, tabray, with_pending};
+use crate::review::{data, files, tabray, with_pending};
 use assert_cmd::cargo::cargo_bin;
 use serde_json::{Value, json};
 use std::fs;

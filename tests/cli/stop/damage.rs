@@ -1,7 +1,7 @@
 //! Full disks, places that cannot be written to, and programs that are killed: no picture is ever lost or damaged.
 
 use crate::common::program::names_in;
-use crate::{Running, bytes, render, rgba, tabray_path, workplace};
+use crate::stop::{Running, bytes, render, rgba, tabray_path, workplace};
 use nix::sys::signal::Signal;
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;

@@ -1,7 +1,7 @@
 //! Interruptions: the first and the second.
 
 use crate::common::program::names_in;
-use crate::{Running, bytes, render, stop_midway, workplace};
+use crate::stop::{Running, bytes, render, stop_midway, workplace};
 use nix::sys::signal::Signal;
 use std::fs;
 use std::io::{BufRead, BufReader, Read};

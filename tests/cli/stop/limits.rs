@@ -1,7 +1,7 @@
 //! `--time-limit` and `--max-memory`, and what becomes of standard output.
 
 use crate::common::program::{folder, names_in, scene};
-use crate::{bytes, render, workplace};
+use crate::stop::{bytes, render, workplace};
 
 #[test]
 fn too_little_memory_is_refused_and_reached_memory_stops() {

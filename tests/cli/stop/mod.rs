@@ -2,9 +2,6 @@
 //! ever damaged.
 #![cfg(target_os = "linux")]
 
-#[path = "../common/mod.rs"]
-mod common;
-
 mod damage;
 mod interrupted;
 mod limits;
@@ -12,7 +9,7 @@ mod others;
 mod refused;
 mod resumed;
 
-use common::program::{folder, outcome, scene, tabray};
+use crate::common::program::{folder, outcome, scene, tabray};
 use image::{RgbImage, RgbaImage};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;

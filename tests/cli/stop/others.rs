@@ -1,7 +1,7 @@
 //! Commands other than `render` that are interrupted: each says what is there.
 
 use crate::common::program::names_in;
-use crate::{Running, tabray_path, workplace};
+use crate::stop::{Running, tabray_path, workplace};
 use nix::sys::signal::Signal;
 use std::fs;
 use std::time::Duration;

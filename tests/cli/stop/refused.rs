@@ -1,7 +1,7 @@
 //! Checkpoints that `--resume` does not go on from, and what it says of them.
 
 use crate::common::program::{folder, names_in, scene};
-use crate::{Running, bytes, render, rgb, stop_midway, tabray_path, workplace};
+use crate::stop::{Running, bytes, render, rgb, stop_midway, tabray_path, workplace};
 use image::Rgb;
 use std::fs;
 use std::io::BufReader;

@@ -2,7 +2,7 @@
 
 use crate::common::program::{folder, names_in, scene};
 use crate::common::root;
-use crate::{Running, SLOW, bytes, render, rgb, rgba, stop_midway, workplace};
+use crate::stop::{Running, SLOW, bytes, render, rgb, rgba, stop_midway, workplace};
 use nix::sys::signal::Signal;
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
@@ -142,7 +142,7 @@ fn how_it_is_written_may_differ() {
 }
 
 #[test]
-fn without_a_checkpoint_it_begins_anew_and_says_so() {
+fn a_resumed_render_without_a_checkpoint_begins_anew_and_says_so() {
     let folder = workplace();
     let (status, _, err) = render(&folder, &["hall.ray", "--quick", "-o", "a.png", "--resume"]);
     assert_eq!(status, 0);

@@ -1,6 +1,6 @@
 //! A headless Chromium, driven over WebDriver (W3C).
 
-use crate::program::{PATIENCE, client};
+use crate::watch::program::{PATIENCE, client};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Value, json};

@@ -1,8 +1,5 @@
 //! `tabray watch`: the program and its page.
 
-#[path = "../common/mod.rs"]
-mod common;
-
 mod browser;
 mod page;
 mod program;

@@ -1,8 +1,8 @@
 //! The page in a browser: it shows, follows, warns and explains. Skipped where there is no Chromium.
 
-use crate::browser::Browser;
 use crate::common::{load, model, render, root};
-use crate::program::{Watching, ball};
+use crate::watch::browser::Browser;
+use crate::watch::program::{Watching, ball};
 use image::RgbImage;
 use std::fs;
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -156,7 +156,7 @@ fn a_save_is_on_the_page_soon() {
     assert!(canvas(&browser) == render(&model(&ball("1 9 0"))));
 }
 
-/// `cargo test --release --test watch -- --ignored`
+/// `cargo test --release --test cli -- --ignored the_screenshot_of_the_docs`
 #[test]
 #[ignore = "writes docs/watch.png, for the README"]
 fn the_screenshot_of_the_docs() {

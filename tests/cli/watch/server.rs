@@ -1,7 +1,7 @@
 //! What the program tells a page, whom it talks to, and how it ends.
 
 use crate::common::{load, model, render, root};
-use crate::program::{Watching, ball};
+use crate::watch::program::{Watching, ball};
 use assert_cmd::cargo::{cargo_bin, cargo_bin_cmd};
 use serde_json::Value;
 use std::fs;
@@ -312,7 +312,7 @@ fn what_cannot_be_watched_is_refused() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn without_a_browser_the_page_is_to_be_opened_by_hand() {
+fn a_page_without_a_browser_is_to_be_opened_by_hand() {
     let folder = TempDir::new().expect("a folder");
     fs::write(folder.path().join("scene.ray"), ball("9 0 0")).expect("a file");
     let mut watch = Command::new(cargo_bin!("tabray"));

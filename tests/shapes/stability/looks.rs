@@ -269,7 +269,7 @@ fn glint_from_behind(shininess: &str, lamp: &str, method: Accuracy) -> Rgb {
 }
 
 #[test]
-fn there_is_no_glint_from_the_wrong_side() {
+fn a_glint_does_not_come_from_the_wrong_side() {
     assert!((-0.5_f64).powf(12.5).is_nan() && (-0.5_f64).powf(2.0) > 0.0);
     for method in [Accuracy::Classic, Accuracy::Exact] {
         // Beside the line of sight, and on it: there the half vector is 0.

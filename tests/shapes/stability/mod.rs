@@ -10,9 +10,6 @@
     reason = "it is what NaN does to a comparison that rows are about"
 )]
 
-#[path = "../common/mod.rs"]
-mod common;
-
 mod leaning;
 mod leaving;
 mod lessons;
@@ -23,7 +20,7 @@ mod revolved;
 mod spheres;
 mod together;
 
-use common::{model, registry};
+use crate::common::{model, registry};
 use glam::{DVec3, dvec3};
 use std::path::Path;
 use tabray::scene::model::Model;

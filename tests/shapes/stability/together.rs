@@ -1,7 +1,7 @@
 //! Rays that leave surfaces: into closed shapes, and from points that several surfaces go through.
 
 use super::Random;
-use super::common::{model, render};
+use crate::common::{model, render};
 use glam::{DVec3, dvec3};
 use image::RgbImage;
 use tabray::output::picture::to_byte;
@@ -139,7 +139,7 @@ fn a_lamp_outside_of_a_closed_ball_does_not_light_its_inside() {
 }
 
 #[test]
-fn of_two_balls_in_one_place_the_first_is_seen_and_stands_for_both() {
+fn the_first_of_two_balls_in_one_place_is_seen_and_stands_for_both() {
     let rest = "plane back { material blue normal 0 0 1 point 0 0 -9 }
         light lamp { location 2 6 -1 emissivity 2 2 2 }
         light inner { location 4 3 -4.2 emissivity 1 1 1 }";
@@ -255,7 +255,7 @@ fn a_triangle_with_an_edge_on_the_floor_has_no_seam_there() {
 
 /// The row of pixels that look exactly at the line where floor and wall meet sees what comes first in the scene.
 #[test]
-fn where_floor_and_wall_meet_the_first_is_seen_without_dots() {
+fn the_first_of_floor_and_wall_is_seen_without_dots_where_they_meet() {
     let floor = "plane floor { material matt normal 0 1 0 point 0 0 0 }\n";
     let wall = "plane wall { material blue normal 0 0 1 point 0 0 -4 }\n";
     for (objects, wants_blue) in [(floor.to_owned() + wall, false), (wall.to_owned() + floor, true)] {

@@ -1,10 +1,7 @@
 //! Tries to prove the program wrong: random scenes by class, rays that are aimed where arithmetic is hard, and an oracle
 //! that starts from the scenes' text and shares no code with the program. See docs/falsify.md.
 //!
-//! `cargo test --release --test falsify -- --ignored --nocapture`
-
-#[path = "../common/mod.rs"]
-mod common;
+//! `cargo test --release --test slow -- --ignored --nocapture many_scenes`
 
 mod classes;
 mod closed;

@@ -1,7 +1,7 @@
 //! Planes, rectangles and triangles.
 
-use crate::random::{Point, Random, cross, dot, moved, turned, unit};
-use crate::scenes::{Aim, Question, numbers};
+use crate::falsify::random::{Point, Random, cross, dot, moved, turned, unit};
+use crate::falsify::scenes::{Aim, Question, numbers};
 
 fn plane(normal: Point, point: Point) -> String {
     format!("plane normal {} point {}", numbers(normal), numbers(point))

@@ -1,11 +1,11 @@
 //! Surfaces of revolution, tori and hearts.
 #![allow(clippy::approx_constant, reason = "the notes' vase is 6.28 high")]
 
-use crate::oracle;
-use crate::random::{Point, Random, cross, dot, moved, turned, unit};
-use crate::ray::Ray;
-use crate::scenes::{Aim, Question, numbers};
-use crate::text::Scene;
+use crate::falsify::oracle;
+use crate::falsify::random::{Point, Random, cross, dot, moved, turned, unit};
+use crate::falsify::ray::Ray;
+use crate::falsify::scenes::{Aim, Question, numbers};
+use crate::falsify::text::Scene;
 
 /// A profile, its formula in Rust, and a height that suits it.
 type Profile = (String, Box<dyn Fn(f64) -> f64>, f64);

@@ -1,7 +1,7 @@
 //! Spheres, ellipsoids and quadrics.
 
-use crate::random::{Point, Random, across, cross, dot, moved, turned, unit};
-use crate::scenes::{Aim, Question, numbers};
+use crate::falsify::random::{Point, Random, across, cross, dot, moved, turned, unit};
+use crate::falsify::scenes::{Aim, Question, numbers};
 
 fn sphere(aim: &Aim, center: Point, radius: f64) -> String {
     format!("sphere center {} radius {}", aim.lengths(center), aim.length(radius))
