@@ -1,18 +1,7 @@
 //! A plane: every point in two directions, without end.
 
-use crate::geometry::bounds::{Bounds, SLACK};
-use crate::geometry::packet::Rays;
-use crate::geometry::sight::Sight;
-use crate::numeric::number::{Number, dot};
-use crate::numeric::twofold::Twofold;
-use crate::scene::entity::{Args, Entity};
-use crate::scene::pparm::{Pparm, Table};
-pub use crate::shapes::flat::Plane;
-use crate::simd::cpu::Cpu;
-use crate::world::accuracy::Accuracy;
-use crate::world::certify::{self, Enclosure, Equation, Precision};
-use crate::world::hittable::{Body, Bracket, Hittable, Ray, Side, Span};
-use glam::DVec3;
+use crate::prelude::*;
+pub use crate::shapes::Plane;
 
 pub static NORMAL: Pparm<DVec3> =
     Pparm::required("normal", "a vector that stands upright on it, on its lit side")

@@ -1,11 +1,7 @@
 //! A procedural plane: a plane whose look changes from place to place by a rule.
 
 use super::plane::{self, Plane};
-use crate::scene::entity::{Args, Entity};
-use crate::scene::pparm::{Pparm, Row, Table};
-use crate::world::hittable::{Body, Hittable};
-use crate::world::shading::{Anchor, OnPlane};
-use glam::DVec3;
+use crate::prelude::*;
 
 static SHADER: Pparm<OnPlane> = Pparm::required("shader", "the rule for its look");
 

@@ -3,12 +3,7 @@
 use super::light::{self, PointLight};
 use super::texplane::{self, Picture};
 use super::{fplane, plane};
-use crate::scene::entity::Entity;
-use crate::scene::pparm::{Derived, Row, Table};
-use crate::scene::value::Datum;
-use crate::world::hittable::{Light, Ray};
-use crate::world::material::Rgb;
-use glam::DVec3;
+use crate::prelude::*;
 
 static HEADING: Derived = Derived(|_| Datum::Word(String::new()).line("projector", " \n"));
 

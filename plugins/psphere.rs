@@ -1,10 +1,7 @@
 //! A procedural sphere: a sphere whose look changes from place to place by a rule.
 
 use super::sphere::{self, Sphere};
-use crate::scene::entity::Entity;
-use crate::scene::pparm::{Pparm, Row, Table};
-use crate::world::hittable::Body;
-use crate::world::shading::{Anchor, OnSphere};
+use crate::prelude::*;
 
 static SHADER: Pparm<OnSphere> = Pparm::required("shader", "the rule for its look");
 

@@ -1,16 +1,7 @@
 //! A sphere: every point at one distance from a centre.
 
-use crate::geometry::bounds::{Bounds, SLACK};
-use crate::geometry::sight::Sight;
-use crate::numeric::number::Number;
-use crate::numeric::twofold::Twofold;
-use crate::scene::entity::{Args, Entity};
-use crate::scene::pparm::{Pparm, Table};
+use crate::prelude::*;
 use crate::shapes::ball::{self, Line};
-use crate::world::accuracy::Accuracy;
-use crate::world::certify::{self, Enclosure, Equation, Precision};
-use crate::world::hittable::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
-use glam::DVec3;
 
 static CENTER: Pparm<DVec3> =
     Pparm::required("center", "the point in its middle").alias(&["centre"]).unit("world coordinates");
@@ -45,9 +36,7 @@ impl Sphere {
     /// A ray, counted from the centre.
     #[inline(always)]
     fn line(&self, ray: &Ray) -> Line {
-        let from = |axis: usize| Twofold::difference(ray.origin[axis], self.center[axis]);
-        let dir = |axis: usize| Twofold::from(ray.dir[axis]);
-        Line { from: [from(0), from(1), from(2)], dir: [dir(0), dir(1), dir(2)] }
+        Line::new(ray, self.center)
     }
 }
 
@@ -106,11 +95,7 @@ impl Hittable for Sphere {
     }
 
     fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold> {
-        if self.accuracy == Accuracy::Classic {
-            None
-        } else {
-            crate::world::coincidence::distance(self, ray, distance)
-        }
+        if self.accuracy == Accuracy::Classic { None } else { coincidence::distance(self, ray, distance) }
     }
 
     fn is_two_sided(&self) -> bool {

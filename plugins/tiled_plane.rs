@@ -2,11 +2,7 @@
 
 use super::fplane::{self, DIMENSIONS, sides};
 use super::plane::{self, Plane};
-use crate::scene::entity::Entity;
-use crate::scene::pparm::{Pparm, Table};
-use crate::world::hittable::{Body, Shader};
-use crate::world::material::{Look, Material, Rgb};
-use glam::{DVec2, DVec3};
+use crate::prelude::*;
 use std::sync::Arc;
 
 static ALTMATERIAL: Pparm<Arc<Material>> =

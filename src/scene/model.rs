@@ -1,13 +1,15 @@
 //! A scene ready to be traced. It does not change while a picture is made.
 
-use crate::render::plan::Plan;
-use crate::scene::entity::{Args, Kind};
+use crate::scene::entity::Args;
+use crate::scene::kind::Kind;
 use crate::world::camera::Camera;
-use crate::world::hittable::{Hittable, Light, Shader};
+use crate::world::hittable::Hittable;
+use crate::world::light::Light;
 use crate::world::material::{Material, Rgb};
+use crate::world::shader::Shader;
 use crate::world::texture::Texture;
 use glam::DVec3;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 /// All that a picture is made from.
 pub struct Model {
@@ -21,15 +23,9 @@ pub struct Model {
     pub objects: Vec<Object>,
     /// The lights, in the order of the scene.
     pub lights: Vec<Item<Box<dyn Light>>>,
-    pub(crate) plan: OnceLock<Plan>,
 }
 
 impl Model {
-    /// What tracing it needs, decided when it is first asked for.
-    pub fn plan(&self) -> &Plan {
-        self.plan.get_or_init(|| Plan::new(self))
-    }
-
     /// The entities of a kind as they were given, in the order of the scene.
     pub fn entities(&self, kind: Kind) -> Vec<&Args> {
         match kind {

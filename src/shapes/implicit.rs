@@ -6,16 +6,18 @@
 
 use crate::geometry::bounds::Bounds;
 use crate::geometry::frame::{self, BLUR, Frame};
+use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
+use crate::geometry::roots::taylor::{self, Found, Stretch};
+use crate::geometry::roots::{Method, twice};
 use crate::geometry::sight::{Line, Sight};
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
 use crate::numeric::number::Number;
 use crate::numeric::twofold::Twofold;
-use crate::shapes::roots::taylor::{self, Found, Stretch};
-use crate::shapes::roots::{Method, twice};
+use crate::world::body::Body;
 use crate::world::certify::{self, Enclosure, Equation, Precision};
 use crate::world::coincidence;
-use crate::world::hittable::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
+use crate::world::hittable::{Hittable, bracket_by};
 use glam::DVec3;
 use std::ops::Range;
 
@@ -61,7 +63,7 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
     }
 
     fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        coincidence::bracket_by(self, ray, within, |within| {
+        bracket_by(self, ray, within, |within| {
             let line = OnRay::new(self, ray);
             let Found { root, is_certain } = line.first_hit(within);
             is_certain.then(|| line.distance(root, within))

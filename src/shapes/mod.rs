@@ -1,9 +1,13 @@
 //! Arithmetic that several shapes share.
 
 pub mod ball;
-pub mod flat;
-pub mod implicit;
+pub(crate) mod flat;
+pub(crate) mod implicit;
 pub mod quadratic;
 pub mod rectangle;
-pub mod revolution;
-pub mod roots;
+pub(crate) mod revolution;
+pub(crate) mod triangle;
+
+pub use flat::Plane;
+pub use implicit::Implicit;
+pub use revolution::{Classic, Finish, InFrame, Revolution};

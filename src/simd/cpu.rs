@@ -91,7 +91,7 @@ macro_rules! kernels {
         #[allow(clippy::too_many_arguments, reason = "they are arrays")]
         $visible fn $name$(<$T: $Bound + ?Sized>)?(
             cpu: $crate::simd::cpu::Cpu, $($argument: $type,)*
-            $($out: $crate::geometry::packet::ViewMut, $($second: $crate::geometry::packet::ViewMut)?)?
+            $($out: $crate::simd::soa::ViewMut, $($second: $crate::simd::soa::ViewMut)?)?
         ) $(-> $result)? {
             $crate::simd::cpu::levels! {
                 ($(<$T: $Bound + ?Sized>)?) (
@@ -109,8 +109,8 @@ macro_rules! kernels {
                 ) ($(-> $result)?)
                 {
                     $(
-                        let mut $out = $crate::geometry::packet::ViewMut { x, y, z };
-                        $(let mut $second = $crate::geometry::packet::ViewMut { x: u, y: v, z: w };)?
+                        let mut $out = $crate::simd::soa::ViewMut { x, y, z };
+                        $(let mut $second = $crate::simd::soa::ViewMut { x: u, y: v, z: w };)?
                     )?
                     $body
                 }

@@ -1,122 +1,16 @@
-//! Rays, and what a plugin implements: [`Hittable`] shapes, [`Shader`]s and [`Light`]s.
+//! Shapes: the trait that a plugin implements for one ray, and what follows from it for packets of rays.
 
 use crate::geometry::bounds::{self, Bounds};
-use crate::geometry::packet::{self, Nearest, Rays, View, ViewMut};
+use crate::geometry::packet::{Brackets, Nearest, Rays, mark, merge};
+use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
+use crate::geometry::roots::Method;
 use crate::geometry::sight::Sight;
 use crate::numeric::twofold::Twofold;
-use crate::shapes::roots::Method;
-use crate::simd::cpu::Cpu;
+use crate::simd::cpu::{Cpu, kernels};
 use crate::world::certify::{Enclosure, Precision};
-use crate::world::coincidence;
-use crate::world::facing::{self, Faced, Facing, Places};
-use crate::world::landing::{self, Landing};
-use crate::world::material::{Look, Material, Rgb};
-use crate::world::shading::{Anchor, ProceduralShader};
+use crate::world::coincidence::{CLOSE, ROUNDING};
+use crate::world::landing::{Landing, turned};
 use glam::DVec3;
-
-/// A half line.
-#[derive(Clone, Copy, Debug)]
-pub struct Ray {
-    /// Where it starts, in world coordinates.
-    pub origin: DVec3,
-    /// Where it goes, a unit vector.
-    pub dir: DVec3,
-}
-
-impl Ray {
-    /// The point at this distance from the origin.
-    #[inline(always)]
-    pub fn at(&self, distance: f64) -> DVec3 {
-        self.origin + distance * self.dir
-    }
-}
-
-/// A side of a surface.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Side {
-    /// The one that its normal points to.
-    #[default]
-    Outside,
-    /// The other one.
-    Inside,
-}
-
-impl Side {
-    /// The side of a surface with this normal from which something comes that moves along `dir`.
-    #[inline(always)]
-    pub fn seen_along(dir: DVec3, normal: DVec3) -> Self {
-        if dir.dot(normal) < 0.0 { Self::Outside } else { Self::Inside }
-    }
-
-    /// The other side.
-    #[inline(always)]
-    pub fn opposite(self) -> Self {
-        match self {
-            Self::Outside => Self::Inside,
-            Self::Inside => Self::Outside,
-        }
-    }
-}
-
-/// Distances along a ray, both ends excluded.
-#[derive(Clone, Copy, Debug)]
-pub struct Span {
-    /// Hits must lie farther.
-    pub near: f64,
-    /// Hits must lie nearer.
-    pub far: f64,
-    /// The side of the shape's own surface that the ray starts on and leaves, if it does: where it starts is no hit,
-    /// however rounding has it. Only shapes that may meet themselves on that side are asked then.
-    pub leaves: Option<Side>,
-    /// How far at most the ray's origin is from the point that it stands for, in world units. 0 for a ray from the
-    /// viewer. A [`bracket`](Hittable::bracket) is certain only where the shape does not touch the origin within it.
-    pub origin_error: f64,
-}
-
-/// The distance of a ray that hits nothing.
-pub const MISS: f64 = f64::INFINITY;
-
-impl Span {
-    /// All of a ray but its origin.
-    pub const RAY: Span = Span { near: 0.0, far: f64::INFINITY, leaves: None, origin_error: 0.0 };
-
-    /// The distance itself if it lies in the span, else [`MISS`]; so is a NaN.
-    #[inline(always)]
-    pub fn keep(&self, distance: f64) -> f64 {
-        // One after the other: both at once become a question after the kind of number, of one number at a time.
-        let distance = if distance < self.far { distance } else { MISS };
-        if self.near < distance { distance } else { MISS }
-    }
-}
-
-/// Between which distances a ray's first hit of a shape within a span is.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bracket {
-    /// It is no nearer than this; [`MISS`] where there is certainly none.
-    pub near: f64,
-    /// It is certainly there and no farther than this; [`MISS`] where that is not certain.
-    pub far: f64,
-}
-
-impl Bracket {
-    /// Of a ray that certainly misses.
-    pub const MISS: Self = Self { near: MISS, far: MISS };
-
-    /// Of a ray whose hit is known.
-    #[inline(always)]
-    pub fn exactly(distance: f64) -> Self {
-        Self { near: distance, far: distance }
-    }
-
-    /// Whether it leaves open if there is a hit.
-    #[inline(always)]
-    pub fn is_doubtful(&self) -> bool {
-        (self.near < MISS) & (self.far == MISS)
-    }
-
-    /// Of a ray of which plain arithmetic tells nothing.
-    pub const UNKNOWN: Self = Self { near: 0.0, far: MISS };
-}
 
 /// A shape that rays can hit. Shapes do not change while a picture is made.
 ///
@@ -157,7 +51,7 @@ pub trait Hittable: Send + Sync {
     /// `origin_error`, it is a bracket without a certain end.
     #[inline(always)]
     fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        coincidence::bracket(self, ray, within)
+        bracket_by(self, ray, within, |within| Some(self.distance(ray, within)))
     }
 
     /// What [`distance`](Self::distance) gives, to the last bit, or NaN where it takes more than plain arithmetic
@@ -177,7 +71,7 @@ pub trait Hittable: Send + Sync {
     /// Whether a point lies on its surface, but for an error of so many world units and for what rounding makes of the
     /// shape's own numbers. Rays that start there leave it.
     fn touches(&self, at: DVec3, error: f64) -> bool {
-        coincidence::is_met_within(self, at, error)
+        is_met_within(self, at, error)
     }
 
     /// How large the coordinates are that its hits are computed from, in world units: its own, not the ray's.
@@ -187,7 +81,7 @@ pub trait Hittable: Send + Sync {
 
     /// The distance of the hit at about this one, in twice the precision: it tells which of two surfaces that lie
     /// together is nearer. Nothing where it is not to be had;
-    /// [`coincidence::distance`] gives it for shapes that have an equation.
+    /// [`coincidence::distance`](crate::world::coincidence::distance) gives it for shapes that have an equation.
     fn fine_distance(&self, _ray: &Ray, _distance: f64) -> Option<Twofold> {
         None
     }
@@ -218,7 +112,7 @@ pub trait Hittable: Send + Sync {
     /// Compares the hits of a packet with the nearest so far, and tells whether any is in doubt. `sides` are those of
     /// this shape that the rays leave, if they do; `id` is its index in the scene and 1.
     fn meet(&self, cpu: Cpu, rays: Rays, sides: Option<&[Side]>, id: u64, nearest: Nearest) -> bool {
-        packet::meet(cpu, self, rays, sides, id, nearest)
+        meet(cpu, self, rays, sides, id, nearest)
     }
 
     /// Marks the rays of a packet that it blocks before their ends, and those of which that is in doubt; tells
@@ -232,7 +126,7 @@ pub trait Hittable: Send + Sync {
         blocked: &mut [u64],
         doubt: &mut [u64],
     ) -> bool {
-        packet::block(cpu, self, rays, sides, ends, blocked, doubt)
+        block(cpu, self, rays, sides, ends, blocked, doubt)
     }
 
     /// The distances of hits that are certain, each between two distances where [`meet`](Self::meet) has bracketed it;
@@ -245,129 +139,131 @@ pub trait Hittable: Send + Sync {
         _brackets: (&[f64], &[f64]),
         out: &mut [f64],
     ) {
-        packet::distances(cpu, self, rays, sides, out);
+        distances(cpu, self, rays, sides, out);
     }
 
     /// Where the rays of a packet come to it after these distances, and its normals there.
     fn land(&self, cpu: Cpu, rays: Rays, distances: &[f64], landing: Landing) {
-        let Landing { points, normals, sides, travelled } = landing;
-        landing::land(cpu, self, rays, distances, sides, travelled, points, normals);
+        let Landing { points, normals, sides, cosines, travelled } = landing;
+        land(cpu, self, rays, distances, sides, cosines, travelled, points, normals);
     }
 }
 
-/// How a surface answers light where its material alone does not say.
-///
-/// The defaults are the notes' `material_getamb`, `material_getdiff` and `material_getspec`.
-pub trait Shader: Send + Sync {
-    /// The reflectivity for light from nowhere in particular.
-    fn ambient(&self, material: &Material, _at: DVec3) -> Rgb {
-        material.ambient
+/// The bracket of a shape that has no quicker one than its distance, where rounding does not decide that.
+#[inline(always)]
+pub(crate) fn bracket_by<T: Hittable + ?Sized>(
+    shape: &T,
+    ray: &Ray,
+    within: &Span,
+    distance: impl FnOnce(&Span) -> Option<f64>,
+) -> Bracket {
+    let Span { far, leaves, origin_error, .. } = *within;
+    if leaves.is_none() && origin_error > 0.0 && shape.touches(ray.origin, origin_error) {
+        return Bracket::UNKNOWN;
+    }
+    let close = if far < MISS { CLOSE * far } else { 0.0 };
+    let Some(distance) = distance(&Span { far: far + close, ..*within }) else { return Bracket::UNKNOWN };
+    // At the distance of another surface, more digits tell which comes first.
+    if (distance - far).abs() <= close {
+        return Bracket { near: distance - close, far: distance + close };
+    }
+    Bracket::exactly(distance)
+}
+
+/// Whether a short ray through a point, upright on a shape, meets the shape within an error.
+fn is_met_within<T: Hittable + ?Sized>(shape: &T, at: DVec3, error: f64) -> bool {
+    let dir = shape.normal(at);
+    let short = 2.0 * error + ROUNDING * at.abs().max_element();
+    let ray = Ray { origin: at - short * dir, dir };
+    shape.distance(&ray, &Span { far: 2.0 * short, ..Span::RAY }) < MISS
+}
+
+kernels! {
+    /// Compares a shape's hits with the nearest so far. Tells whether any is in doubt.
+    fn meet[T: Hittable](shape: &T, rays: Rays, sides: Option<&[Side]>, id: u64, nearest: Nearest) -> bool {
+        let (count, rays) = (rays.len(), rays.first(rays.len()));
+        let Nearest { near, far, met, doubt } = nearest;
+        match sides {
+            None => merge(count, &Sought { shape, rays }, id, near, far, met, doubt),
+            Some(sides) => {
+                merge(count, &Leaving { shape, rays, sides: &sides[..count] }, id, near, far, met, doubt)
+            }
+        }
     }
 
-    /// The reflectivity for light from the scene's lights, scattered evenly.
-    fn diffuse(&self, material: &Material, _at: DVec3) -> Rgb {
-        material.diffuse
-    }
-
-    /// The reflectivity of the surface as a mirror.
-    fn specular(&self, material: &Material, _at: DVec3) -> Rgb {
-        material.specular
-    }
-
-    /// What those three give at every point, if that is the same: then they are not asked at each. `None` is never wrong.
-    fn even(&self, _material: &Material) -> Option<Look> {
-        None
-    }
-
-    /// The largest that those three give anywhere, whatever the sign, from which follows how deep mirrors and glass are
-    /// looked into; nothing where that is not known, or where a surface that is not even has a diffuse colour below 0.
-    /// `None` is never wrong.
-    fn brightest(&self, material: &Material) -> Option<Look> {
-        self.even(material)
-    }
-
-    /// What [`ambient`](Self::ambient) and [`specular`](Self::specular) give at many points; tells whether any of the
-    /// second is not 0.
-    fn unlit(
-        &self,
-        cpu: Cpu,
-        material: &Material,
-        points: View,
-        ambients: ViewMut,
-        speculars: ViewMut,
+    /// Marks the rays that a shape's hits block before they come to their ends. Tells whether any is in doubt.
+    fn block[T: Hittable](
+        shape: &T, rays: Rays, sides: Option<&[Side]>, ends: &[f64], blocked: &mut [u64], doubt: &mut [u64]
     ) -> bool {
-        packet::unlit(cpu, self, material, points, ambients, speculars)
+        let (count, rays) = (ends.len(), rays.first(ends.len()));
+        match sides {
+            None => mark(&Sought { shape, rays }, ends, blocked, doubt),
+            Some(sides) => mark(&Leaving { shape, rays, sides: &sides[..count] }, ends, blocked, doubt),
+        }
     }
 
-    /// What [`diffuse`](Self::diffuse) gives at many points; tells whether any is not 0.
-    fn diffuses(&self, cpu: Cpu, material: &Material, points: View, out: ViewMut) -> bool {
-        packet::diffuses(cpu, self, material, points, out)
-    }
-}
-
-/// The shader of an object that has none of its own: the material everywhere.
-pub struct Plain;
-
-impl Shader for Plain {
-    fn even(&self, material: &Material) -> Option<Look> {
-        let Material { ambient, diffuse, specular, .. } = *material;
-        Some(Look { ambient, diffuse, specular })
-    }
-}
-
-/// A source of light.
-pub trait Light: Send + Sync {
-    /// Where it is, in world coordinates.
-    fn location(&self) -> DVec3;
-
-    /// The light that it sends toward a point, or nothing where it does not point there (the notes' `vischeck`).
-    fn emissivity(&self, toward: DVec3) -> Option<Rgb>;
-
-    /// What [`emissivity`](Self::emissivity) gives toward every point, if that is the same and never nothing: then it is
-    /// not asked for each. `None` is never wrong.
-    fn even(&self) -> Option<Rgb> {
-        None
+    /// The distances of a shape's hits, as [`Hittable::quick_distance`] gives them.
+    pub(crate) fn distances[T: Hittable](shape: &T, rays: Rays, sides: Option<&[Side]>, out: &mut [f64]) {
+        let (count, rays) = (out.len(), rays.first(out.len()));
+        match sides {
+            None => for lane in 0..count {
+                out[lane] = shape.quick_distance(&rays.get(lane), &Span::RAY);
+            },
+            Some(sides) => for lane in 0..count {
+                out[lane] = shape.quick_distance(&rays.get(lane), &Span { leaves: Some(sides[lane]), ..Span::RAY });
+            },
+        }
     }
 
-    /// The largest that [`emissivity`](Self::emissivity) gives toward any point, whatever the sign; nothing where that is
-    /// not known. `None` is never wrong.
-    fn brightest(&self) -> Option<Rgb> {
-        self.even()
-    }
-
-    /// The radius of a ball that shines; 0 for a point, whose shadows have sharp edges.
-    fn size(&self) -> f64 {
-        0.0
-    }
-
-    /// How it comes to many places, with what [`emissivity`](Self::emissivity) gives toward each.
-    fn face(&self, cpu: Cpu, places: &Places, facing: Facing) -> Faced {
-        let Facing { toward, emissivity, falloffs, ends, shines } = facing;
-        facing::face(cpu, self, places, falloffs, ends, shines, toward, emissivity)
+    /// Where rays come to a shape after these distances, and its normals there.
+    fn land[T: Hittable](
+        shape: &T, rays: Rays, distances: &[f64], sides: &mut [Side], cosines: &mut [f64], travelled: &mut [f64]
+    ) => points, normals {
+        let (count, is_two_sided) = (travelled.len(), shape.is_two_sided());
+        let (rays, distances) = (rays.first(count), &distances[..count]);
+        let (sides, cosines) = (&mut sides[..count], &mut cosines[..count]);
+        let (mut points, mut normals) = (points.first(count), normals.first(count));
+        for lane in 0..count {
+            let ray = rays.get(lane);
+            let point = ray.at(distances[lane]);
+            let normal;
+            (sides[lane], cosines[lane], normal) = turned(ray.dir, shape.normal(point), is_two_sided);
+            points.set(lane, point);
+            normals.set(lane, normal);
+            travelled[lane] += distances[lane];
+        }
     }
 }
 
-/// What the constructor of an object makes: its shape and its shader.
-pub struct Body {
-    /// Where it is.
-    pub shape: Box<dyn Hittable>,
-    /// What it looks like.
-    pub shader: Box<dyn Shader>,
+/// Those that a shape gives.
+struct Sought<'b, T: ?Sized> {
+    shape: &'b T,
+    rays: Rays<'b>,
 }
 
-impl Body {
-    /// An object that looks like its material.
-    pub fn plain(shape: impl Hittable + 'static) -> Self {
-        Self::shaded(shape, Plain)
+impl<T: Hittable + ?Sized> Brackets for Sought<'_, T> {
+    #[inline(always)]
+    fn get(&self, lane: usize, far: f64) -> Bracket {
+        let origin_error = self.rays.origin_error;
+        self.shape.bracket(&self.rays.get(lane), &Span { far, origin_error, ..Span::RAY })
     }
+}
 
-    /// An object with a look of its own.
-    pub fn shaded(shape: impl Hittable + 'static, shader: impl Shader + 'static) -> Self {
-        Self { shape: Box::new(shape), shader: Box::new(shader) }
-    }
+/// Those that a shape gives for rays that leave it.
+struct Leaving<'b, T: ?Sized> {
+    shape: &'b T,
+    rays: Rays<'b>,
+    sides: &'b [Side],
+}
 
-    /// An object that looks as a procedural shader has it.
-    pub fn procedural(shape: impl Hittable + 'static, shader: &ProceduralShader, anchor: Anchor) -> Self {
-        Self { shape: Box::new(shape), shader: (shader.make)(anchor) }
+impl<T: Hittable + ?Sized> Brackets for Leaving<'_, T> {
+    #[inline(always)]
+    fn get(&self, lane: usize, far: f64) -> Bracket {
+        let leaves = self.sides[lane];
+        if !self.shape.meets_itself(leaves) {
+            return Bracket::MISS;
+        }
+        let (leaves, origin_error) = (Some(leaves), self.rays.origin_error);
+        self.shape.bracket(&self.rays.get(lane), &Span { far, leaves, origin_error, ..Span::RAY })
     }
 }

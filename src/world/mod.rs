@@ -1,13 +1,23 @@
 //! What a scene is made of: the traits of shapes, looks and lights, and what they are told.
 
-pub mod accuracy;
-pub mod camera;
+pub(crate) mod accuracy;
+pub(crate) mod body;
+pub(crate) mod camera;
 pub mod certify;
 pub mod coincidence;
-pub mod facing;
-pub mod hittable;
-pub mod landing;
-pub mod material;
-pub mod sample;
-pub mod shading;
-pub mod texture;
+pub(crate) mod facing;
+pub(crate) mod hittable;
+pub(crate) mod landing;
+pub(crate) mod light;
+pub(crate) mod material;
+pub(crate) mod sample;
+pub(crate) mod shader;
+pub(crate) mod texture;
+
+pub use accuracy::Accuracy;
+pub use body::Body;
+pub use camera::Camera;
+pub use hittable::Hittable;
+pub use light::Light;
+pub use material::{Material, Rgb};
+pub use shader::Shader;

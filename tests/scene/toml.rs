@@ -5,9 +5,7 @@ use assert_cmd::cargo::cargo_bin_cmd;
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
-use tabray::scene::dump;
-use tabray::scene::schema;
-use tabray::scene::syntax::Syntax;
+use tabray::scene::{Syntax, dump, schema};
 use tempfile::TempDir;
 
 const NOTES: &str = "

@@ -8,8 +8,9 @@ use crate::oracle::rays::Random;
 use crate::oracle::shapes::{self, Line, Plane, Quadric};
 use crate::oracle::tally::Tally;
 use glam::{DVec3, dvec2, dvec3};
-use tabray::scene::model::Model;
-use tabray::world::hittable::{Bracket, Hittable, MISS, Ray, Span};
+use tabray::geometry::{Bracket, MISS, Ray, Span};
+use tabray::scene::Model;
+use tabray::world::Hittable;
 
 /// The shapes of each kind, and the rays for each set and shape.
 const SHAPES: usize = 200;

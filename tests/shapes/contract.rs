@@ -4,19 +4,13 @@ use crate::common::{block_with, load, registry, root};
 use glam::DVec3;
 use std::fs;
 use std::sync::atomic::{AtomicU32, Ordering};
-use tabray::geometry::bounds::Bounds;
-use tabray::geometry::frame::Frame;
-use tabray::geometry::sight::Sight;
-use tabray::numeric::number::Number;
-use tabray::scene::entity::{Args, Entity, Kind, Refusal};
-use tabray::scene::pparm::{Derived, Pparm, Row, Table};
-use tabray::scene::registry::Registry;
-use tabray::shapes::implicit::Implicit;
+use tabray::geometry::{Bounds, Bracket, Frame, MISS, Ray, Side, Sight, Span};
+use tabray::numeric::Number;
+use tabray::scene::{Args, Derived, Entity, Kind, Pparm, Refusal, Registry, Row, Table};
+use tabray::shapes::Implicit;
 use tabray::tools::contract::{self, Breach, Promise};
-use tabray::world::camera::Camera;
 use tabray::world::certify::{Enclosure, Precision};
-use tabray::world::hittable::{Body, Bracket, Hittable, Light, MISS, Ray, Shader, Side, Span};
-use tabray::world::material::{Material, Rgb};
+use tabray::world::{Body, Camera, Hittable, Light, Material, Rgb, Shader};
 
 #[test]
 fn every_plugin_keeps_its_contract() {

@@ -7,11 +7,11 @@ use glam::DVec3;
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
 use std::ops::Range;
-use tabray::geometry::frame::Frame;
-use tabray::numeric::number::Number;
-use tabray::scene::model::Model;
-use tabray::shapes::implicit::Implicit;
-use tabray::world::hittable::{Body, Hittable, MISS, Ray, Side, Span};
+use tabray::geometry::{Frame, MISS, Ray, Side, Span};
+use tabray::numeric::Number;
+use tabray::scene::Model;
+use tabray::shapes::Implicit;
+use tabray::world::{Body, Hittable};
 
 const CENTER: DVec3 = DVec3::new(4.1, 2.9, -2.7);
 const AXIS: DVec3 = DVec3::new(0.4, 1.0, -0.3);

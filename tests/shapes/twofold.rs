@@ -5,9 +5,7 @@ use dashu_float::FBig;
 use dashu_float::round::mode::HalfEven;
 use dashu_int::{IBig, UBig};
 use f256::f256;
-use tabray::numeric::interval::{Interval, Wide};
-use tabray::numeric::number::Number;
-use tabray::numeric::twofold::Twofold;
+use tabray::numeric::{Interval, Number, Wide, twofold::Twofold};
 
 type Big = FBig<HalfEven, 2>;
 

@@ -183,12 +183,12 @@ scene chooses with `accuracy`; see [how exact the methods are](accuracy.md).
 | point | what it is | where it fails |
 |---|---|---|
 | `classic` | one bracket, from the viewer to the ray's point closest to the axis | silhouettes, inner walls, far balls |
-| [`steps of 0.1`](../src/shapes/roots/steps.rs) | the notes' page on procedural surfaces: steps, then bisection to 1e-6 | what is thinner than a step |
-| [`64 + ...`](../src/shapes/roots/samples.rs) | samples in the bounding cylinder, then a refiner: [bisection](../src/shapes/roots/bisection.rs), [Chandrupatla](../src/shapes/roots/chandrupatla.rs) or [Newton](../src/shapes/roots/newton.rs) | silhouettes, however many samples |
-| [`16 + turning points`](../src/shapes/roots/turning.rs) | samples, and the places between them where the function turns | what turns twice between two samples |
-| [`sphere tracing`](../src/shapes/roots/tracing.rs) | steps that a bound of the slope allows | hits what it only comes near to; slow at silhouettes |
-| [`intervals`](../src/shapes/roots/intervals.rs) | bounds of values and slopes (Mitchell 1990) | slow at silhouettes |
-| [`Taylor bounds`](../src/shapes/roots/taylor.rs) | bounds of the curvature, too; how shapes of one formula are found | a few of a hundred thousand rays that nearly touch: [the falsifier](falsify.md) counts them |
+| [`steps of 0.1`](../src/geometry/roots/steps.rs) | the notes' page on procedural surfaces: steps, then bisection to 1e-6 | what is thinner than a step |
+| [`64 + ...`](../src/geometry/roots/samples.rs) | samples in the bounding cylinder, then a refiner: [bisection](../src/geometry/roots/bisection.rs), [Chandrupatla](../src/geometry/roots/chandrupatla.rs) or [Newton](../src/geometry/roots/newton.rs) | silhouettes, however many samples |
+| [`16 + turning points`](../src/geometry/roots/turning.rs) | samples, and the places between them where the function turns | what turns twice between two samples |
+| [`sphere tracing`](../src/geometry/roots/tracing.rs) | steps that a bound of the slope allows | hits what it only comes near to; slow at silhouettes |
+| [`intervals`](../src/geometry/roots/intervals.rs) | bounds of values and slopes (Mitchell 1990) | slow at silhouettes |
+| [`Taylor bounds`](../src/geometry/roots/taylor.rs) | bounds of the curvature, too; how shapes of one formula are found | a few of a hundred thousand rays that nearly touch: [the falsifier](falsify.md) counts them |
 | `draft`, `exact`, `strict` | for surfaces of revolution quadrics with a proven error, then Newton; Taylor bounds where a ray grazes | a few of a hundred thousand rays that nearly touch: [the falsifier](falsify.md) counts them |
 
 The counts here differ from those of [accuracy.md](accuracy.md) and of other tables, as the rays do. There all rays of

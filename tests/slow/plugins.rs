@@ -307,7 +307,7 @@ fn the_page_has_the_program_of_a_crate_of_its_own() {
 /// Tries all plugins but those with a mistake that breaks off the scene.
 const CONTRACTS: &str = "//! Contracts.
 
-use tabray::scene::registry::Registry;
+use tabray::scene::Registry;
 use tabray::tools::contract;
 
 fn main() {
@@ -321,9 +321,7 @@ fn main() {
 
 const RIVAL: &str = "//! What others have already.
 
-use crate::scene::entity::Entity;
-use crate::scene::profile::Profile;
-use crate::world::shading::ProceduralShader;
+use crate::prelude::*;
 
 inventory::submit! { Entity::shape(\"sphere\", \"another ball\", &[], |_| unreachable!()) }
 inventory::submit! { Profile::new(\"cone\", \"another cone\", \"1\") }
@@ -333,7 +331,7 @@ inventory::submit! { ProceduralShader::new(\"checks\", \"its number is that of t
 
 const BARREL: &str = "//! A barrel.
 
-use crate::scene::profile::Profile;
+use crate::prelude::*;
 
 inventory::submit! {
     Profile::new(\"barrel\", \"a barrel 4 high\", \"1.5 - 0.1 * (y - 2)^2\")
@@ -342,10 +340,7 @@ inventory::submit! {
 
 const STRIPES: &str = "//! Stripes, as wide as a tenth of the anchor's unit.
 
-use crate::world::hittable::Shader;
-use crate::world::material::{Material, Rgb};
-use crate::world::shading::{Anchor, ProceduralShader};
-use glam::DVec3;
+use crate::prelude::*;
 
 inventory::submit! {
     ProceduralShader::new(\"stripes\", \"stripes across y\", |anchor| Box::new(Stripes(anchor)))

@@ -21,7 +21,7 @@
 //!
 //! Any solution of these inequalities is above the least one, and that is above all sums of finitely many branches. One is
 //! looked for from below, and taken when it solves them as it stands. Where mirrors and glass give on as much light as
-//! they get there is none: then nothing is left out, and [`MAX_RAYS`](crate::render::trace::MAX_RAYS) ends what the distance does
+//! they get there is none: then nothing is left out, and [`MAX_RAYS`](crate::render::limits::MAX_RAYS) ends what the distance does
 //! not.
 //!
 //! **What is left out.** A ray of a camera may leave out [`FAINT`] in all, 1/1024 of a level. That is shared out among the
@@ -36,10 +36,10 @@
 //! also left out where `weight * beyond / d < FAINT` by itself.
 
 use crate::geometry::bounds::SLACK;
-use crate::render::trace::MAX_DIST;
+use crate::geometry::ray::Side;
+use crate::render::limits::MAX_DIST;
 use crate::scene::model::{Model, Object};
 use crate::world::accuracy::Accuracy;
-use crate::world::hittable::Side;
 use crate::world::material::{Look, Rgb};
 use glam::DVec3;
 

@@ -1,55 +1,24 @@
 //! What the rays of a packet meet first.
 
-use super::Tracer;
+use super::arrays::{Vectors, room};
+use super::context::Tracer;
+use super::found::Found;
 use super::group::Group;
-use super::room::{Vectors, room};
+use super::order;
 use crate::geometry::bounds::{self, Bounds};
-use crate::geometry::packet::{Nearest, Rays, parts};
+use crate::geometry::packet::{Rays, parts};
+use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
 use crate::geometry::sight::Sight;
 use crate::numeric::interval::{Interval, Wide};
 use crate::render::bundles::{self, PART};
 use crate::render::tree::Visitor;
 use crate::render::watch::{Count, Event, Hit, Reason, Watch};
-use crate::simd::cpu::{Cpu, kernels};
+use crate::simd::cpu::kernels;
 use crate::world::certify::{self, Enclosure, Precision};
-use crate::world::coincidence;
-use crate::world::hittable::{Bracket, Hittable, MISS, Ray, Side, Span};
+use crate::world::coincidence::CLOSE;
+use crate::world::hittable::Hittable;
 use std::mem::take;
 use std::ops::Range;
-
-/// What each ray of a packet meets first, and between which distances.
-#[derive(Default)]
-pub(super) struct Found {
-    pub near: Vec<f64>,
-    pub far: Vec<f64>,
-    /// The object's index and 1; 0 for none.
-    pub met: Vec<u64>,
-    doubt: Vec<u64>,
-}
-
-impl Found {
-    /// Nothing yet, before these ends, and counts the rays. Those that have cost as many as they may end where they
-    /// begin; tells whether any has.
-    fn begin(&mut self, cpu: Cpu, budget: &mut [u32], count: usize, ends: Option<&[f64]>) -> bool {
-        let (near, far) = (room(&mut self.near, count), room(&mut self.far, count));
-        match ends {
-            Some(ends) => far.copy_from_slice(&ends[..count]),
-            None => far.fill(MISS),
-        }
-        room(&mut self.doubt, count).fill(0);
-        begin(cpu, &mut budget[..count], near, far, room(&mut self.met, count))
-    }
-
-    /// Of some of the rays.
-    fn part(&mut self, range: Range<usize>) -> Nearest<'_> {
-        Nearest {
-            near: &mut self.near[range.clone()],
-            far: &mut self.far[range.clone()],
-            met: &mut self.met[range.clone()],
-            doubt: &mut self.doubt[range],
-        }
-    }
-}
 
 impl<'m, W: Watch> Tracer<'m, '_, W> {
     /// What each ray meets first before its end, if it has one. A ray that has cost as many as it may meets nothing.
@@ -102,9 +71,8 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
     /// One ray of a packet.
     fn start(&self, group: &Group, lane: usize) -> Start {
         let [x, y] = &self.rooms.places;
-        let sight = group.looks.then(|| self.model.camera.value.sight(x[lane], y[lane])).or(group.sight);
-        let error = group.errors.get(lane).copied().unwrap_or(0.0);
-        Start { ray: group.rays().get(lane), error, sight }
+        let sight = group.looks.then(|| self.plan.camera.sight(x[lane], y[lane])).or(group.sight);
+        Start { ray: group.rays().get(lane), error: group.error(lane), sight }
     }
 
     /// Whether rays may meet an object at all: to most that they leave they do not come back.
@@ -127,8 +95,8 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
         }
         let shape = |index: usize| &*self.model.objects[index].shape;
         let (one, other) = ((shape(index), distance), (shape(rival), far));
-        let is_before = coincidence::is_before(&start.ray, start.error, one, other)
-            .or_else(|| certify::is_before(one.0, other.0, start.sight.as_ref()?));
+        let is_before = order::is_before(&start.ray, start.error, one, other)
+            .or_else(|| order::is_certainly_before(one.0, other.0, start.sight.as_ref()?));
         is_before.unwrap_or(index < rival)
     }
 
@@ -220,8 +188,7 @@ fn decided(shape: &dyn Hittable, sight: &Sight, distance: f64) -> (f64, Bracket)
         }
         // As of a plane that the ray runs along but for rounding: what is undecided lies farther on.
         Enclosure::Doubtful(from)
-            if certify::in_world_units(Wide::point(from), sight).high * (1.0 - coincidence::CLOSE)
-                > distance =>
+            if certify::in_world_units(Wide::point(from), sight).high * (1.0 - CLOSE) > distance =>
         {
             (MISS, Bracket::MISS)
         }
@@ -230,20 +197,6 @@ fn decided(shape: &dyn Hittable, sight: &Sight, distance: f64) -> (f64, Bracket)
 }
 
 kernels! {
-    /// Counts rays, which have met nothing yet. Tells whether any has cost as many as it may.
-    fn begin(budget: &mut [u32], near: &mut [f64], far: &mut [f64], met: &mut [u64]) -> bool {
-        let (count, mut any_over) = (budget.len(), 0);
-        let (near, far, met) = (&mut near[..count], &mut far[..count], &mut met[..count]);
-        for lane in 0..count {
-            let is_over = budget[lane] == 0;
-            let end = if is_over { 0.0 } else { far[lane] };
-            (near[lane], far[lane], met[lane]) = (end, end, 0);
-            budget[lane] -= u32::from(!is_over);
-            any_over |= u32::from(is_over);
-        }
-        any_over != 0
-    }
-
     /// Whether all is the same.
     pub(super) fn is_one(of: &[u64]) -> bool {
         of.iter().fold(0, |other, one| other | (one ^ of[0])) == 0
@@ -301,7 +254,8 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
     /// Looks at the objects that are listed, each for those parts of the packet that may come there.
     fn listed(&mut self) {
         let (cpu, plan) = (self.tracer.cpu, self.tracer.plan);
-        let bundles = bundles::around(cpu, self.group.rays());
+        // Those from the viewer all start there.
+        let bundles = bundles::around(cpu, self.group.rays(), self.group.leaves.is_none());
         for index in &plan.unbounded {
             let shape = &*self.tracer.model.objects[*index].shape;
             if self.tracer.may_meet(self.group.left(), *index) {

@@ -4,19 +4,21 @@ use super::attributes::{Against, find_attribute, whole};
 use super::fault::{Fault, Place, Report};
 use super::names::{Names, stand_in, suggestion};
 use super::written::{Word, Written};
-use crate::scene::entity::{Args, Construct, Entity, Kind, MATERIAL, Refusal, Setting};
+use crate::scene::entity::{Args, Construct, Entity, MATERIAL, Refusal, Setting};
+use crate::scene::kind::Kind;
 use crate::scene::model::{Item, Model, Object};
 use crate::scene::registry::Registry;
 use crate::scene::value::Datum;
 use crate::words::list;
 use crate::world::accuracy::Accuracy;
+use crate::world::body::Body;
 use crate::world::camera::Camera;
-use crate::world::hittable::{Body, Light};
+use crate::world::light::Light;
 use crate::world::material::Material;
 use crate::world::texture::Texture;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 /// Makes a model of entities as written and reports all their faults. Without faults there is a model. File
 /// names start from `folder`.
@@ -198,7 +200,7 @@ impl Check<'_> {
     fn textures_can_be_read(&mut self, written: &[Written<'_>]) {
         let users =
             self.objects.iter().map(|object| &object.args).chain(self.lights.iter().map(|light| &light.args));
-        let used: BTreeSet<_> = users.flat_map(Args::textures).collect();
+        let used: BTreeSet<_> = users.flat_map(|args| args.textures()).collect();
         for Item { args, value } in &self.textures {
             if used.contains(args.name.as_str())
                 && let Err(reason) = value.load()
@@ -242,7 +244,7 @@ impl Check<'_> {
             );
         }
         let Self { camera, materials, textures, objects, lights, .. } = self;
-        Some(Model { camera: camera?, materials, textures, objects, lights, plan: OnceLock::new() })
+        Some(Model { camera: camera?, materials, textures, objects, lights })
     }
 }
 

@@ -4,13 +4,14 @@
 //! the error's shell, starts in it, runs along the axis or upright on it, or crosses the surface where slabs meet, the
 //! bracket says no more than where that begins, and the ray goes its way alone.
 
-use super::Revolution;
 use super::slabs::Slab;
+use super::surface::{Revolution, sign};
 use crate::geometry::bounds::{from_order, larger, order, smaller};
 use crate::geometry::frame::Frame;
-use crate::geometry::packet::{Rays, STEP, Vectors};
+use crate::geometry::packet::Rays;
+use crate::geometry::ray::{MISS, Ray, Side, Span};
 use crate::simd::cpu::{Cpu, kernels};
-use crate::world::hittable::{MISS, Ray, Side, Span};
+use crate::simd::soa::{STEP, Vectors};
 use glam::DVec3;
 
 /// A direction with less than this of an axis is taken for upright on it.
@@ -83,7 +84,7 @@ impl Lanes {
             }
             Some(sides) => {
                 for (lane, side) in sides.iter().enumerate() {
-                    self.side[lane] = super::sign(*side);
+                    self.side[lane] = sign(*side);
                 }
                 self.is_free[..count].fill(0.0);
             }

@@ -5,8 +5,8 @@
 //! alone hides the sign, however short the piece, the computed sign stands, and how large the profile can be there is
 //! kept: that has to be next to nothing.
 
-use super::NoSurface;
 use super::budget::Budget;
+use super::no_surface::NoSurface;
 use crate::numeric::dual::Dual;
 use crate::numeric::formula::Formula;
 use crate::numeric::interval::Interval;

@@ -1,12 +1,13 @@
 //! The first hits of a packet of rays, each in its bracket: Newton's method for eight of them at a time.
 
-use super::{Finish, Revolution};
+use super::surface::{Finish, Revolution};
 use crate::geometry::frame::Frame;
-use crate::geometry::packet::{Rays, STEP, View};
+use crate::geometry::packet::Rays;
 use crate::numeric::number::Number;
 use crate::numeric::octet::{Octet, each};
 use crate::numeric::twofold::offset;
 use crate::simd::cpu::{Cpu, kernels};
+use crate::simd::soa::{STEP, View};
 
 /// Steps after which a root is taken as it is; a bracket that is only halved has none left.
 const MOST: usize = 100;
@@ -83,7 +84,7 @@ fn directions(frame: &Frame, [x, y, z]: [Octet; 3]) -> [Octet; 3] {
 }
 
 impl Revolution {
-    /// What [`newton::root`](crate::shapes::roots::newton::root) does, for each that has a width. Flags are 0 or 1.
+    /// What [`newton::root`](crate::geometry::roots::newton::root) does, for each that has a width. Flags are 0 or 1.
     #[inline(always)]
     fn eight_roots(&self, rays: &Eight) -> Octet {
         let Eight { from: [x, y, z], dir: [dx, dy, dz], width } = *rays;

@@ -1,18 +1,21 @@
 //! Surfaces of revolution as shapes, wherever they stand.
 
 use super::bracket::{Lanes, MOST};
-use super::{Classic, Revolution, normal};
+use super::classic::Classic;
+use super::normal;
+use super::surface::Revolution;
 use crate::geometry::bounds::Bounds;
 use crate::geometry::frame::Frame;
 use crate::geometry::packet::{self, Nearest, Rays, parts};
+use crate::geometry::ray::{Bracket, Ray, Side, Span};
+use crate::geometry::roots::Method;
 use crate::geometry::sight::{Line, Sight};
 use crate::numeric::number::Number;
 use crate::numeric::twofold::Twofold;
-use crate::shapes::roots::Method;
 use crate::simd::cpu::Cpu;
 use crate::world::certify::{self, Enclosure, Equation, Precision};
 use crate::world::coincidence;
-use crate::world::hittable::{Bracket, Hittable, Ray, Side, Span};
+use crate::world::hittable::{Hittable, bracket_by};
 use crate::world::landing::Landing;
 use glam::DVec3;
 
@@ -92,7 +95,7 @@ impl Hittable for InFrame<Revolution> {
     }
 
     fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        coincidence::bracket_by(self, ray, within, |within| {
+        bracket_by(self, ray, within, |within| {
             let (distance, is_certain) = self.surface.distance(&self.frame, ray, within);
             is_certain.then_some(distance)
         })
@@ -152,7 +155,8 @@ impl Hittable for InFrame<Revolution> {
     }
 
     fn land(&self, cpu: Cpu, rays: Rays, distances: &[f64], landing: Landing) {
-        let Landing { points, normals, sides, travelled } = landing;
-        normal::land(cpu, &self.surface, &self.frame, rays, distances, sides, travelled, points, normals);
+        let Landing { points, normals, sides, cosines, travelled } = landing;
+        let (surface, frame) = (&self.surface, &self.frame);
+        normal::land(cpu, surface, frame, rays, distances, sides, cosines, travelled, points, normals);
     }
 }

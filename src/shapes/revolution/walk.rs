@@ -4,13 +4,14 @@
 //! misses the nearer one misses the surface; one that crosses both while falling all the way has one root between
 //! them, bracketed by the error; what grazes the shell between them is looked at more closely on that short piece.
 
+use super::line::{OnRay, Uncut};
 use super::local::Local;
 use super::slabs::Slab;
-use super::{Finish, OnRay, Revolution, sign};
-use crate::geometry::frame::BLUR;
-use crate::shapes::roots::newton;
-use crate::shapes::roots::taylor::{self, Found, Stretch};
-use crate::world::hittable::{Side, Span};
+use super::surface::{Finish, Revolution, sign};
+use crate::geometry::frame::{BLUR, Frame};
+use crate::geometry::ray::{MISS, Ray, Side, Span};
+use crate::geometry::roots::taylor::{self, Found, Stretch};
+use crate::geometry::roots::{Method, newton};
 
 /// `sg * (a s^2 + 2 b s + c)`, which is positive where the ray is still on its side of a slab's parabola.
 #[derive(Clone, Copy)]
@@ -21,9 +22,32 @@ struct Quadratic {
 }
 
 impl Revolution {
+    /// The distance of a ray's first hit within a span, whatever the ray does, and whether it is that of all rays that
+    /// this one was rounded from.
+    pub fn first_hit(&self, frame: &Frame, ray: &Ray, within: &Span) -> (f64, bool) {
+        let Some(local) = Local::new(frame, ray, within, self.height, self.slabs.widest()) else {
+            return (MISS, true);
+        };
+        let Found { root, is_certain } = self.walk(&local, within.leaves);
+        (root.map_or(MISS, |along| within.keep(local.base + along)), is_certain)
+    }
+
+    /// As [`first_hit`](Self::first_hit), by another method and in the same bounding cylinder; but the notes' steps, as
+    /// in the notes, go all the way between the surface's heights.
+    pub fn first_hit_by(&self, method: Method, frame: &Frame, ray: &Ray, within: &Span) -> f64 {
+        let widest = if method == Method::Steps { f64::INFINITY } else { self.slabs.widest() };
+        let Some(local) = Local::new(frame, ray, within, self.height, widest) else { return MISS };
+        let line = Uncut { surface: self, local: &local };
+        let shortest = 4.0 * local.tolerance();
+        match method.first_root(&line, local.from..local.to, local.base, within, shortest) {
+            Some(along) => within.keep(local.base + along),
+            None => MISS,
+        }
+    }
+
     /// The first place along a ray where it crosses the surface. A ray that leaves the surface on a side looks for
     /// crossings from there alone.
-    pub(super) fn walk(&self, local: &Local, leaves: Option<Side>) -> Found {
+    fn walk(&self, local: &Local, leaves: Option<Side>) -> Found {
         let mut is_certain = true;
         let root = self.walk_on(local, leaves, &mut is_certain);
         Found { root, is_certain }

@@ -1,16 +1,20 @@
 //! The ways in which a scene's hits can be found, each as a model of the scene.
 
-use super::{Family, Load};
+use super::data::Family;
 use crate::geometry::bounds::Bounds;
+use crate::geometry::ray::{MISS, Ray, Side, Span};
+use crate::geometry::roots::Method;
 use crate::geometry::sight::Sight;
 use crate::scene::choice::Choice;
 use crate::scene::model::{Model, Object};
-use crate::shapes::roots::Method;
 use crate::world::accuracy::Accuracy;
 use crate::world::certify::{Enclosure, Precision};
-use crate::world::hittable::{Hittable, MISS, Ray, Side, Span};
+use crate::world::hittable::Hittable;
 use glam::DVec3;
 use std::io;
+
+/// Loads the scene anew, in an accuracy or in its own.
+pub type Load<'l> = &'l dyn Fn(Option<Accuracy>) -> io::Result<Model>;
 
 /// A scene, and a way to find its hits.
 pub struct Candidate {

@@ -3,16 +3,19 @@
 
 use super::candidate::{Candidate, is_searched};
 use super::clock;
+use super::data::{Panel, Point, Subject, Wrong};
 use super::packets::Packet;
 use super::places::{spread, tiles};
-use super::{Panel, Point, Progress, Study, Subject, Wrong};
+use super::progress::Progress;
+use super::study::Study;
 use crate::geometry::packet::WIDE;
+use crate::geometry::ray::{MISS, Ray, Side, Span};
 use crate::geometry::sight::Sight;
 use crate::numeric::twofold::Twofold;
 use crate::scene::model::Model;
 use crate::simd::cpu::Cpu;
 use crate::world::certify::{self, Enclosure, Precision};
-use crate::world::hittable::{Hittable, MISS, Ray, Side, Span};
+use crate::world::hittable::Hittable;
 use std::hint::black_box;
 use std::ops::ControlFlow;
 

@@ -1,10 +1,12 @@
 //! Packets of rays, and where they first meet an object: found as a render finds it.
 
-use crate::geometry::packet::{Nearest, Rays, STEP, Vectors, WIDE};
+use crate::geometry::packet::{Nearest, Rays, WIDE};
+use crate::geometry::ray::{MISS, Ray, Span};
 use crate::geometry::sight::Sight;
 use crate::simd::cpu::Cpu;
+use crate::simd::soa::{STEP, Vectors};
 use crate::world::camera::Camera;
-use crate::world::hittable::{Hittable, MISS, Ray, Span};
+use crate::world::hittable::Hittable;
 
 /// Rays that are asked about an object.
 pub struct Packet {

@@ -2,20 +2,21 @@
 
 use super::draw::Draw;
 use super::promise::{Fault, Promise};
-use crate::geometry::packet::{STEP, Vectors};
 use crate::scene::dump;
 use crate::scene::model::Model;
+use crate::scene::procedural::{Anchor, ProceduralShader};
 use crate::scene::profile::Profile;
 use crate::scene::reader;
 use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
 use crate::shapes::revolution::{Finish, Revolution};
 use crate::simd::cpu::Cpu;
+use crate::simd::soa::{STEP, Vectors};
 use crate::world::camera::Camera;
 use crate::world::facing::{Facing, Places};
-use crate::world::hittable::{Light, Shader};
+use crate::world::light::Light;
 use crate::world::material::{Look, Material, Rgb};
-use crate::world::shading::{Anchor, ProceduralShader};
+use crate::world::shader::Shader;
 use glam::DVec3;
 use std::path::Path;
 

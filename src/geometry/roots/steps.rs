@@ -4,9 +4,10 @@
 //! silhouettes, thin discs, ripples; and far from the ray's origin, where 1e-6 is less than a unit in the last
 //! place, bisection must be told to stop.
 
+use super::bisection;
+use super::refiner::sign_change;
 use super::taylor::Line;
-use super::{bisection, sign_change};
-use crate::world::hittable::Side;
+use crate::geometry::ray::Side;
 use std::ops::Range;
 
 const STEP: f64 = 0.1;

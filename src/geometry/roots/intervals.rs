@@ -4,11 +4,11 @@
 //! D. P. Mitchell, "Robust ray intersection with interval arithmetic" (1990). It loses nothing; but the bounds shrink
 //! with the pieces and not with their squares, so that rays which graze take hundreds of pieces.
 
+use super::refiner::{Refiner, value_and_slope};
 use super::taylor::Line;
-use super::{Refiner, value_and_slope};
+use crate::geometry::ray::Side;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
-use crate::world::hittable::Side;
 use std::ops::Range;
 
 /// The pieces after which a ray is given up.

@@ -1,8 +1,8 @@
-//! The decisions as text.
+//! The decisions of a plan as text, each with its reason.
 
-use super::depth::Depth;
-use super::{Plan, TREE};
-use crate::render::trace::{MAX_DIST, MAX_RAYS};
+use crate::render::limits::{MAX_DIST, MAX_RAYS};
+use crate::render::plan::depth::Depth;
+use crate::render::plan::{Plan, TREE};
 use crate::scene::model::{Item, Model, Object};
 use crate::words::{count, list, short};
 use crate::world::accuracy::Accuracy;
@@ -31,12 +31,12 @@ impl fmt::Display for Decision {
     }
 }
 
-/// All decisions about a model.
-pub fn decisions(model: &Model) -> Vec<Decision> {
-    let plan = model.plan();
+/// All decisions of a plan.
+pub fn of(plan: &Plan) -> Vec<Decision> {
+    let model = plan.model;
     let decision = |subject, text| Decision { subject, text };
     let mut all = vec![
-        decision("picture", picture(&model.camera.value)),
+        decision("picture", picture(&plan.camera)),
         decision("accuracy", model.camera.value.accuracy.to_string()),
         decision("lights", lights(model)),
     ];

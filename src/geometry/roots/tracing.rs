@@ -6,9 +6,9 @@
 //! surface takes steps without end.
 
 use super::taylor::Line;
+use crate::geometry::ray::Side;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
-use crate::world::hittable::Side;
 use std::ops::Range;
 
 /// A step that counts as a hit.

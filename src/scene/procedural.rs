@@ -1,7 +1,9 @@
 //! Procedural shaders: looks of surfaces that change from place to place by a rule (the notes' `pplane`).
 
 use crate::scene::choice::{Choice, ChoiceName};
-use crate::world::hittable::Shader;
+use crate::world::body::Body;
+use crate::world::hittable::Hittable;
+use crate::world::shader::Shader;
 use glam::DVec3;
 use std::panic::Location;
 
@@ -49,6 +51,13 @@ impl ProceduralShader {
 
     fn option(&self, number: Option<i64>) -> ChoiceName {
         ChoiceName { name: self.name, number, meaning: self.meaning, place: self.place }
+    }
+}
+
+impl Body {
+    /// An object that looks as a procedural shader has it.
+    pub fn procedural(shape: impl Hittable + 'static, shader: &ProceduralShader, anchor: Anchor) -> Self {
+        Self { shape: Box::new(shape), shader: (shader.make)(anchor) }
     }
 }
 

@@ -8,11 +8,11 @@
 //! are of the first order and which shrink more slowly where a ray grazes.
 
 use crate::geometry::frame::BLUR;
+use crate::geometry::ray::{Side, Span};
+use crate::geometry::roots::{newton, twice};
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
 use crate::numeric::number::Number;
-use crate::shapes::roots::{newton, twice};
-use crate::world::hittable::{Side, Span};
 use std::ops::Range;
 
 /// The values of a function along a line: above 0 outside of something, below 0 inside.
@@ -101,7 +101,7 @@ const WAITING: usize = 64;
 ///
 /// Pieces not longer than `shortest` are not cut: a few units in the last place of the greatest numbers on the line.
 ///
-/// What bounds in f64 do not tell, the line is [asked](Line::undecided), and [`twice::asked`] counts it.
+/// What bounds in f64 do not tell, the line is [asked](Line::undecided).
 pub fn first_root(line: &impl Line, stretch: &Stretch, base: f64, within: &Span, shortest: f64) -> Found {
     let Range { start, end } = stretch.outer;
     if !(start <= end && start.is_finite() && end.is_finite()) {
@@ -298,7 +298,6 @@ impl<L: Line> Search<'_, L> {
             return Judgement::Free;
         }
         self.is_certain = false;
-        twice::count();
         let piece = Interval { low, high };
         let hidden = self.value(piece.middle()).width();
         match self.line.undecided(piece, self.within.leaves, hidden) {

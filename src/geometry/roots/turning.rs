@@ -4,10 +4,11 @@
 //! After the notes' advice to look for the minimum between two samples. It finds single silhouettes, and loses what
 //! turns more than once between two samples: ripples and thin discs.
 
+use super::newton;
+use super::refiner::{Refiner, evenly, value_and_slope};
 use super::taylor::Line;
-use super::{Refiner, evenly, newton, value_and_slope};
+use crate::geometry::ray::Side;
 use crate::numeric::dual::Dual;
-use crate::world::hittable::Side;
 use std::ops::Range;
 
 pub fn first_root(

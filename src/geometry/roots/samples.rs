@@ -4,9 +4,9 @@
 //! surface lies inside of it for less than the distance between two of them, and its two roots are lost together;
 //! and where three lie between two samples, the refiner may find the last.
 
+use super::refiner::{Refiner, evenly, sign_change};
 use super::taylor::Line;
-use super::{Refiner, evenly, sign_change};
-use crate::world::hittable::Side;
+use crate::geometry::ray::Side;
 use std::ops::Range;
 
 pub fn first_root(
