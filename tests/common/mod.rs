@@ -1,7 +1,6 @@
 //! What several tests need: the registry, scenes and decoded pictures.
 #![allow(dead_code, reason = "each test program uses a part of it")]
 
-pub mod copy;
 pub mod program;
 
 use image::RgbImage;

@@ -7,7 +7,7 @@
 //! ([`taylor`](crate::geometry::roots::taylor)), and where rounding hides what they say, twice the precision
 //! ([`twice`]). Nothing has to be tuned. A profile of which all that cannot be proven within a
 //! stated number of operations is refused, with the reason ([`NoSurface`](no_surface::NoSurface)). The rounding of a ray's own arithmetic is held
-//! by margins that are derived where they stand, and tried against the truth in `tests/truth.rs`.
+//! by margins that are derived where they stand, and tried against the truth in `tests/slow/truth.rs`.
 
 mod bracket;
 mod budget;
