@@ -40,8 +40,8 @@ build() {
         perl -0pi -e "$2" "$sources/$1"
         ! cmp -s "$1" "$sources/$1" || { echo "nothing is cut from $1" >&2; exit 1; }
     fi
-    cargo build --release --locked --quiet --manifest-path "$sources/Cargo.toml" --target-dir "$target" 2>/dev/null
-    awk -v all="$(count "$target/release/tabray" 320)" -v none="$(count "$target/release/tabray" 1x1)" \
+    cargo build --profile dist --locked --quiet --manifest-path "$sources/Cargo.toml" --target-dir "$target" 2>/dev/null
+    awk -v all="$(count "$target/dist/tabray" 320)" -v none="$(count "$target/release/tabray" 1x1)" \
         'BEGIN { print (all - none) / (320 * 240) }'
 }
 
@@ -50,6 +50,6 @@ row() { awk -v name="$1" -v of="$2" -v whole="$whole" 'BEGIN { printf "| %s | %.
 echo "| build | instructions per ray | ratio of the whole program to it |"
 echo "|---|---:|---:|"
 row "whole" "$whole"
-row "without lights" "$(build src/trace/shade.rs 's/self\.illuminate\(.*?\);//')"
-row "without mirrors" "$(build src/trace/shade.rs 's/self\.look_in_the_mirror\(.*?\);//')"
-row "without additional samples" "$(build src/trace/mod.rs 's/if camera\.samples == 1 \{/if true {/')"
+row "without lights" "$(build src/render/trace/shade.rs 's/self\.illuminate\(.*?\);//')"
+row "without mirrors" "$(build src/render/trace/shade.rs 's/self\.look_in_the_mirror\(.*?\);//')"
+row "without additional samples" "$(build src/render/trace/mod.rs 's/if camera\.samples == 1 \{/if true {/')"

@@ -1,11 +1,6 @@
 //! The camera: the viewer, and the screen in the plane z = 0 that the viewer looks through.
 
-use crate::accuracy::Accuracy;
-use crate::camera::Camera;
-use crate::entity::{Entity, Refusal};
-use crate::pparm::{LEAST_LENGTH, Pparm, Table};
-use crate::sample::{MOST, Sampler};
-use glam::{DVec2, DVec3};
+use crate::prelude::*;
 
 static PIXELDIM: Pparm<[i64; 2]> = Pparm::required("pixeldim", "the width and height of the image")
     .alias(&["pixel_dim"])
@@ -26,7 +21,7 @@ static VIEWPOINT: Pparm<DVec3> = Pparm::required("viewpoint", "the position of t
     .dumped("view_point", "\n");
 
 static SAMPLES: Pparm<i64> = Pparm::or("samples", "the number of samples per pixel, to smooth edges", 1)
-    .must("from 1 to 65536", |samples| (1..=MOST.into()).contains(samples))
+    .must("from 1 to 65536", |samples| (1..=Sampler::MOST.into()).contains(samples))
     .not_dumped();
 
 static ACCURACY: Pparm<Accuracy> =

@@ -1,18 +1,9 @@
 //! An ellipsoid: a sphere stretched along the axes.
 
 use super::sphere::{self, Sphere};
-use crate::accuracy::Accuracy;
-use crate::ball::{self, Line};
-use crate::bounds::Bounds;
-use crate::certify::{self, Enclosure, Equation, Precision};
-use crate::coincidence;
-use crate::entity::Entity;
-use crate::geometry::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
-use crate::number::Number;
-use crate::pparm::{Pparm, Row, Table};
-use crate::sight::Sight;
-use crate::twofold::{Twofold, exponent_to_one, times_power_of_two};
-use glam::DVec3;
+use crate::numeric::twofold::{exponent_to_one, times_power_of_two};
+use crate::prelude::*;
+use crate::shapes::ball::{self, Line};
 
 static SCALE: Pparm<DVec3> = Pparm::required("scale", "the scale factors along x, y and z")
     .must("positive in each dimension", |scale: &DVec3| scale.min_element() > 0.0);
@@ -50,15 +41,6 @@ impl Ellipsoid {
     fn squeezed(&self, ray: &Ray) -> (DVec3, DVec3) {
         ((ray.origin - self.ball.center) / self.scale, ray.dir / self.scale)
     }
-
-    /// Likewise in twice the precision.
-    #[inline(always)]
-    fn line(&self, ray: &Ray) -> Line {
-        let scale = |axis: usize| Twofold::from(self.scale[axis]);
-        let from = |axis: usize| Twofold::difference(ray.origin[axis], self.ball.center[axis]) / scale(axis);
-        let dir = |axis: usize| Twofold::from(ray.dir[axis]) / scale(axis);
-        Line { from: [from(0), from(1), from(2)], dir: [dir(0), dir(1), dir(2)] }
-    }
 }
 
 impl Hittable for Ellipsoid {
@@ -69,9 +51,10 @@ impl Hittable for Ellipsoid {
             let (from, dir) = self.squeezed(ray);
             return within.keep(sphere::classic(from, dir, radius));
         }
+        let line = Line::squeezed(ray, self.ball.center, self.scale);
         within.keep(match within.leaves {
-            None => ball::first_hit(&self.line(ray), radius, accuracy),
-            Some(Side::Inside) => ball::far_hit(&self.line(ray), radius, accuracy),
+            None => ball::first_hit(&line, radius, accuracy),
+            Some(Side::Inside) => ball::far_hit(&line, radius, accuracy),
             Some(Side::Outside) => MISS,
         })
     }
@@ -97,7 +80,7 @@ impl Hittable for Ellipsoid {
                 let (from, dir) = self.squeezed(ray);
                 sphere::classic(from, dir, radius)
             }
-            _ => ball::quick_hit(&self.line(ray), radius, accuracy),
+            _ => ball::quick_hit(&Line::squeezed(ray, self.ball.center, self.scale), radius, accuracy),
         };
         if distance.is_nan() { distance } else { within.keep(distance) }
     }
@@ -124,11 +107,8 @@ impl Hittable for Ellipsoid {
     }
 
     fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold> {
-        if self.ball.accuracy == Accuracy::Classic {
-            None
-        } else {
-            coincidence::distance(self, ray, distance)
-        }
+        let is_classic = self.ball.accuracy == Accuracy::Classic;
+        if is_classic { None } else { coincidence::distance(self, ray, distance) }
     }
 
     fn is_two_sided(&self) -> bool {

@@ -1,21 +1,9 @@
 //! A finite plane: a rectangle.
 
 use super::plane::{self, Plane};
-use crate::accuracy::Accuracy;
-use crate::bounds::Bounds;
-use crate::certify::{self, Enclosure, Equation, Precision};
-use crate::cpu::Cpu;
-use crate::entity::{Args, Entity, Refusal};
-use crate::geometry::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
-use crate::number::{Number, cross, dot};
-use crate::packet::Rays;
-use crate::pparm::{Derived, Pparm, Row, Table};
-use crate::rectangle;
-pub use crate::rectangle::FinitePlane;
-use crate::sight::Sight;
-use crate::twofold::Twofold;
-use crate::value::Value;
-use glam::{DMat3, DVec2, DVec3};
+use crate::prelude::*;
+use crate::shapes::rectangle;
+pub use crate::shapes::rectangle::FinitePlane;
 
 pub static DIMENSIONS: Pparm<DVec2> =
     Pparm::required("dimensions", "the size along `xdir` and perpendicular to it")
@@ -28,9 +16,8 @@ static XDIR: Pparm<DVec3> =
         .dumped("xdir", "\n");
 static PROJECTED: Derived = Derived(|args| frame(args).x_axis.to_datum().line("projected", "\n"));
 static ROTATION_ROWS: Derived = Derived(|args| {
-    let rows = frame(args).to_cols_array_2d();
-    let rows = rows.map(|[x, y, z]| format!("{:<12} {x:7.3} {y:7.3} {z:7.3}\n", ""));
-    format!("rotation matrix\n{}", rows.concat())
+    let row = |[x, y, z]: [f64; 3]| format!("{:<12} {x:7.3} {y:7.3} {z:7.3}\n", "");
+    format!("rotation matrix\n{}", frame(args).to_cols_array_2d().map(row).concat())
 });
 
 /// What planes with sides of their own take, after what a plane takes.
@@ -38,19 +25,14 @@ pub const TABLE: Table = &[&DIMENSIONS, &XDIR, &PROJECTED];
 /// The notes' rotation matrix, for the dump.
 pub const ROTATION: Table = &[&ROTATION_ROWS as &dyn Row];
 
+fn frame(args: &Attributes) -> DMat3 {
+    rectangle::frame(args.get(&plane::NORMAL), args.get(&XDIR))
+}
+
 inventory::submit! {
     Entity::shape("fplane", "a rectangle with its lower left corner at `point`", &[plane::TABLE, TABLE, ROTATION], |args| {
         Ok(Body::plain(FinitePlane::new(args)?))
     })
-}
-
-/// The directions of a rectangle's two sides and its normal, as columns, all unit vectors: the rows of the
-/// notes' rotation matrix.
-fn frame(args: &Args) -> DMat3 {
-    let normal = args.get(&plane::NORMAL).normalize();
-    let xdir = args.get(&XDIR);
-    let x = (xdir - normal.dot(xdir) * normal).normalize();
-    DMat3::from_cols(x, normal.cross(x), normal)
 }
 
 /// The directions of a rectangle's two sides.
@@ -58,8 +40,7 @@ fn frame(args: &Args) -> DMat3 {
 /// # Errors
 /// Where `xdir` is parallel to the normal but for rounding, and so points nowhere on the plane.
 pub fn sides(args: &Args) -> Result<[DVec3; 2], Refusal> {
-    let normal = args.get(&plane::NORMAL).normalize();
-    let xdir = args.get(&XDIR).normalize();
+    let (normal, xdir) = (args.get(&plane::NORMAL).normalize(), args.get(&XDIR).normalize());
     if normal.cross(xdir).length() < 1e-6 {
         return Err(Refusal {
             attribute: Some("xdir"),
@@ -67,22 +48,13 @@ pub fn sides(args: &Args) -> Result<[DVec3; 2], Refusal> {
             help: "`xdir` gives the direction of the first side; any vector that is not parallel to `normal` will do",
         });
     }
-    let DMat3 { x_axis, y_axis, .. } = frame(args);
-    Ok([x_axis, y_axis])
+    Ok([0, 1].map(|side| frame(args).col(side)))
 }
 
 impl FinitePlane {
     /// The rectangle of an entity whose table has the rows of a plane's and of this file's; refused as its sides are.
     pub fn new(args: &Args) -> Result<Self, Refusal> {
-        let (plane, dimensions) = (Plane::new(args), args.get(&DIMENSIONS));
-        let reach = plane.point.abs().max_element() + dimensions.element_sum();
-        let (given_xdir, given_sides) = (args.get(&XDIR), sides(args)?);
-        let exact_sides = rectangle::exact_sides(plane.upright, given_xdir);
-        let sides = match plane.accuracy {
-            Accuracy::Classic => given_sides,
-            _ => exact_sides.map(|side| DVec3::from(side.map(|part| part.high))),
-        };
-        Ok(Self { plane, dimensions, sides, exact_sides, given_xdir, reach })
+        Ok(Self::cut_from(Plane::new(args), args.get(&DIMENSIONS), args.get(&XDIR), sides(args)?))
     }
 }
 
@@ -95,33 +67,15 @@ impl Hittable for FinitePlane {
 
     #[inline(always)]
     fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        if self.plane.accuracy == Accuracy::Classic {
-            return Bracket::exactly(self.quick_distance(ray, within));
-        }
-        let rough = self.plane.rough(ray, within.origin_error);
-        let inside = self.inside(ray, rough.distance);
-        // A camera's direction is off by 3 units of 2^-53 in each component, which is less than half of the slack.
-        let slack = rough.error + 2.0 * self.slack(ray, rough.distance);
-        let Bracket { near, far } = self.plane.bracket(&rough, ray, within);
-        Bracket {
-            near: if inside < -slack { MISS } else { near },
-            far: if inside > slack { far } else { MISS },
+        match self.plane.accuracy {
+            Accuracy::Classic => Bracket::exactly(self.quick_distance(ray, within)),
+            _ => FinitePlane::bracket(self, ray, within),
         }
     }
 
     #[inline(always)]
     fn quick_distance(&self, ray: &Ray, within: &Span) -> f64 {
-        let distance = self.plane.quick_distance(ray, within);
-        match self.quickly_has_crossing(ray, distance) {
-            Some(is_inside) => {
-                if distance.is_nan() | is_inside {
-                    distance
-                } else {
-                    MISS
-                }
-            }
-            None => f64::NAN,
-        }
+        self.quickly_kept(ray, self.plane.quick_distance(ray, within))
     }
 
     fn distances(&self, cpu: Cpu, rays: Rays, _: Option<&[Side]>, _: (&[f64], &[f64]), out: &mut [f64]) {
@@ -178,20 +132,7 @@ impl Equation for FinitePlane {
         self.plane.value(at)
     }
 
-    /// How far inside of the four sides, each in a measure of its own: unit vectors would need more roots.
     fn kept<N: Number>(&self, at: [N; 3]) -> N {
-        let n = |of: DVec3| of.to_array().map(N::constant);
-        let (normal, xdir) = (self.plane.given_normal(), n(self.given_xdir));
-        let (square, along) = (dot(normal, normal), dot(normal, xdir));
-        let x = [0, 1, 2].map(|axis| square * xdir[axis] - along * normal[axis]);
-        let y = cross(normal, x);
-        let corner = n(self.plane.point);
-        let from_corner = [0, 1, 2].map(|axis| at[axis] - corner[axis]);
-        let inside = |side: [N; 3], length: f64| {
-            let along = dot(side, from_corner);
-            along.min(N::constant(length) * dot(side, side).sqrt() - along)
-        };
-        let [width, height] = self.dimensions.to_array();
-        self.plane.kept(at).min(inside(x, width)).min(inside(y, height))
+        self.plane.kept(at).min(self.inside_of(at))
     }
 }

@@ -1,12 +1,6 @@
 //! A heart: G. Taubin's surface of the sixth degree (1993).
 
-use crate::entity::Entity;
-use crate::frame::Frame;
-use crate::geometry::Body;
-use crate::implicit::Implicit;
-use crate::number::Number;
-use crate::pparm::{Pparm, Table};
-use glam::DVec3;
+use crate::prelude::*;
 
 static CENTER: Pparm<DVec3> =
     Pparm::required("center", "the position of the centre").alias(&["centre"]).unit("world coordinates");

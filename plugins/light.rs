@@ -1,10 +1,6 @@
 //! A light: a point that shines evenly in all directions.
 
-use crate::entity::{Args, Entity};
-use crate::geometry::Light;
-use crate::material::Rgb;
-use crate::pparm::{Pparm, Table};
-use glam::DVec3;
+use crate::prelude::*;
 
 static LOCATION: Pparm<DVec3> =
     Pparm::required("location", "the position of the light").unit("world coordinates");
@@ -33,7 +29,7 @@ pub struct PointLight {
 
 impl PointLight {
     /// The light of an entity whose table has [`TABLE`]'s rows.
-    pub fn new(args: &Args) -> Self {
+    pub fn new(args: &Attributes) -> Self {
         Self { location: args.get(&LOCATION), emissivity: args.get(&EMISSIVITY), size: args.get(&SIZE) }
     }
 }

@@ -1,9 +1,6 @@
 //! A material: how a surface answers light.
 
-use crate::entity::Entity;
-use crate::material::{Material, Rgb};
-use crate::pparm::{Pparm, Table};
-use crate::value::PerChannel;
+use crate::prelude::*;
 
 static AMBIENT: Pparm<Rgb> =
     Pparm::or("ambient", "the emission in red, green and blue, independent of lights", Rgb::ZERO);

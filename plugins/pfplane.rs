@@ -2,7 +2,7 @@
 
 use super::fplane::{self, FinitePlane};
 use super::{plane, pplane};
-use crate::entity::Entity;
+use crate::prelude::*;
 
 inventory::submit! {
     Entity::shape(

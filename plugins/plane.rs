@@ -1,18 +1,7 @@
 //! A plane: every point in two directions, without end.
 
-use crate::accuracy::Accuracy;
-use crate::bounds::{Bounds, SLACK};
-use crate::certify::{self, Enclosure, Equation, Precision};
-use crate::cpu::Cpu;
-use crate::entity::{Args, Entity};
-pub use crate::flat::Plane;
-use crate::geometry::{Body, Bracket, Hittable, Ray, Side, Span};
-use crate::number::{Number, dot};
-use crate::packet::Rays;
-use crate::pparm::{Pparm, Table};
-use crate::sight::Sight;
-use crate::twofold::Twofold;
-use glam::DVec3;
+use crate::prelude::*;
+pub use crate::shapes::Plane;
 
 pub static NORMAL: Pparm<DVec3> =
     Pparm::required("normal", "a vector perpendicular to the plane, pointing to its lit side")

@@ -1,11 +1,7 @@
 //! A procedural plane: a plane whose look changes from place to place by a rule.
 
 use super::plane::{self, Plane};
-use crate::entity::{Args, Entity};
-use crate::geometry::{Body, Hittable};
-use crate::pparm::{Pparm, Row, Table};
-use crate::shading::{Anchor, OnPlane};
-use glam::DVec3;
+use crate::prelude::*;
 
 static SHADER: Pparm<OnPlane> = Pparm::required("shader", "the procedural shader");
 

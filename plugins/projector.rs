@@ -3,12 +3,7 @@
 use super::light::{self, PointLight};
 use super::texplane::{self, Picture};
 use super::{fplane, plane};
-use crate::entity::Entity;
-use crate::geometry::{Light, Ray};
-use crate::material::Rgb;
-use crate::pparm::{Derived, Row, Table};
-use crate::value::Datum;
-use glam::DVec3;
+use crate::prelude::*;
 
 static HEADING: Derived = Derived(|_| Datum::Word(String::new()).line("projector", " \n"));
 

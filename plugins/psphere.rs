@@ -1,10 +1,7 @@
 //! A procedural sphere: a sphere whose look changes from place to place by a rule.
 
 use super::sphere::{self, Sphere};
-use crate::entity::Entity;
-use crate::geometry::Body;
-use crate::pparm::{Pparm, Row, Table};
-use crate::shading::{Anchor, OnSphere};
+use crate::prelude::*;
 
 static SHADER: Pparm<OnSphere> = Pparm::required("shader", "the procedural shader");
 

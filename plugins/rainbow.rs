@@ -1,9 +1,6 @@
 //! The notes' continuously modulated shading: colours that change with the angle around a point.
 
-use crate::geometry::Shader;
-use crate::material::{Look, Material, Rgb};
-use crate::shading::{Anchor, ProceduralShader};
-use glam::{DVec2, DVec3};
+use crate::prelude::*;
 
 inventory::submit! {
     ProceduralShader::new("rainbow", "hues around a point, independent of the material", |anchor| Box::new(Rainbow(anchor))).on_plane(1)

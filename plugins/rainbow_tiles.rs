@@ -1,10 +1,7 @@
 //! Continuous modulation combined with tiles, as the notes suggest for their third shader.
 
 use super::{rainbow, tiles};
-use crate::geometry::Shader;
-use crate::material::{Look, Material, Rgb};
-use crate::shading::{Anchor, ProceduralShader};
-use glam::DVec3;
+use crate::prelude::*;
 
 inventory::submit! {
     ProceduralShader::new("rainbow_tiles", "tiles along x and z: the material's colour and hues around a point in turn", |anchor| Box::new(RainbowTiles(anchor))).on_plane(2)

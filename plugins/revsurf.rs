@@ -1,14 +1,7 @@
 //! A surface of revolution: a line turned around an axis.
 
-use crate::accuracy::Accuracy;
-use crate::entity::{Args, Entity, Refusal};
-use crate::formula::Formula;
-use crate::frame::Frame;
-use crate::geometry::Body;
-use crate::pparm::{Pparm, Table};
-use crate::profile::{Line, Profile};
-use crate::revolution::{Classic, Finish, InFrame, Revolution};
-use glam::DVec3;
+use crate::prelude::*;
+use crate::shapes::{Classic, Finish, InFrame, Revolution};
 use std::sync::Arc;
 
 static SURFER: Pparm<Option<&'static Profile>> =
@@ -51,10 +44,10 @@ inventory::submit! {
 }
 
 /// The line that an entity names or spells out.
-fn line(args: &Args) -> Result<Line, Refusal> {
+fn line(args: &Args) -> Result<ProfileLine, Refusal> {
     match (args.get(&SURFER), args.get(&PROFILE)) {
         (Some(profile), None) => Ok(profile.line()),
-        (None, Some(formula)) => Ok(Line { radius: (*formula).clone(), slope: None }),
+        (None, Some(formula)) => Ok(ProfileLine { radius: (*formula).clone(), slope: None }),
         (Some(_), Some(_)) => Err(Refusal {
             attribute: Some("profile"),
             message: "has both a `surfer` and a `profile`".to_owned(),

@@ -1,16 +1,7 @@
 //! A sphere: every point at one distance from a centre.
 
-use crate::accuracy::Accuracy;
-use crate::ball::{self, Line};
-use crate::bounds::{Bounds, SLACK};
-use crate::certify::{self, Enclosure, Equation, Precision};
-use crate::entity::{Args, Entity};
-use crate::geometry::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
-use crate::number::Number;
-use crate::pparm::{Pparm, Table};
-use crate::sight::Sight;
-use crate::twofold::Twofold;
-use glam::DVec3;
+use crate::prelude::*;
+use crate::shapes::ball::{self, Line};
 
 static CENTER: Pparm<DVec3> =
     Pparm::required("center", "the position of the centre").alias(&["centre"]).unit("world coordinates");
@@ -45,9 +36,7 @@ impl Sphere {
     /// A ray, counted from the centre.
     #[inline(always)]
     fn line(&self, ray: &Ray) -> Line {
-        let from = |axis: usize| Twofold::difference(ray.origin[axis], self.center[axis]);
-        let dir = |axis: usize| Twofold::from(ray.dir[axis]);
-        Line { from: [from(0), from(1), from(2)], dir: [dir(0), dir(1), dir(2)] }
+        Line::new(ray, self.center)
     }
 }
 
@@ -106,11 +95,7 @@ impl Hittable for Sphere {
     }
 
     fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold> {
-        if self.accuracy == Accuracy::Classic {
-            None
-        } else {
-            crate::coincidence::distance(self, ray, distance)
-        }
+        if self.accuracy == Accuracy::Classic { None } else { coincidence::distance(self, ray, distance) }
     }
 
     fn is_two_sided(&self) -> bool {

@@ -1,12 +1,7 @@
 //! A spotlight: a light that shines into a cone.
 
 use super::light::{self, PointLight};
-use crate::entity::{Args, Entity, Refusal};
-use crate::geometry::Light;
-use crate::material::Rgb;
-use crate::pparm::{Derived, Pparm, Table};
-use crate::value::Value;
-use glam::DVec3;
+use crate::prelude::*;
 
 static POINT: Pparm<DVec3> =
     Pparm::required("point", "a point on the axis of the beam").unit("world coordinates").not_dumped();
@@ -34,7 +29,7 @@ inventory::submit! {
 }
 
 /// The unit vector along the middle of the beam; NaN where there is none.
-fn axis(args: &Args) -> DVec3 {
+fn axis(args: &Attributes) -> DVec3 {
     (args.get(&POINT) - PointLight::new(args).location).normalize()
 }
 

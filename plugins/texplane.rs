@@ -2,16 +2,7 @@
 
 use super::fplane::{self, FinitePlane};
 use super::plane;
-use crate::bounds::Bounds;
-use crate::certify::{Enclosure, Precision};
-use crate::entity::{Args, Entity, Refusal};
-use crate::geometry::{Body, Bracket, Hittable, Ray, Shader, Side, Span};
-use crate::material::{Look, Material, Rgb};
-use crate::pparm::{Pparm, Table};
-use crate::sight::Sight;
-use crate::texture::Texture;
-use crate::twofold::Twofold;
-use glam::{DVec2, DVec3};
+use crate::prelude::*;
 use std::sync::Arc;
 
 static TEXNAME: Pparm<Arc<Texture>> = Pparm::required("texname", "the texture, defined earlier in the scene");

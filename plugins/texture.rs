@@ -1,8 +1,6 @@
 //! A texture: a picture from a file.
 
-use crate::entity::Entity;
-use crate::pparm::{Pparm, Table};
-use crate::texture::Texture;
+use crate::prelude::*;
 
 static FILENAME: Pparm<String> =
     Pparm::required("filename", "a PPM or PNG file, relative to the scene's folder");

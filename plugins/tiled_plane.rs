@@ -2,11 +2,7 @@
 
 use super::fplane::{self, DIMENSIONS, sides};
 use super::plane::{self, Plane};
-use crate::entity::Entity;
-use crate::geometry::{Body, Shader};
-use crate::material::{Look, Material, Rgb};
-use crate::pparm::{Pparm, Table};
-use glam::{DVec2, DVec3};
+use crate::prelude::*;
 use std::sync::Arc;
 
 static ALTMATERIAL: Pparm<Arc<Material>> =

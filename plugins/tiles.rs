@@ -1,9 +1,6 @@
 //! The notes' tiled shading: cyan and yellow tiles half a unit wide, along x and z.
 
-use crate::geometry::Shader;
-use crate::material::{Look, Material, Rgb};
-use crate::shading::ProceduralShader;
-use glam::DVec3;
+use crate::prelude::*;
 
 inventory::submit! {
     ProceduralShader::new("tiles", "tiles along x and z: the material's colour without red and without blue in turn", |_| Box::new(Tiles)).on_plane(0)

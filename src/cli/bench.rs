@@ -1,11 +1,12 @@
 //! `tabray bench`: how fast scenes are traced on one core.
 
-use super::{Failure, cpu, input, method, print};
-use crate::bench::{Cost, Speed, scenes};
-use crate::cpu::Cpu;
-use crate::model::Model;
-use crate::registry::Registry;
-use crate::scene;
+use super::failure::{Failure, print};
+use super::{cpu, input, method};
+use crate::scene::model::Model;
+use crate::scene::reader;
+use crate::scene::registry::Registry;
+use crate::simd::cpu::Cpu;
+use crate::tools::bench::{Cost, Speed, scenes};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -47,7 +48,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     }
     if args.scenes.is_empty() {
         for (name, scene) in scenes::all() {
-            let built = scene::build(registry, scene).map_err(Failure::Scene)?;
+            let built = reader::build(registry, scene).map_err(Failure::Scene)?;
             models.push((name.to_owned(), built.model));
         }
     }

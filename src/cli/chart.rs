@@ -1,15 +1,15 @@
 //! `tabray chart`: what each choice costs in a scene, and how wrong it is.
 
+use super::failure::{Failure, print};
 use super::input::{self, Source};
-use super::output::{self, Output};
+use super::output::{self, Output, finished};
 use super::progress::Progress;
-use super::render::finished;
-use super::{Failure, interrupt, messages, print};
-use crate::accuracy::Accuracy;
-use crate::chart::{self, Chart};
-use crate::choice::Choice;
-use crate::model::Model;
-use crate::registry::Registry;
+use super::{interrupt, messages};
+use crate::scene::choice::Choice;
+use crate::scene::model::Model;
+use crate::scene::registry::Registry;
+use crate::tools::chart::{self, Chart};
+use crate::world::accuracy::Accuracy;
 use std::io::{self, BufWriter, Write};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};

@@ -1,7 +1,8 @@
 //! `tabray check`: the faults of scenes, and nothing else.
 
-use super::{Failure, input, messages, tell};
-use crate::registry::Registry;
+use super::failure::{Failure, tell};
+use super::{input, messages};
+use crate::scene::registry::Registry;
 use std::path::PathBuf;
 
 /// Check scenes for errors

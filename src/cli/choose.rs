@@ -1,12 +1,13 @@
 //! `tabray choose`: accuracy and samples for an error or a time.
 
 use super::chart::{Work, all_accuracies};
+use super::failure::{Failure, print};
 use super::input::{self, Source};
-use super::{Failure, interrupt, print, program};
-use crate::accuracy::Accuracy;
-use crate::chart::{self, Estimate};
-use crate::choice::Choice;
-use crate::registry::Registry;
+use super::{interrupt, program};
+use crate::scene::choice::Choice;
+use crate::scene::registry::Registry;
+use crate::tools::chart::{self, Estimate};
+use crate::world::accuracy::Accuracy;
 use clap::ArgGroup;
 use std::fmt::Write;
 use std::io;

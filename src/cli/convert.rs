@@ -1,12 +1,13 @@
 //! `tabray convert`: a scene in the other spelling.
 
+use super::failure::{Failure, print};
 use super::output::Output;
-use super::{Failure, input, messages, print};
-use crate::dump;
-use crate::model::Model;
-use crate::registry::Registry;
-use crate::scene;
-use crate::syntax::Syntax;
+use super::{input, messages};
+use crate::scene::dump;
+use crate::scene::model::Model;
+use crate::scene::reader;
+use crate::scene::registry::Registry;
+use crate::scene::syntax::Syntax;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -71,7 +72,7 @@ fn syntax(args: &Args) -> Result<Syntax, Failure> {
 /// Reads the copy as from its place, where it may not find the files that the scene names.
 fn is_the_same_scene(registry: &Registry, model: &Model, text: &str, path: &Path) -> Result<(), Failure> {
     let folder = path.parent().unwrap_or(path);
-    match scene::read(registry, &path.display().to_string(), folder, text.as_bytes(), None) {
+    match reader::read(registry, &path.display().to_string(), folder, text.as_bytes(), None) {
         Ok(copy) if dump::scene(&copy.model, Syntax::Notes) == dump::scene(model, Syntax::Notes) => Ok(()),
         Ok(_) => {
             Err(Failure::Failed(format!("the copy in `{}` would not be the same scene", path.display())))

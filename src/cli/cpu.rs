@@ -1,7 +1,7 @@
 //! `--cpu`: which of the processor's instructions are used.
 
-use super::Failure;
-use crate::cpu::{Cpu, Level};
+use super::failure::Failure;
+use crate::simd::cpu::{Cpu, Level};
 
 #[derive(clap::Args)]
 #[group(id = "instructions")]

@@ -1,9 +1,10 @@
 //! `tabray dump`: a scene as the program understands it.
 
-use super::{Failure, input, print};
-use crate::dump;
-use crate::registry::Registry;
-use crate::syntax::Syntax;
+use super::failure::{Failure, print};
+use super::input;
+use crate::scene::dump;
+use crate::scene::registry::Registry;
+use crate::scene::syntax::Syntax;
 use std::path::PathBuf;
 
 /// Print a scene as the program understands it

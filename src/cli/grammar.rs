@@ -1,8 +1,8 @@
 //! `tabray grammar`: what editors need to colour scenes in the notes' spelling.
 
-use super::{Failure, print};
-use crate::grammar;
-use crate::registry::Registry;
+use super::failure::{Failure, print};
+use crate::scene::grammar;
+use crate::scene::registry::Registry;
 
 /// Print a TextMate grammar of scenes, for editors
 #[derive(clap::Args)]

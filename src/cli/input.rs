@@ -1,11 +1,12 @@
 //! Reading scenes from files and from standard input.
 
-use super::{Failure, messages};
-use crate::accuracy::Accuracy;
-use crate::model::Model;
-use crate::registry::Registry;
-use crate::scene::{self, Chosen, Loaded, Report};
+use super::failure::Failure;
+use super::messages;
+use crate::scene::model::Model;
+use crate::scene::reader::{self, Chosen, Loaded, Report};
+use crate::scene::registry::Registry;
 use crate::words;
+use crate::world::accuracy::Accuracy;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -56,7 +57,7 @@ impl Source {
 
     /// As [`load`](Self::load), with a say in what its accuracy is where it has none of its own.
     pub fn load_by(&self, registry: &Registry, accuracy: Chosen) -> Result<Loaded, Report> {
-        scene::read_by(registry, &self.name, &self.folder, &self.bytes, accuracy)
+        reader::read_by(registry, &self.name, &self.folder, &self.bytes, accuracy)
     }
 }
 

@@ -1,12 +1,13 @@
 //! `tabray list`: the entity types and their attributes, from their tables.
 
-use super::{Failure, print, program};
-use crate::entity::Entity;
-use crate::pparm::Attribute;
-use crate::reference;
-use crate::registry::Registry;
-use crate::tables;
-use crate::value::Datum;
+use super::failure::{Failure, print};
+use super::program;
+use crate::scene::entity::Entity;
+use crate::scene::pparm::Attribute;
+use crate::scene::reference;
+use crate::scene::registry::Registry;
+use crate::scene::tables;
+use crate::scene::value::Datum;
 
 /// List the entity types, or the attributes of one
 #[derive(clap::Args)]

@@ -1,7 +1,7 @@
 //! `--method` and `--accuracy`: how exactly a scene is traced, whatever it says itself.
 
-use super::Failure;
-use crate::accuracy::Accuracy;
+use super::failure::Failure;
+use crate::world::accuracy::Accuracy;
 
 #[derive(clap::Args)]
 #[group(id = "how exactly")]

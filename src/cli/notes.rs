@@ -1,18 +1,20 @@
 //! Without a command: the notes' program, a filter from a scene to its dump and its picture.
 
+use super::failure::Failure;
 use super::input::{self, Source};
+use super::interrupt;
 use super::job::Job;
 use super::output::Output;
 use super::size::Part;
 use super::stop::Stop;
-use super::{Failure, interrupt};
-use crate::accuracy::Accuracy;
-use crate::dump;
-use crate::picture::Format;
-use crate::registry::Registry;
-use crate::render::Renderer;
-use crate::scene::Chosen;
-use crate::tiles::BAND;
+use crate::output::picture::Format;
+use crate::render::plan::Plan;
+use crate::render::renderer::Renderer;
+use crate::render::tiles::BAND;
+use crate::scene::dump;
+use crate::scene::reader::Chosen;
+use crate::scene::registry::Registry;
+use crate::world::accuracy::Accuracy;
 use std::io::Write;
 use std::path::Path;
 
@@ -25,7 +27,7 @@ pub fn run(registry: &Registry) -> Result<(), Failure> {
     interrupt::catch()?;
     let _ = write!(std::io::stderr(), "{}", dump::notes(&model));
     let job = Job {
-        model: &model,
+        plan: &Plan::new(&model),
         part: &Part::whole(&model.camera.value),
         renderer: &Renderer::new(0)?,
         format: Format::Ppm,

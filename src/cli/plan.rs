@@ -1,9 +1,11 @@
 //! `tabray plan`: what a scene needs, and why.
 
-use super::{Failure, input, method, print};
-use crate::cpu::Cpu;
-use crate::plan::{Decision, Plan};
-use crate::registry::Registry;
+use super::failure::{Failure, print};
+use super::{input, method};
+use crate::render::decisions::{self, Decision};
+use crate::render::plan::Plan;
+use crate::scene::registry::Registry;
+use crate::simd::cpu::Cpu;
 use std::path::PathBuf;
 
 /// Print how a scene would be rendered, each decision with its reason
@@ -20,7 +22,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let best = format!("{}, the highest level of this machine; the image is the same with any", Cpu::best());
     let cpu = Decision { subject: "instructions", text: best };
     print(
-        &Plan::decisions(&model)
+        &decisions::of(&Plan::new(&model))
             .iter()
             .chain([&cpu])
             .map(|decision| format!("{decision}\n"))

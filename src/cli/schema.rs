@@ -1,8 +1,8 @@
 //! `tabray schema`: what editors need to check and complete scenes in TOML.
 
-use super::{Failure, print};
-use crate::registry::Registry;
-use crate::schema;
+use super::failure::{Failure, print};
+use crate::scene::registry::Registry;
+use crate::scene::schema;
 
 /// Print a JSON Schema of scenes in TOML, for editors
 #[derive(clap::Args)]

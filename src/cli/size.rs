@@ -1,7 +1,7 @@
 //! `--size`, `--quick` and `--crop`: how large the picture is, and which part of it is made.
 
-use super::Failure;
-use crate::camera::Camera;
+use super::failure::Failure;
+use crate::world::camera::Camera;
 use std::ops::Range;
 
 /// What `pixeldim` allows each way.

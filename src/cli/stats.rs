@@ -1,9 +1,9 @@
 //! `--stats`: what a picture took, in rays, tests, time and memory.
 
 use super::memory;
-use crate::model::Model;
-use crate::tally::{Cuts, Tally};
-use crate::watch::Kind;
+use crate::render::tally::{Cuts, Tally};
+use crate::render::watch::Kind;
+use crate::scene::model::Model;
 use crate::words::short;
 use serde_json::json;
 use std::cell::Cell;

@@ -1,7 +1,8 @@
 //! When a render stops before its picture is finished: at an interruption, or at a limit of time or memory.
 
-use super::{Failure, interrupt, memory, messages};
-use crate::tiles::{BAND, TILE};
+use super::failure::Failure;
+use super::{interrupt, memory, messages};
+use crate::render::tiles::{BAND, TILE};
 use crate::words;
 use bytesize::ByteSize;
 use std::fmt;

@@ -6,15 +6,17 @@ mod events;
 mod files;
 mod frame;
 
+use super::failure::Failure;
 use super::serve::Server;
-use super::{Failure, input, interrupt, messages, method};
-use crate::accuracy::Accuracy;
-use crate::model::Model;
-use crate::progressive;
-use crate::registry::Registry;
-use crate::render::Renderer;
-use crate::scene::{self, Loaded};
+use super::{input, interrupt, messages, method};
+use crate::render::plan::Plan;
+use crate::render::progressive;
+use crate::render::renderer::Renderer;
+use crate::scene::model::Model;
+use crate::scene::reader::{self, Loaded};
+use crate::scene::registry::Registry;
 use crate::words;
+use crate::world::accuracy::Accuracy;
 use board::Board;
 use files::Files;
 use frame::{Frame, lines};
@@ -141,7 +143,7 @@ fn painter(board: Arc<Board>) -> Result<Sender<Arc<Frame>>, Failure> {
         for frame in frames {
             let start = Instant::now();
             let part = |area, colours: Vec<_>| board.add(&frame, events::part(&frame, &area, &colours));
-            let painted = progressive::render(&renderer, &frame.model, part, || frame.check());
+            let painted = progressive::render(&renderer, &Plan::new(&frame.model), part, || frame.check());
             if painted.is_continue() {
                 board.add(&frame, events::done(&frame, start.elapsed()));
             }
@@ -194,7 +196,7 @@ impl Watched<'_> {
         let text = String::from_utf8_lossy(bytes);
         let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
         let folder = self.path.parent().unwrap_or(&self.path);
-        let read = scene::read(self.registry, &name, folder, bytes, self.accuracy);
+        let read = reader::read(self.registry, &name, folder, bytes, self.accuracy);
         let report = read.as_ref().map_or_else(|report| report, |loaded| &loaded.warnings);
         self.named = report.files().to_vec();
         files.watch(self.named.iter().chain([&self.path]))?;

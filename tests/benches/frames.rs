@@ -1,12 +1,10 @@
 //! `cargo bench --bench frames`: whole frames without files being written, on one core and on two, and what a file adds.
 
 use divan::{Bencher, black_box, counter::ItemsCount};
-use tabray::bench::scenes;
-use tabray::model::Model;
-use tabray::picture::{Compression, Format};
-use tabray::registry::Registry;
-use tabray::render::Renderer;
-use tabray::scene;
+use tabray::output::{Compression, Format};
+use tabray::render::{Plan, Renderer};
+use tabray::scene::{self, Model, Registry};
+use tabray::tools::bench::scenes;
 
 fn main() {
     divan::main();
@@ -28,15 +26,16 @@ fn model(name: &str) -> Model {
 #[divan::bench(args = SCENES, consts = [1, 2])]
 fn frame<const THREADS: usize>(bencher: Bencher, name: &str) {
     let (renderer, model) = (Renderer::new(THREADS).expect("threads"), model(name));
-    let [width, height] = model.camera.value.pixels;
-    bencher.counter(ItemsCount::new(width * height)).bench_local(|| renderer.picture(&model));
+    let plan = Plan::new(&model);
+    let [width, height] = plan.camera.pixels;
+    bencher.counter(ItemsCount::new(width * height)).bench_local(|| renderer.picture(&plan));
 }
 
 /// A PNG or a PPM of the first scene, in memory.
 #[divan::bench(args = ["ppm", "png fast", "png default", "png best"])]
 fn encode(bencher: Bencher, format: &str) {
     let model = model(SCENES[0]);
-    let picture = Renderer::new(0).expect("threads").picture(&model);
+    let picture = Renderer::new(0).expect("threads").picture(&Plan::new(&model));
     let format = match format {
         "ppm" => Format::Ppm,
         "png fast" => Format::Png(Compression::Fast),

@@ -5,12 +5,9 @@
 use divan::{Bencher, black_box, counter::ItemsCount};
 use std::fs;
 use std::path::Path;
-use tabray::cpu::Cpu;
-use tabray::geometry::{MISS, Ray, Span};
-use tabray::model::Model;
-use tabray::packet::{Nearest, Rays, Vectors};
-use tabray::registry::Registry;
-use tabray::scene;
+use tabray::geometry::{MISS, Nearest, Ray, Rays, Span};
+use tabray::scene::{self, Model, Registry};
+use tabray::simd::{Cpu, Vectors};
 
 /// The rays of a packet.
 const WIDE: usize = 64;

@@ -7,7 +7,7 @@ pub mod revolution;
 pub mod shapes;
 pub mod tally;
 
-use tabray::twofold::Twofold;
+use tabray::numeric::twofold::Twofold;
 
 /// Where a ray first meets a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]

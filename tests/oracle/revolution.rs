@@ -6,12 +6,8 @@
 
 use super::{Crossings, Hit, Truth};
 use glam::DVec3;
-use tabray::dual::Dual;
-use tabray::formula::Formula;
 use tabray::geometry::Ray;
-use tabray::interval::Interval;
-use tabray::number::Number;
-use tabray::twofold::Twofold;
+use tabray::numeric::{Dual, Formula, Interval, Number, twofold::Twofold};
 
 /// A line x = g(y) turned around the y axis through a base. Where g is below 0 there is nothing.
 pub struct Revolution {

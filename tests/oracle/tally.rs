@@ -3,7 +3,7 @@
 use super::{Hit, Truth};
 use std::fmt;
 use tabray::geometry::MISS;
-use tabray::twofold::Twofold;
+use tabray::numeric::twofold::Twofold;
 
 /// The distance from one number to the next.
 pub fn ulp(number: f64) -> f64 {

@@ -8,5 +8,5 @@ fn main() -> std::process::ExitCode {
 
 #[test]
 fn every_plugin_keeps_its_contract() {
-    tabray::contract::assert_kept();
+    tabray::tools::contract::assert_kept();
 }

@@ -1,12 +1,6 @@
 //! A tangle: a closed quartic surface, a cube with a hole in each side.
 
-use tabray::entity::Entity;
-use tabray::frame::Frame;
-use tabray::geometry::Body;
-use tabray::glam::DVec3;
-use tabray::implicit::Implicit;
-use tabray::number::Number;
-use tabray::pparm::{Pparm, Table};
+use tabray::prelude::*;
 
 static CENTER: Pparm<DVec3> = Pparm::required("center", "the position of the centre").unit("world coordinates");
 static SIZE: Pparm<f64> = Pparm::required("size", "the distance from the centre to the sides")
@@ -15,7 +9,7 @@ static SIZE: Pparm<f64> = Pparm::required("size", "the distance from the centre 
 
 const TABLE: Table = &[&CENTER, &SIZE];
 
-tabray::inventory::submit! {
+inventory::submit! {
     Entity::shape("tangle", "a cube with holes through its centre", &[TABLE], |args| {
         Ok(Body::implicit(Tangle { size: args.get(&SIZE) }, Frame::at(args.get(&CENTER))))
     })

@@ -3,8 +3,8 @@
 mod plugin;
 mod scene;
 
-use super::Failure;
-use crate::registry::Registry;
+use super::failure::Failure;
+use crate::scene::registry::Registry;
 
 /// Write a scene or a plugin to start from
 #[derive(clap::Args)]

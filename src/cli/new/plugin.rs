@@ -1,10 +1,11 @@
 //! `tabray new plugin`: a plugin that works, and its scenes.
 
-use crate::choice::Choice;
-use crate::cli::{Failure, messages, output};
-use crate::profile::Profile;
-use crate::registry::Registry;
-use crate::shading::OnPlane;
+use crate::cli::failure::Failure;
+use crate::cli::{messages, output};
+use crate::scene::choice::Choice;
+use crate::scene::procedural::OnPlane;
+use crate::scene::profile::Profile;
+use crate::scene::registry::Registry;
 use std::fs;
 use std::path::Path;
 use toml::de::DeTable;

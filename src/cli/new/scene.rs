@@ -1,7 +1,8 @@
 //! `tabray new scene`: a scene that explains itself.
 
-use crate::cli::{Failure, messages, output, program};
-use crate::syntax::Syntax;
+use crate::cli::failure::Failure;
+use crate::cli::{messages, output, program};
+use crate::scene::syntax::Syntax;
 use std::path::PathBuf;
 
 /// Write a commented scene, ready to render

@@ -1,9 +1,9 @@
 //! What the program tells a page: server-sent events, each a name and data in one line.
 
 use super::frame::Frame;
-use crate::material::Rgb;
-use crate::picture::to_byte;
-use crate::progressive::Area;
+use crate::render::bytes::to_byte;
+use crate::render::progressive::Area;
+use crate::world::material::Rgb;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use hyper::body::Bytes;

@@ -1,11 +1,7 @@
 //! A template: a light with a shade, which shines downward. Describe it here.
 
 use super::light::{self, PointLight};
-use crate::entity::Entity;
-use crate::geometry::Light;
-use crate::material::Rgb;
-use crate::pparm::{Pparm, Table};
-use glam::DVec3;
+use crate::prelude::*;
 
 // Each attribute has a name, a meaning, a unit and a rule. One made with `required` must be given, one made with `or`
 // has a default. The parser, its messages and the reference are made from these descriptions.

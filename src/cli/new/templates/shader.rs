@@ -1,9 +1,6 @@
 //! A template: rings. Describe it here.
 
-use crate::geometry::Shader;
-use crate::material::{Material, Rgb};
-use crate::shading::{Anchor, ProceduralShader};
-use glam::DVec3;
+use crate::prelude::*;
 
 // Its name in scenes, its meaning, and how it is made for one object.
 inventory::submit! {

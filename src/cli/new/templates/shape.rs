@@ -1,12 +1,6 @@
 //! A template: a cube with rounded edges. Describe it here, and say where its formula comes from.
 
-use crate::entity::Entity;
-use crate::frame::Frame;
-use crate::geometry::Body;
-use crate::implicit::Implicit;
-use crate::number::Number;
-use crate::pparm::{Pparm, Table};
-use glam::DVec3;
+use crate::prelude::*;
 
 // Each attribute has a name, a meaning, a unit and a rule. One made with `required` must be given, one made with `or`
 // has a default. The parser, its messages and the reference are made from these descriptions.

@@ -1,0 +1,239 @@
+//! Numbers that carry their derivative along (automatic differentiation, forward).
+
+use crate::numeric::number::Number;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A number and its derivative. A dual number of dual numbers carries the second derivative, too.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dual<N = f64> {
+    /// The number.
+    pub value: N,
+    /// How fast it changes with the variable.
+    pub slope: N,
+}
+
+impl<N: Number> Dual<N> {
+    /// The variable itself.
+    #[inline(always)]
+    pub fn variable(value: N) -> Self {
+        Self { value, slope: N::constant(1.0) }
+    }
+
+    /// A number that does not depend on the variable.
+    #[inline(always)]
+    pub fn fixed(value: N) -> Self {
+        Self { value, slope: N::constant(0.0) }
+    }
+
+    /// A function of it, by the function's value and derivative there.
+    #[inline(always)]
+    fn chain(self, value: N, derivative: N) -> Self {
+        Self { value, slope: derivative * self.slope }
+    }
+}
+
+impl<N: Number> Dual<Dual<N>> {
+    /// The variable, for its functions' first and second derivatives.
+    #[inline(always)]
+    pub fn variable_twice(value: N) -> Self {
+        Self::variable(Dual::variable(value))
+    }
+
+    /// A number that does not depend on the variable.
+    #[inline(always)]
+    pub fn fixed_twice(value: N) -> Self {
+        Self::fixed(Dual::fixed(value))
+    }
+
+    /// The first derivative.
+    #[inline(always)]
+    pub fn first(&self) -> N {
+        self.value.slope
+    }
+
+    /// The second derivative.
+    #[inline(always)]
+    pub fn second(&self) -> N {
+        self.slope.slope
+    }
+}
+
+impl<N: Number> Add for Dual<N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self { value: self.value + other.value, slope: self.slope + other.slope }
+    }
+}
+
+impl<N: Number> Sub for Dual<N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self { value: self.value - other.value, slope: self.slope - other.slope }
+    }
+}
+
+impl<N: Number> Mul for Dual<N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Self { value: self.value * other.value, slope: self.value * other.slope + self.slope * other.value }
+    }
+}
+
+impl<N: Number> Div for Dual<N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        let value = self.value / other.value;
+        Self { value, slope: (self.slope - value * other.slope) / other.value }
+    }
+}
+
+impl<N: Number> Neg for Dual<N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self { value: -self.value, slope: -self.slope }
+    }
+}
+
+impl<N: Number> Number for Dual<N> {
+    #[inline(always)]
+    fn constant(value: f64) -> Self {
+        Self { value: N::constant(value), slope: N::constant(0.0) }
+    }
+
+    #[inline(always)]
+    fn about(value: f64, error: f64) -> Self {
+        Self { value: N::about(value, error), slope: N::constant(0.0) }
+    }
+
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        let (sin, cos) = self.value.sin_cos();
+        (self.chain(sin, cos), self.chain(cos, -sin))
+    }
+
+    fn tan(self) -> Self {
+        let tan = self.value.tan();
+        self.chain(tan, N::constant(1.0) + tan.powi(2))
+    }
+
+    fn exp(self) -> Self {
+        let exp = self.value.exp();
+        self.chain(exp, exp)
+    }
+
+    fn ln(self) -> Self {
+        self.chain(self.value.ln(), N::constant(1.0) / self.value)
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        let root = self.value.sqrt();
+        self.chain(root, N::constant(0.5) * self.value.step() / root)
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        let sign = N::constant(2.0) * self.value.step() - N::constant(1.0);
+        self.chain(self.value.abs(), sign)
+    }
+
+    #[inline(always)]
+    fn floor(self) -> Self {
+        self.chain(self.value.floor(), self.value.jump())
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        -(-self).max(-other)
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        let own = (self.value - other.value).step();
+        let slope = own * self.slope + (N::constant(1.0) - own) * other.slope;
+        Self { value: self.value.max(other.value), slope }
+    }
+
+    fn pow(self, exponent: Self) -> Self {
+        let value = self.value.pow(exponent.value);
+        let by_base = exponent.value * self.value.pow(exponent.value - N::constant(1.0));
+        // The exponent is mostly a constant; then the base may be 0 or less.
+        let by_exponent = if exponent.slope.is_zero() { N::constant(0.0) } else { value * self.value.ln() };
+        Self { value, slope: by_base * self.slope + by_exponent * exponent.slope }
+    }
+
+    #[inline(always)]
+    fn powi(self, exponent: i32) -> Self {
+        match exponent {
+            0 => return Self::constant(1.0),
+            1 => return self,
+            2 => return self.chain(self.value.powi(2), self.value + self.value),
+            _ => {}
+        }
+        let derivative = N::constant(f64::from(exponent)) * self.value.powi(exponent - 1);
+        self.chain(self.value.powi(exponent), derivative)
+    }
+
+    #[inline(always)]
+    fn step(self) -> Self {
+        self.chain(self.value.step(), self.value.kink())
+    }
+
+    #[inline(always)]
+    fn kink(self) -> Self {
+        let kink = self.value.kink();
+        self.chain(kink, kink)
+    }
+
+    #[inline(always)]
+    fn jump(self) -> Self {
+        let jump = self.value.jump();
+        self.chain(jump, jump)
+    }
+
+    #[inline(always)]
+    fn is_zero(self) -> bool {
+        self.value.is_zero() && self.slope.is_zero()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cube_and_root<N: Number>(x: N) -> N {
+        x.powi(3) - x.sqrt() * x.exp() + x.ln().sin() / x.tan() + x.cos().abs() + x.pow(N::constant(1.5))
+    }
+
+    #[test]
+    fn derivatives_are_those_of_small_differences() {
+        for x in [0.3, 1.1, 2.5, 4.0] {
+            let Dual { value, slope } = cube_and_root(Dual::variable(x));
+            let twice = cube_and_root(Dual::variable_twice(x));
+            let step = 1e-5;
+            let (before, after) = (cube_and_root(x - step), cube_and_root(x + step));
+            assert_eq!(value, cube_and_root(x));
+            assert!((slope - (after - before) / (2.0 * step)).abs() < 1e-7 * slope.abs().max(1.0));
+            assert_eq!(twice.first(), slope);
+            let second = (after - 2.0 * value + before) / (step * step);
+            assert!((twice.second() - second).abs() < 1e-3 * second.abs().max(1.0), "{second} {twice:?}");
+        }
+    }
+
+    #[test]
+    fn a_power_of_the_variable_may_have_any_base_that_it_is_defined_for() {
+        let y = Dual::variable(0.0);
+        assert_eq!(y.pow(Dual::constant(2.0)), Dual { value: 0.0, slope: 0.0 });
+        assert_eq!(Dual::variable(-2.0).powi(3), Dual { value: -8.0, slope: 12.0 });
+    }
+}

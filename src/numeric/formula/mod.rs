@@ -1,0 +1,240 @@
+//! Formulas in y, as a scene or a profile plugin writes them: `2 + sin(y)`.
+
+mod parser;
+mod step;
+
+pub use parser::FormulaFault;
+
+use crate::numeric::dual::Dual;
+use crate::numeric::number::Number;
+use crate::numeric::octet::Octet;
+use crate::simd::soa::STEP;
+use std::fmt;
+use step::{DEPTH, Function, Step};
+
+/// A formula in y, ready to be evaluated with any [`Number`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Formula {
+    text: String,
+    /// The operations in the order in which they are done: operands first.
+    steps: Vec<Step>,
+    /// The most values that wait for their operation at one time.
+    needs: usize,
+    /// Whether it can be done for eight y at once.
+    is_plain: bool,
+}
+
+/// The values that wait in most formulas.
+const FEW: usize = 4;
+
+impl Formula {
+    /// Reads a formula.
+    ///
+    /// # Errors
+    /// The first place where the text is none.
+    pub fn parse(text: &str) -> Result<Self, FormulaFault> {
+        Ok(Self::new(text.to_owned(), parser::parse(text)?))
+    }
+
+    /// The square of a formula. That of a root has no root any more: where a sphere's profile ends, its slope is
+    /// without end, and that of its square is not.
+    pub fn squared(&self) -> Self {
+        let mut steps = self.steps.clone();
+        match steps.last() {
+            Some(Step::Call(Function::Sqrt)) => {
+                steps.pop();
+            }
+            _ => steps.push(Step::Powi(2)),
+        }
+        Self::new(format!("({})^2", self.text), steps)
+    }
+
+    fn new(text: String, steps: Vec<Step>) -> Self {
+        let needs = needs(&steps);
+        // What a general power's slope is takes more than arithmetic.
+        let is_plain = needs <= FEW && !steps.contains(&Step::Call(Function::Pow));
+        Self { text, steps, needs, is_plain }
+    }
+
+    /// Its value at y.
+    #[inline(always)]
+    pub fn at<N: Number>(&self, y: N) -> N {
+        // Most formulas are small, and so is then what must be made ready for them.
+        if self.needs <= FEW { self.run::<N, FEW>(y) } else { self.run::<N, DEPTH>(y) }
+    }
+
+    /// How many operations one evaluation takes, a function of `libm` counted as eight.
+    pub fn cost(&self) -> u64 {
+        let cost = |step: &Step| match step {
+            Step::Call(Function::Abs | Function::Floor | Function::Min | Function::Max) => 1,
+            Step::Call(Function::Pow) => 24,
+            Step::Call(_) => 8,
+            Step::Powi(exponent) => u64::from(exponent.unsigned_abs().max(1)),
+            _ => 1,
+        };
+        self.steps.iter().map(cost).sum()
+    }
+
+    fn run<N: Number, const ROOM: usize>(&self, y: N) -> N {
+        self.done::<N, ROOM>(y)
+    }
+
+    /// Its values and slopes at eight y, for kernels.
+    #[inline(always)]
+    pub fn at_eight(&self, y: [f64; STEP]) -> Dual<Octet> {
+        if self.is_plain {
+            return self.done::<_, FEW>(Dual::variable(Octet(y)));
+        }
+        let (mut value, mut slope) = ([0.0; STEP], [0.0; STEP]);
+        for lane in 0..STEP {
+            Dual { value: value[lane], slope: slope[lane] } = self.at(Dual::variable(y[lane]));
+        }
+        Dual { value: Octet(value), slope: Octet(slope) }
+    }
+
+    #[inline(always)]
+    fn done<N: Number, const ROOM: usize>(&self, y: N) -> N {
+        let mut stack = [y; ROOM];
+        let mut top = 0_usize;
+        for step in &self.steps {
+            // The parser has seen to it that operands are there and that they fit.
+            let (a, b) = (stack[top.saturating_sub(2)], stack[top.saturating_sub(1)]);
+            let (used, value) = match *step {
+                Step::Y => (0, y),
+                Step::Number(number) => (0, N::constant(number)),
+                Step::Neg => (1, -b),
+                Step::Powi(exponent) => (1, b.powi(exponent)),
+                Step::Add => (2, a + b),
+                Step::Sub => (2, a - b),
+                Step::Mul => (2, a * b),
+                Step::Div => (2, a / b),
+                Step::Call(Function::Sin) => (1, b.sin()),
+                Step::Call(Function::Cos) => (1, b.cos()),
+                Step::Call(Function::Tan) => (1, b.tan()),
+                Step::Call(Function::Exp) => (1, b.exp()),
+                Step::Call(Function::Ln) => (1, b.ln()),
+                Step::Call(Function::Sqrt) => (1, b.sqrt()),
+                Step::Call(Function::Abs) => (1, b.abs()),
+                Step::Call(Function::Floor) => (1, b.floor()),
+                Step::Call(Function::Min) => (2, a.min(b)),
+                Step::Call(Function::Max) => (2, a.max(b)),
+                Step::Call(Function::Pow) => (2, a.pow(b)),
+            };
+            top = top - used + 1;
+            stack[top - 1] = value;
+        }
+        stack[0]
+    }
+}
+
+/// The most values that wait at one time while these operations are done.
+fn needs(steps: &[Step]) -> usize {
+    let mut waiting = 0_usize;
+    let after = steps.iter().map(|step| {
+        let used = match step {
+            Step::Y | Step::Number(_) => 0,
+            Step::Neg | Step::Powi(_) => 1,
+            Step::Add | Step::Sub | Step::Mul | Step::Div => 2,
+            Step::Call(Function::Min | Function::Max | Function::Pow) => 2,
+            Step::Call(_) => 1,
+        };
+        waiting = waiting + 1 - used.min(waiting);
+        waiting
+    });
+    after.max().unwrap_or(1)
+}
+
+/// The text that it was read from.
+impl fmt::Display for Formula {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(&self.text)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    fn value(text: &str, y: f64) -> f64 {
+        Formula::parse(text).unwrap_or_else(|fault| panic!("{text}: {fault:?}")).at(y)
+    }
+
+    #[test]
+    fn formulas_mean_what_they_say() {
+        for (text, y, expected) in [
+            ("2 + sin(y)", 0.0, 2.0),
+            ("-4/6 * (y - 6)", 0.0, 4.0),
+            ("2 - 3 - 4", 0.0, -5.0),
+            ("2 / 4 / 2", 0.0, 0.25),
+            ("-y^2", 3.0, -9.0),
+            ("2^-1", 0.0, 0.5),
+            ("2^3^2", 0.0, 512.0),
+            ("y^0.5", 9.0, 3.0),
+            ("min(y, 2) * max(y, 2)", 5.0, 10.0),
+            ("abs(-y) + sqrt(16) + exp(0) + ln(1) + cos(0) + tan(0)", 2.0, 8.0),
+            ("1e-3 + .5 + 2.", 0.0, 2.501),
+            ("pi", 0.0, PI),
+            ("--y", 2.0, 2.0),
+        ] {
+            assert_eq!(value(text, y), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn faults_are_marked_where_they_are() {
+        for (text, place, message) in [
+            ("2 + sni(y)", 4..7, "unknown name `sni` in a formula"),
+            ("2 sin(y)", 2..3, "expected an operator"),
+            ("2 + ", 4..4, "expected a value"),
+            ("", 0..0, "expected a value"),
+            ("(2 + y", 0..1, "unclosed `(`"),
+            ("2 + y)", 5..6, "unmatched `)`"),
+            ("sin y", 0..3, "`sin` needs its argument in parentheses"),
+            ("min(y)", 0..3, "`min` takes 2 values, separated by commas"),
+            ("2 * 1.2.3", 4..9, "`1.2.3` is not a number"),
+            ("2 * 1e999", 4..9, "`1e999` is not a number"),
+            ("ü", 0..2, "unknown name `ü` in a formula"),
+        ] {
+            let fault = Formula::parse(text).expect_err(text);
+            assert_eq!((fault.place, fault.message.as_str()), (place, message), "{text}");
+        }
+    }
+
+    #[test]
+    fn deep_nesting_is_refused_and_long_formulas_are_not() {
+        assert!(Formula::parse(&format!("{}y{}", "(".repeat(100_000), ")".repeat(100_000))).is_err());
+        assert!(Formula::parse(&"-".repeat(100_000)).is_err());
+        assert_eq!(value(&format!("y{}", " + y".repeat(9_999)), 1.0), 10_000.0);
+        let right = format!("{}y{}", "y + (".repeat(20), ")".repeat(20));
+        assert_eq!(value(&right, 1.0), 21.0);
+    }
+
+    #[test]
+    fn slopes_are_derivatives() {
+        for text in [
+            "2 + sin(y)",
+            "y^3 - 2*y",
+            "exp(-y^2)",
+            "ln(y)/y",
+            "sqrt(y)*tan(y/4)",
+            "y^y",
+            "abs(y-3)",
+            "min(y, 2)+max(1, y)*cos(y)",
+            "y^0.5",
+            "(1+y)^-2",
+        ] {
+            let formula = Formula::parse(text).expect(text);
+            for y in [0.7, 1.3, 2.9] {
+                let Dual { value, slope } = formula.at(Dual::variable(y));
+                let step = 1e-6;
+                let difference = (formula.at(y + step) - formula.at(y - step)) / (2.0 * step);
+                assert_eq!(value, formula.at(y), "{text} at {y}");
+                assert!(
+                    (slope - difference).abs() < 1e-8 * (1.0 + slope.abs()),
+                    "{text} at {y}: {slope}, {difference}"
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,224 @@
+//! From the text of a formula to its steps, operands first.
+
+use super::step::{DEPTH, Function, Step};
+use crate::words;
+use std::f64::consts::PI;
+use std::ops::Range;
+
+/// What is wrong with the text of a formula.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FormulaFault {
+    /// The bytes of the text to mark.
+    pub place: Range<usize>,
+    /// What is wrong.
+    pub message: String,
+    /// What would be right.
+    pub help: &'static str,
+}
+
+/// The functions of a formula, by name, each with how many arguments it takes.
+const FUNCTIONS: [(&str, Function, usize); 10] = [
+    ("sin", Function::Sin, 1),
+    ("cos", Function::Cos, 1),
+    ("tan", Function::Tan, 1),
+    ("exp", Function::Exp, 1),
+    ("ln", Function::Ln, 1),
+    ("sqrt", Function::Sqrt, 1),
+    ("abs", Function::Abs, 1),
+    ("floor", Function::Floor, 1),
+    ("min", Function::Min, 2),
+    ("max", Function::Max, 2),
+];
+
+const LANGUAGE: &str = "a formula consists of numbers, `y`, `pi`, + - * / ^, parentheses, and the functions \
+    sin cos tan exp ln sqrt abs floor of one value and min max of two";
+
+/// Reads the steps of a formula.
+pub(super) fn parse(text: &str) -> Result<Vec<Step>, FormulaFault> {
+    let mut parser = Parser { text, at: 0, steps: Vec::new(), depth: 0 };
+    parser.sum()?;
+    match parser.peek() {
+        None => Ok(parser.steps),
+        Some(')') => Err(parser.fault_here("unmatched `)`")),
+        Some(_) => Err(parser.fault_here("expected an operator")),
+    }
+}
+
+struct Parser<'t> {
+    text: &'t str,
+    at: usize,
+    steps: Vec<Step>,
+    /// How many values wait for their operation, or how deep parentheses go, whichever is more.
+    depth: usize,
+}
+
+type Parsed = Result<(), FormulaFault>;
+
+impl<'t> Parser<'t> {
+    /// The next character that is no blank.
+    fn peek(&mut self) -> Option<char> {
+        let rest = &self.text[self.at..];
+        self.at += rest.len() - rest.trim_start().len();
+        self.text[self.at..].chars().next()
+    }
+
+    /// Reads past one of these characters if it is the next.
+    fn take(&mut self, any: &[char]) -> Option<char> {
+        let next = self.peek().filter(|next| any.contains(next))?;
+        self.at += next.len_utf8();
+        Some(next)
+    }
+
+    fn fault(&self, place: Range<usize>, message: impl Into<String>) -> FormulaFault {
+        FormulaFault { place, message: message.into(), help: LANGUAGE }
+    }
+
+    fn fault_here(&mut self, message: &str) -> FormulaFault {
+        let width = self.peek().map_or(0, char::len_utf8);
+        self.fault(self.at..self.at + width, message)
+    }
+
+    fn sum(&mut self) -> Parsed {
+        self.deeper()?;
+        self.product()?;
+        while let Some(sign) = self.take(&['+', '-']) {
+            self.product()?;
+            self.steps.push(if sign == '+' { Step::Add } else { Step::Sub });
+        }
+        self.depth -= 1;
+        Ok(())
+    }
+
+    fn product(&mut self) -> Parsed {
+        self.signed()?;
+        while let Some(sign) = self.take(&['*', '/']) {
+            self.deeper()?;
+            self.signed()?;
+            self.depth -= 1;
+            self.steps.push(if sign == '*' { Step::Mul } else { Step::Div });
+        }
+        Ok(())
+    }
+
+    /// Minus binds less than a power: -y^2 is -(y^2).
+    fn signed(&mut self) -> Parsed {
+        if self.take(&['-']).is_some() {
+            self.deeper()?;
+            self.signed()?;
+            self.depth -= 1;
+            self.steps.push(Step::Neg);
+            return Ok(());
+        }
+        self.power()
+    }
+
+    fn power(&mut self) -> Parsed {
+        self.atom()?;
+        if self.take(&['^']).is_none() {
+            return Ok(());
+        }
+        let exponent = self.steps.len();
+        self.deeper()?;
+        self.signed()?;
+        self.depth -= 1;
+        let whole = match self.steps[exponent..] {
+            [Step::Number(number)] => Some(number),
+            [Step::Number(number), Step::Neg] => Some(-number),
+            _ => None,
+        };
+        match whole.filter(|number| number.fract() == 0.0 && number.abs() <= 1000.0) {
+            Some(number) => {
+                self.steps.truncate(exponent);
+                self.steps.push(Step::Powi(number as i32));
+            }
+            None => self.steps.push(Step::Call(Function::Pow)),
+        }
+        Ok(())
+    }
+
+    fn atom(&mut self) -> Parsed {
+        match self.peek() {
+            Some('(') => {
+                let open = self.at;
+                self.at += 1;
+                self.sum()?;
+                self.close(open)
+            }
+            Some(c) if c.is_ascii_digit() || c == '.' => self.number(),
+            Some(c) if c.is_alphabetic() => self.name(),
+            _ => Err(self.fault_here("expected a value")),
+        }
+    }
+
+    fn close(&mut self, open: usize) -> Parsed {
+        match self.take(&[')']) {
+            Some(_) => Ok(()),
+            None => Err(self.fault(open..open + 1, "unclosed `(`")),
+        }
+    }
+
+    fn number(&mut self) -> Parsed {
+        let start = self.at;
+        let bytes = self.text.as_bytes();
+        while let Some(byte) = bytes.get(self.at)
+            && (byte.is_ascii_alphanumeric()
+                || *byte == b'.'
+                || (matches!(byte, b'+' | b'-') && matches!(bytes[self.at - 1], b'e' | b'E')))
+        {
+            self.at += 1;
+        }
+        let word = &self.text[start..self.at];
+        match word.parse::<f64>() {
+            Ok(number) if number.is_finite() => {
+                self.steps.push(Step::Number(number));
+                Ok(())
+            }
+            _ => Err(self.fault(start..self.at, format!("`{word}` is not a number"))),
+        }
+    }
+
+    fn name(&mut self) -> Parsed {
+        let start = self.at;
+        let rest = &self.text[start..];
+        let length = rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len());
+        self.at += length;
+        let word = &rest[..length];
+        let place = start..self.at;
+        match (word, FUNCTIONS.iter().find(|(name, ..)| *name == word)) {
+            ("y", _) => self.steps.push(Step::Y),
+            ("pi", _) => self.steps.push(Step::Number(PI)),
+            (_, Some((_, function, arguments))) => {
+                self.arguments(word, place, *arguments)?;
+                self.steps.push(Step::Call(*function));
+            }
+            _ => return Err(self.fault(place, format!("unknown name `{word}` in a formula"))),
+        }
+        Ok(())
+    }
+
+    fn arguments(&mut self, name: &str, place: Range<usize>, count: usize) -> Parsed {
+        let open = self.at;
+        if self.take(&['(']).is_none() {
+            return Err(self.fault(place, format!("`{name}` needs its argument in parentheses")));
+        }
+        self.sum()?;
+        for _ in 1..count {
+            if self.take(&[',']).is_none() {
+                return Err(self.fault(place, format!("`{name}` takes {count} values, separated by commas")));
+            }
+            self.deeper()?;
+            self.sum()?;
+            self.depth -= 1;
+        }
+        if self.peek() == Some(',') {
+            let takes = words::count(count, "value");
+            return Err(self.fault(place, format!("`{name}` takes only {takes}")));
+        }
+        self.close(open)
+    }
+
+    fn deeper(&mut self) -> Parsed {
+        self.depth += 1;
+        if self.depth >= DEPTH { Err(self.fault_here("formula nested too deeply")) } else { Ok(()) }
+    }
+}

@@ -1,0 +1,187 @@
+//! Bytes to picture files, and back.
+
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Read, Write};
+use std::iter;
+use std::path::Path;
+
+/// How hard a file is compressed. The picture is the same.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Compression {
+    /// As quickly as possible.
+    #[default]
+    Fast,
+    /// To about half of that size, which takes longer than most pictures take to render.
+    Balanced,
+    /// As small as possible.
+    High,
+}
+
+/// A picture's file format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Binary portable pixmap, `P6`.
+    Ppm,
+    /// Portable network graphics.
+    Png(Compression),
+}
+
+impl Format {
+    /// The format that a file's extension names, whatever its case.
+    pub fn of(path: &Path) -> Option<Self> {
+        let extension = path.extension()?.to_ascii_lowercase();
+        match extension.to_str()? {
+            "ppm" => Some(Self::Ppm),
+            "png" => Some(Self::Png(Compression::default())),
+            _ => None,
+        }
+    }
+
+    /// Writes a whole picture: `rows` hands out its bytes, some rows at a time from the top: red, green and blue of each
+    /// pixel from the left.
+    ///
+    /// # Errors
+    /// Those of `out`, of `rows`, and a size that the format cannot hold.
+    pub fn write(
+        self,
+        out: impl Write,
+        [width, height]: [usize; 2],
+        rows: impl IntoIterator<Item = io::Result<Vec<u8>>>,
+    ) -> io::Result<()> {
+        match self {
+            Self::Ppm => write_ppm(out, width, height, rows),
+            Self::Png(compression) => write_png(out, width, height, compression, rows),
+        }
+    }
+
+    /// Reads a file that [`write`](Self::write) wrote, from its beginning.
+    ///
+    /// # Errors
+    /// Those of the file.
+    pub fn read(self, file: File) -> io::Result<Rows> {
+        let mut file = BufReader::with_capacity(1 << 16, file);
+        Ok(match self {
+            Self::Ppm => {
+                file.skip_until(b'\n')?;
+                Rows::Ppm(file)
+            }
+            Self::Png(_) => Rows::Png(Box::new(png::Decoder::new(file).read_info()?)),
+        })
+    }
+}
+
+/// The rows of a picture's file, from the top.
+pub enum Rows {
+    /// From after the header.
+    Ppm(BufReader<File>),
+    /// From the decoder.
+    Png(Box<png::Reader<BufReader<File>>>),
+}
+
+impl Rows {
+    /// The next row: red, green and blue of each pixel.
+    ///
+    /// # Errors
+    /// Those of the file, and where it has no other row of this length.
+    pub fn next(&mut self, row: &mut [u8]) -> io::Result<()> {
+        match self {
+            Self::Ppm(file) => file.read_exact(row),
+            Self::Png(png) => png.read_row(row)?.map(drop).ok_or_else(|| io::ErrorKind::UnexpectedEof.into()),
+        }
+    }
+}
+
+fn write_ppm(
+    mut out: impl Write,
+    width: usize,
+    height: usize,
+    rows: impl IntoIterator<Item = io::Result<Vec<u8>>>,
+) -> io::Result<()> {
+    writeln!(out, "P6 {width} {height} 255")?;
+    for bytes in rows {
+        out.write_all(&bytes?)?;
+    }
+    out.flush()
+}
+
+/// What a PNG says of its bytes: that they are shown as sRGB has it, as those of a PPM are and those of the notes'
+/// pictures.
+///
+/// No transfer function is applied: the byte of a channel is 255 times what the notes' formulas give, cut. So the formulas
+/// work in the values that a screen is given, and not in light, of which half as much would be byte 188. That is how scenes
+/// were made and looked at: their numbers were chosen for a screen that takes the bytes as they are. `gAMA` 1 would say
+/// that bytes are in proportion to light, and whoever heeds it would show the same scene far brighter than its PPM.
+pub(crate) const AS_SHOWN: png::SrgbRenderingIntent = png::SrgbRenderingIntent::RelativeColorimetric;
+
+/// A picture of up to so many bytes is encoded at once.
+const AT_ONCE: usize = 1 << 20;
+
+fn write_png(
+    out: impl Write,
+    width: usize,
+    height: usize,
+    compression: Compression,
+    rows: impl IntoIterator<Item = io::Result<Vec<u8>>>,
+) -> io::Result<()> {
+    let size = |pixels: usize| u32::try_from(pixels).map_err(io::Error::other);
+    let mut encoder = png::Encoder::new(out, size(width)?, size(height)?);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_source_srgb(AS_SHOWN);
+    encoder.set_compression(match compression {
+        Compression::Fast => png::Compression::Fastest,
+        Compression::Balanced => png::Compression::Balanced,
+        Compression::High => png::Compression::High,
+    });
+    let mut writer = encoder.write_header()?;
+    let mut rows = rows.into_iter();
+    let first = rows.next().transpose()?.unwrap_or_default();
+    if first.len() == 3 * width * height && first.len() <= AT_ONCE {
+        // Without the stream it takes two thirds of the time, and room for all that is encoded.
+        writer.write_image_data(&first)?;
+    } else {
+        let mut stream = writer.stream_writer()?;
+        for bytes in iter::once(Ok(first)).chain(rows) {
+            stream.write_all(&bytes?)?;
+        }
+        stream.finish()?;
+    }
+    Ok(writer.finish()?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_png_is_the_same_picture_at_once_and_in_bands() {
+        for (width, height) in [(37, 29), (640, 640)] {
+            let pixels: Vec<u8> = (0..3 * width * height).map(|byte| (byte * byte / 977) as u8).collect();
+            for compression in [Compression::Fast, Compression::Balanced, Compression::High] {
+                for rows in [height, height - 1, 7] {
+                    let (mut png, bands) =
+                        (Vec::new(), pixels.chunks(3 * width * rows).map(|band| Ok(band.to_vec())));
+                    Format::Png(compression)
+                        .write(&mut png, [width, height], bands)
+                        .expect("memory takes it");
+                    let read = image::load_from_memory(&png).expect("a PNG").into_rgb8();
+                    assert!(
+                        read.into_raw() == pixels,
+                        "{width} x {height}, {rows} rows at a time, {compression:?}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_png_says_how_its_bytes_are_shown() {
+        for bytes in [12, AT_ONCE + 3] {
+            let mut png = Vec::new();
+            let rows = [Ok(vec![7; 3 * (bytes / 3)])];
+            Format::Png(Compression::Fast).write(&mut png, [bytes / 3, 1], rows).expect("memory takes it");
+            let read = png::Decoder::new(io::Cursor::new(png)).read_info().expect("a PNG");
+            assert_eq!(read.info().srgb, Some(AS_SHOWN));
+        }
+    }
+}

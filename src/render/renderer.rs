@@ -1,0 +1,153 @@
+//! The tile loop: a model's pixels, on all threads.
+
+use crate::render::bytes::to_bytes;
+use crate::render::plan::Plan;
+use crate::render::tiles::{self, BAND, Band, TILE};
+use crate::render::trace::{Rooms, Tracer};
+use crate::render::watch::Watch;
+use crate::simd::cpu::Cpu;
+use crate::words;
+use rayon::prelude::*;
+use std::io;
+use std::ops::{ControlFlow, Range};
+
+/// Room for the deepest chain of reflections that a pixel may cost. It is taken only where it is used.
+const STACK: usize = 128 << 20;
+
+/// Who decides how long a renderer goes on, and learns how far it is.
+#[derive(Clone, Copy)]
+pub struct Overseer<'o> {
+    /// Asked before each tile, on any thread: whether this one and all others are left out. Once it has said so, it must
+    /// go on to.
+    pub stops: &'o (dyn Fn() -> bool + Sync),
+    /// Told of each row that nothing is left to do on, on any thread and in no order.
+    pub row: &'o (dyn Fn() + Sync),
+}
+
+/// The threads that render.
+pub struct Renderer {
+    pool: rayon::ThreadPool,
+    cpu: Cpu,
+}
+
+impl Renderer {
+    /// A renderer with this many threads; 0 for one on each core.
+    ///
+    /// # Errors
+    /// Where the system does not give the threads.
+    pub fn new(threads: usize) -> io::Result<Self> {
+        let builder = rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK);
+        let cannot = |error| {
+            let reason = words::reason(&io::Error::other(error));
+            io::Error::other(format!("cannot start threads to render with: {reason}"))
+        };
+        Ok(Self { pool: builder.build().map_err(cannot)?, cpu: Cpu::best() })
+    }
+
+    /// With these instructions in place of the best that this machine has. The picture is the same.
+    pub fn on(mut self, cpu: Cpu) -> Self {
+        self.cpu = cpu;
+        self
+    }
+
+    /// A part of the picture from the top, some rows at a time. `columns` count from the left and `rows` from the top,
+    /// and neither is empty. The pixels depend on the model alone.
+    ///
+    /// A new watcher watches each strip of tiles, and `watched` gets it then, on any thread and in no order.
+    pub fn bands<'r, W: Watch + Default>(
+        &'r self,
+        plan: &'r Plan,
+        columns: Range<usize>,
+        rows: Range<usize>,
+        watched: &'r (dyn Fn(W) + Sync),
+    ) -> impl Iterator<Item = Band> + 'r {
+        Band::split(&columns, &rows, BAND).map(move |rows| {
+            let mut band = Band::blank(columns.clone(), rows);
+            self.fill(plan, &mut band, Overseer { stops: &|| false, row: &|| () }, watched);
+            band
+        })
+    }
+
+    /// The whole picture, as [`bands`](Self::bands) gives it in parts: red, green and blue of each pixel.
+    pub fn picture(&self, plan: &Plan) -> Vec<u8> {
+        let [width, height] = plan.camera.pixels;
+        let mut band = Band::blank(0..width, 0..height);
+        self.fill(plan, &mut band, Overseer { stops: &|| false, row: &|| () }, &|()| {});
+        band.pixels.into_flattened()
+    }
+
+    /// Renders the tiles of a band that are not rendered yet, or those of them that the overseer lets it, watched as
+    /// [`bands`](Self::bands) are.
+    pub fn fill<W: Watch + Default>(
+        &self,
+        plan: &Plan,
+        band: &mut Band,
+        overseer: Overseer,
+        watched: &(dyn Fn(W) + Sync),
+    ) {
+        let [_, height] = plan.camera.pixels;
+        let Band { columns, rows, pixels, tiles } = band;
+        let width = columns.len();
+        let strips = pixels.chunks_mut(TILE * width).zip(tiles.chunks_mut(width.div_ceil(TILE)));
+        let strips = strips.zip(rows.clone().step_by(TILE));
+        self.pool.install(|| {
+            // Whoever is free takes the next one: in parts that are shared out beforehand, one would wait for the others.
+            strips.par_bridge().for_each_init(Rooms::default, |rooms, ((strip, tiles), from_top)| {
+                let (tall, mut watch) = (strip.len() / width, W::default());
+                let top = height - 1 - from_top;
+                let mut tracer = Tracer::new(plan, self.cpu, rooms, &mut watch);
+                let (mut tile, mut bytes) = (Vec::new(), [[0; 3]; TILE * TILE]);
+                for (left, is_done) in columns.clone().step_by(TILE).zip(tiles) {
+                    if *is_done {
+                        continue;
+                    }
+                    if (overseer.stops)() {
+                        break;
+                    }
+                    let (wide, rows) = (left..columns.end.min(left + TILE), top + 1 - tall..top + 1);
+                    tiles::list(wide.clone(), rows.clone(), &mut tile);
+                    let colours = tracer.pixels(&tile);
+                    to_bytes(self.cpu, colours, &mut bytes[..tile.len()]);
+                    let mut rest = &bytes[..];
+                    for (run, y) in tiles::runs(wide, rows) {
+                        let (bytes, others) = rest.split_at(run.len());
+                        strip[(top - y) * width + run.start - columns.start..][..run.len()]
+                            .copy_from_slice(bytes);
+                        rest = others;
+                    }
+                    *is_done = true;
+                }
+                watched(watch);
+                (0..tall).for_each(|_| (overseer.row)());
+            });
+        });
+    }
+
+    /// Something of each pixel, from the top and from the left, for some rows counted from the top; nothing
+    /// where `done` broke off.
+    pub(crate) fn pixels<T: Clone + Default + Send>(
+        &self,
+        plan: &Plan,
+        rows: Range<usize>,
+        done: &(dyn Fn() -> ControlFlow<()> + Sync),
+        pixel: impl Fn(usize, usize) -> T + Sync,
+    ) -> Option<Vec<T>> {
+        let [width, height] = plan.camera.pixels;
+        let mut pixels = vec![T::default(); width * rows.len()];
+        let row = |(row, from_top): (&mut [T], usize)| {
+            let y = height - 1 - from_top;
+            for (x, place) in row.iter_mut().enumerate() {
+                *place = pixel(x, y);
+            }
+            done()
+        };
+        let finished =
+            self.pool.install(|| pixels.par_chunks_mut(width).with_max_len(1).zip(rows).try_for_each(row));
+        finished.is_continue().then_some(pixels)
+    }
+
+    /// Runs something else on one of the threads, which have room for deep reflections.
+    pub fn run<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        self.pool.install(work)
+    }
+}

@@ -1,0 +1,245 @@
+//! What is missing where a pixel has cost as many rays as it may.
+
+use super::arrays::room;
+use super::context::Tracer;
+use super::found::Found;
+use super::group::Group;
+use super::light;
+use super::surface::Surface;
+use crate::render::watch::Watch;
+
+impl<W: Watch> Tracer<'_, '_, W> {
+    /// Nothing yet, of so many camera rays.
+    pub(super) fn begin_missing(&mut self, count: usize) {
+        room(&mut self.rooms.missing, count);
+        self.rooms.any_missing = false;
+    }
+
+    /// How much light a camera ray lacks at most.
+    pub(super) fn missing(&self, camera: usize) -> f64 {
+        if self.rooms.any_missing { self.rooms.missing[camera] } else { 0.0 }
+    }
+
+    /// Adds what rays could have brought back that end where they begin.
+    #[cold]
+    pub(super) fn miss_beyond(&mut self, group: &Group, found: &Found) {
+        let Some(depth) = &self.plan.depth else { return };
+        let beyond = depth.beyond(group.leaves);
+        for lane in (0..group.len).filter(|lane| found.far[*lane] == 0.0) {
+            self.miss(group, lane, beyond / group.travelled[lane]);
+        }
+    }
+
+    /// Adds what lights do at places of a surface, of rays that have cost as many as they may: some shadow of theirs may
+    /// not have been looked for.
+    pub(super) fn miss_shadows(&mut self, group: &Group, surface: &Surface) {
+        let Some(depth) = &self.plan.depth else { return };
+        if light::fewest(self.cpu, &group.budget[..group.len]) != 0 {
+            return;
+        }
+        let own = depth.objects[surface.index].own;
+        for lane in (0..group.len).filter(|lane| group.budget[*lane] == 0) {
+            self.miss(group, lane, own / surface.travelled[lane]);
+        }
+    }
+
+    /// Adds so much light, of the end of a ray.
+    fn miss(&mut self, group: &Group, lane: usize, light: f64) {
+        if !self.rooms.any_missing {
+            self.rooms.missing.fill(0.0);
+        }
+        let missing = &mut self.rooms.missing[usize::from(group.camera[lane])];
+        let more = group.worth.map_or(f64::INFINITY, |worth| worth.weight * light);
+        // What is no number bounds nothing.
+        *missing = if more >= 0.0 { *missing + more } else { f64::INFINITY };
+        self.rooms.any_missing = true;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::limits::MAX_RAYS;
+    use crate::render::plan::Plan;
+    use crate::render::plan::depth::{Depth, FAINT};
+    use crate::render::renderer::Renderer;
+    use crate::render::tally::Tally;
+    use crate::render::trace::Rooms;
+    use crate::render::trace::arrays::Vectors;
+    use crate::scene::model::Model;
+    use crate::scene::reader;
+    use crate::scene::registry::Registry;
+    use crate::simd::cpu::Cpu;
+    use crate::world::material::Rgb;
+    use std::path::Path;
+
+    const SIDES: [usize; 2] = [5, 4];
+
+    fn model(entities: &str) -> Model {
+        let text = format!("camera eye {{ pixeldim 5 4 worlddim 8 6 viewpoint 4 3 6 }}\n{entities}");
+        let registry = Registry::get().expect("sound types");
+        match reader::read(registry, "scene", Path::new(""), text.as_bytes(), None) {
+            Ok(loaded) => loaded.model,
+            Err(report) => panic!("{report}"),
+        }
+    }
+
+    /// A plan by which nothing is left out.
+    fn whole(model: &Model) -> Plan<'_> {
+        Plan { depth: Depth::new(model).map(Depth::uncut), ..Plan::new(model) }
+    }
+
+    /// The colours of all pixels for so many rays each, how much they lack at most, and what that took.
+    fn seen(plan: &Plan, rays: u32) -> (Vec<(Rgb, f64)>, Tally) {
+        let (mut rooms, mut tally, mut colours) = (Rooms::default(), Tally::default(), Vectors::default());
+        let mut tracer = Tracer::new(plan, Cpu::best(), &mut rooms, &mut tally);
+        let pixels = (0..SIDES[1]).flat_map(|y| (0..SIDES[0]).map(move |x| (x, y)));
+        let one = |(x, y): (usize, usize)| {
+            let mut group = Group::primary(&plan.camera.sight(x as f64, y as f64), plan.depth.as_ref());
+            group.budget.fill(rays);
+            tracer.colours(&mut group, &mut colours);
+            (colours.get(0), tracer.missing(0))
+        };
+        let pixels = pixels.map(one).collect();
+        (pixels, tally)
+    }
+
+    /// On a thread with room for deep reflections.
+    fn deep<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+        Renderer::new(1).expect("a thread").run(work)
+    }
+
+    fn error(one: Rgb, other: Rgb) -> f64 {
+        (one - other).abs().max_element()
+    }
+
+    const PANES: &str = "material g { ambient 0.5 0.6 0.7 diffuse 1 1 1 specular 0.1 transparency 0.5 }
+        plane p0 { material g normal 0 0 1 point 0 0 -1 }
+        plane p1 { material g normal 0 0 1 point 0 0 -1.5 }
+        plane p2 { material g normal 0 0 1 point 0 0 -2 }";
+
+    /// What three panes that mirror so much of their light are off, and how many times as many rays they take of which
+    /// nothing is left out.
+    fn panes(specular: &str) -> (f64, f64) {
+        let panes = PANES.replace("0.1", specular);
+        let (cut, few) = seen(&Plan::new(&model(&panes)), MAX_RAYS as u32);
+        let (all, many) = deep(|| seen(&whole(&model(&panes)), u32::MAX));
+        assert!(cut.iter().all(|(_, missing)| *missing == 0.0));
+        let error = cut.iter().zip(&all).map(|((cut, _), (all, _))| error(*cut, *all)).fold(0.0, f64::max);
+        (error, many.all_rays() as f64 / few.all_rays() as f64)
+    }
+
+    #[test]
+    fn panes_look_the_same_for_a_part_of_the_rays() {
+        let (error, times) = panes("0.1");
+        assert!(error < FAINT && times > 50.0, "{error} off, {times} times as many");
+        // They give on as much as they get, or nearly. What is off is far below a level.
+        for specular in ["0.4", "0.5"] {
+            let (error, times) = panes(specular);
+            assert!(error < 64.0 * FAINT && times > 2.0, "{error} off, {times} times as many");
+        }
+    }
+
+    /// Glass that lets through and mirrors more than it gets, where all of that leads out of it.
+    #[test]
+    fn what_gives_on_more_than_it_gets_has_a_bound_where_rays_do_not_come_back() {
+        let pane = "material g { ambient 1 1 1 specular 0.9 transparency 0.9 } material m { ambient 3 3 3 }
+            plane back { material m normal 0 0 1 point 0 0 -9 }
+            plane pane { material g normal 0 0 1 point 0 0 -3 }";
+        let pair = format!("{pane} plane floor {{ material g normal 0 1 0 point 0 0 0 }}");
+        for (scene, is_bounded) in [(pane, true), (&pair, false)] {
+            let depth = Depth::new(&model(scene)).expect("a pane");
+            assert_eq!(depth.most.is_finite(), is_bounded, "{scene}");
+        }
+    }
+
+    /// Numbers that look like any, from 0 to 1.
+    fn random(state: &mut u64) -> f64 {
+        *state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (*state >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// Scenes of planes and balls that mirror and are seen through, with a light, not all of whose colours are above 0.
+    fn scenes(count: usize, gain: f64) -> Vec<String> {
+        let mut state = 14;
+        let mut from = |low: f64, high: f64| low + (high - low) * random(&mut state);
+        let scene = |_| {
+            let mut text = String::new();
+            for index in 0..5 {
+                let transparency = if from(0.0, 1.0) < 0.6 { from(0.0, gain) } else { 0.0 };
+                let specular = if from(0.0, 1.0) < 0.7 { from(-0.2, gain - transparency) } else { 0.0 };
+                let [a, b, c, d] = [from(-1.0, 4.0), from(0.0, 3.0), from(0.0, 3.0), from(-0.5, 3.0)];
+                text += &format!(
+                    "material m{index} {{ ambient {a} {b} 1 diffuse {c} {d} 1 specular {specular} transparency {transparency} shininess {} }}\n",
+                    from(0.0, 30.0),
+                );
+            }
+            text += &format!(
+                "light l {{ location {} 5 2 emissivity {} 3 -2 }}\n",
+                from(3.0, 5.0),
+                from(1.0, 20.0)
+            );
+            for (index, depth) in [-1.0, -2.5, -4.0].into_iter().enumerate() {
+                let (x, y) = (from(-0.3, 0.3), from(-0.3, 0.3));
+                text +=
+                    &format!("plane p{index} {{ material m{index} normal {x} {y} 1 point 4 3 {depth} }}\n");
+            }
+            for index in 0..2 {
+                let [x, y, z] = [from(2.0, 6.0), from(1.0, 5.0), from(-6.0, -1.0)];
+                text += &format!(
+                    "sphere s{index} {{ material m{} center {x} {y} {z} radius {} }}\n",
+                    index + 3,
+                    from(0.3, 1.5)
+                );
+            }
+            text
+        };
+        (0..count).map(scene).collect()
+    }
+
+    #[test]
+    fn what_is_left_out_of_a_look_is_below_a_1024th_of_a_level() {
+        let mut saved = 0;
+        for scene in scenes(60, 0.55).into_iter().chain(scenes(60, 0.8)) {
+            let (cut, few) = seen(&Plan::new(&model(&scene)), 1 << 30);
+            let (all, many) = deep(|| seen(&whole(&model(&scene)), 1 << 20));
+            saved += many.all_rays() - few.all_rays();
+            for ((cut, missing), (all, unseen)) in cut.into_iter().zip(all) {
+                assert_eq!([missing, unseen], [0.0; 2], "{scene}");
+                assert!(error(cut, all) < FAINT, "{cut} for {all}, {} off\n{scene}", error(cut, all));
+            }
+        }
+        assert!(saved > 0);
+    }
+
+    #[test]
+    fn many_mirrors_have_a_bound_too() {
+        let ball = |index: usize| {
+            let [x, y, z] = [index % 8, index / 8 % 6, index / 48].map(|place| place as f64);
+            format!("sphere s{index} {{ material m center {x} {y} {} radius 0.1 }}\n", -4.0 - z)
+        };
+        let balls: String = (0..100).map(ball).collect();
+        let scene = format!("{PANES} material m {{ ambient 1 0.5 2 specular 0.3 transparency 0.3 }} {balls}");
+        let (cut, few) = seen(&Plan::new(&model(&scene)), 1 << 30);
+        let (all, many) = deep(|| seen(&whole(&model(&scene)), 1 << 30));
+        for ((cut, _), (all, _)) in cut.into_iter().zip(all) {
+            assert!(error(cut, all) < FAINT, "{cut} for {all}");
+        }
+        assert!(10 * few.all_rays() < many.all_rays(), "{} of {}", few.all_rays(), many.all_rays());
+    }
+
+    #[test]
+    fn what_a_cap_cuts_is_no_more_than_is_said() {
+        for scene in scenes(60, 0.6) {
+            let (all, _) = deep(|| seen(&whole(&model(&scene)), 1 << 20));
+            let cut = model(&scene);
+            for rays in [2, 3, 5, 9, 17, 40, 100] {
+                for ((cut, missing), (all, unseen)) in seen(&Plan::new(&cut), rays).0.into_iter().zip(&all) {
+                    assert_eq!(*unseen, 0.0, "{scene}");
+                    let error = error(cut, *all);
+                    assert!(error <= missing + FAINT, "{error} off, of {missing} at {rays} rays\n{scene}");
+                }
+            }
+        }
+    }
+}

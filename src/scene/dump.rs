@@ -1,0 +1,67 @@
+//! A model as text: as the notes' program dumps it, or as a scene that loads again.
+
+use crate::scene::entity::Args;
+use crate::scene::kind::Kind;
+use crate::scene::model::Model;
+use crate::scene::pparm::Attribute;
+use crate::scene::syntax::Syntax;
+use crate::scene::value::Datum;
+
+/// The notes' dump: camera, materials, objects and lights, numbers to one decimal. Textures are not in it.
+pub fn notes(model: &Model) -> String {
+    let kinds = [Kind::Camera, Kind::Material, Kind::Object, Kind::Light];
+    kinds.into_iter().flat_map(|kind| model.entities(kind)).map(notes_block).collect()
+}
+
+fn notes_block(args: &Args) -> String {
+    let (before, after_name, after) = match args.entity.kind() {
+        Kind::Camera => ("", "", "\n\n"),
+        Kind::Material | Kind::Texture => ("\n", " ", ""),
+        Kind::Object | Kind::Light => ("", " ", "\n"),
+    };
+    let lines: String = args.entity.rows().map(|row| row.dump(args)).collect();
+    format!("{before}{:<12} {}{after_name}\n{lines}{after}", args.entity.dump_name, args.name)
+}
+
+/// A scene that loads again to the identical model, in either spelling: every number to its last bit, the
+/// entities in their order, and of their attributes those that were given.
+pub fn scene(model: &Model, syntax: Syntax) -> String {
+    let entities = in_order(model);
+    let count = |args: &Args| entities.iter().filter(|other| same_title(other, args)).count();
+    let blocks: Vec<_> = entities.iter().map(|args| scene_block(args, syntax, count(args) > 1)).collect();
+    blocks.join("\n")
+}
+
+/// Whether TOML needs an array of tables, as two entities have one title.
+fn same_title(a: &Args, b: &Args) -> bool {
+    (a.entity.name, &a.name) == (b.entity.name, &b.name)
+}
+
+fn scene_block(args: &Args, syntax: Syntax, repeated: bool) -> String {
+    let (kind, name) = (args.entity.name, syntax.key(&args.name));
+    let width = args.given().map(|(attribute, _)| attribute.name().len()).max().unwrap_or(0);
+    let line = |(attribute, datum): (&dyn Attribute, &Datum)| {
+        let padded = format!("{:<width$}", attribute.name());
+        syntax.pair(&padded, &syntax.values(datum))
+    };
+    let lines = args.given().map(line);
+    match syntax {
+        Syntax::Notes => {
+            let lines: String = lines.map(|line| format!("    {line}\n")).collect();
+            format!("{kind} {name}\n{{\n{lines}}}\n")
+        }
+        Syntax::Toml => {
+            let title = if repeated { format!("[[{kind}.{name}]]") } else { format!("[{kind}.{name}]") };
+            let lines: String = lines.map(|line| line + "\n").collect();
+            format!("{title}\n{lines}")
+        }
+    }
+}
+
+/// All entities of a model in the order of its scene.
+fn in_order(model: &Model) -> Vec<&Args> {
+    let kinds = [Kind::Camera, Kind::Material, Kind::Texture, Kind::Object, Kind::Light];
+    let mut all: Vec<_> = kinds.into_iter().flat_map(|kind| model.entities(kind)).collect();
+    all.sort_by_key(|args| args.order);
+    all
+}

@@ -1,0 +1,230 @@
+//! Entity types: what a plugin registers, and what its constructor is given.
+
+use crate::scene::kind::Kind;
+use crate::scene::pparm::{Attribute, Attributes, Given, Pparm, Row, Table};
+use crate::words;
+use crate::world::accuracy::Accuracy;
+use crate::world::body::Body;
+use crate::world::camera::Camera;
+use crate::world::light::Light;
+use crate::world::material::Material;
+use crate::world::texture::Texture;
+use std::ops::Deref;
+use std::panic::Location;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::{fmt, iter};
+
+/// An entity type of the scene language: a name, a table of attributes and a constructor.
+///
+/// A plugin registers one with `inventory::submit!`.
+pub struct Entity {
+    /// Its name in the scene language.
+    pub name: &'static str,
+    /// What it is, in a few words.
+    pub meaning: &'static str,
+    /// Other names that a scene may use for it.
+    pub aliases: &'static [&'static str],
+    /// Makes the entity from its checked values.
+    pub construct: Construct,
+    /// The name that the notes' dump gives it.
+    pub dump_name: &'static str,
+    tables: &'static [Table],
+    place: &'static Location<'static>,
+}
+
+inventory::collect!(Entity);
+
+impl fmt::Debug for Entity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "`{}` of {}", self.name, self.place())
+    }
+}
+
+/// The constructor of an entity type, by kind.
+#[derive(Clone, Copy)]
+pub enum Construct {
+    /// Makes a camera.
+    Camera(fn(&Args) -> Result<Camera, Refusal>),
+    /// Makes a material.
+    Material(fn(&Args) -> Result<Material, Refusal>),
+    /// Makes a texture.
+    Texture(fn(&Args) -> Result<Texture, Refusal>),
+    /// Makes an object's shape and, if it has one, its shader.
+    Object(fn(&Args) -> Result<Body, Refusal>),
+    /// Makes a light.
+    Light(fn(&Args) -> Result<Box<dyn Light>, Refusal>),
+}
+
+/// What every object has beside its own attributes.
+pub static MATERIAL: Pparm<Arc<Material>> =
+    Pparm::required("material", "the material, defined earlier in the scene");
+
+const OBJECT: Table = &[&MATERIAL];
+
+impl Entity {
+    /// A camera's type.
+    #[track_caller]
+    pub const fn camera(
+        name: &'static str,
+        meaning: &'static str,
+        tables: &'static [Table],
+        construct: fn(&Args) -> Result<Camera, Refusal>,
+    ) -> Self {
+        Self::new(name, meaning, tables, Construct::Camera(construct))
+    }
+
+    /// A material's type.
+    #[track_caller]
+    pub const fn material(
+        name: &'static str,
+        meaning: &'static str,
+        tables: &'static [Table],
+        construct: fn(&Args) -> Result<Material, Refusal>,
+    ) -> Self {
+        Self::new(name, meaning, tables, Construct::Material(construct))
+    }
+
+    /// A texture's type.
+    #[track_caller]
+    pub const fn texture(
+        name: &'static str,
+        meaning: &'static str,
+        tables: &'static [Table],
+        construct: fn(&Args) -> Result<Texture, Refusal>,
+    ) -> Self {
+        Self::new(name, meaning, tables, Construct::Texture(construct))
+    }
+
+    /// A shape. Its table gets the attribute `material` of its own accord.
+    #[track_caller]
+    pub const fn shape(
+        name: &'static str,
+        meaning: &'static str,
+        tables: &'static [Table],
+        construct: fn(&Args) -> Result<Body, Refusal>,
+    ) -> Self {
+        Self::new(name, meaning, tables, Construct::Object(construct))
+    }
+
+    /// A light's type.
+    #[track_caller]
+    pub const fn light(
+        name: &'static str,
+        meaning: &'static str,
+        tables: &'static [Table],
+        construct: fn(&Args) -> Result<Box<dyn Light>, Refusal>,
+    ) -> Self {
+        Self::new(name, meaning, tables, Construct::Light(construct))
+    }
+
+    #[track_caller]
+    const fn new(
+        name: &'static str,
+        meaning: &'static str,
+        tables: &'static [Table],
+        construct: Construct,
+    ) -> Self {
+        Self { name, meaning, aliases: &[], construct, dump_name: name, tables, place: Location::caller() }
+    }
+
+    /// Other names that a scene may use for it.
+    pub const fn alias(mut self, aliases: &'static [&'static str]) -> Self {
+        self.aliases = aliases;
+        self
+    }
+
+    /// The name that the notes' dump gives it, where that is not its own.
+    pub const fn dumped_as(mut self, name: &'static str) -> Self {
+        self.dump_name = name;
+        self
+    }
+
+    /// The kind of thing that it is.
+    pub fn kind(&self) -> Kind {
+        match self.construct {
+            Construct::Camera(_) => Kind::Camera,
+            Construct::Material(_) => Kind::Material,
+            Construct::Texture(_) => Kind::Texture,
+            Construct::Object(_) => Kind::Object,
+            Construct::Light(_) => Kind::Light,
+        }
+    }
+
+    /// The rows of its table, in the order of the dump.
+    pub fn rows(&self) -> impl Iterator<Item = &'static dyn Row> + use<> {
+        let common = if self.kind() == Kind::Object { OBJECT } else { &[] };
+        iter::once(common).chain(self.tables.iter().copied()).flatten().copied()
+    }
+
+    /// Its attributes, in the order of its table.
+    pub fn attributes(&self) -> impl Iterator<Item = &'static dyn Attribute> + use<> {
+        self.rows().filter_map(|row| row.attribute())
+    }
+
+    /// The file and line that registers it.
+    pub fn place(&self) -> String {
+        words::place(self.place)
+    }
+}
+
+/// What a constructor may know of the scene beside its own values.
+#[derive(Clone, Debug, Default)]
+pub struct Setting {
+    /// The scene's camera; objects and lights alone are constructed after it.
+    pub camera: Camera,
+    /// The folder that the scene's file names start from.
+    pub folder: PathBuf,
+}
+
+/// An entity of a scene as a constructor sees it: its type, its name and its checked values.
+#[derive(Clone)]
+pub struct Args {
+    /// Its type.
+    pub entity: &'static Entity,
+    /// Its name.
+    pub name: String,
+    /// Its place among the scene's entities, from 0.
+    pub order: usize,
+    /// The scene around it.
+    pub setting: Arc<Setting>,
+    attributes: Attributes,
+}
+
+impl Args {
+    /// `values` holds those of each of the entity type's attributes, in their order.
+    pub(crate) fn new(entity: &'static Entity, name: String, order: usize, values: Vec<Given>) -> Self {
+        let attributes = Attributes::new((entity.name, entity.place), entity.attributes(), values);
+        Self { entity, name, order, setting: Arc::default(), attributes }
+    }
+
+    /// How exactly the scene is traced.
+    pub fn accuracy(&self) -> Accuracy {
+        self.setting.camera.accuracy
+    }
+
+    /// Whether the attribute that a refusal marks, if it marks one, is in the type's table.
+    pub(crate) fn has_what_is_refused(&self, refusal: &Refusal) -> bool {
+        refusal.attribute.is_none_or(|attribute| self.find(attribute).is_some())
+    }
+}
+
+/// Its attributes, as if they were its own.
+impl Deref for Args {
+    type Target = Attributes;
+
+    fn deref(&self) -> &Attributes {
+        &self.attributes
+    }
+}
+
+/// Why a constructor refuses values that are sound one by one.
+#[derive(Debug)]
+pub struct Refusal {
+    /// The attribute to mark; the entity's name where there is none.
+    pub attribute: Option<&'static str>,
+    /// What is wrong, to follow the entity's name: "has an `xdir` parallel to its `normal`".
+    pub message: String,
+    /// What would be right.
+    pub help: &'static str,
+}

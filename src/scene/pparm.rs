@@ -1,0 +1,323 @@
+//! The rows of an entity's table: `pparm` descriptors, and lines of the dump that follow from them.
+//!
+//! A descriptor is a typed key. Name, type, default and rule are written once; reading, messages, dump,
+//! `tabray list` and the constructor all use that one place (the notes' "general attribute parser").
+
+use crate::scene::value::{Datum, Type, Value};
+use crate::words;
+use std::panic::Location;
+
+/// A row of an entity's table.
+pub trait Row: Sync {
+    /// The attribute that this row describes; nothing where the row is only a line of the dump.
+    fn attribute(&self) -> Option<&dyn Attribute>;
+    /// What the notes' dump prints for this row, its line ends included.
+    fn dump(&self, attributes: &Attributes) -> String;
+}
+
+/// Rows that belong together, so that tables compose: a finite plane's are the plane's and its own.
+pub type Table = &'static [&'static dyn Row];
+
+/// The least length in world units whose square does not vanish.
+pub const LEAST_LENGTH: f64 = 1e-152;
+
+/// The greatest length or coordinate in world units of whose squares a few can be added without an overflow.
+pub const MOST_LENGTH: f64 = 1e152;
+
+/// An attribute, whatever the Rust type of its values.
+pub trait Attribute: Sync {
+    /// Its name in the scene language.
+    fn name(&self) -> &'static str;
+    /// Other names for it.
+    fn aliases(&self) -> &'static [&'static str];
+    /// What it means, in a few words.
+    fn meaning(&self) -> &'static str;
+    /// The unit of its values, empty where they have none.
+    fn unit(&self) -> &'static str;
+    /// The type of its values.
+    fn value_type(&self) -> Type;
+    /// How many values it may take.
+    fn arity(&self) -> &'static [usize];
+    /// Its values where a scene gives none; nothing where a scene must give them.
+    fn default(&self) -> Option<Datum>;
+    /// What its values must be, such as "positive"; empty where anything will do.
+    fn rule(&self) -> &'static str;
+    /// Whether values of the right type and number keep the rule.
+    fn allows(&self, datum: &Datum) -> bool;
+
+    /// The first of its values, by its index, that is a length or a coordinate which cannot be squared, and why.
+    fn beyond_squares(&self, datum: &Datum) -> Option<(usize, &'static str)> {
+        let Datum::Numbers(numbers) = datum else { return None };
+        let is_length = self.unit() == "world units";
+        // The sides of a rectangle or a screen, which come in twos, are not squared.
+        let is_alone = is_length && numbers.len() == 1;
+        let why = |number: f64| match number.abs() {
+            size if size > MOST_LENGTH && (is_length || self.unit() == "world coordinates") => {
+                Some("so large that its square overflows")
+            }
+            size if size > 0.0 && size < LEAST_LENGTH && is_alone => {
+                Some("so small that its square underflows")
+            }
+            _ => None,
+        };
+        numbers.iter().enumerate().find_map(|(index, number)| Some((index, why(*number)?)))
+    }
+
+    /// How many values of which type it takes: "1 or 3 numbers".
+    fn takes(&self) -> String {
+        let counts: Vec<_> = self.arity().iter().map(usize::to_string).collect();
+        let counts = counts.join(" or ");
+        let plural = if counts == "1" { "" } else { "s" };
+        match self.value_type() {
+            Type::Whole => format!("{counts} whole number{plural}"),
+            Type::Number => format!("{counts} number{plural}"),
+            Type::Word => "a word".to_owned(),
+            Type::Name(kind) => format!("the name of a {kind}"),
+            Type::Choice(choices) if choices.all().iter().any(|choice| choice.number.is_some()) => {
+                format!("the name or number of a {}", choices.what)
+            }
+            Type::Choice(choices) => format!("the name of an {}", choices.what),
+            Type::Formula => "a formula in y, in quotes".to_owned(),
+        }
+    }
+}
+
+/// An attribute's name, meaning, unit, default and rule, and the key to its value.
+///
+/// Type and number of its values are those of `T`.
+pub struct Pparm<T: Value> {
+    name: &'static str,
+    aliases: &'static [&'static str],
+    meaning: &'static str,
+    unit: &'static str,
+    default: Option<T>,
+    rule: &'static str,
+    keeps: fn(&T) -> bool,
+    /// What starts its line in the notes' dump; nothing where the dump leaves it out.
+    label: Option<&'static str>,
+    ending: &'static str,
+    shown: Option<fn(T) -> T>,
+}
+
+impl<T: Value> Pparm<T> {
+    /// An attribute that every scene must give.
+    pub const fn required(name: &'static str, meaning: &'static str) -> Self {
+        Self::new(name, meaning, None)
+    }
+
+    /// An attribute with a default.
+    pub const fn or(name: &'static str, meaning: &'static str, default: T) -> Self {
+        Self::new(name, meaning, Some(default))
+    }
+
+    const fn new(name: &'static str, meaning: &'static str, default: Option<T>) -> Self {
+        Self {
+            name,
+            aliases: &[],
+            meaning,
+            unit: "",
+            default,
+            rule: "",
+            keeps: |_| true,
+            label: Some(name),
+            ending: " \n",
+            shown: None,
+        }
+    }
+
+    /// Other names that a scene may use for it.
+    pub const fn alias(mut self, aliases: &'static [&'static str]) -> Self {
+        self.aliases = aliases;
+        self
+    }
+
+    /// The unit of its values.
+    pub const fn unit(mut self, unit: &'static str) -> Self {
+        self.unit = unit;
+        self
+    }
+
+    /// A rule: the words that end the sentence "it must be ...", and the test.
+    pub const fn must(mut self, rule: &'static str, keeps: fn(&T) -> bool) -> Self {
+        self.rule = rule;
+        self.keeps = keeps;
+        self
+    }
+
+    /// The label and line end of its line in the notes' dump, where they are not its name and `" \n"`.
+    pub const fn dumped(mut self, label: &'static str, ending: &'static str) -> Self {
+        self.label = Some(label);
+        self.ending = ending;
+        self
+    }
+
+    /// What the notes' dump shows in place of the value as it was read.
+    pub const fn shown(mut self, shown: fn(T) -> T) -> Self {
+        self.shown = Some(shown);
+        self
+    }
+
+    /// Leaves it out of the notes' dump.
+    pub const fn not_dumped(mut self) -> Self {
+        self.label = None;
+        self
+    }
+}
+
+impl<T: Value> Attribute for Pparm<T> {
+    fn name(&self) -> &'static str {
+        self.name
+    }
+
+    fn aliases(&self) -> &'static [&'static str] {
+        self.aliases
+    }
+
+    fn meaning(&self) -> &'static str {
+        self.meaning
+    }
+
+    fn unit(&self) -> &'static str {
+        self.unit
+    }
+
+    fn value_type(&self) -> Type {
+        T::TYPE
+    }
+
+    fn arity(&self) -> &'static [usize] {
+        T::ARITY
+    }
+
+    fn default(&self) -> Option<Datum> {
+        self.default.as_ref().map(T::to_datum)
+    }
+
+    fn rule(&self) -> &'static str {
+        self.rule
+    }
+
+    fn allows(&self, datum: &Datum) -> bool {
+        T::from_datum(datum).is_some_and(|value| (self.keeps)(&value))
+    }
+}
+
+impl<T: Value> Row for Pparm<T> {
+    fn attribute(&self) -> Option<&dyn Attribute> {
+        Some(self)
+    }
+
+    fn dump(&self, attributes: &Attributes) -> String {
+        let Some(label) = self.label else { return String::new() };
+        let as_read = attributes.datum(self.name);
+        match self.shown.zip(T::from_datum(as_read)) {
+            Some((shown, value)) => shown(value).to_datum().line(label, self.ending),
+            None => as_read.line(label, self.ending),
+        }
+    }
+}
+
+/// A line of the notes' dump that follows from the attributes above it, such as a rotation matrix.
+pub struct Derived(pub fn(&Attributes) -> String);
+
+impl Row for Derived {
+    fn attribute(&self) -> Option<&dyn Attribute> {
+        None
+    }
+
+    fn dump(&self, attributes: &Attributes) -> String {
+        (self.0)(attributes)
+    }
+}
+
+/// The values of an attribute, and whether the scene gives them: if not, they are the default.
+pub(crate) type Given = (Datum, bool);
+
+/// The attributes of an entity of a scene, each with its checked value.
+#[derive(Clone)]
+pub struct Attributes {
+    /// The name of the entity's type, and where that is registered.
+    plugin: (&'static str, &'static Location<'static>),
+    /// All attributes of the type, in the order of its table.
+    values: Vec<(&'static dyn Attribute, Given)>,
+}
+
+impl Attributes {
+    /// `values` holds those of each attribute, in their order.
+    pub(crate) fn new(
+        plugin: (&'static str, &'static Location<'static>),
+        attributes: impl Iterator<Item = &'static dyn Attribute>,
+        values: Vec<Given>,
+    ) -> Self {
+        let count = values.len();
+        let values: Vec<_> = attributes.zip(values).collect();
+        debug_assert_eq!(values.len(), count);
+        Self { plugin, values }
+    }
+
+    /// The value of the attribute that `key` describes.
+    ///
+    /// # Panics
+    /// Where the plugin asks for an attribute that is not in the table it registered.
+    #[track_caller]
+    pub fn get<T: Value>(&self, key: &Pparm<T>) -> T {
+        match self.find(key.name()).and_then(T::from_datum) {
+            Some(value) => value,
+            // No closure: the message is to name the plugin's line.
+            None => self.not_in_table(key.name()),
+        }
+    }
+
+    /// The value of the attribute that `key` describes, if the scene gives it.
+    ///
+    /// # Panics
+    /// As [`get`](Self::get) does.
+    #[track_caller]
+    pub fn get_given<T: Value>(&self, key: &Pparm<T>) -> Option<T> {
+        let value = self.get(key);
+        self.given().any(|(attribute, _)| attribute.name() == key.name()).then_some(value)
+    }
+
+    /// The value of an attribute as it was checked.
+    #[track_caller]
+    pub(crate) fn datum(&self, attribute: &str) -> &Datum {
+        self.find(attribute).unwrap_or_else(|| self.not_in_table(attribute))
+    }
+
+    /// Every attribute with its value, in the order of the table.
+    pub fn values(&self) -> impl Iterator<Item = (&'static dyn Attribute, &Datum)> {
+        self.values.iter().map(|(attribute, (datum, _))| (*attribute, datum))
+    }
+
+    /// The attributes that the scene gives, with their values.
+    pub fn given(&self) -> impl Iterator<Item = (&'static dyn Attribute, &Datum)> {
+        let given = self.values.iter().filter(|(_, (_, given))| *given);
+        given.map(|(attribute, (datum, _))| (*attribute, datum))
+    }
+
+    /// The names of the textures that it refers to.
+    pub fn textures(&self) -> impl Iterator<Item = &str> {
+        self.values().filter_map(|(_, datum)| match datum {
+            Datum::Texture { name, .. } => Some(&**name),
+            _ => None,
+        })
+    }
+
+    /// The value of the attribute of this name, if there is one.
+    pub(crate) fn find(&self, attribute: &str) -> Option<&Datum> {
+        self.values().find(|(known, _)| known.name() == attribute).map(|(_, datum)| datum)
+    }
+
+    #[track_caller]
+    fn not_in_table(&self, attribute: &str) -> ! {
+        let (name, place) = (self.plugin.0, words::place(self.plugin.1));
+        match self.find(attribute) {
+            Some(_) => panic!(
+                "the plugin `{name}` asks for `{attribute}` with another type than in the table it registers at {place}: give both the same type"
+            ),
+            None => panic!(
+                "the plugin `{name}` asks for `{attribute}`, which is not in the table it registers at {place}: add it there"
+            ),
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! Profiles: the lines that surfaces of revolution are turned from.
+
+use crate::numeric::dual::Dual;
+use crate::numeric::formula::Formula;
+use crate::scene::choice::{Choice, ChoiceName};
+use crate::words;
+use std::panic::Location;
+
+/// A line x = g(y), which a scene chooses by name or by number. A plugin registers one with
+/// `inventory::submit!`.
+pub struct Profile {
+    name: &'static str,
+    meaning: &'static str,
+    number: Option<i64>,
+    formula: &'static str,
+    slope: Option<&'static str>,
+    place: &'static Location<'static>,
+}
+
+inventory::collect!(Profile);
+
+impl Profile {
+    /// A profile with a name and no number: the distance from the axis as a formula in the height y.
+    #[track_caller]
+    pub const fn new(name: &'static str, meaning: &'static str, formula: &'static str) -> Self {
+        Self { name, meaning, number: None, formula, slope: None, place: Location::caller() }
+    }
+
+    /// With the number that the notes give it.
+    pub const fn number(mut self, number: i64) -> Self {
+        self.number = Some(number);
+        self
+    }
+
+    /// With a slope that is not the formula's own, for the normals of the classic method.
+    pub const fn slope(mut self, formula: &'static str) -> Self {
+        self.slope = Some(formula);
+        self
+    }
+
+    /// The line.
+    ///
+    /// # Panics
+    /// Where the plugin's text is no formula; the registry refuses such plugins before.
+    pub fn line(&self) -> Line {
+        let parse = |text| Formula::parse(text).expect("the registry refuses what is no formula");
+        Line { radius: parse(self.formula), slope: self.slope.map(parse) }
+    }
+
+    /// What is wrong with its formulas, if anything is.
+    pub(crate) fn fault(&self) -> Option<String> {
+        let fault = |text| Formula::parse(text).err().map(|fault| (text, fault));
+        let (text, fault) = fault(self.formula).or_else(|| self.slope.and_then(fault))?;
+        let place = words::place(self.place);
+        Some(format!(
+            "the profile `{}` at {place} is not a formula: {} in `{text}`",
+            self.name, fault.message
+        ))
+    }
+}
+
+/// A line x = g(y), ready to be turned around an axis.
+#[derive(Clone, Debug)]
+pub struct Line {
+    /// The distance from the axis at a height.
+    pub radius: Formula,
+    /// How fast that grows, where that is not what the formula says.
+    pub slope: Option<Formula>,
+}
+
+impl Line {
+    /// How fast the radius grows at a height.
+    pub fn slope_at(&self, y: f64) -> f64 {
+        match &self.slope {
+            Some(slope) => slope.at(y),
+            None => self.radius.at(Dual::variable(y)).slope,
+        }
+    }
+}
+
+impl Choice for &'static Profile {
+    const WHAT: &'static str = "profile";
+
+    fn all() -> Vec<Self> {
+        inventory::iter::<Profile>().collect()
+    }
+
+    fn option(&self) -> ChoiceName {
+        ChoiceName { name: self.name, number: self.number, meaning: self.meaning, place: self.place }
+    }
+}

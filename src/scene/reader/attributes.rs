@@ -1,0 +1,177 @@
+//! One entity as written, checked against the table of its type.
+
+use super::fault::{Fault, Place, Report};
+use super::names::Names;
+use super::values;
+use super::written::{Form, Word, Written};
+use crate::scene::entity::Entity;
+use crate::scene::pparm::{Attribute, Given, LEAST_LENGTH, MOST_LENGTH};
+use crate::scene::value::{Datum, Type};
+use crate::words::{list, nearest};
+
+/// Checks an entity against the table of its type and reports what is wrong with it.
+pub struct Against<'c> {
+    /// The entity's type.
+    pub entity: &'static Entity,
+    /// What its attributes may refer to.
+    pub names: &'c mut Names,
+    /// Where faults go.
+    pub report: &'c mut Report,
+}
+
+impl Against<'_> {
+    /// A datum for each attribute of the type, or nothing where a fault was reported.
+    pub fn values(&mut self, written: &Written<'_>) -> Option<Vec<Given>> {
+        let entity = self.entity;
+        let title = match written.name.text.as_ref() {
+            "" => format!("this {}", entity.name),
+            name => format!("{} `{name}`", entity.name),
+        };
+        let attributes: Vec<_> = entity.attributes().collect();
+        let mut given: Vec<Option<&(Word<'_>, Vec<Word<'_>>)>> = vec![None; attributes.len()];
+        let mut sound = !written.is_damaged;
+        let mut meant = Vec::new();
+        for pair in &written.attributes {
+            let (word, _) = pair;
+            let known = find_attribute(entity, &word.text);
+            match known.and_then(|known| attributes.iter().position(|a| a.name() == known.name())) {
+                None => {
+                    sound = false;
+                    meant.extend(self.unknown_attribute(&title, word));
+                }
+                Some(at) => {
+                    if let Some((first, _)) = given[at].replace(pair) {
+                        self.report.add(
+                            Fault::warning(word.place.clone(), format!("{title} has `{}` twice", word.text))
+                                .label("this one is used")
+                                .also(first.place.clone(), "this one is ignored"),
+                        );
+                    }
+                }
+            }
+        }
+        let mut missing = Vec::new();
+        let mut values = Vec::new();
+        for (attribute, given) in attributes.iter().zip(given) {
+            let is_given = given.is_some();
+            let datum = match given {
+                Some((word, words)) => self.datum(*attribute, &title, word, words),
+                None => {
+                    // One that is misspelt or could not be made out is not missing as well.
+                    let may_be_there = meant.contains(&attribute.name()) || written.is_damaged;
+                    if attribute.default().is_none() && !may_be_there {
+                        missing.push(*attribute);
+                    }
+                    attribute.default()
+                }
+            };
+            sound &= datum.is_some();
+            values.extend(datum.map(|datum| (datum, is_given)));
+        }
+        if !missing.is_empty() {
+            let wanted: Vec<_> =
+                missing.iter().map(|attribute| self.report.syntax().usage(*attribute)).collect();
+            let fault = format!("{title} lacks {}", list(missing.iter().map(|attribute| attribute.name())));
+            self.report.add(
+                Fault::error(written.name.place.clone(), fault)
+                    .help(format!("add `{}`", wanted.join("` and `"))),
+            );
+        } else if written.attributes.is_empty() && !attributes.is_empty() && !written.is_damaged {
+            sound = false;
+            let names = list(attributes.iter().map(|attribute| attribute.name()));
+            self.report.add(
+                Fault::error(written.name.place.clone(), format!("{title} has no attributes"))
+                    .help(format!("add at least one of {names}")),
+            );
+        }
+        sound.then_some(values)
+    }
+
+    /// Reports an attribute that the type does not have, and returns the one that was meant perhaps.
+    fn unknown_attribute(&mut self, title: &str, word: &Word<'_>) -> Option<&'static str> {
+        let entity = self.entity;
+        let near = near_attribute(entity, &word.text).map(|near| near.name());
+        let mut fault = Fault::error(word.place.clone(), format!("{title} has no attribute `{}`", word.text));
+        if let Some(near) = near {
+            fault = fault.label(format!("did you mean `{near}`?"));
+        }
+        let names = list(entity.attributes().map(|attribute| attribute.name()));
+        self.report.add(fault.help(format!("a {} takes {names}", entity.name)));
+        near
+    }
+
+    /// The values of one attribute, checked for type, number and rule.
+    fn datum(
+        &mut self,
+        attribute: &'static dyn Attribute,
+        title: &str,
+        word: &Word<'_>,
+        words: &[Word<'_>],
+    ) -> Option<Datum> {
+        if !attribute.arity().contains(&words.len()) {
+            let takes = attribute.takes();
+            let message = format!("`{}` of {title} takes {takes}, not {}", word.text, words.len());
+            self.report.add(Fault::error(whole(word, words), message).help(format!(
+                "`{}`: {}",
+                attribute.name(),
+                attribute.meaning()
+            )));
+            return None;
+        }
+        let datum = match (attribute.value_type(), words) {
+            (Type::Name(kind), [name]) if name.form != Form::Number => self.names.resolve(kind, name),
+            (value_type, _) => match values::read(value_type, words) {
+                Ok(datum) => datum,
+                Err(faults) => {
+                    for fault in faults {
+                        let takes = format!("`{}` of {title} takes {}", word.text, attribute.takes());
+                        self.report.add(match (&fault.place, fault.label.is_empty()) {
+                            // Without a text there is nothing to mark.
+                            (None, _) => Fault { message: format!("{}: {takes}", fault.message), ..fault },
+                            (Some(_), true) => fault.label(takes),
+                            (Some(_), false) => fault,
+                        });
+                    }
+                    return None;
+                }
+            },
+        };
+        if !attribute.allows(&datum) {
+            let given = words.iter().map(|word| word.text.as_ref()).collect::<Vec<_>>().join(" ");
+            let message = format!("`{}` of {title} must be {}, not {given}", word.text, attribute.rule());
+            let place = words.first().map_or(word.place.clone(), |first| whole(first, words));
+            self.report.add(Fault::error(place, message).help(format!(
+                "`{}`: {}",
+                attribute.name(),
+                attribute.meaning()
+            )));
+            return None;
+        }
+        if let Some((index, why)) = attribute.beyond_squares(&datum) {
+            let message = format!("`{}` of {title} is {why}", attribute.name());
+            let place = words.get(index).map_or(word.place.clone(), |word| word.place.clone());
+            self.report.add(Fault::error(place, message).help(format!(
+                "lengths and coordinates other than 0 must be between {LEAST_LENGTH:e} and {MOST_LENGTH:e} world units"
+            )));
+            return None;
+        }
+        Some(datum)
+    }
+}
+
+/// The attribute of this name or alias.
+pub fn find_attribute(entity: &'static Entity, name: &str) -> Option<&'static dyn Attribute> {
+    entity.attributes().find(|attribute| attribute.name() == name || attribute.aliases().contains(&name))
+}
+
+/// The attribute that a misspelt word was meant to be.
+pub fn near_attribute(entity: &'static Entity, word: &str) -> Option<&'static dyn Attribute> {
+    nearest(word, entity.attributes().map(|attribute| attribute.name()))
+        .and_then(|name| find_attribute(entity, name))
+}
+
+/// From an attribute's name, or its first value, to its last value.
+pub fn whole(first: &Word<'_>, words: &[Word<'_>]) -> Place {
+    let last = words.last().unwrap_or(first);
+    Some(first.place.as_ref()?.start..last.place.as_ref()?.end)
+}

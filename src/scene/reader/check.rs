@@ -1,0 +1,259 @@
+//! Entities as written, checked and made into a [`Model`].
+
+use super::attributes::{Against, find_attribute, whole};
+use super::fault::{Fault, Place, Report};
+use super::names::{Names, stand_in, suggestion};
+use super::written::{Word, Written};
+use crate::scene::entity::{Args, Construct, Entity, MATERIAL, Refusal, Setting};
+use crate::scene::kind::Kind;
+use crate::scene::model::{Item, Model, Object};
+use crate::scene::registry::Registry;
+use crate::scene::value::Datum;
+use crate::words::list;
+use crate::world::accuracy::Accuracy;
+use crate::world::body::Body;
+use crate::world::camera::Camera;
+use crate::world::light::Light;
+use crate::world::material::Material;
+use crate::world::texture::Texture;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use std::sync::Arc;
+
+/// Makes a model of entities as written and reports all their faults. Without faults there is a model. File
+/// names start from `folder`.
+pub fn model(
+    registry: &Registry,
+    folder: &Path,
+    accuracy: Chosen,
+    written: Vec<Written<'_>>,
+    report: &mut Report,
+) -> Option<Model> {
+    let names = Names::of(registry, &written);
+    let camera = Camera { accuracy: accuracy.by_default, ..Camera::default() };
+    let setting = Setting { camera, folder: folder.to_owned() };
+    let mut check = Check {
+        registry,
+        report,
+        names,
+        unknown: BTreeMap::new(),
+        first_camera: None,
+        setting: Arc::new(setting),
+        accuracy: accuracy.above_all,
+        camera: None,
+        materials: Vec::new(),
+        textures: Vec::new(),
+        objects: Vec::new(),
+        lights: Vec::new(),
+    };
+    // Objects and lights may ask for the camera, wherever it stands.
+    let waiting: Vec<_> =
+        written.iter().enumerate().filter_map(|(order, entity)| check.table(order, entity)).collect();
+    for (written, args) in waiting {
+        check.construct(written, args);
+    }
+    check.textures_can_be_read(&written);
+    check.finish(&written)
+}
+
+/// How exactly a scene is traced, as far as others than itself have a say.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Chosen {
+    /// What counts in place of the scene's own.
+    pub above_all: Option<Accuracy>,
+    /// What counts where the scene says nothing.
+    pub by_default: Accuracy,
+}
+
+/// An entity's checked values, and how it was written.
+type Checked<'w> = (&'w Written<'w>, Args);
+
+struct Check<'r> {
+    registry: &'r Registry,
+    report: &'r mut Report,
+    names: Names,
+    /// Entity types that are not there, each with all its places.
+    unknown: BTreeMap<String, Vec<Place>>,
+    /// Where the first camera is named.
+    first_camera: Option<Place>,
+    setting: Arc<Setting>,
+    /// What counts in place of the scene's own.
+    accuracy: Option<Accuracy>,
+    camera: Option<Item<Camera>>,
+    materials: Vec<Item<Arc<Material>>>,
+    textures: Vec<Item<Arc<Texture>>>,
+    objects: Vec<Object>,
+    lights: Vec<Item<Box<dyn Light>>>,
+}
+
+impl Check<'_> {
+    /// Checks an entity against its table. What others refer to is made at once, the rest is handed back.
+    fn table<'w>(&mut self, order: usize, written: &'w Written<'w>) -> Option<Checked<'w>> {
+        let Some(entity) = self.registry.find(&written.kind.text) else {
+            let kind = written.kind.text.to_string();
+            self.unknown.entry(kind).or_default().push(written.kind.place.clone());
+            return None;
+        };
+        let Word { text, place, .. } = &written.name;
+        let counts = self.names.claim(entity, &written.name, self.report);
+        if entity.kind() == Kind::Camera
+            && let Some(first) = self.first_camera.replace(place.clone())
+        {
+            self.report.add(
+                Fault::error(place.clone(), format!("a second camera `{text}`"))
+                    .also(first, "the first one")
+                    .help("a scene has exactly one camera"),
+            );
+        }
+        let values = Against { entity, names: &mut self.names, report: self.report }.values(written);
+        let args = values.map(|values| Args::new(entity, text.to_string(), order, values));
+        if !counts {
+            return None;
+        }
+        if matches!(entity.kind(), Kind::Object | Kind::Light) {
+            return args.map(|args| (written, args));
+        }
+        if let Some(args) = args {
+            self.construct(written, args);
+        }
+        // Where it is faulty, something stands in, so that its users are checked too.
+        if matches!(entity.kind(), Kind::Material | Kind::Texture) {
+            self.names.define(entity.kind(), text, stand_in(entity.kind(), text));
+        }
+        None
+    }
+
+    /// Makes an entity of its checked values.
+    fn construct(&mut self, written: &Written<'_>, mut args: Args) {
+        args.setting = self.setting.clone();
+        let (kind, name) = (args.entity.kind(), args.name.clone());
+        match args.entity.construct {
+            Construct::Camera(construct) => {
+                if let Some(mut camera) = self.made(written, args, construct) {
+                    camera.value.accuracy = self.accuracy.unwrap_or(camera.value.accuracy);
+                    let folder = self.setting.folder.clone();
+                    self.setting = Arc::new(Setting { camera: camera.value.clone(), folder });
+                    self.camera = Some(camera);
+                }
+            }
+            Construct::Material(construct) => {
+                if let Some(Item { args, value }) = self.made(written, args, construct) {
+                    let material = Arc::new(value);
+                    let shown =
+                        Datum::Material { name: Arc::from(name.as_str()), material: material.clone() };
+                    self.names.define(kind, &name, shown);
+                    self.materials.push(Item { args, value: material });
+                }
+            }
+            Construct::Texture(construct) => {
+                if let Some(Item { args, value }) = self.made(written, args, construct) {
+                    self.report.add_file(value.path().to_owned());
+                    // Two that have one file are one, so that it is read once.
+                    let known = self.textures.iter().map(|item| &item.value).find(|known| ***known == value);
+                    let texture = known.cloned().unwrap_or_else(|| Arc::new(value));
+                    let shown = Datum::Texture { name: Arc::from(name.as_str()), texture: texture.clone() };
+                    self.names.define(kind, &name, shown);
+                    self.textures.push(Item { args, value: texture });
+                }
+            }
+            Construct::Object(construct) => {
+                if let Some(Item { args, value: Body { shape, shader } }) =
+                    self.made(written, args, construct)
+                {
+                    let material = args.get(&MATERIAL);
+                    self.objects.push(Object { args, material, shape, shader });
+                }
+            }
+            Construct::Light(construct) => {
+                let light = self.made(written, args, construct);
+                self.lights.extend(light);
+            }
+        }
+    }
+
+    /// What a constructor makes of checked values.
+    fn made<T>(
+        &mut self,
+        written: &Written<'_>,
+        args: Args,
+        construct: fn(&Args) -> Result<T, Refusal>,
+    ) -> Option<Item<T>> {
+        match construct(&args) {
+            Ok(value) => Some(Item { args, value }),
+            Err(refusal) => {
+                debug_assert!(
+                    args.has_what_is_refused(&refusal),
+                    "the plugin `{}` refuses `{}`, which is not in the table it registers at {}: name an attribute of that table",
+                    args.entity.name,
+                    refusal.attribute.unwrap_or_default(),
+                    args.entity.place()
+                );
+                let place = place_of(args.entity, written, refusal.attribute);
+                let message = format!("{} `{}` {}", args.entity.name, args.name, refusal.message);
+                self.report.add(Fault::error(place, message).help(refusal.help));
+                None
+            }
+        }
+    }
+
+    /// Reads the textures that something refers to, and no others.
+    fn textures_can_be_read(&mut self, written: &[Written<'_>]) {
+        let users =
+            self.objects.iter().map(|object| &object.args).chain(self.lights.iter().map(|light| &light.args));
+        let used: BTreeSet<_> = users.flat_map(|args| args.textures()).collect();
+        for Item { args, value } in &self.textures {
+            if used.contains(args.name.as_str())
+                && let Err(reason) = value.load()
+            {
+                let message = format!("the file of texture `{}` cannot be read: {reason}", args.name);
+                let mut files = args.values().filter(|(_, datum)| matches!(datum, Datum::Word(_)));
+                let place =
+                    place_of(args.entity, &written[args.order], files.next().map(|(file, _)| file.name()));
+                self.report.add(
+                    Fault::error(place, message).help(
+                        "a texture is a PPM or PNG file, and its name is relative to the scene's folder",
+                    ),
+                );
+            }
+        }
+    }
+
+    /// The model, or the faults that show only when all is read.
+    fn finish(mut self, written: &[Written<'_>]) -> Option<Model> {
+        let mut camera_misspelt = false;
+        for (name, places) in std::mem::take(&mut self.unknown) {
+            let near = self.registry.nearest(&name);
+            camera_misspelt |=
+                near.and_then(|near| self.registry.find(near)).is_some_and(|e| e.kind() == Kind::Camera);
+            let known = list(self.registry.iter().map(|entity| entity.name));
+            let fault = Fault::error(places[0].clone(), format!("there is no entity type `{name}`"));
+            self.report
+                .add(fault.label(suggestion(near, &places)).help(format!("the entity types are {known}")));
+        }
+        self.names.report_unresolved(self.registry, self.report);
+        self.names.report_repeated(self.report);
+        if let Some(first) = written.first()
+            && self.first_camera.is_none()
+            && !camera_misspelt
+        {
+            self.report.add(
+                Fault::error(first.kind.place.clone(), "the scene has no camera")
+                    .label("expected a camera")
+                    .help(format!(
+                        "add one: {}",
+                        self.registry.example(Kind::Camera, "NAME", self.report.syntax())
+                    )),
+            );
+        }
+        let Self { camera, materials, textures, objects, lights, .. } = self;
+        Some(Model { camera: camera?, materials, textures, objects, lights })
+    }
+}
+
+/// Where an attribute of an entity stands with its values; the entity's name where it does not stand.
+fn place_of(entity: &'static Entity, written: &Written<'_>, attribute: Option<&str>) -> Place {
+    let known = |word: &Word<'_>| find_attribute(entity, &word.text).map(|known| known.name());
+    let given = attribute
+        .and_then(|attribute| written.attributes.iter().rfind(|(word, _)| known(word) == Some(attribute)));
+    given.map_or(written.name.place.clone(), |(word, values)| whole(word, values))
+}

@@ -1,0 +1,152 @@
+//! From a scene's text to a [`Model`], or to all that is wrong with it.
+
+mod attributes;
+mod check;
+mod fault;
+mod machine;
+mod names;
+mod notes;
+mod toml;
+mod values;
+mod written;
+
+pub use check::Chosen;
+pub use fault::{Fault, Place, Report, Severity};
+pub use machine::message;
+pub use written::Written;
+
+use crate::scene::model::Model;
+use crate::scene::registry::Registry;
+use crate::scene::syntax::Syntax;
+use crate::world::accuracy::Accuracy;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// A model, and the warnings that its scene gave rise to.
+pub struct Loaded {
+    /// The scene, ready to be traced.
+    pub model: Model,
+    /// What may not mean what was intended.
+    pub warnings: Report,
+    /// How long it took to check the entities and to make the model of them, textures and all; reading the text is
+    /// not in it.
+    pub building: Duration,
+    /// Where each entity stands, from its type to its end, by its [order](crate::scene::entity::Args::order).
+    pub places: Vec<Place>,
+}
+
+/// Reads a scene, in TOML if its name ends in `.toml` or its text begins as TOML does, and in the notes'
+/// spelling if not. `name` is what messages call it, and its own file names start from `folder`. An accuracy that is
+/// given here counts in place of the scene's own.
+///
+/// # Errors
+/// Every fault of the scene, warnings among them, in the order of the text.
+pub fn read(
+    registry: &Registry,
+    name: &str,
+    folder: &Path,
+    bytes: &[u8],
+    accuracy: Option<Accuracy>,
+) -> Result<Loaded, Report> {
+    read_by(registry, name, folder, bytes, Chosen { above_all: accuracy, ..Chosen::default() })
+}
+
+/// As [`read`], with more to say about the accuracy.
+///
+/// # Errors
+/// Every fault of the scene, warnings among them, in the order of the text.
+pub fn read_by(
+    registry: &Registry,
+    name: &str,
+    folder: &Path,
+    bytes: &[u8],
+    accuracy: Chosen,
+) -> Result<Loaded, Report> {
+    let text = decode(name, bytes)?;
+    let syntax = match Syntax::of_name(name) {
+        Some(Syntax::Toml) => Syntax::Toml,
+        _ => Syntax::of_text(text),
+    };
+    let mut report = Report::new(name, text, syntax);
+    let parse = match syntax {
+        Syntax::Notes => notes::parse,
+        Syntax::Toml => toml::parse,
+    };
+    let written = parse(registry, text, &mut report);
+    if written.is_empty() && !report.is_fatal() {
+        report.add(Fault::error(Some(0..0), "the scene is empty").help(registry.first_steps(syntax)));
+    }
+    finish(registry, folder, accuracy, written, report)
+}
+
+/// Makes a model without any text (the notes' `modelstat.c`). The entities are checked as a text's are;
+/// file names start from the working directory.
+///
+/// ```
+/// use tabray::scene::reader::Written;
+/// use tabray::scene::reader;
+/// use tabray::scene::registry::Registry;
+///
+/// let built = reader::build(Registry::get()?, [
+///     Written::new("camera", "cam1")
+///         .set("pixeldim", [640, 480])
+///         .set("worlddim", [8.0, 6.0])
+///         .set("viewpoint", [4.0, 3.0, 6.0]),
+///     Written::new("material", "green").set("ambient", [0.0, 5.0, 0.0]),
+///     Written::new("plane", "leftwall")
+///         .set("material", "green")
+///         .set("normal", [3.0, 0.0, 1.0])
+///         .set("point", [0.0, 0.0, 0.0]),
+/// ])?;
+/// assert_eq!(built.model.objects.len(), 1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// Every fault of the scene; it has no places.
+pub fn build(
+    registry: &Registry,
+    written: impl IntoIterator<Item = Written<'static>>,
+) -> Result<Loaded, Report> {
+    let report = Report::new("model", "", Syntax::Notes);
+    finish(registry, Path::new(""), Chosen::default(), written.into_iter().collect(), report)
+}
+
+fn finish(
+    registry: &Registry,
+    folder: &Path,
+    accuracy: Chosen,
+    written: Vec<Written<'_>>,
+    mut report: Report,
+) -> Result<Loaded, Report> {
+    let places = written.iter().map(|entity| entity.place.clone()).collect();
+    let start = Instant::now();
+    match check::model(registry, folder, accuracy, written, &mut report) {
+        Some(model) if !report.is_fatal() => {
+            Ok(Loaded { model, warnings: report, building: start.elapsed(), places })
+        }
+        _ => Err(report),
+    }
+}
+
+/// The text of a file.
+///
+/// # Errors
+/// The first place where it is none.
+fn decode<'b>(name: &str, bytes: &'b [u8]) -> Result<&'b str, Report> {
+    let nul = bytes.iter().position(|byte| *byte == 0);
+    let not_utf8 = std::str::from_utf8(bytes).err().map(|error| error.valid_up_to());
+    let (place, message) = match (nul, not_utf8) {
+        (Some(nul), bad) if bad.is_none_or(|bad| nul < bad) => (nul..nul + 1, "unexpected NUL byte"),
+        (_, Some(bad)) => (bad..bad + char::REPLACEMENT_CHARACTER.len_utf8(), "invalid UTF-8"),
+        _ => {
+            let text = std::str::from_utf8(bytes).unwrap_or_default();
+            return Ok(text.strip_prefix('\u{feff}').unwrap_or(text));
+        }
+    };
+    // Up to the fault the lossy text has the same bytes.
+    let mut report = Report::new(name, String::from_utf8_lossy(bytes), Syntax::default());
+    let help = "a scene is plain text, a sequence of entities `TYPE NAME { ATTRIBUTES }`";
+    report.add(Fault::error(Some(place), message).help(help));
+    Err(report)
+}

@@ -1,0 +1,243 @@
+//! The names of a scene: who has them, and what those that refer to them mean.
+
+use super::fault::{Fault, Place, Report};
+use super::written::{Form, Word, Written};
+use crate::scene::entity::Entity;
+use crate::scene::kind::Kind;
+use crate::scene::registry::Registry;
+use crate::scene::value::Datum;
+use crate::words::{self, nearest};
+use std::collections::hash_map::Entry;
+use std::collections::{BTreeMap, HashMap, HashSet};
+use std::sync::Arc;
+
+/// A name of a kind: the same name may stand for a material and for an object.
+type Name = (Kind, String);
+
+/// What only the first of several entities of one name is: an object of its type, or a thing of its kind.
+type Title = &'static str;
+
+/// Where a name was claimed, and for what: first, and again.
+struct Claims {
+    first: (Title, Place),
+    again: Vec<(Title, Place)>,
+}
+
+/// How many faults of one sort are told one by one.
+const FEW: usize = 8;
+
+/// The names of a scene, as far as it has been read.
+pub struct Names {
+    /// Where each name stands first, before or after its uses.
+    places: HashMap<Name, Place>,
+    /// Names of entities of no known type: they may be what a reference means.
+    doubtful: HashSet<String>,
+    /// The names that were claimed so far.
+    claimed: HashMap<Name, Claims>,
+    /// What can be referred to so far.
+    defined: HashMap<Name, Datum>,
+    /// References to what is not there (yet), each with all its places.
+    unresolved: BTreeMap<Name, Vec<Place>>,
+}
+
+impl Names {
+    /// All names of a scene, none of them claimed yet.
+    pub fn of(registry: &Registry, written: &[Written<'_>]) -> Self {
+        let (mut places, mut doubtful) = (HashMap::new(), HashSet::new());
+        for Written { kind, name, .. } in written {
+            let text = name.text.to_string();
+            match registry.find(&kind.text) {
+                Some(entity) => {
+                    places.entry((entity.kind(), text)).or_insert_with(|| name.place.clone());
+                }
+                None => {
+                    doubtful.insert(text);
+                }
+            }
+        }
+        Self {
+            places,
+            doubtful,
+            claimed: HashMap::new(),
+            defined: HashMap::new(),
+            unresolved: BTreeMap::new(),
+        }
+    }
+
+    /// Gives an entity its name, and reports a word that is none. Tells whether the entity counts: of several
+    /// materials, textures or objects of one type that have one name, it is the first.
+    pub fn claim(&mut self, entity: &'static Entity, word: &Word<'_>, report: &mut Report) -> bool {
+        let Word { text, form, place } = word;
+        let kind = entity.kind();
+        if text.is_empty() && *form == Form::Text {
+            report.add(
+                Fault::error(place.clone(), format!("this {kind} has an empty name"))
+                    .help("a name is any word; put it in quotes if it contains white space"),
+            );
+        }
+        if text.contains(char::is_control) {
+            report.add(
+                Fault::error(place.clone(), format!("`{}` cannot be a name", text.escape_debug()))
+                    .help("a name must not contain newlines or other control characters"),
+            );
+        }
+        if text.is_empty() || kind == Kind::Camera {
+            return true;
+        }
+        // The course's own pictures show a sphere `left` and an fplane `left` in one scene.
+        let title = if kind == Kind::Object { entity.name } else { "" };
+        match self.claimed.entry((kind, text.to_string())) {
+            Entry::Vacant(free) => {
+                free.insert(Claims { first: (title, place.clone()), again: Vec::new() });
+                true
+            }
+            Entry::Occupied(mut taken) => {
+                let Claims { first, again } = taken.get_mut();
+                let is_first = first.0 != title && again.iter().all(|(other, _)| *other != title);
+                again.push((title, place.clone()));
+                is_first || kind == Kind::Light
+            }
+        }
+    }
+
+    /// Warns of names that several entities have: once for each name, and once for all of them where they are many.
+    pub fn report_repeated(&self, report: &mut Report) {
+        let (mut left_out, mut shared) = (Vec::new(), Vec::new());
+        for ((kind, text), Claims { first, again }) in
+            self.claimed.iter().filter(|(_, all)| !all.again.is_empty())
+        {
+            let mut titles: BTreeMap<Title, Vec<&Place>> = BTreeMap::new();
+            let mut firsts = Vec::new();
+            for (title, place) in [first].into_iter().chain(again) {
+                let places = titles.entry(title).or_default();
+                places.push(place);
+                firsts.extend((places.len() == 1).then_some(place));
+            }
+            for (title, places) in titles {
+                let what = if title.is_empty() { kind.to_string() } else { title.to_owned() };
+                if *kind == Kind::Light { &mut shared } else { &mut left_out }.push(Repeated {
+                    what,
+                    text,
+                    places,
+                });
+            }
+            shared.push(Repeated { what: kind.to_string(), text, places: firsts });
+        }
+        for (Repeated { what, text, places }, names, more) in few(left_out) {
+            let message = match (names, places.len()) {
+                (0, 2) => format!("{what} `{text}` is defined twice"),
+                (0, count) => format!("{what} `{text}` is defined {count} times"),
+                _ => {
+                    format!("{what} `{text}` and {} are defined more than once", words::count(names, "other"))
+                }
+            };
+            let label = if more == 0 { "ignored".to_owned() } else { format!("ignored, as are {more} more") };
+            report.add(
+                Fault::warning(places[1].clone(), message)
+                    .label(label)
+                    .also(places[0].clone(), "this one is used")
+                    .help("only the first definition of a name is used: rename the others"),
+            );
+        }
+        for (Repeated { what, text, places }, names, more) in few(shared) {
+            let message = match (names, places.len()) {
+                (0, 2) => format!("two {what}s have the name `{text}`"),
+                (0, count) => format!("{count} {what}s have the name `{text}`"),
+                _ => format!(
+                    "several entities have the name `{text}`, and {} too",
+                    words::count(names, "other name")
+                ),
+            };
+            let label = if more == 0 { String::new() } else { format!("and {more} more") };
+            report.add(
+                Fault::warning(places[1].clone(), message)
+                    .label(label)
+                    .also(places[0].clone(), "the first one")
+                    .help("all of them are used, but messages and dumps cannot tell them apart"),
+            );
+        }
+    }
+
+    /// Lets what follows refer to a name.
+    pub fn define(&mut self, kind: Kind, name: &str, datum: Datum) {
+        self.defined.entry((kind, name.to_owned())).or_insert(datum);
+    }
+
+    /// What a word refers to. If that is not there, it is remembered, and something stands in for it, so that
+    /// whatever refers to it can be checked.
+    pub fn resolve(&mut self, kind: Kind, word: &Word<'_>) -> Datum {
+        let name = (kind, word.text.to_string());
+        if let Some(datum) = self.defined.get(&name) {
+            return datum.clone();
+        }
+        if !self.doubtful.contains(&name.1) {
+            self.unresolved.entry(name).or_default().push(word.place.clone());
+        }
+        stand_in(kind, &word.text)
+    }
+
+    /// Reports the references to what was not there, one fault for each name.
+    pub fn report_unresolved(&self, registry: &Registry, report: &mut Report) {
+        for ((kind, text), places) in &self.unresolved {
+            let fault = match self.places.get(&(*kind, text.clone())) {
+                Some(defined) => {
+                    Fault::error(places[0].clone(), format!("{kind} `{text}` is used before it is defined"))
+                        .label(suggestion(None, places))
+                        .also(defined.clone(), "defined here")
+                        .help(format!("a {kind} must be defined before it is used"))
+                }
+                None => {
+                    let known = self.places.keys().filter(|(known, _)| known == kind);
+                    let mut known: Vec<_> = known.map(|(_, text)| text.as_str()).collect();
+                    known.sort_unstable();
+                    Fault::error(places[0].clone(), format!("there is no {kind} `{text}`"))
+                        .label(suggestion(nearest(text, known), places))
+                        .help(format!(
+                            "define it before this: {}",
+                            registry.example(*kind, text, report.syntax())
+                        ))
+                }
+            };
+            report.add(fault);
+        }
+    }
+}
+
+/// Entities of one name.
+struct Repeated<'n> {
+    what: String,
+    text: &'n str,
+    places: Vec<&'n Place>,
+}
+
+/// Those that are repeated, each with the names and the places that are not told of it; of many only the first one.
+fn few(mut all: Vec<Repeated<'_>>) -> Vec<(Repeated<'_>, usize, usize)> {
+    all.retain(|repeated| repeated.places.len() > 1);
+    all.sort_by_key(|repeated| (repeated.places[1].as_ref().map(|place| place.start), repeated.text));
+    let (names, later) = (all.len(), all.iter().map(|repeated| repeated.places.len() - 1).sum::<usize>());
+    if names > FEW {
+        return all.into_iter().take(1).map(|first| (first, names - 1, later - 1)).collect();
+    }
+    let more: Vec<_> = all.iter().map(|repeated| repeated.places.len() - 2).collect();
+    all.into_iter().zip(more).map(|(repeated, more)| (repeated, 0, more)).collect()
+}
+
+/// What is referred to where the thing itself is faulty or missing.
+pub fn stand_in(kind: Kind, name: &str) -> Datum {
+    let name = Arc::from(name);
+    match kind {
+        Kind::Texture => Datum::Texture { name, texture: Arc::default() },
+        _ => Datum::Material { name, material: Arc::default() },
+    }
+}
+
+/// The label of a fault that may stand in several places.
+pub fn suggestion(near: Option<&str>, places: &[Place]) -> String {
+    let more = words::count(places.len() - 1, "more place");
+    match (near, places.len()) {
+        (None, 1) => String::new(),
+        (None, _) => format!("here and in {more}"),
+        (Some(near), 1) => format!("did you mean `{near}`?"),
+        (Some(near), _) => format!("did you mean `{near}`? (here and in {more})"),
+    }
+}

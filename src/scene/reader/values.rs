@@ -1,0 +1,123 @@
+//! Words read as the values of an attribute.
+
+use super::fault::Fault;
+use super::written::{Form, Word};
+use crate::numeric::formula::Formula;
+use crate::scene::choice::Choices;
+use crate::scene::value::{Datum, Type};
+use crate::words::nearest;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Reads words as values of a type.
+///
+/// # Errors
+/// A fault for each word that is none.
+pub fn read(value_type: Type, words: &[Word<'_>]) -> Result<Datum, Vec<Fault>> {
+    match value_type {
+        Type::Whole => all(words, whole).map(Datum::Whole),
+        Type::Number => all(words, number).map(Datum::Numbers),
+        Type::Word | Type::Name(_) => words.first().ok_or_else(Vec::new).and_then(text),
+        Type::Formula => words.first().ok_or_else(Vec::new).and_then(formula),
+        Type::Choice(choices) => words.first().ok_or_else(Vec::new).and_then(|word| choice(choices, word)),
+    }
+}
+
+fn text(word: &Word<'_>) -> Result<Datum, Vec<Fault>> {
+    let fault = |what| Fault::error(word.place.clone(), format!("`{}` {what}", word.text.escape_debug()));
+    if word.form == Form::Number {
+        return Err(vec![
+            fault("is a number, not a word").help(format!("put it in quotes: \"{}\"", word.text)),
+        ]);
+    }
+    if word.text.contains(char::is_control) {
+        return Err(vec![
+            fault("contains a newline or another control character")
+                .help("a word must not contain control characters"),
+        ]);
+    }
+    Ok(Datum::Word(word.text.to_string()))
+}
+
+fn formula(word: &Word<'_>) -> Result<Datum, Vec<Fault>> {
+    Formula::parse(&word.text).map(|formula| Datum::Formula(Arc::new(formula))).map_err(|fault| {
+        // The place inside of the quotes, where the text stands there as it is.
+        let quotes = usize::from(word.form == Form::Text);
+        let is_as_it_is = |place: &Range<usize>| place.len() == word.text.len() + 2 * quotes;
+        let inside = |place: &Range<usize>| {
+            let at = place.start + quotes;
+            at + fault.place.start..at + fault.place.end
+        };
+        let place =
+            word.place.as_ref().map(|place| if is_as_it_is(place) { inside(place) } else { place.clone() });
+        vec![Fault::error(place, fault.message).help(fault.help)]
+    })
+}
+
+fn choice(choices: Choices, word: &Word<'_>) -> Result<Datum, Vec<Fault>> {
+    // In quotes it is no number.
+    let number = word.text.parse().ok().filter(|_| word.form != Form::Text);
+    let chosen = number.and_then(|number| choices.numbered(number)).or_else(|| choices.named(&word.text));
+    chosen.map(Datum::Choice).ok_or_else(|| {
+        let all = choices.all();
+        let known: Vec<_> = all
+            .iter()
+            .map(|choice| match choice.number {
+                Some(number) => format!("{number} (`{}`)", choice.name),
+                None => format!("`{}`", choice.name),
+            })
+            .collect();
+        let mut fault =
+            Fault::error(word.place.clone(), format!("there is no {} `{}`", choices.what, word.text))
+                .help(format!("the {}s are {}", choices.what, known.join(", ")));
+        if let Some(near) = nearest(&word.text, all.iter().map(|choice| choice.name)) {
+            fault = fault.label(format!("did you mean `{near}`?"));
+        }
+        vec![fault]
+    })
+}
+
+/// What a word is in place of a value, and what would be right if that can be said.
+type Complaint = (&'static str, Option<&'static str>);
+
+fn all<T>(words: &[Word<'_>], read: fn(&str) -> Result<T, Complaint>) -> Result<Vec<T>, Vec<Fault>> {
+    let mut values = Vec::with_capacity(words.len());
+    let mut faults = Vec::new();
+    for word in words {
+        let value = match word.form {
+            Form::Text => Err(("in quotes", Some("write numbers without quotes"))),
+            Form::Any | Form::Number => read(&word.text),
+        };
+        match value {
+            Ok(value) => values.push(value),
+            Err((what, help)) => {
+                let fault = Fault::error(word.place.clone(), format!("`{}` is {what}", word.text));
+                faults.push(Fault { help: help.map(str::to_owned), ..fault });
+            }
+        }
+    }
+    if faults.is_empty() { Ok(values) } else { Err(faults) }
+}
+
+fn whole(word: &str) -> Result<i64, Complaint> {
+    word.parse().map_err(|_| {
+        let digits = word.trim_start_matches(['+', '-']);
+        let too_large = !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit());
+        (if too_large { "too large" } else { "not a whole number" }, None)
+    })
+}
+
+fn number(word: &str) -> Result<f64, Complaint> {
+    match word.parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        Ok(_) if word.contains(|c: char| c.is_ascii_digit()) => Err(("too large", None)),
+        Ok(_) => Err(("not a finite number", None)),
+        Err(_) if word.contains(',') => {
+            Err(("not a number", Some("separate values by white space, and write decimals with a point")))
+        }
+        Err(_) if word.contains('#') => {
+            Err(("not a number", Some("put white space before the `#` of a comment")))
+        }
+        Err(_) => Err(("not a number", None)),
+    }
+}

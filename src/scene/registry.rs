@@ -1,0 +1,221 @@
+//! The registry: all entity types of the program, by name.
+
+use crate::scene::choice::contradictions;
+use crate::scene::entity::Entity;
+use crate::scene::kind::Kind;
+use crate::scene::procedural::{OnPlane, OnSphere};
+use crate::scene::profile::Profile;
+use crate::scene::syntax::Syntax;
+use crate::words::nearest;
+use std::collections::{BTreeMap, BTreeSet};
+use std::iter;
+use std::sync::LazyLock;
+
+/// All entity types of the program.
+pub struct Registry {
+    entities: BTreeMap<&'static str, &'static Entity>,
+    aliases: BTreeMap<&'static str, &'static Entity>,
+}
+
+impl Registry {
+    /// The entity types that the plugins registered, sorted by name.
+    ///
+    /// # Errors
+    /// Names given twice, each with both places, and profiles that are no formulas, each on a line: the plugins
+    /// contradict each other.
+    pub fn get() -> Result<&'static Registry, &'static str> {
+        static REGISTRY: LazyLock<Result<Registry, String>> = LazyLock::new(|| {
+            let choices = [
+                contradictions::<OnPlane>(),
+                contradictions::<OnSphere>(),
+                contradictions::<&Profile>(),
+                profiles(),
+            ];
+            let mut faults = choices.concat();
+            // A shader's name is taken on planes and on spheres.
+            faults.sort();
+            faults.dedup();
+            let registry = Registry::of(inventory::iter::<Entity>());
+            faults.extend(registry.as_ref().err().cloned());
+            if faults.is_empty() { registry } else { Err(faults.join("\n")) }
+        });
+        REGISTRY.as_ref().map_err(String::as_str)
+    }
+
+    /// A registry of these entity types.
+    ///
+    /// # Errors
+    /// As [`Registry::get`].
+    pub fn of(entities: impl IntoIterator<Item = &'static Entity>) -> Result<Registry, String> {
+        // The order of `inventory` is the linker's.
+        let mut sorted: Vec<_> = entities.into_iter().collect();
+        sorted.sort_by_key(|entity| (entity.name, entity.place()));
+
+        let mut faults = Vec::new();
+        let mut by_name: BTreeMap<&str, &Entity> = BTreeMap::new();
+        let mut aliases: BTreeMap<&str, &Entity> = BTreeMap::new();
+        for &entity in &sorted {
+            if let Some(first) = by_name.insert(entity.name, entity) {
+                faults.push(taken("entity type", entity.name, first, entity));
+            }
+            let mut names = BTreeSet::new();
+            for attribute in entity.attributes() {
+                for &name in iter::once(&attribute.name()).chain(attribute.aliases()) {
+                    if !names.insert(name) {
+                        faults.push(format!(
+                            "the table of `{}` at {} has `{name}` twice: rename one of them",
+                            entity.name,
+                            entity.place()
+                        ));
+                    }
+                }
+            }
+        }
+        for &entity in &sorted {
+            for &alias in entity.aliases {
+                let first = by_name.get(alias).copied().or_else(|| aliases.insert(alias, entity));
+                if let Some(first) = first {
+                    faults.push(taken("entity type", alias, first, entity));
+                }
+            }
+        }
+        if faults.is_empty() { Ok(Registry { entities: by_name, aliases }) } else { Err(faults.join("\n")) }
+    }
+
+    /// The entity type of this name or alias.
+    pub fn find(&self, name: &str) -> Option<&'static Entity> {
+        self.entities.get(name).or_else(|| self.aliases.get(name)).copied()
+    }
+
+    /// The name of the entity type that a misspelt word was most likely meant to be.
+    pub fn nearest(&self, word: &str) -> Option<&'static str> {
+        nearest(word, self.entities.keys().copied())
+    }
+
+    /// How a scene writes an entity of this kind.
+    pub(crate) fn example(&self, kind: Kind, name: &str, syntax: Syntax) -> String {
+        let entity = self.iter().find(|entity| entity.kind() == kind);
+        entity.map(|entity| syntax.entity_usage(entity, name)).unwrap_or_default()
+    }
+
+    /// What a scene looks like, for those who have none.
+    pub(crate) fn first_steps(&self, syntax: Syntax) -> String {
+        let camera = self.example(Kind::Camera, "NAME", syntax);
+        format!("a scene begins with a camera, {camera}; materials, objects and lights follow")
+    }
+
+    /// All entity types, sorted by name.
+    pub fn iter(&self) -> impl Iterator<Item = &'static Entity> {
+        self.entities.values().copied()
+    }
+}
+
+/// Profiles that are no formulas.
+fn profiles() -> Vec<String> {
+    let mut faults: Vec<_> = inventory::iter::<Profile>().filter_map(Profile::fault).collect();
+    faults.sort();
+    faults
+}
+
+fn taken(what: &str, name: &str, first: &Entity, second: &Entity) -> String {
+    format!(
+        "the {what} `{name}` is registered twice, at {} and at {}: rename one of them",
+        first.place(),
+        second.place()
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::pparm::{Pparm, Row, Table};
+    use crate::scene::value::Type;
+    use crate::world::body::Body;
+
+    static SIZE: Pparm<f64> = Pparm::required("size", "how large it is").alias(&["extent"]);
+    static EXTENT: Pparm<f64> = Pparm::required("extent", "how far it reaches");
+    const SOUND: Table = &[&SIZE];
+    const TWICE: Table = &[&SIZE as &dyn Row, &EXTENT];
+
+    static BOX: Entity = Entity::shape("box", "a box", &[SOUND], |_| unreachable());
+    static CRATE: Entity = Entity::shape("crate", "a crate", &[SOUND], |_| unreachable()).alias(&["box"]);
+    static OTHER_BOX: Entity = Entity::shape("box", "another box", &[SOUND], |_| unreachable());
+    static TORN: Entity = Entity::shape("torn", "a contradiction", &[TWICE], |_| unreachable());
+
+    fn unreachable() -> Result<Body, crate::scene::entity::Refusal> {
+        unreachable!("nothing is built here")
+    }
+
+    fn fault(entities: &[&'static Entity]) -> String {
+        Registry::of(entities.iter().copied()).err().expect("a fault")
+    }
+
+    #[test]
+    fn a_name_taken_twice_is_refused_with_both_places() {
+        for order in [[&BOX, &OTHER_BOX], [&OTHER_BOX, &BOX]] {
+            let expected = format!(
+                "the entity type `box` is registered twice, at {} and at {}: rename one of them",
+                BOX.place(),
+                OTHER_BOX.place()
+            );
+            assert_eq!(fault(&order), expected);
+        }
+        assert!(BOX.place().starts_with("src/scene/registry.rs:"), "{}", BOX.place());
+    }
+
+    #[test]
+    fn an_alias_that_is_another_types_name_is_refused() {
+        assert!(fault(&[&CRATE, &BOX]).starts_with("the entity type `box` is registered twice, at "));
+        assert!(Registry::of([&CRATE]).is_ok_and(|registry| registry.find("box").is_some()));
+    }
+
+    #[test]
+    fn a_table_with_one_name_twice_is_refused_with_its_place() {
+        let expected =
+            format!("the table of `torn` at {} has `extent` twice: rename one of them", TORN.place());
+        assert_eq!(fault(&[&TORN]), expected);
+    }
+
+    #[test]
+    fn every_table_keeps_its_own_rules() {
+        let registry = Registry::get().expect("no two plugins claim one name");
+        for entity in registry.iter() {
+            let of = |what: &str| format!("{what} of `{}`, {}", entity.name, entity.place());
+            let is_short = |meaning: &str| !meaning.is_empty() && !meaning.ends_with('.');
+            let meant = "the meaning is a few words without a full stop:";
+            assert!(is_short(entity.meaning), "{meant} {}", of("that"));
+            for attribute in entity.attributes() {
+                let of = |what: &str| of(&format!("{what} of `{}`", attribute.name()));
+                assert!(is_short(attribute.meaning()), "{meant} {}", of("that"));
+                assert!(!attribute.arity().is_empty(), "some number of values is taken: {}", of("the arity"));
+                assert!(
+                    attribute.default().is_none_or(|datum| attribute.allows(&datum)),
+                    "{} does not keep its own rule, to be {}",
+                    of("the default"),
+                    attribute.rule()
+                );
+                if let Type::Name(kind) = attribute.value_type() {
+                    let is_there = registry.iter().any(|entity| entity.kind() == kind);
+                    assert!(is_there, "no plugin makes a {kind}, {}", of("the type"));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn names_are_sorted_and_plugins_are_named_by_their_files() {
+        let registry = Registry::get().expect("no two plugins claim one name");
+        let names: Vec<_> = registry.iter().map(|entity| entity.name).collect();
+        assert!(names.is_sorted());
+        for entity in registry.iter() {
+            let file = format!("plugins/{}.rs:", entity.name);
+            assert!(
+                entity.place().starts_with(&file),
+                "`{}` is registered at {}: a plugin's file is named after it, `plugins/{}.rs`",
+                entity.name,
+                entity.place(),
+                entity.name
+            );
+        }
+    }
+}

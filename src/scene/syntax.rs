@@ -1,0 +1,165 @@
+//! The two spellings of a scene: how each writes what.
+
+use crate::scene::entity::Entity;
+use crate::scene::pparm::Attribute;
+use crate::scene::value::{Datum, Type};
+use std::fmt;
+use std::path::Path;
+
+/// A spelling of the scene language.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Syntax {
+    /// The notes' one, `sphere ball { radius 2 }`.
+    #[default]
+    Notes,
+    /// TOML, `[sphere.ball]` and below it `radius = 2`.
+    Toml,
+}
+
+impl Syntax {
+    /// The spelling of a file, by the extension of its name.
+    pub fn of_name(name: impl AsRef<Path>) -> Option<Self> {
+        let extension = name.as_ref().extension()?;
+        Some(if extension.eq_ignore_ascii_case("toml") { Self::Toml } else { Self::Notes })
+    }
+
+    /// The spelling of a text that has no name: in TOML alone it begins with a bracket or with `TYPE.NAME =`.
+    pub fn of_text(text: &str) -> Self {
+        let mut lines = text.lines().map(str::trim);
+        let first = lines.find(|line| !line.is_empty() && !line.starts_with('#')).unwrap_or_default();
+        let key = first.split_once('=').map_or("", |(key, _)| key.trim_end());
+        let is_key = key.contains('.') && !key.contains(char::is_whitespace);
+        if first.starts_with('[') || is_key { Self::Toml } else { Self::Notes }
+    }
+
+    /// How a scene writes an attribute, in short: `center N N N`.
+    pub fn usage(self, attribute: &dyn Attribute) -> String {
+        let (value, count) = match attribute.value_type() {
+            Type::Whole | Type::Number => ("N", attribute.arity().first().copied().unwrap_or(1)),
+            Type::Word => ("WORD", 1),
+            Type::Name(_) => ("NAME", 1),
+            Type::Choice(_) => ("N", 1),
+            Type::Formula => ("2 + sin(y)", 1),
+        };
+        let is_text = matches!(attribute.value_type(), Type::Word | Type::Name(_) | Type::Formula);
+        let values = vec![if is_text { self.word(value) } else { value.to_owned() }; count];
+        self.pair(attribute.name(), &values)
+    }
+
+    /// How a scene writes an entity of a type, with the attributes it must have.
+    pub fn entity_usage(self, entity: &Entity, name: &str) -> String {
+        let required = entity.attributes().filter(|attribute| attribute.default().is_none());
+        let mut body: Vec<_> = required.map(|attribute| self.usage(attribute)).collect();
+        if body.len() < entity.attributes().count() {
+            body.push("...".to_owned());
+        }
+        match self {
+            Self::Notes => format!("`{} {name} {{ {} }}`", entity.name, body.join("  ")),
+            Self::Toml if body == ["..."] => {
+                format!("`[{}.{}]`, followed by its attributes", entity.name, self.key(name))
+            }
+            Self::Toml => {
+                format!("`[{}.{}]`, followed by `{}`", entity.name, self.key(name), body.join("`, `"))
+            }
+        }
+    }
+
+    /// An attribute and its values.
+    pub fn pair(self, attribute: &str, values: &[String]) -> String {
+        match (self, values) {
+            (Self::Notes, values) => format!("{attribute} {}", values.join(" ")),
+            (Self::Toml, [value]) => format!("{attribute} = {value}"),
+            (Self::Toml, values) => format!("{attribute} = [{}]", values.join(", ")),
+        }
+    }
+
+    /// The values of an attribute, each as it is written. Every number reads back to its last bit.
+    pub fn values(self, datum: &Datum) -> Vec<String> {
+        match datum {
+            Datum::Whole(numbers) => numbers.iter().map(i64::to_string).collect(),
+            Datum::Numbers(numbers) => numbers.iter().map(|number| shortest(*number)).collect(),
+            Datum::Word(word) => vec![self.word(word)],
+            Datum::Formula(formula) => vec![quoted(&formula.to_string())],
+            Datum::Absent => Vec::new(),
+            Datum::Material { name, .. } | Datum::Texture { name, .. } => vec![self.word(name)],
+            Datum::Choice(choice) => {
+                vec![choice.number.map_or_else(|| self.word(choice.name), |number| number.to_string())]
+            }
+        }
+    }
+
+    /// The name of an entity where it is defined.
+    pub fn key(self, name: &str) -> String {
+        let is_bare =
+            |name: &str| name.bytes().all(|byte| byte.is_ascii_alphanumeric() || b"_-".contains(&byte));
+        match self {
+            Self::Notes => self.word(name),
+            Self::Toml if !name.is_empty() && is_bare(name) => name.to_owned(),
+            Self::Toml => quoted(name),
+        }
+    }
+
+    /// A word that is a value. The notes' spelling needs quotes only where something else would be read.
+    fn word(self, word: &str) -> String {
+        let splits = |c: char| c.is_whitespace() || c == '{' || c == '}';
+        let bare = !word.is_empty() && !word.starts_with(['#', '"']) && !word.contains(splits);
+        if self == Self::Notes && bare { word.to_owned() } else { quoted(word) }
+    }
+}
+
+/// The values as the notes' spelling of a scene writes them: every number reads back to its last bit.
+impl fmt::Display for Datum {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&Syntax::Notes.values(self).join(" "))
+    }
+}
+
+/// A word in quotes, as both spellings read it.
+fn quoted(word: &str) -> String {
+    format!("\"{}\"", word.replace('\\', "\\\\").replace('"', "\\\""))
+}
+
+/// The shortest decimal that reads back as the same number.
+fn shortest(number: f64) -> String {
+    let text = format!("{number:?}");
+    text.strip_suffix(".0").unwrap_or(&text).to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_text_without_a_name_tells_its_spelling() {
+        assert_eq!(Syntax::of_text("# [a]\n\n  [camera.eye]\n"), Syntax::Toml);
+        assert_eq!(Syntax::of_text("camera.eye = { pixeldim = [8, 6] }"), Syntax::Toml);
+        assert_eq!(Syntax::of_text("camera eye { }"), Syntax::Notes);
+        assert_eq!(Syntax::of_text("camera a.b=c { }"), Syntax::Notes);
+        assert_eq!(Syntax::of_text(""), Syntax::Notes);
+    }
+
+    #[test]
+    fn quotes_stand_only_where_a_word_would_not_be_read() {
+        for (word, notes, toml) in [
+            ("red", "red", "red"),
+            ("5", "5", "5"),
+            ("light.red", "light.red", "\"light.red\""),
+            ("dark red", "\"dark red\"", "\"dark red\""),
+            ("#1", "\"#1\"", "\"#1\""),
+            ("a\"b\\", "a\"b\\", "\"a\\\"b\\\\\""),
+            ("", "\"\"", "\"\""),
+        ] {
+            assert_eq!(
+                (Syntax::Notes.key(word), Syntax::Toml.key(word)),
+                (notes.to_owned(), toml.to_owned())
+            );
+        }
+    }
+
+    #[test]
+    fn numbers_are_as_short_as_they_can_be() {
+        for (number, text) in [(2.0, "2"), (-0.0, "-0"), (0.1, "0.1"), (1e300, "1e300"), (1e-7, "1e-7")] {
+            assert_eq!(shortest(number), text);
+        }
+    }
+}

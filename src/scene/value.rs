@@ -1,0 +1,289 @@
+//! What an attribute's values are: the types that the scene language knows.
+
+use crate::numeric::formula::Formula;
+use crate::scene::choice::{Choice, ChoiceName, Choices};
+use crate::scene::kind::Kind;
+use crate::world::material::{Material, Rgb};
+use crate::world::texture::Texture;
+use glam::{DVec2, DVec3};
+use std::sync::Arc;
+
+/// The type of an attribute's values.
+#[derive(Clone, Copy, Debug)]
+pub enum Type {
+    /// Whole numbers.
+    Whole,
+    /// Finite real numbers.
+    Number,
+    /// One word. It stands in quotes where it has blanks or braces.
+    Word,
+    /// The name of an entity of this kind, defined before it is used.
+    Name(Kind),
+    /// The name or the number of one of several things.
+    Choice(Choices),
+    /// A formula.
+    Formula,
+}
+
+/// The values of one attribute, checked for type, number and rule.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Datum {
+    /// Whole numbers, one or more.
+    Whole(Vec<i64>),
+    /// Real numbers, one or more, all finite.
+    Numbers(Vec<f64>),
+    /// One word.
+    Word(String),
+    /// A material, by its name.
+    Material {
+        /// The name that the scene gives it.
+        name: Arc<str>,
+        /// What the name stands for.
+        material: Arc<Material>,
+    },
+    /// A texture, by its name.
+    Texture {
+        /// The name that the scene gives it.
+        name: Arc<str>,
+        /// What the name stands for.
+        texture: Arc<Texture>,
+    },
+    /// One of several things.
+    Choice(ChoiceName),
+    /// A formula.
+    Formula(Arc<Formula>),
+    /// Nothing, where an attribute may be left out.
+    Absent,
+}
+
+impl Datum {
+    /// Its line in the notes' dump: a label, the values and what ends the line.
+    pub fn line(&self, label: &str, ending: &str) -> String {
+        let values = match self {
+            Self::Whole(numbers) => numbers.iter().map(|number| format!(" {number:5}")).collect(),
+            Self::Numbers(numbers) => numbers.iter().map(|number| format!(" {number:5.1}")).collect(),
+            Self::Texture { name, .. } => format!(" {name:<15}"),
+            Self::Choice(ChoiceName { number: Some(number), .. }) => format!(" {number:5}"),
+            Self::Absent => return String::new(),
+            Self::Formula(formula) => format!(" {formula}"),
+            Self::Word(word) => format!(" {word}"),
+            Self::Material { name, .. } => format!(" {name}"),
+            Self::Choice(choice) => format!(" {}", choice.name),
+        };
+        format!("{label:<12}{values}{ending}")
+    }
+}
+
+/// A Rust type that a [`Pparm`](crate::scene::pparm::Pparm) can be a key for.
+pub trait Value: Clone + Send + Sync + 'static {
+    /// The type of the values that it is read from.
+    const TYPE: Type;
+    /// How many values it may be read from.
+    const ARITY: &'static [usize];
+    /// The datum of a default.
+    fn to_datum(&self) -> Datum;
+    /// The value of a datum, or nothing where type or number are others.
+    fn from_datum(datum: &Datum) -> Option<Self>;
+}
+
+impl Value for f64 {
+    const TYPE: Type = Type::Number;
+    const ARITY: &'static [usize] = &[1];
+
+    fn to_datum(&self) -> Datum {
+        [*self].to_datum()
+    }
+
+    fn from_datum(datum: &Datum) -> Option<Self> {
+        <[f64; 1]>::from_datum(datum).map(|[number]| number)
+    }
+}
+
+impl Value for DVec2 {
+    const TYPE: Type = Type::Number;
+    const ARITY: &'static [usize] = &[2];
+
+    fn to_datum(&self) -> Datum {
+        self.to_array().to_datum()
+    }
+
+    fn from_datum(datum: &Datum) -> Option<Self> {
+        <[f64; 2]>::from_datum(datum).map(DVec2::from)
+    }
+}
+
+impl Value for DVec3 {
+    const TYPE: Type = Type::Number;
+    const ARITY: &'static [usize] = &[3];
+
+    fn to_datum(&self) -> Datum {
+        self.to_array().to_datum()
+    }
+
+    fn from_datum(datum: &Datum) -> Option<Self> {
+        <[f64; 3]>::from_datum(datum).map(DVec3::from)
+    }
+}
+
+/// A number for each of red, green and blue, written as three numbers, or as one where they are alike.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PerChannel(pub Rgb);
+
+impl Value for PerChannel {
+    const TYPE: Type = Type::Number;
+    const ARITY: &'static [usize] = &[1, 3];
+
+    fn to_datum(&self) -> Datum {
+        let Self(Rgb { x, y, z }) = *self;
+        Datum::Numbers(if x == y && y == z { vec![x] } else { vec![x, y, z] })
+    }
+
+    fn from_datum(datum: &Datum) -> Option<Self> {
+        f64::from_datum(datum).map(Rgb::splat).or_else(|| Rgb::from_datum(datum)).map(Self)
+    }
+}
+
+impl<const N: usize> Value for [i64; N] {
+    const TYPE: Type = Type::Whole;
+    const ARITY: &'static [usize] = &[N];
+
+    fn to_datum(&self) -> Datum {
+        Datum::Whole(self.to_vec())
+    }
+
+    fn from_datum(datum: &Datum) -> Option<Self> {
+        match datum {
+            Datum::Whole(numbers) => numbers.as_slice().try_into().ok(),
+            _ => None,
+        }
+    }
+}
+
+impl Value for i64 {
+    const TYPE: Type = Type::Whole;
+    const ARITY: &'static [usize] = &[1];
+
+    fn to_datum(&self) -> Datum {
+        Datum::Whole(vec![*self])
+    }
+
+    fn from_datum(datum: &Datum) -> Option<Self> {
+        <[i64; 1]>::from_datum(datum).map(|[number]| number)
+    }
+}
+
+impl<const N: usize> Value for [f64; N] {
+    const TYPE: Type = Type::Number;
+    const ARITY: &'static [usize] = &[N];
+
+    fn to_datum(&self) -> Datum {
+        Datum::Numbers(self.to_vec())
+    }
+
+    fn from_datum(datum: &Datum) -> Option<Self> {
+        match datum {
+            Datum::Numbers(numbers) => numbers.as_slice().try_into().ok(),
+            _ => None,
+        }
+    }
+}
+
+impl Value for String {
+    const TYPE: Type = Type::Word;
+    const ARITY: &'static [usize] = &[1];
+
+    fn to_datum(&self) -> Datum {
+        Datum::Word(self.clone())
+    }
+
+    fn from_datum(datum: &Datum) -> Option<Self> {
+        match datum {
+            Datum::Word(word) => Some(word.clone()),
+            _ => None,
+        }
+    }
+}
+
+impl Value for Arc<Formula> {
+    const TYPE: Type = Type::Formula;
+    const ARITY: &'static [usize] = &[1];
+
+    fn to_datum(&self) -> Datum {
+        Datum::Formula(self.clone())
+    }
+
+    fn from_datum(datum: &Datum) -> Option<Self> {
+        match datum {
+            Datum::Formula(formula) => Some(formula.clone()),
+            _ => None,
+        }
+    }
+}
+
+/// What may be left out.
+impl<T: Value> Value for Option<T> {
+    const TYPE: Type = T::TYPE;
+    const ARITY: &'static [usize] = T::ARITY;
+
+    fn to_datum(&self) -> Datum {
+        self.as_ref().map_or(Datum::Absent, T::to_datum)
+    }
+
+    fn from_datum(datum: &Datum) -> Option<Self> {
+        match datum {
+            Datum::Absent => Some(None),
+            datum => T::from_datum(datum).map(Some),
+        }
+    }
+}
+
+/// The name of a texture; the key gives the texture itself.
+impl Value for Arc<Texture> {
+    const TYPE: Type = Type::Name(Kind::Texture);
+    const ARITY: &'static [usize] = &[1];
+
+    fn to_datum(&self) -> Datum {
+        Datum::Texture { name: Arc::from(""), texture: self.clone() }
+    }
+
+    fn from_datum(datum: &Datum) -> Option<Self> {
+        match datum {
+            Datum::Texture { texture, .. } => Some(texture.clone()),
+            _ => None,
+        }
+    }
+}
+
+/// The name of a material; the key gives the material itself.
+impl Value for Arc<Material> {
+    const TYPE: Type = Type::Name(Kind::Material);
+    const ARITY: &'static [usize] = &[1];
+
+    fn to_datum(&self) -> Datum {
+        Datum::Material { name: Arc::from(""), material: self.clone() }
+    }
+
+    fn from_datum(datum: &Datum) -> Option<Self> {
+        match datum {
+            Datum::Material { material, .. } => Some(material.clone()),
+            _ => None,
+        }
+    }
+}
+
+/// The name or the number of one of several things.
+impl<T: Choice> Value for T {
+    const TYPE: Type = Type::Choice(Choices::of::<T>());
+    const ARITY: &'static [usize] = &[1];
+
+    fn to_datum(&self) -> Datum {
+        Datum::Choice(self.option())
+    }
+
+    fn from_datum(datum: &Datum) -> Option<Self> {
+        match datum {
+            Datum::Choice(chosen) => T::all().into_iter().find(|choice| choice.option().name == chosen.name),
+            _ => None,
+        }
+    }
+}

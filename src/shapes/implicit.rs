@@ -1,0 +1,202 @@
+//! Shapes that are one formula: the points where f(x, y, z) = 0.
+//!
+//! A plugin gives the formula, once, for every number type, and a box around it. The rest follows:
+//! [`taylor`] isolates what a ray meets first by interval arithmetic, and [`Dual`]
+//! numbers give the normal.
+
+use crate::geometry::bounds::Bounds;
+use crate::geometry::frame::{self, BLUR, Frame};
+use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
+use crate::geometry::roots::taylor::{self, Found, Stretch};
+use crate::geometry::roots::{Method, twice};
+use crate::geometry::sight::{Line, Sight};
+use crate::numeric::dual::Dual;
+use crate::numeric::interval::Interval;
+use crate::numeric::number::Number;
+use crate::numeric::twofold::Twofold;
+use crate::world::body::Body;
+use crate::world::certify::{self, Enclosure, Equation, Precision};
+use crate::world::coincidence;
+use crate::world::hittable::{Hittable, bracket_by};
+use glam::DVec3;
+use std::ops::Range;
+
+/// A shape by its formula, in coordinates of its own.
+pub trait Implicit: Send + Sync {
+    /// Below 0 inside of the shape, above 0 outside, and 0 on it.
+    fn value<N: Number>(&self, at: [N; 3]) -> N;
+
+    /// The low and the high corner of a box around the shape. What lies outside of it is cut off, and a shape that is
+    /// cut shows its inside.
+    fn bounds(&self) -> [DVec3; 2];
+}
+
+impl Body {
+    /// An object by its formula, that looks like its material.
+    pub fn implicit(formula: impl Implicit + 'static, frame: Frame) -> Self {
+        let [low, high] = formula.bounds();
+        Self::plain(ImplicitShape { formula, frame, low, high })
+    }
+}
+
+/// A shape whose hits and normals are found by its formula.
+struct ImplicitShape<T> {
+    formula: T,
+    frame: Frame,
+    low: DVec3,
+    high: DVec3,
+}
+
+impl<T: Implicit> Hittable for ImplicitShape<T> {
+    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
+        let line = OnRay::new(self, ray);
+        line.distance(line.first_hit(within).root, within)
+    }
+
+    fn distance_by(&self, method: Method, ray: &Ray, within: &Span) -> Option<f64> {
+        let line = OnRay::new(self, ray);
+        let Stretch { outer, .. } = line.stretch();
+        Some(line.distance(
+            method.first_root(&line, outer.clone(), line.closest, within, shortest(&outer)),
+            within,
+        ))
+    }
+
+    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
+        bracket_by(self, ray, within, |within| {
+            let line = OnRay::new(self, ray);
+            let Found { root, is_certain } = line.first_hit(within);
+            is_certain.then(|| line.distance(root, within))
+        })
+    }
+
+    /// Along the formula's gradient. Where that vanishes or does not exist, as at the tip of a cone, the normal
+    /// points away from the shape's origin, and in the origin along its y.
+    fn normal(&self, at: DVec3) -> DVec3 {
+        let at = self.frame.point(at);
+        let slope = |axis: usize| {
+            let along =
+                |own: usize| if own == axis { Dual::variable(at[own]) } else { Dual::constant(at[own]) };
+            self.formula.value([along(0), along(1), along(2)]).slope
+        };
+        let normal =
+            direction(DVec3::new(slope(0), slope(1), slope(2))).or(direction(at)).unwrap_or(DVec3::Y);
+        self.frame.axes * normal
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        let own = Bounds { low: self.low, high: self.high };
+        Some(self.frame.bounds(&own))
+    }
+
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        coincidence::touches(self, at, error)
+    }
+
+    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold> {
+        coincidence::distance(self, ray, distance)
+    }
+
+    fn is_two_sided(&self) -> bool {
+        true
+    }
+
+    fn method(&self) -> String {
+        "first root isolated by interval arithmetic, then polished".to_owned()
+    }
+
+    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        certify::first_hit(self, sight, precision)
+    }
+}
+
+impl<T: Implicit> Equation for ImplicitShape<T> {
+    fn own<N: Number>(&self, line: Line<N>) -> Line<N> {
+        self.frame.line(line)
+    }
+
+    fn value<N: Number>(&self, at: [N; 3]) -> N {
+        self.formula.value(at)
+    }
+
+    fn kept<N: Number>(&self, at: [N; 3]) -> N {
+        let inside = |axis: usize| {
+            let (low, high) = (N::constant(self.low[axis]), N::constant(self.high[axis]));
+            (at[axis] - low).min(high - at[axis])
+        };
+        inside(0).min(inside(1)).min(inside(2))
+    }
+
+    fn extent(&self) -> [DVec3; 2] {
+        [self.low, self.high]
+    }
+}
+
+/// The unit vector along a vector, however short or long, that has a direction.
+fn direction(vector: DVec3) -> Option<DVec3> {
+    (vector / vector.abs().max_element()).try_normalize()
+}
+
+/// A formula along a ray.
+struct OnRay<'s, T> {
+    shape: &'s ImplicitShape<T>,
+    /// The ray in the shape's own coordinates, from its point closest to the shape's origin: a shape far away is met as
+    /// exactly as a near one.
+    base: DVec3,
+    dir: DVec3,
+    /// How far rounding may have moved that point.
+    blur: f64,
+    /// The ray in the world, and how far along it that point is.
+    ray: &'s Ray,
+    closest: f64,
+}
+
+impl<'s, T: Implicit> OnRay<'s, T> {
+    fn new(shape: &'s ImplicitShape<T>, ray: &'s Ray) -> Self {
+        let closest = (shape.frame.origin - ray.origin).dot(ray.dir);
+        let base = shape.frame.direction(shape.frame.from_origin(ray, closest));
+        let dir = shape.frame.direction(ray.dir);
+        Self { shape, base, dir, blur: frame::blur(base, closest), ray, closest }
+    }
+
+    /// From the ray's origin, or where it comes into the box, to where it leaves the box, wherever a span ends: a hit is
+    /// the same in every span that holds it.
+    fn stretch(&self) -> Stretch {
+        let ImplicitShape { low, high, .. } = self.shape;
+        let reach = 2.0 * low.abs().max(high.abs()).element_sum();
+        let mut stretch = Stretch::from(-self.closest..f64::INFINITY);
+        for axis in 0..3 {
+            stretch.cut((self.base[axis], self.dir[axis]), [low[axis], high[axis]], self.blur, reach);
+        }
+        stretch
+    }
+
+    fn first_hit(&self, within: &Span) -> Found {
+        let stretch = self.stretch();
+        taylor::first_root(self, &stretch, self.closest, within, shortest(&stretch.outer))
+    }
+
+    /// The distance of a root.
+    fn distance(&self, root: Option<f64>, within: &Span) -> f64 {
+        root.map_or(MISS, |root| within.keep(self.closest + root))
+    }
+}
+
+/// A few units in the last place of the greatest numbers on a line.
+fn shortest(span: &Range<f64>) -> f64 {
+    4.0 * f64::EPSILON * span.start.abs().max(span.end.abs())
+}
+
+impl<T: Implicit> taylor::Line for OnRay<'_, T> {
+    fn at<N: Number>(&self, t: N) -> N {
+        // Bounds hold the values along the ray which this one was rounded from.
+        let along = |axis: usize| N::about(self.base[axis], self.blur) + N::about(self.dir[axis], BLUR) * t;
+        self.shape.formula.value([along(0), along(1), along(2)])
+    }
+
+    /// Twice the precision, from the ray in the world, tells nearly all touches from misses.
+    fn undecided(&self, piece: Interval, leaves: Option<Side>, hidden: f64) -> Option<f64> {
+        let exact = self.shape.frame.exactly(self.ray, self.closest);
+        twice::first_root(|t| self.shape.formula.value(exact.along(t)), piece, leaves, hidden)
+    }
+}

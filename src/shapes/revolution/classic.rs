@@ -1,0 +1,70 @@
+//! The notes' method for surfaces of revolution, with the hits that it loses.
+
+use crate::geometry::ray::{MISS, Ray, Span};
+use crate::numeric::interval::Interval;
+use crate::numeric::number::Number;
+use crate::scene::profile::Line;
+use crate::world::certify::Equation;
+use glam::DVec3;
+
+/// A surface of revolution around the y axis, as the notes' program finds it.
+pub struct Classic {
+    /// The line that is turned.
+    pub line: Line,
+    /// How far up it goes.
+    pub height: f64,
+}
+
+impl Classic {
+    /// The distance of a ray's hit: between the ray's origin and its point closest to the axis, bisection to 1e-4. A
+    /// ray that grazes the surface is lost, and so is the inner wall.
+    pub fn first_hit(&self, ray: &Ray, within: &Span) -> f64 {
+        let outside = |at: DVec3| {
+            let radius = self.line.radius.at(at.y);
+            at.x * at.x - radius * radius + at.z * at.z
+        };
+        let closest = -(ray.origin.x * ray.dir.x + ray.origin.z * ray.dir.z)
+            / (ray.dir.x * ray.dir.x + ray.dir.z * ray.dir.z);
+        let at_origin = outside(ray.origin);
+        if closest.is_nan() || closest <= 0.0 || at_origin * outside(ray.at(closest)) >= 0.0 {
+            return MISS;
+        }
+        let (mut near, mut far) = (0.0, closest);
+        while far - near > 1e-4 {
+            let middle = (near + far) / 2.0;
+            if middle <= near || middle >= far {
+                break; // Far from the origin there is no number between them.
+            }
+            if at_origin * outside(ray.at(middle)) < 0.0 {
+                far = middle;
+            } else {
+                near = middle;
+            }
+        }
+        let distance = (near + far) / 2.0;
+        let height = ray.at(distance).y;
+        if (0.0..=self.height).contains(&height) { within.keep(distance) } else { MISS }
+    }
+
+    /// The unit normal at a point of it, away from the axis.
+    pub fn normal(&self, at: DVec3) -> DVec3 {
+        let downhill = -self.line.radius.at(at.y) * self.line.slope_at(at.y);
+        DVec3::new(2.0 * at.x, 2.0 * downhill, 2.0 * at.z).normalize()
+    }
+}
+
+/// What the notes mean by it, not what their program finds.
+impl Equation for Classic {
+    fn value<N: Number>(&self, [x, y, z]: [N; 3]) -> N {
+        x.powi(2) + z.powi(2) - self.line.radius.squared().at(y)
+    }
+
+    fn kept<N: Number>(&self, [_, y, _]: [N; 3]) -> N {
+        y.min(N::constant(self.height) - y)
+    }
+
+    fn extent(&self) -> [DVec3; 2] {
+        let widest = self.line.radius.at(Interval { low: 0.0, high: self.height }).magnitude();
+        [DVec3::new(-widest, 0.0, -widest), DVec3::new(widest, self.height, widest)]
+    }
+}

@@ -1,0 +1,119 @@
+//! Where a profile is negative and where it is not, proven by bounds of its value and slope.
+//!
+//! A range of heights is halved until bounds say that the profile has one sign there, or that it only grows or only
+//! falls, so that it changes its sign once at most: between two numbers that are next to each other. Where rounding
+//! alone hides the sign, however short the piece, the computed sign stands, and how large the profile can be there is
+//! kept: that has to be next to nothing.
+
+use super::budget::Budget;
+use super::no_surface::NoSurface;
+use crate::numeric::dual::Dual;
+use crate::numeric::formula::Formula;
+use crate::numeric::interval::Interval;
+use crate::numeric::number::Number;
+
+/// The ranges of a profile, from the bottom up.
+pub(super) struct Ranges {
+    /// Each with whether the profile is negative there.
+    pub list: Vec<(f64, f64, bool)>,
+    /// Where the profile is taken for negative it is not above this, and elsewhere not below its opposite, whatever
+    /// rounding hides.
+    pub hidden: f64,
+    /// The height of the largest of those.
+    pub hidden_at: f64,
+}
+
+impl Ranges {
+    /// The ranges of a profile from 0 to a height.
+    pub fn new(profile: &Formula, height: f64, budget: &mut Budget) -> Result<Self, NoSurface> {
+        let mut ranges = Self { list: Vec::new(), hidden: 0.0, hidden_at: 0.0 };
+        let mut waiting = vec![(0.0, height)];
+        while let Some((low, high)) = waiting.pop() {
+            // Bounds of the value and the slope, and the value again: as long as about 16 plain operations each.
+            if !budget.spend(profile, 16) {
+                return Err(NoSurface::Signs { from: low });
+            }
+            let middle = low + 0.5 * (high - low);
+            let wide = profile.at(Dual::variable(Interval { low, high }));
+            let thin = profile.at(Interval::constant(middle));
+            let slope = wide.slope;
+            let mut value = wide.value;
+            if slope.is_bounded() {
+                let reach = (middle - low).max(high - middle).next_up();
+                let around = thin + slope * Interval { low: -reach, high: reach };
+                value = Interval { low: value.low.max(around.low), high: value.high.min(around.high) };
+            }
+            if value.low >= 0.0 {
+                ranges.push(low, high, false);
+            } else if value.high <= 0.0 {
+                ranges.push(low, high, true);
+            } else if thin == Interval::WHOLE {
+                return Err(NoSurface::Unbounded { near: middle });
+            } else if slope.is_bounded() && !slope.has_zero() {
+                ranges.one_change(profile, low, high);
+            } else if middle <= low || middle >= high {
+                // Next to each other: what belongs to the void ends there.
+                let is_void = ranges.is_void(profile, low) | ranges.is_void(profile, high);
+                ranges.push(low, high, is_void);
+            } else if thin.has_zero() && value.magnitude() <= 4.0 * thin.magnitude() {
+                // Little more than rounding is left: shorter pieces say no more.
+                let is_void = profile.at(middle) < 0.0;
+                ranges.hide(value, is_void, middle);
+                ranges.push(low, high, is_void);
+            } else {
+                waiting.extend([(middle, high), (low, middle)]);
+            }
+        }
+        Ok(ranges)
+    }
+
+    fn push(&mut self, from: f64, to: f64, is_void: bool) {
+        match self.list.last_mut() {
+            Some((_, end, last)) if *last == is_void => *end = to,
+            _ if from < to => self.list.push((from, to, is_void)),
+            _ => {}
+        }
+    }
+
+    /// A piece on which the profile only grows or only falls.
+    fn one_change(&mut self, profile: &Formula, mut low: f64, mut high: f64) {
+        let (from, to) = (low, high);
+        let (at_from, at_to) = (self.is_void(profile, from), self.is_void(profile, to));
+        if at_from == at_to {
+            return self.push(from, to, at_from);
+        }
+        loop {
+            let middle = low + 0.5 * (high - low);
+            if middle <= low || middle >= high {
+                break;
+            }
+            if (profile.at(middle) < 0.0) == at_from {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        self.is_void(profile, low);
+        self.is_void(profile, high);
+        // The surface ends at a number where it is.
+        let change = if at_from { high } else { low };
+        self.push(from, change, at_from);
+        self.push(change, to, at_to);
+    }
+
+    /// Whether the profile is negative at a height, as computed; keeps how far it may be from that.
+    fn is_void(&mut self, profile: &Formula, y: f64) -> bool {
+        let is_void = profile.at(y) < 0.0;
+        self.hide(profile.at(Interval::constant(y)), is_void, y);
+        is_void
+    }
+
+    /// Keeps how far beyond 0 the profile may be where it is taken for negative or not.
+    fn hide(&mut self, bounds: Interval, is_void: bool, y: f64) {
+        let beyond = if is_void { bounds.high } else { -bounds.low };
+        // Without a bound it is no surface, which is found out where it is cut.
+        if beyond > self.hidden && beyond.is_finite() {
+            (self.hidden, self.hidden_at) = (beyond, y);
+        }
+    }
+}

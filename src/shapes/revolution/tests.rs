@@ -1,0 +1,148 @@
+//! Profiles of all kinds: what loads, what is refused, and that no part is lost or invented.
+
+use super::no_surface::NoSurface;
+use super::*;
+use crate::numeric::formula::Formula;
+use crate::numeric::interval::Interval;
+use crate::numeric::number::Number;
+use rand_pcg::Pcg32;
+use rand_pcg::rand_core::Rng;
+
+fn formula(profile: &str) -> Formula {
+    Formula::parse(profile).unwrap_or_else(|fault| panic!("{profile}: {fault:?}"))
+}
+
+fn surface(profile: &str, height: f64) -> Result<Revolution, NoSurface> {
+    Revolution::new(&formula(profile), height, Finish::Root)
+}
+
+struct Random(Pcg32);
+
+impl Random {
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        let part = (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
+        low + (high - low) * part
+    }
+
+    fn power(&mut self, low: f64, high: f64) -> f64 {
+        libm::exp10(self.between(low, high))
+    }
+
+    /// A profile of thin discs, steps, kinks, poles, waves and what is cut at 0.
+    fn profile(&mut self) -> String {
+        let mut profile = format!("{:?}", self.between(-1.0, 1.5));
+        for _ in 0..1 + self.0.next_u32() % 4 {
+            let at = self.between(0.0, 6.0);
+            let size = self.between(0.1, 2.0);
+            profile = match self.0.next_u32() % 8 {
+                0 => format!("max({profile}, {size:?} - {:?}*(y - {at:?})^2)", self.power(0.0, 20.0)),
+                1 => format!("{profile} + {size:?}*floor({:?}*y)", self.between(0.2, 3.0)),
+                2 => format!("{profile} - {size:?}*abs(y - {at:?})"),
+                3 => format!("min({size:?}, {profile} + {:?}/abs(y - {at:?}))", self.power(-6.0, 0.0)),
+                4 => format!("{profile} + {size:?}*sin({:?}*y)", self.power(0.0, 2.0)),
+                5 => format!("max({profile}, ln(y + {:?}))", self.power(-9.0, 0.0)),
+                6 => format!("{profile} + {size:?}*exp(-({:?}*(y - {at:?}))^2)", self.power(0.0, 6.0)),
+                _ => format!("({profile})*(y - {at:?})"),
+            };
+        }
+        profile
+    }
+}
+
+/// Heights where something may be wrong: any, and those next to where slabs meet.
+fn heights(surface: &Revolution, random: &mut Random) -> Vec<f64> {
+    let mut heights: Vec<f64> = (0..300).map(|_| random.between(0.0, surface.height)).collect();
+    for index in 0..surface.slabs.count() {
+        let slab = surface.slabs.get(index);
+        heights.extend([slab.from, slab.to, slab.from.next_up(), slab.to.next_down()]);
+        heights.extend((0..3).map(|_| random.between(slab.from, slab.to)));
+        let apart = random.power(-16.0, -1.0);
+        heights.extend([slab.from - apart, slab.from + apart]);
+    }
+    heights.retain(|y| (0.0..=surface.height).contains(y));
+    heights
+}
+
+/// A piece of heights is dense enough to say so.
+#[test]
+fn slabs_are_what_they_say_of_any_profile() {
+    let mut random = Random(Pcg32::new(5, 0));
+    let (mut loaded, mut checked) = (0, 0);
+    for _ in 0..300 {
+        let profile = random.profile();
+        let Ok(surface) = surface(&profile, 6.0) else { continue };
+        loaded += 1;
+        let slabs = &surface.slabs;
+        assert_eq!((slabs.get(0).from, slabs.get(slabs.count() - 1).to), (0.0, 6.0), "{profile}");
+        assert!(
+            (1..slabs.count()).all(|index| slabs.get(index - 1).to == slabs.get(index).from),
+            "{profile}"
+        );
+        for y in heights(&surface, &mut random) {
+            let slab = slabs.get(slabs.index(y));
+            // Ends belong to the slab on either side.
+            if y == slab.from || y == slab.to {
+                continue;
+            }
+            let radius = surface.profile.at(Interval::<f64>::constant(y));
+            assert!(!slab.is_void || radius.low <= 0.0, "{profile} is lost at {y:?}: {radius:?}");
+            assert!(slab.is_void || radius.high >= 0.0, "{profile} is invented at {y:?}: {radius:?}");
+            let square = surface.square.at(Interval::<f64>::constant(y));
+            // Exactly at a pole a formula has no value.
+            if !slab.is_void && square.is_bounded() {
+                let parabola = slab.parabola(y - slab.middle);
+                let rounding = 1e-13 * (1.0 + parabola.abs() + slab.most);
+                let apart = (square - Interval::constant(parabola)).magnitude() - square.width();
+                assert!(apart <= slab.error + rounding, "{profile} at {y:?}: {apart:e}, {slab:?}");
+                assert!(square.low <= slab.most, "{profile} at {y:?}: {square:?}, {slab:?}");
+            }
+            checked += 1;
+        }
+    }
+    assert!(loaded > 200 && checked > 100_000, "{loaded} {checked}");
+}
+
+#[test]
+fn bounded_profiles_load() {
+    for profile in ["min(2, 1/abs(y-3))", "max(0.2, ln(y))", "y^y/10", "max(0.3 - y, 2 - 1e14*(y-3.1)^2)"] {
+        let surface = surface(profile, 4.0).unwrap_or_else(|fault| panic!("{profile}: {fault:?}"));
+        assert!(surface.slabs.count() < 200, "{profile}: {}", surface.slabs.count());
+    }
+}
+
+#[test]
+fn parts_of_any_thinness_are_kept() {
+    for power in 3..28 {
+        let steep = libm::exp10(f64::from(power));
+        let profile = format!("max(0.3 - y, 2 - {steep:e}*(y-3.1)^2)").replace("e+", "e");
+        let surface = surface(&profile, 6.0).expect("a surface");
+        let half = (2.0 / steep).sqrt();
+        let slab = surface.slabs.get(surface.slabs.index(3.1));
+        assert!(!slab.is_void && surface.slabs.widest() >= 2.0, "{profile}: {slab:?}");
+        let solid =
+            (0..surface.slabs.count()).map(|index| surface.slabs.get(index)).filter(|slab| !slab.is_void);
+        let disc = solid.filter(|slab| slab.from > 1.0).map(|slab| slab.to - slab.from).sum::<f64>();
+        let ulp = 3.1_f64.next_up() - 3.1;
+        assert!((disc - 2.0 * half).abs() <= 1e-9 * half + 4.0 * ulp, "{profile}: {disc:e} of {half:e}");
+    }
+}
+
+#[test]
+fn what_cannot_be_told_is_refused_with_the_reason() {
+    let wild = "1e-8 + ln(sin(2) ^ 2) + sin(tan(pi ^ y) / 0.5) + min(abs(0.5 - 1e-8), pi ^ 2.11 * 0.5) \
+        ^ abs(max(pi, y)) * 1e-9 * 1e-8 * floor(0.5 - (y) * cos(7.27))";
+    for (profile, height, told) in [
+        ("sin(y)", 1e9, "with too many parts below 0 to separate them from y = "),
+        (wild, 12.0, "with too many parts below 0 to separate them from y = 0.3"),
+        ("sin(1/y)", 6.0, "with too many parts below 0 to separate them from y = 0.0"),
+        ("2 + sin(y)", 1e9, "that bends too often to be bounded from y = "),
+        ("1/(y-3)", 6.0, "that is unbounded near y = 3.0"),
+        ("ln(y-3)", 6.0, "that is unbounded near y = "),
+        ("tan(y)", 6.0, "that is unbounded near y = 1.570796"),
+        ("1e10 + (y - 3) - 1e10", 6.0, "whose sign is lost in rounding near y = "),
+        ("-1", 6.0, "that is nowhere above 0"),
+    ] {
+        let fault = surface(profile, height).err().unwrap_or_else(|| panic!("{profile} loads"));
+        assert!(fault.told().0.starts_with(told), "{profile}: {}", fault.told().0);
+    }
+}

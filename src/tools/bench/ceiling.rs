@@ -1,0 +1,110 @@
+//! What the arithmetic alone of a test costs: the formulas of textbooks in loops over arrays, without bounds, brackets,
+//! shading or any care for rounding. No tracer that tests packets of rays one by one is faster.
+
+use crate::geometry::packet::{Rays, WIDE};
+use crate::simd::cpu::{Cpu, kernels};
+use crate::simd::soa::Vectors;
+use glam::DVec3;
+use std::hint::black_box;
+
+/// The shapes that a round looks at, so that nothing about them is computed once for all.
+const SHAPES: usize = 8;
+
+/// A test of a textbook.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bare {
+    /// A ray and a plane.
+    Plane,
+    /// A ray and a sphere.
+    Sphere,
+    /// A ray and a triangle (Möller and Trumbore 1997).
+    Triangle,
+}
+
+impl Bare {
+    /// The one that an entity of this type needs, if it is one of these.
+    pub fn of(entity: &str) -> Option<Self> {
+        match entity {
+            "plane" | "tiled_plane" | "pplane" | "texplane" => Some(Self::Plane),
+            "sphere" | "psphere" => Some(Self::Sphere),
+            "triangle" => Some(Self::Triangle),
+            _ => None,
+        }
+    }
+
+    /// Makes at least so many tests.
+    pub fn run(self, cpu: Cpu, tests: u64) {
+        let (mut origin, mut dir) = (Vectors::<WIDE>::ZERO, Vectors::<WIDE>::ZERO);
+        for lane in 0..WIDE {
+            let (x, y) = ((lane % 8) as f64, (lane / 8) as f64);
+            origin.set(lane, DVec3::new(4.0, 3.0, 7.0));
+            dir.set(lane, DVec3::new(0.1 * x - 0.3, 0.1 * y - 0.3, -1.0).normalize());
+        }
+        let rays = Rays { origin: origin.view(WIDE), dir: dir.view(WIDE), origin_error: 0.0 };
+        let shapes: [[DVec3; 3]; SHAPES] = std::array::from_fn(|index| {
+            let corner = DVec3::new(4.0, 3.0, -4.0 - 0.1 * index as f64);
+            [corner, DVec3::X + 0.1 * DVec3::Z, DVec3::Y]
+        });
+        for _ in 0..tests.div_ceil((WIDE * SHAPES) as u64) {
+            let (mut near, mut met) = ([f64::INFINITY; WIDE], [0; WIDE]);
+            let shapes = black_box(&shapes);
+            match self {
+                Self::Plane => planes(cpu, rays, shapes, &mut near, &mut met),
+                Self::Sphere => spheres(cpu, rays, shapes, &mut near, &mut met),
+                Self::Triangle => triangles(cpu, rays, shapes, &mut near, &mut met),
+            }
+            black_box((&near, &met));
+        }
+    }
+}
+
+kernels! {
+    /// Planes, as a point and a normal.
+    fn planes(rays: Rays, shapes: &[[DVec3; 3]], near: &mut [f64], met: &mut [u64]) {
+        each(rays, shapes, near, met, |[point, normal, _], origin, dir| {
+            (*point - origin).dot(*normal) / dir.dot(*normal)
+        });
+    }
+
+    /// Spheres of radius 2, as their centres.
+    fn spheres(rays: Rays, shapes: &[[DVec3; 3]], near: &mut [f64], met: &mut [u64]) {
+        each(rays, shapes, near, met, |[center, ..], origin, dir| {
+            let from = origin - *center;
+            let (b, c) = (from.dot(dir), from.dot(from) - 4.0);
+            // NaN, which is no distance, where it misses.
+            -b - (b * b - c).sqrt()
+        });
+    }
+
+    /// Triangles, as a corner and two edges.
+    fn triangles(rays: Rays, shapes: &[[DVec3; 3]], near: &mut [f64], met: &mut [u64]) {
+        each(rays, shapes, near, met, |[corner, one, other], origin, dir| {
+            let (across, from) = (dir.cross(*other), origin - *corner);
+            let inverse = 1.0 / one.dot(across);
+            let up = from.cross(*one);
+            let (u, v) = (from.dot(across) * inverse, dir.dot(up) * inverse);
+            let is_inside = (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0);
+            if is_inside { other.dot(up) * inverse } else { f64::NAN }
+        });
+    }
+}
+
+#[inline(always)]
+fn each(
+    rays: Rays,
+    shapes: &[[DVec3; 3]],
+    near: &mut [f64],
+    met: &mut [u64],
+    distance: impl Fn(&[DVec3; 3], DVec3, DVec3) -> f64,
+) {
+    let count = near.len();
+    let (rays, met) = (rays.first(count), &mut met[..count]);
+    for (shape, id) in shapes.iter().zip(1..) {
+        for lane in 0..count {
+            let distance = distance(shape, rays.origin.get(lane), rays.dir.get(lane));
+            let is_nearer = (distance > 0.0) & (distance < near[lane]);
+            near[lane] = if is_nearer { distance } else { near[lane] };
+            met[lane] = if is_nearer { id } else { met[lane] };
+        }
+    }
+}

@@ -1,0 +1,228 @@
+//! A scene's own packets, to time the functions of its shapes with.
+
+use super::clock;
+use crate::geometry::packet::{Nearest, Rays, WIDE};
+use crate::geometry::ray::{MISS, Side};
+use crate::render::plan::Plan;
+use crate::render::tiles::{self, TILE};
+use crate::render::trace::{self, Rooms, Tracer};
+use crate::render::watch::{Count, Kind, Watch};
+use crate::scene::model::Model;
+use crate::simd::cpu::Cpu;
+use crate::simd::soa::Vectors;
+use std::hint::black_box;
+use std::time::Duration;
+
+/// So many tiles are enough, from all over the picture.
+const TILES: usize = 256;
+
+/// The rays of a tile, and what they are tested against.
+pub(super) struct Packet {
+    view: Bundle,
+    tested: Tested,
+    /// Where the most of them meet one object.
+    met: Option<Met>,
+}
+
+/// Where rays meet an object, and from there to a light.
+struct Met {
+    object: usize,
+    /// The rays that meet it.
+    view: Bundle,
+    /// Those to the light, on which sides they leave the object, and how far it is; 0 where it is behind.
+    toward: Bundle,
+    sides: [Side; WIDE],
+    ends: [f64; WIDE],
+}
+
+struct Bundle {
+    origin: Vectors<WIDE>,
+    dir: Vectors<WIDE>,
+}
+
+impl Bundle {
+    fn rays(&self) -> Rays<'_> {
+        Rays { origin: self.origin.view(WIDE), dir: self.dir.view(WIDE), origin_error: 0.0 }
+    }
+}
+
+/// Nanoseconds that a test of one ray takes.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Times {
+    /// To find what rays from the viewer meet first.
+    pub meet: Option<f64>,
+    /// To find whether it blocks rays to a light.
+    pub block: Option<f64>,
+    /// To find exactly where it is met.
+    pub settle: Option<f64>,
+}
+
+/// The packets of a model.
+pub(super) fn of(plan: &Plan, cpu: Cpu) -> Vec<Packet> {
+    let tiles: Vec<_> = split(plan.camera.pixels).collect();
+    let step = tiles.len().div_ceil(TILES);
+    tiles.iter().step_by(step).map(|tile| Packet::new(plan, cpu, tile)).collect()
+}
+
+impl Packet {
+    fn new(plan: &Plan, cpu: Cpu, tile: &[[usize; 2]]) -> Self {
+        let camera = &plan.camera;
+        let mut view = Bundle { origin: Vectors::ZERO, dir: Vectors::ZERO };
+        let mut hits = Vec::new();
+        for lane in 0..WIDE {
+            let [x, y] = tile[lane.min(tile.len() - 1)];
+            let ray = camera.ray(x as f64, y as f64);
+            view.origin.set(lane, ray.origin);
+            view.dir.set(lane, ray.dir);
+            hits.extend(trace::first_hit(plan, &camera.sight(x as f64, y as f64)).map(|hit| (ray, hit)));
+        }
+        let count = |object| hits.iter().filter(|(_, hit)| hit.index == object).count();
+        let most = hits.iter().map(|(_, hit)| hit.index).max_by_key(|object| (count(*object), *object));
+        let met = most.map(|object| {
+            hits.retain(|(_, hit)| hit.index == object);
+            let bundle = || Bundle { origin: Vectors::ZERO, dir: Vectors::ZERO };
+            let (mut view, mut toward) = (bundle(), bundle());
+            let (mut sides, mut ends) = ([Side::Outside; WIDE], [0.0; WIDE]);
+            for (lane, (ray, hit)) in (0..WIDE).zip(hits.iter().cycle()) {
+                let mut normal = hit.object.shape.normal(hit.point);
+                sides[lane] = Side::seen_along(ray.dir, normal);
+                if hit.object.shape.is_two_sided() && sides[lane] == Side::Inside {
+                    normal = -normal;
+                }
+                view.origin.set(lane, ray.origin);
+                view.dir.set(lane, ray.dir);
+                toward.origin.set(lane, hit.point);
+                toward.dir.set(lane, ray.dir);
+                if let Some(light) = plan.model.lights.first() {
+                    let between = light.value.location() - hit.point;
+                    toward.dir.set(lane, between.normalize());
+                    ends[lane] = if between.dot(normal) > 0.0 { between.length() } else { 0.0 };
+                }
+            }
+            Met { object, view, toward, sides, ends }
+        });
+        Self { view, tested: Tested::of(plan, cpu, tile), met }
+    }
+}
+
+/// The times of those objects that `is_wanted`, by their indices.
+pub(super) fn times(
+    packets: &[Packet],
+    model: &Model,
+    cpu: Cpu,
+    patience: Duration,
+    is_wanted: impl Fn(usize) -> bool,
+) -> Times {
+    let shape = |object: usize| &*model.objects[object].shape;
+    let wanted = |objects: &[usize]| objects.iter().copied().filter(|object| is_wanted(*object)).collect();
+    let viewed: Vec<(&Packet, Vec<usize>)> =
+        packets.iter().map(|packet| (packet, wanted(&packet.tested.primary))).collect();
+    let lit: Vec<(&Met, Vec<usize>)> = packets
+        .iter()
+        .filter_map(|packet| Some((packet.met.as_ref()?, wanted(&packet.tested.shadow))))
+        .filter(|(met, _)| met.ends.iter().any(|end| *end > 0.0))
+        .map(|(met, mut tested)| {
+            let may_meet_itself = met.sides.iter().any(|side| shape(met.object).meets_itself(*side));
+            tested.retain(|object| *object != met.object || may_meet_itself);
+            (met, tested)
+        })
+        .collect();
+    let met: Vec<&Met> =
+        packets.iter().filter_map(|packet| packet.met.as_ref()).filter(|met| is_wanted(met.object)).collect();
+
+    let mut meet = || {
+        for (packet, objects) in &viewed {
+            let (mut near, mut far) = ([MISS; WIDE], [MISS; WIDE]);
+            let (mut met, mut doubt) = ([0; WIDE], [0; WIDE]);
+            for object in objects {
+                let (near, far, met, doubt) = (&mut near[..], &mut far[..], &mut met[..], &mut doubt[..]);
+                let nearest = Nearest { near, far, met, doubt };
+                shape(*object).meet(cpu, packet.view.rays(), None, *object as u64 + 1, nearest);
+            }
+            black_box((&near, &far, &met));
+        }
+    };
+    let mut block = || {
+        for (met, objects) in &lit {
+            let (mut blocked, mut doubt) = ([0; WIDE], [0; WIDE]);
+            for object in objects {
+                let sides = (*object == met.object).then_some(&met.sides[..]);
+                shape(*object).block(cpu, met.toward.rays(), sides, &met.ends, &mut blocked, &mut doubt);
+            }
+            black_box(&blocked);
+        }
+    };
+    let brackets: Vec<_> = met
+        .iter()
+        .map(|view| {
+            let (mut near, mut far) = ([MISS; WIDE], [MISS; WIDE]);
+            let (mut met, mut doubt) = ([0; WIDE], [0; WIDE]);
+            let nearest = Nearest { near: &mut near, far: &mut far, met: &mut met, doubt: &mut doubt };
+            shape(view.object).meet(cpu, view.view.rays(), None, 1, nearest);
+            (near, far)
+        })
+        .collect();
+    let mut settle = || {
+        for (met, (near, far)) in met.iter().zip(&brackets) {
+            let mut distances = [0.0; WIDE];
+            shape(met.object).distances(cpu, met.view.rays(), None, (near, far), &mut distances);
+            black_box(&distances);
+        }
+    };
+    let [meets, blocks, settles] = clock::least(patience, [&mut meet, &mut block, &mut settle]);
+    let per_ray = |seconds: f64, tests: usize| (tests > 0).then(|| 1e9 * seconds / (tests * WIDE) as f64);
+    Times {
+        meet: per_ray(meets, viewed.iter().map(|(_, objects)| objects.len()).sum()),
+        block: per_ray(blocks, lit.iter().map(|(_, objects)| objects.len()).sum()),
+        settle: per_ray(settles, met.len()),
+    }
+}
+
+/// The pixels of a frame, tile by tile as the renderer takes them: from the left and from the bottom.
+fn split([width, height]: [usize; 2]) -> impl Iterator<Item = Vec<[usize; 2]>> {
+    (0..height).step_by(TILE).flat_map(move |top| {
+        (0..width).step_by(TILE).map(move |left| {
+            let mut pixels = Vec::new();
+            tiles::list(
+                left..width.min(left + TILE),
+                height.saturating_sub(top + TILE)..height - top,
+                &mut pixels,
+            );
+            pixels
+        })
+    })
+}
+
+/// The objects that the rays from the viewer and the first rays to lights are tested against.
+#[derive(Default)]
+struct Tested {
+    primary: Vec<usize>,
+    shadow: Vec<usize>,
+    kind: Option<Kind>,
+}
+
+impl Watch for Tested {
+    const SEES: bool = false;
+
+    fn count(&mut self, count: Count) {
+        match (count, self.kind) {
+            (Count::Rays(kind, _), _) => self.kind = Some(kind),
+            (Count::Tested(object, _), Some(Kind::Primary)) => self.primary.push(object),
+            (Count::Tested(object, _), Some(Kind::Shadow)) => self.shadow.push(object),
+            _ => (),
+        }
+    }
+}
+
+impl Tested {
+    /// Those of a tile, each once.
+    fn of(plan: &Plan, cpu: Cpu, tile: &[[usize; 2]]) -> Self {
+        let mut tested = Self::default();
+        Tracer::new(plan, cpu, &mut Rooms::default(), &mut tested).pixels(tile);
+        for objects in [&mut tested.primary, &mut tested.shadow] {
+            objects.sort_unstable();
+            objects.dedup();
+        }
+        tested
+    }
+}

@@ -1,0 +1,118 @@
+//! The ways in which a scene's hits can be found, each as a model of the scene.
+
+use super::data::Family;
+use crate::geometry::bounds::Bounds;
+use crate::geometry::ray::{MISS, Ray, Side, Span};
+use crate::geometry::roots::Method;
+use crate::geometry::sight::Sight;
+use crate::scene::choice::Choice;
+use crate::scene::model::{Model, Object};
+use crate::world::accuracy::Accuracy;
+use crate::world::certify::{Enclosure, Precision};
+use crate::world::hittable::Hittable;
+use glam::DVec3;
+use std::io;
+
+/// Loads the scene anew, in an accuracy or in its own.
+pub type Load<'l> = &'l dyn Fn(Option<Accuracy>) -> io::Result<Model>;
+
+/// A scene, and a way to find its hits.
+pub struct Candidate {
+    pub name: String,
+    pub family: Family,
+    pub model: Model,
+    /// The accuracy, where a scene can choose it.
+    pub accuracy: Option<Accuracy>,
+    pub is_default: bool,
+    /// What the error of a hit that it finds is at most, but for what a graze makes of rounding.
+    pub promise: f64,
+}
+
+/// All of them: the accuracies that a scene can choose, and where a shape is the roots of a function along a ray,
+/// other methods.
+pub fn all(load: Load) -> io::Result<Vec<Candidate>> {
+    let default = load(None)?.camera.value.accuracy;
+    let mut candidates = Vec::new();
+    for accuracy in Accuracy::all() {
+        let (family, promise) = match accuracy {
+            Accuracy::Classic => (Family::Notes, 1e-3),
+            Accuracy::Draft => (Family::Own, 1e-3),
+            Accuracy::Exact | Accuracy::Strict => (Family::Own, 1e-9),
+        };
+        candidates.push(Candidate {
+            name: accuracy.option().name.to_owned(),
+            family,
+            model: load(Some(accuracy))?,
+            accuracy: Some(accuracy),
+            is_default: accuracy == default,
+            promise,
+        });
+    }
+    for method in Method::ALL {
+        let mut model = load(Some(Accuracy::Exact))?;
+        if !model.objects.iter().any(|object| is_searched(&*object.shape)) {
+            break;
+        }
+        let by = |object: Object| match is_searched(&*object.shape) {
+            true => Object { shape: Box::new(By { shape: object.shape, method }), ..object },
+            false => object,
+        };
+        model.objects = model.objects.into_iter().map(by).collect();
+        candidates.push(Candidate {
+            name: method.to_string(),
+            family: match method {
+                Method::Steps => Family::Notes,
+                Method::Samples(..) | Method::Turning(_) => Family::Sampling,
+                Method::Tracing => Family::Tracing,
+                Method::Intervals | Method::Taylor => Family::Bounds,
+            },
+            model,
+            accuracy: None,
+            is_default: false,
+            promise: method.promise(),
+        });
+    }
+    Ok(candidates)
+}
+
+/// Whether a shape's hits are the roots of a function along a ray.
+pub fn is_searched(shape: &dyn Hittable) -> bool {
+    let any = Ray { origin: DVec3::ZERO, dir: DVec3::Z };
+    shape.distance_by(Method::Steps, &any, &Span::RAY).is_some()
+}
+
+/// A shape that is found by another method.
+struct By {
+    shape: Box<dyn Hittable>,
+    method: Method,
+}
+
+impl Hittable for By {
+    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
+        self.shape.distance_by(self.method, ray, within).unwrap_or(MISS)
+    }
+
+    fn normal(&self, at: DVec3) -> DVec3 {
+        self.shape.normal(at)
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        self.shape.bounds()
+    }
+
+    fn meets_itself(&self, leaving: Side) -> bool {
+        self.shape.meets_itself(leaving)
+    }
+
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        self.shape.touches(at, error)
+    }
+
+    fn is_two_sided(&self) -> bool {
+        self.shape.is_two_sided()
+    }
+
+    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        self.shape.certify(sight, precision)
+    }
+}

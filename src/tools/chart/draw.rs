@@ -1,0 +1,263 @@
+//! A chart as a drawing: a panel for each question, time to the right, errors upward, both logarithmic.
+
+use super::axis::Axis;
+use super::canvas::{Align, BLUE, Canvas, GREEN, GREY, LIGHT, Letters, Marker, ORANGE, PURPLE, VERMILION};
+use super::data::{Chart, Family, Panel, Point, Subject};
+use super::labels::{self, Area};
+use crate::geometry::packet::WIDE;
+use crate::output::picture::{Compression, Format};
+use plotters::prelude::{BLACK, BitMapBackend, DrawingBackend, IntoDrawingArea, RGBColor, SVGBackend};
+use std::io;
+use std::iter;
+
+const PANEL: (f64, f64) = (720.0, 500.0);
+const HEAD: f64 = 78.0;
+const FOOT: f64 = 86.0;
+
+/// Of an axis with errors that make no difference, what is left below for them.
+const NOTHING: f64 = 34.0;
+
+/// As an SVG file.
+///
+/// # Errors
+/// Where it cannot be drawn.
+pub fn svg(chart: &Chart) -> io::Result<String> {
+    let (width, height) = size(chart);
+    let mut text = String::new();
+    draw(chart, SVGBackend::with_string(&mut text, (width as u32, height as u32)), 1.0)?;
+    Ok(text)
+}
+
+/// As a PNG file.
+///
+/// # Errors
+/// Where it cannot be drawn.
+pub fn png(chart: &Chart) -> io::Result<Vec<u8>> {
+    // Each pixel is the mean of four, which smooths its lines.
+    let (width, height) = size(chart);
+    let (width, height) = (width as usize, height as usize);
+    let mut fine = vec![0; 4 * 3 * width * height];
+    draw(chart, BitMapBackend::with_buffer(&mut fine, (2 * width as u32, 2 * height as u32)), 2.0)?;
+    let mut bytes = Vec::with_capacity(3 * width * height);
+    for y in 0..height {
+        for x in 0..width {
+            for channel in 0..3 {
+                let at = |row: usize, column: usize| {
+                    u32::from(fine[3 * ((2 * y + row) * 2 * width + 2 * x + column) + channel])
+                };
+                bytes.push(((at(0, 0) + at(0, 1) + at(1, 0) + at(1, 1) + 2) / 4) as u8);
+            }
+        }
+    }
+    let mut file = Vec::new();
+    Format::Png(Compression::High).write(&mut file, [width, height], iter::once(Ok(bytes)))?;
+    Ok(file)
+}
+
+fn columns(chart: &Chart) -> usize {
+    chart.panels.len().clamp(1, 2)
+}
+
+fn size(chart: &Chart) -> (f64, f64) {
+    let columns = columns(chart);
+    let rows = chart.panels.len().div_ceil(columns).max(1);
+    (columns as f64 * PANEL.0, HEAD + rows as f64 * PANEL.1 + FOOT)
+}
+
+fn draw<D: DrawingBackend>(chart: &Chart, backend: D, scale: f64) -> io::Result<()> {
+    let canvas = Canvas::new(backend.into_drawing_area(), scale)?;
+    let (_, height) = size(chart);
+    let head = Letters { is_bold: true, ..Letters::new(20.0) };
+    let small = Letters { colour: GREY, ..Letters::new(12.5) };
+    let title = format!("{}: cost and error of each choice", chart.scene);
+    canvas.text(&title, (20.0, 26.0), Align::Left, head)?;
+    let machine = &chart.machine;
+    let trust = match (chart.is_noisy(), chart.is_busy()) {
+        (true, _) => ": do not trust the times",
+        (false, true) => "; the machine was busy: all times may be too long",
+        (false, false) => "",
+    };
+    let caption = format!(
+        "{}; {}; measured on {} UTC; rounds differ by {:.1} %{trust}",
+        machine.processor,
+        machine.build,
+        machine.date,
+        100.0 * chart.noise()
+    );
+    canvas.text(&caption, (20.0, 54.0), Align::Left, small)?;
+    let columns = columns(chart);
+    for (index, panel) in chart.panels.iter().enumerate() {
+        let corner = ((index % columns) as f64 * PANEL.0, HEAD + (index / columns) as f64 * PANEL.1);
+        draw_panel(&canvas, panel, corner)?;
+    }
+    legend(&canvas, chart, height - FOOT + 18.0)?;
+    canvas.finish()
+}
+
+/// What the markers mean, of those that there are.
+fn legend<D: DrawingBackend>(canvas: &Canvas<D>, chart: &Chart, y: f64) -> io::Result<()> {
+    let letters = Letters::new(12.5);
+    let mut x = 26.0;
+    let points = || chart.panels.iter().flat_map(|panel| &panel.points);
+    let mut add = |marker: Marker, colour: RGBColor, is_hollow: bool, text: &str| {
+        canvas.marker((x, y), marker, colour, is_hollow)?;
+        canvas.text(text, (x + 16.0, y), Align::Left, letters)?;
+        x += 40.0 + letters.width(text);
+        io::Result::Ok(())
+    };
+    add(Marker::Star, BLACK, false, "the default")?;
+    for (family, name) in [
+        (Family::Own, "tabray's method"),
+        (Family::Notes, "the notes' methods"),
+        (Family::Sampling, "samples along the ray + a refiner"),
+        (Family::Tracing, "sphere tracing"),
+        (Family::Bounds, "bounds"),
+        (Family::Sobol, "sobol"),
+        (Family::Random, "random"),
+    ] {
+        if points().any(|point| point.family == family) {
+            let (marker, colour) = look(family);
+            add(marker, colour, false, name)?;
+        }
+    }
+    let second = y + 24.0;
+    canvas.marker((26.0, second), Marker::Disc, GREY, true)?;
+    let text = "hollow: some hits are missed, invented or not the first (percent of all rays); line: the Pareto front, \
+                where no choice without wrong hits is both faster and more exact";
+    canvas.text(text, (40.0, second), Align::Left, letters)?;
+    let text = format!(
+        "times: packets of up to {WIDE} rays on one thread, as in a render; where a hit is searched for, all methods but \
+         tabray's own take rays one by one"
+    );
+    canvas.text(&text, (26.0, second + 22.0), Align::Left, Letters { colour: GREY, ..letters })
+}
+
+/// How the points of a family are drawn.
+fn look(family: Family) -> (Marker, RGBColor) {
+    match family {
+        Family::Own => (Marker::Disc, BLACK),
+        Family::Notes | Family::Random => (Marker::Diamond, VERMILION),
+        Family::Sampling => (Marker::Square, ORANGE),
+        Family::Tracing => (Marker::Down, PURPLE),
+        Family::Bounds => (Marker::Up, BLUE),
+        Family::Sobol => (Marker::Disc, GREEN),
+    }
+}
+
+fn draw_panel<D: DrawingBackend>(canvas: &Canvas<D>, panel: &Panel, corner: (f64, f64)) -> io::Result<()> {
+    let plot = Area {
+        left: corner.0 + 92.0,
+        top: corner.1 + 56.0,
+        right: corner.0 + PANEL.0 - 22.0,
+        bottom: corner.1 + PANEL.1 - 56.0,
+    };
+    let middle = 0.5 * (plot.left + plot.right);
+    let title = Letters { is_bold: true, ..Letters::new(14.5) };
+    canvas.text(&panel.title, (middle, corner.1 + 18.0), Align::Middle, title)?;
+    let note = Letters { colour: GREY, ..Letters::new(12.0) };
+    canvas.text(&panel.note, (middle, corner.1 + 39.0), Align::Middle, note)?;
+
+    let (unit, scale) = panel.unit();
+    // Errors that make no difference have a place of their own below the axis.
+    let nothing = panel.negligible();
+    let has_nothing = panel.points.iter().any(|point| point.error <= nothing);
+    let floor = plot.bottom - if has_nothing { NOTHING } else { 0.0 };
+    let times = panel.points.iter().map(|point| scale * point.times.least);
+    let across = Axis::new(times, (0.1, 0.12), (plot.left, plot.right));
+    let errors = panel.points.iter().map(|point| point.error).filter(|error| *error > nothing);
+    let up = Axis::new(errors, (0.2, 0.1), (floor, plot.top));
+    let place = |point: &Point| {
+        let y = if point.error > nothing { up.at(point.error) } else { plot.bottom - 0.5 * NOTHING };
+        (across.at(scale * point.times.least), y)
+    };
+
+    let ticks = Letters::new(12.0);
+    for (time, text) in across.ticks() {
+        let x = across.at(time);
+        canvas.line(&[(x, plot.top), (x, plot.bottom)], LIGHT, 1.0)?;
+        canvas.text(&text, (x, plot.bottom + 14.0), Align::Middle, ticks)?;
+    }
+    let ticks_up =
+        if panel.points.iter().any(|point| point.error > nothing) { up.ticks() } else { Vec::new() };
+    for (error, text) in ticks_up {
+        let y = up.at(error);
+        canvas.line(&[(plot.left, y), (plot.right, y)], LIGHT, 1.0)?;
+        canvas.text(&text, (plot.left - 8.0, y), Align::Right, ticks)?;
+    }
+    if has_nothing {
+        canvas.line(&[(plot.left, floor), (plot.right, floor)], LIGHT, 2.0)?;
+        let text = if nothing == 0.0 { "0" } else { "none" };
+        canvas.text(text, (plot.left - 8.0, plot.bottom - 0.5 * NOTHING), Align::Right, ticks)?;
+    }
+    canvas.frame(plot, BLACK)?;
+    let axis = Letters::new(12.5);
+    canvas.text(unit, (middle, plot.bottom + 36.0), Align::Middle, axis)?;
+    canvas.upward(panel.measure(), (corner.0 + 20.0, 0.5 * (plot.top + plot.bottom)), axis)?;
+
+    if panel.subject == Subject::Samples {
+        for family in [Family::Sobol, Family::Random] {
+            let series = panel.points.iter().filter(|point| point.family == family);
+            canvas.line(&series.map(place).collect::<Vec<_>>(), look(family).1, 1.0)?;
+        }
+    }
+    let is_on_front = panel.front();
+    let mut front: Vec<_> = panel
+        .points
+        .iter()
+        .zip(&is_on_front)
+        .filter(|(_, front)| **front)
+        .map(|(point, _)| place(point))
+        .collect();
+    front.sort_by(|a, b| a.0.total_cmp(&b.0));
+    if front.len() > 1 {
+        canvas.line(&front, GREY, 2.0)?;
+    }
+    // What labels keep clear of.
+    let mut lines: Vec<_> = front.windows(2).map(|ends| (ends[0], ends[1])).collect();
+    if has_nothing {
+        lines.push(((plot.left, floor), (plot.right, floor)));
+    }
+    // The most important labels are placed first.
+    let mut order: Vec<usize> =
+        (0..panel.points.len()).filter(|index| !panel.points[*index].error.is_nan()).collect();
+    order.sort_by_key(|index| (!panel.points[*index].is_default, !is_on_front[*index]));
+    let points: Vec<&Point> = order.iter().map(|index| &panel.points[*index]).collect();
+    let places: Vec<_> = points.iter().map(|point| place(point)).collect();
+    let letters = |point: &Point| Letters { is_bold: point.is_default, ..Letters::new(12.0) };
+    let names: Vec<String> = points.iter().map(|point| name(panel, point)).collect();
+    // With a gap between neighbours, lest two numbers look like one.
+    let size = |(name, point): (&String, &&Point)| (letters(point).width(name) + 6.0, 15.0);
+    let sizes: Vec<_> = names.iter().zip(&points).map(size).collect();
+    let labels = labels::place(&places, &sizes, &lines, plot);
+    for (label, place) in labels.iter().zip(&places) {
+        if let Some(end) = label.and_then(|label| label.leader) {
+            canvas.line(&[*place, end], GREY, 1.0)?;
+        }
+    }
+    for (point, place) in points.iter().zip(&places).rev() {
+        let (marker, colour) = look(point.family);
+        let marker = if point.is_default { Marker::Star } else { marker };
+        canvas.marker(*place, marker, colour, point.wrong.count() > 0)?;
+    }
+    for ((label, name), point) in labels.iter().zip(&names).zip(&points) {
+        if let Some(label) = label {
+            let middle =
+                (0.5 * (label.area.left + label.area.right), 0.5 * (label.area.top + label.area.bottom));
+            canvas.text(name, middle, Align::Middle, letters(point))?;
+        }
+    }
+    Ok(())
+}
+
+/// What is written beside a point.
+fn name(panel: &Panel, point: &Point) -> String {
+    if panel.subject == Subject::Samples {
+        return point.samples.to_string();
+    }
+    if point.wrong.count() == 0 {
+        return point.name.clone();
+    }
+    let percent = 100.0 * point.wrong.count() as f64 / point.wrong.of as f64;
+    let digits = usize::from(percent < 10.0) + 2 * usize::from(percent < 0.1);
+    format!("{}: {percent:.digits$} %", point.name)
+}

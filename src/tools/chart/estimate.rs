@@ -1,0 +1,88 @@
+//! A quick measurement of what accuracy and samples make of a scene, to choose from.
+
+use super::candidate::Load;
+use super::colours::difference;
+use super::pictures::{self, Seen, TRUE_SAMPLES, TRUE_TESTS, count, each, render, tests, timed};
+use super::places::{Pixels, spread};
+use super::progress::Progress;
+use crate::render::plan::Plan;
+use crate::render::renderer::Renderer;
+use crate::render::trace;
+use crate::scene::choice::Choice;
+use crate::tools::bench::clock;
+use crate::world::accuracy::Accuracy;
+use crate::world::sample::Sampler;
+use std::io;
+use std::ops::ControlFlow;
+
+/// The samples that there are to choose from.
+const SAMPLES: [u32; 9] = [1, 2, 4, 8, 16, 32, 64, 128, 256];
+
+/// How often each choice is timed; the least counts.
+const ROUNDS: usize = 3;
+
+/// What measuring one choice adds to the work.
+const UNITS: usize = 100_000;
+
+/// What a choice of accuracy and samples costs, and how wrong it is, all errors taken together.
+pub struct Estimate {
+    /// The accuracy.
+    pub accuracy: Accuracy,
+    /// The samples for each pixel, spread evenly.
+    pub samples: u32,
+    /// The CPU time of one thread for all of the picture, in seconds.
+    pub seconds: f64,
+    /// The root of the mean square of the colours' errors, 1 being white.
+    pub rmse: f64,
+}
+
+/// What the accuracies and some numbers of samples make of a scene.
+///
+/// # Errors
+/// Those of `load`, and of threads that are not to be had; `Interrupted` where `progress` breaks off.
+pub fn estimates(load: Load, progress: &mut dyn Progress) -> io::Result<Vec<Estimate>> {
+    let (threads, thread) = (Renderer::new(0)?, Renderer::new(1)?);
+    let accuracies = Accuracy::all();
+    progress.more(TRUE_TESTS / 10 + accuracies.len() * SAMPLES.len() * UNITS);
+    let exact = load(Some(Accuracy::Exact))?;
+    let exact = Plan::new(&exact);
+    let tests = tests(&exact, &threads);
+    let size = exact.camera.pixels;
+    let most = (TRUE_TESTS as f64 / 2.0 / (f64::from(TRUE_SAMPLES) * tests)) as usize;
+    let pixels = spread(size, most.clamp(256, 4096));
+    let timed = timed(size, tests);
+    let scale = (size[0] * size[1]) as f64 / count(&timed) as f64;
+    let right = whole(pictures::truth(&exact, &threads, &pixels, Seen::Picture, progress))?;
+    let mut estimates = Vec::new();
+    for accuracy in accuracies {
+        let model = load(Some(accuracy))?;
+        let mut plan = Plan::new(&model);
+        plan.camera.sampler = Sampler::Sobol;
+        for samples in SAMPLES {
+            plan.camera.samples = samples;
+            let colours = each(&threads, &pixels, |x, y| trace::pixel(&plan, x, y));
+            let rmse = difference(&colours, &right).rmse;
+            let rounds = (0..ROUNDS).map(|_| time(&thread, &plan, &timed));
+            let seconds = scale * rounds.fold(f64::INFINITY, f64::min);
+            estimates.push(Estimate { accuracy, samples, seconds, rmse });
+            whole(progress.done(UNITS))?;
+        }
+    }
+    Ok(estimates)
+}
+
+fn whole<T>(flow: ControlFlow<(), T>) -> io::Result<T> {
+    match flow {
+        ControlFlow::Continue(value) => Ok(value),
+        ControlFlow::Break(()) => Err(io::ErrorKind::Interrupted.into()),
+    }
+}
+
+/// The CPU time that tiles take on one thread, in seconds.
+fn time(thread: &Renderer, plan: &Plan, tiles: &[Pixels]) -> f64 {
+    thread.run(|| {
+        let start = clock::now();
+        render(plan, tiles);
+        (clock::now() - start).as_secs_f64()
+    })
+}

@@ -1,0 +1,72 @@
+//! The Pareto front: the choices that none beats.
+
+use super::data::{Panel, Point};
+
+/// Times that differ by less are equal.
+pub const SAME_TIME: f64 = 1.1;
+
+/// Errors that differ by less are equal.
+const SAME_ERROR: f64 = 1.5;
+
+/// Which of these have no wrong hits and are beaten by none. Errors up to a negligible one are equal.
+pub fn of(points: &[Point], negligible: f64) -> Vec<bool> {
+    let is_best = |point: &Point| point.wrong.count() == 0 && beaten_by(points, point, negligible).is_none();
+    points.iter().map(is_best).collect()
+}
+
+/// The fastest choice that beats one, if any does.
+pub fn beaten_by<'p>(points: &'p [Point], beaten: &Point, negligible: f64) -> Option<&'p Point> {
+    points
+        .iter()
+        .filter(|other| other.wrong.count() == 0 && beats(other, beaten, negligible))
+        .min_by(|a, b| a.times.least.total_cmp(&b.times.least))
+}
+
+/// Whether one is as fast and as right as the other, and clearly faster or clearly more right.
+fn beats(one: &Point, other: &Point, negligible: f64) -> bool {
+    let time = one.times.least / other.times.least;
+    let [error, than] = [one, other].map(|point| point.error.max(negligible));
+    time <= SAME_TIME && error <= SAME_ERROR * than && (time * SAME_TIME < 1.0 || error * SAME_ERROR < than)
+}
+
+impl Panel {
+    /// Whether each of its points is one of the best.
+    pub fn front(&self) -> Vec<bool> {
+        of(&self.points, self.negligible())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tools::chart::{Family, Times, Wrong};
+
+    fn point(time: f64, error: f64, missed: usize) -> Point {
+        Point {
+            name: String::new(),
+            family: Family::Own,
+            is_default: false,
+            times: Times { least: time, median: time, rounds: 1, waited: 0.0 },
+            error,
+            worst: error,
+            wrong: Wrong { of: 9, missed, ..Wrong::default() },
+            visible: None,
+            changed: None,
+            samples: 1,
+        }
+    }
+
+    #[test]
+    fn the_front_is_what_none_beats() {
+        let points = [
+            point(1.0, 1e-3, 0),
+            point(2.0, 1e-6, 0),
+            point(2.1, 1e-6, 0),
+            point(3.0, 1e-6, 0),
+            point(3.0, 0.0, 0),
+            point(0.1, 1e-9, 1),
+        ];
+        assert_eq!(of(&points, 0.0), [true, true, true, false, true, false]);
+        assert_eq!(of(&points, 1e-5), [true, true, true, false, false, false]);
+    }
+}

@@ -1,0 +1,283 @@
+//! Which hits each choice finds, at which distances, and how long it takes: of rays through the picture, and of rays
+//! that graze silhouettes.
+
+use super::candidate::{Candidate, is_searched};
+use super::clock;
+use super::data::{Panel, Point, Subject, Wrong};
+use super::packets::Packet;
+use super::places::{spread, tiles};
+use super::progress::Progress;
+use super::study::Study;
+use crate::geometry::packet::WIDE;
+use crate::geometry::ray::{MISS, Ray, Side, Span};
+use crate::geometry::sight::Sight;
+use crate::numeric::twofold::Twofold;
+use crate::scene::model::Model;
+use crate::simd::cpu::Cpu;
+use crate::world::certify::{self, Enclosure, Precision};
+use crate::world::hittable::Hittable;
+use std::hint::black_box;
+use std::ops::ControlFlow;
+
+/// The pairs of a ray and an object in each set, about.
+const CAMERA: usize = 20_000;
+const GRAZING: usize = 4_000;
+
+/// Of which so many are timed, about.
+const TIMED: usize = 2_000;
+
+/// What finding the truth about one pair takes, in units of [`Progress`].
+const TRUTH: usize = 30;
+
+/// Rays, with the objects that they are asked about.
+pub struct Set {
+    title: String,
+    note: String,
+    packets: Vec<Packet>,
+    /// Whether the objects are the roots of a function along a ray.
+    is_searched: bool,
+}
+
+/// What is true about a pair.
+enum Truth {
+    /// The ray meets the object there, on this side of its surface.
+    Hit(Twofold, Side),
+    Miss,
+    /// The proof did not tell.
+    Undecided,
+}
+
+/// All sets that a scene has.
+pub fn sets(model: &Model) -> Vec<Set> {
+    let mut sets = Vec::new();
+    for is_of_roots in [true, false] {
+        let objects = model.objects.iter().enumerate();
+        let group: Vec<usize> = objects
+            .filter(|(_, object)| is_searched(&*object.shape) == is_of_roots)
+            .filter(|(_, object)| is_provable(model, &*object.shape))
+            .map(|(index, _)| index)
+            .collect();
+        if group.is_empty() {
+            continue;
+        }
+        let names: Vec<_> = group.iter().map(|index| model.objects[*index].args.name.as_str()).collect();
+        let what = list(names);
+        let mut add = |kind: &str, packets: Vec<Packet>| {
+            if !packets.is_empty() {
+                let title = format!("{what}: {kind}");
+                let note = format!("{} rays", count(&packets));
+                sets.push(Set { title, note, packets, is_searched: is_of_roots });
+            }
+        };
+        add("camera rays", camera(model, &group));
+        add("grazing rays", grazing(model, &group));
+    }
+    sets
+}
+
+/// How many rays they have.
+fn count(packets: &[Packet]) -> usize {
+    packets.iter().map(Packet::len).sum()
+}
+
+/// What measuring a set adds to the work.
+pub fn work(set: &Set, candidates: usize) -> usize {
+    count(&set.packets) * (TRUTH + candidates) + clock::work(candidates)
+}
+
+/// Measures all choices on a set.
+pub fn panel(study: &Study, set: &Set, progress: &mut dyn Progress) -> ControlFlow<(), Option<Panel>> {
+    let strict = &study.candidates[study.strict].model;
+    let candidates: Vec<_> =
+        study.candidates.iter().filter(|candidate| set.is_searched || candidate.accuracy.is_some()).collect();
+    let (cpu, rays) = (Cpu::best(), count(&set.packets));
+    let mut truths = Vec::new();
+    for packets in set.packets.chunks(8) {
+        truths.extend(
+            study.threads.run(|| each(packets, |packet| truths_of(strict, packet))).into_iter().flatten(),
+        );
+        progress.done(count(packets) * TRUTH)?;
+    }
+    let screen = strict.camera.value.screen.max_element();
+    let mut errors = Vec::new();
+    for candidate in &candidates {
+        errors.push(tally(candidate, set, &truths, screen));
+        progress.done(rays)?;
+    }
+    let step = rays.div_ceil(TIMED);
+    let timed: Vec<_> = set.packets.iter().step_by(step).collect();
+    let work = |choice: usize| {
+        let objects = &candidates[choice].model.objects;
+        for packet in &timed {
+            black_box(black_box(packet).hits(&*objects[packet.object].shape, cpu));
+        }
+    };
+    let count = timed.iter().map(|packet| packet.len()).sum();
+    let times = clock::rounds(candidates.len(), count, work, progress)?;
+    let hits = truths.iter().filter(|truth| matches!(truth, Truth::Hit(..))).count();
+    let undecided = truths.iter().filter(|truth| matches!(truth, Truth::Undecided)).count();
+    if hits == 0 {
+        return ControlFlow::Continue(None);
+    }
+    let lost = candidates.iter().zip(&errors).filter(|(_, (errors, _))| errors.is_empty());
+    let lost: Vec<_> = lost.map(|(candidate, _)| candidate.name.as_str()).collect();
+    let lost = if lost.is_empty() { String::new() } else { format!("; none found by {}", lost.join(", ")) };
+    let undecided = if undecided == 0 { String::new() } else { format!(", {undecided} undecided") };
+    let points = candidates.iter().zip(errors).zip(times).map(|((candidate, (errors, wrong)), times)| {
+        let part = |part: f64| {
+            let place = (part * errors.len() as f64) as usize;
+            errors.get(place.min(errors.len().saturating_sub(1))).copied().unwrap_or(f64::NAN)
+        };
+        Point {
+            name: candidate.name.clone(),
+            family: candidate.family,
+            is_default: candidate.is_default,
+            times,
+            error: part(0.99),
+            worst: part(1.0),
+            wrong,
+            visible: None,
+            changed: None,
+            samples: 1,
+        }
+    });
+    ControlFlow::Continue(Some(Panel {
+        title: set.title.clone(),
+        note: format!("{}, {hits} hits{undecided}{lost}", set.note),
+        subject: Subject::Distances,
+        points: points.collect(),
+    }))
+}
+
+/// Something of each, on all threads of the pool that this runs in.
+fn each<T: Sync, U: Send>(of: &[T], work: impl Fn(&T) -> U + Sync + Send) -> Vec<U> {
+    use rayon::prelude::*;
+    of.par_iter().map(work).collect()
+}
+
+fn truths_of(model: &Model, packet: &Packet) -> Vec<Truth> {
+    let shape = &*model.objects[packet.object].shape;
+    let truth = |(ray, sight): (Ray, &Sight)| match shape.certify(sight, Precision::Octuple) {
+        Enclosure::Hits(at) => {
+            let at = certify::in_world_units(at, sight);
+            Truth::Hit(at, side(shape, &ray, at.high))
+        }
+        Enclosure::Misses => Truth::Miss,
+        Enclosure::Edge(_) | Enclosure::Doubtful(_) => Truth::Undecided,
+    };
+    packet.sights().map(truth).collect()
+}
+
+/// The side of its surface on which a ray meets a shape.
+fn side(shape: &dyn Hittable, ray: &Ray, distance: f64) -> Side {
+    Side::seen_along(ray.dir, shape.normal(ray.at(distance)))
+}
+
+/// The errors of the right hits, sorted, and how many others there are.
+fn tally(candidate: &Candidate, set: &Set, truths: &[Truth], screen: f64) -> (Vec<f64>, Wrong) {
+    let (mut errors, mut wrong) = (Vec::new(), Wrong::default());
+    let cpu = Cpu::best();
+    let found = set.packets.iter().flat_map(|packet| {
+        let shape = &*candidate.model.objects[packet.object].shape;
+        let hits = packet.hits(shape, cpu);
+        packet.rays().zip(hits).map(move |(ray, found)| (shape, ray, found))
+    });
+    for ((shape, ray, found), truth) in found.zip(truths) {
+        match truth {
+            Truth::Undecided => continue,
+            Truth::Miss => wrong.invented += usize::from(found != MISS),
+            Truth::Hit(..) if found == MISS => wrong.missed += 1,
+            Truth::Hit(right, on) => {
+                let error = (Twofold::from(found) - *right).high.abs();
+                // A hit on the other side of the surface is another crossing, unless it is off by no more than it
+                // may be; one far off is in any case.
+                let is_off = error > 10.0 * candidate.promise && side(shape, &ray, found) != *on;
+                if is_off || error > 0.01 * screen {
+                    wrong.later += 1;
+                } else {
+                    errors.push(error);
+                }
+            }
+        }
+        wrong.of += 1;
+    }
+    errors.sort_by(f64::total_cmp);
+    (errors, wrong)
+}
+
+/// Whether anything is certain about rays that meet a shape.
+fn is_provable(model: &Model, shape: &dyn Hittable) -> bool {
+    const LOOKS: usize = 64;
+    let camera = &model.camera.value;
+    let mut places = spread(camera.pixels, LOOKS).into_iter();
+    let is_certain = |[x, y]: [usize; 2]| {
+        let sight = camera.sight(x as f64, y as f64);
+        matches!(shape.certify(&sight, Precision::Double), Enclosure::Misses | Enclosure::Hits(_))
+    };
+    places.any(is_certain)
+}
+
+/// Rays through the middles of pixels, in the packets in which a render has them.
+fn camera(model: &Model, group: &[usize]) -> Vec<Packet> {
+    let camera = &model.camera.value;
+    let count = CAMERA.div_ceil(group.len() * WIDE);
+    let mut packets = Vec::new();
+    for tile in tiles(camera.pixels, count) {
+        let places: Vec<_> = tile.into_iter().map(|place| place.map(|at| at as f64)).collect();
+        packets.extend(group.iter().flat_map(|index| Packet::of(*index, camera, &places)));
+    }
+    packets
+}
+
+/// Rays beside the edges of objects, from a pixel's width to 10^-10 of one away from them.
+fn grazing(model: &Model, group: &[usize]) -> Vec<Packet> {
+    const DIGITS: i32 = 10;
+    let camera = &model.camera.value;
+    let [width, height] = camera.pixels;
+    let hits = |x: f64, y: f64, index: usize| {
+        model.objects[index].shape.distance(&camera.ray(x, y), &Span::RAY) != MISS
+    };
+    let mut edges = Vec::new();
+    for &index in group {
+        for y in 0..height {
+            let mut last = hits(0.0, y as f64, index);
+            for x in 1..width {
+                let here = hits(x as f64, y as f64, index);
+                if here != last {
+                    edges.push((x, y, index, here));
+                }
+                last = here;
+            }
+        }
+    }
+    let rays = 2 * (DIGITS as usize + 1);
+    let step = edges.len().div_ceil(GRAZING / rays).max(1);
+    let mut places_of = vec![Vec::new(); model.objects.len()];
+    for (x, y, index, here) in edges.into_iter().step_by(step) {
+        let (y, mut low, mut high) = (y as f64, x as f64 - 1.0, x as f64);
+        loop {
+            let middle = 0.5 * (low + high);
+            if middle <= low || middle >= high {
+                break;
+            }
+            if hits(middle, y, index) == here { high = middle } else { low = middle }
+        }
+        for digits in 0..=DIGITS {
+            for beside in [-1.0, 1.0] {
+                places_of[index].push([high + beside * 0.1_f64.powi(digits), y]);
+            }
+        }
+    }
+    let packets = |index: &usize| Packet::of(*index, camera, &places_of[*index]).collect::<Vec<_>>();
+    group.iter().flat_map(packets).collect()
+}
+
+/// Names, each once, in words.
+fn list(mut names: Vec<&str>) -> String {
+    const MOST: usize = 4;
+    names.sort_unstable();
+    names.dedup();
+    let more = names.len() > MOST;
+    names.truncate(MOST);
+    names.join(", ") + if more { ", ..." } else { "" }
+}

@@ -1,0 +1,87 @@
+//! Packets of rays, and where they first meet an object: found as a render finds it.
+
+use crate::geometry::packet::{Nearest, Rays, WIDE};
+use crate::geometry::ray::{MISS, Ray, Span};
+use crate::geometry::sight::Sight;
+use crate::simd::cpu::Cpu;
+use crate::simd::soa::{STEP, Vectors};
+use crate::world::camera::Camera;
+use crate::world::hittable::Hittable;
+
+/// Rays that are asked about an object.
+pub struct Packet {
+    /// Its index.
+    pub object: usize,
+    len: usize,
+    origin: Vectors<WIDE>,
+    dir: Vectors<WIDE>,
+    sights: Vec<Sight>,
+}
+
+impl Packet {
+    /// As many packets as the rays through these places of a picture need, in pixels from the left and from the bottom.
+    pub fn of(object: usize, camera: &Camera, places: &[[f64; 2]]) -> impl Iterator<Item = Self> {
+        places.chunks(WIDE).map(move |places| {
+            let (origin, dir) = (Vectors::ZERO, Vectors::ZERO);
+            let sights = places.iter().map(|[x, y]| camera.sight(*x, *y)).collect();
+            let mut packet = Self { object, len: places.len(), origin, dir, sights };
+            for lane in 0..WIDE {
+                let [x, y] = places[lane.min(places.len() - 1)];
+                let ray = camera.ray(x, y);
+                packet.origin.set(lane, ray.origin);
+                packet.dir.set(lane, ray.dir);
+            }
+            packet
+        })
+    }
+
+    /// How many rays it has.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Its rays.
+    pub fn rays(&self) -> impl Iterator<Item = Ray> {
+        (0..self.len).map(|lane| self.all().get(lane))
+    }
+
+    /// Its rays, and what they are before anything is rounded.
+    pub fn sights(&self) -> impl Iterator<Item = (Ray, &Sight)> {
+        self.rays().zip(&self.sights)
+    }
+
+    /// With the copies that fill it up.
+    fn all(&self) -> Rays<'_> {
+        let count = self.len.next_multiple_of(STEP);
+        Rays { origin: self.origin.view(count), dir: self.dir.view(count), origin_error: 0.0 }
+    }
+
+    /// The distances at which its rays first meet the object; [`MISS`] where they do not.
+    pub fn hits(&self, shape: &dyn Hittable, cpu: Cpu) -> [f64; WIDE] {
+        let (rays, len) = (self.all(), self.len);
+        let exactly = |lane: usize| shape.distance(&rays.get(lane), &Span::RAY);
+        let (mut near, mut far) = ([MISS; WIDE], [MISS; WIDE]);
+        let (mut met, mut doubt) = ([0; WIDE], [0; WIDE]);
+        let nearest = Nearest { near: &mut near, far: &mut far, met: &mut met, doubt: &mut doubt };
+        if shape.meet(cpu, rays, None, 1, nearest) {
+            for lane in (0..len).filter(|lane| doubt[*lane] != 0) {
+                near[lane] = exactly(lane);
+                far[lane] = near[lane];
+            }
+        }
+        let mut hits = near;
+        if near[..len] != far[..len] {
+            let count = rays.len();
+            let brackets = (&near[..count], &far[..count]);
+            shape.distances(cpu, rays, None, brackets, &mut hits[..count]);
+            for lane in 0..len {
+                if near[lane] == far[lane] {
+                    hits[lane] = near[lane];
+                } else if hits[lane].is_nan() {
+                    hits[lane] = exactly(lane);
+                }
+            }
+        }
+        hits
+    }
+}

@@ -1,0 +1,306 @@
+//! What each choice makes of the picture: its colours against the right ones, and how long they take.
+//!
+//! Errors are of some of the picture's own pixels, spread evenly; times are of some of its tiles, each traced on one
+//! thread as a render traces it.
+
+use super::clock::{self, Times};
+use super::colours::{Difference, difference};
+use super::data::{Family, Panel, Point, Subject, Wrong};
+use super::places::{Pixels, spread, tiles};
+use super::progress::Progress;
+use super::study::Study;
+use crate::geometry::packet::WIDE;
+use crate::render::plan::Plan;
+use crate::render::renderer::Renderer;
+use crate::render::trace::{self, Rooms, Tracer};
+use crate::render::watch::{Event, Watch};
+use crate::scene::model::Model;
+use crate::simd::cpu::Cpu;
+use crate::world::material::Rgb;
+use crate::world::sample::{Sample, Sampler};
+use glam::DVec2;
+use std::hint::black_box;
+use std::ops::ControlFlow;
+
+/// The samples of a picture that counts as true: of no use against more than a quarter of them.
+pub(super) const TRUE_SAMPLES: u32 = 1024;
+
+/// The samples that are compared, and the scene's own.
+const SAMPLES: [u32; 8] = [1, 2, 4, 8, 16, 24, 32, 64];
+
+/// The tests of an object that one panel of samples may take for its truth: about as many tenths of a microsecond.
+pub(super) const TRUE_TESTS: usize = 50_000_000;
+
+/// The tests that what is timed takes with one sample for each pixel, about, and the tiles that are timed at least.
+const TIMED_TESTS: usize = 25_000;
+const TIMED_TILES: usize = 16;
+
+/// The tests that pictures by another method may take.
+const METHOD_TESTS: usize = 500_000;
+
+/// What samples of a picture are for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Seen {
+    /// Edges, and shadows where these are soft.
+    Picture,
+    /// Soft shadows alone: each pixel is looked at in its middle.
+    Shadows,
+}
+
+/// What all pictures add to the work, about.
+pub fn work(study: &Study) -> usize {
+    let kinds = 1 + usize::from(has_size(&study.candidates[study.default].model));
+    let methods = study.candidates.len() * METHOD_TESTS / 10 + clock::work(study.candidates.len());
+    methods + kinds * (TRUE_TESTS / 8 + clock::work(2 * SAMPLES.len()))
+}
+
+fn has_size(model: &Model) -> bool {
+    model.lights.iter().any(|light| light.value.size() > 0.0)
+}
+
+/// The plan for a picture of one ray through the middle of each pixel.
+fn one_ray(model: &Model) -> Plan<'_> {
+    let mut plan = Plan::new(model);
+    plan.camera.samples = 1;
+    plan
+}
+
+/// The picture, one ray through the middle of each pixel, by each way to find hits.
+pub fn methods(study: &Study, progress: &mut dyn Progress) -> ControlFlow<(), Panel> {
+    let tests = tests(&Plan::new(&study.candidates[study.default].model), &study.threads);
+    let own = study.candidates[study.default].model.camera.value.pixels;
+    let pixels = spread(own, (METHOD_TESTS as f64 / tests) as usize);
+    let timed = timed(own, tests);
+    let plans: Vec<_> = study.candidates.iter().map(|candidate| one_ray(&candidate.model)).collect();
+    let mut colours = Vec::new();
+    for plan in &plans {
+        colours.push(each(&study.threads, &pixels, |x, y| trace::pixel(plan, x, y)));
+        progress.done(METHOD_TESTS / 10)?;
+    }
+    let right = &colours[study.strict];
+    let differences: Vec<_> = colours.iter().map(|colours| difference(colours, right)).collect();
+    let work = |choice: usize| render(&plans[choice], &timed);
+    let times = study.thread.run(|| clock::rounds(plans.len(), count(&timed), work, progress));
+    let points =
+        study.candidates.iter().zip(differences).zip(times?).map(|((candidate, off), times)| Point {
+            is_default: candidate.is_default,
+            ..point(candidate.name.clone(), candidate.family, times, off, (pixels.len(), 1))
+        });
+    ControlFlow::Continue(Panel {
+        title: "the image, by method".to_owned(),
+        note: format!("{} of {} pixels, against strict", pixels.len(), own[0] * own[1]),
+        subject: Subject::Methods,
+        points: points.collect(),
+    })
+}
+
+/// The picture by samples, against one of so many that they make no difference any more; nothing where one sample is
+/// right.
+pub fn samples(study: &Study, seen: Seen, progress: &mut dyn Progress) -> ControlFlow<(), Option<Panel>> {
+    let Study { candidates, default, threads, thread, .. } = study;
+    let model = &candidates[*default].model;
+    let own = &model.camera.value;
+    let mut plan = Plan::new(model);
+    let tests = tests(&plan, threads);
+    let most = (TRUE_TESTS as f64 / (f64::from(TRUE_SAMPLES) * tests)) as usize;
+    let pixels = spread(own.pixels, most.clamp(1024, 8192));
+    let right = truth(&plan, threads, &pixels, seen, progress)?;
+    let choices: Vec<_> = choices(own.samples, own.sampler);
+    let mut differences = Vec::new();
+    for (samples, sampler) in &choices {
+        (plan.camera.samples, plan.camera.sampler) = (*samples, *sampler);
+        let colours = each(threads, &pixels, |x, y| colour(&plan, [x, y], seen));
+        differences.push(difference(&colours, &right));
+        progress.done(TRUE_TESTS / 40 / choices.len())?;
+    }
+    let timed = timed(own.pixels, tests);
+    let times = thread.run(|| {
+        let work = |choice: usize| {
+            (plan.camera.samples, plan.camera.sampler) = choices[choice];
+            render(&plan, &timed);
+        };
+        clock::rounds(choices.len(), count(&timed), work, progress)
+    });
+    if differences.iter().all(|off| off.rmse == 0.0) {
+        return ControlFlow::Continue(None);
+    }
+    let points =
+        choices.iter().zip(differences).zip(times?).map(|(((samples, sampler), off), times)| Point {
+            is_default: *samples == own.samples && *sampler == own.sampler,
+            ..point(
+                format!("{} {samples}", name(*sampler)),
+                sampler.family(),
+                times,
+                off,
+                (pixels.len(), *samples),
+            )
+        });
+    let title = match (seen, has_size(model)) {
+        (Seen::Picture, false) => "samples per pixel: edges",
+        (Seen::Picture, true) => "samples per pixel: edges and soft shadows",
+        (Seen::Shadows, _) => "samples per pixel: soft shadows alone",
+    };
+    ControlFlow::Continue(Some(Panel {
+        title: title.to_owned(),
+        note: format!("{} pixels, against {TRUE_SAMPLES} samples", pixels.len()),
+        subject: Subject::Samples,
+        points: points.collect(),
+    }))
+}
+
+fn point(
+    name: String,
+    family: Family,
+    times: Times,
+    off: Difference,
+    (pixels, samples): (usize, u32),
+) -> Point {
+    Point {
+        name,
+        family,
+        is_default: false,
+        times,
+        error: off.rmse,
+        worst: off.worst,
+        wrong: Wrong::default(),
+        visible: Some(off.visible),
+        changed: Some([off.changed, pixels]),
+        samples,
+    }
+}
+
+fn name(sampler: Sampler) -> &'static str {
+    match sampler {
+        Sampler::Random => "random",
+        Sampler::Sobol => "sobol",
+    }
+}
+
+/// The samples and samplers that are compared, one sample only once.
+fn choices(own: u32, own_sampler: Sampler) -> Vec<(u32, Sampler)> {
+    let mut counts = SAMPLES.to_vec();
+    if !counts.contains(&own) && own <= TRUE_SAMPLES / 4 {
+        counts.push(own);
+        counts.sort_unstable();
+    }
+    let mut choices = Vec::new();
+    for sampler in [Sampler::Sobol, Sampler::Random] {
+        // One sample lies in the middle, whatever the sampler.
+        choices.extend(
+            counts
+                .iter()
+                .filter(|count| **count > 1 || sampler == own_sampler)
+                .map(|count| (*count, sampler)),
+        );
+    }
+    choices
+}
+
+/// What is timed of a picture whose pixels take so many tests each.
+pub(super) fn timed(size: [usize; 2], tests: f64) -> Vec<Pixels> {
+    tiles(size, ((TIMED_TESTS as f64 / tests) as usize).div_ceil(WIDE).max(TIMED_TILES))
+}
+
+/// How many pixels tiles have.
+pub(super) fn count(tiles: &[Pixels]) -> usize {
+    tiles.iter().map(Vec::len).sum()
+}
+
+/// Traces tiles as a render does, on this thread.
+pub(super) fn render(plan: &Plan, tiles: &[Pixels]) {
+    let (mut rooms, mut nobody) = (Rooms::default(), ());
+    for tile in tiles {
+        black_box(Tracer::new(plan, Cpu::best(), &mut rooms, &mut nobody).pixels(tile));
+    }
+}
+
+/// The right colours: so many samples that they make no difference any more, other ones than those that are compared.
+pub(super) fn truth(
+    plan: &Plan,
+    threads: &Renderer,
+    pixels: &Pixels,
+    seen: Seen,
+    progress: &mut dyn Progress,
+) -> ControlFlow<(), Vec<Rgb>> {
+    let mut colours = Vec::new();
+    let camera = &plan.camera;
+    let colour = |x: usize, y: usize| {
+        let pixel = !((y * camera.pixels[0] + x) as u32);
+        let sample = |index| Sample { sampler: Sampler::Sobol, index, pixel };
+        let one = |index| colour_of(plan, [x, y], sample(index), seen);
+        (0..TRUE_SAMPLES).map(one).sum::<Rgb>() / f64::from(TRUE_SAMPLES)
+    };
+    for part in pixels.chunks(pixels.len().div_ceil(50)) {
+        colours.extend(each(threads, part, colour));
+        progress.done(TRUE_TESTS / 10 * part.len() / pixels.len())?;
+    }
+    ControlFlow::Continue(colours)
+}
+
+/// A pixel's colour with the camera's samples.
+fn colour(plan: &Plan, [x, y]: [usize; 2], seen: Seen) -> Rgb {
+    if seen == Seen::Picture {
+        return trace::pixel(plan, x, y);
+    }
+    let camera = &plan.camera;
+    if camera.samples == 1 {
+        return trace::colour(plan, &camera.sight(x as f64, y as f64), None);
+    }
+    let pixel = (y * camera.pixels[0] + x) as u32;
+    let sample = |index| Sample { sampler: camera.sampler, index, pixel };
+    let colours = (0..camera.samples).map(|index| colour_of(plan, [x, y], sample(index), seen));
+    colours.sum::<Rgb>() / f64::from(camera.samples)
+}
+
+/// What one sample of a pixel sees.
+fn colour_of(plan: &Plan, [x, y]: [usize; 2], sample: Sample, seen: Seen) -> Rgb {
+    let jitter = match seen {
+        Seen::Picture => sample.jitter(),
+        Seen::Shadows => DVec2::ZERO,
+    };
+    let sight = plan.camera.sight(x as f64 + jitter.x, y as f64 + jitter.y);
+    trace::colour(plan, &sight, Some(sample))
+}
+
+/// Something of each of these pixels, on all threads of a renderer.
+pub(super) fn each<T: Send>(
+    threads: &Renderer,
+    pixels: &[[usize; 2]],
+    work: impl Fn(usize, usize) -> T + Sync + Send,
+) -> Vec<T> {
+    use rayon::prelude::*;
+    threads.run(|| pixels.par_iter().map(|[x, y]| work(*x, *y)).collect())
+}
+
+/// How many objects one ray through a pixel and all that follow from it test, in the mean.
+pub(super) fn tests(plan: &Plan, threads: &Renderer) -> f64 {
+    struct Tests(usize);
+    impl Watch for Tests {
+        const SEES: bool = true;
+
+        fn see(&mut self, event: Event) {
+            if let Event::Tested(..) = event {
+                self.0 += 1;
+            }
+        }
+    }
+    const PIXELS: usize = 400;
+    let pixels = spread(plan.camera.pixels, PIXELS);
+    let samples = plan.camera.samples as usize;
+    let count = |x, y| {
+        let mut tests = Tests(0);
+        trace::watch_pixel(plan, x, y, &mut tests);
+        tests.0
+    };
+    let all: usize = each(threads, &pixels, count).into_iter().sum();
+    (all as f64 / (pixels.len() * samples) as f64).max(1.0)
+}
+
+impl Sampler {
+    fn family(self) -> Family {
+        match self {
+            Self::Random => Family::Random,
+            Self::Sobol => Family::Sobol,
+        }
+    }
+}

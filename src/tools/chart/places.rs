@@ -1,0 +1,53 @@
+//! The pixels that are looked at, spread evenly over a picture.
+
+use crate::render::tiles::{self, TILE};
+use glam::DVec2;
+
+/// Pixels, from the left and from the bottom.
+pub type Pixels = Vec<[usize; 2]>;
+
+/// So many pixels of a picture; all of a smaller one.
+pub fn spread([width, height]: [usize; 2], count: usize) -> Pixels {
+    let all = width * height;
+    if count >= all {
+        return (0..all).map(|index| [index % width, index / width]).collect();
+    }
+    let size = DVec2::new(width as f64, height as f64);
+    let place = |index: usize| (size * (STEP * index as f64).fract()).to_array().map(|side| side as usize);
+    (0..count).map(place).collect()
+}
+
+/// So many of the tiles that a picture is made of, each the pixels of a packet of rays; all of a smaller one.
+pub fn tiles([width, height]: [usize; 2], count: usize) -> Vec<Pixels> {
+    let tile = |[column, row]: [usize; 2]| {
+        let (left, low) = (column * TILE, row * TILE);
+        let mut pixels = Vec::new();
+        tiles::list(left..width.min(left + TILE), low..height.min(low + TILE), &mut pixels);
+        pixels
+    };
+    spread([width, height].map(|side| side.div_ceil(TILE)), count).into_iter().map(tile).collect()
+}
+
+/// From each place to the next, in parts of a picture: the R2 sequence (M. Roberts, "The unreasonable effectiveness of
+/// quasirandom sequences", 2018).
+const STEP: DVec2 = DVec2::new(0.754_877_666_246_692_7, 0.569_840_290_998_053_2);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn tiles_hold_every_pixel_of_a_small_picture_once() {
+        let pixels: Pixels = tiles([19, 9], 100).concat();
+        assert_eq!(pixels.len(), 19 * 9);
+        assert_eq!(pixels.into_iter().collect::<BTreeSet<_>>().len(), 19 * 9);
+    }
+
+    #[test]
+    fn places_are_all_over_a_large_picture() {
+        let quarters = |[x, y]: [usize; 2]| [x / 250, y / 250];
+        let places: BTreeSet<_> = spread([1000, 1000], 40).into_iter().map(quarters).collect();
+        assert_eq!(places.len(), 16);
+    }
+}

@@ -1,0 +1,192 @@
+//! What a chart says, in words.
+
+use super::data::{Chart, Family, Panel, Point, Subject};
+use super::front::{self, SAME_TIME};
+use std::fmt::Write;
+
+/// How far apart in Oklab, in hundredths, the eye begins to tell colours.
+const VISIBLE: f64 = 2.0;
+
+/// The verdict on each panel: the front, where the default stands, and what to choose.
+pub fn words(chart: &Chart) -> String {
+    let mut text = String::new();
+    for panel in &chart.panels {
+        let _ = writeln!(text, "{} ({})", panel.title, panel.note);
+        let lines = match panel.subject {
+            Subject::Distances => distances(panel),
+            Subject::Methods => methods(panel),
+            Subject::Samples => samples(panel),
+        };
+        for line in lines {
+            let _ = writeln!(text, "  {line}");
+        }
+        text += "\n";
+    }
+    if chart.is_noisy() {
+        let _ = writeln!(
+            text,
+            "Rounds of the same work differed by {:.0} %. Do not trust the times.",
+            100.0 * chart.noise()
+        );
+    }
+    if chart.is_busy() {
+        let _ = writeln!(
+            text,
+            "The machine was busy: rounds waited {:.0} % of their time for other work. All times may be too long.",
+            100.0 * chart.waited()
+        );
+    }
+    if !chart.is_whole {
+        text += "Interrupted: this is what had been measured by then.\n";
+    }
+    text
+}
+
+fn distances(panel: &Panel) -> Vec<String> {
+    let mut lines = vec![front(panel)];
+    lines.extend(standing(panel));
+    let (wrong, right): (Vec<_>, Vec<_>) = panel.points.iter().partition(|point| point.wrong.count() > 0);
+    if !wrong.is_empty() {
+        let each = |point: &&Point| {
+            format!("{} {}", point.name, percent(point.wrong.count() as f64 / point.wrong.of as f64))
+        };
+        lines.push(format!("wrong hits: {}", wrong.iter().map(each).collect::<Vec<_>>().join("; ")));
+    }
+    let mut last = None;
+    for limit in [1e-2, 1e-4, 1e-8, 1e-12] {
+        let fit = || right.iter().filter(|point| point.error <= limit);
+        let Some(fastest) = fit().min_by(|a, b| a.times.least.total_cmp(&b.times.least)) else { continue };
+        // What is as fast as the default is no reason to leave it.
+        let as_fast =
+            |point: &&&Point| point.is_default && point.times.least <= SAME_TIME * fastest.times.least;
+        let best = fit().find(as_fast).unwrap_or(fastest);
+        if last != Some(&best.name) {
+            lines.push(format!("for an error of at most {limit:e}: {}, {}", best.name, time(panel, best)));
+            last = Some(&best.name);
+        }
+    }
+    lines
+}
+
+fn methods(panel: &Panel) -> Vec<String> {
+    let mut lines = vec![front(panel)];
+    lines.extend(standing(panel));
+    let (mut same, mut others) = (Vec::new(), Vec::new());
+    for point in &panel.points {
+        match point.changed {
+            Some([0, _]) => same.push(point.name.clone()),
+            Some([changed, of]) => {
+                others.push(format!("{} {}", point.name, percent(changed as f64 / of as f64)));
+            }
+            None => {}
+        }
+    }
+    if others.is_empty() {
+        let fastest = panel.points.iter().min_by(|a, b| a.times.least.total_cmp(&b.times.least));
+        let fastest = fastest.map(|point| format!("; the fastest is {}, {}", point.name, time(panel, point)));
+        lines.push(format!("no choice changes a pixel{}", fastest.unwrap_or_default()));
+    } else {
+        lines.push(format!("change no pixel: {}", same.join("; ")));
+        lines.push(format!("change pixels: {}", others.join("; ")));
+    }
+    lines
+}
+
+fn samples(panel: &Panel) -> Vec<String> {
+    let mut lines: Vec<_> = standing(panel).into_iter().collect();
+    let of = |family: Family| -> Vec<&Point> {
+        panel.points.iter().filter(|point| point.family == family && point.samples > 1).collect()
+    };
+    let (sobol, random) = (of(Family::Sobol), of(Family::Random));
+    for (name, points) in [("sobol", &sobol), ("random", &random)] {
+        if let Some(slope) = slope(points) {
+            lines.push(format!(
+                "{name}: the error falls with the number of samples to the power of {slope:.2}"
+            ));
+        }
+    }
+    if let Some(last) = random.last() {
+        match needed(&sobol, last.error) {
+            Some(samples) => {
+                lines.push(format!("sobol needs {samples} samples for the error of {}", last.name));
+            }
+            None => lines.push(format!("sobol does not reach the error of {}", last.name)),
+        }
+    }
+    let fits = |point: &&Point| point.visible.is_some_and(|part| part <= VISIBLE);
+    lines.push(match panel.points.iter().find(fits) {
+        Some(first) => {
+            format!(
+                "99 % of the pixels look right (within {VISIBLE} of 100 in Oklab): {}, {}",
+                first.name,
+                time(panel, first)
+            )
+        }
+        None => "no choice makes 99 % of the pixels look right".to_owned(),
+    });
+    lines
+}
+
+/// The best choices, the fastest first.
+fn front(panel: &Panel) -> String {
+    let mut best: Vec<&Point> = panel
+        .points
+        .iter()
+        .zip(panel.front())
+        .filter(|(_, is_on_front)| *is_on_front)
+        .map(|(point, _)| point)
+        .collect();
+    best.sort_by(|a, b| b.error.total_cmp(&a.error).then_with(|| a.name.cmp(&b.name)));
+    let each = |point: &&Point| format!("{} ({}, {:.0e})", point.name, time(panel, point), point.error);
+    format!("Pareto front: {}", best.iter().map(each).collect::<Vec<_>>().join("; "))
+}
+
+/// Where the default stands.
+fn standing(panel: &Panel) -> Option<String> {
+    let default = panel.points.iter().find(|point| point.is_default)?;
+    let name = &default.name;
+    if default.wrong.count() > 0 {
+        return Some(format!("the default, {name}, has wrong hits"));
+    }
+    Some(match front::beaten_by(&panel.points, default, panel.negligible()) {
+        None => format!("the default, {name}, is on the front: {}", time(panel, default)),
+        Some(best) => {
+            let (own, other) = (time(panel, default), time(panel, best));
+            format!("the default, {name}, {own}, is beaten by {}, {other}", best.name)
+        }
+    })
+}
+
+/// The power of the samples with which errors fall: the slope of the line through their logarithms, by least squares.
+fn slope(points: &[&Point]) -> Option<f64> {
+    let logs: Vec<(f64, f64)> = points
+        .iter()
+        .filter(|point| point.error > 0.0)
+        .map(|point| (libm::log(f64::from(point.samples)), libm::log(point.error)))
+        .collect();
+    let count = logs.len() as f64;
+    let (x, y) = logs.iter().fold((0.0, 0.0), |(x, y), log| (x + log.0 / count, y + log.1 / count));
+    let (up, across) = logs.iter().fold((0.0, 0.0), |(up, across), log| {
+        (up + (log.0 - x) * (log.1 - y), across + (log.0 - x) * (log.0 - x))
+    });
+    (logs.len() > 2 && across > 0.0).then(|| up / across)
+}
+
+/// The least samples that were measured and reach an error.
+fn needed(points: &[&Point], error: f64) -> Option<u32> {
+    points.iter().find(|point| point.error <= error).map(|point| point.samples)
+}
+
+fn time(panel: &Panel, point: &Point) -> String {
+    let (_, scale) = panel.unit();
+    let unit = if panel.subject == Subject::Distances { "ns" } else { "µs" };
+    let time = point.times.least * scale;
+    // Two digits, as times are not the same twice.
+    let digits = (1 - time.abs().log10().floor() as i32).clamp(0, 6) as usize;
+    format!("{time:.digits$} {unit}")
+}
+
+fn percent(part: f64) -> String {
+    let percent = 100.0 * part;
+    if percent < 0.1 { format!("{percent:.3} %") } else { format!("{percent:.1} %") }
+}

@@ -1,0 +1,163 @@
+//! Values for attributes, drawn by their types and rules; the same at every run.
+
+use crate::scene::entity::Entity;
+use crate::scene::kind::Kind;
+use crate::scene::pparm::Attribute;
+use crate::scene::registry::Registry;
+use crate::scene::syntax::Syntax;
+use crate::scene::value::{Datum, Type};
+use glam::DVec3;
+use image::RgbImage;
+use rand_pcg::Pcg32;
+use rand_pcg::rand_core::Rng;
+use std::path::Path;
+use tempfile::TempDir;
+
+/// How often values are drawn until they keep their rule.
+const TRIES: usize = 1000;
+
+/// A picture for what takes one, in the folder of the scenes.
+const PICTURE: &str = "picture.png";
+
+const FORMULAS: [&str; 4] = ["2 + sin(y)", "1", "0.5 * y", "sqrt(abs(4 - y^2))"];
+
+/// The folder that the drawn scenes' file names start from.
+pub struct Room(TempDir);
+
+impl Room {
+    pub fn new() -> Self {
+        let room = Self(TempDir::new().expect("room for a temporary folder"));
+        let colours = RgbImage::from_fn(5, 4, |x, y| [50 * x as u8, 60 * y as u8, 255].into());
+        colours.save(room.folder().join(PICTURE)).expect("room for a picture");
+        room
+    }
+
+    pub fn folder(&self) -> &Path {
+        self.0.path()
+    }
+}
+
+/// Draws numbers, and what is made of them.
+pub struct Draw(Pcg32);
+
+impl Draw {
+    /// What is drawn for a plugin depends on its name, and not on which others there are.
+    pub fn new(name: &str) -> Self {
+        let seed = name.bytes().fold(0, |seed: u64, byte| seed.wrapping_mul(257).wrapping_add(byte.into()));
+        Self(Pcg32::new(seed, 0))
+    }
+
+    /// From 0 to 1.
+    pub fn part(&mut self) -> f64 {
+        f64::from(self.0.next_u32()) / f64::from(u32::MAX)
+    }
+
+    /// A number below this one.
+    fn below(&mut self, count: usize) -> usize {
+        self.0.next_u32() as usize % count
+    }
+
+    fn pick<T: Copy>(&mut self, of: &[T]) -> T {
+        of[self.below(of.len())]
+    }
+
+    /// A unit vector.
+    pub fn direction(&mut self) -> DVec3 {
+        loop {
+            let vector = DVec3::new(self.part(), self.part(), self.part()) * 2.0 - 1.0;
+            if vector.length() <= 1.0
+                && let Some(direction) = vector.try_normalize()
+            {
+                return direction;
+            }
+        }
+    }
+
+    /// A number as scenes have them: round ones and small ones.
+    fn number(&mut self) -> f64 {
+        match self.below(5) {
+            0 => self.below(9) as f64 - 4.0,
+            1 | 2 => (self.below(201) as f64 - 100.0) / 10.0,
+            3 => self.part(),
+            _ => self.part() * 20.0 - 10.0,
+        }
+    }
+
+    /// A scene with an entity of this type, and with what that may refer to.
+    pub fn scene(&mut self, registry: &Registry, entity: &'static Entity) -> String {
+        let mut text = String::new();
+        for kind in [Kind::Camera, Kind::Material, Kind::Texture] {
+            let its = |other: &&'static Entity| other.kind() == kind;
+            if kind != Kind::Camera && !its(&entity) && !refers_to(entity, kind) {
+                continue;
+            }
+            if let Some(other) = Some(entity).filter(its).or_else(|| registry.iter().find(its)) {
+                text += &self.entity(other, name(kind));
+            }
+        }
+        if matches!(entity.kind(), Kind::Object | Kind::Light) {
+            text += &self.entity(entity, "tried");
+        }
+        text
+    }
+
+    fn entity(&mut self, entity: &Entity, name: &str) -> String {
+        let mut lines = String::new();
+        for attribute in entity.attributes() {
+            if let Some(values) = self.values(attribute, entity.kind() == Kind::Material) {
+                lines += &format!("    {}\n", Syntax::Notes.pair(attribute.name(), &values));
+            }
+        }
+        format!("{} {name}\n{{\n{lines}}}\n", entity.name)
+    }
+
+    /// Values that an attribute allows, as a scene writes them; nothing where the default is taken.
+    fn values(&mut self, attribute: &dyn Attribute, positive: bool) -> Option<Vec<String>> {
+        if attribute.default().is_some() && self.below(2) == 0 {
+            return None;
+        }
+        let count = self.pick(attribute.arity());
+        let word = |word: &str| Some(vec![word.to_owned()]);
+        let datum = |draw: &mut Self| match attribute.value_type() {
+            Type::Whole => Datum::Whole((0..count).map(|_| draw.whole()).collect()),
+            Type::Number => {
+                let sign = |number: f64| if positive { number.abs() } else { number };
+                Datum::Numbers((0..count).map(|_| sign(draw.number())).collect())
+            }
+            Type::Choice(choices) => Datum::Choice(draw.pick(&choices.all())),
+            Type::Word | Type::Name(_) | Type::Formula => Datum::Absent,
+        };
+        match attribute.value_type() {
+            Type::Word => word(PICTURE),
+            Type::Name(kind) => word(name(kind)),
+            Type::Formula => word(&format!("\"{}\"", self.pick(&FORMULAS))),
+            _ => {
+                let drawn = (0..TRIES).map(|_| datum(self)).find(|datum| attribute.allows(datum));
+                Some(Syntax::Notes.values(&drawn?))
+            }
+        }
+    }
+
+    fn whole(&mut self) -> i64 {
+        match self.below(2) {
+            0 => self.below(3) as i64,
+            _ => 1 + self.below(640) as i64,
+        }
+    }
+}
+
+/// Whether an attribute is the name of an entity of this kind.
+fn refers_to(entity: &Entity, kind: Kind) -> bool {
+    let mut types = entity.attributes().map(|attribute| attribute.value_type());
+    types.any(|its| matches!(its, Type::Name(named) if named == kind))
+}
+
+/// What the entity of a kind is called that others refer to.
+fn name(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Camera => "eye",
+        Kind::Material => "m",
+        Kind::Texture => "t",
+        Kind::Object | Kind::Light => "tried",
+    }
+}

@@ -1,0 +1,197 @@
+//! The contracts of all that is no shape: shaders, lights, cameras, materials, profiles and dumps.
+
+use super::draw::Draw;
+use super::promise::{Fault, Promise};
+use crate::scene::dump;
+use crate::scene::model::Model;
+use crate::scene::procedural::{Anchor, ProceduralShader};
+use crate::scene::profile::Profile;
+use crate::scene::reader;
+use crate::scene::registry::Registry;
+use crate::scene::syntax::Syntax;
+use crate::shapes::revolution::{Finish, Revolution};
+use crate::simd::cpu::Cpu;
+use crate::simd::soa::{STEP, Vectors};
+use crate::world::camera::Camera;
+use crate::world::facing::{Facing, Places};
+use crate::world::light::Light;
+use crate::world::material::{Look, Material, Rgb};
+use crate::world::shader::Shader;
+use glam::DVec3;
+use std::path::Path;
+
+/// The places at which lights and procedural shaders are asked.
+const PLACES: usize = 100;
+
+/// A dumped scene loads again, in either spelling.
+pub fn dump(registry: &Registry, folder: &Path, model: &Model) -> Result<(), Fault> {
+    for (syntax, name) in [(Syntax::Notes, "dump.ray"), (Syntax::Toml, "dump.toml")] {
+        let text = dump::scene(model, syntax);
+        let fault = |found: String| Promise::DumpLoadsAgain.fault(found);
+        let again = reader::read(registry, name, folder, text.as_bytes(), None);
+        let again = again.map_err(|report| fault(report.to_string()))?.model;
+        if dump::scene(&again, syntax) != text || dump::notes(&again) != dump::notes(model) {
+            return Err(fault(format!("the dump is different, of\n{text}")));
+        }
+    }
+    Ok(())
+}
+
+/// A shader's reflectivities at a point, and in packets.
+pub fn shader(shader: &dyn Shader, at: DVec3) -> Result<(), Fault> {
+    let material = Material {
+        ambient: Rgb::new(0.1, 0.5, 3.0),
+        diffuse: Rgb::new(2.0, 0.7, 0.0),
+        specular: Rgb::splat(0.3),
+        shininess: 10.0,
+        transparency: 0.2,
+    };
+    let one = [shader.ambient(&material, at), shader.diffuse(&material, at), shader.specular(&material, at)];
+    for (colour, what) in one.iter().zip(["ambient", "diffuse", "specular"]) {
+        if !colour.is_finite() || colour.min_element() < 0.0 {
+            return Err(Promise::ReflectivityIsSound.fault(format!("`{what}` is {colour} at {at}")));
+        }
+    }
+    if let Some(Look { ambient, diffuse, specular }) = shader.even(&material)
+        && one != [ambient, diffuse, specular]
+    {
+        let even = [ambient, diffuse, specular];
+        return Err(
+            Promise::PacketsAgree.fault(format!("`even` is {even:?}, and it returns {one:?} at {at}"))
+        );
+    }
+    if let Some(Look { ambient, diffuse, specular }) = shader.brightest(&material)
+        && let most = [ambient, diffuse, specular]
+        && one.iter().zip(most).any(|(colour, most)| !colour.abs().cmple(most.abs()).all())
+    {
+        let found = format!("`brightest` is {most:?}, and it returns {one:?} at {at}");
+        return Err(Promise::ReflectivityIsSound.fault(found));
+    }
+    let points = Vectors::<STEP> { x: [at.x; STEP], y: [at.y; STEP], z: [at.z; STEP] };
+    for cpu in Cpu::all() {
+        let mut many = [const { Vectors::<STEP>::ZERO }; 3];
+        let [ambient, diffuse, specular] = &mut many;
+        shader.unlit(cpu, &material, points.view(STEP), ambient.view_mut(STEP), specular.view_mut(STEP));
+        shader.diffuses(cpu, &material, points.view(STEP), diffuse.view_mut(STEP));
+        let many = many.map(|colours| colours.get(STEP - 1));
+        if !many.iter().zip(&one).all(|(many, one)| same_bits(*many, *one)) {
+            return Err(Promise::PacketsAgree.fault(format!("{many:?} in packets ({cpu}), {one:?} at {at}")));
+        }
+    }
+    Ok(())
+}
+
+/// Whether two vectors are the same to the last bit.
+pub fn same_bits(a: DVec3, b: DVec3) -> bool {
+    a.to_array().map(f64::to_bits) == b.to_array().map(f64::to_bits)
+}
+
+/// A procedural shader around its anchor, and where it measures from.
+pub fn procedural(shader_type: &ProceduralShader, draw: &mut Draw) -> Result<(), Fault> {
+    for unit in [1.0, 0.3, 7.0] {
+        let anchor = Anchor { origin: DVec3::new(4.0, 3.0, -2.5), unit };
+        let made = (shader_type.make)(anchor);
+        for at in places(anchor.origin, draw) {
+            shader(&*made, at)?;
+        }
+    }
+    Ok(())
+}
+
+/// A light, toward points around it and where it is.
+pub fn light(light: &dyn Light, draw: &mut Draw) -> Result<(), Fault> {
+    let (location, size) = (light.location(), light.size());
+    if !location.is_finite() || !size.is_finite() || size < 0.0 {
+        return Err(Promise::LightIsFinite.fault(format!("it is at {location}, its size is {size}")));
+    }
+    for toward in places(location, draw) {
+        let one = light.emissivity(toward);
+        if one.is_some_and(|light| !light.is_finite()) {
+            return Err(Promise::LightIsFinite.fault(format!("toward {toward} it emits {one:?}")));
+        }
+        if let Some(even) = light.even()
+            && one != Some(even)
+        {
+            let found = format!("`even` is {even}, and toward {toward} it emits {one:?}");
+            return Err(Promise::PacketsAgree.fault(found));
+        }
+        if let (Some(most), Some(one)) = (light.brightest(), one)
+            && !one.abs().cmple(most.abs()).all()
+        {
+            let found = format!("`brightest` is {most}, and toward {toward} it emits {one}");
+            return Err(Promise::LightIsFinite.fault(found));
+        }
+        let all = |of: DVec3| Vectors::<STEP> { x: [of.x; STEP], y: [of.y; STEP], z: [of.z; STEP] };
+        // The light is in front of each place, but for the one that it is on.
+        let (points, normals) = (all(toward), all((location - toward).normalize_or_zero()));
+        let (points, normals) = (points.view(STEP), normals.view(STEP));
+        for cpu in Cpu::all() {
+            let (mut dir, mut emissivity) = (Vectors::<STEP>::ZERO, Vectors::<STEP>::ZERO);
+            let (mut falloffs, mut ends, mut shines) = ([0.0; STEP], [0.0; STEP], [2; STEP]);
+            let facing = Facing {
+                toward: dir.view_mut(STEP),
+                emissivity: emissivity.view_mut(STEP),
+                falloffs: &mut falloffs,
+                ends: &mut ends,
+                shines: &mut shines,
+            };
+            light.face(cpu, &Places { points, normals, lights: None, slack: 0.0 }, facing);
+            let many = light.even().unwrap_or(emissivity.get(STEP - 1));
+            let does_shine = one.is_some() && toward != location;
+            if !same_bits(many, one.unwrap_or(Rgb::ZERO)) || shines[STEP - 1] != u64::from(does_shine) {
+                let found = format!("{many:?} in packets ({cpu}), {one:?} toward {toward}");
+                return Err(Promise::PacketsAgree.fault(found));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Points around one, it and some beside it among them.
+fn places(middle: DVec3, draw: &mut Draw) -> impl Iterator<Item = DVec3> {
+    let axes = DVec3::AXES.into_iter().flat_map(move |axis| [middle + axis, middle - axis]);
+    [middle]
+        .into_iter()
+        .chain(axes)
+        .chain((0..PLACES).map(move |_| middle + draw.direction() * 10.0 * draw.part()))
+}
+
+/// The rays of a camera, in its corners and in its middle.
+pub fn camera(camera: &Camera) -> Result<(), Fault> {
+    let Camera { pixels: [width, height], samples, .. } = *camera;
+    if width == 0 || height == 0 || samples == 0 {
+        let found = format!("{width} by {height} pixels, {samples} samples");
+        return Err(Promise::CameraLooks.fault(found));
+    }
+    for (x, y) in [(0, 0), (width - 1, 0), (0, height - 1), (width - 1, height - 1), (width / 2, height / 2)]
+    {
+        let ray = camera.ray(x as f64, y as f64);
+        if !ray.origin.is_finite() || !ray.dir.is_normalized() {
+            return Err(Promise::CameraLooks.fault(format!("pixel {x} {y} is seen along {ray:?}")));
+        }
+    }
+    Ok(())
+}
+
+/// A material made of finite numbers.
+pub fn material(material: &Material) -> Result<(), Fault> {
+    let Material { ambient, diffuse, specular, shininess, transparency } = material;
+    let is_finite = [ambient, diffuse, specular].iter().all(|colour| colour.is_finite());
+    if !is_finite || !shininess.is_finite() || !(0.0..=1.0).contains(transparency) {
+        return Err(Promise::ReflectivityIsSound.fault(format!("it is {material:?}")));
+    }
+    Ok(())
+}
+
+/// A profile, turned into a surface 4 high.
+pub fn profile(profile: &Profile) -> Result<(), Fault> {
+    let line = profile.line();
+    let fault = |found: String| Promise::ProfileIsFinite.fault(found);
+    Revolution::new(&line.radius, 4.0, Finish::Root)
+        .map_err(|none| fault(format!("it is one {}", none.told().0)))?;
+    let mut heights = (0..=400).map(|part| f64::from(part) / 100.0);
+    match heights.find(|y| !line.slope_at(*y).is_finite()) {
+        Some(y) => Err(fault(format!("its slope is {} at y = {y}", line.slope_at(y)))),
+        None => Ok(()),
+    }
+}

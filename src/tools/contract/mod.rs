@@ -1,0 +1,269 @@
+//! The contracts of the traits that plugins implement, and whether plugins keep them.
+//!
+//! The compiler sees that a plugin has the right functions; what these must give, it does not see. Here every plugin
+//! that is linked in is tried, with values that its table allows and with rays at what it makes of them. A crate with
+//! plugins needs one line in a test for that: [`assert_kept`].
+
+mod draw;
+mod looks;
+mod promise;
+mod rays;
+mod shape;
+mod surface;
+
+pub use promise::Promise;
+
+use crate::scene::choice::{Choice, ChoiceName};
+use crate::scene::dump;
+use crate::scene::entity::Entity;
+use crate::scene::kind::Kind;
+use crate::scene::model::Model;
+use crate::scene::procedural::{OnPlane, ProceduralShader};
+use crate::scene::profile::Profile;
+use crate::scene::reader;
+use crate::scene::registry::Registry;
+use crate::scene::syntax::Syntax;
+use crate::world::accuracy::Accuracy;
+use draw::{Draw, Room};
+use promise::Fault;
+use std::fmt;
+
+/// The scenes that are drawn for an entity type.
+const SCENES: usize = 40;
+
+/// The rays that are sent at each object of a drawn scene.
+const RAYS: usize = 30;
+
+/// A promise that a plugin does not keep.
+#[derive(Clone, Debug)]
+pub struct Breach {
+    /// What it is: "the object `sphere`".
+    pub plugin: String,
+    /// The file and line that registers it.
+    pub place: String,
+    /// What it should do.
+    pub promise: Promise,
+    /// What it does.
+    pub found: String,
+    /// The scene that shows it; empty where it takes none.
+    pub scene: String,
+}
+
+impl fmt::Display for Breach {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { plugin, place, promise, found, scene } = self;
+        writeln!(f, "{place}: {plugin} breaks its contract: {promise}")?;
+        writeln!(f, "  found: {found}")?;
+        writeln!(f, "  fix:   {}", promise.cure())?;
+        if !scene.is_empty() {
+            writeln!(f, "  in this scene:\n")?;
+            scene.lines().try_for_each(|line| writeln!(f, "    {line}"))?;
+        }
+        Ok(())
+    }
+}
+
+/// Panics where a plugin that is linked into this program breaks a contract. For tests.
+///
+/// # Panics
+/// With a message for each such plugin: its file, the promise, what was found, the cure and the scene that shows it.
+#[track_caller]
+pub fn assert_kept() {
+    let registry = Registry::get().unwrap_or_else(|faults| panic!("{faults}"));
+    let told: Vec<_> = breaches(registry).iter().map(Breach::to_string).collect();
+    assert!(told.is_empty(), "\n\n{}", told.join("\n"));
+}
+
+/// What the entity types of a registry, the procedural shaders and the profiles break: of each the gravest breach.
+pub fn breaches(registry: &Registry) -> Vec<Breach> {
+    let room = Room::new();
+    let mut found: Vec<_> = registry.iter().filter_map(|entity| of_entity(registry, entity, &room)).collect();
+    found.extend(inventory::iter::<ProceduralShader>().filter_map(of_procedural_shader));
+    found.extend(inventory::iter::<Profile>().filter_map(of_profile));
+    found.sort_by(|a, b| (&a.place, &a.plugin).cmp(&(&b.place, &b.plugin)));
+    found
+}
+
+/// What the objects, the lights and the camera of a scene break: of each the gravest breach.
+pub fn breaches_in(model: &Model) -> Vec<Breach> {
+    let mut draw = Draw::new("scene");
+    let mut found = Vec::new();
+    for object in &model.objects {
+        found.extend(
+            rays::try_object(object, &mut draw, RAYS).gravest.map(|fault| (object.args.entity, fault)),
+        );
+    }
+    for light in &model.lights {
+        found.extend(looks::light(&*light.value, &mut draw).err().map(|fault| (light.args.entity, fault)));
+    }
+    let camera = &model.camera;
+    found.extend(looks::camera(&camera.value).err().map(|fault| (camera.args.entity, fault)));
+    found
+        .into_iter()
+        .map(|(entity, fault)| breach(entity, fault, dump::scene(model, Syntax::Notes)))
+        .collect()
+}
+
+fn breach(entity: &Entity, Fault { promise, found }: Fault, scene: String) -> Breach {
+    Breach {
+        plugin: format!("the {} `{}`", entity.kind(), entity.name),
+        place: entity.place(),
+        promise,
+        found,
+        scene,
+    }
+}
+
+/// The gravest breach of an entity type in the scenes that are drawn for it.
+fn of_entity(registry: &Registry, entity: &'static Entity, room: &Room) -> Option<Breach> {
+    let mut draw = Draw::new(entity.name);
+    let (mut gravest, mut refused, mut models, mut hits): (Option<Breach>, _, _, _) = (None, None, 0, 0);
+    let mut seen = String::new();
+    for index in 0..SCENES {
+        let text = draw.scene(registry, entity);
+        let accuracy = if index % 4 == 3 { Accuracy::Strict } else { Accuracy::Exact };
+        let model = match reader::read(registry, "scene", room.folder(), text.as_bytes(), Some(accuracy)) {
+            Ok(loaded) => loaded.model,
+            Err(report) => {
+                refused.get_or_insert_with(|| (report.to_string(), text));
+                continue;
+            }
+        };
+        models += 1;
+        let tried = match entity.kind() {
+            Kind::Camera => looks::camera(&model.camera.value),
+            Kind::Material => model.materials.iter().try_for_each(|item| looks::material(&item.value)),
+            Kind::Texture => Ok(()),
+            Kind::Light => model.lights.iter().try_for_each(|item| looks::light(&*item.value, &mut draw)),
+            Kind::Object => model.objects.iter().try_for_each(|object| {
+                let outcome = rays::try_object(object, &mut draw, RAYS);
+                hits += outcome.hits;
+                outcome.gravest.map_or(Ok(()), Err)
+            }),
+        };
+        let fault = looks::dump(registry, room.folder(), &model).and(tried).err();
+        if let Some(fault) = fault
+            && gravest.as_ref().is_none_or(|breach| fault.promise < breach.promise)
+        {
+            gravest = Some(breach(entity, fault, text.clone()));
+        }
+        seen = text;
+    }
+    let other =
+        |promise: Promise, found: &str, scene: String| Some(breach(entity, promise.fault(found), scene));
+    match refused {
+        Some((report, text)) if models == 0 => {
+            other(Promise::TakesWhatItsTableAllows, report.trim_end(), text)
+        }
+        _ if entity.kind() == Kind::Object && hits == 0 && gravest.is_none() => {
+            other(Promise::IsMet, "none of thousands of rays hits it", seen)
+        }
+        _ => gravest,
+    }
+}
+
+fn of_procedural_shader(shader: &'static ProceduralShader) -> Option<Breach> {
+    let choice = OnPlane(shader).option();
+    of_choice("shader", choice, looks::procedural(shader, &mut Draw::new(choice.name)))
+}
+
+fn of_profile(profile: &'static Profile) -> Option<Breach> {
+    of_choice("profile", profile.option(), looks::profile(profile))
+}
+
+fn of_choice(what: &str, choice: ChoiceName, outcome: Result<(), Fault>) -> Option<Breach> {
+    let Fault { promise, found } = outcome.err()?;
+    let (plugin, place) = (format!("the {what} `{}`", choice.name), crate::words::place(choice.place));
+    Some(Breach { plugin, place, promise, found, scene: String::new() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::procedural::Anchor;
+    use crate::world::light::Light;
+    use crate::world::material::{Look, Material, Rgb};
+    use crate::world::shader::{Plain, Shader};
+    use glam::DVec3;
+
+    static SOUND: Profile = Profile::new("sound", "a cone", "4 - y");
+    static UNBOUNDED: Profile = Profile::new("unbounded", "a horn", "1 / y");
+    static EMPTY: Profile = Profile::new("empty", "nothing", "-1");
+    static STEEP: Profile = Profile::new("steep", "a column", "1").slope("1 / (y - 2)");
+
+    struct Spokes(Anchor);
+
+    impl Shader for Spokes {
+        fn ambient(&self, _material: &Material, at: DVec3) -> Rgb {
+            Rgb::ONE + (at - self.0.origin).normalize()
+        }
+    }
+
+    struct Uneven;
+
+    impl Shader for Uneven {
+        fn ambient(&self, _material: &Material, at: DVec3) -> Rgb {
+            Rgb::splat(at.x.abs())
+        }
+
+        fn even(&self, material: &Material) -> Option<Look> {
+            Plain.even(material)
+        }
+    }
+
+    impl Light for Uneven {
+        fn location(&self) -> DVec3 {
+            DVec3::ZERO
+        }
+
+        fn emissivity(&self, toward: DVec3) -> Option<Rgb> {
+            (toward.y < 0.0).then_some(Rgb::ONE)
+        }
+
+        fn even(&self) -> Option<Rgb> {
+            Some(Rgb::ONE)
+        }
+    }
+
+    static UNEVEN: ProceduralShader = ProceduralShader::new("uneven", "not even", |_| Box::new(Uneven));
+    static SPOKES: ProceduralShader =
+        ProceduralShader::new("spokes", "spokes", |anchor| Box::new(Spokes(anchor)));
+
+    #[test]
+    fn a_profile_that_is_not_finite_or_empty_is_found() {
+        assert!(of_profile(&SOUND).is_none());
+        for (profile, found) in [
+            (&UNBOUNDED, "it is one that is unbounded near y = 0.0"),
+            (&EMPTY, "it is one that is nowhere above 0"),
+            (&STEEP, "its slope is inf at y = 2"),
+        ] {
+            let breach = of_profile(profile).expect("a breach");
+            assert!(
+                breach.promise == Promise::ProfileIsFinite && breach.found.starts_with(found),
+                "{breach}"
+            );
+            assert!(breach.to_string().starts_with("src/tools/contract/mod.rs:"), "{breach}");
+        }
+    }
+
+    #[test]
+    fn a_procedural_shader_without_a_colour_at_its_own_origin_is_found() {
+        let breach = of_procedural_shader(&SPOKES).expect("a breach");
+        assert_eq!(breach.promise, Promise::ReflectivityIsSound);
+        assert_eq!(breach.found, "`ambient` is [NaN, NaN, NaN] at [4, 3, -2.5]");
+    }
+
+    #[test]
+    fn a_shader_that_says_it_is_even_and_is_not_is_found() {
+        let breach = of_procedural_shader(&UNEVEN).expect("a breach");
+        assert_eq!(breach.promise, Promise::PacketsAgree);
+        assert!(breach.found.starts_with("`even` is ["), "{breach}");
+    }
+
+    #[test]
+    fn a_light_that_says_it_is_even_and_is_not_is_found() {
+        let fault = looks::light(&Uneven, &mut Draw::new("uneven")).expect_err("a fault");
+        assert_eq!(fault.promise, Promise::PacketsAgree);
+        assert_eq!(fault.found, "`even` is [1, 1, 1], and toward [0, 0, 0] it emits None");
+    }
+}

@@ -1,0 +1,189 @@
+//! The contract of [`Hittable`], tried with rays.
+
+use super::looks::same_bits;
+use super::promise::{Fault, Promise};
+use crate::geometry::packet::{Nearest, Rays};
+use crate::geometry::ray::{MISS, Ray, Side, Span};
+use crate::geometry::sight::Sight;
+use crate::numeric::interval::{Float, Wide};
+use crate::simd::cpu::Cpu;
+use crate::simd::soa::{STEP, Vectors};
+use crate::world::certify::{Enclosure, Precision};
+use crate::world::hittable::Hittable;
+use crate::world::landing::Landing;
+use glam::DVec3;
+
+/// How far aside rounding may move a ray, as a part of the numbers that its distance is computed from: generously, for
+/// methods that lose a third of the digits. How far off its distance may be follows from that.
+const ASIDE: f64 = 1e-10;
+
+/// A step beyond what rounding does to a hit that is not grazed, likewise.
+pub const SLACK: f64 = 1e-7;
+
+/// Rays that meet a surface at a smaller cosine graze it: rounding tells how they fare.
+pub const GRAZING: f64 = 0.05;
+
+/// A shape and a ray that it is tried with.
+pub struct Tried<'s> {
+    pub shape: &'s dyn Hittable,
+    pub ray: Ray,
+    /// Whether it may meet an edge or a corner, where rounding tells what is met from elsewhere.
+    pub is_exact: bool,
+}
+
+impl Tried<'_> {
+    /// How exact distances are where the ray is.
+    pub fn size(&self, distance: f64) -> f64 {
+        1.0 + self.ray.origin.abs().max_element() + distance
+    }
+
+    /// How far off the distance of a ray may be where rounding moves it aside a little: as far as its neighbours' are
+    /// from it, and anything where one of them meets what others miss.
+    pub fn tolerance(&self, ray: &Ray, within: &Span, distance: f64) -> f64 {
+        let step = ASIDE * self.size(if distance == MISS { 0.0 } else { distance });
+        let (across, up) = ray.dir.any_orthonormal_pair();
+        let apart = [across, -across, up, -up].map(|aside| {
+            let neighbour = Ray { origin: ray.origin + step * aside, ..*ray };
+            let its = self.shape.distance(&neighbour, within);
+            if its == distance { 0.0 } else { (its - distance).abs() }
+        });
+        // The direction in which it moves most is half a right angle from one of these at most.
+        step + 2.0 * apart.into_iter().fold(0.0, f64::max)
+    }
+
+    /// The distance along a ray, which is a sound one.
+    pub fn in_span(&self, ray: &Ray, within: &Span) -> Result<f64, Fault> {
+        let distance = self.shape.distance(ray, within);
+        if distance == MISS || (within.near < distance && distance < within.far) {
+            return Ok(distance);
+        }
+        let Span { near, far, .. } = within;
+        Err(Promise::DistanceIsInItsSpan
+            .fault(format!("`distance` gives {distance} between {near} and {far}, {}", told(ray))))
+    }
+
+    pub fn repeats(&self, distance: f64) -> Result<(), Fault> {
+        let again = self.shape.distance(&self.ray, &Span::RAY);
+        if again.to_bits() == distance.to_bits() {
+            return Ok(());
+        }
+        Err(Promise::DistanceIsTheSameAgain
+            .fault(format!("first {distance}, then {again}, {}", told(&self.ray))))
+    }
+
+    pub fn packets_agree(&self, distance: f64) -> Result<(), Fault> {
+        let Self { shape, ray, .. } = self;
+        let fault = |found: String| Err(Promise::PacketsAgree.fault(format!("{found}, {}", told(ray))));
+        let bracket = shape.bracket(ray, &Span::RAY);
+        if bracket.near.is_nan() || bracket.far.is_nan() || bracket.near > distance || distance > bracket.far
+        {
+            return fault(format!("`distance` gives {distance}, and `bracket` {bracket:?}"));
+        }
+        let quick = shape.quick_distance(ray, &Span::RAY);
+        if !quick.is_nan() && quick.to_bits() != distance.to_bits() {
+            return fault(format!("`distance` gives {distance}, and `quick_distance` {quick}"));
+        }
+        let lanes = |of: DVec3| Vectors::<STEP> { x: [of.x; STEP], y: [of.y; STEP], z: [of.z; STEP] };
+        let (origin, dir) = (lanes(ray.origin), lanes(ray.dir));
+        for cpu in Cpu::all() {
+            let rays = Rays { origin: origin.view(STEP), dir: dir.view(STEP), origin_error: 0.0 };
+            let (mut near, mut far) = ([MISS; STEP], [MISS; STEP]);
+            let (mut met, mut doubt) = ([0; STEP], [0; STEP]);
+            let nearest = Nearest { near: &mut near, far: &mut far, met: &mut met, doubt: &mut doubt };
+            shape.meet(cpu, rays, None, 1, nearest);
+            let (low, high) = (near[0], far[0]);
+            if doubt[0] == 0 && !(low <= distance && distance <= high) {
+                return fault(format!("`distance` gives {distance}, and packets {low} to {high} ({cpu})"));
+            }
+            // As the tracer has it: what is known exactly is not asked for again.
+            if doubt[0] == 0 && low < high {
+                let mut many = near;
+                shape.distances(cpu, rays, None, (&near, &far), &mut many);
+                if !many[0].is_nan() && many[0].to_bits() != distance.to_bits() {
+                    return fault(format!(
+                        "`distance` gives {distance}, and `distances` {} ({cpu})",
+                        many[0]
+                    ));
+                }
+            }
+            if distance != MISS {
+                let (mut points, mut normals) = (Vectors::<STEP>::ZERO, Vectors::<STEP>::ZERO);
+                let (mut sides, mut cosines) = ([Side::Inside; STEP], [0.0; STEP]);
+                let mut travelled = [1.0; STEP];
+                let landing = Landing {
+                    points: points.view_mut(STEP),
+                    normals: normals.view_mut(STEP),
+                    sides: &mut sides,
+                    cosines: &mut cosines,
+                    travelled: &mut travelled,
+                };
+                shape.land(cpu, rays, &[distance; STEP], landing);
+                let (at, normal) = (ray.at(distance), shape.normal(ray.at(distance)));
+                let side = Side::seen_along(ray.dir, normal);
+                let turned = shape.is_two_sided() && side == Side::Inside;
+                let (one, many) = (if turned { -normal } else { normal }, normals.get(0));
+                if !same_bits(one, many) && one.is_finite() {
+                    return fault(format!("the normal {one} in single rays, and {many} in packets ({cpu})"));
+                }
+                if !same_bits(at, points.get(0)) || sides[0] != side || travelled[0] != 1.0 + distance {
+                    return fault(format!("`land` gives {} in place of {at} ({cpu})", points.get(0)));
+                }
+                let cosine = ray.dir.dot(normal);
+                if cosine.to_bits() != cosines[0].to_bits() && cosine.is_finite() {
+                    return fault(format!(
+                        "the cosine {cosine} in single rays, and {} in packets ({cpu})",
+                        cosines[0]
+                    ));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// What lies outside of a span is no hit.
+    pub fn keeps_to_spans(&self, distance: f64) -> Result<(), Fault> {
+        let slack = SLACK * self.size(if distance == MISS { 0.0 } else { distance });
+        let middle = if distance == MISS { 5.0 } else { distance };
+        for within in [
+            Span { far: middle - slack, ..Span::RAY },
+            Span { near: middle + slack, ..Span::RAY },
+            Span { near: 0.5 * middle, far: 0.5 * middle + slack, ..Span::RAY },
+        ] {
+            self.in_span(&self.ray, &within)?;
+        }
+        // Where the span ends has no part in what is met before.
+        let ends =
+            if distance == MISS { [middle, 2.0 * middle] } else { [distance.next_up(), distance + slack] };
+        for far in ends {
+            let until = self.in_span(&self.ray, &Span { far, ..Span::RAY })?;
+            if until != distance {
+                return Err(Promise::HitIsOnTheSurface.fault(format!(
+                    "`distance` gives {distance}, and {until} where the span ends at {far}, {}",
+                    told(&self.ray)
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    pub fn agrees_with_its_proof(&self, distance: f64) -> Result<(), Fault> {
+        let proven = self.shape.certify(&Sight::along(&self.ray), Precision::Double);
+        let agrees = |slack: f64| match proven {
+            Enclosure::Misses => distance == MISS || slack == MISS,
+            Enclosure::Hits(hit) => {
+                hit.low.to_f64() - slack <= distance && distance <= hit.high.to_f64() + slack
+            }
+            Enclosure::Edge(Wide { low, .. }) | Enclosure::Doubtful(low) => low.to_f64() - slack <= distance,
+        };
+        if agrees(0.0) || agrees(self.tolerance(&self.ray, &Span::RAY, distance)) {
+            return Ok(());
+        }
+        let found = format!("`distance` gives {distance}, and `certify` {proven:?}, {}", told(&self.ray));
+        Err(Promise::AgreesWithItsProof.fault(found))
+    }
+}
+
+/// A ray, in words.
+pub fn told(Ray { origin, dir }: &Ray) -> String {
+    format!("from {origin} along {dir}")
+}

@@ -1,0 +1,209 @@
+//! The contract of [`Hittable`](crate::world::hittable::Hittable) where a ray has met it.
+
+use super::draw::Draw;
+use super::promise::{Fault, Promise};
+use super::shape::{GRAZING, SLACK, Tried, told};
+use crate::geometry::bounds::Bounds;
+use crate::geometry::ray::{MISS, Ray, Side, Span};
+use crate::world::coincidence;
+use glam::DVec3;
+
+/// A step that is far longer than what rounding makes, and far shorter than what is to be seen.
+const STRIDE: f64 = 1e-4;
+
+/// A hit that rounding does not blur.
+pub struct Met {
+    pub distance: f64,
+    pub at: DVec3,
+    pub normal: DVec3,
+}
+
+impl Tried<'_> {
+    /// The hit at a distance, whose normal is a unit vector.
+    pub fn met(&self, distance: f64) -> Result<Met, Fault> {
+        let at = self.ray.at(distance);
+        let normal = self.shape.normal(at);
+        if (normal.length() - 1.0).abs() <= 1e-9 {
+            return Ok(Met { distance, at, normal });
+        }
+        let found = format!("at {at} the normal is {normal}, of length {}", normal.length());
+        Err(Promise::NormalIsUnit.fault(found))
+    }
+
+    pub fn is_held(&self, at: DVec3) -> Result<(), Fault> {
+        let around = Bounds { low: at - STRIDE, high: at + STRIDE };
+        let (up, down) =
+            (Bounds { high: DVec3::INFINITY, ..around }, Bounds { low: DVec3::NEG_INFINITY, ..around });
+        if let Some(region) = [around, up, down].iter().find(|region| self.shape.is_clear_of(region)) {
+            let found = format!("`is_clear_of` is true of {region:?}, yet it is hit at {at}");
+            return Err(Promise::BoundsHoldHits.fault(found));
+        }
+        match self.shape.bounds() {
+            Some(bounds) if !bounds.with_slack(100.0).overlaps(&Bounds { low: at, high: at }) => {
+                Err(Promise::BoundsHoldHits.fault(format!("it is hit at {at}, outside {bounds:?}")))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The point of a hit is one for rays from nearer, from behind and from any side.
+    pub fn is_met_from_elsewhere(&self, met: &Met, draw: &mut Draw) -> Result<(), Fault> {
+        let (Ray { dir, .. }, stride) = (self.ray, STRIDE * self.size(met.distance));
+        let mut origins = vec![self.ray.at(0.75 * met.distance), met.at + stride * dir];
+        for _ in 0..4 {
+            let from = draw.direction();
+            if met.normal.dot(from).abs() >= GRAZING {
+                origins.push(met.at + 3.0 * draw.part() * from + stride * from);
+            }
+        }
+        for origin in origins {
+            let way = met.at - origin;
+            let ray = Ray { origin, dir: way.normalize() };
+            let distance = self.in_span(&ray, &Span::RAY)?;
+            let is_farther = |slack: f64| distance > way.length() + slack;
+            if is_farther(0.0) && is_farther(self.tolerance(&ray, &Span::RAY, distance)) {
+                return Err(Promise::HitIsOnTheSurface.fault(format!(
+                    "it is hit at {}, {}; but `distance` gives {distance} for that point, which is {} away, {}",
+                    met.at,
+                    told(&self.ray),
+                    way.length(),
+                    told(&ray)
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// Where the surface is smooth its normal is upright on it, and points to the side that those beside it point to.
+    pub fn stands_upright(&self, met: &Met) -> Result<(), Fault> {
+        let (across, up) = self.ray.dir.any_orthonormal_pair();
+        let stride = STRIDE * self.size(met.distance).min(10.0);
+        for aside in [stride * across, stride * up] {
+            let beside = |aside: DVec3| {
+                let ray = Ray { origin: self.ray.origin + aside, ..self.ray };
+                let distance = self.shape.distance(&ray, &Span::RAY);
+                (distance != MISS).then(|| ray.at(distance))
+            };
+            let (Some(one), Some(other)) = (beside(aside), beside(-aside)) else { continue };
+            let between = other - one;
+            // A bend, an edge or another part of the shape.
+            if (one + other - 2.0 * met.at).length() > 1e-3 * between.length() {
+                continue;
+            }
+            let lean = met.normal.dot(between.normalize());
+            if lean.abs() > 0.01 {
+                let found = format!(
+                    "at {} it is at {} degrees to the surface instead of 90",
+                    met.at,
+                    libm::acos(lean).to_degrees()
+                );
+                return Err(Promise::NormalIsUpright.fault(found));
+            }
+            let (a, b) = (self.shape.normal(one), self.shape.normal(other));
+            if a.dot(b) < 0.0 {
+                return Err(Promise::NormalsAgree.fault(format!("{a} at {one}, and {b} at {other}")));
+            }
+        }
+        Ok(())
+    }
+
+    /// A shape whose outside no ray meets again is convex: a ray that goes through it comes in from outside.
+    pub fn is_convex(&self, met: &Met) -> Result<(), Fault> {
+        let (Ray { dir, .. }, stride) = (self.ray, STRIDE * self.size(met.distance));
+        let beyond = Ray { origin: met.at + stride * dir, dir };
+        let through = self.in_span(&beyond, &Span::RAY)?;
+        if through != MISS {
+            let at = beyond.at(through);
+            let behind = Ray { origin: at + stride * dir, dir };
+            let sides = [(met.at, met.normal), (at, self.shape.normal(at))];
+            let ends = self.in_span(&behind, &Span::RAY)? == MISS;
+            match sides.map(|(_, normal)| Side::seen_along(dir, normal)) {
+                // Too thin to be told from a touch.
+                _ if through <= 10.0 * stride => {}
+                [Side::Outside, Side::Inside] if ends => {}
+                [Side::Inside, Side::Outside] if ends => {
+                    let found = format!(
+                        "a ray passes through it, and the normals show the sides {sides:?}, {}",
+                        told(&self.ray)
+                    );
+                    return Err(Promise::NormalsPointOut.fault(found));
+                }
+                _ => {
+                    let found = format!("a ray enters or leaves twice, {}", told(&self.ray));
+                    return Err(Promise::IsNotMetAgain.fault(found));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The point of a hit lies on the shape but for its error; and a ray that starts there, for all that its origin
+    /// tells, is bracketed as one that leaves it.
+    pub fn is_touched(&self, met: &Met, draw: &mut Draw) -> Result<(), Fault> {
+        let Self { shape, ray, .. } = self;
+        let origin_error = coincidence::error(ray, met.distance, met.normal, shape.reach());
+        let fault = |what: String| Err(Promise::HitIsTouched.fault(what));
+        if !shape.touches(met.at, origin_error) {
+            return fault(format!("it is hit at {}, {}, where `touches` is false", met.at, told(ray)));
+        }
+        for _ in 0..4 {
+            let onward = Ray { origin: met.at, dir: draw.direction() };
+            let bracket = shape.bracket(&onward, &Span { origin_error, ..Span::RAY });
+            let side = Side::seen_along(onward.dir, met.normal).opposite();
+            let distance = match shape.meets_itself(side) {
+                true => self.in_span(&onward, &Span { leaves: Some(side), ..Span::RAY })?,
+                false => MISS,
+            };
+            if !(bracket.near <= distance && distance <= bracket.far) {
+                return fault(format!(
+                    "`touches` is true of the start of a ray, whose distance on leaving is {distance}; `bracket` is {bracket:?} with an `origin_error` of {origin_error:e}, {}",
+                    told(&onward)
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// A ray that leaves the surface meets what it meets from a little farther, and that is nothing where the shape says
+    /// so.
+    pub fn leaves(&self, met: &Met, draw: &mut Draw) -> Result<(), Fault> {
+        let stride = STRIDE * self.size(met.distance);
+        for _ in 0..4 {
+            let dir = draw.direction();
+            let cos = dir.dot(met.normal);
+            if cos.abs() < GRAZING {
+                continue;
+            }
+            let side = if cos > 0.0 { Side::Outside } else { Side::Inside };
+            let ray = Ray { origin: met.at, dir };
+            let ahead = Ray { origin: ray.at(stride), dir };
+            if !self.shape.meets_itself(side) {
+                if self.in_span(&ahead, &Span::RAY)? != MISS {
+                    let found = format!(
+                        "`meets_itself` is false for its {side:?}, yet a ray that leaves it hits it again, {}",
+                        told(&ahead)
+                    );
+                    return Err(Promise::IsNotMetAgain.fault(found));
+                }
+                continue;
+            }
+            let leaving = self.in_span(&ray, &Span { leaves: Some(side), ..Span::RAY })?;
+            let from_ahead = self.in_span(&ahead, &Span::RAY)? + stride;
+            let found = |what: String| Err(Promise::StartIsNoHit.fault(format!("{what}, {}", told(&ray))));
+            if leaving <= SLACK * self.size(met.distance) {
+                return found(format!("on leaving its {side:?} `distance` gives {leaving}"));
+            }
+            // What lies closer by than the step is left alone.
+            let is_near = |distance: f64| distance < 3.0 * stride;
+            let apart = if leaving == from_ahead { 0.0 } else { (leaving - from_ahead).abs() };
+            let is_told = !is_near(leaving) && !is_near(from_ahead);
+            let differ = apart > 0.0 && apart > self.tolerance(&ahead, &Span::RAY, from_ahead - stride);
+            if differ && is_told {
+                return found(format!(
+                    "on leaving its {side:?} `distance` gives {leaving}, and from a little farther {from_ahead}"
+                ));
+            }
+        }
+        Ok(())
+    }
+}

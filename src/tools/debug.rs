@@ -1,0 +1,101 @@
+//! The notes' debug lines (`DBG_PIX` and so on): what they print, in their order and their format.
+
+use crate::geometry::ray::{Ray, Span};
+use crate::render::bytes::to_byte;
+use crate::render::plan::Plan;
+use crate::render::trace;
+use crate::render::watch::{Event, Purpose, Watch};
+use crate::scene::model::Model;
+use std::fmt;
+use std::io::{self, Write};
+
+/// One of the notes' debug aids.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Line {
+    /// The pixel, its row first.
+    Pix,
+    /// The object that a ray from the viewer, a mirror or glass meets, and where.
+    Hit,
+    /// The colour of what was met, by ambient light and lights.
+    Drgb,
+    /// The pixel's bytes.
+    Irgb,
+    /// The pixel's place in the picture's file, in pixels.
+    Offset,
+    /// Each object that a search finds, and its distance.
+    Find,
+}
+
+/// Traces one pixel and prints these lines about it, in the order in which the notes' program comes to them.
+///
+/// # Errors
+/// Those of `out`.
+pub fn pixel(plan: &Plan, x: usize, y: usize, lines: &[Line], out: &mut impl Write) -> io::Result<()> {
+    if lines.contains(&Line::Pix) {
+        write!(out, "\nPIX {y:>4} {x:>4} - ")?;
+    }
+    let mut printer = Printer { model: plan.model, lines, out, ray: None, shadow: false, outcome: Ok(()) };
+    let colour = trace::watch_pixel(plan, x, y, &mut printer);
+    printer.outcome?;
+    if lines.contains(&Line::Irgb) {
+        // What the file gets, so a channel of 127.6 is told as 127.
+        let [r, g, b] = colour.to_array().map(to_byte);
+        write!(out, " IRGB:({r:>5}, {g:>5}, {b:>5})")?;
+    }
+    if lines.contains(&Line::Offset) {
+        let [width, height] = plan.camera.pixels;
+        write!(out, "OFF: {:>7}", (height - 1 - y) * width + x)?;
+    }
+    Ok(())
+}
+
+struct Printer<'p, W> {
+    model: &'p Model,
+    lines: &'p [Line],
+    out: &'p mut W,
+    /// The present ray, and whether it goes toward a light.
+    ray: Option<Ray>,
+    shadow: bool,
+    outcome: io::Result<()>,
+}
+
+impl<W: Write> Printer<'_, W> {
+    fn print(&mut self, line: Line, text: fmt::Arguments) {
+        if self.outcome.is_ok() && self.lines.contains(&line) {
+            self.outcome = self.out.write_fmt(text);
+        }
+    }
+
+    /// The notes ask each object for its distance along the whole ray, whatever was found before.
+    fn find(&mut self, index: usize) {
+        let Some(ray) = &self.ray else { return };
+        let object = &self.model.objects[index];
+        let distance = object.shape.distance(ray, &Span::RAY);
+        if distance < f64::INFINITY {
+            self.print(Line::Find, format_args!("FND {:>12}: {distance:5.1} - \n ", object.args.name));
+        }
+    }
+}
+
+impl<W: Write> Watch for Printer<'_, W> {
+    const SEES: bool = true;
+
+    fn see(&mut self, event: Event) {
+        match event {
+            Event::Begin(purpose) => self.shadow = matches!(purpose, Purpose::Shadow { .. }),
+            Event::Search(ray) => self.ray = Some(*ray),
+            Event::Tested(index, Some(_)) => self.find(index),
+            Event::Met(Some(hit)) if !self.shadow => {
+                let (name, at) = (&hit.object.args.name, hit.point);
+                let text = format_args!("{name:<12} HIT:({:5.1}, {:5.1}, {:5.1})", at.x, at.y, at.z);
+                self.print(Line::Hit, text);
+            }
+            Event::Shaded { hit, colour, .. } => {
+                let (name, c) = (&hit.object.args.name, colour);
+                let text = format_args!("{name:<12} DRGB:({:5.2}, {:5.2}, {:5.2})", c.x, c.y, c.z);
+                self.print(Line::Drgb, text);
+            }
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,260 @@
+//! One pixel explained: its rays as an indented tree, with all that was tested, met and added up on the way.
+
+use crate::geometry::ray::{MISS, Ray, Span};
+use crate::render::bytes::to_byte;
+use crate::render::limits::{MAX_DIST, MAX_RAYS};
+use crate::render::plan::Plan;
+use crate::render::trace::{self};
+use crate::render::watch::{Event, Hit, Outcome, Purpose, Reason, Watch};
+use crate::scene::model::Model;
+use crate::world::material::Rgb;
+use glam::DVec3;
+use std::io::{self, Write};
+
+/// Deeper rays are indented no farther: mirrors that touch would fill any page with blanks.
+const DEEPEST: usize = 20;
+
+/// Explains a pixel: `x` counts from the left and `y` from the bottom. Of several samples it explains the ray
+/// through the pixel's middle, and then gives the colour of all.
+///
+/// # Errors
+/// Those of `out`.
+pub fn pixel(plan: &Plan, x: usize, y: usize, out: &mut impl Write) -> io::Result<()> {
+    let camera = &plan.camera;
+    let [width, height] = camera.pixels;
+    writeln!(out, "pixel {x} from the left and {y} from the bottom, of {width} x {height}\n")?;
+    if camera.samples > 1 {
+        writeln!(out, "of its {} samples, the one that would be at its centre:\n", camera.samples)?;
+    }
+    let mut probe = Probe {
+        model: plan.model,
+        out,
+        outcome: Ok(()),
+        depth: 0,
+        search: None,
+        light: None,
+        held: String::new(),
+    };
+    let colour = trace::watch_colour(plan, &camera.sight(x as f64, y as f64), None, &mut probe);
+    probe.outcome?;
+    writeln!(out)?;
+    conclude(colour, out)?;
+    if camera.samples > 1 {
+        writeln!(out, "\nall {} samples together:\n", camera.samples)?;
+        conclude(trace::pixel(plan, x, y), out)?;
+    }
+    Ok(())
+}
+
+/// What becomes of a colour in the picture.
+fn conclude(colour: Rgb, out: &mut impl Write) -> io::Result<()> {
+    let [r, g, b] = colour.to_array().map(to_byte);
+    writeln!(out, "before clamping  {}", triple(colour))?;
+    writeln!(out, "after clamping   {}", triple(colour.clamp(DVec3::ZERO, DVec3::ONE)))?;
+    writeln!(out, "bytes            ({r}, {g}, {b})")
+}
+
+struct Probe<'p, W> {
+    model: &'p Model,
+    out: &'p mut W,
+    outcome: io::Result<()>,
+    /// How many rays the present one comes from.
+    depth: usize,
+    search: Option<Search>,
+    /// How far the light is, while shadow rays go there.
+    light: Option<f64>,
+    /// Lines about shadow rays, until their light's outcome is known and printed before them.
+    held: String,
+}
+
+/// A ray on its way to its first hit.
+struct Search {
+    ray: Ray,
+    /// The objects so far, and what each gave.
+    tests: Vec<(usize, Option<f64>)>,
+}
+
+impl<W: Write> Watch for Probe<'_, W> {
+    const SEES: bool = true;
+
+    fn see(&mut self, event: Event) {
+        match event {
+            Event::Begin(purpose) => self.begin(purpose),
+            Event::Search(ray) => self.search = Some(Search { ray: *ray, tests: Vec::new() }),
+            Event::Dropped(reason) => self.line("dropped", &dropped(reason)),
+            Event::Tested(index, distance) => {
+                if let Some(search) = &mut self.search {
+                    search.tests.push((index, distance));
+                }
+            }
+            Event::Met(hit) => {
+                if let Some(search) = self.search.take() {
+                    self.searched(&search, hit);
+                }
+            }
+            Event::Surface { normal, ambient } => {
+                self.line("normal", &triple(normal));
+                self.line("ambient", &triple(ambient));
+            }
+            Event::Light(index, outcome) => {
+                self.light = None;
+                let name = &self.model.lights[index].args.name;
+                self.line("light", &format!("`{name}` {}", self.outcome_of(outcome)));
+                let held = std::mem::take(&mut self.held);
+                self.write(&held);
+            }
+            Event::Shaded { travelled, colour, .. } => {
+                let text = format!("{}, the sum / {} travelled", triple(colour), number(travelled));
+                self.line("surface", &text);
+            }
+            Event::Colour(colour) => {
+                self.line("colour", &triple(colour));
+                self.depth -= 1;
+            }
+        }
+    }
+}
+
+impl<W: Write> Probe<'_, W> {
+    /// The heading of a ray. What follows is indented below it.
+    fn begin(&mut self, purpose: Purpose) {
+        match purpose {
+            Purpose::Primary => self.heading("primary ray"),
+            Purpose::Transmitted { tint, kept } => self.heading(&format!(
+                "transmitted ray {}, times {}, with {} of the surface",
+                self.depth,
+                triple(tint),
+                number(kept)
+            )),
+            Purpose::Reflected { specular } => {
+                self.heading(&format!("reflected ray {}, times {}", self.depth, triple(specular)));
+            }
+            Purpose::Shadow { distance } => {
+                self.light = Some(distance);
+                let heading = format!("shadow ray, {} to the light", number(distance));
+                self.held += &format!("{}{heading}\n", indent(self.depth));
+            }
+        }
+    }
+
+    fn heading(&mut self, text: &str) {
+        let line = format!("{}{text}\n", indent(self.depth));
+        self.write(&line);
+        self.depth += 1;
+    }
+
+    fn searched(&mut self, search: &Search, hit: Option<&Hit>) {
+        self.line("from", &triple(search.ray.origin));
+        self.line("along", &triple(search.ray.dir));
+        let label = |index: usize| {
+            let args = &self.model.objects[index].args;
+            format!("{} `{}`", args.entity.name, args.name)
+        };
+        let rows: Vec<_> = search
+            .tests
+            .iter()
+            .map(|&(index, given)| {
+                let (distance, verdict) = self.verdict(search, hit, index, given);
+                (label(index), distance, verdict)
+            })
+            .collect();
+        let wide = |text: &String| text.chars().count();
+        let names = rows.iter().map(|(name, ..)| wide(name)).max().unwrap_or(0);
+        let numbers = rows.iter().map(|(_, distance, _)| wide(distance)).max().unwrap_or(0);
+        for (row, (name, distance, verdict)) in rows.iter().enumerate() {
+            let text = format!("{name:<names$}  {distance:>numbers$}  {verdict}");
+            self.line(if row == 0 { "tested" } else { "" }, &text);
+        }
+        let met = hit.map_or("nothing".to_owned(), |hit| {
+            format!("`{}` at {}, {} away", hit.object.args.name, triple(hit.point), number(hit.distance))
+        });
+        self.line("hit", &met);
+    }
+
+    /// The distance of a tested object, if it has one, and why it is the hit or is not.
+    fn verdict(
+        &self,
+        search: &Search,
+        hit: Option<&Hit>,
+        index: usize,
+        given: Option<f64>,
+    ) -> (String, String) {
+        let Some(given) = given else { return (String::new(), "skipped: the ray leaves it".to_owned()) };
+        // The tracer asks for hits nearer than the nearest so far. What lies behind is of interest here.
+        let whole = || self.model.objects[index].shape.distance(&search.ray, &Span::RAY);
+        let distance = if given == MISS { whole() } else { given };
+        if distance == MISS {
+            return (String::new(), "missed".to_owned());
+        }
+        let verdict = match (hit, self.light) {
+            (Some(hit), _) if hit.index == index => "the nearest".to_owned(),
+            (_, Some(light)) if distance >= light => "beyond the light".to_owned(),
+            (Some(hit), _) if distance == hit.distance => {
+                format!("as near as `{}`, but later in the scene", hit.object.args.name)
+            }
+            (Some(hit), _) => format!("behind `{}`", hit.object.args.name),
+            (None, _) => String::new(),
+        };
+        (format!("{distance:.6}"), verdict)
+    }
+
+    fn outcome_of(&self, outcome: Outcome) -> String {
+        match outcome {
+            Outcome::Behind => "is behind the surface".to_owned(),
+            Outcome::Aside => "does not shine there".to_owned(),
+            Outcome::Blocked(index) => format!("is blocked by `{}`", self.model.objects[index].args.name),
+            Outcome::Shines { passed: DVec3::ONE, colour } => format!("adds {}", triple(colour)),
+            Outcome::Shines { passed, colour } => {
+                format!("arrives tinted {}, adds {}", triple(passed), triple(colour))
+            }
+        }
+    }
+
+    /// A line about the present ray, or about a shadow ray of it.
+    fn line(&mut self, label: &str, text: &str) {
+        if self.light.is_some() {
+            self.held += &format!("{}{label:<9}{text}\n", indent(self.depth + 1));
+        } else {
+            let line = format!("{}{label:<9}{text}\n", indent(self.depth));
+            self.write(&line);
+        }
+    }
+
+    fn write(&mut self, text: &str) {
+        if self.outcome.is_ok() {
+            self.outcome = self.out.write_all(text.as_bytes());
+        }
+    }
+}
+
+fn dropped(reason: Reason) -> String {
+    match reason {
+        Reason::TooFar => format!("light that has travelled more than {MAX_DIST} is black"),
+        Reason::TooFaint => "it can add less than 1/1024 of a level to the pixel".to_owned(),
+        Reason::TooMany => format!("the pixel has taken {MAX_RAYS} rays, and no more are followed"),
+    }
+}
+
+fn indent(depth: usize) -> String {
+    "    ".repeat(depth.min(DEEPEST))
+}
+
+fn triple(v: DVec3) -> String {
+    format!("({}, {}, {})", number(v.x), number(v.y), number(v.z))
+}
+
+/// A number to seven digits, without zeros that say nothing.
+fn number(value: f64) -> String {
+    let scientific = format!("{value:.6e}");
+    let Some((digits, exponent)) = scientific.split_once('e') else { return scientific };
+    match exponent.parse::<usize>() {
+        _ if value == 0.0 => "0".to_owned(),
+        Ok(exponent @ 0..=6) => trimmed(&format!("{value:.*}", 6 - exponent)).to_owned(),
+        Err(_) if value.abs() >= 1e-4 => trimmed(&format!("{value:.9}")).to_owned(),
+        _ => format!("{}e{exponent}", trimmed(digits)),
+    }
+}
+
+fn trimmed(digits: &str) -> &str {
+    if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { digits }
+}

@@ -1,0 +1,133 @@
+//! Which object a pixel's ray meets first, proven, and compared with what the tracer finds.
+
+use crate::geometry::sight::Sight;
+use crate::numeric::interval::{Float, Wide};
+use crate::render::plan::Plan;
+use crate::render::renderer::Renderer;
+use crate::render::trace;
+use crate::scene::model::Model;
+use crate::world::certify::{Enclosure, Precision};
+use f256::f256;
+use std::io;
+use std::ops::ControlFlow;
+
+/// What is proven of a pixel, of the real ray through its middle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Verdict {
+    /// The tracer finds the object that is certainly met first, or nothing where nothing is.
+    Proven,
+    /// 237 bits do not tell which of several objects is met first, or whether one is touched: a tie, as where two lie in
+    /// one place. The tracer finds one of those.
+    #[default]
+    Tie,
+    /// The tracer finds another one.
+    Contradicted,
+}
+
+/// What may be met first.
+#[derive(Debug, PartialEq)]
+enum First {
+    /// This object, by its index, or none: for certain.
+    Certain(Option<usize>),
+    /// One of these.
+    OneOf(Vec<Option<usize>>),
+}
+
+/// The verdict on a pixel, counted from the left and from the bottom.
+pub fn pixel(plan: &Plan, x: usize, y: usize) -> Verdict {
+    let sight = plan.camera.sight(x as f64, y as f64);
+    let found = trace::first_hit(plan, &sight).map(|hit| hit.index);
+    match first_of(plan.model, &sight) {
+        First::Certain(first) if first == found => Verdict::Proven,
+        First::OneOf(any) if any.contains(&found) => Verdict::Tie,
+        _ => Verdict::Contradicted,
+    }
+}
+
+fn first_of(model: &Model, sight: &Sight) -> First {
+    let certify = |index: usize, precision| (index, model.objects[index].shape.certify(sight, precision));
+    let all: Vec<_> = (0..model.objects.len()).map(|index| certify(index, Precision::Double)).collect();
+    match first(&all) {
+        First::OneOf(any) => {
+            let any: Vec<_> =
+                any.into_iter().flatten().map(|index| certify(index, Precision::Octuple)).collect();
+            first(&any)
+        }
+        certain => certain,
+    }
+}
+
+/// What is met first of some objects.
+fn first(enclosures: &[(usize, Enclosure)]) -> First {
+    // No farther than this something is met for certain.
+    let end = enclosures.iter().filter_map(|(_, enclosure)| match enclosure {
+        Enclosure::Hits(at) => Some(at.high),
+        _ => None,
+    });
+    let end = end.fold(f256::INFINITY, Float::min);
+    let mut candidates = enclosures.iter().filter(|(_, enclosure)| match enclosure {
+        Enclosure::Misses => false,
+        Enclosure::Hits(Wide { low, .. }) | Enclosure::Edge(Wide { low, .. }) | Enclosure::Doubtful(low) => {
+            *low <= end
+        }
+    });
+    let is_something = end < f256::INFINITY;
+    match (candidates.next(), candidates.next()) {
+        (None, _) => First::Certain(None),
+        (Some((index, Enclosure::Hits(_))), None) => First::Certain(Some(*index)),
+        (Some((one, _)), other) => {
+            let others = other.into_iter().chain(candidates).map(|(index, _)| *index);
+            let any = [*one].into_iter().chain(others).map(Some);
+            First::OneOf(any.chain((!is_something).then_some(None)).collect())
+        }
+    }
+}
+
+/// The verdicts on all pixels, from the top and from the left. `done` is told of each row, and may break off.
+///
+/// # Errors
+/// `Interrupted` where `done` broke off.
+pub fn picture(
+    renderer: &Renderer,
+    plan: &Plan,
+    done: &(dyn Fn() -> ControlFlow<()> + Sync),
+) -> io::Result<Vec<Verdict>> {
+    let [_, height] = plan.camera.pixels;
+    let verdict = |x, y| pixel(plan, x, y);
+    renderer.pixels(plan, 0..height, done, verdict).ok_or_else(|| io::ErrorKind::Interrupted.into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numeric::interval::Interval;
+
+    fn hits(low: f64, high: f64) -> Enclosure {
+        Enclosure::Hits(Interval { low, high }.into())
+    }
+
+    fn doubtful(from: f64) -> Enclosure {
+        Enclosure::Doubtful(from.into())
+    }
+
+    #[test]
+    fn the_first_is_certain_only_where_nothing_may_lie_before() {
+        let (near, far, between) = (hits(1.0, 2.0), hits(3.0, 4.0), hits(1.5, 3.5));
+        let one_of = |any: &[Option<usize>]| First::OneOf(any.to_vec());
+        for (enclosures, right) in [
+            (&[][..], First::Certain(None)),
+            (&[Enclosure::Misses], First::Certain(None)),
+            (&[far, Enclosure::Misses, near], First::Certain(Some(2))),
+            (&[near, far], First::Certain(Some(0))),
+            (&[near, between], one_of(&[Some(0), Some(1)])),
+            (&[between, near], one_of(&[Some(0), Some(1)])),
+            (&[far, between, near], one_of(&[Some(1), Some(2)])),
+            (&[near, doubtful(2.5)], First::Certain(Some(0))),
+            (&[doubtful(1.5), near], one_of(&[Some(0), Some(1)])),
+            (&[doubtful(1.5)], one_of(&[Some(0), None])),
+        ] {
+            let numbered: Vec<_> = enclosures.iter().copied().enumerate().collect();
+            assert_eq!(first(&numbered), right, "{enclosures:?}");
+        }
+    }
+}
