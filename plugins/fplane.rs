@@ -1,22 +1,21 @@
 //! A finite plane: a rectangle.
 
-use super::plane::{self, Plane};
+use super::plane;
 use crate::geometry::bounds::Bounds;
-use crate::geometry::packet::Rays;
 use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
-use crate::geometry::sight::Sight;
 use crate::numeric::number::{Number, cross, dot};
 use crate::numeric::twofold::Twofold;
 use crate::scene::entity::{Args, Entity, Refusal};
 use crate::scene::pparm::{Attributes, Derived, Pparm, Row, Table};
 use crate::scene::value::Value;
-use crate::shapes::rectangle;
-pub use crate::shapes::rectangle::FinitePlane;
-use crate::simd::cpu::Cpu;
-use crate::world::accuracy::Accuracy;
+use crate::shapes::flat::CLASSIC_METHOD;
+use crate::shapes::rectangle::{self, FinitePlane, Rectangle};
+use crate::world::accuracy::{Accuracy, Bounded, Classic, Draft, Exact, Strict};
+use crate::world::any_shape::AnyShape;
 use crate::world::body::Body;
-use crate::world::certify::{self, Enclosure, Equation, Precision};
-use crate::world::hittable::Hittable;
+use crate::world::certify::Equation;
+use crate::world::hittable::{Bracketed, Certified, Hittable};
+use crate::world::shape::Shape;
 use glam::{DMat3, DVec2, DVec3};
 
 pub static DIMENSIONS: Pparm<DVec2> = Pparm::required("dimensions", "its size along xdir and across it")
@@ -41,8 +40,26 @@ pub const ROTATION: Table = &[&ROTATION_ROWS as &dyn Row];
 
 inventory::submit! {
     Entity::shape("fplane", "a rectangle, whose lower left corner is its point", &[plane::TABLE, TABLE, ROTATION], |args| {
-        Ok(Body::plain(FinitePlane::new(args)?))
+        Ok(Body::plain(shape(args)?))
     })
+}
+
+/// The rectangle of an entity whose table has the rows of a plane's and of this file's.
+///
+/// # Errors
+/// As [`sides`].
+pub fn shape(args: &Args) -> Result<AnyShape, Refusal> {
+    Ok(match args.accuracy() {
+        Accuracy::Classic => Shape::new(finite_plane::<Classic>(args)?).classic().into(),
+        Accuracy::Draft => Shape::new(finite_plane::<Draft>(args)?).bracketed().certified().into(),
+        Accuracy::Exact => Shape::new(finite_plane::<Exact>(args)?).bracketed().certified().into(),
+        Accuracy::Strict => Shape::new(finite_plane::<Strict>(args)?).bracketed().certified().into(),
+    })
+}
+
+/// Where the same rectangle is; refused likewise.
+pub fn rectangle(args: &Args) -> Result<Rectangle, Refusal> {
+    Ok(finite_plane::<Classic>(args)?.rectangle)
 }
 
 /// The directions of a rectangle's two sides and its normal, as columns, all unit vectors: the rows of the
@@ -72,33 +89,87 @@ pub fn sides(args: &Args) -> Result<[DVec3; 2], Refusal> {
     Ok([x_axis, y_axis])
 }
 
-impl FinitePlane {
-    /// The rectangle of an entity whose table has the rows of a plane's and of this file's; refused as its sides are.
-    pub fn new(args: &Args) -> Result<Self, Refusal> {
-        let (plane, dimensions) = (Plane::new(args), args.get(&DIMENSIONS));
-        let reach = plane.point.abs().max_element() + dimensions.element_sum();
-        let (given_xdir, given_sides) = (args.get(&XDIR), sides(args)?);
-        let exact_sides = rectangle::exact_sides(plane.upright, given_xdir);
-        let sides = match plane.accuracy {
-            Accuracy::Classic => given_sides,
-            _ => exact_sides.map(|side| DVec3::from(side.map(|part| part.high))),
-        };
-        Ok(Self { plane, dimensions, sides, exact_sides, given_xdir, reach })
-    }
+/// The same, crossed as exactly as its type has it; refused as its sides are.
+pub fn finite_plane<A>(args: &Args) -> Result<FinitePlane<A>, Refusal> {
+    let (plane, dimensions) = (plane::plane(args), args.get(&DIMENSIONS));
+    let reach = plane.point.abs().max_element() + dimensions.element_sum();
+    let (given_xdir, given_sides) = (args.get(&XDIR), sides(args)?);
+    let exact_sides = rectangle::exact_sides(plane.upright, given_xdir);
+    let sides = match args.accuracy() {
+        Accuracy::Classic => given_sides,
+        _ => exact_sides.map(|side| DVec3::from(side.map(|part| part.high))),
+    };
+    let rectangle = Rectangle { corner: plane.point, dimensions, sides };
+    Ok(FinitePlane { plane, rectangle, exact_sides, given_xdir, reach })
 }
 
-impl Hittable for FinitePlane {
+impl Hittable for FinitePlane<Classic> {
     #[inline(always)]
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
         let distance = self.plane.distance(ray, within);
         if self.has_crossing(ray, distance) { distance } else { MISS }
     }
 
+    fn normal(&self, _at: DVec3) -> DVec3 {
+        self.plane.normal
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        Some(self.rectangle.around())
+    }
+
+    fn meets_itself(&self, _leaving: Side) -> bool {
+        false
+    }
+
+    fn plane(&self) -> Option<[DVec3; 2]> {
+        Some([self.plane.point, self.plane.normal])
+    }
+
+    fn method(&self) -> String {
+        CLASSIC_METHOD.to_owned()
+    }
+}
+
+impl<A: Bounded> Hittable for FinitePlane<A> {
+    #[inline(always)]
+    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
+        let distance = self.plane.distance(ray, within);
+        if self.has_crossing(ray, distance) { distance } else { MISS }
+    }
+
+    fn normal(&self, _at: DVec3) -> DVec3 {
+        self.plane.normal
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        Some(self.rectangle.around())
+    }
+
+    fn meets_itself(&self, _leaving: Side) -> bool {
+        false
+    }
+
+    fn is_clear_of(&self, region: &Bounds) -> bool {
+        self.plane.is_clear_of(region) || !self.rectangle.around().overlaps(region)
+    }
+
+    fn plane(&self) -> Option<[DVec3; 2]> {
+        Some([self.plane.point, self.plane.normal])
+    }
+
+    fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    fn method(&self) -> String {
+        self.plane.method().to_owned()
+    }
+}
+
+impl<A: Bounded> Bracketed for FinitePlane<A> {
     #[inline(always)]
     fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        if self.plane.accuracy == Accuracy::Classic {
-            return Bracket::exactly(self.quick_distance(ray, within));
-        }
         let rough = self.plane.rough(ray, within.origin_error);
         let inside = self.inside(ray, rough.distance);
         // A camera's direction is off by 3 units of 2^-53 in each component, which is less than half of the slack.
@@ -111,68 +182,24 @@ impl Hittable for FinitePlane {
     }
 
     #[inline(always)]
-    fn quick_distance(&self, ray: &Ray, within: &Span) -> f64 {
-        let distance = self.plane.quick_distance(ray, within);
-        match self.quickly_has_crossing(ray, distance) {
-            Some(is_inside) => {
-                if distance.is_nan() | is_inside {
-                    distance
-                } else {
-                    MISS
-                }
-            }
-            None => f64::NAN,
-        }
+    fn refine(&self, ray: &Ray, _leaves: Option<Side>) -> f64 {
+        // A hit that is certain is inside.
+        self.plane.refined(ray)
     }
+}
 
-    fn distances(&self, cpu: Cpu, rays: Rays, _: Option<&[Side]>, _: (&[f64], &[f64]), out: &mut [f64]) {
-        // It is asked of hits that are certain, and those are inside.
-        self.plane.distances(cpu, rays, out);
-    }
-
-    fn bounds(&self) -> Option<Bounds> {
-        (self.plane.accuracy != Accuracy::Classic).then(|| self.around())
-    }
-
-    fn is_clear_of(&self, region: &Bounds) -> bool {
-        self.plane.is_clear_of(region) || self.bounds().is_some_and(|bounds| !bounds.overlaps(region))
-    }
-
-    fn meets_itself(&self, leaving: Side) -> bool {
-        self.plane.meets_itself(leaving)
-    }
-
+impl<A: Bounded> Certified for FinitePlane<A> {
     fn touches(&self, at: DVec3, error: f64) -> bool {
         // What starts on the plane beside the rectangle does not meet it either.
         self.plane.touches(at, error)
     }
 
-    fn reach(&self) -> f64 {
-        self.reach
-    }
-
-    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold> {
-        self.plane.fine_distance(ray, distance)
-    }
-
-    fn normal(&self, at: DVec3) -> DVec3 {
-        self.plane.normal(at)
-    }
-
-    fn plane(&self) -> Option<[DVec3; 2]> {
-        Hittable::plane(&self.plane)
-    }
-
-    fn method(&self) -> String {
-        self.plane.method().to_owned()
-    }
-
-    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        certify::first_hit(self, sight, precision)
+    fn fine_distance(&self, ray: &Ray, _distance: f64) -> Option<Twofold> {
+        Some(self.plane.exact_crossing(ray))
     }
 }
 
-impl Equation for FinitePlane {
+impl<A> Equation for FinitePlane<A> {
     const IS_QUADRATIC: bool = true;
 
     fn value<N: Number>(&self, at: [N; 3]) -> N {
@@ -192,7 +219,7 @@ impl Equation for FinitePlane {
             let along = dot(side, from_corner);
             along.min(N::constant(length) * dot(side, side).sqrt() - along)
         };
-        let [width, height] = self.dimensions.to_array();
+        let [width, height] = self.rectangle.dimensions.to_array();
         self.plane.kept(at).min(inside(x, width)).min(inside(y, height))
     }
 }

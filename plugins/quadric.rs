@@ -2,18 +2,18 @@
 
 use crate::geometry::bounds::{self, Bounds, SLACK};
 use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
-use crate::geometry::sight::Sight;
 use crate::numeric::number::Number;
-use crate::numeric::twofold::Twofold;
-use crate::scene::entity::{Entity, Refusal};
+use crate::scene::entity::{Args, Entity, Refusal};
 use crate::scene::pparm::{Pparm, Table};
 use crate::shapes::quadratic::{self, CAMERA, OwnRay, Quadratic, Quick};
-use crate::world::accuracy::Accuracy;
+use crate::world::accuracy::{Accuracy, Bounded, Classic, Draft, Exact, Strict};
+use crate::world::any_shape::AnyShape;
 use crate::world::body::Body;
-use crate::world::certify::{self, Enclosure, Equation, Precision};
-use crate::world::coincidence;
-use crate::world::hittable::Hittable;
+use crate::world::certify::Equation;
+use crate::world::hittable::{Bracketed, Certified, Hittable};
+use crate::world::shape::Shape;
 use glam::{DMat3, DVec3};
+use std::marker::PhantomData;
 
 static COEFFICIENTS: Pparm<[f64; 10]> =
     Pparm::required("coefficients", "A to J of Axx + Byy + Czz + Dxy + Exz + Fyz + Gx + Hy + Iz = J")
@@ -32,10 +32,7 @@ const TABLE: Table = &[&COEFFICIENTS, &CENTER, &BOX];
 
 inventory::submit! {
     Entity::shape("quadric", "a surface of the second degree, such as a cone, a cylinder or a saddle", &[TABLE], |args| {
-        let coefficients = args.get(&COEFFICIENTS);
-        let [a, b, c, d, e, f, g, h, i, j] = coefficients;
-        let [x1, y1, z1, x2, y2, z2] = args.get(&BOX);
-        let (low, high) = (DVec3::new(x1, y1, z1), DVec3::new(x2, y2, z2));
+        let [low, high] = corners(args);
         if !low.cmplt(high).all() {
             return Err(Refusal {
                 attribute: Some("box"),
@@ -43,26 +40,17 @@ inventory::submit! {
                 help: "the box goes from its low corner to its high one: x, y and z must all grow",
             });
         }
-        let square = DMat3::from_cols(
-            DVec3::new(a, d / 2.0, e / 2.0),
-            DVec3::new(d / 2.0, b, f / 2.0),
-            DVec3::new(e / 2.0, f / 2.0, c),
-        );
-        Ok(Body::plain(Quadric {
-            square,
-            linear: DVec3::new(g, h, i),
-            constant: -j,
-            center: args.get(&CENTER),
-            low,
-            high,
-            own: Quadratic::new(coefficients, low, high),
-            accuracy: args.accuracy(),
+        Ok(Body::plain(match args.accuracy() {
+            Accuracy::Classic => AnyShape::from(Shape::new(Quadric::<Classic>::new(args)).classic()),
+            Accuracy::Draft => Shape::new(Quadric::<Draft>::new(args)).bracketed().certified().into(),
+            Accuracy::Exact => Shape::new(Quadric::<Exact>::new(args)).bracketed().certified().into(),
+            Accuracy::Strict => Shape::new(Quadric::<Strict>::new(args)).bracketed().certified().into(),
         }))
     })
 }
 
 /// `p·Sp + l·p + c = 0`, for points `p` from the center.
-struct Quadric {
+struct Quadric<A> {
     square: DMat3,
     linear: DVec3,
     constant: f64,
@@ -71,17 +59,57 @@ struct Quadric {
     high: DVec3,
     /// The same surface, as it is solved.
     own: Quadratic,
-    accuracy: Accuracy,
+    accuracy: PhantomData<A>,
 }
 
-impl Quadric {
-    fn keeps(&self, at: DVec3) -> bool {
-        let from_center = at - self.center;
-        self.low.cmple(from_center).all() && from_center.cmple(self.high).all()
+/// The corners of its box, from its center.
+fn corners(args: &Args) -> [DVec3; 2] {
+    let [x1, y1, z1, x2, y2, z2] = args.get(&BOX);
+    [DVec3::new(x1, y1, z1), DVec3::new(x2, y2, z2)]
+}
+
+impl<A> Quadric<A> {
+    fn new(args: &Args) -> Self {
+        let (coefficients, [low, high]) = (args.get(&COEFFICIENTS), corners(args));
+        let [a, b, c, d, e, f, g, h, i, j] = coefficients;
+        let square = DMat3::from_cols(
+            DVec3::new(a, d / 2.0, e / 2.0),
+            DVec3::new(d / 2.0, b, f / 2.0),
+            DVec3::new(e / 2.0, f / 2.0, c),
+        );
+        Self {
+            square,
+            linear: DVec3::new(g, h, i),
+            constant: -j,
+            center: args.get(&CENTER),
+            low,
+            high,
+            own: Quadratic::new(coefficients, low, high),
+            accuracy: PhantomData,
+        }
     }
 
-    /// The notes' formula.
-    fn classic_distance(&self, ray: &Ray, within: &Span) -> f64 {
+    fn around(&self) -> Bounds {
+        Bounds { low: self.center + self.low, high: self.center + self.high }
+    }
+
+    /// At `r` from a point the equation's value differs from that at the point by at most `|gradient| r + |square| r^2`.
+    fn away(&self, from: DVec3) -> f64 {
+        let at = from - self.center;
+        let abs = DMat3::from_cols_array(&self.square.to_cols_array().map(f64::abs));
+        let terms = at.abs().dot(abs * at.abs()) + self.linear.abs().dot(at.abs()) + self.constant.abs();
+        let value = at.dot(self.square * at) + self.linear.dot(at) + self.constant;
+        let value = value.abs() - SLACK * terms;
+        let rounding = SLACK * (abs * at.abs() + self.linear.abs()).length();
+        let gradient = (2.0 * (self.square * at) + self.linear).length() + rounding;
+        let square = (abs * DVec3::ONE).length();
+        let radius = 2.0 * value / (gradient + (gradient * gradient + 4.0 * square * value).sqrt());
+        if value > 0.0 && radius.is_finite() { radius * (1.0 - 1e-6) } else { 0.0 }
+    }
+}
+
+impl Hittable for Quadric<Classic> {
+    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
         let origin = ray.origin - self.center;
         let turned = self.square * ray.dir;
         let [a, b, c] = [
@@ -89,18 +117,42 @@ impl Quadric {
             origin.dot(turned) + 0.5 * self.linear.dot(ray.dir),
             origin.dot(self.square * origin) + self.linear.dot(origin) + self.constant,
         ];
+        let keeps = |at: DVec3| {
+            let from_center = at - self.center;
+            self.low.cmple(from_center).all() && from_center.cmple(self.high).all()
+        };
         let crossings = quadratic::classic_roots(a, b, c).map(|distance| within.keep(distance));
-        crossings.into_iter().find(|distance| self.keeps(ray.at(*distance))).unwrap_or(MISS)
+        crossings.into_iter().find(|distance| keeps(ray.at(*distance))).unwrap_or(MISS)
     }
 
-    /// The distance where there is nothing to decide: by the notes' formula, or of a ray that leaves it.
+    fn normal(&self, at: DVec3) -> DVec3 {
+        let normal = 2.0 * (self.square * (at - self.center)) + self.linear;
+        // A cone's apex has none; any will do.
+        normal.try_normalize().unwrap_or(DVec3::Y)
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        Some(self.around())
+    }
+
+    fn clearance(&self, from: DVec3) -> Option<f64> {
+        Some(self.away(from))
+    }
+
+    fn meets_itself(&self, _leaving: Side) -> bool {
+        false
+    }
+
+    fn method(&self) -> String {
+        "the notes' formula".to_owned()
+    }
+}
+
+impl<A: Bounded> Quadric<A> {
+    /// The distance of a ray that leaves it. It starts on one hit: the other one is what is left.
     #[inline(never)]
-    fn other_distance(&self, ray: &Ray, within: &Span) -> f64 {
-        match within.leaves {
-            // It starts on one hit: the other one is what is left.
-            Some(side) if !self.is_classic() => within.keep(self.own.other_hit(&self.own_ray(ray), side)),
-            _ => self.classic_distance(ray, within),
-        }
+    fn other_distance(&self, ray: &Ray, side: Side, within: &Span) -> f64 {
+        within.keep(self.own.other_hit(&self.own_ray(ray), side))
     }
 
     #[inline(always)]
@@ -108,12 +160,25 @@ impl Quadric {
         self.own.own(ray.origin, ray.dir, self.center)
     }
 
-    fn is_classic(&self) -> bool {
-        self.accuracy == Accuracy::Classic
+    /// What plain arithmetic tells of the distance, or NaN.
+    #[inline(always)]
+    fn quick_distance(&self, ray: &Ray, within: &Span) -> f64 {
+        if let Some(side) = within.leaves {
+            return self.other_distance(ray, side, within);
+        }
+        if A::ACCURACY == Accuracy::Strict {
+            return f64::NAN;
+        }
+        let own = self.own_ray(ray);
+        let quick = self.own.quick_hit(&own, within.near, 0.0);
+        let corrected = self.own.corrected(&own, quick.distance);
+        let is_unknown = quick.is_unknown | corrected.is_nan();
+        let hit = if is_unknown { f64::NAN } else { within.keep(corrected) };
+        if quick.is_missed { MISS } else { hit }
     }
 }
 
-impl Hittable for Quadric {
+impl<A: Bounded> Hittable for Quadric<A> {
     /// The nearer hit that lies in the box, or the farther one.
     #[inline(always)]
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
@@ -121,26 +186,38 @@ impl Hittable for Quadric {
         if quick.is_nan() { within.keep(self.own.exact_hit(&self.own_ray(ray), within.near)) } else { quick }
     }
 
-    #[inline(always)]
-    fn quick_distance(&self, ray: &Ray, within: &Span) -> f64 {
-        if self.is_classic() || within.leaves.is_some() {
-            return self.other_distance(ray, within);
-        }
-        let own = self.own_ray(ray);
-        if self.accuracy == Accuracy::Strict {
-            return f64::NAN;
-        }
-        let quick = self.own.quick_hit(&own, within.near, 0.0);
-        let corrected = self.own.corrected(&own, quick.distance);
-        let is_unknown = quick.is_unknown | corrected.is_nan();
-        let hit = if is_unknown { f64::NAN } else { within.keep(corrected) };
-        if quick.is_missed { MISS } else { hit }
+    fn normal(&self, at: DVec3) -> DVec3 {
+        self.own.normal(at, self.center)
     }
 
+    fn bounds(&self) -> Option<Bounds> {
+        Some(self.around())
+    }
+
+    fn is_two_sided(&self) -> bool {
+        true
+    }
+
+    fn method(&self) -> String {
+        "a closed form and a step of Newton's method, in twice the precision where rounding could decide"
+            .to_owned()
+    }
+
+    fn clearance(&self, from: DVec3) -> Option<f64> {
+        Some(self.away(from).max(bounds::clearance(from, self.bounds(), |region| self.is_clear_of(region))))
+    }
+
+    fn reach(&self) -> f64 {
+        // The box may be far larger than what is seen of it, and cuts only.
+        self.center.abs().max_element()
+    }
+}
+
+impl<A: Bounded> Bracketed for Quadric<A> {
     #[inline(always)]
     fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        if self.is_classic() || within.leaves.is_some() {
-            return Bracket::exactly(self.other_distance(ray, within));
+        if let Some(side) = within.leaves {
+            return Bracket::exactly(self.other_distance(ray, side, within));
         }
         if within.origin_error > 0.0 && self.touches(ray.origin, within.origin_error) {
             return Bracket::UNKNOWN;
@@ -151,71 +228,15 @@ impl Hittable for Quadric {
         if is_missed { Bracket::MISS } else { Bracket { near, far } }
     }
 
-    /// At `r` from a point the equation's value differs from that at the point by at most `|gradient| r + |square| r^2`.
-    fn clearance(&self, from: DVec3) -> f64 {
-        let at = from - self.center;
-        let abs = DMat3::from_cols_array(&self.square.to_cols_array().map(f64::abs));
-        let terms = at.abs().dot(abs * at.abs()) + self.linear.abs().dot(at.abs()) + self.constant.abs();
-        let value = at.dot(self.square * at) + self.linear.dot(at) + self.constant;
-        let value = value.abs() - SLACK * terms;
-        let rounding = SLACK * (abs * at.abs() + self.linear.abs()).length();
-        let gradient = (2.0 * (self.square * at) + self.linear).length() + rounding;
-        let square = (abs * DVec3::ONE).length();
-        let radius = 2.0 * value / (gradient + (gradient * gradient + 4.0 * square * value).sqrt());
-        let by_value = if value > 0.0 && radius.is_finite() { radius * (1.0 - 1e-6) } else { 0.0 };
-        by_value.max(bounds::clearance(from, self.bounds(), |region| self.is_clear_of(region)))
-    }
-
-    fn normal(&self, at: DVec3) -> DVec3 {
-        if self.is_classic() {
-            let normal = 2.0 * (self.square * (at - self.center)) + self.linear;
-            // A cone's apex has none; any will do.
-            return normal.try_normalize().unwrap_or(DVec3::Y);
-        }
-        self.own.normal(at, self.center)
-    }
-
-    fn bounds(&self) -> Option<Bounds> {
-        let bounds = Bounds { low: self.center + self.low, high: self.center + self.high };
-        (!self.is_classic()).then_some(bounds)
-    }
-
-    fn meets_itself(&self, _leaving: Side) -> bool {
-        !self.is_classic()
-    }
-
-    fn touches(&self, at: DVec3, error: f64) -> bool {
-        coincidence::touches(self, at, error)
-    }
-
-    fn reach(&self) -> f64 {
-        // The box may be far larger than what is seen of it, and cuts only.
-        self.center.abs().max_element()
-    }
-
-    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold> {
-        if self.is_classic() { None } else { coincidence::distance(self, ray, distance) }
-    }
-
-    fn is_two_sided(&self) -> bool {
-        !self.is_classic()
-    }
-
-    fn method(&self) -> String {
-        let method = if self.is_classic() {
-            "the notes' formula"
-        } else {
-            "a closed form and a step of Newton's method, in twice the precision where rounding could decide"
-        };
-        method.to_owned()
-    }
-
-    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        certify::first_hit(self, sight, precision)
+    #[inline(always)]
+    fn refine(&self, ray: &Ray, leaves: Option<Side>) -> f64 {
+        self.quick_distance(ray, &Span { leaves, ..Span::RAY })
     }
 }
 
-impl Equation for Quadric {
+impl<A: Bounded> Certified for Quadric<A> {}
+
+impl<A> Equation for Quadric<A> {
     const IS_QUADRATIC: bool = true;
 
     fn value<N: Number>(&self, at: [N; 3]) -> N {

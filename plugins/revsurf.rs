@@ -8,6 +8,7 @@ use crate::scene::profile::{Line, Profile};
 use crate::shapes::revolution::{Classic, Finish, InFrame, Revolution};
 use crate::world::accuracy::Accuracy;
 use crate::world::body::Body;
+use crate::world::shape::Shape;
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -35,7 +36,7 @@ inventory::submit! {
         let (line, height) = (line(args)?, args.get(&HEIGHT));
         let finish = match args.accuracy() {
             Accuracy::Classic => {
-                return Ok(Body::plain(InFrame { surface: Classic { line, height }, frame }));
+                return Ok(Body::plain(Shape::new(InFrame { surface: Classic { line, height }, frame }).classic()));
             }
             Accuracy::Draft => Finish::Bracket,
             Accuracy::Exact | Accuracy::Strict => Finish::Root,
@@ -45,7 +46,7 @@ inventory::submit! {
             let (what, help) = fault.told();
             Refusal { attribute, message: format!("has a profile {what}"), help }
         })?;
-        Ok(Body::plain(InFrame { surface, frame }))
+        Ok(Body::plain(Shape::new(InFrame { surface, frame }).in_packets().searched()))
     })
 }
 

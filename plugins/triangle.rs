@@ -2,16 +2,17 @@
 
 use crate::geometry::bounds::Bounds;
 use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
-use crate::geometry::sight::Sight;
 use crate::numeric::number::{Number, cross, dot};
 use crate::numeric::twofold::{self, Twofold, exponent_to_one, times_power_of_two, triple_product, unit};
-use crate::scene::entity::{Entity, Refusal};
+use crate::scene::entity::{Args, Entity, Refusal};
 use crate::scene::pparm::{Pparm, Table};
-use crate::shapes::flat::Plane;
-use crate::world::accuracy::Accuracy;
+use crate::shapes::flat::{CLASSIC_METHOD, Plane};
+use crate::world::accuracy::{Accuracy, Bounded, Classic, Draft, Exact, Strict};
+use crate::world::any_shape::AnyShape;
 use crate::world::body::Body;
-use crate::world::certify::{self, Enclosure, Equation, Precision};
-use crate::world::hittable::Hittable;
+use crate::world::certify::Equation;
+use crate::world::hittable::{Bracketed, Certified, Hittable};
+use crate::world::shape::Shape;
 use glam::DVec3;
 
 static VERTEX1: Pparm<DVec3> = Pparm::required("vertex1", "its first corner").unit("world coordinates");
@@ -29,30 +30,48 @@ const TABLE: Table = &[&VERTEX1, &VERTEX2, &VERTEX3, &NORMAL, &POINT];
 
 inventory::submit! {
     Entity::shape("triangle", "a triangle", &[TABLE], |args| {
-        let corners = [args.get(&VERTEX1), args.get(&VERTEX2), args.get(&VERTEX3)];
-        let plane = plane_through(corners, args.accuracy()).ok_or_else(|| Refusal {
+        let shape = shape(args).ok_or_else(|| Refusal {
             attribute: Some("vertex3"),
             message: "has its corners in one line".to_owned(),
             help: "three corners that are not in one line make a triangle",
         })?;
-        Ok(Body::plain(Triangle { plane, corners }))
+        Ok(Body::plain(shape))
     })
 }
 
-/// The plane through three points; nothing where they are in one line.
-fn plane_through([a, b, c]: [DVec3; 3], accuracy: Accuracy) -> Option<Plane> {
+/// The shape of a triangle; nothing where its corners are in one line.
+fn shape(args: &Args) -> Option<AnyShape> {
+    let corners = [args.get(&VERTEX1), args.get(&VERTEX2), args.get(&VERTEX3)];
+    let [a, b, c] = corners;
+    let upright = upright(corners);
+    if args.accuracy() == Accuracy::Classic {
+        let plane = Plane::<Classic>::new((b - a).cross(c - a).try_normalize()?, upright, a);
+        return Some(Shape::new(Triangle { plane, corners }).classic().into());
+    }
+    if upright.iter().all(|part| part.high == 0.0) {
+        return None;
+    }
+    Some(match args.accuracy() {
+        Accuracy::Draft => exact::<Draft>(corners, upright),
+        Accuracy::Strict => exact::<Strict>(corners, upright),
+        _ => exact::<Exact>(corners, upright),
+    })
+}
+
+fn exact<A: Bounded>(corners: [DVec3; 3], upright: [Twofold; 3]) -> AnyShape {
+    let normal = DVec3::from(unit(upright).map(|part| part.high));
+    let plane = Plane::<A>::new(normal, upright, corners[0]);
+    Shape::new(Triangle { plane, corners }).bracketed().certified().into()
+}
+
+/// A vector that stands upright on the plane through three points; 0 where they are in one line.
+fn upright([a, b, c]: [DVec3; 3]) -> [Twofold; 3] {
     let edge = |to: DVec3| {
         let edge = [0, 1, 2].map(|axis| Twofold::difference(to[axis], a[axis]));
         scaled_to_one(edge)
     };
     // Each component is rounded once, however thin the triangle is.
-    let upright = scaled_to_one(twofold::cross(edge(b), edge(c)));
-    let normal = match accuracy {
-        Accuracy::Classic => (b - a).cross(c - a).try_normalize()?,
-        _ if upright.iter().all(|part| part.high == 0.0) => return None,
-        _ => DVec3::from(unit(upright).map(|part| part.high)),
-    };
-    Some(Plane { normal, upright, point: a, accuracy })
+    scaled_to_one(twofold::cross(edge(b), edge(c)))
 }
 
 /// A vector times the power of two that makes its greatest component one between 1/2 and 1.
@@ -62,27 +81,74 @@ fn scaled_to_one(vector: [Twofold; 3]) -> [Twofold; 3] {
     vector.map(|Twofold { high, low }| Twofold { high: scaled(high), low: scaled(low) })
 }
 
-struct Triangle {
-    plane: Plane,
+struct Triangle<A> {
+    plane: Plane<A>,
     corners: [DVec3; 3],
 }
 
-impl Hittable for Triangle {
+impl Hittable for Triangle<Classic> {
     #[inline(always)]
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
         let distance = self.plane.distance(ray, within);
-        let is_inside = match self.plane.accuracy {
-            Accuracy::Classic => self.contains(ray.at(distance)),
-            _ => self.is_passed_by(ray),
-        };
-        if is_inside { distance } else { MISS }
+        if self.contains(ray.at(distance)) { distance } else { MISS }
     }
 
+    fn normal(&self, _at: DVec3) -> DVec3 {
+        self.plane.normal
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        Some(Bounds::around(&self.corners))
+    }
+
+    fn meets_itself(&self, _leaving: Side) -> bool {
+        false
+    }
+
+    fn plane(&self) -> Option<[DVec3; 2]> {
+        Some([self.plane.point, self.plane.normal])
+    }
+
+    fn method(&self) -> String {
+        CLASSIC_METHOD.to_owned()
+    }
+}
+
+impl<A: Bounded> Hittable for Triangle<A> {
+    #[inline(always)]
+    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
+        let distance = self.plane.distance(ray, within);
+        if self.is_passed_by(ray) { distance } else { MISS }
+    }
+
+    fn normal(&self, _at: DVec3) -> DVec3 {
+        self.plane.normal
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        Some(Bounds::around(&self.corners))
+    }
+
+    fn meets_itself(&self, _leaving: Side) -> bool {
+        false
+    }
+
+    fn is_clear_of(&self, region: &Bounds) -> bool {
+        self.plane.is_clear_of(region) || !Bounds::around(&self.corners).overlaps(region)
+    }
+
+    fn plane(&self) -> Option<[DVec3; 2]> {
+        Some([self.plane.point, self.plane.normal])
+    }
+
+    fn method(&self) -> String {
+        self.plane.method().to_owned()
+    }
+}
+
+impl<A: Bounded> Bracketed for Triangle<A> {
     #[inline(always)]
     fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        if self.plane.accuracy == Accuracy::Classic {
-            return Bracket::exactly(self.quick_distance(ray, within));
-        }
         let rough = self.plane.rough(ray, within.origin_error);
         let Bracket { near, far } = self.plane.bracket(&rough, ray, within);
         let passed = self.passed(ray);
@@ -93,57 +159,23 @@ impl Hittable for Triangle {
     }
 
     #[inline(always)]
-    fn quick_distance(&self, ray: &Ray, within: &Span) -> f64 {
-        let distance = self.plane.quick_distance(ray, within);
-        let is_inside = match self.plane.accuracy {
-            Accuracy::Classic => Some(self.contains(ray.at(distance))),
-            _ => self.passed(ray),
-        };
-        match is_inside {
-            Some(true) => distance,
-            Some(false) => MISS,
-            None => f64::NAN,
-        }
+    fn refine(&self, ray: &Ray, _leaves: Option<Side>) -> f64 {
+        // A hit that is certain is inside.
+        self.plane.refined(ray)
     }
+}
 
-    fn bounds(&self) -> Option<Bounds> {
-        (self.plane.accuracy != Accuracy::Classic).then(|| Bounds::around(&self.corners))
-    }
-
-    fn is_clear_of(&self, region: &Bounds) -> bool {
-        self.plane.is_clear_of(region) || self.bounds().is_some_and(|bounds| !bounds.overlaps(region))
-    }
-
-    fn meets_itself(&self, leaving: Side) -> bool {
-        self.plane.meets_itself(leaving)
-    }
-
+impl<A: Bounded> Certified for Triangle<A> {
     fn touches(&self, at: DVec3, error: f64) -> bool {
         self.plane.touches(at, error)
     }
 
     fn fine_distance(&self, ray: &Ray, _distance: f64) -> Option<Twofold> {
-        (self.plane.accuracy != Accuracy::Classic).then(|| self.plane.exact_crossing(ray))
-    }
-
-    fn normal(&self, at: DVec3) -> DVec3 {
-        self.plane.normal(at)
-    }
-
-    fn plane(&self) -> Option<[DVec3; 2]> {
-        Hittable::plane(&self.plane)
-    }
-
-    fn method(&self) -> String {
-        self.plane.method().to_owned()
-    }
-
-    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        certify::first_hit(self, sight, precision)
+        Some(self.plane.exact_crossing(ray))
     }
 }
 
-impl Equation for Triangle {
+impl<A> Equation for Triangle<A> {
     const IS_QUADRATIC: bool = true;
 
     fn value<N: Number>(&self, at: [N; 3]) -> N {
@@ -164,7 +196,7 @@ impl Equation for Triangle {
     }
 }
 
-impl Triangle {
+impl<A> Triangle<A> {
     /// A vector upright on it, as long as twice its area.
     fn upright<N: Number>(&self) -> [N; 3] {
         let [a, b, c] = self.corners.map(|corner| corner.to_array().map(N::constant));

@@ -12,6 +12,7 @@ use oracle::shapes::{self, Line, Plane, Quadric};
 use oracle::tally::Tally;
 use tabray::geometry::ray::{Bracket, MISS, Ray, Span};
 use tabray::scene::model::Model;
+use tabray::world::any_shape::AnyShape;
 use tabray::world::hittable::Hittable;
 
 /// The shapes of each kind, and the rays for each set and shape.
@@ -27,7 +28,7 @@ fn scene(accuracy: &str, object: &str) -> Model {
 }
 
 /// The exact shape of an entity's text.
-fn shape(object: &str) -> Box<dyn Hittable> {
+fn shape(object: &str) -> AnyShape {
     scene("exact", object).objects.remove(0).shape
 }
 
@@ -61,8 +62,9 @@ fn finds(kind: &str, ulps: f64) {
                 let truth = subject.truth(&Line::from(&ray), 0.0);
                 subject.count(&mut tally, &*shape, &ray, truth);
                 let found = shape.distance(&ray, &Span::RAY);
-                let quick = shape.quick_distance(&ray, &Span::RAY);
                 let bracket = shape.bracket(&ray, &Span::RAY);
+                let is_certain = bracket.far < MISS;
+                let quick = if is_certain { shape.refine(&ray, None) } else { f64::NAN };
                 if tally.wrong() > before {
                     faults.push(format!("wrong: {}\n  {ray:?}: {truth:?}, not {found:?}", subject.text));
                 }

@@ -14,6 +14,7 @@ use tabray::geometry::ray::{MISS, Ray, Side, Span};
 use tabray::numeric::number::Number;
 use tabray::scene::model::Model;
 use tabray::shapes::implicit::Implicit;
+use tabray::world::any_shape::AnyShape;
 use tabray::world::body::Body;
 use tabray::world::hittable::Hittable;
 
@@ -310,7 +311,7 @@ fn a_mirror_torus_looks_as_its_quartic_has_it() {
     let model = torus();
     let picture = render(&model);
     let mut by_quartic = model;
-    by_quartic.objects[0].shape = Box::new(Quartics);
+    by_quartic.objects[0].shape = Quartics.into();
     let expected = render(&by_quartic);
     let differing = expected.pixels().zip(picture.pixels()).filter(|(a, b)| a != b).count();
     assert!(differing == 0, "{differing} pixels differ");
@@ -346,7 +347,7 @@ impl<F: Formula> Implicit for By<F> {
     }
 }
 
-fn shape(formula: impl Formula, low: DVec3, high: DVec3) -> Box<dyn Hittable> {
+fn shape(formula: impl Formula, low: DVec3, high: DVec3) -> AnyShape {
     Body::implicit(By { formula, bounds: [low, high] }, Frame::at(DVec3::ZERO)).shape
 }
 

@@ -7,6 +7,7 @@ use glam::{DMat3, DVec3, dvec3};
 use tabray::geometry::ray::{MISS, Ray, Span};
 use tabray::render::trace;
 use tabray::scene::dump;
+use tabray::world::any_shape::AnyShape;
 use tabray::world::hittable::Hittable;
 
 /// Whether two vectors agree to this many printed decimals.
@@ -147,7 +148,7 @@ fn the_rotation_of_two_directions_prints_its_numbers() {
 // "Determining if a ray hits a plane", "Determining if a ray hits a sphere"
 
 /// The shape of the first object of a scene.
-fn shape(object: &str) -> Box<dyn Hittable> {
+fn shape(object: &str) -> AnyShape {
     let text = format!(
         "camera c {{ pixeldim 8 6 worlddim 8 6 viewpoint 4 3 6 }} material m {{ ambient 1 1 1 }} {object}"
     );

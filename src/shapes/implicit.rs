@@ -8,15 +8,14 @@ use crate::geometry::bounds::Bounds;
 use crate::geometry::frame::{BLUR, Frame};
 use crate::geometry::ray::{MISS, Ray, Side, Span};
 use crate::geometry::roots::{Method, taylor, twice};
-use crate::geometry::sight::{Line, Sight};
+use crate::geometry::sight::Line;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
 use crate::numeric::number::Number;
-use crate::numeric::twofold::Twofold;
 use crate::world::body::Body;
-use crate::world::certify::{self, Enclosure, Equation, Precision};
-use crate::world::coincidence;
-use crate::world::hittable::Hittable;
+use crate::world::certify::Equation;
+use crate::world::hittable::{Certified, Hittable, Searched};
+use crate::world::shape::Shape;
 use glam::DVec3;
 
 /// A shape by its formula, in coordinates of its own.
@@ -33,7 +32,7 @@ impl Body {
     /// An object by its formula, that looks like its material.
     pub fn implicit(formula: impl Implicit + 'static, frame: Frame) -> Self {
         let [low, high] = formula.bounds();
-        Self::plain(ImplicitShape { formula, frame, low, high })
+        Self::plain(Shape::new(ImplicitShape { formula, frame, low, high }).searched())
     }
 }
 
@@ -48,10 +47,6 @@ struct ImplicitShape<T> {
 impl<T: Implicit> Hittable for ImplicitShape<T> {
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
         self.first_hit(Method::Taylor, ray, within)
-    }
-
-    fn distance_by(&self, method: Method, ray: &Ray, within: &Span) -> Option<f64> {
-        Some(self.first_hit(method, ray, within))
     }
 
     /// Along the formula's gradient. Where that vanishes or does not exist, as at the tip of a cone, the normal
@@ -73,14 +68,6 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
         Some(self.frame.bounds(&own))
     }
 
-    fn touches(&self, at: DVec3, error: f64) -> bool {
-        coincidence::touches(self, at, error)
-    }
-
-    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold> {
-        coincidence::distance(self, ray, distance)
-    }
-
     fn is_two_sided(&self) -> bool {
         true
     }
@@ -88,9 +75,13 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
     fn method(&self) -> String {
         "its first root isolated by interval arithmetic, then polished".to_owned()
     }
+}
 
-    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        certify::first_hit(self, sight, precision)
+impl<T: Implicit> Certified for ImplicitShape<T> {}
+
+impl<T: Implicit> Searched for ImplicitShape<T> {
+    fn distance_by(&self, method: Method, ray: &Ray, within: &Span) -> f64 {
+        self.first_hit(method, ray, within)
     }
 }
 

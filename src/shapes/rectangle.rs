@@ -4,19 +4,28 @@ use crate::geometry::bounds::{Bounds, larger, smaller};
 use crate::geometry::ray::{MISS, Ray};
 use crate::numeric::twofold::{Twofold, cross, exponent_to_one, product, times_power_of_two, unit};
 use crate::shapes::flat::{DRAFT_ERROR, Plane};
-use crate::world::accuracy::Accuracy;
+use crate::world::accuracy::{Accuracy, Bounded, Classic};
 use glam::{DVec2, DVec3};
 
-/// A part of a plane. Other rectangles hold one.
+/// Where a rectangle is.
 #[derive(Clone, Copy, Debug)]
-pub struct FinitePlane {
-    /// The plane, whose point is the rectangle's corner.
-    pub plane: Plane,
+pub struct Rectangle {
+    /// Its lower left corner, in world coordinates.
+    pub corner: DVec3,
     /// How long its sides are, in world units.
     pub dimensions: DVec2,
     /// Where they go from the corner, unit vectors, rounded.
     pub sides: [DVec3; 2],
-    /// The same in twice the precision.
+}
+
+/// A rectangle as a part of a plane.
+#[derive(Clone, Copy, Debug)]
+pub struct FinitePlane<A> {
+    /// The plane, whose point is the rectangle's corner.
+    pub plane: Plane<A>,
+    /// Which part of it that is.
+    pub rectangle: Rectangle,
+    /// Where its sides go, in twice the precision.
     pub exact_sides: [[Twofold; 3]; 2],
     /// The vector right above the first of them that the scene gives, of any length.
     pub given_xdir: DVec3,
@@ -24,33 +33,23 @@ pub struct FinitePlane {
     pub reach: f64,
 }
 
-impl FinitePlane {
+impl Rectangle {
     /// How far along its two sides a point of its plane is, from its corner.
     #[inline(always)]
     pub fn coordinates(&self, at: DVec3) -> DVec2 {
-        let from_corner = at - self.plane.point;
+        let from_corner = at - self.corner;
         DVec2::new(self.sides[0].dot(from_corner), self.sides[1].dot(from_corner))
     }
 
-    /// Whether it has the point of its plane where a ray crosses that, its sides included.
-    #[inline(always)]
-    pub fn has_crossing(&self, ray: &Ray, distance: f64) -> bool {
-        self.quickly_has_crossing(ray, distance).unwrap_or_else(|| self.exactly_has_crossing(ray))
+    /// The box around it.
+    pub fn around(&self) -> Bounds {
+        let corner = |x: f64, y: f64| self.corner + x * self.sides[0] + y * self.sides[1];
+        let DVec2 { x, y } = self.dimensions;
+        Bounds::around(&[corner(0.0, 0.0), corner(x, 0.0), corner(0.0, y), corner(x, y)])
     }
+}
 
-    /// Likewise, or nothing where it is on a side but for rounding.
-    #[inline(always)]
-    pub fn quickly_has_crossing(&self, ray: &Ray, distance: f64) -> Option<bool> {
-        let slack = match self.plane.accuracy {
-            Accuracy::Classic => 0.0,
-            Accuracy::Draft => self.slack(ray, distance) + DRAFT_ERROR * distance,
-            _ => self.slack(ray, distance),
-        };
-        let inside = self.inside(ray, distance);
-        let is_doubtful = (inside.abs() <= slack) & (slack > 0.0) & (distance < MISS);
-        if is_doubtful { None } else { Some(inside >= 0.0) }
-    }
-
+impl<A> FinitePlane<A> {
     /// What rounding may make of the place where a ray crosses its plane.
     ///
     /// Units of 2^-53, along a side, whose components add up to at most 1.74: a distance is off by 14, its product with
@@ -64,6 +63,34 @@ impl FinitePlane {
         16.0 * f64::EPSILON * (farthest + distance.abs() + self.reach)
     }
 
+    /// How far inside of its nearest side a ray crosses its plane; below 0 outside, NaN for none.
+    #[inline(always)]
+    pub fn inside(&self, ray: &Ray, distance: f64) -> f64 {
+        let at = self.rectangle.coordinates(ray.at(distance));
+        let past = self.rectangle.dimensions - at;
+        smaller(smaller(at.x, past.x), smaller(at.y, past.y))
+    }
+}
+
+impl<A: Bounded> FinitePlane<A> {
+    /// Whether it has the point of its plane where a ray crosses that, its sides included.
+    #[inline(always)]
+    pub fn has_crossing(&self, ray: &Ray, distance: f64) -> bool {
+        self.quickly_has_crossing(ray, distance).unwrap_or_else(|| self.exactly_has_crossing(ray))
+    }
+
+    /// Likewise, or nothing where it is on a side but for rounding.
+    #[inline(always)]
+    pub fn quickly_has_crossing(&self, ray: &Ray, distance: f64) -> Option<bool> {
+        let slack = match A::ACCURACY {
+            Accuracy::Draft => self.slack(ray, distance) + DRAFT_ERROR * distance,
+            _ => self.slack(ray, distance),
+        };
+        let inside = self.inside(ray, distance);
+        let is_doubtful = (inside.abs() <= slack) & (slack > 0.0) & (distance < MISS);
+        if is_doubtful { None } else { Some(inside >= 0.0) }
+    }
+
     /// As [`has_crossing`](Self::has_crossing), in twice the precision. What is as near to a side as its rounding is on it.
     #[inline(never)]
     fn exactly_has_crossing(&self, ray: &Ray) -> bool {
@@ -74,27 +101,42 @@ impl FinitePlane {
             let (start, onward) =
                 (product(self.exact_sides[side], from), distance * product(self.exact_sides[side], dir));
             let along = start + onward;
-            let past = Twofold::from(self.dimensions[side]) - along;
+            let past = Twofold::from(self.rectangle.dimensions[side]) - along;
             // Each of some ten operations is off by at most 2^-102 of its parts, which are no larger than this.
             let size = from.iter().map(|part| part.high.abs()).sum::<f64>() + distance.high.abs();
-            let least = -(2_f64.powi(-97)) * (size + self.dimensions[side]);
+            let least = -(2_f64.powi(-97)) * (size + self.rectangle.dimensions[side]);
             along.high >= least && past.high >= least
         })
     }
+}
 
-    /// How far inside of its nearest side a ray crosses its plane; below 0 outside, NaN for none.
+impl FinitePlane<Classic> {
+    /// Whether it has the point of its plane where a ray crosses that, its sides included.
     #[inline(always)]
-    pub fn inside(&self, ray: &Ray, distance: f64) -> f64 {
-        let at = self.coordinates(ray.at(distance));
-        let past = self.dimensions - at;
-        smaller(smaller(at.x, past.x), smaller(at.y, past.y))
+    pub fn has_crossing(&self, ray: &Ray, distance: f64) -> bool {
+        self.inside(ray, distance) >= 0.0
     }
+}
 
-    /// The box around it.
-    pub fn around(&self) -> Bounds {
-        let corner = |x: f64, y: f64| self.plane.point + x * self.sides[0] + y * self.sides[1];
-        let DVec2 { x, y } = self.dimensions;
-        Bounds::around(&[corner(0.0, 0.0), corner(x, 0.0), corner(0.0, y), corner(x, y)])
+/// A rectangle that rays go through.
+pub trait Window: Send + Sync {
+    /// The distance ahead at which a ray goes through it, if it does.
+    fn crossing(&self, ray: &Ray) -> Option<f64>;
+}
+
+impl<A: Bounded> Window for FinitePlane<A> {
+    #[inline(always)]
+    fn crossing(&self, ray: &Ray) -> Option<f64> {
+        let distance = self.plane.crossing(ray);
+        (distance > 0.0 && self.has_crossing(ray, distance)).then_some(distance)
+    }
+}
+
+impl Window for FinitePlane<Classic> {
+    #[inline(always)]
+    fn crossing(&self, ray: &Ray) -> Option<f64> {
+        let distance = self.plane.crossing(ray);
+        (distance > 0.0 && self.has_crossing(ray, distance)).then_some(distance)
     }
 }
 

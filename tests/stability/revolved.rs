@@ -8,10 +8,10 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_6};
 use tabray::geometry::ray::{MISS, Ray};
 use tabray::geometry::sight::Sight;
 use tabray::render::trace;
-use tabray::world::hittable::Hittable;
+use tabray::world::any_shape::AnyShape;
 
 /// The notes' cone, 6 high; a greater height goes beyond its apex.
-fn cone(camera: &str, height: f64) -> Box<dyn Hittable> {
+fn cone(camera: &str, height: f64) -> AnyShape {
     revsurf(camera, "surfer 1", height)
 }
 

@@ -35,11 +35,10 @@
 //! Where panes and mirrors give on nearly all that they get, that takes very many rays. From the [`MANY`]th on, a branch is
 //! also left out where `weight * beyond / d < FAINT` by itself.
 
-use crate::geometry::bounds::SLACK;
+use crate::geometry::bounds::{self, SLACK};
 use crate::geometry::ray::Side;
 use crate::render::trace::MAX_DIST;
 use crate::scene::model::{Model, Object};
-use crate::world::accuracy::Accuracy;
 use crate::world::material::{Look, Rgb};
 use glam::DVec3;
 
@@ -126,8 +125,7 @@ impl Depth {
             }
         });
         let scene = Scene::new(model, surfaces.collect());
-        let cuts = model.camera.value.accuracy != Accuracy::Classic;
-        Some(scene.depth(cuts))
+        Some(scene.depth(super::culls(model)))
     }
 
     /// What rays that leave an object can bring back, or rays from the viewer.
@@ -188,12 +186,13 @@ struct Scene {
 
 impl Scene {
     fn new(model: &Model, surfaces: Vec<Surface>) -> Self {
-        let objects = &model.objects;
+        let (objects, culls) = (&model.objects, super::culls(model));
         let (shiny, matt): (Vec<_>, Vec<_>) =
             (0..surfaces.len()).partition(|index| surfaces[*index].goes_on());
         let is_few = shiny.len() <= PAIRS;
-        let lies =
-            |of: usize, object: usize| if is_few { lies(&objects[of], &objects[object]) } else { [true; 2] };
+        let lies = |of: usize, object: usize| {
+            if is_few { lies(culls, &objects[of], &objects[object]) } else { [true; 2] }
+        };
         let ends = shiny.iter().map(|of| {
             let sent = matt
                 .iter()
@@ -348,10 +347,10 @@ fn meets_itself(object: &Object, side: Side) -> bool {
 }
 
 /// On which sides of the plane that an object lies in, if it does, another one may be met.
-fn lies(of: &Object, object: &Object) -> Sides<bool> {
+fn lies(culls: bool, of: &Object, object: &Object) -> Sides<bool> {
     let Some([point, normal]) = of.shape.plane() else { return [true; 2] };
     let size = |at: DVec3| at.abs().max_element();
-    let (middle, reach) = match (object.shape.bounds(), object.shape.plane()) {
+    let (middle, reach) = match (object.shape.bounds().filter(|_| culls), object.shape.plane()) {
         (Some(bounds), _) => (bounds.middle(), bounds.half_size()),
         (None, Some([other, upright])) if upright == normal || upright == -normal => (other, DVec3::ZERO),
         _ => return [true; 2],
@@ -360,6 +359,18 @@ fn lies(of: &Object, object: &Object) -> Sides<bool> {
     let reach =
         normal.abs().dot(reach) + 10.0 * SLACK * (size(middle) + size(reach) + size(point) + MAX_DIST);
     [distance > -reach, distance < reach]
+}
+
+/// How far from a point all of an object is, at least.
+fn clearance(model: &Model, object: &Object, from: DVec3) -> f64 {
+    let shape = &object.shape;
+    match shape.clearance(from) {
+        Some(clearance) => clearance,
+        None if super::culls(model) => {
+            bounds::clearance(from, shape.bounds(), |region| shape.is_clear_of(region))
+        }
+        None => 0.0,
+    }
 }
 
 /// The largest magnitude of a channel.
@@ -406,7 +417,7 @@ fn own(model: &Model, object: &Object, look: &Look, any_light_comes: bool) -> f6
         }
         let Some(sent) = light.value.brightest().filter(|_| any_light_comes) else { return f64::INFINITY };
         // A light with a size is seen on a disc across the way to its middle: no nearer than that.
-        let scattered = match object.shape.clearance(light.value.location()) {
+        let scattered = match clearance(model, object, light.value.location()) {
             _ if diffuse == Rgb::ZERO => Rgb::ZERO,
             0.0 => return f64::INFINITY,
             clearance => diffuse / clearance,

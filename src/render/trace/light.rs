@@ -5,7 +5,7 @@ use crate::render::plan::depth::{Branch, MANY};
 use crate::simd::cpu::kernels;
 use crate::simd::soa::{View, ViewMut};
 use crate::world::material::{Look, Rgb};
-use crate::world::shader::is_any;
+use crate::world::packets::shader::is_any;
 
 /// Of rays that may cost so few more, [`MANY`] have been followed.
 pub(super) const FEW: u32 = MAX_RAYS as u32 - MANY;

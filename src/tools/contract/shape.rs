@@ -1,4 +1,4 @@
-//! The contract of [`Hittable`], tried with rays.
+//! The contract of [`Hittable`](crate::world::hittable::Hittable), tried with rays.
 
 use super::draw::Draw;
 use super::looks::{same_bits, shader};
@@ -11,8 +11,8 @@ use crate::scene::model::Object;
 use crate::scene::value::Datum;
 use crate::simd::cpu::Cpu;
 use crate::simd::soa::{STEP, Vectors};
+use crate::world::any_shape::AnyShape;
 use crate::world::certify::{Enclosure, Precision};
-use crate::world::hittable::Hittable;
 use crate::world::landing::Landing;
 use glam::DVec3;
 
@@ -46,7 +46,7 @@ pub fn try_object(object: &Object, draw: &mut Draw, rays: usize) -> Outcome {
     let mut outcome = Outcome { hits: 0, gravest: None };
     for index in 0..rays {
         let ray = ray(&aims, draw, index);
-        let tried = try_ray(&Tried { shape: &*object.shape, ray, is_exact: index < EXACT }, draw);
+        let tried = try_ray(&Tried { shape: &object.shape, ray, is_exact: index < EXACT }, draw);
         let tried = tried.and_then(|hit| match hit {
             Some(at) => shader(&*object.shader, at).map(|()| Some(at)),
             None => Ok(None),
@@ -96,7 +96,7 @@ fn ray(aims: &[DVec3], draw: &mut Draw, index: usize) -> Ray {
 
 /// A shape and a ray that it is tried with.
 pub struct Tried<'s> {
-    pub shape: &'s dyn Hittable,
+    pub shape: &'s AnyShape,
     pub ray: Ray,
     /// Whether it may meet an edge or a corner, where rounding tells what is met from elsewhere.
     is_exact: bool,
@@ -176,9 +176,9 @@ impl Tried<'_> {
         {
             return fault(format!("`distance` gives {distance}, and `bracket` {bracket:?}"));
         }
-        let quick = shape.quick_distance(ray, &Span::RAY);
-        if !quick.is_nan() && quick.to_bits() != distance.to_bits() {
-            return fault(format!("`distance` gives {distance}, and `quick_distance` {quick}"));
+        let refined = if bracket.far < MISS { shape.refine(ray, None) } else { f64::NAN };
+        if !refined.is_nan() && refined.to_bits() != distance.to_bits() {
+            return fault(format!("`distance` gives {distance}, and `refine` {refined}"));
         }
         let lanes = |of: DVec3| Vectors::<STEP> { x: [of.x; STEP], y: [of.y; STEP], z: [of.z; STEP] };
         let (origin, dir) = (lanes(ray.origin), lanes(ray.dir));
@@ -187,7 +187,7 @@ impl Tried<'_> {
             let (mut near, mut far) = ([MISS; STEP], [MISS; STEP]);
             let (mut met, mut doubt) = ([0; STEP], [0; STEP]);
             let nearest = Nearest { near: &mut near, far: &mut far, met: &mut met, doubt: &mut doubt };
-            shape.meet(cpu, rays, None, 1, nearest);
+            shape.closest_hits(cpu, rays, None, 1, nearest);
             let (low, high) = (near[0], far[0]);
             if doubt[0] == 0 && !(low <= distance && distance <= high) {
                 return fault(format!(
@@ -197,12 +197,9 @@ impl Tried<'_> {
             // As the tracer has it: what is known exactly is not asked for again.
             if doubt[0] == 0 && low < high {
                 let mut many = near;
-                shape.distances(cpu, rays, None, (&near, &far), &mut many);
+                shape.packets().refine(cpu, rays, None, (&near, &far), &mut many);
                 if !many[0].is_nan() && many[0].to_bits() != distance.to_bits() {
-                    return fault(format!(
-                        "`distance` gives {distance}, and `distances` {} ({cpu})",
-                        many[0]
-                    ));
+                    return fault(format!("`distance` gives {distance}, and {} in packets ({cpu})", many[0]));
                 }
             }
             if distance != MISS {
@@ -214,7 +211,7 @@ impl Tried<'_> {
                     sides: &mut sides,
                     travelled: &mut travelled,
                 };
-                shape.land(cpu, rays, &[distance; STEP], landing);
+                shape.packets().interact(cpu, rays, &[distance; STEP], landing);
                 let (at, normal) = (ray.at(distance), shape.normal(ray.at(distance)));
                 let side = Side::seen_along(ray.dir, normal);
                 let turned = shape.is_two_sided() && side == Side::Inside;
@@ -223,7 +220,7 @@ impl Tried<'_> {
                     return fault(format!("the normal {one} in single rays, and {many} in packets ({cpu})"));
                 }
                 if !same_bits(at, points.get(0)) || sides[0] != side || travelled[0] != 1.0 + distance {
-                    return fault(format!("`land` comes to {} in place of {at} ({cpu})", points.get(0)));
+                    return fault(format!("packets come to {} in place of {at} ({cpu})", points.get(0)));
                 }
             }
         }
