@@ -8,7 +8,7 @@ use crate::numeric::twofold::Twofold;
 use crate::scene::entity::{Args, Entity, Refusal};
 use crate::scene::pparm::{Attributes, Derived, Pparm, Row, Table};
 use crate::scene::value::Value;
-use crate::shapes::flat::CLASSIC_METHOD;
+use crate::shapes::flat::{CLASSIC_METHOD, Flat, Plane};
 use crate::shapes::rectangle::{self, FinitePlane, Rectangle};
 use crate::world::accuracy::{Accuracy, Bounded, Classic, Draft, Exact, Strict};
 use crate::world::any_shape::AnyShape;
@@ -51,9 +51,9 @@ inventory::submit! {
 pub fn shape(args: &Args) -> Result<AnyShape, Refusal> {
     Ok(match args.accuracy() {
         Accuracy::Classic => Shape::new(finite_plane::<Classic>(args)?).classic().into(),
-        Accuracy::Draft => Shape::new(finite_plane::<Draft>(args)?).bracketed().certified().into(),
-        Accuracy::Exact => Shape::new(finite_plane::<Exact>(args)?).bracketed().certified().into(),
-        Accuracy::Strict => Shape::new(finite_plane::<Strict>(args)?).bracketed().certified().into(),
+        Accuracy::Draft => Shape::new(finite_plane::<Draft>(args)?).flat().certified().into(),
+        Accuracy::Exact => Shape::new(finite_plane::<Exact>(args)?).flat().certified().into(),
+        Accuracy::Strict => Shape::new(finite_plane::<Strict>(args)?).flat().certified().into(),
     })
 }
 
@@ -185,6 +185,15 @@ impl<A: Bounded> Bracketed for FinitePlane<A> {
     fn refine(&self, ray: &Ray, _leaves: Option<Side>) -> f64 {
         // A hit that is certain is inside.
         self.plane.refined(ray)
+    }
+}
+
+impl<A: Bounded> Flat for FinitePlane<A> {
+    type Accuracy = A;
+
+    #[inline(always)]
+    fn flat(&self) -> &Plane<A> {
+        &self.plane
     }
 }
 

@@ -6,7 +6,7 @@ use crate::numeric::number::{Number, dot};
 use crate::numeric::twofold::Twofold;
 use crate::scene::entity::{Args, Entity};
 use crate::scene::pparm::{Pparm, Table};
-use crate::shapes::flat::{CLASSIC_METHOD, Plane};
+use crate::shapes::flat::{CLASSIC_METHOD, Flat, Plane};
 use crate::world::accuracy::{Accuracy, Bounded, Classic, Draft, Exact, Strict};
 use crate::world::any_shape::AnyShape;
 use crate::world::body::Body;
@@ -32,9 +32,9 @@ inventory::submit! {
 pub fn shape(args: &Args) -> AnyShape {
     match args.accuracy() {
         Accuracy::Classic => Shape::new(plane::<Classic>(args)).classic().into(),
-        Accuracy::Draft => Shape::new(plane::<Draft>(args)).bracketed().certified().into(),
-        Accuracy::Exact => Shape::new(plane::<Exact>(args)).bracketed().certified().into(),
-        Accuracy::Strict => Shape::new(plane::<Strict>(args)).bracketed().certified().into(),
+        Accuracy::Draft => Shape::new(plane::<Draft>(args)).flat().certified().into(),
+        Accuracy::Exact => Shape::new(plane::<Exact>(args)).flat().certified().into(),
+        Accuracy::Strict => Shape::new(plane::<Strict>(args)).flat().certified().into(),
     }
 }
 
@@ -120,6 +120,15 @@ impl<A: Bounded> Bracketed for Plane<A> {
     #[inline(always)]
     fn refine(&self, ray: &Ray, _leaves: Option<Side>) -> f64 {
         self.refined(ray)
+    }
+}
+
+impl<A: Bounded> Flat for Plane<A> {
+    type Accuracy = A;
+
+    #[inline(always)]
+    fn flat(&self) -> &Plane<A> {
+        self
     }
 }
 

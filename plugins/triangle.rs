@@ -6,7 +6,7 @@ use crate::numeric::number::{Number, cross, dot};
 use crate::numeric::twofold::{self, Twofold, exponent_to_one, times_power_of_two, triple_product, unit};
 use crate::scene::entity::{Args, Entity, Refusal};
 use crate::scene::pparm::{Pparm, Table};
-use crate::shapes::flat::{CLASSIC_METHOD, Plane};
+use crate::shapes::flat::{CLASSIC_METHOD, Flat, Plane};
 use crate::world::accuracy::{Accuracy, Bounded, Classic, Draft, Exact, Strict};
 use crate::world::any_shape::AnyShape;
 use crate::world::body::Body;
@@ -61,7 +61,7 @@ fn shape(args: &Args) -> Option<AnyShape> {
 fn exact<A: Bounded>(corners: [DVec3; 3], upright: [Twofold; 3]) -> AnyShape {
     let normal = DVec3::from(unit(upright).map(|part| part.high));
     let plane = Plane::<A>::new(normal, upright, corners[0]);
-    Shape::new(Triangle { plane, corners }).bracketed().certified().into()
+    Shape::new(Triangle { plane, corners }).flat().certified().into()
 }
 
 /// A vector that stands upright on the plane through three points; 0 where they are in one line.
@@ -162,6 +162,15 @@ impl<A: Bounded> Bracketed for Triangle<A> {
     fn refine(&self, ray: &Ray, _leaves: Option<Side>) -> f64 {
         // A hit that is certain is inside.
         self.plane.refined(ray)
+    }
+}
+
+impl<A: Bounded> Flat for Triangle<A> {
+    type Accuracy = A;
+
+    #[inline(always)]
+    fn flat(&self) -> &Plane<A> {
+        &self.plane
     }
 }
 

@@ -8,21 +8,23 @@ pub use text::Decision;
 
 use crate::geometry::bounds::Bounds;
 use crate::render::tree::Tree;
-use crate::scene::model::Model;
-use crate::world::accuracy::Accuracy;
+use crate::scene::model::{Model, Object};
 
 /// From so many objects with bounds on, a tree finds them faster than a list.
 const TREE: usize = 24;
 
-/// Whether what objects tell of where they are is heeded: the notes' program tests every ray against each.
-fn culls(model: &Model) -> bool {
-    model.camera.value.accuracy != Accuracy::Classic
+/// The box around an object, where that is heeded: the notes' program tests every ray against each of its shapes.
+pub(crate) fn bounds(object: &Object) -> Option<Bounds> {
+    object.shape.bounds().filter(|_| !object.shape.packets().is_of_the_notes())
+}
+
+/// Whether an object is not in a region, where that is heeded.
+pub(crate) fn is_clear_of(object: &Object, region: &Bounds) -> bool {
+    object.shape.is_clear_of(region) && !object.shape.packets().is_of_the_notes()
 }
 
 /// The decisions that depend on a scene's objects and lights.
 pub struct Plan {
-    /// Whether objects are passed over that say they are not in a ray's way.
-    pub(crate) culls: bool,
     /// The objects without bounds, or whose bounds are ignored, by their indices: each is looked at for each ray.
     pub(crate) unbounded: Vec<usize>,
     /// Those with bounds, which a packet of rays looks at one by one, and the boxes around them.
@@ -40,9 +42,8 @@ impl Plan {
     pub fn new(model: &Model) -> Self {
         let objects = &model.objects;
         let (mut unbounded, mut bounded) = (Vec::new(), Vec::new());
-        let culls = culls(model);
         for (index, object) in objects.iter().enumerate() {
-            match object.shape.bounds().filter(|_| culls) {
+            match bounds(object) {
                 Some(bounds) => bounded.push((index, bounds)),
                 None => unbounded.push(index),
             }
@@ -52,7 +53,7 @@ impl Plan {
             Tree::new(boxes.map(|(index, bounds)| (index as u32, bounds.with_slack(0.0))).collect())
         });
         let has_glass = objects.iter().any(|object| object.material.transparency != 0.0);
-        Self { culls, unbounded, bounded, tree, has_glass, depth: Depth::new(model) }
+        Self { unbounded, bounded, tree, has_glass, depth: Depth::new(model) }
     }
 
     /// How rays go on from an object, by its index.

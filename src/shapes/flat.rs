@@ -7,12 +7,17 @@
 //! comes from the scene's own one, not from the unit vector that rounding makes of it.
 
 use crate::geometry::bounds::{Bounds, SLACK, larger};
-use crate::geometry::ray::{Bracket, MISS, Ray, Span};
+use crate::geometry::packet::Rays;
+use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
 use crate::numeric::number::Number;
 use crate::numeric::twofold::{
     Twofold, dot, exact_sum, exponent_to_one, times_power_of_two, two_product, two_sum,
 };
+use crate::simd::soa::STEP;
 use crate::world::accuracy::{Accuracy, Bounded, Classic};
+use crate::world::hittable::Bracketed;
+use crate::world::packets::shape::OneRay;
+use crate::world::shape::Shape;
 use glam::DVec3;
 use std::marker::PhantomData;
 
@@ -242,22 +247,56 @@ impl<A: Bounded> Plane<A> {
         }
     }
 
-    /// The distance of a hit that is certain, as [`crossing`](Self::crossing) and [`keep`](Self::keep) have it, or NaN. Sums
-    /// are computed in both ways, not in the one that is needed: several rays go together then.
+    /// The distance of a hit that is certain, as [`crossing`](Self::crossing) and [`keep`](Self::keep) have it, or NaN
+    /// where it takes more than plain arithmetic.
     #[inline(always)]
     pub fn refined(&self, ray: &Ray) -> f64 {
-        let products = self.products(self.high(), ray);
-        let distance = match A::ACCURACY {
-            Accuracy::Exact if self.is_upright => products.draft_distance(),
-            Accuracy::Exact => {
-                let (away, toward) = (self.fine_away(ray), self.fine_toward(ray));
-                let away = if products.away_cancels() { away } else { products.away };
-                let toward = if products.toward_cancels() { toward } else { products.toward };
-                products.quotient(away, toward)
+        self.quick_keep(self.quick_crossing(ray), ray, &Span::RAY)
+    }
+
+    /// What [`refined`](Self::refined) gives for each ray of a packet: where nothing cancels.
+    #[inline(always)]
+    fn refine_plain(&self, rays: Rays, out: &mut [f64]) {
+        let rays = rays.first(out.len());
+        for lane in 0..out.len() {
+            let ray = rays.get(lane);
+            let distance = self.products(self.high(), &ray).draft_distance();
+            out[lane] = self.quick_keep(distance, &ray, &Span::RAY);
+        }
+    }
+
+    /// The same where something may: a sum is computed in both ways if it cancels for any of eight rays.
+    #[inline(always)]
+    fn refine_compensated(&self, rays: Rays, out: &mut [f64]) {
+        for first in (0..out.len()).step_by(STEP) {
+            let (rays, out) = (rays.part(first..first + STEP), &mut out[first..first + STEP]);
+            let (mut away, mut toward) = ([0.0; STEP], [0.0; STEP]);
+            let (mut away_size, mut toward_size) = ([0.0; STEP], [0.0; STEP]);
+            let (mut away_cancels, mut toward_cancels) = ([0; STEP], [0; STEP]);
+            for lane in 0..STEP {
+                let products = self.products(self.high(), &rays.get(lane));
+                (away[lane], toward[lane]) = (products.away, products.toward);
+                (away_size[lane], toward_size[lane]) = (products.away_size, products.toward_size);
+                away_cancels[lane] = u64::from(products.away_cancels());
+                toward_cancels[lane] = u64::from(products.toward_cancels());
             }
-            _ => self.quick_crossing(ray),
-        };
-        self.quick_keep(distance, ray, &Span::RAY)
+            if away_cancels != [0; STEP] {
+                for lane in 0..STEP {
+                    let fine = self.fine_away(&rays.get(lane));
+                    away[lane] = if away_cancels[lane] != 0 { fine } else { away[lane] };
+                }
+            }
+            if toward_cancels != [0; STEP] {
+                for lane in 0..STEP {
+                    let fine = self.fine_toward(&rays.get(lane));
+                    toward[lane] = if toward_cancels[lane] != 0 { fine } else { toward[lane] };
+                }
+            }
+            for lane in 0..STEP {
+                let distance = quotient((away[lane], away_size[lane]), (toward[lane], toward_size[lane]));
+                out[lane] = self.quick_keep(distance, &rays.get(lane), &Span::RAY);
+            }
+        }
     }
 
     /// How a crossing is computed, in a few words.
@@ -296,6 +335,56 @@ impl<A: Bounded> Plane<A> {
         let kept = if (z > SCREEN) | leaves { MISS } else { within.keep(distance) };
         let is_doubtful = ((z - SCREEN).abs() <= error) & (distance < MISS);
         if (is_doubtful | distance.is_nan()) & !leaves { f64::NAN } else { kept }
+    }
+}
+
+/// A bracketed shape that is a part of a plane, or all of it.
+pub trait Flat: Bracketed {
+    /// How exactly that is crossed.
+    type Accuracy: Bounded;
+
+    /// The plane.
+    fn flat(&self) -> &Plane<Self::Accuracy>;
+}
+
+/// Found by its brackets, and refined by its plane for eight rays at a time.
+pub struct ByPlane;
+
+impl<T: Flat> Shape<T> {
+    /// Found by its brackets, and refined by its plane.
+    pub fn flat(self) -> Shape<T, ByPlane> {
+        self.by()
+    }
+}
+
+impl<T: Flat, P> OneRay for Shape<T, ByPlane, P> {
+    type Author = T;
+
+    #[inline(always)]
+    fn author(&self) -> &T {
+        &self.shape
+    }
+
+    #[inline(always)]
+    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
+        self.shape.bracket(ray, within)
+    }
+
+    #[inline(always)]
+    fn refine(&self, ray: &Ray, leaves: Option<Side>) -> f64 {
+        self.shape.refine(ray, leaves)
+    }
+
+    /// A hit that is certain is in the plane, whatever is cut out of that.
+    #[inline(always)]
+    fn refine_each(&self, rays: Rays, _sides: Option<&[Side]>, out: &mut [f64]) {
+        let plane = *self.shape.flat();
+        match T::Accuracy::ACCURACY {
+            // Upright on an axis, sums have one part, and nothing cancels.
+            Accuracy::Exact if !plane.is_upright => plane.refine_compensated(rays, out),
+            Accuracy::Exact | Accuracy::Draft => plane.refine_plain(rays, out),
+            _ => out.fill(f64::NAN),
+        }
     }
 }
 

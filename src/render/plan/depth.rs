@@ -39,6 +39,7 @@ use crate::geometry::bounds::{self, SLACK};
 use crate::geometry::ray::Side;
 use crate::render::trace::MAX_DIST;
 use crate::scene::model::{Model, Object};
+use crate::world::accuracy::Accuracy;
 use crate::world::material::{Look, Rgb};
 use glam::DVec3;
 
@@ -125,7 +126,8 @@ impl Depth {
             }
         });
         let scene = Scene::new(model, surfaces.collect());
-        Some(scene.depth(super::culls(model)))
+        let cuts = model.camera.value.accuracy != Accuracy::Classic;
+        Some(scene.depth(cuts))
     }
 
     /// What rays that leave an object can bring back, or rays from the viewer.
@@ -186,12 +188,12 @@ struct Scene {
 
 impl Scene {
     fn new(model: &Model, surfaces: Vec<Surface>) -> Self {
-        let (objects, culls) = (&model.objects, super::culls(model));
+        let objects = &model.objects;
         let (shiny, matt): (Vec<_>, Vec<_>) =
             (0..surfaces.len()).partition(|index| surfaces[*index].goes_on());
         let is_few = shiny.len() <= PAIRS;
         let lies = |of: usize, object: usize| {
-            if is_few { lies(culls, &objects[of], &objects[object]) } else { [true; 2] }
+            if is_few { lies(&objects[of], &objects[object]) } else { [true; 2] }
         };
         let ends = shiny.iter().map(|of| {
             let sent = matt
@@ -347,10 +349,10 @@ fn meets_itself(object: &Object, side: Side) -> bool {
 }
 
 /// On which sides of the plane that an object lies in, if it does, another one may be met.
-fn lies(culls: bool, of: &Object, object: &Object) -> Sides<bool> {
+fn lies(of: &Object, object: &Object) -> Sides<bool> {
     let Some([point, normal]) = of.shape.plane() else { return [true; 2] };
     let size = |at: DVec3| at.abs().max_element();
-    let (middle, reach) = match (object.shape.bounds().filter(|_| culls), object.shape.plane()) {
+    let (middle, reach) = match (super::bounds(object), object.shape.plane()) {
         (Some(bounds), _) => (bounds.middle(), bounds.half_size()),
         (None, Some([other, upright])) if upright == normal || upright == -normal => (other, DVec3::ZERO),
         _ => return [true; 2],
@@ -362,15 +364,10 @@ fn lies(culls: bool, of: &Object, object: &Object) -> Sides<bool> {
 }
 
 /// How far from a point all of an object is, at least.
-fn clearance(model: &Model, object: &Object, from: DVec3) -> f64 {
-    let shape = &object.shape;
-    match shape.clearance(from) {
-        Some(clearance) => clearance,
-        None if super::culls(model) => {
-            bounds::clearance(from, shape.bounds(), |region| shape.is_clear_of(region))
-        }
-        None => 0.0,
-    }
+fn clearance(object: &Object, from: DVec3) -> f64 {
+    let by_bounds =
+        || bounds::clearance(from, super::bounds(object), |region| super::is_clear_of(object, region));
+    object.shape.clearance(from).unwrap_or_else(by_bounds)
 }
 
 /// The largest magnitude of a channel.
@@ -417,7 +414,7 @@ fn own(model: &Model, object: &Object, look: &Look, any_light_comes: bool) -> f6
         }
         let Some(sent) = light.value.brightest().filter(|_| any_light_comes) else { return f64::INFINITY };
         // A light with a size is seen on a disc across the way to its middle: no nearer than that.
-        let scattered = match clearance(model, object, light.value.location()) {
+        let scattered = match clearance(object, light.value.location()) {
             _ if diffuse == Rgb::ZERO => Rgb::ZERO,
             0.0 => return f64::INFINITY,
             clearance => diffuse / clearance,

@@ -173,7 +173,7 @@ fn search(model: &Model, plan: &Plan) -> String {
 fn objects(model: &Model, plan: &Plan) -> Vec<Decision> {
     let mut alike: Vec<(&'static str, String, Vec<&str>)> = Vec::new();
     for object in &model.objects {
-        let place = match (&plan.tree, object.shape.bounds().filter(|_| plan.culls)) {
+        let place = match (&plan.tree, super::bounds(object)) {
             (Some(_), Some(_)) => "in the tree",
             (None, Some(_)) => "with bounds",
             (_, None) => "without bounds",

@@ -7,6 +7,7 @@ use crate::geometry::bounds::{self, Bounds};
 use crate::geometry::packet::{Rays, parts};
 use crate::geometry::ray::Side;
 use crate::render::bundles::PART;
+use crate::render::plan;
 use crate::render::tree::Visitor;
 use crate::render::watch::{Count, Watch};
 use std::mem::take;
@@ -71,9 +72,9 @@ impl<W: Watch> Block<'_, '_, '_, W> {
             if !self.tracer.may_meet(self.left(), *index) {
                 continue;
             }
-            let shape = &self.tracer.model.objects[*index].shape;
+            let object = &self.tracer.model.objects[*index];
             if bounds.is_some_and(|bounds| !bounds.overlaps(&self.region))
-                || plan.culls && shape.is_clear_of(&self.region)
+                || plan::is_clear_of(object, &self.region)
             {
                 self.tracer.watch.count(Count::Culled(*index, self.len));
                 continue;

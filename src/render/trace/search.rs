@@ -10,6 +10,7 @@ use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
 use crate::geometry::sight::Sight;
 use crate::numeric::interval::Wide;
 use crate::render::bundles::{self, PART};
+use crate::render::plan;
 use crate::render::tree::Visitor;
 use crate::render::watch::{Count, Event, Hit, Reason, Watch};
 use crate::simd::cpu::{Cpu, kernels};
@@ -301,9 +302,9 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
         let (cpu, plan) = (self.tracer.cpu, self.tracer.plan);
         let bundles = bundles::around(cpu, self.group.rays());
         for index in &plan.unbounded {
-            let shape = &self.tracer.model.objects[*index].shape;
+            let object = &self.tracer.model.objects[*index];
             if self.tracer.may_meet(self.group.left(), *index) {
-                self.in_parts(*index, bundles.which(|ways| !plan.culls || !shape.is_clear_of(ways)));
+                self.in_parts(*index, bundles.which(|ways| !plan::is_clear_of(object, ways)));
             }
         }
         let mut parts = take(&mut self.tracer.rooms.parts);

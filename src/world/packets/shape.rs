@@ -83,6 +83,11 @@ pub trait Proofs: Send + Sync {
     /// What is certain about the first hit of a ray.
     fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure;
 
+    /// Whether it is found by a formula of the notes, whose program tests every ray against each.
+    fn is_of_the_notes(&self) -> bool {
+        false
+    }
+
     /// The distance by another method of finding roots; nothing where the shape is not the roots of a function along a
     /// ray, or is found in closed form.
     fn distance_by(&self, method: Method, ray: &Ray, within: &Span) -> Option<f64>;
@@ -107,6 +112,10 @@ impl<T: Hittable, S> Proofs for Shape<T, S, Unproven> {
 }
 
 impl<T: Hittable + Equation, S> Proofs for Shape<T, S, ByFormula> {
+    fn is_of_the_notes(&self) -> bool {
+        true
+    }
+
     fn touches(&self, at: DVec3, error: f64) -> bool {
         is_met_within(&self.shape, at, error)
     }
@@ -182,6 +191,24 @@ pub trait OneRay: Send + Sync {
     /// The distance of a hit that [`bracket`](Self::bracket) has found for certain, or NaN where that takes more than
     /// plain arithmetic.
     fn refine(&self, ray: &Ray, leaves: Option<Side>) -> f64;
+
+    /// What [`refine`](Self::refine) gives for each ray of a packet.
+    #[inline(always)]
+    fn refine_each(&self, rays: Rays, sides: Option<&[Side]>, out: &mut [f64]) {
+        let (count, rays) = (out.len(), rays.first(out.len()));
+        match sides {
+            None => {
+                for lane in 0..count {
+                    out[lane] = self.refine(&rays.get(lane), None);
+                }
+            }
+            Some(sides) => {
+                for lane in 0..count {
+                    out[lane] = self.refine(&rays.get(lane), Some(sides[lane]));
+                }
+            }
+        }
+    }
 }
 
 impl<T: Bracketed, P> OneRay for Shape<T, ByBracket, P> {
@@ -330,15 +357,7 @@ kernels! {
 
     /// The distances of a shape's hits, as [`OneRay::refine`] gives them.
     fn refine[T: OneRay](shape: &T, rays: Rays, sides: Option<&[Side]>, out: &mut [f64]) {
-        let (count, rays) = (out.len(), rays.first(out.len()));
-        match sides {
-            None => for lane in 0..count {
-                out[lane] = shape.refine(&rays.get(lane), None);
-            },
-            Some(sides) => for lane in 0..count {
-                out[lane] = shape.refine(&rays.get(lane), Some(sides[lane]));
-            },
-        }
+        shape.refine_each(rays, sides, out);
     }
 
     /// Where rays come to a shape after these distances, and its normals there.
