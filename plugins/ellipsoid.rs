@@ -1,20 +1,9 @@
 //! An ellipsoid: a sphere stretched along the axes.
 
 use super::sphere;
-use crate::geometry::bounds::Bounds;
-use crate::geometry::ray::{Bracket, Ray, Side, Span};
-use crate::numeric::number::Number;
-use crate::numeric::twofold::{Twofold, exponent_to_one, times_power_of_two};
-use crate::scene::entity::{Args, Entity};
-use crate::scene::pparm::{Pparm, Row, Table};
+use crate::numeric::twofold::{exponent_to_one, times_power_of_two};
+use crate::prelude::*;
 use crate::shapes::ball::{self, Line};
-use crate::world::accuracy::{Accuracy, Bounded, Classic, Draft, Exact, Strict};
-use crate::world::any_shape::AnyShape;
-use crate::world::body::Body;
-use crate::world::certify::Equation;
-use crate::world::hittable::{Bracketed, Certified, Hittable};
-use crate::world::shape::Shape;
-use glam::DVec3;
 use std::marker::PhantomData;
 
 static SCALE: Pparm<DVec3> = Pparm::required("scale", "how much it is stretched along x, y and z")
@@ -74,10 +63,7 @@ impl<A> Ellipsoid<A> {
     /// Likewise in twice the precision.
     #[inline(always)]
     fn line(&self, ray: &Ray) -> Line {
-        let from =
-            |axis: usize| Twofold::difference(ray.origin[axis], self.center[axis]) * self.squeeze[axis];
-        let dir = |axis: usize| Twofold::from(ray.dir[axis]) * self.squeeze[axis];
-        Line { from: [from(0), from(1), from(2)], dir: [dir(0), dir(1), dir(2)] }
+        Line::squeezed(ray, self.center, &self.squeeze)
     }
 
     fn around(&self) -> Bounds {

@@ -1,22 +1,9 @@
 //! A finite plane: a rectangle.
 
 use super::plane;
-use crate::geometry::bounds::Bounds;
-use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
-use crate::numeric::number::{Number, cross, dot};
-use crate::numeric::twofold::Twofold;
-use crate::scene::entity::{Args, Entity, Refusal};
-use crate::scene::pparm::{Attributes, Derived, Pparm, Row, Table};
-use crate::scene::value::Value;
+use crate::prelude::*;
 use crate::shapes::flat::{CLASSIC_METHOD, Flat, Plane};
 use crate::shapes::rectangle::{self, FinitePlane, Rectangle};
-use crate::world::accuracy::{Accuracy, Bounded, Classic, Draft, Exact, Strict};
-use crate::world::any_shape::AnyShape;
-use crate::world::body::Body;
-use crate::world::certify::Equation;
-use crate::world::hittable::{Bracketed, Certified, Hittable};
-use crate::world::shape::Shape;
-use glam::{DMat3, DVec2, DVec3};
 
 pub static DIMENSIONS: Pparm<DVec2> = Pparm::required("dimensions", "its size along xdir and across it")
     .unit("world units")
@@ -28,9 +15,8 @@ static XDIR: Pparm<DVec3> =
         .dumped("xdir", "\n");
 static PROJECTED: Derived = Derived(|args| frame(args).x_axis.to_datum().line("projected", "\n"));
 static ROTATION_ROWS: Derived = Derived(|args| {
-    let rows = frame(args).to_cols_array_2d();
-    let rows = rows.map(|[x, y, z]| format!("{:<12} {x:7.3} {y:7.3} {z:7.3}\n", ""));
-    format!("rotation matrix\n{}", rows.concat())
+    let row = |[x, y, z]: [f64; 3]| format!("{:<12} {x:7.3} {y:7.3} {z:7.3}\n", "");
+    format!("rotation matrix\n{}", frame(args).to_cols_array_2d().map(row).concat())
 });
 
 /// What planes with sides of their own take, after what a plane takes.
@@ -62,13 +48,8 @@ pub fn rectangle(args: &Args) -> Result<Rectangle, Refusal> {
     Ok(finite_plane::<Classic>(args)?.rectangle)
 }
 
-/// The directions of a rectangle's two sides and its normal, as columns, all unit vectors: the rows of the
-/// notes' rotation matrix.
 fn frame(args: &Attributes) -> DMat3 {
-    let normal = args.get(&plane::NORMAL).normalize();
-    let xdir = args.get(&XDIR);
-    let x = (xdir - normal.dot(xdir) * normal).normalize();
-    DMat3::from_cols(x, normal.cross(x), normal)
+    rectangle::frame(args.get(&plane::NORMAL), args.get(&XDIR))
 }
 
 /// The directions of a rectangle's two sides.
@@ -76,8 +57,7 @@ fn frame(args: &Attributes) -> DMat3 {
 /// # Errors
 /// Where `xdir` is parallel to the normal but for rounding, and so points nowhere on the plane.
 pub fn sides(args: &Args) -> Result<[DVec3; 2], Refusal> {
-    let normal = args.get(&plane::NORMAL).normalize();
-    let xdir = args.get(&XDIR).normalize();
+    let (normal, xdir) = (args.get(&plane::NORMAL).normalize(), args.get(&XDIR).normalize());
     if normal.cross(xdir).length() < 1e-6 {
         return Err(Refusal {
             attribute: Some("xdir"),
@@ -85,22 +65,17 @@ pub fn sides(args: &Args) -> Result<[DVec3; 2], Refusal> {
             help: "`xdir` gives the direction of the first side; any vector that is not upright on the plane will do",
         });
     }
-    let DMat3 { x_axis, y_axis, .. } = frame(args);
-    Ok([x_axis, y_axis])
+    Ok([0, 1].map(|side| frame(args).col(side)))
 }
 
 /// The same, crossed as exactly as its type has it; refused as its sides are.
 pub fn finite_plane<A>(args: &Args) -> Result<FinitePlane<A>, Refusal> {
-    let (plane, dimensions) = (plane::plane(args), args.get(&DIMENSIONS));
-    let reach = plane.point.abs().max_element() + dimensions.element_sum();
-    let (given_xdir, given_sides) = (args.get(&XDIR), sides(args)?);
-    let exact_sides = rectangle::exact_sides(plane.upright, given_xdir);
+    let (plane, xdir, classic) = (plane::plane(args), args.get(&XDIR), sides(args)?);
     let sides = match args.accuracy() {
-        Accuracy::Classic => given_sides,
-        _ => exact_sides.map(|side| DVec3::from(side.map(|part| part.high))),
+        Accuracy::Classic => classic,
+        _ => rectangle::rounded_sides(plane.upright, xdir),
     };
-    let rectangle = Rectangle { corner: plane.point, dimensions, sides };
-    Ok(FinitePlane { plane, rectangle, exact_sides, given_xdir, reach })
+    Ok(FinitePlane::cut_from(plane, args.get(&DIMENSIONS), xdir, sides))
 }
 
 impl Hittable for FinitePlane<Classic> {
@@ -170,21 +145,13 @@ impl<A: Bounded> Hittable for FinitePlane<A> {
 impl<A: Bounded> Bracketed for FinitePlane<A> {
     #[inline(always)]
     fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        let rough = self.plane.rough(ray, within.origin_error);
-        let inside = self.inside(ray, rough.distance);
-        // A camera's direction is off by 3 units of 2^-53 in each component, which is less than half of the slack.
-        let slack = rough.error + 2.0 * self.slack(ray, rough.distance);
-        let Bracket { near, far } = self.plane.bracket(&rough, ray, within);
-        Bracket {
-            near: if inside < -slack { MISS } else { near },
-            far: if inside > slack { far } else { MISS },
-        }
+        FinitePlane::bracket(self, ray, within)
     }
 
     #[inline(always)]
     fn refine(&self, ray: &Ray, _leaves: Option<Side>) -> f64 {
         // A hit that is certain is inside.
-        self.plane.refined(ray)
+        self.plane.quick_crossing(ray)
     }
 }
 
@@ -215,20 +182,7 @@ impl<A> Equation for FinitePlane<A> {
         self.plane.value(at)
     }
 
-    /// How far inside of the four sides, each in a measure of its own: unit vectors would need more roots.
     fn kept<N: Number>(&self, at: [N; 3]) -> N {
-        let n = |of: DVec3| of.to_array().map(N::constant);
-        let (normal, xdir) = (self.plane.given_normal(), n(self.given_xdir));
-        let (square, along) = (dot(normal, normal), dot(normal, xdir));
-        let x = [0, 1, 2].map(|axis| square * xdir[axis] - along * normal[axis]);
-        let y = cross(normal, x);
-        let corner = n(self.plane.point);
-        let from_corner = [0, 1, 2].map(|axis| at[axis] - corner[axis]);
-        let inside = |side: [N; 3], length: f64| {
-            let along = dot(side, from_corner);
-            along.min(N::constant(length) * dot(side, side).sqrt() - along)
-        };
-        let [width, height] = self.rectangle.dimensions.to_array();
-        self.plane.kept(at).min(inside(x, width)).min(inside(y, height))
+        self.plane.kept(at).min(self.inside_of(at))
     }
 }

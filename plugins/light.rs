@@ -1,10 +1,6 @@
 //! A light: a point that shines evenly in all directions.
 
-use crate::scene::entity::Entity;
-use crate::scene::pparm::{Attributes, Pparm, Table};
-use crate::world::light::Light;
-use crate::world::material::Rgb;
-use glam::DVec3;
+use crate::prelude::*;
 
 static LOCATION: Pparm<DVec3> = Pparm::required("location", "where it is").unit("world coordinates");
 static EMISSIVITY: Pparm<Rgb> =

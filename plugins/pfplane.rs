@@ -1,7 +1,7 @@
 //! A procedural finite plane: a rectangle whose look changes from place to place by a rule.
 
 use super::{fplane, plane, pplane};
-use crate::scene::entity::Entity;
+use crate::prelude::*;
 
 inventory::submit! {
     Entity::shape(

@@ -1,19 +1,7 @@
 //! A plane: every point in two directions, without end.
 
-use crate::geometry::bounds::{Bounds, SLACK};
-use crate::geometry::ray::{Bracket, Ray, Side, Span};
-use crate::numeric::number::{Number, dot};
-use crate::numeric::twofold::Twofold;
-use crate::scene::entity::{Args, Entity};
-use crate::scene::pparm::{Pparm, Table};
+use crate::prelude::*;
 use crate::shapes::flat::{CLASSIC_METHOD, Flat, Plane};
-use crate::world::accuracy::{Accuracy, Bounded, Classic, Draft, Exact, Strict};
-use crate::world::any_shape::AnyShape;
-use crate::world::body::Body;
-use crate::world::certify::Equation;
-use crate::world::hittable::{Bracketed, Certified, Hittable};
-use crate::world::shape::Shape;
-use glam::DVec3;
 
 pub static NORMAL: Pparm<DVec3> =
     Pparm::required("normal", "a vector that stands upright on it, on its lit side")
@@ -119,7 +107,7 @@ impl<A: Bounded> Bracketed for Plane<A> {
 
     #[inline(always)]
     fn refine(&self, ray: &Ray, _leaves: Option<Side>) -> f64 {
-        self.refined(ray)
+        self.quick_crossing(ray)
     }
 }
 

@@ -1,11 +1,7 @@
 //! A procedural plane: a plane whose look changes from place to place by a rule.
 
 use super::plane;
-use crate::scene::entity::{Args, Entity};
-use crate::scene::pparm::{Pparm, Row, Table};
-use crate::scene::procedural::{Anchor, OnPlane};
-use crate::world::any_shape::AnyShape;
-use crate::world::body::Body;
+use crate::prelude::*;
 
 static SHADER: Pparm<OnPlane> = Pparm::required("shader", "the rule for its look");
 

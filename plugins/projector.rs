@@ -4,15 +4,8 @@ use super::fplane::{self, finite_plane};
 use super::light::{self, PointLight};
 use super::plane;
 use super::texplane::{self, Picture};
-use crate::geometry::ray::Ray;
-use crate::scene::entity::{Args, Entity};
-use crate::scene::pparm::{Derived, Row, Table};
-use crate::scene::value::Datum;
+use crate::prelude::*;
 use crate::shapes::rectangle::{FinitePlane, Window};
-use crate::world::accuracy::{Accuracy, Classic, Draft, Exact, Strict};
-use crate::world::light::Light;
-use crate::world::material::Rgb;
-use glam::DVec3;
 
 static HEADING: Derived = Derived(|_| Datum::Word(String::new()).line("projector", " \n"));
 

@@ -1,10 +1,7 @@
 //! A procedural sphere: a sphere whose look changes from place to place by a rule.
 
 use super::sphere;
-use crate::scene::entity::Entity;
-use crate::scene::pparm::{Pparm, Row, Table};
-use crate::scene::procedural::{Anchor, OnSphere};
-use crate::world::body::Body;
+use crate::prelude::*;
 
 static SHADER: Pparm<OnSphere> = Pparm::required("shader", "the rule for its look");
 

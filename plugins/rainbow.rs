@@ -1,9 +1,6 @@
 //! The notes' continuously modulated shading: colours that change with the angle around a point.
 
-use crate::scene::procedural::{Anchor, ProceduralShader};
-use crate::world::material::{Look, Material, Rgb};
-use crate::world::shader::Shader;
-use glam::{DVec2, DVec3};
+use crate::prelude::*;
 
 inventory::submit! {
     ProceduralShader::new("rainbow", "colours around a point, whatever the material", |anchor| Box::new(Rainbow(anchor))).on_plane(1)

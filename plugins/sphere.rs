@@ -1,19 +1,7 @@
 //! A sphere: every point at one distance from a centre.
 
-use crate::geometry::bounds::{Bounds, SLACK};
-use crate::geometry::ray::{Bracket, Ray, Side, Span};
-use crate::numeric::number::Number;
-use crate::numeric::twofold::Twofold;
-use crate::scene::entity::{Args, Entity};
-use crate::scene::pparm::{Pparm, Table};
+use crate::prelude::*;
 use crate::shapes::ball::{self, Line};
-use crate::world::accuracy::{Accuracy, Bounded, Classic, Draft, Exact, Strict};
-use crate::world::any_shape::AnyShape;
-use crate::world::body::Body;
-use crate::world::certify::Equation;
-use crate::world::hittable::{Bracketed, Certified, Hittable};
-use crate::world::shape::Shape;
-use glam::DVec3;
 use std::marker::PhantomData;
 
 static CENTER: Pparm<DVec3> =
@@ -70,9 +58,7 @@ impl<A> Sphere<A> {
     /// A ray, counted from the centre.
     #[inline(always)]
     fn line(&self, ray: &Ray) -> Line {
-        let from = |axis: usize| Twofold::difference(ray.origin[axis], self.center[axis]);
-        let dir = |axis: usize| Twofold::from(ray.dir[axis]);
-        Line { from: [from(0), from(1), from(2)], dir: [dir(0), dir(1), dir(2)] }
+        Line::new(ray, self.center)
     }
 }
 

@@ -1,12 +1,7 @@
 //! A spotlight: a light that shines into a cone.
 
 use super::light::{self, PointLight};
-use crate::scene::entity::{Entity, Refusal};
-use crate::scene::pparm::{Attributes, Derived, Pparm, Table};
-use crate::scene::value::Value;
-use crate::world::light::Light;
-use crate::world::material::Rgb;
-use glam::DVec3;
+use crate::prelude::*;
 
 static POINT: Pparm<DVec3> =
     Pparm::required("point", "where the middle of its beam goes").unit("world coordinates").not_dumped();

@@ -1,14 +1,8 @@
 //! A textured plane: a rectangle that shows a picture.
 
 use super::{fplane, plane};
-use crate::scene::entity::{Args, Entity};
-use crate::scene::pparm::{Pparm, Table};
+use crate::prelude::*;
 use crate::shapes::rectangle::Rectangle;
-use crate::world::body::Body;
-use crate::world::material::{Look, Material, Rgb};
-use crate::world::shader::Shader;
-use crate::world::texture::Texture;
-use glam::{DVec2, DVec3};
 use std::sync::Arc;
 
 static TEXNAME: Pparm<Arc<Texture>> = Pparm::required("texname", "the texture it shows, defined above it");

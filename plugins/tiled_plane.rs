@@ -2,12 +2,7 @@
 
 use super::fplane::{self, DIMENSIONS, sides};
 use super::plane;
-use crate::scene::entity::Entity;
-use crate::scene::pparm::{Pparm, Table};
-use crate::world::body::Body;
-use crate::world::material::{Look, Material, Rgb};
-use crate::world::shader::Shader;
-use glam::{DVec2, DVec3};
+use crate::prelude::*;
 use std::sync::Arc;
 
 static ALTMATERIAL: Pparm<Arc<Material>> =

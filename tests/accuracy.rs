@@ -17,10 +17,9 @@ use std::fmt::Write;
 use std::hint::black_box;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
-use tabray::geometry::ray::{MISS, Ray, Span};
-use tabray::numeric::formula::Formula;
-use tabray::world::any_shape::AnyShape;
-use tabray::world::hittable::Hittable;
+use tabray::geometry::{MISS, Ray, Span};
+use tabray::numeric::Formula;
+use tabray::world::{AnyShape, Hittable};
 
 /// The rays of each kind for each profile.
 const RAYS: usize = 1_000_000;

@@ -10,10 +10,9 @@ use oracle::hard::{self, SETS};
 use oracle::rays::Random;
 use oracle::shapes::{self, Line, Plane, Quadric};
 use oracle::tally::Tally;
-use tabray::geometry::ray::{Bracket, MISS, Ray, Span};
-use tabray::scene::model::Model;
-use tabray::world::any_shape::AnyShape;
-use tabray::world::hittable::Hittable;
+use tabray::geometry::{Bracket, MISS, Ray, Span};
+use tabray::scene::Model;
+use tabray::world::{AnyShape, Hittable};
 
 /// The shapes of each kind, and the rays for each set and shape.
 const SHAPES: usize = 200;

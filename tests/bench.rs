@@ -5,8 +5,8 @@ mod common;
 use assert_cmd::cargo::cargo_bin_cmd;
 use common::root;
 use serde_json::Value;
-use tabray::scene::reader;
-use tabray::simd::cpu::Cpu;
+use tabray::scene;
+use tabray::simd::Cpu;
 use tabray::tools::bench::scenes;
 
 /// What the program prints in JSON.
@@ -121,7 +121,7 @@ fn a_wrong_command_line_says_what_would_be_right() {
 fn a_scene_has_as_many_objects_as_it_is_asked_for() {
     for count in [10, 100, 1000] {
         for (scene, least) in [(scenes::spheres(count), count), (scenes::triangles(count), count * 8 / 10)] {
-            let model = reader::build(common::registry(), scene).map(|built| built.model);
+            let model = scene::build(common::registry(), scene).map(|built| built.model);
             let objects = model.unwrap_or_else(|report| panic!("{report}")).objects.len();
             assert!((least..=count).contains(&objects), "{objects} of {count}");
         }

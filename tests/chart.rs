@@ -9,10 +9,9 @@ use std::io;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::Command;
-use tabray::scene::model::Model;
-use tabray::scene::reader;
+use tabray::scene::{self, Model};
 use tabray::tools::chart::{self, Chart, Panel, Progress};
-use tabray::world::accuracy::Accuracy;
+use tabray::world::Accuracy;
 use tempfile::TempDir;
 
 /// A thin disc on a rod, which samples along a ray step over.
@@ -45,7 +44,7 @@ impl Progress for Patience {
 
 fn measured(text: &str, patience: usize) -> Chart {
     let load = |accuracy: Option<Accuracy>| -> io::Result<Model> {
-        let loaded = reader::read(registry(), "scene", Path::new(""), text.as_bytes(), accuracy);
+        let loaded = scene::read(registry(), "scene", Path::new(""), text.as_bytes(), accuracy);
         Ok(loaded.map_err(|report| io::Error::other(report.to_string()))?.model)
     };
     chart::measure("scene", &load, &mut Patience(patience)).expect("a chart")

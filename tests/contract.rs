@@ -6,24 +6,13 @@ use common::{block_with, load, registry, root};
 use glam::DVec3;
 use std::fs;
 use std::sync::atomic::{AtomicU32, Ordering};
-use tabray::geometry::bounds::Bounds;
-use tabray::geometry::frame::Frame;
-use tabray::geometry::ray::{Bracket, MISS, Ray, Side, Span};
-use tabray::numeric::number::Number;
-use tabray::scene::entity::{Args, Entity, Refusal};
-use tabray::scene::kind::Kind;
-use tabray::scene::pparm::{Derived, Pparm, Row, Table};
-use tabray::scene::registry::Registry;
-use tabray::shapes::implicit::Implicit;
+use tabray::geometry::{Bounds, Bracket, Frame, MISS, Ray, Side, Span};
+use tabray::numeric::Number;
+use tabray::scene::{Args, Derived, Entity, Kind, Pparm, Refusal, Registry, Row, Table};
+use tabray::shapes::Implicit;
 use tabray::tools::contract::{self, Breach, Promise};
-use tabray::world::body::Body;
-use tabray::world::camera::Camera;
 use tabray::world::certify::Equation;
-use tabray::world::hittable::{Bracketed, Certified, Hittable};
-use tabray::world::light::Light;
-use tabray::world::material::{Material, Rgb};
-use tabray::world::shader::Shader;
-use tabray::world::shape::Shape;
+use tabray::world::{Body, Bracketed, Camera, Certified, Hittable, Light, Material, Rgb, Shader, Shape};
 
 #[test]
 fn every_plugin_keeps_its_contract() {

@@ -10,13 +10,11 @@ use std::collections::BTreeSet;
 use std::f64::consts::PI;
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use tabray::geometry::ray::{MISS, Span};
-use tabray::render::trace;
-use tabray::scene::dump;
-use tabray::scene::model::Model;
-use tabray::scene::reader::{self, Loaded, Report};
+use tabray::geometry::{MISS, Span};
+use tabray::render::{Plan, trace};
+use tabray::scene::{self, Loaded, Model, Report, dump};
 use tabray::tools::debug::{self, Line};
-use tabray::world::accuracy::Accuracy::{self, Classic, Exact};
+use tabray::world::Accuracy::{self, Classic, Exact};
 
 /// The scene of a difference.
 #[derive(Clone)]
@@ -24,7 +22,7 @@ struct Scene(String);
 
 impl Scene {
     fn read(&self, accuracy: Option<Accuracy>) -> Result<Loaded, Report> {
-        reader::read(registry(), "scene", &root().join("docs"), self.0.as_bytes(), accuracy)
+        scene::read(registry(), "scene", &root().join("docs"), self.0.as_bytes(), accuracy)
     }
 
     fn model(&self, accuracy: Accuracy) -> Model {
@@ -37,13 +35,13 @@ impl Scene {
 
     /// The colour of the only pixel, before it becomes bytes.
     fn colour(&self, accuracy: Accuracy) -> DVec3 {
-        trace::pixel(&self.model(accuracy), 0, 0)
+        trace::pixel(&Plan::new(&self.model(accuracy)), 0, 0)
     }
 
     /// The distance of what the first pixel shows.
     fn distance(&self, accuracy: Accuracy) -> f64 {
         let model = self.model(accuracy);
-        let hit = trace::first_hit(&model, &model.camera.value.sight(0.0, 0.0));
+        let hit = trace::first_hit(&Plan::new(&model), &model.camera.value.sight(0.0, 0.0));
         hit.map_or(MISS, |hit| hit.distance)
     }
 
@@ -210,7 +208,7 @@ const CHECKS: &[Check] = &[
     ("Shadows behind glass", |scene| {
         for accuracy in [Classic, Exact] {
             // The way from what this pixel shows to the lamp goes on to the board.
-            let seen = |scene: &Scene| trace::pixel(&scene.model(accuracy), 11, 15);
+            let seen = |scene: &Scene| trace::pixel(&Plan::new(&scene.model(accuracy)), 11, 15);
             assert_eq!(seen(&scene), seen(&scene.without("fplane")));
             assert!(seen(&scene).x > 0.0);
         }
@@ -337,11 +335,12 @@ const CHECKS: &[Check] = &[
     ("The debug listing", |scene| {
         let model = scene.model(Exact);
         let mut out = Vec::new();
-        debug::pixel(&model, 25, 15, &[Line::Pix, Line::Hit, Line::Irgb], &mut out).expect("memory takes it");
+        debug::pixel(&Plan::new(&model), 25, 15, &[Line::Pix, Line::Hit, Line::Irgb], &mut out)
+            .expect("memory takes it");
         let listed = String::from_utf8(out).expect("a text");
         let start = "\nPIX   15   25 - wall         HIT:(  5.7,   3.0,  -4.0)";
         assert!(listed.starts_with(start), "{listed}");
-        let level = 255.0 * trace::pixel(&model, 25, 15).y;
+        let level = 255.0 * trace::pixel(&Plan::new(&model), 25, 15).y;
         assert!(level.fract() > 0.5, "{level} is rounded up by the notes");
         let byte = level.floor();
         assert!(listed.contains(&format!("IRGB:(    0, {byte:>5}, ")), "{listed}");
@@ -424,7 +423,7 @@ const RAYS_THAT_GO_ON: &[Check] = &[
     ("How deep mirrors and glass are followed", |scene| {
         // Summed over all ways between the panes up to 20 units, of which many share a pane, a direction and a length.
         let all = 0.063_216_952_753;
-        let seen = trace::pixel(&scene.model(Exact), 1, 1).x;
+        let seen = trace::pixel(&Plan::new(&scene.model(Exact)), 1, 1).x;
         assert!((seen - all).abs() < 5e-5, "{seen}");
     }),
 ];

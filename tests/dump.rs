@@ -5,14 +5,7 @@ mod common;
 use common::{load, model, model_in, registry, root, scenes};
 use proptest::prelude::*;
 use std::path::Path;
-use tabray::scene::dump;
-use tabray::scene::entity::Entity;
-use tabray::scene::kind::Kind;
-use tabray::scene::model::Model;
-use tabray::scene::pparm::Attribute;
-use tabray::scene::reader::{self, Fault};
-use tabray::scene::syntax::Syntax;
-use tabray::scene::value::{Datum, Type};
+use tabray::scene::{self, Attribute, Datum, Entity, Fault, Kind, Model, Syntax, Type, dump};
 
 /// Every value of a model, to its last bit.
 fn values(model: &Model) -> Vec<String> {
@@ -69,7 +62,7 @@ proptest! {
 
     #[test]
     fn any_scene_survives_its_dump(text in any_scene()) {
-        match reader::read(registry(), "any", Path::new(""), text.as_bytes(), None) {
+        match scene::read(registry(), "any", Path::new(""), text.as_bytes(), None) {
             Ok(loaded) => assert_loads_again(&loaded.model),
             // Only what no single attribute shows may be wrong.
             Err(report) => prop_assert!(report.faults().iter().all(of_a_constructor), "{report}"),

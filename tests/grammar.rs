@@ -8,10 +8,7 @@ use serde_json::Value;
 use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
-use tabray::scene::dump;
-use tabray::scene::grammar;
-use tabray::scene::reader;
-use tabray::scene::syntax::Syntax;
+use tabray::scene::{self, Syntax, dump, grammar};
 
 /// A grammar that is applied as editors apply one: line by line, and at each place the rule that matches first.
 struct Highlighter {
@@ -148,7 +145,7 @@ fn scene_of(scoped: &[Scoped]) -> String {
 /// A scene written again, as its reader understands it.
 fn read(path: &Path, name: &str, text: &str) -> String {
     let folder = path.parent().expect("a folder");
-    match reader::read(registry(), name, folder, text.as_bytes(), None) {
+    match scene::read(registry(), name, folder, text.as_bytes(), None) {
         Ok(loaded) => dump::scene(&loaded.model, Syntax::Notes),
         Err(report) => panic!("{}: {report}\n{text}", path.display()),
     }

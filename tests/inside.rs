@@ -8,7 +8,7 @@ use glam::DVec3;
 use insta::Settings;
 use std::fs;
 use std::path::Path;
-use tabray::render::trace;
+use tabray::render::{Plan, trace};
 use tabray::tools::debug::{self, Line};
 use tabray::tools::probe;
 use tempfile::TempDir;
@@ -17,13 +17,15 @@ const ALL: [Line; 6] = [Line::Pix, Line::Hit, Line::Drgb, Line::Irgb, Line::Offs
 
 fn explained(scene: &str, x: usize, y: usize) -> String {
     let mut out = Vec::new();
-    probe::pixel(&load(&root().join("scenes").join(scene)), x, y, &mut out).expect("memory takes it");
+    probe::pixel(&Plan::new(&load(&root().join("scenes").join(scene))), x, y, &mut out)
+        .expect("memory takes it");
     String::from_utf8(out).expect("a text")
 }
 
 fn debugged(scene: &str, x: usize, y: usize, lines: &[Line]) -> String {
     let mut out = Vec::new();
-    debug::pixel(&load(&root().join("scenes").join(scene)), x, y, lines, &mut out).expect("memory takes it");
+    debug::pixel(&Plan::new(&load(&root().join("scenes").join(scene))), x, y, lines, &mut out)
+        .expect("memory takes it");
     String::from_utf8(out).expect("a text")
 }
 
@@ -56,7 +58,7 @@ fn an_explanation_ends_with_the_bytes_of_the_picture() {
         let picture = render(&model);
         for (x, y) in [(0, 0), (width / 2, height / 2), (width / 3, height / 4), (width - 1, height - 1)] {
             let mut out = Vec::new();
-            probe::pixel(&model, x, y, &mut out).expect("memory takes it");
+            probe::pixel(&Plan::new(&model), x, y, &mut out).expect("memory takes it");
             let text = String::from_utf8(out).expect("a text");
             let [r, g, b] = picture.get_pixel(x as u32, (height - 1 - y) as u32).0;
             let last = format!("bytes            ({r}, {g}, {b})\n");
@@ -98,11 +100,12 @@ fn debug_prints_bytes_that_the_file_has_at_that_offset() {
 #[test]
 fn watching_changes_no_colour() {
     let model = load(&root().join("scenes/gallery/stained-glass.ray"));
+    let plan = Plan::new(&model);
     for (x, y) in (0..640).step_by(53).zip((0..480).step_by(31)) {
         let mut out = Vec::new();
-        debug::pixel(&model, x, y, &ALL, &mut out).expect("memory takes it");
-        let watched = trace::watch_pixel(&model, x, y, &mut ());
-        assert_eq!(trace::pixel(&model, x, y), watched);
+        debug::pixel(&plan, x, y, &ALL, &mut out).expect("memory takes it");
+        let watched = trace::watch_pixel(&plan, x, y, &mut ());
+        assert_eq!(trace::pixel(&plan, x, y), watched);
     }
 }
 
@@ -130,10 +133,11 @@ fn depth_and_normal_are_written_exactly() {
     let exact = |name: &str| image::open(folder.path().join(name)).expect("an EXR").into_rgb32f();
     let (depths, normals) = (exact("a-depth.exr"), exact("a-normal.exr"));
     assert_eq!(depths.dimensions(), (width as u32, height as u32));
+    let plan = Plan::new(&model);
     let mut hits = 0;
     for (column, row, depth) in depths.enumerate_pixels() {
         let (x, y) = (column as usize, height - 1 - row as usize);
-        let hit = trace::first_hit(&model, &model.camera.value.sight(x as f64, y as f64));
+        let hit = trace::first_hit(&plan, &model.camera.value.sight(x as f64, y as f64));
         let expected = hit.as_ref().map_or(f32::INFINITY, |hit| hit.distance as f32);
         assert_eq!(depth.0, [expected; 3], "{x} {y}");
         let normal = hit.as_ref().map_or(DVec3::ZERO, |hit| hit.object.shape.normal(hit.point));
@@ -155,10 +159,11 @@ fn objects_differ_in_colour_and_near_is_brighter_than_far() {
     let open = |name: &str| image::open(folder.path().join(name)).expect("a PNG").into_rgb8();
     let (objects, depths, costs) = (open("a-object.png"), open("a-depth.png"), open("a-cost.png"));
     assert_eq!(costs.pixels().map(|pixel| pixel.0[0]).max(), Some(255));
+    let plan = Plan::new(&model);
     let mut seen = Vec::new();
     for (column, row, colour) in objects.enumerate_pixels() {
         let (x, y) = (column as usize, height - 1 - row as usize);
-        let hit = trace::first_hit(&model, &model.camera.value.sight(x as f64, y as f64));
+        let hit = trace::first_hit(&plan, &model.camera.value.sight(x as f64, y as f64));
         seen.push((hit.map(|hit| (hit.index, hit.distance)), colour.0, depths.get_pixel(column, row).0[0]));
     }
     assert_eq!(seen.len(), width * height);
@@ -259,7 +264,7 @@ fn a_probe_of_an_empty_pixel_says_that_nothing_was_met() {
          material m { ambient 1 1 1 } sphere ball { material m center 4 3 -4 radius 1 }",
     );
     let mut out = Vec::new();
-    probe::pixel(&scene, 0, 0, &mut out).expect("memory takes it");
+    probe::pixel(&Plan::new(&scene), 0, 0, &mut out).expect("memory takes it");
     let text = String::from_utf8(out).expect("a text");
     assert!(text.contains("hit      nothing\n") && text.ends_with("bytes            (0, 0, 0)\n"), "{text}");
 }

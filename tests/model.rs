@@ -3,9 +3,7 @@
 mod common;
 
 use common::{model, registry, render};
-use tabray::scene::dump;
-use tabray::scene::reader::{self, Written};
-use tabray::scene::syntax::Syntax;
+use tabray::scene::{self, Syntax, Written, dump};
 
 const TEXT: &str = "
 camera cam1 { pixeldim 80 60 worlddim 8 6 viewpoint 4 3 6 }
@@ -43,7 +41,7 @@ fn modelstat() -> Vec<Written<'static>> {
 
 #[test]
 fn a_built_model_gives_the_same_picture_and_dump_as_its_text() {
-    let built = reader::build(registry(), modelstat()).unwrap_or_else(|report| panic!("{report}")).model;
+    let built = scene::build(registry(), modelstat()).unwrap_or_else(|report| panic!("{report}")).model;
     let read = model(TEXT);
     assert_eq!(dump::scene(&built, Syntax::Notes), dump::scene(&read, Syntax::Notes));
     let picture = render(&built);
@@ -58,7 +56,7 @@ fn a_built_model_is_checked_as_a_text_is() {
     entities.push(
         Written::new("sphere", "a\nball").set("material", "gray").set("center", [0.0; 3]).set("radius", -1.0),
     );
-    let Err(report) = reader::build(registry(), entities) else { panic!("faults") };
+    let Err(report) = scene::build(registry(), entities) else { panic!("faults") };
     let messages: Vec<_> = report.faults().iter().map(|fault| fault.message.as_str()).collect();
     assert_eq!(
         messages,

@@ -5,7 +5,7 @@ mod common;
 use common::program::{folder, outcome, tabray};
 use common::{model, registry, render};
 use std::path::Path;
-use tabray::scene::reader::{self, Report, Severity};
+use tabray::scene::{self, Report, Severity};
 
 const CAMERA: &str = "camera eye { pixeldim 41 31 worlddim 8 6 viewpoint 4 3 6 }\n";
 const RED: &str = "material red { ambient 9 1 1 }\n";
@@ -13,7 +13,7 @@ const BALL: &str = "sphere ball { material red center 4 3 -3 radius 1 }\n";
 
 /// The warnings of a scene that has no errors.
 fn warnings(text: &str) -> Report {
-    match reader::read(registry(), "scene", Path::new(""), text.as_bytes(), None) {
+    match scene::read(registry(), "scene", Path::new(""), text.as_bytes(), None) {
         Ok(loaded) => loaded.warnings,
         Err(report) => panic!("{report}"),
     }
@@ -24,7 +24,7 @@ fn warning(text: &str, first: &str, later: &str) -> String {
     let report = warnings(text);
     let [fault] = report.faults() else { panic!("{report}") };
     assert_eq!(fault.severity, Severity::Warning);
-    let at = |place: &reader::Place| place.as_ref().map_or("", |place| &text[place.start..]).to_owned();
+    let at = |place: &scene::Place| place.as_ref().map_or("", |place| &text[place.start..]).to_owned();
     assert!(at(&fault.place).starts_with(later), "{report}");
     assert!(at(&fault.also[0].0).starts_with(first), "{report}");
     fault.message.clone() + ": " + &fault.label

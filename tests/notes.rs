@@ -4,11 +4,10 @@ mod common;
 
 use common::model;
 use glam::{DMat3, DVec3, dvec3};
-use tabray::geometry::ray::{MISS, Ray, Span};
-use tabray::render::trace;
+use tabray::geometry::{MISS, Ray, Span};
+use tabray::render::{Plan, trace};
 use tabray::scene::dump;
-use tabray::world::any_shape::AnyShape;
-use tabray::world::hittable::Hittable;
+use tabray::world::{AnyShape, Hittable};
 
 /// Whether two vectors agree to this many printed decimals.
 #[track_caller]
@@ -52,7 +51,7 @@ fn the_sample_driver_prints_its_numbers() {
 // "Translating from pixel to world coordinates", "An alternative world view", "Computing the direction of a ray"
 
 /// A scene with nothing but a camera of this many pixels.
-fn camera(pixels: &str) -> tabray::world::camera::Camera {
+fn camera(pixels: &str) -> tabray::world::Camera {
     model(&format!("camera c {{ pixeldim {pixels} worlddim 8 6 viewpoint 4 3 6 }}")).camera.value
 }
 
@@ -200,7 +199,7 @@ fn a_lit_surface_sends_back_what_the_notes_compute() {
          plane wall { material m normal 0 0 1 point 0 0 0 }
          light l { location 12.660254037844387 3 5 emissivity 8 8 2 }",
     );
-    prints(trace::pixel(&scene, 0, 0), 12, "0.400000000000 0.800000000000 1.000000000000");
+    prints(trace::pixel(&Plan::new(&scene), 0, 0), 12, "0.400000000000 0.800000000000 1.000000000000");
 }
 
 // "Producing a formatted dump of the object list", "Type specific dumpers"

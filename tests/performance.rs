@@ -9,8 +9,9 @@ use nix::sys::resource::{UsageWho, getrusage};
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
-use tabray::scene::reader::{self, Written};
-use tabray::simd::cpu::Cpu;
+use tabray::render::Plan;
+use tabray::scene::{self, Written};
+use tabray::simd::Cpu;
 use tabray::tools::bench::{Speed, scenes};
 
 /// How often each of two commands that are compared is run, by turns.
@@ -50,9 +51,9 @@ fn many_objects() {
         let mut above = None;
         for exponent in 1..=6 {
             let start = Instant::now();
-            let built = reader::build(common::registry(), scene(10_usize.pow(exponent)));
+            let built = scene::build(common::registry(), scene(10_usize.pow(exponent)));
             let model = built.map(|built| built.model).unwrap_or_else(|report| panic!("{report}"));
-            model.plan();
+            drop(Plan::new(&model));
             let building = start.elapsed().as_secs_f64();
             let speed = Speed::measure(model, Cpu::best(), Duration::from_millis(200)).expect("a thread");
             let milliseconds = 1e3 * speed.frame.seconds;

@@ -9,17 +9,11 @@ use serde_json::Value;
 use std::fs;
 use std::path::Path;
 use std::sync::Mutex;
-use tabray::output::picture::to_byte;
-use tabray::render::plan::Plan;
-use tabray::render::renderer::Renderer;
-use tabray::render::tally::{Tally, Tests};
-use tabray::render::trace;
-use tabray::render::watch::Kind::{Primary, Reflected, Shadow, Transmitted};
-use tabray::render::watch::Watch;
-use tabray::scene::model::Model;
-use tabray::scene::reader;
-use tabray::simd::cpu::Cpu;
-use tabray::world::accuracy::Accuracy;
+use tabray::render::Kind::{Primary, Reflected, Shadow, Transmitted};
+use tabray::render::{Plan, Renderer, Tally, Tests, Watch, decisions, to_byte, trace};
+use tabray::scene::{self, Model};
+use tabray::simd::Cpu;
+use tabray::world::Accuracy;
 use tempfile::TempDir;
 
 /// What a scene's picture of 40 x 30 pixels takes.
@@ -37,15 +31,16 @@ fn count(model: &Model, threads: usize) -> Tally {
     let sum = Mutex::new(Tally::default());
     let add = |part: Tally| sum.lock().expect("no thread panics").add(&part);
     let renderer = Renderer::new(threads).expect("threads");
-    let [width, height] = model.camera.value.pixels;
-    let bands = renderer.bands(model, 0..width, 0..height, &add);
+    let plan = Plan::new(model);
+    let [width, height] = plan.camera.pixels;
+    let bands = renderer.bands(&plan, 0..width, 0..height, &add);
     let pixels: Vec<_> = bands.flat_map(|band| band.pixels).collect();
-    assert_eq!(pixels.into_flattened(), renderer.picture(model), "watching changes nothing");
+    assert_eq!(pixels.into_flattened(), renderer.picture(&plan), "watching changes nothing");
     sum.into_inner().expect("no thread panics")
 }
 
 fn text(model: &Model) -> String {
-    Plan::decisions(model).iter().map(|decision| format!("{decision}\n")).collect()
+    decisions::of(&Plan::new(model)).iter().map(|decision| format!("{decision}\n")).collect()
 }
 
 /// The line of a plan about a subject.
@@ -65,8 +60,9 @@ fn without_lights_no_shadow_rays_are_cast() {
     assert_eq!([Primary, Shadow].map(|kind| tally.rays(kind)), [PIXELS, 0]);
     assert!(line(&dark, "lights").contains("none: ") && !text(&dark).contains("shadows "));
     let (lit, tally) = counted(&format!("{FLOOR} {LAMP}"));
+    let plan = Plan::new(&lit);
     let hits = (0..30).flat_map(|y| (0..40).map(move |x| (x, y)));
-    let hits = hits.filter(|(x, y)| trace::pixel(&lit, *x, *y).max_element() > 0.0).count() as u64;
+    let hits = hits.filter(|(x, y)| trace::pixel(&plan, *x, *y).max_element() > 0.0).count() as u64;
     assert!(hits > PIXELS / 3);
     assert_eq!(
         tally.rays(Shadow),
@@ -209,8 +205,7 @@ fn no_ray_is_counted_twice() {
 fn small(path: &Path, accuracy: Option<Accuracy>) -> Model {
     let bytes = fs::read(path).expect("a scene");
     let name = path.display().to_string();
-    let mut model = match reader::read(registry(), &name, path.parent().expect("a folder"), &bytes, accuracy)
-    {
+    let mut model = match scene::read(registry(), &name, path.parent().expect("a folder"), &bytes, accuracy) {
         Ok(loaded) => loaded.model,
         Err(report) => panic!("{report}"),
     };
@@ -233,14 +228,15 @@ fn a_picture_depends_neither_on_instructions_nor_on_threads_nor_on_tiles() {
     for path in scenes() {
         for accuracy in [Accuracy::Exact, Accuracy::Classic, Accuracy::Draft, Accuracy::Strict] {
             let model = small(&path, Some(accuracy));
-            let [width, height] = model.camera.value.pixels;
+            let plan = Plan::new(&model);
+            let [width, height] = plan.camera.pixels;
             let alone = renderers[0].1.run(|| {
                 let pixels = (0..height).rev().flat_map(|y| (0..width).map(move |x| (x, y)));
-                let pixels = pixels.flat_map(|(x, y)| trace::pixel(&model, x, y).to_array());
+                let pixels = pixels.flat_map(|(x, y)| trace::pixel(&plan, x, y).to_array());
                 pixels.map(to_byte).collect::<Vec<_>>()
             });
             for (name, renderer) in &renderers {
-                let picture = renderer.picture(&model);
+                let picture = renderer.picture(&plan);
                 let differ = picture.iter().zip(&alone).filter(|(one, other)| one != other).count();
                 if differ > 0 || picture.len() != alone.len() {
                     faults.push(format!("{} {accuracy:?}, {name}: {differ} bytes", path.display()));
@@ -273,7 +269,7 @@ fn plans_are_as_before() {
         }
         let classic = fs::read(root().join("scenes/entities/revsurf.ray")).expect("a scene");
         let accuracy = Some(Accuracy::Classic);
-        let classic = reader::read(registry(), "revsurf.ray", Path::new(""), &classic, accuracy);
+        let classic = scene::read(registry(), "revsurf.ray", Path::new(""), &classic, accuracy);
         insta::assert_snapshot!("classic", text(&classic.unwrap_or_else(|report| panic!("{report}")).model));
     });
 }
@@ -464,10 +460,11 @@ fn whoever_looks_on_sees_the_colours_of_the_picture() {
     }
     let thread = Renderer::new(1).expect("a thread with room for deep reflections");
     let check = |name: &str, model: &Model| {
-        let [width, height] = model.camera.value.pixels;
+        let plan = Plan::new(model);
+        let [width, height] = plan.camera.pixels;
         for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
             let [seen, alone] =
-                thread.run(|| [trace::watch_pixel(model, x, y, &mut Onlooker), trace::pixel(model, x, y)]);
+                thread.run(|| [trace::watch_pixel(&plan, x, y, &mut Onlooker), trace::pixel(&plan, x, y)]);
             assert_eq!(seen, alone, "{name}, pixel {x} {y}");
         }
     };

@@ -154,9 +154,7 @@ fn contradictions_are_told_with_their_places(copy: &Copy) {
 
 const RIVAL: &str = "//! What others have already.
 
-use crate::scene::entity::Entity;
-use crate::scene::procedural::ProceduralShader;
-use crate::scene::profile::Profile;
+use crate::prelude::*;
 
 inventory::submit! { Entity::shape(\"sphere\", \"another ball\", &[], |_| unreachable!()) }
 inventory::submit! { Profile::new(\"cone\", \"another cone\", \"1\") }
@@ -166,7 +164,7 @@ inventory::submit! { ProceduralShader::new(\"checks\", \"its number is that of t
 
 const BARREL: &str = "//! A barrel.
 
-use crate::scene::profile::Profile;
+use crate::prelude::*;
 
 inventory::submit! {
     Profile::new(\"barrel\", \"a barrel 4 high\", \"1.5 - 0.1 * (y - 2)^2\")
@@ -175,10 +173,7 @@ inventory::submit! {
 
 const STRIPES: &str = "//! Stripes, as wide as a tenth of the anchor's unit.
 
-use crate::scene::procedural::{Anchor, ProceduralShader};
-use crate::world::material::{Material, Rgb};
-use crate::world::shader::Shader;
-use glam::DVec3;
+use crate::prelude::*;
 
 inventory::submit! {
     ProceduralShader::new(\"stripes\", \"stripes across y\", |anchor| Box::new(Stripes(anchor)))

@@ -5,11 +5,11 @@ mod common;
 use common::{model, registry};
 use proptest::prelude::*;
 use std::path::Path;
-use tabray::scene::reader::{self, Severity};
+use tabray::scene::{self, Severity};
 
 /// Reads bytes as a scene; either there is a model, or there is an error that can be printed.
 fn read(bytes: &[u8]) {
-    if let Err(report) = reader::read(registry(), "any", Path::new(""), bytes, None) {
+    if let Err(report) = scene::read(registry(), "any", Path::new(""), bytes, None) {
         assert!(report.faults().iter().any(|fault| fault.severity == Severity::Error));
         assert!(report.to_string().contains("error"));
     }
@@ -70,7 +70,7 @@ fn a_scene_with_a_fault_in_each_toml_table_reports_them_all() {
     for index in 0..10_000 {
         text += &format!("[sphere.s{index}]\nmaterial = \"m\"\ncenter = [1, 2\nradius = 1\n");
     }
-    let Err(report) = reader::read(registry(), "many.toml", Path::new(""), text.as_bytes(), None) else {
+    let Err(report) = scene::read(registry(), "many.toml", Path::new(""), text.as_bytes(), None) else {
         panic!("faults")
     };
     assert_eq!(report.faults().len(), 10_000);
@@ -83,7 +83,7 @@ fn a_scene_with_a_fault_in_each_of_ten_thousand_entities_reports_them_all() {
     for index in 0..10_000 {
         text += &format!("sphere s{index} {{ material m center 1 2 raduis 1 }}\n");
     }
-    let Err(report) = reader::read(registry(), "many", Path::new(""), text.as_bytes(), None) else {
+    let Err(report) = scene::read(registry(), "many", Path::new(""), text.as_bytes(), None) else {
         panic!("faults")
     };
     assert_eq!(report.faults().len(), 20_000);

@@ -12,9 +12,8 @@ use insta::internals::SnapshotContents;
 use insta::{Comparator, Settings, Snapshot};
 use std::fs;
 use std::path::Path;
-use tabray::output::compare::Comparison;
-use tabray::scene::dump;
-use tabray::scene::reader;
+use tabray::output::Comparison;
+use tabray::scene::{self, dump};
 
 #[test]
 fn every_scene_dumps_as_before() {
@@ -50,7 +49,7 @@ fn every_scene_looks_as_before() {
 fn every_mistake_is_explained_as_before() {
     insta::glob!("../scenes/wrong", "*.{ray,toml}", |path| {
         let name = path.strip_prefix(root()).expect("a scene of this package").display().to_string();
-        let report = match reader::read(
+        let report = match scene::read(
             registry(),
             &name,
             path.parent().expect("a folder"),

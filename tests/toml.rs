@@ -7,9 +7,7 @@ use common::{load, model, registry, render, root, scenes};
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
-use tabray::scene::dump;
-use tabray::scene::schema;
-use tabray::scene::syntax::Syntax;
+use tabray::scene::{Syntax, dump, schema};
 use tempfile::TempDir;
 
 const NOTES: &str = "

@@ -13,10 +13,9 @@ use oracle::tally::{Tally, Tolerance, ulp};
 use oracle::{Crossings, Truth};
 use std::cell::RefCell;
 use std::collections::HashMap;
-use tabray::geometry::ray::{MISS, Ray, Side, Span};
-use tabray::geometry::sight::Sight;
-use tabray::numeric::interval::{Float, Wide};
-use tabray::scene::model::Model;
+use tabray::geometry::{MISS, Ray, Side, Sight, Span};
+use tabray::numeric::{Float, Wide};
+use tabray::scene::Model;
 use tabray::world::certify::{self, Enclosure, Precision};
 
 /// The rays of each set.
@@ -257,7 +256,7 @@ fn profiles_that_hide_in_thin_parts_are_found() {
 fn the_truth_of_a_revolution_is_where_the_function_first_changes_its_sign() {
     for (formula, height) in [VASE, NASTY, CONE, FLANGE, KINK, TUBE, JUMP] {
         let surface = Revolution::new(formula, BASE, height);
-        let line = tabray::numeric::formula::Formula::parse(formula).expect("a formula");
+        let line = tabray::numeric::Formula::parse(formula).expect("a formula");
         for ray in rays::camera(500, 1.0).chain(rays::inside(500, BASE + dvec3(0.0, 3.0, 0.0), 4.0)) {
             let outside = |t: f64| {
                 let at = ray.at(t) - BASE;

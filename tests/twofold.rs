@@ -7,9 +7,7 @@ use dashu_float::round::mode::HalfEven;
 use dashu_int::{IBig, UBig};
 use f256::f256;
 use oracle::rays::Random;
-use tabray::numeric::interval::{Float, Interval, Wide};
-use tabray::numeric::number::Number;
-use tabray::numeric::twofold::Twofold;
+use tabray::numeric::{Float, Interval, Number, Wide, twofold::Twofold};
 
 type Big = FBig<HalfEven, 2>;
 

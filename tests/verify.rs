@@ -4,6 +4,7 @@ mod common;
 
 use assert_cmd::cargo::cargo_bin_cmd;
 use common::{load, model, root, scenes};
+use tabray::render::Plan;
 use tabray::tools::verify::{self, Verdict};
 use tempfile::TempDir;
 
@@ -22,12 +23,13 @@ const AT_EDGES: [&str; 10] = [
 ];
 
 /// Counts of proven, undecided and contradicted pixels: of every `step`-th, both ways.
-fn counts(model: &tabray::scene::model::Model, step: usize) -> [usize; 3] {
+fn counts(model: &tabray::scene::Model, step: usize) -> [usize; 3] {
     let [width, height] = model.camera.value.pixels;
+    let plan = Plan::new(model);
     let mut counts = [0; 3];
     for y in (0..height).step_by(step) {
         for x in (0..width).step_by(step) {
-            counts[match verify::pixel(model, x, y) {
+            counts[match verify::pixel(&plan, x, y) {
                 Verdict::Proven => 0,
                 Verdict::Tie => 1,
                 Verdict::Contradicted => 2,
@@ -117,9 +119,9 @@ fn a_sliver_before_another_triangle_is_proven_from_its_corners() {
          triangle other { material green vertex1 0 0 -4.628004657281974 vertex2 10 0 -4.628004657281974
              vertex3 4 9 -4.628004657281974 }",
     );
-    assert_eq!(verify::pixel(&model, 0, 0), Verdict::Proven);
+    assert_eq!(verify::pixel(&Plan::new(&model), 0, 0), Verdict::Proven);
     let sight = model.camera.value.sight(0.0, 0.0);
-    let met = tabray::render::trace::first_hit(&model, &sight).expect("a triangle").index;
+    let met = tabray::render::trace::first_hit(&Plan::new(&model), &sight).expect("a triangle").index;
     assert_eq!(met, 0, "rational arithmetic says that the sliver is nearer, by 6e-10");
 }
 

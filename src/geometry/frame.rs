@@ -12,6 +12,13 @@ use glam::{DMat3, DVec3};
 /// direction, less.
 pub const BLUR: f64 = 6.0 * f64::EPSILON;
 
+/// How far rounding moves each coordinate of a point in a frame that is so far along a ray: as [`BLUR`] says, and the
+/// direction of a ray from the viewer is rounded by less than EPSILON, too.
+#[inline(always)]
+pub fn blur(at: DVec3, distance: f64) -> f64 {
+    BLUR * at.abs().element_sum() + 2.0 * f64::EPSILON * distance.abs()
+}
+
 /// An origin, and three unit vectors upright on each other.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame {

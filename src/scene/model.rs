@@ -1,6 +1,5 @@
 //! A scene ready to be traced. It does not change while a picture is made.
 
-use crate::render::plan::Plan;
 use crate::scene::entity::Args;
 use crate::scene::kind::Kind;
 use crate::world::any_shape::AnyShape;
@@ -9,7 +8,7 @@ use crate::world::camera::Camera;
 use crate::world::material::{Material, Rgb};
 use crate::world::texture::Texture;
 use glam::DVec3;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 /// All that a picture is made from.
 pub struct Model {
@@ -23,15 +22,9 @@ pub struct Model {
     pub objects: Vec<Object>,
     /// The lights, in the order of the scene.
     pub lights: Vec<Item<AnyLight>>,
-    pub(crate) plan: OnceLock<Plan>,
 }
 
 impl Model {
-    /// What tracing it needs, decided when it is first asked for.
-    pub fn plan(&self) -> &Plan {
-        self.plan.get_or_init(|| Plan::new(self))
-    }
-
     /// The entities of a kind as they were given, in the order of the scene.
     pub fn entities(&self, kind: Kind) -> Vec<&Args> {
         match kind {

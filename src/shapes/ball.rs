@@ -5,7 +5,7 @@
 //! Newton's method, and what rounding could decide is decided in twice the precision.
 
 use crate::geometry::bounds::larger;
-use crate::geometry::ray::{Bracket, MISS, Side, Span};
+use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
 use crate::numeric::twofold::{Twofold, exponent_to_one, times_power_of_two, two_product};
 use crate::world::accuracy::{Accuracy, Bounded};
 use glam::DVec3;
@@ -17,6 +17,24 @@ pub struct Line {
     pub from: [Twofold; 3],
     /// Where it goes; of any length. Distances are counted in this length.
     pub dir: [Twofold; 3],
+}
+
+impl Line {
+    /// A ray, counted from the centre.
+    #[inline(always)]
+    pub fn new(ray: &Ray, center: DVec3) -> Self {
+        let from = |axis: usize| Twofold::difference(ray.origin[axis], center[axis]);
+        let dir = |axis: usize| Twofold::from(ray.dir[axis]);
+        Self { from: [from(0), from(1), from(2)], dir: [dir(0), dir(1), dir(2)] }
+    }
+
+    /// A ray where space around the centre is squeezed: by these factors along the axes.
+    #[inline(always)]
+    pub fn squeezed(ray: &Ray, center: DVec3, squeeze: &[Twofold; 3]) -> Self {
+        let Self { from, dir } = Self::new(ray, center);
+        let scaled = |of: [Twofold; 3]| [of[0] * squeeze[0], of[1] * squeeze[1], of[2] * squeeze[2]];
+        Self { from: scaled(from), dir: scaled(dir) }
+    }
 }
 
 /// How hits are computed, in a few words.
@@ -166,9 +184,11 @@ pub fn bracket(
     // Of what `aside` is off by: 14 units of 2^-53 of the way from the centre, as in `quick_hit`, and 3 in each
     // component for a camera's direction. ROOM is thousands of times as much, so that the half chord is off by less
     // than ERROR where there is that room.
-    let size = spread * (from.abs().element_sum() + radius) + ORIGIN_ERRORS * origin_error;
+    // The sum of what all rays of a packet have in common comes first.
+    let size = spread * from.abs().element_sum() + (spread * radius + ORIGIN_ERRORS * origin_error);
     let error = ERROR * size * inverse.sqrt();
-    let doubt = ROOM * size * (radius + ROOM * size);
+    let room_error = ROOM * size;
+    let doubt = room_error * (radius + room_error);
     let half = (larger(room, 0.0) * inverse).sqrt();
     let (near, far) = (middle - half, middle + half);
     match leaves {

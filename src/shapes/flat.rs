@@ -107,17 +107,19 @@ impl<A> Plane<A> {
     /// Units of 2^-53: the normal's components are off by 1 against each other, what is between the points by 1, a
     /// product by 1 and the sum of three by 2, so that `away` is off by 5 of its size and `toward` by 4; by 5 more
     /// because a camera's direction is off by 3 in each component, which is one of a vector of at most 1.74 in sum.
-    /// That `toward` is more than 3 times its error makes 14 of the quotient's 9, less than the 16 here.
+    /// That `toward` is more than 3 times its error makes 14 of the quotient's 9, less than the 16 here. Where the ray runs
+    /// along the plane exactly, the reciprocal is no number, and neither are these.
     #[inline(always)]
     pub fn rough(&self, ray: &Ray, origin_error: f64) -> Rough {
         let Products { away, away_size, toward, .. } = self.products(self.normal, ray);
         let inverse = reciprocal(toward);
         let distance = away * inverse;
-        let error = inverse.abs() * (8.0 * f64::EPSILON * (away_size + distance.abs()) + origin_error);
-        let error = error + RECIPROCAL_ERROR * distance.abs();
+        // The reciprocal's own error is a part of the distance, which is no larger than `away_size` times it.
+        const ERROR: f64 = RECIPROCAL_ERROR + 8.0 * f64::EPSILON;
+        let error = inverse.abs() * (ERROR * (away_size + distance.abs()) + origin_error);
         // Upright on an axis, it is one component of the direction, and nothing that cancels.
         let is_parallel = (toward == 0.0) & self.is_upright;
-        let error = if toward.abs() <= 16.0 * f64::EPSILON { f64::INFINITY } else { error };
+        let error = if inverse.abs() >= LEAST_TOWARD.recip() { f64::INFINITY } else { error };
         Rough { distance, error, is_parallel }
     }
 
@@ -148,12 +150,13 @@ impl<A> Plane<A> {
         let z = ray.origin.z + distance * ray.dir.z;
         // Of z; that of the product in it is far less than a reciprocal's.
         let z_error = error + 4.0 * f64::EPSILON * ray.origin.z.abs();
-        // Where the error has no end, or the distance is no number, none of these is so.
+        // Where the error has no end, or the distance is no number, none of these is so but that it is parallel. What is
+        // there is not missed.
         let is_missed = is_parallel | (high <= within.near) | (z - z_error > SCREEN);
         let is_there = (low > within.near) & (z + z_error < SCREEN);
         Bracket {
             near: if is_missed { MISS } else { larger(low, within.near) },
-            far: if is_there & !is_missed { high } else { MISS },
+            far: if is_there { high } else { MISS },
         }
     }
 
@@ -247,21 +250,12 @@ impl<A: Bounded> Plane<A> {
         }
     }
 
-    /// The distance of a hit that is certain, as [`crossing`](Self::crossing) and [`keep`](Self::keep) have it, or NaN
-    /// where it takes more than plain arithmetic.
-    #[inline(always)]
-    pub fn refined(&self, ray: &Ray) -> f64 {
-        self.quick_keep(self.quick_crossing(ray), ray, &Span::RAY)
-    }
-
-    /// What [`refined`](Self::refined) gives for each ray of a packet: where nothing cancels.
+    /// What [`quick_crossing`](Self::quick_crossing) gives for each ray of a packet: where nothing cancels.
     #[inline(always)]
     fn refine_plain(&self, rays: Rays, out: &mut [f64]) {
         let rays = rays.first(out.len());
         for lane in 0..out.len() {
-            let ray = rays.get(lane);
-            let distance = self.products(self.high(), &ray).draft_distance();
-            out[lane] = self.quick_keep(distance, &ray, &Span::RAY);
+            out[lane] = self.products(self.high(), &rays.get(lane)).draft_distance();
         }
     }
 
@@ -293,8 +287,7 @@ impl<A: Bounded> Plane<A> {
                 }
             }
             for lane in 0..STEP {
-                let distance = quotient((away[lane], away_size[lane]), (toward[lane], toward_size[lane]));
-                out[lane] = self.quick_keep(distance, &rays.get(lane), &Span::RAY);
+                out[lane] = quotient((away[lane], away_size[lane]), (toward[lane], toward_size[lane]));
             }
         }
     }
@@ -450,6 +443,9 @@ impl Products {
 /// What a plain quotient of products may be off, as a part of it: each of them is off by 5 units of 2^-53 of parts that
 /// add up to at most 64 times it.
 pub const DRAFT_ERROR: f64 = 512.0 * f64::EPSILON;
+
+/// A ray that comes no faster toward a plane, as a part of its way, runs along it but for rounding.
+const LEAST_TOWARD: f64 = 17.0 * f64::EPSILON;
 
 /// What a [`reciprocal`] may be off, as a part of it: twice the square of what it starts with.
 const RECIPROCAL_ERROR: f64 = 1.0 / (1_u64 << 44) as f64;

@@ -5,18 +5,21 @@
 //! numbers give the normal.
 
 use crate::geometry::bounds::Bounds;
-use crate::geometry::frame::{BLUR, Frame};
-use crate::geometry::ray::{MISS, Ray, Side, Span};
-use crate::geometry::roots::{Method, taylor, twice};
+use crate::geometry::frame::{self, BLUR, Frame};
+use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
+use crate::geometry::roots::taylor::{self, Found, Stretch};
+use crate::geometry::roots::{Method, twice};
 use crate::geometry::sight::Line;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
 use crate::numeric::number::Number;
 use crate::world::body::Body;
 use crate::world::certify::Equation;
-use crate::world::hittable::{Certified, Hittable, Searched};
+use crate::world::hittable::{Bracketed, Certified, Hittable, Searched};
+use crate::world::packets::shape::by_distance;
 use crate::world::shape::Shape;
 use glam::DVec3;
+use std::ops::Range;
 
 /// A shape by its formula, in coordinates of its own.
 pub trait Implicit: Send + Sync {
@@ -32,7 +35,7 @@ impl Body {
     /// An object by its formula, that looks like its material.
     pub fn implicit(formula: impl Implicit + 'static, frame: Frame) -> Self {
         let [low, high] = formula.bounds();
-        Self::plain(Shape::new(ImplicitShape { formula, frame, low, high }).searched())
+        Self::plain(Shape::new(ImplicitShape { formula, frame, low, high }).bracketed().searched())
     }
 }
 
@@ -46,7 +49,8 @@ struct ImplicitShape<T> {
 
 impl<T: Implicit> Hittable for ImplicitShape<T> {
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        self.first_hit(Method::Taylor, ray, within)
+        let line = OnRay::new(self, ray);
+        line.distance(line.first_hit(within).root, within)
     }
 
     /// Along the formula's gradient. Where that vanishes or does not exist, as at the tip of a cone, the normal
@@ -77,39 +81,28 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
     }
 }
 
+impl<T: Implicit> Bracketed for ImplicitShape<T> {
+    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
+        let touches = || self.touches(ray.origin, within.origin_error);
+        by_distance(within, touches, |within| {
+            let line = OnRay::new(self, ray);
+            let Found { root, is_certain } = line.first_hit(within);
+            is_certain.then(|| line.distance(root, within))
+        })
+    }
+
+    fn refine(&self, ray: &Ray, leaves: Option<Side>) -> f64 {
+        self.distance(ray, &Span { leaves, ..Span::RAY })
+    }
+}
+
 impl<T: Implicit> Certified for ImplicitShape<T> {}
 
 impl<T: Implicit> Searched for ImplicitShape<T> {
     fn distance_by(&self, method: Method, ray: &Ray, within: &Span) -> f64 {
-        self.first_hit(method, ray, within)
-    }
-}
-
-impl<T: Implicit> ImplicitShape<T> {
-    /// From the point of the ray that is closest to the shape's origin, so that a shape far away is met as exactly
-    /// as a near one. The ray is looked at from its origin, or where it comes into the box, to where it leaves the box,
-    /// wherever the span ends: a hit is the same in every span that holds it.
-    fn first_hit(&self, method: Method, ray: &Ray, within: &Span) -> f64 {
-        let closest = (self.frame.origin - ray.origin).dot(ray.dir);
-        let base = self.frame.direction(self.frame.from_origin(ray, closest));
-        let dir = self.frame.direction(ray.dir);
-        let (mut start, mut end) = (-closest, f64::INFINITY);
-        for axis in 0..3 {
-            let (base, dir) = (base[axis], dir[axis]);
-            if dir != 0.0 {
-                let (one, other) = ((self.low[axis] - base) / dir, (self.high[axis] - base) / dir);
-                start = start.max(one.min(other));
-                end = end.min(one.max(other));
-            } else if base < self.low[axis] || base > self.high[axis] {
-                return MISS;
-            }
-        }
-        let line = OnRay { shape: self, base, dir, ray, closest };
-        let shortest = 4.0 * f64::EPSILON * start.abs().max(end.abs());
-        match method.first_root(&line, start..end, closest, within, shortest) {
-            Some(root) => within.keep(closest + root),
-            None => MISS,
-        }
+        let line = OnRay::new(self, ray);
+        let Stretch { outer, .. } = line.stretch();
+        line.distance(method.first_root(&line, outer.clone(), line.closest, within, shortest(&outer)), within)
     }
 }
 
@@ -143,19 +136,57 @@ fn direction(vector: DVec3) -> Option<DVec3> {
 /// A formula along a ray.
 struct OnRay<'s, T> {
     shape: &'s ImplicitShape<T>,
-    /// The ray in the shape's own coordinates, from its point closest to the shape's origin.
+    /// The ray in the shape's own coordinates, from its point closest to the shape's origin: a shape far away is met as
+    /// exactly as a near one.
     base: DVec3,
     dir: DVec3,
+    /// How far rounding may have moved that point.
+    blur: f64,
     /// The ray in the world, and how far along it that point is.
     ray: &'s Ray,
     closest: f64,
 }
 
+impl<'s, T: Implicit> OnRay<'s, T> {
+    fn new(shape: &'s ImplicitShape<T>, ray: &'s Ray) -> Self {
+        let closest = (shape.frame.origin - ray.origin).dot(ray.dir);
+        let base = shape.frame.direction(shape.frame.from_origin(ray, closest));
+        let dir = shape.frame.direction(ray.dir);
+        Self { shape, base, dir, blur: frame::blur(base, closest), ray, closest }
+    }
+
+    /// From the ray's origin, or where it comes into the box, to where it leaves the box, wherever a span ends: a hit is
+    /// the same in every span that holds it.
+    fn stretch(&self) -> Stretch {
+        let ImplicitShape { low, high, .. } = self.shape;
+        let reach = 2.0 * low.abs().max(high.abs()).element_sum();
+        let mut stretch = Stretch::from(-self.closest..f64::INFINITY);
+        for axis in 0..3 {
+            stretch.cut((self.base[axis], self.dir[axis]), [low[axis], high[axis]], self.blur, reach);
+        }
+        stretch
+    }
+
+    fn first_hit(&self, within: &Span) -> Found {
+        let stretch = self.stretch();
+        taylor::first_root(self, &stretch, self.closest, within, shortest(&stretch.outer))
+    }
+
+    /// The distance of a root.
+    fn distance(&self, root: Option<f64>, within: &Span) -> f64 {
+        root.map_or(MISS, |root| within.keep(self.closest + root))
+    }
+}
+
+/// A few units in the last place of the greatest numbers on a line.
+fn shortest(span: &Range<f64>) -> f64 {
+    4.0 * f64::EPSILON * span.start.abs().max(span.end.abs())
+}
+
 impl<T: Implicit> taylor::Line for OnRay<'_, T> {
     fn at<N: Number>(&self, t: N) -> N {
         // Bounds hold the values along the ray which this one was rounded from.
-        let blur = BLUR * self.base.abs().element_sum();
-        let along = |axis: usize| N::about(self.base[axis], blur) + N::about(self.dir[axis], BLUR) * t;
+        let along = |axis: usize| N::about(self.base[axis], self.blur) + N::about(self.dir[axis], BLUR) * t;
         self.shape.formula.value([along(0), along(1), along(2)])
     }
 

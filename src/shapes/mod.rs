@@ -1,8 +1,15 @@
 //! Arithmetic that several shapes share.
 
 pub mod ball;
-pub mod flat;
-pub mod implicit;
-pub mod quadratic;
+pub(crate) mod flat;
+pub(crate) mod implicit;
+pub(crate) mod quadratic;
 pub mod rectangle;
-pub mod revolution;
+pub(crate) mod revolution;
+pub(crate) mod triangle;
+
+pub use flat::Plane;
+pub use implicit::Implicit;
+pub use quadratic::Quadric;
+pub use revolution::{Classic, Finish, InFrame, Revolution};
+pub use triangle::Triangle;

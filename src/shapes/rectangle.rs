@@ -1,11 +1,12 @@
 //! A rectangle cut out of a plane: the arithmetic behind those shapes that have one.
 
 use crate::geometry::bounds::{Bounds, larger, smaller};
-use crate::geometry::ray::{MISS, Ray};
+use crate::geometry::ray::{Bracket, MISS, Ray, Span};
+use crate::numeric::number::{self, Number, dot};
 use crate::numeric::twofold::{Twofold, cross, exponent_to_one, product, times_power_of_two, unit};
 use crate::shapes::flat::{DRAFT_ERROR, Plane};
 use crate::world::accuracy::{Accuracy, Bounded, Classic};
-use glam::{DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 /// Where a rectangle is.
 #[derive(Clone, Copy, Debug)]
@@ -50,6 +51,30 @@ impl Rectangle {
 }
 
 impl<A> FinitePlane<A> {
+    /// The part of a plane with a corner at its point, so long sides in these directions, and the first of them right below a
+    /// vector.
+    pub fn cut_from(plane: Plane<A>, dimensions: DVec2, given_xdir: DVec3, sides: [DVec3; 2]) -> Self {
+        let reach = plane.point.abs().max_element() + dimensions.element_sum();
+        let exact_sides = exact_sides(plane.upright, given_xdir);
+        let rectangle = Rectangle { corner: plane.point, dimensions, sides };
+        Self { plane, rectangle, exact_sides, given_xdir, reach }
+    }
+
+    /// Above 0 inside of the four sides, each in a measure of its own, and below 0 outside, of a point of the plane. By
+    /// squares: lengths and unit
+    /// vectors would need roots, which are dear with many bits.
+    pub fn inside_of<N: Number>(&self, at: [N; 3]) -> N {
+        let n = |of: DVec3| of.to_array().map(N::constant);
+        let (normal, xdir, corner) = (self.plane.given_normal(), n(self.given_xdir), n(self.plane.point));
+        let from_corner = [0, 1, 2].map(|axis| at[axis] - corner[axis]);
+        // Of the first side, which is right below `xdir`, the normal is upright on all that is on the plane.
+        let ydir = number::cross(normal, xdir);
+        let (x, y, square) = (dot(xdir, from_corner), dot(ydir, from_corner), dot(ydir, ydir));
+        let inside = |along: N, part: N, length: f64| along.min(N::constant(length).powi(2) * square - part);
+        let [width, height] = self.rectangle.dimensions.to_array();
+        inside(x, dot(normal, normal) * x.powi(2), width).min(inside(y, y.powi(2), height))
+    }
+
     /// What rounding may make of the place where a ray crosses its plane.
     ///
     /// Units of 2^-53, along a side, whose components add up to at most 1.74: a distance is off by 14, its product with
@@ -73,6 +98,20 @@ impl<A> FinitePlane<A> {
 }
 
 impl<A: Bounded> FinitePlane<A> {
+    /// Between which distances a hit within a span is.
+    #[inline(always)]
+    pub fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
+        let rough = self.plane.rough(ray, within.origin_error);
+        let inside = self.inside(ray, rough.distance);
+        // A camera's direction is off by 3 units of 2^-53 in each component, which is less than half of the slack.
+        let slack = rough.error + 2.0 * self.slack(ray, rough.distance);
+        let Bracket { near, far } = self.plane.bracket(&rough, ray, within);
+        Bracket {
+            near: if inside < -slack { MISS } else { near },
+            far: if inside > slack { far } else { MISS },
+        }
+    }
+
     /// Whether it has the point of its plane where a ray crosses that, its sides included.
     #[inline(always)]
     pub fn has_crossing(&self, ray: &Ray, distance: f64) -> bool {
@@ -138,6 +177,19 @@ impl Window for FinitePlane<Classic> {
         let distance = self.plane.crossing(ray);
         (distance > 0.0 && self.has_crossing(ray, distance)).then_some(distance)
     }
+}
+
+/// The directions of a rectangle's two sides and its normal, as columns, all unit vectors: the rows of the notes' rotation
+/// matrix.
+pub fn frame(normal: DVec3, xdir: DVec3) -> DMat3 {
+    let normal = normal.normalize();
+    let x = (xdir - normal.dot(xdir) * normal).normalize();
+    DMat3::from_cols(x, normal.cross(x), normal)
+}
+
+/// What [`exact_sides`] gives, rounded.
+pub fn rounded_sides(upright: [Twofold; 3], xdir: DVec3) -> [DVec3; 2] {
+    exact_sides(upright, xdir).map(|side| DVec3::from(side.map(|part| part.high)))
 }
 
 /// The directions of the two sides of a rectangle with this normal, the first of which is below `xdir`: unit vectors

@@ -12,7 +12,6 @@ use crate::numeric::interval::Interval;
 use crate::numeric::number::Number;
 use crate::numeric::twofold::Twofold;
 use crate::simd::cpu::kernels;
-use crate::simd::soa::View;
 use crate::world::certify::Equation;
 use glam::DVec3;
 
@@ -39,25 +38,32 @@ pub fn error(ray: &Ray, distance: f64, normal: DVec3, reach: f64) -> f64 {
     ROUNDING * size / larger(ray.dir.dot(normal).abs(), LEAST_COSINE)
 }
 
+/// A bound of the error of a point that a ray comes to, as [`error`] has it, from the cosine of its angle with the normal.
+/// `reach` is that of the shape and of the viewer together: no ray starts farther from the viewer than its light has
+/// `travelled`.
+#[inline(always)]
+pub(crate) fn error_after(travelled: f64, reach: f64, cosine: f64) -> f64 {
+    // A division of single precision takes a third of the time, and what it rounds is nothing to a bound.
+    ROUNDING * (travelled + reach) * f64::from(1.0 / larger(cosine.abs(), LEAST_COSINE) as f32)
+}
+
 kernels! {
-    /// Bounds of the errors of points that rays come to, as [`error`] has them, and the greatest of them. `reach` is that
-    /// of the shape and of the viewer together: no ray starts farther from the viewer than its light has `travelled`.
-    pub(crate) fn errors(dir: View, normals: View, travelled: &[f64], reach: f64, out: &mut [f64]) -> f64 {
-        let count = out.len();
-        let (dir, normals, travelled) = (dir.first(count), normals.first(count), &travelled[..count]);
-        let mut most = 0;
-        for lane in 0..count {
-            let cosine = larger(dir.get(lane).dot(normals.get(lane)).abs(), LEAST_COSINE);
-            // A division of single precision takes a third of the time, and what it rounds is nothing to a bound.
-            out[lane] = ROUNDING * (travelled[lane] + reach) * f64::from(1.0 / cosine as f32);
-            // None is below 0, and so their bits are in their order.
-            most = most.max(out[lane].to_bits() as i64);
+    /// No less than [`error_after`] of any of some points: it rises with the way, and falls as the cosine rises, after
+    /// rounding as before.
+    pub(crate) fn most_error(travelled: &[f64], reach: f64, cosines: &[f64]) -> f64 {
+        let travelled = &travelled[..cosines.len()];
+        let (mut most, mut least) = (0, i64::MAX);
+        for lane in 0..cosines.len() {
+            // None of these is below 0, and so their bits are in their order.
+            most = most.max(travelled[lane].to_bits() as i64);
+            least = least.min(larger(cosines[lane].abs(), LEAST_COSINE).to_bits() as i64);
         }
-        f64::from_bits(most as u64)
+        error_after(f64::from_bits(most as u64), reach, f64::from_bits(least as u64))
     }
 }
 
-/// Whether a surface comes into the box of so many world units around a point: [`Certified::touches`](crate::world::hittable::Certified::touches) of a shape that has
+/// Whether a surface comes into the box of so many world units around a point:
+/// [`Certified::touches`](crate::world::hittable::Certified::touches) of a shape that has
 /// an equation.
 pub fn touches(shape: &(impl Equation + ?Sized), at: DVec3, error: f64) -> bool {
     let origin = at.to_array().map(|place| Interval { low: place - error, high: place + error });
@@ -65,8 +71,9 @@ pub fn touches(shape: &(impl Equation + ?Sized), at: DVec3, error: f64) -> bool 
     shape.value(shape.own(point).origin).has_zero()
 }
 
-/// The distance of a hit by Newton's method in twice the precision: [`Certified::fine_distance`](crate::world::hittable::Certified::fine_distance) of a shape that has an
-/// equation. Nothing where that does not settle, as at a graze.
+/// The distance of a hit by Newton's method in twice the precision:
+/// [`Certified::fine_distance`](crate::world::hittable::Certified::fine_distance) of a shape that has an equation. Nothing
+/// where that does not settle, as at a graze.
 pub fn distance(shape: &(impl Equation + ?Sized), ray: &Ray, near: f64) -> Option<Twofold> {
     let (mut at, mut moved) = (Twofold::from(near), f64::INFINITY);
     let line = shape.own(Sight::along(ray).line::<Twofold>());
@@ -79,4 +86,27 @@ pub fn distance(shape: &(impl Equation + ?Sized), ray: &Ray, near: f64) -> Optio
     let size = ray.origin.abs().max_element() + near;
     let is_settled = moved <= SAME * size && (at.high - near).abs() <= CLOSE * size;
     is_settled.then_some(at)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simd::cpu::Cpu;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn the_most_error_is_no_less_than_any(
+            points in prop::collection::vec((0.0..1e3, prop_oneof![-1.0..1.0, -1e-7..1e-7, Just(0.0), Just(f64::NAN)]), 1..20),
+            reach in 0.0..1e3,
+        ) {
+            let (travelled, cosines): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
+            for cpu in Cpu::all() {
+                let most = most_error(cpu, &travelled, reach, &cosines);
+                for (travelled, cosine) in travelled.iter().zip(&cosines) {
+                    prop_assert!(error_after(*travelled, reach, *cosine) <= most, "{} {} {}", travelled, cosine, cpu);
+                }
+            }
+        }
+    }
 }

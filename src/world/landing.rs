@@ -12,13 +12,16 @@ pub struct Landing<'l> {
     pub normals: ViewMut<'l>,
     /// The side that each ray comes to.
     pub sides: &'l mut [Side],
+    /// The cosines of the angles between the rays and the normals, of either sign.
+    pub cosines: &'l mut [f64],
     /// How far the way from the viewer is, in world units: to where the rays start at first, and then to the places.
     pub travelled: &'l mut [f64],
 }
 
-/// The side that a ray along `dir` comes to of a surface with this normal, and the normal, turned there if both are lit.
+/// The side that a ray along `dir` comes to of a surface with this normal, the cosine of the angle between them, and the
+/// normal, turned to that side if both are lit.
 #[inline(always)]
-pub(crate) fn turned(dir: DVec3, normal: DVec3, is_two_sided: bool) -> (Side, DVec3) {
+pub(crate) fn turned(dir: DVec3, normal: DVec3, is_two_sided: bool) -> (Side, f64, DVec3) {
     let side = Side::seen_along(dir, normal);
-    (side, if is_two_sided & (side == Side::Inside) { -normal } else { normal })
+    (side, dir.dot(normal), if is_two_sided & (side == Side::Inside) { -normal } else { normal })
 }

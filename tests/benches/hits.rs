@@ -5,13 +5,9 @@
 use divan::{Bencher, black_box, counter::ItemsCount};
 use std::fs;
 use std::path::Path;
-use tabray::geometry::packet::{Nearest, Rays};
-use tabray::geometry::ray::{MISS, Ray, Span};
-use tabray::scene::model::Model;
-use tabray::scene::reader;
-use tabray::scene::registry::Registry;
-use tabray::simd::cpu::Cpu;
-use tabray::simd::soa::Vectors;
+use tabray::geometry::{MISS, Nearest, Ray, Rays, Span};
+use tabray::scene::{self, Model, Registry};
+use tabray::simd::{Cpu, Vectors};
 
 /// The rays of a packet.
 const WIDE: usize = 64;
@@ -38,7 +34,7 @@ fn load(name: &str) -> Model {
     let file = format!("{name}.ray");
     let bytes = fs::read(folder.join(&file)).expect("a scene");
     let registry = Registry::get().expect("no two plugins claim one name");
-    match reader::read(registry, &file, &folder, &bytes, None) {
+    match scene::read(registry, &file, &folder, &bytes, None) {
         Ok(loaded) => loaded.model,
         Err(report) => panic!("{report}"),
     }

@@ -3,7 +3,7 @@
 use super::program::Program;
 use super::random::{Point, Random, cross, dot, moved, unit};
 use super::scenes::numbers;
-use tabray::render::renderer::Renderer;
+use tabray::render::Renderer;
 
 /// A kind of scene, and what is wrong with the picture of one of them.
 struct Kind {

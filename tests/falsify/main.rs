@@ -31,7 +31,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 use std::time::Instant;
-use tabray::render::renderer::Renderer;
+use tabray::render::Renderer;
 use tally::Tally;
 
 /// The number that an environment variable has.

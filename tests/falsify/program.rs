@@ -2,10 +2,8 @@
 
 use crate::common::registry;
 use std::path::Path;
-use tabray::render::renderer::Renderer;
-use tabray::render::trace;
-use tabray::scene::model::Model;
-use tabray::scene::reader;
+use tabray::render::{Plan, Renderer, trace};
+use tabray::scene::{self, Model};
 use tabray::tools::verify::{self, Verdict};
 
 /// A scene as the program has it.
@@ -34,14 +32,14 @@ pub struct Found {
 impl Program {
     /// The scene, unless the program refuses it.
     pub fn read(text: &str) -> Option<Self> {
-        reader::read(registry(), "scene", Path::new(""), text.as_bytes(), None)
+        scene::read(registry(), "scene", Path::new(""), text.as_bytes(), None)
             .ok()
             .map(|loaded| Self(loaded.model))
     }
 
     pub fn find(&self, [x, y]: [usize; 2]) -> Found {
         let ray = self.0.camera.value.ray(x as f64, y as f64);
-        let hit = trace::first_hit(&self.0, &self.0.camera.value.sight(x as f64, y as f64));
+        let hit = trace::first_hit(&Plan::new(&self.0), &self.0.camera.value.sight(x as f64, y as f64));
         Found {
             first: hit.as_ref().map(|hit| hit.index),
             distance: hit.map_or(f64::INFINITY, |hit| hit.distance),
@@ -51,7 +49,7 @@ impl Program {
     }
 
     pub fn claim(&self, [x, y]: [usize; 2]) -> Claim {
-        match verify::pixel(&self.0, x, y) {
+        match verify::pixel(&Plan::new(&self.0), x, y) {
             Verdict::Proven => Claim::Right,
             Verdict::Contradicted => Claim::Wrong,
             Verdict::Tie => Claim::Unknown,
@@ -64,6 +62,6 @@ impl Program {
 
     /// The picture that packets of rays make, from the top and from the left: red, green and blue of each pixel.
     pub fn picture(&self, renderer: &Renderer) -> Vec<[u8; 3]> {
-        renderer.picture(&self.0).chunks(3).map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect()
+        renderer.picture(&Plan::new(&self.0)).chunks(3).map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect()
     }
 }

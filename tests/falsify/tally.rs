@@ -13,7 +13,7 @@ use std::env;
 use std::fs;
 use std::path::Path;
 use std::time::Duration;
-use tabray::render::renderer::Renderer;
+use tabray::render::Renderer;
 
 /// The first lines of the table.
 pub const HEADING: &str = "\
@@ -21,8 +21,8 @@ pub const HEADING: &str = "\
 largest error (ulp) | off the surface (ulp) | refused | seconds |
 |---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|";
 
-/// A hit this far off the surface, in units in the last place of its distance, is another one: an error of rounding
-/// would be a few of them.
+/// A hit this far off the surface, in units in the last place of its distance or of the eye's largest coordinate, is
+/// another one: an error of rounding would be a few of them.
 const OFF: f64 = 1000.0;
 
 /// Counts, and the worst of what was found.
@@ -280,7 +280,10 @@ impl Off {
             let near = distance.near();
             let unit = Wide::f64(near.next_up() - near);
             off.error = apart.div(&unit).near();
-            off.off = off.error * oracle::cosine(&scene.objects[first], ray, place);
+            // A place right before the eye is known no better than the eye's own.
+            let size = found.origin.iter().fold(near, |most, part| most.max(part.abs()));
+            let grain = Wide::f64(size.next_up() - size);
+            off.off = apart.div(&grain).near() * oracle::cosine(&scene.objects[first], ray, place);
         }
         off
     }

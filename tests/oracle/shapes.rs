@@ -7,7 +7,7 @@ use super::{Hit, Truth};
 use dashu_float::FBig;
 use dashu_float::round::mode::HalfEven;
 use glam::{DVec2, DVec3};
-use tabray::geometry::ray::Ray;
+use tabray::geometry::Ray;
 use tabray::numeric::twofold::Twofold;
 
 /// A number of 300 bits.

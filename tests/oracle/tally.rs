@@ -2,7 +2,7 @@
 
 use super::{Hit, Truth};
 use std::fmt;
-use tabray::geometry::ray::MISS;
+use tabray::geometry::MISS;
 use tabray::numeric::twofold::Twofold;
 
 /// The distance from one number to the next.

@@ -5,7 +5,7 @@ use super::{Random, shape, words};
 use dashu_float::FBig;
 use dashu_float::round::mode::HalfEven;
 use glam::{DVec3, dvec3};
-use tabray::geometry::ray::{MISS, Ray, Span};
+use tabray::geometry::{MISS, Ray, Span};
 
 type Real = FBig<HalfEven>;
 

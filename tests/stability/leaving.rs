@@ -3,8 +3,8 @@
 use super::profiles::{Line, NASTY, VASE};
 use super::{Random, distance};
 use glam::{DVec3, dvec3};
-use tabray::geometry::ray::{MISS, Ray, Side, Span};
-use tabray::world::hittable::Hittable;
+use tabray::geometry::{MISS, Ray, Side, Span};
+use tabray::world::Hittable;
 
 /// A point where a ray of the camera met a surface from outside, as its distance and direction give it, and a way on.
 struct Start {

@@ -3,8 +3,8 @@
 use super::profiles::{FLANGE, Line, NASTY, STAIR, VASE};
 use super::{Random, distance};
 use glam::{DVec3, dvec3};
-use tabray::geometry::ray::{MISS, Ray, Side, Span};
-use tabray::numeric::interval::Interval;
+use tabray::geometry::{MISS, Ray, Side, Span};
+use tabray::numeric::Interval;
 
 /// Lesson 1: a rounding margin of 32 eps R^2 for q forgets that the rounding of y comes in by the slope of g.
 #[test]

@@ -4,14 +4,10 @@ use super::{DOWN_Z, Random, shape, text};
 use crate::common::{model, render};
 use glam::{DVec3, dvec3};
 use std::f64::consts::{PI, TAU};
-use tabray::geometry::ray::Ray;
-use tabray::geometry::sight::Sight;
-use tabray::output::picture::to_byte;
-use tabray::render::trace;
-use tabray::scene::choice::Choice;
-use tabray::scene::model::Model;
-use tabray::world::accuracy::Accuracy;
-use tabray::world::material::Rgb;
+use tabray::geometry::{Ray, Sight};
+use tabray::render::{Plan, to_byte, trace};
+use tabray::scene::{Choice, Model};
+use tabray::world::{Accuracy, Rgb};
 
 /// The ambient colour of the first object at a point.
 fn look(model: &Model, at: DVec3) -> Rgb {
@@ -185,7 +181,7 @@ fn a_light_on_the_surface_blinds_nobody() {
             );
             let scene = model(&text("", &object));
             let ray = Ray { origin: 2.0 * DVec3::Z, dir: DOWN_Z };
-            let colour = trace::colour(&scene, &Sight::along(&ray), None);
+            let colour = trace::colour(&Plan::new(&scene), &Sight::along(&ray), None);
             assert!(!colour.is_nan(), "{colour} of {emissivity} from {above:e} above");
             assert!(
                 colour.min_element() >= 0.5,
@@ -215,7 +211,7 @@ fn a_light_on_a_wall_lights_the_floor_evenly() {
         let wall = (-4.0 - target.z) / to_light.normalize().z;
         naive_dark += u32::from(wall < to_light.length());
         let ray = Ray { origin: eye, dir: (target - eye).normalize() };
-        dark += u32::from(trace::colour(&scene, &Sight::along(&ray), None).x == 0.0);
+        dark += u32::from(trace::colour(&Plan::new(&scene), &Sight::along(&ray), None).x == 0.0);
     }
     assert!(naive_dark > 50, "{naive_dark}");
     assert_eq!(dark, 0, "of 2000 points of the floor lie in the shadow of the wall");
@@ -227,7 +223,10 @@ fn an_eye_on_the_surface_has_a_colour() {
     let scene = model(&text("", "plane p { material m normal 0 0 1 point 0 0 0 }"));
     for above in [0.0, 1e-310, 1e-200, 1e-20] {
         let ray = Ray { origin: dvec3(0.0, 0.0, above), dir: DOWN_Z };
-        assert!(!trace::colour(&scene, &Sight::along(&ray), None).is_nan(), "from {above:e} above");
+        assert!(
+            !trace::colour(&Plan::new(&scene), &Sight::along(&ray), None).is_nan(),
+            "from {above:e} above"
+        );
     }
 }
 
@@ -251,7 +250,8 @@ fn a_ball_is_lit_by_a_light_in_its_middle_on_no_side() {
         "",
         "sphere s { material m center 0 0 0 radius 1 } light l { location 0 0 0 emissivity 9 9 9 }",
     ));
-    let outside = trace::colour(&scene, &Sight::along(&Ray { origin: 3.0 * DVec3::Z, dir: DOWN_Z }), None);
+    let outside =
+        trace::colour(&Plan::new(&scene), &Sight::along(&Ray { origin: 3.0 * DVec3::Z, dir: DOWN_Z }), None);
     assert_eq!(outside, Rgb::splat(0.5), "ambient 1 over a distance of 2");
     assert!(shape("sphere s { material m center 0 0 0 radius 1 }").normal(DVec3::Z).is_normalized());
 }
@@ -265,7 +265,11 @@ fn glint_from_behind(shininess: &str, lamp: &str, method: Accuracy) -> Rgb {
          light l {{ location {lamp} emissivity 9 9 9 }}",
         method.option().name
     );
-    trace::colour(&model(&scene), &Sight::along(&Ray { origin: dvec3(4.0, 3.0, 6.0), dir: DOWN_Z }), None)
+    trace::colour(
+        &Plan::new(&model(&scene)),
+        &Sight::along(&Ray { origin: dvec3(4.0, 3.0, 6.0), dir: DOWN_Z }),
+        None,
+    )
 }
 
 #[test]
@@ -299,7 +303,7 @@ fn no_glint_is_brighter_than_its_light() {
         );
         // Along the line on which the light is mirrored back.
         let ray = Ray { origin: 0.9 * lamp, dir: -lamp.normalize() };
-        let colour = trace::colour(&model(&scene), &Sight::along(&ray), None);
+        let colour = trace::colour(&Plan::new(&model(&scene)), &Sight::along(&ray), None);
         let way = 0.9 * lamp.length() - 1.0;
         assert!(colour.max_element() <= 1.000001 / way, "{colour} after {way} from {lamp}");
     }

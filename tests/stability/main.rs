@@ -26,11 +26,9 @@ mod together;
 use common::{model, registry};
 use glam::{DVec3, dvec3};
 use std::path::Path;
-use tabray::geometry::ray::{Ray, Span};
-use tabray::scene::model::Model;
-use tabray::scene::reader;
-use tabray::world::any_shape::AnyShape;
-use tabray::world::hittable::Hittable;
+use tabray::geometry::{Ray, Span};
+use tabray::scene::{self, Model};
+use tabray::world::{AnyShape, Hittable};
 
 const DOWN_Z: DVec3 = DVec3::NEG_Z;
 
@@ -59,7 +57,7 @@ fn last(mut model: Model) -> AnyShape {
 
 /// What the loader says of an object that it refuses.
 fn refusal(object: &str) -> String {
-    match reader::read(registry(), "scene", Path::new(""), text("", object).as_bytes(), None) {
+    match scene::read(registry(), "scene", Path::new(""), text("", object).as_bytes(), None) {
         Ok(_) => panic!("nothing is wrong with {object}"),
         Err(report) => report.to_string(),
     }

@@ -3,10 +3,8 @@
 use super::{DOWN_Z, Random, distance, holds, refusal, shape, text, words};
 use crate::common::model;
 use glam::{DVec3, dvec3};
-use tabray::geometry::bounds::Bounds;
-use tabray::geometry::ray::{MISS, Ray};
-use tabray::geometry::sight::Sight;
-use tabray::render::trace;
+use tabray::geometry::{Bounds, MISS, Ray, Sight};
+use tabray::render::{Plan, trace};
 
 /// The notes' `hits_plane`: N.Q is computed once, and a ray is parallel if N.D is exactly 0.
 fn naive(origin: DVec3, dir: DVec3, normal: DVec3, point: DVec3) -> Option<f64> {
@@ -92,7 +90,7 @@ fn a_plane_in_the_screen_is_seen_through_every_pixel() {
         let hit =
             naive(ray.origin, ray.dir, DVec3::Z, DVec3::ZERO).expect("no ray is parallel to the screen");
         dropped += u32::from(ray.at(hit).z > 0.0);
-        seen += u32::from(scene.objects[0].shape.distance(&ray, &tabray::geometry::ray::Span::RAY) < MISS);
+        seen += u32::from(scene.objects[0].shape.distance(&ray, &tabray::geometry::Span::RAY) < MISS);
     }
     assert!(dropped > 100, "{dropped}");
     assert_eq!(seen, 640 * 480);
@@ -214,6 +212,9 @@ fn a_floor_has_a_colour_up_to_the_horizon() {
     let scene = model(&text("", floor));
     for slope in [1e-3, 1e-9, 1e-15, 1e-17, 1e-300, 0.0] {
         let ray = Ray { origin: DVec3::Y, dir: dvec3(0.6, -slope, -0.8) };
-        assert!(trace::colour(&scene, &Sight::along(&ray), None).is_finite(), "at a slope of {slope:e}");
+        assert!(
+            trace::colour(&Plan::new(&scene), &Sight::along(&ray), None).is_finite(),
+            "at a slope of {slope:e}"
+        );
     }
 }

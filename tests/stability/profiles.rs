@@ -2,7 +2,7 @@
 
 use super::{Random, shape_of, words};
 use glam::{DVec3, dvec3};
-use tabray::world::any_shape::AnyShape;
+use tabray::world::AnyShape;
 
 /// A profile that a row is about.
 pub struct Line {

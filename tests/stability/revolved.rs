@@ -5,10 +5,9 @@ use super::{DOWN_Z, Random, distance, holds, refusal, shape, text};
 use crate::common::model;
 use glam::{DVec3, dvec3};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_6};
-use tabray::geometry::ray::{MISS, Ray};
-use tabray::geometry::sight::Sight;
-use tabray::render::trace;
-use tabray::world::any_shape::AnyShape;
+use tabray::geometry::{MISS, Ray, Sight};
+use tabray::render::{Plan, trace};
+use tabray::world::AnyShape;
 
 /// The notes' cone, 6 high; a greater height goes beyond its apex.
 fn cone(camera: &str, height: f64) -> AnyShape {
@@ -274,8 +273,12 @@ fn a_ledge_is_dark_from_below() {
         let target = random.around(DVec3::Z, 0.9) * 1.2;
         let target = dvec3(target.x, 3.0, target.z);
         let eye = dvec3(0.0, -4.0, 8.0);
-        trace::colour(&scene, &Sight::along(&Ray { origin: eye, dir: (target - eye).normalize() }), None).x
-            > 0.0
+        trace::colour(
+            &Plan::new(&scene),
+            &Sight::along(&Ray { origin: eye, dir: (target - eye).normalize() }),
+            None,
+        )
+        .x > 0.0
     });
     assert_eq!(lit.count(), 0, "of 2000 points of the ledge are lit through it");
 }

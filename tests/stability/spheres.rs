@@ -3,10 +3,9 @@
 use super::{DOWN_Z, Random, distance, holds, shape, shape_of, text, words};
 use crate::common::model;
 use glam::{DVec3, dvec3};
-use tabray::geometry::ray::{MISS, Ray};
-use tabray::geometry::sight::Sight;
-use tabray::render::trace;
-use tabray::world::any_shape::AnyShape;
+use tabray::geometry::{MISS, Ray, Sight};
+use tabray::render::{Plan, trace};
+use tabray::world::AnyShape;
 
 /// The notes' `hits_sphere`: the nearer root of the quadratic, if its discriminant is positive.
 fn naive(origin: DVec3, dir: DVec3, center: DVec3, radius: f64) -> Option<f64> {
@@ -159,7 +158,7 @@ fn a_light_in_a_sphere_lights_its_inner_wall() {
         let object = "material grey { diffuse 1 1 1 } sphere room { material grey center 0 0 0 radius 2 }
                       light l { location 0 0 1 emissivity 4 4 4 }";
         let ray = Ray { origin: DVec3::ZERO, dir: DOWN_Z };
-        trace::colour(&model(&text(camera, object)), &Sight::along(&ray), None).x
+        trace::colour(&Plan::new(&model(&text(camera, object))), &Sight::along(&ray), None).x
     };
     // 1 * 4 * cos 0 / 3 from the light, divided by the 2 to the eye.
     assert_eq!((lit("accuracy classic"), lit("")), (0.0, 4.0 / 3.0 / 2.0));
@@ -187,7 +186,7 @@ fn a_ball_casts_no_shadow_on_itself() {
         again +=
             u32::from(roots(hit, leaving, 1.0).is_some_and(|roots| roots.iter().any(|root| *root > 0.0)));
         assert!(
-            trace::colour(&scene, &Sight::along(&Ray { origin: eye, dir }), None).x > 0.0,
+            trace::colour(&Plan::new(&scene), &Sight::along(&Ray { origin: eye, dir }), None).x > 0.0,
             "a shadow at {hit}"
         );
     }

@@ -4,10 +4,8 @@ use super::Random;
 use super::common::{model, render};
 use glam::{DVec3, dvec3};
 use image::RgbImage;
-use tabray::geometry::ray::{Ray, Side, Span};
-use tabray::output::picture::to_byte;
-use tabray::render::trace;
-use tabray::render::watch::{Event, Watch};
+use tabray::geometry::{Ray, Side, Span};
+use tabray::render::{Event, Plan, Watch, to_byte, trace};
 
 const BLUE: [u8; 3] = [0, 0, 255];
 
@@ -297,12 +295,12 @@ fn the_colour_of_a_ray_that_starts_on_several_surfaces_is_its_own() {
            light lamp { location 4 5 -4 emissivity 6 6 6 }
            light low { location 1 1 2 emissivity 2 2 2 }";
     let model = model(&scene);
-    let picture = render(&model);
+    let (picture, plan) = (render(&model), Plan::new(&model));
     for (x, row, pixel) in picture.enumerate_pixels() {
         let (x, y) = (x as usize, (picture.height() - 1 - row) as usize);
-        let alone = trace::pixel(&model, x, y);
+        let alone = trace::pixel(&plan, x, y);
         assert_eq!(alone.to_array().map(to_byte), pixel.0, "{x} {y}");
-        assert_eq!(trace::watch_pixel(&model, x, y, &mut Onlooker), alone, "{x} {y}");
+        assert_eq!(trace::watch_pixel(&plan, x, y, &mut Onlooker), alone, "{x} {y}");
     }
 }
 

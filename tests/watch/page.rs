@@ -6,6 +6,7 @@ use crate::program::{Watching, ball};
 use image::RgbImage;
 use std::fs;
 use std::time::{SystemTime, UNIX_EPOCH};
+use tabray::render::Plan;
 use tabray::tools::probe;
 use tempfile::TempDir;
 
@@ -95,7 +96,7 @@ fn a_click_explains_a_pixel_and_marks_the_lines_of_its_object() {
     let Some((_watching, browser)) = opened(&ball("9 0 0")) else { return };
     let explanation = |x, y| {
         let mut told = Vec::new();
-        probe::pixel(&model(&ball("9 0 0")), x, y, &mut told).expect("memory takes it");
+        probe::pixel(&Plan::new(&model(&ball("9 0 0"))), x, y, &mut told).expect("memory takes it");
         String::from_utf8(told).expect("text")
     };
     let marked =

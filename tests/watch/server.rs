@@ -11,9 +11,8 @@ use std::ops::ControlFlow;
 use std::process::{Command, Stdio};
 use std::thread;
 use std::time::Duration;
-use tabray::output::aov::Aov;
-use tabray::output::picture::to_byte;
-use tabray::render::renderer::Renderer;
+use tabray::output::Aov;
+use tabray::render::{Plan, Renderer, to_byte};
 use tabray::tools::probe;
 use tempfile::TempDir;
 
@@ -149,7 +148,7 @@ fn a_pixel_is_explained_as_probe_does_with_the_lines_of_its_object() {
         let (status, answer) = watching.get(&format!("probe/1/{x}/{y}"));
         let answer: Value = serde_json::from_slice(&answer).expect("JSON");
         let mut told = Vec::new();
-        probe::pixel(&model(&text), x, y, &mut told).expect("memory takes it");
+        probe::pixel(&Plan::new(&model(&text)), x, y, &mut told).expect("memory takes it");
         assert_eq!((status, answer["text"].as_str()), (200, str::from_utf8(&told).ok()));
         assert_eq!(answer["lines"], lines);
     }
@@ -179,7 +178,8 @@ fn the_layers_are_those_of_aov() {
     let renderer = Renderer::new(1).expect("a thread");
     for aov in [Aov::Depth, Aov::Normal, Aov::Object, Aov::Cost] {
         let model = model(&ball("9 0 0"));
-        let layer = aov.render(&renderer, &model, &model, &|| ControlFlow::Continue(()));
+        let plan = Plan::new(&model);
+        let layer = aov.render(&renderer, &plan, &plan, &|| ControlFlow::Continue(()));
         let expected = layer.unwrap_or_else(|_| panic!("nobody interrupts {aov:?}")).bytes;
         assert_eq!(watching.get(&format!("layer/1/{}", aov.name())), (200, expected));
     }

@@ -1,6 +1,7 @@
 //! `tabray new plugin`: a plugin that works, and its scenes.
 
-use crate::cli::{Failure, messages, output};
+use crate::cli::failure::Failure;
+use crate::cli::{messages, output};
 use crate::scene::choice::Choice;
 use crate::scene::procedural::OnPlane;
 use crate::scene::profile::Profile;

@@ -72,7 +72,7 @@ impl Method {
     ) -> Option<f64> {
         let leaves = within.leaves;
         if self == Self::Taylor {
-            return taylor::first_root(line, span, base, within, shortest);
+            return taylor::first_root(line, &span.into(), base, within, shortest).root;
         }
         let span = span.start.max(within.near - base)..span.end.min(within.far - base);
         if span.is_empty() {

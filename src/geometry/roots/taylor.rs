@@ -7,6 +7,7 @@
 //! no root is stepped over: D. P. Mitchell, "Robust ray intersection with interval arithmetic" (1990), whose bounds
 //! are of the first order and which shrink more slowly where a ray grazes.
 
+use crate::geometry::frame::BLUR;
 use crate::geometry::ray::{Side, Span};
 use crate::geometry::roots::{newton, twice};
 use crate::numeric::dual::Dual;
@@ -32,6 +33,54 @@ pub trait Line {
     }
 }
 
+/// The part of a line on which a search goes.
+#[derive(Clone, Debug)]
+pub struct Stretch {
+    /// Nothing is outside of it, of the line and of those that it was rounded from.
+    pub outer: Range<f64>,
+    /// All of these lines are within the ends of what is looked for there.
+    pub inner: Range<f64>,
+}
+
+impl From<Range<f64>> for Stretch {
+    fn from(span: Range<f64>) -> Self {
+        Self { outer: span.clone(), inner: span }
+    }
+}
+
+impl Stretch {
+    /// Cuts off what lies beyond two heights, where a line's height `t` along it is `start + t dir`. Rounding may have
+    /// moved the start by `blur` and the direction by [`BLUR`], and the search goes no farther than `reach` from t = 0.
+    pub fn cut(&mut self, (start, dir): (f64, f64), [low, high]: [f64; 2], blur: f64, reach: f64) {
+        // The line that this one was rounded from may be parallel to the ends.
+        if dir.abs() <= 2.0 * BLUR {
+            let moved = blur + 3.0 * BLUR * reach;
+            if start < low - moved || start > high + moved {
+                self.outer.end = f64::NEG_INFINITY;
+            }
+            if start < low + moved || start > high - moved {
+                self.inner.end = f64::NEG_INFINITY;
+            }
+            return;
+        }
+        let (one, other) = ((low - start) / dir, (high - start) / dir);
+        // The direction is more than half of what it may be, and the division itself rounds by less than BLUR.
+        let hair = |t: f64| 2.0 * (blur + BLUR * t.abs()) / dir.abs() + BLUR * t.abs();
+        let (first, last) = (one.min(other), one.max(other));
+        self.outer = self.outer.start.max(first - hair(first))..self.outer.end.min(last + hair(last));
+        self.inner = self.inner.start.max(first + hair(first))..self.inner.end.min(last - hair(last));
+    }
+}
+
+/// What a search finds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Found {
+    /// The first root.
+    pub root: Option<f64>,
+    /// Whether every line that this one was rounded from has its first root there, or none, as bounds in f64 prove.
+    pub is_certain: bool,
+}
+
 /// The pieces looked at before proofs are given up: far more than any but the wildest function takes.
 const PIECES: usize = 16_384;
 
@@ -43,70 +92,42 @@ const HIDDEN: f64 = 4.0;
 /// ever wait.
 const WAITING: usize = 64;
 
-/// The first root in a piece of a line whose distance, counted from `base`, lies within a span.
+/// The first root on a stretch of a line whose distance, counted from `base`, lies within a span.
 ///
-/// The piece is cut in the same way whatever the span is, so that a root is the same in every span that holds it.
+/// The stretch is cut in the same way whatever the span is, so that a root is the same in every span that holds it.
 ///
 /// A line that starts on the surface itself leaves it on a side, which the span tells, and no root where it starts is
 /// meant then: from outside, only a root where the values fall from above 0 to below, from inside only one where they rise.
 ///
 /// Pieces not longer than `shortest` are not cut: a few units in the last place of the greatest numbers on the line.
 ///
-/// What bounds in f64 do not tell, the line is [asked](Line::undecided), and [`twice::asked`] counts it.
-pub fn first_root(
-    line: &impl Line,
-    span: Range<f64>,
-    base: f64,
-    within: &Span,
-    shortest: f64,
-) -> Option<f64> {
-    if !(span.start <= span.end && span.start.is_finite() && span.end.is_finite()) {
-        return None;
+/// What bounds in f64 do not tell, the line is [asked](Line::undecided).
+pub fn first_root(line: &impl Line, stretch: &Stretch, base: f64, within: &Span, shortest: f64) -> Found {
+    let Range { start, end } = stretch.outer;
+    if !(start <= end && start.is_finite() && end.is_finite()) {
+        return Found { root: None, is_certain: true };
     }
-    let search = Search { line, start: span.start, leaves: within.leaves, shortest };
-    let is_root = |root: &f64| within.near < base + root && base + root < within.far;
-    let mut waiting = [(0.0, 0.0); WAITING];
-    waiting[0] = (span.start, span.end);
-    let (mut count, mut judged) = (1, 0);
-    while count > 0 {
-        count -= 1;
-        let (low, high) = waiting[count];
-        // Sums that are rounded keep their order.
-        if base + high <= within.near {
-            continue;
-        }
-        if base + low >= within.far {
-            return None;
-        }
-        judged += 1;
-        let may_cut = judged < PIECES && count + 2 <= WAITING && high - low > search.shortest;
-        let judgement = if may_cut { search.judge(low, high) } else { search.last_word(low, high) };
-        match judgement {
-            Judgement::Free => {}
-            Judgement::Root(root) => {
-                if let Some(root) = Some(root).filter(is_root) {
-                    return Some(root);
-                }
-            }
-            Judgement::Open { left, right } => {
-                for (low, high) in [right, left] {
-                    if low < high {
-                        waiting[count] = (low, high);
-                        count += 1;
-                    }
-                }
-            }
-        }
-    }
-    None
+    let mut search = Search { line, start, base, within, shortest, is_certain: true };
+    // Where the line may have come to the ends, and where it certainly is between them.
+    let inner = stretch.inner.start.clamp(start, end)..stretch.inner.end.clamp(start, end);
+    let root = if inner.start < inner.end || start == end {
+        let before = search.at_an_end(start, inner.start);
+        let root = before.or_else(|| search.on_a_piece(inner.start, inner.end));
+        root.or_else(|| search.at_an_end(inner.end, end))
+    } else {
+        search.at_an_end(start, end)
+    };
+    Found { root, is_certain: search.is_certain }
 }
 
 struct Search<'l, L> {
     line: &'l L,
     start: f64,
-    leaves: Option<Side>,
+    base: f64,
+    within: &'l Span,
     /// What is not cut any more.
     shortest: f64,
+    is_certain: bool,
 }
 
 enum Judgement {
@@ -119,7 +140,57 @@ enum Judgement {
 }
 
 impl<L: Line> Search<'_, L> {
-    fn judge(&self, low: f64, high: f64) -> Judgement {
+    /// The first root on a piece.
+    fn on_a_piece(&mut self, start: f64, end: f64) -> Option<f64> {
+        let Span { near, far, .. } = *self.within;
+        let mut waiting = [(0.0, 0.0); WAITING];
+        waiting[0] = (start, end);
+        let (mut count, mut judged) = (1, 0);
+        while count > 0 {
+            count -= 1;
+            let (low, high) = waiting[count];
+            // Sums that are rounded keep their order.
+            if self.base + high <= near {
+                continue;
+            }
+            if self.base + low >= far {
+                return None;
+            }
+            judged += 1;
+            let may_cut = judged < PIECES && count + 2 <= WAITING && high - low > self.shortest;
+            let judgement = if may_cut { self.judge(low, high) } else { self.last_word(low, high) };
+            match judgement {
+                Judgement::Free => {}
+                Judgement::Root(root) => {
+                    let distance = self.base + root;
+                    if near < distance && distance < far {
+                        return Some(root);
+                    }
+                }
+                Judgement::Open { left, right } => {
+                    for (low, high) in [right, left] {
+                        if low < high {
+                            waiting[count] = (low, high);
+                            count += 1;
+                        }
+                    }
+                }
+            }
+        }
+        None
+    }
+
+    /// The first root where rounding hides whether the line is still between the ends: nothing is certain of what is
+    /// there.
+    fn at_an_end(&mut self, low: f64, high: f64) -> Option<f64> {
+        if low >= high || !self.line.at(Interval { low, high }).has_zero() {
+            return None;
+        }
+        self.is_certain = false;
+        self.on_a_piece(low, high)
+    }
+
+    fn judge(&mut self, low: f64, high: f64) -> Judgement {
         let piece = Interval { low, high };
         let middle = low + 0.5 * (high - low);
         let half = (middle - low).max(high - middle).next_up();
@@ -165,14 +236,15 @@ impl<L: Line> Search<'_, L> {
     }
 
     /// What a piece has on which the function only rises or only falls.
-    fn cross(&self, low: f64, high: f64, rises: bool, guess: f64) -> Judgement {
-        if self.leaves.is_some_and(|side| rises == (side == Side::Outside)) {
+    fn cross(&mut self, low: f64, high: f64, rises: bool, guess: f64) -> Judgement {
+        let leaves = self.within.leaves;
+        if leaves.is_some_and(|side| rises == (side == Side::Outside)) {
             return Judgement::Free;
         }
         let at = |t| if rises { self.value(t) } else { -self.value(t) };
         let (at_low, at_high) = (at(low), at(high));
         // A line that leaves the surface starts there.
-        let starts = self.leaves.is_some() && low == self.start && at_low.has_zero();
+        let starts = leaves.is_some() && low == self.start && at_low.has_zero();
         if at_low.low > 0.0 || at_high.high < 0.0 || starts {
             Judgement::Free
         } else if at_low.high < 0.0 && at_high.low > 0.0 {
@@ -194,16 +266,17 @@ impl<L: Line> Search<'_, L> {
 
     /// What a piece has that is not cut any more: a root if the sign changes; none if it is so short that only a jump
     /// or a pole makes bounds of it hold 0.
-    fn last_word(&self, low: f64, high: f64) -> Judgement {
+    fn last_word(&mut self, low: f64, high: f64) -> Judgement {
         let piece = Interval { low, high };
         let over = self.line.at(piece);
         if !over.has_zero() {
             return Judgement::Free;
         }
+        self.is_certain = false;
         let is_short = high - low <= self.shortest;
         let (at_low, at_high) = (self.line.at(low), self.line.at(high));
         let (falls, rises) = (at_low > 0.0 && at_high <= 0.0, at_low < 0.0 && at_high >= 0.0);
-        let crosses = match self.leaves {
+        let crosses = match self.within.leaves {
             None => falls || rises,
             Some(Side::Outside) => falls,
             Some(Side::Inside) => rises,
@@ -219,15 +292,15 @@ impl<L: Line> Search<'_, L> {
     }
 
     /// What the line itself says of a piece.
-    fn undecided(&self, low: f64, high: f64) -> Judgement {
+    fn undecided(&mut self, low: f64, high: f64) -> Judgement {
         // A line that leaves the surface starts there.
-        if self.leaves.is_some() && low == self.start {
+        if self.within.leaves.is_some() && low == self.start {
             return Judgement::Free;
         }
-        twice::count();
+        self.is_certain = false;
         let piece = Interval { low, high };
         let hidden = self.value(piece.middle()).width();
-        match self.line.undecided(piece, self.leaves, hidden) {
+        match self.line.undecided(piece, self.within.leaves, hidden) {
             Some(root) => Judgement::Root(root.clamp(low, high)),
             None => Judgement::Free,
         }
@@ -282,7 +355,8 @@ mod tests {
     }
 
     fn first(line: &impl Line, span: Range<f64>, leaves: Option<Side>) -> Option<f64> {
-        first_root(line, span, 0.0, &Span { leaves, ..Span::RAY }, f64::EPSILON * 36.0)
+        let within = Span { leaves, ..Span::RAY };
+        first_root(line, &span.into(), 0.0, &within, f64::EPSILON * 36.0).root
     }
 
     #[test]

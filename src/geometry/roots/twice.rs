@@ -8,7 +8,6 @@ use crate::geometry::ray::Side;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
 use crate::numeric::twofold::Twofold;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 /// How much of what rounding in f64 hides is hidden in twice the precision, too: 2^-53 but for five digits.
 const STILL_HIDDEN: f64 = 1.0 / 281_474_976_710_656.0;
@@ -16,20 +15,8 @@ const STILL_HIDDEN: f64 = 1.0 / 281_474_976_710_656.0;
 /// Steps that halve a piece below what twice the precision tells apart.
 const MOST: usize = 120;
 
-static ASKED: AtomicU64 = AtomicU64::new(0);
-
-/// How often f64 has left it open in this process whether a line meets a surface.
-pub fn asked() -> u64 {
-    ASKED.load(Ordering::Relaxed)
-}
-
-/// Counts a piece that f64 has left open.
-pub(super) fn count() {
-    ASKED.fetch_add(1, Ordering::Relaxed);
-}
-
-/// The first root on a piece that has at most one turn, where rounding in f64 hides values up to `hidden`; of a line that leaves a surface, the first one where the
-/// function falls (from outside) or rises (from inside).
+/// The first root on a piece that has at most one turn, where rounding in f64 hides values up to `hidden`; of a line that
+/// leaves a surface, the first one where the function falls (from outside) or rises (from inside).
 pub fn first_root(
     f: impl Fn(Dual<Twofold>) -> Dual<Twofold>,
     piece: Interval,

@@ -21,7 +21,7 @@
 //!
 //! Any solution of these inequalities is above the least one, and that is above all sums of finitely many branches. One is
 //! looked for from below, and taken when it solves them as it stands. Where mirrors and glass give on as much light as
-//! they get there is none: then nothing is left out, and [`MAX_RAYS`](crate::render::trace::MAX_RAYS) ends what the distance does
+//! they get there is none: then nothing is left out, and [`MAX_RAYS`](crate::render::limits::MAX_RAYS) ends what the distance does
 //! not.
 //!
 //! **What is left out.** A ray of a camera may leave out [`FAINT`] in all, 1/1024 of a level. That is shared out among the
@@ -37,7 +37,8 @@
 
 use crate::geometry::bounds::{self, SLACK};
 use crate::geometry::ray::Side;
-use crate::render::trace::MAX_DIST;
+use crate::render::culling;
+use crate::render::limits::MAX_DIST;
 use crate::scene::model::{Model, Object};
 use crate::world::accuracy::Accuracy;
 use crate::world::material::{Look, Rgb};
@@ -352,7 +353,7 @@ fn meets_itself(object: &Object, side: Side) -> bool {
 fn lies(of: &Object, object: &Object) -> Sides<bool> {
     let Some([point, normal]) = of.shape.plane() else { return [true; 2] };
     let size = |at: DVec3| at.abs().max_element();
-    let (middle, reach) = match (super::bounds(object), object.shape.plane()) {
+    let (middle, reach) = match (culling::bounds(object), object.shape.plane()) {
         (Some(bounds), _) => (bounds.middle(), bounds.half_size()),
         (None, Some([other, upright])) if upright == normal || upright == -normal => (other, DVec3::ZERO),
         _ => return [true; 2],
@@ -366,7 +367,7 @@ fn lies(of: &Object, object: &Object) -> Sides<bool> {
 /// How far from a point all of an object is, at least.
 fn clearance(object: &Object, from: DVec3) -> f64 {
     let by_bounds =
-        || bounds::clearance(from, super::bounds(object), |region| super::is_clear_of(object, region));
+        || bounds::clearance(from, culling::bounds(object), |region| culling::is_clear_of(object, region));
     object.shape.clearance(from).unwrap_or_else(by_bounds)
 }
 

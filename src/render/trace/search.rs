@@ -1,57 +1,25 @@
 //! What the rays of a packet meet first.
 
-use super::Tracer;
+use super::arrays::{Vectors, room};
+use super::context::Tracer;
+use super::found::Found;
 use super::group::Group;
 use super::order;
-use super::room::{Vectors, room};
 use crate::geometry::bounds::{self, Bounds};
-use crate::geometry::packet::{Nearest, Rays, parts};
+use crate::geometry::packet::{Rays, parts};
 use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
 use crate::geometry::sight::Sight;
-use crate::numeric::interval::Wide;
+use crate::numeric::interval::{Interval, Wide};
 use crate::render::bundles::{self, PART};
-use crate::render::plan;
+use crate::render::culling;
 use crate::render::tree::Visitor;
 use crate::render::watch::{Count, Event, Hit, Reason, Watch};
-use crate::simd::cpu::{Cpu, kernels};
+use crate::simd::cpu::kernels;
 use crate::world::any_shape::AnyShape;
 use crate::world::certify::{self, Enclosure, Precision};
+use crate::world::coincidence::CLOSE;
 use std::mem::take;
 use std::ops::Range;
-
-/// What each ray of a packet meets first, and between which distances.
-#[derive(Default)]
-pub(super) struct Found {
-    pub near: Vec<f64>,
-    pub far: Vec<f64>,
-    /// The object's index and 1; 0 for none.
-    pub met: Vec<u64>,
-    doubt: Vec<u64>,
-}
-
-impl Found {
-    /// Nothing yet, before these ends, and counts the rays. Those that have cost as many as they may end where they
-    /// begin; tells whether any has.
-    fn begin(&mut self, cpu: Cpu, budget: &mut [u32], count: usize, ends: Option<&[f64]>) -> bool {
-        let (near, far) = (room(&mut self.near, count), room(&mut self.far, count));
-        match ends {
-            Some(ends) => far.copy_from_slice(&ends[..count]),
-            None => far.fill(MISS),
-        }
-        room(&mut self.doubt, count).fill(0);
-        begin(cpu, &mut budget[..count], near, far, room(&mut self.met, count))
-    }
-
-    /// Of some of the rays.
-    fn part(&mut self, range: Range<usize>) -> Nearest<'_> {
-        Nearest {
-            near: &mut self.near[range.clone()],
-            far: &mut self.far[range.clone()],
-            met: &mut self.met[range.clone()],
-            doubt: &mut self.doubt[range],
-        }
-    }
-}
 
 impl<'m, W: Watch> Tracer<'m, '_, W> {
     /// What each ray meets first before its end, if it has one. A ray that has cost as many as it may meets nothing.
@@ -104,9 +72,8 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
     /// One ray of a packet.
     fn start(&self, group: &Group, lane: usize) -> Start {
         let [x, y] = &self.rooms.places;
-        let sight = group.looks.then(|| self.model.camera.value.sight(x[lane], y[lane])).or(group.sight);
-        let error = group.errors.get(lane).copied().unwrap_or(0.0);
-        Start { ray: group.rays().get(lane), error, sight }
+        let sight = group.looks.then(|| self.plan.camera.sight(x[lane], y[lane])).or(group.sight);
+        Start { ray: group.rays().get(lane), error: group.error(lane), sight }
     }
 
     /// Whether rays may meet an object at all: to most that they leave they do not come back.
@@ -187,62 +154,50 @@ impl Start {
 
 /// A shape's exact distance on one ray, which leaves it on a side if it is the object that the packet leaves.
 pub(super) fn exact(shape: &AnyShape, start: &Start, leaves: Option<Side>, far: f64) -> f64 {
-    match start.leaves(shape, leaves) {
-        Some(side) if !shape.meets_itself(side) => return MISS,
-        None => {}
-        leaves => return shape.distance(&start.ray, &Span { far, leaves, ..Span::RAY }),
-    }
-    let distance = shape.distance(&start.ray, &Span { far, ..Span::RAY });
-    // Where what was rounded of the ray may decide whether it meets the shape, the ray does that was not rounded.
-    match &start.sight {
-        Some(sight) if shape.bracket(&start.ray, &Span::RAY).is_doubtful() => decided(shape, sight, distance),
-        _ => distance,
-    }
+    located(shape, start, leaves, far).0
 }
 
-/// A distance, if the ray before anything was rounded has a hit there as far as 237 bits tell, or [`MISS`].
-fn decided(shape: &AnyShape, sight: &Sight, distance: f64) -> f64 {
-    let in_world_units = |at: Wide| certify::in_world_units(at, sight).high;
+/// A shape's exact distance, as [`exact`] gives it, and a bracket of that and of the distance of the ray before anything
+/// was rounded.
+fn located(shape: &AnyShape, start: &Start, leaves: Option<Side>, far: f64) -> (f64, Bracket) {
+    let known = |distance| (distance, Bracket::exactly(distance));
+    match start.leaves(shape, leaves) {
+        Some(side) if !shape.meets_itself(side) => return (MISS, Bracket::MISS),
+        None => {}
+        leaves => return known(shape.distance(&start.ray, &Span { far, leaves, ..Span::RAY })),
+    }
+    let distance = shape.distance(&start.ray, &Span { far, ..Span::RAY });
+    let Some(sight) = &start.sight else { return known(distance) };
+    let bracket = shape.bracket(&start.ray, &Span::RAY);
+    // Where what was rounded of the ray may decide whether it meets the shape, the ray does that was not rounded.
+    if bracket.is_doubtful() { decided(shape, sight, distance) } else { (distance, bracket) }
+}
+
+/// A distance and a bracket of it, if the ray before anything was rounded has a hit there as far as 237 bits tell, or
+/// [`MISS`].
+fn decided(shape: &AnyShape, sight: &Sight, distance: f64) -> (f64, Bracket) {
     let enclosure = match shape.certify(sight, Precision::Double) {
         Enclosure::Edge(_) | Enclosure::Doubtful(_) => shape.certify(sight, Precision::Octuple),
         certain => certain,
     };
     match enclosure {
-        Enclosure::Misses => MISS,
+        Enclosure::Misses => (MISS, Bracket::MISS),
         // What has edges has them inclusive.
-        Enclosure::Hits(at) | Enclosure::Edge(at) if distance == MISS => in_world_units(at),
-        // As of a plane that the ray runs along but for rounding.
-        Enclosure::Doubtful(from) if in_world_units(Wide::point(from)) > distance => MISS,
-        Enclosure::Hits(_) | Enclosure::Edge(_) | Enclosure::Doubtful(_) => distance,
-    }
-}
-
-/// The bracket of a distance and of that of the ray before anything was rounded.
-fn around(shape: &AnyShape, sight: &Sight, distance: f64) -> Bracket {
-    match shape.certify(sight, Precision::Octuple) {
         Enclosure::Hits(at) | Enclosure::Edge(at) => {
-            let real = certify::in_world_units(at, sight).high;
-            Bracket { near: real.min(distance), far: real.max(distance) }
+            let Interval { low, high } = certify::bounds_in_world_units(at, sight);
+            (distance.clamp(low, high), Bracket { near: low, far: high })
         }
-        Enclosure::Misses | Enclosure::Doubtful(_) => Bracket::exactly(distance),
+        // As of a plane that the ray runs along but for rounding: what is undecided lies farther on.
+        Enclosure::Doubtful(from)
+            if certify::in_world_units(Wide::point(from), sight).high * (1.0 - CLOSE) > distance =>
+        {
+            (MISS, Bracket::MISS)
+        }
+        Enclosure::Doubtful(_) => (distance, Bracket::exactly(distance)),
     }
 }
 
 kernels! {
-    /// Counts rays, which have met nothing yet. Tells whether any has cost as many as it may.
-    fn begin(budget: &mut [u32], near: &mut [f64], far: &mut [f64], met: &mut [u64]) -> bool {
-        let (count, mut any_over) = (budget.len(), 0);
-        let (near, far, met) = (&mut near[..count], &mut far[..count], &mut met[..count]);
-        for lane in 0..count {
-            let is_over = budget[lane] == 0;
-            let end = if is_over { 0.0 } else { far[lane] };
-            (near[lane], far[lane], met[lane]) = (end, end, 0);
-            budget[lane] -= u32::from(!is_over);
-            any_over |= u32::from(is_over);
-        }
-        any_over != 0
-    }
-
     /// Whether all is the same.
     pub(super) fn is_one(of: &[u64]) -> bool {
         of.iter().fold(0, |other, one| other | (one ^ of[0])) == 0
@@ -300,11 +255,12 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
     /// Looks at the objects that are listed, each for those parts of the packet that may come there.
     fn listed(&mut self) {
         let (cpu, plan) = (self.tracer.cpu, self.tracer.plan);
-        let bundles = bundles::around(cpu, self.group.rays());
+        // Those from the viewer all start there.
+        let bundles = bundles::around(cpu, self.group.rays(), self.group.leaves.is_none());
         for index in &plan.unbounded {
             let object = &self.tracer.model.objects[*index];
             if self.tracer.may_meet(self.group.left(), *index) {
-                self.in_parts(*index, bundles.which(|ways| !plan::is_clear_of(object, ways)));
+                self.in_parts(*index, bundles.which(|ways| !culling::is_clear_of(object, ways)));
             }
         }
         let mut parts = take(&mut self.tracer.rooms.parts);
@@ -345,7 +301,7 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
     fn decide(&mut self, lane: usize, index: usize, leaves: Option<Side>) {
         let objects = &self.tracer.model.objects;
         let start = self.tracer.start(self.group, lane);
-        let distance = exact(&objects[index].shape, &start, leaves, MISS);
+        let (distance, own) = located(&objects[index].shape, &start, leaves, MISS);
         if distance == MISS {
             return;
         }
@@ -362,11 +318,7 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
         let nearest = if is_first { distance } else { rival_distance };
         // The ray from the viewer that was not rounded meets it anywhere in its bracket, and may meet others there.
         let bracket = match start.sight {
-            Some(sight) if is_first => {
-                let shape = &objects[index].shape;
-                let bracket = shape.bracket(&start.ray, &Span::RAY);
-                if bracket.is_doubtful() { around(shape, &sight, distance) } else { bracket }
-            }
+            Some(_) if is_first => own,
             Some(_) => Bracket { near: *near, far: *far },
             None => Bracket::exactly(nearest),
         };

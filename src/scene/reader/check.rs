@@ -17,7 +17,7 @@ use crate::world::material::Material;
 use crate::world::texture::Texture;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 /// Makes a model of entities as written and reports all their faults. Without faults there is a model. File
 /// names start from `folder`.
@@ -243,7 +243,7 @@ impl Check<'_> {
             );
         }
         let Self { camera, materials, textures, objects, lights, .. } = self;
-        Some(Model { camera: camera?, materials, textures, objects, lights, plan: OnceLock::new() })
+        Some(Model { camera: camera?, materials, textures, objects, lights })
     }
 }
 

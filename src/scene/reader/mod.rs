@@ -13,7 +13,7 @@ mod written;
 pub use check::Chosen;
 pub use fault::{Fault, Place, Report, Severity};
 pub use machine::message;
-pub use written::{Values, Written};
+pub use written::Written;
 
 use crate::scene::model::Model;
 use crate::scene::registry::Registry;
@@ -35,7 +35,9 @@ pub struct Loaded {
     pub places: Vec<Place>,
 }
 
-/// Reads a scene, as [`read_by`] does. An accuracy that is given here counts in place of the scene's own.
+/// Reads a scene, in TOML if its name ends in `.toml` or its text begins as TOML does, and in the notes'
+/// spelling if not. `name` is what messages call it, and its own file names start from `folder`. An accuracy that is
+/// given here counts in place of the scene's own.
 ///
 /// # Errors
 /// Every fault of the scene, warnings among them, in the order of the text.
@@ -49,8 +51,7 @@ pub fn read(
     read_by(registry, name, folder, bytes, Chosen { above_all: accuracy, ..Chosen::default() })
 }
 
-/// Reads a scene, in TOML if its name ends in `.toml` or its text begins as TOML does, and in the notes'
-/// spelling if not. `name` is what messages call it, and its own file names start from `folder`.
+/// As [`read`], with more to say about the accuracy.
 ///
 /// # Errors
 /// Every fault of the scene, warnings among them, in the order of the text.

@@ -125,8 +125,8 @@ impl Revolution {
         leave(cpu, lanes, rays.len());
     }
 
-    /// The distance of a ray's first hit within a span.
-    pub(super) fn distance(&self, frame: &Frame, ray: &Ray, within: &Span) -> f64 {
+    /// The distance of a ray's first hit within a span, and whether it is that of all rays that this one was rounded from.
+    pub(super) fn distance(&self, frame: &Frame, ray: &Ray, within: &Span) -> (f64, bool) {
         let splat = |v: DVec3| Vectors::<STEP> { x: [v.x; STEP], y: [v.y; STEP], z: [v.z; STEP] };
         let (origin, dir) = (splat(ray.origin), splat(ray.dir));
         let rays = Rays { origin: origin.view(STEP), dir: dir.view(STEP), origin_error: 0.0 };
@@ -136,11 +136,11 @@ impl Revolution {
         self.bracket(Cpu::best(), frame, rays, sides, &[MISS; STEP], &mut lanes);
         let (near, far) = (lanes.near[0], lanes.far[0]);
         if near == MISS {
-            MISS
+            (MISS, true)
         } else if far < MISS {
             let mut root = [near; STEP];
             self.roots(Cpu::best(), frame, rays, (&[near; STEP], &[far; STEP]), &mut root);
-            within.keep(root[0])
+            (within.keep(root[0]), true)
         } else {
             self.first_hit(frame, ray, within)
         }

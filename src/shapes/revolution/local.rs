@@ -1,13 +1,15 @@
 //! A ray clipped to a surface's bounding cylinder and counted from a base near it, so that nothing far away is left
 //! in the arithmetic.
 
-use crate::geometry::frame::{BLUR, Frame};
+use crate::geometry::frame::{self, BLUR, Frame};
 use crate::geometry::ray::{Ray, Span};
+use crate::geometry::roots::taylor::Stretch;
 use crate::numeric::number::Number;
 use glam::DVec3;
+use std::ops::Range;
 
 /// The part of a ray that is inside of a bounding cylinder.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Local {
     /// The base.
     pub origin: DVec3,
@@ -17,9 +19,13 @@ pub struct Local {
     pub a: f64,
     pub b: f64,
     pub c: f64,
-    /// Where it begins and ends, along the ray from the base.
+    /// How far rounding may have moved the base.
+    pub blur: f64,
+    /// Where the ray begins and ends, along it from the base.
     pub from: f64,
     pub to: f64,
+    /// Where it is between the surface's ends for certain.
+    pub inner: Range<f64>,
     /// How far the base is from the ray's origin.
     pub base: f64,
     /// Where the search ends, from the ray's origin: only what lies before that is of interest.
@@ -53,15 +59,12 @@ impl Local {
         let moved = frame.direction(frame.from_origin(ray, base));
         let b = moved.x * dir.x + moved.z * dir.z;
         let c = moved.x * moved.x + moved.z * moved.z;
-        let (mut from, mut to) = (within.near - base, f64::INFINITY);
-        if dir.y != 0.0 {
-            let (bottom, top) = (-moved.y / dir.y, (height - moved.y) / dir.y);
-            from = from.max(bottom.min(top));
-            to = to.min(bottom.max(top));
-        } else if !(0.0..=height).contains(&moved.y) {
-            return None;
-        }
+        let blur = frame::blur(moved, base);
+        let mut stretch = Stretch::from(within.near - base..f64::INFINITY);
+        stretch.cut((moved.y, dir.y), [0.0, height], blur, 2.0 * (height + widest));
+        let (mut from, mut to) = (stretch.outer.start, stretch.outer.end);
         // A hair more than is needed: rounding must not cut anything off.
+        let widest = widest + 2.0 * (blur + BLUR * (height + widest));
         let widest = widest * widest * (1.0 + 1e-9);
         if a > 1e-30 {
             let room = b * b - a * (c - widest);
@@ -77,7 +80,8 @@ impl Local {
         if from > to || (to - from).is_nan() || base + from >= within.far {
             return None;
         }
-        Some(Self { origin: moved, dir, a, b, c, from, to, base, far: within.far, ray: *ray, frame: *frame })
+        let (far, inner) = (within.far, stretch.inner);
+        Some(Self { origin: moved, dir, a, b, c, blur, from, to, inner, base, far, ray: *ray, frame: *frame })
     }
 
     /// The height at a place along the ray.
@@ -97,8 +101,7 @@ impl Local {
     /// was rounded from.
     #[inline(always)]
     pub fn place<N: Number>(&self, axis: usize, along: N) -> N {
-        let blur = BLUR * self.origin.abs().element_sum();
-        N::about(self.origin[axis], blur) + along * N::about(self.dir[axis], BLUR)
+        N::about(self.origin[axis], self.blur) + along * N::about(self.dir[axis], BLUR)
     }
 
     /// What full precision is along this part of the ray.

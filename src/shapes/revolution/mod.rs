@@ -6,7 +6,7 @@
 //! proves that there is none (`walk`); where it grazes the error's shell, bounds of the second derivative decide
 //! ([`taylor`](crate::geometry::roots::taylor)), and where rounding hides what they say, twice the precision
 //! ([`twice`]). Nothing has to be tuned. A profile of which all that cannot be proven within a
-//! stated number of operations is refused, with the reason ([`NoSurface`]). The rounding of a ray's own arithmetic is held
+//! stated number of operations is refused, with the reason ([`NoSurface`](no_surface::NoSurface)). The rounding of a ray's own arithmetic is held
 //! by margins that are derived where they stand, and tried against the truth in `tests/truth.rs`.
 
 mod bracket;
@@ -26,6 +26,5 @@ mod tests;
 mod walk;
 
 pub use classic::Classic;
-pub use no_surface::NoSurface;
 pub use shape::InFrame;
 pub use surface::{Finish, Revolution};

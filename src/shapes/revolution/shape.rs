@@ -70,7 +70,7 @@ impl Hittable for InFrame<Classic> {
 
 impl Hittable for InFrame<Revolution> {
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        self.surface.distance(&self.frame, ray, within)
+        self.surface.distance(&self.frame, ray, within).0
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {
@@ -166,13 +166,17 @@ where
     }
 
     fn interact(&self, cpu: Cpu, rays: Rays, distances: &[f64], landing: Landing) {
-        let Landing { points, normals, sides, travelled } = landing;
+        let Landing { points, normals, sides, cosines, travelled } = landing;
         let InFrame { surface, frame } = &self.shape;
-        normal::land(cpu, surface, frame, rays, distances, sides, travelled, points, normals);
+        normal::land(cpu, surface, frame, rays, distances, sides, cosines, travelled, points, normals);
     }
 
     fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        by_distance(self, &self.shape, ray, within)
+        let touches = || self.touches(ray.origin, within.origin_error);
+        by_distance(within, touches, |within| {
+            let (distance, is_certain) = self.shape.surface.distance(&self.shape.frame, ray, within);
+            is_certain.then_some(distance)
+        })
     }
 
     fn refine_one(&self, ray: &Ray, leaves: Option<Side>) -> f64 {

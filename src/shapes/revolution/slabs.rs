@@ -107,6 +107,11 @@ impl Slabs {
         self.reach
     }
 
+    /// The largest of the slabs' errors.
+    pub fn coarsest(&self) -> f64 {
+        self.slabs.iter().map(|slab| slab.error).fold(0.0, f64::max)
+    }
+
     /// Whether the profile's slope is bounded everywhere, so that it does not jump.
     #[inline(always)]
     pub fn is_smooth(&self) -> bool {

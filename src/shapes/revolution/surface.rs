@@ -90,8 +90,7 @@ impl Revolution {
 /// How its hits are found.
 impl fmt::Display for Revolution {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let slabs = (0..self.slabs.count()).map(|index| self.slabs.get(index));
-        let error = slabs.map(|slab| slab.error).fold(0.0, f64::max);
+        let error = self.slabs.coarsest();
         let count = words::count(self.slabs.count(), "slab");
         let finish = match self.finish {
             Finish::Bracket => "left in the middle of their brackets",

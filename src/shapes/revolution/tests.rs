@@ -1,5 +1,6 @@
 //! Profiles of all kinds: what loads, what is refused, and that no part is lost or invented.
 
+use super::no_surface::NoSurface;
 use super::*;
 use crate::numeric::formula::Formula;
 use crate::numeric::interval::Interval;

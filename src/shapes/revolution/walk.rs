@@ -8,10 +8,10 @@ use super::line::{OnRay, Uncut};
 use super::local::Local;
 use super::slabs::Slab;
 use super::surface::{Finish, Revolution, sign};
-use crate::geometry::frame::Frame;
+use crate::geometry::frame::{BLUR, Frame};
 use crate::geometry::ray::{MISS, Ray, Side, Span};
-use crate::geometry::roots::Method;
-use crate::geometry::roots::{newton, taylor};
+use crate::geometry::roots::taylor::{self, Found, Stretch};
+use crate::geometry::roots::{Method, newton};
 
 /// `sg * (a s^2 + 2 b s + c)`, which is positive where the ray is still on its side of a slab's parabola.
 #[derive(Clone, Copy)]
@@ -22,15 +22,14 @@ struct Quadratic {
 }
 
 impl Revolution {
-    /// The distance of a ray's first hit within a span, whatever the ray does.
-    pub fn first_hit(&self, frame: &Frame, ray: &Ray, within: &Span) -> f64 {
+    /// The distance of a ray's first hit within a span, whatever the ray does, and whether it is that of all rays that
+    /// this one was rounded from.
+    pub fn first_hit(&self, frame: &Frame, ray: &Ray, within: &Span) -> (f64, bool) {
         let Some(local) = Local::new(frame, ray, within, self.height, self.slabs.widest()) else {
-            return MISS;
+            return (MISS, true);
         };
-        match self.walk(&local, within.leaves) {
-            Some(along) => within.keep(local.base + along),
-            None => MISS,
-        }
+        let Found { root, is_certain } = self.walk(&local, within.leaves);
+        (root.map_or(MISS, |along| within.keep(local.base + along)), is_certain)
     }
 
     /// As [`first_hit`](Self::first_hit), by another method and in the same bounding cylinder; but the notes' steps, as
@@ -48,15 +47,22 @@ impl Revolution {
 
     /// The first place along a ray where it crosses the surface. A ray that leaves the surface on a side looks for
     /// crossings from there alone.
-    fn walk(&self, local: &Local, leaves: Option<Side>) -> Option<f64> {
+    fn walk(&self, local: &Local, leaves: Option<Side>) -> Found {
+        let mut is_certain = true;
+        let root = self.walk_on(local, leaves, &mut is_certain);
+        Found { root, is_certain }
+    }
+
+    fn walk_on(&self, local: &Local, leaves: Option<Side>, is_certain: &mut bool) -> Option<f64> {
         let dy = local.dir.y;
         let is_upward = dy > 0.0;
         let mut index = self.slabs.index(local.height(local.from));
         let mut from = local.from;
         let reach = local.from.abs().max(local.to.abs());
         let widest = self.slabs.widest();
-        // What rounding makes of the ray's own part of the arithmetic.
-        let rounding = 16.0 * f64::EPSILON * (local.c + local.a * reach * reach + widest * widest);
+        // What rounding makes of the ray's own part of the arithmetic, and of the ray.
+        let farthest = local.c + local.a * reach * reach + widest * widest;
+        let rounding = 16.0 * f64::EPSILON * farthest + 4.0 * farthest.sqrt() * local.moved();
         let mut side = leaves.map(sign);
         let mut wanted = leaves;
         loop {
@@ -69,11 +75,14 @@ impl Revolution {
                 ((end - local.origin.y) / dy).min(local.to)
             };
             if slab.is_void {
+                // Where the surface narrows down to the axis, rounding may decide on which side of its end a ray is.
+                let is_near = |along: f64| local.around(along) <= self.slabs.coarsest() + rounding;
+                *is_certain &= !is_near(from) && !is_near(to);
                 (side, wanted) = (None, None);
             } else if to > from || from == local.from {
-                let sg = side.unwrap_or_else(|| self.side_at(local, slab, from, rounding));
+                let sg = side.unwrap_or_else(|| self.side_at(local, slab, from, rounding, is_certain));
                 side = Some(sg);
-                if let Some(hit) = self.cross(local, slab, (from, to), (sg, wanted), rounding) {
+                if let Some(hit) = self.cross(local, slab, (from, to), (sg, wanted), rounding, is_certain) {
                     return Some(hit);
                 }
             }
@@ -87,13 +96,14 @@ impl Revolution {
 
     /// Which side of the surface a place along a ray is on: 1 outside, -1 inside.
     #[inline(always)]
-    fn side_at(&self, local: &Local, slab: &Slab, along: f64, rounding: f64) -> f64 {
+    fn side_at(&self, local: &Local, slab: &Slab, along: f64, rounding: f64, is_certain: &mut bool) -> f64 {
         let v = local.height(along) - slab.middle;
         let outside = local.around(along) - slab.parabola(v);
-        let error = slab.error + rounding + slab.rounding(v, self.height);
+        let error = slab.error + rounding + slab.rounding(v, self.height, local.moved());
         if outside.abs() > error {
             return outside.signum();
         }
+        *is_certain = false;
         if self.outside(local, along) < 0.0 { -1.0 } else { 1.0 }
     }
 
@@ -106,13 +116,14 @@ impl Revolution {
         (from, to): (f64, f64),
         (sg, wanted): (f64, Option<Side>),
         rounding: f64,
+        is_certain: &mut bool,
     ) -> Option<f64> {
         let dy = local.dir.y;
         if sg > 0.0 && local.closest_around(from, to) > slab.most + rounding {
             return None;
         }
         let v = local.origin.y - slab.middle;
-        let rounding = rounding + slab.rounding(v.abs().max((v + to * dy).abs()), self.height);
+        let rounding = rounding + slab.rounding(v.abs().max((v + to * dy).abs()), self.height, local.moved());
         let error = slab.error + rounding;
         let quadratic = Quadratic {
             a: sg * (local.a - slab.c2 * dy * dy),
@@ -135,22 +146,30 @@ impl Revolution {
         let enters = quadratic.lowered(error).first_not_positive(from, to)?;
         if let Some(leaves) = quadratic.lowered(-error).first_not_positive(enters, to) {
             if quadratic.slope(enters).max(quadratic.slope(leaves)) + slope_error < 0.0 {
+                *is_certain &= local.inner.start < enters && leaves < local.inner.end;
                 return Some(self.finish(local, (enters, leaves), sg));
             }
-            return Some(self.first_crossing(local, enters, leaves, wanted).unwrap_or(enters));
+            let Found { root, is_certain: is_root_certain } =
+                self.first_crossing(local, enters, leaves, wanted);
+            *is_certain &= is_root_certain && root.is_some();
+            return Some(root.unwrap_or(enters));
         }
         // It may have touched the surface, while it was in the shell.
         let out = quadratic.lowered(error).next_positive(enters, to);
-        self.first_crossing(local, enters, out, wanted)
+        let Found { root, is_certain: is_root_certain } = self.first_crossing(local, enters, out, wanted);
+        *is_certain &= is_root_certain;
+        root
     }
 
     /// The first crossing on a short piece, from a side if it matters from which.
-    fn first_crossing(&self, local: &Local, from: f64, to: f64, wanted: Option<Side>) -> Option<f64> {
+    fn first_crossing(&self, local: &Local, from: f64, to: f64, wanted: Option<Side>) -> Found {
         // The piece's own ends may be crossings: they are where shells begin and end.
         let (from, to) = (from.next_down(), to.next_up());
         let line = OnRay { surface: self, local };
         let all = Span { near: f64::NEG_INFINITY, leaves: wanted, ..Span::RAY };
-        taylor::first_root(&line, from..to, 0.0, &all, 4.0 * local.tolerance())
+        let stretch =
+            Stretch { outer: from..to, inner: from.max(local.inner.start)..to.min(local.inner.end) };
+        taylor::first_root(&line, &stretch, 0.0, &all, 4.0 * local.tolerance())
     }
 
     /// The one root of a bracket.
@@ -168,6 +187,12 @@ impl Revolution {
 }
 
 impl Local {
+    /// How far rounding may have moved any point of the ray near the surface.
+    #[inline(always)]
+    fn moved(&self) -> f64 {
+        self.blur + BLUR * self.from.abs().max(self.to.abs())
+    }
+
     /// The least squared distance from the axis between two places.
     #[inline(always)]
     fn closest_around(&self, from: f64, to: f64) -> f64 {
@@ -182,10 +207,14 @@ impl Local {
 }
 
 impl Slab {
-    /// What rounding makes of the parabola, at most so far from the slab's middle.
+    /// What rounding makes of the parabola, at most so far from the slab's middle, and of the height that it is asked for.
     #[inline(always)]
-    fn rounding(&self, v: f64, height: f64) -> f64 {
-        16.0 * f64::EPSILON * (self.c0.abs() + self.c1.abs() * (v.abs() + height) + self.c2.abs() * v * v)
+    fn rounding(&self, v: f64, height: f64, moved: f64) -> f64 {
+        let slope = self.c1.abs() + 2.0 * self.c2.abs() * v.abs();
+        4.0 * moved * slope
+            + 16.0
+                * f64::EPSILON
+                * (self.c0.abs() + self.c1.abs() * (v.abs() + height) + self.c2.abs() * v * v)
     }
 }
 

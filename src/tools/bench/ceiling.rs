@@ -22,9 +22,6 @@ pub enum Bare {
 }
 
 impl Bare {
-    /// Every test.
-    pub const ALL: [Self; 3] = [Self::Plane, Self::Sphere, Self::Triangle];
-
     /// The one that an entity of this type needs, if it is one of these.
     pub fn of(entity: &str) -> Option<Self> {
         match entity {

@@ -1,6 +1,6 @@
 //! The ways in which a scene's hits can be found, each as a model of the scene.
 
-use super::{Family, Load};
+use super::data::Family;
 use crate::geometry::bounds::Bounds;
 use crate::geometry::ray::{MISS, Ray, Side, Span};
 use crate::geometry::roots::Method;
@@ -16,6 +16,9 @@ use crate::world::packets::shape::{Meeting, Proofs};
 use crate::world::shape::{ByDistance, Shape};
 use glam::DVec3;
 use std::io;
+
+/// Loads the scene anew, in an accuracy or in its own.
+pub type Load<'l> = &'l dyn Fn(Option<Accuracy>) -> io::Result<Model>;
 
 /// A scene, and a way to find its hits.
 pub struct Candidate {

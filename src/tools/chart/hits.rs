@@ -3,9 +3,11 @@
 
 use super::candidate::{Candidate, is_searched};
 use super::clock;
+use super::data::{Panel, Point, Subject, Wrong};
 use super::packets::Packet;
 use super::places::{spread, tiles};
-use super::{Panel, Point, Progress, Study, Subject, Wrong};
+use super::progress::Progress;
+use super::study::Study;
 use crate::geometry::packet::WIDE;
 use crate::geometry::ray::{MISS, Ray, Side, Span};
 use crate::geometry::sight::Sight;

@@ -7,6 +7,7 @@
 mod draw;
 mod looks;
 mod promise;
+mod rays;
 mod shape;
 mod surface;
 
@@ -89,7 +90,7 @@ pub fn breaches_in(model: &Model) -> Vec<Breach> {
     let mut found = Vec::new();
     for object in &model.objects {
         found.extend(
-            shape::try_object(object, &mut draw, RAYS).gravest.map(|fault| (object.args.entity, fault)),
+            rays::try_object(object, &mut draw, RAYS).gravest.map(|fault| (object.args.entity, fault)),
         );
     }
     for light in &model.lights {
@@ -135,7 +136,7 @@ fn of_entity(registry: &Registry, entity: &'static Entity, room: &Room) -> Optio
             Kind::Texture => Ok(()),
             Kind::Light => model.lights.iter().try_for_each(|item| looks::light(&*item.value, &mut draw)),
             Kind::Object => model.objects.iter().try_for_each(|object| {
-                let outcome = shape::try_object(object, &mut draw, RAYS);
+                let outcome = rays::try_object(object, &mut draw, RAYS);
                 hits += outcome.hits;
                 outcome.gravest.map_or(Ok(()), Err)
             }),

@@ -12,7 +12,7 @@ mod search;
 pub use equation::Equation;
 
 use crate::geometry::sight::Sight;
-use crate::numeric::interval::{Float, Wide};
+use crate::numeric::interval::{Float, Interval, Wide};
 use crate::numeric::twofold::Twofold;
 use equation::Found;
 use f256::f256;
@@ -37,14 +37,39 @@ impl Enclosure {
 
 /// A distance in lengths of a sight's direction, in world units: the middle of what it may be.
 pub fn in_world_units(distance: Wide, sight: &Sight) -> Twofold {
-    middle(distance * sight.length())
+    rounded(distance.middle() * root(sight.squared_length::<Wide>().middle()))
+}
+
+/// Bounds of a distance in lengths of a sight's direction, in world units.
+pub fn bounds_in_world_units(distance: Wide, sight: &Sight) -> Interval {
+    let length = root(sight.squared_length::<Wide>().middle());
+    // A unit in the last place of `f64` holds all that is rounded with so many bits.
+    Interval {
+        low: (distance.low * length).to_f64().next_down(),
+        high: (distance.high * length).to_f64().next_up(),
+    }
 }
 
 /// The middle of an interval, in twice the precision of `f64`.
 pub fn middle(of: Wide) -> Twofold {
-    let middle = of.middle();
-    let high = middle.to_f64();
-    Twofold { high, low: (middle - f256::from(high)).to_f64() }
+    rounded(of.middle())
+}
+
+/// A number in twice the precision of `f64`.
+fn rounded(of: f256) -> Twofold {
+    let high = of.to_f64();
+    Twofold { high, low: (of - f256::from(high)).to_f64() }
+}
+
+/// The square root to some 200 bits: a step of Newton's method from half of them takes a part of the time that all 237 do.
+fn root(of: f256) -> f256 {
+    let Twofold { high, low } = rounded(of).sqrt();
+    // The low parts of what is smaller, or squared in between, underflow.
+    if !(1e-120..1e120).contains(&high) {
+        return of.sqrt();
+    }
+    let start = f256::from(high) + f256::from(low);
+    f256::from(0.5) * (start + of / start)
 }
 
 /// How many bits a proof is tried with.
@@ -81,4 +106,21 @@ fn solve<F: Float>(shape: &impl Equation, sight: &Sight) -> Found<F> {
 
 fn is_quadratic<E: Equation>(_: &E) -> bool {
     E::IS_QUADRATIC
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numeric::interval::Float;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn roots_have_far_more_digits_than_twice_the_precision(high in 1.0..4.0, low in 0.0..1e-20, power in -1000..1000) {
+            let scale = 2_f64.powi(power);
+            let of = f256::from(scale) * (f256::from(high) + f256::from(low));
+            let (found, truth) = (root(of), Float::sqrt(of));
+            prop_assert!(Float::abs(found - truth) <= f256::from(2_f64.powi(-195)) * truth, "{:?}", of);
+        }
+    }
 }

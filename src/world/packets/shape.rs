@@ -247,7 +247,8 @@ where
         if P::IS_PLAIN {
             return Bracket::exactly(self.shape.distance(ray, within));
         }
-        by_distance(self, &self.shape, ray, within)
+        let touches = || self.touches(ray.origin, within.origin_error);
+        by_distance(within, touches, |within| Some(self.shape.distance(ray, within)))
     }
 
     #[inline(always)]
@@ -256,15 +257,20 @@ where
     }
 }
 
-/// The bracket of a shape that has no quicker one than its distance.
+/// The bracket of a shape that has no quicker one than its distance, where rounding does not decide that; `touches` tells
+/// whether the shape touches the ray's origin within the span's `origin_error`.
 #[inline(always)]
-pub fn by_distance(proofs: &impl Proofs, shape: &impl Hittable, ray: &Ray, within: &Span) -> Bracket {
+pub fn by_distance(
+    within: &Span,
+    touches: impl FnOnce() -> bool,
+    distance: impl FnOnce(&Span) -> Option<f64>,
+) -> Bracket {
     let Span { far, leaves, origin_error, .. } = *within;
-    if leaves.is_none() && origin_error > 0.0 && proofs.touches(ray.origin, origin_error) {
+    if leaves.is_none() && origin_error > 0.0 && touches() {
         return Bracket::UNKNOWN;
     }
     let close = if far < MISS { CLOSE * far } else { 0.0 };
-    let distance = shape.distance(ray, &Span { far: far + close, ..*within });
+    let Some(distance) = distance(&Span { far: far + close, ..*within }) else { return Bracket::UNKNOWN };
     // At the distance of another surface, more digits tell which comes first.
     if (distance - far).abs() <= close {
         return Bracket { near: distance - close, far: distance + close };
@@ -318,8 +324,8 @@ where
     }
 
     fn interact(&self, cpu: Cpu, rays: Rays, distances: &[f64], landing: Landing) {
-        let Landing { points, normals, sides, travelled } = landing;
-        interact(cpu, &self.shape, rays, distances, sides, travelled, points, normals);
+        let Landing { points, normals, sides, cosines, travelled } = landing;
+        interact(cpu, &self.shape, rays, distances, sides, cosines, travelled, points, normals);
     }
 
     fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
@@ -362,16 +368,17 @@ kernels! {
 
     /// Where rays come to a shape after these distances, and its normals there.
     fn interact[T: Hittable](
-        shape: &T, rays: Rays, distances: &[f64], sides: &mut [Side], travelled: &mut [f64]
+        shape: &T, rays: Rays, distances: &[f64], sides: &mut [Side], cosines: &mut [f64], travelled: &mut [f64]
     ) => points, normals {
         let (count, is_two_sided) = (travelled.len(), shape.is_two_sided());
-        let (rays, distances, sides) = (rays.first(count), &distances[..count], &mut sides[..count]);
+        let (rays, distances) = (rays.first(count), &distances[..count]);
+        let (sides, cosines) = (&mut sides[..count], &mut cosines[..count]);
         let (mut points, mut normals) = (points.first(count), normals.first(count));
         for lane in 0..count {
             let ray = rays.get(lane);
             let point = ray.at(distances[lane]);
             let normal;
-            (sides[lane], normal) = turned(ray.dir, shape.normal(point), is_two_sided);
+            (sides[lane], cosines[lane], normal) = turned(ray.dir, shape.normal(point), is_two_sided);
             points.set(lane, point);
             normals.set(lane, normal);
             travelled[lane] += distances[lane];

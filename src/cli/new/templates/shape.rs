@@ -1,12 +1,6 @@
 //! A template: a cube with round edges. Say here what it is, and where its formula comes from.
 
-use crate::geometry::frame::Frame;
-use crate::numeric::number::Number;
-use crate::scene::entity::Entity;
-use crate::scene::pparm::{Pparm, Table};
-use crate::shapes::implicit::Implicit;
-use crate::world::body::Body;
-use glam::DVec3;
+use crate::prelude::*;
 
 // Each attribute is one of these: its name, what it is, its unit and its rule. `required` has to be given; `or`
 // has a default. The reader, its messages and the reference are made from them.

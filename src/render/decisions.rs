@@ -1,8 +1,9 @@
-//! The decisions as text.
+//! The decisions of a plan as text, each with its reason.
 
-use super::depth::Depth;
-use super::{Plan, TREE};
-use crate::render::trace::{MAX_DIST, MAX_RAYS};
+use crate::render::culling;
+use crate::render::limits::{MAX_DIST, MAX_RAYS};
+use crate::render::plan::depth::Depth;
+use crate::render::plan::{Plan, TREE};
 use crate::scene::model::{Item, Model, Object};
 use crate::words::{count, list, short};
 use crate::world::accuracy::Accuracy;
@@ -31,12 +32,12 @@ impl fmt::Display for Decision {
     }
 }
 
-/// All decisions about a model.
-pub fn decisions(model: &Model) -> Vec<Decision> {
-    let plan = model.plan();
+/// All decisions of a plan.
+pub fn of(plan: &Plan) -> Vec<Decision> {
+    let model = plan.model;
     let decision = |subject, text| Decision { subject, text };
     let mut all = vec![
-        decision("picture", picture(&model.camera.value)),
+        decision("picture", picture(&plan.camera)),
         decision("accuracy", model.camera.value.accuracy.to_string()),
         decision("lights", lights(model)),
     ];
@@ -173,7 +174,7 @@ fn search(model: &Model, plan: &Plan) -> String {
 fn objects(model: &Model, plan: &Plan) -> Vec<Decision> {
     let mut alike: Vec<(&'static str, String, Vec<&str>)> = Vec::new();
     for object in &model.objects {
-        let place = match (&plan.tree, super::bounds(object)) {
+        let place = match (&plan.tree, culling::bounds(object)) {
             (Some(_), Some(_)) => "in the tree",
             (None, Some(_)) => "with bounds",
             (_, None) => "without bounds",

@@ -1,64 +1,12 @@
-//! Room for packets: arrays that are as long as the longest packet so far, and are kept from one to the next, so that a
-//! packet costs what its rays cost.
+//! Arrays that are as long as the longest packet so far, and are kept from one to the next, so that a packet costs what
+//! its rays cost.
 
-use super::NARROW;
-use super::group::{Group, Parts};
-use super::illuminate::Lighting;
-use super::passage::Passage;
-use super::search::Found;
-use super::shade::Shading;
 use crate::geometry::packet::WIDE;
 use crate::simd::soa::{View, ViewMut};
-use crate::world::sample::Sample;
 use glam::DVec3;
 
-/// All that the packets of one thread need, one after the other.
-#[derive(Default)]
-pub(crate) struct Rooms {
-    pub(super) primary: Option<Box<Primary>>,
-    /// The x and y of the places of the picture that the camera rays under way look through, in pixels.
-    pub(super) places: [Vec<f64>; 2],
-    /// Of the camera rays under way, where pixels have more than one.
-    pub(super) samples: Vec<Sample>,
-    /// For packets that wait for those which have gone on from them, the foremost one last.
-    #[expect(clippy::vec_box, reason = "they come and go, and are large")]
-    pub(super) levels: Vec<Box<Level>>,
-    #[expect(clippy::vec_box, reason = "likewise")]
-    pub(super) passages: Vec<Box<Passage>>,
-    /// For what is over before any go on.
-    pub(super) lighting: Option<Box<Lighting>>,
-    pub(super) doubt: Vec<u64>,
-    /// For each object that is listed with its bounds.
-    pub(super) parts: Vec<u32>,
-    /// For the way through a tree.
-    pub(super) ahead: Vec<usize>,
-    pub(super) inverse: Vectors,
-    /// How much light each camera ray under way lacks at most, as it has cost as many rays as it may.
-    pub(super) missing: Vec<f64>,
-    /// Whether any lacks some.
-    pub(super) any_missing: bool,
-}
-
-/// Rays from the viewer.
-#[derive(Default)]
-pub(super) struct Primary {
-    pub group: Group,
-    pub seen: Vectors,
-    /// Of pixels.
-    pub colours: Vectors,
-}
-
-/// The rays of a packet that meet the same object, while they are followed.
-#[derive(Default)]
-pub(super) struct Level {
-    pub found: Found,
-    pub parts: Parts,
-    pub part: Group,
-    pub near: Vec<f64>,
-    pub far: Vec<f64>,
-    pub shading: Shading,
-    pub seen: Vectors,
-}
+/// The rays of a packet where there are few.
+pub(super) const NARROW: usize = 8;
 
 /// Room for so many elements. What is in them is left from before.
 #[inline(always)]
