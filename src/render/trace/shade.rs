@@ -72,7 +72,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
             cosines: room(&mut surface.cosines, count),
             travelled,
         };
-        shape.land(cpu, group.rays(), distances, landing);
+        shape.packets().interact(cpu, group.rays(), distances, landing);
         let points = surface.points.view(count);
         surface.look = shader.even(material);
         surface.is_mirror = match surface.look {
@@ -80,7 +80,10 @@ impl<W: Watch> Tracer<'_, '_, W> {
                 colours.fill(count, look.ambient);
                 look.specular != Rgb::ZERO
             }
-            None => shader.unlit(cpu, material, points, colours.room(count), surface.specular.room(count)),
+            None => {
+                let (ambients, speculars) = (colours.room(count), surface.specular.room(count));
+                shader.ambient_and_specular(cpu, material, points, ambients, speculars)
+            }
         };
         let goes_on = !self.model.lights.is_empty() || surface.is_mirror || material.transparency != 0.0;
         surface.errors = if goes_on {

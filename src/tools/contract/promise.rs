@@ -86,7 +86,7 @@ impl Promise {
             }
             Self::DistanceIsTheSameAgain => "make `distance` depend on the shape, the ray and the span alone",
             Self::PacketsAgree => {
-                "`bracket` contains `distance`, and `quick_distance` equals it to the last bit or is NaN; if in doubt, leave out both, or `even` and the packets' methods"
+                "`bracket` contains `distance`, and `refine` equals it to the last bit or is NaN; if in doubt, leave out `Bracketed`, or `even`"
             }
             Self::NormalIsUnit => {
                 "end `normal` with `.normalize()`, and define it where the surface has none"
@@ -95,11 +95,11 @@ impl Promise {
                 "make `distance` return the first hit of the same surface for every ray, from both sides and from inside"
             }
             Self::AgreesWithItsProof => {
-                "make `distance` and the shape's `Equation` (or `certify`) describe the same surface, clipped alike"
+                "make `distance` and the shape's `Equation` describe the same surface, clipped alike"
             }
             Self::BoundsHoldHits => "make `bounds` contain every point of the shape; return none if in doubt",
             Self::HitIsTouched => {
-                "make `touches` true within at least the error that it is given, and `bracket` without a certain end there; if in doubt, leave out both"
+                "make `touches` true within at least the error that it is given, and `bracket` without a certain end there; if in doubt, leave out `touches`, and `Bracketed`"
             }
             Self::NormalIsUpright => "make `normal` the gradient of the surface's formula, normalized",
             Self::NormalsAgree => {

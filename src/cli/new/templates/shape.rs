@@ -25,8 +25,8 @@ struct Template {
     size: f64,
 }
 
-// A shape given by one formula. A shape with its own method of finding hits implements `Hittable` instead, as
-// `plugins/triangle.rs` does.
+// A shape given by one formula. A shape with its own method of finding hits implements `Hittable` instead, as the box
+// in `docs/plugins.md` does; `Bracketed` and `Certified` are for shapes that are faster and whose hits are proven.
 impl Implicit for Template {
     /// Returns a value below 0 inside the shape, above 0 outside, and 0 on its surface.
     fn value<N: Number>(&self, at: [N; 3]) -> N {
