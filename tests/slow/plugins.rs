@@ -22,9 +22,18 @@ fn page() -> String {
     text_of("docs/plugins.md")
 }
 
-/// What is dropped in, by the names of plugins.
+/// The plugin that the page begins with.
+fn brick() -> String {
+    block_with(&page(), "struct Brick")
+}
+
+/// The line of a plugin's text that registers it.
+fn line(text: &str) -> usize {
+    1 + text.lines().position(|line| line.contains("Entity::shape(")).expect("it registers a shape")
+}
+
+/// What is dropped in, by their paths.
 static PLUGINS: LazyLock<Files> = LazyLock::new(|| {
-    let brick = || block_with(&page(), "struct Brick");
     // It asks for what is not in its table.
     let forgetful = brick().replace("&[&CENTER, &SIZE]", "&[&CENTER]").replace("\"box\"", "\"brick\"");
     // It takes three numbers for one.
@@ -193,9 +202,10 @@ const A_BOX: &str = "camera eye { pixeldim 1 1 worlddim 8 6 viewpoint 4 3 6 } ma
 #[test]
 fn a_constructor_that_asks_for_what_is_not_in_its_table_is_told() {
     let said = BUILT.says(&["check", "-"], &A_BOX.replace("box b", "brick b"));
+    let line = line(&brick());
     let message = |name: &str| {
         format!(
-            "the plugin `{name}` asks for `size`, which is not in the table it registers at plugins/{name}.rs:17: add it there"
+            "the plugin `{name}` asks for `size`, which is not in the table it registers at plugins/{name}.rs:{line}: add it there"
         )
     };
     assert!(said.contains("panicked at src/../plugins/brick.rs:"), "the plugin's own line is told: {said}");
@@ -207,8 +217,12 @@ fn a_constructor_that_asks_for_what_is_not_in_its_table_is_told() {
 fn a_constructor_that_asks_for_another_type_is_told() {
     let scene = A_BOX.replace("box b", "slab b").replace("center 1 1 1", "center 1 1 1 size 1 1 1");
     let said = BUILT.says(&["check", "-"], &scene);
-    let message = "the plugin `slab` asks for `size` as a type that is not the one in the table it registers at plugins/slab.rs:19: give both the same type";
-    assert!(said.contains("panicked at src/../plugins/slab.rs:") && said.contains(message), "{said}");
+    // Two lines were added above.
+    let line = line(&brick()) + 2;
+    let message = format!(
+        "the plugin `slab` asks for `size` as a type that is not the one in the table it registers at plugins/slab.rs:{line}: give both the same type"
+    );
+    assert!(said.contains("panicked at src/../plugins/slab.rs:") && said.contains(&message), "{said}");
 }
 
 #[test]
@@ -228,7 +242,7 @@ fn a_name_that_is_taken_is_told_as_the_page_has_it() {
     let (_, places) = told.split_once(registered).unwrap_or_else(|| panic!("{told}"));
     let (_, other) = places.split_once(" and ").expect("two places");
     let (other, _) = other.split_once(".rs:").expect("a line");
-    assert!(page().contains(&format!("{registered}box.rs:17 and {other}.rs:")), "{told}");
+    assert!(page().contains(&format!("{registered}box.rs:{} and {other}.rs:", line(&brick()))), "{told}");
 }
 
 // Profiles and shaders
