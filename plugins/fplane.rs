@@ -1,9 +1,9 @@
 //! A finite plane: a rectangle.
 
-use super::plane::{self, Plane};
+use super::plane;
 use crate::prelude::*;
-use crate::shapes::rectangle;
-pub use crate::shapes::rectangle::FinitePlane;
+use crate::shapes::flat::{CLASSIC_METHOD, Flat, Plane};
+use crate::shapes::rectangle::{self, FinitePlane, Rectangle};
 
 pub static DIMENSIONS: Pparm<DVec2> = Pparm::required("dimensions", "its size along xdir and across it")
     .unit("world units")
@@ -24,14 +24,32 @@ pub const TABLE: Table = &[&DIMENSIONS, &XDIR, &PROJECTED];
 /// The notes' rotation matrix, for the dump.
 pub const ROTATION: Table = &[&ROTATION_ROWS as &dyn Row];
 
-fn frame(args: &Attributes) -> DMat3 {
-    rectangle::frame(args.get(&plane::NORMAL), args.get(&XDIR))
-}
-
 inventory::submit! {
     Entity::shape("fplane", "a rectangle, whose lower left corner is its point", &[plane::TABLE, TABLE, ROTATION], |args| {
-        Ok(Body::plain(FinitePlane::new(args)?))
+        Ok(Body::plain(shape(args)?))
     })
+}
+
+/// The rectangle of an entity whose table has the rows of a plane's and of this file's.
+///
+/// # Errors
+/// As [`sides`].
+pub fn shape(args: &Args) -> Result<AnyShape, Refusal> {
+    Ok(match args.accuracy() {
+        Accuracy::Classic => Shape::new(finite_plane::<Classic>(args)?).classic().into(),
+        Accuracy::Draft => Shape::new(finite_plane::<Draft>(args)?).flat().certified().into(),
+        Accuracy::Exact => Shape::new(finite_plane::<Exact>(args)?).flat().certified().into(),
+        Accuracy::Strict => Shape::new(finite_plane::<Strict>(args)?).flat().certified().into(),
+    })
+}
+
+/// Where the same rectangle is; refused likewise.
+pub fn rectangle(args: &Args) -> Result<Rectangle, Refusal> {
+    Ok(finite_plane::<Classic>(args)?.rectangle)
+}
+
+fn frame(args: &Attributes) -> DMat3 {
+    rectangle::frame(args.get(&plane::NORMAL), args.get(&XDIR))
 }
 
 /// The directions of a rectangle's two sides.
@@ -50,81 +68,114 @@ pub fn sides(args: &Args) -> Result<[DVec3; 2], Refusal> {
     Ok([0, 1].map(|side| frame(args).col(side)))
 }
 
-impl FinitePlane {
-    /// The rectangle of an entity whose table has the rows of a plane's and of this file's; refused as its sides are.
-    pub fn new(args: &Args) -> Result<Self, Refusal> {
-        Ok(Self::cut_from(Plane::new(args), args.get(&DIMENSIONS), args.get(&XDIR), sides(args)?))
-    }
+/// The same, crossed as exactly as its type has it; refused as its sides are.
+pub fn finite_plane<A>(args: &Args) -> Result<FinitePlane<A>, Refusal> {
+    let (plane, xdir, classic) = (plane::plane(args), args.get(&XDIR), sides(args)?);
+    let sides = match args.accuracy() {
+        Accuracy::Classic => classic,
+        _ => rectangle::rounded_sides(plane.upright, xdir),
+    };
+    Ok(FinitePlane::cut_from(plane, args.get(&DIMENSIONS), xdir, sides))
 }
 
-impl Hittable for FinitePlane {
+impl Hittable for FinitePlane<Classic> {
     #[inline(always)]
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
         let distance = self.plane.distance(ray, within);
         if self.has_crossing(ray, distance) { distance } else { MISS }
     }
 
-    #[inline(always)]
-    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        match self.plane.accuracy {
-            Accuracy::Classic => Bracket::exactly(self.quick_distance(ray, within)),
-            _ => FinitePlane::bracket(self, ray, within),
-        }
-    }
-
-    #[inline(always)]
-    fn quick_distance(&self, ray: &Ray, within: &Span) -> f64 {
-        self.quickly_kept(ray, self.plane.quick_distance(ray, within))
-    }
-
-    fn distances(&self, cpu: Cpu, rays: Rays, _: Option<&[Side]>, _: (&[f64], &[f64]), out: &mut [f64]) {
-        // It is asked of hits that are certain, and those are inside.
-        self.plane.distances(cpu, rays, out);
+    fn normal(&self, _at: DVec3) -> DVec3 {
+        self.plane.normal
     }
 
     fn bounds(&self) -> Option<Bounds> {
-        (self.plane.accuracy != Accuracy::Classic).then(|| self.around())
+        Some(self.rectangle.around())
+    }
+
+    fn meets_itself(&self, _leaving: Side) -> bool {
+        false
+    }
+
+    fn plane(&self) -> Option<[DVec3; 2]> {
+        Some([self.plane.point, self.plane.normal])
+    }
+
+    fn method(&self) -> String {
+        CLASSIC_METHOD.to_owned()
+    }
+}
+
+impl<A: Bounded> Hittable for FinitePlane<A> {
+    #[inline(always)]
+    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
+        let distance = self.plane.distance(ray, within);
+        if self.has_crossing(ray, distance) { distance } else { MISS }
+    }
+
+    fn normal(&self, _at: DVec3) -> DVec3 {
+        self.plane.normal
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        Some(self.rectangle.around())
+    }
+
+    fn meets_itself(&self, _leaving: Side) -> bool {
+        false
     }
 
     fn is_clear_of(&self, region: &Bounds) -> bool {
-        self.plane.is_clear_of(region) || self.bounds().is_some_and(|bounds| !bounds.overlaps(region))
+        self.plane.is_clear_of(region) || !self.rectangle.around().overlaps(region)
     }
 
-    fn meets_itself(&self, leaving: Side) -> bool {
-        self.plane.meets_itself(leaving)
-    }
-
-    fn touches(&self, at: DVec3, error: f64) -> bool {
-        // What starts on the plane beside the rectangle does not meet it either.
-        self.plane.touches(at, error)
+    fn plane(&self) -> Option<[DVec3; 2]> {
+        Some([self.plane.point, self.plane.normal])
     }
 
     fn reach(&self) -> f64 {
         self.reach
     }
 
-    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold> {
-        self.plane.fine_distance(ray, distance)
-    }
-
-    fn normal(&self, at: DVec3) -> DVec3 {
-        self.plane.normal(at)
-    }
-
-    fn plane(&self) -> Option<[DVec3; 2]> {
-        Hittable::plane(&self.plane)
-    }
-
     fn method(&self) -> String {
         self.plane.method().to_owned()
     }
+}
 
-    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        certify::first_hit(self, sight, precision)
+impl<A: Bounded> Bracketed for FinitePlane<A> {
+    #[inline(always)]
+    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
+        FinitePlane::bracket(self, ray, within)
+    }
+
+    #[inline(always)]
+    fn refine(&self, ray: &Ray, _leaves: Option<Side>) -> f64 {
+        // A hit that is certain is inside.
+        self.plane.quick_crossing(ray)
     }
 }
 
-impl Equation for FinitePlane {
+impl<A: Bounded> Flat for FinitePlane<A> {
+    type Accuracy = A;
+
+    #[inline(always)]
+    fn flat(&self) -> &Plane<A> {
+        &self.plane
+    }
+}
+
+impl<A: Bounded> Certified for FinitePlane<A> {
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        // What starts on the plane beside the rectangle does not meet it either.
+        self.plane.touches(at, error)
+    }
+
+    fn fine_distance(&self, ray: &Ray, _distance: f64) -> Option<Twofold> {
+        Some(self.plane.exact_crossing(ray))
+    }
+}
+
+impl<A> Equation for FinitePlane<A> {
     const IS_QUADRATIC: bool = true;
 
     fn value<N: Number>(&self, at: [N; 3]) -> N {

@@ -28,7 +28,7 @@ inventory::submit! {
         let (line, height) = (line(args)?, args.get(&HEIGHT));
         let finish = match args.accuracy() {
             Accuracy::Classic => {
-                return Ok(Body::plain(InFrame { surface: Classic { line, height }, frame }));
+                return Ok(Body::plain(Shape::new(InFrame { surface: Classic { line, height }, frame }).classic()));
             }
             Accuracy::Draft => Finish::Bracket,
             Accuracy::Exact | Accuracy::Strict => Finish::Root,
@@ -38,7 +38,7 @@ inventory::submit! {
             let (what, help) = fault.told();
             Refusal { attribute, message: format!("has a profile {what}"), help }
         })?;
-        Ok(Body::plain(InFrame { surface, frame }))
+        Ok(Body::plain(Shape::new(InFrame { surface, frame }).in_packets().searched()))
     })
 }
 

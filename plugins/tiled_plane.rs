@@ -1,7 +1,7 @@
 //! A tiled plane: tiles of two materials, without end.
 
 use super::fplane::{self, DIMENSIONS, sides};
-use super::plane::{self, Plane};
+use super::plane;
 use crate::prelude::*;
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ inventory::submit! {
             dimensions: args.get(&DIMENSIONS),
             other: args.get(&ALTMATERIAL),
         };
-        Ok(Body::shaded(Plane::new(args), tiles))
+        Ok(Body::shaded(plane::shape(args), tiles))
     })
     .alias(&["tplane"])
     .dumped_as("tplane")

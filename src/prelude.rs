@@ -10,14 +10,16 @@ pub use crate::scene::value::{Datum, PerChannel, Value};
 pub use inventory;
 
 // What it makes: a camera, a material, a texture, an object or a light.
-pub use crate::world::accuracy::Accuracy;
+pub use crate::world::accuracy::{Accuracy, Bounded, Classic, Draft, Exact, Strict};
+pub use crate::world::any_shape::AnyShape;
 pub use crate::world::body::Body;
 pub use crate::world::camera::Camera;
-pub use crate::world::hittable::Hittable;
+pub use crate::world::hittable::{Bracketed, Certified, Hittable};
 pub use crate::world::light::Light;
 pub use crate::world::material::{Look, Material, Rgb};
 pub use crate::world::sample::Sampler;
 pub use crate::world::shader::Shader;
+pub use crate::world::shape::Shape;
 pub use crate::world::texture::Texture;
 
 // What scenes choose one of: looks that change from place to place, and profiles.
@@ -28,15 +30,11 @@ pub use crate::scene::profile::{Line as ProfileLine, Profile};
 // What shapes are asked, and answer.
 pub use crate::geometry::bounds::{Bounds, SLACK};
 pub use crate::geometry::frame::Frame;
-pub use crate::geometry::packet::Rays;
 pub use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
-pub use crate::geometry::sight::Sight;
 pub use crate::numeric::number::{Number, cross, dot};
 pub use crate::numeric::twofold::Twofold;
 pub use crate::shapes::implicit::Implicit;
-pub use crate::simd::cpu::Cpu;
-pub use crate::world::certify::{self, Enclosure, Equation, Precision};
-pub use crate::world::coincidence;
+pub use crate::world::certify::Equation;
 
 // Vectors and matrices.
 pub use glam::{DMat3, DVec2, DVec3};

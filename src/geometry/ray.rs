@@ -57,7 +57,7 @@ pub struct Span {
     /// however rounding has it. Only shapes that may meet themselves on that side are asked then.
     pub leaves: Option<Side>,
     /// How far at most the ray's origin is from the point that it stands for, in world units. 0 for a ray from the
-    /// viewer. A [`bracket`](crate::world::hittable::Hittable::bracket) is certain only where the shape does not touch the origin within it.
+    /// viewer. A [`bracket`](crate::world::hittable::Bracketed::bracket) is certain only where the shape does not touch the origin within it.
     pub origin_error: f64,
 }
 

@@ -1,5 +1,6 @@
 //! The decisions of a plan as text, each with its reason.
 
+use crate::render::culling;
 use crate::render::limits::{MAX_DIST, MAX_RAYS};
 use crate::render::plan::depth::Depth;
 use crate::render::plan::{Plan, TREE};
@@ -173,7 +174,7 @@ fn search(model: &Model, plan: &Plan) -> String {
 fn objects(model: &Model, plan: &Plan) -> Vec<Decision> {
     let mut alike: Vec<(&'static str, String, Vec<&str>)> = Vec::new();
     for object in &model.objects {
-        let place = match (&plan.tree, object.shape.bounds()) {
+        let place = match (&plan.tree, culling::bounds(object)) {
             (Some(_), Some(_)) => "in the tree",
             (None, Some(_)) => "with bounds",
             (_, None) => "without bounds",

@@ -2,6 +2,7 @@
 
 mod bundles;
 pub(crate) mod bytes;
+mod culling;
 pub mod decisions;
 pub(crate) mod limits;
 pub(crate) mod plan;

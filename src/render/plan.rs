@@ -5,6 +5,7 @@ pub(crate) mod depth;
 use depth::{Depth, Onward};
 
 use crate::geometry::bounds::Bounds;
+use crate::render::culling;
 use crate::render::tree::Tree;
 use crate::scene::model::Model;
 use crate::world::camera::Camera;
@@ -37,7 +38,7 @@ impl<'m> Plan<'m> {
         let objects = &model.objects;
         let (mut unbounded, mut bounded) = (Vec::new(), Vec::new());
         for (index, object) in objects.iter().enumerate() {
-            match object.shape.bounds() {
+            match culling::bounds(object) {
                 Some(bounds) => bounded.push((index, bounds)),
                 None => unbounded.push(index),
             }

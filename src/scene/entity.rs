@@ -4,9 +4,8 @@ use crate::scene::kind::Kind;
 use crate::scene::pparm::{Attribute, Attributes, Given, Pparm, Row, Table};
 use crate::words;
 use crate::world::accuracy::Accuracy;
-use crate::world::body::Body;
+use crate::world::body::{AnyLight, Body};
 use crate::world::camera::Camera;
-use crate::world::light::Light;
 use crate::world::material::Material;
 use crate::world::texture::Texture;
 use std::ops::Deref;
@@ -53,7 +52,7 @@ pub enum Construct {
     /// Makes an object's shape and, if it has one, its shader.
     Object(fn(&Args) -> Result<Body, Refusal>),
     /// Makes a light.
-    Light(fn(&Args) -> Result<Box<dyn Light>, Refusal>),
+    Light(fn(&Args) -> Result<AnyLight, Refusal>),
 }
 
 /// What every object has beside its own attributes.
@@ -113,7 +112,7 @@ impl Entity {
         name: &'static str,
         meaning: &'static str,
         tables: &'static [Table],
-        construct: fn(&Args) -> Result<Box<dyn Light>, Refusal>,
+        construct: fn(&Args) -> Result<AnyLight, Refusal>,
     ) -> Self {
         Self::new(name, meaning, tables, Construct::Light(construct))
     }

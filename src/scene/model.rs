@@ -2,11 +2,10 @@
 
 use crate::scene::entity::Args;
 use crate::scene::kind::Kind;
+use crate::world::any_shape::AnyShape;
+use crate::world::body::{AnyLight, AnyShader};
 use crate::world::camera::Camera;
-use crate::world::hittable::Hittable;
-use crate::world::light::Light;
 use crate::world::material::{Material, Rgb};
-use crate::world::shader::Shader;
 use crate::world::texture::Texture;
 use glam::DVec3;
 use std::sync::Arc;
@@ -22,7 +21,7 @@ pub struct Model {
     /// The visible objects, in the order of the scene.
     pub objects: Vec<Object>,
     /// The lights, in the order of the scene.
-    pub lights: Vec<Item<Box<dyn Light>>>,
+    pub lights: Vec<Item<AnyLight>>,
 }
 
 impl Model {
@@ -53,9 +52,9 @@ pub struct Object {
     /// What it is made of.
     pub material: Arc<Material>,
     /// Where it is.
-    pub shape: Box<dyn Hittable>,
+    pub shape: AnyShape,
     /// What it looks like.
-    pub shader: Box<dyn Shader>,
+    pub shader: AnyShader,
 }
 
 impl Object {

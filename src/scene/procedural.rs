@@ -1,9 +1,8 @@
 //! Procedural shaders: looks of surfaces that change from place to place by a rule (the notes' `pplane`).
 
 use crate::scene::choice::{Choice, ChoiceName};
-use crate::world::body::Body;
-use crate::world::hittable::Hittable;
-use crate::world::shader::Shader;
+use crate::world::any_shape::AnyShape;
+use crate::world::body::{AnyShader, Body};
 use glam::DVec3;
 use std::panic::Location;
 
@@ -15,7 +14,7 @@ pub struct ProceduralShader {
     on_plane: Option<i64>,
     on_sphere: Option<i64>,
     /// Makes the shader of one object.
-    pub make: fn(Anchor) -> Box<dyn Shader>,
+    pub make: fn(Anchor) -> AnyShader,
     place: &'static Location<'static>,
 }
 
@@ -33,7 +32,7 @@ pub struct Anchor {
 impl ProceduralShader {
     /// A shader with a name and no number.
     #[track_caller]
-    pub const fn new(name: &'static str, meaning: &'static str, make: fn(Anchor) -> Box<dyn Shader>) -> Self {
+    pub const fn new(name: &'static str, meaning: &'static str, make: fn(Anchor) -> AnyShader) -> Self {
         Self { name, meaning, on_plane: None, on_sphere: None, make, place: Location::caller() }
     }
 
@@ -56,8 +55,8 @@ impl ProceduralShader {
 
 impl Body {
     /// An object that looks as a procedural shader has it.
-    pub fn procedural(shape: impl Hittable + 'static, shader: &ProceduralShader, anchor: Anchor) -> Self {
-        Self { shape: Box::new(shape), shader: (shader.make)(anchor) }
+    pub fn procedural(shape: impl Into<AnyShape>, shader: &ProceduralShader, anchor: Anchor) -> Self {
+        Self { shape: shape.into(), shader: (shader.make)(anchor) }
     }
 }
 

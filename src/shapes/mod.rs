@@ -3,11 +3,13 @@
 pub mod ball;
 pub(crate) mod flat;
 pub(crate) mod implicit;
-pub mod quadratic;
+pub(crate) mod quadratic;
 pub mod rectangle;
 pub(crate) mod revolution;
 pub(crate) mod triangle;
 
 pub use flat::Plane;
 pub use implicit::Implicit;
+pub use quadratic::Quadric;
 pub use revolution::{Classic, Finish, InFrame, Revolution};
+pub use triangle::Triangle;

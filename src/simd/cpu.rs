@@ -89,12 +89,12 @@ macro_rules! kernels {
     )*) => {$(
         $(#[$attribute])*
         #[allow(clippy::too_many_arguments, reason = "they are arrays")]
-        $visible fn $name$(<$T: $Bound + ?Sized>)?(
+        $visible fn $name$(<$T: $Bound>)?(
             cpu: $crate::simd::cpu::Cpu, $($argument: $type,)*
             $($out: $crate::simd::soa::ViewMut, $($second: $crate::simd::soa::ViewMut)?)?
         ) $(-> $result)? {
             $crate::simd::cpu::levels! {
-                ($(<$T: $Bound + ?Sized>)?) (
+                ($(<$T: $Bound>)?) (
                     $($argument: $type,)*
                     $(
                         x: $crate::simd::cpu::beside!($out, &mut [f64]),

@@ -42,3 +42,37 @@ impl fmt::Display for Accuracy {
         write!(f, "{name}: {meaning}")
     }
 }
+
+/// The course notes' formula, as a type of a shape's: it is chosen when the shape is made.
+#[derive(Clone, Copy, Debug)]
+pub struct Classic;
+
+/// As [`Classic`], of hits by error bounds that are not finished.
+#[derive(Clone, Copy, Debug)]
+pub struct Draft;
+
+/// As [`Classic`], of hits by error bounds that are finished.
+#[derive(Clone, Copy, Debug)]
+pub struct Exact;
+
+/// As [`Classic`], of hits in twice the precision.
+#[derive(Clone, Copy, Debug)]
+pub struct Strict;
+
+/// Those of the types that find first hits by error bounds.
+pub trait Bounded: Copy + Send + Sync + 'static {
+    /// The accuracy that it stands for.
+    const ACCURACY: Accuracy;
+}
+
+impl Bounded for Draft {
+    const ACCURACY: Accuracy = Accuracy::Draft;
+}
+
+impl Bounded for Exact {
+    const ACCURACY: Accuracy = Accuracy::Exact;
+}
+
+impl Bounded for Strict {
+    const ACCURACY: Accuracy = Accuracy::Strict;
+}

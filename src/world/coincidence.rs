@@ -63,18 +63,18 @@ kernels! {
 }
 
 /// Whether a surface comes into the box of so many world units around a point:
-/// [`Hittable::touches`](crate::world::hittable::Hittable::touches) of a shape that has
+/// [`Certified::touches`](crate::world::hittable::Certified::touches) of a shape that has
 /// an equation.
-pub fn touches(shape: &impl Equation, at: DVec3, error: f64) -> bool {
+pub fn touches(shape: &(impl Equation + ?Sized), at: DVec3, error: f64) -> bool {
     let origin = at.to_array().map(|place| Interval { low: place - error, high: place + error });
     let point = Line { origin, dir: [Interval::constant(0.0); 3] };
     shape.value(shape.own(point).origin).has_zero()
 }
 
 /// The distance of a hit by Newton's method in twice the precision:
-/// [`Hittable::fine_distance`](crate::world::hittable::Hittable::fine_distance) of a shape that has an equation. Nothing
+/// [`Certified::fine_distance`](crate::world::hittable::Certified::fine_distance) of a shape that has an equation. Nothing
 /// where that does not settle, as at a graze.
-pub fn distance(shape: &impl Equation, ray: &Ray, near: f64) -> Option<Twofold> {
+pub fn distance(shape: &(impl Equation + ?Sized), ray: &Ray, near: f64) -> Option<Twofold> {
     let (mut at, mut moved) = (Twofold::from(near), f64::INFINITY);
     let line = shape.own(Sight::along(ray).line::<Twofold>());
     for _ in 0..4 {

@@ -1,6 +1,7 @@
 //! What a scene is made of: the traits of shapes, looks and lights, and what they are told.
 
 pub(crate) mod accuracy;
+pub(crate) mod any_shape;
 pub(crate) mod body;
 pub(crate) mod camera;
 pub mod certify;
@@ -10,14 +11,18 @@ pub(crate) mod hittable;
 pub(crate) mod landing;
 pub(crate) mod light;
 pub(crate) mod material;
+pub(crate) mod packets;
 pub(crate) mod sample;
 pub(crate) mod shader;
+pub(crate) mod shape;
 pub(crate) mod texture;
 
-pub use accuracy::Accuracy;
-pub use body::Body;
+pub use accuracy::{Accuracy, Bounded, Classic, Draft, Exact, Strict};
+pub use any_shape::AnyShape;
+pub use body::{AnyLight, AnyShader, Body};
 pub use camera::Camera;
-pub use hittable::Hittable;
+pub use hittable::{Bracketed, Certified, Hittable, Searched};
 pub use light::Light;
 pub use material::{Material, Rgb};
 pub use shader::Shader;
+pub use shape::Shape;

@@ -55,7 +55,7 @@ fn setting(name: &str) -> (Model, usize, Vec<Ray>) {
 #[divan::bench(args = shapes())]
 fn distance(bencher: Bencher, name: &str) {
     let (model, object, rays) = setting(name);
-    let shape = &*model.objects[object].shape;
+    let shape = &model.objects[object].shape;
     bencher.counter(ItemsCount::new(rays.len())).bench_local(|| {
         for ray in &rays {
             black_box(shape.distance(black_box(ray), &Span::RAY));
@@ -67,7 +67,7 @@ fn distance(bencher: Bencher, name: &str) {
 #[divan::bench(args = shapes())]
 fn meet(bencher: Bencher, name: &str) {
     let (model, object, rays) = setting(name);
-    let shape = &*model.objects[object].shape;
+    let shape = &model.objects[object].shape;
     let packets: Vec<_> = rays
         .chunks_exact(WIDE)
         .map(|rays| {
@@ -85,7 +85,7 @@ fn meet(bencher: Bencher, name: &str) {
             let (mut near, mut far) = ([MISS; WIDE], [MISS; WIDE]);
             let (mut met, mut doubt) = ([0; WIDE], [0; WIDE]);
             let nearest = Nearest { near: &mut near, far: &mut far, met: &mut met, doubt: &mut doubt };
-            shape.meet(
+            shape.closest_hits(
                 cpu,
                 Rays { origin: origin.view(WIDE), dir: dir.view(WIDE), origin_error: 0.0 },
                 None,

@@ -10,7 +10,7 @@ use crate::oracle::tally::Tally;
 use glam::{DVec3, dvec2, dvec3};
 use tabray::geometry::{Bracket, MISS, Ray, Span};
 use tabray::scene::Model;
-use tabray::world::Hittable;
+use tabray::world::{AnyShape, Hittable};
 
 /// The shapes of each kind, and the rays for each set and shape.
 const SHAPES: usize = 200;
@@ -25,7 +25,7 @@ fn scene(accuracy: &str, object: &str) -> Model {
 }
 
 /// The exact shape of an entity's text.
-fn shape(object: &str) -> Box<dyn Hittable> {
+fn shape(object: &str) -> AnyShape {
     scene("exact", object).objects.remove(0).shape
 }
 
@@ -59,8 +59,9 @@ fn finds(kind: &str, ulps: f64) {
                 let truth = subject.truth(&Line::from(&ray), 0.0);
                 subject.count(&mut tally, &*shape, &ray, truth);
                 let found = shape.distance(&ray, &Span::RAY);
-                let quick = shape.quick_distance(&ray, &Span::RAY);
                 let bracket = shape.bracket(&ray, &Span::RAY);
+                let is_certain = bracket.far < MISS;
+                let quick = if is_certain { shape.refine(&ray, None) } else { f64::NAN };
                 if tally.wrong() > before {
                     faults.push(format!("wrong: {}\n  {ray:?}: {truth:?}, not {found:?}", subject.text));
                 }

@@ -4,13 +4,13 @@ use crate::common::{block_with, load, registry, root};
 use glam::DVec3;
 use std::fs;
 use std::sync::atomic::{AtomicU32, Ordering};
-use tabray::geometry::{Bounds, Bracket, Frame, MISS, Ray, Side, Sight, Span};
+use tabray::geometry::{Bounds, Bracket, Frame, MISS, Ray, Side, Span};
 use tabray::numeric::Number;
 use tabray::scene::{Args, Derived, Entity, Kind, Pparm, Refusal, Registry, Row, Table};
 use tabray::shapes::Implicit;
 use tabray::tools::contract::{self, Breach, Promise};
-use tabray::world::certify::{Enclosure, Precision};
-use tabray::world::{Body, Camera, Hittable, Light, Material, Rgb, Shader};
+use tabray::world::certify::Equation;
+use tabray::world::{Body, Bracketed, Camera, Certified, Hittable, Light, Material, Rgb, Shader, Shape};
 
 #[test]
 fn every_plugin_keeps_its_contract() {
@@ -119,6 +119,12 @@ impl Ball {
         [middle - half, middle + half]
     }
 
+    /// Whether a point is on the ball or on its shell, within an error.
+    fn is_near(&self, at: DVec3, error: f64) -> bool {
+        let off = at.distance(self.center) - self.radius;
+        off.abs().min((off - self.radius).abs()) <= error + 1e-12
+    }
+
     fn hit(&self, ray: &Ray, within: &Span) -> f64 {
         let mut roots = self.roots(ray, self.radius).to_vec();
         if within.leaves == Some(Side::Inside) {
@@ -173,10 +179,16 @@ impl Hittable for Ball {
         self.flaw == Flaw::Clear || !self.bounds().is_some_and(|bounds| bounds.overlaps(region))
     }
 
+    fn meets_itself(&self, leaving: Side) -> bool {
+        leaving == Side::Inside || matches!(self.flaw, Flaw::MeetsItsStart | Flaw::MeetsNothingAgain)
+    }
+}
+
+impl Bracketed for Ball {
     fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
         if within.leaves.is_none()
             && within.origin_error > 0.0
-            && self.touches(ray.origin, within.origin_error)
+            && self.is_near(ray.origin, within.origin_error)
         {
             return Bracket::UNKNOWN;
         }
@@ -184,23 +196,28 @@ impl Hittable for Ball {
         Bracket::exactly(if self.flaw == Flaw::Bracket { distance + 1.0 } else { distance })
     }
 
-    fn quick_distance(&self, ray: &Ray, within: &Span) -> f64 {
-        let distance = self.distance(ray, within);
+    fn refine(&self, ray: &Ray, leaves: Option<Side>) -> f64 {
+        let distance = self.distance(ray, &Span { leaves, ..Span::RAY });
         if self.flaw == Flaw::Quick { distance.next_up() } else { distance }
     }
+}
 
-    fn meets_itself(&self, leaving: Side) -> bool {
-        leaving == Side::Inside || matches!(self.flaw, Flaw::MeetsItsStart | Flaw::MeetsNothingAgain)
-    }
-
+impl Certified for Ball {
     fn touches(&self, at: DVec3, error: f64) -> bool {
-        let off = at.distance(self.center) - self.radius;
-        let on_the_shell = (off - self.radius).abs() <= error + 1e-12;
-        self.flaw != Flaw::Untouched && (off.abs() <= error + 1e-12 || on_the_shell)
+        self.flaw != Flaw::Untouched && self.is_near(at, error)
+    }
+}
+
+impl Equation for Ball {
+    const IS_QUADRATIC: bool = true;
+
+    fn value<N: Number>(&self, at: [N; 3]) -> N {
+        let part = |axis: usize| (at[axis] - N::constant(self.center[axis])).powi(2);
+        part(0) + part(1) + part(2) - N::constant(self.radius).powi(2)
     }
 
-    fn certify(&self, _sight: &Sight, _precision: Precision) -> Enclosure {
-        if self.flaw == Flaw::Proof { Enclosure::Misses } else { Enclosure::UNKNOWN }
+    fn kept<N: Number>(&self, _at: [N; 3]) -> N {
+        N::constant(if self.flaw == Flaw::Proof { -1.0 } else { 1.0 })
     }
 }
 
@@ -217,7 +234,12 @@ impl Shader for Colour {
 }
 
 fn ball(args: &Args, flaw: Flaw) -> Result<Body, Refusal> {
-    Ok(Body::shaded(Ball { center: args.get(&CENTER), radius: args.get(&RADIUS), flaw }, Colour(flaw)))
+    let ball = Shape::new(Ball { center: args.get(&CENTER), radius: args.get(&RADIUS), flaw }).bracketed();
+    // The others are not what an equation says.
+    Ok(match flaw {
+        Flaw::Proof | Flaw::Untouched => Body::shaded(ball.certified(), Colour(flaw)),
+        _ => Body::shaded(ball, Colour(flaw)),
+    })
 }
 
 fn refuse<T>(_args: &Args) -> Result<T, Refusal> {

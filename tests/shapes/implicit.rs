@@ -11,7 +11,7 @@ use tabray::geometry::{Frame, MISS, Ray, Side, Span};
 use tabray::numeric::Number;
 use tabray::scene::Model;
 use tabray::shapes::Implicit;
-use tabray::world::{Body, Hittable};
+use tabray::world::{AnyShape, Body, Hittable};
 
 const CENTER: DVec3 = DVec3::new(4.1, 2.9, -2.7);
 const AXIS: DVec3 = DVec3::new(0.4, 1.0, -0.3);
@@ -306,7 +306,7 @@ fn a_mirror_torus_looks_as_its_quartic_has_it() {
     let model = torus();
     let picture = render(&model);
     let mut by_quartic = model;
-    by_quartic.objects[0].shape = Box::new(Quartics);
+    by_quartic.objects[0].shape = Quartics.into();
     let expected = render(&by_quartic);
     let differing = expected.pixels().zip(picture.pixels()).filter(|(a, b)| a != b).count();
     assert!(differing == 0, "{differing} pixels differ");
@@ -342,7 +342,7 @@ impl<F: Formula> Implicit for By<F> {
     }
 }
 
-fn shape(formula: impl Formula, low: DVec3, high: DVec3) -> Box<dyn Hittable> {
+fn shape(formula: impl Formula, low: DVec3, high: DVec3) -> AnyShape {
     Body::implicit(By { formula, bounds: [low, high] }, Frame::at(DVec3::ZERO)).shape
 }
 

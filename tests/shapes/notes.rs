@@ -5,7 +5,7 @@ use glam::{DVec3, dvec3};
 use tabray::geometry::{MISS, Ray, Span};
 use tabray::render::{Plan, trace};
 use tabray::scene::dump;
-use tabray::world::Hittable;
+use tabray::world::{AnyShape, Hittable};
 
 /// Whether two vectors agree to this many printed decimals.
 #[track_caller]
@@ -59,7 +59,7 @@ fn a_ray_goes_from_the_viewpoint_through_its_pixel() {
 // "Determining if a ray hits a plane", "Determining if a ray hits a sphere"
 
 /// The shape of the first object of a scene.
-fn shape(object: &str) -> Box<dyn Hittable> {
+fn shape(object: &str) -> AnyShape {
     let text = format!(
         "camera c {{ pixeldim 8 6 worlddim 8 6 viewpoint 4 3 6 }} material m {{ ambient 1 1 1 }} {object}"
     );

@@ -17,7 +17,7 @@ use std::sync::Mutex;
 use std::time::{Duration, Instant};
 use tabray::geometry::{MISS, Ray, Span};
 use tabray::numeric::Formula;
-use tabray::world::Hittable;
+use tabray::world::{AnyShape, Hittable};
 
 /// The rays of each kind for each profile.
 const RAYS: usize = 1_000_000;
@@ -80,7 +80,7 @@ impl Hittable for Steps {
 }
 
 /// A shape, found by one of the methods.
-type Shape = Box<dyn Hittable>;
+type Shape = AnyShape;
 
 /// A method's hits are another crossing's if they are nearer to that one, and off by more than it promises.
 fn tolerance(method: &str) -> Tolerance {
@@ -166,7 +166,7 @@ fn revolution_table(set: &str, text: &mut String) {
         let truths: Vec<Truth> = rays.iter().map(|ray| truth(ray, 0.0)).collect();
         let place = format!("direction 0 1 0 base 4 0 -4 height {height:?}");
         let profile = Formula::parse(formula).expect("a formula");
-        let steps: Shape = Box::new(Steps { profile, height });
+        let steps: Shape = Steps { profile, height }.into();
         let object = format!("revsurf r {{ material m profile \"{formula}\" {place} }}");
         let shapes: Vec<_> =
             [steps].into_iter().chain(METHODS.map(|method| shape(method, &object))).collect();

@@ -2,12 +2,15 @@
 
 use super::arrays::NARROW;
 use super::scratch::Rooms;
+use super::surface::Errors;
 use crate::geometry::packet::WIDE;
 use crate::render::plan::Plan;
 use crate::render::watch::Watch;
 use crate::scene::model::Model;
 use crate::simd::cpu::Cpu;
 use crate::world::accuracy::Accuracy;
+use crate::world::coincidence;
+use crate::world::hittable::Hittable;
 
 /// From so many reflections on, packets are narrow: a deep hall of mirrors would fill the memory with wide ones.
 const DEEP: usize = 24;
@@ -38,5 +41,14 @@ impl<'m, 'w, W: Watch> Tracer<'m, 'w, W> {
     /// The most rays of a packet that goes on from the present one.
     pub(super) fn most(&self) -> usize {
         if self.depth < DEEP { WIDE } else { NARROW }
+    }
+
+    /// The errors of places where rays have come to a shape.
+    pub(super) fn errors(&self, shape: &dyn Hittable, travelled: &[f64], cosines: &[f64]) -> Errors {
+        if self.is_classic() {
+            return Errors::NONE;
+        }
+        let reach = shape.reach() + self.viewer;
+        Errors { reach: Some(reach), most: coincidence::most_error(self.cpu, travelled, reach, cosines) }
     }
 }

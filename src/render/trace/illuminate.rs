@@ -11,8 +11,8 @@ use crate::geometry::bounds::{self, Bounds};
 use crate::render::watch::{Event, Outcome, Watch};
 use crate::scene::model::Object;
 use crate::world::facing::{Facing, Places};
-use crate::world::light::Light;
 use crate::world::material::Rgb;
+use crate::world::packets::light::PacketLight;
 use glam::DVec2;
 
 impl<W: Watch> Tracer<'_, '_, W> {
@@ -132,7 +132,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
     /// the sample has it.
     fn places(
         &self,
-        light: &dyn Light,
+        light: &dyn PacketLight,
         index: usize,
         group: &Group,
         surface: &Surface,

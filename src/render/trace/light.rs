@@ -5,7 +5,7 @@ use crate::render::plan::depth::{Branch, MANY};
 use crate::simd::cpu::kernels;
 use crate::simd::soa::{View, ViewMut};
 use crate::world::material::{Look, Rgb};
-use crate::world::shader::is_any;
+use crate::world::packets::shader::is_any;
 
 /// What rays are worth that have come the same way, from object to object.
 #[derive(Clone, Copy)]

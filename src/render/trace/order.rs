@@ -3,9 +3,9 @@
 use crate::geometry::bounds::larger;
 use crate::geometry::ray::Ray;
 use crate::geometry::sight::Sight;
+use crate::world::any_shape::AnyShape;
 use crate::world::certify::{Enclosure, Precision};
 use crate::world::coincidence::{CLOSE, LEAST_COSINE, SAME};
-use crate::world::hittable::Hittable;
 
 /// Whether a ray meets one shape before another, which both lie about so far away; nothing where they lie in one place
 /// as far as the ray is known, whose origin may be off by an error.
@@ -15,13 +15,13 @@ use crate::world::hittable::Hittable;
 pub(super) fn is_before(
     ray: &Ray,
     origin_error: f64,
-    (one, distance): (&dyn Hittable, f64),
-    (other, far): (&dyn Hittable, f64),
+    (one, distance): (&AnyShape, f64),
+    (other, far): (&AnyShape, f64),
 ) -> Option<bool> {
     let size = ray.origin.abs().max_element() + distance;
     if (distance - far).abs() <= CLOSE * size
         && let (Some(fine), Some(fine_far)) =
-            (one.fine_distance(ray, distance), other.fine_distance(ray, far))
+            (one.packets().fine_distance(ray, distance), other.packets().fine_distance(ray, far))
     {
         let apart = (fine - fine_far).high;
         let normals = [one, other].map(|shape| shape.normal(ray.at(distance)));
@@ -37,8 +37,8 @@ pub(super) fn is_before(
 }
 
 /// Whether a ray meets one shape before another, with 237 bits; nothing where these do not tell.
-pub(super) fn is_certainly_before(one: &dyn Hittable, other: &dyn Hittable, sight: &Sight) -> Option<bool> {
-    let distance = |shape: &dyn Hittable| match shape.certify(sight, Precision::Octuple) {
+pub(super) fn is_certainly_before(one: &AnyShape, other: &AnyShape, sight: &Sight) -> Option<bool> {
+    let distance = |shape: &AnyShape| match shape.certify(sight, Precision::Octuple) {
         Enclosure::Hits(at) | Enclosure::Edge(at) => Some(at),
         Enclosure::Misses | Enclosure::Doubtful(_) => None,
     };

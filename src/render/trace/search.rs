@@ -11,12 +11,13 @@ use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
 use crate::geometry::sight::Sight;
 use crate::numeric::interval::{Interval, Wide};
 use crate::render::bundles::{self, PART};
+use crate::render::culling;
 use crate::render::tree::Visitor;
 use crate::render::watch::{Count, Event, Hit, Reason, Watch};
 use crate::simd::cpu::kernels;
+use crate::world::any_shape::AnyShape;
 use crate::world::certify::{self, Enclosure, Precision};
 use crate::world::coincidence::CLOSE;
-use crate::world::hittable::Hittable;
 use std::mem::take;
 use std::ops::Range;
 
@@ -46,7 +47,7 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
         let start = self.start(group, 0);
         self.watch.see(Event::Search(&start.ray));
         for index in 0..self.model.objects.len() {
-            let shape = &*self.model.objects[index].shape;
+            let shape = &self.model.objects[index].shape;
             let leaves = start.leaves(shape, group.sides_of(index).map(|sides| sides[0]));
             if leaves.is_some_and(|side| !shape.meets_itself(side)) {
                 self.watch.see(Event::Tested(index, None));
@@ -78,7 +79,7 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
     /// Whether rays may meet an object at all: to most that they leave they do not come back.
     pub(super) fn may_meet(&self, left: Option<(usize, &[Side])>, index: usize) -> bool {
         let Some((_, sides)) = left.filter(|(object, _)| *object == index) else { return true };
-        let shape = &*self.model.objects[index].shape;
+        let shape = &self.model.objects[index].shape;
         match [Side::Outside, Side::Inside].map(|side| shape.meets_itself(side)) {
             [true, true] => true,
             [false, false] => false,
@@ -93,7 +94,7 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
         if distance == MISS {
             return false;
         }
-        let shape = |index: usize| &*self.model.objects[index].shape;
+        let shape = |index: usize| &self.model.objects[index].shape;
         let (one, other) = ((shape(index), distance), (shape(rival), far));
         let is_before = order::is_before(&start.ray, start.error, one, other)
             .or_else(|| order::is_certainly_before(one.0, other.0, start.sight.as_ref()?));
@@ -112,9 +113,9 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
         let (near, far, distances) = (&near[..count], &far[..count], room(distances, count));
         distances.copy_from_slice(near);
         if near[..len] != far[..len] {
-            let shape = &*self.model.objects[object].shape;
+            let shape = &self.model.objects[object].shape;
             let sides = group.sides_of(object);
-            shape.distances(self.cpu, group.rays(), sides, (near, far), distances);
+            shape.packets().refine(self.cpu, group.rays(), sides, (near, far), distances);
             if keep_in_brackets(self.cpu, near, far, distances) {
                 for lane in 0..len {
                     if distances[lane].is_nan() {
@@ -144,7 +145,7 @@ pub(super) struct Start {
 impl Start {
     /// The side of a shape that the ray leaves: of its own object's it is known; another one that lies through the same
     /// point is left, too.
-    fn leaves(&self, shape: &dyn Hittable, own: Option<Side>) -> Option<Side> {
+    fn leaves(&self, shape: &AnyShape, own: Option<Side>) -> Option<Side> {
         let Ray { origin, dir } = self.ray;
         let touched = || Side::seen_along(dir, shape.normal(origin)).opposite();
         own.or_else(|| (self.error > 0.0 && shape.touches(origin, self.error)).then(touched))
@@ -152,13 +153,13 @@ impl Start {
 }
 
 /// A shape's exact distance on one ray, which leaves it on a side if it is the object that the packet leaves.
-pub(super) fn exact(shape: &dyn Hittable, start: &Start, leaves: Option<Side>, far: f64) -> f64 {
+pub(super) fn exact(shape: &AnyShape, start: &Start, leaves: Option<Side>, far: f64) -> f64 {
     located(shape, start, leaves, far).0
 }
 
 /// A shape's exact distance, as [`exact`] gives it, and a bracket of that and of the distance of the ray before anything
 /// was rounded.
-fn located(shape: &dyn Hittable, start: &Start, leaves: Option<Side>, far: f64) -> (f64, Bracket) {
+fn located(shape: &AnyShape, start: &Start, leaves: Option<Side>, far: f64) -> (f64, Bracket) {
     let known = |distance| (distance, Bracket::exactly(distance));
     match start.leaves(shape, leaves) {
         Some(side) if !shape.meets_itself(side) => return (MISS, Bracket::MISS),
@@ -174,7 +175,7 @@ fn located(shape: &dyn Hittable, start: &Start, leaves: Option<Side>, far: f64) 
 
 /// A distance and a bracket of it, if the ray before anything was rounded has a hit there as far as 237 bits tell, or
 /// [`MISS`].
-fn decided(shape: &dyn Hittable, sight: &Sight, distance: f64) -> (f64, Bracket) {
+fn decided(shape: &AnyShape, sight: &Sight, distance: f64) -> (f64, Bracket) {
     let enclosure = match shape.certify(sight, Precision::Double) {
         Enclosure::Edge(_) | Enclosure::Doubtful(_) => shape.certify(sight, Precision::Octuple),
         certain => certain,
@@ -257,9 +258,9 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
         // Those from the viewer all start there.
         let bundles = bundles::around(cpu, self.group.rays(), self.group.leaves.is_none());
         for index in &plan.unbounded {
-            let shape = &*self.tracer.model.objects[*index].shape;
+            let object = &self.tracer.model.objects[*index];
             if self.tracer.may_meet(self.group.left(), *index) {
-                self.in_parts(*index, bundles.which(|ways| !shape.is_clear_of(ways)));
+                self.in_parts(*index, bundles.which(|ways| !culling::is_clear_of(object, ways)));
             }
         }
         let mut parts = take(&mut self.tracer.rooms.parts);
@@ -300,7 +301,7 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
     fn decide(&mut self, lane: usize, index: usize, leaves: Option<Side>) {
         let objects = &self.tracer.model.objects;
         let start = self.tracer.start(self.group, lane);
-        let (distance, own) = located(&*objects[index].shape, &start, leaves, MISS);
+        let (distance, own) = located(&objects[index].shape, &start, leaves, MISS);
         if distance == MISS {
             return;
         }
@@ -311,7 +312,7 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
         } else {
             let rival = *met as usize - 1;
             let rival_leaves = self.group.sides_of(rival).map(|sides| sides[lane]);
-            exact(&*objects[rival].shape, &start, rival_leaves, MISS)
+            exact(&objects[rival].shape, &start, rival_leaves, MISS)
         };
         let is_first = self.tracer.is_first(&start, (index, distance), (*met, rival_distance));
         let nearest = if is_first { distance } else { rival_distance };
@@ -330,11 +331,17 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
 
     /// Looks at an object.
     fn test(&mut self, index: usize) {
-        let shape = &*self.tracer.model.objects[index].shape;
+        let shape = &self.tracer.model.objects[index].shape;
         let sides = self.group.sides_of(index).map(|sides| &sides[self.part.clone()]);
         self.tracer.watch.count(Count::Tested(index, self.len()));
         let rays = self.group.rays().part(self.part.clone());
-        if shape.meet(self.tracer.cpu, rays, sides, index as u64 + 1, self.found.part(self.part.clone())) {
+        if shape.closest_hits(
+            self.tracer.cpu,
+            rays,
+            sides,
+            index as u64 + 1,
+            self.found.part(self.part.clone()),
+        ) {
             for lane in 0..self.len() {
                 if self.found.doubt[self.part.start + lane] != 0 {
                     self.decide(self.part.start + lane, index, sides.map(|sides| sides[lane]));

@@ -12,8 +12,6 @@ use crate::render::limits::MAX_DIST;
 use crate::render::plan::depth::Branch;
 use crate::render::watch::{Count, Event, Hit, Kind, Purpose, Reason, Watch};
 use crate::scene::model::Object;
-use crate::world::coincidence;
-use crate::world::hittable::Hittable;
 use crate::world::landing::Landing;
 use crate::world::material::Rgb;
 use glam::DVec3;
@@ -74,7 +72,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
             cosines: room(&mut surface.cosines, count),
             travelled,
         };
-        shape.land(cpu, group.rays(), distances, landing);
+        shape.packets().interact(cpu, group.rays(), distances, landing);
         let points = surface.points.view(count);
         surface.look = shader.even(material);
         surface.is_mirror = match surface.look {
@@ -82,7 +80,10 @@ impl<W: Watch> Tracer<'_, '_, W> {
                 colours.fill(count, look.ambient);
                 look.specular != Rgb::ZERO
             }
-            None => shader.unlit(cpu, material, points, colours.room(count), surface.specular.room(count)),
+            None => {
+                let (ambients, speculars) = (colours.room(count), surface.specular.room(count));
+                shader.ambient_and_specular(cpu, material, points, ambients, speculars)
+            }
         };
         let goes_on = !self.model.lights.is_empty() || surface.is_mirror || material.transparency != 0.0;
         surface.errors = if goes_on {
@@ -106,15 +107,6 @@ impl<W: Watch> Tracer<'_, '_, W> {
         if shading.surface.is_mirror {
             self.look_in_the_mirror(group, shading, colours);
         }
-    }
-
-    /// The errors of places where rays have come to a shape.
-    pub(super) fn errors(&self, shape: &dyn Hittable, travelled: &[f64], cosines: &[f64]) -> Errors {
-        if self.is_classic() {
-            return Errors::NONE;
-        }
-        let reach = shape.reach() + self.viewer;
-        Errors { reach: Some(reach), most: coincidence::most_error(self.cpu, travelled, reach, cosines) }
     }
 
     /// Adds what is seen through glass.

@@ -11,9 +11,8 @@ use crate::scene::registry::Registry;
 use crate::scene::value::Datum;
 use crate::words::list;
 use crate::world::accuracy::Accuracy;
-use crate::world::body::Body;
+use crate::world::body::{AnyLight, Body};
 use crate::world::camera::Camera;
-use crate::world::light::Light;
 use crate::world::material::Material;
 use crate::world::texture::Texture;
 use std::collections::{BTreeMap, BTreeSet};
@@ -83,7 +82,7 @@ struct Check<'r> {
     materials: Vec<Item<Arc<Material>>>,
     textures: Vec<Item<Arc<Texture>>>,
     objects: Vec<Object>,
-    lights: Vec<Item<Box<dyn Light>>>,
+    lights: Vec<Item<AnyLight>>,
 }
 
 impl Check<'_> {

@@ -16,7 +16,7 @@ use crate::render::tiles::{BAND, Band};
 use crate::render::watch::Kind;
 use crate::scene::model::{Model, Object};
 use crate::simd::cpu::Cpu;
-use crate::simd::soa::{View, ViewMut};
+use crate::world::body::AnyShader;
 use crate::world::material::{Look, Material, Rgb};
 use crate::world::shader::Shader;
 use ceiling::Bare;
@@ -177,14 +177,17 @@ fn tests(plan: &Plan, tally: &Tally, cpu: Cpu, patience: Duration) -> Vec<Tests>
 fn matt(model: Model) -> Model {
     let matt = |object: Object| {
         let material = Material { specular: Rgb::ZERO, transparency: 0.0, ..(*object.material).clone() };
-        Object { material: Arc::new(material), shader: Box::new(Matt(object.shader)), ..object }
+        // Nearly all shaders mirror what the material does, and are as fast as they were.
+        let is_matt = object.shader.brightest(&material).is_some_and(|look| look.specular == Rgb::ZERO);
+        let shader = if is_matt { object.shader } else { Box::new(Matt(object.shader)) };
+        Object { material: Arc::new(material), shader, ..object }
     };
     let objects = model.objects.into_iter().map(matt).collect();
     Model { objects, ..model }
 }
 
 /// A shader that mirrors nothing.
-struct Matt(Box<dyn Shader>);
+struct Matt(AnyShader);
 
 impl Shader for Matt {
     fn ambient(&self, material: &Material, at: DVec3) -> Rgb {
@@ -201,25 +204,5 @@ impl Shader for Matt {
 
     fn even(&self, material: &Material) -> Option<Look> {
         self.0.even(material).map(|look| Look { specular: Rgb::ZERO, ..look })
-    }
-
-    fn unlit(
-        &self,
-        cpu: Cpu,
-        material: &Material,
-        points: View,
-        ambients: ViewMut,
-        mut speculars: ViewMut,
-    ) -> bool {
-        let count = points.len();
-        self.0.unlit(cpu, material, points, ambients, speculars.first(count));
-        for channel in [speculars.x, speculars.y, speculars.z] {
-            channel.fill(0.0);
-        }
-        false
-    }
-
-    fn diffuses(&self, cpu: Cpu, material: &Material, points: View, out: ViewMut) -> bool {
-        self.0.diffuses(cpu, material, points, out)
     }
 }

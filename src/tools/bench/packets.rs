@@ -113,7 +113,7 @@ pub(super) fn times(
     patience: Duration,
     is_wanted: impl Fn(usize) -> bool,
 ) -> Times {
-    let shape = |object: usize| &*model.objects[object].shape;
+    let shape = |object: usize| &model.objects[object].shape;
     let wanted = |objects: &[usize]| objects.iter().copied().filter(|object| is_wanted(*object)).collect();
     let viewed: Vec<(&Packet, Vec<usize>)> =
         packets.iter().map(|packet| (packet, wanted(&packet.tested.primary))).collect();
@@ -137,7 +137,7 @@ pub(super) fn times(
             for object in objects {
                 let (near, far, met, doubt) = (&mut near[..], &mut far[..], &mut met[..], &mut doubt[..]);
                 let nearest = Nearest { near, far, met, doubt };
-                shape(*object).meet(cpu, packet.view.rays(), None, *object as u64 + 1, nearest);
+                shape(*object).closest_hits(cpu, packet.view.rays(), None, *object as u64 + 1, nearest);
             }
             black_box((&near, &far, &met));
         }
@@ -147,7 +147,14 @@ pub(super) fn times(
             let (mut blocked, mut doubt) = ([0; WIDE], [0; WIDE]);
             for object in objects {
                 let sides = (*object == met.object).then_some(&met.sides[..]);
-                shape(*object).block(cpu, met.toward.rays(), sides, &met.ends, &mut blocked, &mut doubt);
+                shape(*object).packets().occluded(
+                    cpu,
+                    met.toward.rays(),
+                    sides,
+                    &met.ends,
+                    &mut blocked,
+                    &mut doubt,
+                );
             }
             black_box(&blocked);
         }
@@ -158,14 +165,14 @@ pub(super) fn times(
             let (mut near, mut far) = ([MISS; WIDE], [MISS; WIDE]);
             let (mut met, mut doubt) = ([0; WIDE], [0; WIDE]);
             let nearest = Nearest { near: &mut near, far: &mut far, met: &mut met, doubt: &mut doubt };
-            shape(view.object).meet(cpu, view.view.rays(), None, 1, nearest);
+            shape(view.object).closest_hits(cpu, view.view.rays(), None, 1, nearest);
             (near, far)
         })
         .collect();
     let mut settle = || {
         for (met, (near, far)) in met.iter().zip(&brackets) {
             let mut distances = [0.0; WIDE];
-            shape(met.object).distances(cpu, met.view.rays(), None, (near, far), &mut distances);
+            shape(met.object).packets().refine(cpu, met.view.rays(), None, (near, far), &mut distances);
             black_box(&distances);
         }
     };

@@ -29,7 +29,7 @@ pub fn try_object(object: &Object, draw: &mut Draw, rays: usize) -> Outcome {
     let mut outcome = Outcome { hits: 0, gravest: None };
     for index in 0..rays {
         let ray = ray(&aims, draw, index);
-        let tried = try_ray(&Tried { shape: &*object.shape, ray, is_exact: index < EXACT }, draw);
+        let tried = try_ray(&Tried { shape: &object.shape, ray, is_exact: index < EXACT }, draw);
         let tried = tried.and_then(|hit| match hit {
             Some(at) => shader(&*object.shader, at).map(|()| Some(at)),
             None => Ok(None),

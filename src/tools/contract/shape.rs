@@ -1,4 +1,4 @@
-//! The contract of [`Hittable`], tried with rays.
+//! The contract of [`Hittable`](crate::world::hittable::Hittable), tried with rays.
 
 use super::looks::same_bits;
 use super::promise::{Fault, Promise};
@@ -8,8 +8,8 @@ use crate::geometry::sight::Sight;
 use crate::numeric::interval::{Float, Wide};
 use crate::simd::cpu::Cpu;
 use crate::simd::soa::{STEP, Vectors};
+use crate::world::any_shape::AnyShape;
 use crate::world::certify::{Enclosure, Precision};
-use crate::world::hittable::Hittable;
 use crate::world::landing::Landing;
 use glam::DVec3;
 
@@ -25,7 +25,7 @@ pub const GRAZING: f64 = 0.05;
 
 /// A shape and a ray that it is tried with.
 pub struct Tried<'s> {
-    pub shape: &'s dyn Hittable,
+    pub shape: &'s AnyShape,
     pub ray: Ray,
     /// Whether it may meet an edge or a corner, where rounding tells what is met from elsewhere.
     pub is_exact: bool,
@@ -79,9 +79,9 @@ impl Tried<'_> {
         {
             return fault(format!("`distance` gives {distance}, and `bracket` {bracket:?}"));
         }
-        let quick = shape.quick_distance(ray, &Span::RAY);
-        if !quick.is_nan() && quick.to_bits() != distance.to_bits() {
-            return fault(format!("`distance` gives {distance}, and `quick_distance` {quick}"));
+        let refined = if bracket.far < MISS { shape.refine(ray, None) } else { f64::NAN };
+        if !refined.is_nan() && refined.to_bits() != distance.to_bits() {
+            return fault(format!("`distance` gives {distance}, and `refine` {refined}"));
         }
         let lanes = |of: DVec3| Vectors::<STEP> { x: [of.x; STEP], y: [of.y; STEP], z: [of.z; STEP] };
         let (origin, dir) = (lanes(ray.origin), lanes(ray.dir));
@@ -90,7 +90,7 @@ impl Tried<'_> {
             let (mut near, mut far) = ([MISS; STEP], [MISS; STEP]);
             let (mut met, mut doubt) = ([0; STEP], [0; STEP]);
             let nearest = Nearest { near: &mut near, far: &mut far, met: &mut met, doubt: &mut doubt };
-            shape.meet(cpu, rays, None, 1, nearest);
+            shape.closest_hits(cpu, rays, None, 1, nearest);
             let (low, high) = (near[0], far[0]);
             if doubt[0] == 0 && !(low <= distance && distance <= high) {
                 return fault(format!(
@@ -100,12 +100,9 @@ impl Tried<'_> {
             // As the tracer has it: what is known exactly is not asked for again.
             if doubt[0] == 0 && low < high {
                 let mut many = near;
-                shape.distances(cpu, rays, None, (&near, &far), &mut many);
+                shape.packets().refine(cpu, rays, None, (&near, &far), &mut many);
                 if !many[0].is_nan() && many[0].to_bits() != distance.to_bits() {
-                    return fault(format!(
-                        "`distance` gives {distance}, and `distances` {} ({cpu})",
-                        many[0]
-                    ));
+                    return fault(format!("`distance` gives {distance}, and {} in packets ({cpu})", many[0]));
                 }
             }
             if distance != MISS {
@@ -119,7 +116,7 @@ impl Tried<'_> {
                     cosines: &mut cosines,
                     travelled: &mut travelled,
                 };
-                shape.land(cpu, rays, &[distance; STEP], landing);
+                shape.packets().interact(cpu, rays, &[distance; STEP], landing);
                 let (at, normal) = (ray.at(distance), shape.normal(ray.at(distance)));
                 let side = Side::seen_along(ray.dir, normal);
                 let turned = shape.is_two_sided() && side == Side::Inside;
@@ -128,7 +125,7 @@ impl Tried<'_> {
                     return fault(format!("the normal {one} in single rays, and {many} in packets ({cpu})"));
                 }
                 if !same_bits(at, points.get(0)) || sides[0] != side || travelled[0] != 1.0 + distance {
-                    return fault(format!("`land` comes to {} in place of {at} ({cpu})", points.get(0)));
+                    return fault(format!("packets come to {} in place of {at} ({cpu})", points.get(0)));
                 }
                 let cosine = ray.dir.dot(normal);
                 if cosine.to_bits() != cosines[0].to_bits() && cosine.is_finite() {

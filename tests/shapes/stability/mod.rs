@@ -25,7 +25,7 @@ use glam::{DVec3, dvec3};
 use std::path::Path;
 use tabray::geometry::{Ray, Span};
 use tabray::scene::{self, Model};
-use tabray::world::Hittable;
+use tabray::world::{AnyShape, Hittable};
 
 const DOWN_Z: DVec3 = DVec3::NEG_Z;
 
@@ -39,16 +39,16 @@ fn text(camera: &str, object: &str) -> String {
 }
 
 /// The shape of the last object, of the exact accuracy.
-fn shape(object: &str) -> Box<dyn Hittable> {
+fn shape(object: &str) -> AnyShape {
     shape_of("", object)
 }
 
 /// The shape of the last object, of the accuracy that the camera is given.
-fn shape_of(camera: &str, object: &str) -> Box<dyn Hittable> {
+fn shape_of(camera: &str, object: &str) -> AnyShape {
     last(model(&text(camera, object)))
 }
 
-fn last(mut model: Model) -> Box<dyn Hittable> {
+fn last(mut model: Model) -> AnyShape {
     model.objects.pop().expect("a scene with an object").shape
 }
 

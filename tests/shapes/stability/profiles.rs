@@ -2,7 +2,7 @@
 
 use super::{Random, shape_of, words};
 use glam::{DVec3, dvec3};
-use tabray::world::Hittable;
+use tabray::world::AnyShape;
 
 /// A profile that a row is about.
 pub struct Line {
@@ -51,12 +51,12 @@ pub const STAIR: Line = Line {
 
 impl Line {
     /// The surface around the y axis, from the origin upward.
-    pub fn shape(&self) -> Box<dyn Hittable> {
+    pub fn shape(&self) -> AnyShape {
         self.shape_of("")
     }
 
     /// As [`shape`](Self::shape), with attributes of the camera.
-    pub fn shape_of(&self, camera: &str) -> Box<dyn Hittable> {
+    pub fn shape_of(&self, camera: &str) -> AnyShape {
         revsurf(camera, &format!("profile \"{}\"", self.formula), self.height)
     }
 
@@ -121,7 +121,7 @@ impl Line {
 }
 
 /// A surface of revolution around the y axis, from the origin upward.
-pub fn revsurf(camera: &str, line: &str, height: f64) -> Box<dyn Hittable> {
+pub fn revsurf(camera: &str, line: &str, height: f64) -> AnyShape {
     let (base, up) = (words(DVec3::ZERO), words(DVec3::Y));
     shape_of(camera, &format!("revsurf r {{ material m {line} base {base} direction {up} height {height} }}"))
 }

@@ -7,10 +7,10 @@ use glam::{DVec3, dvec3};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_6};
 use tabray::geometry::{MISS, Ray, Sight};
 use tabray::render::{Plan, trace};
-use tabray::world::Hittable;
+use tabray::world::AnyShape;
 
 /// The notes' cone, 6 high; a greater height goes beyond its apex.
-fn cone(camera: &str, height: f64) -> Box<dyn Hittable> {
+fn cone(camera: &str, height: f64) -> AnyShape {
     revsurf(camera, "surfer 1", height)
 }
 

@@ -5,7 +5,7 @@ use crate::common::model;
 use glam::{DVec3, dvec3};
 use tabray::geometry::{MISS, Ray, Sight};
 use tabray::render::{Plan, trace};
-use tabray::world::Hittable;
+use tabray::world::AnyShape;
 
 /// The notes' `hits_sphere`: the nearer root of the quadratic, if its discriminant is positive.
 fn naive(origin: DVec3, dir: DVec3, center: DVec3, radius: f64) -> Option<f64> {
@@ -16,7 +16,7 @@ fn naive(origin: DVec3, dir: DVec3, center: DVec3, radius: f64) -> Option<f64> {
     (discriminant > 0.0).then(|| (-b - discriminant.sqrt()) / (2.0 * a))
 }
 
-fn ball(camera: &str, center: DVec3, radius: f64) -> Box<dyn Hittable> {
+fn ball(camera: &str, center: DVec3, radius: f64) -> AnyShape {
     shape_of(camera, &format!("sphere s {{ material m center {} radius {radius} }}", words(center)))
 }
 

@@ -26,7 +26,7 @@ struct Template {
 }
 
 // A shape that is one formula. One with a method of its own to find where a ray meets it implements `Hittable`
-// instead, as `plugins/triangle.rs` does.
+// instead, as the box in `docs/plugins.md` does; `Bracketed` and `Certified` are for what is faster and proven.
 impl Implicit for Template {
     /// Below 0 inside of the shape, above 0 outside, and 0 on it.
     fn value<N: Number>(&self, at: [N; 3]) -> N {
