@@ -90,7 +90,10 @@ fn too_few_open_files_are_a_failure_of_whatever_needs_one() {
             break;
         }
         assert!(matches!(status, Some(1 | 2 | 127)), "{line}");
-        told.insert(line);
+        // With fewer still it is not even started.
+        if status != Some(127) {
+            told.insert(line);
+        }
     }
     let said = ["cannot read `ball.ray`", "cannot watch files"];
     assert_eq!(Vec::from_iter(told), said.map(|said| format!("error: {said}: too many open files\n")));
