@@ -132,7 +132,7 @@ fn a_file_that_registers_nothing_is_warned_of() {
 fn a_file_that_is_no_module_is_refused() {
     LazyLock::force(&CONTRADICTORY);
     let said = copy::cannot_be_built(with("Bad-Name", ""));
-    assert!(said.contains("Bad-Name.rs: a plugin's file name is a Rust module name"), "{said}");
+    assert!(said.contains("Bad-Name.rs: a plugin's file name must be a Rust module name"), "{said}");
 }
 
 // The README's plugin
@@ -141,8 +141,8 @@ fn a_file_that_is_no_module_is_refused() {
 fn the_readmes_plugin_is_listed_with_its_attributes() {
     let list = BUILT.prints(&["list"]);
     let disc = list.lines().find(|line| line.starts_with("disc ")).expect("the list has it");
-    assert!(disc.contains("a round piece of a plane"));
-    assert!(BUILT.prints(&["list", "disc"]).contains("the distance from its middle to its rim"));
+    assert!(disc.contains("a circular piece of a plane"));
+    assert!(BUILT.prints(&["list", "disc"]).contains("the distance from the centre to the rim"));
 }
 
 #[test]
