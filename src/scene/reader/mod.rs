@@ -83,11 +83,9 @@ pub fn read_by(
 /// file names start from the working directory.
 ///
 /// ```
-/// use tabray::scene::reader::Written;
-/// use tabray::scene::reader;
-/// use tabray::scene::registry::Registry;
+/// use tabray::scene::{self, Registry, Written};
 ///
-/// let built = reader::build(Registry::get()?, [
+/// let built = scene::build(Registry::get()?, [
 ///     Written::new("camera", "cam1")
 ///         .set("pixeldim", [640, 480])
 ///         .set("worlddim", [8.0, 6.0])
