@@ -4,7 +4,7 @@ use super::rainbow;
 use crate::prelude::*;
 
 inventory::submit! {
-    ProceduralShader::new("angular", "colours around the centre, whatever the material", |anchor| Box::new(Angular(anchor))).on_sphere(0)
+    ProceduralShader::new("angular", "hues around the centre, independent of the material", |anchor| Box::new(Angular(anchor))).on_sphere(0)
 }
 
 struct Angular(Anchor);

@@ -6,13 +6,13 @@ use crate::prelude::*;
 use crate::shapes::ball::{self, Line};
 use std::marker::PhantomData;
 
-static SCALE: Pparm<DVec3> = Pparm::required("scale", "how much it is stretched along x, y and z")
-    .must("positive each way", |scale: &DVec3| scale.min_element() > 0.0);
+static SCALE: Pparm<DVec3> = Pparm::required("scale", "the scale factors along x, y and z")
+    .must("positive in each dimension", |scale: &DVec3| scale.min_element() > 0.0);
 
 const TABLE: Table = &[&SCALE as &dyn Row];
 
 inventory::submit! {
-    Entity::shape("ellipsoid", "a ball stretched along the axes", &[sphere::TABLE, TABLE], |args| {
+    Entity::shape("ellipsoid", "a sphere scaled along the coordinate axes", &[sphere::TABLE, TABLE], |args| {
         Ok(Body::plain(shape(args)))
     })
 }

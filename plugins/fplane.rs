@@ -5,13 +5,14 @@ use crate::prelude::*;
 use crate::shapes::flat::{CLASSIC_METHOD, Flat, Plane};
 use crate::shapes::rectangle::{self, FinitePlane, Rectangle};
 
-pub static DIMENSIONS: Pparm<DVec2> = Pparm::required("dimensions", "its size along xdir and across it")
-    .unit("world units")
-    .must("positive each way", |size: &DVec2| size.min_element() > 0.0)
-    .dumped("dimensions", "\n");
+pub static DIMENSIONS: Pparm<DVec2> =
+    Pparm::required("dimensions", "the size along `xdir` and perpendicular to it")
+        .unit("world units")
+        .must("positive in each dimension", |size: &DVec2| size.min_element() > 0.0)
+        .dumped("dimensions", "\n");
 static XDIR: Pparm<DVec3> =
-    Pparm::required("xdir", "the direction of its first side, or of anything right above that")
-        .must("a vector with a direction", |xdir: &DVec3| xdir.try_normalize().is_some())
+    Pparm::required("xdir", "the direction of the first side, projected onto the plane")
+        .must("a nonzero vector", |xdir: &DVec3| xdir.try_normalize().is_some())
         .dumped("xdir", "\n");
 static PROJECTED: Derived = Derived(|args| frame(args).x_axis.to_datum().line("projected", "\n"));
 static ROTATION_ROWS: Derived = Derived(|args| {
@@ -25,7 +26,7 @@ pub const TABLE: Table = &[&DIMENSIONS, &XDIR, &PROJECTED];
 pub const ROTATION: Table = &[&ROTATION_ROWS as &dyn Row];
 
 inventory::submit! {
-    Entity::shape("fplane", "a rectangle, whose lower left corner is its point", &[plane::TABLE, TABLE, ROTATION], |args| {
+    Entity::shape("fplane", "a rectangle with its lower left corner at `point`", &[plane::TABLE, TABLE, ROTATION], |args| {
         Ok(Body::plain(shape(args)?))
     })
 }
@@ -61,8 +62,8 @@ pub fn sides(args: &Args) -> Result<[DVec3; 2], Refusal> {
     if normal.cross(xdir).length() < 1e-6 {
         return Err(Refusal {
             attribute: Some("xdir"),
-            message: "has an xdir parallel to its normal".to_owned(),
-            help: "`xdir` gives the direction of the first side; any vector that is not upright on the plane will do",
+            message: "has an `xdir` parallel to its `normal`".to_owned(),
+            help: "`xdir` gives the direction of the first side; any vector that is not parallel to `normal` will do",
         });
     }
     Ok([0, 1].map(|side| frame(args).col(side)))

@@ -6,7 +6,7 @@ use crate::prelude::*;
 inventory::submit! {
     Entity::shape(
         "pfplane",
-        "a rectangle that looks as a rule has it",
+        "a rectangle with a procedural shader",
         &[plane::TABLE, pplane::TABLE, fplane::TABLE, fplane::ROTATION],
         |args| {
             Ok(pplane::body(args, fplane::shape(args)?))

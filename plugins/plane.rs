@@ -4,16 +4,16 @@ use crate::prelude::*;
 use crate::shapes::flat::{CLASSIC_METHOD, Flat, Plane};
 
 pub static NORMAL: Pparm<DVec3> =
-    Pparm::required("normal", "a vector that stands upright on it, on its lit side")
-        .must("a vector with a direction", |normal: &DVec3| normal.try_normalize().is_some())
+    Pparm::required("normal", "a vector perpendicular to the plane, pointing to its lit side")
+        .must("a nonzero vector", |normal: &DVec3| normal.try_normalize().is_some())
         .shown(DVec3::normalize);
-pub static POINT: Pparm<DVec3> = Pparm::required("point", "a point of it").unit("world coordinates");
+pub static POINT: Pparm<DVec3> = Pparm::required("point", "a point on the plane").unit("world coordinates");
 
 /// What every kind of plane takes.
 pub const TABLE: Table = &[&NORMAL, &POINT];
 
 inventory::submit! {
-    Entity::shape("plane", "a plane without end", &[TABLE], |args| Ok(Body::plain(shape(args))))
+    Entity::shape("plane", "an infinite plane", &[TABLE], |args| Ok(Body::plain(shape(args))))
 }
 
 /// The plane of an entity whose table has [`TABLE`]'s rows.

@@ -3,13 +3,13 @@
 use super::plane;
 use crate::prelude::*;
 
-static SHADER: Pparm<OnPlane> = Pparm::required("shader", "the rule for its look");
+static SHADER: Pparm<OnPlane> = Pparm::required("shader", "the procedural shader");
 
 /// What planes with a rule for their look take.
 pub const TABLE: Table = &[&SHADER as &dyn Row];
 
 inventory::submit! {
-    Entity::shape("pplane", "a plane without end that looks as a rule has it", &[plane::TABLE, TABLE], |args| {
+    Entity::shape("pplane", "an infinite plane with a procedural shader", &[plane::TABLE, TABLE], |args| {
         Ok(body(args, plane::shape(args)))
     })
 }

@@ -14,7 +14,7 @@ const TABLE: Table = &[&HEADING as &dyn Row];
 inventory::submit! {
     Entity::light(
         "projector",
-        "a light that shines through a rectangle with a picture, itself not visible",
+        "a light that projects a texture through a rectangle, which is itself invisible",
         &[light::TABLE, TABLE, plane::TABLE, fplane::TABLE, fplane::ROTATION, texplane::TABLE],
         |args| Ok(match args.accuracy() {
             Accuracy::Classic => Box::new(Projector::new(args, finite_plane::<Classic>(args)?)),

@@ -3,12 +3,12 @@
 use super::sphere;
 use crate::prelude::*;
 
-static SHADER: Pparm<OnSphere> = Pparm::required("shader", "the rule for its look");
+static SHADER: Pparm<OnSphere> = Pparm::required("shader", "the procedural shader");
 
 const TABLE: Table = &[&SHADER as &dyn Row];
 
 inventory::submit! {
-    Entity::shape("psphere", "a ball that looks as a rule has it", &[sphere::TABLE, TABLE], |args| {
+    Entity::shape("psphere", "a sphere with a procedural shader", &[sphere::TABLE, TABLE], |args| {
         let (center, radius) = sphere::ball(args);
         let anchor = Anchor { origin: center, unit: 2.0 * radius };
         Ok(Body::procedural(sphere::shape(args), args.get(&SHADER).0, anchor))

@@ -4,15 +4,19 @@ use crate::geometry::clearance;
 use crate::prelude::*;
 use crate::shapes::Quadric;
 
-static COEFFICIENTS: Pparm<[f64; 10]> =
-    Pparm::required("coefficients", "A to J of Axx + Byy + Czz + Dxy + Exz + Fyz + Gx + Hy + Iz = J")
-        .must("not all zero but for J", |c: &[f64; 10]| c[..9].iter().any(|coefficient| *coefficient != 0.0));
-static CENTER: Pparm<DVec3> = Pparm::or("center", "where the equation's x, y and z are 0", DVec3::ZERO)
+static COEFFICIENTS: Pparm<[f64; 10]> = Pparm::required(
+    "coefficients",
+    "the coefficients A to J of Axx + Byy + Czz + Dxy + Exz + Fyz + Gx + Hy + Iz = J",
+)
+.must("nonzero in at least one of A to I", |c: &[f64; 10]| {
+    c[..9].iter().any(|coefficient| *coefficient != 0.0)
+});
+static CENTER: Pparm<DVec3> = Pparm::or("center", "the origin of the equation's coordinates", DVec3::ZERO)
     .alias(&["centre"])
     .unit("world coordinates");
 static BOX: Pparm<[f64; 6]> = Pparm::or(
     "box",
-    "what is kept of it: from x y z to x y z, counted from its center",
+    "the box that clips it, as its low and its high corner relative to `center`",
     [-1e9, -1e9, -1e9, 1e9, 1e9, 1e9],
 )
 .not_dumped();
@@ -20,14 +24,14 @@ static BOX: Pparm<[f64; 6]> = Pparm::or(
 const TABLE: Table = &[&COEFFICIENTS, &CENTER, &BOX];
 
 inventory::submit! {
-    Entity::shape("quadric", "a surface of the second degree, such as a cone, a cylinder or a saddle", &[TABLE], |args| {
+    Entity::shape("quadric", "a quadric surface, such as a cone, a cylinder or a saddle", &[TABLE], |args| {
         let [x1, y1, z1, x2, y2, z2] = args.get(&BOX);
         let (low, high) = (DVec3::new(x1, y1, z1), DVec3::new(x2, y2, z2));
         if !low.cmplt(high).all() {
             return Err(Refusal {
                 attribute: Some("box"),
                 message: "has an empty box".to_owned(),
-                help: "the box goes from its low corner to its high one: x, y and z must all grow",
+                help: "the low corner must be below the high corner in x, y and z",
             });
         }
         Ok(Body::plain(shape(args, [low, high])))

@@ -3,7 +3,7 @@
 use crate::prelude::*;
 
 inventory::submit! {
-    ProceduralShader::new("rainbow", "colours around a point, whatever the material", |anchor| Box::new(Rainbow(anchor))).on_plane(1)
+    ProceduralShader::new("rainbow", "hues around a point, independent of the material", |anchor| Box::new(Rainbow(anchor))).on_plane(1)
 }
 
 struct Rainbow(Anchor);

@@ -4,7 +4,7 @@ use super::{rainbow, tiles};
 use crate::prelude::*;
 
 inventory::submit! {
-    ProceduralShader::new("rainbow_tiles", "tiles along x and z: of the material, and of colours around a point", |anchor| Box::new(RainbowTiles(anchor))).on_plane(2)
+    ProceduralShader::new("rainbow_tiles", "tiles along x and z: the material's colour and hues around a point in turn", |anchor| Box::new(RainbowTiles(anchor))).on_plane(2)
 }
 
 struct RainbowTiles(Anchor);

@@ -5,8 +5,8 @@ use crate::shapes::ball::{self, Line};
 use std::marker::PhantomData;
 
 static CENTER: Pparm<DVec3> =
-    Pparm::required("center", "the point in its middle").alias(&["centre"]).unit("world coordinates");
-static RADIUS: Pparm<f64> = Pparm::required("radius", "the distance from its centre to its surface")
+    Pparm::required("center", "the position of the centre").alias(&["centre"]).unit("world coordinates");
+static RADIUS: Pparm<f64> = Pparm::required("radius", "the distance from the centre to the surface")
     .unit("world units")
     .must("positive", |radius| *radius > 0.0)
     .dumped("radius", "\n");
@@ -15,7 +15,7 @@ static RADIUS: Pparm<f64> = Pparm::required("radius", "the distance from its cen
 pub const TABLE: Table = &[&CENTER, &RADIUS];
 
 inventory::submit! {
-    Entity::shape("sphere", "a ball", &[TABLE], |args| Ok(Body::plain(shape(args))))
+    Entity::shape("sphere", "a sphere", &[TABLE], |args| Ok(Body::plain(shape(args))))
 }
 
 /// The sphere of an entity whose table has [`TABLE`]'s rows.

@@ -5,10 +5,10 @@ use crate::prelude::*;
 use crate::shapes::rectangle::Rectangle;
 use std::sync::Arc;
 
-static TEXNAME: Pparm<Arc<Texture>> = Pparm::required("texname", "the texture it shows, defined above it");
+static TEXNAME: Pparm<Arc<Texture>> = Pparm::required("texname", "the texture, defined earlier in the scene");
 static MODE: Pparm<i64> = Pparm::required(
     "mode",
-    "how the picture lies: 0 stretched to fit, 1 tiled, a texel for each pixel of the screen",
+    "0 stretches the texture to fit, 1 tiles it with one texel per pixel of the image plane",
 )
 .must("0 or 1", |mode| (0..=1).contains(mode))
 .dumped("mode", "\n");
@@ -19,7 +19,7 @@ pub const TABLE: Table = &[&TEXNAME, &MODE];
 inventory::submit! {
     Entity::shape(
         "texplane",
-        "a rectangle that shows a picture",
+        "a rectangle covered with a texture",
         &[plane::TABLE, fplane::TABLE, fplane::ROTATION, TABLE],
         |args| {
             let rectangle = fplane::rectangle(args)?;

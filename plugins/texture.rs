@@ -3,12 +3,12 @@
 use crate::prelude::*;
 
 static FILENAME: Pparm<String> =
-    Pparm::required("filename", "the file of the picture, a PPM or PNG, from the scene's folder");
+    Pparm::required("filename", "a PPM or PNG file, relative to the scene's folder");
 
 const TABLE: Table = &[&FILENAME];
 
 inventory::submit! {
-    Entity::texture("texture", "a picture for texplanes and projectors", &[TABLE], |args| {
+    Entity::texture("texture", "an image for texplanes and projectors", &[TABLE], |args| {
         Ok(Texture::new(args.setting.folder.join(args.get(&FILENAME))))
     })
 }

@@ -11,7 +11,7 @@ static ALTMATERIAL: Pparm<Arc<Material>> =
 const TABLE: Table = &[&ALTMATERIAL];
 
 inventory::submit! {
-    Entity::shape("tiled_plane", "a plane without end, tiled with two materials", &[plane::TABLE, fplane::TABLE, TABLE], |args| {
+    Entity::shape("tiled_plane", "an infinite plane, tiled with two materials", &[plane::TABLE, fplane::TABLE, TABLE], |args| {
         let tiles = Tiles {
             sides: sides(args)?,
             dimensions: args.get(&DIMENSIONS),

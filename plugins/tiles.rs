@@ -3,7 +3,7 @@
 use crate::prelude::*;
 
 inventory::submit! {
-    ProceduralShader::new("tiles", "tiles along x and z, without their red and without their blue", |_| Box::new(Tiles)).on_plane(0)
+    ProceduralShader::new("tiles", "tiles along x and z: the material's colour without red and without blue in turn", |_| Box::new(Tiles)).on_plane(0)
 }
 
 struct Tiles;

@@ -4,16 +4,16 @@ use crate::prelude::*;
 use crate::shapes::Triangle;
 use crate::shapes::flat::{CLASSIC_METHOD, Flat, Plane};
 
-static VERTEX1: Pparm<DVec3> = Pparm::required("vertex1", "its first corner").unit("world coordinates");
+static VERTEX1: Pparm<DVec3> = Pparm::required("vertex1", "the first vertex").unit("world coordinates");
 static VERTEX2: Pparm<DVec3> =
-    Pparm::required("vertex2", "its second corner, against the clock as seen from its lit side")
+    Pparm::required("vertex2", "the second vertex, counterclockwise as seen from the lit side")
         .unit("world coordinates");
-static VERTEX3: Pparm<DVec3> = Pparm::required("vertex3", "its third corner").unit("world coordinates");
+static VERTEX3: Pparm<DVec3> = Pparm::required("vertex3", "the third vertex").unit("world coordinates");
 // The course's program had them read and never used them.
 static NORMAL: Pparm<DVec3> =
-    Pparm::or("normal", "nothing: its corners say which way it faces", DVec3::Z).not_dumped();
+    Pparm::or("normal", "ignored, as the vertices determine which side is lit", DVec3::Z).not_dumped();
 static POINT: Pparm<DVec3> =
-    Pparm::or("point", "nothing: its corners say where it is", DVec3::ZERO).not_dumped();
+    Pparm::or("point", "ignored, as the vertices determine the position", DVec3::ZERO).not_dumped();
 
 const TABLE: Table = &[&VERTEX1, &VERTEX2, &VERTEX3, &NORMAL, &POINT];
 
@@ -21,8 +21,8 @@ inventory::submit! {
     Entity::shape("triangle", "a triangle", &[TABLE], |args| {
         let shape = shape(args).ok_or_else(|| Refusal {
             attribute: Some("vertex3"),
-            message: "has its corners in one line".to_owned(),
-            help: "three corners that are not in one line make a triangle",
+            message: "has collinear vertices".to_owned(),
+            help: "the vertices of a triangle must not lie on one line",
         })?;
         Ok(Body::plain(shape))
     })

@@ -21,23 +21,23 @@ const LARGEST: usize = 1 << 26;
 #[derive(clap::Args)]
 #[group(id = "pictures beside")]
 pub struct Args {
-    /// Write these pictures too, beside the main one: `-o a.png --aov depth` writes a-depth.png, and a-depth.exr
-    /// with exact numbers
-    #[arg(long, value_name = "PICTURES", value_delimiter = ',')]
+    /// Also write these auxiliary images, beside the main one: `-o a.png --aov depth` writes a-depth.png, and
+    /// a-depth.exr with exact numbers
+    #[arg(long, value_name = "IMAGES", value_delimiter = ',')]
     aov: Vec<AovName>,
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
 enum AovName {
-    /// How far the first hit is, near ones bright
+    /// Distance of the first hit, near ones bright
     Depth,
-    /// The direction of the surface: red, green and blue are x, y and z
+    /// Surface normal: red, green and blue are x, y and z
     Normal,
-    /// Each object in a colour of its own
+    /// Object seen, each in its own colour
     Object,
-    /// How many rays a pixel costs
+    /// Number of rays that a pixel takes
     Cost,
-    /// How far a pixel's colour is from that of four times its samples, at least 64, exactly traced
+    /// Error of a pixel's colour, against four times its samples, at least 64, traced exactly
     Error,
 }
 
@@ -55,15 +55,15 @@ pub fn open(model: &Model, args: &Args, main: &Path, output: &Output) -> Result<
     }
     if !matches!(output, Output::File(..)) {
         return Err(Failure::Usage(
-            format!("there is no place for the pictures of `--aov` beside `{}`", main.display()),
-            Some("name the main picture's file with `-o FILE`".to_owned()),
+            format!("cannot write the images of `--aov` beside `{}`", main.display()),
+            Some("name a file for the main image with `-o FILE`".to_owned()),
         ));
     }
     let [width, height] = model.camera.value.pixels;
     if width * height > LARGEST {
         return Err(Failure::Usage(
-            format!("a picture of {width} x {height} pixels is too large for `--aov`"),
-            Some(format!("it can have {LARGEST} pixels, such as 8192 x 8192")),
+            format!("an image of {width} x {height} pixels is too large for `--aov`"),
+            Some(format!("the maximum is {LARGEST} pixels, such as 8192 x 8192")),
         ));
     }
     let mut aovs: Vec<Aov> = Vec::new();
@@ -134,12 +134,12 @@ pub fn write(
             interrupt::check()
         });
         progress.end();
-        let layer = layer.map_err(|_| Failure::Interrupted("the picture was not finished"))?;
+        let layer = layer.map_err(|_| Failure::Interrupted("the image was not finished"))?;
         if let Some((most, [x, y])) = layer.most {
-            messages::note(&format!("the most expensive pixel is {x} {y}, of {most} rays"));
+            messages::note(&format!("the most expensive pixel is {x} {y}, with {most} rays"));
         }
         if let Some((worst, [x, y])) = layer.worst {
-            messages::note(&format!("the greatest error is {worst:.2e}, of pixel {x} {y}"));
+            messages::note(&format!("the greatest error is {worst:.2e}, at pixel {x} {y}"));
         }
         if let Some((path, output)) = exact {
             let bytes = layer.exr(size).map_err(|error| Failure::cannot_write(&path, &error))?;

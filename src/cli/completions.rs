@@ -5,7 +5,7 @@ use super::program;
 use crate::scene::registry::Registry;
 use clap_complete::Shell;
 
-/// Print a script that completes the command line, for a shell
+/// Print a completion script for a shell
 #[derive(clap::Args)]
 pub struct Args {
     /// The shell

@@ -6,15 +6,15 @@ use crate::simd::cpu::{Cpu, Level};
 #[derive(clap::Args)]
 #[group(id = "instructions")]
 pub struct Args {
-    /// The most of the processor's instructions that may be used for the picture, which is the same with any; by
-    /// default all that this machine has
+    /// The highest level of CPU instructions to use, by default the highest that this machine has; the image is the
+    /// same with any
     #[arg(long, value_name = "NAME")]
     cpu: Option<CpuName>,
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
 enum CpuName {
-    /// What every machine has
+    /// What every machine has: SSE2 on x86-64
     Baseline,
     /// AVX2: four numbers at a time
     Avx2,

@@ -14,8 +14,8 @@ pub struct Args {
     /// Print the course notes' debug lines to standard error before rendering
     #[arg(long, value_name = "LINES", value_delimiter = ',')]
     debug: Vec<LineName>,
-    /// Print them for one pixel or for a rectangle, both corners included: columns count from 0 at the left, rows
-    /// from 0 at the bottom
+    /// Print the debug lines of one pixel or of a rectangle, both corners included: columns count from 0 at the left,
+    /// rows from 0 at the bottom
     #[arg(long, value_name = "X,Y|X0,Y0,X1,Y1", requires = "debug", value_parser = corners)]
     #[arg(allow_hyphen_values = true)]
     at: Option<[[i64; 2]; 2]>,
@@ -25,15 +25,15 @@ pub struct Args {
 enum LineName {
     /// The pixel: its row and its column
     Pix,
-    /// What a ray meets, and where
+    /// What a ray hits, and where
     Hit,
-    /// The colour of what it meets
+    /// The colour of what it hits
     Drgb,
     /// The pixel's bytes
     Irgb,
-    /// The pixel's place in the picture's file
+    /// The pixel's offset in the image file
     Offset,
-    /// Each object that a search finds, and its distance
+    /// Each object that a ray finds, and its distance
     Find,
 }
 
@@ -66,7 +66,7 @@ pub fn print(model: &Model, args: &Args) -> Result<(), Failure> {
     });
     match printed {
         Err(error) if error.kind() == io::ErrorKind::Interrupted => {
-            Err(Failure::Interrupted("the picture was not finished"))
+            Err(Failure::Interrupted("the image was not finished"))
         }
         // Where standard error is closed there is nobody to tell.
         _ => Ok(()),

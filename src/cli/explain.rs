@@ -55,7 +55,7 @@ impl Place<'_> {
 
     fn by_another(&self, program: &Path) -> Result<String, String> {
         if self.model.camera.value.pixels != self.size() {
-            return Err("the picture is not as large as its scene says".to_owned());
+            return Err("the image does not have the size that its scene gives".to_owned());
         }
         let output = Command::new(program)
             .arg("probe")
@@ -63,9 +63,12 @@ impl Place<'_> {
             .args([self.pixel.x.to_string(), self.pixel.y.to_string()])
             .stdin(Stdio::null())
             .output()
-            .map_err(|error| format!("`{}` does not start: {}", program.display(), words::reason(&error)))?;
+            .map_err(|error| format!("cannot start `{}`: {}", program.display(), words::reason(&error)))?;
         if !output.status.success() {
-            return Err(format!("it says\n\n{}", String::from_utf8_lossy(&output.stderr).trim_end()));
+            return Err(format!(
+                "the program says\n\n{}",
+                String::from_utf8_lossy(&output.stderr).trim_end()
+            ));
         }
         Ok(String::from_utf8_lossy(&output.stdout).into_owned())
     }
@@ -80,7 +83,7 @@ fn explanation(title: String, told: Result<String, String>, [r, g, b]: [u8; 3]) 
     let bytes = format!("({r}, {g}, {b})");
     let text = match told {
         Ok(text) if text.trim_end().ends_with(&bytes) => text,
-        Ok(text) => format!("the picture has {bytes} here and was made otherwise than this:\n\n{text}"),
+        Ok(text) => format!("the image has {bytes} here, so it was not made like this:\n\n{text}"),
         Err(reason) => format!("no explanation: {reason}"),
     };
     Explanation { title, text }

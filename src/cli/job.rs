@@ -98,19 +98,19 @@ impl Job<'_> {
         let share = (1000.0 * tiles.pixels() as f64 / (width * height) as f64).floor() / 10.0;
         messages::note(&match &output {
             Output::File(..) if tiles.pixels() == 0 => {
-                "nothing is rendered yet, and nothing is written".to_owned()
+                "nothing has been rendered yet, and nothing is written".to_owned()
             }
             Output::File(..) => {
                 let checkpoint =
                     resume::leave(self.plan.model, self.part, (self.path, self.format), output, tiles)?;
                 let [picture, checkpoint] = [self.path, &checkpoint].map(Path::display);
                 format!(
-                    "wrote {share:.1} % of {picture}, and {checkpoint}, from which `--resume` makes the rest"
+                    "wrote {share:.1} % of {picture}, and {checkpoint}, from which `--resume` renders the rest"
                 )
             }
             Output::Standard | Output::Special(_) => {
                 format!(
-                    "{share:.1} % of the picture is rendered, and the rest is black; only files can be resumed"
+                    "{share:.1} % of the image is rendered, and the rest is black; only files can be resumed"
                 )
             }
         });
@@ -127,13 +127,13 @@ fn warn_of(cuts: Cuts) {
     let most = if levels.is_finite() {
         format!("off by at most {} of 255 levels", short(levels))
     } else {
-        "off by nobody knows how much: nothing bounds the light beyond".to_owned()
+        "off by an unknown amount: nothing bounds the light beyond".to_owned()
     };
     messages::warning(
         &format!(
-            "{} cut off after {MAX_RAYS} rays for one look from the viewer, and {most}",
+            "{} cut off at {MAX_RAYS} rays for one primary ray, {most}",
             count(cuts.pixels as usize, "pixel")
         ),
-        Some("mirrors or glass send too many rays on: less of `specular` or `transparency` ends them sooner"),
+        Some("mirrors or glass spawn too many rays: a lower `specular` or `transparency` ends them sooner"),
     );
 }

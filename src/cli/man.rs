@@ -9,10 +9,10 @@ use clap_mangen::Man;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Write the manual pages, one for each command
+/// Write the man pages, one for each command
 #[derive(clap::Args)]
 pub struct Args {
-    /// The folder to write them to, such as share/man/man1
+    /// The folder to write to, such as share/man/man1
     folder: PathBuf,
 }
 

@@ -6,29 +6,29 @@ use crate::world::accuracy::Accuracy;
 #[derive(clap::Args)]
 #[group(id = "how exactly")]
 pub struct Args {
-    /// How shapes find their hits; by default what the scene's camera says
+    /// The method of computing hits; by default that of the scene's camera
     #[arg(long, value_name = "NAME")]
     method: Option<MethodName>,
-    /// How exactly the exact method finds them
+    /// The accuracy of the exact method
     #[arg(long, value_name = "NAME")]
     accuracy: Option<AccuracyName>,
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
 enum MethodName {
-    /// By the course notes' own methods, with the hits that they lose and the course's own pictures
+    /// The course notes' methods, which lose some hits and reproduce the course's images
     Classic,
-    /// By bounds on their errors, the default
+    /// Methods with error bounds, the default
     Exact,
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
 enum AccuracyName {
-    /// Points within about 1/1000 of a unit of the surface, where that saves time
+    /// Hit points within about 1/1000 of a unit of the surface, where that saves time
     Draft,
-    /// Points on the surface but for rounding
+    /// Hit points on the surface, up to rounding
     Exact,
-    /// As exact, in twice the precision wherever a shape has it
+    /// Like exact, in twice the precision wherever a shape supports it
     Strict,
 }
 

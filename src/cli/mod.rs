@@ -51,15 +51,15 @@ use std::process::ExitCode;
 
 /// A ray tracer in which a scene is data and every entity type is a plugin
 ///
-/// Without a command it does what the course notes' program does: it reads a scene from standard input, prints
-/// its dump to standard error and writes its picture, a PPM, to standard output. It uses the notes' own methods unless
-/// the scene's camera says otherwise.
+/// Without a command, does what the course notes' program does: reads a scene from standard input, prints its dump to
+/// standard error and writes its image, a PPM, to standard output. It uses the notes' own methods unless the scene's
+/// camera says otherwise.
 #[derive(Parser)]
 #[command(version, after_help = EXIT_STATUS)]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
-    /// How messages are written
+    /// The format of messages
     #[arg(long, global = true, value_name = "FORM", default_value = "human")]
     message_format: messages::Form,
 }
@@ -89,9 +89,9 @@ enum Command {
 
 const EXIT_STATUS: &str = "\
 Exit status:
-    0  all went well
-    1  a failure: something could not be read, written or started
-    2  bad input: a scene or a command line with faults
+    0  success
+    1  failure: something could not be read, written or started
+    2  bad input: a scene or a command line with errors
   130  interrupted, or stopped at a limit";
 
 /// The command line, under the name of the program that runs.

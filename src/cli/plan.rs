@@ -19,7 +19,7 @@ pub struct Args {
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let model = input::load(registry, &args.scene, args.method.accuracy()?)?;
-    let best = format!("{}, the most that this machine has; the picture is the same with any", Cpu::best());
+    let best = format!("{}, the highest level of this machine; the image is the same with any", Cpu::best());
     let cpu = Decision { subject: "instructions", text: best };
     print(
         &decisions::of(&Plan::new(&model))

@@ -47,7 +47,7 @@ pub fn inside(model: &Model, pixel: [i64; 2]) -> Result<[usize; 2], Failure> {
     find(0).zip(find(1)).map(|(x, y)| [x, y]).ok_or_else(|| {
         let ([x, y], [width, height]) = (pixel, size);
         Failure::Usage(
-            format!("the picture of {width} x {height} pixels has no pixel {x} {y}"),
+            format!("the image of {width} x {height} pixels has no pixel {x} {y}"),
             Some(format!(
                 "X counts from the left, from 0 to {}, and Y from the bottom, from 0 to {}",
                 width - 1,

@@ -17,28 +17,28 @@ use crate::world::sample::Sampler;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Make a scene's picture
+/// Render a scene
 #[derive(clap::Args)]
 pub struct Args {
     /// The scene; `-` reads it from standard input
     scene: PathBuf,
-    /// Where to write the picture: a .png or .ppm file, or `-` for standard output (a PPM unless --format says
-    /// otherwise); by default the scene's name with .png in the working directory
+    /// The image to write: a .png or .ppm file, or `-` for standard output (a PPM unless --format says otherwise); by
+    /// default the scene's name with .png in the working directory
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// The picture's format, whatever the file's extension
+    /// The image format, whatever the file's extension
     #[arg(long)]
     format: Option<FormatName>,
-    /// How hard a PNG is compressed
+    /// The compression of a PNG
     #[arg(long, value_name = "HOW", default_value = "fast")]
     compress: CompressionName,
-    /// How many rays look through each pixel, to smooth edges; by default what the scene's camera says
+    /// The number of samples per pixel, to smooth edges; by default that of the scene's camera
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(Sampler::MOST)))]
     samples: Option<u32>,
-    /// Where the rays of a pixel lie
+    /// The distribution of the samples within a pixel
     #[arg(long, value_name = "NAME", default_value = "sobol")]
     sampler: SamplerName,
-    /// How many threads to use; by default one on each core
+    /// The number of threads; by default one per core
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
     #[command(flatten)]
@@ -65,19 +65,19 @@ enum FormatName {
 
 #[derive(Clone, Copy, clap::ValueEnum)]
 enum CompressionName {
-    /// As quickly as possible
+    /// Fastest
     Fast,
-    /// Smaller
+    /// Smaller files
     Default,
-    /// As small as possible
+    /// Smallest files
     Best,
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
 enum SamplerName {
-    /// Spread evenly
+    /// Evenly spread (a Sobol sequence)
     Sobol,
-    /// Anywhere, as in the course notes
+    /// Random, as in the course notes
     Random,
 }
 
@@ -142,8 +142,8 @@ fn target(args: &Args) -> Result<PathBuf, Failure> {
             Ok(Path::new(name).with_extension(extension))
         }
         _ => Err(Failure::Usage(
-            "a scene from standard input has no name for its picture".to_owned(),
-            Some("name one with `-o FILE`; `-o -` writes to standard output".to_owned()),
+            "a scene from standard input has no name to give its image".to_owned(),
+            Some("name a file with `-o FILE`; `-o -` writes to standard output".to_owned()),
         )),
     }
 }

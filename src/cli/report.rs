@@ -82,7 +82,7 @@ impl Page {
     pub fn open(path: &Path) -> Result<Self, Failure> {
         if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("html")) {
             return Err(Failure::Usage(
-                format!("the name `{}` is not that of a page", path.display()),
+                format!("`{}` is not the name of an HTML file", path.display()),
                 Some("end it in .html".to_owned()),
             ));
         }

@@ -38,8 +38,8 @@ impl Begun {
         if !matches!(output, Output::File(..)) {
             return if wanted {
                 Err(Failure::Usage(
-                    format!("there is no place for a checkpoint beside `{}`", picture.display()),
-                    Some("name the picture's file with `-o FILE`, or leave out `--resume`".to_owned()),
+                    format!("cannot keep a checkpoint beside `{}`", picture.display()),
+                    Some("name a file for the image with `-o FILE`, or leave out `--resume`".to_owned()),
                 ))
             } else {
                 Ok(None)
@@ -49,15 +49,15 @@ impl Begun {
         let shown = path.display();
         if !wanted {
             if path.exists() {
-                messages::note(&format!(
-                    "{shown} is there, and with `--resume` the picture would go on from it"
-                ));
+                messages::note(&format!("{shown} exists: with `--resume` the render would continue from it"));
             }
             return Ok(None);
         }
         let file = match File::open(&path) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
-                messages::note(&format!("there is no {shown} to go on from: the picture begins anew"));
+                messages::note(&format!(
+                    "there is no {shown} to continue from: the render starts from the beginning"
+                ));
                 return Ok(None);
             }
             file => file,
@@ -67,7 +67,7 @@ impl Begun {
         let differences = identity.differences(&checkpoint.identity);
         if !differences.is_empty() {
             return Err(Failure::Usage(
-                format!("`{shown}` is of another picture: {}", differences.join(", ")),
+                format!("`{shown}` belongs to another image: {}", differences.join(", ")),
                 Some(BEGIN_ANEW.to_owned()),
             ));
         }
@@ -87,17 +87,17 @@ impl Begun {
         fs::remove_file(&self.path).map_err(|error| {
             let (path, reason) = (self.path.display(), words::reason(&error));
             Failure::Failed(format!(
-                "cannot remove `{path}`: {reason}; the picture is finished: remove it by hand"
+                "cannot remove `{path}`: {reason}; the image is finished, so remove the file by hand"
             ))
         })
     }
 }
 
-const BEGIN_ANEW: &str = "leave out `--resume` to begin anew";
+const BEGIN_ANEW: &str = "leave out `--resume` to start from the beginning";
 
 fn cannot_read(path: &Path, error: &io::Error) -> Failure {
     let reason = match error.kind() {
-        io::ErrorKind::InvalidData => "it is no checkpoint, or a broken one".to_owned(),
+        io::ErrorKind::InvalidData => "it is not a checkpoint, or it is corrupt".to_owned(),
         _ => words::reason(error),
     };
     Failure::Usage(format!("cannot read `{}`: {reason}", path.display()), Some(BEGIN_ANEW.to_owned()))
@@ -146,7 +146,7 @@ fn identity(model: &Model, part: &Part) -> Result<Identity, Failure> {
     Identity::of(model, &part.columns, &part.rows).map_err(|error| {
         let reason = words::reason(&error);
         Failure::Failed(format!(
-            "cannot read the program's own file, by which a checkpoint knows it: {reason}"
+            "cannot read the program's own file, whose hash a checkpoint contains: {reason}"
         ))
     })
 }

@@ -56,7 +56,7 @@ impl Identity {
         for texture in &model.textures {
             let [width, height] = texture.value.size();
             let texels = texture.value.load().map_or(&[][..], |picture| picture.as_raw());
-            let title = format!("the picture of texture `{}`", texture.args.name);
+            let title = format!("the image of texture `{}`", texture.args.name);
             all.push((title, format!("{} ({width} x {height})", hash(texels))));
         }
         all.extend(
@@ -81,7 +81,7 @@ impl Identity {
                 Some(was) if was == is => {}
                 // Another version is another program.
                 _ if what == PROGRAM && !differences.is_empty() => {}
-                _ if what == PROGRAM => differences.push(format!("{what} was built anew")),
+                _ if what == PROGRAM => differences.push(format!("{what} was rebuilt")),
                 Some(_) if is.starts_with(HASH) => differences.push(format!("{what} has changed")),
                 Some(was) => differences.push(format!("{what} was {was} and is {is}")),
                 None => differences.push(format!("{what} is new")),

@@ -37,7 +37,7 @@ pub fn of(plan: &Plan) -> Vec<Decision> {
     let model = plan.model;
     let decision = |subject, text| Decision { subject, text };
     let mut all = vec![
-        decision("picture", picture(&plan.camera)),
+        decision("image", picture(&plan.camera)),
         decision("accuracy", model.camera.value.accuracy.to_string()),
         decision("lights", lights(model)),
     ];
@@ -59,13 +59,13 @@ fn picture(camera: &Camera) -> String {
     let rays = (width * height) as u64 * u64::from(samples);
     match (samples, sampler) {
         (1, _) => {
-            format!("{size}, a ray through the middle of each and no random numbers: {rays} primary rays")
+            format!("{size}, one sample at the centre of each and no random numbers: {rays} primary rays")
         }
         (_, Sampler::Sobol) => {
-            format!("{size}, {samples} rays spread evenly through each: {rays} primary rays")
+            format!("{size}, {samples} evenly spread samples in each: {rays} primary rays")
         }
         (_, Sampler::Random) => {
-            format!("{size}, {samples} rays anywhere through each: {rays} primary rays")
+            format!("{size}, {samples} random samples in each: {rays} primary rays")
         }
     }
 }
@@ -73,42 +73,43 @@ fn picture(camera: &Camera) -> String {
 fn lights(model: &Model) -> String {
     let names = some(model.lights.iter().map(|light| light.args.name.as_str()));
     match model.lights.len() {
-        0 => "none: surfaces have their ambient colour, and no shadow rays are cast".to_owned(),
-        1 => format!("{names}: a shadow ray from each place that faces it and scatters light"),
-        _ => format!("{names}: from each place that scatters light a shadow ray to each that it faces"),
+        0 => "none: surfaces show their ambient colour, and no shadow rays are cast".to_owned(),
+        1 => format!("{names}: a shadow ray from each point that faces it and reflects its light"),
+        _ => {
+            format!("{names}: from each point that reflects light, a shadow ray to each light that it faces")
+        }
     }
 }
 
 fn shadows(plan: &Plan) -> String {
     if plan.has_glass {
-        "tinted: light may pass through glass, so that the first object on its way is looked for, and then the next"
+        "tinted: light may pass through glass, so shadow rays look for the first object on their way, and then the next"
     } else {
-        "of two shades: nothing lets light through, so that any object on its way ends the search"
+        "opaque: nothing transmits light, so any object on the way ends the search"
     }
     .to_owned()
 }
 
 fn glass(objects: &[Object]) -> String {
     match of_material(objects, |object| object.material.transparency != 0.0) {
-        names if names.is_empty() => {
-            "none: no object lets light through, and no rays are transmitted".to_owned()
-        }
-        names => format!("{names}: each ray that meets one goes on behind it"),
+        names if names.is_empty() => "none: no object is transparent, and no rays are transmitted".to_owned(),
+        names => format!("{names}: each ray that hits one is transmitted"),
     }
 }
 
 fn mirrors(objects: &[Object]) -> String {
     match of_material(objects, |object| object.material.specular != Rgb::ZERO) {
         names if names.is_empty() => {
-            "none: no object is of a specular material, and no rays are reflected".to_owned()
+            "none: no object has a specular material, and no rays are reflected".to_owned()
         }
-        names => format!("{names}: each ray that meets one is reflected"),
+        names => format!("{names}: each ray that hits one is reflected"),
     }
 }
 
 fn depth(model: &Model, depth: &Depth) -> String {
-    let ends = format!("after {MAX_DIST} units of way, and at {MAX_RAYS} rays for one look from the viewer");
-    let bound = || format!("nothing is brighter than {} divided by the way of its light", short(depth.most));
+    let ends = format!("after a path of {MAX_DIST} units, and at {MAX_RAYS} rays for one primary ray");
+    let bound =
+        || format!("nothing is brighter than {} divided by the path length of its light", short(depth.most));
     match (model.camera.value.accuracy, depth.most.is_finite()) {
         (Accuracy::Classic, true) => format!("as in the notes, branches end {ends}; {}", bound()),
         (_, true) => {
@@ -117,8 +118,8 @@ fn depth(model: &Model, depth: &Depth) -> String {
         (_, false) => {
             let bright = model.objects.iter().zip(&depth.objects).find(|(_, onward)| !onward.own.is_finite());
             let reason = match bright {
-                Some((object, _)) => format!("`{}` may be of any brightness", object.args.name),
-                None => "mirrors and glass give on as much light as they get".to_owned(),
+                Some((object, _)) => format!("`{}` may have any brightness", object.args.name),
+                None => "mirrors and glass pass on as much light as they receive".to_owned(),
             };
             format!("branches end {ends}: {reason}, and nothing bounds what they add")
         }
@@ -141,7 +142,7 @@ fn textures(model: &Model) -> Vec<String> {
             return format!("`{name}` is not read: nothing uses it");
         }
         let [width, height] = item.value.size();
-        format!("`{name}` of {width} x {height} texels, read once: {} shows it", some(its))
+        format!("`{name}` of {width} x {height} texels, read once: used by {}", some(its))
     };
     model.textures.iter().map(text).collect()
 }
@@ -150,21 +151,21 @@ fn search(model: &Model, plan: &Plan) -> String {
     let bounded = model.objects.len() - plan.unbounded.len();
     let listed = plan.unbounded.len() + plan.bounded.len();
     let by_one = match model.camera.value.accuracy {
-        Accuracy::Classic => "every ray is tested against each",
-        _ => "a packet of rays passes those over that are not in its way",
+        Accuracy::Classic => "every ray is tested against each object",
+        _ => "a packet of rays skips those that are not in its way",
     };
     match (&plan.tree, bounded) {
         (Some(tree), _) => {
             let rest =
                 if listed > 0 { format!(", and a list of the {listed} without") } else { String::new() };
             format!(
-                "a tree of {} boxes for the {bounded} objects with bounds, as it pays from {TREE} on{rest}",
+                "a BVH of {} boxes for the {bounded} objects with bounds, as it pays off from {TREE} on{rest}",
                 tree.size()
             )
         }
         (None, 0) => format!("a list of {}: none has bounds; {by_one}", count(listed, "object")),
         (None, _) => format!(
-            "a list of {}, {bounded} with bounds: a tree pays from {TREE} on; {by_one}",
+            "a list of {}, {bounded} with bounds: a BVH pays off from {TREE} on; {by_one}",
             count(listed, "object")
         ),
     }
@@ -175,7 +176,7 @@ fn objects(model: &Model, plan: &Plan) -> Vec<Decision> {
     let mut alike: Vec<(&'static str, String, Vec<&str>)> = Vec::new();
     for object in &model.objects {
         let place = match (&plan.tree, culling::bounds(object)) {
-            (Some(_), Some(_)) => "in the tree",
+            (Some(_), Some(_)) => "in the BVH",
             (None, Some(_)) => "with bounds",
             (_, None) => "without bounds",
         };

@@ -73,7 +73,7 @@ pub(crate) fn contradictions<T: Choice>() -> Vec<String> {
         for first in &all[..index] {
             if first.name == second.name || (first.number.is_some() && first.number == second.number) {
                 faults.push(format!(
-                    "two are registered as {} `{}`, at {} and at {}: call or number one of them otherwise",
+                    "two plugins register the {} `{}` or its number, at {} and at {}: rename or renumber one of them",
                     T::WHAT,
                     second.name,
                     words::place(first.place),

@@ -57,7 +57,7 @@ pub enum Construct {
 
 /// What every object has beside its own attributes.
 pub static MATERIAL: Pparm<Arc<Material>> =
-    Pparm::required("material", "what it is made of, a material defined above it");
+    Pparm::required("material", "the material, defined earlier in the scene");
 
 const OBJECT: Table = &[&MATERIAL];
 
@@ -222,7 +222,7 @@ impl Deref for Args {
 pub struct Refusal {
     /// The attribute to mark; the entity's name where there is none.
     pub attribute: Option<&'static str>,
-    /// What is wrong, to follow the entity's name: "has an xdir parallel to its normal".
+    /// What is wrong, to follow the entity's name: "has an `xdir` parallel to its `normal`".
     pub message: String,
     /// What would be right.
     pub help: &'static str,

@@ -56,7 +56,7 @@ pub trait Attribute: Sync {
                 Some("so large that its square overflows")
             }
             size if size > 0.0 && size < LEAST_LENGTH && is_alone => {
-                Some("so small that its square vanishes")
+                Some("so small that its square underflows")
             }
             _ => None,
         };
@@ -73,7 +73,10 @@ pub trait Attribute: Sync {
             Type::Number => format!("{counts} number{plural}"),
             Type::Word => "a word".to_owned(),
             Type::Name(kind) => format!("the name of a {kind}"),
-            Type::Choice(choices) => format!("the name or number of a {}", choices.what),
+            Type::Choice(choices) if choices.all().iter().any(|choice| choice.number.is_some()) => {
+                format!("the name or number of a {}", choices.what)
+            }
+            Type::Choice(choices) => format!("the name of an {}", choices.what),
             Type::Formula => "a formula in y, in quotes".to_owned(),
         }
     }
@@ -310,7 +313,7 @@ impl Attributes {
         let (name, place) = (self.plugin.0, words::place(self.plugin.1));
         match self.find(attribute) {
             Some(_) => panic!(
-                "the plugin `{name}` asks for `{attribute}` as a type that is not the one in the table it registers at {place}: give both the same type"
+                "the plugin `{name}` asks for `{attribute}` with another type than in the table it registers at {place}: give both the same type"
             ),
             None => panic!(
                 "the plugin `{name}` asks for `{attribute}`, which is not in the table it registers at {place}: add it there"

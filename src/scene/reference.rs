@@ -11,8 +11,8 @@ use crate::scene::value::{Datum, Type, Value};
 
 const INTRODUCTION: &str = r#"# The scene language
 
-Made from the tables of the plugins by `cargo run --release -- list --markdown > docs/language.md`; the pictures
-beside it by
+This page is generated from the tables of the plugins by `cargo run --release -- list --markdown > docs/language.md`,
+and its images by
 
 ```sh
 for scene in scenes/entities/*.ray; do
@@ -20,34 +20,34 @@ for scene in scenes/entities/*.ray; do
 done
 ```
 
-A scene is a text of entities, `TYPE NAME { ATTRIBUTES }`. Blanks and line ends part words, braces stand for
-themselves, and a `#` that begins a word begins a comment, which ends with the line. A name is any word; one
-with blanks stands in quotes, `"dark red"`, where `\"` is a quote and `\\` a backslash. Each
-attribute is followed by its values, and attributes come in any order. A material or a texture stands above
-what refers to it. Lengths are in world units: the screen lies in the plane z = 0, its lower left corner is the
-world's origin, x goes to the right, y up and z toward the viewer. A colour is red, green and blue; 1 is as
-bright as a picture can show, after the light has been divided by the distance that it travelled.
+A scene is a sequence of entities, `TYPE NAME { ATTRIBUTES }`. Words are separated by white space and by braces; a `#` at
+the beginning of a word starts a comment, which ends with the line. A name is any word; one that contains white space
+goes in quotes, `"dark red"`, in which `\"` is a quote and `\\` a backslash. Each attribute is followed by its values, and
+attributes may come in any order. A material or a texture must be defined before it is used. Lengths are in world units:
+the image plane is z = 0, the lower left corner of the image is the world's origin, x points right, y up and z toward the
+viewer. A colour is red, green and blue; 1 is the brightest that an image can show, after the light has been divided by
+the distance that it travelled.
 
-The byte of a channel is 255 times its colour, cut and not rounded; above 1 it is 255, below 0 it is 0. No transfer
-function is applied. So colours are not amounts of light but what a screen is told, as in the notes: half the colour is
-half the byte, 127, which a screen shows as about a fifth of white's light. A PNG says just that of its bytes (`sRGB`),
-and looks like the PPM of the same scene. Of a pixel with several `samples` their colours are averaged first, and what is
-above 1 is cut then, as in the notes: the edge of something far brighter than white has no smooth steps, as a single one
-of its samples is enough for a white pixel.
+The byte of a channel is 255 times its colour, truncated rather than rounded; above 1 it is 255, below 0 it is 0. No
+transfer function is applied. Colours are therefore not amounts of light but the values sent to a display, as in the
+notes: half the colour is half the byte, 127, which a display shows as about a fifth of the light of white. A PNG
+declares its bytes accordingly (`sRGB`), and looks like the PPM of the same scene. In a pixel with several `samples`,
+their colours are averaged first and clamped to 1 afterwards, as in the notes: the edge of something far brighter than
+white is not smooth, since one bright sample is enough for a white pixel.
 
-The same scenes can be written in TOML, in files whose names end in `.toml`: `sphere ball { radius 2 }` is
-`[sphere.ball]` and below it `radius = 2` there; several values stand in brackets, `center = [4, 2, -4]`, and names in
-quotes, `material = "red"`. Lights that share a name are `[[light.lamp]]` each. The order of the text counts in
-TOML, too. `tabray convert` turns each spelling into the other, and `tabray schema` prints a JSON Schema for editors.
+The same scenes can be written in TOML, in files whose names end in `.toml`: `sphere ball { radius 2 }` becomes the table
+`[sphere.ball]` with `radius = 2` below it; several values go in brackets, `center = [4, 2, -4]`, and names in quotes,
+`material = "red"`. Lights that share a name are written `[[light.lamp]]` each. The order of the file matters in TOML,
+too. `tabray convert` converts either syntax to the other, and `tabray schema` prints a JSON Schema for editors.
 "#;
 
 const PROFILES: &str = "
-A profile, of a surfer or a formula, is the distance from the axis at each height. Where it is below 0 there is nothing.
-Where that is so is proven when the scene is loaded, down to heights that are neighbouring numbers, and so are bounds
-by which rays find the surface: parts of any thinness are kept. What cannot be proven is refused, with the height and
-the reason: a profile without a bound; one that crosses 0 or bends too often, as `sin(y)` does in a height of 1e9; and
-one whose sign is lost in rounding, farther than 1/4294967296 of its largest radius from 0. Loading a profile takes
-60 million operations at most, a function counted as eight: some tenths of a second.
+A profile, whether a surfer or a formula, is the distance from the axis at each height. Where it is below 0 there is no
+surface. When the scene is loaded, tabray proves where that is, down to heights that are neighbouring f64 numbers, and
+derives bounds by which rays find the surface, so that no part is too thin to be kept. A profile for which the proof
+fails is refused, with the height and the reason: one that is unbounded; one that crosses 0 or bends too often, as
+`sin(y)` does over a height of 1e9; and one whose sign rounding leaves open by more than 1/4294967296 of its largest
+radius. Loading a profile takes at most 60 million operations, where a function counts as eight: some tenths of a second.
 ";
 
 /// The reference as Markdown. Pictures are named `entities/TYPE.png`, scenes `../scenes/entities/TYPE.ray`.
@@ -63,11 +63,11 @@ pub fn markdown(registry: &Registry) -> String {
         text += &format!("\n## {title}\n");
         text.extend(registry.iter().filter(|entity| entity.kind() == kind).map(entity_section));
     }
-    text += "\n## Procedural shaders\n\nWhat `shader` may be, by name or by number; the numbers differ on spheres.\n\n";
+    text += "\n## Procedural shaders\n\nThe values of `shader`, by name or by number; the numbers differ on spheres.\n\n";
     text += &choices::<OnPlane>("number on planes");
     text += "\n";
     text += &choices::<OnSphere>("number on spheres");
-    text += "\n## Profiles\n\nWhat `surfer` may be, by name or by number.\n\n";
+    text += "\n## Profiles\n\nThe values of `surfer`, by name or by number.\n\n";
     text += &choices::<&'static Profile>("number");
     text += PROFILES;
     text
@@ -78,14 +78,14 @@ fn entity_section(entity: &'static Entity) -> String {
     let also = match entity.aliases {
         [] => String::new(),
         aliases => {
-            format!(", also written {}", aliases.iter().map(|alias| format!("`{alias}`")).collect::<String>())
+            format!("; alias {}", aliases.iter().map(|alias| format!("`{alias}`")).collect::<String>())
         }
     };
     let rows: String = entity.attributes().map(attribute_row).collect();
     format!(
         "\n### {name}\n\n{}{also}. [This scene](../scenes/entities/{name}.ray):\n\n\
-         ![a picture of {name}](entities/{name}.png)\n\n\
-         | attribute | values | if not given | what it is |\n|---|---|---|---|\n{rows}",
+         ![an image of {name}](entities/{name}.png)\n\n\
+         | attribute | values | default | meaning |\n|---|---|---|---|\n{rows}",
         capital(entity.meaning)
     )
 }
@@ -97,8 +97,8 @@ fn attribute_row(attribute: &'static dyn Attribute) -> String {
         .map(|name| format!("`{name}`"))
         .collect::<Vec<_>>();
     let default = match attribute.default() {
-        None => "must be given".to_owned(),
-        Some(Datum::Absent) => "left out".to_owned(),
+        None => "required".to_owned(),
+        Some(Datum::Absent) => "none".to_owned(),
         Some(datum) => format!("`{datum}`"),
     };
     let mut meaning = attribute.meaning().to_owned();
@@ -118,7 +118,7 @@ fn choices<T: Choice + Value>(number: &str) -> String {
         format!("| `{name}` | {number} | {meaning} |\n")
     };
     let rows: String = choices.all().into_iter().map(row).collect();
-    format!("| {} | {number} | what it is |\n|---|---|---|\n{rows}", choices.what)
+    format!("| {} | {number} | meaning |\n|---|---|---|\n{rows}", choices.what)
 }
 
 fn capital(text: &str) -> String {

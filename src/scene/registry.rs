@@ -63,7 +63,7 @@ impl Registry {
                 for &name in iter::once(&attribute.name()).chain(attribute.aliases()) {
                     if !names.insert(name) {
                         faults.push(format!(
-                            "the table of `{}` at {} has `{name}` twice: call one of them otherwise",
+                            "the table of `{}` at {} has `{name}` twice: rename one of them",
                             entity.name,
                             entity.place()
                         ));
@@ -101,7 +101,7 @@ impl Registry {
     /// What a scene looks like, for those who have none.
     pub(crate) fn first_steps(&self, syntax: Syntax) -> String {
         let camera = self.example(Kind::Camera, "NAME", syntax);
-        format!("a scene begins with a camera, {camera}; then come materials, objects and lights")
+        format!("a scene begins with a camera, {camera}; materials, objects and lights follow")
     }
 
     /// All entity types, sorted by name.
@@ -119,7 +119,7 @@ fn profiles() -> Vec<String> {
 
 fn taken(what: &str, name: &str, first: &Entity, second: &Entity) -> String {
     format!(
-        "the {what} `{name}` is registered twice, at {} and at {}: call one of them otherwise",
+        "the {what} `{name}` is registered twice, at {} and at {}: rename one of them",
         first.place(),
         second.place()
     )
@@ -154,7 +154,7 @@ mod tests {
     fn a_name_taken_twice_is_refused_with_both_places() {
         for order in [[&BOX, &OTHER_BOX], [&OTHER_BOX, &BOX]] {
             let expected = format!(
-                "the entity type `box` is registered twice, at {} and at {}: call one of them otherwise",
+                "the entity type `box` is registered twice, at {} and at {}: rename one of them",
                 BOX.place(),
                 OTHER_BOX.place()
             );
@@ -172,7 +172,7 @@ mod tests {
     #[test]
     fn a_table_with_one_name_twice_is_refused_with_its_place() {
         let expected =
-            format!("the table of `torn` at {} has `extent` twice: call one of them otherwise", TORN.place());
+            format!("the table of `torn` at {} has `extent` twice: rename one of them", TORN.place());
         assert_eq!(fault(&[&TORN]), expected);
     }
 

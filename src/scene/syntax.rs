@@ -56,10 +56,10 @@ impl Syntax {
         match self {
             Self::Notes => format!("`{} {name} {{ {} }}`", entity.name, body.join("  ")),
             Self::Toml if body == ["..."] => {
-                format!("`[{}.{}]` and below it its attributes", entity.name, self.key(name))
+                format!("`[{}.{}]`, followed by its attributes", entity.name, self.key(name))
             }
             Self::Toml => {
-                format!("`[{}.{}]` and below it `{}`", entity.name, self.key(name), body.join("`, `"))
+                format!("`[{}.{}]`, followed by `{}`", entity.name, self.key(name), body.join("`, `"))
             }
         }
     }

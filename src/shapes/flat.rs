@@ -296,7 +296,7 @@ impl<A: Bounded> Plane<A> {
     pub fn method(&self) -> &'static str {
         match A::ACCURACY {
             Accuracy::Draft => "plain arithmetic",
-            Accuracy::Exact => "plain arithmetic, and what rounding takes from it where sums cancel",
+            Accuracy::Exact => "plain arithmetic, compensated for rounding where sums cancel",
             _ => "twice the precision",
         }
     }

@@ -1,14 +1,13 @@
 //! Arithmetic that several shapes share.
 
 pub mod ball;
-pub(crate) mod flat;
+pub mod flat;
 pub(crate) mod implicit;
 pub(crate) mod quadratic;
 pub mod rectangle;
 pub(crate) mod revolution;
 pub(crate) mod triangle;
 
-pub use flat::Plane;
 pub use implicit::Implicit;
 pub use quadratic::Quadric;
 pub use revolution::{Classic, Finish, InFrame, Revolution};

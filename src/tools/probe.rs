@@ -24,7 +24,7 @@ pub fn pixel(plan: &Plan, x: usize, y: usize, out: &mut impl Write) -> io::Resul
     let [width, height] = camera.pixels;
     writeln!(out, "pixel {x} from the left and {y} from the bottom, of {width} x {height}\n")?;
     if camera.samples > 1 {
-        writeln!(out, "of its {} rays, the one that would go through its middle:\n", camera.samples)?;
+        writeln!(out, "of its {} samples, the one that would be at its centre:\n", camera.samples)?;
     }
     let mut probe = Probe {
         model: plan.model,
@@ -40,7 +40,7 @@ pub fn pixel(plan: &Plan, x: usize, y: usize, out: &mut impl Write) -> io::Resul
     writeln!(out)?;
     conclude(colour, out)?;
     if camera.samples > 1 {
-        writeln!(out, "\nall {} rays together:\n", camera.samples)?;
+        writeln!(out, "\nall {} samples together:\n", camera.samples)?;
         conclude(trace::pixel(plan, x, y), out)?;
     }
     Ok(())
@@ -190,7 +190,7 @@ impl<W: Write> Probe<'_, W> {
             (Some(hit), _) if hit.index == index => "the nearest".to_owned(),
             (_, Some(light)) if distance >= light => "beyond the light".to_owned(),
             (Some(hit), _) if distance == hit.distance => {
-                format!("as near as `{}`, and later in the scene", hit.object.args.name)
+                format!("as near as `{}`, but later in the scene", hit.object.args.name)
             }
             (Some(hit), _) => format!("behind `{}`", hit.object.args.name),
             (None, _) => String::new(),
@@ -205,7 +205,7 @@ impl<W: Write> Probe<'_, W> {
             Outcome::Blocked(index) => format!("is blocked by `{}`", self.model.objects[index].args.name),
             Outcome::Shines { passed: DVec3::ONE, colour } => format!("adds {}", triple(colour)),
             Outcome::Shines { passed, colour } => {
-                format!("comes tinted {}, adds {}", triple(passed), triple(colour))
+                format!("arrives tinted {}, adds {}", triple(passed), triple(colour))
             }
         }
     }
@@ -230,8 +230,8 @@ impl<W: Write> Probe<'_, W> {
 fn dropped(reason: Reason) -> String {
     match reason {
         Reason::TooFar => format!("light that has travelled more than {MAX_DIST} is black"),
-        Reason::TooFaint => "all that it can add to the pixel is below 1/1024 of a level".to_owned(),
-        Reason::TooMany => format!("the pixel has cost {MAX_RAYS} rays, and no more are followed"),
+        Reason::TooFaint => "it can add less than 1/1024 of a level to the pixel".to_owned(),
+        Reason::TooMany => format!("the pixel has taken {MAX_RAYS} rays, and no more are followed"),
     }
 }
 

@@ -23,14 +23,14 @@ impl Accuracy {
     /// Its name, and what choosing it does, in a few words.
     pub fn named(self) -> (&'static str, &'static str) {
         match self {
-            Self::Classic => ("classic", "the course notes' own methods"),
+            Self::Classic => ("classic", "the course notes' methods"),
             Self::Draft => {
-                ("draft", "as exact, with points only within about 1/1000 of a unit of the surface")
+                ("draft", "like exact, but with hit points only within about 1/1000 of a unit of the surface")
             }
             Self::Exact => {
-                ("exact", "first hits by error bounds, their points on the surface but for rounding")
+                ("exact", "first hits found with error bounds, hit points on the surface up to rounding")
             }
-            Self::Strict => ("strict", "as exact, in twice the precision wherever a shape has it"),
+            Self::Strict => ("strict", "like exact, in twice the precision wherever a shape supports it"),
         }
     }
 }

@@ -80,7 +80,7 @@ fn too_few_open_files_are_a_failure_of_whatever_needs_one() {
         let mut stderr = BufReader::new(watch.stderr.take().expect("it is piped"));
         let mut line = String::new();
         stderr.read_line(&mut line).expect("text");
-        let starts = line.starts_with("watching ball.ray: its page is http://127.0.0.1:");
+        let starts = line.starts_with("watching ball.ray at http://127.0.0.1:");
         if starts {
             // It may end before anybody looks at its page.
             let _ = watch.kill();
@@ -119,7 +119,7 @@ fn a_server_that_gets_no_more_connections_ends_with_the_reason() {
         stderr.read_to_string(&mut rest).expect("text");
         drop(connections);
         assert_eq!(program.wait().expect("it ends").code(), Some(1), "{args:?}: {rest}");
-        assert_eq!(rest, "error: the server ended: too many open files\n", "{args:?}");
+        assert_eq!(rest, "error: the server stopped: too many open files\n", "{args:?}");
     }
 }
 
@@ -178,8 +178,8 @@ fn folders_and_files_without_permission_are_named() {
         (1, &["render", "ball.ray"][..], "cannot write `ball.png`: permission denied"),
         (1, &["new", "scene", "a"], "cannot write `a.ray`: permission denied"),
         (1, &["convert", "ball.ray", "ball.toml"], "cannot write `ball.toml`: permission denied"),
-        (1, &["man", "pages"], "cannot make the folder `pages`: permission denied"),
-        (1, &["chart", "ball.ray", "-o", "charts"], "cannot make the folder `charts`: permission denied"),
+        (1, &["man", "pages"], "cannot create the folder `pages`: permission denied"),
+        (1, &["chart", "ball.ray", "-o", "charts"], "cannot create the folder `charts`: permission denied"),
         (2, &["check", "secret.ray"], "cannot read `secret.ray`: permission denied"),
         (2, &["review", "closed"], "cannot read `closed`: permission denied"),
         (1, &["review", "--reject", "snapshots"], "cannot remove `snapshots/a.snap.new`: permission denied"),
@@ -206,7 +206,7 @@ fn a_program_that_cannot_read_itself_says_so_where_a_checkpoint_must_know_it() {
     guest.allow("tabray", 0o111);
     fs::write(guest.path("ball.png.checkpoint"), checkpoint()).expect("a file");
     let said =
-        "error: cannot read the program's own file, by which a checkpoint knows it: permission denied\n";
+        "error: cannot read the program's own file, whose hash a checkpoint contains: permission denied\n";
     assert_eq!(guest.outcome(&["render", "ball.ray", "--resume"]), (1, said.to_owned()));
 }
 
@@ -238,8 +238,8 @@ fn a_terminal_gets_no_picture() {
         assert_eq!(output.status.code(), Some(2), "{said}");
         assert_eq!(
             said,
-            "error: standard output is a terminal, which shows no pictures\n |\n \
-             = help: send it on with `> FILE` or `|`, or name a file with `-o FILE`\n"
+            "error: standard output is a terminal, which cannot show images\n |\n \
+             = help: redirect it with `> FILE` or `|`, or name a file with `-o FILE`\n"
         );
     }
 }

@@ -27,7 +27,7 @@ fn short_is_a_line_for_each_fault() {
         err,
         "<stdin>:2:12: error: sphere `\u{3b2}` has no attribute `materail`: did you mean `material`?\n\
          <stdin>:2:23: error: `center` of sphere `\u{3b2}` takes 3 numbers, not 2\n\
-         <stdin>:3:11: warning: sphere `\u{3b2}` has `radius` twice: this one counts\n\
+         <stdin>:3:11: warning: sphere `\u{3b2}` has `radius` twice: this one is used\n\
          <stdin>:3:18: error: `radius` of sphere `\u{3b2}` must be positive, not 0\n"
     );
 }
@@ -52,12 +52,12 @@ fn json_is_an_object_for_each_fault_with_its_places() {
         (&twice["spans"][0]["is_primary"], &twice["spans"][1]["is_primary"]),
         (&true.into(), &false.into())
     );
-    assert_eq!(twice["spans"][1]["label"], "this one does not");
+    assert_eq!(twice["spans"][1]["label"], "this one is ignored");
     assert_eq!(
         (&zero["spans"][0]["file_name"], &zero["spans"][0]["line_start"]),
         (&"<stdin>".into(), &3.into())
     );
-    assert_eq!(zero["help"], "`radius` is the distance from its centre to its surface");
+    assert_eq!(zero["help"], "`radius`: the distance from the centre to the surface");
 }
 
 #[test]

@@ -13,7 +13,7 @@ fn a_new_scene_is_sound_and_shows_something() {
     let (status, _, err) = outcome(tabray(&folder).args(["new", "scene", "still.life"]));
     assert_eq!(
         (status, err.as_str()),
-        (0, "wrote still.life.ray; look at it with `tabray render still.life.ray`\n")
+        (0, "wrote still.life.ray; render it with `tabray render still.life.ray`\n")
     );
     let (status, _, err) = outcome(tabray(&folder).args(["render", "still.life.ray", "--quick"]));
     assert_eq!(status, 0, "{err}");
@@ -40,7 +40,7 @@ fn no_scene_is_written_in_the_place_of_another_file() {
     fs::write(folder.path().join("a.ray"), "precious").expect("a file");
     let (status, _, err) = outcome(tabray(&folder).args(["new", "scene", "a"]));
     assert_eq!(status, 2);
-    assert!(err.contains("there is a `a.ray` already"), "{err}");
+    assert!(err.contains("`a.ray` already exists"), "{err}");
     assert_eq!(fs::read(folder.path().join("a.ray")).expect("still there"), b"precious");
     let (status, _, err) = outcome(tabray(&folder).args(["new", "scene", "b.ray", "--toml"]));
     assert_eq!(status, 2);
@@ -70,9 +70,9 @@ fn refused(folder: &TempDir, name: &str) -> String {
     err
 }
 
-const NO_NAME: &str = "a plugin's name is that of a Rust module, such as `tiled_plane`";
+const NO_NAME: &str = "a plugin's name must be a Rust module name, such as `tiled_plane`";
 const TAKEN: &str = "give the plugin another name";
-const IN_THE_WAY: &str = "nothing is written in its place: choose another name";
+const IN_THE_WAY: &str = "existing files are not overwritten: choose another name";
 
 #[test]
 fn a_plugin_that_cannot_be_is_refused_and_nothing_is_written() {
@@ -86,14 +86,14 @@ fn a_plugin_that_cannot_be_is_refused_and_nothing_is_written() {
         ("../a", "`../a` cannot be", NO_NAME),
         ("", "`` cannot be", NO_NAME),
         ("a\nb", "`a\\nb` cannot be", NO_NAME),
-        ("crate", "`crate` is a word of Rust", NO_NAME),
-        ("sphere", "there is an entity type `sphere` already, at plugins/sphere.rs:", TAKEN),
-        ("tplane", "there is an entity type `tplane` already, at plugins/tiled_plane.rs:", TAKEN),
-        ("rainbow", "there is a shader `rainbow` already", TAKEN),
-        ("cone", "there is a profile `cone` already", TAKEN),
-        ("body", "the text to start from has a `Body` of its own", TAKEN),
-        ("gem", "there is a `plugins/gem.rs` already", IN_THE_WAY),
-        ("coil", "there is a `scenes/wrong/coil.ray` already", IN_THE_WAY),
+        ("crate", "`crate` is a Rust keyword", NO_NAME),
+        ("sphere", "the entity type `sphere` already exists, at plugins/sphere.rs:", TAKEN),
+        ("tplane", "the entity type `tplane` already exists, at plugins/tiled_plane.rs:", TAKEN),
+        ("rainbow", "the shader `rainbow` already exists", TAKEN),
+        ("cone", "the profile `cone` already exists", TAKEN),
+        ("body", "the template already uses the name `Body`", TAKEN),
+        ("gem", "`plugins/gem.rs` already exists", IN_THE_WAY),
+        ("coil", "`scenes/wrong/coil.ray` already exists", IN_THE_WAY),
     ] {
         let err = refused(&folder, name);
         assert!(err.contains(says) && err.ends_with(&format!("\n |\n = help: {help}\n")), "{name}: {err}");
@@ -109,7 +109,7 @@ fn a_plugin_that_cannot_be_is_refused_and_nothing_is_written() {
 #[test]
 fn a_plugin_belongs_in_a_checkout() {
     let folder = folder();
-    assert!(refused(&folder, "gem").contains("this is not the topmost folder of a checkout of tabray"));
+    assert!(refused(&folder, "gem").contains("this is not the top folder of a checkout of tabray"));
     fs::write(folder.path().join("Cargo.toml"), "[package]\nname = \"other\"\n").expect("a file");
     fs::create_dir(folder.path().join("plugins")).expect("a folder");
     assert!(refused(&folder, "gem").contains("go to the folder with its `Cargo.toml` and `plugins/`"));
@@ -126,8 +126,8 @@ fn a_plugin_comes_with_its_scenes() {
         assert!(text.contains("cut_gem") && !text.contains("emplate"), "{path}: {text}");
         assert!(err.contains(&format!("wrote {path}\n")), "{err}");
     }
-    let last = "look at it with `cargo run --release -- render scenes/entities/cut_gem.ray`; docs/plugins.md tells \
-                what else belongs to a plugin\n";
+    let last = "render it with `cargo run --release -- render scenes/entities/cut_gem.ray`; docs/plugins.md lists what \
+                else belongs to a plugin\n";
     assert!(err.ends_with(last), "{err}");
     assert!(
         fs::read_to_string(folder.path().join(Path::new("plugins/cut_gem.rs")))

@@ -50,12 +50,12 @@ fn a_quick_picture_is_a_small_one_with_one_ray_a_pixel() {
 #[test]
 fn what_a_picture_does_not_have_is_refused_and_nothing_is_written() {
     for (options, says) in [
-        (&["--crop", "150,0,11,1"][..], "the picture of 160 x 120 pixels has no part of 11 x 1 at 150 0"),
+        (&["--crop", "150,0,11,1"][..], "the image of 160 x 120 pixels has no part of 11 x 1 at 150 0"),
         (&["--crop", "0,119,1,2"], "has no part of 1 x 2 at 0 119"),
         (&["--crop", "0,0,0,1"], "has no part of 0 x 1 at 0 0"),
         (
             &["--crop", "-1,0,2,2"],
-            "X counts from the left and Y from the bottom, both from 0; X + W can be 160, and Y + H 120",
+            "X counts from the left and Y from the bottom, both from 0; X + W can be at most 160, and Y + H 120",
         ),
         (&["--crop", "9223372036854775807,0,9223372036854775807,1"], "has no part"),
         (&["--crop", "1,2,3"], "give the part as `X,Y,W,H`, whole numbers"),
@@ -81,5 +81,5 @@ fn a_height_that_follows_from_the_width_keeps_within_bounds() {
     let render = ["render", "-", "-o", "a.png", "--size", "2"];
     let (status, _, err) = outcome(tabray(&folder).args(render).write_stdin(tall));
     assert_eq!(status, 2);
-    assert!(err.contains("a picture 2 pixels wide would be 180000 high"), "{err}");
+    assert!(err.contains("an image 2 pixels wide would be 180000 high"), "{err}");
 }

@@ -140,7 +140,7 @@ const CHECKS: &[Check] = &[
         let lost = classic.pixels().zip(exact.pixels()).filter(|(old, new)| !is_lit(old) && is_lit(new));
         assert!(lost.count() > 10);
     }),
-    ("How far away a surface of revolution is", |scene| {
+    ("Distances of surfaces of revolution", |scene| {
         assert!((scene.distance(Exact) - 8.0).abs() < 1e-14);
         let error = (scene.distance(Classic) - 8.0).abs();
         assert!((1e-7..=5e-5).contains(&error), "{error}");
@@ -153,7 +153,7 @@ const CHECKS: &[Check] = &[
         assert!(above(Classic) > 20);
         assert_eq!(above(Exact), 0);
     }),
-    ("Balls far away", |scene| {
+    ("Distant spheres", |scene| {
         // A disc of radius 2 on a screen of 8 by 6, which is as far away.
         let disc = 40.0 * 30.0 * 4.0 * PI / 48.0;
         assert!((scene.lit(Exact) as f64 - disc).abs() < 0.05 * disc);
@@ -163,7 +163,7 @@ const CHECKS: &[Check] = &[
         assert!((scene.distance(Exact) - 20.0).abs() < 1e-13);
         assert!((scene.distance(Classic) - 20.0).abs() > 1e-9);
     }),
-    ("The side that a normal points to", |scene| {
+    ("The side to which a normal points", |scene| {
         assert!(scene.lit(Exact) > 1000);
         assert_eq!(scene.lit(Classic), 0);
         let plane = "plane room { material grey normal 0 0 -1 point 0 0 -4 }\nlight";
@@ -195,7 +195,7 @@ const CHECKS: &[Check] = &[
             assert!(normal.abs_diff_eq(dvec3(0.0, 8.0 / 3.0, 4.0).normalize(), 1e-15), "{normal}");
         }
     }),
-    ("Edges between pixels", |scene| {
+    ("Rays through edges", |scene| {
         for accuracy in [Classic, Exact] {
             let picture = scene.picture(accuracy);
             assert!((0..31).all(|row| is_lit(picture.get_pixel(0, row))));
@@ -214,10 +214,10 @@ const CHECKS: &[Check] = &[
     ("Glass without a colour", |scene| {
         assert!(scene.colour(Exact).abs_diff_eq(DVec3::splat(0.5 * 9.0 / 12.0), 1e-14));
     }),
-    ("A lamp on a surface", |scene| {
+    ("A light on a surface", |scene| {
         assert_eq!(scene.colour(Exact), scene.without("light").colour(Exact));
     }),
-    ("Tiles far out", |scene| {
+    ("Distant tiles", |scene| {
         let model = scene.model(Exact);
         let ambient = |object: usize, at: DVec3| {
             let object = &model.objects[object];
@@ -228,7 +228,7 @@ const CHECKS: &[Check] = &[
             assert_ne!(ambient(object, left * DVec3::X), ambient(object, right * DVec3::X));
         }
     }),
-    ("The middle of a rainbow", |scene| {
+    ("The centre of a rainbow", |scene| {
         assert!(scene.colour(Exact).is_finite() && scene.lit(Exact) == 1);
     }),
     ("The far edge of a texture", |scene| {
@@ -246,13 +246,13 @@ const CHECKS: &[Check] = &[
         let notes = scene.with("surfer 3", "surfer 0");
         assert!((notes.distance(Exact) - 7.0).abs() < 1e-14, "2 + sin(y)");
     }),
-    ("Where the camera may stand", |scene| {
+    ("Where the camera may be", |scene| {
         assert!(scene.lit(Exact) > 1000);
         for z in ["0", "-6", "-1e-300"] {
-            scene.with("-3 9 0.5", &format!("4 3 {z}")).is_refused("in front of the screen (z above 0)");
+            scene.with("-3 9 0.5", &format!("4 3 {z}")).is_refused("in front of the image plane (z above 0)");
         }
     }),
-    ("In front of the screen", |scene| {
+    ("In front of the image plane", |scene| {
         for accuracy in [Classic, Exact] {
             let picture = scene.picture(accuracy);
             let [_, green, _] = picture.get_pixel(20, 15).0;
@@ -262,7 +262,7 @@ const CHECKS: &[Check] = &[
             assert!(!is_lit(nearer.get_pixel(0, 0)) && is_lit(nearer.get_pixel(20, 15)));
         }
     }),
-    ("Where pixels are", |scene| {
+    ("Pixel positions", |scene| {
         assert_eq!(scene.lit(Exact), 1);
         let corners = scene.with("pixeldim 1 1", "pixeldim 2 2").model(Exact);
         let ray = corners.camera.value.ray(1.0, 1.0);
@@ -286,14 +286,14 @@ const CHECKS: &[Check] = &[
                 .all(|(x, _, pixel)| { !is_lit(pixel) || x < 20 && pixel.0[0] > pixel.0[2] })
         );
     }),
-    ("Order, names and blanks", |scene| {
+    ("Order, names and white space", |scene| {
         assert!(scene.lit(Exact) > 500);
         let (material, rest) = scene.0.split_once('\n').expect("a line");
         Scene(format!("{rest}{material}")).is_refused("is used before it is defined");
     }),
-    ("Mistakes", |scene| {
-        scene.with("normal 0 0 1", "normal 0 0 0").is_refused("must be a vector with a direction");
-        scene.with("xdir 1 0 0", "xdir 0 0 2").is_refused("has an xdir parallel to its normal");
+    ("Errors", |scene| {
+        scene.with("normal 0 0 1", "normal 0 0 0").is_refused("must be a nonzero vector");
+        scene.with("xdir 1 0 0", "xdir 0 0 2").is_refused("has an `xdir` parallel to its `normal`");
         let several = scene.with("normal 0 0 1", "normal 0 0").with("dimensions 8 6", "dimensions 8");
         several.is_refused("2 errors");
     }),
@@ -307,12 +307,12 @@ const CHECKS: &[Check] = &[
             );
         }
     }),
-    ("Where textures are", |scene| {
+    ("Texture files", |scene| {
         assert!(scene.lit(Exact) > 100);
         scene.with("letter.ppm", "nowhere.ppm").is_refused("cannot be read");
         assert!(scene.with("letter.ppm", "bricks.png").lit(Exact) > 100);
     }),
-    ("Words that the notes do not have", |scene| {
+    ("Additions to the language", |scene| {
         let dump = dump::notes(&scene.model(Exact));
         assert!(["samples", "accuracy", "size"].iter().all(|word| !dump.contains(word)), "{dump}");
     }),
@@ -364,7 +364,7 @@ const CHECKS: &[Check] = &[
 
 /// Of rays that leave a surface, and of what light does from there on.
 const RAYS_THAT_GO_ON: &[Check] = &[
-    ("Glass balls", |scene| {
+    ("Glass spheres", |scene| {
         let tint = 0.8 * dvec3(1.0, 0.5, 0.25);
         let wall = DVec3::splat(9.0 / 14.0);
         let once = scene.colour(Classic);
@@ -392,7 +392,7 @@ const RAYS_THAT_GO_ON: &[Check] = &[
         let exact = scene.colour(Exact);
         assert!(exact.abs_diff_eq(DVec3::splat(seen), 1e-14), "{exact} is not {seen}");
     }),
-    ("A lamp outside a closed room", |scene| {
+    ("A light outside a closed room", |scene| {
         assert_eq!((scene.lit(Classic), scene.lit(Exact)), (0, 0));
         assert!(scene.with("location 2 1.5 -5", "location 2 1.5 0").lit(Exact) > 1000);
         let model = scene.model(Exact);
@@ -407,7 +407,7 @@ const RAYS_THAT_GO_ON: &[Check] = &[
         assert_eq!(red(&scene.picture(Exact)), rug);
         assert!(red(&scene.picture(Classic)) < rug);
     }),
-    ("Glints from the wrong side", |scene| {
+    ("Highlights from the wrong side", |scene| {
         let matt = scene.with("shininess 12.5", "shininess 0").picture(Exact);
         for shininess in ["12.5", "12", "13", "0.5"] {
             let shiny = scene.with("shininess 12.5", &format!("shininess {shininess}")).picture(Exact);
@@ -418,7 +418,7 @@ const RAYS_THAT_GO_ON: &[Check] = &[
             assert_eq!(darker.count(), 0, "shininess {shininess}");
         }
     }),
-    ("How deep mirrors and glass are followed", |scene| {
+    ("The depth of reflections and transmissions", |scene| {
         // Summed over all ways between the panes up to 20 units, of which many share a pane, a direction and a length.
         let all = 0.063_216_952_753;
         let seen = trace::pixel(&Plan::new(&scene.model(Exact)), 1, 1).x;

@@ -152,7 +152,7 @@ fn objects_differ_in_colour_and_near_is_brighter_than_far() {
     let model = load(&path);
     let (_, costly) = said.split_once("the most expensive pixel is ").expect("it is told");
     let words: Vec<_> = costly.lines().next().expect("a line").split(' ').collect();
-    assert!(matches!(words[..], [_, _, "of", rays, "rays"] if rays != "0"), "{said}");
+    assert!(matches!(words[..], [_, _, "with", rays, "rays"] if rays != "0"), "{said}");
     let [width, height] = model.camera.value.pixels;
     let open = |name: &str| image::open(folder.path().join(name)).expect("a PNG").into_rgb8();
     let (objects, depths, costs) = (open("a-object.png"), open("a-depth.png"), open("a-cost.png"));
@@ -223,7 +223,7 @@ fn a_pixel_outside_the_picture_is_refused() {
         let output = probe.arg("probe").arg(&scene).args([x, y]).output().expect("the program runs");
         let err = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(2), "{err}");
-        let message = format!("error: the picture of 160 x 120 pixels has no pixel {x} {y}\n");
+        let message = format!("error: the image of 160 x 120 pixels has no pixel {x} {y}\n");
         assert!(err.starts_with(&message) && err.contains("from 0 to 159"), "{err}");
     }
 }
@@ -252,7 +252,7 @@ fn pictures_beside_standard_output_are_refused() {
     let output =
         render.arg("render").arg(&scene).args(["-o", "-", "--aov", "depth"]).output().expect("it runs");
     assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0));
-    assert!(String::from_utf8_lossy(&output.stderr).contains("name the main picture's file"));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("name a file for the main image"));
 }
 
 #[test]

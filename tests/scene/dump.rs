@@ -74,12 +74,12 @@ proptest! {
 fn of_a_constructor(fault: &Fault) -> bool {
     let found = [
         "parallel",
-        "in one line",
+        "collinear",
         "empty box",
-        "points at itself",
+        "has its `point` at its `location`",
         "have the name",
         "is defined",
-        "squares",
+        "squared",
         "has a profile",
     ];
     found.iter().any(|words| fault.message.contains(words))

@@ -35,7 +35,7 @@ fn the_first_material_of_a_name_counts() {
     assert!(render(&model(&text)) == render(&model(&[CAMERA, RED, BALL].concat())));
     assert_eq!(
         warning(&text, "red { ambient 9", "red { ambient 1"),
-        "material `red` is defined twice: left out"
+        "material `red` is defined twice: ignored"
     );
     let late = [CAMERA, RED, BALL, again].concat();
     assert!(render(&model(&late)) == render(&model(&text)), "wherever the second one stands");
@@ -48,7 +48,7 @@ fn the_first_texture_of_a_name_counts_and_no_other_is_read() {
         "texplane wall { material red normal 0 0 1 point 0 0 -1 xdir 1 0 0 dimensions 8 6 texname t mode 0 }";
     let text = [CAMERA, RED, textures, wall].concat();
     let told = warning(&text, "t { filename scenes", "t { filename none");
-    assert_eq!(told, "texture `t` is defined twice: left out");
+    assert_eq!(told, "texture `t` is defined twice: ignored");
 }
 
 #[test]
@@ -57,7 +57,7 @@ fn the_first_object_of_a_type_and_a_name_counts() {
     let text = [CAMERA, RED, BALL, again].concat();
     assert!(render(&model(&text)) == render(&model(&[CAMERA, RED, BALL].concat())));
     let told = warning(&text, "ball { material red center 4", "ball { material red center 6");
-    assert_eq!(told, "sphere `ball` is defined twice: left out");
+    assert_eq!(told, "sphere `ball` is defined twice: ignored");
 }
 
 /// The course's own spec1 to spec8 have a sphere `left` and an fplane `left`, and show both.
@@ -83,7 +83,7 @@ fn all_lights_of_a_name_shine() {
 fn a_name_is_warned_of_once_however_often_it_is_there() {
     let text = [CAMERA, RED, &BALL.repeat(2048)].concat();
     let told = warning(&text, "ball {", "ball {");
-    assert_eq!(told, "sphere `ball` is defined 2048 times: left out, as are 2046 more");
+    assert_eq!(told, "sphere `ball` is defined 2048 times: ignored, as are 2046 more");
 }
 
 #[test]
@@ -93,7 +93,7 @@ fn many_names_are_one_message() {
     let text = |count| [CAMERA, RED, BALL, &materials(count), &materials(count)].concat();
     assert_eq!(warnings(&text(8)).faults().len(), 8, "a few are told one by one");
     let told = warning(&text(900), "m0 {", "m0 {");
-    assert_eq!(told, "material `m0` and 899 others are defined more than once: left out, as are 899 more");
+    assert_eq!(told, "material `m0` and 899 others are defined more than once: ignored, as are 899 more");
 }
 
 #[test]

@@ -154,7 +154,7 @@ fn tally(
 
 /// One table: the rows of all profiles for one set of rays.
 fn revolution_table(set: &str, text: &mut String) {
-    *text += "| profile | method | missed | invented | later | median error | greatest error | off the surface | time |\n";
+    *text += "| profile | method | missed | invented | later | median error | maximum error | off the surface | time |\n";
     *text += "|---|---|---:|---:|---:|---:|---:|---:|---:|\n";
     for (formula, height, name) in PROFILES {
         let surface = Revolution::new(formula, BASE, height);
@@ -291,14 +291,14 @@ fn hard_rays_are_measured() {
     let rays = HARD_SHAPES * HARD_RAYS;
     let mut table = format!(
         "
-{rays} rays of each set for each kind of shape, {HARD_RAYS} for each of {HARD_SHAPES} random ones: spheres and ellipsoids with half
-axes up to 1e9 : 1; quadrics whose middle is up to 1e4 from their center, that touch their box, that are two planes next to
-each other or that are multiplied by up to 1e150; triangles as thin as 1e-12 of their length; planes and rectangles that
-lean. *Camera* rays are aimed at them from nearby and *far* ones from up to 1e9; *grazing* ones pass a silhouette or an edge by
-1e-2 to 1e-15, or go along a plane but for that angle, from up to 1e9 away. The truth has 300 bits; it starts from the
-numbers of the scene's text and takes a ray's numbers as they are. *Ties* are rays that touch a shape or an edge as far
-as 300 bits tell. *Wrong* are hits missed, invented or at another crossing than the first; *ulp* is the greatest error of the
-others in units in the last place of the distance.
+{rays} rays of each set for each kind of shape, {HARD_RAYS} for each of {HARD_SHAPES} random ones: spheres; ellipsoids
+with ratios of half axes up to 1e9 : 1; quadrics whose middle is up to 1e4 from their `center`, that touch their box, that
+are two adjacent planes or that are multiplied by up to 1e150; triangles as thin as 1e-12 of their length; tilted planes
+and rectangles. *Camera* rays are aimed at them from nearby, *far* rays from up to 1e9 away; *grazing* rays pass a
+silhouette or an edge at 1e-2 to 1e-15, or are parallel to a plane up to that angle, from up to 1e9 away. The ground truth
+has 300 bits; it starts from the numbers of the scene's text and takes a ray's numbers as they are. *Ties* are rays that
+touch a shape or an edge as far as 300 bits can tell. *Wrong* are hits that are missed, invented or at an intersection
+after the first; *ulp* is the maximum error of the others in units in the last place of the distance.
 
 "
     );
@@ -313,9 +313,9 @@ fn the_accuracy_of_each_method_is_measured() {
     let mut text = format!(
         "# How exact the methods are
 
-A camera's `accuracy` chooses how shapes find their hits. Here is what each choice gets wrong, counted against the
-truth: every crossing of a ray and a surface isolated by interval arithmetic, its distance to 30 digits. The
-numbers of each part are those of one run of its own of
+The `accuracy` of a camera chooses how hits are computed. This page counts the errors of each choice against the ground
+truth: every intersection of a ray and a surface isolated by interval arithmetic, with its distance to 30 digits. The
+numbers of each part come from a separate run of
 
 ```sh
 {COMMAND}
@@ -323,20 +323,21 @@ numbers of each part are those of one run of its own of
 
 with `hard_rays` in place of its last word for the second part alone.
 
-*Missed* are hits that were not found, *invented* ones that are none, *later* ones at another crossing than the
-first. The errors are those of the distances of all other hits, in world units; *off the surface* is how far the
-worst of these points is from the surface. *Time* is per ray, against the notes' `steps` in the same run, in rounds by
-turns, over all rays, those that miss the surface's heights among them. Rays go one by one here; in packets, as those
-of a picture do, the default takes less: see the [charts](charts.md).
+*Missed* are hits that were not found, *invented* are hits that do not exist, *later* are hits at an intersection after
+the first. The errors are those of the distances of all other hits, in world units; *off the surface* is the distance of
+the worst of these points from the surface. *Time* is per ray, relative to the notes' `steps` in the same run, measured in
+alternating rounds over all rays, including those that miss the surface's heights. Rays are traced one by one here; in
+packets, as in a render, the default takes less time: see the [charts](charts.md).
 
-`steps` is the notes' page on procedural surfaces, which no scene can choose: 0.1 at a time, then bisection to 1e-6.
-`classic` is what the notes' program does: one bracket, from the viewer to the ray's point closest to the axis.
+`steps` is the method of the notes' page on procedural surfaces, which no scene can choose: steps of 0.1, then bisection
+to 1e-6. `classic` is the method of the notes' program: one bracket, from the viewer to the ray's point closest to the
+axis.
 
 ## Surfaces of revolution
 
 ### Camera rays
 
-{RAYS} rays of the notes' camera for each profile. A surface has its base at `4 0 -4`; the viewer is at `4 3 7`.
+{RAYS} rays of the notes' camera for each profile. The base of each surface is at `4 0 -4`, and the viewer at `4 3 7`.
 
 "
     );
@@ -346,9 +347,9 @@ of a picture do, the default takes less: see the [charts](charts.md).
         "
 ### Grazing rays
 
-{RAYS} rays for each profile that touch it, but for 10^-2 to 10^-12 outward or inward. Their distances answer an error
-of the last digit with one of its root: how far off the surface a hit is says more. `classic` loses most of them,
-which takes no time.
+{RAYS} rays for each profile that are tangent to it, up to an offset of 10^-2 to 10^-12 outward or inward. An error in the last digit
+changes their distances by its square root, so the distance of a hit from the surface says more. `classic` loses most of
+them, which takes no time.
 
 "
     )
@@ -359,8 +360,8 @@ which takes no time.
         "
 ## Spheres and planes from afar
 
-{FAR_RAYS} rays from each distance to a ball of radius 3 around the shape. *Wrong* are hits missed, invented or at
-another crossing; *ulp* is the greatest error of the others in units in the last place of the distance.
+{FAR_RAYS} rays from each distance to a sphere of radius 3 around the shape. *Wrong* are hits that are missed, invented
+or at another intersection; *ulp* is the maximum error of the others in units in the last place of the distance.
 
 ### A sphere of radius 2
 

@@ -70,7 +70,7 @@ fn error(panel: &Panel, name: &str) -> f64 {
 fn wrong_hits_are_counted_where_methods_have_them_and_the_default_has_none() {
     let chart = measured(FLANGE, usize::MAX);
     assert!(chart.is_whole);
-    let grazing = panel(&chart, "flange: rays that graze");
+    let grazing = panel(&chart, "flange: grazing rays");
     for name in ["classic", "steps of 0.1", "64 + Newton", "16 + turning points"] {
         assert!(wrong(grazing, name) > 20, "{name}: {}", wrong(grazing, name));
     }
@@ -112,7 +112,7 @@ fn sobol_reaches_with_24_samples_what_random_reaches_with_64() {
 fn what_breaks_off_keeps_what_is_measured() {
     let chart = measured(EDGE, 3_000_000);
     assert!(!chart.is_whole && !chart.panels.is_empty() && chart.panels.len() < 4, "{}", chart.panels.len());
-    assert!(chart::words(&chart).ends_with("Interrupted: this is what was measured by then.\n"));
+    assert!(chart::words(&chart).ends_with("Interrupted: this is what had been measured by then.\n"));
 }
 
 /// The errors of a chart's numbers, by panel and choice.
@@ -165,7 +165,7 @@ fn what_is_chosen_is_a_command_line_that_renders() {
     let text = String::from_utf8(chosen.stdout).expect("UTF-8");
     assert!(
         text.contains(
-            "\nThe one marked is the fastest whose error was measured to be at most 0.01. The others "
+            "\nThe marked choice is the fastest with a measured error of at most 0.01. The others "
         ),
         "{text}"
     );
@@ -188,7 +188,7 @@ fn what_is_chosen_is_a_command_line_that_renders() {
             .starts_with("error: no choice has a measured error of at most 1e-12; the least is"),
     );
     let text = String::from_utf8(choose(&["--max-time", "1000"]).stdout).expect("UTF-8");
-    assert!(text.contains("\nThe one marked is the one with the least error within 1000 s on "), "{text}");
+    assert!(text.contains("\nThe marked choice is the one with the least error within 1000 s on "), "{text}");
     let never = choose(&["--max-time", "1e-9"]);
     assert_eq!(never.status.code(), Some(1));
     let said = String::from_utf8_lossy(&never.stderr).into_owned();
@@ -210,6 +210,6 @@ fn the_program_refuses_a_folder_that_cannot_be_made() {
     let output = chart.current_dir(folder.path()).arg("chart").arg(scene).args(["-o", "file"]).output();
     let output = output.expect("the program runs");
     assert_eq!(output.status.code(), Some(1));
-    let said = "error: cannot make the folder `file`: a file has this name\n";
+    let said = "error: cannot create the folder `file`: a file of this name exists\n";
     assert_eq!(String::from_utf8_lossy(&output.stderr), said);
 }

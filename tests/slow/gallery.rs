@@ -16,50 +16,50 @@ const SCENES: [(&str, &str, &str); 8] = [
     (
         "revsurf/surfer-0",
         "The notes' vase",
-        "Steps and samples find nearly all of the camera's rays and lose a third of those at silhouettes, which are \
-         few pixels of a picture and the ones that are looked at. There the default proves what it finds, and turning \
-         points, which prove nothing, are faster and on so smooth a profile as right; the flange below shows what they \
-         rest on.",
+        "Steps and samples find nearly all hits of camera rays, but lose a third of those at silhouettes, which are \
+         few pixels of an image and the ones that people look at. There the default proves its hits; turning points, \
+         which prove nothing, are faster and, on so smooth a profile, as accurate. The flange below shows what they \
+         rely on.",
     ),
     (
         "revsurf/surfer-1",
         "The notes' cone",
-        "Its square is a parabola, so that one slab of the default holds it without an error: `draft` is as exact as \
-         `exact` but where rays graze.",
+        "Its square is a parabola, so a single slab of the default represents it without an error: `draft` is as \
+         exact as `exact` except for grazing rays.",
     ),
     (
         "hard/ripples",
         "A column with 20 waves",
-        "Samples between which the function turns twice lose hits, or find later ones.",
+        "Methods whose samples have two turning points between them lose hits, or find later ones.",
     ),
     (
         "hard/flange-from-above",
         "A thin disc on a rod",
-        "Here every method that samples has wrong hits, the one that looks for turning points among them, which is \
-         faster than the default where a profile is smooth: nothing says beforehand that 16 samples are enough. Bounds \
-         need no such guess.",
+        "Here every method that samples has wrong hits. That includes the one that looks for turning points, which is \
+         faster than the default where a profile is smooth: nothing says beforehand that 16 samples are enough. \
+         Bounds need no such guess.",
     ),
     (
         "gallery/hall-of-mirrors",
         "A hall of mirrors",
-        "Planes and balls near the viewer: no choice of a method changes a pixel, and samples are what costs time.",
+        "Planes and spheres near the viewer: the choice of method changes no pixel, and the samples take the time.",
     ),
     (
         "hard/far-camera",
-        "A vase from ten million away",
-        "A distance has no more digits than half a unit in its last place, 9e-10 there, which is the error of all that \
-         count from near the surface. The notes follow a ray for 100 units between a surface's heights, and have lost \
-         it by then.",
+        "A vase from ten million units away",
+        "No distance is more exact than half a unit in its last place, 9e-10 there, which is the error of all methods \
+         that compute from near the surface. The notes follow a ray for 100 units between a surface's heights, and \
+         have lost it by then.",
     ),
     (
         "camera/samples",
         "Edges",
-        "Samples that are spread evenly fall toward the true colour with nearly twice the power of random ones.",
+        "The error of evenly spread samples falls with nearly twice the exponent of that of random ones.",
     ),
     (
         "light/size",
         "Soft shadows",
-        "The last panel looks at the middles of pixels, so that what it shows are shadows alone.",
+        "The last panel samples the centres of pixels only, so it shows the shadows alone.",
     ),
 ];
 
@@ -134,9 +134,9 @@ fn the_gallery_of_charts_is_drawn() {
 
 const INTRODUCTION: &str = "# Speed against accuracy
 
-What does each choice cost, how wrong is it, and is the default the right one? `tabray chart SCENE` answers that for
-any scene. Here is what it says of some, each chart with its machine and its date; all of them, and this page, are
-written by
+What does each choice cost, how large is its error, and is the default the right choice? `tabray chart SCENE` answers
+this for any scene. This page shows the charts of some scenes, each with its machine and its date; all of them, and the
+page itself, are written by
 
 ```sh
 COMMAND
@@ -144,66 +144,65 @@ COMMAND
 
 ## How to read a chart
 
-Each panel answers one question. To the right is CPU time, upward the error, both logarithmic: the best place is at the
-lower left. The star is how the scene is traced as it stands. A hollow point has hits that are missed, invented or not
-the first; beside it stands of how many of all rays. The line is the Pareto front: of the choices without wrong hits,
-those that none beats in both time and error. Times that differ by less than a tenth count as equal, and so do errors
-that differ by less than a half.
+Each panel answers one question. The horizontal axis is CPU time and the vertical axis the error, both logarithmic: the
+best place is the lower left. The star is the scene's own setting. A hollow point has hits that are missed, invented or
+not the first; their percentage of all rays is written beside it. The line is the Pareto front: of the choices without
+wrong hits, those that no other beats in both time and error. Times that differ by less than a tenth count as equal, and
+so do errors that differ by less than a half.
 
-- **Rays of the camera**: about 20000 pairs of a ray through a pixel and an object, in tiles of 16 by 16 pixels that are
-  spread evenly. Objects are apart by kind: those that are found by a search along the ray, and those that have a
-  formula.
-- **Rays that graze silhouettes**: pairs beside an object's edge as the camera sees it, at distances from a pixel to
-  10^-10 of one. Their distances answer an error of the last digit with one of its root.
-- **The picture, by method**: one ray through each pixel, and how far its colours are from those that `strict` makes.
-- **Samples for each pixel**: the error of the picture against 1024 other samples. `sobol` is spread evenly, `random` is
-  the notes'.
+- **Camera rays**: about 20000 pairs of a ray through a pixel and an object, in evenly spread tiles of 16 by 16 pixels.
+  Objects are separated by kind: those whose hits are found by a search along the ray, and those with a formula.
+- **Grazing rays**: pairs beside the edge of an object as the camera sees it, at distances from one pixel down to 10^-10
+  of one. An error in the last digit changes their distances by its square root.
+- **The image, by method**: one ray through each pixel, and the difference of its colours from those of `strict`.
+- **Samples per pixel**: the error of the image against 1024 other samples. `sobol` samples are evenly spread, `random`
+  ones are those of the notes.
 
-Errors of distances are the 99th percentile of all right hits. The truth is of the real ray through the place of the
-picture and of the numbers of the scene as they are written: a hit is isolated by intervals of 237 bits, as in
-`tabray verify`, and the error of a distance has in it what rounding the ray made of it. Where the intervals do not tell,
-the pair is left out and counted as undecided. Errors of colours are the root of the mean square over pixels and channels, of what a picture shows, from
-0 to 1. Errors depend on the scene alone: two runs give the same to the last digit.
+Errors of distances are the 99th percentile of all right hits. The ground truth is that of the real ray through the
+point of the image and of the scene's numbers as they are written: a hit is isolated by intervals of 237 bits, as in
+`tabray verify`, and the error of a distance includes the effect of rounding the ray. Where the intervals do not decide,
+the pair is left out and counted as undecided. Errors of colours are root mean squares over pixels and channels, of the
+colours as displayed, from 0 to 1. Errors depend on the scene alone: two runs give the same errors to the last digit.
 
-Times are those of one thread, in CPU time, of the same work for each choice by turns, up to 15 rounds after one to warm
-up; the least round counts. Distances are timed on about 2000 of the pairs, pictures on some of their tiles. Both go as
-in a render: up to 256 rays at a time, with the best instructions that the processor has. Where a hit is searched
-for, only `draft`, `exact` and `strict` take a packet's rays together; all others take them one by one, and a part of
-what the default is faster is owed to that. Of rays that graze silhouettes it takes most one by one, too.
+Times are CPU times of one thread, of the same work for each choice in turn, in up to 15 rounds after a warm-up round;
+the minimum counts. Distances are timed on about 2000 of the pairs, images on some of their tiles. Both are traced as in
+a render: up to 256 rays at a time, with the best instructions of the processor. Where a hit is searched for, only
+`draft`, `exact` and `strict` trace the rays of a packet together; all other methods trace them one by one, which
+accounts for part of the default's advantage. Most grazing rays are traced one by one by the default, too.
 
-The caption tells how far the middle round was from the least, for the choice in the middle: above 15 % it says not to
-trust the times. Where rounds waited so long for other work of the machine, it says so: that is no part of CPU time, but
-cores that share a cache or a unit of arithmetic slow each other, all choices alike.
+The caption gives the difference between the median and the minimum round, for the median choice: above 15 % it says not
+to trust the times. If rounds waited long for other work of the machine, the caption says so: waiting is not part of CPU
+time, but cores that share a cache or an arithmetic unit slow each other down, for all choices alike.
 
 ## The methods
 
-Those without a link are `tabray`'s own: `classic` is the notes' program, `draft`, `exact` and `strict` are what a
-scene chooses with `accuracy`; see [how exact the methods are](accuracy.md).
+Those without a link are `tabray`'s own: `classic` is the method of the notes' program, and `draft`, `exact` and
+`strict` are those that a scene chooses with `accuracy`; see [how exact the methods are](accuracy.md).
 
-| point | what it is | where it fails |
+| point | method | where it fails |
 |---|---|---|
-| `classic` | one bracket, from the viewer to the ray's point closest to the axis | silhouettes, inner walls, far balls |
-| [`steps of 0.1`](../src/geometry/roots/steps.rs) | the notes' page on procedural surfaces: steps, then bisection to 1e-6 | what is thinner than a step |
+| `classic` | one bracket, from the viewer to the ray's point closest to the axis | silhouettes, inner walls, distant spheres |
+| [`steps of 0.1`](../src/geometry/roots/steps.rs) | the notes' page on procedural surfaces: steps, then bisection to 1e-6 | anything thinner than a step |
 | [`64 + ...`](../src/geometry/roots/samples.rs) | samples in the bounding cylinder, then a refiner: [bisection](../src/geometry/roots/bisection.rs), [Chandrupatla](../src/geometry/roots/chandrupatla.rs) or [Newton](../src/geometry/roots/newton.rs) | silhouettes, however many samples |
-| [`16 + turning points`](../src/geometry/roots/turning.rs) | samples, and the places between them where the function turns | what turns twice between two samples |
-| [`sphere tracing`](../src/geometry/roots/tracing.rs) | steps that a bound of the slope allows | hits what it only comes near to; slow at silhouettes |
+| [`16 + turning points`](../src/geometry/roots/turning.rs) | samples, and the turning points of the function between them | functions that turn twice between two samples |
+| [`sphere tracing`](../src/geometry/roots/tracing.rs) | steps of a length that a bound of the slope allows | hits surfaces that it only passes closely; slow at silhouettes |
 | [`intervals`](../src/geometry/roots/intervals.rs) | bounds of values and slopes (Mitchell 1990) | slow at silhouettes |
-| [`Taylor bounds`](../src/geometry/roots/taylor.rs) | bounds of the curvature, too; how shapes of one formula are found | a few of a hundred thousand rays that nearly touch: [the falsifier](falsify.md) counts them |
-| `draft`, `exact`, `strict` | for surfaces of revolution quadrics with a proven error, then Newton; Taylor bounds where a ray grazes | a few of a hundred thousand rays that nearly touch: [the falsifier](falsify.md) counts them |
+| [`Taylor bounds`](../src/geometry/roots/taylor.rs) | bounds of the curvature, too; the method for shapes given by one formula | a few of a hundred thousand near tangents: [the falsifier](falsify.md) counts them |
+| `draft`, `exact`, `strict` | for surfaces of revolution, quadrics with a proven error, then Newton; Taylor bounds for grazing rays | a few of a hundred thousand near tangents: [the falsifier](falsify.md) counts them |
 
-The counts here differ from those of [accuracy.md](accuracy.md) and of other tables, as the rays do. There all rays of
-a kind go through one scene and each profile has a million; here they are those of the scene's own camera, and grazing
-ones lie at the silhouettes that it sees. There the camera stands nearer, and rays that miss a surface's heights are
-counted as well. Of grazing rays half miss the object here, and nobody loses those: a method that loses 60 of 100
-touches has 30 % here. What holds in both: who has wrong hits and who has none.
+The counts here differ from those of [accuracy.md](accuracy.md) and of other tables, because the rays differ. There, all
+rays of a kind go through one scene, with a million for each profile; here they are those of the scene's own camera, and
+grazing rays lie at the silhouettes that it sees. There, the camera is closer, and rays that miss a surface's heights
+are counted as well. Half of the grazing rays miss the object here, and no method loses those: a method that loses 60 of
+100 tangents has 30 % here. What agrees in both is which methods have wrong hits and which have none.
 ";
 
 const HEAT_MAPS: &str = "
-## Where time goes and where error sits
+## Where time goes and where errors are
 
-`render --aov cost,error` writes both beside the picture: how many rays each pixel costs, and how far its colour is from
-that of 64 samples, exactly traced; red where its middle sees another object. With `-o a.png`, `a-error.exr` has the
-numbers: the colour's error, the distance's, and 1 where the object is another.
+`render --aov cost,error` writes both beside the image: the number of rays of each pixel, and the difference of its
+colour from that of 64 exactly traced samples, in red where its centre sees another object. With `-o a.png`,
+`a-error.exr` has the numbers: the error of the colour, the error of the distance, and 1 where the object differs.
 
 | rays, `--method classic` | error, `--method classic` | error, `--method exact` |
 |---|---|---|
@@ -215,10 +214,10 @@ for method in classic exact; do
 done
 ```
 
-The classic method loses hits at every ripple; what is left with the exact one are edges, which samples smooth.
+The classic method loses hits at every ripple; what remains with the exact method are edges, which samples smooth.
 
-## To choose
+## Choosing
 
-`tabray choose SCENE --max-error 0.01` measures quickly what accuracy and samples make of a scene, shows what it
-weighed, and prints the command line to use; `--max-time 2` takes what is best within two seconds on all cores.
+`tabray choose SCENE --max-error 0.01` quickly measures the effect of accuracy and samples on a scene, shows the choices
+that it considered, and prints the command line to use; `--max-time 2` chooses the best within two seconds on all cores.
 ";

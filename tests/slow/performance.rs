@@ -44,7 +44,7 @@ fn render(scene: &Path, args: &[&str]) -> [Duration; 2] {
 #[ignore = "it measures"]
 fn many_objects() {
     type Scene = fn(usize) -> Vec<Written<'static>>;
-    println!("\n| objects | frame, ms | times the row above | tests for each ray | to build, s |");
+    println!("\n| objects | frame, ms | times the row above | tests per ray | to build, s |");
     println!("|---|---:|---:|---:|---:|");
     for (name, scene) in [("spheres", scenes::spheres as Scene), ("triangles", scenes::triangles)] {
         let mut above = None;

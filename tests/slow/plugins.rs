@@ -122,7 +122,7 @@ fn plugins_dropped_in_keep_their_contracts() {
 
 #[test]
 fn a_file_that_registers_nothing_is_warned_of() {
-    let warning = |name: &str| format!("plugins/{name}.rs registers nothing, so that no scene can use it");
+    let warning = |name: &str| format!("plugins/{name}.rs registers nothing, so no scene can use it");
     assert!(BUILT.said.contains(&warning("empty")), "{}", BUILT.said);
     assert!(!BUILT.prints(&["list"]).contains("empty "));
     assert!(page().contains(&warning("box")));
@@ -220,7 +220,7 @@ fn a_constructor_that_asks_for_another_type_is_told() {
     // Two lines were added above.
     let line = line(&brick()) + 2;
     let message = format!(
-        "the plugin `slab` asks for `size` as a type that is not the one in the table it registers at plugins/slab.rs:{line}: give both the same type"
+        "the plugin `slab` asks for `size` with another type than in the table it registers at plugins/slab.rs:{line}: give both the same type"
     );
     assert!(said.contains("panicked at src/../plugins/slab.rs:") && said.contains(&message), "{said}");
 }
@@ -251,14 +251,14 @@ fn a_name_that_is_taken_is_told_as_the_page_has_it() {
 fn a_profile_dropped_in_is_known_by_its_name() {
     let scene = "camera eye { pixeldim 8 6 worlddim 8 6 viewpoint 4 3 6 } material m { ambient 5 5 5 }
         revsurf cask { material m surfer barrel base 4 0 -4 direction 0 1 0 height 4 }";
-    assert!(BUILT.says(&["check", "-"], scene).contains("-: sound"));
+    assert!(BUILT.says(&["check", "-"], scene).contains("-: no errors"));
 }
 
 #[test]
 fn a_shader_dropped_in_is_known_by_its_name() {
     let scene = "camera eye { pixeldim 8 6 worlddim 8 6 viewpoint 4 3 6 } material m { ambient 5 5 5 }
         psphere ball { material m shader stripes center 4 3 -3 radius 1 }";
-    assert!(BUILT.says(&["check", "-"], scene).contains("-: sound"));
+    assert!(BUILT.says(&["check", "-"], scene).contains("-: no errors"));
 }
 
 // What `tabray new plugin` writes

@@ -21,13 +21,13 @@ pub fn serve(
     port: Option<u16>,
 ) -> Result<(), Failure> {
     let server = Server::open(port)?;
-    messages::note(&format!("review at {} (Ctrl-C ends it)", server.url()));
+    messages::note(&format!("review at {} (Ctrl-C quits)", server.url()));
     let run = server.run(async move |request: Request<Bytes>| {
         let verdict = match (request.method().as_str(), request.uri().path()) {
             ("GET", "/") => return ControlFlow::Continue(page(registry, &folder, before.as_deref())),
             ("POST", "/accept") => decide(&folder, request.body(), "accepted", Pending::accept),
             ("POST", "/reject") => decide(&folder, request.body(), "rejected", Pending::reject),
-            _ => Err((StatusCode::NOT_FOUND, "there is nothing here".to_owned())),
+            _ => Err((StatusCode::NOT_FOUND, "not found".to_owned())),
         };
         match verdict {
             Ok(told) => {
@@ -39,7 +39,7 @@ pub fn serve(
             Err((status, reason)) => ControlFlow::Continue(serve::text(status, &reason)),
         }
     });
-    run.map_err(|error| Failure::Failed(format!("the server ended: {}", words::reason(&error))))
+    run.map_err(|error| Failure::Failed(format!("the server stopped: {}", words::reason(&error))))
 }
 
 fn page(registry: &Registry, folder: &Path, before: Option<&Path>) -> Response<serve::Body> {
@@ -49,7 +49,7 @@ fn page(registry: &Registry, folder: &Path, before: Option<&Path>) -> Response<s
         Ok(html) => serve::content(StatusCode::OK, "text/html; charset=utf-8", html),
         Err(failure) => {
             tell(&failure);
-            serve::text(StatusCode::INTERNAL_SERVER_ERROR, "the terminal says what is wrong")
+            serve::text(StatusCode::INTERNAL_SERVER_ERROR, "failed: see the terminal for the reason")
         }
     }
 }
@@ -64,22 +64,22 @@ fn decide(
 ) -> Result<String, (StatusCode, String)> {
     let seen: Value = serde_json::from_slice(body).unwrap_or_default();
     let (Some(name), Some(version)) = (seen["snapshot"].as_str(), seen["version"].as_str()) else {
-        return Err((StatusCode::BAD_REQUEST, "this names no snapshot".to_owned()));
+        return Err((StatusCode::BAD_REQUEST, "the request names no snapshot".to_owned()));
     };
     let failed = |failure: Failure| {
         tell(&failure);
-        (StatusCode::INTERNAL_SERVER_ERROR, "the terminal says what is wrong".to_owned())
+        (StatusCode::INTERNAL_SERVER_ERROR, "failed: see the terminal for the reason".to_owned())
     };
     let found = pending::find(folder).map_err(failed)?;
     let named = |new: &&PathBuf| new.with_extension("").display().to_string() == name;
     let Some(new) = found.iter().find(named) else {
-        return Err((StatusCode::NOT_FOUND, format!("{name} is not pending any more")));
+        return Err((StatusCode::NOT_FOUND, format!("{name} is no longer pending")));
     };
     let snapshot = Pending::read(new).map_err(failed)?;
     if snapshot.version() != version {
         return Err((
             StatusCode::CONFLICT,
-            format!("{name} is another since it was shown: load this page again"),
+            format!("{name} has changed since it was shown: reload this page"),
         ));
     }
     act(&snapshot).map_err(failed)?;

@@ -11,33 +11,33 @@ use crate::scene::registry::Registry;
 use pending::Pending;
 use std::path::PathBuf;
 
-/// Show the snapshots that tests left to be reviewed
+/// Review the snapshots that failing tests left
 ///
-/// The page shows for each the old and the new picture and their difference, or what lines of a text changed, and the
-/// command that accepts it. The first pixel that differs is explained as `tabray probe` does it, for the scene as it is
-/// now, and with `--before` by the program that the old picture was made with.
+/// For each snapshot, the page shows the old image, the new image and their difference, or the changed lines of a text,
+/// and the command that accepts it. The first pixel that differs is explained as by `tabray probe`, for the scene as it
+/// is now and, with `--before`, by the program that made the old image.
 #[derive(clap::Args)]
 pub struct Args {
     /// The folder of the snapshots
     #[arg(default_value = "snapshots")]
     folder: PathBuf,
-    /// Where to write the page: one .html file, with everything in it
+    /// The page to write: one self-contained .html file
     #[arg(short, long, value_name = "FILE", default_value = "review.html")]
     output: PathBuf,
-    /// An older `tabray`, which explains the old pictures
+    /// An older `tabray`, to explain the old images
     #[arg(long, value_name = "PROGRAM")]
     before: Option<PathBuf>,
-    /// Show the page in a browser instead, and accept or reject from there, until nothing is pending; only this machine
-    /// can see it
+    /// Serve the page instead, to accept or reject from the browser until nothing is pending; only this machine can
+    /// reach it
     #[arg(long, conflicts_with = "output")]
     serve: bool,
-    /// The port for that; by default the first free one from 3000
+    /// The port to serve on; by default the first free one from 3000
     #[arg(long, requires = "serve")]
     port: Option<u16>,
-    /// Accept these snapshots, or all below a folder, instead of writing a page
+    /// Accept these snapshots, or all in a folder, instead of writing a page
     #[arg(long, value_name = "SNAPSHOT", num_args = 1.., conflicts_with_all = ["reject", "output", "before", "serve"])]
     accept: Vec<PathBuf>,
-    /// Reject these snapshots, or all below a folder: what is new goes, what is old stays
+    /// Reject these snapshots, or all in a folder: the new ones are deleted, the old ones stay
     #[arg(long, value_name = "SNAPSHOT", num_args = 1.., conflicts_with_all = ["output", "before", "serve"])]
     reject: Vec<PathBuf>,
 }

@@ -43,8 +43,8 @@ pub fn find(path: &Path) -> Result<Vec<PathBuf>, Failure> {
                 Err(Failure::Usage(format!("nothing is pending for `{}`", path.display()), None))
             }
             _ => Err(Failure::Usage(
-                format!("there is neither a folder nor a snapshot `{}`", path.display()),
-                Some("name a folder of snapshots, or a snapshot by its `.snap`".to_owned()),
+                format!("there is no folder or snapshot `{}`", path.display()),
+                Some("name a folder of snapshots, or the `.snap` file of one".to_owned()),
             )),
         };
     }
@@ -122,7 +122,7 @@ impl Pending {
 
 /// What a snapshot's file holds, or the file beside it; nothing where that is missing.
 fn content(path: &Path, file: &str) -> Result<Option<Content>, String> {
-    let (header, text) = parts(file).ok_or("it has no header between lines of dashes")?;
+    let (header, text) = parts(file).ok_or("it has no header between `---` lines")?;
     let field = |name: &str| {
         header.lines().find_map(|line| Some(line.strip_prefix(name)?.strip_prefix(": ")?.trim_matches('"')))
     };

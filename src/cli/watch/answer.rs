@@ -20,7 +20,7 @@ const PAGE: &str = include_str!("page.html");
 /// The answer to a request.
 pub async fn answer(request: &Request<Bytes>, board: &Board) -> Response<Body> {
     if request.method() != Method::GET {
-        return serve::text(StatusCode::METHOD_NOT_ALLOWED, "this server is read only\n");
+        return serve::text(StatusCode::METHOD_NOT_ALLOWED, "this server is read-only\n");
     }
     let path: Vec<_> = request.uri().path().split('/').skip(1).collect();
     match path[..] {
@@ -51,17 +51,17 @@ fn events(board: &Board) -> Body {
 /// An answer about the present picture, which may take a while; none about one that is not there any more.
 async fn about(board: &Board, version: &str, work: impl FnOnce(Arc<Frame>) -> Option<Job>) -> Response<Body> {
     let Some(frame) = version.parse().ok().and_then(|version| board.frame(version)) else {
-        return serve::text(StatusCode::GONE, "this picture is not there any more\n");
+        return serve::text(StatusCode::GONE, "this image no longer exists\n");
     };
     let Some(job) = work(frame) else {
-        return serve::text(StatusCode::NOT_FOUND, "the picture has no such part\n");
+        return serve::text(StatusCode::NOT_FOUND, "the image has no such part\n");
     };
     match tokio::task::spawn_blocking(job).await {
         Ok(Ok((kind, bytes))) => serve::content(StatusCode::OK, kind, bytes),
         Ok(Err(error)) if error.kind() == io::ErrorKind::Interrupted => {
-            serve::text(StatusCode::GONE, "this picture is not there any more\n")
+            serve::text(StatusCode::GONE, "this image no longer exists\n")
         }
-        _ => serve::text(StatusCode::INTERNAL_SERVER_ERROR, "something went wrong\n"),
+        _ => serve::text(StatusCode::INTERNAL_SERVER_ERROR, "internal error\n"),
     }
 }
 

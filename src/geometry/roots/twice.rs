@@ -12,8 +12,9 @@ use crate::numeric::twofold::Twofold;
 /// How much of what rounding in f64 hides is hidden in twice the precision, too: 2^-53 but for five digits.
 const STILL_HIDDEN: f64 = 1.0 / 281_474_976_710_656.0;
 
-/// Steps that halve a piece below what twice the precision tells apart.
-const MOST: usize = 120;
+/// Steps that halve a piece below what twice the precision tells apart, even where the piece is 10^80 times as long as the
+/// surface is wide.
+const MOST: usize = 400;
 
 /// The first root on a piece that has at most one turn, where rounding in f64 hides values up to `hidden`; of a line that
 /// leaves a surface, the first one where the function falls (from outside) or rises (from inside).

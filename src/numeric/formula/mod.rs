@@ -184,17 +184,17 @@ mod tests {
     #[test]
     fn faults_are_marked_where_they_are() {
         for (text, place, message) in [
-            ("2 + sni(y)", 4..7, "a formula does not know `sni`"),
-            ("2 sin(y)", 2..3, "an operator belongs here"),
-            ("2 + ", 4..4, "a value belongs here"),
-            ("", 0..0, "a value belongs here"),
-            ("(2 + y", 0..1, "a `(` without its `)`"),
-            ("2 + y)", 5..6, "a `)` without its `(`"),
+            ("2 + sni(y)", 4..7, "unknown name `sni` in a formula"),
+            ("2 sin(y)", 2..3, "expected an operator"),
+            ("2 + ", 4..4, "expected a value"),
+            ("", 0..0, "expected a value"),
+            ("(2 + y", 0..1, "unclosed `(`"),
+            ("2 + y)", 5..6, "unmatched `)`"),
             ("sin y", 0..3, "`sin` needs its argument in parentheses"),
-            ("min(y)", 0..3, "`min` takes 2 values, with commas between them"),
+            ("min(y)", 0..3, "`min` takes 2 values, separated by commas"),
             ("2 * 1.2.3", 4..9, "`1.2.3` is not a number"),
             ("2 * 1e999", 4..9, "`1e999` is not a number"),
-            ("ü", 0..2, "a formula does not know `ü`"),
+            ("ü", 0..2, "unknown name `ü` in a formula"),
         ] {
             let fault = Formula::parse(text).expect_err(text);
             assert_eq!((fault.place, fault.message.as_str()), (place, message), "{text}");

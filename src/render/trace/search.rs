@@ -45,6 +45,7 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
     /// What one ray meets first, with all that leads to it told.
     fn closest_seen(&mut self, group: &Group, found: &mut Found) {
         let start = self.start(group, 0);
+        let mut nearest = found.far[0];
         self.watch.see(Event::Search(&start.ray));
         for index in 0..self.model.objects.len() {
             let shape = &self.model.objects[index].shape;
@@ -53,18 +54,20 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
                 self.watch.see(Event::Tested(index, None));
                 continue;
             }
-            let distance = exact(shape, &start, leaves, MISS);
-            let is_first = self.is_first(&start, (index, distance), (found.met[0], found.far[0]));
+            let (distance, bracket) = located(shape, &start, leaves, MISS);
+            let is_first = self.is_first(&start, (index, distance), (found.met[0], nearest));
             self.watch.see(Event::Tested(index, Some(if is_first { distance } else { MISS })));
             if is_first {
-                (found.near[0], found.far[0], found.met[0]) = (distance, distance, index as u64 + 1);
+                // As a packet has it, for the hit to be finished in the same way.
+                (found.near[0], found.far[0], found.met[0]) = (bracket.near, bracket.far, index as u64 + 1);
+                nearest = distance;
             }
         }
         let hit = (found.met[0] as usize).checked_sub(1).map(|index| Hit {
             index,
             object: &self.model.objects[index],
-            distance: found.far[0],
-            point: start.ray.at(found.far[0]),
+            distance: nearest,
+            point: start.ray.at(nearest),
         });
         self.watch.see(Event::Met(hit.as_ref()));
     }

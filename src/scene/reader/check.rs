@@ -101,7 +101,7 @@ impl Check<'_> {
             self.report.add(
                 Fault::error(place.clone(), format!("a second camera `{text}`"))
                     .also(first, "the first one")
-                    .help("a scene has one camera"),
+                    .help("a scene has exactly one camera"),
             );
         }
         let values = Against { entity, names: &mut self.names, report: self.report }.values(written);
@@ -182,7 +182,7 @@ impl Check<'_> {
             Err(refusal) => {
                 debug_assert!(
                     args.has_what_is_refused(&refusal),
-                    "the plugin `{}` refuses `{}`, which is not in the table it registers at {}: name an attribute of that",
+                    "the plugin `{}` refuses `{}`, which is not in the table it registers at {}: name an attribute of that table",
                     args.entity.name,
                     refusal.attribute.unwrap_or_default(),
                     args.entity.place()
@@ -209,8 +209,9 @@ impl Check<'_> {
                 let place =
                     place_of(args.entity, &written[args.order], files.next().map(|(file, _)| file.name()));
                 self.report.add(
-                    Fault::error(place, message)
-                        .help("a texture is a PPM or PNG file; its name starts from the scene's folder"),
+                    Fault::error(place, message).help(
+                        "a texture is a PPM or PNG file, and its name is relative to the scene's folder",
+                    ),
                 );
             }
         }
@@ -225,7 +226,8 @@ impl Check<'_> {
                 near.and_then(|near| self.registry.find(near)).is_some_and(|e| e.kind() == Kind::Camera);
             let known = list(self.registry.iter().map(|entity| entity.name));
             let fault = Fault::error(places[0].clone(), format!("there is no entity type `{name}`"));
-            self.report.add(fault.label(suggestion(near, &places)).help(format!("the types are {known}")));
+            self.report
+                .add(fault.label(suggestion(near, &places)).help(format!("the entity types are {known}")));
         }
         self.names.report_unresolved(self.registry, self.report);
         self.names.report_repeated(self.report);
@@ -235,7 +237,7 @@ impl Check<'_> {
         {
             self.report.add(
                 Fault::error(first.kind.place.clone(), "the scene has no camera")
-                    .label("a camera belongs before this")
+                    .label("expected a camera")
                     .help(format!(
                         "add one: {}",
                         self.registry.example(Kind::Camera, "NAME", self.report.syntax())

@@ -137,8 +137,8 @@ fn decode<'b>(name: &str, bytes: &'b [u8]) -> Result<&'b str, Report> {
     let nul = bytes.iter().position(|byte| *byte == 0);
     let not_utf8 = std::str::from_utf8(bytes).err().map(|error| error.valid_up_to());
     let (place, message) = match (nul, not_utf8) {
-        (Some(nul), bad) if bad.is_none_or(|bad| nul < bad) => (nul..nul + 1, "a NUL byte"),
-        (_, Some(bad)) => (bad..bad + char::REPLACEMENT_CHARACTER.len_utf8(), "not UTF-8"),
+        (Some(nul), bad) if bad.is_none_or(|bad| nul < bad) => (nul..nul + 1, "unexpected NUL byte"),
+        (_, Some(bad)) => (bad..bad + char::REPLACEMENT_CHARACTER.len_utf8(), "invalid UTF-8"),
         _ => {
             let text = std::str::from_utf8(bytes).unwrap_or_default();
             return Ok(text.strip_prefix('\u{feff}').unwrap_or(text));
@@ -146,7 +146,7 @@ fn decode<'b>(name: &str, bytes: &'b [u8]) -> Result<&'b str, Report> {
     };
     // Up to the fault the lossy text has the same bytes.
     let mut report = Report::new(name, String::from_utf8_lossy(bytes), Syntax::default());
-    let help = "a scene is a text of entities, `TYPE NAME { ATTRIBUTES }`";
+    let help = "a scene is plain text, a sequence of entities `TYPE NAME { ATTRIBUTES }`";
     report.add(Fault::error(Some(place), message).help(help));
     Err(report)
 }

@@ -10,6 +10,7 @@ use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
 use crate::numeric::number::Number;
 use crate::numeric::twofold::Twofold;
+use crate::world::certify::Equation;
 
 /// How far outside of the surface the places along a ray are, with any number type.
 pub(super) struct OnRay<'s> {
@@ -35,7 +36,16 @@ impl Line for OnRay<'_> {
 
     /// Twice the precision, from the ray in the world and the axis as the scene has it, tells nearly all touches from
     /// misses.
-    fn undecided(&self, piece: Interval, leaves: Option<Side>, hidden: f64) -> Option<f64> {
+    fn undecided(&self, piece: Interval, leaves: Option<Side>) -> Option<f64> {
+        // What rounding hides of this ray alone, however far those are apart that it was rounded from.
+        let hidden = |along: f64| {
+            let along = Interval::<f64>::constant(along);
+            let own = |axis: usize| {
+                Interval::constant(self.local.origin[axis]) + along * Interval::constant(self.local.dir[axis])
+            };
+            self.surface.value([own(0), own(1), own(2)]).width()
+        };
+        let hidden = hidden(piece.low).min(hidden(piece.high));
         let exact = self.local.frame.exactly(&self.local.ray, self.local.base);
         let outside = |along: Dual<Twofold>| {
             let [x, y, z] = exact.along(along);

@@ -34,26 +34,26 @@ impl NoSurface {
     pub fn told(self) -> (String, &'static str) {
         match self {
             Self::Unbounded { near } => (
-                format!("without a bound near y = {near:.6}"),
-                "a profile is the distance from the axis, finite at each height from 0 to the surface's own",
+                format!("that is unbounded near y = {near:.6}"),
+                "a profile is the distance from the axis, finite at each height from 0 to `height`",
             ),
             Self::Nowhere => (
                 "that is nowhere above 0".to_owned(),
-                "a profile is the distance from the axis, finite at each height from 0 to the surface's own",
+                "a profile is the distance from the axis, finite at each height from 0 to `height`",
             ),
             Self::Signs { from } => (
-                format!("whose parts below 0 are too many to be told apart from y = {from:.6} upward"),
-                "a lower height, or a profile that crosses 0 less often",
+                format!("with too many parts below 0 to separate them from y = {from:.6} upward"),
+                "give a lower `height`, or a profile that crosses 0 less often",
             ),
             Self::Bends { from } => (
-                format!("that bends too often to be followed from y = {from:.6} upward"),
-                "a lower height, or a profile that bends less often",
+                format!("that bends too often to be bounded from y = {from:.6} upward"),
+                "give a lower `height`, or a profile that bends less often",
             ),
             Self::Rounding { near, hidden } => (
                 format!(
-                    "that rounding hides near y = {near:.6}: it is 0 there, but for an error of {hidden:.1e}"
+                    "whose sign is lost in rounding near y = {near:.6}: there it is 0 to within an error of {hidden:.1e}"
                 ),
-                "write the formula so that large terms do not cancel, such as `(y - 3)^2` for `y^2 - 6*y + 9`",
+                "write the formula so that large terms do not cancel, such as `(y - 3)^2` in place of `y^2 - 6*y + 9`",
             ),
         }
     }

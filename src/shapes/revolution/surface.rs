@@ -93,7 +93,7 @@ impl fmt::Display for Revolution {
         let error = self.slabs.coarsest();
         let count = words::count(self.slabs.count(), "slab");
         let finish = match self.finish {
-            Finish::Bracket => "left in the middle of their brackets",
+            Finish::Bracket => "left at the midpoints of their brackets",
             Finish::Root => "finished by Newton's method",
         };
         write!(f, "{count}, the profile's square in each a parabola within {error:.1e}; hits {finish}")

@@ -115,8 +115,8 @@ impl Panel {
     /// What its points take their times for, and how many of these units are a second.
     pub fn unit(&self) -> (&'static str, f64) {
         match self.subject {
-            Subject::Distances => ("CPU time for a ray and an object (ns)", 1e9),
-            Subject::Methods | Subject::Samples => ("CPU time for a pixel (µs)", 1e6),
+            Subject::Distances => ("CPU time per ray and object (ns)", 1e9),
+            Subject::Methods | Subject::Samples => ("CPU time per pixel (µs)", 1e6),
         }
     }
 

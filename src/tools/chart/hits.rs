@@ -69,8 +69,8 @@ pub fn sets(model: &Model) -> Vec<Set> {
                 sets.push(Set { title, note, packets, is_searched: is_of_roots });
             }
         };
-        add("rays of the camera", camera(model, &group));
-        add("rays that graze silhouettes", grazing(model, &group));
+        add("camera rays", camera(model, &group));
+        add("grazing rays", grazing(model, &group));
     }
     sets
 }
@@ -121,7 +121,7 @@ pub fn panel(study: &Study, set: &Set, progress: &mut dyn Progress) -> ControlFl
     }
     let lost = candidates.iter().zip(&errors).filter(|(_, (errors, _))| errors.is_empty());
     let lost: Vec<_> = lost.map(|(candidate, _)| candidate.name.as_str()).collect();
-    let lost = if lost.is_empty() { String::new() } else { format!("; none found: {}", lost.join(", ")) };
+    let lost = if lost.is_empty() { String::new() } else { format!("; none found by {}", lost.join(", ")) };
     let undecided = if undecided == 0 { String::new() } else { format!(", {undecided} undecided") };
     let points = candidates.iter().zip(errors).zip(times).map(|((candidate, (errors, wrong)), times)| {
         let part = |part: f64| {

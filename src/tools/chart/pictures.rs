@@ -87,7 +87,7 @@ pub fn methods(study: &Study, progress: &mut dyn Progress) -> ControlFlow<(), Pa
             ..point(candidate.name.clone(), candidate.family, times, off, (pixels.len(), 1))
         });
     ControlFlow::Continue(Panel {
-        title: "the picture, by method".to_owned(),
+        title: "the image, by method".to_owned(),
         note: format!("{} of {} pixels, against strict", pixels.len(), own[0] * own[1]),
         subject: Subject::Methods,
         points: points.collect(),
@@ -136,9 +136,9 @@ pub fn samples(study: &Study, seen: Seen, progress: &mut dyn Progress) -> Contro
             )
         });
     let title = match (seen, has_size(model)) {
-        (Seen::Picture, false) => "samples for each pixel: edges",
-        (Seen::Picture, true) => "samples for each pixel: edges and soft shadows",
-        (Seen::Shadows, _) => "samples for each pixel: soft shadows alone",
+        (Seen::Picture, false) => "samples per pixel: edges",
+        (Seen::Picture, true) => "samples per pixel: edges and soft shadows",
+        (Seen::Shadows, _) => "samples per pixel: soft shadows alone",
     };
     ControlFlow::Continue(Some(Panel {
         title: title.to_owned(),

@@ -31,7 +31,7 @@ pub fn dump(registry: &Registry, folder: &Path, model: &Model) -> Result<(), Fau
         let again = reader::read(registry, name, folder, text.as_bytes(), None);
         let again = again.map_err(|report| fault(report.to_string()))?.model;
         if dump::scene(&again, syntax) != text || dump::notes(&again) != dump::notes(model) {
-            return Err(fault(format!("another dump, of\n{text}")));
+            return Err(fault(format!("the dump is different, of\n{text}")));
         }
     }
     Ok(())
@@ -56,13 +56,15 @@ pub fn shader(shader: &dyn PacketShader, at: DVec3) -> Result<(), Fault> {
         && one != [ambient, diffuse, specular]
     {
         let even = [ambient, diffuse, specular];
-        return Err(Promise::PacketsAgree.fault(format!("`even` is {even:?}, it answers {one:?} at {at}")));
+        return Err(
+            Promise::PacketsAgree.fault(format!("`even` is {even:?}, and it returns {one:?} at {at}"))
+        );
     }
     if let Some(Look { ambient, diffuse, specular }) = shader.brightest(&material)
         && let most = [ambient, diffuse, specular]
         && one.iter().zip(most).any(|(colour, most)| !colour.abs().cmple(most.abs()).all())
     {
-        let found = format!("`brightest` is {most:?}, it answers {one:?} at {at}");
+        let found = format!("`brightest` is {most:?}, and it returns {one:?} at {at}");
         return Err(Promise::ReflectivityIsSound.fault(found));
     }
     let points = Vectors::<STEP> { x: [at.x; STEP], y: [at.y; STEP], z: [at.z; STEP] };
@@ -111,18 +113,18 @@ pub fn light(light: &dyn PacketLight, draw: &mut Draw) -> Result<(), Fault> {
     for toward in places(location, draw) {
         let one = light.emissivity(toward);
         if one.is_some_and(|light| !light.is_finite()) {
-            return Err(Promise::LightIsFinite.fault(format!("toward {toward} it sends {one:?}")));
+            return Err(Promise::LightIsFinite.fault(format!("toward {toward} it emits {one:?}")));
         }
         if let Some(even) = light.even()
             && one != Some(even)
         {
-            let found = format!("`even` is {even}, and toward {toward} it sends {one:?}");
+            let found = format!("`even` is {even}, and toward {toward} it emits {one:?}");
             return Err(Promise::PacketsAgree.fault(found));
         }
         if let (Some(most), Some(one)) = (light.brightest(), one)
             && !one.abs().cmple(most.abs()).all()
         {
-            let found = format!("`brightest` is {most}, and toward {toward} it sends {one}");
+            let found = format!("`brightest` is {most}, and toward {toward} it emits {one}");
             return Err(Promise::LightIsFinite.fault(found));
         }
         let all = |of: DVec3| Vectors::<STEP> { x: [of.x; STEP], y: [of.y; STEP], z: [of.z; STEP] };

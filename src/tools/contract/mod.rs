@@ -54,7 +54,7 @@ impl fmt::Display for Breach {
         let Self { plugin, place, promise, found, scene } = self;
         writeln!(f, "{place}: {plugin} breaks its contract: {promise}")?;
         writeln!(f, "  found: {found}")?;
-        writeln!(f, "  cure:  {}", promise.cure())?;
+        writeln!(f, "  fix:   {}", promise.cure())?;
         if !scene.is_empty() {
             writeln!(f, "  in this scene:\n")?;
             scene.lines().try_for_each(|line| writeln!(f, "    {line}"))?;
@@ -156,7 +156,7 @@ fn of_entity(registry: &Registry, entity: &'static Entity, room: &Room) -> Optio
             other(Promise::TakesWhatItsTableAllows, report.trim_end(), text)
         }
         _ if entity.kind() == Kind::Object && hits == 0 && gravest.is_none() => {
-            other(Promise::IsMet, "no ray of thousands meets it", seen)
+            other(Promise::IsMet, "none of thousands of rays hits it", seen)
         }
         _ => gravest,
     }
@@ -233,7 +233,7 @@ mod tests {
     fn a_profile_that_is_not_finite_or_empty_is_found() {
         assert!(of_profile(&SOUND).is_none());
         for (profile, found) in [
-            (&UNBOUNDED, "it is one without a bound near y = 0.0"),
+            (&UNBOUNDED, "it is one that is unbounded near y = 0.0"),
             (&EMPTY, "it is one that is nowhere above 0"),
             (&STEEP, "its slope is inf at y = 2"),
         ] {
@@ -264,6 +264,6 @@ mod tests {
     fn a_light_that_says_it_is_even_and_is_not_is_found() {
         let fault = looks::light(&Uneven, &mut Draw::new("uneven")).expect_err("a fault");
         assert_eq!(fault.promise, Promise::PacketsAgree);
-        assert_eq!(fault.found, "`even` is [1, 1, 1], and toward [0, 0, 0] it sends None");
+        assert_eq!(fault.found, "`even` is [1, 1, 1], and toward [0, 0, 0] it emits None");
     }
 }

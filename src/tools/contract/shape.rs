@@ -93,9 +93,7 @@ impl Tried<'_> {
             shape.closest_hits(cpu, rays, None, 1, nearest);
             let (low, high) = (near[0], far[0]);
             if doubt[0] == 0 && !(low <= distance && distance <= high) {
-                return fault(format!(
-                    "`distance` gives {distance}, and packets are from {low} to {high} ({cpu})"
-                ));
+                return fault(format!("`distance` gives {distance}, and packets {low} to {high} ({cpu})"));
             }
             // As the tracer has it: what is known exactly is not asked for again.
             if doubt[0] == 0 && low < high {
@@ -125,7 +123,7 @@ impl Tried<'_> {
                     return fault(format!("the normal {one} in single rays, and {many} in packets ({cpu})"));
                 }
                 if !same_bits(at, points.get(0)) || sides[0] != side || travelled[0] != 1.0 + distance {
-                    return fault(format!("packets come to {} in place of {at} ({cpu})", points.get(0)));
+                    return fault(format!("packets give {} in place of {at} ({cpu})", points.get(0)));
                 }
                 let cosine = ray.dir.dot(normal);
                 if cosine.to_bits() != cosines[0].to_bits() && cosine.is_finite() {

@@ -35,7 +35,7 @@ fn trouble_is_no_difference() {
     for (args, message) in [
         (&["nothing.png"][..], "cannot read `nothing.png`"),
         (&["text.png"], "cannot read `text.png`"),
-        (&["deep.png"], "8 bits a channel"),
+        (&["deep.png"], "8 bits per channel"),
         (&["clear.png"], "opaque"),
         (&["tall.png"], "`old.png` has 4 x 3 pixels, and `tall.png` has 4 x 4 pixels"),
         (&["new.ppm", "-o", "new.ppm"], "end it in .html"),

@@ -49,8 +49,7 @@ fn the_first_difference_is_explained_and_a_wrong_explanation_is_called_so() {
     let text = |index: usize| explanations[index][1].as_str().expect("a text").to_owned();
     let probe = tabray(path, &["probe", &scene, "80", "59"]).1;
     assert_eq!(text(1), probe);
-    let wrong =
-        format!("the picture has ({}, {g}, {b}) here and was made otherwise than this:\n\n{probe}", r ^ 1);
+    let wrong = format!("the image has ({}, {g}, {b}) here, so it was not made like this:\n\n{probe}", r ^ 1);
     assert_eq!(text(0), wrong);
 }
 
@@ -69,9 +68,9 @@ fn a_program_that_does_not_explain_is_told() {
         data(&html)["items"][0]["explanations"][0].to_string()
     };
     for (size, program, said) in [
-        ("4 3", "./no-such-program", "`./no-such-program` does not start: no such file or directory"),
-        ("8 6", "false", "the picture is not as large as its scene says"),
-        ("4 3", "false", "it says\\n\\n"),
+        ("4 3", "./no-such-program", "cannot start `./no-such-program`: no such file or directory"),
+        ("8 6", "false", "the image does not have the size that its scene gives"),
+        ("4 3", "false", "the program says\\n\\n"),
     ] {
         let told = format!("[\"Before, by {program}\",\"no explanation: {said}\"]");
         assert_eq!(explained(size, program), told);
@@ -97,5 +96,5 @@ fn a_browser_shows_the_page() {
     assert!(page.contains("<h1>old.png and new.ppm</h1>"), "{page}");
     assert_eq!(page.matches("<canvas").count(), 3, "old, difference and new");
     assert!(page.contains("1 from the left, 2 from the bottom"), "the first pixel that differs is marked");
-    assert!(page.contains("apart 0 0 30"), "its bytes are read from the pictures");
+    assert!(page.contains("difference 0 0 30"), "its bytes are read from the pictures");
 }

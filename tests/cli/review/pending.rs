@@ -59,7 +59,7 @@ fn nothing_pending_is_no_failure_and_no_page() {
     assert!(!folder.path().join("review.html").exists());
     let (status, _, err) = tabray(folder.path(), &["review", "elsewhere"]);
     assert_eq!(status, 2);
-    assert!(err.contains("there is neither a folder nor a snapshot `elsewhere`"), "{err}");
+    assert!(err.contains("there is no folder or snapshot `elsewhere`"), "{err}");
 }
 
 #[test]

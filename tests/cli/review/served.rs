@@ -27,7 +27,7 @@ impl Served {
         let mut told = BufReader::new(program.stderr.take().expect("it is piped"));
         told.read_line(&mut line).expect("a line");
         let (_, url) = line.split_once("review at http://").expect("where the page is");
-        assert!(url.ends_with("/ (Ctrl-C ends it)\n"), "{line}");
+        assert!(url.ends_with("/ (Ctrl-C quits)\n"), "{line}");
         let (host, _) = url.split_once('/').expect("an end");
         // What else it says must not stop it.
         std::thread::spawn(move || std::io::copy(&mut told, &mut std::io::sink()));
@@ -76,17 +76,20 @@ fn a_served_page_accepts_and_rejects_what_it_shows_and_then_ends() {
     let told = |status: u16, text: &str| (status, text.to_owned());
     assert_eq!(
         served.decide("accept", "../../../etc/passwd", version(0)),
-        told(404, "snapshots/it's <b>/../../../etc/passwd is not pending any more")
+        told(404, "snapshots/it's <b>/../../../etc/passwd is no longer pending")
     );
     assert_eq!(
         served.decide("accept", "ball.snap", version(1)),
-        told(409, "snapshots/it's <b>/ball.snap is another since it was shown: load this page again")
+        told(409, "snapshots/it's <b>/ball.snap has changed since it was shown: reload this page")
     );
-    assert_eq!(served.decide("change", "ball.snap", version(0)), told(404, "there is nothing here"));
+    assert_eq!(served.decide("change", "ball.snap", version(0)), told(404, "not found"));
     let origin = format!("http://{}", served.host);
     let headers = [("Host", served.host.as_str()), ("Origin", &origin)];
-    assert_eq!(served.ask("POST /accept", &headers, "ball"), told(400, "this names no snapshot"));
-    assert_eq!(served.ask("POST /accept", &headers, &" ".repeat(70_000)), told(413, "too much was sent"));
+    assert_eq!(served.ask("POST /accept", &headers, "ball"), told(400, "the request names no snapshot"));
+    assert_eq!(
+        served.ask("POST /accept", &headers, &" ".repeat(70_000)),
+        told(413, "the request is too large")
+    );
     assert_eq!(files(&folder), before, "nothing was decided yet");
 
     assert_eq!(served.decide("accept", "ball.snap", version(0)).0, 200);
@@ -106,7 +109,7 @@ fn a_served_page_accepts_and_rejects_what_it_shows_and_then_ends() {
     let later = folder.path().join("snapshots/it's <b>/later.snap.new");
     let readable = fs::read(&later).expect("it is there");
     fs::write(&later, "without a header").expect("room");
-    let told = (500, "the terminal says what is wrong".to_owned());
+    let told = (500, "failed: see the terminal for the reason".to_owned());
     assert_eq!(served.decide("accept", "later.snap", version(2)), told);
     fs::write(&later, readable).expect("room");
     let page = data(&served.ask("GET /", &[("Host", &served.host)], "").1);
@@ -126,7 +129,7 @@ fn pages_and_names_from_elsewhere_are_refused() {
     let body = json!({ "snapshot": "snapshots/it's <b>/later.snap", "version": version }).to_string();
     let origin = format!("http://{ours}");
     let rebound = format!("evil.example:{port}");
-    let (host, page) = ("this is not the host that was asked for", "a page from elsewhere may not ask this");
+    let (host, page) = ("the request is for another host", "the request comes from another page");
     for (headers, said) in [
         (&[("Host", rebound.as_str()), ("Origin", &origin)][..], host),
         (&[("Host", "127.0.0.1"), ("Origin", &origin)], host),
@@ -153,6 +156,6 @@ fn a_port_that_is_taken_is_refused_when_it_was_asked_for() {
     let (_, port) = served.host.split_once(':').expect("a port");
     let (status, _, err) = tabray(folder.path(), &["review", "--serve", "--port", port]);
     assert_eq!(status, 1);
-    let said = "give `--port` another one, or leave it out for the first free one";
-    assert_eq!(err, format!("error: port {port} is taken; {said}\n"));
+    let said = "give another with `--port`, or leave it out for the first free one";
+    assert_eq!(err, format!("error: port {port} is in use; {said}\n"));
 }

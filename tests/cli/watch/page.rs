@@ -153,7 +153,7 @@ fn a_save_is_on_the_page_soon() {
     }
     took.sort_unstable();
     let (median, most) = (took[took.len() / 2], took[took.len() - 1]);
-    println!("from a save to the whole picture on the page: median {median} ms, at most {most} ms");
+    println!("from a save to the whole image on the page: median {median} ms, at most {most} ms");
     assert!(canvas(&browser) == render(&model(&ball("1 9 0"))));
 }
 

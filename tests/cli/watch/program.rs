@@ -52,9 +52,9 @@ impl Watching {
         let mut line = String::new();
         stderr.read_line(&mut line).expect("text");
         let (_, rest) = line
-            .split_once("watching scene.ray: its page is http://127.0.0.1:")
+            .split_once("watching scene.ray at http://127.0.0.1:")
             .unwrap_or_else(|| panic!("an address: {line}"));
-        assert!(rest.ends_with("/ (Ctrl-C ends this)\n"), "{line}");
+        assert!(rest.ends_with("/ (Ctrl-C quits)\n"), "{line}");
         let port = rest.split('/').next().and_then(|port| port.parse().ok()).expect("a port");
         // What comes later must have somewhere to go.
         thread::spawn(move || stderr.read_to_end(&mut Vec::new()));

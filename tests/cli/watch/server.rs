@@ -153,10 +153,10 @@ fn a_pixel_is_explained_as_probe_does_with_the_lines_of_its_object() {
         assert_eq!(answer["lines"], lines);
     }
     for path in ["probe/1/80/0", "probe/1/0/60", "probe/1/-1/0", "layer/1/nothing"] {
-        assert_eq!(watching.get(path), (404, b"the picture has no such part\n".to_vec()), "{path}");
+        assert_eq!(watching.get(path), (404, b"the image has no such part\n".to_vec()), "{path}");
     }
     assert_eq!(watching.get("nothing"), (404, b"there is no such page\n".to_vec()));
-    assert_eq!(watching.get("probe/2/0/0"), (410, b"this picture is not there any more\n".to_vec()));
+    assert_eq!(watching.get("probe/2/0/0"), (410, b"this image no longer exists\n".to_vec()));
 }
 
 #[test]
@@ -189,8 +189,8 @@ fn the_layers_are_those_of_aov() {
 fn a_picture_too_large_for_a_page_is_refused_with_the_size_that_is_not() {
     let watching = Watching::text(&ball("9 0 0").replace("80 60", "100000 100000"));
     let fault = watching.events().until("fault");
-    let said = "error: a picture of 100000 x 100000 pixels is too large for a page\n\
-                help: it can have 16777216 pixels, such as 4096 x 4096";
+    let said = "error: an image of 100000 x 100000 pixels is too large for a page\n\
+                help: the maximum is 16777216 pixels, such as 4096 x 4096";
     assert_eq!(fault["report"], said);
 }
 
@@ -226,7 +226,7 @@ fn foreign_hosts_and_origins_are_refused() {
     assert!(answer.starts_with("HTTP/1.1 403 "), "{answer}");
     let answer = raw(port, &format!("{post}Origin: http://127.0.0.1:{port}\n\n"));
     assert!(
-        answer.starts_with("HTTP/1.1 405 ") && answer.ends_with("this server is read only\n"),
+        answer.starts_with("HTTP/1.1 405 ") && answer.ends_with("this server is read-only\n"),
         "{answer}"
     );
 }
@@ -286,7 +286,7 @@ fn a_taken_port_is_passed_over_unless_it_is_asked_for() {
         .expect("the program runs");
     let err = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(1), "{err}");
-    assert!(err.starts_with(&format!("error: port {port} is taken")), "{err}");
+    assert!(err.starts_with(&format!("error: port {port} is in use")), "{err}");
 }
 
 #[test]
@@ -328,9 +328,9 @@ fn a_page_without_a_browser_is_to_be_opened_by_hand() {
     let (address, browser) = (note(), note());
     let _ = watch.kill();
     watch.wait().expect("it ends");
-    assert!(address.starts_with("watching scene.ray: "), "{address}");
+    assert!(address.starts_with("watching scene.ray at "), "{address}");
     assert!(
-        browser.starts_with("cannot open a browser: ") && browser.ends_with("; open the page by hand"),
+        browser.starts_with("cannot open a browser: ") && browser.ends_with("; open the address yourself"),
         "{browser}"
     );
 }

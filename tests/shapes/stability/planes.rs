@@ -121,7 +121,7 @@ fn an_xdir_along_the_normal_is_refused() {
         let object =
             format!("fplane f {{ material m normal {normal} point 0 0 0 xdir {xdir} dimensions 1 1 }}");
         let message = refusal(&object);
-        assert!(message.contains("has an xdir parallel to its normal"), "{message}");
+        assert!(message.contains("has an `xdir` parallel to its `normal`"), "{message}");
     }
 }
 

@@ -30,8 +30,9 @@ fn a_disk_that_is_full_when_it_stops_leaves_what_was_there() {
         let folder = workplace();
         fs::write(folder.path().join(name), "precious").expect("a file");
         let (status, err) = with_little_room(&folder, blocks, name);
-        let said =
-            format!("the time limit of 400ms is reached\nerror: cannot write `{cannot}`: file too large\n");
+        let said = format!(
+            "the time limit of 400ms has been reached\nerror: cannot write `{cannot}`: file too large\n"
+        );
         assert_eq!((status, err), (1, said));
         assert_eq!(bytes(&folder, name), b"precious");
         assert_eq!(names_in(folder.path()), [name, "hall.ray"]);

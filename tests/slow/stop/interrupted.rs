@@ -13,14 +13,14 @@ fn each_reason_to_stop_is_told() {
     let folder = workplace();
     let args = ["hall.ray", "--size", "2000", "--samples", "16", "-o", "a.png"];
     let err = stop_midway(&folder, &args);
-    assert!(err.starts_with("the time limit of ") && err.contains("ms is reached\nwrote "), "{err}");
+    assert!(err.starts_with("the time limit of ") && err.contains("ms has been reached\nwrote "), "{err}");
 
     let mut running = Running::render(&folder, &[&args[..], &["--resume"]].concat());
     running.until_it_renders();
     running.send(Signal::SIGTERM);
     let (status, err) = running.end();
     assert_eq!(status, 130);
-    assert!(err.starts_with("interrupted; another Ctrl-C ends at once\nwrote "), "{err}");
+    assert!(err.starts_with("interrupted; press Ctrl-C again to quit at once\nwrote "), "{err}");
 }
 
 /// One tile takes seconds.
@@ -30,7 +30,8 @@ const SLOWEST: [&str; 5] = ["hall.ray", "--samples", "65536", "-o", "a.png"];
 fn a_picture_that_was_not_begun_is_not_written() {
     let folder = workplace();
     fs::write(folder.path().join("a.png"), "precious").expect("a file");
-    let said = "the time limit of 1ns is reached\nnothing is rendered yet, and nothing is written\n";
+    let said =
+        "the time limit of 1ns has been reached\nnothing has been rendered yet, and nothing is written\n";
     let (status, _, err) = render(&folder, &[&SLOWEST[..], &["--time-limit", "1ns"]].concat());
     assert_eq!((status, err.as_str()), (130, said));
     assert_eq!(bytes(&folder, "a.png"), b"precious");
@@ -62,7 +63,7 @@ fn a_second_interruption_ends_the_writing_too() {
     let mut err = BufReader::new(running.0.stderr.take().expect("it is piped"));
     let mut line = String::new();
     err.read_line(&mut line).expect("a line");
-    assert_eq!(line, "interrupted; another Ctrl-C ends at once\n");
+    assert_eq!(line, "interrupted; press Ctrl-C again to quit at once\n");
     running.send(Signal::SIGINT);
     let mut rest = String::new();
     err.read_to_string(&mut rest).expect("text");

@@ -105,7 +105,7 @@ fn stop_midway(folder: &TempDir, args: &[&str]) -> String {
         let time = format!("{limit}ms");
         let (status, _, err) = render(folder, &[args, &["--time-limit", &time]].concat());
         assert_eq!(status, 130, "a picture that takes longer than {time}: {err}");
-        if err.contains(" from which `--resume` makes the rest") {
+        if err.contains(" from which `--resume` renders the rest") {
             return err;
         }
         limit *= 2;

@@ -30,10 +30,10 @@ const EDGE: &str = "camera eye { pixeldim 16 12 worlddim 8 6 viewpoint 4 3 6 }
 #[test]
 fn what_was_begun_and_is_not_there_is_told() {
     for (args, said) in [
-        (&["verify", "hall.ray", "-o", "a.png"][..], "the picture was not finished"),
-        (&["choose", "hall.ray", "--max-error", "0.001"], "nothing was chosen"),
-        (&["chart", "hall.ray"], "nothing was measured yet"),
-        (&["render", "hall.ray", "-o", "-", "--debug", "find"], "the picture was not finished"),
+        (&["verify", "hall.ray", "-o", "a.png"][..], "the image was not finished"),
+        (&["choose", "hall.ray", "--max-error", "0.001"], "nothing has been chosen"),
+        (&["chart", "hall.ray"], "nothing has been measured yet"),
+        (&["render", "hall.ray", "-o", "-", "--debug", "find"], "the image was not finished"),
     ] {
         let (status, err) = interrupted(args, Duration::ZERO);
         assert_eq!(status, 130, "{args:?}: {err}");
@@ -51,7 +51,7 @@ fn pictures_beside_that_are_not_finished_are_told() {
         assert_eq!(status, 130, "{err}");
         // By then the main picture may not be whole.
         if err.starts_with("wrote a.png ") {
-            assert!(err.ends_with(" s)\ninterrupted: the picture was not finished\n"), "{err}");
+            assert!(err.ends_with(" s)\ninterrupted: the image was not finished\n"), "{err}");
             return;
         }
         time = time * 3 / 2;
@@ -64,8 +64,8 @@ fn a_chart_keeps_what_is_measured() {
     loop {
         let (status, err) = interrupted(&["chart", "edge.ray"], time);
         assert_eq!(status, 130, "{err}");
-        if err != "interrupted: nothing was measured yet\n" {
-            let said = "wrote ./edge.txt\ninterrupted: the chart has what was measured by then\n";
+        if err != "interrupted: nothing has been measured yet\n" {
+            let said = "wrote ./edge.txt\ninterrupted: the chart shows what has been measured so far\n";
             assert!(err.starts_with("wrote ./edge.svg\n") && err.ends_with(said), "{err}");
             return;
         }

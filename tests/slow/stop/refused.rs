@@ -7,7 +7,7 @@ use std::fs;
 use std::io::BufReader;
 use std::path::Path;
 
-const HELP: &str = " |\n = help: leave out `--resume` to begin anew\n";
+const HELP: &str = " |\n = help: leave out `--resume` to start from the beginning\n";
 
 /// A scene with a texture, slow to render.
 const TEXTURED: &str = "camera eye { pixeldim 640 480  worlddim 8 6  viewpoint 4 3 6 }
@@ -28,7 +28,7 @@ fn what_differs_is_named() {
     let picture = bytes(&folder, "a.png");
     let refused = |args: &[&str], differs: &str| {
         let (status, _, err) = render(&folder, &[args, &["--resume"]].concat());
-        let said = format!("error: `a.png.checkpoint` is of another picture: {differs}\n{HELP}");
+        let said = format!("error: `a.png.checkpoint` belongs to another image: {differs}\n{HELP}");
         assert_eq!((status, err), (2, said), "{args:?}");
         let kept = bytes(&folder, "a.png") == picture && bytes(&folder, "a.png.checkpoint") == checkpoint;
         assert!(kept, "{args:?} changes no file");
@@ -47,7 +47,7 @@ fn what_differs_is_named() {
     let mut bricks = rgb(&folder, "bricks.png");
     bricks.put_pixel(3, 2, Rgb([1, 2, 3]));
     bricks.save(at("bricks.png")).expect("a picture");
-    refused(&args, "the picture of texture `bricks` has changed");
+    refused(&args, "the image of texture `bricks` has changed");
     copy("textures/bricks.png", "bricks.png");
 
     // The end of the file is no part of what the system loads.
@@ -59,7 +59,7 @@ fn what_differs_is_named() {
         .expect("permissions");
     let (status, err) =
         Running::start(&other, &folder, &[&["render"], &args[..], &["--resume"]].concat()).end();
-    let said = format!("error: `a.png.checkpoint` is of another picture: the program was built anew\n{HELP}");
+    let said = format!("error: `a.png.checkpoint` belongs to another image: the program was rebuilt\n{HELP}");
     assert_eq!((status, err), (2, said));
 
     let version = format!("\"the version of tabray\":\"{}\"", env!("CARGO_PKG_VERSION"));
@@ -67,7 +67,7 @@ fn what_differs_is_named() {
     let (status, _, err) = render(&folder, &[&args[..], &["--resume"]].concat());
     let now = env!("CARGO_PKG_VERSION");
     let said = format!(
-        "error: `a.png.checkpoint` is of another picture: the version of tabray was 0.0.9 and is {now}\n{HELP}"
+        "error: `a.png.checkpoint` belongs to another image: the version of tabray was 0.0.9 and is {now}\n{HELP}"
     );
     assert_eq!((status, err), (2, said));
 }
@@ -99,8 +99,9 @@ fn what_is_no_checkpoint_is_refused_and_harms_nothing() {
     for broken in [Vec::new(), b"no picture".to_vec(), plain, cut(100), cut(checkpoint.len() / 2)] {
         fs::write(&path, &broken).expect("a file");
         let (status, _, err) = render(&folder, &[&args[..], &["--resume"]].concat());
-        let said =
-            format!("error: cannot read `a.png.checkpoint`: it is no checkpoint, or a broken one\n{HELP}");
+        let said = format!(
+            "error: cannot read `a.png.checkpoint`: it is not a checkpoint, or it is corrupt\n{HELP}"
+        );
         assert_eq!((status, err), (2, said), "of {} bytes", broken.len());
         assert!(bytes(&folder, "a.png") == b"precious" && fs::read(&path).expect("there") == broken);
         assert_eq!(names_in(folder.path()), ["a.png", "a.png.checkpoint", "hall.ray"]);

@@ -21,7 +21,7 @@ fn a_checkpoint_that_cannot_be_removed_is_told_and_the_picture_is_whole() {
     // Something else is in its place by the time it is to go.
     let path = folder.path().join("a.png.checkpoint");
     fs::remove_file(&path).and_then(|()| fs::create_dir(&path)).expect("a folder");
-    let said = "error: cannot remove `a.png.checkpoint`: is a directory; the picture is finished: remove it by hand\n";
+    let said = "error: cannot remove `a.png.checkpoint`: is a directory; the image is finished, so remove the file by hand\n";
     assert_eq!(running.end(), (1, said.to_owned()));
     assert_eq!(render(&folder, &[&args[..3], &["-o", "whole.png"]].concat()).0, 0);
     assert!(bytes(&folder, "a.png") == bytes(&folder, "whole.png"));
@@ -107,7 +107,7 @@ fn what_is_done_is_in_the_picture_and_the_rest_is_transparent() {
     assert!(0 < tenths && tenths < 1000);
     let share = format!("{}.{}", tenths / 10, tenths % 10);
     let said =
-        format!("wrote {share} % of a.png, and a.png.checkpoint, from which `--resume` makes the rest\n");
+        format!("wrote {share} % of a.png, and a.png.checkpoint, from which `--resume` renders the rest\n");
     assert!(err.ends_with(&said), "{err} {said}");
 }
 
@@ -146,7 +146,8 @@ fn a_resumed_render_without_a_checkpoint_begins_anew_and_says_so() {
     let folder = workplace();
     let (status, _, err) = render(&folder, &["hall.ray", "--quick", "-o", "a.png", "--resume"]);
     assert_eq!(status, 0);
-    let said = "there is no a.png.checkpoint to go on from: the picture begins anew\nwrote a.png (";
+    let said =
+        "there is no a.png.checkpoint to continue from: the render starts from the beginning\nwrote a.png (";
     assert!(err.starts_with(said), "{err}");
     assert_eq!(names_in(folder.path()), ["a.png", "hall.ray"]);
 }
@@ -159,8 +160,7 @@ fn a_checkpoint_stays_where_it_is_not_asked_for() {
     let checkpoint = bytes(&folder, "a.png.checkpoint");
     let (status, _, err) = render(&folder, &["hall.ray", "--quick", "-o", "a.png"]);
     assert_eq!(status, 0);
-    let said =
-        "a.png.checkpoint is there, and with `--resume` the picture would go on from it\nwrote a.png (";
+    let said = "a.png.checkpoint exists: with `--resume` the render would continue from it\nwrote a.png (";
     assert!(err.starts_with(said), "{err}");
     assert!(bytes(&folder, "a.png.checkpoint") == checkpoint);
 }
