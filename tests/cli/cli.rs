@@ -229,30 +229,6 @@ fn a_reader_that_has_had_enough_is_no_failure() {
 }
 
 #[test]
-fn any_number_of_threads_gives_the_same_bytes() {
-    let folder = folder();
-    for path in [
-        scene("gallery/hall-of-mirrors.ray"),
-        scene("gallery/stained-glass.ray"),
-        scene("material/touching-mirrors.ray"),
-    ] {
-        let pictures = ["1", "2", "7"].map(|threads| {
-            let (status, out, err) = outcome(tabray(&folder).arg("render").arg(&path).args([
-                "-o",
-                "-",
-                "--samples",
-                "2",
-                "--threads",
-                threads,
-            ]));
-            assert_eq!(status, 0, "{err}");
-            out
-        });
-        assert!(pictures.iter().all(|picture| *picture == pictures[0]), "{}", path.display());
-    }
-}
-
-#[test]
 fn list_knows_every_entity_and_attribute() {
     let folder = folder();
     let (status, out, _) = outcome(tabray(&folder).arg("list"));

@@ -4,7 +4,6 @@
 mod common;
 
 mod bench;
-mod chart;
 mod cli;
 mod discovery;
 mod failures;
@@ -13,5 +12,4 @@ mod new;
 mod refusals;
 mod review;
 mod size;
-mod stop;
 mod watch;

@@ -8,6 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use tabray::render::{Plan, Renderer};
 use tabray::scene::{self, Model, Registry};
+use tabray::world::Accuracy;
 
 /// The entity types of the program.
 pub fn registry() -> &'static Registry {
@@ -35,6 +36,21 @@ pub fn model_in(folder: &Path, text: &str) -> Model {
 /// The model of a scene's file, which has no faults.
 pub fn load(path: &Path) -> Model {
     model_in(path.parent().expect("a folder"), &fs::read_to_string(path).expect("a scene that is text"))
+}
+
+/// A scene of few pixels and samples.
+pub fn small(path: &Path, accuracy: Option<Accuracy>) -> Model {
+    let bytes = fs::read(path).expect("a scene");
+    let name = path.display().to_string();
+    let mut model = match scene::read(registry(), &name, path.parent().expect("a folder"), &bytes, accuracy) {
+        Ok(loaded) => loaded.model,
+        Err(report) => panic!("{report}"),
+    };
+    let camera = &mut model.camera.value;
+    // Mirrors that touch cost 20000 rays a pixel. Neither side is a whole number of tiles.
+    camera.pixels = if path.ends_with("touching-mirrors.ray") { [9, 5] } else { [36, 27] };
+    camera.samples = camera.samples.min(3);
+    model
 }
 
 /// The first block of code with a text in a page of the docs.

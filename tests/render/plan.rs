@@ -1,7 +1,7 @@
-//! No more than a scene needs: the plan says so, the counts prove it, and the picture is the same whoever makes it.
+//! No more than a scene needs: the plan says so, and the counts prove it.
 
 use crate::common;
-use crate::common::{model, model_in, registry, root, scenes};
+use crate::common::{model, model_in, registry, root, scenes, small};
 use assert_cmd::cargo::cargo_bin_cmd;
 use insta::Settings;
 use serde_json::Value;
@@ -9,7 +9,7 @@ use std::fs;
 use std::path::Path;
 use std::sync::Mutex;
 use tabray::render::Kind::{Primary, Reflected, Shadow, Transmitted};
-use tabray::render::{Plan, Renderer, Tally, Tests, Watch, decisions, to_byte, trace};
+use tabray::render::{Plan, Renderer, Tally, Tests, Watch, decisions, trace};
 use tabray::scene::{self, Model};
 use tabray::simd::Cpu;
 use tabray::world::Accuracy;
@@ -198,52 +198,6 @@ fn no_ray_is_counted_twice() {
         }
         assert_eq!(count(&model, 1), tally, "{}: counts depend on the threads", path.display());
     }
-}
-
-/// A scene of few pixels and samples.
-fn small(path: &Path, accuracy: Option<Accuracy>) -> Model {
-    let bytes = fs::read(path).expect("a scene");
-    let name = path.display().to_string();
-    let mut model = match scene::read(registry(), &name, path.parent().expect("a folder"), &bytes, accuracy) {
-        Ok(loaded) => loaded.model,
-        Err(report) => panic!("{report}"),
-    };
-    let camera = &mut model.camera.value;
-    // Mirrors that touch cost 20000 rays a pixel. Neither side is a whole number of tiles.
-    camera.pixels = if path.ends_with("touching-mirrors.ray") { [9, 5] } else { [36, 27] };
-    camera.samples = camera.samples.min(3);
-    model
-}
-
-#[test]
-fn a_picture_depends_neither_on_instructions_nor_on_threads_nor_on_tiles() {
-    let renderers: Vec<_> = Cpu::all()
-        .map(|cpu| (format!("{cpu}"), Renderer::new(2).expect("threads").on(cpu)))
-        .chain(
-            [1, 2, 5].map(|threads| (format!("{threads} threads"), Renderer::new(threads).expect("threads"))),
-        )
-        .collect();
-    let mut faults = Vec::new();
-    for path in scenes() {
-        for accuracy in [Accuracy::Exact, Accuracy::Classic, Accuracy::Draft, Accuracy::Strict] {
-            let model = small(&path, Some(accuracy));
-            let plan = Plan::new(&model);
-            let [width, height] = plan.camera.pixels;
-            let alone = renderers[0].1.run(|| {
-                let pixels = (0..height).rev().flat_map(|y| (0..width).map(move |x| (x, y)));
-                let pixels = pixels.flat_map(|(x, y)| trace::pixel(&plan, x, y).to_array());
-                pixels.map(to_byte).collect::<Vec<_>>()
-            });
-            for (name, renderer) in &renderers {
-                let picture = renderer.picture(&plan);
-                let differ = picture.iter().zip(&alone).filter(|(one, other)| one != other).count();
-                if differ > 0 || picture.len() != alone.len() {
-                    faults.push(format!("{} {accuracy:?}, {name}: {differ} bytes", path.display()));
-                }
-            }
-        }
-    }
-    assert!(faults.is_empty(), "not as each pixel alone:\n{}", faults.join("\n"));
 }
 
 #[test]

@@ -1,5 +1,5 @@
-//! What takes long: builds of packages with further plugins, hundreds of thousands of rays against true hits, and what is
-//! measured for the docs.
+//! What takes long: builds of packages with further plugins, hundreds of thousands of rays against true hits, renders that
+//! are stopped midway, charts, and what is measured for the docs.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -7,9 +7,12 @@ mod common;
 mod oracle;
 
 mod accuracy;
+mod chart;
 mod copy;
 mod falsify;
 mod gallery;
 mod performance;
 mod plugins;
+mod same;
+mod stop;
 mod truth;
