@@ -3,17 +3,19 @@
 //!
 //! Each is cut, when it is made, into slabs in which the profile's square is a parabola but for a proven error
 //! (`slabs`). A ray meets the quadrics of revolution around those in closed form, which brackets its first hit or
-//! proves that there is none (`walk`); where it grazes the error's shell, bounds of the second derivative decide
-//! ([`taylor`](crate::shapes::roots::taylor)), and where rounding hides what they say, twice the precision
-//! ([`twice`]). Nothing has to be tuned. A profile of which all that cannot be proven within a
+//! proves that there is none (`bracket`, for any number of rays). Where it grazes the error's shell, bounds of the second
+//! derivative decide ([`taylor`](crate::shapes::roots::taylor)) on its way alone (`walk`), and where rounding hides what they
+//! say, twice the precision ([`twice`]). Nothing has to be tuned. A profile of which all that cannot be proven within a
 //! stated number of operations is refused, with the reason ([`NoSurface`]). The rounding of a ray's own arithmetic is held
 //! by margins that are derived where they stand, and tried against the truth in `tests/truth.rs`.
 
 mod bracket;
 mod budget;
 mod classic;
+mod lanes;
 mod local;
 mod normal;
+mod quadratic;
 mod ranges;
 mod root;
 mod shape;
@@ -34,7 +36,7 @@ use crate::numeric::interval::Interval;
 use crate::numeric::number::Number;
 use crate::numeric::twofold::Twofold;
 use crate::shapes::roots::Method;
-use crate::shapes::roots::taylor::{Found, Line};
+use crate::shapes::roots::taylor::Line;
 use crate::shapes::roots::twice;
 use crate::words;
 use crate::world::certify::Equation;
@@ -75,16 +77,6 @@ impl Revolution {
         Ok(Self { profile: profile.clone(), square, height, slabs, finish })
     }
 
-    /// The distance of a ray's first hit within a span, whatever the ray does, and whether it is that of all rays that
-    /// this one was rounded from.
-    pub fn first_hit(&self, frame: &Frame, ray: &Ray, within: &Span) -> (f64, bool) {
-        let Some(local) = Local::new(frame, ray, within, self.height, self.slabs.widest()) else {
-            return (MISS, true);
-        };
-        let Found { root, is_certain } = self.walk(&local, within.leaves);
-        (root.map_or(MISS, |along| within.keep(local.base + along)), is_certain)
-    }
-
     /// Whether it comes into the box of so many units around a point. Beyond the surface's ends the profile may be
     /// anything, and is not asked.
     pub fn touches(&self, at: DVec3, error: f64) -> bool {
@@ -110,33 +102,6 @@ impl Revolution {
             Some(along) => within.keep(local.base + along),
             None => MISS,
         }
-    }
-
-    /// The height at a place along a ray. Beyond its ends the profile may be anything, and rounding must not ask.
-    #[inline(always)]
-    fn height_of(&self, local: &Local, along: f64) -> f64 {
-        local.height(along).clamp(0.0, self.height)
-    }
-
-    /// The profile's square at a height, and its slope.
-    #[inline(always)]
-    fn square_and_slope(&self, y: f64) -> (f64, f64) {
-        // Beyond its ends the profile may be anything, and rounding must not ask.
-        let Dual { value, slope } = self.square.at(Dual::variable(y.clamp(0.0, self.height)));
-        (value, slope)
-    }
-
-    /// How far outside of the surface a place along a ray is: positive outside, negative inside.
-    #[inline(always)]
-    fn outside(&self, local: &Local, along: f64) -> f64 {
-        local.around(along) - self.square.at(self.height_of(local, along))
-    }
-
-    /// As [`outside`](Self::outside), and how fast that grows.
-    #[inline(always)]
-    fn outside_and_slope(&self, local: &Local, along: f64) -> (f64, f64) {
-        let (value, slope) = self.square_and_slope(local.height(along));
-        (local.around(along) - value, 2.0 * (local.a * along + local.b) - slope * local.dir.y)
     }
 }
 
@@ -219,13 +184,5 @@ impl Line for Uncut<'_> {
         let place =
             |axis: usize| N::constant(self.local.origin[axis]) + along * N::constant(self.local.dir[axis]);
         place(0).powi(2) + place(2).powi(2) - self.surface.profile.at(place(1)).max(N::constant(0.0)).powi(2)
-    }
-}
-
-/// The sign of [`Revolution::outside`] on a side.
-fn sign(side: Side) -> f64 {
-    match side {
-        Side::Outside => 1.0,
-        Side::Inside => -1.0,
     }
 }

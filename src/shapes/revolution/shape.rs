@@ -1,6 +1,7 @@
 //! Surfaces of revolution as shapes, wherever they stand.
 
-use super::bracket::{Lanes, MOST};
+use super::bracket::MOST;
+use super::lanes::Lanes;
 use super::{Classic, Revolution, normal};
 use crate::geometry::bounds::Bounds;
 use crate::geometry::frame::Frame;
@@ -66,7 +67,7 @@ impl Hittable for InFrame<Classic> {
 
 impl Hittable for InFrame<Revolution> {
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        self.surface.distance(&self.frame, ray, within).0
+        self.surface.first_hit(&self.frame, ray, within).0
     }
 
     fn distance_by(&self, method: Method, ray: &Ray, within: &Span) -> Option<f64> {
@@ -93,7 +94,7 @@ impl Hittable for InFrame<Revolution> {
 
     fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
         coincidence::bracket_by(self, ray, within, |within| {
-            let (distance, is_certain) = self.surface.distance(&self.frame, ray, within);
+            let (distance, is_certain) = self.surface.first_hit(&self.frame, ray, within);
             is_certain.then_some(distance)
         })
     }
@@ -111,7 +112,7 @@ impl Hittable for InFrame<Revolution> {
     }
 
     fn meet(&self, cpu: Cpu, rays: Rays, sides: Option<&[Side]>, id: u64, mut nearest: Nearest) -> bool {
-        let (mut any, mut lanes) = (false, Lanes::none());
+        let (mut any, mut lanes) = (false, Lanes::<MOST>::none());
         for part in parts(rays.len(), MOST) {
             let (rays, sides) = (rays.part(part.clone()), sides.map(|sides| &sides[part.clone()]));
             let nearest = nearest.part(part);
@@ -130,7 +131,7 @@ impl Hittable for InFrame<Revolution> {
         blocked: &mut [u64],
         doubt: &mut [u64],
     ) -> bool {
-        let (mut any, mut lanes) = (false, Lanes::none());
+        let (mut any, mut lanes) = (false, Lanes::<MOST>::none());
         for part in parts(ends.len(), MOST) {
             let (rays, sides) = (rays.part(part.clone()), sides.map(|sides| &sides[part.clone()]));
             let (ends, blocked, doubt) = (&ends[part.clone()], &mut blocked[part.clone()], &mut doubt[part]);
