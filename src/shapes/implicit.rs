@@ -193,7 +193,8 @@ impl<T: Implicit> taylor::Line for OnRay<'_, T> {
     }
 
     /// Twice the precision, from the ray in the world, tells nearly all touches from misses.
-    fn undecided(&self, piece: Interval, leaves: Option<Side>, hidden: f64) -> Option<f64> {
+    fn undecided(&self, piece: Interval, leaves: Option<Side>) -> Option<f64> {
+        let hidden = self.at(Interval::constant(piece.middle())).width();
         let exact = self.shape.frame.exactly(self.ray, self.closest);
         twice::first_root(|t| self.shape.formula.value(exact.along(t)), piece, leaves, hidden)
     }

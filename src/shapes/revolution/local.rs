@@ -92,6 +92,12 @@ impl Local {
         N::about(self.origin[axis], self.blur) + along * N::about(self.dir[axis], BLUR)
     }
 
+    /// A coordinate of the place along this ray, and of no other.
+    #[inline(always)]
+    pub fn own_place<N: Number>(&self, axis: usize, along: N) -> N {
+        N::constant(self.origin[axis]) + along * N::constant(self.dir[axis])
+    }
+
     /// How far rounding may have moved any point of this part of the ray.
     #[inline(always)]
     pub fn moved(&self) -> f64 {

@@ -93,8 +93,8 @@ impl Revolution {
 
     /// The first crossing on a short piece, from a side if it matters from which.
     fn first_crossing(&self, local: &Local, (from, to): (f64, f64), wanted: Option<Side>) -> Found {
-        // The piece's own ends may be crossings: they are where shells begin and end.
-        let (from, to) = (from.next_down(), to.next_up());
+        // The piece's own ends may be crossings: they are where shells begin and end, but where the ray begins.
+        let (from, to) = (from.next_down().max(local.from), to.next_up());
         let line = OnRay { surface: self, local };
         let all = Span { near: f64::NEG_INFINITY, leaves: wanted, ..Span::RAY };
         let stretch =

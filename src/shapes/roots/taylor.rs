@@ -26,9 +26,10 @@ pub trait Line {
     }
 
     /// The root on a piece of which bounds in f64 do not tell whether it has one, and more of them would not: where
-    /// rounding, of values up to `hidden`, hides the function's sign, or after more proofs than are made. A line that is
-    /// itself rounded says it of the one that it stands for.
-    fn undecided(&self, piece: Interval, leaves: Option<Side>, hidden: f64) -> Option<f64> {
+    /// rounding hides the function's sign, or after more proofs than are made. A line that is itself rounded says it of
+    /// the one that it stands for.
+    fn undecided(&self, piece: Interval, leaves: Option<Side>) -> Option<f64> {
+        let hidden = self.at(Interval::constant(piece.middle())).width();
         twice::first_root(|t| self.at(t), piece, leaves, hidden)
     }
 }
@@ -271,6 +272,10 @@ impl<L: Line> Search<'_, L> {
         }
         self.is_certain = false;
         let is_short = high - low <= self.shortest;
+        // A line that leaves the surface starts there.
+        if is_short && self.within.leaves.is_some() && low == self.start {
+            return Judgement::Free;
+        }
         let (at_low, at_high) = (self.line.at(low), self.line.at(high));
         let (falls, rises) = (at_low > 0.0 && at_high <= 0.0, at_low < 0.0 && at_high >= 0.0);
         let crosses = match self.within.leaves {
@@ -296,9 +301,7 @@ impl<L: Line> Search<'_, L> {
         }
         self.is_certain = false;
         twice::count();
-        let piece = Interval { low, high };
-        let hidden = self.value(piece.middle()).width();
-        match self.line.undecided(piece, self.within.leaves, hidden) {
+        match self.line.undecided(Interval { low, high }, self.within.leaves) {
             Some(root) => Judgement::Root(root.clamp(low, high)),
             None => Judgement::Free,
         }

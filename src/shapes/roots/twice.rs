@@ -58,7 +58,11 @@ pub fn first_root(
     if !approaches(first.slope) || approaches(last.slope) {
         return None;
     }
-    let mut turn = chandrupatla::root(|t| at(t).slope, (low, high), precise);
+    let still_hidden = STILL_HIDDEN * hidden;
+    // The value so near to the turn is the turn's, but for what is hidden.
+    let bend = ((last.slope - first.slope) / (high - low)).abs();
+    let near = 0.125 * (still_hidden / bend).sqrt();
+    let mut turn = chandrupatla::root(|t| at(t).slope, (low, high), near);
     let mut at_turn = at(turn);
     // At a kink the value is as far from 0 as the place is from the kink: that is taken to its last digit.
     if at_turn.slope.abs() > KINK * first.slope.abs() {
@@ -66,7 +70,7 @@ pub fn first_root(
         at_turn = at(turn);
     }
     let at_turn = at_turn.value;
-    if at_turn.abs() <= STILL_HIDDEN * hidden {
+    if at_turn.abs() <= still_hidden {
         return leaves.is_none().then_some(turn);
     }
     if !is_in(at_turn) {
@@ -78,5 +82,6 @@ pub fn first_root(
     let guess = turn + (2.0 * (at_turn * (end - turn) / slope).abs()).sqrt().copysign(end - turn);
     let (low, high) = (end.min(turn), end.max(turn));
     let guess = if low < guess && guess < high { guess } else { 0.5 * (low + high) };
+    let precise = precise.min(still_hidden / (bend * (guess - turn).abs()));
     Some(newton::root(at, (low, high), is_first == is_outside, guess, precise))
 }
