@@ -146,7 +146,7 @@ kernels! {
         let count = count.min(N);
         for lane in 0..count {
             let (near, far, hair) = (lanes.near[lane], lanes.far[lane], 2.0 * lanes.hair[lane]);
-            let (low, high) = lanes.from_origin(lane, (near, far));
+            let (low, high) = lanes.counted_from_origin(lane, (near, far));
             let is_met = near < MISS;
             // Rounding may have made an end of the cylinder a part of the surface.
             let is_certain = (far < MISS) & (near > lanes.from[lane] + hair) & (far < lanes.to[lane] - hair);

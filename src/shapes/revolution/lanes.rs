@@ -109,7 +109,7 @@ impl<const N: usize> Lanes<N> {
 
     /// A bracket counted from a ray's origin, a hair wider.
     #[inline(always)]
-    pub fn from_origin(&self, lane: usize, (near, far): (f64, f64)) -> (f64, f64) {
+    pub fn counted_from_origin(&self, lane: usize, (near, far): (f64, f64)) -> (f64, f64) {
         let base = self.base[lane];
         let slack = 4.0 * self.off[lane] + 16.0 * f64::EPSILON * (base + near.abs());
         (larger(base + near - slack, 0.0), base + far + slack)

@@ -66,7 +66,7 @@ impl Revolution {
             cross(cpu, &mut lanes, &slab, size, 0.0, 1);
             let (near, far) = (lanes.near[0], lanes.far[0]);
             if local.inner.start < near && far < local.inner.end {
-                let bracket = lanes.from_origin(0, (near, far));
+                let bracket = lanes.counted_from_origin(0, (near, far));
                 return (self.root(&local.frame, &local.ray, bracket), is_certain);
             }
             if near < MISS {
