@@ -40,8 +40,8 @@ build() {
         perl -0pi -e "$2" "$sources/$1"
         ! cmp -s "$1" "$sources/$1" || { echo "nothing is cut from $1" >&2; exit 1; }
     fi
-    cargo build --release --locked --quiet --manifest-path "$sources/Cargo.toml" --target-dir "$target" 2>/dev/null
-    awk -v all="$(count "$target/release/tabray" 320)" -v none="$(count "$target/release/tabray" 1x1)" \
+    cargo build --profile dist --locked --quiet --manifest-path "$sources/Cargo.toml" --target-dir "$target" 2>/dev/null
+    awk -v all="$(count "$target/dist/tabray" 320)" -v none="$(count "$target/release/tabray" 1x1)" \
         'BEGIN { print (all - none) / (320 * 240) }'
 }
 

@@ -22,8 +22,8 @@ if ! command -v povray >/dev/null && ! apt-get install --yes --quiet povray >/de
     echo "SKIPPED: there is no POV-Ray"
     exit
 fi
-cargo build --release --locked --quiet
-tabray=$(realpath "${CARGO_TARGET_DIR:-target}/release/tabray")
+cargo build --profile dist --locked --quiet
+tabray=$(realpath "${CARGO_TARGET_DIR:-target}/dist/tabray")
 out=$(mktemp -d)
 trap 'rm -r "$out"' EXIT
 

@@ -1,11 +1,6 @@
 //! The camera: the viewer, and the screen in the plane z = 0 that the viewer looks through.
 
-use crate::scene::entity::{Entity, Refusal};
-use crate::scene::pparm::{LEAST_LENGTH, Pparm, Table};
-use crate::world::accuracy::Accuracy;
-use crate::world::camera::Camera;
-use crate::world::sample::{MOST, Sampler};
-use glam::{DVec2, DVec3};
+use crate::prelude::*;
 
 static PIXELDIM: Pparm<[i64; 2]> = Pparm::required("pixeldim", "the width and height of the picture")
     .alias(&["pixel_dim"])
@@ -25,7 +20,7 @@ static VIEWPOINT: Pparm<DVec3> = Pparm::required("viewpoint", "where the viewer 
 
 static SAMPLES: Pparm<i64> =
     Pparm::or("samples", "how many rays look through each pixel, to smooth edges", 1)
-        .must("from 1 to 65536", |samples| (1..=MOST.into()).contains(samples))
+        .must("from 1 to 65536", |samples| (1..=Sampler::MOST.into()).contains(samples))
         .not_dumped();
 
 static ACCURACY: Pparm<Accuracy> =

@@ -1,21 +1,9 @@
 //! A finite plane: a rectangle.
 
-use super::plane::{self, Plane};
-use crate::geometry::bounds::Bounds;
-use crate::geometry::packet::Rays;
-use crate::geometry::sight::Sight;
-use crate::numeric::number::{Number, cross, dot};
-use crate::numeric::twofold::Twofold;
-use crate::scene::entity::{Args, Entity, Refusal};
-use crate::scene::pparm::{Derived, Pparm, Row, Table};
-use crate::scene::value::Value;
-use crate::shapes::rectangle;
-pub use crate::shapes::rectangle::FinitePlane;
-use crate::simd::cpu::Cpu;
-use crate::world::accuracy::Accuracy;
-use crate::world::certify::{self, Enclosure, Equation, Precision};
-use crate::world::hittable::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
-use glam::{DMat3, DVec2, DVec3};
+use super::plane;
+use crate::prelude::*;
+use crate::shapes::flat::{CLASSIC_METHOD, Flat, Plane};
+use crate::shapes::rectangle::{self, FinitePlane, Rectangle};
 
 pub static DIMENSIONS: Pparm<DVec2> = Pparm::required("dimensions", "its size along xdir and across it")
     .unit("world units")
@@ -27,9 +15,8 @@ static XDIR: Pparm<DVec3> =
         .dumped("xdir", "\n");
 static PROJECTED: Derived = Derived(|args| frame(args).x_axis.to_datum().line("projected", "\n"));
 static ROTATION_ROWS: Derived = Derived(|args| {
-    let rows = frame(args).to_cols_array_2d();
-    let rows = rows.map(|[x, y, z]| format!("{:<12} {x:7.3} {y:7.3} {z:7.3}\n", ""));
-    format!("rotation matrix\n{}", rows.concat())
+    let row = |[x, y, z]: [f64; 3]| format!("{:<12} {x:7.3} {y:7.3} {z:7.3}\n", "");
+    format!("rotation matrix\n{}", frame(args).to_cols_array_2d().map(row).concat())
 });
 
 /// What planes with sides of their own take, after what a plane takes.
@@ -39,17 +26,30 @@ pub const ROTATION: Table = &[&ROTATION_ROWS as &dyn Row];
 
 inventory::submit! {
     Entity::shape("fplane", "a rectangle, whose lower left corner is its point", &[plane::TABLE, TABLE, ROTATION], |args| {
-        Ok(Body::plain(FinitePlane::new(args)?))
+        Ok(Body::plain(shape(args)?))
     })
 }
 
-/// The directions of a rectangle's two sides and its normal, as columns, all unit vectors: the rows of the
-/// notes' rotation matrix.
-fn frame(args: &Args) -> DMat3 {
-    let normal = args.get(&plane::NORMAL).normalize();
-    let xdir = args.get(&XDIR);
-    let x = (xdir - normal.dot(xdir) * normal).normalize();
-    DMat3::from_cols(x, normal.cross(x), normal)
+/// The rectangle of an entity whose table has the rows of a plane's and of this file's.
+///
+/// # Errors
+/// As [`sides`].
+pub fn shape(args: &Args) -> Result<AnyShape, Refusal> {
+    Ok(match args.accuracy() {
+        Accuracy::Classic => Shape::new(finite_plane::<Classic>(args)?).classic().into(),
+        Accuracy::Draft => Shape::new(finite_plane::<Draft>(args)?).flat().certified().into(),
+        Accuracy::Exact => Shape::new(finite_plane::<Exact>(args)?).flat().certified().into(),
+        Accuracy::Strict => Shape::new(finite_plane::<Strict>(args)?).flat().certified().into(),
+    })
+}
+
+/// Where the same rectangle is; refused likewise.
+pub fn rectangle(args: &Args) -> Result<Rectangle, Refusal> {
+    Ok(finite_plane::<Classic>(args)?.rectangle)
+}
+
+fn frame(args: &Attributes) -> DMat3 {
+    rectangle::frame(args.get(&plane::NORMAL), args.get(&XDIR))
 }
 
 /// The directions of a rectangle's two sides.
@@ -57,8 +57,7 @@ fn frame(args: &Args) -> DMat3 {
 /// # Errors
 /// Where `xdir` is parallel to the normal but for rounding, and so points nowhere on the plane.
 pub fn sides(args: &Args) -> Result<[DVec3; 2], Refusal> {
-    let normal = args.get(&plane::NORMAL).normalize();
-    let xdir = args.get(&XDIR).normalize();
+    let (normal, xdir) = (args.get(&plane::NORMAL).normalize(), args.get(&XDIR).normalize());
     if normal.cross(xdir).length() < 1e-6 {
         return Err(Refusal {
             attribute: Some("xdir"),
@@ -66,131 +65,124 @@ pub fn sides(args: &Args) -> Result<[DVec3; 2], Refusal> {
             help: "`xdir` gives the direction of the first side; any vector that is not upright on the plane will do",
         });
     }
-    let DMat3 { x_axis, y_axis, .. } = frame(args);
-    Ok([x_axis, y_axis])
+    Ok([0, 1].map(|side| frame(args).col(side)))
 }
 
-impl FinitePlane {
-    /// The rectangle of an entity whose table has the rows of a plane's and of this file's; refused as its sides are.
-    pub fn new(args: &Args) -> Result<Self, Refusal> {
-        let (plane, dimensions) = (Plane::new(args), args.get(&DIMENSIONS));
-        let reach = plane.point.abs().max_element() + dimensions.element_sum();
-        let (given_xdir, given_sides) = (args.get(&XDIR), sides(args)?);
-        let exact_sides = rectangle::exact_sides(plane.upright, given_xdir);
-        let sides = match plane.accuracy {
-            Accuracy::Classic => given_sides,
-            _ => exact_sides.map(|side| DVec3::from(side.map(|part| part.high))),
-        };
-        Ok(Self { plane, dimensions, sides, exact_sides, given_xdir, reach })
-    }
+/// The same, crossed as exactly as its type has it; refused as its sides are.
+pub fn finite_plane<A>(args: &Args) -> Result<FinitePlane<A>, Refusal> {
+    let (plane, xdir, classic) = (plane::plane(args), args.get(&XDIR), sides(args)?);
+    let sides = match args.accuracy() {
+        Accuracy::Classic => classic,
+        _ => rectangle::rounded_sides(plane.upright, xdir),
+    };
+    Ok(FinitePlane::cut_from(plane, args.get(&DIMENSIONS), xdir, sides))
 }
 
-impl Hittable for FinitePlane {
+impl Hittable for FinitePlane<Classic> {
     #[inline(always)]
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
         let distance = self.plane.distance(ray, within);
         if self.has_crossing(ray, distance) { distance } else { MISS }
     }
 
-    #[inline(always)]
-    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        if self.plane.accuracy == Accuracy::Classic {
-            return Bracket::exactly(self.quick_distance(ray, within));
-        }
-        let rough = self.plane.rough(ray, within.origin_error);
-        let inside = self.inside(ray, rough.distance);
-        // A camera's direction is off by 3 units of 2^-53 in each component, which is less than half of the slack.
-        let slack = rough.error + 2.0 * self.slack(ray, rough.distance);
-        let Bracket { near, far } = self.plane.bracket(&rough, ray, within);
-        Bracket {
-            near: if inside < -slack { MISS } else { near },
-            far: if inside > slack { far } else { MISS },
-        }
-    }
-
-    #[inline(always)]
-    fn quick_distance(&self, ray: &Ray, within: &Span) -> f64 {
-        let distance = self.plane.quick_distance(ray, within);
-        match self.quickly_has_crossing(ray, distance) {
-            Some(is_inside) => {
-                if distance.is_nan() | is_inside {
-                    distance
-                } else {
-                    MISS
-                }
-            }
-            None => f64::NAN,
-        }
-    }
-
-    fn distances(&self, cpu: Cpu, rays: Rays, _: Option<&[Side]>, _: (&[f64], &[f64]), out: &mut [f64]) {
-        // It is asked of hits that are certain, and those are inside.
-        self.plane.distances(cpu, rays, out);
+    fn normal(&self, _at: DVec3) -> DVec3 {
+        self.plane.normal
     }
 
     fn bounds(&self) -> Option<Bounds> {
-        (self.plane.accuracy != Accuracy::Classic).then(|| self.around())
+        Some(self.rectangle.around())
+    }
+
+    fn meets_itself(&self, _leaving: Side) -> bool {
+        false
+    }
+
+    fn plane(&self) -> Option<[DVec3; 2]> {
+        Some([self.plane.point, self.plane.normal])
+    }
+
+    fn method(&self) -> String {
+        CLASSIC_METHOD.to_owned()
+    }
+}
+
+impl<A: Bounded> Hittable for FinitePlane<A> {
+    #[inline(always)]
+    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
+        let distance = self.plane.distance(ray, within);
+        if self.has_crossing(ray, distance) { distance } else { MISS }
+    }
+
+    fn normal(&self, _at: DVec3) -> DVec3 {
+        self.plane.normal
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        Some(self.rectangle.around())
+    }
+
+    fn meets_itself(&self, _leaving: Side) -> bool {
+        false
     }
 
     fn is_clear_of(&self, region: &Bounds) -> bool {
-        self.plane.is_clear_of(region) || self.bounds().is_some_and(|bounds| !bounds.overlaps(region))
+        self.plane.is_clear_of(region) || !self.rectangle.around().overlaps(region)
     }
 
-    fn meets_itself(&self, leaving: Side) -> bool {
-        self.plane.meets_itself(leaving)
-    }
-
-    fn touches(&self, at: DVec3, error: f64) -> bool {
-        // What starts on the plane beside the rectangle does not meet it either.
-        self.plane.touches(at, error)
+    fn plane(&self) -> Option<[DVec3; 2]> {
+        Some([self.plane.point, self.plane.normal])
     }
 
     fn reach(&self) -> f64 {
         self.reach
     }
 
-    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold> {
-        self.plane.fine_distance(ray, distance)
-    }
-
-    fn normal(&self, at: DVec3) -> DVec3 {
-        self.plane.normal(at)
-    }
-
-    fn plane(&self) -> Option<[DVec3; 2]> {
-        Hittable::plane(&self.plane)
-    }
-
     fn method(&self) -> String {
         self.plane.method().to_owned()
     }
+}
 
-    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        certify::first_hit(self, sight, precision)
+impl<A: Bounded> Bracketed for FinitePlane<A> {
+    #[inline(always)]
+    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
+        FinitePlane::bracket(self, ray, within)
+    }
+
+    #[inline(always)]
+    fn refine(&self, ray: &Ray, _leaves: Option<Side>) -> f64 {
+        // A hit that is certain is inside.
+        self.plane.quick_crossing(ray)
     }
 }
 
-impl Equation for FinitePlane {
+impl<A: Bounded> Flat for FinitePlane<A> {
+    type Accuracy = A;
+
+    #[inline(always)]
+    fn flat(&self) -> &Plane<A> {
+        &self.plane
+    }
+}
+
+impl<A: Bounded> Certified for FinitePlane<A> {
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        // What starts on the plane beside the rectangle does not meet it either.
+        self.plane.touches(at, error)
+    }
+
+    fn fine_distance(&self, ray: &Ray, _distance: f64) -> Option<Twofold> {
+        Some(self.plane.exact_crossing(ray))
+    }
+}
+
+impl<A> Equation for FinitePlane<A> {
     const IS_QUADRATIC: bool = true;
 
     fn value<N: Number>(&self, at: [N; 3]) -> N {
         self.plane.value(at)
     }
 
-    /// How far inside of the four sides, each in a measure of its own: unit vectors would need more roots.
     fn kept<N: Number>(&self, at: [N; 3]) -> N {
-        let n = |of: DVec3| of.to_array().map(N::constant);
-        let (normal, xdir) = (self.plane.given_normal(), n(self.given_xdir));
-        let (square, along) = (dot(normal, normal), dot(normal, xdir));
-        let x = [0, 1, 2].map(|axis| square * xdir[axis] - along * normal[axis]);
-        let y = cross(normal, x);
-        let corner = n(self.plane.point);
-        let from_corner = [0, 1, 2].map(|axis| at[axis] - corner[axis]);
-        let inside = |side: [N; 3], length: f64| {
-            let along = dot(side, from_corner);
-            along.min(N::constant(length) * dot(side, side).sqrt() - along)
-        };
-        let [width, height] = self.dimensions.to_array();
-        self.plane.kept(at).min(inside(x, width)).min(inside(y, height))
+        self.plane.kept(at).min(self.inside_of(at))
     }
 }

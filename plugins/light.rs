@@ -1,10 +1,6 @@
 //! A light: a point that shines evenly in all directions.
 
-use crate::scene::entity::{Args, Entity};
-use crate::scene::pparm::{Pparm, Table};
-use crate::world::hittable::Light;
-use crate::world::material::Rgb;
-use glam::DVec3;
+use crate::prelude::*;
 
 static LOCATION: Pparm<DVec3> = Pparm::required("location", "where it is").unit("world coordinates");
 static EMISSIVITY: Pparm<Rgb> =
@@ -33,7 +29,7 @@ pub struct PointLight {
 
 impl PointLight {
     /// The light of an entity whose table has [`TABLE`]'s rows.
-    pub fn new(args: &Args) -> Self {
+    pub fn new(args: &Attributes) -> Self {
         Self { location: args.get(&LOCATION), emissivity: args.get(&EMISSIVITY), size: args.get(&SIZE) }
     }
 }

@@ -1,9 +1,6 @@
 //! A material: how a surface answers light.
 
-use crate::scene::entity::Entity;
-use crate::scene::pparm::{Pparm, Table};
-use crate::scene::value::PerChannel;
-use crate::world::material::{Material, Rgb};
+use crate::prelude::*;
 
 static AMBIENT: Pparm<Rgb> =
     Pparm::or("ambient", "red, green and blue of the light that it sends by itself", Rgb::ZERO);

@@ -1,10 +1,7 @@
 //! A procedural sphere: a sphere whose look changes from place to place by a rule.
 
-use super::sphere::{self, Sphere};
-use crate::scene::entity::Entity;
-use crate::scene::pparm::{Pparm, Row, Table};
-use crate::world::hittable::Body;
-use crate::world::shading::{Anchor, OnSphere};
+use super::sphere;
+use crate::prelude::*;
 
 static SHADER: Pparm<OnSphere> = Pparm::required("shader", "the rule for its look");
 
@@ -12,8 +9,8 @@ const TABLE: Table = &[&SHADER as &dyn Row];
 
 inventory::submit! {
     Entity::shape("psphere", "a ball that looks as a rule has it", &[sphere::TABLE, TABLE], |args| {
-        let sphere = Sphere::new(args);
-        let anchor = Anchor { origin: sphere.center, unit: 2.0 * sphere.radius };
-        Ok(Body::procedural(sphere, args.get(&SHADER).0, anchor))
+        let (center, radius) = sphere::ball(args);
+        let anchor = Anchor { origin: center, unit: 2.0 * radius };
+        Ok(Body::procedural(sphere::shape(args), args.get(&SHADER).0, anchor))
     })
 }

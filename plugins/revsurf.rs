@@ -1,14 +1,7 @@
 //! A surface of revolution: a line turned around an axis.
 
-use crate::geometry::frame::Frame;
-use crate::numeric::formula::Formula;
-use crate::scene::entity::{Args, Entity, Refusal};
-use crate::scene::pparm::{Pparm, Table};
-use crate::scene::profile::{Line, Profile};
-use crate::shapes::revolution::{Classic, Finish, InFrame, Revolution};
-use crate::world::accuracy::Accuracy;
-use crate::world::hittable::Body;
-use glam::DVec3;
+use crate::prelude::*;
+use crate::shapes::{Classic, Finish, InFrame, Revolution};
 use std::sync::Arc;
 
 static SURFER: Pparm<Option<&'static Profile>> =
@@ -35,7 +28,7 @@ inventory::submit! {
         let (line, height) = (line(args)?, args.get(&HEIGHT));
         let finish = match args.accuracy() {
             Accuracy::Classic => {
-                return Ok(Body::plain(InFrame { surface: Classic { line, height }, frame }));
+                return Ok(Body::plain(Shape::new(InFrame { surface: Classic { line, height }, frame }).classic()));
             }
             Accuracy::Draft => Finish::Bracket,
             Accuracy::Exact | Accuracy::Strict => Finish::Root,
@@ -45,15 +38,15 @@ inventory::submit! {
             let (what, help) = fault.told();
             Refusal { attribute, message: format!("has a profile {what}"), help }
         })?;
-        Ok(Body::plain(InFrame { surface, frame }))
+        Ok(Body::plain(Shape::new(InFrame { surface, frame }).in_packets().searched()))
     })
 }
 
 /// The line that an entity names or spells out.
-fn line(args: &Args) -> Result<Line, Refusal> {
+fn line(args: &Args) -> Result<ProfileLine, Refusal> {
     match (args.get(&SURFER), args.get(&PROFILE)) {
         (Some(profile), None) => Ok(profile.line()),
-        (None, Some(formula)) => Ok(Line { radius: (*formula).clone(), slope: None }),
+        (None, Some(formula)) => Ok(ProfileLine { radius: (*formula).clone(), slope: None }),
         (Some(_), Some(_)) => Err(Refusal {
             attribute: Some("profile"),
             message: "has a surfer and a profile".to_owned(),

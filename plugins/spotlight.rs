@@ -1,12 +1,7 @@
 //! A spotlight: a light that shines into a cone.
 
 use super::light::{self, PointLight};
-use crate::scene::entity::{Args, Entity, Refusal};
-use crate::scene::pparm::{Derived, Pparm, Table};
-use crate::scene::value::Value;
-use crate::world::hittable::Light;
-use crate::world::material::Rgb;
-use glam::DVec3;
+use crate::prelude::*;
 
 static POINT: Pparm<DVec3> =
     Pparm::required("point", "where the middle of its beam goes").unit("world coordinates").not_dumped();
@@ -34,7 +29,7 @@ inventory::submit! {
 }
 
 /// The unit vector along the middle of the beam; NaN where there is none.
-fn axis(args: &Args) -> DVec3 {
+fn axis(args: &Attributes) -> DVec3 {
     (args.get(&POINT) - PointLight::new(args).location).normalize()
 }
 

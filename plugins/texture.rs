@@ -1,8 +1,6 @@
 //! A texture: a picture from a file.
 
-use crate::scene::entity::Entity;
-use crate::scene::pparm::{Pparm, Table};
-use crate::world::texture::Texture;
+use crate::prelude::*;
 
 static FILENAME: Pparm<String> =
     Pparm::required("filename", "the file of the picture, a PPM or PNG, from the scene's folder");

@@ -1,12 +1,8 @@
 //! A tiled plane: tiles of two materials, without end.
 
 use super::fplane::{self, DIMENSIONS, sides};
-use super::plane::{self, Plane};
-use crate::scene::entity::Entity;
-use crate::scene::pparm::{Pparm, Table};
-use crate::world::hittable::{Body, Shader};
-use crate::world::material::{Look, Material, Rgb};
-use glam::{DVec2, DVec3};
+use super::plane;
+use crate::prelude::*;
 use std::sync::Arc;
 
 static ALTMATERIAL: Pparm<Arc<Material>> =
@@ -21,7 +17,7 @@ inventory::submit! {
             dimensions: args.get(&DIMENSIONS),
             other: args.get(&ALTMATERIAL),
         };
-        Ok(Body::shaded(Plane::new(args), tiles))
+        Ok(Body::shaded(plane::shape(args), tiles))
     })
     .alias(&["tplane"])
     .dumped_as("tplane")

@@ -1,12 +1,6 @@
 //! A torus: a ball's way around a circle.
 
-use crate::geometry::frame::Frame;
-use crate::numeric::number::Number;
-use crate::scene::entity::Entity;
-use crate::scene::pparm::{Pparm, Table};
-use crate::shapes::implicit::Implicit;
-use crate::world::hittable::Body;
-use glam::DVec3;
+use crate::prelude::*;
 
 static CENTER: Pparm<DVec3> =
     Pparm::required("center", "the point in its middle").alias(&["centre"]).unit("world coordinates");

@@ -1,16 +1,8 @@
 //! A triangle.
 
-use crate::geometry::bounds::Bounds;
-use crate::geometry::sight::Sight;
-use crate::numeric::number::{Number, cross, dot};
-use crate::numeric::twofold::{self, Twofold, exponent_to_one, times_power_of_two, triple_product, unit};
-use crate::scene::entity::{Entity, Refusal};
-use crate::scene::pparm::{Pparm, Table};
-use crate::shapes::flat::Plane;
-use crate::world::accuracy::Accuracy;
-use crate::world::certify::{self, Enclosure, Equation, Precision};
-use crate::world::hittable::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
-use glam::DVec3;
+use crate::prelude::*;
+use crate::shapes::Triangle;
+use crate::shapes::flat::{CLASSIC_METHOD, Flat, Plane};
 
 static VERTEX1: Pparm<DVec3> = Pparm::required("vertex1", "its first corner").unit("world coordinates");
 static VERTEX2: Pparm<DVec3> =
@@ -27,60 +19,88 @@ const TABLE: Table = &[&VERTEX1, &VERTEX2, &VERTEX3, &NORMAL, &POINT];
 
 inventory::submit! {
     Entity::shape("triangle", "a triangle", &[TABLE], |args| {
-        let corners = [args.get(&VERTEX1), args.get(&VERTEX2), args.get(&VERTEX3)];
-        let plane = plane_through(corners, args.accuracy()).ok_or_else(|| Refusal {
+        let shape = shape(args).ok_or_else(|| Refusal {
             attribute: Some("vertex3"),
             message: "has its corners in one line".to_owned(),
             help: "three corners that are not in one line make a triangle",
         })?;
-        Ok(Body::plain(Triangle { plane, corners }))
+        Ok(Body::plain(shape))
     })
 }
 
-/// The plane through three points; nothing where they are in one line.
-fn plane_through([a, b, c]: [DVec3; 3], accuracy: Accuracy) -> Option<Plane> {
-    let edge = |to: DVec3| {
-        let edge = [0, 1, 2].map(|axis| Twofold::difference(to[axis], a[axis]));
-        scaled_to_one(edge)
-    };
-    // Each component is rounded once, however thin the triangle is.
-    let upright = scaled_to_one(twofold::cross(edge(b), edge(c)));
-    let normal = match accuracy {
-        Accuracy::Classic => (b - a).cross(c - a).try_normalize()?,
-        _ if upright.iter().all(|part| part.high == 0.0) => return None,
-        _ => DVec3::from(unit(upright).map(|part| part.high)),
-    };
-    Some(Plane { normal, upright, point: a, accuracy })
+fn shape(args: &Args) -> Option<AnyShape> {
+    let corners = [args.get(&VERTEX1), args.get(&VERTEX2), args.get(&VERTEX3)];
+    Some(match args.accuracy() {
+        Accuracy::Classic => Shape::new(Triangle::classic(corners)?).classic().into(),
+        Accuracy::Draft => Shape::new(Triangle::<Draft>::new(corners)?).flat().certified().into(),
+        Accuracy::Exact => Shape::new(Triangle::<Exact>::new(corners)?).flat().certified().into(),
+        Accuracy::Strict => Shape::new(Triangle::<Strict>::new(corners)?).flat().certified().into(),
+    })
 }
 
-/// A vector times the power of two that makes its greatest component one between 1/2 and 1.
-fn scaled_to_one(vector: [Twofold; 3]) -> [Twofold; 3] {
-    let exponent = exponent_to_one(vector.iter().fold(0.0, |most, part| part.high.abs().max(most)));
-    let scaled = |part: f64| times_power_of_two(part, exponent);
-    vector.map(|Twofold { high, low }| Twofold { high: scaled(high), low: scaled(low) })
-}
-
-struct Triangle {
-    plane: Plane,
-    corners: [DVec3; 3],
-}
-
-impl Hittable for Triangle {
+impl Hittable for Triangle<Classic> {
     #[inline(always)]
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
         let distance = self.plane.distance(ray, within);
-        let is_inside = match self.plane.accuracy {
-            Accuracy::Classic => self.contains(ray.at(distance)),
-            _ => self.is_passed_by(ray),
-        };
-        if is_inside { distance } else { MISS }
+        if self.contains(ray.at(distance)) { distance } else { MISS }
     }
 
+    fn normal(&self, _at: DVec3) -> DVec3 {
+        self.plane.normal
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        Some(Bounds::around(&self.corners))
+    }
+
+    fn meets_itself(&self, _leaving: Side) -> bool {
+        false
+    }
+
+    fn plane(&self) -> Option<[DVec3; 2]> {
+        Some([self.plane.point, self.plane.normal])
+    }
+
+    fn method(&self) -> String {
+        CLASSIC_METHOD.to_owned()
+    }
+}
+
+impl<A: Bounded> Hittable for Triangle<A> {
+    #[inline(always)]
+    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
+        let distance = self.plane.distance(ray, within);
+        if self.is_passed_by(ray) { distance } else { MISS }
+    }
+
+    fn normal(&self, _at: DVec3) -> DVec3 {
+        self.plane.normal
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        Some(Bounds::around(&self.corners))
+    }
+
+    fn meets_itself(&self, _leaving: Side) -> bool {
+        false
+    }
+
+    fn is_clear_of(&self, region: &Bounds) -> bool {
+        self.plane.is_clear_of(region) || !Bounds::around(&self.corners).overlaps(region)
+    }
+
+    fn plane(&self) -> Option<[DVec3; 2]> {
+        Some([self.plane.point, self.plane.normal])
+    }
+
+    fn method(&self) -> String {
+        self.plane.method().to_owned()
+    }
+}
+
+impl<A: Bounded> Bracketed for Triangle<A> {
     #[inline(always)]
     fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        if self.plane.accuracy == Accuracy::Classic {
-            return Bracket::exactly(self.quick_distance(ray, within));
-        }
         let rough = self.plane.rough(ray, within.origin_error);
         let Bracket { near, far } = self.plane.bracket(&rough, ray, within);
         let passed = self.passed(ray);
@@ -91,57 +111,32 @@ impl Hittable for Triangle {
     }
 
     #[inline(always)]
-    fn quick_distance(&self, ray: &Ray, within: &Span) -> f64 {
-        let distance = self.plane.quick_distance(ray, within);
-        let is_inside = match self.plane.accuracy {
-            Accuracy::Classic => Some(self.contains(ray.at(distance))),
-            _ => self.passed(ray),
-        };
-        match is_inside {
-            Some(true) => distance,
-            Some(false) => MISS,
-            None => f64::NAN,
-        }
+    fn refine(&self, ray: &Ray, _leaves: Option<Side>) -> f64 {
+        // A hit that is certain is inside.
+        self.plane.quick_crossing(ray)
     }
+}
 
-    fn bounds(&self) -> Option<Bounds> {
-        (self.plane.accuracy != Accuracy::Classic).then(|| Bounds::around(&self.corners))
+impl<A: Bounded> Flat for Triangle<A> {
+    type Accuracy = A;
+
+    #[inline(always)]
+    fn flat(&self) -> &Plane<A> {
+        &self.plane
     }
+}
 
-    fn is_clear_of(&self, region: &Bounds) -> bool {
-        self.plane.is_clear_of(region) || self.bounds().is_some_and(|bounds| !bounds.overlaps(region))
-    }
-
-    fn meets_itself(&self, leaving: Side) -> bool {
-        self.plane.meets_itself(leaving)
-    }
-
+impl<A: Bounded> Certified for Triangle<A> {
     fn touches(&self, at: DVec3, error: f64) -> bool {
         self.plane.touches(at, error)
     }
 
     fn fine_distance(&self, ray: &Ray, _distance: f64) -> Option<Twofold> {
-        (self.plane.accuracy != Accuracy::Classic).then(|| self.plane.exact_crossing(ray))
-    }
-
-    fn normal(&self, at: DVec3) -> DVec3 {
-        self.plane.normal(at)
-    }
-
-    fn plane(&self) -> Option<[DVec3; 2]> {
-        Hittable::plane(&self.plane)
-    }
-
-    fn method(&self) -> String {
-        self.plane.method().to_owned()
-    }
-
-    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        certify::first_hit(self, sight, precision)
+        Some(self.plane.exact_crossing(ray))
     }
 }
 
-impl Equation for Triangle {
+impl<A> Equation for Triangle<A> {
     const IS_QUADRATIC: bool = true;
 
     fn value<N: Number>(&self, at: [N; 3]) -> N {
@@ -150,70 +145,6 @@ impl Equation for Triangle {
     }
 
     fn kept<N: Number>(&self, at: [N; 3]) -> N {
-        let normal = self.upright();
-        let corners = self.corners.map(|corner| corner.to_array().map(N::constant));
-        let inside = |from: [N; 3], to: [N; 3]| {
-            // Upright on the edge, in the plane, toward the inside.
-            let inward = cross(normal, [0, 1, 2].map(|axis| to[axis] - from[axis]));
-            dot(inward, [0, 1, 2].map(|axis| at[axis] - from[axis]))
-        };
-        let [a, b, c] = corners;
-        self.plane.kept(at).min(inside(a, b)).min(inside(b, c)).min(inside(c, a))
+        self.plane.kept(at).min(self.inside(at))
     }
-}
-
-impl Triangle {
-    /// A vector upright on it, as long as twice its area.
-    fn upright<N: Number>(&self) -> [N; 3] {
-        let [a, b, c] = self.corners.map(|corner| corner.to_array().map(N::constant));
-        let from_a = |corner: [N; 3]| [0, 1, 2].map(|axis| corner[axis] - a[axis]);
-        cross(from_a(b), from_a(c))
-    }
-
-    /// Whether a point of the plane is to the left of every edge.
-    #[inline(always)]
-    fn contains(&self, at: DVec3) -> bool {
-        let left_of = |from: DVec3, to: DVec3| (to - from).cross(at - from).dot(self.plane.normal) >= 0.0;
-        let [a, b, c] = self.corners;
-        left_of(a, b) && left_of(b, c) && left_of(c, a)
-    }
-
-    /// Whether a ray, continued both ways, passes every edge on the same side.
-    ///
-    /// Of an edge that two triangles share, each computes the same number but for its sign, so that no ray falls
-    /// through between them (Woop, Benthin and Wald 2013).
-    #[inline(always)]
-    fn is_passed_by(&self, ray: &Ray) -> bool {
-        self.passed(ray).unwrap_or_else(|| {
-            let [a, b, c] = self.corners;
-            let sides = [(a, b), (b, c), (c, a)].map(|(from, to)| exact_side(from, to, ray));
-            sides.iter().all(|side| *side >= 0.0) || sides.iter().all(|side| *side <= 0.0)
-        })
-    }
-
-    /// Likewise, or nothing where rounding could have turned a sign.
-    #[inline(always)]
-    fn passed(&self, ray: &Ray) -> Option<bool> {
-        let [a, b, c] = self.corners.map(|corner| corner - ray.origin);
-        let side = |from: DVec3, to: DVec3| {
-            let side = from.cross(to).dot(ray.dir);
-            // Units of 2^-53 of the greatest components' product: a component of the cross product is off by 4 of its
-            // two parts, a camera's direction by 3 and the product by 4; of at most 1.74 components in sum, 3 for the
-            // direction: 14 + 6 * 3 + 14 = 46, less than 64.
-            let error = 32.0 * f64::EPSILON * from.abs().max_element() * to.abs().max_element();
-            (side > error, side < -error)
-        };
-        let (one, two, three) = (side(a, b), side(b, c), side(c, a));
-        let is_inside = (one.0 & two.0 & three.0) | (one.1 & two.1 & three.1);
-        let is_outside = (one.0 | two.0 | three.0) & (one.1 | two.1 | three.1);
-        if is_inside | is_outside { Some(is_inside) } else { None }
-    }
-}
-
-/// On which side of the line from one point to another a ray passes: the sign tells, and 0 where it meets the line.
-#[inline(never)]
-fn exact_side(from: DVec3, to: DVec3, ray: &Ray) -> f64 {
-    let place =
-        |of: DVec3| scaled_to_one([0, 1, 2].map(|axis| Twofold::difference(of[axis], ray.origin[axis])));
-    triple_product(place(from), place(to), ray.dir.to_array()).high
 }

@@ -1,14 +1,15 @@
 //! `tabray render --aov`: pictures beside the main one, and exact numbers.
 
-use super::output::Output;
+use super::failure::Failure;
+use super::output::{Output, finished};
 use super::progress::Progress;
-use super::render::finished;
-use super::{Failure, interrupt, messages};
+use super::{interrupt, messages};
 use crate::output::aov::Aov;
 use crate::output::picture::Format;
+use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::scene::model::Model;
-use crate::world::sample::{self, Sampler};
+use crate::world::sample::Sampler;
 use std::ffi::OsStr;
 use std::io::{self, BufWriter, Write};
 use std::iter;
@@ -104,7 +105,7 @@ const TRUE_LEAST: u32 = 64;
 
 /// Makes the pictures and writes their files. `exact` makes the model that errors are seen against.
 pub fn write(
-    model: &Model,
+    plan: &Plan,
     exact: impl FnOnce() -> Result<Model, Failure>,
     threads: usize,
     format: Format,
@@ -113,21 +114,22 @@ pub fn write(
     if files.is_empty() {
         return Ok(());
     }
-    let own;
+    let (exact_model, own);
     let truth = if files.iter().any(|file| file.aov == Aov::Error) {
-        let mut exact = exact()?;
-        let samples = (TRUE_TIMES * model.camera.value.samples).clamp(TRUE_LEAST, sample::MOST);
-        (exact.camera.value.samples, exact.camera.value.sampler) = (samples, Sampler::Sobol);
+        exact_model = exact()?;
+        let mut exact = Plan::new(&exact_model);
+        let samples = (TRUE_TIMES * plan.camera.samples).clamp(TRUE_LEAST, Sampler::MOST);
+        (exact.camera.samples, exact.camera.sampler) = (samples, Sampler::Sobol);
         own = exact;
         &own
     } else {
-        model
+        plan
     };
     let renderer = Renderer::new(threads)?;
-    let size = model.camera.value.pixels;
+    let size = plan.camera.pixels;
     for Files { aov, picture, exact } in files {
         let progress = Progress::new(size[1]);
-        let layer = aov.render(&renderer, model, truth, &|| {
+        let layer = aov.render(&renderer, plan, truth, &|| {
             progress.step();
             interrupt::check()
         });

@@ -1,6 +1,7 @@
 //! `tabray bench`: how fast scenes are traced on one core.
 
-use super::{Failure, cpu, input, method, print};
+use super::failure::{Failure, print};
+use super::{cpu, input, method};
 use crate::scene::model::Model;
 use crate::scene::reader;
 use crate::scene::registry::Registry;

@@ -1,10 +1,10 @@
 //! `tabray chart`: what each choice costs in a scene, and how wrong it is.
 
+use super::failure::{Failure, print};
 use super::input::{self, Source};
-use super::output::{self, Output};
+use super::output::{self, Output, finished};
 use super::progress::Progress;
-use super::render::finished;
-use super::{Failure, interrupt, messages, print};
+use super::{interrupt, messages};
 use crate::scene::choice::Choice;
 use crate::scene::model::Model;
 use crate::scene::registry::Registry;

@@ -1,6 +1,7 @@
 //! `tabray check`: the faults of scenes, and nothing else.
 
-use super::{Failure, input, messages, tell};
+use super::failure::{Failure, tell};
+use super::{input, messages};
 use crate::scene::registry::Registry;
 use std::path::PathBuf;
 

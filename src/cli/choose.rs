@@ -1,8 +1,9 @@
 //! `tabray choose`: accuracy and samples for an error or a time.
 
 use super::chart::{Work, all_accuracies};
+use super::failure::{Failure, print};
 use super::input::{self, Source};
-use super::{Failure, interrupt, print, program};
+use super::{interrupt, program};
 use crate::scene::choice::Choice;
 use crate::scene::registry::Registry;
 use crate::tools::chart::{self, Estimate};

@@ -1,7 +1,8 @@
 //! `tabray convert`: a scene in the other spelling.
 
+use super::failure::{Failure, print};
 use super::output::Output;
-use super::{Failure, input, messages, print};
+use super::{input, messages};
 use crate::scene::dump;
 use crate::scene::model::Model;
 use crate::scene::reader;

@@ -1,6 +1,6 @@
 //! `--cpu`: which of the processor's instructions are used.
 
-use super::Failure;
+use super::failure::Failure;
 use crate::simd::cpu::{Cpu, Level};
 
 #[derive(clap::Args)]

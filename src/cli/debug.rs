@@ -1,6 +1,8 @@
 //! `tabray render --debug`: the notes' debug lines, for some pixels or for all.
 
-use super::{Failure, interrupt, probe};
+use super::failure::Failure;
+use super::{interrupt, probe};
+use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::scene::model::Model;
 use crate::tools::debug::{self, Line};
@@ -46,12 +48,13 @@ pub fn print(model: &Model, args: &Args) -> Result<(), Failure> {
         Some([a, b]) => [probe::inside(model, a)?, probe::inside(model, b)?],
         None => [[0, 0], [width - 1, height - 1]],
     };
+    let plan = Plan::new(model);
     let printed = Renderer::new(1)?.run(|| {
         let mut out = BufWriter::new(io::stderr());
         // The notes' order.
         for y in a[1].min(b[1])..=a[1].max(b[1]) {
             for x in a[0].min(b[0])..=a[0].max(b[0]) {
-                debug::pixel(model, x, y, &lines, &mut out)?;
+                debug::pixel(&plan, x, y, &lines, &mut out)?;
                 if interrupt::check().is_break() {
                     return Err(io::ErrorKind::Interrupted.into());
                 }

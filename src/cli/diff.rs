@@ -1,8 +1,9 @@
 //! `tabray diff`: how two pictures differ.
 
 use super::explain::Place;
+use super::failure::{Failure, print, tell};
 use super::report::{Change, Item, Page};
-use super::{Failure, input, picture, print, tell};
+use super::{input, picture};
 use crate::output::compare::Comparison;
 use crate::scene::registry::Registry;
 use image::RgbImage;

@@ -1,6 +1,7 @@
 //! `tabray dump`: a scene as the program understands it.
 
-use super::{Failure, input, print};
+use super::failure::{Failure, print};
+use super::input;
 use crate::scene::dump;
 use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;

@@ -1,6 +1,7 @@
 //! What `probe` says of a picture's pixel, for reports: by this program, and by one from before.
 
 use crate::output::compare::Pixel;
+use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::scene::model::Model;
 use crate::tools::probe;
@@ -41,12 +42,13 @@ impl Place<'_> {
         by_another.into_iter().chain([explanation(title, self.by_this(), new)]).collect()
     }
 
-    fn by_this(mut self) -> Result<String, String> {
-        self.model.camera.value.pixels = self.size();
+    fn by_this(self) -> Result<String, String> {
+        let mut plan = Plan::new(&self.model);
+        plan.camera.pixels = self.size();
         let (x, y) = (self.pixel.x as usize, self.pixel.y as usize);
         let mut out = Vec::new();
         Renderer::new(1)
-            .and_then(|renderer| renderer.run(|| probe::pixel(&self.model, x, y, &mut out)))
+            .and_then(|renderer| renderer.run(|| probe::pixel(&plan, x, y, &mut out)))
             .map_err(|error| words::reason(&error))?;
         Ok(String::from_utf8_lossy(&out).into_owned())
     }

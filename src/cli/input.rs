@@ -1,6 +1,7 @@
 //! Reading scenes from files and from standard input.
 
-use super::{Failure, messages};
+use super::failure::Failure;
+use super::messages;
 use crate::scene::model::Model;
 use crate::scene::reader::{self, Chosen, Loaded, Report};
 use crate::scene::registry::Registry;

@@ -1,6 +1,7 @@
 //! `tabray list`: the entity types and their attributes, from their tables.
 
-use super::{Failure, print, program};
+use super::failure::{Failure, print};
+use super::program;
 use crate::scene::entity::Entity;
 use crate::scene::pparm::Attribute;
 use crate::scene::reference;

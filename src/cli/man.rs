@@ -1,7 +1,8 @@
 //! `tabray man`: manual pages, as packages install them.
 
+use super::failure::Failure;
 use super::output::{self, Output};
-use super::{Failure, messages, program};
+use super::{messages, program};
 use crate::scene::registry::Registry;
 use clap::Command;
 use clap_mangen::Man;
@@ -15,10 +16,10 @@ pub struct Args {
     folder: PathBuf,
 }
 
-pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
+pub fn run(registry: &Registry, args: &Args, command: clap::Command) -> Result<(), Failure> {
     let folder = &args.folder;
     output::folder(folder)?;
-    let mut command = program::described(registry).disable_help_subcommand(true);
+    let mut command = program::described(command, registry).disable_help_subcommand(true);
     command.build();
     let count = pages(command, folder)?;
     messages::note(&format!("wrote {count} pages to {}", folder.display()));

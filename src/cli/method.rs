@@ -1,6 +1,6 @@
 //! `--method` and `--accuracy`: how exactly a scene is traced, whatever it says itself.
 
-use super::Failure;
+use super::failure::Failure;
 use crate::world::accuracy::Accuracy;
 
 #[derive(clap::Args)]

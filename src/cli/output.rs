@@ -1,10 +1,11 @@
 //! Where a picture goes: beside its target first, then in its place, so that no half of one is ever there.
 
-use super::Failure;
+use super::failure::Failure;
 use super::temporary::Temporary;
+use crate::output::picture::Format;
 use crate::words;
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, IsTerminal, Seek, Write};
+use std::io::{self, BufWriter, IsTerminal, Seek, Write};
 use std::path::{Path, PathBuf};
 
 /// A place to write to, found fit before any work is done.
@@ -121,4 +122,20 @@ impl Write for Output {
             Self::File(file, _) => file.file().flush(),
         }
     }
+}
+
+/// Puts a picture in its place, if it was written without an error.
+pub fn finished(path: &Path, written: io::Result<()>, out: BufWriter<Output>) -> Result<(), Failure> {
+    match written.and_then(|()| out.into_inner().map_err(|error| error.into_error())?.finish()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::cannot_write(path, &error)),
+        _ => Ok(()),
+    }
+}
+
+/// The format that a file's name says, or what would be right.
+pub fn named(path: &Path, help: &str) -> Result<Format, Failure> {
+    Format::of(path).ok_or_else(|| {
+        let message = format!("the name `{}` does not say which format the picture has", path.display());
+        Failure::Usage(message, Some(help.to_owned()))
+    })
 }

@@ -1,6 +1,6 @@
 //! Reading pictures, to compare them.
 
-use super::Failure;
+use super::failure::Failure;
 use crate::words;
 use image::{DynamicImage, ImageReader, RgbImage};
 use std::fs::File;

@@ -1,6 +1,8 @@
 //! `tabray probe`: one pixel, explained.
 
-use super::{Failure, input, method};
+use super::failure::Failure;
+use super::{input, method};
+use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::scene::model::Model;
 use crate::scene::registry::Registry;
@@ -27,7 +29,8 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let model = input::load(registry, &args.scene, args.method.accuracy()?)?;
     let [x, y] = inside(&model, [args.x, args.y])?;
     let mut out = BufWriter::new(io::stdout());
-    let printed = Renderer::new(1)?.run(|| probe::pixel(&model, x, y, &mut out).and_then(|()| out.flush()));
+    let printed =
+        Renderer::new(1)?.run(|| probe::pixel(&Plan::new(&model), x, y, &mut out).and_then(|()| out.flush()));
     match printed {
         // A reader that has had enough is no failure.
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {

@@ -1,18 +1,19 @@
 //! `tabray render`: a scene's picture.
 
+use super::failure::Failure;
 use super::input::Source;
 use super::job::Job;
-use super::output::Output;
+use super::output::{Output, named};
 use super::resume::Begun;
 use super::stats::{self, Stats};
-use super::{Failure, aov, cpu, debug, input, interrupt, messages, method, size, stop};
+use super::{aov, cpu, debug, input, interrupt, messages, method, size, stop};
 use crate::output::picture::{Compression, Format};
+use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::scene::reader::Loaded;
 use crate::scene::registry::Registry;
 use crate::world::accuracy::Accuracy;
-use crate::world::sample::{self, Sampler};
-use std::io::{self, BufWriter};
+use crate::world::sample::Sampler;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -32,7 +33,7 @@ pub struct Args {
     #[arg(long, value_name = "HOW", default_value = "fast")]
     compress: CompressionName,
     /// How many rays look through each pixel, to smooth edges; by default what the scene's camera says
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(sample::MOST)))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(Sampler::MOST)))]
     samples: Option<u32>,
     /// Where the rays of a pixel lie
     #[arg(long, value_name = "NAME", default_value = "sobol")]
@@ -104,12 +105,12 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     debug::print(&model, &args.debug)?;
     let threads = args.threads.unwrap_or(0).into();
     let start = Instant::now();
-    model.plan();
+    let plan = Plan::new(&model);
     stats.building += start.elapsed();
     let renderer = Renderer::new(threads)?.on(cpu);
     let whole = Instant::now();
     let job = Job {
-        model: &model,
+        plan: &plan,
         part: &part,
         renderer: &renderer,
         format,
@@ -130,15 +131,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         Ok(loaded) => Ok(loaded.model),
         Err(report) => Err(Failure::Scene(report)),
     };
-    aov::write(&model, exact, threads, format, beside)
-}
-
-/// Puts a picture in its place, if it was written without an error.
-pub fn finished(path: &Path, written: io::Result<()>, out: BufWriter<Output>) -> Result<(), Failure> {
-    match written.and_then(|()| out.into_inner().map_err(|error| error.into_error())?.finish()) {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::cannot_write(path, &error)),
-        _ => Ok(()),
-    }
+    aov::write(&plan, exact, threads, format, beside)
 }
 
 fn target(args: &Args) -> Result<PathBuf, Failure> {
@@ -170,12 +163,4 @@ fn format(args: &Args, path: &Path) -> Result<Format, Failure> {
             Format::Ppm => Ok(Format::Ppm),
         },
     }
-}
-
-/// The format that a file's name says, or what would be right.
-pub fn named(path: &Path, help: &str) -> Result<Format, Failure> {
-    Format::of(path).ok_or_else(|| {
-        let message = format!("the name `{}` does not say which format the picture has", path.display());
-        Failure::Usage(message, Some(help.to_owned()))
-    })
 }

@@ -1,8 +1,9 @@
 //! The page that shows what changed: one file with everything in it, which works without a network.
 
 use super::explain::Explanation;
+use super::failure::Failure;
+use super::messages;
 use super::output::Output;
-use super::{Failure, messages};
 use crate::output::compare::Comparison;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;

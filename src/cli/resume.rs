@@ -1,9 +1,9 @@
 //! Checkpoints beside pictures: left where a render stops, and gone on from by `--resume`.
 
-use super::job::Job;
+use super::failure::Failure;
+use super::messages;
 use super::output::Output;
 use super::size::Part;
-use super::{Failure, messages};
 use crate::output::checkpoint::{self, Checkpoint, Identity};
 use crate::output::picture::Format;
 use crate::render::tiles::{Band, Tiles};
@@ -107,32 +107,38 @@ fn cannot_read(path: &Path, error: &io::Error) -> Failure {
 /// black where nothing is rendered.
 ///
 /// Neither is put in its place before both are whole.
-pub fn leave(job: &Job, written: Output, tiles: &Tiles) -> Result<PathBuf, Failure> {
-    let path = beside(job.path);
+pub fn leave(
+    model: &Model,
+    part: &Part,
+    (picture, format): (&Path, Format),
+    written: Output,
+    tiles: &Tiles,
+) -> Result<PathBuf, Failure> {
+    let path = beside(picture);
     let cannot_write = |error: io::Error| Failure::cannot_write(&path, &error);
     let mut checkpoint = Output::open(&path)?;
-    let identity = identity(job.model, job.part)?;
+    let identity = identity(model, part)?;
     written
         .read()
-        .and_then(|file| job.format.read(file))
+        .and_then(|file| format.read(file))
         .and_then(|rows| {
             let mut out = BufWriter::with_capacity(1 << 16, &mut checkpoint);
-            checkpoint::write(&mut out, job.part.size(), &identity, tiles, rows)?;
+            checkpoint::write(&mut out, part.size(), &identity, tiles, rows)?;
             out.flush()
         })
         .map_err(cannot_write)?;
-    let partial = match job.format {
+    let partial = match format {
         Format::Ppm => written,
         // The checkpoint shows what is wanted.
         Format::Png(_) => {
             let mut shown = checkpoint.read().map_err(cannot_write)?;
-            let mut partial = Output::open(job.path)?;
-            io::copy(&mut shown, &mut partial).map_err(|error| Failure::cannot_write(job.path, &error))?;
+            let mut partial = Output::open(picture)?;
+            io::copy(&mut shown, &mut partial).map_err(|error| Failure::cannot_write(picture, &error))?;
             partial
         }
     };
     checkpoint.finish().map_err(cannot_write)?;
-    partial.finish().map_err(|error| Failure::cannot_write(job.path, &error))?;
+    partial.finish().map_err(|error| Failure::cannot_write(picture, &error))?;
     Ok(path)
 }
 

@@ -4,7 +4,7 @@
 //! kept out by what they cannot forge: the `Host` header, where a foreign name was made to lead here, and the `Origin`
 //! header. What is sent to change something must have one.
 
-use super::Failure;
+use super::failure::Failure;
 use crate::words;
 use http_body_util::combinators::BoxBody;
 use http_body_util::{BodyExt, Full, Limited};

@@ -1,6 +1,6 @@
 //! `--size`, `--quick` and `--crop`: how large the picture is, and which part of it is made.
 
-use super::Failure;
+use super::failure::Failure;
 use crate::world::camera::Camera;
 use std::ops::Range;
 

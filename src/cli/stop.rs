@@ -1,6 +1,7 @@
 //! When a render stops before its picture is finished: at an interruption, or at a limit of time or memory.
 
-use super::{Failure, interrupt, memory, messages};
+use super::failure::Failure;
+use super::{interrupt, memory, messages};
 use crate::render::tiles::{BAND, TILE};
 use crate::words;
 use bytesize::ByteSize;

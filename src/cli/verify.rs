@@ -1,9 +1,10 @@
 //! `tabray verify`: a proof, pixel by pixel, of which object is seen.
 
-use super::output::Output;
+use super::failure::{Failure, print};
+use super::output::{Output, finished, named};
 use super::progress::Progress;
-use super::render::{finished, named};
-use super::{Failure, input, interrupt, messages, method, print};
+use super::{input, interrupt, messages, method};
+use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::scene::registry::Registry;
 use crate::tools::verify::{self, Verdict};
@@ -43,7 +44,8 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let size = model.camera.value.pixels;
     let progress = Progress::new(size[1]);
     let renderer = Renderer::new(args.threads.unwrap_or(0).into())?;
-    let verdicts = verify::picture(&renderer, &model, &|| {
+    let plan = Plan::new(&model);
+    let verdicts = verify::picture(&renderer, &plan, &|| {
         progress.step();
         interrupt::check()
     });

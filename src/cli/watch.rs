@@ -6,8 +6,10 @@ mod events;
 mod files;
 mod frame;
 
+use super::failure::Failure;
 use super::serve::Server;
-use super::{Failure, input, interrupt, messages, method};
+use super::{input, interrupt, messages, method};
+use crate::render::plan::Plan;
 use crate::render::progressive;
 use crate::render::renderer::Renderer;
 use crate::scene::model::Model;
@@ -138,7 +140,7 @@ fn painter(board: Arc<Board>) -> Result<Sender<Arc<Frame>>, Failure> {
         for frame in frames {
             let start = Instant::now();
             let part = |area, colours: Vec<_>| board.add(&frame, events::part(&frame, &area, &colours));
-            let painted = progressive::render(&renderer, &frame.model, part, || frame.check());
+            let painted = progressive::render(&renderer, &Plan::new(&frame.model), part, || frame.check());
             if painted.is_continue() {
                 board.add(&frame, events::done(&frame, start.elapsed()));
             }

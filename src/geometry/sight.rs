@@ -1,8 +1,8 @@
 //! Rays of which every digit is known, so that something can be proven of them.
 
+use crate::geometry::ray::Ray;
 use crate::numeric::dual::Dual;
 use crate::numeric::number::Number;
-use crate::world::hittable::Ray;
 use glam::{DVec2, DVec3};
 
 /// A ray as a scene gives it, before anything is rounded.
@@ -65,10 +65,10 @@ impl Sight {
         Line { origin: self.origin.to_array().map(n), dir }
     }
 
-    /// How far it gets from t = 0 to 1, in world units.
-    pub fn length<N: Number>(&self) -> N {
+    /// The square of how far it gets from t = 0 to 1, in world units.
+    pub fn squared_length<N: Number>(&self) -> N {
         let [x, y, z] = self.line::<N>().dir.map(|part| part.powi(2));
-        (x + y + z).sqrt()
+        x + y + z
     }
 }
 

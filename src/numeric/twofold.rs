@@ -30,14 +30,6 @@ pub fn two_product(a: f64, b: f64) -> (f64, f64) {
     (product, ((a * b - product) + a * b_low + a_low * b) + a_low * b_low)
 }
 
-/// `start + distance * step`, rounded once: to half a unit in the last place of the result, not of `start`.
-#[inline(always)]
-pub fn advance(start: f64, distance: f64, step: f64) -> f64 {
-    let (product, product_low) = two_product(distance, step);
-    let (sum, sum_low) = two_sum(start, product);
-    sum + (product_low + sum_low)
-}
-
 /// `start + distance * step - from`: to a unit in the last place of the result, however far `start` is from there. The
 /// difference is exact where it cancels, and rounded once where it does not.
 #[inline(always)]
@@ -265,7 +257,6 @@ mod tests {
         assert_eq!(two_sum(1.0, 1e-17), (1.0, 1e-17));
         let (product, low) = two_product(1.0 + f64::EPSILON, 1.0 + f64::EPSILON);
         assert_eq!((product, low), (1.0 + 2.0 * f64::EPSILON, f64::EPSILON * f64::EPSILON));
-        assert_eq!(advance(1e8, 1.0, -1e8 + 1e-7), 1e8 + (-1e8 + 1e-7));
     }
 
     #[test]

@@ -69,13 +69,14 @@ impl Bundles {
 }
 
 kernels! {
-    /// Where the rays of a packet may go.
-    pub fn around(rays: Rays) -> Bundles {
+    /// Where the rays of a packet may go, which may all start at one place.
+    pub fn around(rays: Rays, is_from_one: bool) -> Bundles {
         let (mut bundles, count) = (Bundles::NONE, rays.len());
         let (mut least, mut greatest) = ([[0.0; PARTS]; 3], [[0.0; PARTS]; 3]);
         for (part, lanes) in parts(count, PART).enumerate() {
             let Rays { origin, dir, .. } = rays.part(lanes);
             for (axis, (from, to)) in [(origin.x, dir.x), (origin.y, dir.y), (origin.z, dir.z)].into_iter().enumerate() {
+                let from = if is_from_one { &from[..1] } else { from };
                 (bundles.low[axis][part], bundles.high[axis][part]) = range(from);
                 (least[axis][part], greatest[axis][part]) = range(to);
             }
@@ -128,8 +129,8 @@ kernels! {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::packet::{STEP, Vectors};
     use crate::simd::cpu::Cpu;
+    use crate::simd::soa::{STEP, Vectors};
     use proptest::prelude::*;
 
     /// A number as those in scenes are, 0 among them.
@@ -167,7 +168,8 @@ mod tests {
             let bounds = Bounds { low: to - half, high: to + half };
             let (origins, dirs, count) = rays(&ways);
             for cpu in Cpu::all() {
-                let bundles = around(cpu, Rays { origin: origins.view(count), dir: dirs.view(count), origin_error: 0.0 });
+                let bundles =
+                    around(cpu, Rays { origin: origins.view(count), dir: dirs.view(count), origin_error: 0.0 }, false);
                 let (part, mut met) = (1 << (chosen / PART), [0]);
                 meet(cpu, &bundles, &[(0, bounds)], &mut met);
                 prop_assert!(met[0] & part != 0, "{} to {}, {}", from, to, cpu);
@@ -188,8 +190,11 @@ mod tests {
             .collect();
         let (origins, dirs, count) = rays(&ways);
         for cpu in Cpu::all() {
-            let bundles =
-                around(cpu, Rays { origin: origins.view(count), dir: dirs.view(count), origin_error: 0.0 });
+            let bundles = around(
+                cpu,
+                Rays { origin: origins.view(count), dir: dirs.view(count), origin_error: 0.0 },
+                false,
+            );
             let at = |x: f64, y: f64| Bounds {
                 low: DVec3::new(x, y, -1.0),
                 high: DVec3::new(x + 2.0, y + 1.0, 1.0),

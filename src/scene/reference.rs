@@ -1,12 +1,13 @@
 //! The reference of the scene language, written from the tables: `docs/language.md`.
 
 use crate::scene::choice::{Choice, ChoiceName};
-use crate::scene::entity::{Entity, Kind};
+use crate::scene::entity::Entity;
+use crate::scene::kind::Kind;
 use crate::scene::pparm::Attribute;
+use crate::scene::procedural::{OnPlane, OnSphere};
 use crate::scene::profile::Profile;
 use crate::scene::registry::Registry;
 use crate::scene::value::{Datum, Type, Value};
-use crate::world::shading::{OnPlane, OnSphere};
 
 const INTRODUCTION: &str = r#"# The scene language
 

@@ -1,11 +1,12 @@
 //! The registry: all entity types of the program, by name.
 
 use crate::scene::choice::contradictions;
-use crate::scene::entity::{Entity, Kind};
+use crate::scene::entity::Entity;
+use crate::scene::kind::Kind;
+use crate::scene::procedural::{OnPlane, OnSphere};
 use crate::scene::profile::Profile;
 use crate::scene::syntax::Syntax;
 use crate::words::nearest;
-use crate::world::shading::{OnPlane, OnSphere};
 use std::collections::{BTreeMap, BTreeSet};
 use std::iter;
 use std::sync::LazyLock;
@@ -97,6 +98,12 @@ impl Registry {
         entity.map(|entity| syntax.entity_usage(entity, name)).unwrap_or_default()
     }
 
+    /// What a scene looks like, for those who have none.
+    pub(crate) fn first_steps(&self, syntax: Syntax) -> String {
+        let camera = self.example(Kind::Camera, "NAME", syntax);
+        format!("a scene begins with a camera, {camera}; then come materials, objects and lights")
+    }
+
     /// All entity types, sorted by name.
     pub fn iter(&self) -> impl Iterator<Item = &'static Entity> {
         self.entities.values().copied()
@@ -123,7 +130,7 @@ mod tests {
     use super::*;
     use crate::scene::pparm::{Pparm, Row, Table};
     use crate::scene::value::Type;
-    use crate::world::hittable::Body;
+    use crate::world::body::Body;
 
     static SIZE: Pparm<f64> = Pparm::required("size", "how large it is").alias(&["extent"]);
     static EXTENT: Pparm<f64> = Pparm::required("extent", "how far it reaches");

@@ -3,6 +3,7 @@
 use crate::scene::entity::Entity;
 use crate::scene::pparm::Attribute;
 use crate::scene::value::{Datum, Type};
+use std::fmt;
 use std::path::Path;
 
 /// A spelling of the scene language.
@@ -103,6 +104,13 @@ impl Syntax {
         let splits = |c: char| c.is_whitespace() || c == '{' || c == '}';
         let bare = !word.is_empty() && !word.starts_with(['#', '"']) && !word.contains(splits);
         if self == Self::Notes && bare { word.to_owned() } else { quoted(word) }
+    }
+}
+
+/// The values as the notes' spelling of a scene writes them: every number reads back to its last bit.
+impl fmt::Display for Datum {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&Syntax::Notes.values(self).join(" "))
     }
 }
 

@@ -3,11 +3,11 @@
 use crate::scene::choice::{Choice, ChoiceName};
 use crate::scene::entity::Entity;
 use crate::scene::pparm::Attribute;
+use crate::scene::procedural::{OnPlane, OnSphere};
 use crate::scene::profile::Profile;
 use crate::scene::registry::Registry;
 use crate::scene::schema::constant;
 use crate::scene::value::{Datum, Type};
-use crate::world::shading::{OnPlane, OnSphere};
 use serde_json::{Value, json};
 
 /// Grows when a field is taken away or comes to mean something else, and not when one is added.

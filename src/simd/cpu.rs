@@ -89,12 +89,12 @@ macro_rules! kernels {
     )*) => {$(
         $(#[$attribute])*
         #[allow(clippy::too_many_arguments, reason = "they are arrays")]
-        $visible fn $name$(<$T: $Bound + ?Sized>)?$(<const $N: usize>)?(
+        $visible fn $name$(<$T: $Bound>)?$(<const $N: usize>)?(
             cpu: $crate::simd::cpu::Cpu, $($argument: $type,)*
-            $($out: $crate::geometry::packet::ViewMut, $($second: $crate::geometry::packet::ViewMut)?)?
+            $($out: $crate::simd::soa::ViewMut, $($second: $crate::simd::soa::ViewMut)?)?
         ) $(-> $result)? {
             $crate::simd::cpu::levels! {
-                ($(<$T: $Bound + ?Sized>)?$(<const $N: usize>)?) (
+                ($(<$T: $Bound>)?$(<const $N: usize>)?) (
                     $($argument: $type,)*
                     $(
                         x: $crate::simd::cpu::beside!($out, &mut [f64]),
@@ -109,8 +109,8 @@ macro_rules! kernels {
                 ) ($(-> $result)?)
                 {
                     $(
-                        let mut $out = $crate::geometry::packet::ViewMut { x, y, z };
-                        $(let mut $second = $crate::geometry::packet::ViewMut { x: u, y: v, z: w };)?
+                        let mut $out = $crate::simd::soa::ViewMut { x, y, z };
+                        $(let mut $second = $crate::simd::soa::ViewMut { x: u, y: v, z: w };)?
                     )?
                     $body
                 }

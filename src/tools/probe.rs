@@ -1,10 +1,12 @@
 //! One pixel explained: its rays as an indented tree, with all that was tested, met and added up on the way.
 
-use crate::output::picture::to_byte;
-use crate::render::trace::{self, MAX_DIST, MAX_RAYS};
+use crate::geometry::ray::{MISS, Ray, Span};
+use crate::render::bytes::to_byte;
+use crate::render::limits::{MAX_DIST, MAX_RAYS};
+use crate::render::plan::Plan;
+use crate::render::trace::{self};
 use crate::render::watch::{Event, Hit, Outcome, Purpose, Reason, Watch};
 use crate::scene::model::Model;
-use crate::world::hittable::{MISS, Ray, Span};
 use crate::world::material::Rgb;
 use glam::DVec3;
 use std::io::{self, Write};
@@ -17,22 +19,29 @@ const DEEPEST: usize = 20;
 ///
 /// # Errors
 /// Those of `out`.
-pub fn pixel(model: &Model, x: usize, y: usize, out: &mut impl Write) -> io::Result<()> {
-    let camera = &model.camera.value;
+pub fn pixel(plan: &Plan, x: usize, y: usize, out: &mut impl Write) -> io::Result<()> {
+    let camera = &plan.camera;
     let [width, height] = camera.pixels;
     writeln!(out, "pixel {x} from the left and {y} from the bottom, of {width} x {height}\n")?;
     if camera.samples > 1 {
         writeln!(out, "of its {} rays, the one that would go through its middle:\n", camera.samples)?;
     }
-    let mut probe =
-        Probe { model, out, outcome: Ok(()), depth: 0, search: None, light: None, held: String::new() };
-    let colour = trace::watch_colour(model, &camera.sight(x as f64, y as f64), None, &mut probe);
+    let mut probe = Probe {
+        model: plan.model,
+        out,
+        outcome: Ok(()),
+        depth: 0,
+        search: None,
+        light: None,
+        held: String::new(),
+    };
+    let colour = trace::watch_colour(plan, &camera.sight(x as f64, y as f64), None, &mut probe);
     probe.outcome?;
     writeln!(out)?;
     conclude(colour, out)?;
     if camera.samples > 1 {
         writeln!(out, "\nall {} rays together:\n", camera.samples)?;
-        conclude(trace::pixel(model, x, y), out)?;
+        conclude(trace::pixel(plan, x, y), out)?;
     }
     Ok(())
 }

@@ -1,9 +1,9 @@
 //! The camera: from a pixel to the ray that it looks along.
 
+use crate::geometry::ray::Ray;
 use crate::geometry::sight::{self, Sight};
 use crate::simd::cpu::kernels;
 use crate::world::accuracy::Accuracy;
-use crate::world::hittable::Ray;
 use crate::world::sample::{Sample, Sampler};
 use glam::{DVec2, DVec3};
 
@@ -25,13 +25,8 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// The rays through a pixel, counted as [`ray`](Self::ray) counts, each with its random numbers. A single
-    /// ray goes through the middle and needs none.
-    pub fn rays(&self, x: usize, y: usize) -> impl Iterator<Item = (Ray, Option<Sample>)> + '_ {
-        self.places(x, y).map(|(place, sample)| (self.ray(place.x, place.y), sample))
-    }
-
-    /// The places that those rays go through.
+    /// The places that the rays through a pixel go through, counted as [`ray`](Self::ray) counts, each with its random
+    /// numbers. A single ray goes through the middle and needs none.
     pub(crate) fn places(&self, x: usize, y: usize) -> impl Iterator<Item = (DVec2, Option<Sample>)> + use<> {
         let Self { samples, sampler, .. } = *self;
         let (pixel, middle) = ((y * self.pixels[0] + x) as u32, DVec2::new(x as f64, y as f64));
@@ -68,6 +63,15 @@ impl Camera {
 }
 
 kernels! {
+    /// The places in the middles of pixels, by column and row.
+    pub(crate) fn middles(pixels: &[[usize; 2]], x: &mut [f64], y: &mut [f64]) {
+        let (x, y) = (&mut x[..pixels.len()], &mut y[..pixels.len()]);
+        for (lane, [column, row]) in pixels.iter().enumerate() {
+            // As signed numbers, which processors convert in one step.
+            (x[lane], y[lane]) = (*column as i64 as f64, *row as i64 as f64);
+        }
+    }
+
     /// The directions of the rays through these places.
     pub(crate) fn look(camera: &Camera, x: &[f64], y: &[f64]) => out {
         let count = x.len();

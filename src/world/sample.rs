@@ -4,9 +4,6 @@ use glam::DVec2;
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 
-/// The most samples that a pixel can have: as far as the sequence of `sobol_burley` goes.
-pub const MOST: u32 = 1 << 16;
-
 /// Where a pixel's samples lie.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sampler {
@@ -16,6 +13,11 @@ pub enum Sampler {
     /// 2020), scrambled anew for each pixel.
     #[default]
     Sobol,
+}
+
+impl Sampler {
+    /// The most samples that a pixel can have: as far as the sequence of `sobol_burley` goes.
+    pub const MOST: u32 = 1 << 16;
 }
 
 /// One of several samples of a pixel.

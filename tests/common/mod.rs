@@ -1,16 +1,13 @@
 //! What several tests need: the registry, scenes and decoded pictures.
 #![allow(dead_code, reason = "each test program uses a part of it")]
 
-pub mod copy;
 pub mod program;
 
 use image::RgbImage;
 use std::fs;
 use std::path::{Path, PathBuf};
-use tabray::render::renderer::Renderer;
-use tabray::scene::model::Model;
-use tabray::scene::reader;
-use tabray::scene::registry::Registry;
+use tabray::render::{Plan, Renderer};
+use tabray::scene::{self, Model, Registry};
 
 /// The entity types of the program.
 pub fn registry() -> &'static Registry {
@@ -29,7 +26,7 @@ pub fn model(text: &str) -> Model {
 
 /// The model of a scene's text, whose file names start from `folder`.
 pub fn model_in(folder: &Path, text: &str) -> Model {
-    match reader::read(registry(), "scene", folder, text.as_bytes(), None) {
+    match scene::read(registry(), "scene", folder, text.as_bytes(), None) {
         Ok(loaded) => loaded.model,
         Err(report) => panic!("{report}\n{text}"),
     }
@@ -50,7 +47,7 @@ pub fn block_with(page: &str, text: &str) -> String {
 /// The picture of a model.
 pub fn render(model: &Model) -> RgbImage {
     let [width, height] = model.camera.value.pixels.map(|side| side as u32);
-    let bytes = Renderer::new(0).expect("threads").picture(model);
+    let bytes = Renderer::new(0).expect("threads").picture(&Plan::new(model));
     RgbImage::from_raw(width, height, bytes).expect("three bytes for each pixel")
 }
 

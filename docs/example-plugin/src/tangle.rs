@@ -1,12 +1,6 @@
 //! A tangle: a closed surface of the fourth degree with a hole in each side of a cube.
 
-use tabray::geometry::frame::Frame;
-use tabray::glam::DVec3;
-use tabray::numeric::number::Number;
-use tabray::scene::entity::Entity;
-use tabray::scene::pparm::{Pparm, Table};
-use tabray::shapes::implicit::Implicit;
-use tabray::world::hittable::Body;
+use tabray::prelude::*;
 
 static CENTER: Pparm<DVec3> = Pparm::required("center", "the point in its middle").unit("world coordinates");
 static SIZE: Pparm<f64> = Pparm::required("size", "the distance from its center to its sides")
@@ -15,7 +9,7 @@ static SIZE: Pparm<f64> = Pparm::required("size", "the distance from its center 
 
 const TABLE: Table = &[&CENTER, &SIZE];
 
-tabray::inventory::submit! {
+inventory::submit! {
     Entity::shape("tangle", "a cube with holes through its middle", &[TABLE], |args| {
         Ok(Body::implicit(Tangle { size: args.get(&SIZE) }, Frame::at(args.get(&CENTER))))
     })

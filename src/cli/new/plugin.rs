@@ -1,10 +1,11 @@
 //! `tabray new plugin`: a plugin that works, and its scenes.
 
-use crate::cli::{Failure, messages, output};
+use crate::cli::failure::Failure;
+use crate::cli::{messages, output};
 use crate::scene::choice::Choice;
+use crate::scene::procedural::OnPlane;
 use crate::scene::profile::Profile;
 use crate::scene::registry::Registry;
-use crate::world::shading::OnPlane;
 use std::fs;
 use std::path::Path;
 use toml::de::DeTable;

@@ -1,6 +1,7 @@
 //! `tabray new scene`: a scene that explains itself.
 
-use crate::cli::{Failure, messages, output, program};
+use crate::cli::failure::Failure;
+use crate::cli::{messages, output, program};
 use crate::scene::syntax::Syntax;
 use std::path::PathBuf;
 

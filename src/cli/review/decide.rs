@@ -1,9 +1,10 @@
 //! `tabray review --serve`: the page that accepts and rejects.
 
-use super::Args;
+use super::items::items;
 use super::pending::{self, Pending};
+use crate::cli::failure::{Failure, tell};
 use crate::cli::serve::{self, Server};
-use crate::cli::{Failure, messages, report, tell};
+use crate::cli::{messages, report};
 use crate::scene::registry::Registry;
 use crate::words;
 use hyper::body::Bytes;
@@ -13,9 +14,13 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 /// Shows the page and does what is decided there.
-pub fn serve(registry: &'static Registry, args: &Args) -> Result<(), Failure> {
-    let (folder, before) = (args.folder.clone(), args.before.clone());
-    let server = Server::open(args.port)?;
+pub fn serve(
+    registry: &'static Registry,
+    folder: PathBuf,
+    before: Option<PathBuf>,
+    port: Option<u16>,
+) -> Result<(), Failure> {
+    let server = Server::open(port)?;
     messages::note(&format!("review at {} (Ctrl-C ends it)", server.url()));
     let run = server.run(async move |request: Request<Bytes>| {
         let verdict = match (request.method().as_str(), request.uri().path()) {
@@ -38,7 +43,7 @@ pub fn serve(registry: &'static Registry, args: &Args) -> Result<(), Failure> {
 }
 
 fn page(registry: &Registry, folder: &Path, before: Option<&Path>) -> Response<serve::Body> {
-    let html = super::items(registry, folder, before)
+    let html = items(registry, folder, before)
         .and_then(|(items, _)| report::html("tabray review", &items, true).map_err(Failure::from));
     match html {
         Ok(html) => serve::content(StatusCode::OK, "text/html; charset=utf-8", html),

@@ -4,7 +4,7 @@
 //! that the snapshot is binary, it is in a file of its own, `ball.snap.png` beside `ball.snap` and `ball.snap.new.png`
 //! beside `ball.snap.new`.
 
-use crate::cli::Failure;
+use crate::cli::failure::Failure;
 use crate::cli::output::Output;
 use crate::words;
 use std::fs;

@@ -4,6 +4,7 @@ use super::board::Board;
 use super::frame::Frame;
 use crate::cli::serve::{self, Body};
 use crate::output::aov::Aov;
+use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::tools::probe;
 use http_body_util::BodyExt;
@@ -75,7 +76,7 @@ fn pixel(frame: Arc<Frame>, x: &str, y: &str) -> Option<Job> {
     Some(Box::new(move || {
         Renderer::new(1)?.run(|| {
             let mut text = Vec::new();
-            probe::pixel(&frame.model, x, y, &mut text)?;
+            probe::pixel(&Plan::new(&frame.model), x, y, &mut text)?;
             let data = json!({ "text": String::from_utf8_lossy(&text), "lines": frame.lines_of([x, y]) });
             Ok(("application/json", data.to_string().into_bytes()))
         })
@@ -86,7 +87,8 @@ fn pixel(frame: Arc<Frame>, x: &str, y: &str) -> Option<Job> {
 fn layer(frame: Arc<Frame>, name: &str) -> Option<Job> {
     let aov = [Aov::Depth, Aov::Normal, Aov::Object, Aov::Cost].into_iter().find(|aov| aov.name() == name)?;
     Some(Box::new(move || {
-        let layer = aov.render(&Renderer::new(0)?, &frame.model, &frame.model, &|| frame.check())?;
+        let plan = Plan::new(&frame.model);
+        let layer = aov.render(&Renderer::new(0)?, &plan, &plan, &|| frame.check())?;
         Ok(("application/octet-stream", layer.bytes))
     }))
 }

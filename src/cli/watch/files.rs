@@ -1,6 +1,6 @@
 //! The files that a scene is read from, and who wants to know when one of them changes.
 
-use super::super::Failure;
+use super::super::failure::Failure;
 use crate::words;
 use notify::event::{AccessKind, AccessMode, EventKind, ModifyKind};
 use notify::{ErrorKind, Event, RecommendedWatcher, RecursiveMode, Watcher};

@@ -1,13 +1,16 @@
 //! Formulas in y, as a scene or a profile plugin writes them: `2 + sin(y)`.
 
 mod parser;
+mod step;
 
-use crate::geometry::packet::STEP;
+pub use parser::FormulaFault;
+
 use crate::numeric::dual::Dual;
 use crate::numeric::number::Number;
 use crate::numeric::octet::Octet;
+use crate::simd::soa::STEP;
 use std::fmt;
-use std::ops::Range;
+use step::{DEPTH, Function, Step};
 
 /// A formula in y, ready to be evaluated with any [`Number`].
 #[derive(Clone, Debug, PartialEq)]
@@ -21,51 +24,8 @@ pub struct Formula {
     is_plain: bool,
 }
 
-/// What is wrong with the text of a formula.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FormulaFault {
-    /// The bytes of the text to mark.
-    pub place: Range<usize>,
-    /// What is wrong.
-    pub message: String,
-    /// What would be right.
-    pub help: &'static str,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Step {
-    Y,
-    Number(f64),
-    Neg,
-    Add,
-    Sub,
-    Mul,
-    Div,
-    /// A power with a whole exponent.
-    Powi(i32),
-    Call(Function),
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Function {
-    Sin,
-    Cos,
-    Tan,
-    Exp,
-    Ln,
-    Sqrt,
-    Abs,
-    Floor,
-    Min,
-    Max,
-    Pow,
-}
-
 /// The values that wait in most formulas.
 const FEW: usize = 4;
-
-/// The most values that wait for their operation, and so how deep a formula can be nested.
-const DEPTH: usize = 32;
 
 impl Formula {
     /// Reads a formula.

@@ -1,9 +1,20 @@
 //! From the text of a formula to its steps, operands first.
 
-use super::{DEPTH, FormulaFault, Function, Step};
+use super::step::{DEPTH, Function, Step};
 use crate::words;
 use std::f64::consts::PI;
 use std::ops::Range;
+
+/// What is wrong with the text of a formula.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FormulaFault {
+    /// The bytes of the text to mark.
+    pub place: Range<usize>,
+    /// What is wrong.
+    pub message: String,
+    /// What would be right.
+    pub help: &'static str,
+}
 
 /// The functions of a formula, by name, each with how many arguments it takes.
 const FUNCTIONS: [(&str, Function, usize); 10] = [

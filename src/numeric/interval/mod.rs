@@ -38,12 +38,6 @@ impl<F: Float> Interval<F> {
         Self { low: -F::INFINITY, high: F::INFINITY }
     }
 
-    /// The numbers between two, in any order.
-    #[inline(always)]
-    pub fn hull(a: F, b: F) -> Self {
-        if a < b { Self { low: a, high: b } } else { Self { low: b, high: a } }
-    }
-
     /// One number.
     #[inline(always)]
     pub fn point(at: F) -> Self {
@@ -183,6 +177,11 @@ impl<F: Float> Mul for Interval<F> {
         let touches = |a: Self, b: Self| a.has_zero() && !b.is_bounded();
         if touches(self, other) || touches(other, self) {
             return Self::outward(low.min(F::of(0.0)), high.max(F::of(0.0)));
+        }
+        // No product of what is not negative is: a root can be taken of it.
+        let zero = F::of(0.0);
+        if self.low >= zero && other.low >= zero && low == zero {
+            return Self { low, ..Self::outward(low, high) };
         }
         Self::outward(low, high)
     }

@@ -1,28 +1,32 @@
 //! Which rays of a packet something blocks.
 
-use super::Tracer;
-use super::room::{Vectors, room};
+use super::arrays::{Vectors, room};
+use super::context::Tracer;
 use super::search::{Start, exact, invert};
+use super::surface::Surface;
 use crate::geometry::bounds::{self, Bounds};
 use crate::geometry::packet::{Rays, parts};
+use crate::geometry::ray::Side;
 use crate::render::bundles::PART;
+use crate::render::culling;
 use crate::render::tree::Visitor;
 use crate::render::watch::{Count, Watch};
-use crate::world::hittable::Side;
 use std::mem::take;
 use std::ops::Range;
 
 /// Rays that leave the same object.
 pub(super) struct Leaving<'r> {
     pub rays: Rays<'r>,
-    /// How many of them are no copies that fill the arrays up.
+    /// How many of them are no copies that fill the arrays up, and how many of those need to be gone.
     pub len: usize,
+    pub going: usize,
     /// Where they end; 0 for one that need not be gone.
     pub ends: &'r [f64],
-    pub object: usize,
+    /// Where they start: at places of this surface, of those in these lanes if not at all.
+    pub surface: &'r Surface,
+    pub lanes: Option<&'r [u8]>,
+    /// The sides of it that they leave.
     pub sides: &'r [Side],
-    /// How far the origin of each may be from the point that it stands for; empty where that is 0.
-    pub errors: &'r [f64],
 }
 
 impl Leaving<'_> {
@@ -30,6 +34,12 @@ impl Leaving<'_> {
     fn count(&self, part: &Range<usize>) -> usize {
         let part = part.start..part.end.min(self.len);
         self.ends[part].iter().filter(|end| **end > 0.0).count()
+    }
+
+    /// How far the origin of one may be from the point that it stands for, in world units.
+    fn error(&self, lane: usize) -> f64 {
+        let lane = lane.min(self.len - 1);
+        self.surface.error(self.lanes.map_or(lane, |lanes| usize::from(lanes[lane])))
     }
 }
 
@@ -39,7 +49,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
         let (mut ahead, mut inverse) = (take(&mut self.rooms.ahead), take(&mut self.rooms.inverse));
         let mut doubt = take(&mut self.rooms.doubt);
         let (part, doubted) = (0..leaving.ends.len(), room(&mut doubt, leaving.ends.len()));
-        let (len, region) = (leaving.count(&part), from.and(to).with_slack(0.0));
+        let (len, region) = (leaving.going, from.and(to).with_slack(0.0));
         Block { tracer: self, leaving, part, len, region, inverse: &mut inverse, blocked, doubt: doubted }
             .run(to, &mut ahead);
         (self.rooms.ahead, self.rooms.inverse, self.rooms.doubt) = (ahead, inverse, doubt);
@@ -71,8 +81,9 @@ impl<W: Watch> Block<'_, '_, '_, W> {
             if !self.tracer.may_meet(self.left(), *index) {
                 continue;
             }
-            let shape = &*self.tracer.model.objects[*index].shape;
-            if bounds.is_some_and(|bounds| !bounds.overlaps(&self.region)) || shape.is_clear_of(&self.region)
+            let object = &self.tracer.model.objects[*index];
+            if bounds.is_some_and(|bounds| !bounds.overlaps(&self.region))
+                || culling::is_clear_of(object, &self.region)
             {
                 self.tracer.watch.count(Count::Culled(*index, self.len));
                 continue;
@@ -95,22 +106,22 @@ impl<W: Watch> Block<'_, '_, '_, W> {
 
     /// The object that the rays leave, and the sides.
     fn left(&self) -> Option<(usize, &[Side])> {
-        Some((self.leaving.object, self.leaving.sides))
+        Some((self.leaving.surface.index, self.leaving.sides))
     }
 
     /// Looks at an object.
     fn test(&mut self, index: usize) {
-        let Leaving { rays, ends, object, sides, errors, .. } = *self.leaving;
+        let Leaving { rays, ends, surface, sides, .. } = *self.leaving;
         let (rays, ends) = (rays.part(self.part.clone()), &ends[self.part.clone()]);
-        let shape = &*self.tracer.model.objects[index].shape;
-        let sides = (index == object).then(|| &sides[self.part.clone()]);
+        let shape = &self.tracer.model.objects[index].shape;
+        let sides = (index == surface.index).then(|| &sides[self.part.clone()]);
         self.tracer.watch.count(Count::Tested(index, self.len));
         let (blocked, doubt) = (&mut self.blocked[self.part.clone()], &mut self.doubt[self.part.clone()]);
-        if shape.block(self.tracer.cpu, rays, sides, ends, blocked, doubt) {
+        if shape.packets().occluded(self.tracer.cpu, rays, sides, ends, blocked, doubt) {
             for lane in 0..ends.len() {
                 if doubt[lane] != 0 {
                     let leaves = sides.map(|sides| sides[lane]);
-                    let error = errors.get(self.part.start + lane).copied().unwrap_or(0.0);
+                    let error = self.leaving.error(self.part.start + lane);
                     let distance =
                         exact(shape, &Start { ray: rays.get(lane), error, sight: None }, leaves, ends[lane]);
                     blocked[lane] |= u64::from(distance < ends[lane]);

@@ -1,19 +1,30 @@
 //! Rays that go together.
 
-use super::MAX_RAYS;
+use super::arrays::{Vectors, pick, room};
 use super::light::{self, Worth};
-use super::room::{Vectors, pick, room};
-use super::shade::Surface;
-use crate::geometry::packet::{Rays, STEP};
+use super::surface::{Errors, Onward, Surface};
+use crate::geometry::packet::{Rays, WIDE};
+use crate::geometry::ray::Side;
 use crate::geometry::sight::Sight;
+use crate::render::limits::MAX_RAYS;
 use crate::render::plan::depth::{Branch, Depth};
 use crate::simd::cpu::Cpu;
+use crate::simd::soa::STEP;
 use crate::world::camera::{self, Camera};
-use crate::world::hittable::Side;
 use glam::DVec3;
 use std::array;
 use std::mem::swap;
 use std::ops::Range;
+
+/// The lanes of a packet, in their order.
+const LANES: [u8; WIDE] = {
+    let (mut lanes, mut lane) = ([0; WIDE], 0);
+    while lane < WIDE {
+        lanes[lane] = lane as u8;
+        lane += 1;
+    }
+    lanes
+};
 
 /// A packet of rays that leave the same object, or none.
 #[derive(Default)]
@@ -29,32 +40,17 @@ pub(super) struct Group {
     pub sight: Option<Sight>,
     /// Whether they look through the places that are under way, each through its own.
     pub looks: bool,
-    /// What the light of each is multiplied by on its way, at most, and the part that it may leave out of what its camera
-    /// ray may; empty where no ray goes on, or nothing bounds what that can bring back.
-    pub weight: Vec<f64>,
-    pub share: Vec<f64>,
+    /// What they are worth; nothing where no ray goes on, or nothing bounds what that can bring back.
+    pub worth: Option<Worth>,
     /// The camera ray that each comes from; empty where none goes on and no pixel has more than one.
     pub camera: Vec<u8>,
     /// The object that they leave, by its index, and on which side of it each goes.
     pub leaves: Option<usize>,
     pub sides: Vec<Side>,
-    /// How far the origin of each may be from the point that it stands for, in world units, and the most of any; empty
-    /// and 0 where they come from the viewer.
-    pub errors: Vec<f64>,
-    pub most_error: f64,
-}
-
-/// Of a group's rays, by their lanes.
-pub(super) struct Onward<'o> {
-    pub points: &'o Vectors,
-    pub dir: &'o Vectors,
-    pub travelled: &'o [f64],
-    /// The object that they leave.
-    pub leaves: usize,
-    pub sides: &'o [Side],
-    /// How far those points may be from where they should be.
-    pub errors: &'o [f64],
-    pub most_error: f64,
+    /// The cosines of the angles at which those came there from which they go on, and how far the origin of any may be from
+    /// the point that it stands for.
+    pub cosines: Vec<f64>,
+    pub errors: Errors,
 }
 
 impl Group {
@@ -93,24 +89,18 @@ impl Group {
         room(&mut self.travelled, count).fill(0.0);
         // Where no ray goes on, each costs one and those to the lights.
         room(&mut self.budget, count).fill(if depth.is_some() { MAX_RAYS as u32 } else { u32::MAX });
-        if depth.is_some_and(|depth| depth.most.is_finite()) {
-            room(&mut self.weight, count).fill(1.0);
-            room(&mut self.share, count).fill(1.0);
-        } else {
-            self.weight.clear();
-            self.share.clear();
-        }
+        let is_bounded = depth.is_some_and(|depth| depth.most.is_finite());
+        self.worth = is_bounded.then_some(Worth { weight: 1.0, share: 1.0 });
         if is_sampled || depth.is_some() {
-            for (lane, camera) in room(&mut self.camera, count).iter_mut().enumerate() {
-                // The copies that fill the arrays up are of the last ray, its sample of a light too.
-                *camera = lane.min(len - 1) as u8;
-            }
+            // The copies that fill the arrays up are of the last ray, its sample of a light too.
+            let (cameras, copies) = room(&mut self.camera, count).split_at_mut(len);
+            cameras.copy_from_slice(&LANES[..len]);
+            copies.fill(LANES[len - 1]);
         } else {
             self.camera.clear();
         }
         self.leaves = None;
-        self.errors.clear();
-        self.most_error = 0.0;
+        self.errors = Errors::NONE;
     }
 
     /// For rays whose numbers are only known as they are.
@@ -120,19 +110,17 @@ impl Group {
 
     /// Takes the mark from those that would bring back too little to be seen, so far from the viewer.
     pub fn leave_out(&self, cpu: Cpu, branch: &Branch, travelled: &[f64], goes: &mut [u64]) {
-        if self.weight.is_empty() || branch.faint_alone == f64::INFINITY {
-            return;
-        }
-        let (count, Self { weight, share, budget, .. }) = (goes.len(), self);
-        let budget = (light::fewest(cpu, &budget[..count]) < light::FEW).then_some(&budget[..count]);
-        light::leave_out(cpu, travelled, &Worth { weight, share, budget, branch: *branch }, goes);
+        let Some(worth) = self.worth.filter(|_| branch.faint_alone != f64::INFINITY) else { return };
+        let budget = &self.budget[..goes.len()];
+        let budget = (light::fewest(cpu, budget) < light::FEW).then_some(budget);
+        light::leave_out(cpu, travelled, worth, branch, budget, goes);
     }
 
     /// What its rays are worth from here on, which go on in one of the ways of a surface.
-    pub fn branch(&mut self, cpu: Cpu, branch: &Branch) {
-        if !self.weight.is_empty() {
-            let count = self.padded();
-            light::branch(cpu, branch, &mut self.weight[..count], &mut self.share[..count]);
+    pub fn branch(&mut self, branch: &Branch) {
+        if let Some(Worth { weight, share }) = &mut self.worth {
+            *weight *= branch.weight;
+            *share *= branch.share;
         }
     }
 
@@ -145,8 +133,13 @@ impl Group {
     #[inline(always)]
     pub fn rays(&self) -> Rays<'_> {
         let count = self.padded();
-        let origin_error = self.most_error;
+        let origin_error = self.errors.most;
         Rays { origin: self.origin.view(count), dir: self.dir.view(count), origin_error }
+    }
+
+    /// How far the origin of one may be from the point that it stands for, in world units.
+    pub fn error(&self, lane: usize) -> f64 {
+        self.errors.of(&self.travelled, &self.cosines, lane)
     }
 
     /// The object that they leave, and the sides.
@@ -168,13 +161,12 @@ impl Group {
         let count = self.padded();
         self.dir.pick(&from.dir, lanes, count);
         pick(&mut self.budget, &from.budget, lanes, count);
-        pick(&mut self.weight, &from.weight, lanes, count);
-        pick(&mut self.share, &from.share, lanes, count);
+        self.worth = from.worth;
         pick(&mut self.camera, &from.camera, lanes, count);
         self.leaves = from.leaves;
-        pick(&mut self.errors, &from.errors, lanes, count);
-        self.most_error = from.most_error;
+        self.errors = from.errors;
         if self.leaves.is_some() {
+            self.pick_cosines(&from.cosines, lanes);
             self.origin.pick(&from.origin, lanes, count);
             pick(&mut self.travelled, &from.travelled, lanes, count);
             pick(&mut self.sides, &from.sides, lanes, count);
@@ -194,13 +186,19 @@ impl Group {
         self.dir.pick(onward.dir, lanes, count);
         pick(&mut self.travelled, onward.travelled, lanes, count);
         pick(&mut self.budget, &from.budget, lanes, count);
-        pick(&mut self.weight, &from.weight, lanes, count);
-        pick(&mut self.share, &from.share, lanes, count);
+        self.worth = from.worth;
         pick(&mut self.camera, &from.camera, lanes, count);
         self.leaves = Some(onward.leaves);
         pick(&mut self.sides, onward.sides, lanes, count);
-        pick(&mut self.errors, onward.errors, lanes, count);
-        self.most_error = onward.most_error;
+        self.errors = onward.errors;
+        self.pick_cosines(onward.cosines, lanes);
+    }
+
+    fn pick_cosines(&mut self, from: &[f64], lanes: &[u8]) {
+        if self.errors.reach.is_some() {
+            let count = self.padded();
+            pick(&mut self.cosines, from, lanes, count);
+        }
     }
 
     /// Becomes all the rays that go on, with the arrays of those that they have been until now, and of where they met an
@@ -212,13 +210,12 @@ impl Group {
         swap(&mut self.dir, dir);
         swap(&mut self.travelled, &mut surface.travelled);
         swap(&mut self.budget, &mut from.budget);
-        swap(&mut self.weight, &mut from.weight);
-        swap(&mut self.share, &mut from.share);
+        self.worth = from.worth;
         swap(&mut self.camera, &mut from.camera);
         self.leaves = Some(surface.index);
         swap(&mut self.sides, &mut surface.sides);
-        swap(&mut self.errors, &mut surface.errors);
-        self.most_error = surface.most_error;
+        swap(&mut self.cosines, &mut surface.cosines);
+        self.errors = surface.errors;
     }
 
     /// What some of its rays, which have gone on as others, have cost.

@@ -1,10 +1,20 @@
 //! The arithmetic of shading, for all places of a packet at once.
 
-use super::MAX_RAYS;
-use crate::geometry::packet::{View, ViewMut, is_any};
+use crate::render::limits::MAX_RAYS;
 use crate::render::plan::depth::{Branch, MANY};
 use crate::simd::cpu::kernels;
+use crate::simd::soa::{View, ViewMut};
 use crate::world::material::{Look, Rgb};
+use crate::world::packets::shader::is_any;
+
+/// What rays are worth that have come the same way, from object to object.
+#[derive(Clone, Copy)]
+pub(super) struct Worth {
+    /// What their light is multiplied by on its way, at most.
+    pub weight: f64,
+    /// The part that each may leave out of what its camera ray may.
+    pub share: f64,
+}
 
 /// Of rays that may cost so few more, [`MANY`] have been followed.
 pub(super) const FEW: u32 = MAX_RAYS as u32 - MANY;
@@ -34,18 +44,6 @@ pub(super) enum Looks<'l> {
     Even(Look),
     /// Each something else.
     Each { diffuse: View<'l>, specular: View<'l> },
-}
-
-/// What rays that meet a surface are worth.
-pub(super) struct Worth<'w> {
-    /// What their light has been multiplied by on its way, at most.
-    pub weight: &'w [f64],
-    /// The part that each may leave out of what its camera ray may.
-    pub share: &'w [f64],
-    /// The rays that each may still cost; nothing where none has cost [`MANY`].
-    pub budget: Option<&'w [u32]>,
-    /// How they go on from there.
-    pub branch: Branch,
 }
 
 /// Colours at places of a surface.
@@ -82,29 +80,24 @@ kernels! {
         }
     }
 
-    /// Takes the mark from rays that can bring back too little to be seen.
-    pub(super) fn leave_out(travelled: &[f64], worth: &Worth, goes: &mut [u64]) {
-        let (count, Branch { faint, faint_alone, .. }) = (goes.len(), worth.branch);
-        let (travelled, weight, share) = (&travelled[..count], &worth.weight[..count], &worth.share[..count]);
+    /// Takes the mark from rays that can bring back too little to be seen. `budget` has the rays that each may still cost;
+    /// nothing where none has cost [`MANY`].
+    pub(super) fn leave_out(
+        travelled: &[f64], worth: Worth, branch: &Branch, budget: Option<&[u32]>, goes: &mut [u64]
+    ) {
+        let (count, Worth { weight, share }) = (goes.len(), worth);
+        let (most, most_alone) = (weight * branch.faint, weight * branch.faint_alone);
+        let travelled = &travelled[..count];
         for lane in 0..count {
-            let is_faint = weight[lane] * faint < share[lane] * travelled[lane];
+            let is_faint = most < share * travelled[lane];
             goes[lane] &= u64::from(!is_faint);
         }
-        if let Some(budget) = worth.budget {
+        if let Some(budget) = budget {
             let budget = &budget[..count];
             for lane in 0..count {
-                let is_faint = (budget[lane] < FEW) & (weight[lane] * faint_alone < travelled[lane]);
+                let is_faint = (budget[lane] < FEW) & (most_alone < travelled[lane]);
                 goes[lane] &= u64::from(!is_faint);
             }
-        }
-    }
-
-    /// Multiplies what rays are worth which go on.
-    pub(super) fn branch(by: &Branch, weight: &mut [f64], share: &mut [f64]) {
-        let (count, share) = (weight.len(), &mut share[..weight.len()]);
-        for lane in 0..count {
-            weight[lane] *= by.weight;
-            share[lane] *= by.share;
         }
     }
 

@@ -1,33 +1,14 @@
 //! How much of a light comes through glass.
 
-use super::Tracer;
-use super::group::{Group, Parts};
-use super::room::{Vectors, list, pick, room};
-use super::search::Found;
-use super::shade::Surface;
+use super::arrays::{Vectors, list, pick, room};
+use super::context::Tracer;
+use super::group::Group;
+use super::scratch::Passage;
 use super::shadow::Ways;
-use crate::geometry::bounds::larger;
+use super::surface::Surface;
+use crate::geometry::ray::{Ray, Side};
 use crate::render::watch::{Count, Event, Kind, Purpose, Watch};
-use crate::world::coincidence;
-use crate::world::hittable::{Ray, Side};
 use crate::world::material::Rgb;
-
-/// Rays on their way to a light.
-#[derive(Default)]
-pub(super) struct Passage {
-    group: Group,
-    ends: Vec<f64>,
-    /// The part of each channel that has come through.
-    tint: Vectors,
-    /// The opaque object that stands in the way, by its index and 1; 0 where there is none.
-    blocker: Vec<u64>,
-    found: Found,
-    parts: Parts,
-    /// Of those that meet the same pane.
-    near: Vec<f64>,
-    far: Vec<f64>,
-    distances: Vec<f64>,
-}
 
 impl<W: Watch> Tracer<'_, '_, W> {
     /// Takes from the light that shines on some places what does not come through, in a scene with glass. Tells what
@@ -102,21 +83,20 @@ impl<W: Watch> Tracer<'_, '_, W> {
         let Passage { group, ends, tint, near, far, distances, .. } = passage;
         self.settle(group, (near, far), index, distances);
         let object = &self.model.objects[index];
-        let (count, reach, is_classic) = (group.padded(), object.shape.reach(), self.is_classic());
-        let (sides, errors) = (room(&mut group.sides, count), room(&mut group.errors, count));
-        group.most_error = 0.0;
+        let count = group.padded();
+        let (sides, cosines) = (room(&mut group.sides, count), room(&mut group.cosines, count));
         for lane in 0..count {
             let ray = Ray { origin: group.origin.get(lane), dir: group.dir.get(lane) };
             let point = ray.at(distances[lane]);
             let normal = object.shape.normal(point);
             sides[lane] = Side::seen_along(ray.dir, normal).opposite();
-            errors[lane] =
-                if is_classic { 0.0 } else { coincidence::error(&ray, distances[lane], normal, reach) };
-            group.most_error = larger(errors[lane], group.most_error);
+            cosines[lane] = ray.dir.dot(normal);
+            group.travelled[lane] += distances[lane];
             group.origin.set(lane, point);
             tint.set(lane, tint.get(lane) * object.tint(point));
             ends[lane] -= distances[lane];
         }
+        group.errors = self.errors(&*object.shape, &group.travelled[..count], &group.cosines[..count]);
         group.leaves = Some(index);
         self.depth += 1;
         self.walk(passage);

@@ -1,15 +1,16 @@
 //! How much of a light comes to the places of a surface.
 
-use super::Tracer;
+use super::arrays::{Vectors, pick, room};
 use super::block::Leaving;
+use super::context::Tracer;
 use super::group::Group;
-use super::room::{Vectors, pick, room};
-use super::shade::Surface;
+use super::scratch::Shadows;
+use super::surface::Surface;
 use crate::geometry::bounds::Bounds;
-use crate::geometry::packet::{Rays, STEP};
+use crate::geometry::packet::Rays;
 use crate::render::watch::{Count, Kind, Watch};
 use crate::simd::cpu::kernels;
-use crate::world::hittable::Side;
+use crate::simd::soa::STEP;
 
 /// The ways from the places of a surface to a light.
 pub(super) struct Ways<'w> {
@@ -23,19 +24,6 @@ pub(super) struct Ways<'w> {
 
 /// Of a way that need not be gone, which nothing blocks.
 const NOT_GONE: u64 = 2;
-
-/// Room for the shadows of a packet.
-#[derive(Default)]
-pub(super) struct Shadows {
-    /// Those that remain of a packet.
-    lanes: Vec<u8>,
-    origin: Vectors,
-    dir: Vectors,
-    their_ends: Vec<f64>,
-    their_blocked: Vec<u64>,
-    sides: Vec<Side>,
-    errors: Vec<f64>,
-}
 
 impl<W: Watch> Tracer<'_, '_, W> {
     /// What the ends of the ways are short of the light, as a part of how far that is: a surface that the light lies
@@ -55,8 +43,8 @@ impl<W: Watch> Tracer<'_, '_, W> {
         blocked: &mut [u64],
     ) {
         let (cpu, count) = (self.cpu, group.padded());
-        let Shadows { lanes, origin, dir, their_ends, their_blocked, sides, errors } = shadows;
-        let origin_error = surface.most_error;
+        let Shadows { lanes, origin, dir, their_ends, their_blocked, sides } = shadows;
+        let origin_error = surface.errors.most;
         // A ray that has cost as many as it may finds nothing in the way.
         let len = set_out(cpu, group.len, &mut group.budget[..count], ends, blocked);
         if len == 0 {
@@ -66,8 +54,8 @@ impl<W: Watch> Tracer<'_, '_, W> {
         if 2 * len > group.len {
             let rays =
                 Rays { origin: surface.points.view(count), dir: ways.toward.view(count), origin_error };
-            let (sides, errors) = (&surface.sides[..count], &surface.errors[..]);
-            let leaving = Leaving { rays, len: group.len, ends, object: surface.index, sides, errors };
+            let sides = &surface.sides[..count];
+            let leaving = Leaving { rays, len: group.len, going: len, ends, surface, lanes: None, sides };
             self.block(&leaving, &ways.from, &ways.to, blocked);
             return;
         }
@@ -78,12 +66,11 @@ impl<W: Watch> Tracer<'_, '_, W> {
         dir.pick(ways.toward, lanes, count);
         pick(their_ends, ends, lanes, count);
         pick(sides, &surface.sides, lanes, count);
-        pick(errors, &surface.errors, lanes, count);
         let theirs = room(their_blocked, count);
         theirs.fill(0);
         let rays = Rays { origin: origin.view(count), dir: dir.view(count), origin_error };
         let (ends, sides) = (&their_ends[..count], &sides[..count]);
-        let leaving = Leaving { rays, len, ends, object: surface.index, sides, errors };
+        let leaving = Leaving { rays, len, going: len, ends, surface, lanes: Some(lanes), sides };
         self.block(&leaving, &ways.from, &ways.to, theirs);
         for (lane, is_blocked) in lanes.iter().zip(theirs) {
             blocked[usize::from(*lane)] = *is_blocked;

@@ -4,8 +4,8 @@ use super::fault::{Fault, Place, Report};
 use super::names::Names;
 use super::values;
 use super::written::{Form, Word, Written};
-use crate::scene::entity::{Entity, Given};
-use crate::scene::pparm::{Attribute, LEAST_LENGTH, MOST_LENGTH};
+use crate::scene::entity::Entity;
+use crate::scene::pparm::{Attribute, Given, LEAST_LENGTH, MOST_LENGTH};
 use crate::scene::value::{Datum, Type};
 use crate::words::{list, nearest};
 

@@ -4,19 +4,20 @@ use super::attributes::{Against, find_attribute, whole};
 use super::fault::{Fault, Place, Report};
 use super::names::{Names, stand_in, suggestion};
 use super::written::{Word, Written};
-use crate::scene::entity::{Args, Construct, Entity, Kind, MATERIAL, Refusal, Setting};
+use crate::scene::entity::{Args, Construct, Entity, MATERIAL, Refusal, Setting};
+use crate::scene::kind::Kind;
 use crate::scene::model::{Item, Model, Object};
 use crate::scene::registry::Registry;
 use crate::scene::value::Datum;
 use crate::words::list;
 use crate::world::accuracy::Accuracy;
+use crate::world::body::{AnyLight, Body};
 use crate::world::camera::Camera;
-use crate::world::hittable::{Body, Light};
 use crate::world::material::Material;
 use crate::world::texture::Texture;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 /// Makes a model of entities as written and reports all their faults. Without faults there is a model. File
 /// names start from `folder`.
@@ -81,7 +82,7 @@ struct Check<'r> {
     materials: Vec<Item<Arc<Material>>>,
     textures: Vec<Item<Arc<Texture>>>,
     objects: Vec<Object>,
-    lights: Vec<Item<Box<dyn Light>>>,
+    lights: Vec<Item<AnyLight>>,
 }
 
 impl Check<'_> {
@@ -198,7 +199,7 @@ impl Check<'_> {
     fn textures_can_be_read(&mut self, written: &[Written<'_>]) {
         let users =
             self.objects.iter().map(|object| &object.args).chain(self.lights.iter().map(|light| &light.args));
-        let used: BTreeSet<_> = users.flat_map(Args::textures).collect();
+        let used: BTreeSet<_> = users.flat_map(|args| args.textures()).collect();
         for Item { args, value } in &self.textures {
             if used.contains(args.name.as_str())
                 && let Err(reason) = value.load()
@@ -242,7 +243,7 @@ impl Check<'_> {
             );
         }
         let Self { camera, materials, textures, objects, lights, .. } = self;
-        Some(Model { camera: camera?, materials, textures, objects, lights, plan: OnceLock::new() })
+        Some(Model { camera: camera?, materials, textures, objects, lights })
     }
 }
 

@@ -28,7 +28,7 @@ impl Report {
         self.faults.iter().map(line).collect()
     }
 
-    /// An object of JSON for each fault, as [`message`] makes it, each on a line of its own.
+    /// An object of JSON for each fault, as `message` makes it, each on a line of its own.
     pub fn json(&self) -> String {
         let lines = Lines::of(&self.text);
         let line = |fault: &Fault| {

@@ -13,9 +13,8 @@ mod written;
 pub use check::Chosen;
 pub use fault::{Fault, Place, Report, Severity};
 pub use machine::message;
-pub use written::{Values, Written};
+pub use written::Written;
 
-use crate::scene::entity::Kind;
 use crate::scene::model::Model;
 use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
@@ -36,7 +35,9 @@ pub struct Loaded {
     pub places: Vec<Place>,
 }
 
-/// Reads a scene, as [`read_by`] does. An accuracy that is given here counts in place of the scene's own.
+/// Reads a scene, in TOML if its name ends in `.toml` or its text begins as TOML does, and in the notes'
+/// spelling if not. `name` is what messages call it, and its own file names start from `folder`. An accuracy that is
+/// given here counts in place of the scene's own.
 ///
 /// # Errors
 /// Every fault of the scene, warnings among them, in the order of the text.
@@ -50,8 +51,7 @@ pub fn read(
     read_by(registry, name, folder, bytes, Chosen { above_all: accuracy, ..Chosen::default() })
 }
 
-/// Reads a scene, in TOML if its name ends in `.toml` or its text begins as TOML does, and in the notes'
-/// spelling if not. `name` is what messages call it, and its own file names start from `folder`.
+/// As [`read`], with more to say about the accuracy.
 ///
 /// # Errors
 /// Every fault of the scene, warnings among them, in the order of the text.
@@ -74,7 +74,7 @@ pub fn read_by(
     };
     let written = parse(registry, text, &mut report);
     if written.is_empty() && !report.is_fatal() {
-        report.add(Fault::error(Some(0..0), "the scene is empty").help(first_steps(registry, syntax)));
+        report.add(Fault::error(Some(0..0), "the scene is empty").help(registry.first_steps(syntax)));
     }
     finish(registry, folder, accuracy, written, report)
 }
@@ -127,12 +127,6 @@ fn finish(
         }
         _ => Err(report),
     }
-}
-
-/// What a scene looks like, for those who have none.
-fn first_steps(registry: &Registry, syntax: Syntax) -> String {
-    let camera = registry.example(Kind::Camera, "NAME", syntax);
-    format!("a scene begins with a camera, {camera}; then come materials, objects and lights")
 }
 
 /// The text of a file.

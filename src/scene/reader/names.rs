@@ -2,7 +2,8 @@
 
 use super::fault::{Fault, Place, Report};
 use super::written::{Form, Word, Written};
-use crate::scene::entity::{Entity, Kind};
+use crate::scene::entity::Entity;
+use crate::scene::kind::Kind;
 use crate::scene::registry::Registry;
 use crate::scene::value::Datum;
 use crate::words::{self, nearest};

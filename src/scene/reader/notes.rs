@@ -2,7 +2,6 @@
 
 use super::attributes::{find_attribute, near_attribute};
 use super::fault::{Fault, Report};
-use super::first_steps;
 use super::written::{Form, Word, Written};
 use crate::scene::entity::Entity;
 use crate::scene::pparm::Attribute;
@@ -117,7 +116,7 @@ impl<'a> Parser<'a, '_> {
             self.report.add(
                 Fault::error(Some(first.at), "this is not a scene")
                     .label("no entity begins like this")
-                    .help(first_steps(self.registry, Syntax::Notes)),
+                    .help(self.registry.first_steps(Syntax::Notes)),
             );
             return written;
         }

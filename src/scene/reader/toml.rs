@@ -1,7 +1,6 @@
 //! Scenes in TOML: `[entity-type.name]` tables of the same attributes.
 
 use super::fault::{Fault, Report};
-use super::first_steps;
 use super::written::{Form, Word, Written};
 use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
@@ -18,7 +17,7 @@ pub fn parse<'a>(registry: &Registry, text: &'a str, report: &mut Report) -> Vec
         && let Some(first) = errors.first()
     {
         let fault = Fault::error(first.span().or(Some(0..0)), "this is not a scene in TOML");
-        report.add(fault.help(first_steps(registry, Syntax::Toml)));
+        report.add(fault.help(registry.first_steps(Syntax::Toml)));
         return Vec::new();
     }
     let mut written = Vec::new();

@@ -6,15 +6,15 @@
 //! on it, or crosses the surface where slabs meet, the bracket says no more than where that begins, and the ray goes its
 //! way alone (`walk`), through the same slabs.
 
-use super::Revolution;
 use super::lanes::{Crossing, Lanes};
 use super::quadratic::Quadratic;
 use super::slabs::Slab;
+use super::surface::Revolution;
 use crate::geometry::bounds::{from_order, larger, order, smaller};
 use crate::geometry::frame::Frame;
 use crate::geometry::packet::Rays;
+use crate::geometry::ray::{MISS, Ray, Side};
 use crate::simd::cpu::{Cpu, kernels};
-use crate::world::hittable::{MISS, Ray, Side};
 
 /// A direction with less than this of an axis is taken for upright on it.
 const UPRIGHT: f64 = 1e-9;

@@ -1,11 +1,11 @@
 //! The notes' method for surfaces of revolution, with the hits that it loses.
 
+use crate::geometry::ray::{MISS, Ray, Span};
+use crate::geometry::roots::bisection::bisect;
 use crate::numeric::interval::Interval;
 use crate::numeric::number::Number;
 use crate::scene::profile::Line;
-use crate::shapes::roots::bisection::bisect;
 use crate::world::certify::Equation;
-use crate::world::hittable::{MISS, Ray, Span};
 use glam::DVec3;
 
 /// A surface of revolution around the y axis, as the notes' program finds it.

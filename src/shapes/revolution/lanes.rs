@@ -3,7 +3,7 @@
 use super::quadratic::Quadratic;
 use super::slabs::Slab;
 use crate::geometry::bounds::{larger, smaller};
-use crate::world::hittable::{MISS, Ray, Side};
+use crate::geometry::ray::{MISS, Ray, Side};
 
 /// Rays, each counted from a point near the surface.
 pub(super) struct Lanes<const N: usize> {

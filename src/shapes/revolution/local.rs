@@ -3,9 +3,9 @@
 
 use super::quadratic::Quadratic;
 use crate::geometry::frame::{self, BLUR, Frame};
+use crate::geometry::ray::{Ray, Span};
+use crate::geometry::roots::taylor::Stretch;
 use crate::numeric::number::Number;
-use crate::shapes::roots::taylor::Stretch;
-use crate::world::hittable::{Ray, Span};
 use glam::DVec3;
 use std::ops::Range;
 

@@ -1,12 +1,13 @@
 //! The normals of a surface of revolution.
 
-use super::Revolution;
+use super::surface::Revolution;
 use crate::geometry::frame::Frame;
-use crate::geometry::packet::{Rays, STEP, Vectors};
+use crate::geometry::packet::Rays;
+use crate::geometry::ray::Side;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
 use crate::simd::cpu::kernels;
-use crate::world::hittable::Side;
+use crate::simd::soa::{STEP, Vectors};
 use crate::world::landing;
 use glam::DVec3;
 
@@ -70,14 +71,21 @@ fn upright(at: DVec3, slope: f64) -> DVec3 {
 kernels! {
     /// Where rays come to a surface after these distances, both of whose sides are lit.
     pub(super) fn land(
-        surface: &Revolution, frame: &Frame, rays: Rays, distances: &[f64], sides: &mut [Side], travelled: &mut [f64]
+        surface: &Revolution,
+        frame: &Frame,
+        rays: Rays,
+        distances: &[f64],
+        sides: &mut [Side],
+        cosines: &mut [f64],
+        travelled: &mut [f64],
     ) => points, normals {
         let is_smooth = surface.slabs.is_smooth();
         for first in (0..travelled.len()).step_by(STEP) {
             let eight = first..first + STEP;
             let (rays, distances) = (rays.part(eight.clone()), &distances[eight.clone()]);
             let (mut points, mut normals) = (points.part(eight.clone()), normals.part(eight.clone()));
-            let (sides, travelled) = (&mut sides[eight.clone()], &mut travelled[eight]);
+            let (sides, cosines) = (&mut sides[eight.clone()], &mut cosines[eight.clone()]);
+            let travelled = &mut travelled[eight];
             let (mut at, mut normal) = (Vectors::<STEP>::ZERO, Vectors::<STEP>::ZERO);
             for lane in 0..STEP {
                 let point = rays.get(lane).at(distances[lane]);
@@ -99,7 +107,8 @@ kernels! {
             }
             for lane in 0..STEP {
                 let turned;
-                (sides[lane], turned) = landing::turned(rays.dir.get(lane), normal.get(lane), true);
+                (sides[lane], cosines[lane], turned) =
+                    landing::turned(rays.dir.get(lane), normal.get(lane), true);
                 normals.set(lane, turned);
             }
         }

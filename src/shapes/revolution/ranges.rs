@@ -5,13 +5,13 @@
 //! alone hides the sign, however short the piece, the computed sign stands, and how large the profile can be there is
 //! kept: that has to be next to nothing.
 
-use super::NoSurface;
 use super::budget::Budget;
+use super::no_surface::NoSurface;
+use crate::geometry::roots::bisection::bisect;
 use crate::numeric::dual::Dual;
 use crate::numeric::formula::Formula;
 use crate::numeric::interval::Interval;
 use crate::numeric::number::Number;
-use crate::shapes::roots::bisection::bisect;
 
 /// The ranges of a profile, from the bottom up.
 pub(super) struct Ranges {

@@ -1,15 +1,16 @@
 //! The first hits of rays, each in its bracket: Newton's method, for one of them or for eight at a time.
 
-use super::{Finish, Revolution};
+use super::surface::{Finish, Revolution};
 use crate::geometry::frame::Frame;
-use crate::geometry::packet::{Rays, STEP, View};
+use crate::geometry::packet::Rays;
+use crate::geometry::ray::Ray;
+use crate::geometry::roots::newton::{self, Functions, Start};
 use crate::numeric::dual::Dual;
 use crate::numeric::number::Number;
 use crate::numeric::octet::{Octet, each};
 use crate::numeric::twofold::offset;
-use crate::shapes::roots::newton::{self, Functions, Start};
 use crate::simd::cpu::{Cpu, kernels};
-use crate::world::hittable::Ray;
+use crate::simd::soa::{STEP, View};
 
 /// Rays, counted from the near ends of their brackets.
 struct Ways<'s, N> {

@@ -1,6 +1,7 @@
 //! A profile cut into slabs, in each of which its square is a parabola, but for a proven error.
 
 use super::budget::Budget;
+use super::no_surface::NoSurface;
 use super::ranges::Ranges;
 use crate::numeric::dual::Dual;
 use crate::numeric::formula::Formula;
@@ -48,65 +49,6 @@ impl Slab {
     #[inline(always)]
     pub fn parabola(&self, v: f64) -> f64 {
         self.c0 + v * (self.c1 + v * self.c2)
-    }
-}
-
-/// Why a profile makes no surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum NoSurface {
-    /// It has no bound.
-    Unbounded {
-        /// A height where that is so.
-        near: f64,
-    },
-    /// It is nowhere above 0.
-    Nowhere,
-    /// Where it is negative is not known above a height after as many operations as it may take.
-    Signs {
-        /// The height.
-        from: f64,
-    },
-    /// It bends more often above a height than as many operations as it may take can follow.
-    Bends {
-        /// The height.
-        from: f64,
-    },
-    /// Rounding hides where it is negative.
-    Rounding {
-        /// A height where that is so.
-        near: f64,
-        /// How large it may be there.
-        hidden: f64,
-    },
-}
-
-impl NoSurface {
-    /// What is wrong with the profile, what would help, for messages: "has a profile ...".
-    pub fn told(self) -> (String, &'static str) {
-        match self {
-            Self::Unbounded { near } => (
-                format!("without a bound near y = {near:.6}"),
-                "a profile is the distance from the axis, finite at each height from 0 to the surface's own",
-            ),
-            Self::Nowhere => (
-                "that is nowhere above 0".to_owned(),
-                "a profile is the distance from the axis, finite at each height from 0 to the surface's own",
-            ),
-            Self::Signs { from } => (
-                format!("whose parts below 0 are too many to be told apart from y = {from:.6} upward"),
-                "a lower height, or a profile that crosses 0 less often",
-            ),
-            Self::Bends { from } => (
-                format!("that bends too often to be followed from y = {from:.6} upward"),
-                "a lower height, or a profile that bends less often",
-            ),
-            Self::Rounding { near, hidden } => (
-                format!(
-                    "that rounding hides near y = {near:.6}: it is 0 there, but for an error of {hidden:.1e}"
-                ),
-                "write the formula so that large terms do not cancel, such as `(y - 3)^2` for `y^2 - 6*y + 9`",
-            ),
-        }
     }
 }
 

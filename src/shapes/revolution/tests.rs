@@ -1,6 +1,10 @@
 //! Profiles of all kinds: what loads, what is refused, and that no part is lost or invented.
 
+use super::no_surface::NoSurface;
 use super::*;
+use crate::numeric::formula::Formula;
+use crate::numeric::interval::Interval;
+use crate::numeric::number::Number;
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 

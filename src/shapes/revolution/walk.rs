@@ -5,13 +5,16 @@
 
 use super::bracket::cross;
 use super::lanes::Lanes;
+use super::line::{OnRay, Uncut};
 use super::local::Local;
-use super::{OnRay, Revolution};
+use super::surface::Revolution;
 use crate::geometry::frame::Frame;
-use crate::geometry::packet::{Rays, View};
-use crate::shapes::roots::taylor::{self, Found, Stretch};
+use crate::geometry::packet::Rays;
+use crate::geometry::ray::{MISS, Ray, Side, Span};
+use crate::geometry::roots::Method;
+use crate::geometry::roots::taylor::{self, Found, Stretch};
 use crate::simd::cpu::Cpu;
-use crate::world::hittable::{MISS, Ray, Side, Span};
+use crate::simd::soa::View;
 use glam::DVec3;
 use std::slice::from_ref;
 
@@ -36,6 +39,19 @@ impl Revolution {
                 let (distance, is_certain) = self.walk(&local, within.leaves, lanes);
                 (within.keep(distance), is_certain)
             })
+        }
+    }
+
+    /// As [`first_hit`](Self::first_hit), by another method and in the same bounding cylinder; but the notes' steps, as
+    /// in the notes, go all the way between the surface's heights.
+    pub fn first_hit_by(&self, method: Method, frame: &Frame, ray: &Ray, within: &Span) -> f64 {
+        let widest = if method == Method::Steps { f64::INFINITY } else { self.slabs.widest() };
+        let Some(local) = Local::new(frame, ray, within, self.height, widest) else { return MISS };
+        let line = Uncut { surface: self, local: &local };
+        let shortest = 4.0 * local.tolerance();
+        match method.first_root(&line, local.from..local.to, local.base, within, shortest) {
+            Some(along) => within.keep(local.base + along),
+            None => MISS,
         }
     }
 

@@ -1,8 +1,9 @@
 //! What the arithmetic alone of a test costs: the formulas of textbooks in loops over arrays, without bounds, brackets,
 //! shading or any care for rounding. No tracer that tests packets of rays one by one is faster.
 
-use crate::geometry::packet::{Rays, Vectors, WIDE};
+use crate::geometry::packet::{Rays, WIDE};
 use crate::simd::cpu::{Cpu, kernels};
+use crate::simd::soa::Vectors;
 use glam::DVec3;
 use std::hint::black_box;
 
@@ -21,9 +22,6 @@ pub enum Bare {
 }
 
 impl Bare {
-    /// Every test.
-    pub const ALL: [Self; 3] = [Self::Plane, Self::Sphere, Self::Triangle];
-
     /// The one that an entity of this type needs, if it is one of these.
     pub fn of(entity: &str) -> Option<Self> {
         match entity {

@@ -2,8 +2,8 @@
 
 use super::axis::Axis;
 use super::canvas::{Align, BLUE, Canvas, GREEN, GREY, LIGHT, Letters, Marker, ORANGE, PURPLE, VERMILION};
+use super::data::{Chart, Family, Panel, Point, Subject};
 use super::labels::{self, Area};
-use super::{Chart, Family, Panel, Point, Subject};
 use crate::geometry::packet::WIDE;
 use crate::output::picture::{Compression, Format};
 use plotters::prelude::{BLACK, BitMapBackend, DrawingBackend, IntoDrawingArea, RGBColor, SVGBackend};

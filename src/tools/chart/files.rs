@@ -1,6 +1,6 @@
 //! The numbers of a chart, for other programs.
 
-use super::{Chart, Panel, Point, Subject};
+use super::data::{Chart, Panel, Point, Subject};
 use serde_json::{Value, json};
 
 /// One line for each choice, below one with the names of the columns. Times are in seconds.

@@ -3,17 +3,20 @@
 
 use super::candidate::{Candidate, is_searched};
 use super::clock;
+use super::data::{Panel, Point, Subject, Wrong};
 use super::packets::Packet;
 use super::places::{spread, tiles};
-use super::{Panel, Point, Progress, Study, Subject, Wrong};
+use super::progress::Progress;
+use super::study::Study;
 use crate::geometry::packet::WIDE;
+use crate::geometry::ray::{MISS, Ray, Side, Span};
+use crate::geometry::roots::bisection::bisect;
 use crate::geometry::sight::Sight;
 use crate::numeric::twofold::Twofold;
 use crate::scene::model::Model;
-use crate::shapes::roots::bisection::bisect;
 use crate::simd::cpu::Cpu;
+use crate::world::any_shape::AnyShape;
 use crate::world::certify::{self, Enclosure, Precision};
-use crate::world::hittable::{Hittable, MISS, Ray, Side, Span};
 use std::hint::black_box;
 use std::ops::ControlFlow;
 
@@ -51,8 +54,8 @@ pub fn sets(model: &Model) -> Vec<Set> {
     for is_of_roots in [true, false] {
         let objects = model.objects.iter().enumerate();
         let group: Vec<usize> = objects
-            .filter(|(_, object)| is_searched(&*object.shape) == is_of_roots)
-            .filter(|(_, object)| is_provable(model, &*object.shape))
+            .filter(|(_, object)| is_searched(&object.shape) == is_of_roots)
+            .filter(|(_, object)| is_provable(model, &object.shape))
             .map(|(index, _)| index)
             .collect();
         if group.is_empty() {
@@ -107,7 +110,7 @@ pub fn panel(study: &Study, set: &Set, progress: &mut dyn Progress) -> ControlFl
     let work = |choice: usize| {
         let objects = &candidates[choice].model.objects;
         for packet in &timed {
-            black_box(black_box(packet).hits(&*objects[packet.object].shape, cpu));
+            black_box(black_box(packet).hits(&objects[packet.object].shape, cpu));
         }
     };
     let count = timed.iter().map(|packet| packet.len()).sum();
@@ -154,7 +157,7 @@ fn each<T: Sync, U: Send>(of: &[T], work: impl Fn(&T) -> U + Sync + Send) -> Vec
 }
 
 fn truths_of(model: &Model, packet: &Packet) -> Vec<Truth> {
-    let shape = &*model.objects[packet.object].shape;
+    let shape = &model.objects[packet.object].shape;
     let truth = |(ray, sight): (Ray, &Sight)| match shape.certify(sight, Precision::Octuple) {
         Enclosure::Hits(at) => {
             let at = certify::in_world_units(at, sight);
@@ -167,7 +170,7 @@ fn truths_of(model: &Model, packet: &Packet) -> Vec<Truth> {
 }
 
 /// The side of its surface on which a ray meets a shape.
-fn side(shape: &dyn Hittable, ray: &Ray, distance: f64) -> Side {
+fn side(shape: &AnyShape, ray: &Ray, distance: f64) -> Side {
     Side::seen_along(ray.dir, shape.normal(ray.at(distance)))
 }
 
@@ -176,7 +179,7 @@ fn tally(candidate: &Candidate, set: &Set, truths: &[Truth], screen: f64) -> (Ve
     let (mut errors, mut wrong) = (Vec::new(), Wrong::default());
     let cpu = Cpu::best();
     let found = set.packets.iter().flat_map(|packet| {
-        let shape = &*candidate.model.objects[packet.object].shape;
+        let shape = &candidate.model.objects[packet.object].shape;
         let hits = packet.hits(shape, cpu);
         packet.rays().zip(hits).map(move |(ray, found)| (shape, ray, found))
     });
@@ -204,7 +207,7 @@ fn tally(candidate: &Candidate, set: &Set, truths: &[Truth], screen: f64) -> (Ve
 }
 
 /// Whether anything is certain about rays that meet a shape.
-fn is_provable(model: &Model, shape: &dyn Hittable) -> bool {
+fn is_provable(model: &Model, shape: &AnyShape) -> bool {
     const LOOKS: usize = 64;
     let camera = &model.camera.value;
     let mut places = spread(camera.pixels, LOOKS).into_iter();

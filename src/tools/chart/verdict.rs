@@ -1,7 +1,7 @@
 //! What a chart says, in words.
 
+use super::data::{Chart, Family, Panel, Point, Subject};
 use super::front::{self, SAME_TIME};
-use super::{Chart, Family, Panel, Point, Subject};
 use std::fmt::Write;
 
 /// How far apart in Oklab, in hundredths, the eye begins to tell colours.

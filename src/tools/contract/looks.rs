@@ -2,20 +2,21 @@
 
 use super::draw::Draw;
 use super::promise::{Fault, Promise};
-use crate::geometry::packet::{STEP, Vectors};
 use crate::scene::dump;
 use crate::scene::model::Model;
+use crate::scene::procedural::{Anchor, ProceduralShader};
 use crate::scene::profile::Profile;
 use crate::scene::reader;
 use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
 use crate::shapes::revolution::{Finish, Revolution};
 use crate::simd::cpu::Cpu;
+use crate::simd::soa::{STEP, Vectors};
 use crate::world::camera::Camera;
 use crate::world::facing::{Facing, Places};
-use crate::world::hittable::{Light, Shader};
 use crate::world::material::{Look, Material, Rgb};
-use crate::world::shading::{Anchor, ProceduralShader};
+use crate::world::packets::light::PacketLight;
+use crate::world::packets::shader::PacketShader;
 use glam::DVec3;
 use std::path::Path;
 
@@ -37,7 +38,7 @@ pub fn dump(registry: &Registry, folder: &Path, model: &Model) -> Result<(), Fau
 }
 
 /// A shader's reflectivities at a point, and in packets.
-pub fn shader(shader: &dyn Shader, at: DVec3) -> Result<(), Fault> {
+pub fn shader(shader: &dyn PacketShader, at: DVec3) -> Result<(), Fault> {
     let material = Material {
         ambient: Rgb::new(0.1, 0.5, 3.0),
         diffuse: Rgb::new(2.0, 0.7, 0.0),
@@ -68,7 +69,13 @@ pub fn shader(shader: &dyn Shader, at: DVec3) -> Result<(), Fault> {
     for cpu in Cpu::all() {
         let mut many = [const { Vectors::<STEP>::ZERO }; 3];
         let [ambient, diffuse, specular] = &mut many;
-        shader.unlit(cpu, &material, points.view(STEP), ambient.view_mut(STEP), specular.view_mut(STEP));
+        shader.ambient_and_specular(
+            cpu,
+            &material,
+            points.view(STEP),
+            ambient.view_mut(STEP),
+            specular.view_mut(STEP),
+        );
         shader.diffuses(cpu, &material, points.view(STEP), diffuse.view_mut(STEP));
         let many = many.map(|colours| colours.get(STEP - 1));
         if !many.iter().zip(&one).all(|(many, one)| same_bits(*many, *one)) {
@@ -96,7 +103,7 @@ pub fn procedural(shader_type: &ProceduralShader, draw: &mut Draw) -> Result<(),
 }
 
 /// A light, toward points around it and where it is.
-pub fn light(light: &dyn Light, draw: &mut Draw) -> Result<(), Fault> {
+pub fn light(light: &dyn PacketLight, draw: &mut Draw) -> Result<(), Fault> {
     let (location, size) = (light.location(), light.size());
     if !location.is_finite() || !size.is_finite() || size < 0.0 {
         return Err(Promise::LightIsFinite.fault(format!("it is at {location}, its size is {size}")));

@@ -7,6 +7,7 @@
 mod draw;
 mod looks;
 mod promise;
+mod rays;
 mod shape;
 mod surface;
 
@@ -14,14 +15,15 @@ pub use promise::Promise;
 
 use crate::scene::choice::{Choice, ChoiceName};
 use crate::scene::dump;
-use crate::scene::entity::{Entity, Kind};
+use crate::scene::entity::Entity;
+use crate::scene::kind::Kind;
 use crate::scene::model::Model;
+use crate::scene::procedural::{OnPlane, ProceduralShader};
 use crate::scene::profile::Profile;
 use crate::scene::reader;
 use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
 use crate::world::accuracy::Accuracy;
-use crate::world::shading::{OnPlane, ProceduralShader};
 use draw::{Draw, Room};
 use promise::Fault;
 use std::fmt;
@@ -88,7 +90,7 @@ pub fn breaches_in(model: &Model) -> Vec<Breach> {
     let mut found = Vec::new();
     for object in &model.objects {
         found.extend(
-            shape::try_object(object, &mut draw, RAYS).gravest.map(|fault| (object.args.entity, fault)),
+            rays::try_object(object, &mut draw, RAYS).gravest.map(|fault| (object.args.entity, fault)),
         );
     }
     for light in &model.lights {
@@ -134,7 +136,7 @@ fn of_entity(registry: &Registry, entity: &'static Entity, room: &Room) -> Optio
             Kind::Texture => Ok(()),
             Kind::Light => model.lights.iter().try_for_each(|item| looks::light(&*item.value, &mut draw)),
             Kind::Object => model.objects.iter().try_for_each(|object| {
-                let outcome = shape::try_object(object, &mut draw, RAYS);
+                let outcome = rays::try_object(object, &mut draw, RAYS);
                 hits += outcome.hits;
                 outcome.gravest.map_or(Ok(()), Err)
             }),
@@ -178,9 +180,10 @@ fn of_choice(what: &str, choice: ChoiceName, outcome: Result<(), Fault>) -> Opti
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::hittable::{Light, Plain, Shader};
+    use crate::scene::procedural::Anchor;
+    use crate::world::light::Light;
     use crate::world::material::{Look, Material, Rgb};
-    use crate::world::shading::Anchor;
+    use crate::world::shader::{Plain, Shader};
     use glam::DVec3;
 
     static SOUND: Profile = Profile::new("sound", "a cone", "4 - y");

@@ -86,18 +86,18 @@ impl Promise {
             }
             Self::DistanceIsTheSameAgain => "let `distance` depend on the shape, the ray and the span alone",
             Self::PacketsAgree => {
-                "`bracket` holds `distance`, `quick_distance` is it to the last bit or NaN; leave both out, or `even` and the packets' methods, if in doubt"
+                "`bracket` holds `distance`, and `refine` is it to the last bit or NaN; leave out `Bracketed`, or `even`, if in doubt"
             }
             Self::NormalIsUnit => "end `normal` with `.normalize()`, and say what it is where there is none",
             Self::HitIsOnTheSurface => {
                 "let `distance` give the first hit of the same surface for every ray, from both of its sides and from inside"
             }
             Self::AgreesWithItsProof => {
-                "let `distance` and the shape's `Equation` (or `certify`) describe one surface, with the same part kept"
+                "let `distance` and the shape's `Equation` describe one surface, with the same part kept"
             }
             Self::BoundsHoldHits => "make `bounds` hold every point of the shape; give none if in doubt",
             Self::HitIsTouched => {
-                "let `touches` hold within the error that it is given at least, and `bracket` be without a certain end there; leave both out if in doubt"
+                "let `touches` hold within the error that it is given at least, and `bracket` be without a certain end there; leave out `touches`, and `Bracketed`, if in doubt"
             }
             Self::NormalIsUpright => {
                 "let `normal` be the gradient of the surface's formula, made a unit vector"

@@ -4,8 +4,8 @@ use super::draw::Draw;
 use super::promise::{Fault, Promise};
 use super::shape::{GRAZING, SLACK, Tried, told};
 use crate::geometry::bounds::Bounds;
+use crate::geometry::ray::{MISS, Ray, Side, Span};
 use crate::world::coincidence;
-use crate::world::hittable::{MISS, Ray, Side, Span};
 use glam::DVec3;
 
 /// A step that is far longer than what rounding makes, and far shorter than what is to be seen.

@@ -1,11 +1,7 @@
 //! A template: a lamp with a shade, which shines downward. Say here what it is.
 
 use super::light::{self, PointLight};
-use crate::scene::entity::Entity;
-use crate::scene::pparm::{Pparm, Table};
-use crate::world::hittable::Light;
-use crate::world::material::Rgb;
-use glam::DVec3;
+use crate::prelude::*;
 
 // Each attribute is one of these: its name, what it is, its unit and its rule. `required` has to be given; `or`
 // has a default. The reader, its messages and the reference are made from them.

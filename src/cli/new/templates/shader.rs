@@ -1,9 +1,6 @@
 //! A template: rings. Say here what it looks like.
 
-use crate::world::hittable::Shader;
-use crate::world::material::{Material, Rgb};
-use crate::world::shading::{Anchor, ProceduralShader};
-use glam::DVec3;
+use crate::prelude::*;
 
 // What scenes call it, what it is, and how it is made for one object.
 inventory::submit! {

@@ -1,12 +1,6 @@
 //! A template: a cube with round edges. Say here what it is, and where its formula comes from.
 
-use crate::geometry::frame::Frame;
-use crate::numeric::number::Number;
-use crate::scene::entity::Entity;
-use crate::scene::pparm::{Pparm, Table};
-use crate::shapes::implicit::Implicit;
-use crate::world::hittable::Body;
-use glam::DVec3;
+use crate::prelude::*;
 
 // Each attribute is one of these: its name, what it is, its unit and its rule. `required` has to be given; `or`
 // has a default. The reader, its messages and the reference are made from them.
@@ -32,7 +26,7 @@ struct Template {
 }
 
 // A shape that is one formula. One with a method of its own to find where a ray meets it implements `Hittable`
-// instead, as `plugins/triangle.rs` does.
+// instead, as the box in `docs/plugins.md` does; `Bracketed` and `Certified` are for what is faster and proven.
 impl Implicit for Template {
     /// Below 0 inside of the shape, above 0 outside, and 0 on it.
     fn value<N: Number>(&self, at: [N; 3]) -> N {

@@ -1,0 +1,61 @@
+//! Hits of a surface of the second degree without rounding, but for that of the roots.
+
+use super::surface::{FINE, OwnRay, Quadratic};
+use crate::numeric::twofold::{Exact, Twofold};
+
+/// A hit in twice the precision, and what it is off at most.
+#[derive(Clone, Copy)]
+pub(super) struct Fine {
+    pub at: Twofold,
+    pub error: f64,
+}
+
+impl Fine {
+    pub const NONE: Self = Self { at: Twofold { high: f64::NAN, low: 0.0 }, error: 0.0 };
+}
+
+impl Quadratic {
+    /// Both hits of the polynomial without rounding, but for that of the roots: no numbers where there are none.
+    #[cold]
+    pub(super) fn exact_hits(&self, ray: &OwnRay) -> [Fine; 2] {
+        let [a, b, c] = self.exact_polynomial(ray);
+        let room = Exact::sum(b.times(&b).chain(a.times(&c).map(|term| -term))).rounded();
+        let [a, b, c] = [a, b, c].map(|part| part.rounded());
+        let fine = |at: Twofold| Fine { at, error: FINE * at.high.abs() };
+        if room.high < 0.0 {
+            return [Fine::NONE; 2];
+        }
+        if a.high == 0.0 {
+            // A line in it, or one that is nowhere on it, has none.
+            return [if b.high == 0.0 { Fine::NONE } else { fine(-c / (b + b)) }, Fine::NONE];
+        }
+        let root = room.sqrt();
+        let larger = if b.high > 0.0 { -b - root } else { root - b };
+        // Both are 0 where b and c are.
+        let other = if larger.high == 0.0 { larger } else { c / larger };
+        [fine(larger / a), fine(other)]
+    }
+
+    /// The polynomial `a t^2 + 2 b t + c` along a ray from where it starts.
+    fn exact_polynomial(&self, ray: &OwnRay) -> [Exact; 3] {
+        let parts = |of: Twofold| Exact::sum([of.high, of.low]);
+        let (from, dir) = (ray.from.map(parts), ray.dir.to_array().map(|part| Exact::sum([part])));
+        let second = |one: &[Exact; 3], other: &[Exact; 3]| {
+            Exact::sum((0..9).flat_map(|index| {
+                let (row, column) = (index / 3, index % 3);
+                let product = Exact::sum(one[row].times(&other[column]));
+                let coefficient = Exact::sum([self.square.col(column)[row]]);
+                product.times(&coefficient).collect::<Vec<_>>()
+            }))
+        };
+        let first = |of: &[Exact; 3], factor: f64| {
+            let part =
+                |axis: usize| Exact::sum([factor * self.linear[axis]]).times(&of[axis]).collect::<Vec<_>>();
+            Exact::sum((0..3).flat_map(part))
+        };
+        let sum = |parts: &[&Exact]| Exact::sum(parts.iter().flat_map(|part| part.parts().iter().copied()));
+        let b = sum(&[&second(&from, &dir), &first(&dir, 0.5)]);
+        let c = sum(&[&second(&from, &from), &first(&from, 1.0), &Exact::sum([self.constant])]);
+        [second(&dir, &dir), b, c]
+    }
+}

@@ -1,0 +1,17 @@
+//! The program as people run it, command by command.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod bench;
+mod chart;
+mod cli;
+mod discovery;
+mod failures;
+mod messages;
+mod new;
+mod refusals;
+mod review;
+mod size;
+mod stop;
+mod watch;
