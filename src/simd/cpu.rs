@@ -84,17 +84,17 @@ impl fmt::Display for Cpu {
 macro_rules! kernels {
     ($(
         $(#[$attribute:meta])*
-        $visible:vis fn $name:ident$([$T:ident: $Bound:path])?($($argument:ident: $type:ty),* $(,)?)
+        $visible:vis fn $name:ident$([$T:ident: $Bound:path])?$(<const $N:ident>)?($($argument:ident: $type:ty),* $(,)?)
             $(=> $out:ident $(, $second:ident)?)? $(-> $result:ty)? $body:block
     )*) => {$(
         $(#[$attribute])*
         #[allow(clippy::too_many_arguments, reason = "they are arrays")]
-        $visible fn $name$(<$T: $Bound>)?(
+        $visible fn $name$(<$T: $Bound>)?$(<const $N: usize>)?(
             cpu: $crate::simd::cpu::Cpu, $($argument: $type,)*
             $($out: $crate::simd::soa::ViewMut, $($second: $crate::simd::soa::ViewMut)?)?
         ) $(-> $result)? {
             $crate::simd::cpu::levels! {
-                ($(<$T: $Bound>)?) (
+                ($(<$T: $Bound>)?$(<const $N: usize>)?) (
                     $($argument: $type,)*
                     $(
                         x: $crate::simd::cpu::beside!($out, &mut [f64]),

@@ -4,7 +4,7 @@
 //! ray grazes a surface of revolution, whose other hits come from quadrics ([`revolution`](crate::shapes::revolution));
 //! [`newton`] finishes both. The others are what is used elsewhere; each says where it is from and where it fails.
 
-mod bisection;
+pub mod bisection;
 mod chandrupatla;
 mod intervals;
 pub mod newton;

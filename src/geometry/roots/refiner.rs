@@ -45,14 +45,8 @@ impl Refiner {
             Self::Bisection => bisection::root(at, (low, high), falls, 0.0),
             Self::Chandrupatla => chandrupatla::root(at, (low, high), shortest),
             Self::Newton => {
-                let sign = if falls { 1.0 } else { -1.0 };
-                newton::root(
-                    |t| value_and_slope(line, t),
-                    (low, high),
-                    sign,
-                    0.5 * (low + high),
-                    0.5 * shortest,
-                )
+                let dual = |t| line.at(Dual::variable(t));
+                newton::root(dual, (low, high), falls, 0.5 * (low + high), 0.5 * shortest)
             }
         }
     }

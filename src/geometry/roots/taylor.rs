@@ -257,12 +257,9 @@ impl<L: Line> Search<'_, L> {
 
     /// The root of a piece by Newton's method, from a guess that may be any number.
     fn newton(&self, low: f64, high: f64, rises: bool, guess: f64) -> f64 {
-        let value_and_slope = |t| {
-            let Dual { value, slope } = self.line.at(Dual::variable(t));
-            (value, slope)
-        };
         let guess = if low < guess && guess < high { guess } else { low + 0.5 * (high - low) };
-        newton::root(value_and_slope, (low, high), if rises { -1.0 } else { 1.0 }, guess, 0.5 * self.shortest)
+        let line = |t| self.line.at(Dual::variable(t));
+        newton::root(line, (low, high), !rises, guess, 0.5 * self.shortest)
     }
 
     /// What a piece has that is not cut any more: a root if the sign changes; none if it is so short that only a jump

@@ -33,10 +33,9 @@ pub fn first_root(
         if (slope < 0.0) == is_outside && (slope_there > 0.0) == is_outside {
             let slope_and_bend = |t| {
                 let at = line.at(Dual::variable_twice(t));
-                (at.first(), at.second())
+                Dual { value: at.first(), slope: at.second() }
             };
-            let sign = if is_outside { -1.0 } else { 1.0 };
-            let turn = newton::root(slope_and_bend, (low, high), sign, 0.5 * (low + high), shortest);
+            let turn = newton::root(slope_and_bend, (low, high), !is_outside, 0.5 * (low + high), shortest);
             if has_crossed(line.at(turn)) {
                 return refined(low, turn);
             }

@@ -5,6 +5,8 @@
 //! touches meets the surface, and one that leaves it does not.
 
 use crate::geometry::ray::Side;
+use crate::geometry::roots::bisection::bisect;
+use crate::geometry::roots::{chandrupatla, newton};
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
 use crate::numeric::twofold::Twofold;
@@ -12,9 +14,8 @@ use crate::numeric::twofold::Twofold;
 /// How much of what rounding in f64 hides is hidden in twice the precision, too: 2^-53 but for five digits.
 const STILL_HIDDEN: f64 = 1.0 / 281_474_976_710_656.0;
 
-/// Steps that halve a piece below what twice the precision tells apart, even where the piece is 10^80 times as long as the
-/// surface is wide.
-const MOST: usize = 400;
+/// A slope that is still this part of what it was where a piece begins does not go through 0 but jumps.
+const KINK: f64 = 1.0 / 1024.0;
 
 /// The first root on a piece that has at most one turn, where rounding in f64 hides values up to `hidden`; of a line that
 /// leaves a surface, the first one where the function falls (from outside) or rises (from inside).
@@ -24,45 +25,50 @@ pub fn first_root(
     leaves: Option<Side>,
     hidden: f64,
 ) -> Option<f64> {
-    let at = |t: Twofold| f(Dual::variable(t));
-    let (low, high) = (Twofold::from(piece.low), Twofold::from(piece.high));
+    let Interval { low, high } = piece;
+    let precise = f64::EPSILON * piece.magnitude();
+    // What cancels in the value and in the slope needs twice the precision; the places do not.
+    let at = |t: f64| {
+        let Dual { value, slope } = f(Dual::variable(Twofold::from(t)));
+        Dual { value: value.high, slope: slope.high }
+    };
     let (first, last) = (at(low), at(high));
-    let is_outside = first.value.high >= 0.0;
-    let is_in = |value: Twofold| (value.high < 0.0) == is_outside;
+    let is_outside = first.value >= 0.0;
+    let is_in = |value: f64| (value < 0.0) == is_outside;
     let is_wanted = |falls: bool| leaves.is_none_or(|side| falls == (side == Side::Outside));
-    let way_in = |t: Twofold| is_in(at(t).value);
     if is_in(last.value) {
-        return is_wanted(is_outside).then(|| change(way_in, low, high));
+        let root = || newton::root(at, (low, high), is_outside, piece.middle(), precise);
+        return is_wanted(is_outside).then(root);
     }
     // Toward 0 first, and away from it in the end.
-    let approaches = |slope: Twofold| (slope.high < 0.0) == is_outside;
+    let approaches = |slope: f64| (slope < 0.0) == is_outside;
     if !approaches(first.slope) || approaches(last.slope) {
         return None;
     }
-    let turn = Twofold::from(change(|t| !approaches(at(t).slope), low, high));
-    let at_turn = at(turn).value;
-    if at_turn.high.abs() <= STILL_HIDDEN * hidden {
-        return leaves.is_none().then_some(turn.high);
+    let still_hidden = STILL_HIDDEN * hidden;
+    // The value so near to the turn is the turn's, but for what is hidden.
+    let bend = ((last.slope - first.slope) / (high - low)).abs();
+    let near = 0.125 * (still_hidden / bend).sqrt();
+    let mut turn = chandrupatla::root(|t| at(t).slope, (low, high), near);
+    let mut at_turn = at(turn);
+    // At a kink the value is as far from 0 as the place is from the kink: that is taken to its last digit.
+    if at_turn.slope.abs() > KINK * first.slope.abs() {
+        turn = bisect(|t| !approaches(at(t).slope), (low, high), 0.0).1;
+        at_turn = at(turn);
+    }
+    let at_turn = at_turn.value;
+    if at_turn.abs() <= still_hidden {
+        return leaves.is_none().then_some(turn);
     }
     if !is_in(at_turn) {
         return None;
     }
-    if is_wanted(is_outside) {
-        Some(change(way_in, low, turn))
-    } else {
-        Some(change(|t| !way_in(t), turn, high))
-    }
-}
-
-/// Where something becomes true that is not true of `low` and is of `high`.
-fn change(is_true: impl Fn(Twofold) -> bool, mut low: Twofold, mut high: Twofold) -> f64 {
-    for _ in 0..MOST {
-        let middle = (low + high) * Twofold::from(0.5);
-        if is_true(middle) {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
-    high.high
+    let is_first = is_wanted(is_outside);
+    let (end, slope) = if is_first { (low, first.slope) } else { (high, last.slope) };
+    // About a parabola: that is where it crosses 0.
+    let guess = turn + (2.0 * (at_turn * (end - turn) / slope).abs()).sqrt().copysign(end - turn);
+    let (low, high) = (end.min(turn), end.max(turn));
+    let guess = if low < guess && guess < high { guess } else { 0.5 * (low + high) };
+    let precise = precise.min(still_hidden / (bend * (guess - turn).abs()));
+    Some(newton::root(at, (low, high), is_first == is_outside, guess, precise))
 }

@@ -169,9 +169,12 @@ fn located(shape: &AnyShape, start: &Start, leaves: Option<Side>, far: f64) -> (
         None => {}
         leaves => return known(shape.distance(&start.ray, &Span { far, leaves, ..Span::RAY })),
     }
-    let distance = shape.distance(&start.ray, &Span { far, ..Span::RAY });
-    let Some(sight) = &start.sight else { return known(distance) };
+    let within = Span { far, ..Span::RAY };
+    let Some(sight) = &start.sight else { return known(shape.distance(&start.ray, &within)) };
     let bracket = shape.bracket(&start.ray, &Span::RAY);
+    // A bracket that is known exactly has taken the whole search.
+    let is_known = bracket.near == bracket.far;
+    let distance = if is_known { within.keep(bracket.near) } else { shape.distance(&start.ray, &within) };
     // Where what was rounded of the ray may decide whether it meets the shape, the ray does that was not rounded.
     if bracket.is_doubtful() { decided(shape, sight, distance) } else { (distance, bracket) }
 }

@@ -9,7 +9,6 @@ use crate::geometry::roots::twice;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
 use crate::numeric::number::Number;
-use crate::numeric::twofold::Twofold;
 use crate::world::certify::Equation;
 
 /// How far outside of the surface the places along a ray are, with any number type.
@@ -21,9 +20,7 @@ pub(super) struct OnRay<'s> {
 impl Line for OnRay<'_> {
     #[inline(always)]
     fn at<N: Number>(&self, along: N) -> N {
-        let place = |axis: usize| self.local.place(axis, along);
-        let height = place(1).max(N::constant(0.0)).min(N::constant(self.surface.height));
-        place(0).powi(2) + place(2).powi(2) - self.surface.square.at(height)
+        self.surface.value([0, 1, 2].map(|axis| self.local.place(axis, along)))
     }
 
     /// That of the squared distance from the axis is the same everywhere.
@@ -37,22 +34,16 @@ impl Line for OnRay<'_> {
     /// Twice the precision, from the ray in the world and the axis as the scene has it, tells nearly all touches from
     /// misses.
     fn undecided(&self, piece: Interval, leaves: Option<Side>) -> Option<f64> {
+        let Self { surface, local } = *self;
         // What rounding hides of this ray alone, however far those are apart that it was rounded from.
         let hidden = |along: f64| {
             let along = Interval::<f64>::constant(along);
-            let own = |axis: usize| {
-                Interval::constant(self.local.origin[axis]) + along * Interval::constant(self.local.dir[axis])
-            };
-            self.surface.value([own(0), own(1), own(2)]).width()
+            let place = [0, 1, 2].map(|axis| local.own_place(axis, along));
+            surface.value(place).width()
         };
         let hidden = hidden(piece.low).min(hidden(piece.high));
-        let exact = self.local.frame.exactly(&self.local.ray, self.local.base);
-        let outside = |along: Dual<Twofold>| {
-            let [x, y, z] = exact.along(along);
-            let height = y.max(Dual::constant(0.0)).min(Dual::constant(self.surface.height));
-            x.powi(2) + z.powi(2) - self.surface.square.at(height)
-        };
-        twice::first_root(outside, piece, leaves, hidden)
+        let exact = local.frame.exactly(&local.ray, local.base);
+        twice::first_root(|along| surface.value(exact.along(along)), piece, leaves, hidden)
     }
 }
 
@@ -66,8 +57,7 @@ pub(super) struct Uncut<'s> {
 impl Line for Uncut<'_> {
     #[inline(always)]
     fn at<N: Number>(&self, along: N) -> N {
-        let place =
-            |axis: usize| N::constant(self.local.origin[axis]) + along * N::constant(self.local.dir[axis]);
+        let place = |axis: usize| self.local.own_place(axis, along);
         place(0).powi(2) + place(2).powi(2) - self.surface.profile.at(place(1)).max(N::constant(0.0)).powi(2)
     }
 }

@@ -1,7 +1,8 @@
 //! Surfaces of revolution as shapes, wherever they stand.
 
-use super::bracket::{Lanes, MOST};
+use super::bracket::MOST;
 use super::classic::Classic;
+use super::lanes::Lanes;
 use super::normal;
 use super::surface::Revolution;
 use crate::geometry::bounds::Bounds;
@@ -70,7 +71,7 @@ impl Hittable for InFrame<Classic> {
 
 impl Hittable for InFrame<Revolution> {
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        self.surface.distance(&self.frame, ray, within).0
+        self.surface.first_hit(&self.frame, ray, within).0
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {
@@ -124,7 +125,7 @@ where
         mut nearest: Nearest,
     ) -> bool {
         let InFrame { surface, frame } = &self.shape;
-        let (mut any, mut lanes) = (false, Lanes::none());
+        let (mut any, mut lanes) = (false, Lanes::<MOST>::none());
         for part in parts(rays.len(), MOST) {
             let (rays, sides) = (rays.part(part.clone()), sides.map(|sides| &sides[part.clone()]));
             let nearest = nearest.part(part);
@@ -144,7 +145,7 @@ where
         doubt: &mut [u64],
     ) -> bool {
         let InFrame { surface, frame } = &self.shape;
-        let (mut any, mut lanes) = (false, Lanes::none());
+        let (mut any, mut lanes) = (false, Lanes::<MOST>::none());
         for part in parts(ends.len(), MOST) {
             let (rays, sides) = (rays.part(part.clone()), sides.map(|sides| &sides[part.clone()]));
             let (ends, blocked, doubt) = (&ends[part.clone()], &mut blocked[part.clone()], &mut doubt[part]);
@@ -174,7 +175,7 @@ where
     fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
         let touches = || self.touches(ray.origin, within.origin_error);
         by_distance(within, touches, |within| {
-            let (distance, is_certain) = self.shape.surface.distance(&self.shape.frame, ray, within);
+            let (distance, is_certain) = self.shape.surface.first_hit(&self.shape.frame, ray, within);
             is_certain.then_some(distance)
         })
     }

@@ -60,6 +60,7 @@ pub struct Slabs {
     parts_per_unit: f64,
     widest: f64,
     reach: f64,
+    coarsest: f64,
     is_smooth: bool,
 }
 
@@ -91,6 +92,7 @@ impl Slabs {
             parts_per_unit,
             widest: most.sqrt().next_up(),
             reach: 1.001 * shell,
+            coarsest: slabs.iter().map(|slab| slab.error).fold(0.0, f64::max),
             slabs,
         })
     }
@@ -108,8 +110,9 @@ impl Slabs {
     }
 
     /// The largest of the slabs' errors.
+    #[inline(always)]
     pub fn coarsest(&self) -> f64 {
-        self.slabs.iter().map(|slab| slab.error).fold(0.0, f64::max)
+        self.coarsest
     }
 
     /// Whether the profile's slope is bounded everywhere, so that it does not jump.

@@ -1,11 +1,8 @@
 //! The surface of a profile.
 
-use super::local::Local;
 use super::no_surface::NoSurface;
 use super::slabs::Slabs;
 use crate::geometry::bounds::Bounds;
-use crate::geometry::ray::Side;
-use crate::numeric::dual::Dual;
 use crate::numeric::formula::Formula;
 use crate::numeric::interval::Interval;
 use crate::numeric::number::Number;
@@ -58,33 +55,6 @@ impl Revolution {
         let widest = self.slabs.widest();
         Bounds { low: DVec3::new(-widest, 0.0, -widest), high: DVec3::new(widest, self.height, widest) }
     }
-
-    /// The height at a place along a ray. Beyond its ends the profile may be anything, and rounding must not ask.
-    #[inline(always)]
-    pub(super) fn height_of(&self, local: &Local, along: f64) -> f64 {
-        local.height(along).clamp(0.0, self.height)
-    }
-
-    /// The profile's square at a height, and its slope.
-    #[inline(always)]
-    pub(super) fn square_and_slope(&self, y: f64) -> (f64, f64) {
-        // Beyond its ends the profile may be anything, and rounding must not ask.
-        let Dual { value, slope } = self.square.at(Dual::variable(y.clamp(0.0, self.height)));
-        (value, slope)
-    }
-
-    /// How far outside of the surface a place along a ray is: positive outside, negative inside.
-    #[inline(always)]
-    pub(super) fn outside(&self, local: &Local, along: f64) -> f64 {
-        local.around(along) - self.square.at(self.height_of(local, along))
-    }
-
-    /// As [`outside`](Self::outside), and how fast that grows.
-    #[inline(always)]
-    pub(super) fn outside_and_slope(&self, local: &Local, along: f64) -> (f64, f64) {
-        let (value, slope) = self.square_and_slope(local.height(along));
-        (local.around(along) - value, 2.0 * (local.a * along + local.b) - slope * local.dir.y)
-    }
 }
 
 /// How its hits are found.
@@ -115,13 +85,5 @@ impl Equation for Revolution {
     fn extent(&self) -> [DVec3; 2] {
         let Bounds { low, high } = self.bounds();
         [low, high]
-    }
-}
-
-/// The sign of [`Revolution::outside`] on a side.
-pub(super) fn sign(side: Side) -> f64 {
-    match side {
-        Side::Outside => 1.0,
-        Side::Inside => -1.0,
     }
 }

@@ -10,6 +10,7 @@ use super::progress::Progress;
 use super::study::Study;
 use crate::geometry::packet::WIDE;
 use crate::geometry::ray::{MISS, Ray, Side, Span};
+use crate::geometry::roots::bisection::bisect;
 use crate::geometry::sight::Sight;
 use crate::numeric::twofold::Twofold;
 use crate::scene::model::Model;
@@ -254,14 +255,8 @@ fn grazing(model: &Model, group: &[usize]) -> Vec<Packet> {
     let step = edges.len().div_ceil(GRAZING / rays).max(1);
     let mut places_of = vec![Vec::new(); model.objects.len()];
     for (x, y, index, here) in edges.into_iter().step_by(step) {
-        let (y, mut low, mut high) = (y as f64, x as f64 - 1.0, x as f64);
-        loop {
-            let middle = 0.5 * (low + high);
-            if middle <= low || middle >= high {
-                break;
-            }
-            if hits(middle, y, index) == here { high = middle } else { low = middle }
-        }
+        let y = y as f64;
+        let (_, high) = bisect(|x| hits(x, y, index) == here, (x as f64 - 1.0, x as f64), 0.0);
         for digits in 0..=DIGITS {
             for beside in [-1.0, 1.0] {
                 places_of[index].push([high + beside * 0.1_f64.powi(digits), y]);
