@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # What a scene does not use costs nothing: counts the instructions of renders of a scene without lights, mirrors and
-# further samples, by this program and by builds of it from which the code for those is cut. Prints a table in Markdown.
-# Instructions are counted by Valgrind, on one thread with AVX2, less those of a picture of one pixel.
+# additional samples, by this program and by builds from which the code for those has been removed. Prints a table in
+# Markdown. Instructions are counted by Valgrind, on one thread with AVX2, minus those of an image of one pixel.
 #
 #     bash docs/cuts.sh
 set -euo pipefail
@@ -40,16 +40,16 @@ build() {
         perl -0pi -e "$2" "$sources/$1"
         ! cmp -s "$1" "$sources/$1" || { echo "nothing is cut from $1" >&2; exit 1; }
     fi
-    cargo build --release --locked --quiet --manifest-path "$sources/Cargo.toml" --target-dir "$target" 2>/dev/null
-    awk -v all="$(count "$target/release/tabray" 320)" -v none="$(count "$target/release/tabray" 1x1)" \
+    cargo build --profile dist --locked --quiet --manifest-path "$sources/Cargo.toml" --target-dir "$target" 2>/dev/null
+    awk -v all="$(count "$target/dist/tabray" 320)" -v none="$(count "$target/release/tabray" 1x1)" \
         'BEGIN { print (all - none) / (320 * 240) }'
 }
 
 whole=$(build)
 row() { awk -v name="$1" -v of="$2" -v whole="$whole" 'BEGIN { printf "| %s | %.1f | %.4f |\n", name, of, whole / of }'; }
-echo "| build | instructions for each ray | the whole program's, as a part of that |"
+echo "| build | instructions per ray | ratio of the whole program to it |"
 echo "|---|---:|---:|"
 row "whole" "$whole"
 row "without lights" "$(build src/render/trace/shade.rs 's/self\.illuminate\(.*?\);//')"
 row "without mirrors" "$(build src/render/trace/shade.rs 's/self\.look_in_the_mirror\(.*?\);//')"
-row "without further samples" "$(build src/render/trace/mod.rs 's/if camera\.samples == 1 \{/if true {/')"
+row "without additional samples" "$(build src/render/trace/mod.rs 's/if camera\.samples == 1 \{/if true {/')"

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# CPU seconds of whole programs that make the same picture, a PNG of 640 x 480 pixels on one thread: tabray, POV-Ray
-# and, where the variable COURSE names it, the course's program, which writes a PPM. They take turns, so that what else
-# the machine does meets them all. Prints a table in Markdown: the least time of each, and the medians of the ratios of
-# runs that follow each other.
+# CPU seconds of whole programs that render the same image, a PNG of 640 x 480 pixels, on one thread: tabray, POV-Ray
+# and, if the variable COURSE names it, the course's program, which writes a PPM. They take turns, so that other load on
+# the machine affects all of them. Prints a table in Markdown: the minimum time of each, and the medians of the ratios of
+# consecutive runs.
 #
 #     bash docs/peers.sh [ROUNDS]
 #
-# The others' scenes are those of the folder that SHARED names.
+# The scenes of the other programs are in the folder given by SHARED.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -15,15 +15,15 @@ shared=$(realpath "${SHARED:-../shared}")
 peers=$shared/peers
 scenes=$shared/conformance
 if ! [ -d "$peers" ]; then
-    echo "SKIPPED: $peers is not here"
+    echo "SKIPPED: $peers does not exist"
     exit
 fi
 if ! command -v povray >/dev/null && ! apt-get install --yes --quiet povray >/dev/null; then
-    echo "SKIPPED: there is no POV-Ray"
+    echo "SKIPPED: POV-Ray is not installed"
     exit
 fi
-cargo build --release --locked --quiet
-tabray=$(realpath "${CARGO_TARGET_DIR:-target}/release/tabray")
+cargo build --profile dist --locked --quiet
+tabray=$(realpath "${CARGO_TARGET_DIR:-target}/dist/tabray")
 out=$(mktemp -d)
 trap 'rm -r "$out"' EXIT
 

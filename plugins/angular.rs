@@ -1,13 +1,10 @@
 //! The notes' shading of a sphere: colours that change with the angle around its centre.
 
 use super::rainbow;
-use crate::world::hittable::Shader;
-use crate::world::material::{Look, Material, Rgb};
-use crate::world::shading::{Anchor, ProceduralShader};
-use glam::{DVec2, DVec3};
+use crate::prelude::*;
 
 inventory::submit! {
-    ProceduralShader::new("angular", "colours around the centre, whatever the material", |anchor| Box::new(Angular(anchor))).on_sphere(0)
+    ProceduralShader::new("angular", "hues around the centre, independent of the material", |anchor| Box::new(Angular(anchor))).on_sphere(0)
 }
 
 struct Angular(Anchor);

@@ -1,45 +1,41 @@
 //! The camera: the viewer, and the screen in the plane z = 0 that the viewer looks through.
 
-use crate::scene::entity::{Entity, Refusal};
-use crate::scene::pparm::{LEAST_LENGTH, Pparm, Table};
-use crate::world::accuracy::Accuracy;
-use crate::world::camera::Camera;
-use crate::world::sample::{MOST, Sampler};
-use glam::{DVec2, DVec3};
+use crate::prelude::*;
 
-static PIXELDIM: Pparm<[i64; 2]> = Pparm::required("pixeldim", "the width and height of the picture")
+static PIXELDIM: Pparm<[i64; 2]> = Pparm::required("pixeldim", "the width and height of the image")
     .alias(&["pixel_dim"])
     .unit("pixels")
-    .must("from 1 to 100000 each way", |size: &[i64; 2]| size.iter().all(|side| (1..=100_000).contains(side)))
+    .must("from 1 to 100000 in each dimension", |size: &[i64; 2]| {
+        size.iter().all(|side| (1..=100_000).contains(side))
+    })
     .dumped("pixel_dim", " \n");
-static WORLDDIM: Pparm<DVec2> = Pparm::required("worlddim", "the width and height of the screen")
+static WORLDDIM: Pparm<DVec2> = Pparm::required("worlddim", "the width and height of the image plane")
     .alias(&["world_dim"])
     .unit("world units")
-    .must("positive each way", |size: &DVec2| size.min_element() > 0.0)
+    .must("positive in each dimension", |size: &DVec2| size.min_element() > 0.0)
     .dumped("world_dim", " \n");
-static VIEWPOINT: Pparm<DVec3> = Pparm::required("viewpoint", "where the viewer is")
+static VIEWPOINT: Pparm<DVec3> = Pparm::required("viewpoint", "the position of the viewer")
     .alias(&["view_point"])
     .unit("world coordinates")
-    .must("in front of the screen (z above 0)", |at: &DVec3| at.z > 0.0)
+    .must("in front of the image plane (z above 0)", |at: &DVec3| at.z > 0.0)
     .dumped("view_point", "\n");
 
-static SAMPLES: Pparm<i64> =
-    Pparm::or("samples", "how many rays look through each pixel, to smooth edges", 1)
-        .must("from 1 to 65536", |samples| (1..=MOST.into()).contains(samples))
-        .not_dumped();
+static SAMPLES: Pparm<i64> = Pparm::or("samples", "the number of samples per pixel, to smooth edges", 1)
+    .must("from 1 to 65536", |samples| (1..=Sampler::MOST.into()).contains(samples))
+    .not_dumped();
 
 static ACCURACY: Pparm<Accuracy> =
-    Pparm::or("accuracy", "how exactly shapes find their hits", Accuracy::Exact).not_dumped();
+    Pparm::or("accuracy", "how exactly hits are computed", Accuracy::Exact).not_dumped();
 
 const TABLE: Table = &[&PIXELDIM, &WORLDDIM, &VIEWPOINT, &SAMPLES, &ACCURACY];
 
 inventory::submit! {
-    Entity::camera("camera", "the viewer, and a screen from the world's origin to the right and up", &[TABLE], |args| {
+    Entity::camera("camera", "the viewer, and an image plane that extends right and up from the world's origin", &[TABLE], |args| {
         if args.get(&VIEWPOINT).abs().max_element() < LEAST_LENGTH {
             return Err(Refusal {
                 attribute: Some("viewpoint"),
-                message: "is so near to the screen that the squares of distances vanish".to_owned(),
-                help: "1e-152 world units is the least distance that can be squared",
+                message: "is so close to the image plane that squared distances underflow".to_owned(),
+                help: "1e-152 world units is the smallest distance that can be squared",
             });
         }
         Ok(Camera {

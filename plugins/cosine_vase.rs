@@ -1,7 +1,7 @@
 //! A vase with a wide mouth and a wide foot.
 
-use crate::scene::profile::Profile;
+use crate::prelude::*;
 
 inventory::submit! {
-    Profile::new("cosine_vase", "a vase wide at its foot", "1 + 0.5 * cos(y)").number(2)
+    Profile::new("cosine_vase", "a vase with a wide foot", "1 + 0.5 * cos(y)").number(2)
 }

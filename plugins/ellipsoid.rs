@@ -1,145 +1,164 @@
 //! An ellipsoid: a sphere stretched along the axes.
 
-use super::sphere::{self, Sphere};
-use crate::geometry::bounds::Bounds;
-use crate::geometry::sight::Sight;
-use crate::numeric::number::Number;
-use crate::numeric::twofold::{Twofold, exponent_to_one, times_power_of_two};
-use crate::scene::entity::Entity;
-use crate::scene::pparm::{Pparm, Row, Table};
+use super::sphere;
+use crate::numeric::twofold::{exponent_to_one, times_power_of_two};
+use crate::prelude::*;
 use crate::shapes::ball::{self, Line};
-use crate::world::accuracy::Accuracy;
-use crate::world::certify::{self, Enclosure, Equation, Precision};
-use crate::world::coincidence;
-use crate::world::hittable::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
-use glam::DVec3;
+use std::marker::PhantomData;
 
-static SCALE: Pparm<DVec3> = Pparm::required("scale", "how much it is stretched along x, y and z")
-    .must("positive each way", |scale: &DVec3| scale.min_element() > 0.0);
+static SCALE: Pparm<DVec3> = Pparm::required("scale", "the scale factors along x, y and z")
+    .must("positive in each dimension", |scale: &DVec3| scale.min_element() > 0.0);
 
 const TABLE: Table = &[&SCALE as &dyn Row];
 
 inventory::submit! {
-    Entity::shape("ellipsoid", "a ball stretched along the axes", &[sphere::TABLE, TABLE], |args| {
-        Ok(Body::plain(Ellipsoid::new(Sphere::new(args), args.get(&SCALE))))
+    Entity::shape("ellipsoid", "a sphere scaled along the coordinate axes", &[sphere::TABLE, TABLE], |args| {
+        Ok(Body::plain(shape(args)))
     })
 }
 
-struct Ellipsoid {
-    /// The sphere that it is where space is squeezed by `scale` around its centre.
-    ball: Sphere,
-    scale: DVec3,
-    /// One over the least of `scale`.
-    most_squeezed: f64,
+fn shape(args: &Args) -> AnyShape {
+    let ((center, radius), scale) = (sphere::ball(args), args.get(&SCALE));
+    match args.accuracy() {
+        Accuracy::Classic => Shape::new(Ellipsoid::<Classic>::new(center, radius, scale)).classic().into(),
+        Accuracy::Draft => exact::<Draft>(center, radius, scale),
+        Accuracy::Exact => exact::<Exact>(center, radius, scale),
+        Accuracy::Strict => exact::<Strict>(center, radius, scale),
+    }
 }
 
-impl Ellipsoid {
-    /// A sphere, stretched.
-    fn new(mut ball: Sphere, mut scale: DVec3) -> Self {
-        // A power of two more in the radius and less in the scale changes nothing but how large the squares become.
-        if ball.accuracy != Accuracy::Classic {
-            let exponent = exponent_to_one(scale.min_element());
-            scale = DVec3::from(scale.to_array().map(|part| times_power_of_two(part, exponent)));
-            ball.radius = times_power_of_two(ball.radius, -exponent);
-        }
-        Self { ball, scale, most_squeezed: 1.0 / scale.min_element() }
+fn exact<A: Bounded>(center: DVec3, radius: f64, scale: DVec3) -> AnyShape {
+    // A power of two more in the radius and less in the scale changes nothing but how large the squares become.
+    let exponent = exponent_to_one(scale.min_element());
+    let scale = DVec3::from(scale.to_array().map(|part| times_power_of_two(part, exponent)));
+    let ball = Ellipsoid::<A>::new(center, times_power_of_two(radius, -exponent), scale);
+    Shape::new(ball).bracketed().certified().into()
+}
+
+/// A sphere where space is squeezed by `scale` around its centre.
+struct Ellipsoid<A> {
+    center: DVec3,
+    radius: f64,
+    scale: DVec3,
+    /// One over it, in twice the precision.
+    squeeze: [Twofold; 3],
+    /// One over the least of `scale`.
+    most_squeezed: f64,
+    accuracy: PhantomData<A>,
+}
+
+impl<A> Ellipsoid<A> {
+    fn new(center: DVec3, radius: f64, scale: DVec3) -> Self {
+        let squeeze = scale.to_array().map(|part| Twofold::from(1.0) / Twofold::from(part));
+        let most_squeezed = 1.0 / scale.min_element();
+        Self { center, radius, scale, squeeze, most_squeezed, accuracy: PhantomData }
     }
 
     /// A ray, squeezed: its direction is no unit vector any more, so that distances stay what they were.
     #[inline(always)]
     fn squeezed(&self, ray: &Ray) -> (DVec3, DVec3) {
-        ((ray.origin - self.ball.center) / self.scale, ray.dir / self.scale)
+        ((ray.origin - self.center) / self.scale, ray.dir / self.scale)
+    }
+
+    /// Likewise in twice the precision.
+    #[inline(always)]
+    fn line(&self, ray: &Ray) -> Line {
+        Line::squeezed(ray, self.center, &self.squeeze)
+    }
+
+    fn around(&self) -> Bounds {
+        let reach = self.radius * self.scale;
+        Bounds { low: self.center - reach, high: self.center + reach }
+    }
+
+    #[inline(always)]
+    fn upright(&self, at: DVec3) -> DVec3 {
+        ((at - self.center) / (self.scale * self.scale)).normalize()
     }
 }
 
-impl Hittable for Ellipsoid {
+impl Hittable for Ellipsoid<Classic> {
     #[inline(always)]
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        let Sphere { radius, accuracy, .. } = self.ball;
-        if accuracy == Accuracy::Classic {
-            let (from, dir) = self.squeezed(ray);
-            return within.keep(sphere::classic(from, dir, radius));
-        }
-        let line = Line::squeezed(ray, self.ball.center, self.scale);
-        within.keep(match within.leaves {
-            None => ball::first_hit(&line, radius, accuracy),
-            Some(Side::Inside) => ball::far_hit(&line, radius, accuracy),
-            Some(Side::Outside) => MISS,
-        })
-    }
-
-    #[inline(always)]
-    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
         let (from, dir) = self.squeezed(ray);
-        match self.ball.accuracy {
-            Accuracy::Classic => Bracket::exactly(within.keep(sphere::classic(from, dir, self.ball.radius))),
-            _ => {
-                let (inverse, error) = (1.0 / dir.dot(dir), within.origin_error / self.scale.min_element());
-                let spread = self.most_squeezed * inverse.sqrt();
-                ball::bracket(from, dir, inverse, spread, self.ball.radius, within.leaves, error)
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn quick_distance(&self, ray: &Ray, within: &Span) -> f64 {
-        let Sphere { radius, accuracy, .. } = self.ball;
-        let distance = match accuracy {
-            Accuracy::Classic => {
-                let (from, dir) = self.squeezed(ray);
-                sphere::classic(from, dir, radius)
-            }
-            _ => ball::quick_hit(&Line::squeezed(ray, self.ball.center, self.scale), radius, accuracy),
-        };
-        if distance.is_nan() { distance } else { within.keep(distance) }
-    }
-
-    fn bounds(&self) -> Option<Bounds> {
-        let reach = self.ball.radius * self.scale;
-        let bounds = Bounds { low: self.ball.center - reach, high: self.ball.center + reach };
-        (self.ball.accuracy != Accuracy::Classic).then_some(bounds)
+        within.keep(ball::classic(from, dir, self.radius))
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {
-        ((at - self.ball.center) / (self.scale * self.scale)).normalize()
+        self.upright(at)
     }
 
-    fn meets_itself(&self, leaving: Side) -> bool {
-        self.ball.meets_itself(leaving)
+    fn bounds(&self) -> Option<Bounds> {
+        Some(self.around())
     }
 
-    fn touches(&self, at: DVec3, error: f64) -> bool {
-        // Where it is squeezed most, an error is largest.
-        let from = (at - self.ball.center) / self.scale;
-        let squeezed = (from / self.scale).length() / from.length();
-        ball::touches(from, self.ball.radius, error * squeezed)
-    }
-
-    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold> {
-        let is_classic = self.ball.accuracy == Accuracy::Classic;
-        if is_classic { None } else { coincidence::distance(self, ray, distance) }
-    }
-
-    fn is_two_sided(&self) -> bool {
-        self.ball.is_two_sided()
+    fn meets_itself(&self, _leaving: Side) -> bool {
+        false
     }
 
     fn method(&self) -> String {
-        ball::method(self.ball.accuracy).to_owned()
-    }
-
-    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        certify::first_hit(self, sight, precision)
+        ball::CLASSIC_METHOD.to_owned()
     }
 }
 
-impl Equation for Ellipsoid {
+impl<A: Bounded> Hittable for Ellipsoid<A> {
+    #[inline(always)]
+    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
+        within.keep(ball::distance::<A>(&self.line(ray), self.radius, within.leaves))
+    }
+
+    fn normal(&self, at: DVec3) -> DVec3 {
+        self.upright(at)
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        Some(self.around())
+    }
+
+    fn meets_itself(&self, leaving: Side) -> bool {
+        leaving == Side::Inside
+    }
+
+    fn is_two_sided(&self) -> bool {
+        true
+    }
+
+    fn method(&self) -> String {
+        ball::method::<A>().to_owned()
+    }
+}
+
+impl<A: Bounded> Bracketed for Ellipsoid<A> {
+    #[inline(always)]
+    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
+        let (from, dir) = self.squeezed(ray);
+        let (inverse, error) = (1.0 / dir.dot(dir), within.origin_error / self.scale.min_element());
+        let spread = self.most_squeezed * inverse.sqrt();
+        ball::bracket(from, dir, inverse, spread, self.radius, within.leaves, error)
+    }
+
+    #[inline(always)]
+    fn refine(&self, ray: &Ray, leaves: Option<Side>) -> f64 {
+        ball::refine::<A>(&self.line(ray), self.radius, leaves)
+    }
+}
+
+impl<A: Bounded> Certified for Ellipsoid<A> {
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        // Where it is squeezed most, an error is largest.
+        let from = (at - self.center) / self.scale;
+        let squeezed = (from / self.scale).length() / from.length();
+        ball::touches(from, self.radius, error * squeezed)
+    }
+}
+
+impl<A> Equation for Ellipsoid<A> {
     const IS_QUADRATIC: bool = true;
 
     fn value<N: Number>(&self, at: [N; 3]) -> N {
         let part = |axis: usize| {
-            ((at[axis] - N::constant(self.ball.center[axis])) / N::constant(self.scale[axis])).powi(2)
+            ((at[axis] - N::constant(self.center[axis])) / N::constant(self.scale[axis])).powi(2)
         };
-        part(0) + part(1) + part(2) - N::constant(self.ball.radius).powi(2)
+        part(0) + part(1) + part(2) - N::constant(self.radius).powi(2)
     }
 }

@@ -1,29 +1,18 @@
 //! A finite plane: a rectangle.
 
-use super::plane::{self, Plane};
-use crate::geometry::bounds::Bounds;
-use crate::geometry::packet::Rays;
-use crate::geometry::sight::Sight;
-use crate::numeric::number::Number;
-use crate::numeric::twofold::Twofold;
-use crate::scene::entity::{Args, Entity, Refusal};
-use crate::scene::pparm::{Derived, Pparm, Row, Table};
-use crate::scene::value::Value;
-use crate::shapes::rectangle;
-pub use crate::shapes::rectangle::FinitePlane;
-use crate::simd::cpu::Cpu;
-use crate::world::accuracy::Accuracy;
-use crate::world::certify::{self, Enclosure, Equation, Precision};
-use crate::world::hittable::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
-use glam::{DMat3, DVec2, DVec3};
+use super::plane;
+use crate::prelude::*;
+use crate::shapes::flat::{CLASSIC_METHOD, Flat, Plane};
+use crate::shapes::rectangle::{self, FinitePlane, Rectangle};
 
-pub static DIMENSIONS: Pparm<DVec2> = Pparm::required("dimensions", "its size along xdir and across it")
-    .unit("world units")
-    .must("positive each way", |size: &DVec2| size.min_element() > 0.0)
-    .dumped("dimensions", "\n");
+pub static DIMENSIONS: Pparm<DVec2> =
+    Pparm::required("dimensions", "the size along `xdir` and perpendicular to it")
+        .unit("world units")
+        .must("positive in each dimension", |size: &DVec2| size.min_element() > 0.0)
+        .dumped("dimensions", "\n");
 static XDIR: Pparm<DVec3> =
-    Pparm::required("xdir", "the direction of its first side, or of anything right above that")
-        .must("a vector with a direction", |xdir: &DVec3| xdir.try_normalize().is_some())
+    Pparm::required("xdir", "the direction of the first side, projected onto the plane")
+        .must("a nonzero vector", |xdir: &DVec3| xdir.try_normalize().is_some())
         .dumped("xdir", "\n");
 static PROJECTED: Derived = Derived(|args| frame(args).x_axis.to_datum().line("projected", "\n"));
 static ROTATION_ROWS: Derived = Derived(|args| {
@@ -36,14 +25,32 @@ pub const TABLE: Table = &[&DIMENSIONS, &XDIR, &PROJECTED];
 /// The notes' rotation matrix, for the dump.
 pub const ROTATION: Table = &[&ROTATION_ROWS as &dyn Row];
 
-fn frame(args: &Args) -> DMat3 {
-    rectangle::frame(args.get(&plane::NORMAL), args.get(&XDIR))
+inventory::submit! {
+    Entity::shape("fplane", "a rectangle with its lower left corner at `point`", &[plane::TABLE, TABLE, ROTATION], |args| {
+        Ok(Body::plain(shape(args)?))
+    })
 }
 
-inventory::submit! {
-    Entity::shape("fplane", "a rectangle, whose lower left corner is its point", &[plane::TABLE, TABLE, ROTATION], |args| {
-        Ok(Body::plain(FinitePlane::new(args)?))
+/// The rectangle of an entity whose table has the rows of a plane's and of this file's.
+///
+/// # Errors
+/// As [`sides`].
+pub fn shape(args: &Args) -> Result<AnyShape, Refusal> {
+    Ok(match args.accuracy() {
+        Accuracy::Classic => Shape::new(finite_plane::<Classic>(args)?).classic().into(),
+        Accuracy::Draft => Shape::new(finite_plane::<Draft>(args)?).flat().certified().into(),
+        Accuracy::Exact => Shape::new(finite_plane::<Exact>(args)?).flat().certified().into(),
+        Accuracy::Strict => Shape::new(finite_plane::<Strict>(args)?).flat().certified().into(),
     })
+}
+
+/// Where the same rectangle is; refused likewise.
+pub fn rectangle(args: &Args) -> Result<Rectangle, Refusal> {
+    Ok(finite_plane::<Classic>(args)?.rectangle)
+}
+
+fn frame(args: &Attributes) -> DMat3 {
+    rectangle::frame(args.get(&plane::NORMAL), args.get(&XDIR))
 }
 
 /// The directions of a rectangle's two sides.
@@ -55,88 +62,121 @@ pub fn sides(args: &Args) -> Result<[DVec3; 2], Refusal> {
     if normal.cross(xdir).length() < 1e-6 {
         return Err(Refusal {
             attribute: Some("xdir"),
-            message: "has an xdir parallel to its normal".to_owned(),
-            help: "`xdir` gives the direction of the first side; any vector that is not upright on the plane will do",
+            message: "has an `xdir` parallel to its `normal`".to_owned(),
+            help: "`xdir` gives the direction of the first side; any vector that is not parallel to `normal` will do",
         });
     }
     Ok([0, 1].map(|side| frame(args).col(side)))
 }
 
-impl FinitePlane {
-    /// The rectangle of an entity whose table has the rows of a plane's and of this file's; refused as its sides are.
-    pub fn new(args: &Args) -> Result<Self, Refusal> {
-        Ok(Self::cut_from(Plane::new(args), args.get(&DIMENSIONS), args.get(&XDIR), sides(args)?))
-    }
+/// The same, crossed as exactly as its type has it; refused as its sides are.
+pub fn finite_plane<A>(args: &Args) -> Result<FinitePlane<A>, Refusal> {
+    let (plane, xdir, classic) = (plane::plane(args), args.get(&XDIR), sides(args)?);
+    let sides = match args.accuracy() {
+        Accuracy::Classic => classic,
+        _ => rectangle::rounded_sides(plane.upright, xdir),
+    };
+    Ok(FinitePlane::cut_from(plane, args.get(&DIMENSIONS), xdir, sides))
 }
 
-impl Hittable for FinitePlane {
+impl Hittable for FinitePlane<Classic> {
     #[inline(always)]
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
         let distance = self.plane.distance(ray, within);
         if self.has_crossing(ray, distance) { distance } else { MISS }
     }
 
-    #[inline(always)]
-    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        match self.plane.accuracy {
-            Accuracy::Classic => Bracket::exactly(self.quick_distance(ray, within)),
-            _ => FinitePlane::bracket(self, ray, within),
-        }
-    }
-
-    #[inline(always)]
-    fn quick_distance(&self, ray: &Ray, within: &Span) -> f64 {
-        self.quickly_kept(ray, self.plane.quick_distance(ray, within))
-    }
-
-    fn distances(&self, cpu: Cpu, rays: Rays, _: Option<&[Side]>, _: (&[f64], &[f64]), out: &mut [f64]) {
-        // It is asked of hits that are certain, and those are inside.
-        self.plane.distances(cpu, rays, out);
+    fn normal(&self, _at: DVec3) -> DVec3 {
+        self.plane.normal
     }
 
     fn bounds(&self) -> Option<Bounds> {
-        (self.plane.accuracy != Accuracy::Classic).then(|| self.around())
+        Some(self.rectangle.around())
+    }
+
+    fn meets_itself(&self, _leaving: Side) -> bool {
+        false
+    }
+
+    fn plane(&self) -> Option<[DVec3; 2]> {
+        Some([self.plane.point, self.plane.normal])
+    }
+
+    fn method(&self) -> String {
+        CLASSIC_METHOD.to_owned()
+    }
+}
+
+impl<A: Bounded> Hittable for FinitePlane<A> {
+    #[inline(always)]
+    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
+        let distance = self.plane.distance(ray, within);
+        if self.has_crossing(ray, distance) { distance } else { MISS }
+    }
+
+    fn normal(&self, _at: DVec3) -> DVec3 {
+        self.plane.normal
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        Some(self.rectangle.around())
+    }
+
+    fn meets_itself(&self, _leaving: Side) -> bool {
+        false
     }
 
     fn is_clear_of(&self, region: &Bounds) -> bool {
-        self.plane.is_clear_of(region) || self.bounds().is_some_and(|bounds| !bounds.overlaps(region))
+        self.plane.is_clear_of(region) || !self.rectangle.around().overlaps(region)
     }
 
-    fn meets_itself(&self, leaving: Side) -> bool {
-        self.plane.meets_itself(leaving)
-    }
-
-    fn touches(&self, at: DVec3, error: f64) -> bool {
-        // What starts on the plane beside the rectangle does not meet it either.
-        self.plane.touches(at, error)
+    fn plane(&self) -> Option<[DVec3; 2]> {
+        Some([self.plane.point, self.plane.normal])
     }
 
     fn reach(&self) -> f64 {
         self.reach
     }
 
-    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold> {
-        self.plane.fine_distance(ray, distance)
-    }
-
-    fn normal(&self, at: DVec3) -> DVec3 {
-        self.plane.normal(at)
-    }
-
-    fn plane(&self) -> Option<[DVec3; 2]> {
-        Hittable::plane(&self.plane)
-    }
-
     fn method(&self) -> String {
         self.plane.method().to_owned()
     }
+}
 
-    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        certify::first_hit(self, sight, precision)
+impl<A: Bounded> Bracketed for FinitePlane<A> {
+    #[inline(always)]
+    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
+        FinitePlane::bracket(self, ray, within)
+    }
+
+    #[inline(always)]
+    fn refine(&self, ray: &Ray, _leaves: Option<Side>) -> f64 {
+        // A hit that is certain is inside.
+        self.plane.quick_crossing(ray)
     }
 }
 
-impl Equation for FinitePlane {
+impl<A: Bounded> Flat for FinitePlane<A> {
+    type Accuracy = A;
+
+    #[inline(always)]
+    fn flat(&self) -> &Plane<A> {
+        &self.plane
+    }
+}
+
+impl<A: Bounded> Certified for FinitePlane<A> {
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        // What starts on the plane beside the rectangle does not meet it either.
+        self.plane.touches(at, error)
+    }
+
+    fn fine_distance(&self, ray: &Ray, _distance: f64) -> Option<Twofold> {
+        Some(self.plane.exact_crossing(ray))
+    }
+}
+
+impl<A> Equation for FinitePlane<A> {
     const IS_QUADRATIC: bool = true;
 
     fn value<N: Number>(&self, at: [N; 3]) -> N {

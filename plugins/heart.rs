@@ -1,16 +1,10 @@
 //! A heart: G. Taubin's surface of the sixth degree (1993).
 
-use crate::geometry::frame::Frame;
-use crate::numeric::number::Number;
-use crate::scene::entity::Entity;
-use crate::scene::pparm::{Pparm, Table};
-use crate::shapes::implicit::Implicit;
-use crate::world::hittable::Body;
-use glam::DVec3;
+use crate::prelude::*;
 
 static CENTER: Pparm<DVec3> =
-    Pparm::required("center", "the point in its middle").alias(&["centre"]).unit("world coordinates");
-static SIZE: Pparm<f64> = Pparm::required("size", "the distance from its center down to its tip")
+    Pparm::required("center", "the position of the centre").alias(&["centre"]).unit("world coordinates");
+static SIZE: Pparm<f64> = Pparm::required("size", "the distance from the centre down to the tip")
     .unit("world units")
     .must("positive", |size| *size > 0.0);
 

@@ -1,16 +1,12 @@
 //! A light: a point that shines evenly in all directions.
 
-use crate::scene::entity::{Args, Entity};
-use crate::scene::pparm::{Pparm, Table};
-use crate::world::hittable::Light;
-use crate::world::material::Rgb;
-use glam::DVec3;
+use crate::prelude::*;
 
-static LOCATION: Pparm<DVec3> = Pparm::required("location", "where it is").unit("world coordinates");
-static EMISSIVITY: Pparm<Rgb> =
-    Pparm::required("emissivity", "red, green and blue of the light that it sends");
+static LOCATION: Pparm<DVec3> =
+    Pparm::required("location", "the position of the light").unit("world coordinates");
+static EMISSIVITY: Pparm<Rgb> = Pparm::required("emissivity", "the emission in red, green and blue");
 
-static SIZE: Pparm<f64> = Pparm::or("size", "the radius of the ball that shines, for soft shadows", 0.0)
+static SIZE: Pparm<f64> = Pparm::or("size", "the radius of a spherical light, for soft shadows", 0.0)
     .unit("world units")
     .must("0 or more", |size| *size >= 0.0)
     .not_dumped();
@@ -19,7 +15,7 @@ static SIZE: Pparm<f64> = Pparm::or("size", "the radius of the ball that shines,
 pub const TABLE: Table = &[&LOCATION, &EMISSIVITY, &SIZE];
 
 inventory::submit! {
-    Entity::light("light", "a point that shines evenly in all directions, or a ball if it has a size", &[TABLE], |args| {
+    Entity::light("light", "a point light that emits equally in all directions, or a spherical light if it has a `size`", &[TABLE], |args| {
         Ok(Box::new(PointLight::new(args)))
     })
 }
@@ -33,7 +29,7 @@ pub struct PointLight {
 
 impl PointLight {
     /// The light of an entity whose table has [`TABLE`]'s rows.
-    pub fn new(args: &Args) -> Self {
+    pub fn new(args: &Attributes) -> Self {
         Self { location: args.get(&LOCATION), emissivity: args.get(&EMISSIVITY), size: args.get(&SIZE) }
     }
 }

@@ -1,18 +1,15 @@
 //! A procedural finite plane: a rectangle whose look changes from place to place by a rule.
 
-use super::fplane::{self, FinitePlane};
-use super::{plane, pplane};
-use crate::scene::entity::Entity;
+use super::{fplane, plane, pplane};
+use crate::prelude::*;
 
 inventory::submit! {
     Entity::shape(
         "pfplane",
-        "a rectangle that looks as a rule has it",
+        "a rectangle with a procedural shader",
         &[plane::TABLE, pplane::TABLE, fplane::TABLE, fplane::ROTATION],
         |args| {
-            let rectangle = FinitePlane::new(args)?;
-            let origin = rectangle.plane.point;
-            Ok(pplane::body(args, rectangle, origin))
+            Ok(pplane::body(args, fplane::shape(args)?))
         },
     )
 }

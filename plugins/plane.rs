@@ -1,106 +1,136 @@
 //! A plane: every point in two directions, without end.
 
-use crate::geometry::bounds::{Bounds, SLACK};
-use crate::geometry::packet::Rays;
-use crate::geometry::sight::Sight;
-use crate::numeric::number::{Number, dot};
-use crate::numeric::twofold::Twofold;
-use crate::scene::entity::{Args, Entity};
-use crate::scene::pparm::{Pparm, Table};
-pub use crate::shapes::flat::Plane;
-use crate::simd::cpu::Cpu;
-use crate::world::accuracy::Accuracy;
-use crate::world::certify::{self, Enclosure, Equation, Precision};
-use crate::world::hittable::{Body, Bracket, Hittable, Ray, Side, Span};
-use glam::DVec3;
+use crate::prelude::*;
+use crate::shapes::flat::{CLASSIC_METHOD, Flat, Plane};
 
 pub static NORMAL: Pparm<DVec3> =
-    Pparm::required("normal", "a vector that stands upright on it, on its lit side")
-        .must("a vector with a direction", |normal: &DVec3| normal.try_normalize().is_some())
+    Pparm::required("normal", "a vector perpendicular to the plane, pointing to its lit side")
+        .must("a nonzero vector", |normal: &DVec3| normal.try_normalize().is_some())
         .shown(DVec3::normalize);
-pub static POINT: Pparm<DVec3> = Pparm::required("point", "a point of it").unit("world coordinates");
+pub static POINT: Pparm<DVec3> = Pparm::required("point", "a point on the plane").unit("world coordinates");
 
 /// What every kind of plane takes.
 pub const TABLE: Table = &[&NORMAL, &POINT];
 
 inventory::submit! {
-    Entity::shape("plane", "a plane without end", &[TABLE], |args| Ok(Body::plain(Plane::new(args))))
+    Entity::shape("plane", "an infinite plane", &[TABLE], |args| Ok(Body::plain(shape(args))))
 }
 
-impl Plane {
-    /// The plane of an entity whose table has a plane's rows.
-    pub fn new(args: &Args) -> Self {
-        Self::with_normal(args.get(&NORMAL), args.get(&POINT), args.accuracy())
+/// The plane of an entity whose table has [`TABLE`]'s rows.
+pub fn shape(args: &Args) -> AnyShape {
+    match args.accuracy() {
+        Accuracy::Classic => Shape::new(plane::<Classic>(args)).classic().into(),
+        Accuracy::Draft => Shape::new(plane::<Draft>(args)).flat().certified().into(),
+        Accuracy::Exact => Shape::new(plane::<Exact>(args)).flat().certified().into(),
+        Accuracy::Strict => Shape::new(plane::<Strict>(args)).flat().certified().into(),
     }
 }
 
-impl Hittable for Plane {
+/// The same, crossed as exactly as its type has it.
+pub fn plane<A>(args: &Args) -> Plane<A> {
+    Plane::with_normal(args.get(&NORMAL), args.get(&POINT))
+}
+
+impl Hittable for Plane<Classic> {
     #[inline(always)]
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
         self.keep(self.crossing(ray), ray, within)
-    }
-
-    #[inline(always)]
-    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        match self.accuracy {
-            Accuracy::Classic => Bracket::exactly(self.quick_distance(ray, within)),
-            _ => Plane::bracket(self, &self.rough(ray, within.origin_error), ray, within),
-        }
-    }
-
-    #[inline(always)]
-    fn quick_distance(&self, ray: &Ray, within: &Span) -> f64 {
-        let distance = self.quick_crossing(ray);
-        self.quick_keep(distance, ray, within)
     }
 
     fn normal(&self, _at: DVec3) -> DVec3 {
         self.normal
     }
 
-    fn is_clear_of(&self, region: &Bounds) -> bool {
-        Plane::is_clear_of(self, region)
-    }
-
     fn meets_itself(&self, _leaving: Side) -> bool {
         false
     }
 
-    fn touches(&self, at: DVec3, error: f64) -> bool {
-        Plane::touches(self, at, error)
-    }
-
-    fn reach(&self) -> f64 {
-        self.point.abs().max_element()
-    }
-
-    fn fine_distance(&self, ray: &Ray, _distance: f64) -> Option<Twofold> {
-        (self.accuracy != Accuracy::Classic).then(|| self.exact_crossing(ray))
-    }
-
-    fn clearance(&self, from: DVec3) -> f64 {
+    fn clearance(&self, from: DVec3) -> Option<f64> {
         let rounding = SLACK * (from.length() + self.point.length());
-        (self.normal.dot(from - self.point).abs() - rounding).max(0.0)
+        Some((self.normal.dot(from - self.point).abs() - rounding).max(0.0))
     }
 
     fn plane(&self) -> Option<[DVec3; 2]> {
         Some([self.point, self.normal])
     }
 
+    fn reach(&self) -> f64 {
+        self.point.abs().max_element()
+    }
+
     fn method(&self) -> String {
-        Plane::method(self).to_owned()
-    }
-
-    fn distances(&self, cpu: Cpu, rays: Rays, _: Option<&[Side]>, _: (&[f64], &[f64]), out: &mut [f64]) {
-        Plane::distances(self, cpu, rays, out);
-    }
-
-    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        certify::first_hit(self, sight, precision)
+        CLASSIC_METHOD.to_owned()
     }
 }
 
-impl Equation for Plane {
+impl<A: Bounded> Hittable for Plane<A> {
+    #[inline(always)]
+    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
+        self.keep(self.crossing(ray), ray, within)
+    }
+
+    fn normal(&self, _at: DVec3) -> DVec3 {
+        self.normal
+    }
+
+    fn meets_itself(&self, _leaving: Side) -> bool {
+        false
+    }
+
+    fn is_clear_of(&self, region: &Bounds) -> bool {
+        Plane::is_clear_of(self, region)
+    }
+
+    fn clearance(&self, from: DVec3) -> Option<f64> {
+        let rounding = SLACK * (from.length() + self.point.length());
+        Some((self.normal.dot(from - self.point).abs() - rounding).max(0.0))
+    }
+
+    fn plane(&self) -> Option<[DVec3; 2]> {
+        Some([self.point, self.normal])
+    }
+
+    fn reach(&self) -> f64 {
+        self.point.abs().max_element()
+    }
+
+    fn method(&self) -> String {
+        Plane::method(self).to_owned()
+    }
+}
+
+impl<A: Bounded> Bracketed for Plane<A> {
+    #[inline(always)]
+    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
+        Plane::bracket(self, &self.rough(ray, within.origin_error), ray, within)
+    }
+
+    #[inline(always)]
+    fn refine(&self, ray: &Ray, _leaves: Option<Side>) -> f64 {
+        self.quick_crossing(ray)
+    }
+}
+
+impl<A: Bounded> Flat for Plane<A> {
+    type Accuracy = A;
+
+    #[inline(always)]
+    fn flat(&self) -> &Plane<A> {
+        self
+    }
+}
+
+impl<A: Bounded> Certified for Plane<A> {
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        Plane::touches(self, at, error)
+    }
+
+    fn fine_distance(&self, ray: &Ray, _distance: f64) -> Option<Twofold> {
+        Some(self.exact_crossing(ray))
+    }
+}
+
+impl<A> Equation for Plane<A> {
     const IS_QUADRATIC: bool = true;
 
     fn value<N: Number>(&self, at: [N; 3]) -> N {

@@ -1,26 +1,21 @@
 //! A procedural plane: a plane whose look changes from place to place by a rule.
 
-use super::plane::{self, Plane};
-use crate::scene::entity::{Args, Entity};
-use crate::scene::pparm::{Pparm, Row, Table};
-use crate::world::hittable::{Body, Hittable};
-use crate::world::shading::{Anchor, OnPlane};
-use glam::DVec3;
+use super::plane;
+use crate::prelude::*;
 
-static SHADER: Pparm<OnPlane> = Pparm::required("shader", "the rule for its look");
+static SHADER: Pparm<OnPlane> = Pparm::required("shader", "the procedural shader");
 
 /// What planes with a rule for their look take.
 pub const TABLE: Table = &[&SHADER as &dyn Row];
 
 inventory::submit! {
-    Entity::shape("pplane", "a plane without end that looks as a rule has it", &[plane::TABLE, TABLE], |args| {
-        let plane = Plane::new(args);
-        let origin = plane.point;
-        Ok(body(args, plane, origin))
+    Entity::shape("pplane", "an infinite plane with a procedural shader", &[plane::TABLE, TABLE], |args| {
+        Ok(body(args, plane::shape(args)))
     })
 }
 
-/// A shape that looks as the `shader` of an entity whose table has [`TABLE`]'s rows.
-pub fn body(args: &Args, shape: impl Hittable + 'static, origin: DVec3) -> Body {
-    Body::procedural(shape, args.get(&SHADER).0, Anchor { origin, unit: 1.0 })
+/// A plane's shape that looks as the `shader` of an entity whose table has its rows and [`TABLE`]'s.
+pub fn body(args: &Args, shape: AnyShape) -> Body {
+    let anchor = Anchor { origin: args.get(&plane::POINT), unit: 1.0 };
+    Body::procedural(shape, args.get(&SHADER).0, anchor)
 }

@@ -1,14 +1,11 @@
 //! A projector: a light that throws a picture.
 
+use super::fplane::{self, finite_plane};
 use super::light::{self, PointLight};
+use super::plane;
 use super::texplane::{self, Picture};
-use super::{fplane, plane};
-use crate::scene::entity::Entity;
-use crate::scene::pparm::{Derived, Row, Table};
-use crate::scene::value::Datum;
-use crate::world::hittable::{Light, Ray};
-use crate::world::material::Rgb;
-use glam::DVec3;
+use crate::prelude::*;
+use crate::shapes::rectangle::{FinitePlane, Window};
 
 static HEADING: Derived = Derived(|_| Datum::Word(String::new()).line("projector", " \n"));
 
@@ -17,19 +14,35 @@ const TABLE: Table = &[&HEADING as &dyn Row];
 inventory::submit! {
     Entity::light(
         "projector",
-        "a light that shines through a rectangle with a picture, itself not visible",
+        "a light that projects a texture through a rectangle, which is itself invisible",
         &[light::TABLE, TABLE, plane::TABLE, fplane::TABLE, fplane::ROTATION, texplane::TABLE],
-        |args| Ok(Box::new(Projector { light: PointLight::new(args), picture: Picture::new(args)? })),
+        |args| Ok(match args.accuracy() {
+            Accuracy::Classic => Box::new(Projector::new(args, finite_plane::<Classic>(args)?)),
+            Accuracy::Draft => Box::new(Projector::new(args, finite_plane::<Draft>(args)?)),
+            Accuracy::Exact => Box::new(Projector::new(args, finite_plane::<Exact>(args)?)),
+            Accuracy::Strict => Box::new(Projector::new(args, finite_plane::<Strict>(args)?)),
+        }),
     )
     .dumped_as("light")
 }
 
-struct Projector {
+/// A lamp behind a rectangle, and the picture on that.
+struct Projector<A> {
     light: PointLight,
+    window: FinitePlane<A>,
     picture: Picture,
 }
 
-impl Light for Projector {
+impl<A> Projector<A> {
+    fn new(args: &Args, window: FinitePlane<A>) -> Self {
+        Self { light: PointLight::new(args), picture: Picture::new(args, window.rectangle), window }
+    }
+}
+
+impl<A: Send + Sync> Light for Projector<A>
+where
+    FinitePlane<A>: Window,
+{
     fn location(&self) -> DVec3 {
         self.light.location
     }
@@ -37,10 +50,8 @@ impl Light for Projector {
     /// Light gets only where the way to the lamp leads through the picture, and takes its colours.
     fn emissivity(&self, toward: DVec3) -> Option<Rgb> {
         let ray = Ray { origin: toward, dir: (self.light.location - toward).normalize() };
-        let distance = self.picture.rectangle.plane.crossing(&ray);
-        let at = ray.at(distance);
-        (distance > 0.0 && self.picture.rectangle.has_crossing(&ray, distance))
-            .then(|| self.light.emissivity * self.picture.colour(at))
+        let distance = self.window.crossing(&ray)?;
+        Some(self.light.emissivity * self.picture.colour(ray.at(distance)))
     }
 
     /// No texel is above 1.

@@ -1,19 +1,16 @@
 //! A procedural sphere: a sphere whose look changes from place to place by a rule.
 
-use super::sphere::{self, Sphere};
-use crate::scene::entity::Entity;
-use crate::scene::pparm::{Pparm, Row, Table};
-use crate::world::hittable::Body;
-use crate::world::shading::{Anchor, OnSphere};
+use super::sphere;
+use crate::prelude::*;
 
-static SHADER: Pparm<OnSphere> = Pparm::required("shader", "the rule for its look");
+static SHADER: Pparm<OnSphere> = Pparm::required("shader", "the procedural shader");
 
 const TABLE: Table = &[&SHADER as &dyn Row];
 
 inventory::submit! {
-    Entity::shape("psphere", "a ball that looks as a rule has it", &[sphere::TABLE, TABLE], |args| {
-        let sphere = Sphere::new(args);
-        let anchor = Anchor { origin: sphere.center, unit: 2.0 * sphere.radius };
-        Ok(Body::procedural(sphere, args.get(&SHADER).0, anchor))
+    Entity::shape("psphere", "a sphere with a procedural shader", &[sphere::TABLE, TABLE], |args| {
+        let (center, radius) = sphere::ball(args);
+        let anchor = Anchor { origin: center, unit: 2.0 * radius };
+        Ok(Body::procedural(sphere::shape(args), args.get(&SHADER).0, anchor))
     })
 }

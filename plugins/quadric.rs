@@ -1,26 +1,22 @@
 //! A quadric: every point that solves an equation of the second degree (the notes' "General Quadric Surfaces").
 
-use crate::geometry::bounds::{self, Bounds};
-use crate::geometry::sight::Sight;
-use crate::numeric::number::Number;
-use crate::numeric::twofold::Twofold;
-use crate::scene::entity::{Entity, Refusal};
-use crate::scene::pparm::{Pparm, Table};
-use crate::shapes::quadratic::Quadric;
-use crate::world::certify::{self, Enclosure, Equation, Precision};
-use crate::world::coincidence;
-use crate::world::hittable::{Body, Bracket, Hittable, Ray, Side, Span};
-use glam::DVec3;
+use crate::geometry::clearance;
+use crate::prelude::*;
+use crate::shapes::Quadric;
 
-static COEFFICIENTS: Pparm<[f64; 10]> =
-    Pparm::required("coefficients", "A to J of Axx + Byy + Czz + Dxy + Exz + Fyz + Gx + Hy + Iz = J")
-        .must("not all zero but for J", |c: &[f64; 10]| c[..9].iter().any(|coefficient| *coefficient != 0.0));
-static CENTER: Pparm<DVec3> = Pparm::or("center", "where the equation's x, y and z are 0", DVec3::ZERO)
+static COEFFICIENTS: Pparm<[f64; 10]> = Pparm::required(
+    "coefficients",
+    "the coefficients A to J of Axx + Byy + Czz + Dxy + Exz + Fyz + Gx + Hy + Iz = J",
+)
+.must("nonzero in at least one of A to I", |c: &[f64; 10]| {
+    c[..9].iter().any(|coefficient| *coefficient != 0.0)
+});
+static CENTER: Pparm<DVec3> = Pparm::or("center", "the origin of the equation's coordinates", DVec3::ZERO)
     .alias(&["centre"])
     .unit("world coordinates");
 static BOX: Pparm<[f64; 6]> = Pparm::or(
     "box",
-    "what is kept of it: from x y z to x y z, counted from its center",
+    "the box that clips it, as its low and its high corner relative to `center`",
     [-1e9, -1e9, -1e9, 1e9, 1e9, 1e9],
 )
 .not_dumped();
@@ -28,45 +24,39 @@ static BOX: Pparm<[f64; 6]> = Pparm::or(
 const TABLE: Table = &[&COEFFICIENTS, &CENTER, &BOX];
 
 inventory::submit! {
-    Entity::shape("quadric", "a surface of the second degree, such as a cone, a cylinder or a saddle", &[TABLE], |args| {
+    Entity::shape("quadric", "a quadric surface, such as a cone, a cylinder or a saddle", &[TABLE], |args| {
         let [x1, y1, z1, x2, y2, z2] = args.get(&BOX);
         let (low, high) = (DVec3::new(x1, y1, z1), DVec3::new(x2, y2, z2));
         if !low.cmplt(high).all() {
             return Err(Refusal {
                 attribute: Some("box"),
                 message: "has an empty box".to_owned(),
-                help: "the box goes from its low corner to its high one: x, y and z must all grow",
+                help: "the low corner must be below the high corner in x, y and z",
             });
         }
-        Ok(Body::plain(Quadric::new(args.get(&COEFFICIENTS), args.get(&CENTER), [low, high], args.accuracy())))
+        Ok(Body::plain(shape(args, [low, high])))
     })
 }
 
-impl Hittable for Quadric {
-    /// The nearer hit that lies in the box, or the farther one.
-    #[inline(always)]
-    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        let quick = self.quick_distance(ray, within);
-        if quick.is_nan() { within.keep(self.exact_hit(ray, within.near)) } else { quick }
-    }
-
-    #[inline(always)]
-    fn quick_distance(&self, ray: &Ray, within: &Span) -> f64 {
-        Quadric::quick_distance(self, ray, within)
-    }
-
-    #[inline(always)]
-    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        let may_leave = within.origin_error > 0.0 && !self.is_classic() && within.leaves.is_none();
-        if may_leave && self.touches(ray.origin, within.origin_error) {
-            return Bracket::UNKNOWN;
+fn shape(args: &Args, corners: [DVec3; 2]) -> AnyShape {
+    let (coefficients, center) = (args.get(&COEFFICIENTS), args.get(&CENTER));
+    match args.accuracy() {
+        Accuracy::Classic => {
+            Shape::new(Quadric::<Classic>::new(coefficients, center, corners)).classic().into()
         }
-        Quadric::bracket(self, ray, within)
+        Accuracy::Draft => exact(Quadric::<Draft>::new(coefficients, center, corners)),
+        Accuracy::Exact => exact(Quadric::<Exact>::new(coefficients, center, corners)),
+        Accuracy::Strict => exact(Quadric::<Strict>::new(coefficients, center, corners)),
     }
+}
 
-    fn clearance(&self, from: DVec3) -> f64 {
-        let by_box = bounds::clearance(from, self.bounds(), |region| self.is_clear_of(region));
-        self.clearance_by_value(from).max(by_box)
+fn exact<A: Bounded>(quadric: Quadric<A>) -> AnyShape {
+    Shape::new(quadric).bracketed().certified().into()
+}
+
+impl Hittable for Quadric<Classic> {
+    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
+        self.classic_distance(ray, within)
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {
@@ -74,46 +64,77 @@ impl Hittable for Quadric {
     }
 
     fn bounds(&self) -> Option<Bounds> {
-        let bounds = Bounds { low: self.center + self.low, high: self.center + self.high };
-        (!self.is_classic()).then_some(bounds)
+        Some(self.around())
     }
 
     fn meets_itself(&self, _leaving: Side) -> bool {
-        !self.is_classic()
+        false
     }
 
-    fn touches(&self, at: DVec3, error: f64) -> bool {
-        coincidence::touches(self, at, error)
+    fn method(&self) -> String {
+        "the notes' formula".to_owned()
+    }
+
+    fn clearance(&self, from: DVec3) -> Option<f64> {
+        Some(self.clearance_by_value(from))
+    }
+}
+
+impl<A: Bounded> Hittable for Quadric<A> {
+    /// The nearer hit that lies in the box, or the farther one.
+    #[inline(always)]
+    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
+        let quick = self.quick_distance(ray, within);
+        if quick.is_nan() { within.keep(self.exact_hit(ray, within.near)) } else { quick }
+    }
+
+    fn normal(&self, at: DVec3) -> DVec3 {
+        self.upright(at)
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        Some(self.around())
+    }
+
+    fn is_two_sided(&self) -> bool {
+        true
+    }
+
+    fn method(&self) -> String {
+        "a closed form and a step of Newton's method, in twice the precision where rounding could decide"
+            .to_owned()
+    }
+
+    fn clearance(&self, from: DVec3) -> Option<f64> {
+        let by_box = clearance(from, self.bounds(), |region| self.is_clear_of(region));
+        Some(self.clearance_by_value(from).max(by_box))
     }
 
     fn reach(&self) -> f64 {
         // The box may be far larger than what is seen of it, and cuts only.
         self.center.abs().max_element()
     }
+}
 
-    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold> {
-        if self.is_classic() { None } else { coincidence::distance(self, ray, distance) }
+impl<A: Bounded> Bracketed for Quadric<A> {
+    #[inline(always)]
+    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
+        let may_leave = within.origin_error > 0.0 && within.leaves.is_none();
+        if may_leave && self.touches(ray.origin, within.origin_error) {
+            return Bracket::UNKNOWN;
+        }
+        Quadric::bracket(self, ray, within)
     }
 
-    fn is_two_sided(&self) -> bool {
-        !self.is_classic()
-    }
-
-    fn method(&self) -> String {
-        let method = if self.is_classic() {
-            "the notes' formula"
-        } else {
-            "a closed form and a step of Newton's method, in twice the precision where rounding could decide"
-        };
-        method.to_owned()
-    }
-
-    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        certify::first_hit(self, sight, precision)
+    #[inline(always)]
+    fn refine(&self, ray: &Ray, leaves: Option<Side>) -> f64 {
+        self.quick_distance(ray, &Span { leaves, ..Span::RAY })
     }
 }
 
-impl Equation for Quadric {
+impl<A: Bounded> Certified for Quadric<A> {}
+
+impl<A> Equation for Quadric<A> {
     const IS_QUADRATIC: bool = true;
 
     fn value<N: Number>(&self, at: [N; 3]) -> N {

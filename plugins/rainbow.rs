@@ -1,12 +1,9 @@
 //! The notes' continuously modulated shading: colours that change with the angle around a point.
 
-use crate::world::hittable::Shader;
-use crate::world::material::{Look, Material, Rgb};
-use crate::world::shading::{Anchor, ProceduralShader};
-use glam::{DVec2, DVec3};
+use crate::prelude::*;
 
 inventory::submit! {
-    ProceduralShader::new("rainbow", "colours around a point, whatever the material", |anchor| Box::new(Rainbow(anchor))).on_plane(1)
+    ProceduralShader::new("rainbow", "hues around a point, independent of the material", |anchor| Box::new(Rainbow(anchor))).on_plane(1)
 }
 
 struct Rainbow(Anchor);

@@ -1,13 +1,10 @@
 //! Continuous modulation combined with tiles, as the notes suggest for their third shader.
 
 use super::{rainbow, tiles};
-use crate::world::hittable::Shader;
-use crate::world::material::{Look, Material, Rgb};
-use crate::world::shading::{Anchor, ProceduralShader};
-use glam::DVec3;
+use crate::prelude::*;
 
 inventory::submit! {
-    ProceduralShader::new("rainbow_tiles", "tiles along x and z: of the material, and of colours around a point", |anchor| Box::new(RainbowTiles(anchor))).on_plane(2)
+    ProceduralShader::new("rainbow_tiles", "tiles along x and z: the material's colour and hues around a point in turn", |anchor| Box::new(RainbowTiles(anchor))).on_plane(2)
 }
 
 struct RainbowTiles(Anchor);

@@ -1,28 +1,22 @@
 //! A surface of revolution: a line turned around an axis.
 
-use crate::geometry::frame::Frame;
-use crate::numeric::formula::Formula;
-use crate::scene::entity::{Args, Entity, Refusal};
-use crate::scene::pparm::{Pparm, Table};
-use crate::scene::profile::{Line, Profile};
-use crate::shapes::revolution::{Classic, Finish, InFrame, Revolution};
-use crate::world::accuracy::Accuracy;
-use crate::world::hittable::Body;
-use glam::DVec3;
+use crate::prelude::*;
+use crate::shapes::{Classic, Finish, InFrame, Revolution};
 use std::sync::Arc;
 
 static SURFER: Pparm<Option<&'static Profile>> =
-    Pparm::or("surfer", "the line that is turned, by the notes' number or by its name", None);
+    Pparm::or("surfer", "the profile curve, by the notes' number or by its name", None);
 static PROFILE: Pparm<Option<Arc<Formula>>> = Pparm::or(
     "profile",
-    "the line that is turned, in place of a surfer: its distance from the axis at each height y",
+    "the profile curve as a formula, in place of `surfer` (the distance from the axis at each height y)",
     None,
 );
-static DIRECTION: Pparm<DVec3> = Pparm::required("direction", "the direction of the axis, from base upward")
-    .must("a vector with a direction", |axis: &DVec3| axis.try_normalize().is_some());
+static DIRECTION: Pparm<DVec3> =
+    Pparm::required("direction", "the direction of the axis, upward from `base`")
+        .must("a nonzero vector", |axis: &DVec3| axis.try_normalize().is_some());
 static BASE: Pparm<DVec3> =
-    Pparm::required("base", "the point of the axis where the height is 0").unit("world coordinates");
-static HEIGHT: Pparm<f64> = Pparm::required("height", "how far along the axis it goes")
+    Pparm::required("base", "the point on the axis at height 0").unit("world coordinates");
+static HEIGHT: Pparm<f64> = Pparm::required("height", "the height of the surface along its axis")
     .unit("world units")
     .must("positive", |height| *height > 0.0)
     .not_dumped();
@@ -30,12 +24,12 @@ static HEIGHT: Pparm<f64> = Pparm::required("height", "how far along the axis it
 const TABLE: Table = &[&SURFER, &PROFILE, &DIRECTION, &BASE, &HEIGHT];
 
 inventory::submit! {
-    Entity::shape("revsurf", "a line turned around an axis, such as a cone, a vase or a column", &[TABLE], |args| {
+    Entity::shape("revsurf", "a surface of revolution, such as a cone, a vase or a column", &[TABLE], |args| {
         let frame = Frame::around(args.get(&BASE), args.get(&DIRECTION));
         let (line, height) = (line(args)?, args.get(&HEIGHT));
         let finish = match args.accuracy() {
             Accuracy::Classic => {
-                return Ok(Body::plain(InFrame { surface: Classic { line, height }, frame }));
+                return Ok(Body::plain(Shape::new(InFrame { surface: Classic { line, height }, frame }).classic()));
             }
             Accuracy::Draft => Finish::Bracket,
             Accuracy::Exact | Accuracy::Strict => Finish::Root,
@@ -45,24 +39,24 @@ inventory::submit! {
             let (what, help) = fault.told();
             Refusal { attribute, message: format!("has a profile {what}"), help }
         })?;
-        Ok(Body::plain(InFrame { surface, frame }))
+        Ok(Body::plain(Shape::new(InFrame { surface, frame }).in_packets().searched()))
     })
 }
 
 /// The line that an entity names or spells out.
-fn line(args: &Args) -> Result<Line, Refusal> {
+fn line(args: &Args) -> Result<ProfileLine, Refusal> {
     match (args.get(&SURFER), args.get(&PROFILE)) {
         (Some(profile), None) => Ok(profile.line()),
-        (None, Some(formula)) => Ok(Line { radius: (*formula).clone(), slope: None }),
+        (None, Some(formula)) => Ok(ProfileLine { radius: (*formula).clone(), slope: None }),
         (Some(_), Some(_)) => Err(Refusal {
             attribute: Some("profile"),
-            message: "has a surfer and a profile".to_owned(),
-            help: "one of them is the line that is turned",
+            message: "has both a `surfer` and a `profile`".to_owned(),
+            help: "each of them is the profile curve: leave one out",
         }),
         (None, None) => Err(Refusal {
             attribute: None,
             message: "lacks `surfer` or `profile`".to_owned(),
-            help: "give it `surfer N`, or a formula: `profile \"2 + sin(y)\"`",
+            help: "add `surfer N`, or a formula: `profile \"2 + sin(y)\"`",
         }),
     }
 }

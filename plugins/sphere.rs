@@ -1,20 +1,12 @@
 //! A sphere: every point at one distance from a centre.
 
-use crate::geometry::bounds::{Bounds, SLACK};
-use crate::geometry::sight::Sight;
-use crate::numeric::number::Number;
-use crate::numeric::twofold::Twofold;
-use crate::scene::entity::{Args, Entity};
-use crate::scene::pparm::{Pparm, Table};
+use crate::prelude::*;
 use crate::shapes::ball::{self, Line};
-use crate::world::accuracy::Accuracy;
-use crate::world::certify::{self, Enclosure, Equation, Precision};
-use crate::world::hittable::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
-use glam::DVec3;
+use std::marker::PhantomData;
 
 static CENTER: Pparm<DVec3> =
-    Pparm::required("center", "the point in its middle").alias(&["centre"]).unit("world coordinates");
-static RADIUS: Pparm<f64> = Pparm::required("radius", "the distance from its centre to its surface")
+    Pparm::required("center", "the position of the centre").alias(&["centre"]).unit("world coordinates");
+static RADIUS: Pparm<f64> = Pparm::required("radius", "the distance from the centre to the surface")
     .unit("world units")
     .must("positive", |radius| *radius > 0.0)
     .dumped("radius", "\n");
@@ -23,25 +15,46 @@ static RADIUS: Pparm<f64> = Pparm::required("radius", "the distance from its cen
 pub const TABLE: Table = &[&CENTER, &RADIUS];
 
 inventory::submit! {
-    Entity::shape("sphere", "a ball", &[TABLE], |args| Ok(Body::plain(Sphere::new(args))))
+    Entity::shape("sphere", "a sphere", &[TABLE], |args| Ok(Body::plain(shape(args))))
 }
 
-/// A sphere. Other round shapes hold one.
-#[derive(Clone)]
-pub struct Sphere {
-    pub center: DVec3,
-    pub radius: f64,
-    pub accuracy: Accuracy,
-}
-
-impl Sphere {
-    /// The sphere of an entity whose table has [`TABLE`]'s rows.
-    pub fn new(args: &Args) -> Self {
-        Self { center: args.get(&CENTER), radius: args.get(&RADIUS), accuracy: args.accuracy() }
+/// The sphere of an entity whose table has [`TABLE`]'s rows.
+pub fn shape(args: &Args) -> AnyShape {
+    match args.accuracy() {
+        Accuracy::Classic => Shape::new(Sphere::<Classic>::new(args)).classic().into(),
+        Accuracy::Draft => Shape::new(Sphere::<Draft>::new(args)).bracketed().certified().into(),
+        Accuracy::Exact => Shape::new(Sphere::<Exact>::new(args)).bracketed().certified().into(),
+        Accuracy::Strict => Shape::new(Sphere::<Strict>::new(args)).bracketed().certified().into(),
     }
 }
 
-impl Sphere {
+/// The centre and the radius of an entity whose table has [`TABLE`]'s rows.
+pub fn ball(args: &Args) -> (DVec3, f64) {
+    (args.get(&CENTER), args.get(&RADIUS))
+}
+
+struct Sphere<A> {
+    center: DVec3,
+    radius: f64,
+    accuracy: PhantomData<A>,
+}
+
+impl<A> Sphere<A> {
+    fn new(args: &Args) -> Self {
+        let (center, radius) = ball(args);
+        Self { center, radius, accuracy: PhantomData }
+    }
+
+    fn around(&self) -> Bounds {
+        Bounds { low: self.center - self.radius, high: self.center + self.radius }
+    }
+
+    fn away(&self, from: DVec3) -> f64 {
+        let away = (from - self.center).length();
+        let rounding = SLACK * (from.length() + self.center.length() + self.radius);
+        ((away - self.radius).abs() - rounding).max(0.0)
+    }
+
     /// A ray, counted from the centre.
     #[inline(always)]
     fn line(&self, ray: &Ray) -> Line {
@@ -49,97 +62,88 @@ impl Sphere {
     }
 }
 
-impl Hittable for Sphere {
+impl Hittable for Sphere<Classic> {
     #[inline(always)]
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        within.keep(match (self.accuracy, within.leaves) {
-            (Accuracy::Classic, _) => classic(ray.origin - self.center, ray.dir, self.radius),
-            (_, None) => ball::first_hit(&self.line(ray), self.radius, self.accuracy),
-            (_, Some(Side::Inside)) => ball::far_hit(&self.line(ray), self.radius, self.accuracy),
-            (_, Some(Side::Outside)) => MISS,
-        })
-    }
-
-    #[inline(always)]
-    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        let from = ray.origin - self.center;
-        match self.accuracy {
-            Accuracy::Classic => Bracket::exactly(within.keep(classic(from, ray.dir, self.radius))),
-            _ => ball::bracket(from, ray.dir, 1.0, 1.0, self.radius, within.leaves, within.origin_error),
-        }
-    }
-
-    #[inline(always)]
-    fn quick_distance(&self, ray: &Ray, within: &Span) -> f64 {
-        let distance = match (self.accuracy, within.leaves) {
-            (Accuracy::Classic, _) => classic(ray.origin - self.center, ray.dir, self.radius),
-            (_, None) => ball::quick_hit(&self.line(ray), self.radius, self.accuracy),
-            (_, Some(Side::Inside)) => ball::far_hit(&self.line(ray), self.radius, self.accuracy),
-            (_, Some(Side::Outside)) => MISS,
-        };
-        if distance.is_nan() { distance } else { within.keep(distance) }
-    }
-
-    fn bounds(&self) -> Option<Bounds> {
-        let bounds = Bounds { low: self.center - self.radius, high: self.center + self.radius };
-        (self.accuracy != Accuracy::Classic).then_some(bounds)
-    }
-
-    fn clearance(&self, from: DVec3) -> f64 {
-        let away = (from - self.center).length();
-        let rounding = SLACK * (from.length() + self.center.length() + self.radius);
-        ((away - self.radius).abs() - rounding).max(0.0)
+        within.keep(ball::classic(ray.origin - self.center, ray.dir, self.radius))
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {
         (at - self.center).normalize()
     }
 
-    fn meets_itself(&self, leaving: Side) -> bool {
-        self.accuracy != Accuracy::Classic && leaving == Side::Inside
+    fn bounds(&self) -> Option<Bounds> {
+        Some(self.around())
     }
 
-    fn touches(&self, at: DVec3, error: f64) -> bool {
-        ball::touches(at - self.center, self.radius, error)
+    fn clearance(&self, from: DVec3) -> Option<f64> {
+        Some(self.away(from))
     }
 
-    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold> {
-        if self.accuracy == Accuracy::Classic {
-            None
-        } else {
-            crate::world::coincidence::distance(self, ray, distance)
-        }
-    }
-
-    fn is_two_sided(&self) -> bool {
-        self.accuracy != Accuracy::Classic
+    fn meets_itself(&self, _leaving: Side) -> bool {
+        false
     }
 
     fn method(&self) -> String {
-        ball::method(self.accuracy).to_owned()
-    }
-
-    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        certify::first_hit(self, sight, precision)
+        ball::CLASSIC_METHOD.to_owned()
     }
 }
 
-impl Equation for Sphere {
+impl<A: Bounded> Hittable for Sphere<A> {
+    #[inline(always)]
+    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
+        within.keep(ball::distance::<A>(&self.line(ray), self.radius, within.leaves))
+    }
+
+    fn normal(&self, at: DVec3) -> DVec3 {
+        (at - self.center).normalize()
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        Some(self.around())
+    }
+
+    fn clearance(&self, from: DVec3) -> Option<f64> {
+        Some(self.away(from))
+    }
+
+    fn meets_itself(&self, leaving: Side) -> bool {
+        leaving == Side::Inside
+    }
+
+    fn is_two_sided(&self) -> bool {
+        true
+    }
+
+    fn method(&self) -> String {
+        ball::method::<A>().to_owned()
+    }
+}
+
+impl<A: Bounded> Bracketed for Sphere<A> {
+    #[inline(always)]
+    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
+        let from = ray.origin - self.center;
+        ball::bracket(from, ray.dir, 1.0, 1.0, self.radius, within.leaves, within.origin_error)
+    }
+
+    #[inline(always)]
+    fn refine(&self, ray: &Ray, leaves: Option<Side>) -> f64 {
+        ball::refine::<A>(&self.line(ray), self.radius, leaves)
+    }
+}
+
+impl<A: Bounded> Certified for Sphere<A> {
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        ball::touches(at - self.center, self.radius, error)
+    }
+}
+
+impl<A> Equation for Sphere<A> {
     const IS_QUADRATIC: bool = true;
 
     fn value<N: Number>(&self, at: [N; 3]) -> N {
         let part = |axis: usize| (at[axis] - N::constant(self.center[axis])).powi(2);
         part(0) + part(1) + part(2) - N::constant(self.radius).powi(2)
     }
-}
-
-/// The notes' distance of a ball, for a ray that starts `from` its centre.
-#[inline(always)]
-pub fn classic(from: DVec3, dir: DVec3, radius: f64) -> f64 {
-    let a = dir.dot(dir);
-    let b = 2.0 * from.dot(dir);
-    let c = from.dot(from) - radius * radius;
-    let discriminant = b * b - 4.0 * a * c;
-    // A ray that only touches the sphere misses it.
-    if discriminant <= 0.0 { MISS } else { (-b - discriminant.sqrt()) / (2.0 * a) }
 }

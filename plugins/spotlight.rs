@@ -1,17 +1,12 @@
 //! A spotlight: a light that shines into a cone.
 
 use super::light::{self, PointLight};
-use crate::scene::entity::{Args, Entity, Refusal};
-use crate::scene::pparm::{Derived, Pparm, Table};
-use crate::scene::value::Value;
-use crate::world::hittable::Light;
-use crate::world::material::Rgb;
-use glam::DVec3;
+use crate::prelude::*;
 
 static POINT: Pparm<DVec3> =
-    Pparm::required("point", "where the middle of its beam goes").unit("world coordinates").not_dumped();
+    Pparm::required("point", "a point on the axis of the beam").unit("world coordinates").not_dumped();
 static DIRECTION: Derived = Derived(|args| axis(args).to_datum().line("direction", " \n"));
-static THETA: Pparm<f64> = Pparm::required("theta", "the angle between the middle of its beam and the edge")
+static THETA: Pparm<f64> = Pparm::required("theta", "the angle between the axis and the edge of the beam")
     .unit("degrees")
     .must("above 0 and at most 180", |theta| *theta > 0.0 && *theta <= 180.0)
     .dumped("halfwidth", "   \n");
@@ -19,12 +14,12 @@ static THETA: Pparm<f64> = Pparm::required("theta", "the angle between the middl
 const TABLE: Table = &[&POINT, &DIRECTION, &THETA];
 
 inventory::submit! {
-    Entity::light("spotlight", "a light that shines into a cone", &[light::TABLE, TABLE], |args| {
+    Entity::light("spotlight", "a light that shines in a cone", &[light::TABLE, TABLE], |args| {
         if !axis(args).is_finite() {
             return Err(Refusal {
                 attribute: Some("point"),
-                message: "points at itself".to_owned(),
-                help: "`point` must be another point than `location`: the beam goes from one to the other",
+                message: "has its `point` at its `location`".to_owned(),
+                help: "`point` must differ from `location`: the beam goes from `location` toward `point`",
             });
         }
         let edge = args.get(&THETA) * std::f64::consts::PI / 180.0;
@@ -34,7 +29,7 @@ inventory::submit! {
 }
 
 /// The unit vector along the middle of the beam; NaN where there is none.
-fn axis(args: &Args) -> DVec3 {
+fn axis(args: &Attributes) -> DVec3 {
     (args.get(&POINT) - PointLight::new(args).location).normalize()
 }
 

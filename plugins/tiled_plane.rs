@@ -1,12 +1,8 @@
 //! A tiled plane: tiles of two materials, without end.
 
 use super::fplane::{self, DIMENSIONS, sides};
-use super::plane::{self, Plane};
-use crate::scene::entity::Entity;
-use crate::scene::pparm::{Pparm, Table};
-use crate::world::hittable::{Body, Shader};
-use crate::world::material::{Look, Material, Rgb};
-use glam::{DVec2, DVec3};
+use super::plane;
+use crate::prelude::*;
 use std::sync::Arc;
 
 static ALTMATERIAL: Pparm<Arc<Material>> =
@@ -15,13 +11,13 @@ static ALTMATERIAL: Pparm<Arc<Material>> =
 const TABLE: Table = &[&ALTMATERIAL];
 
 inventory::submit! {
-    Entity::shape("tiled_plane", "a plane without end, tiled with two materials", &[plane::TABLE, fplane::TABLE, TABLE], |args| {
+    Entity::shape("tiled_plane", "an infinite plane, tiled with two materials", &[plane::TABLE, fplane::TABLE, TABLE], |args| {
         let tiles = Tiles {
             sides: sides(args)?,
             dimensions: args.get(&DIMENSIONS),
             other: args.get(&ALTMATERIAL),
         };
-        Ok(Body::shaded(Plane::new(args), tiles))
+        Ok(Body::shaded(plane::shape(args), tiles))
     })
     .alias(&["tplane"])
     .dumped_as("tplane")

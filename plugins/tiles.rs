@@ -1,12 +1,9 @@
 //! The notes' tiled shading: cyan and yellow tiles half a unit wide, along x and z.
 
-use crate::world::hittable::Shader;
-use crate::world::material::{Look, Material, Rgb};
-use crate::world::shading::ProceduralShader;
-use glam::DVec3;
+use crate::prelude::*;
 
 inventory::submit! {
-    ProceduralShader::new("tiles", "tiles along x and z, without their red and without their blue", |_| Box::new(Tiles)).on_plane(0)
+    ProceduralShader::new("tiles", "tiles along x and z: the material's colour without red and without blue in turn", |_| Box::new(Tiles)).on_plane(0)
 }
 
 struct Tiles;

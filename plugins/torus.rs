@@ -1,29 +1,23 @@
 //! A torus: a ball's way around a circle.
 
-use crate::geometry::frame::Frame;
-use crate::numeric::number::Number;
-use crate::scene::entity::Entity;
-use crate::scene::pparm::{Pparm, Table};
-use crate::shapes::implicit::Implicit;
-use crate::world::hittable::Body;
-use glam::DVec3;
+use crate::prelude::*;
 
 static CENTER: Pparm<DVec3> =
-    Pparm::required("center", "the point in its middle").alias(&["centre"]).unit("world coordinates");
-static DIRECTION: Pparm<DVec3> = Pparm::or("direction", "the axis that it goes around", DVec3::Y)
-    .must("a vector with a direction", |axis: &DVec3| axis.try_normalize().is_some());
+    Pparm::required("center", "the position of the centre").alias(&["centre"]).unit("world coordinates");
+static DIRECTION: Pparm<DVec3> = Pparm::or("direction", "the direction of the axis", DVec3::Y)
+    .must("a nonzero vector", |axis: &DVec3| axis.try_normalize().is_some());
 static RADIUS: Pparm<f64> =
-    Pparm::required("radius", "the distance from its center to the middle of its tube")
+    Pparm::required("radius", "the distance from the centre to the middle of the tube")
         .unit("world units")
         .must("positive", |radius| *radius > 0.0);
-static TUBE: Pparm<f64> = Pparm::required("tube", "the radius of its tube")
+static TUBE: Pparm<f64> = Pparm::required("tube", "the radius of the tube")
     .unit("world units")
     .must("positive", |tube| *tube > 0.0);
 
 const TABLE: Table = &[&CENTER, &DIRECTION, &RADIUS, &TUBE];
 
 inventory::submit! {
-    Entity::shape("torus", "a ring", &[TABLE], |args| {
+    Entity::shape("torus", "a torus", &[TABLE], |args| {
         let torus = Torus { radius: args.get(&RADIUS), tube: args.get(&TUBE) };
         Ok(Body::implicit(torus, Frame::around(args.get(&CENTER), args.get(&DIRECTION))))
     })

@@ -1,58 +1,106 @@
 //! A triangle.
 
-use crate::geometry::bounds::Bounds;
-use crate::geometry::sight::Sight;
-use crate::numeric::number::{Number, dot};
-use crate::numeric::twofold::Twofold;
-use crate::scene::entity::{Entity, Refusal};
-use crate::scene::pparm::{Pparm, Table};
-use crate::shapes::triangle::Triangle;
-use crate::world::accuracy::Accuracy;
-use crate::world::certify::{self, Enclosure, Equation, Precision};
-use crate::world::hittable::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
-use glam::DVec3;
+use crate::prelude::*;
+use crate::shapes::Triangle;
+use crate::shapes::flat::{CLASSIC_METHOD, Flat, Plane};
 
-static VERTEX1: Pparm<DVec3> = Pparm::required("vertex1", "its first corner").unit("world coordinates");
+static VERTEX1: Pparm<DVec3> = Pparm::required("vertex1", "the first vertex").unit("world coordinates");
 static VERTEX2: Pparm<DVec3> =
-    Pparm::required("vertex2", "its second corner, against the clock as seen from its lit side")
+    Pparm::required("vertex2", "the second vertex, counterclockwise as seen from the lit side")
         .unit("world coordinates");
-static VERTEX3: Pparm<DVec3> = Pparm::required("vertex3", "its third corner").unit("world coordinates");
+static VERTEX3: Pparm<DVec3> = Pparm::required("vertex3", "the third vertex").unit("world coordinates");
 // The course's program had them read and never used them.
 static NORMAL: Pparm<DVec3> =
-    Pparm::or("normal", "nothing: its corners say which way it faces", DVec3::Z).not_dumped();
+    Pparm::or("normal", "ignored, as the vertices determine which side is lit", DVec3::Z).not_dumped();
 static POINT: Pparm<DVec3> =
-    Pparm::or("point", "nothing: its corners say where it is", DVec3::ZERO).not_dumped();
+    Pparm::or("point", "ignored, as the vertices determine the position", DVec3::ZERO).not_dumped();
 
 const TABLE: Table = &[&VERTEX1, &VERTEX2, &VERTEX3, &NORMAL, &POINT];
 
 inventory::submit! {
     Entity::shape("triangle", "a triangle", &[TABLE], |args| {
-        let corners = [args.get(&VERTEX1), args.get(&VERTEX2), args.get(&VERTEX3)];
-        let triangle = Triangle::new(corners, args.accuracy()).ok_or_else(|| Refusal {
+        let shape = shape(args).ok_or_else(|| Refusal {
             attribute: Some("vertex3"),
-            message: "has its corners in one line".to_owned(),
-            help: "three corners that are not in one line make a triangle",
+            message: "has collinear vertices".to_owned(),
+            help: "the vertices of a triangle must not lie on one line",
         })?;
-        Ok(Body::plain(triangle))
+        Ok(Body::plain(shape))
     })
 }
 
-impl Hittable for Triangle {
+fn shape(args: &Args) -> Option<AnyShape> {
+    let corners = [args.get(&VERTEX1), args.get(&VERTEX2), args.get(&VERTEX3)];
+    Some(match args.accuracy() {
+        Accuracy::Classic => Shape::new(Triangle::classic(corners)?).classic().into(),
+        Accuracy::Draft => Shape::new(Triangle::<Draft>::new(corners)?).flat().certified().into(),
+        Accuracy::Exact => Shape::new(Triangle::<Exact>::new(corners)?).flat().certified().into(),
+        Accuracy::Strict => Shape::new(Triangle::<Strict>::new(corners)?).flat().certified().into(),
+    })
+}
+
+impl Hittable for Triangle<Classic> {
     #[inline(always)]
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
         let distance = self.plane.distance(ray, within);
-        let is_inside = match self.plane.accuracy {
-            Accuracy::Classic => self.contains(ray.at(distance)),
-            _ => self.is_passed_by(ray),
-        };
-        if is_inside { distance } else { MISS }
+        if self.contains(ray.at(distance)) { distance } else { MISS }
     }
 
+    fn normal(&self, _at: DVec3) -> DVec3 {
+        self.plane.normal
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        Some(Bounds::around(&self.corners))
+    }
+
+    fn meets_itself(&self, _leaving: Side) -> bool {
+        false
+    }
+
+    fn plane(&self) -> Option<[DVec3; 2]> {
+        Some([self.plane.point, self.plane.normal])
+    }
+
+    fn method(&self) -> String {
+        CLASSIC_METHOD.to_owned()
+    }
+}
+
+impl<A: Bounded> Hittable for Triangle<A> {
+    #[inline(always)]
+    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
+        let distance = self.plane.distance(ray, within);
+        if self.is_passed_by(ray) { distance } else { MISS }
+    }
+
+    fn normal(&self, _at: DVec3) -> DVec3 {
+        self.plane.normal
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        Some(Bounds::around(&self.corners))
+    }
+
+    fn meets_itself(&self, _leaving: Side) -> bool {
+        false
+    }
+
+    fn is_clear_of(&self, region: &Bounds) -> bool {
+        self.plane.is_clear_of(region) || !Bounds::around(&self.corners).overlaps(region)
+    }
+
+    fn plane(&self) -> Option<[DVec3; 2]> {
+        Some([self.plane.point, self.plane.normal])
+    }
+
+    fn method(&self) -> String {
+        self.plane.method().to_owned()
+    }
+}
+
+impl<A: Bounded> Bracketed for Triangle<A> {
     #[inline(always)]
     fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        if self.plane.accuracy == Accuracy::Classic {
-            return Bracket::exactly(self.quick_distance(ray, within));
-        }
         let rough = self.plane.rough(ray, within.origin_error);
         let Bracket { near, far } = self.plane.bracket(&rough, ray, within);
         let passed = self.passed(ray);
@@ -63,57 +111,32 @@ impl Hittable for Triangle {
     }
 
     #[inline(always)]
-    fn quick_distance(&self, ray: &Ray, within: &Span) -> f64 {
-        let distance = self.plane.quick_distance(ray, within);
-        let is_inside = match self.plane.accuracy {
-            Accuracy::Classic => Some(self.contains(ray.at(distance))),
-            _ => self.passed(ray),
-        };
-        match is_inside {
-            Some(true) => distance,
-            Some(false) => MISS,
-            None => f64::NAN,
-        }
+    fn refine(&self, ray: &Ray, _leaves: Option<Side>) -> f64 {
+        // A hit that is certain is inside.
+        self.plane.quick_crossing(ray)
     }
+}
 
-    fn bounds(&self) -> Option<Bounds> {
-        (self.plane.accuracy != Accuracy::Classic).then(|| Bounds::around(&self.corners))
+impl<A: Bounded> Flat for Triangle<A> {
+    type Accuracy = A;
+
+    #[inline(always)]
+    fn flat(&self) -> &Plane<A> {
+        &self.plane
     }
+}
 
-    fn is_clear_of(&self, region: &Bounds) -> bool {
-        self.plane.is_clear_of(region) || self.bounds().is_some_and(|bounds| !bounds.overlaps(region))
-    }
-
-    fn meets_itself(&self, leaving: Side) -> bool {
-        self.plane.meets_itself(leaving)
-    }
-
+impl<A: Bounded> Certified for Triangle<A> {
     fn touches(&self, at: DVec3, error: f64) -> bool {
         self.plane.touches(at, error)
     }
 
     fn fine_distance(&self, ray: &Ray, _distance: f64) -> Option<Twofold> {
-        (self.plane.accuracy != Accuracy::Classic).then(|| self.plane.exact_crossing(ray))
-    }
-
-    fn normal(&self, at: DVec3) -> DVec3 {
-        self.plane.normal(at)
-    }
-
-    fn plane(&self) -> Option<[DVec3; 2]> {
-        Hittable::plane(&self.plane)
-    }
-
-    fn method(&self) -> String {
-        self.plane.method().to_owned()
-    }
-
-    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        certify::first_hit(self, sight, precision)
+        Some(self.plane.exact_crossing(ray))
     }
 }
 
-impl Equation for Triangle {
+impl<A> Equation for Triangle<A> {
     const IS_QUADRATIC: bool = true;
 
     fn value<N: Number>(&self, at: [N; 3]) -> N {

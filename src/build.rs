@@ -19,13 +19,13 @@ fn main() -> io::Result<()> {
             names.push(name.to_owned());
             if !fs::read_to_string(&path)?.contains("inventory::submit!") {
                 println!(
-                    "cargo::warning={} registers nothing, so that no scene can use it: add `inventory::submit! {{ ... }}`",
+                    "cargo::warning={} registers nothing, so no scene can use it: add `inventory::submit! {{ ... }}`",
                     path.display()
                 );
             }
         } else {
             println!(
-                "cargo::error={}: a plugin's file name is a Rust module name, such as `tiled_plane.rs`",
+                "cargo::error={}: a plugin's file name must be a Rust module name, such as `tiled_plane.rs`",
                 path.display()
             );
         }

@@ -1,27 +1,29 @@
 //! A ray tracer in which a scene is data and every entity type is a plugin.
 //!
-//! The way of the data is one street: a scene's text becomes entities as written ([`scene::reader`]), checked against
-//! the tables of their types ([`scene::entity`], [`scene::pparm`]), then a [`Model`](scene::model::Model), then a
-//! picture ([`render::renderer`], [`output::picture`]). A model can also be built
-//! without any text ([`scene::reader::build`]), and printed again ([`scene::dump`]).
+//! The way of the data is one street: a scene's text becomes entities as written, checked against the tables of their
+//! types, then a [`Model`](scene::Model), then a [`Plan`](render::Plan), and tile by tile a picture
+//! ([`Renderer`](render::Renderer), [`Format`](output::Format)). A model can also be built without any text
+//! ([`scene::build`]), and printed again ([`scene::dump`]). `docs/architecture.md` draws the street, and the rooms that
+//! its stations lie in.
 //!
-//! A file in `plugins/` adds an entity type: it registers an [`Entity`](scene::entity::Entity) and implements a trait
-//! of [`world::hittable`]. No other file knows its name. A plugin outside of this package does the same, and its
-//! program is [`cli::run`] (see `docs/plugins.md`).
+//! A file in `plugins/` adds an entity type: it registers an [`Entity`](scene::Entity) and implements a trait of
+//! [`world`]; [`prelude`] has all that it needs. No other file knows its name. A plugin outside of this package does the
+//! same, and its program is [`cli::run`] (see `docs/plugins.md`).
 
-// What a plugin outside of this package writes its types and its registration with.
-pub use {glam, inventory};
+// What positions and colours are written with.
+pub use glam;
 
 pub mod cli;
 pub mod geometry;
 pub mod numeric;
 pub mod output;
+pub mod prelude;
 pub mod render;
 pub mod scene;
 pub mod shapes;
 pub mod simd;
 pub mod tools;
-pub mod words;
+mod words;
 pub mod world;
 
 include!(concat!(env!("OUT_DIR"), "/plugins.rs"));

@@ -44,9 +44,9 @@ pub fn reason(error: &io::Error) -> String {
 pub fn picture_reason(error: &ImageError) -> String {
     match error {
         ImageError::IoError(error) if error.kind() != io::ErrorKind::UnexpectedEof => reason(error),
-        ImageError::Unsupported(_) => "it is no picture in PPM or PNG".to_owned(),
+        ImageError::Unsupported(_) => "it is not a PPM or PNG image".to_owned(),
         ImageError::Limits(_) => "it is too large".to_owned(),
-        _ => "it is broken".to_owned(),
+        _ => "it is corrupt".to_owned(),
     }
 }
 

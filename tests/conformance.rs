@@ -10,13 +10,10 @@ use image::{Rgb, RgbImage};
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use tabray::geometry::sight::Sight;
-use tabray::render::trace;
-use tabray::render::watch::{Event, Watch};
-use tabray::scene::model::Model;
-use tabray::scene::profile::Profile;
+use tabray::geometry::{MISS, Ray, Sight};
+use tabray::render::{Event, Plan, Watch, trace};
+use tabray::scene::{Model, Profile};
 use tabray::world::certify::{Enclosure, Precision};
-use tabray::world::hittable::{MISS, Ray};
 
 /// A scene, and the percentage of its pixels that must be right to 1 of 255 in every channel. What is short
 /// of 100 is the instructor's program's: hit points overwritten by shadow rays, 80-bit arithmetic at edges,
@@ -134,7 +131,7 @@ impl Watch for Searches {
 
 fn searches(model: &Model, x: usize, y: usize) -> Searches {
     let mut searches = Searches::default();
-    trace::watch_pixel(model, x, y, &mut searches);
+    trace::watch_pixel(&Plan::new(model), x, y, &mut searches);
     searches
 }
 

@@ -1,14 +1,16 @@
 //! `tabray render --aov`: pictures beside the main one, and exact numbers.
 
+use super::failure::Failure;
 use super::output::{self, Output};
 use super::progress::Progress;
-use super::{Failure, interrupt, messages};
+use super::{interrupt, messages};
 use crate::output::aov::Aov;
 use crate::output::picture::Format;
+use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::scene::model::Model;
 use crate::words;
-use crate::world::sample::{self, Sampler};
+use crate::world::sample::Sampler;
 use std::ffi::OsStr;
 use std::io::Write;
 use std::iter;
@@ -20,9 +22,9 @@ const LARGEST: usize = 1 << 26;
 #[derive(clap::Args)]
 #[group(id = "pictures beside")]
 pub struct Args {
-    /// Write these pictures too, beside the main one: `-o a.png --aov depth` writes a-depth.png, and a-depth.exr
-    /// with exact numbers
-    #[arg(long, value_name = "PICTURES", value_delimiter = ',')]
+    /// Also write these auxiliary images, beside the main one: `-o a.png --aov depth` writes a-depth.png, and
+    /// a-depth.exr with exact numbers
+    #[arg(long, value_name = "IMAGES", value_delimiter = ',')]
     aov: Vec<Aov>,
 }
 
@@ -40,15 +42,15 @@ pub fn open(model: &Model, args: &Args, main: &Path, output: &Output) -> Result<
     }
     if !matches!(output, Output::File(..)) {
         return Err(Failure::Usage(
-            format!("there is no place for the pictures of `--aov` beside `{}`", main.display()),
-            Some("name the main picture's file with `-o FILE`".to_owned()),
+            format!("cannot write the images of `--aov` beside `{}`", main.display()),
+            Some("name a file for the main image with `-o FILE`".to_owned()),
         ));
     }
     let [width, height] = model.camera.value.pixels;
     if width * height > LARGEST {
         return Err(Failure::Usage(
-            format!("a picture of {width} x {height} pixels is too large for `--aov`"),
-            Some(format!("it can have {LARGEST} pixels, such as 8192 x 8192")),
+            format!("an image of {width} x {height} pixels is too large for `--aov`"),
+            Some(format!("the maximum is {LARGEST} pixels, such as 8192 x 8192")),
         ));
     }
     let mut aovs: Vec<Aov> = Vec::new();
@@ -77,7 +79,7 @@ const TRUE_LEAST: u32 = 64;
 
 /// Makes the pictures and writes their files. `exact` makes the model that errors are seen against.
 pub fn write(
-    model: &Model,
+    plan: &Plan,
     exact: impl FnOnce() -> Result<Model, Failure>,
     threads: usize,
     format: Format,
@@ -86,31 +88,32 @@ pub fn write(
     if files.is_empty() {
         return Ok(());
     }
-    let own;
+    let (exact_model, own);
     let truth = if files.iter().any(|file| file.aov == Aov::Error) {
-        let mut exact = exact()?;
-        let samples = (TRUE_TIMES * model.camera.value.samples).clamp(TRUE_LEAST, sample::MOST);
-        (exact.camera.value.samples, exact.camera.value.sampler) = (samples, Sampler::Sobol);
+        exact_model = exact()?;
+        let mut exact = Plan::new(&exact_model);
+        let samples = (TRUE_TIMES * plan.camera.samples).clamp(TRUE_LEAST, Sampler::MOST);
+        (exact.camera.samples, exact.camera.sampler) = (samples, Sampler::Sobol);
         own = exact;
         &own
     } else {
-        model
+        plan
     };
     let renderer = Renderer::new(threads)?;
-    let size = model.camera.value.pixels;
+    let size = plan.camera.pixels;
     for Files { aov, picture, exact } in files {
         let progress = Progress::new(size[1]);
-        let layer = aov.render(&renderer, model, truth, &|| {
+        let layer = aov.render(&renderer, plan, truth, &|| {
             progress.step();
             interrupt::check()
         });
         progress.end();
-        let layer = layer.map_err(|_| Failure::Interrupted("the picture was not finished"))?;
+        let layer = layer.map_err(|_| Failure::Interrupted("the image was not finished"))?;
         if let Some((most, [x, y])) = layer.most {
-            messages::note(&format!("the most expensive pixel is {x} {y}, of {most} rays"));
+            messages::note(&format!("the most expensive pixel is {x} {y}, with {most} rays"));
         }
         if let Some((worst, [x, y])) = layer.worst {
-            messages::note(&format!("the greatest error is {worst:.2e}, of pixel {x} {y}"));
+            messages::note(&format!("the greatest error is {worst:.2e}, at pixel {x} {y}"));
         }
         if let Some((path, output)) = exact {
             let bytes = layer.exr(size).map_err(|error| Failure::cannot_write(&path, &error))?;

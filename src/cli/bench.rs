@@ -1,6 +1,7 @@
 //! `tabray bench`: how fast scenes are traced on one core.
 
-use super::{Failure, cpu, input, method, print};
+use super::failure::{Failure, print};
+use super::{cpu, input, method};
 use crate::scene::model::Model;
 use crate::scene::reader;
 use crate::scene::registry::Registry;
@@ -14,15 +15,15 @@ use std::time::Duration;
 
 /// Measure how fast scenes are traced on one core
 ///
-/// For each scene it prints the rays per second by kind, the time of a test by entity, and how near the frame comes to
-/// the bare arithmetic of its tests. Times are the core's own for the work, the least of several rounds.
+/// For each scene, prints the rays per second by kind, the time of a test by entity type, and how close the frame comes
+/// to the bare arithmetic of its tests. Times are CPU times of one core, the minimum of several rounds.
 #[derive(clap::Args)]
 pub struct Args {
-    /// The scenes; `-` reads one from standard input; by default four that are built in
+    /// The scenes; `-` reads one from standard input; by default four built-in ones
     scenes: Vec<PathBuf>,
     #[command(flatten)]
     cpu: cpu::Args,
-    /// For how long to measure each number, in seconds
+    /// Measuring time for each number, in seconds
     #[arg(long, value_name = "S", default_value = "0.3", value_parser = seconds, allow_negative_numbers = true)]
     seconds: Duration,
     /// Print JSON
@@ -36,7 +37,7 @@ fn seconds(text: &str) -> Result<Duration, String> {
     let seconds = text.parse().ok().and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
     seconds
         .filter(|seconds| *seconds <= Duration::from_secs(3600))
-        .ok_or_else(|| "seconds are from 0 to 3600".to_owned())
+        .ok_or_else(|| "must be from 0 to 3600 seconds".to_owned())
 }
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
@@ -101,9 +102,9 @@ impl About {
         };
         line(["rays", "number", "ms", "million/s", "", ""]);
         for (kind, cost) in [
-            ("from the viewer", &speed.primary),
-            ("to lights", &speed.shadow),
-            ("mirrors and glass", &speed.onward),
+            ("primary", &speed.primary),
+            ("shadow", &speed.shadow),
+            ("secondary", &speed.onward),
             ("all", &speed.frame),
         ] {
             let rate = number(cost.rate().map(|rate| rate / 1e6), 1);
@@ -111,7 +112,7 @@ impl About {
             line([kind, &cost.rays.to_string(), &time, &rate, "", ""]);
         }
         line([""; 6]);
-        line(["ns per ray", "tests", "meet", "block", "settle", "bare"]);
+        line(["ns per ray", "tests", "closest", "occluded", "refine", "bare"]);
         for tests in &speed.tests {
             let [meet, block, settle, bare] =
                 [tests.times.meet, tests.times.block, tests.times.settle, tests.bare]
@@ -122,12 +123,12 @@ impl About {
             (Some(bare), Some(share)) => {
                 let _ = writeln!(
                     text,
-                    "\n{:.0} % of the ceiling: as bare arithmetic the frame's tests take {:.2} ms\n",
+                    "\n{:.0} % of the ceiling: in bare arithmetic the frame's tests take {:.2} ms\n",
                     100.0 * share,
                     1e3 * bare,
                 );
             }
-            _ => text += "\nno ceiling: not every entity here has a formula of textbooks\n\n",
+            _ => text += "\nno ceiling: not every entity type here has a textbook formula\n\n",
         }
         text
     }

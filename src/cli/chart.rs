@@ -1,9 +1,10 @@
 //! `tabray chart`: what each choice costs in a scene, and how wrong it is.
 
+use super::failure::{Failure, print};
 use super::input::{self, Source};
+use super::interrupt;
 use super::output::{self, Output};
 use super::progress::Progress;
-use super::{Failure, interrupt, print};
 use crate::scene::choice::Choice;
 use crate::scene::model::Model;
 use crate::scene::registry::Registry;
@@ -13,16 +14,16 @@ use std::io::{self, Write};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
-/// Chart what each choice costs in a scene, and how wrong it is
+/// Chart the cost and the error of each choice in a scene
 ///
-/// It finds the truth, runs the choices that the scene has - ways to find the hits of its shapes, and samples for each
-/// pixel - by turns, and says which are best. Ctrl-C keeps what is measured by then.
+/// Computes the ground truth, runs the choices that the scene has (methods of finding the hits of its shapes, and
+/// samples per pixel) in turn, and says which are best. Ctrl-C keeps what has been measured so far.
 #[derive(clap::Args)]
 pub struct Args {
     /// The scene; `-` reads it from standard input
     scene: PathBuf,
-    /// Where to put the chart, as SCENE.svg and SCENE.png, its numbers, as SCENE.csv and SCENE.json, and the verdict in
-    /// words, as SCENE.txt; by default the working directory
+    /// Directory for the chart (SCENE.svg and SCENE.png), its numbers (SCENE.csv and SCENE.json) and the verdict in
+    /// words (SCENE.txt); by default the working directory
     #[arg(short, long, value_name = "DIR", default_value = ".", hide_default_value = true)]
     output: PathBuf,
 }
@@ -47,7 +48,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     work.end();
     let chart = chart?;
     if chart.panels.is_empty() {
-        return Err(Failure::Interrupted("nothing was measured yet"));
+        return Err(Failure::Interrupted("nothing has been measured yet"));
     }
     let words = chart::words(&chart);
     for (file, bytes) in files.into_iter().zip(contents(&chart, &words)?) {
@@ -55,7 +56,11 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         output::put(&path, output, |out| out.write_all(&bytes))?;
     }
     print(&words)?;
-    if chart.is_whole { Ok(()) } else { Err(Failure::Interrupted("the chart has what was measured by then")) }
+    if chart.is_whole {
+        Ok(())
+    } else {
+        Err(Failure::Interrupted("the chart shows what has been measured so far"))
+    }
 }
 
 fn contents(chart: &Chart, words: &str) -> io::Result<[Vec<u8>; 5]> {

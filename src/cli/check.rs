@@ -1,10 +1,11 @@
 //! `tabray check`: the faults of scenes, and nothing else.
 
-use super::{Failure, input, messages, tell};
+use super::failure::{Failure, tell};
+use super::{input, messages};
 use crate::scene::registry::Registry;
 use std::path::PathBuf;
 
-/// Look for faults in scenes
+/// Check scenes for errors
 #[derive(clap::Args)]
 pub struct Args {
     /// The scenes; `-` reads one from standard input
@@ -16,7 +17,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let mut sound = true;
     for scene in &args.scenes {
         match input::load(registry, scene, None) {
-            Ok(_) => messages::note(&format!("{}: sound", scene.display())),
+            Ok(_) => messages::note(&format!("{}: no errors", scene.display())),
             Err(failure) => {
                 tell(&failure);
                 sound = false;

@@ -1,8 +1,9 @@
 //! `tabray choose`: accuracy and samples for an error or a time.
 
 use super::chart::{Work, all_accuracies};
+use super::failure::{Failure, print};
 use super::input::{self, Source};
-use super::{Failure, interrupt, print, program};
+use super::{interrupt, program};
 use crate::scene::choice::Choice;
 use crate::scene::registry::Registry;
 use crate::tools::chart::{self, Estimate};
@@ -14,19 +15,19 @@ use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::Duration;
 
-/// Choose accuracy and samples for an error or a time
+/// Choose accuracy and samples for a maximum error or time
 ///
-/// It measures what they make of a part of the picture, says what it weighed, and prints the command line to use. The
-/// whole picture may come out a little worse or take a little longer.
+/// Measures the choices on a part of the image, shows those it considered, and prints the command line to use. The
+/// whole image may come out a little worse or take a little longer.
 #[derive(clap::Args)]
 #[command(group = ArgGroup::new("limit").args(["max_error", "max_time"]).required(true))]
 pub struct Args {
     /// The scene; `-` reads it from standard input
     scene: PathBuf,
-    /// The greatest error that is allowed: the root of the mean square of the colours' errors, 1 being white
+    /// Maximum error: the root mean square error of the colours, where 1 is white
     #[arg(long, value_name = "E", value_parser = positive)]
     max_error: Option<f64>,
-    /// How long the picture may take on all cores, in seconds
+    /// Maximum time for the image on all cores, in seconds
     #[arg(long, value_name = "T", value_parser = positive)]
     max_time: Option<f64>,
 }
@@ -37,7 +38,7 @@ const SAME: f64 = 1.1;
 fn positive(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(number) if number > 0.0 && f64::is_finite(number) => Ok(number),
-        _ => Err("this must be a number above 0".to_owned()),
+        _ => Err("must be a number above 0".to_owned()),
     }
 }
 
@@ -50,13 +51,13 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let estimates = chart::estimates(&load, &mut work);
     work.end();
     let estimates = estimates.map_err(|error| match error.kind() {
-        io::ErrorKind::Interrupted => Failure::Interrupted("nothing was chosen"),
+        io::ErrorKind::Interrupted => Failure::Interrupted("nothing has been chosen"),
         _ => error.into(),
     })?;
     let cores = thread::available_parallelism().map_or(1, usize::from);
     let choice = Weighed { estimates: &estimates, cores };
     let (chosen, why) = if let Some(error) = args.max_error {
-        (choice.for_error(error)?, format!("the fastest whose error was measured to be at most {error}"))
+        (choice.for_error(error)?, format!("the fastest with a measured error of at most {error}"))
     } else {
         // One of the two is given.
         let time = args.max_time.unwrap_or(f64::INFINITY);
@@ -124,8 +125,8 @@ impl<'e> Weighed<'e> {
         };
         let _ = write!(
             text,
-            "\nThe one marked is {why}. The others have less error and take longer, or less time and more error. \
-             All was measured on a part of the picture.\n\n\
+            "\nThe marked choice is {why}. The others have less error and take longer, or take less time and have more \
+             error. All were measured on a part of the image.\n\n\
              {} render {} {how} --samples {}\n",
             program::name(),
             scene.display(),

@@ -1,18 +1,24 @@
 //! `tabray completions`: what shells need to complete the command line.
 
-use super::{Failure, print, program};
+use super::failure::{Failure, print};
+use super::program;
 use crate::scene::registry::Registry;
 use clap_complete::Shell;
 
-/// Print a script that completes the command line, for a shell
+/// Print a completion script for a shell
 #[derive(clap::Args)]
 pub struct Args {
     /// The shell
     shell: Shell,
 }
 
-pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
+pub fn run(registry: &Registry, args: &Args, command: clap::Command) -> Result<(), Failure> {
     let mut script = Vec::new();
-    clap_complete::generate(args.shell, &mut program::described(registry), program::name(), &mut script);
+    clap_complete::generate(
+        args.shell,
+        &mut program::described(command, registry),
+        program::name(),
+        &mut script,
+    );
     print(&String::from_utf8_lossy(&script))
 }

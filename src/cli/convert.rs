@@ -1,6 +1,7 @@
 //! `tabray convert`: a scene in the other spelling.
 
-use super::{Failure, input, messages, output, print};
+use super::failure::{Failure, print};
+use super::{input, messages, output};
 use crate::scene::dump;
 use crate::scene::model::Model;
 use crate::scene::reader;
@@ -8,18 +9,18 @@ use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
 use std::path::{Path, PathBuf};
 
-/// Write a scene in the other spelling
+/// Write a scene in the other syntax
 ///
-/// Everything is carried over but comments: the copy makes the identical model.
+/// Everything but comments is kept: the copy loads to the identical model.
 #[derive(clap::Args)]
 pub struct Args {
     /// The scene; `-` reads it from standard input
     scene: PathBuf,
-    /// Where to write it: as TOML if the name ends in .toml, in the course notes' spelling if not; `-` writes to
-    /// standard output
+    /// The file to write: TOML if its name ends in .toml, the course notes' syntax otherwise; `-` writes to standard
+    /// output
     output: PathBuf,
-    /// The spelling to write, whatever the name
-    #[arg(long, value_name = "SPELLING")]
+    /// The syntax to write, whatever the file name
+    #[arg(long, value_name = "SYNTAX")]
     to: Option<Syntax>,
 }
 
@@ -32,7 +33,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     }
     is_the_same_scene(registry, &model, &text, &args.output)?;
     output::replace(&args.output, text.as_bytes())?;
-    messages::note(&format!("wrote {} (comments are not carried over)", args.output.display()));
+    messages::note(&format!("wrote {} (without comments)", args.output.display()));
     Ok(())
 }
 
@@ -44,7 +45,7 @@ fn syntax(args: &Args) -> Result<Syntax, Failure> {
             Some("end its name in .ray".to_owned()),
         )),
         (None, None) => Err(Failure::Usage(
-            format!("the name `{}` does not say which spelling to write", args.output.display()),
+            format!("the name `{}` does not determine the syntax to write", args.output.display()),
             Some("give `--to toml` or `--to ray`, or end it in .toml or .ray".to_owned()),
         )),
         (asked, by_name) => Ok(asked.or(by_name).unwrap_or_default()),
@@ -60,8 +61,8 @@ fn is_the_same_scene(registry: &Registry, model: &Model, text: &str, path: &Path
             Err(Failure::Failed(format!("the copy in `{}` would not be the same scene", path.display())))
         }
         Err(_) => Err(Failure::Usage(
-            format!("from `{}` the scene would not find the files that it names", path.display()),
-            Some("file names start from the scene's folder: write the copy there".to_owned()),
+            format!("the scene would not find its files from `{}`", path.display()),
+            Some("file names are relative to the scene's folder: write the copy there".to_owned()),
         )),
     }
 }

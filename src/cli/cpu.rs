@@ -1,14 +1,14 @@
 //! `--cpu`: which of the processor's instructions are used.
 
-use super::Failure;
+use super::failure::Failure;
 use crate::simd::cpu::{Cpu, Level};
 use crate::words;
 
 #[derive(clap::Args)]
 #[group(id = "instructions")]
 pub struct Args {
-    /// The most of the processor's instructions that may be used for the picture, which is the same with any; by
-    /// default all that this machine has
+    /// The highest level of CPU instructions to use, by default the highest that this machine has; the image is the
+    /// same with any
     #[arg(long, value_name = "NAME")]
     cpu: Option<Level>,
 }

@@ -1,6 +1,8 @@
 //! `tabray render --debug`: the notes' debug lines, for some pixels or for all.
 
-use super::{Failure, interrupt, probe};
+use super::failure::Failure;
+use super::{interrupt, probe};
+use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::scene::model::Model;
 use crate::tools::debug::{self, Line};
@@ -12,8 +14,8 @@ pub struct Args {
     /// Print the course notes' debug lines to standard error before rendering
     #[arg(long, value_name = "LINES", value_delimiter = ',')]
     debug: Vec<Line>,
-    /// Print them for one pixel or for a rectangle, both corners included: columns count from 0 at the left, rows
-    /// from 0 at the bottom
+    /// Print the debug lines of one pixel or of a rectangle, both corners included: columns count from 0 at the left,
+    /// rows from 0 at the bottom
     #[arg(long, value_name = "X,Y|X0,Y0,X1,Y1", requires = "debug", value_parser = corners)]
     #[arg(allow_hyphen_values = true)]
     at: Option<[[i64; 2]; 2]>,
@@ -29,12 +31,13 @@ pub fn print(model: &Model, args: &Args) -> Result<(), Failure> {
         Some([a, b]) => [probe::inside(model, a)?, probe::inside(model, b)?],
         None => [[0, 0], [width - 1, height - 1]],
     };
+    let plan = Plan::new(model);
     let printed = Renderer::new(1)?.run(|| {
         let mut out = BufWriter::new(io::stderr());
         // The notes' order.
         for y in a[1].min(b[1])..=a[1].max(b[1]) {
             for x in a[0].min(b[0])..=a[0].max(b[0]) {
-                debug::pixel(model, x, y, &args.debug, &mut out)?;
+                debug::pixel(&plan, x, y, &args.debug, &mut out)?;
                 if interrupt::check().is_break() {
                     return Err(io::ErrorKind::Interrupted.into());
                 }
@@ -46,7 +49,7 @@ pub fn print(model: &Model, args: &Args) -> Result<(), Failure> {
     });
     match printed {
         Err(error) if error.kind() == io::ErrorKind::Interrupted => {
-            Err(Failure::Interrupted("the picture was not finished"))
+            Err(Failure::Interrupted("the image was not finished"))
         }
         // Where standard error is closed there is nobody to tell.
         _ => Ok(()),

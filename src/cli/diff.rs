@@ -1,45 +1,46 @@
 //! `tabray diff`: how two pictures differ.
 
 use super::explain::Place;
+use super::failure::{Failure, print, tell};
 use super::report::{Change, Item, Page};
-use super::{Failure, input, picture, print, tell};
+use super::{input, picture};
 use crate::output::compare::Comparison;
 use crate::scene::registry::Registry;
 use image::RgbImage;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Compare two pictures
+/// Compare two images
 ///
-/// It tells how many pixels differ, the largest difference of any channel, in levels from 0 to 255, the root of the
-/// mean of all channels' squared differences (RMS), and the first pixel that differs, row by row from the top, each
-/// from the left. Like everywhere, a pixel's column counts from 0 at the left and its row from 0 at the bottom.
+/// Prints how many pixels differ, the largest difference of any channel, in levels from 0 to 255, the root mean square
+/// (RMS) of the differences of all channels, and the first pixel that differs, row by row from the top, each row from
+/// the left. As everywhere, a pixel's column counts from 0 at the left and its row from 0 at the bottom.
 #[derive(clap::Args)]
 #[command(after_help = EXIT_STATUS)]
 pub struct Args {
-    /// The old picture, PNG or PPM
+    /// The old image, PNG or PPM
     old: PathBuf,
-    /// The new one, of the same size
+    /// The new image, of the same size
     new: PathBuf,
-    /// Let pixels differ by this many levels in each channel
+    /// Ignore differences of up to this many levels in each channel
     #[arg(long, value_name = "LEVELS", default_value_t = 0)]
     tolerance: u8,
-    /// Write a page that shows both pictures and their difference: one .html file, with everything in it
+    /// Write a page that shows both images and their difference: one self-contained .html file
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// The scene of the pictures: the page explains with it the first pixel that differs
+    /// The scene of the images, from which the page explains the first pixel that differs
     #[arg(long, requires = "output")]
     scene: Option<PathBuf>,
-    /// A `tabray` that made the old picture: the page has its explanation too
+    /// The `tabray` that made the old image, whose explanation the page shows too
     #[arg(long, value_name = "PROGRAM", requires = "scene")]
     before: Option<PathBuf>,
 }
 
 const EXIT_STATUS: &str = "\
 Exit status:
-    0  the pictures are the same
-    1  they differ
-    2  trouble: a picture could not be read, the sizes differ, or the page could not be written";
+    0  the images are the same
+    1  the images differ
+    2  trouble: an image could not be read, the sizes differ, or the page could not be written";
 
 /// Compares; trouble of any kind is told from a difference by its status, as `diff` and `cmp` do.
 pub fn run(registry: &Registry, args: &Args) -> ExitCode {
@@ -64,7 +65,7 @@ fn compare(registry: &Registry, args: &Args) -> Result<bool, Failure> {
         };
         Failure::Usage(
             format!("{}, and {}", size(&names[0], &old), size(&names[1], &new)),
-            Some("only pictures of one size can be compared".to_owned()),
+            Some("only images of the same size can be compared".to_owned()),
         )
     })?;
     let first = comparison.first;

@@ -1,6 +1,7 @@
 //! `tabray dump`: a scene as the program understands it.
 
-use super::{Failure, input, print};
+use super::failure::{Failure, print};
+use super::input;
 use crate::scene::dump;
 use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
@@ -11,18 +12,18 @@ use std::path::PathBuf;
 pub struct Args {
     /// The scene; `-` reads it from standard input
     scene: PathBuf,
-    /// How to print it
+    /// The format to print
     #[arg(long, default_value = "notes")]
     format: Format,
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
 enum Format {
-    /// As the course notes' program prints it, numbers to one decimal
+    /// The course notes' dump, with numbers to one decimal
     Notes,
-    /// As a scene that loads again to the identical model
+    /// A scene in the course notes' syntax that loads to the identical model
     Ray,
-    /// As such a scene in TOML
+    /// A scene in TOML that loads to the identical model
     Toml,
 }
 

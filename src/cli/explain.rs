@@ -1,6 +1,7 @@
 //! What `probe` says of a picture's pixel, for reports: by this program, and by one from before.
 
 use crate::output::compare::Pixel;
+use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::scene::model::Model;
 use crate::tools::probe;
@@ -41,19 +42,20 @@ impl Place<'_> {
         by_another.into_iter().chain([explanation(title, self.by_this(), new)]).collect()
     }
 
-    fn by_this(mut self) -> Result<String, String> {
-        self.model.camera.value.pixels = self.size();
+    fn by_this(self) -> Result<String, String> {
+        let mut plan = Plan::new(&self.model);
+        plan.camera.pixels = self.size();
         let (x, y) = (self.pixel.x as usize, self.pixel.y as usize);
         let mut out = Vec::new();
         Renderer::new(1)
-            .and_then(|renderer| renderer.run(|| probe::pixel(&self.model, x, y, &mut out)))
+            .and_then(|renderer| renderer.run(|| probe::pixel(&plan, x, y, &mut out)))
             .map_err(|error| words::reason(&error))?;
         Ok(String::from_utf8_lossy(&out).into_owned())
     }
 
     fn by_another(&self, program: &Path) -> Result<String, String> {
         if self.model.camera.value.pixels != self.size() {
-            return Err("the picture is not as large as its scene says".to_owned());
+            return Err("the image does not have the size that its scene gives".to_owned());
         }
         let output = Command::new(program)
             .arg("probe")
@@ -61,9 +63,12 @@ impl Place<'_> {
             .args([self.pixel.x.to_string(), self.pixel.y.to_string()])
             .stdin(Stdio::null())
             .output()
-            .map_err(|error| format!("`{}` does not start: {}", program.display(), words::reason(&error)))?;
+            .map_err(|error| format!("cannot start `{}`: {}", program.display(), words::reason(&error)))?;
         if !output.status.success() {
-            return Err(format!("it says\n\n{}", String::from_utf8_lossy(&output.stderr).trim_end()));
+            return Err(format!(
+                "the program says\n\n{}",
+                String::from_utf8_lossy(&output.stderr).trim_end()
+            ));
         }
         Ok(String::from_utf8_lossy(&output.stdout).into_owned())
     }
@@ -78,7 +83,7 @@ fn explanation(title: String, told: Result<String, String>, [r, g, b]: [u8; 3]) 
     let bytes = format!("({r}, {g}, {b})");
     let text = match told {
         Ok(text) if text.trim_end().ends_with(&bytes) => text,
-        Ok(text) => format!("the picture has {bytes} here and was made otherwise than this:\n\n{text}"),
+        Ok(text) => format!("the image has {bytes} here, so it was not made like this:\n\n{text}"),
         Err(reason) => format!("no explanation: {reason}"),
     };
     Explanation { title, text }

@@ -1,6 +1,6 @@
 //! `tabray grammar`: what editors need to colour scenes in the notes' spelling.
 
-use super::{Failure, print};
+use super::failure::{Failure, print};
 use crate::scene::grammar;
 use crate::scene::registry::Registry;
 use crate::words;

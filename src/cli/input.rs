@@ -1,6 +1,7 @@
 //! Reading scenes from files and from standard input.
 
-use super::{Failure, messages};
+use super::failure::Failure;
+use super::messages;
 use crate::scene::model::Model;
 use crate::scene::reader::{self, Chosen, Loaded, Report};
 use crate::scene::registry::Registry;
@@ -69,7 +70,7 @@ pub fn read(path: &Path) -> Result<(String, Vec<u8>), Failure> {
     };
     match bytes {
         Ok(bytes) if bytes.len() as u64 > LARGEST => {
-            let message = format!("`{name}` is larger than {} MiB: this is not a scene", LARGEST >> 20);
+            let message = format!("`{name}` is larger than {} MiB, too large for a scene", LARGEST >> 20);
             Err(Failure::Usage(message, None))
         }
         Ok(bytes) => Ok((name, bytes)),

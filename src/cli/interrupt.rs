@@ -1,6 +1,6 @@
 //! Ctrl-C: the first stops the work under way and cleans up, a second one ends the program at once.
 
-use super::Failure;
+use super::failure::Failure;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 

@@ -1,26 +1,27 @@
 //! A picture being made: rendered and written, or stopped and left to be gone on with.
 
+use super::failure::Failure;
+use super::messages;
 use super::output::{Output, finished};
 use super::progress::Progress;
 use super::resume::{self, Begun};
 use super::size::Part;
 use super::stats::Stats;
 use super::stop::Stop;
-use super::{Failure, messages};
 use crate::output::picture::Format;
+use crate::render::limits::MAX_RAYS;
+use crate::render::plan::Plan;
 use crate::render::renderer::{Overseer, Renderer};
 use crate::render::tally::{Cuts, Tally};
 use crate::render::tiles::{Band, Tiles};
-use crate::render::trace::MAX_RAYS;
-use crate::scene::model::Model;
 use crate::words::{count, short};
 use std::io::{self, BufWriter};
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
-/// A part of a model's picture, and how it is made.
+/// A part of a plan's picture, and how it is made.
 pub struct Job<'a> {
-    pub model: &'a Model,
+    pub plan: &'a Plan<'a>,
     pub part: &'a Part,
     pub renderer: &'a Renderer,
     pub format: Format,
@@ -76,14 +77,14 @@ impl Job<'_> {
         let cut = |part| cuts.lock().unwrap_or_else(PoisonError::into_inner).add(part);
         let overseer = Overseer { stops: &|| self.stop.is_due(), row: &|| progress.step() };
         match self.stats {
-            None => self.renderer.fill(self.model, band, overseer, &cut),
+            None => self.renderer.fill(self.plan, band, overseer, &cut),
             Some(stats) => {
                 let sum = &stats.tally;
                 let add = |tally: Tally| {
                     cut(tally.cuts);
                     sum.add(&tally);
                 };
-                stats.timed(|| self.renderer.fill(self.model, band, overseer, &add));
+                stats.timed(|| self.renderer.fill(self.plan, band, overseer, &add));
             }
         }
     }
@@ -97,18 +98,19 @@ impl Job<'_> {
         let share = (1000.0 * tiles.pixels() as f64 / (width * height) as f64).floor() / 10.0;
         messages::note(&match &output {
             Output::File(..) if tiles.pixels() == 0 => {
-                "nothing is rendered yet, and nothing is written".to_owned()
+                "nothing has been rendered yet, and nothing is written".to_owned()
             }
             Output::File(..) => {
-                let checkpoint = resume::leave(self, output, tiles)?;
+                let checkpoint =
+                    resume::leave(self.plan.model, self.part, (self.path, self.format), output, tiles)?;
                 let [picture, checkpoint] = [self.path, &checkpoint].map(Path::display);
                 format!(
-                    "wrote {share:.1} % of {picture}, and {checkpoint}, from which `--resume` makes the rest"
+                    "wrote {share:.1} % of {picture}, and {checkpoint}, from which `--resume` renders the rest"
                 )
             }
             Output::Standard | Output::Special(_) => {
                 format!(
-                    "{share:.1} % of the picture is rendered, and the rest is black; only files can be resumed"
+                    "{share:.1} % of the image is rendered, and the rest is black; only files can be resumed"
                 )
             }
         });
@@ -125,13 +127,13 @@ fn warn_of(cuts: Cuts) {
     let most = if levels.is_finite() {
         format!("off by at most {} of 255 levels", short(levels))
     } else {
-        "off by nobody knows how much: nothing bounds the light beyond".to_owned()
+        "off by an unknown amount: nothing bounds the light beyond".to_owned()
     };
     messages::warning(
         &format!(
-            "{} cut off after {MAX_RAYS} rays for one look from the viewer, and {most}",
+            "{} cut off at {MAX_RAYS} rays for one primary ray, {most}",
             count(cuts.pixels as usize, "pixel")
         ),
-        Some("mirrors or glass send too many rays on: less of `specular` or `transparency` ends them sooner"),
+        Some("mirrors or glass spawn too many rays: a lower `specular` or `transparency` ends them sooner"),
     );
 }

@@ -1,6 +1,7 @@
 //! `tabray list`: the entity types and their attributes, from their tables.
 
-use super::{Failure, print, program};
+use super::failure::{Failure, print};
+use super::program;
 use crate::scene::entity::Entity;
 use crate::scene::pparm::Attribute;
 use crate::scene::reference;
@@ -12,12 +13,12 @@ use crate::words;
 /// List the entity types, or the attributes of one
 #[derive(clap::Args)]
 pub struct Args {
-    /// The entity type to tell about
+    /// The entity type whose attributes to list
     entity: Option<String>,
     /// Print the whole reference of the language as Markdown
     #[arg(long, conflicts_with = "entity")]
     markdown: bool,
-    /// Print all that is in the tables as JSON, for programs
+    /// Print all tables as JSON, for programs
     #[arg(long, conflicts_with_all = ["entity", "markdown"])]
     json: bool,
 }
@@ -39,7 +40,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let entity = registry.find(&name).ok_or_else(|| {
         let help = match registry.nearest(&name) {
             Some(near) => format!("did you mean `{near}`?"),
-            None => format!("`{} list` lists them all", program::name()),
+            None => format!("`{} list` lists all entity types", program::name()),
         };
         Failure::Usage(format!("there is no entity type `{name}`"), Some(help))
     })?;
@@ -53,7 +54,7 @@ fn details(entity: &'static Entity) -> String {
     });
     let also = match entity.aliases {
         [] => String::new(),
-        aliases => format!("Also written {}.\n", aliases.join(", ")),
+        aliases => format!("Alias: {}.\n", aliases.join(", ")),
     };
     format!(
         "{} NAME {{ ... }}\n\n{}: {}.\n{also}\n{}",
@@ -67,8 +68,8 @@ fn details(entity: &'static Entity) -> String {
 /// Whether an attribute must be given, what its values must be, and in what unit they are.
 fn condition(attribute: &dyn Attribute) -> String {
     let mut parts = vec![match attribute.default() {
-        Some(Datum::Absent) => "may be left out".to_owned(),
-        Some(default) => format!("{default} by default"),
+        Some(Datum::Absent) => "optional".to_owned(),
+        Some(default) => format!("default {default}"),
         None => "required".to_owned(),
     }];
     if !attribute.rule().is_empty() {

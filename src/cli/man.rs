@@ -1,22 +1,23 @@
 //! `tabray man`: manual pages, as packages install them.
 
-use super::{Failure, messages, output, program};
+use super::failure::Failure;
+use super::{messages, output, program};
 use crate::scene::registry::Registry;
 use clap::Command;
 use clap_mangen::Man;
 use std::path::{Path, PathBuf};
 
-/// Write the manual pages, one for each command
+/// Write the man pages, one for each command
 #[derive(clap::Args)]
 pub struct Args {
-    /// The folder to write them to, such as share/man/man1
+    /// The folder to write to, such as share/man/man1
     folder: PathBuf,
 }
 
-pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
+pub fn run(registry: &Registry, args: &Args, command: clap::Command) -> Result<(), Failure> {
     let folder = &args.folder;
     output::folder(folder)?;
-    let mut command = program::described(registry).disable_help_subcommand(true);
+    let mut command = program::described(command, registry).disable_help_subcommand(true);
     command.build();
     let count = pages(command, folder)?;
     messages::note(&format!("wrote {count} pages to {}", folder.display()));

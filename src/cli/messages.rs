@@ -9,12 +9,12 @@ use std::sync::OnceLock;
 /// How messages are written.
 #[derive(Clone, Copy, Default, PartialEq, clap::ValueEnum)]
 pub enum Form {
-    /// For people: with the lines of the scene that they are about
+    /// For people: with the lines of the scene concerned
     #[default]
     Human,
-    /// One on each line, `FILE:LINE:COLUMN: error: MESSAGE`, as editors read them
+    /// For editors: one per line, `FILE:LINE:COLUMN: error: MESSAGE`
     Short,
-    /// One on each line, as an object of JSON
+    /// For programs: one JSON object per line
     Json,
 }
 

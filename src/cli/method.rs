@@ -1,6 +1,6 @@
 //! `--method` and `--accuracy`: how exactly a scene is traced, whatever it says itself.
 
-use super::Failure;
+use super::failure::Failure;
 use crate::scene::choice::{Choice, ChoiceName};
 use crate::words;
 use crate::world::accuracy::Accuracy;
@@ -9,10 +9,10 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 #[derive(clap::Args)]
 #[group(id = "how exactly")]
 pub struct Args {
-    /// How shapes find their hits; by default what the scene's camera says
+    /// The method of computing hits; by default that of the scene's camera
     #[arg(long, value_name = "NAME", value_parser = among([Accuracy::Classic, Accuracy::Exact]))]
     method: Option<Accuracy>,
-    /// How exactly the exact method finds them
+    /// The accuracy of the exact method
     #[arg(long, value_name = "NAME", value_parser = among([Accuracy::Draft, Accuracy::Exact, Accuracy::Strict]))]
     accuracy: Option<Accuracy>,
 }

@@ -12,6 +12,7 @@ mod debug;
 mod diff;
 mod dump;
 mod explain;
+mod failure;
 mod grammar;
 mod input;
 mod interrupt;
@@ -42,25 +43,23 @@ mod temporary;
 mod verify;
 mod watch;
 
-use crate::scene::reader::Report;
 use crate::scene::registry::Registry;
-use crate::words;
-use clap::{FromArgMatches, Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use failure::{Failure, tell};
 use std::io::{self, IsTerminal, Write};
-use std::path::Path;
 use std::process::ExitCode;
 
 /// A ray tracer in which a scene is data and every entity type is a plugin
 ///
-/// Without a command it does what the course notes' program does: it reads a scene from standard input, prints
-/// its dump to standard error and writes its picture, a PPM, to standard output. It uses the notes' own methods unless
-/// the scene's camera says otherwise.
+/// Without a command, does what the course notes' program does: reads a scene from standard input, prints its dump to
+/// standard error and writes its image, a PPM, to standard output. It uses the notes' own methods unless the scene's
+/// camera says otherwise.
 #[derive(Parser)]
 #[command(version, after_help = EXIT_STATUS)]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
-    /// How messages are written
+    /// The format of messages
     #[arg(long, global = true, value_name = "FORM", default_value = "human")]
     message_format: messages::Form,
 }
@@ -90,54 +89,20 @@ enum Command {
 
 const EXIT_STATUS: &str = "\
 Exit status:
-    0  all went well
-    1  a failure: something could not be read, written or started
-    2  bad input: a scene or a command line with faults
+    0  success
+    1  failure: something could not be read, written or started
+    2  bad input: a scene or a command line with errors
   130  interrupted, or stopped at a limit";
 
-/// Why a command did not do what it was asked to.
-enum Failure {
-    /// The scene has faults.
-    Scene(Report),
-    /// What was asked for makes no sense; what would, if that can be said.
-    Usage(String, Option<String>),
-    /// The machine or another program stood in the way.
-    Failed(String),
-    /// The user stopped it: what is there of it, or is not.
-    Interrupted(&'static str),
-    /// It was stopped with a part of its work done, of which the user was told already.
-    Stopped,
-    /// Faults that were printed already.
-    Told,
-}
-
-impl From<io::Error> for Failure {
-    fn from(error: io::Error) -> Self {
-        Self::Failed(words::reason(&error))
-    }
-}
-
-impl Failure {
-    /// What the system does not let be written, and why.
-    fn cannot_write(path: &Path, error: &io::Error) -> Self {
-        if path == Path::new("-") {
-            return Self::Failed(format!("cannot write to standard output: {}", words::reason(error)));
-        }
-        let folder = path.parent().filter(|folder| *folder != Path::new("") && !folder.exists());
-        let reason = match folder {
-            Some(folder) if error.kind() == io::ErrorKind::NotFound => {
-                format!("there is no folder `{}`", folder.display())
-            }
-            _ => words::reason(error),
-        };
-        Self::Failed(format!("cannot write `{}`: {reason}", path.display()))
-    }
+/// The command line, under the name of the program that runs.
+fn command() -> clap::Command {
+    program::named(Cli::command())
 }
 
 /// Runs the command that the program's arguments name, with every plugin that is linked into it. Its messages go to
 /// standard error, and its exit status tells how it went.
 pub fn run() -> ExitCode {
-    let cli = Cli::from_arg_matches(&program::command().get_matches()).unwrap_or_else(|error| error.exit());
+    let cli = Cli::from_arg_matches(&command().get_matches()).unwrap_or_else(|error| error.exit());
     messages::choose(cli.message_format);
     let outcome = match Registry::get() {
         Ok(registry) => match cli.command {
@@ -158,10 +123,10 @@ pub fn run() -> ExitCode {
             Some(Command::New(args)) => new::run(registry, &args),
             Some(Command::Schema(_)) => schema::run(registry),
             Some(Command::Grammar(_)) => grammar::run(registry),
-            Some(Command::Completions(args)) => completions::run(registry, &args),
-            Some(Command::Man(args)) => man::run(registry, &args),
+            Some(Command::Completions(args)) => completions::run(registry, &args, command()),
+            Some(Command::Man(args)) => man::run(registry, &args, command()),
             None if io::stdin().is_terminal() => {
-                let _ = write!(io::stderr(), "{}", program::command().render_long_help());
+                let _ = write!(io::stderr(), "{}", command().render_long_help());
                 Err(Failure::Told)
             }
             None => notes::run(registry),
@@ -174,30 +139,5 @@ pub fn run() -> ExitCode {
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => tell(&failure),
-    }
-}
-
-fn tell(failure: &Failure) -> ExitCode {
-    match failure {
-        Failure::Scene(report) => messages::report(report),
-        Failure::Usage(message, help) => messages::error(message, help.as_deref()),
-        Failure::Failed(message) => messages::error(message, None),
-        Failure::Interrupted(what) => messages::note(&format!("interrupted: {what}")),
-        Failure::Stopped | Failure::Told => {}
-    }
-    ExitCode::from(match failure {
-        Failure::Failed(_) => 1,
-        Failure::Scene(_) | Failure::Usage(..) | Failure::Told => 2,
-        Failure::Interrupted(_) | Failure::Stopped => 130,
-    })
-}
-
-/// Prints to standard output. A reader that has had enough is no failure.
-fn print(text: &str) -> Result<(), Failure> {
-    match io::stdout().write_all(text.as_bytes()).and_then(|()| io::stdout().flush()) {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            Err(Failure::cannot_write(Path::new("-"), &error))
-        }
-        _ => Ok(()),
     }
 }

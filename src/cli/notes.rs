@@ -1,12 +1,14 @@
 //! Without a command: the notes' program, a filter from a scene to its dump and its picture.
 
+use super::failure::Failure;
 use super::input::{self, Source};
+use super::interrupt;
 use super::job::Job;
 use super::output::Output;
 use super::size::Part;
 use super::stop::Stop;
-use super::{Failure, interrupt};
 use crate::output::picture::Format;
+use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::render::tiles::BAND;
 use crate::scene::dump;
@@ -25,7 +27,7 @@ pub fn run(registry: &Registry) -> Result<(), Failure> {
     interrupt::catch()?;
     let _ = write!(std::io::stderr(), "{}", dump::notes(&model));
     let job = Job {
-        model: &model,
+        plan: &Plan::new(&model),
         part: &Part::whole(&model.camera.value),
         renderer: &Renderer::new(0)?,
         format: Format::Ppm,

@@ -1,7 +1,9 @@
 //! Where a picture goes: beside its target first, then in its place, so that no half of one is ever there.
 
+use super::failure::Failure;
+use super::messages;
 use super::temporary::Temporary;
-use super::{Failure, messages};
+use crate::output::picture::Format;
 use crate::words;
 use std::ffi::OsStr;
 use std::fs::{self, File, OpenOptions};
@@ -72,10 +74,10 @@ pub fn ended(path: &Path, end: impl AsRef<OsStr>) -> PathBuf {
 pub fn folder(path: &Path) -> Result<(), Failure> {
     fs::create_dir_all(path).map_err(|error| {
         let reason = match error.kind() {
-            io::ErrorKind::AlreadyExists => "a file has this name".to_owned(),
+            io::ErrorKind::AlreadyExists => "a file of this name exists".to_owned(),
             _ => words::reason(&error),
         };
-        Failure::Failed(format!("cannot make the folder `{}`: {reason}", path.display()))
+        Failure::Failed(format!("cannot create the folder `{}`: {reason}", path.display()))
     })
 }
 
@@ -86,8 +88,8 @@ pub fn is_new(path: &Path) -> Result<(), Failure> {
 
 fn is_there(path: &Path) -> Failure {
     Failure::Usage(
-        format!("there is a `{}` already", path.display()),
-        Some("nothing is written in its place: choose another name".to_owned()),
+        format!("`{}` already exists", path.display()),
+        Some("existing files are not overwritten: choose another name".to_owned()),
     )
 }
 
@@ -97,8 +99,8 @@ impl Output {
         if path == Path::new("-") {
             if io::stdout().is_terminal() {
                 return Err(Failure::Usage(
-                    "standard output is a terminal, which shows no pictures".to_owned(),
-                    Some("send it on with `> FILE` or `|`, or name a file with `-o FILE`".to_owned()),
+                    "standard output is a terminal, which cannot show images".to_owned(),
+                    Some("redirect it with `> FILE` or `|`, or name a file with `-o FILE`".to_owned()),
                 ));
             }
             return Ok(Self::Standard);
@@ -159,4 +161,12 @@ impl Write for Output {
             Self::File(file, _) => file.file().flush(),
         }
     }
+}
+
+/// The format that a file's name says, or what would be right.
+pub fn named(path: &Path, help: &str) -> Result<Format, Failure> {
+    Format::of(path).ok_or_else(|| {
+        let message = format!("the name `{}` does not determine the format of the image", path.display());
+        Failure::Usage(message, Some(help.to_owned()))
+    })
 }

@@ -1,6 +1,6 @@
 //! Reading pictures, to compare them.
 
-use super::Failure;
+use super::failure::Failure;
 use crate::words;
 use image::{DynamicImage, ImageReader, RgbImage};
 use std::fs::File;
@@ -27,6 +27,6 @@ pub fn decode(bytes: impl BufRead + Seek) -> Result<RgbImage, String> {
     if is_plain {
         Ok(picture.into_rgb8())
     } else {
-        Err("it is no opaque picture of 8 bits a channel, and only such can be compared".to_owned())
+        Err("it is not an opaque image with 8 bits per channel, and no other kind can be compared".to_owned())
     }
 }

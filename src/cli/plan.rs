@@ -1,7 +1,9 @@
 //! `tabray plan`: what a scene needs, and why.
 
-use super::{Failure, input, method, print};
-use crate::render::plan::{Decision, Plan};
+use super::failure::{Failure, print};
+use super::{input, method};
+use crate::render::decisions::{self, Decision};
+use crate::render::plan::Plan;
 use crate::scene::registry::Registry;
 use crate::simd::cpu::Cpu;
 use std::path::PathBuf;
@@ -17,10 +19,10 @@ pub struct Args {
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let model = input::load(registry, &args.scene, args.method.accuracy()?)?;
-    let best = format!("{}, the most that this machine has; the picture is the same with any", Cpu::best());
+    let best = format!("{}, the highest level of this machine; the image is the same with any", Cpu::best());
     let cpu = Decision { subject: "instructions", text: best };
     print(
-        &Plan::decisions(&model)
+        &decisions::of(&Plan::new(&model))
             .iter()
             .chain([&cpu])
             .map(|decision| format!("{decision}\n"))

@@ -1,6 +1,8 @@
 //! `tabray probe`: one pixel, explained.
 
-use super::{Failure, input, method};
+use super::failure::Failure;
+use super::{input, method};
+use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::scene::model::Model;
 use crate::scene::registry::Registry;
@@ -27,7 +29,8 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let model = input::load(registry, &args.scene, args.method.accuracy()?)?;
     let [x, y] = inside(&model, [args.x, args.y])?;
     let mut out = BufWriter::new(io::stdout());
-    let printed = Renderer::new(1)?.run(|| probe::pixel(&model, x, y, &mut out).and_then(|()| out.flush()));
+    let printed =
+        Renderer::new(1)?.run(|| probe::pixel(&Plan::new(&model), x, y, &mut out).and_then(|()| out.flush()));
     match printed {
         // A reader that has had enough is no failure.
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
@@ -44,7 +47,7 @@ pub fn inside(model: &Model, pixel: [i64; 2]) -> Result<[usize; 2], Failure> {
     find(0).zip(find(1)).map(|(x, y)| [x, y]).ok_or_else(|| {
         let ([x, y], [width, height]) = (pixel, size);
         Failure::Usage(
-            format!("the picture of {width} x {height} pixels has no pixel {x} {y}"),
+            format!("the image of {width} x {height} pixels has no pixel {x} {y}"),
             Some(format!(
                 "X counts from the left, from 0 to {}, and Y from the bottom, from 0 to {}",
                 width - 1,

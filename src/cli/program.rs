@@ -1,9 +1,8 @@
 //! What the program is called, and its command line under that name.
 
-use super::Cli;
 use crate::scene::registry::Registry;
+use clap::Command;
 use clap::builder::{PossibleValue, PossibleValuesParser};
-use clap::{Command, CommandFactory};
 use std::env::{self, consts};
 use std::path::Path;
 use std::sync::LazyLock;
@@ -23,9 +22,8 @@ pub fn name() -> &'static str {
     &NAME
 }
 
-/// The command line. A program of another name tells the library that it is built on by its version.
-pub fn command() -> Command {
-    let command = Cli::command();
+/// A command line under that name. A program of another name tells the library that it is built on by its version.
+pub fn named(command: Command) -> Command {
     if name() == LIBRARY {
         return command;
     }
@@ -34,8 +32,8 @@ pub fn command() -> Command {
 
 /// The command line for shells and manuals, which want to know the entity types too. The program itself takes any word
 /// and says which was meant.
-pub fn described(registry: &Registry) -> Command {
+pub fn described(command: Command, registry: &Registry) -> Command {
     let types = registry.iter().map(|entity| PossibleValue::new(entity.name).help(entity.meaning));
     let types = PossibleValuesParser::new(types);
-    command().mut_subcommand("list", |list| list.mut_arg("entity", |entity| entity.value_parser(types)))
+    command.mut_subcommand("list", |list| list.mut_arg("entity", |entity| entity.value_parser(types)))
 }

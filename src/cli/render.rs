@@ -1,42 +1,44 @@
 //! `tabray render`: a scene's picture.
 
+use super::failure::Failure;
 use super::input::Source;
 use super::job::Job;
-use super::output::Output;
+use super::output::{Output, named};
 use super::resume::Begun;
 use super::stats::{self, Stats};
-use super::{Failure, aov, cpu, debug, input, interrupt, messages, method, size, stop};
+use super::{aov, cpu, debug, input, interrupt, messages, method, size, stop};
 use crate::output::picture::{Compression, Format};
+use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::scene::reader::Loaded;
 use crate::scene::registry::Registry;
 use crate::world::accuracy::Accuracy;
-use crate::world::sample::{self, Sampler};
+use crate::world::sample::Sampler;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Make a scene's picture
+/// Render a scene
 #[derive(clap::Args)]
 pub struct Args {
     /// The scene; `-` reads it from standard input
     scene: PathBuf,
-    /// Where to write the picture: a .png or .ppm file, or `-` for standard output (a PPM unless --format says
-    /// otherwise); by default the scene's name with .png in the working directory
+    /// The image to write: a .png or .ppm file, or `-` for standard output (a PPM unless --format says otherwise); by
+    /// default the scene's name with .png in the working directory
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// The picture's format, whatever the file's extension
+    /// The image format, whatever the file's extension
     #[arg(long)]
     format: Option<Format>,
-    /// How hard a PNG is compressed
+    /// The compression of a PNG
     #[arg(long, value_name = "HOW", default_value = "fast")]
     compress: Compression,
-    /// How many rays look through each pixel, to smooth edges; by default what the scene's camera says
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(sample::MOST)))]
+    /// The number of samples per pixel, to smooth edges; by default that of the scene's camera
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(Sampler::MOST)))]
     samples: Option<u32>,
-    /// Where the rays of a pixel lie
+    /// The distribution of the samples within a pixel
     #[arg(long, value_name = "NAME", default_value = "sobol")]
     sampler: Sampler,
-    /// How many threads to use; by default one on each core
+    /// The number of threads; by default one per core
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
     #[command(flatten)]
@@ -76,12 +78,12 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     debug::print(&model, &args.debug)?;
     let threads = args.threads.unwrap_or(0).into();
     let start = Instant::now();
-    model.plan();
+    let plan = Plan::new(&model);
     stats.building += start.elapsed();
     let renderer = Renderer::new(threads)?.on(cpu);
     let whole = Instant::now();
     let job = Job {
-        model: &model,
+        plan: &plan,
         part: &part,
         renderer: &renderer,
         format,
@@ -102,7 +104,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         Ok(loaded) => Ok(loaded.model),
         Err(report) => Err(Failure::Scene(report)),
     };
-    aov::write(&model, exact, threads, format, beside)
+    aov::write(&plan, exact, threads, format, beside)
 }
 
 fn target(args: &Args) -> Result<PathBuf, Failure> {
@@ -113,8 +115,8 @@ fn target(args: &Args) -> Result<PathBuf, Failure> {
             Ok(Path::new(name).with_extension(extension))
         }
         _ => Err(Failure::Usage(
-            "a scene from standard input has no name for its picture".to_owned(),
-            Some("name one with `-o FILE`; `-o -` writes to standard output".to_owned()),
+            "a scene from standard input has no name to give its image".to_owned(),
+            Some("name a file with `-o FILE`; `-o -` writes to standard output".to_owned()),
         )),
     }
 }
@@ -128,13 +130,5 @@ fn format(args: &Args, path: &Path) -> Result<Format, Failure> {
     Ok(match format {
         Format::Png(_) => Format::Png(args.compress),
         Format::Ppm => Format::Ppm,
-    })
-}
-
-/// The format that a file's name says, or what would be right.
-pub fn named(path: &Path, help: &str) -> Result<Format, Failure> {
-    Format::of(path).ok_or_else(|| {
-        let message = format!("the name `{}` does not say which format the picture has", path.display());
-        Failure::Usage(message, Some(help.to_owned()))
     })
 }

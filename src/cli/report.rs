@@ -1,8 +1,9 @@
 //! The page that shows what changed: one file with everything in it, which works without a network.
 
 use super::explain::Explanation;
+use super::failure::Failure;
+use super::messages;
 use super::output::Output;
-use super::{Failure, messages};
 use crate::output::compare::Comparison;
 use crate::words;
 use base64::Engine;
@@ -83,7 +84,7 @@ impl Page {
     pub fn open(path: &Path) -> Result<Self, Failure> {
         if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("html")) {
             return Err(Failure::Usage(
-                format!("the name `{}` is not that of a page", path.display()),
+                format!("`{}` is not the name of an HTML file", path.display()),
                 Some("end it in .html".to_owned()),
             ));
         }

@@ -1,9 +1,9 @@
 //! Checkpoints beside pictures: left where a render stops, and gone on from by `--resume`.
 
-use super::job::Job;
+use super::failure::Failure;
+use super::messages;
 use super::output::{self, Output};
 use super::size::Part;
-use super::{Failure, messages};
 use crate::output::checkpoint::{self, Checkpoint, Identity};
 use crate::output::picture::Format;
 use crate::render::tiles::{Band, Tiles};
@@ -36,8 +36,8 @@ impl Begun {
         if !matches!(output, Output::File(..)) {
             return if wanted {
                 Err(Failure::Usage(
-                    format!("there is no place for a checkpoint beside `{}`", picture.display()),
-                    Some("name the picture's file with `-o FILE`, or leave out `--resume`".to_owned()),
+                    format!("cannot keep a checkpoint beside `{}`", picture.display()),
+                    Some("name a file for the image with `-o FILE`, or leave out `--resume`".to_owned()),
                 ))
             } else {
                 Ok(None)
@@ -47,15 +47,15 @@ impl Begun {
         let shown = path.display();
         if !wanted {
             if path.exists() {
-                messages::note(&format!(
-                    "{shown} is there, and with `--resume` the picture would go on from it"
-                ));
+                messages::note(&format!("{shown} exists: with `--resume` the render would continue from it"));
             }
             return Ok(None);
         }
         let file = match File::open(&path) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
-                messages::note(&format!("there is no {shown} to go on from: the picture begins anew"));
+                messages::note(&format!(
+                    "there is no {shown} to continue from: the render starts from the beginning"
+                ));
                 return Ok(None);
             }
             file => file,
@@ -65,7 +65,7 @@ impl Begun {
         let differences = identity.differences(&checkpoint.identity);
         if !differences.is_empty() {
             return Err(Failure::Usage(
-                format!("`{shown}` is of another picture: {}", differences.join(", ")),
+                format!("`{shown}` belongs to another image: {}", differences.join(", ")),
                 Some(BEGIN_ANEW.to_owned()),
             ));
         }
@@ -85,17 +85,17 @@ impl Begun {
         fs::remove_file(&self.path).map_err(|error| {
             let (path, reason) = (self.path.display(), words::reason(&error));
             Failure::Failed(format!(
-                "cannot remove `{path}`: {reason}; the picture is finished: remove it by hand"
+                "cannot remove `{path}`: {reason}; the image is finished, so remove the file by hand"
             ))
         })
     }
 }
 
-const BEGIN_ANEW: &str = "leave out `--resume` to begin anew";
+const BEGIN_ANEW: &str = "leave out `--resume` to start from the beginning";
 
 fn cannot_read(path: &Path, error: &io::Error) -> Failure {
     let reason = match error.kind() {
-        io::ErrorKind::InvalidData => "it is no checkpoint, or a broken one".to_owned(),
+        io::ErrorKind::InvalidData => "it is not a checkpoint, or it is corrupt".to_owned(),
         _ => words::reason(error),
     };
     Failure::Usage(format!("cannot read `{}`: {reason}", path.display()), Some(BEGIN_ANEW.to_owned()))
@@ -105,32 +105,38 @@ fn cannot_read(path: &Path, error: &io::Error) -> Failure {
 /// black where nothing is rendered.
 ///
 /// Neither is put in its place before both are whole.
-pub fn leave(job: &Job, written: Output, tiles: &Tiles) -> Result<PathBuf, Failure> {
-    let path = beside(job.path);
+pub fn leave(
+    model: &Model,
+    part: &Part,
+    (picture, format): (&Path, Format),
+    written: Output,
+    tiles: &Tiles,
+) -> Result<PathBuf, Failure> {
+    let path = beside(picture);
     let cannot_write = |error: io::Error| Failure::cannot_write(&path, &error);
     let mut checkpoint = Output::open(&path)?;
-    let identity = identity(job.model, job.part)?;
+    let identity = identity(model, part)?;
     written
         .read()
-        .and_then(|file| job.format.read(file))
+        .and_then(|file| format.read(file))
         .and_then(|rows| {
             let mut out = BufWriter::with_capacity(1 << 16, &mut checkpoint);
-            checkpoint::write(&mut out, job.part.size(), &identity, tiles, rows)?;
+            checkpoint::write(&mut out, part.size(), &identity, tiles, rows)?;
             out.flush()
         })
         .map_err(cannot_write)?;
-    let partial = match job.format {
+    let partial = match format {
         Format::Ppm => written,
         // The checkpoint shows what is wanted.
         Format::Png(_) => {
             let mut shown = checkpoint.read().map_err(cannot_write)?;
-            let mut partial = Output::open(job.path)?;
-            io::copy(&mut shown, &mut partial).map_err(|error| Failure::cannot_write(job.path, &error))?;
+            let mut partial = Output::open(picture)?;
+            io::copy(&mut shown, &mut partial).map_err(|error| Failure::cannot_write(picture, &error))?;
             partial
         }
     };
     checkpoint.finish().map_err(cannot_write)?;
-    partial.finish().map_err(|error| Failure::cannot_write(job.path, &error))?;
+    partial.finish().map_err(|error| Failure::cannot_write(picture, &error))?;
     Ok(path)
 }
 
@@ -138,7 +144,7 @@ fn identity(model: &Model, part: &Part) -> Result<Identity, Failure> {
     Identity::of(model, &part.columns, &part.rows).map_err(|error| {
         let reason = words::reason(&error);
         Failure::Failed(format!(
-            "cannot read the program's own file, by which a checkpoint knows it: {reason}"
+            "cannot read the program's own file, whose hash a checkpoint contains: {reason}"
         ))
     })
 }

@@ -1,6 +1,6 @@
 //! `tabray schema`: what editors need to check and complete scenes in TOML.
 
-use super::{Failure, print};
+use super::failure::{Failure, print};
 use crate::scene::registry::Registry;
 use crate::scene::schema;
 use crate::words;

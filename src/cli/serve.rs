@@ -4,7 +4,7 @@
 //! kept out by what they cannot forge: the `Host` header, where a foreign name was made to lead here, and the `Origin`
 //! header. What is sent to change something must have one.
 
-use super::Failure;
+use super::failure::Failure;
 use crate::words;
 use http_body_util::combinators::BoxBody;
 use http_body_util::{BodyExt, Full, Limited};
@@ -64,7 +64,7 @@ impl Server {
         };
         server.map_err(|(port, error)| match error.kind() {
             io::ErrorKind::AddrInUse => Failure::Failed(format!(
-                "port {port} is taken; give `--port` another one, or leave it out for the first free one"
+                "port {port} is in use; give another with `--port`, or leave it out for the first free one"
             )),
             _ => Failure::Failed(format!("cannot listen on port {port}: {}", words::reason(&error))),
         })
@@ -152,7 +152,7 @@ where
     let (head, body) = request.into_parts();
     match Limited::new(body, LARGEST).collect().await {
         Ok(body) => answer(Request::from_parts(head, body.to_bytes())).await,
-        Err(_) => ControlFlow::Continue(text(StatusCode::PAYLOAD_TOO_LARGE, "too much was sent")),
+        Err(_) => ControlFlow::Continue(text(StatusCode::PAYLOAD_TOO_LARGE, "the request is too large")),
     }
 }
 
@@ -162,13 +162,13 @@ fn admit(request: &Request<Incoming>, port: u16) -> Result<(), &'static str> {
     let values = |name: HeaderName| request.headers().get_all(name).iter().map(HeaderValue::as_bytes);
     let is_ours = |host: &[u8]| ours.iter().any(|ours| host.eq_ignore_ascii_case(ours.as_bytes()));
     if values(header::HOST).count() != 1 || !values(header::HOST).all(is_ours) {
-        return Err("this is not the host that was asked for");
+        return Err("the request is for another host");
     }
     if request.method() != Method::GET && !request.headers().contains_key(header::ORIGIN) {
         return Err("a request that changes something must name its origin");
     }
     if !values(header::ORIGIN).all(|origin| origin.strip_prefix(b"http://").is_some_and(is_ours)) {
-        return Err("a page from elsewhere may not ask this");
+        return Err("the request comes from another page");
     }
     Ok(())
 }

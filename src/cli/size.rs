@@ -1,6 +1,6 @@
 //! `--size`, `--quick` and `--crop`: how large the picture is, and which part of it is made.
 
-use super::Failure;
+use super::failure::Failure;
 use crate::world::camera::Camera;
 use std::ops::Range;
 
@@ -10,15 +10,15 @@ const LARGEST: usize = 100_000;
 #[derive(clap::Args)]
 #[group(id = "how large")]
 pub struct Args {
-    /// The picture's width and height in pixels, or the width alone, with the height that goes with it; by default
-    /// what the scene's camera says
+    /// The width and height of the image in pixels, or the width alone, with the height in proportion; by default those
+    /// of the scene's camera
     #[arg(long, value_name = "W|WxH", value_parser = size)]
     size: Option<Size>,
-    /// A picture to look at soon: a quarter as wide and as high, with one ray through each pixel
+    /// Render a preview: a quarter of the width and height, with one sample per pixel
     #[arg(long, conflicts_with_all = ["size", "samples"])]
     quick: bool,
-    /// Make this part of the picture alone, W pixels wide and H high, as it is in the whole one: X is its first
-    /// column, from 0 at the left, and Y its first row, from 0 at the bottom
+    /// Render only this part of the image, W pixels wide and H high, exactly as it is in the whole image: X is its
+    /// first column, from 0 at the left, and Y its first row, from 0 at the bottom
     #[arg(long, value_name = "X,Y,W,H", conflicts_with = "aov", value_parser = crop, allow_hyphen_values = true)]
     crop: Option<[i64; 4]>,
 }
@@ -64,9 +64,9 @@ impl Args {
             camera.pixels = [size.width, size.height.unwrap_or(in_proportion.max(1))];
             if camera.pixels[1] > LARGEST {
                 return Err(Failure::Usage(
-                    format!("a picture {} pixels wide would be {} high", size.width, camera.pixels[1]),
+                    format!("an image {} pixels wide would be {} high", size.width, camera.pixels[1]),
                     Some(format!(
-                        "it can have {LARGEST} each way: ask for a smaller one, or give both as `WxH`"
+                        "the maximum is {LARGEST} in each dimension: give a smaller width, or both as `WxH`"
                     )),
                 ));
             }
@@ -89,9 +89,9 @@ fn part(camera: &Camera, [x, y, wide, high]: [i64; 4]) -> Result<Part, Failure> 
     match (range(x, wide, width), range(y, high, height)) {
         (Some(columns), Some(rows)) => Ok(Part { columns, rows: height - rows.end..height - rows.start }),
         _ => Err(Failure::Usage(
-            format!("the picture of {width} x {height} pixels has no part of {wide} x {high} at {x} {y}"),
+            format!("the image of {width} x {height} pixels has no part of {wide} x {high} at {x} {y}"),
             Some(format!(
-                "X counts from the left and Y from the bottom, both from 0; X + W can be {width}, and Y + H {height}"
+                "X counts from the left and Y from the bottom, both from 0; X + W can be at most {width}, and Y + H {height}"
             )),
         )),
     }

@@ -16,17 +16,17 @@ use std::time::{Duration, Instant};
 #[derive(clap::Args)]
 #[group(id = "statistics")]
 pub struct Args {
-    /// Print what the picture took to standard error, as a table or as JSON: its rays by kind, the pixels that were cut
-    /// off, tests by entity type, the time of each stage and the memory
+    /// Print statistics of the render to standard error, as a table or as JSON: rays by kind, pixels that were cut off,
+    /// tests by entity type, the time of each stage and the peak memory
     #[arg(long, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "table")]
     stats: Option<Format>,
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
 enum Format {
-    /// To be read
+    /// For people
     Table,
-    /// One object in one line, to be read by a program
+    /// For programs: one JSON object on one line
     Json,
 }
 

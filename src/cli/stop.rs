@@ -1,6 +1,7 @@
 //! When a render stops before its picture is finished: at an interruption, or at a limit of time or memory.
 
-use super::{Failure, interrupt, memory, messages};
+use super::failure::Failure;
+use super::{interrupt, memory, messages};
 use crate::render::tiles::{BAND, TILE};
 use crate::words;
 use bytesize::ByteSize;
@@ -24,16 +25,16 @@ const ASIDE: u64 = 2 << 20;
 #[derive(clap::Args)]
 #[group(id = "when to stop")]
 pub struct Args {
-    /// Go on from the checkpoint that the same picture left beside it when it was stopped; where there is none, from the
-    /// start
+    /// Continue from the checkpoint that was left beside the image when its render was stopped; if there is none, start
+    /// from the beginning
     #[arg(long)]
     pub resume: bool,
-    /// Stop after this time, such as 90s, 5m or 1.5h, as Ctrl-C does: what is done is written, and beside it a
-    /// checkpoint for --resume; the pictures of --aov come after the main one, and are not limited
+    /// Stop after this time, such as 90s, 5m or 1.5h, as Ctrl-C does: write what is done, and beside it a checkpoint
+    /// for --resume; the images of --aov come after the main image, and are not limited
     #[arg(long, value_name = "TIME", value_parser = time)]
     time_limit: Option<Duration>,
-    /// Hold less of the picture at a time, so that this memory does, such as 200MiB; stop as Ctrl-C does where it does
-    /// not
+    /// Hold less of the image at a time to stay within this memory, such as 200MiB; where that is not enough, stop as
+    /// Ctrl-C does
     #[arg(long, value_name = "SIZE", value_parser = size)]
     max_memory: Option<ByteSize>,
 }
@@ -69,8 +70,8 @@ impl Stop {
     /// Says why it is.
     pub fn tell(&self) {
         messages::note(&match self.reached.get() {
-            Some(limit) => format!("the {limit} is reached"),
-            None => "interrupted; another Ctrl-C ends at once".to_owned(),
+            Some(limit) => format!("the {limit} has been reached"),
+            None => "interrupted; press Ctrl-C again to quit at once".to_owned(),
         });
     }
 }
@@ -115,7 +116,7 @@ impl Args {
     pub fn band(&self, width: usize) -> Result<usize, Failure> {
         let Some(limit) = self.max_memory else { return Ok(BAND) };
         let Some(now) = memory::now() else {
-            let message = "this system does not tell how much memory the program has";
+            let message = "this system does not report how much memory the program uses";
             return Err(Failure::Usage(message.to_owned(), Some("leave out `--max-memory`".to_owned())));
         };
         let row = ROW * width as u64;
@@ -123,8 +124,8 @@ impl Args {
         let least = now + ASIDE + row + strip;
         if limit.as_u64() < least {
             return Err(Failure::Usage(
-                format!("{limit} of memory are not enough for this picture"),
-                Some(format!("it takes about {} at least", ByteSize(least))),
+                format!("{limit} of memory is not enough for this image"),
+                Some(format!("it needs at least about {}", ByteSize(least))),
             ));
         }
         // Most is left to the rays: how deep their reflections go shows when they are there.

@@ -1,9 +1,10 @@
 //! `tabray verify`: a proof, pixel by pixel, of which object is seen.
 
-use super::output::{self, Output};
+use super::failure::{Failure, print};
+use super::output::{self, Output, named};
 use super::progress::Progress;
-use super::render::named;
-use super::{Failure, input, interrupt, method, print};
+use super::{input, interrupt, method};
+use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::scene::registry::Registry;
 use crate::tools::verify::{self, Verdict};
@@ -13,21 +14,21 @@ use std::path::PathBuf;
 
 /// Prove for each pixel which object is seen
 ///
-/// The proof is of the real ray through the pixel's middle and of the numbers of the scene as they are written, with
-/// intervals of 53 bits that hold all rounding errors, and where these leave something open, of 237 bits. It knows
-/// nothing of the methods that make the picture. What 237 bits leave open is a tie, as where two objects lie in one
-/// place. It ends with status 1 where the tracer finds an object that is not the first, nor one of a tie.
+/// The proof is about the real ray through the centre of the pixel and the scene's numbers as they are written. It uses
+/// intervals of 53 bits that contain all rounding errors and, where these do not decide, of 237 bits; it is independent
+/// of the methods that render the image. What 237 bits leave undecided is a tie, as where two objects coincide. The exit
+/// status is 1 if the tracer finds an object that is neither the first nor part of a tie.
 #[derive(clap::Args)]
 pub struct Args {
     /// The scene; `-` reads it from standard input
     scene: PathBuf,
-    /// Where to write a picture of what is proven: black where it is, white where there is a tie, red where the
-    /// tracer finds another object; a .png or .ppm file
+    /// Write an image of the result: black for proven pixels, white for ties, red where the tracer finds another
+    /// object; a .png or .ppm file
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     #[command(flatten)]
     method: method::Args,
-    /// How many threads to use; by default one on each core
+    /// The number of threads; by default one per core
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 }
@@ -42,12 +43,13 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let size = model.camera.value.pixels;
     let progress = Progress::new(size[1]);
     let renderer = Renderer::new(args.threads.unwrap_or(0).into())?;
-    let verdicts = verify::picture(&renderer, &model, &|| {
+    let plan = Plan::new(&model);
+    let verdicts = verify::picture(&renderer, &plan, &|| {
         progress.step();
         interrupt::check()
     });
     progress.end();
-    let verdicts = verdicts.map_err(|_| Failure::Interrupted("the picture was not finished"))?;
+    let verdicts = verdicts.map_err(|_| Failure::Interrupted("the image was not finished"))?;
     let count = |wanted| verdicts.iter().filter(|verdict| **verdict == wanted).count();
     let (ties, contradicted) = (count(Verdict::Tie), count(Verdict::Contradicted));
     let proven = verdicts.len() - ties - contradicted;

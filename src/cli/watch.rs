@@ -6,8 +6,10 @@ mod events;
 mod files;
 mod frame;
 
+use super::failure::Failure;
 use super::serve::Server;
-use super::{Failure, input, interrupt, messages, method};
+use super::{input, interrupt, messages, method};
+use crate::render::plan::Plan;
 use crate::render::progressive;
 use crate::render::renderer::Renderer;
 use crate::scene::model::Model;
@@ -36,15 +38,15 @@ const LARGEST: usize = 1 << 24;
 /// A file is read once it has been left alone for so long: many editors write it in several steps.
 const SETTLED: Duration = Duration::from_millis(10);
 
-/// Show the picture on a page, and make it anew whenever the scene changes
+/// Show the image in the browser, and render it again whenever the scene changes
 ///
-/// The page is for a browser on this machine and for nobody else. Click on a pixel to see how it gets its colour.
-/// Ctrl-C ends it, with status 0.
+/// Only a browser on this machine can reach the page. Click a pixel to see how it gets its colour. Ctrl-C quits, with
+/// status 0.
 #[derive(clap::Args)]
 pub struct Args {
     /// The scene
     scene: PathBuf,
-    /// The port of the page on 127.0.0.1; by default the first free one from 3000, and 0 for any free one
+    /// The port of the page on 127.0.0.1; by default the first free one from 3000; 0 is any free one
     #[arg(long, value_name = "N")]
     port: Option<u16>,
     /// Open the page in the browser
@@ -88,15 +90,18 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
             });
             if let Err(error) = run {
                 let reason = words::reason(&error);
-                let _ = sender.send(News::ServerFailed(format!("the server ended: {reason}")));
+                let _ = sender.send(News::ServerFailed(format!("the server stopped: {reason}")));
             }
         }
     });
-    messages::note(&format!("watching {}: its page is {url} (Ctrl-C ends this)", args.scene.display()));
+    messages::note(&format!("watching {} at {url} (Ctrl-C quits)", args.scene.display()));
     if args.open
         && let Err(error) = open::that(&url)
     {
-        messages::note(&format!("cannot open a browser: {}; open the page by hand", words::reason(&error)));
+        messages::note(&format!(
+            "cannot open a browser: {}; open the address yourself",
+            words::reason(&error)
+        ));
     }
     let mut watched =
         Watched { registry, path: args.scene, accuracy, named: Vec::new(), last: None, version: 0 };
@@ -139,7 +144,7 @@ fn painter(board: Arc<Board>) -> Result<Sender<Arc<Frame>>, Failure> {
         for frame in frames {
             let start = Instant::now();
             let part = |area, colours: Vec<_>| board.add(&frame, events::part(&frame, &area, &colours));
-            let painted = progressive::render(&renderer, &frame.model, part, || frame.check());
+            let painted = progressive::render(&renderer, &Plan::new(&frame.model), part, || frame.check());
             if painted.is_continue() {
                 board.add(&frame, events::done(&frame, start.elapsed()));
             }
@@ -201,8 +206,8 @@ impl Watched<'_> {
             Ok(Loaded { model, .. }) if !fits(&model) => {
                 let [width, height] = model.camera.value.pixels;
                 let report = &format!(
-                    "error: a picture of {width} x {height} pixels is too large for a page\n\
-                     help: it can have {LARGEST} pixels, such as 4096 x 4096"
+                    "error: an image of {width} x {height} pixels is too large for a page\n\
+                     help: the maximum is {LARGEST} pixels, such as 4096 x 4096"
                 );
                 board.fault(events::fault(&Fault { lines: &[], name: &name, report, text: Some(text) }));
             }

@@ -1,11 +1,12 @@
 //! Boxes around shapes.
 
-use crate::geometry::packet::{Rays, View};
+use crate::geometry::packet::Rays;
 use crate::simd::cpu::kernels;
+use crate::simd::soa::View;
 use glam::DVec3;
 
 /// What rounding may make of a place, as a part of how far it is from the world's origin; far more than it does.
-pub(crate) const SLACK: f64 = 1e-12;
+pub const SLACK: f64 = 1e-12;
 
 /// A box along the world's axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,7 +67,7 @@ impl Bounds {
 }
 
 /// How far a point is from a shape with these bounds, at least, where the shape tells of which regions it is clear.
-pub(crate) fn clearance(from: DVec3, bounds: Option<Bounds>, is_clear_of: impl Fn(&Bounds) -> bool) -> f64 {
+pub fn clearance(from: DVec3, bounds: Option<Bounds>, is_clear_of: impl Fn(&Bounds) -> bool) -> f64 {
     let scale = from.abs().max_element();
     let outside = bounds.map_or(0.0, |bounds| {
         let Bounds { low, high } = bounds.with_slack(scale);

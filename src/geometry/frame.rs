@@ -1,10 +1,10 @@
 //! Where a shape's own coordinates lie in the world.
 
 use crate::geometry::bounds::Bounds;
+use crate::geometry::ray::Ray;
 use crate::geometry::sight::{Line, Sight};
 use crate::numeric::number::{Number, dot};
 use crate::numeric::twofold::{Twofold, offset};
-use crate::world::hittable::Ray;
 use glam::{DMat3, DVec3};
 
 /// How far rounding moves each coordinate of a point that is turned into a frame, as a part of its distance from the

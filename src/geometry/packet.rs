@@ -1,18 +1,14 @@
 //! Packets: rays by the dozen, an array for each coordinate, so that one call of a shape serves all of them and the
 //! processor takes several at a time.
 //!
-//! A plugin is written for one ray. The loops here take its functions in and are compiled for each level of
-//! instructions ([`cpu`](crate::simd::cpu)). Arrays are as long as a multiple of [`STEP`]; what is beyond the last ray is a
-//! copy of it, and is computed and ignored.
+//! A plugin is written for one ray. Loops over packets take its functions in and are compiled for each level of
+//! instructions ([`cpu`](crate::simd::cpu)). Arrays are as long as a multiple of [`STEP`](crate::simd::soa::STEP); what
+//! is beyond the last ray is a copy of it, and is computed and ignored.
 
+use crate::geometry::ray::{Bracket, MISS, Ray};
 use crate::simd::cpu::kernels;
-use crate::world::hittable::{Bracket, Hittable, MISS, Ray, Shader, Side, Span};
-use crate::world::material::{Material, Rgb};
-use glam::DVec3;
+use crate::simd::soa::View;
 use std::ops::Range;
-
-/// Arrays are as long as a multiple of this.
-pub const STEP: usize = 8;
 
 /// The most rays of a packet.
 pub const WIDE: usize = 256;
@@ -20,132 +16,6 @@ pub const WIDE: usize = 256;
 /// The lanes of so many rays in parts of at most so many, neighbours together.
 pub fn parts(count: usize, most: usize) -> impl Iterator<Item = Range<usize>> {
     (0..count).step_by(most).map(move |first| first..count.min(first + most))
-}
-
-/// Vectors, an array for each coordinate.
-#[derive(Clone)]
-pub struct Vectors<const N: usize> {
-    /// The first coordinates, or red.
-    pub x: [f64; N],
-    /// The second, or green.
-    pub y: [f64; N],
-    /// The third, or blue.
-    pub z: [f64; N],
-}
-
-impl<const N: usize> Vectors<N> {
-    /// All of them 0.
-    pub const ZERO: Self = Self { x: [0.0; N], y: [0.0; N], z: [0.0; N] };
-
-    /// The one of this index.
-    #[inline(always)]
-    pub fn get(&self, index: usize) -> DVec3 {
-        DVec3::new(self.x[index], self.y[index], self.z[index])
-    }
-
-    /// Puts one in its place.
-    #[inline(always)]
-    pub fn set(&mut self, index: usize, vector: DVec3) {
-        (self.x[index], self.y[index], self.z[index]) = (vector.x, vector.y, vector.z);
-    }
-
-    /// The first of them, so many.
-    #[inline(always)]
-    pub fn view(&self, count: usize) -> View<'_> {
-        View { x: &self.x[..count], y: &self.y[..count], z: &self.z[..count] }
-    }
-
-    /// Likewise, to be written.
-    #[inline(always)]
-    pub fn view_mut(&mut self, count: usize) -> ViewMut<'_> {
-        ViewMut { x: &mut self.x[..count], y: &mut self.y[..count], z: &mut self.z[..count] }
-    }
-}
-
-/// Some vectors of an array.
-#[derive(Clone, Copy)]
-pub struct View<'v> {
-    /// The first coordinates.
-    pub x: &'v [f64],
-    /// The second.
-    pub y: &'v [f64],
-    /// The third.
-    pub z: &'v [f64],
-}
-
-impl View<'_> {
-    /// How many there are.
-    #[inline(always)]
-    pub fn len(&self) -> usize {
-        self.x.len()
-    }
-
-    /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
-        self.x.is_empty()
-    }
-
-    /// The one of this index.
-    #[inline(always)]
-    pub fn get(&self, index: usize) -> DVec3 {
-        DVec3::new(self.x[index], self.y[index], self.z[index])
-    }
-
-    /// The first of them, so many.
-    #[inline(always)]
-    pub fn first(&self, count: usize) -> Self {
-        Self { x: &self.x[..count], y: &self.y[..count], z: &self.z[..count] }
-    }
-
-    /// Some of them.
-    #[inline(always)]
-    pub fn part(&self, Range { start, end }: Range<usize>) -> Self {
-        Self { x: &self.x[start..end], y: &self.y[start..end], z: &self.z[start..end] }
-    }
-}
-
-/// Some vectors of an array, to be written.
-pub struct ViewMut<'v> {
-    /// The first coordinates.
-    pub x: &'v mut [f64],
-    /// The second.
-    pub y: &'v mut [f64],
-    /// The third.
-    pub z: &'v mut [f64],
-}
-
-impl ViewMut<'_> {
-    /// Some of them.
-    #[inline(always)]
-    pub fn part(&mut self, Range { start, end }: Range<usize>) -> ViewMut<'_> {
-        ViewMut { x: &mut self.x[start..end], y: &mut self.y[start..end], z: &mut self.z[start..end] }
-    }
-
-    /// The first of them, so many.
-    #[inline(always)]
-    pub fn first(&mut self, count: usize) -> ViewMut<'_> {
-        ViewMut { x: &mut self.x[..count], y: &mut self.y[..count], z: &mut self.z[..count] }
-    }
-
-    /// The one of this index.
-    #[inline(always)]
-    pub fn get(&self, index: usize) -> DVec3 {
-        DVec3::new(self.x[index], self.y[index], self.z[index])
-    }
-
-    /// Puts one in its place.
-    #[inline(always)]
-    pub fn set(&mut self, index: usize, vector: DVec3) {
-        (self.x[index], self.y[index], self.z[index]) = (vector.x, vector.y, vector.z);
-    }
-
-    /// Puts some in their places from this one on.
-    pub fn put(&mut self, first: usize, vectors: View) {
-        let end = first + vectors.len();
-        self.x[first..end].copy_from_slice(vectors.x);
-        self.y[first..end].copy_from_slice(vectors.y);
-        self.z[first..end].copy_from_slice(vectors.z);
-    }
 }
 
 /// Rays. A packet's rays all leave the same object, or none.
@@ -216,29 +86,6 @@ impl Nearest<'_> {
 }
 
 kernels! {
-    /// Compares a shape's hits with the nearest so far. Tells whether any is in doubt.
-    pub(crate) fn meet[T: Hittable](shape: &T, rays: Rays, sides: Option<&[Side]>, id: u64, nearest: Nearest) -> bool {
-        let (count, rays) = (rays.len(), rays.first(rays.len()));
-        let Nearest { near, far, met, doubt } = nearest;
-        match sides {
-            None => merge(count, &Sought { shape, rays }, id, near, far, met, doubt),
-            Some(sides) => {
-                merge(count, &Leaving { shape, rays, sides: &sides[..count] }, id, near, far, met, doubt)
-            }
-        }
-    }
-
-    /// Marks the rays that a shape's hits block before they come to their ends. Tells whether any is in doubt.
-    pub(crate) fn block[T: Hittable](
-        shape: &T, rays: Rays, sides: Option<&[Side]>, ends: &[f64], blocked: &mut [u64], doubt: &mut [u64]
-    ) -> bool {
-        let (count, rays) = (ends.len(), rays.first(ends.len()));
-        match sides {
-            None => mark(&Sought { shape, rays }, ends, blocked, doubt),
-            Some(sides) => mark(&Leaving { shape, rays, sides: &sides[..count] }, ends, blocked, doubt),
-        }
-    }
-
     /// Compares brackets with the nearest so far. Tells whether any is in doubt.
     pub(crate) fn meet_brackets(near: &[f64], far: &[f64], id: u64, nearest: Nearest) -> bool {
         let count = nearest.near.len().min(near.len());
@@ -254,56 +101,10 @@ kernels! {
         let (near, far) = (&near[..ends.len()], &far[..ends.len()]);
         mark(&Known { near, far }, ends, blocked, doubt)
     }
-
-    /// The distances of a shape's hits, as [`Hittable::quick_distance`] gives them.
-    pub(crate) fn distances[T: Hittable](shape: &T, rays: Rays, sides: Option<&[Side]>, out: &mut [f64]) {
-        let (count, rays) = (out.len(), rays.first(out.len()));
-        match sides {
-            None => for lane in 0..count {
-                out[lane] = shape.quick_distance(&rays.get(lane), &Span::RAY);
-            },
-            Some(sides) => for lane in 0..count {
-                out[lane] = shape.quick_distance(&rays.get(lane), &Span { leaves: Some(sides[lane]), ..Span::RAY });
-            },
-        }
-    }
-
-    /// The reflectivities at points of a surface: for light from nowhere in particular, and as a mirror. Tells whether
-    /// any of those is not 0.
-    pub(crate) fn unlit[T: Shader](shader: &T, material: &Material, points: View) => ambients, speculars -> bool {
-        let (count, mut any) = (points.len(), 0);
-        let (mut ambients, mut speculars) = (ambients.first(count), speculars.first(count));
-        for lane in 0..count {
-            let point = points.get(lane);
-            let specular = shader.specular(material, point);
-            ambients.set(lane, shader.ambient(material, point));
-            speculars.set(lane, specular);
-            any |= is_any(specular);
-        }
-        any != 0
-    }
-
-    /// Likewise for light from the scene's lights. Tells whether any is not 0.
-    pub(crate) fn diffuses[T: Shader](shader: &T, material: &Material, points: View) => out -> bool {
-        let (count, mut any) = (points.len(), 0);
-        let mut out = out.first(count);
-        for lane in 0..count {
-            let diffuse = shader.diffuse(material, points.get(lane));
-            out.set(lane, diffuse);
-            any |= is_any(diffuse);
-        }
-        any != 0
-    }
-}
-
-/// 1 for a colour that is not black, else 0.
-#[inline(always)]
-pub(crate) fn is_any(colour: Rgb) -> u64 {
-    u64::from((colour.x != 0.0) | (colour.y != 0.0) | (colour.z != 0.0))
 }
 
 /// The brackets of rays, by lane. No closures: those are taken in only where it pleases the compiler.
-trait Brackets {
+pub(crate) trait Brackets {
     /// That of a hit before `far`.
     fn get(&self, lane: usize, far: f64) -> Bracket;
 }
@@ -321,43 +122,12 @@ impl Brackets for Known<'_> {
     }
 }
 
-/// Those that a shape gives.
-struct Sought<'b, T: ?Sized> {
-    shape: &'b T,
-    rays: Rays<'b>,
-}
-
-impl<T: Hittable + ?Sized> Brackets for Sought<'_, T> {
-    #[inline(always)]
-    fn get(&self, lane: usize, far: f64) -> Bracket {
-        let origin_error = self.rays.origin_error;
-        self.shape.bracket(&self.rays.get(lane), &Span { far, origin_error, ..Span::RAY })
-    }
-}
-
-/// Those that a shape gives for rays that leave it.
-struct Leaving<'b, T: ?Sized> {
-    shape: &'b T,
-    rays: Rays<'b>,
-    sides: &'b [Side],
-}
-
-impl<T: Hittable + ?Sized> Brackets for Leaving<'_, T> {
-    #[inline(always)]
-    fn get(&self, lane: usize, far: f64) -> Bracket {
-        let leaves = self.sides[lane];
-        if !self.shape.meets_itself(leaves) {
-            return Bracket::MISS;
-        }
-        let (leaves, origin_error) = (Some(leaves), self.rays.origin_error);
-        self.shape.bracket(&self.rays.get(lane), &Span { far, leaves, origin_error, ..Span::RAY })
-    }
-}
-
-// The arrays are arguments of their own, not a `Nearest`, for the compiler to know that they are not the same: else it
-// looks at that each time, and takes single rays where there are few.
+/// Compares the brackets of so many rays with the nearest so far. Tells whether any is in doubt.
+///
+/// The arrays are arguments of their own, not a [`Nearest`], for the compiler to know that they are not the same: else it
+/// looks at that each time, and takes single rays where there are few.
 #[inline(always)]
-fn merge(
+pub(crate) fn merge(
     count: usize,
     brackets: &impl Brackets,
     id: u64,
@@ -387,8 +157,9 @@ fn merge(
     any != 0
 }
 
+/// Marks the rays that brackets say are blocked before their ends. Tells whether any is in doubt.
 #[inline(always)]
-fn mark(brackets: &impl Brackets, ends: &[f64], blocked: &mut [u64], doubt: &mut [u64]) -> bool {
+pub(crate) fn mark(brackets: &impl Brackets, ends: &[f64], blocked: &mut [u64], doubt: &mut [u64]) -> bool {
     let count = ends.len();
     let (blocked, doubt) = (&mut blocked[..count], &mut doubt[..count]);
     let mut any = 0;

@@ -1,8 +1,8 @@
 //! Rays of which every digit is known, so that something can be proven of them.
 
+use crate::geometry::ray::Ray;
 use crate::numeric::dual::Dual;
 use crate::numeric::number::Number;
-use crate::world::hittable::Ray;
 use glam::{DVec2, DVec3};
 
 /// A ray as a scene gives it, before anything is rounded.

@@ -3,8 +3,8 @@
 //! Each gets the bits that it would get alone. Sines and cosines are those of the `libm` crate, all eight at once where
 //! that is possible: the reduction and the polynomials are those of FreeBSD's msun, from which that crate comes.
 
-use crate::geometry::packet::STEP;
 use crate::numeric::number::Number;
+use crate::simd::soa::STEP;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Eight numbers, each of which goes its own way.
@@ -14,8 +14,8 @@ pub struct Octet(pub [f64; STEP]);
 /// Something of each number, or of each of several octets' numbers: `each!(a = x, b = y => a.hypot(b))`.
 macro_rules! each {
     ($($number:ident = $octet:expr),+ => $value:expr) => {{
-        let mut all = [0.0; $crate::geometry::packet::STEP];
-        for lane in 0..$crate::geometry::packet::STEP {
+        let mut all = [0.0; $crate::simd::soa::STEP];
+        for lane in 0..$crate::simd::soa::STEP {
             $(let $number = $octet.0[lane];)+
             all[lane] = $value;
         }

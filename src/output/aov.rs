@@ -2,11 +2,11 @@
 //! wrong it is.
 
 use crate::geometry::sight::Sight;
-use crate::output::picture::{shown, to_byte};
+use crate::render::bytes::{shown, to_byte};
+use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::render::trace;
 use crate::render::watch::{Event, Watch};
-use crate::scene::model::Model;
 use clap::ValueEnum;
 use glam::DVec3;
 use image::codecs::openexr::OpenExrEncoder;
@@ -18,16 +18,23 @@ use std::ops::ControlFlow;
 /// pixel, however many samples it has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Aov {
-    /// How far the first hit is: the nearest white, the farthest dark grey, nothing black.
+    /// Distance of the first hit, near ones bright.
+    ///
+    /// The nearest is white, the farthest dark grey, nothing black.
     Depth,
-    /// The normal of the first hit: red, green and blue are its x, y and z, from -1 to 1.
+    /// Surface normal: red, green and blue are x, y and z.
+    ///
+    /// Each from -1, black, to 1.
     Normal,
-    /// The object of the first hit, each in a colour of its own.
+    /// Object seen, each in its own colour.
     Object,
-    /// How many rays a pixel costs, the most expensive one white.
+    /// Number of rays that a pixel takes.
+    ///
+    /// The most expensive pixel is white.
     Cost,
-    /// How far a pixel's colour is from that of four times its samples, at least 64, exactly traced: the worst one white;
-    /// red where another object is seen.
+    /// Error of a pixel's colour, against four times its samples, at least 64, traced exactly.
+    ///
+    /// The worst one is white; red where another object is seen.
     Error,
 }
 
@@ -56,7 +63,7 @@ impl Aov {
         matches!(self, Self::Depth | Self::Normal | Self::Error)
     }
 
-    /// Makes this picture of a model. `truth` is the same scene, exact and with many samples, which only the error is
+    /// Makes this picture. `truth` is the same scene, exact and with many samples, which only the error is
     /// seen against. `done` is told of each row, and may break off.
     ///
     /// # Errors
@@ -64,32 +71,32 @@ impl Aov {
     pub fn render(
         self,
         renderer: &Renderer,
-        model: &Model,
-        truth: &Model,
+        plan: &Plan,
+        truth: &Plan,
         done: &(dyn Fn() -> ControlFlow<()> + Sync),
     ) -> io::Result<Layer> {
         match self {
-            Self::Depth => Ok(depth(&each(renderer, model, done, |x, y| {
-                trace::first_hit(model, &middle(model, x, y)).map_or(f64::INFINITY, |hit| hit.distance)
+            Self::Depth => Ok(depth(&each(renderer, plan, done, |x, y| {
+                trace::first_hit(plan, &middle(plan, x, y)).map_or(f64::INFINITY, |hit| hit.distance)
             })?)),
-            Self::Normal => Ok(normal(&each(renderer, model, done, |x, y| {
-                let hit = trace::first_hit(model, &middle(model, x, y));
+            Self::Normal => Ok(normal(&each(renderer, plan, done, |x, y| {
+                let hit = trace::first_hit(plan, &middle(plan, x, y));
                 hit.map(|hit| hit.object.shape.normal(hit.point))
             })?)),
-            Self::Object => Ok(object(&each(renderer, model, done, |x, y| {
-                trace::first_hit(model, &middle(model, x, y)).map(|hit| hit.index)
+            Self::Object => Ok(object(&each(renderer, plan, done, |x, y| {
+                trace::first_hit(plan, &middle(plan, x, y)).map(|hit| hit.index)
             })?)),
             Self::Cost => {
-                let costs = each(renderer, model, done, |x, y| {
+                let costs = each(renderer, plan, done, |x, y| {
                     let mut rays = Rays(0);
-                    trace::watch_pixel(model, x, y, &mut rays);
+                    trace::watch_pixel(plan, x, y, &mut rays);
                     rays.0
                 })?;
-                Ok(cost(&costs, model.camera.value.pixels))
+                Ok(cost(&costs, plan.camera.pixels))
             }
             Self::Error => {
-                let errors = each(renderer, model, done, |x, y| Off::of(model, truth, x, y))?;
-                Ok(error(&errors, model.camera.value.pixels))
+                let errors = each(renderer, plan, done, |x, y| Off::of(plan, truth, x, y))?;
+                Ok(error(&errors, plan.camera.pixels))
             }
         }
     }
@@ -127,16 +134,16 @@ impl Watch for Rays {
 
 fn each<T: Clone + Default + Send>(
     renderer: &Renderer,
-    model: &Model,
+    plan: &Plan,
     done: &(dyn Fn() -> ControlFlow<()> + Sync),
     pixel: impl Fn(usize, usize) -> T + Sync,
 ) -> io::Result<Vec<T>> {
-    let [_, height] = model.camera.value.pixels;
-    renderer.pixels(model, 0..height, done, pixel).ok_or_else(|| io::ErrorKind::Interrupted.into())
+    let [_, height] = plan.camera.pixels;
+    renderer.pixels(plan, 0..height, done, pixel).ok_or_else(|| io::ErrorKind::Interrupted.into())
 }
 
-fn middle(model: &Model, x: usize, y: usize) -> Sight {
-    model.camera.value.sight(x as f64, y as f64)
+fn middle(plan: &Plan, x: usize, y: usize) -> Sight {
+    plan.camera.sight(x as f64, y as f64)
 }
 
 fn shown_all(colours: impl Iterator<Item = DVec3>) -> Vec<u8> {
@@ -203,9 +210,9 @@ struct Off {
 }
 
 impl Off {
-    fn of(model: &Model, truth: &Model, x: usize, y: usize) -> Self {
-        let colours = [model, truth].map(|model| shown(trace::pixel(model, x, y)));
-        let [found, right] = [model, truth].map(|model| trace::first_hit(model, &middle(model, x, y)));
+    fn of(plan: &Plan, truth: &Plan, x: usize, y: usize) -> Self {
+        let colours = [plan, truth].map(|plan| shown(trace::pixel(plan, x, y)));
+        let [found, right] = [plan, truth].map(|plan| trace::first_hit(plan, &middle(plan, x, y)));
         let [found, right] = [found, right].map(|hit| hit.map(|hit| (hit.index, hit.distance)));
         let is_other = found.map(|(index, _)| index) != right.map(|(index, _)| index);
         let distance = match (found, right) {

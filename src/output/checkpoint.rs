@@ -83,10 +83,10 @@ impl Identity {
             // Another version is another program.
             differences.push(format!("the version of tabray was {} and is {}", old.version, self.version));
         } else if self.program != old.program {
-            differences.push("the program was built anew".to_owned());
+            differences.push("the program was rebuilt".to_owned());
         }
         let textures = self.textures.iter().filter(|(name, hash)| old.textures.get(*name) != Some(hash));
-        let textures = textures.map(|(name, _)| format!("the picture of texture `{name}`"));
+        let textures = textures.map(|(name, _)| format!("the image of texture `{name}`"));
         let scene = (self.scene != old.scene).then(|| "the scene".to_owned());
         differences.extend(scene.into_iter().chain(textures).map(|what| format!("{what} has changed")));
         let size = |[width, height]: [usize; 2]| format!("{width} x {height}");

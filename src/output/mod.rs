@@ -1,6 +1,10 @@
 //! Pictures and other files that are made of what is rendered.
 
-pub mod aov;
-pub mod checkpoint;
-pub mod compare;
-pub mod picture;
+pub(crate) mod aov;
+pub(crate) mod checkpoint;
+pub(crate) mod compare;
+pub(crate) mod picture;
+
+pub use aov::Aov;
+pub use compare::Comparison;
+pub use picture::{Compression, Format};

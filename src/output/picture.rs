@@ -1,69 +1,24 @@
-//! Colours to bytes, and bytes to picture files.
+//! Bytes to picture files, and back.
 
-use crate::geometry::packet::View;
-use crate::simd::cpu::{Cpu, kernels};
-use crate::world::material::Rgb;
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
-use glam::DVec3;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::iter;
 use std::path::Path;
 
-/// The byte of a channel: 1 and more is 255, 0 and less is 0, and between them it is cut, not rounded.
-/// A NaN is 0.
-pub fn to_byte(channel: f64) -> u8 {
-    (255.0 * channel) as u8
-}
-
-/// The bytes of colours.
-pub(crate) fn to_bytes(cpu: Cpu, colours: View, pixels: &mut [[u8; 3]]) {
-    const MOST: usize = 64;
-    let mut bytes = [[0; MOST]; 3];
-    for (pixels, first) in pixels.chunks_mut(MOST).zip((0..).step_by(MOST)) {
-        let colours = colours.part(first..first + pixels.len());
-        for (channel, bytes) in [colours.x, colours.y, colours.z].into_iter().zip(&mut bytes) {
-            quantize(cpu, channel, &mut bytes[..channel.len()]);
-        }
-        for (lane, pixel) in pixels.iter_mut().enumerate() {
-            *pixel = [bytes[0][lane], bytes[1][lane], bytes[2][lane]];
-        }
-    }
-}
-
-kernels! {
-    /// What [`to_byte`] gives, in steps that processors have for many numbers at a time, as a conversion is not.
-    fn quantize(channel: &[f64], bytes: &mut [u8]) {
-        // Beside it a number from 0 to 255 is rounded to a whole one, which is then in its last bits.
-        const WHOLE: f64 = (1_u64 << 52) as f64;
-        let channel = &channel[..bytes.len()];
-        for lane in 0..bytes.len() {
-            let level = 255.0 * channel[lane];
-            let level = if level > 0.0 { level } else { 0.0 };
-            let level = if level < 255.0 { level } else { 255.0 };
-            let whole = level + WHOLE;
-            let whole = if whole - WHOLE > level { whole - 1.0 } else { whole };
-            bytes[lane] = whole.to_bits() as u8;
-        }
-    }
-}
-
-/// What a picture shows of a colour: each channel from 0 to 1, a NaN as 0.
-pub fn shown(colour: Rgb) -> Rgb {
-    DVec3::from_array(colour.to_array().map(|channel| if channel > 0.0 { channel.min(1.0) } else { 0.0 }))
-}
-
 /// How hard a file is compressed. The picture is the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Compression {
-    /// As quickly as possible.
+    /// Fastest.
     #[default]
     Fast,
-    /// To about half of that size, which takes longer than most pictures take to render.
+    /// Smaller files.
+    ///
+    /// About half as large, which takes longer than most pictures take to render.
     #[value(name = "default")]
     Balanced,
-    /// As small as possible.
+    /// Smallest files.
     #[value(name = "best")]
     High,
 }
@@ -242,20 +197,6 @@ mod tests {
             Format::Png(Compression::Fast).write(&mut png, [bytes / 3, 1], rows).expect("memory takes it");
             let read = png::Decoder::new(io::Cursor::new(png)).read_info().expect("a PNG");
             assert_eq!(read.info().srgb, Some(AS_SHOWN));
-        }
-    }
-
-    #[test]
-    fn many_channels_have_the_bytes_of_single_ones() {
-        let ends = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -0.0, -1e-300, 1e-300, 1.0, 1e300];
-        let levels = (0..=256).map(|level| f64::from(level) / 255.0);
-        let near = levels.flat_map(|level| [level.next_down(), level, level.next_up()]);
-        let channel: Vec<f64> = ends.into_iter().chain(near).collect();
-        for cpu in Cpu::all() {
-            let mut pixels = vec![[1; 3]; channel.len()];
-            to_bytes(cpu, View { x: &channel, y: &channel, z: &channel }, &mut pixels);
-            let single: Vec<_> = channel.iter().map(|channel| [to_byte(*channel); 3]).collect();
-            assert_eq!(pixels, single);
         }
     }
 }

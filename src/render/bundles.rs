@@ -129,8 +129,8 @@ kernels! {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::packet::{STEP, Vectors};
     use crate::simd::cpu::Cpu;
+    use crate::simd::soa::{STEP, Vectors};
     use proptest::prelude::*;
 
     /// A number as those in scenes are, 0 among them.

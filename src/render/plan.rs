@@ -1,20 +1,25 @@
 //! What a scene needs, decided once before any ray is traced: everything else is left out.
 
 pub(crate) mod depth;
-mod text;
 
 use depth::{Depth, Onward};
-pub use text::Decision;
 
 use crate::geometry::bounds::Bounds;
+use crate::render::culling;
 use crate::render::tree::Tree;
 use crate::scene::model::Model;
+use crate::world::camera::Camera;
 
 /// From so many objects with bounds on, a tree finds them faster than a list.
-const TREE: usize = 24;
+pub(crate) const TREE: usize = 24;
 
-/// The decisions that depend on a scene's objects and lights.
-pub struct Plan {
+/// A model with the decisions that depend on its objects and lights: what rays are traced through.
+pub struct Plan<'m> {
+    /// The scene.
+    pub model: &'m Model,
+    /// How it is looked at, at first by the model's own camera. Size, samples and sampler are free to be others; the rest
+    /// is what the plan was made for.
+    pub camera: Camera,
     /// The objects without bounds, by their indices: each is looked at for each ray.
     pub(crate) unbounded: Vec<usize>,
     /// Those with bounds, which a packet of rays looks at one by one, and the boxes around them.
@@ -27,13 +32,13 @@ pub struct Plan {
     pub(crate) depth: Option<Depth>,
 }
 
-impl Plan {
-    /// The plan for a scene.
-    pub fn new(model: &Model) -> Self {
+impl<'m> Plan<'m> {
+    /// The plan for a model.
+    pub fn new(model: &'m Model) -> Self {
         let objects = &model.objects;
         let (mut unbounded, mut bounded) = (Vec::new(), Vec::new());
         for (index, object) in objects.iter().enumerate() {
-            match object.shape.bounds() {
+            match culling::bounds(object) {
                 Some(bounds) => bounded.push((index, bounds)),
                 None => unbounded.push(index),
             }
@@ -43,7 +48,8 @@ impl Plan {
             Tree::new(boxes.map(|(index, bounds)| (index as u32, bounds.with_slack(0.0))).collect())
         });
         let has_glass = objects.iter().any(|object| object.material.transparency != 0.0);
-        Self { unbounded, bounded, tree, has_glass, depth: Depth::new(model) }
+        let (camera, depth) = (model.camera.value.clone(), Depth::new(model));
+        Self { model, camera, unbounded, bounded, tree, has_glass, depth }
     }
 
     /// How rays go on from an object, by its index.
@@ -53,10 +59,5 @@ impl Plan {
             // Where no ray goes on, nobody asks.
             None => Onward::NONE,
         }
-    }
-
-    /// All decisions about a model, each with its reason.
-    pub fn decisions(model: &Model) -> Vec<Decision> {
-        text::decisions(model)
     }
 }

@@ -1,9 +1,9 @@
 //! A picture in parts, for someone who looks on: all of it coarsely, then tile by tile.
 
 use crate::geometry::packet::WIDE;
+use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::render::trace::{Rooms, Tracer};
-use crate::scene::model::Model;
 use crate::simd::cpu::Cpu;
 use crate::world::material::Rgb;
 use std::ops::ControlFlow;
@@ -36,15 +36,15 @@ impl Area {
     }
 
     /// The colours of its blocks, or nothing where `check`, asked before each packet of rays, breaks off.
-    fn colours(&self, model: &Model, check: &impl Fn() -> ControlFlow<()>) -> Option<Vec<Rgb>> {
-        let camera = &model.camera.value;
+    fn colours(&self, plan: &Plan, check: &impl Fn() -> ControlFlow<()>) -> Option<Vec<Rgb>> {
+        let camera = &plan.camera;
         let [across, down] = self.blocks();
         let middle = |side: usize, index: usize| {
             let start = index * self.block;
             self.corner[side] + start + (self.block / 2).min(self.size[side] - start - 1)
         };
         let (mut rooms, mut nobody) = (Rooms::default(), ());
-        let mut tracer = Tracer::new(model, Cpu::best(), &mut rooms, &mut nobody);
+        let mut tracer = Tracer::new(plan, Cpu::best(), &mut rooms, &mut nobody);
         let mut colours = vec![Rgb::ZERO; across * down];
         for top in (0..down).step_by(SQUARE) {
             for left in (0..across).step_by(SQUARE) {
@@ -94,17 +94,17 @@ fn passes([width, height]: [usize; 2]) -> [Vec<Area>; 2] {
 /// `check` is asked before each packet of rays. Once it has broken off, it must go on to.
 pub fn render(
     renderer: &Renderer,
-    model: &Model,
+    plan: &Plan,
     part: impl Fn(Area, Vec<Rgb>) + Sync,
     check: impl Fn() -> ControlFlow<()> + Sync,
 ) -> ControlFlow<()> {
-    for areas in passes(model.camera.value.pixels) {
+    for areas in passes(plan.camera.pixels) {
         let next = AtomicUsize::new(0);
         // Each thread takes the next area, so that they come in their order, as nearly as they can.
         renderer.run(|| {
             rayon::broadcast(|_| {
                 while let Some(area) = areas.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    match area.colours(model, &check) {
+                    match area.colours(plan, &check) {
                         Some(colours) => part(*area, colours),
                         None => break,
                     }

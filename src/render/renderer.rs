@@ -1,10 +1,10 @@
 //! The tile loop: a model's pixels, on all threads.
 
-use crate::output::picture::to_bytes;
+use crate::render::bytes::to_bytes;
+use crate::render::plan::Plan;
 use crate::render::tiles::{self, BAND, Band, TILE};
 use crate::render::trace::{Rooms, Tracer};
 use crate::render::watch::Watch;
-use crate::scene::model::Model;
 use crate::simd::cpu::Cpu;
 use crate::words;
 use rayon::prelude::*;
@@ -56,23 +56,23 @@ impl Renderer {
     /// A new watcher watches each strip of tiles, and `watched` gets it then, on any thread and in no order.
     pub fn bands<'r, W: Watch + Default>(
         &'r self,
-        model: &'r Model,
+        plan: &'r Plan,
         columns: Range<usize>,
         rows: Range<usize>,
         watched: &'r (dyn Fn(W) + Sync),
     ) -> impl Iterator<Item = Band> + 'r {
         Band::split(&columns, &rows, BAND).map(move |rows| {
             let mut band = Band::blank(columns.clone(), rows);
-            self.fill(model, &mut band, Overseer { stops: &|| false, row: &|| () }, watched);
+            self.fill(plan, &mut band, Overseer { stops: &|| false, row: &|| () }, watched);
             band
         })
     }
 
     /// The whole picture, as [`bands`](Self::bands) gives it in parts: red, green and blue of each pixel.
-    pub fn picture(&self, model: &Model) -> Vec<u8> {
-        let [width, height] = model.camera.value.pixels;
+    pub fn picture(&self, plan: &Plan) -> Vec<u8> {
+        let [width, height] = plan.camera.pixels;
         let mut band = Band::blank(0..width, 0..height);
-        self.fill(model, &mut band, Overseer { stops: &|| false, row: &|| () }, &|()| {});
+        self.fill(plan, &mut band, Overseer { stops: &|| false, row: &|| () }, &|()| {});
         band.pixels.into_flattened()
     }
 
@@ -80,12 +80,12 @@ impl Renderer {
     /// [`bands`](Self::bands) are.
     pub fn fill<W: Watch + Default>(
         &self,
-        model: &Model,
+        plan: &Plan,
         band: &mut Band,
         overseer: Overseer,
         watched: &(dyn Fn(W) + Sync),
     ) {
-        let [_, height] = model.camera.value.pixels;
+        let [_, height] = plan.camera.pixels;
         let Band { columns, rows, pixels, tiles } = band;
         let width = columns.len();
         let strips = pixels.chunks_mut(TILE * width).zip(tiles.chunks_mut(width.div_ceil(TILE)));
@@ -95,7 +95,7 @@ impl Renderer {
             strips.par_bridge().for_each_init(Rooms::default, |rooms, ((strip, tiles), from_top)| {
                 let (tall, mut watch) = (strip.len() / width, W::default());
                 let top = height - 1 - from_top;
-                let mut tracer = Tracer::new(model, self.cpu, rooms, &mut watch);
+                let mut tracer = Tracer::new(plan, self.cpu, rooms, &mut watch);
                 let (mut tile, mut bytes) = (Vec::new(), [[0; 3]; TILE * TILE]);
                 for (left, is_done) in columns.clone().step_by(TILE).zip(tiles) {
                     if *is_done {
@@ -127,12 +127,12 @@ impl Renderer {
     /// where `done` broke off.
     pub(crate) fn pixels<T: Clone + Default + Send>(
         &self,
-        model: &Model,
+        plan: &Plan,
         rows: Range<usize>,
         done: &(dyn Fn() -> ControlFlow<()> + Sync),
         pixel: impl Fn(usize, usize) -> T + Sync,
     ) -> Option<Vec<T>> {
-        let [width, height] = model.camera.value.pixels;
+        let [width, height] = plan.camera.pixels;
         let mut pixels = vec![T::default(); width * rows.len()];
         let row = |(row, from_top): (&mut [T], usize)| {
             let y = height - 1 - from_top;

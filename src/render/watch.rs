@@ -1,7 +1,7 @@
 //! What the tracer tells whoever watches it: each ray, each test, each light, as it happens.
 
+use crate::geometry::ray::Ray;
 use crate::scene::model::Object;
-use crate::world::hittable::Ray;
 use crate::world::material::Rgb;
 use glam::DVec3;
 use std::fmt;

@@ -2,8 +2,8 @@
 //!
 //! Each sort of them is a registry of its own; a plugin file adds one.
 
-use crate::scene::value::{Datum, Type, Value};
 use crate::words;
+use crate::world::accuracy::Accuracy;
 use std::panic::Location;
 
 /// One of several things of a sort.
@@ -38,6 +38,11 @@ pub struct Choices {
 }
 
 impl Choices {
+    /// All things of a sort.
+    pub const fn of<T: Choice>() -> Self {
+        Self { what: T::WHAT, all: sorted::<T> }
+    }
+
     /// Their names, those with numbers first, in the order of their numbers.
     pub fn all(&self) -> Vec<ChoiceName> {
         (self.all)()
@@ -77,7 +82,7 @@ pub(crate) fn contradictions<T: Choice>() -> Vec<String> {
         for first in &all[..index] {
             if first.name == second.name || (first.number.is_some() && first.number == second.number) {
                 faults.push(format!(
-                    "two are registered as {} `{}`, at {} and at {}: call or number one of them otherwise",
+                    "two plugins register the {} `{}` or its number, at {} and at {}: rename or renumber one of them",
                     T::WHAT,
                     second.name,
                     words::place(first.place),
@@ -89,18 +94,16 @@ pub(crate) fn contradictions<T: Choice>() -> Vec<String> {
     faults
 }
 
-impl<T: Choice> Value for T {
-    const TYPE: Type = Type::Choice(Choices { what: T::WHAT, all: sorted::<T> });
-    const ARITY: &'static [usize] = &[1];
+impl Choice for Accuracy {
+    const WHAT: &'static str = "accuracy";
 
-    fn to_datum(&self) -> Datum {
-        Datum::Choice(self.option())
+    fn all() -> Vec<Self> {
+        Self::ALL.to_vec()
     }
 
-    fn from_datum(datum: &Datum) -> Option<Self> {
-        match datum {
-            Datum::Choice(chosen) => T::all().into_iter().find(|choice| choice.option().name == chosen.name),
-            _ => None,
-        }
+    fn option(&self) -> ChoiceName {
+        const PLACE: &Location<'static> = Location::caller();
+        let (name, meaning) = self.named();
+        ChoiceName { name, number: None, meaning, place: PLACE }
     }
 }

@@ -1,6 +1,7 @@
 //! A model as text: as the notes' program dumps it, or as a scene that loads again.
 
-use crate::scene::entity::{Args, Kind};
+use crate::scene::entity::Args;
+use crate::scene::kind::Kind;
 use crate::scene::model::Model;
 use crate::scene::pparm::Attribute;
 use crate::scene::syntax::Syntax;

@@ -1,14 +1,14 @@
 //! Entity types: what a plugin registers, and what its constructor is given.
 
-use crate::scene::pparm::{Attribute, Pparm, Row, Table};
-use crate::scene::value::{Datum, Value};
+use crate::scene::kind::Kind;
+use crate::scene::pparm::{Attribute, Attributes, Given, Pparm, Row, Table};
 use crate::words;
 use crate::world::accuracy::Accuracy;
+use crate::world::body::{AnyLight, Body};
 use crate::world::camera::Camera;
-use crate::world::hittable::{Body, Light};
 use crate::world::material::Material;
 use crate::world::texture::Texture;
-use serde::Serialize;
+use std::ops::Deref;
 use std::panic::Location;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -40,34 +40,6 @@ impl fmt::Debug for Entity {
     }
 }
 
-/// The kinds of entity that a scene is made of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Kind {
-    /// The viewer and the screen; a scene has one.
-    Camera,
-    /// How a surface answers light.
-    Material,
-    /// A picture that colours surfaces or light.
-    Texture,
-    /// A shape made of a material.
-    Object,
-    /// A source of light, itself not visible.
-    Light,
-}
-
-impl fmt::Display for Kind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            Kind::Camera => "camera",
-            Kind::Material => "material",
-            Kind::Texture => "texture",
-            Kind::Object => "object",
-            Kind::Light => "light",
-        })
-    }
-}
-
 /// The constructor of an entity type, by kind.
 #[derive(Clone, Copy)]
 pub enum Construct {
@@ -80,12 +52,12 @@ pub enum Construct {
     /// Makes an object's shape and, if it has one, its shader.
     Object(fn(&Args) -> Result<Body, Refusal>),
     /// Makes a light.
-    Light(fn(&Args) -> Result<Box<dyn Light>, Refusal>),
+    Light(fn(&Args) -> Result<AnyLight, Refusal>),
 }
 
 /// What every object has beside its own attributes.
 pub static MATERIAL: Pparm<Arc<Material>> =
-    Pparm::required("material", "what it is made of, a material defined above it");
+    Pparm::required("material", "the material, defined earlier in the scene");
 
 const OBJECT: Table = &[&MATERIAL];
 
@@ -140,7 +112,7 @@ impl Entity {
         name: &'static str,
         meaning: &'static str,
         tables: &'static [Table],
-        construct: fn(&Args) -> Result<Box<dyn Light>, Refusal>,
+        construct: fn(&Args) -> Result<AnyLight, Refusal>,
     ) -> Self {
         Self::new(name, meaning, tables, Construct::Light(construct))
     }
@@ -204,9 +176,6 @@ pub struct Setting {
     pub folder: PathBuf,
 }
 
-/// The values of an attribute, and whether the scene gives them: if not, they are the default.
-pub(crate) type Given = (Datum, bool);
-
 /// An entity of a scene as a constructor sees it: its type, its name and its checked values.
 #[derive(Clone)]
 pub struct Args {
@@ -218,63 +187,14 @@ pub struct Args {
     pub order: usize,
     /// The scene around it.
     pub setting: Arc<Setting>,
-    /// A value for each attribute of the type, in that order.
-    values: Vec<Given>,
+    attributes: Attributes,
 }
 
 impl Args {
     /// `values` holds those of each of the entity type's attributes, in their order.
     pub(crate) fn new(entity: &'static Entity, name: String, order: usize, values: Vec<Given>) -> Self {
-        debug_assert_eq!(values.len(), entity.attributes().count());
-        Self { entity, name, order, setting: Arc::default(), values }
-    }
-
-    /// The value of the attribute that `key` describes.
-    ///
-    /// # Panics
-    /// Where the plugin asks for an attribute that is not in the table it registered.
-    #[track_caller]
-    pub fn get<T: Value>(&self, key: &Pparm<T>) -> T {
-        match self.find(key.name()).and_then(T::from_datum) {
-            Some(value) => value,
-            // No closure: the message is to name the plugin's line.
-            None => self.not_in_table(key.name()),
-        }
-    }
-
-    /// The value of the attribute that `key` describes, if the scene gives it.
-    ///
-    /// # Panics
-    /// As [`get`](Self::get) does.
-    #[track_caller]
-    pub fn get_given<T: Value>(&self, key: &Pparm<T>) -> Option<T> {
-        let value = self.get(key);
-        self.given().any(|(attribute, _)| attribute.name() == key.name()).then_some(value)
-    }
-
-    /// The value of an attribute as it was checked.
-    #[track_caller]
-    pub(crate) fn datum(&self, attribute: &str) -> &Datum {
-        self.find(attribute).unwrap_or_else(|| self.not_in_table(attribute))
-    }
-
-    /// Every attribute with its value, in the order of the table.
-    pub fn values(&self) -> impl Iterator<Item = (&'static dyn Attribute, &Datum)> {
-        self.entity.attributes().zip(self.values.iter().map(|(datum, _)| datum))
-    }
-
-    /// The attributes that the scene gives, with their values.
-    pub fn given(&self) -> impl Iterator<Item = (&'static dyn Attribute, &Datum)> {
-        let values = self.entity.attributes().zip(&self.values);
-        values.filter(|(_, (_, given))| *given).map(|(attribute, (datum, _))| (attribute, datum))
-    }
-
-    /// The names of the textures that it refers to.
-    pub fn textures(&self) -> impl Iterator<Item = &str> {
-        self.values().filter_map(|(_, datum)| match datum {
-            Datum::Texture { name, .. } => Some(&**name),
-            _ => None,
-        })
+        let attributes = Attributes::new((entity.name, entity.place), entity.attributes(), values);
+        Self { entity, name, order, setting: Arc::default(), attributes }
     }
 
     /// How exactly the scene is traced.
@@ -282,26 +202,18 @@ impl Args {
         self.setting.camera.accuracy
     }
 
-    fn find(&self, attribute: &str) -> Option<&Datum> {
-        self.values().find(|(known, _)| known.name() == attribute).map(|(_, datum)| datum)
-    }
-
     /// Whether the attribute that a refusal marks, if it marks one, is in the type's table.
     pub(crate) fn has_what_is_refused(&self, refusal: &Refusal) -> bool {
         refusal.attribute.is_none_or(|attribute| self.find(attribute).is_some())
     }
+}
 
-    #[track_caller]
-    fn not_in_table(&self, attribute: &str) -> ! {
-        let (name, place) = (self.entity.name, self.entity.place());
-        match self.find(attribute) {
-            Some(_) => panic!(
-                "the plugin `{name}` asks for `{attribute}` as a type that is not the one in the table it registers at {place}: give both the same type"
-            ),
-            None => panic!(
-                "the plugin `{name}` asks for `{attribute}`, which is not in the table it registers at {place}: add it there"
-            ),
-        }
+/// Its attributes, as if they were its own.
+impl Deref for Args {
+    type Target = Attributes;
+
+    fn deref(&self) -> &Attributes {
+        &self.attributes
     }
 }
 
@@ -310,7 +222,7 @@ impl Args {
 pub struct Refusal {
     /// The attribute to mark; the entity's name where there is none.
     pub attribute: Option<&'static str>,
-    /// What is wrong, to follow the entity's name: "has an xdir parallel to its normal".
+    /// What is wrong, to follow the entity's name: "has an `xdir` parallel to its `normal`".
     pub message: String,
     /// What would be right.
     pub help: &'static str,

@@ -1,16 +1,29 @@
 //! From a scene's text to a model, and back: the tables of entity types, and what is written from them.
 
-pub mod choice;
+pub(crate) mod choice;
 pub mod dump;
-pub mod entity;
+pub(crate) mod entity;
 pub mod grammar;
-pub mod model;
-pub mod pparm;
-pub mod profile;
-pub mod reader;
+pub(crate) mod kind;
+pub(crate) mod model;
+pub(crate) mod pparm;
+pub(crate) mod procedural;
+pub(crate) mod profile;
+pub(crate) mod reader;
 pub mod reference;
-pub mod registry;
+pub(crate) mod registry;
 pub mod schema;
-pub mod syntax;
-pub mod tables;
-pub mod value;
+pub(crate) mod syntax;
+pub(crate) mod tables;
+pub(crate) mod value;
+
+pub use choice::Choice;
+pub use entity::{Args, Entity, Refusal};
+pub use kind::Kind;
+pub use model::Model;
+pub use pparm::{Attribute, Derived, Pparm, Row, Table};
+pub use profile::Profile;
+pub use reader::{Fault, Loaded, Place, Report, Severity, Written, build, read};
+pub use registry::Registry;
+pub use syntax::Syntax;
+pub use value::{Datum, Type};

@@ -1,13 +1,14 @@
 //! A scene ready to be traced. It does not change while a picture is made.
 
-use crate::render::plan::Plan;
-use crate::scene::entity::{Args, Kind};
+use crate::scene::entity::Args;
+use crate::scene::kind::Kind;
+use crate::world::any_shape::AnyShape;
+use crate::world::body::{AnyLight, AnyShader};
 use crate::world::camera::Camera;
-use crate::world::hittable::{Hittable, Light, Shader};
 use crate::world::material::{Material, Rgb};
 use crate::world::texture::Texture;
 use glam::DVec3;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 /// All that a picture is made from.
 pub struct Model {
@@ -20,16 +21,10 @@ pub struct Model {
     /// The visible objects, in the order of the scene.
     pub objects: Vec<Object>,
     /// The lights, in the order of the scene.
-    pub lights: Vec<Item<Box<dyn Light>>>,
-    pub(crate) plan: OnceLock<Plan>,
+    pub lights: Vec<Item<AnyLight>>,
 }
 
 impl Model {
-    /// What tracing it needs, decided when it is first asked for.
-    pub fn plan(&self) -> &Plan {
-        self.plan.get_or_init(|| Plan::new(self))
-    }
-
     /// The entities of a kind as they were given, in the order of the scene.
     pub fn entities(&self, kind: Kind) -> Vec<&Args> {
         match kind {
@@ -57,9 +52,9 @@ pub struct Object {
     /// What it is made of.
     pub material: Arc<Material>,
     /// Where it is.
-    pub shape: Box<dyn Hittable>,
+    pub shape: AnyShape,
     /// What it looks like.
-    pub shader: Box<dyn Shader>,
+    pub shader: AnyShader,
 }
 
 impl Object {

@@ -3,15 +3,16 @@
 //! A descriptor is a typed key. Name, type, default and rule are written once; reading, messages, dump,
 //! `tabray list` and the constructor all use that one place (the notes' "general attribute parser").
 
-use crate::scene::entity::Args;
 use crate::scene::value::{Datum, Type, Value};
+use crate::words;
+use std::panic::Location;
 
 /// A row of an entity's table.
 pub trait Row: Sync {
     /// The attribute that this row describes; nothing where the row is only a line of the dump.
     fn attribute(&self) -> Option<&dyn Attribute>;
     /// What the notes' dump prints for this row, its line ends included.
-    fn dump(&self, args: &Args) -> String;
+    fn dump(&self, attributes: &Attributes) -> String;
 }
 
 /// Rows that belong together, so that tables compose: a finite plane's are the plane's and its own.
@@ -55,7 +56,7 @@ pub trait Attribute: Sync {
                 Some("so large that its square overflows")
             }
             size if size > 0.0 && size < LEAST_LENGTH && is_alone => {
-                Some("so small that its square vanishes")
+                Some("so small that its square underflows")
             }
             _ => None,
         };
@@ -72,7 +73,10 @@ pub trait Attribute: Sync {
             Type::Number => format!("{counts} number{plural}"),
             Type::Word => "a word".to_owned(),
             Type::Name(kind) => format!("the name of a {kind}"),
-            Type::Choice(choices) => format!("the name or number of a {}", choices.what),
+            Type::Choice(choices) if choices.all().iter().any(|choice| choice.number.is_some()) => {
+                format!("the name or number of a {}", choices.what)
+            }
+            Type::Choice(choices) => format!("the name of an {}", choices.what),
             Type::Formula => "a formula in y, in quotes".to_owned(),
         }
     }
@@ -203,9 +207,9 @@ impl<T: Value> Row for Pparm<T> {
         Some(self)
     }
 
-    fn dump(&self, args: &Args) -> String {
+    fn dump(&self, attributes: &Attributes) -> String {
         let Some(label) = self.label else { return String::new() };
-        let as_read = args.datum(self.name);
+        let as_read = attributes.datum(self.name);
         match self.shown.zip(T::from_datum(as_read)) {
             Some((shown, value)) => shown(value).to_datum().line(label, self.ending),
             None => as_read.line(label, self.ending),
@@ -214,14 +218,106 @@ impl<T: Value> Row for Pparm<T> {
 }
 
 /// A line of the notes' dump that follows from the attributes above it, such as a rotation matrix.
-pub struct Derived(pub fn(&Args) -> String);
+pub struct Derived(pub fn(&Attributes) -> String);
 
 impl Row for Derived {
     fn attribute(&self) -> Option<&dyn Attribute> {
         None
     }
 
-    fn dump(&self, args: &Args) -> String {
-        (self.0)(args)
+    fn dump(&self, attributes: &Attributes) -> String {
+        (self.0)(attributes)
+    }
+}
+
+/// The values of an attribute, and whether the scene gives them: if not, they are the default.
+pub(crate) type Given = (Datum, bool);
+
+/// The attributes of an entity of a scene, each with its checked value.
+#[derive(Clone)]
+pub struct Attributes {
+    /// The name of the entity's type, and where that is registered.
+    plugin: (&'static str, &'static Location<'static>),
+    /// All attributes of the type, in the order of its table.
+    values: Vec<(&'static dyn Attribute, Given)>,
+}
+
+impl Attributes {
+    /// `values` holds those of each attribute, in their order.
+    pub(crate) fn new(
+        plugin: (&'static str, &'static Location<'static>),
+        attributes: impl Iterator<Item = &'static dyn Attribute>,
+        values: Vec<Given>,
+    ) -> Self {
+        let count = values.len();
+        let values: Vec<_> = attributes.zip(values).collect();
+        debug_assert_eq!(values.len(), count);
+        Self { plugin, values }
+    }
+
+    /// The value of the attribute that `key` describes.
+    ///
+    /// # Panics
+    /// Where the plugin asks for an attribute that is not in the table it registered.
+    #[track_caller]
+    pub fn get<T: Value>(&self, key: &Pparm<T>) -> T {
+        match self.find(key.name()).and_then(T::from_datum) {
+            Some(value) => value,
+            // No closure: the message is to name the plugin's line.
+            None => self.not_in_table(key.name()),
+        }
+    }
+
+    /// The value of the attribute that `key` describes, if the scene gives it.
+    ///
+    /// # Panics
+    /// As [`get`](Self::get) does.
+    #[track_caller]
+    pub fn get_given<T: Value>(&self, key: &Pparm<T>) -> Option<T> {
+        let value = self.get(key);
+        self.given().any(|(attribute, _)| attribute.name() == key.name()).then_some(value)
+    }
+
+    /// The value of an attribute as it was checked.
+    #[track_caller]
+    pub(crate) fn datum(&self, attribute: &str) -> &Datum {
+        self.find(attribute).unwrap_or_else(|| self.not_in_table(attribute))
+    }
+
+    /// Every attribute with its value, in the order of the table.
+    pub fn values(&self) -> impl Iterator<Item = (&'static dyn Attribute, &Datum)> {
+        self.values.iter().map(|(attribute, (datum, _))| (*attribute, datum))
+    }
+
+    /// The attributes that the scene gives, with their values.
+    pub fn given(&self) -> impl Iterator<Item = (&'static dyn Attribute, &Datum)> {
+        let given = self.values.iter().filter(|(_, (_, given))| *given);
+        given.map(|(attribute, (datum, _))| (*attribute, datum))
+    }
+
+    /// The names of the textures that it refers to.
+    pub fn textures(&self) -> impl Iterator<Item = &str> {
+        self.values().filter_map(|(_, datum)| match datum {
+            Datum::Texture { name, .. } => Some(&**name),
+            _ => None,
+        })
+    }
+
+    /// The value of the attribute of this name, if there is one.
+    pub(crate) fn find(&self, attribute: &str) -> Option<&Datum> {
+        self.values().find(|(known, _)| known.name() == attribute).map(|(_, datum)| datum)
+    }
+
+    #[track_caller]
+    fn not_in_table(&self, attribute: &str) -> ! {
+        let (name, place) = (self.plugin.0, words::place(self.plugin.1));
+        match self.find(attribute) {
+            Some(_) => panic!(
+                "the plugin `{name}` asks for `{attribute}` with another type than in the table it registers at {place}: give both the same type"
+            ),
+            None => panic!(
+                "the plugin `{name}` asks for `{attribute}`, which is not in the table it registers at {place}: add it there"
+            ),
+        }
     }
 }

@@ -52,7 +52,10 @@ impl Profile {
         let fault = |text| Formula::parse(text).err().map(|fault| (text, fault));
         let (text, fault) = fault(self.formula).or_else(|| self.slope.and_then(fault))?;
         let place = words::place(self.place);
-        Some(format!("the profile `{}` at {place} is no formula: {} in `{text}`", self.name, fault.message))
+        Some(format!(
+            "the profile `{}` at {place} is not a formula: {} in `{text}`",
+            self.name, fault.message
+        ))
     }
 }
 

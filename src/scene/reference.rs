@@ -1,13 +1,14 @@
 //! The reference of the scene language: what its words mean, written from the tables.
 
 use crate::scene::choice::{Choice, ChoiceName};
-use crate::scene::entity::{Entity, Kind};
+use crate::scene::entity::Entity;
+use crate::scene::kind::Kind;
 use crate::scene::pparm::Attribute;
+use crate::scene::procedural::{OnPlane, OnSphere};
 use crate::scene::profile::Profile;
 use crate::scene::registry::Registry;
 use crate::scene::value::Datum;
 use crate::words;
-use crate::world::shading::{OnPlane, OnSphere};
 use std::iter;
 
 /// What is to be said of the language whatever its words are.
@@ -31,8 +32,8 @@ pub fn markdown(registry: &Registry) -> String {
     ] {
         add(title, &mut registry.iter().filter(|entity| entity.kind() == kind).map(Word::entity));
     }
-    add("The procedural shaders", &mut shaders());
-    add("The profiles", &mut profiles());
+    add("Procedural shaders", &mut shaders());
+    add("Profiles", &mut profiles());
     text
 }
 
@@ -73,7 +74,7 @@ impl Word {
         };
         let rows: String = entity.attributes().map(attribute_row).collect();
         let details =
-            format!("{also}\n| attribute | values | if not given | what it is |\n|---|---|---|---|\n{rows}");
+            format!("{also}\n| attribute | values | default | meaning |\n|---|---|---|---|\n{rows}");
         Self { name: entity.name, meaning: entity.meaning, place: entity.place(), details }
     }
 
@@ -111,8 +112,8 @@ fn attribute_row(attribute: &'static dyn Attribute) -> String {
         .map(|name| format!("`{name}`"))
         .collect::<Vec<_>>();
     let default = match attribute.default() {
-        None => "must be given".to_owned(),
-        Some(Datum::Absent) => "left out".to_owned(),
+        None => "required".to_owned(),
+        Some(Datum::Absent) => "none".to_owned(),
         Some(datum) => format!("`{datum}`"),
     };
     let mut meaning = attribute.meaning().to_owned();

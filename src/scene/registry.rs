@@ -1,11 +1,12 @@
 //! The registry: all entity types of the program, by name.
 
 use crate::scene::choice::contradictions;
-use crate::scene::entity::{Entity, Kind};
+use crate::scene::entity::Entity;
+use crate::scene::kind::Kind;
+use crate::scene::procedural::{OnPlane, OnSphere};
 use crate::scene::profile::Profile;
 use crate::scene::syntax::Syntax;
 use crate::words::nearest;
-use crate::world::shading::{OnPlane, OnSphere};
 use std::collections::{BTreeMap, BTreeSet};
 use std::iter;
 use std::sync::LazyLock;
@@ -62,7 +63,7 @@ impl Registry {
                 for &name in iter::once(&attribute.name()).chain(attribute.aliases()) {
                     if !names.insert(name) {
                         faults.push(format!(
-                            "the table of `{}` at {} has `{name}` twice: call one of them otherwise",
+                            "the table of `{}` at {} has `{name}` twice: rename one of them",
                             entity.name,
                             entity.place()
                         ));
@@ -98,6 +99,12 @@ impl Registry {
         entity.map(|entity| syntax.entity_usage(entity, name)).unwrap_or_default()
     }
 
+    /// What a scene looks like, for those who have none.
+    pub(crate) fn first_steps(&self, syntax: Syntax) -> String {
+        let camera = self.example(Kind::Camera, "NAME", syntax);
+        format!("a scene begins with a camera, {camera}; materials, objects and lights follow")
+    }
+
     /// All entity types, sorted by name.
     pub fn iter(&self) -> impl Iterator<Item = &'static Entity> {
         self.entities.values().copied()
@@ -113,7 +120,7 @@ fn profiles() -> Vec<String> {
 
 fn taken(what: &str, name: &str, first: &Entity, second: &Entity) -> String {
     format!(
-        "the {what} `{name}` is registered twice, at {} and at {}: call one of them otherwise",
+        "the {what} `{name}` is registered twice, at {} and at {}: rename one of them",
         first.place(),
         second.place()
     )
@@ -124,7 +131,7 @@ mod tests {
     use super::*;
     use crate::scene::pparm::{Pparm, Row, Table};
     use crate::scene::value::Type;
-    use crate::world::hittable::Body;
+    use crate::world::body::Body;
 
     static SIZE: Pparm<f64> = Pparm::required("size", "how large it is").alias(&["extent"]);
     static EXTENT: Pparm<f64> = Pparm::required("extent", "how far it reaches");
@@ -148,7 +155,7 @@ mod tests {
     fn a_name_taken_twice_is_refused_with_both_places() {
         for order in [[&BOX, &OTHER_BOX], [&OTHER_BOX, &BOX]] {
             let expected = format!(
-                "the entity type `box` is registered twice, at {} and at {}: call one of them otherwise",
+                "the entity type `box` is registered twice, at {} and at {}: rename one of them",
                 BOX.place(),
                 OTHER_BOX.place()
             );
@@ -166,7 +173,7 @@ mod tests {
     #[test]
     fn a_table_with_one_name_twice_is_refused_with_its_place() {
         let expected =
-            format!("the table of `torn` at {} has `extent` twice: call one of them otherwise", TORN.place());
+            format!("the table of `torn` at {} has `extent` twice: rename one of them", TORN.place());
         assert_eq!(fault(&[&TORN]), expected);
     }
 

@@ -1,6 +1,7 @@
 //! The JSON Schema of scenes in TOML, written from the tables: what editors check and complete with.
 
-use crate::scene::entity::{Entity, Kind};
+use crate::scene::entity::Entity;
+use crate::scene::kind::Kind;
 use crate::scene::pparm::Attribute;
 use crate::scene::registry::Registry;
 use crate::scene::value::{Datum, Type};

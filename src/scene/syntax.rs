@@ -4,16 +4,21 @@ use crate::scene::entity::Entity;
 use crate::scene::pparm::Attribute;
 use crate::scene::value::{Datum, Type};
 use clap::ValueEnum;
+use std::fmt;
 use std::path::Path;
 
 /// A spelling of the scene language.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Syntax {
-    /// That of the course notes, `sphere ball { radius 2 }`.
+    /// The syntax of the course notes.
+    ///
+    /// As `sphere ball { radius 2 }`.
     #[default]
     #[value(name = "ray")]
     Notes,
-    /// TOML, `[sphere.ball]` and below it `radius = 2`.
+    /// TOML.
+    ///
+    /// As `[sphere.ball]` and below it `radius = 2`.
     Toml,
 }
 
@@ -57,10 +62,10 @@ impl Syntax {
         match self {
             Self::Notes => format!("`{} {name} {{ {} }}`", entity.name, body.join("  ")),
             Self::Toml if body == ["..."] => {
-                format!("`[{}.{}]` and below it its attributes", entity.name, self.key(name))
+                format!("`[{}.{}]`, followed by its attributes", entity.name, self.key(name))
             }
             Self::Toml => {
-                format!("`[{}.{}]` and below it `{}`", entity.name, self.key(name), body.join("`, `"))
+                format!("`[{}.{}]`, followed by `{}`", entity.name, self.key(name), body.join("`, `"))
             }
         }
     }
@@ -105,6 +110,13 @@ impl Syntax {
         let splits = |c: char| c.is_whitespace() || c == '{' || c == '}';
         let bare = !word.is_empty() && !word.starts_with(['#', '"']) && !word.contains(splits);
         if self == Self::Notes && bare { word.to_owned() } else { quoted(word) }
+    }
+}
+
+/// The values as the notes' spelling of a scene writes them: every number reads back to its last bit.
+impl fmt::Display for Datum {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&Syntax::Notes.values(self).join(" "))
     }
 }
 

@@ -3,14 +3,15 @@
 //! Fields stand in the order in which they are written.
 
 use crate::scene::choice::ChoiceName;
-use crate::scene::entity::{self, Kind};
+use crate::scene::entity;
+use crate::scene::kind::Kind;
 use crate::scene::pparm;
+use crate::scene::procedural::{OnPlane, OnSphere};
 use crate::scene::profile::Profile;
 use crate::scene::reference::by_name;
 use crate::scene::registry::Registry;
 use crate::scene::schema::Constant;
 use crate::scene::value::Type;
-use crate::world::shading::{OnPlane, OnSphere};
 use serde::Serialize;
 use std::iter;
 

@@ -1,13 +1,11 @@
 //! What an attribute's values are: the types that the scene language knows.
 
 use crate::numeric::formula::Formula;
-use crate::scene::choice::{ChoiceName, Choices};
-use crate::scene::entity::Kind;
-use crate::scene::syntax::Syntax;
+use crate::scene::choice::{Choice, ChoiceName, Choices};
+use crate::scene::kind::Kind;
 use crate::world::material::{Material, Rgb};
 use crate::world::texture::Texture;
 use glam::{DVec2, DVec3};
-use std::fmt;
 use std::sync::Arc;
 
 /// The type of an attribute's values.
@@ -73,13 +71,6 @@ impl Datum {
             Self::Choice(choice) => format!(" {}", choice.name),
         };
         format!("{label:<12}{values}{ending}")
-    }
-}
-
-/// The values as the notes' spelling of a scene writes them: every number reads back to its last bit.
-impl fmt::Display for Datum {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&Syntax::Notes.values(self).join(" "))
     }
 }
 
@@ -275,6 +266,23 @@ impl Value for Arc<Material> {
     fn from_datum(datum: &Datum) -> Option<Self> {
         match datum {
             Datum::Material { material, .. } => Some(material.clone()),
+            _ => None,
+        }
+    }
+}
+
+/// The name or the number of one of several things.
+impl<T: Choice> Value for T {
+    const TYPE: Type = Type::Choice(Choices::of::<T>());
+    const ARITY: &'static [usize] = &[1];
+
+    fn to_datum(&self) -> Datum {
+        Datum::Choice(self.option())
+    }
+
+    fn from_datum(datum: &Datum) -> Option<Self> {
+        match datum {
+            Datum::Choice(chosen) => T::all().into_iter().find(|choice| choice.option().name == chosen.name),
             _ => None,
         }
     }

@@ -5,9 +5,9 @@
 //! Newton's method, and what rounding could decide is decided in twice the precision.
 
 use crate::geometry::bounds::larger;
+use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
 use crate::numeric::twofold::{Twofold, exponent_to_one, times_power_of_two, two_product};
-use crate::world::accuracy::Accuracy;
-use crate::world::hittable::{Bracket, MISS, Ray, Side};
+use crate::world::accuracy::{Accuracy, Bounded};
 use glam::DVec3;
 
 /// A half line from a point, in twice the precision.
@@ -28,39 +28,51 @@ impl Line {
         Self { from: [from(0), from(1), from(2)], dir: [dir(0), dir(1), dir(2)] }
     }
 
-    /// A ray where space around the centre is squeezed by this much along each axis.
+    /// A ray where space around the centre is squeezed: by these factors along the axes.
     #[inline(always)]
-    pub fn squeezed(ray: &Ray, center: DVec3, scale: DVec3) -> Self {
+    pub fn squeezed(ray: &Ray, center: DVec3, squeeze: &[Twofold; 3]) -> Self {
         let Self { from, dir } = Self::new(ray, center);
-        let scaled = |of: [Twofold; 3], axis: usize| of[axis] / Twofold::from(scale[axis]);
-        let scaled = |of| [scaled(of, 0), scaled(of, 1), scaled(of, 2)];
+        let scaled = |of: [Twofold; 3]| [of[0] * squeeze[0], of[1] * squeeze[1], of[2] * squeeze[2]];
         Self { from: scaled(from), dir: scaled(dir) }
     }
 }
 
 /// How hits are computed, in a few words.
-pub fn method(accuracy: Accuracy) -> &'static str {
-    match accuracy {
-        Accuracy::Classic => "the notes' formula",
+pub fn method<A: Bounded>() -> &'static str {
+    match A::ACCURACY {
         Accuracy::Draft => "a closed form, in twice the precision where rounding could decide",
         Accuracy::Exact => {
             "a closed form and a step of Newton's method, in twice the precision where rounding could decide"
         }
-        Accuracy::Strict => "a closed form in twice the precision",
+        _ => "a closed form in twice the precision",
     }
+}
+
+/// How the notes compute hits, in a few words.
+pub const CLASSIC_METHOD: &str = "the notes' formula";
+
+/// The notes' distance of a ball, for a ray that starts `from` its centre.
+#[inline(always)]
+pub fn classic(from: DVec3, dir: DVec3, radius: f64) -> f64 {
+    let a = dir.dot(dir);
+    let b = 2.0 * from.dot(dir);
+    let c = from.dot(from) - radius * radius;
+    let discriminant = b * b - 4.0 * a * c;
+    // A ray that only touches the sphere misses it.
+    if discriminant <= 0.0 { MISS } else { (-b - discriminant.sqrt()) / (2.0 * a) }
 }
 
 /// The distance of the first hit of a ball: of its near side, or from inside of its far one. A line that only
 /// touches it misses it, as in the notes.
 #[inline(always)]
-pub fn first_hit(line: &Line, radius: f64, accuracy: Accuracy) -> f64 {
-    let quick = quick_hit(line, radius, accuracy);
+pub fn first_hit<A: Bounded>(line: &Line, radius: f64) -> f64 {
+    let quick = quick_hit::<A>(line, radius);
     if quick.is_nan() { in_twice_the_precision(line, radius) } else { quick }
 }
 
 /// As [`first_hit`], or NaN where rounding could decide it.
 #[inline(always)]
-pub fn quick_hit(line: &Line, radius: f64, accuracy: Accuracy) -> f64 {
+pub fn quick_hit<A: Bounded>(line: &Line, radius: f64) -> f64 {
     let (from, dir) = (high(&line.from), high(&line.dir));
     let a = dir.dot(dir);
     let toward = -from.dot(dir);
@@ -76,7 +88,7 @@ pub fn quick_hit(line: &Line, radius: f64, accuracy: Accuracy) -> f64 {
     // Where the room is GRAZE times its error, the root is right to 1 / 2 GRAZE of itself, and a step of Newton's method
     // makes 1 / 8 GRAZE^2 of that.
     const GRAZE: f64 = (1 << 18) as f64;
-    let is_doubtful = (accuracy == Accuracy::Strict)
+    let is_doubtful = (A::ACCURACY == Accuracy::Strict)
         | (!is_missed & ((room <= GRAZE * doubt) | (outside.abs() <= 32.0 * f64::EPSILON * size * size)));
     let root = (a * room).sqrt();
     let is_ahead = toward > 0.0;
@@ -84,7 +96,7 @@ pub fn quick_hit(line: &Line, radius: f64, accuracy: Accuracy) -> f64 {
     let (one, other) = (outside / larger, larger / a);
     let (near, far) = if is_ahead { (one, other) } else { (other, one) };
     let distance = if near > 0.0 { near } else { far };
-    let corrected = if accuracy == Accuracy::Draft { distance } else { corrected(line, radius, distance) };
+    let corrected = if A::ACCURACY == Accuracy::Draft { distance } else { corrected(line, radius, distance) };
     let is_behind = distance <= 0.0;
     if is_doubtful {
         f64::NAN
@@ -101,7 +113,7 @@ pub fn quick_hit(line: &Line, radius: f64, accuracy: Accuracy) -> f64 {
 /// The equation's other root is where it starts. Where what rounding makes of the start is not small beside the way into
 /// the ball, the start is taken for a point of the wall, whose far root is twice as far as the middle.
 #[inline(always)]
-pub fn far_hit(line: &Line, radius: f64, accuracy: Accuracy) -> f64 {
+pub fn far_hit<A: Bounded>(line: &Line, radius: f64) -> f64 {
     let (from, dir) = (high(&line.from), high(&line.dir));
     let a = dir.dot(dir);
     let toward = -from.dot(dir);
@@ -109,9 +121,30 @@ pub fn far_hit(line: &Line, radius: f64, accuracy: Accuracy) -> f64 {
     let is_deep = outside.abs() <= 0.25 * toward * toward;
     let half = if is_deep { toward * toward - outside } else { 0.0 }.sqrt();
     let distance = (toward + if is_deep { half } else { toward }) / a;
-    let does_correct = is_deep & (accuracy != Accuracy::Draft);
+    let does_correct = is_deep & (A::ACCURACY != Accuracy::Draft);
     let distance = if does_correct { corrected(line, radius, distance) } else { distance };
     if toward > 0.0 { distance } else { MISS }
+}
+
+/// The distance along a ray that leaves the ball on a side, or does not start on it.
+#[inline(always)]
+pub fn distance<A: Bounded>(line: &Line, radius: f64, leaves: Option<Side>) -> f64 {
+    match leaves {
+        None => first_hit::<A>(line, radius),
+        Some(Side::Inside) => far_hit::<A>(line, radius),
+        Some(Side::Outside) => MISS,
+    }
+}
+
+/// As [`distance`], or NaN where rounding could decide it.
+#[inline(always)]
+pub fn refine<A: Bounded>(line: &Line, radius: f64, leaves: Option<Side>) -> f64 {
+    let distance = match leaves {
+        None => quick_hit::<A>(line, radius),
+        Some(Side::Inside) => far_hit::<A>(line, radius),
+        Some(Side::Outside) => MISS,
+    };
+    if distance.is_nan() { distance } else { Span::RAY.keep(distance) }
 }
 
 /// Whether a point so far from the centre lies on a ball's wall, but for an error in the ball's own units and for what

@@ -7,30 +7,38 @@
 //! comes from the scene's own one, not from the unit vector that rounding makes of it.
 
 use crate::geometry::bounds::{Bounds, SLACK, larger};
-use crate::geometry::packet::{self, Rays, STEP};
+use crate::geometry::packet::Rays;
+use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
 use crate::numeric::number::Number;
 use crate::numeric::twofold::{
     Twofold, dot, exact_sum, exponent_to_one, times_power_of_two, two_product, two_sum,
 };
-use crate::simd::cpu::{Cpu, kernels};
-use crate::world::accuracy::Accuracy;
-use crate::world::hittable::{Bracket, MISS, Ray, Span};
+use crate::simd::soa::STEP;
+use crate::world::accuracy::{Accuracy, Bounded, Classic};
+use crate::world::hittable::Bracketed;
+use crate::world::packets::shape::OneRay;
+use crate::world::shape::Shape;
 use glam::DVec3;
+use std::marker::PhantomData;
 
 /// On the viewer's side of the screen there are no planes (the notes' "wrong side").
 const SCREEN: f64 = 0.01;
 
-/// An infinite plane.
+/// How the notes compute crossings, in a few words.
+pub const CLASSIC_METHOD: &str = "the notes' formula";
+
+/// An infinite plane, crossed as exactly as its type has it.
 #[derive(Clone, Copy, Debug)]
-pub struct Plane {
+pub struct Plane<A> {
     /// The unit vector that stands on its lit side, rounded.
     pub normal: DVec3,
     /// The same direction as the scene has it: a vector whose greatest component is between 1/2 and 1.
     pub upright: [Twofold; 3],
     /// A point of it.
     pub point: DVec3,
-    /// How exactly it is crossed.
-    pub accuracy: Accuracy,
+    /// Whether an axis stands upright on it: a sum of products has one part then, and nothing cancels.
+    pub is_upright: bool,
+    accuracy: PhantomData<A>,
 }
 
 /// Where a ray crosses a plane, as far as it is known quickly.
@@ -54,104 +62,23 @@ struct Products {
     toward_size: f64,
 }
 
-impl Plane {
+impl<A> Plane<A> {
     /// The plane through a point with a normal of any length.
-    pub fn with_normal(normal: DVec3, point: DVec3, accuracy: Accuracy) -> Self {
+    pub fn with_normal(normal: DVec3, point: DVec3) -> Self {
         let exponent = exponent_to_one(normal.abs().max_element());
         let upright = normal.to_array().map(|part| Twofold::from(times_power_of_two(part, exponent)));
-        Self { normal: normal.normalize(), upright, point, accuracy }
+        Self::new(normal.normalize(), upright, point)
+    }
+
+    /// The plane through a point with a unit normal, rounded, and the same direction as exactly as it is known.
+    pub fn new(normal: DVec3, upright: [Twofold; 3], point: DVec3) -> Self {
+        let is_upright = upright.iter().filter(|part| part.high == 0.0).count() == 2;
+        Self { normal, upright, point, is_upright, accuracy: PhantomData }
     }
 
     /// The normal that the scene gives, but for a power of two: exactly, as nothing of it was rounded.
     pub fn given_normal<N: Number>(&self) -> [N; 3] {
         self.upright.map(|part| N::constant(part.high))
-    }
-
-    /// The distance at which a ray crosses it, forward or backward; [`MISS`] for one that runs along it.
-    #[inline(always)]
-    pub fn crossing(&self, ray: &Ray) -> f64 {
-        let quick = self.quick_crossing(ray);
-        if quick.is_nan() { self.exact_crossing(ray).high } else { quick }
-    }
-
-    /// As [`crossing`](Self::crossing), or NaN where it takes more than plain arithmetic.
-    #[inline(always)]
-    pub fn quick_crossing(&self, ray: &Ray) -> f64 {
-        match self.accuracy {
-            Accuracy::Classic => {
-                let toward = self.normal.dot(ray.dir);
-                let away = self.normal.dot(self.point) - self.normal.dot(ray.origin);
-                // Both are 0 for a ray in the plane.
-                if toward == 0.0 { MISS } else { away / toward }
-            }
-            Accuracy::Draft => self.products(self.high(), ray).draft_distance(),
-            Accuracy::Exact => {
-                let products = self.products(self.high(), ray);
-                let away = if products.away_cancels() {
-                    self.fine_away(ray, |of| self.rest(of))
-                } else {
-                    products.away
-                };
-                let toward = if products.toward_cancels() {
-                    self.fine_toward(ray, |of| self.rest(of))
-                } else {
-                    products.toward
-                };
-                products.quotient(away, toward)
-            }
-            Accuracy::Strict => f64::NAN,
-        }
-    }
-
-    /// The distances of a packet's hits that are certain, as [`crossing`](Self::crossing) has them, or NaN. None of those
-    /// is one that [`keep`](Self::keep) would not.
-    pub fn distances(&self, cpu: Cpu, rays: Rays, out: &mut [f64]) {
-        match self.accuracy {
-            // Upright on an axis, sums have one part, and nothing cancels.
-            Accuracy::Exact if !self.is_upright() => compensated(cpu, self, rays, out),
-            Accuracy::Exact | Accuracy::Draft => plain(cpu, self, rays, out),
-            _ => packet::distances(cpu, self, rays, None, out),
-        }
-    }
-
-    /// How a crossing is computed, in a few words.
-    pub fn method(&self) -> &'static str {
-        match self.accuracy {
-            Accuracy::Classic => "the notes' formula",
-            Accuracy::Draft => "plain arithmetic",
-            Accuracy::Exact => "plain arithmetic, and what rounding takes from it where sums cancel",
-            Accuracy::Strict => "twice the precision",
-        }
-    }
-
-    /// The distance within a span; none on the viewer's side of the screen, and none for a ray that leaves it.
-    #[inline(always)]
-    pub fn keep(&self, distance: f64, ray: &Ray, within: &Span) -> f64 {
-        let quick = self.quick_keep(distance, ray, within);
-        if !quick.is_nan() {
-            quick
-        } else if self.is_before_the_screen(ray) {
-            MISS
-        } else {
-            within.keep(distance)
-        }
-    }
-
-    /// As [`keep`](Self::keep), or NaN where the point is on the screen but for rounding, and of NaN.
-    #[inline(always)]
-    pub fn quick_keep(&self, distance: f64, ray: &Ray, within: &Span) -> f64 {
-        let z = ray.at(distance).z;
-        // Of 2^-53: a plain product is off by 5 of parts that add up to at most 1.3 times it, so that the distance is
-        // off by 14, and the product and the sum here are by 1 each.
-        let error = match self.accuracy {
-            Accuracy::Classic => -1.0,
-            Accuracy::Draft => DRAFT_ERROR * (distance * ray.dir.z).abs() + f64::EPSILON * SCREEN,
-            _ => 8.0 * f64::EPSILON * ((distance * ray.dir.z).abs() + SCREEN),
-        };
-        let leaves = within.leaves.is_some();
-        let kept = if (z > SCREEN) | leaves { MISS } else { within.keep(distance) };
-        let is_doubtful = ((z - SCREEN).abs() <= error) & (distance < MISS);
-        if (is_doubtful | distance.is_nan()) & !leaves { f64::NAN } else { kept }
     }
 
     /// Whether a ray crosses it on the viewer's side of the screen: where z, which is the origin's and
@@ -191,7 +118,7 @@ impl Plane {
         const ERROR: f64 = RECIPROCAL_ERROR + 8.0 * f64::EPSILON;
         let error = inverse.abs() * (ERROR * (away_size + distance.abs()) + origin_error);
         // Upright on an axis, it is one component of the direction, and nothing that cancels.
-        let is_parallel = (toward == 0.0) & self.is_upright();
+        let is_parallel = (toward == 0.0) & self.is_upright;
         let error = if inverse.abs() >= LEAST_TOWARD.recip() { f64::INFINITY } else { error };
         Rough { distance, error, is_parallel }
     }
@@ -207,13 +134,6 @@ impl Plane {
             toward: normal.dot(ray.dir),
             toward_size: size(ray.dir),
         }
-    }
-
-    /// Whether an axis stands upright on it.
-    #[inline(always)]
-    fn is_upright(&self) -> bool {
-        let is_0 = |axis: usize| u8::from(self.upright[axis].high == 0.0);
-        is_0(0) + is_0(1) + is_0(2) == 2
     }
 
     /// The scene's normal, rounded.
@@ -259,23 +179,23 @@ impl Plane {
                 far_size += far.abs() + size;
             }
         }
-        self.accuracy != Accuracy::Classic && (nearest > SLACK * near_size || farthest < -SLACK * far_size)
+        nearest > SLACK * near_size || farthest < -SLACK * far_size
     }
 
     /// The product of the normal and the way to the plane, but for a few units in the last place and for
-    /// 2^-102 of the size of its parts. `rest` is what the low parts of the normal add.
+    /// 2^-102 of the size of its parts.
     #[inline(always)]
-    fn fine_away(&self, ray: &Ray, rest: impl Fn([f64; 3]) -> f64) -> f64 {
+    fn fine_away(&self, ray: &Ray) -> f64 {
         let (x, x_low) = two_sum(self.point.x, -ray.origin.x);
         let (y, y_low) = two_sum(self.point.y, -ray.origin.y);
         let (z, z_low) = two_sum(self.point.z, -ray.origin.z);
-        dot(self.high().to_array(), [x, y, z], [x_low, y_low, z_low], rest([x, y, z]))
+        dot(self.high().to_array(), [x, y, z], [x_low, y_low, z_low], self.rest([x, y, z]))
     }
 
     /// Likewise of the normal and the ray's direction.
     #[inline(always)]
-    fn fine_toward(&self, ray: &Ray, rest: impl Fn([f64; 3]) -> f64) -> f64 {
-        dot(self.high().to_array(), ray.dir.to_array(), [0.0; 3], rest(ray.dir.to_array()))
+    fn fine_toward(&self, ray: &Ray) -> f64 {
+        dot(self.high().to_array(), ray.dir.to_array(), [0.0; 3], self.rest(ray.dir.to_array()))
     }
 
     /// The product of a vector and what rounding took from the normal: 0 but for triangles.
@@ -307,25 +227,48 @@ impl Plane {
     }
 }
 
-kernels! {
-    /// Distances where nothing cancels.
-    fn plain(plane: &Plane, rays: Rays, out: &mut [f64]) {
-        let (plane, rays) = (*plane, rays.first(out.len()));
-        for lane in 0..out.len() {
-            out[lane] = plane.products(plane.high(), &rays.get(lane)).draft_distance();
+impl<A: Bounded> Plane<A> {
+    /// The distance at which a ray crosses it, forward or backward; [`MISS`] for one that runs along it.
+    #[inline(always)]
+    pub fn crossing(&self, ray: &Ray) -> f64 {
+        let quick = self.quick_crossing(ray);
+        if quick.is_nan() { self.exact_crossing(ray).high } else { quick }
+    }
+
+    /// As [`crossing`](Self::crossing), or NaN where it takes more than plain arithmetic.
+    #[inline(always)]
+    pub fn quick_crossing(&self, ray: &Ray) -> f64 {
+        match A::ACCURACY {
+            Accuracy::Draft => self.products(self.high(), ray).draft_distance(),
+            Accuracy::Exact => {
+                let products = self.products(self.high(), ray);
+                let away = if products.away_cancels() { self.fine_away(ray) } else { products.away };
+                let toward = if products.toward_cancels() { self.fine_toward(ray) } else { products.toward };
+                products.quotient(away, toward)
+            }
+            _ => f64::NAN,
         }
     }
 
-    /// Distances where something may, of planes whose normal has no low parts: a sum is computed in both ways if it cancels for any of eight rays.
-    fn compensated(plane: &Plane, rays: Rays, out: &mut [f64]) {
-        let plane = *plane;
+    /// What [`quick_crossing`](Self::quick_crossing) gives for each ray of a packet: where nothing cancels.
+    #[inline(always)]
+    fn refine_plain(&self, rays: Rays, out: &mut [f64]) {
+        let rays = rays.first(out.len());
+        for lane in 0..out.len() {
+            out[lane] = self.products(self.high(), &rays.get(lane)).draft_distance();
+        }
+    }
+
+    /// The same where something may: a sum is computed in both ways if it cancels for any of eight rays.
+    #[inline(always)]
+    fn refine_compensated(&self, rays: Rays, out: &mut [f64]) {
         for first in (0..out.len()).step_by(STEP) {
             let (rays, out) = (rays.part(first..first + STEP), &mut out[first..first + STEP]);
             let (mut away, mut toward) = ([0.0; STEP], [0.0; STEP]);
             let (mut away_size, mut toward_size) = ([0.0; STEP], [0.0; STEP]);
             let (mut away_cancels, mut toward_cancels) = ([0; STEP], [0; STEP]);
             for lane in 0..STEP {
-                let products = plane.products(plane.high(), &rays.get(lane));
+                let products = self.products(self.high(), &rays.get(lane));
                 (away[lane], toward[lane]) = (products.away, products.toward);
                 (away_size[lane], toward_size[lane]) = (products.away_size, products.toward_size);
                 away_cancels[lane] = u64::from(products.away_cancels());
@@ -333,13 +276,13 @@ kernels! {
             }
             if away_cancels != [0; STEP] {
                 for lane in 0..STEP {
-                    let fine = plane.fine_away(&rays.get(lane), |_| 0.0);
+                    let fine = self.fine_away(&rays.get(lane));
                     away[lane] = if away_cancels[lane] != 0 { fine } else { away[lane] };
                 }
             }
             if toward_cancels != [0; STEP] {
                 for lane in 0..STEP {
-                    let fine = plane.fine_toward(&rays.get(lane), |_| 0.0);
+                    let fine = self.fine_toward(&rays.get(lane));
                     toward[lane] = if toward_cancels[lane] != 0 { fine } else { toward[lane] };
                 }
             }
@@ -347,6 +290,112 @@ kernels! {
                 out[lane] = quotient((away[lane], away_size[lane]), (toward[lane], toward_size[lane]));
             }
         }
+    }
+
+    /// How a crossing is computed, in a few words.
+    pub fn method(&self) -> &'static str {
+        match A::ACCURACY {
+            Accuracy::Draft => "plain arithmetic",
+            Accuracy::Exact => "plain arithmetic, compensated for rounding where sums cancel",
+            _ => "twice the precision",
+        }
+    }
+
+    /// The distance within a span; none on the viewer's side of the screen, and none for a ray that leaves it.
+    #[inline(always)]
+    pub fn keep(&self, distance: f64, ray: &Ray, within: &Span) -> f64 {
+        let quick = self.quick_keep(distance, ray, within);
+        if !quick.is_nan() {
+            quick
+        } else if self.is_before_the_screen(ray) {
+            MISS
+        } else {
+            within.keep(distance)
+        }
+    }
+
+    /// As [`keep`](Self::keep), or NaN where the point is on the screen but for rounding, and of NaN.
+    #[inline(always)]
+    pub fn quick_keep(&self, distance: f64, ray: &Ray, within: &Span) -> f64 {
+        let z = ray.at(distance).z;
+        // Of 2^-53: a plain product is off by 5 of parts that add up to at most 1.3 times it, so that the distance is
+        // off by 14, and the product and the sum here are by 1 each.
+        let error = match A::ACCURACY {
+            Accuracy::Draft => DRAFT_ERROR * (distance * ray.dir.z).abs() + f64::EPSILON * SCREEN,
+            _ => 8.0 * f64::EPSILON * ((distance * ray.dir.z).abs() + SCREEN),
+        };
+        let leaves = within.leaves.is_some();
+        let kept = if (z > SCREEN) | leaves { MISS } else { within.keep(distance) };
+        let is_doubtful = ((z - SCREEN).abs() <= error) & (distance < MISS);
+        if (is_doubtful | distance.is_nan()) & !leaves { f64::NAN } else { kept }
+    }
+}
+
+/// A bracketed shape that is a part of a plane, or all of it.
+pub trait Flat: Bracketed {
+    /// How exactly that is crossed.
+    type Accuracy: Bounded;
+
+    /// The plane.
+    fn flat(&self) -> &Plane<Self::Accuracy>;
+}
+
+/// Found by its brackets, and refined by its plane for eight rays at a time.
+pub struct ByPlane;
+
+impl<T: Flat> Shape<T> {
+    /// Found by its brackets, and refined by its plane.
+    pub fn flat(self) -> Shape<T, ByPlane> {
+        self.by()
+    }
+}
+
+impl<T: Flat, P> OneRay for Shape<T, ByPlane, P> {
+    type Author = T;
+
+    #[inline(always)]
+    fn author(&self) -> &T {
+        &self.shape
+    }
+
+    #[inline(always)]
+    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
+        self.shape.bracket(ray, within)
+    }
+
+    #[inline(always)]
+    fn refine(&self, ray: &Ray, leaves: Option<Side>) -> f64 {
+        self.shape.refine(ray, leaves)
+    }
+
+    /// A hit that is certain is in the plane, whatever is cut out of that.
+    #[inline(always)]
+    fn refine_each(&self, rays: Rays, _sides: Option<&[Side]>, out: &mut [f64]) {
+        let plane = *self.shape.flat();
+        match T::Accuracy::ACCURACY {
+            // Upright on an axis, sums have one part, and nothing cancels.
+            Accuracy::Exact if !plane.is_upright => plane.refine_compensated(rays, out),
+            Accuracy::Exact | Accuracy::Draft => plane.refine_plain(rays, out),
+            _ => out.fill(f64::NAN),
+        }
+    }
+}
+
+impl Plane<Classic> {
+    /// The distance at which a ray crosses it, forward or backward; [`MISS`] for one that runs along it.
+    #[inline(always)]
+    pub fn crossing(&self, ray: &Ray) -> f64 {
+        let toward = self.normal.dot(ray.dir);
+        let away = self.normal.dot(self.point) - self.normal.dot(ray.origin);
+        // Both are 0 for a ray in the plane.
+        if toward == 0.0 { MISS } else { away / toward }
+    }
+
+    /// The distance within a span; none on the viewer's side of the screen, and none for a ray that leaves it.
+    #[inline(always)]
+    pub fn keep(&self, distance: f64, ray: &Ray, within: &Span) -> f64 {
+        let is_cut_off = (ray.at(distance).z > SCREEN) | within.leaves.is_some();
+        if is_cut_off { MISS } else { within.keep(distance) }
     }
 }
 

@@ -6,16 +6,18 @@
 
 use crate::geometry::bounds::Bounds;
 use crate::geometry::frame::{self, BLUR, Frame};
-use crate::geometry::sight::{Line, Sight};
+use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
+use crate::geometry::roots::taylor::{self, Found, Stretch};
+use crate::geometry::roots::{Method, twice};
+use crate::geometry::sight::Line;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
 use crate::numeric::number::Number;
-use crate::numeric::twofold::Twofold;
-use crate::shapes::roots::taylor::{self, Found, Stretch};
-use crate::shapes::roots::{Method, twice};
-use crate::world::certify::{self, Enclosure, Equation, Precision};
-use crate::world::coincidence;
-use crate::world::hittable::{Body, Bracket, Hittable, MISS, Ray, Side, Span};
+use crate::world::body::Body;
+use crate::world::certify::Equation;
+use crate::world::hittable::{Bracketed, Certified, Hittable, Searched};
+use crate::world::packets::shape::by_distance;
+use crate::world::shape::Shape;
 use glam::DVec3;
 use std::ops::Range;
 
@@ -33,7 +35,7 @@ impl Body {
     /// An object by its formula, that looks like its material.
     pub fn implicit(formula: impl Implicit + 'static, frame: Frame) -> Self {
         let [low, high] = formula.bounds();
-        Self::plain(ImplicitShape { formula, frame, low, high })
+        Self::plain(Shape::new(ImplicitShape { formula, frame, low, high }).bracketed().searched())
     }
 }
 
@@ -49,23 +51,6 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
         let line = OnRay::new(self, ray);
         line.distance(line.first_hit(within).root, within)
-    }
-
-    fn distance_by(&self, method: Method, ray: &Ray, within: &Span) -> Option<f64> {
-        let line = OnRay::new(self, ray);
-        let Stretch { outer, .. } = line.stretch();
-        Some(line.distance(
-            method.first_root(&line, outer.clone(), line.closest, within, shortest(&outer)),
-            within,
-        ))
-    }
-
-    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        coincidence::bracket_by(self, ray, within, |within| {
-            let line = OnRay::new(self, ray);
-            let Found { root, is_certain } = line.first_hit(within);
-            is_certain.then(|| line.distance(root, within))
-        })
     }
 
     /// Along the formula's gradient. Where that vanishes or does not exist, as at the tip of a cone, the normal
@@ -87,24 +72,37 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
         Some(self.frame.bounds(&own))
     }
 
-    fn touches(&self, at: DVec3, error: f64) -> bool {
-        coincidence::touches(self, at, error)
-    }
-
-    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold> {
-        coincidence::distance(self, ray, distance)
-    }
-
     fn is_two_sided(&self) -> bool {
         true
     }
 
     fn method(&self) -> String {
-        "its first root isolated by interval arithmetic, then polished".to_owned()
+        "first root isolated by interval arithmetic, then polished".to_owned()
+    }
+}
+
+impl<T: Implicit> Bracketed for ImplicitShape<T> {
+    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
+        let touches = || self.touches(ray.origin, within.origin_error);
+        by_distance(within, touches, |within| {
+            let line = OnRay::new(self, ray);
+            let Found { root, is_certain } = line.first_hit(within);
+            is_certain.then(|| line.distance(root, within))
+        })
     }
 
-    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        certify::first_hit(self, sight, precision)
+    fn refine(&self, ray: &Ray, leaves: Option<Side>) -> f64 {
+        self.distance(ray, &Span { leaves, ..Span::RAY })
+    }
+}
+
+impl<T: Implicit> Certified for ImplicitShape<T> {}
+
+impl<T: Implicit> Searched for ImplicitShape<T> {
+    fn distance_by(&self, method: Method, ray: &Ray, within: &Span) -> f64 {
+        let line = OnRay::new(self, ray);
+        let Stretch { outer, .. } = line.stretch();
+        line.distance(method.first_root(&line, outer.clone(), line.closest, within, shortest(&outer)), within)
     }
 }
 
@@ -193,7 +191,8 @@ impl<T: Implicit> taylor::Line for OnRay<'_, T> {
     }
 
     /// Twice the precision, from the ray in the world, tells nearly all touches from misses.
-    fn undecided(&self, piece: Interval, leaves: Option<Side>, hidden: f64) -> Option<f64> {
+    fn undecided(&self, piece: Interval, leaves: Option<Side>) -> Option<f64> {
+        let hidden = self.at(Interval::constant(piece.middle())).width();
         let exact = self.shape.frame.exactly(self.ray, self.closest);
         twice::first_root(|t| self.shape.formula.value(exact.along(t)), piece, leaves, hidden)
     }

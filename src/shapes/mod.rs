@@ -2,9 +2,13 @@
 
 pub mod ball;
 pub mod flat;
-pub mod implicit;
-pub mod quadratic;
+pub(crate) mod implicit;
+pub(crate) mod quadratic;
 pub mod rectangle;
-pub mod revolution;
-pub mod roots;
-pub mod triangle;
+pub(crate) mod revolution;
+pub(crate) mod triangle;
+
+pub use implicit::Implicit;
+pub use quadratic::Quadric;
+pub use revolution::{Classic, Finish, InFrame, Revolution};
+pub use triangle::Triangle;

@@ -1,27 +1,43 @@
 //! Where a ray passes the edges of a triangle: the arithmetic behind triangles.
 
+use crate::geometry::ray::Ray;
 use crate::numeric::number::{Number, cross, dot};
 use crate::numeric::twofold::{self, Twofold, exponent_to_one, times_power_of_two, triple_product, unit};
 use crate::shapes::flat::Plane;
-use crate::world::accuracy::Accuracy;
-use crate::world::hittable::Ray;
+use crate::world::accuracy::{Bounded, Classic};
 use glam::DVec3;
 
 /// A triangle.
 #[derive(Clone, Copy, Debug)]
-pub struct Triangle {
+pub struct Triangle<A> {
     /// The plane that it lies in.
-    pub plane: Plane,
+    pub plane: Plane<A>,
     /// Against the clock as seen from its lit side.
     pub corners: [DVec3; 3],
 }
 
-impl Triangle {
+impl Triangle<Classic> {
     /// The triangle with these corners; nothing where they are in one line.
-    pub fn new(corners: [DVec3; 3], accuracy: Accuracy) -> Option<Self> {
-        Some(Self { plane: plane_through(corners, accuracy)?, corners })
+    pub fn classic(corners: [DVec3; 3]) -> Option<Self> {
+        let [a, b, c] = corners;
+        let normal = (b - a).cross(c - a).try_normalize()?;
+        Some(Self { plane: Plane::new(normal, upright(corners), a), corners })
     }
+}
 
+impl<A: Bounded> Triangle<A> {
+    /// The triangle with these corners; nothing where they are in one line.
+    pub fn new(corners: [DVec3; 3]) -> Option<Self> {
+        let upright = upright(corners);
+        if upright.iter().all(|part| part.high == 0.0) {
+            return None;
+        }
+        let normal = DVec3::from(unit(upright).map(|part| part.high));
+        Some(Self { plane: Plane::new(normal, upright, corners[0]), corners })
+    }
+}
+
+impl<A> Triangle<A> {
     /// A vector upright on it, as long as twice its area.
     pub fn upright<N: Number>(&self) -> [N; 3] {
         let [a, b, c] = self.corners.map(|corner| corner.to_array().map(N::constant));
@@ -90,20 +106,14 @@ fn exact_side(from: DVec3, to: DVec3, ray: &Ray) -> f64 {
     triple_product(place(from), place(to), ray.dir.to_array()).high
 }
 
-/// The plane through three points; nothing where they are in one line.
-fn plane_through([a, b, c]: [DVec3; 3], accuracy: Accuracy) -> Option<Plane> {
+/// A vector that stands upright on the plane through three points, each component rounded once, however thin their triangle
+/// is; 0 where they are in one line.
+fn upright([a, b, c]: [DVec3; 3]) -> [Twofold; 3] {
     let edge = |to: DVec3| {
         let edge = [0, 1, 2].map(|axis| Twofold::difference(to[axis], a[axis]));
         scaled_to_one(edge)
     };
-    // Each component is rounded once, however thin the triangle is.
-    let upright = scaled_to_one(twofold::cross(edge(b), edge(c)));
-    let normal = match accuracy {
-        Accuracy::Classic => (b - a).cross(c - a).try_normalize()?,
-        _ if upright.iter().all(|part| part.high == 0.0) => return None,
-        _ => DVec3::from(unit(upright).map(|part| part.high)),
-    };
-    Some(Plane { normal, upright, point: a, accuracy })
+    scaled_to_one(twofold::cross(edge(b), edge(c)))
 }
 
 /// A vector times the power of two that makes its greatest component one between 1/2 and 1.

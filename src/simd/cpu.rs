@@ -14,7 +14,7 @@ pub struct Cpu(Level);
 /// Sets of instructions, each with those before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, ValueEnum)]
 pub enum Level {
-    /// What every machine of the kind has; on x86-64 two numbers at a time.
+    /// What every machine has: SSE2 on x86-64.
     Baseline,
     /// AVX2: four numbers at a time.
     Avx2,
@@ -80,17 +80,17 @@ impl fmt::Display for Cpu {
 macro_rules! kernels {
     ($(
         $(#[$attribute:meta])*
-        $visible:vis fn $name:ident$([$T:ident: $Bound:path])?($($argument:ident: $type:ty),* $(,)?)
+        $visible:vis fn $name:ident$([$T:ident: $Bound:path])?$(<const $N:ident>)?($($argument:ident: $type:ty),* $(,)?)
             $(=> $out:ident $(, $second:ident)?)? $(-> $result:ty)? $body:block
     )*) => {$(
         $(#[$attribute])*
         #[allow(clippy::too_many_arguments, reason = "they are arrays")]
-        $visible fn $name$(<$T: $Bound + ?Sized>)?(
+        $visible fn $name$(<$T: $Bound>)?$(<const $N: usize>)?(
             cpu: $crate::simd::cpu::Cpu, $($argument: $type,)*
-            $($out: $crate::geometry::packet::ViewMut, $($second: $crate::geometry::packet::ViewMut)?)?
+            $($out: $crate::simd::soa::ViewMut, $($second: $crate::simd::soa::ViewMut)?)?
         ) $(-> $result)? {
             $crate::simd::cpu::levels! {
-                ($(<$T: $Bound + ?Sized>)?) (
+                ($(<$T: $Bound>)?$(<const $N: usize>)?) (
                     $($argument: $type,)*
                     $(
                         x: $crate::simd::cpu::beside!($out, &mut [f64]),
@@ -105,8 +105,8 @@ macro_rules! kernels {
                 ) ($(-> $result)?)
                 {
                     $(
-                        let mut $out = $crate::geometry::packet::ViewMut { x, y, z };
-                        $(let mut $second = $crate::geometry::packet::ViewMut { x: u, y: v, z: w };)?
+                        let mut $out = $crate::simd::soa::ViewMut { x, y, z };
+                        $(let mut $second = $crate::simd::soa::ViewMut { x: u, y: v, z: w };)?
                     )?
                     $body
                 }

@@ -1,3 +1,7 @@
 //! Loops that are compiled for each level of instructions.
 
-pub mod cpu;
+pub(crate) mod cpu;
+pub(crate) mod soa;
+
+pub use cpu::Cpu;
+pub use soa::Vectors;

@@ -1,10 +1,11 @@
 //! The notes' debug lines (`DBG_PIX` and so on): what they print, in their order and their format.
 
-use crate::output::picture::to_byte;
+use crate::geometry::ray::{Ray, Span};
+use crate::render::bytes::to_byte;
+use crate::render::plan::Plan;
 use crate::render::trace;
 use crate::render::watch::{Event, Purpose, Watch};
 use crate::scene::model::Model;
-use crate::world::hittable::{Ray, Span};
 use clap::ValueEnum;
 use std::fmt;
 use std::io::{self, Write};
@@ -14,15 +15,21 @@ use std::io::{self, Write};
 pub enum Line {
     /// The pixel: its row and its column.
     Pix,
-    /// The object that a ray from the viewer, a mirror or glass meets, and where.
+    /// What a ray hits, and where.
+    ///
+    /// A ray from the viewer, a mirror or glass.
     Hit,
-    /// The colour of what was met, by ambient light and lights.
+    /// The colour of what it hits.
+    ///
+    /// By ambient light and lights.
     Drgb,
     /// The pixel's bytes.
     Irgb,
-    /// The pixel's place in the picture's file, in pixels.
+    /// The pixel's offset in the image file.
+    ///
+    /// In pixels.
     Offset,
-    /// Each object that a search finds, and its distance.
+    /// Each object that a ray finds, and its distance.
     Find,
 }
 
@@ -30,12 +37,12 @@ pub enum Line {
 ///
 /// # Errors
 /// Those of `out`.
-pub fn pixel(model: &Model, x: usize, y: usize, lines: &[Line], out: &mut impl Write) -> io::Result<()> {
+pub fn pixel(plan: &Plan, x: usize, y: usize, lines: &[Line], out: &mut impl Write) -> io::Result<()> {
     if lines.contains(&Line::Pix) {
         write!(out, "\nPIX {y:>4} {x:>4} - ")?;
     }
-    let mut printer = Printer { model, lines, out, ray: None, shadow: false, outcome: Ok(()) };
-    let colour = trace::watch_pixel(model, x, y, &mut printer);
+    let mut printer = Printer { model: plan.model, lines, out, ray: None, shadow: false, outcome: Ok(()) };
+    let colour = trace::watch_pixel(plan, x, y, &mut printer);
     printer.outcome?;
     if lines.contains(&Line::Irgb) {
         // What the file gets, so a channel of 127.6 is told as 127.
@@ -43,7 +50,7 @@ pub fn pixel(model: &Model, x: usize, y: usize, lines: &[Line], out: &mut impl W
         write!(out, " IRGB:({r:>5}, {g:>5}, {b:>5})")?;
     }
     if lines.contains(&Line::Offset) {
-        let [width, height] = model.camera.value.pixels;
+        let [width, height] = plan.camera.pixels;
         write!(out, "OFF: {:>7}", (height - 1 - y) * width + x)?;
     }
     Ok(())

@@ -1,10 +1,12 @@
 //! One pixel explained: its rays as an indented tree, with all that was tested, met and added up on the way.
 
-use crate::output::picture::to_byte;
-use crate::render::trace::{self, MAX_DIST, MAX_RAYS};
+use crate::geometry::ray::{MISS, Ray, Span};
+use crate::render::bytes::to_byte;
+use crate::render::limits::{MAX_DIST, MAX_RAYS};
+use crate::render::plan::Plan;
+use crate::render::trace::{self};
 use crate::render::watch::{Event, Hit, Outcome, Purpose, Reason, Watch};
 use crate::scene::model::Model;
-use crate::world::hittable::{MISS, Ray, Span};
 use crate::world::material::Rgb;
 use glam::DVec3;
 use std::io::{self, Write};
@@ -17,22 +19,29 @@ const DEEPEST: usize = 20;
 ///
 /// # Errors
 /// Those of `out`.
-pub fn pixel(model: &Model, x: usize, y: usize, out: &mut impl Write) -> io::Result<()> {
-    let camera = &model.camera.value;
+pub fn pixel(plan: &Plan, x: usize, y: usize, out: &mut impl Write) -> io::Result<()> {
+    let camera = &plan.camera;
     let [width, height] = camera.pixels;
     writeln!(out, "pixel {x} from the left and {y} from the bottom, of {width} x {height}\n")?;
     if camera.samples > 1 {
-        writeln!(out, "of its {} rays, the one that would go through its middle:\n", camera.samples)?;
+        writeln!(out, "of its {} samples, the one that would be at its centre:\n", camera.samples)?;
     }
-    let mut probe =
-        Probe { model, out, outcome: Ok(()), depth: 0, search: None, light: None, held: String::new() };
-    let colour = trace::watch_colour(model, &camera.sight(x as f64, y as f64), None, &mut probe);
+    let mut probe = Probe {
+        model: plan.model,
+        out,
+        outcome: Ok(()),
+        depth: 0,
+        search: None,
+        light: None,
+        held: String::new(),
+    };
+    let colour = trace::watch_colour(plan, &camera.sight(x as f64, y as f64), None, &mut probe);
     probe.outcome?;
     writeln!(out)?;
     conclude(colour, out)?;
     if camera.samples > 1 {
-        writeln!(out, "\nall {} rays together:\n", camera.samples)?;
-        conclude(trace::pixel(model, x, y), out)?;
+        writeln!(out, "\nall {} samples together:\n", camera.samples)?;
+        conclude(trace::pixel(plan, x, y), out)?;
     }
     Ok(())
 }
@@ -181,7 +190,7 @@ impl<W: Write> Probe<'_, W> {
             (Some(hit), _) if hit.index == index => "the nearest".to_owned(),
             (_, Some(light)) if distance >= light => "beyond the light".to_owned(),
             (Some(hit), _) if distance == hit.distance => {
-                format!("as near as `{}`, and later in the scene", hit.object.args.name)
+                format!("as near as `{}`, but later in the scene", hit.object.args.name)
             }
             (Some(hit), _) => format!("behind `{}`", hit.object.args.name),
             (None, _) => String::new(),
@@ -196,7 +205,7 @@ impl<W: Write> Probe<'_, W> {
             Outcome::Blocked(index) => format!("is blocked by `{}`", self.model.objects[index].args.name),
             Outcome::Shines { passed: DVec3::ONE, colour } => format!("adds {}", triple(colour)),
             Outcome::Shines { passed, colour } => {
-                format!("comes tinted {}, adds {}", triple(passed), triple(colour))
+                format!("arrives tinted {}, adds {}", triple(passed), triple(colour))
             }
         }
     }
@@ -221,8 +230,8 @@ impl<W: Write> Probe<'_, W> {
 fn dropped(reason: Reason) -> String {
     match reason {
         Reason::TooFar => format!("light that has travelled more than {MAX_DIST} is black"),
-        Reason::TooFaint => "all that it can add to the pixel is below 1/1024 of a level".to_owned(),
-        Reason::TooMany => format!("the pixel has cost {MAX_RAYS} rays, and no more are followed"),
+        Reason::TooFaint => "it can add less than 1/1024 of a level to the pixel".to_owned(),
+        Reason::TooMany => format!("the pixel has taken {MAX_RAYS} rays, and no more are followed"),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::geometry::sight::Sight;
 use crate::numeric::interval::{Float, Wide};
+use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::render::trace;
 use crate::scene::model::Model;
@@ -33,10 +34,10 @@ enum First {
 }
 
 /// The verdict on a pixel, counted from the left and from the bottom.
-pub fn pixel(model: &Model, x: usize, y: usize) -> Verdict {
-    let sight = model.camera.value.sight(x as f64, y as f64);
-    let found = trace::first_hit(model, &sight).map(|hit| hit.index);
-    match first_of(model, &sight) {
+pub fn pixel(plan: &Plan, x: usize, y: usize) -> Verdict {
+    let sight = plan.camera.sight(x as f64, y as f64);
+    let found = trace::first_hit(plan, &sight).map(|hit| hit.index);
+    match first_of(plan.model, &sight) {
         First::Certain(first) if first == found => Verdict::Proven,
         First::OneOf(any) if any.contains(&found) => Verdict::Tie,
         _ => Verdict::Contradicted,
@@ -88,12 +89,12 @@ fn first(enclosures: &[(usize, Enclosure)]) -> First {
 /// `Interrupted` where `done` broke off.
 pub fn picture(
     renderer: &Renderer,
-    model: &Model,
+    plan: &Plan,
     done: &(dyn Fn() -> ControlFlow<()> + Sync),
 ) -> io::Result<Vec<Verdict>> {
-    let [_, height] = model.camera.value.pixels;
-    let verdict = |x, y| pixel(model, x, y);
-    renderer.pixels(model, 0..height, done, verdict).ok_or_else(|| io::ErrorKind::Interrupted.into())
+    let [_, height] = plan.camera.pixels;
+    let verdict = |x, y| pixel(plan, x, y);
+    renderer.pixels(plan, 0..height, done, verdict).ok_or_else(|| io::ErrorKind::Interrupted.into())
 }
 
 #[cfg(test)]

@@ -1,8 +1,6 @@
 //! How exactly a scene is traced: by the notes' own methods, or by stable ones of a chosen accuracy.
 
-use crate::scene::choice::{Choice, ChoiceName};
 use std::fmt;
-use std::panic::Location;
 
 /// How exactly shapes find their hits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -19,36 +17,62 @@ pub enum Accuracy {
 }
 
 impl Accuracy {
-    const ALL: [Self; 4] = [Self::Classic, Self::Draft, Self::Exact, Self::Strict];
-    const PLACE: &'static Location<'static> = Location::caller();
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Classic, Self::Draft, Self::Exact, Self::Strict];
+
+    /// Its name, and what choosing it does, in a few words.
+    pub fn named(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Classic => ("classic", "the course notes' methods"),
+            Self::Draft => {
+                ("draft", "like exact, but with hit points only within about 1/1000 of a unit of the surface")
+            }
+            Self::Exact => {
+                ("exact", "first hits found with error bounds, hit points on the surface up to rounding")
+            }
+            Self::Strict => ("strict", "like exact, in twice the precision wherever a shape supports it"),
+        }
+    }
 }
 
 /// What choosing it does, in a few words.
 impl fmt::Display for Accuracy {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let option = self.option();
-        write!(f, "{}: {}", option.name, option.meaning)
+        let (name, meaning) = self.named();
+        write!(f, "{name}: {meaning}")
     }
 }
 
-impl Choice for Accuracy {
-    const WHAT: &'static str = "accuracy";
+/// The course notes' formula, as a type of a shape's: it is chosen when the shape is made.
+#[derive(Clone, Copy, Debug)]
+pub struct Classic;
 
-    fn all() -> Vec<Self> {
-        Self::ALL.to_vec()
-    }
+/// As [`Classic`], of hits by error bounds that are not finished.
+#[derive(Clone, Copy, Debug)]
+pub struct Draft;
 
-    fn option(&self) -> ChoiceName {
-        let (name, meaning) = match self {
-            Self::Classic => ("classic", "the course notes' own methods"),
-            Self::Draft => {
-                ("draft", "as exact, with points only within about 1/1000 of a unit of the surface")
-            }
-            Self::Exact => {
-                ("exact", "first hits by error bounds, their points on the surface but for rounding")
-            }
-            Self::Strict => ("strict", "as exact, in twice the precision wherever a shape has it"),
-        };
-        ChoiceName { name, number: None, meaning, place: Self::PLACE }
-    }
+/// As [`Classic`], of hits by error bounds that are finished.
+#[derive(Clone, Copy, Debug)]
+pub struct Exact;
+
+/// As [`Classic`], of hits in twice the precision.
+#[derive(Clone, Copy, Debug)]
+pub struct Strict;
+
+/// Those of the types that find first hits by error bounds.
+pub trait Bounded: Copy + Send + Sync + 'static {
+    /// The accuracy that it stands for.
+    const ACCURACY: Accuracy;
+}
+
+impl Bounded for Draft {
+    const ACCURACY: Accuracy = Accuracy::Draft;
+}
+
+impl Bounded for Exact {
+    const ACCURACY: Accuracy = Accuracy::Exact;
+}
+
+impl Bounded for Strict {
+    const ACCURACY: Accuracy = Accuracy::Strict;
 }

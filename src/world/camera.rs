@@ -1,9 +1,9 @@
 //! The camera: from a pixel to the ray that it looks along.
 
+use crate::geometry::ray::Ray;
 use crate::geometry::sight::{self, Sight};
 use crate::simd::cpu::kernels;
 use crate::world::accuracy::Accuracy;
-use crate::world::hittable::Ray;
 use crate::world::sample::{Sample, Sampler};
 use glam::{DVec2, DVec3};
 
@@ -25,8 +25,8 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// The places of a pixel that rays go through, counted as [`ray`](Self::ray) counts, each with its random numbers. A
-    /// single ray goes through the middle and needs none.
+    /// The places that the rays through a pixel go through, counted as [`ray`](Self::ray) counts, each with its random
+    /// numbers. A single ray goes through the middle and needs none.
     pub(crate) fn places(&self, x: usize, y: usize) -> impl Iterator<Item = (DVec2, Option<Sample>)> + use<> {
         let Self { samples, sampler, .. } = *self;
         let (pixel, middle) = ((y * self.pixels[0] + x) as u32, DVec2::new(x as f64, y as f64));

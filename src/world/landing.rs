@@ -1,8 +1,7 @@
 //! Where rays come to a surface.
 
-use crate::geometry::packet::{Rays, ViewMut};
-use crate::simd::cpu::kernels;
-use crate::world::hittable::{Hittable, Side};
+use crate::geometry::ray::Side;
+use crate::simd::soa::ViewMut;
 use glam::DVec3;
 
 /// Places on a surface, each where a ray of a packet comes to it. All arrays are as long as the packet's.
@@ -17,27 +16,6 @@ pub struct Landing<'l> {
     pub cosines: &'l mut [f64],
     /// How far the way from the viewer is, in world units: to where the rays start at first, and then to the places.
     pub travelled: &'l mut [f64],
-}
-
-kernels! {
-    /// Where rays come to a shape after these distances, and its normals there.
-    pub(crate) fn land[T: Hittable](
-        shape: &T, rays: Rays, distances: &[f64], sides: &mut [Side], cosines: &mut [f64], travelled: &mut [f64]
-    ) => points, normals {
-        let (count, is_two_sided) = (travelled.len(), shape.is_two_sided());
-        let (rays, distances) = (rays.first(count), &distances[..count]);
-        let (sides, cosines) = (&mut sides[..count], &mut cosines[..count]);
-        let (mut points, mut normals) = (points.first(count), normals.first(count));
-        for lane in 0..count {
-            let ray = rays.get(lane);
-            let point = ray.at(distances[lane]);
-            let normal;
-            (sides[lane], cosines[lane], normal) = turned(ray.dir, shape.normal(point), is_two_sided);
-            points.set(lane, point);
-            normals.set(lane, normal);
-            travelled[lane] += distances[lane];
-        }
-    }
 }
 
 /// The side that a ray along `dir` comes to of a surface with this normal, the cosine of the angle between them, and the

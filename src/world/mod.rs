@@ -1,13 +1,28 @@
 //! What a scene is made of: the traits of shapes, looks and lights, and what they are told.
 
-pub mod accuracy;
-pub mod camera;
+pub(crate) mod accuracy;
+pub(crate) mod any_shape;
+pub(crate) mod body;
+pub(crate) mod camera;
 pub mod certify;
 pub mod coincidence;
-pub mod facing;
-pub mod hittable;
-pub mod landing;
-pub mod material;
-pub mod sample;
-pub mod shading;
-pub mod texture;
+pub(crate) mod facing;
+pub(crate) mod hittable;
+pub(crate) mod landing;
+pub(crate) mod light;
+pub(crate) mod material;
+pub(crate) mod packets;
+pub(crate) mod sample;
+pub(crate) mod shader;
+pub(crate) mod shape;
+pub(crate) mod texture;
+
+pub use accuracy::{Accuracy, Bounded, Classic, Draft, Exact, Strict};
+pub use any_shape::AnyShape;
+pub use body::{AnyLight, AnyShader, Body};
+pub use camera::Camera;
+pub use hittable::{Bracketed, Certified, Hittable, Searched};
+pub use light::Light;
+pub use material::{Material, Rgb};
+pub use shader::Shader;
+pub use shape::Shape;

@@ -5,22 +5,24 @@ use glam::DVec2;
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 
-/// The most samples that a pixel can have: as far as the sequence of `sobol_burley` goes.
-pub const MOST: u32 = 1 << 16;
-
 /// Where a pixel's samples lie.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Sampler {
-    /// Spread evenly.
+    /// Evenly spread (a Sobol sequence).
     ///
-    /// Sobol's sequence with Owen scrambling (Burley, "Practical Hash-based Owen Scrambling", 2020), scrambled anew for
+    /// With Owen scrambling (Burley, "Practical Hash-based Owen Scrambling", 2020), scrambled anew for
     /// each pixel.
     #[default]
     Sobol,
-    /// Anywhere, as in the course notes.
+    /// Random, as in the course notes.
     ///
     /// Each sample is drawn for itself.
     Random,
+}
+
+impl Sampler {
+    /// The most samples that a pixel can have: as far as the sequence of `sobol_burley` goes.
+    pub const MOST: u32 = 1 << 16;
 }
 
 /// One of several samples of a pixel.

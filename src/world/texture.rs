@@ -48,7 +48,7 @@ impl Texture {
     fn not_read(&self, error: &io::Error) -> String {
         let near = words::nearest_file(&self.path).filter(|_| error.kind() == io::ErrorKind::NotFound);
         match near {
-            Some(near) => format!("it is not there, but a `{near}` is"),
+            Some(near) => format!("it does not exist, but `{near}` does"),
             None => words::reason(error),
         }
     }

@@ -1,11 +1,9 @@
 //! `cargo bench --bench frames`: whole frames without files being written, on one core and on two, and what a file adds.
 
 use divan::{Bencher, black_box, counter::ItemsCount};
-use tabray::output::picture::{Compression, Format};
-use tabray::render::renderer::Renderer;
-use tabray::scene::model::Model;
-use tabray::scene::reader;
-use tabray::scene::registry::Registry;
+use tabray::output::{Compression, Format};
+use tabray::render::{Plan, Renderer};
+use tabray::scene::{self, Model, Registry};
 use tabray::tools::bench::scenes;
 
 fn main() {
@@ -18,7 +16,7 @@ const SCENES: [&str; 4] = ["3 planes and 2 spheres", "a vase", "1000 spheres", "
 fn model(name: &str) -> Model {
     let registry = Registry::get().expect("no two plugins claim one name");
     let scene = scenes::all().into_iter().find(|scene| scene.0 == name).expect("a scene of this name").1;
-    match reader::build(registry, scene) {
+    match scene::build(registry, scene) {
         Ok(built) => built.model,
         Err(report) => panic!("{report}"),
     }
@@ -28,15 +26,16 @@ fn model(name: &str) -> Model {
 #[divan::bench(args = SCENES, consts = [1, 2])]
 fn frame<const THREADS: usize>(bencher: Bencher, name: &str) {
     let (renderer, model) = (Renderer::new(THREADS).expect("threads"), model(name));
-    let [width, height] = model.camera.value.pixels;
-    bencher.counter(ItemsCount::new(width * height)).bench_local(|| renderer.picture(&model));
+    let plan = Plan::new(&model);
+    let [width, height] = plan.camera.pixels;
+    bencher.counter(ItemsCount::new(width * height)).bench_local(|| renderer.picture(&plan));
 }
 
 /// A PNG or a PPM of the first scene, in memory.
 #[divan::bench(args = ["ppm", "png fast", "png default", "png best"])]
 fn encode(bencher: Bencher, format: &str) {
     let model = model(SCENES[0]);
-    let picture = Renderer::new(0).expect("threads").picture(&model);
+    let picture = Renderer::new(0).expect("threads").picture(&Plan::new(&model));
     let format = match format {
         "ppm" => Format::Ppm,
         "png fast" => Format::Png(Compression::Fast),

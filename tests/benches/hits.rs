@@ -5,12 +5,9 @@
 use divan::{Bencher, black_box, counter::ItemsCount};
 use std::fs;
 use std::path::Path;
-use tabray::geometry::packet::{Nearest, Rays, Vectors};
-use tabray::scene::model::Model;
-use tabray::scene::reader;
-use tabray::scene::registry::Registry;
-use tabray::simd::cpu::Cpu;
-use tabray::world::hittable::{MISS, Ray, Span};
+use tabray::geometry::{MISS, Nearest, Ray, Rays, Span};
+use tabray::scene::{self, Model, Registry};
+use tabray::simd::{Cpu, Vectors};
 
 /// The rays of a packet.
 const WIDE: usize = 64;
@@ -37,7 +34,7 @@ fn load(name: &str) -> Model {
     let file = format!("{name}.ray");
     let bytes = fs::read(folder.join(&file)).expect("a scene");
     let registry = Registry::get().expect("no two plugins claim one name");
-    match reader::read(registry, &file, &folder, &bytes, None) {
+    match scene::read(registry, &file, &folder, &bytes, None) {
         Ok(loaded) => loaded.model,
         Err(report) => panic!("{report}"),
     }
@@ -58,7 +55,7 @@ fn setting(name: &str) -> (Model, usize, Vec<Ray>) {
 #[divan::bench(args = shapes())]
 fn distance(bencher: Bencher, name: &str) {
     let (model, object, rays) = setting(name);
-    let shape = &*model.objects[object].shape;
+    let shape = &model.objects[object].shape;
     bencher.counter(ItemsCount::new(rays.len())).bench_local(|| {
         for ray in &rays {
             black_box(shape.distance(black_box(ray), &Span::RAY));
@@ -70,7 +67,7 @@ fn distance(bencher: Bencher, name: &str) {
 #[divan::bench(args = shapes())]
 fn meet(bencher: Bencher, name: &str) {
     let (model, object, rays) = setting(name);
-    let shape = &*model.objects[object].shape;
+    let shape = &model.objects[object].shape;
     let packets: Vec<_> = rays
         .chunks_exact(WIDE)
         .map(|rays| {
@@ -88,7 +85,7 @@ fn meet(bencher: Bencher, name: &str) {
             let (mut near, mut far) = ([MISS; WIDE], [MISS; WIDE]);
             let (mut met, mut doubt) = ([0; WIDE], [0; WIDE]);
             let nearest = Nearest { near: &mut near, far: &mut far, met: &mut met, doubt: &mut doubt };
-            shape.meet(
+            shape.closest_hits(
                 cpu,
                 Rays { origin: origin.view(WIDE), dir: dir.view(WIDE), origin_error: 0.0 },
                 None,

@@ -1,7 +1,6 @@
 //! What several tests need: the registry, scenes and decoded pictures.
 #![allow(dead_code, reason = "each test program uses a part of it")]
 
-pub mod copy;
 pub mod program;
 
 use image::RgbImage;
@@ -9,10 +8,9 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
-use tabray::render::renderer::Renderer;
-use tabray::scene::model::Model;
-use tabray::scene::reader;
-use tabray::scene::registry::Registry;
+use tabray::render::{Plan, Renderer};
+use tabray::scene::{self, Model, Registry};
+use tabray::world::Accuracy;
 
 /// The entity types of the program.
 pub fn registry() -> &'static Registry {
@@ -31,7 +29,7 @@ pub fn model(text: &str) -> Model {
 
 /// The model of a scene's text, whose file names start from `folder`.
 pub fn model_in(folder: &Path, text: &str) -> Model {
-    match reader::read(registry(), "scene", folder, text.as_bytes(), None) {
+    match scene::read(registry(), "scene", folder, text.as_bytes(), None) {
         Ok(loaded) => loaded.model,
         Err(report) => panic!("{report}\n{text}"),
     }
@@ -40,6 +38,21 @@ pub fn model_in(folder: &Path, text: &str) -> Model {
 /// The model of a scene's file, which has no faults.
 pub fn load(path: &Path) -> Model {
     model_in(path.parent().expect("a folder"), &fs::read_to_string(path).expect("a scene that is text"))
+}
+
+/// A scene of few pixels and samples.
+pub fn small(path: &Path, accuracy: Option<Accuracy>) -> Model {
+    let bytes = fs::read(path).expect("a scene");
+    let name = path.display().to_string();
+    let mut model = match scene::read(registry(), &name, path.parent().expect("a folder"), &bytes, accuracy) {
+        Ok(loaded) => loaded.model,
+        Err(report) => panic!("{report}"),
+    };
+    let camera = &mut model.camera.value;
+    // Mirrors that touch cost 20000 rays a pixel. Neither side is a whole number of tiles.
+    camera.pixels = if path.ends_with("touching-mirrors.ray") { [9, 5] } else { [36, 27] };
+    camera.samples = camera.samples.min(3);
+    model
 }
 
 /// The first block of code with a text in a page of the docs.
@@ -73,7 +86,7 @@ pub fn assert_tells_fields(page: &str, value: &Value) {
 /// The picture of a model.
 pub fn render(model: &Model) -> RgbImage {
     let [width, height] = model.camera.value.pixels.map(|side| side as u32);
-    let bytes = Renderer::new(0).expect("threads").picture(model);
+    let bytes = Renderer::new(0).expect("threads").picture(&Plan::new(model));
     RgbImage::from_raw(width, height, bytes).expect("three bytes for each pixel")
 }
 

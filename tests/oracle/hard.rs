@@ -6,7 +6,8 @@ use super::rays::{Random, toward};
 use super::shapes::{self, Line, Plane, Quadric};
 use super::tally::{Tally, Tolerance, ulp};
 use glam::{DMat3, DVec2, DVec3};
-use tabray::world::hittable::{Hittable, Ray, Span};
+use tabray::geometry::{Ray, Span};
+use tabray::world::Hittable;
 
 /// The first hit of a line beyond a distance.
 type FirstHit = Box<dyn Fn(&Line, f64) -> Truth>;

@@ -5,7 +5,7 @@ use glam::DVec3;
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 use std::f64::consts::TAU;
-use tabray::world::hittable::Ray;
+use tabray::geometry::Ray;
 
 /// Where the notes' scene has the viewer.
 pub const VIEWPOINT: DVec3 = DVec3::new(4.0, 3.0, 7.0);

@@ -6,12 +6,8 @@
 
 use super::{Crossings, Hit, Truth};
 use glam::DVec3;
-use tabray::numeric::dual::Dual;
-use tabray::numeric::formula::Formula;
-use tabray::numeric::interval::Interval;
-use tabray::numeric::number::Number;
-use tabray::numeric::twofold::Twofold;
-use tabray::world::hittable::Ray;
+use tabray::geometry::Ray;
+use tabray::numeric::{Dual, Formula, Interval, Number, twofold::Twofold};
 
 /// A line x = g(y) turned around the y axis through a base. Where g is below 0 there is nothing.
 pub struct Revolution {

@@ -7,8 +7,8 @@ use super::{Hit, Truth};
 use dashu_float::FBig;
 use dashu_float::round::mode::HalfEven;
 use glam::{DVec2, DVec3};
+use tabray::geometry::Ray;
 use tabray::numeric::twofold::Twofold;
-use tabray::world::hittable::Ray;
 
 /// A number of 300 bits.
 pub type Big = FBig<HalfEven, 2>;

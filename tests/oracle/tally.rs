@@ -2,8 +2,8 @@
 
 use super::{Hit, Truth};
 use std::fmt;
+use tabray::geometry::MISS;
 use tabray::numeric::twofold::Twofold;
-use tabray::world::hittable::MISS;
 
 /// The distance from one number to the next.
 pub fn ulp(number: f64) -> f64 {

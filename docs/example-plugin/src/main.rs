@@ -1,4 +1,4 @@
-//! `tabray` with one plugin more.
+//! `tabray` with one more plugin.
 
 mod tangle;
 

@@ -1,27 +1,21 @@
-//! A tangle: a closed surface of the fourth degree with a hole in each side of a cube.
+//! A tangle: a closed quartic surface, a cube with a hole in each side.
 
-use tabray::geometry::frame::Frame;
-use tabray::glam::DVec3;
-use tabray::numeric::number::Number;
-use tabray::scene::entity::Entity;
-use tabray::scene::pparm::{Pparm, Table};
-use tabray::shapes::implicit::Implicit;
-use tabray::world::hittable::Body;
+use tabray::prelude::*;
 
-static CENTER: Pparm<DVec3> = Pparm::required("center", "the point in its middle").unit("world coordinates");
-static SIZE: Pparm<f64> = Pparm::required("size", "the distance from its center to its sides")
+static CENTER: Pparm<DVec3> = Pparm::required("center", "the position of the centre").unit("world coordinates");
+static SIZE: Pparm<f64> = Pparm::required("size", "the distance from the centre to the sides")
     .unit("world units")
     .must("positive", |size| *size > 0.0);
 
 const TABLE: Table = &[&CENTER, &SIZE];
 
-tabray::inventory::submit! {
-    Entity::shape("tangle", "a cube with holes through its middle", &[TABLE], |args| {
+inventory::submit! {
+    Entity::shape("tangle", "a cube with holes through its centre", &[TABLE], |args| {
         Ok(Body::implicit(Tangle { size: args.get(&SIZE) }, Frame::at(args.get(&CENTER))))
     })
 }
 
-/// How far the surface reaches where its formula is not scaled.
+/// The extent of the surface along each axis, before its formula is scaled.
 const REACH: f64 = 2.2665;
 
 struct Tangle {

@@ -1,21 +1,22 @@
 //! `tabray new plugin`: a plugin that works, and its scenes.
 
-use crate::cli::{Failure, messages, output};
+use crate::cli::failure::Failure;
+use crate::cli::{messages, output};
 use crate::scene::choice::Choice;
+use crate::scene::procedural::OnPlane;
 use crate::scene::profile::Profile;
 use crate::scene::registry::Registry;
-use crate::world::shading::OnPlane;
 use serde::Deserialize;
 use std::fs;
 use std::path::Path;
 
-/// Write a plugin that explains itself and works, with its scenes
+/// Write a working, commented plugin and its scenes
 ///
-/// A plugin is compiled into the program: this is for a checkout of tabray, and runs in its topmost folder. After
-/// `cargo build` the language has the new word.
+/// A plugin is compiled into the program, so this runs in the top folder of a checkout of tabray. After `cargo build`,
+/// scenes can use the new name.
 #[derive(clap::Args)]
 pub struct Args {
-    /// What scenes call it: lower case letters, digits and `_`
+    /// Its name in scenes: lower-case letters, digits and `_`
     name: String,
     /// What it adds to the language
     #[arg(long, default_value = "shape")]
@@ -81,7 +82,7 @@ pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
         messages::note(&format!("wrote {path}"));
     }
     messages::note(&format!(
-        "look at it with `cargo run --release -- render {}`; docs/plugins.md tells what else belongs to a plugin",
+        "render it with `cargo run --release -- render {}`; docs/plugins.md lists what else belongs to a plugin",
         files[1].0
     ));
     Ok(())
@@ -109,7 +110,7 @@ fn is_checkout() -> Result<(), Failure> {
         return Ok(());
     }
     Err(Failure::Usage(
-        "this is not the topmost folder of a checkout of tabray".to_owned(),
+        "this is not the top folder of a checkout of tabray".to_owned(),
         Some(
             "a plugin is compiled into the program: go to the folder with its `Cargo.toml` and `plugins/`"
                 .to_owned(),
@@ -120,7 +121,7 @@ fn is_checkout() -> Result<(), Failure> {
 /// Whether a plugin can have this name.
 fn is_free(registry: &Registry, name: &str, template: &str) -> Result<(), Failure> {
     let no_name = |what: String| {
-        let help = "a plugin's name is that of a Rust module, such as `tiled_plane`";
+        let help = "a plugin's name must be a Rust module name, such as `tiled_plane`";
         Err(Failure::Usage(what, Some(help.to_owned())))
     };
     let is_letter = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
@@ -128,16 +129,16 @@ fn is_free(registry: &Registry, name: &str, template: &str) -> Result<(), Failur
         return no_name(format!("`{}` cannot be the name of a plugin", name.escape_debug()));
     }
     if KEYWORDS.contains(&name) {
-        return no_name(format!("`{name}` is a word of Rust"));
+        return no_name(format!("`{name}` is a Rust keyword"));
     }
     let what = if let Some(entity) = registry.find(name) {
-        format!("there is an entity type `{name}` already, at {}", entity.place())
+        format!("the entity type `{name}` already exists, at {}", entity.place())
     } else if OnPlane::all().iter().any(|shader| shader.option().name == name) {
-        format!("there is a shader `{name}` already")
+        format!("the shader `{name}` already exists")
     } else if <&Profile>::all().iter().any(|profile| profile.option().name == name) {
-        format!("there is a profile `{name}` already")
+        format!("the profile `{name}` already exists")
     } else if template.split(|c: char| !c.is_alphanumeric()).any(|word| word == camel_case(name)) {
-        format!("the text to start from has a `{}` of its own", camel_case(name))
+        format!("the template already uses the name `{}`", camel_case(name))
     } else {
         return Ok(());
     };

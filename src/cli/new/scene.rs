@@ -1,15 +1,16 @@
 //! `tabray new scene`: a scene that explains itself.
 
-use crate::cli::{Failure, messages, output, program};
+use crate::cli::failure::Failure;
+use crate::cli::{messages, output, program};
 use crate::scene::syntax::Syntax;
 use std::path::PathBuf;
 
-/// Write a scene that explains itself and can be rendered at once
+/// Write a commented scene, ready to render
 #[derive(clap::Args)]
 pub struct Args {
-    /// The scene's name, or its file: without an ending it gets the one of its spelling
+    /// The scene's name or its file; a name without an extension gets that of its syntax
     name: PathBuf,
-    /// Write it as TOML; so is a file that ends in .toml
+    /// Write TOML, as for a file that ends in .toml
     #[arg(long)]
     toml: bool,
 }
@@ -42,6 +43,6 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     };
     let program = program::name();
     output::create(&path, &text.replace("`tabray ", &format!("`{program} ")))?;
-    messages::note(&format!("wrote {}; look at it with `{program} render {0}`", path.display()));
+    messages::note(&format!("wrote {}; render it with `{program} render {0}`", path.display()));
     Ok(())
 }

@@ -1,9 +1,10 @@
 //! `tabray review --serve`: the page that accepts and rejects.
 
-use super::Args;
+use super::items::items;
 use super::pending::{self, Pending};
+use crate::cli::failure::{Failure, tell};
 use crate::cli::serve::{self, Server};
-use crate::cli::{Failure, messages, report, tell};
+use crate::cli::{messages, report};
 use crate::scene::registry::Registry;
 use crate::words;
 use hyper::body::Bytes;
@@ -13,16 +14,20 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 /// Shows the page and does what is decided there.
-pub fn serve(registry: &'static Registry, args: &Args) -> Result<(), Failure> {
-    let (folder, before) = (args.folder.clone(), args.before.clone());
-    let server = Server::open(args.port)?;
-    messages::note(&format!("review at {} (Ctrl-C ends it)", server.url()));
+pub fn serve(
+    registry: &'static Registry,
+    folder: PathBuf,
+    before: Option<PathBuf>,
+    port: Option<u16>,
+) -> Result<(), Failure> {
+    let server = Server::open(port)?;
+    messages::note(&format!("review at {} (Ctrl-C quits)", server.url()));
     let run = server.run(async move |request: Request<Bytes>| {
         let verdict = match (request.method().as_str(), request.uri().path()) {
             ("GET", "/") => return ControlFlow::Continue(page(registry, &folder, before.as_deref())),
             ("POST", "/accept") => decide(&folder, request.body(), "accepted", Pending::accept),
             ("POST", "/reject") => decide(&folder, request.body(), "rejected", Pending::reject),
-            _ => Err((StatusCode::NOT_FOUND, "there is nothing here".to_owned())),
+            _ => Err((StatusCode::NOT_FOUND, "not found".to_owned())),
         };
         match verdict {
             Ok(told) => {
@@ -34,17 +39,17 @@ pub fn serve(registry: &'static Registry, args: &Args) -> Result<(), Failure> {
             Err((status, reason)) => ControlFlow::Continue(serve::text(status, &reason)),
         }
     });
-    run.map_err(|error| Failure::Failed(format!("the server ended: {}", words::reason(&error))))
+    run.map_err(|error| Failure::Failed(format!("the server stopped: {}", words::reason(&error))))
 }
 
 fn page(registry: &Registry, folder: &Path, before: Option<&Path>) -> Response<serve::Body> {
-    let html = super::items(registry, folder, before)
+    let html = items(registry, folder, before)
         .and_then(|(items, _)| report::html("tabray review", &items, true).map_err(Failure::from));
     match html {
         Ok(html) => serve::content(StatusCode::OK, "text/html; charset=utf-8", html),
         Err(failure) => {
             tell(&failure);
-            serve::text(StatusCode::INTERNAL_SERVER_ERROR, "the terminal says what is wrong")
+            serve::text(StatusCode::INTERNAL_SERVER_ERROR, "failed: see the terminal for the reason")
         }
     }
 }
@@ -67,21 +72,21 @@ fn decide(
 ) -> Result<String, (StatusCode, String)> {
     let seen = serde_json::from_slice(body);
     let Seen { snapshot: name, version } =
-        seen.map_err(|_| (StatusCode::BAD_REQUEST, "this names no snapshot".to_owned()))?;
+        seen.map_err(|_| (StatusCode::BAD_REQUEST, "the request names no snapshot".to_owned()))?;
     let failed = |failure: Failure| {
         tell(&failure);
-        (StatusCode::INTERNAL_SERVER_ERROR, "the terminal says what is wrong".to_owned())
+        (StatusCode::INTERNAL_SERVER_ERROR, "failed: see the terminal for the reason".to_owned())
     };
     let found = pending::find(folder).map_err(failed)?;
     let named = |new: &&PathBuf| new.with_extension("").display().to_string() == name;
     let Some(new) = found.iter().find(named) else {
-        return Err((StatusCode::NOT_FOUND, format!("{name} is not pending any more")));
+        return Err((StatusCode::NOT_FOUND, format!("{name} is no longer pending")));
     };
     let snapshot = Pending::read(new).map_err(failed)?;
     if snapshot.version() != version {
         return Err((
             StatusCode::CONFLICT,
-            format!("{name} is another since it was shown: load this page again"),
+            format!("{name} has changed since it was shown: reload this page"),
         ));
     }
     act(&snapshot).map_err(failed)?;

@@ -1,46 +1,43 @@
 //! `tabray review`: the snapshots that wait for a decision, on a page.
 
 mod decide;
+mod items;
 mod pending;
 
-use super::explain::Place;
-use super::report::{Change, Decision, Item, Page};
-use super::{Failure, input, messages, picture, tell};
-use crate::output::compare::Comparison;
+use super::failure::Failure;
+use super::messages;
+use super::report::Page;
 use crate::scene::registry::Registry;
-use pending::{Content, Pending};
-use std::env;
-use std::ffi::OsStr;
-use std::io::Cursor;
-use std::path::{Path, PathBuf};
+use pending::Pending;
+use std::path::PathBuf;
 
-/// Show the snapshots that tests left to be reviewed
+/// Review the snapshots that failing tests left
 ///
-/// The page shows for each the old and the new picture and their difference, or what lines of a text changed, and the
-/// command that accepts it. The first pixel that differs is explained as `tabray probe` does it, for the scene as it is
-/// now, and with `--before` by the program that the old picture was made with.
+/// For each snapshot, the page shows the old image, the new image and their difference, or the changed lines of a text,
+/// and the command that accepts it. The first pixel that differs is explained as by `tabray probe`, for the scene as it
+/// is now and, with `--before`, by the program that made the old image.
 #[derive(clap::Args)]
 pub struct Args {
     /// The folder of the snapshots
     #[arg(default_value = "snapshots")]
     folder: PathBuf,
-    /// Where to write the page: one .html file, with everything in it
+    /// The page to write: one self-contained .html file
     #[arg(short, long, value_name = "FILE", default_value = "review.html")]
     output: PathBuf,
-    /// An older `tabray`, which explains the old pictures
+    /// An older `tabray`, to explain the old images
     #[arg(long, value_name = "PROGRAM")]
     before: Option<PathBuf>,
-    /// Show the page in a browser instead, and accept or reject from there, until nothing is pending; only this machine
-    /// can see it
+    /// Serve the page instead, to accept or reject from the browser until nothing is pending; only this machine can
+    /// reach it
     #[arg(long, conflicts_with = "output")]
     serve: bool,
-    /// The port for that; by default the first free one from 3000
+    /// The port to serve on; by default the first free one from 3000
     #[arg(long, requires = "serve")]
     port: Option<u16>,
-    /// Accept these snapshots, or all below a folder, instead of writing a page
+    /// Accept these snapshots, or all in a folder, instead of writing a page
     #[arg(long, value_name = "SNAPSHOT", num_args = 1.., conflicts_with_all = ["reject", "output", "before", "serve"])]
     accept: Vec<PathBuf>,
-    /// Reject these snapshots, or all below a folder: what is new goes, what is old stays
+    /// Reject these snapshots, or all in a folder: the new ones are deleted, the old ones stay
     #[arg(long, value_name = "SNAPSHOT", num_args = 1.., conflicts_with_all = ["output", "before", "serve"])]
     reject: Vec<PathBuf>,
 }
@@ -57,10 +54,10 @@ pub fn run(registry: &'static Registry, args: &Args) -> Result<(), Failure> {
         return Ok(());
     }
     if args.serve {
-        return decide::serve(registry, args);
+        return decide::serve(registry, args.folder.clone(), args.before.clone(), args.port);
     }
     let page = Page::open(&args.output)?;
-    let (items, is_whole) = items(registry, &args.folder, args.before.as_deref())?;
+    let (items, is_whole) = items::items(registry, &args.folder, args.before.as_deref())?;
     for item in &items {
         messages::note(&format!("{}: {}", item.name, item.change.summary()));
     }
@@ -82,84 +79,4 @@ fn each(
         }
     }
     Ok(())
-}
-
-/// What is pending below a folder, and whether all of it could be read; what could not has been told.
-fn items(registry: &Registry, folder: &Path, before: Option<&Path>) -> Result<(Vec<Item>, bool), Failure> {
-    let mut items = Vec::new();
-    let found = pending::find(folder)?;
-    for new in &found {
-        match Pending::read(new).and_then(|snapshot| item(registry, &snapshot, before)) {
-            Ok(item) => items.push(item),
-            Err(failure) => {
-                tell(&failure);
-            }
-        }
-    }
-    let is_whole = items.len() == found.len();
-    Ok((items, is_whole))
-}
-
-/// A pending snapshot on the page.
-fn item(registry: &Registry, snapshot: &Pending, before: Option<&Path>) -> Result<Item, Failure> {
-    let path = &snapshot.path;
-    let change = change(snapshot)?;
-    let explanations = match (&change, scene(path)) {
-        (
-            Change::Picture { comparison: Some(Comparison { first: Some(pixel), size, .. }), .. },
-            Some(scene),
-        ) => match input::load(registry, &scene, None) {
-            Ok(model) => Place { scene: &scene, model, size: *size, pixel: *pixel }.explained(before),
-            Err(failure) => {
-                tell(&failure);
-                Vec::new()
-            }
-        },
-        _ => Vec::new(),
-    };
-    let program = env::args_os().next().unwrap_or_else(|| "tabray".into());
-    let command = |option: &str| {
-        [&program, OsStr::new("review"), OsStr::new(option), path.as_os_str()].map(quoted).join(" ")
-    };
-    let decision =
-        Decision { accept: command("--accept"), reject: command("--reject"), version: snapshot.version() };
-    Ok(Item { name: path.display().to_string(), change, explanations, decision: Some(decision) })
-}
-
-/// What is old and new of it.
-fn change(snapshot: &Pending) -> Result<Change, Failure> {
-    let unreadable = |reason: String| {
-        Failure::Usage(format!("cannot show the snapshot `{}`: {reason}", snapshot.path.display()), None)
-    };
-    let (old, new) = (snapshot.old.as_ref(), &snapshot.new);
-    if let Some(new) = new.text() {
-        let old = old.and_then(Content::text).map(str::to_owned);
-        return Ok(Change::Text { old, new: new.to_owned() });
-    }
-    let decode = |content: &Content| picture::decode(Cursor::new(content.bytes()));
-    let new = decode(new).map_err(unreadable)?;
-    // An old picture that is none is a reason to have a new one.
-    let old = old.and_then(|old| decode(old).ok());
-    let comparison = old.as_ref().and_then(|old| Comparison::new(old, &new, 0));
-    Ok(Change::Picture { old, new, names: ["old".to_owned(), "new".to_owned()], comparison })
-}
-
-/// The scene of a picture's snapshot, if there is one: `snapshots/sphere/ball.snap` is of `scenes/sphere/ball.ray`.
-fn scene(snapshot: &Path) -> Option<PathBuf> {
-    let mut parts: Vec<_> = snapshot.components().map(|part| part.as_os_str()).collect();
-    let folder = parts.iter().rposition(|part| *part == "snapshots")?;
-    parts[folder] = OsStr::new("scenes");
-    let scene: PathBuf = parts.iter().collect();
-    ["ray", "toml"].iter().map(|extension| scene.with_extension(extension)).find(|scene| scene.is_file())
-}
-
-/// A word of a command, as a shell takes it.
-fn quoted(word: &OsStr) -> String {
-    let word = word.to_string_lossy();
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || "_-./:=+,@%".contains(c);
-    if !word.is_empty() && word.chars().all(is_plain) {
-        word.into_owned()
-    } else {
-        format!("'{}'", word.replace('\'', r"'\''"))
-    }
 }

@@ -4,7 +4,8 @@
 //! that the snapshot is binary, it is in a file of its own, `ball.snap.png` beside `ball.snap` and `ball.snap.new.png`
 //! beside `ball.snap.new`.
 
-use crate::cli::{Failure, output};
+use crate::cli::failure::Failure;
+use crate::cli::output;
 use crate::words;
 use std::fs;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -61,8 +62,8 @@ pub fn find(path: &Path) -> Result<Vec<PathBuf>, Failure> {
                 Err(Failure::Usage(format!("nothing is pending for `{}`", path.display()), None))
             }
             _ => Err(Failure::Usage(
-                format!("there is neither a folder nor a snapshot `{}`", path.display()),
-                Some("name a folder of snapshots, or a snapshot by its `.snap`".to_owned()),
+                format!("there is no folder or snapshot `{}`", path.display()),
+                Some("name a folder of snapshots, or the `.snap` file of one".to_owned()),
             )),
         };
     }
@@ -140,7 +141,7 @@ impl Pending {
 
 /// What a snapshot's file holds, or the file beside it; nothing where that is missing.
 fn content(path: &Path, file: &str) -> Result<Option<Content>, String> {
-    let (header, text) = parts(file).ok_or("it has no header between lines of dashes")?;
+    let (header, text) = parts(file).ok_or("it has no header between `---` lines")?;
     let field = |name: &str| {
         header.lines().find_map(|line| Some(line.strip_prefix(name)?.strip_prefix(": ")?.trim_matches('"')))
     };

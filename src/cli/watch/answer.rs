@@ -4,6 +4,7 @@ use super::board::Board;
 use super::frame::Frame;
 use crate::cli::serve::{self, Body};
 use crate::output::aov::Aov;
+use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::tools::probe;
 use crate::words;
@@ -21,7 +22,7 @@ const PAGE: &str = include_str!("page.html");
 /// The answer to a request.
 pub async fn answer(request: &Request<Bytes>, board: &Board) -> Response<Body> {
     if request.method() != Method::GET {
-        return serve::text(StatusCode::METHOD_NOT_ALLOWED, "this server is read only\n");
+        return serve::text(StatusCode::METHOD_NOT_ALLOWED, "this server is read-only\n");
     }
     let path: Vec<_> = request.uri().path().split('/').skip(1).collect();
     match path[..] {
@@ -52,17 +53,17 @@ fn events(board: &Board) -> Body {
 /// An answer about the present picture, which may take a while; none about one that is not there any more.
 async fn about(board: &Board, version: &str, work: impl FnOnce(Arc<Frame>) -> Option<Job>) -> Response<Body> {
     let Some(frame) = version.parse().ok().and_then(|version| board.frame(version)) else {
-        return serve::text(StatusCode::GONE, "this picture is not there any more\n");
+        return serve::text(StatusCode::GONE, "this image no longer exists\n");
     };
     let Some(job) = work(frame) else {
-        return serve::text(StatusCode::NOT_FOUND, "the picture has no such part\n");
+        return serve::text(StatusCode::NOT_FOUND, "the image has no such part\n");
     };
     match tokio::task::spawn_blocking(job).await {
         Ok(Ok((kind, bytes))) => serve::content(StatusCode::OK, kind, bytes),
         Ok(Err(error)) if error.kind() == io::ErrorKind::Interrupted => {
-            serve::text(StatusCode::GONE, "this picture is not there any more\n")
+            serve::text(StatusCode::GONE, "this image no longer exists\n")
         }
-        _ => serve::text(StatusCode::INTERNAL_SERVER_ERROR, "something went wrong\n"),
+        _ => serve::text(StatusCode::INTERNAL_SERVER_ERROR, "internal error\n"),
     }
 }
 
@@ -77,7 +78,7 @@ fn pixel(frame: Arc<Frame>, x: &str, y: &str) -> Option<Job> {
     Some(Box::new(move || {
         Renderer::new(1)?.run(|| {
             let mut text = Vec::new();
-            probe::pixel(&frame.model, x, y, &mut text)?;
+            probe::pixel(&Plan::new(&frame.model), x, y, &mut text)?;
             let explained =
                 Explained { lines: frame.lines_of([x, y]), text: &String::from_utf8_lossy(&text) };
             Ok(("application/json", words::json(&explained).into_bytes()))
@@ -99,7 +100,8 @@ fn layer(frame: Arc<Frame>, name: &str) -> Option<Job> {
     // An error is seen against the truth, which there is none of here.
     let aov = Aov::from_str(name, false).ok().filter(|aov| *aov != Aov::Error)?;
     Some(Box::new(move || {
-        let layer = aov.render(&Renderer::new(0)?, &frame.model, &frame.model, &|| frame.check())?;
+        let plan = Plan::new(&frame.model);
+        let layer = aov.render(&Renderer::new(0)?, &plan, &plan, &|| frame.check())?;
         Ok(("application/octet-stream", layer.bytes))
     }))
 }

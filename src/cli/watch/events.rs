@@ -1,7 +1,7 @@
 //! What the program tells a page: server-sent events, each a name and data in one line.
 
 use super::frame::Frame;
-use crate::output::picture::to_byte;
+use crate::render::bytes::to_byte;
 use crate::render::progressive::Area;
 use crate::words::json;
 use crate::world::material::Rgb;

@@ -1,6 +1,6 @@
 //! The files that a scene is read from, and who wants to know when one of them changes.
 
-use super::super::Failure;
+use super::super::failure::Failure;
 use crate::words;
 use notify::event::{AccessKind, AccessMode, EventKind, ModifyKind};
 use notify::{ErrorKind, Event, RecommendedWatcher, RecursiveMode, Watcher};
@@ -66,7 +66,7 @@ impl Files {
 fn reason(error: &notify::Error) -> String {
     match &error.kind {
         ErrorKind::Io(error) => words::reason(error),
-        ErrorKind::MaxFilesWatch => "the system watches as many files as it may already".to_owned(),
+        ErrorKind::MaxFilesWatch => "the system already watches as many files as it may".to_owned(),
         _ => words::reason(&io::Error::other(error.to_string())),
     }
 }

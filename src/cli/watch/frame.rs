@@ -1,5 +1,6 @@
 //! A scene as it was when it was last sound.
 
+use crate::render::plan::Plan;
 use crate::render::trace;
 use crate::scene::model::Model;
 use crate::scene::reader::Place;
@@ -32,7 +33,8 @@ impl Frame {
 
     /// The first and the last line of the object that the middle of a pixel shows, counted from 1.
     pub fn lines_of(&self, [x, y]: [usize; 2]) -> Option<[usize; 2]> {
-        let hit = trace::first_hit(&self.model, &self.model.camera.value.sight(x as f64, y as f64))?;
+        let hit =
+            trace::first_hit(&Plan::new(&self.model), &self.model.camera.value.sight(x as f64, y as f64))?;
         lines(&self.text, self.places.get(hit.object.args.order)?.as_ref()?)
     }
 }

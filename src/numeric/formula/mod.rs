@@ -1,13 +1,16 @@
 //! Formulas in y, as a scene or a profile plugin writes them: `2 + sin(y)`.
 
 mod parser;
+mod step;
 
-use crate::geometry::packet::STEP;
+pub use parser::FormulaFault;
+
 use crate::numeric::dual::Dual;
 use crate::numeric::number::Number;
 use crate::numeric::octet::Octet;
+use crate::simd::soa::STEP;
 use std::fmt;
-use std::ops::Range;
+use step::{DEPTH, Function, Step};
 
 /// A formula in y, ready to be evaluated with any [`Number`].
 #[derive(Clone, Debug, PartialEq)]
@@ -21,51 +24,8 @@ pub struct Formula {
     is_plain: bool,
 }
 
-/// What is wrong with the text of a formula.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FormulaFault {
-    /// The bytes of the text to mark.
-    pub place: Range<usize>,
-    /// What is wrong.
-    pub message: String,
-    /// What would be right.
-    pub help: &'static str,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Step {
-    Y,
-    Number(f64),
-    Neg,
-    Add,
-    Sub,
-    Mul,
-    Div,
-    /// A power with a whole exponent.
-    Powi(i32),
-    Call(Function),
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Function {
-    Sin,
-    Cos,
-    Tan,
-    Exp,
-    Ln,
-    Sqrt,
-    Abs,
-    Floor,
-    Min,
-    Max,
-    Pow,
-}
-
 /// The values that wait in most formulas.
 const FEW: usize = 4;
-
-/// The most values that wait for their operation, and so how deep a formula can be nested.
-const DEPTH: usize = 32;
 
 impl Formula {
     /// Reads a formula.
@@ -224,17 +184,17 @@ mod tests {
     #[test]
     fn faults_are_marked_where_they_are() {
         for (text, place, message) in [
-            ("2 + sni(y)", 4..7, "a formula does not know `sni`"),
-            ("2 sin(y)", 2..3, "an operator belongs here"),
-            ("2 + ", 4..4, "a value belongs here"),
-            ("", 0..0, "a value belongs here"),
-            ("(2 + y", 0..1, "a `(` without its `)`"),
-            ("2 + y)", 5..6, "a `)` without its `(`"),
+            ("2 + sni(y)", 4..7, "unknown name `sni` in a formula"),
+            ("2 sin(y)", 2..3, "expected an operator"),
+            ("2 + ", 4..4, "expected a value"),
+            ("", 0..0, "expected a value"),
+            ("(2 + y", 0..1, "unclosed `(`"),
+            ("2 + y)", 5..6, "unmatched `)`"),
             ("sin y", 0..3, "`sin` needs its argument in parentheses"),
-            ("min(y)", 0..3, "`min` takes 2 values, with commas between them"),
+            ("min(y)", 0..3, "`min` takes 2 values, separated by commas"),
             ("2 * 1.2.3", 4..9, "`1.2.3` is not a number"),
             ("2 * 1e999", 4..9, "`1e999` is not a number"),
-            ("ü", 0..2, "a formula does not know `ü`"),
+            ("ü", 0..2, "unknown name `ü` in a formula"),
         ] {
             let fault = Formula::parse(text).expect_err(text);
             assert_eq!((fault.place, fault.message.as_str()), (place, message), "{text}");

@@ -1,9 +1,20 @@
 //! From the text of a formula to its steps, operands first.
 
-use super::{DEPTH, FormulaFault, Function, Step};
+use super::step::{DEPTH, Function, Step};
 use crate::words;
 use std::f64::consts::PI;
 use std::ops::Range;
+
+/// What is wrong with the text of a formula.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FormulaFault {
+    /// The bytes of the text to mark.
+    pub place: Range<usize>,
+    /// What is wrong.
+    pub message: String,
+    /// What would be right.
+    pub help: &'static str,
+}
 
 /// The functions of a formula, by name, each with how many arguments it takes.
 const FUNCTIONS: [(&str, Function, usize); 10] = [
@@ -19,8 +30,8 @@ const FUNCTIONS: [(&str, Function, usize); 10] = [
     ("max", Function::Max, 2),
 ];
 
-const LANGUAGE: &str = "a formula is made of numbers, `y`, `pi`, + - * / ^, parentheses, and \
-    sin cos tan exp ln sqrt abs floor of one value, min max of two";
+const LANGUAGE: &str = "a formula consists of numbers, `y`, `pi`, + - * / ^, parentheses, and the functions \
+    sin cos tan exp ln sqrt abs floor of one value and min max of two";
 
 /// Reads the steps of a formula.
 pub(super) fn parse(text: &str) -> Result<Vec<Step>, FormulaFault> {
@@ -28,8 +39,8 @@ pub(super) fn parse(text: &str) -> Result<Vec<Step>, FormulaFault> {
     parser.sum()?;
     match parser.peek() {
         None => Ok(parser.steps),
-        Some(')') => Err(parser.fault_here("a `)` without its `(`")),
-        Some(_) => Err(parser.fault_here("an operator belongs here")),
+        Some(')') => Err(parser.fault_here("unmatched `)`")),
+        Some(_) => Err(parser.fault_here("expected an operator")),
     }
 }
 
@@ -135,14 +146,14 @@ impl<'t> Parser<'t> {
             }
             Some(c) if c.is_ascii_digit() || c == '.' => self.number(),
             Some(c) if c.is_alphabetic() => self.name(),
-            _ => Err(self.fault_here("a value belongs here")),
+            _ => Err(self.fault_here("expected a value")),
         }
     }
 
     fn close(&mut self, open: usize) -> Parsed {
         match self.take(&[')']) {
             Some(_) => Ok(()),
-            None => Err(self.fault(open..open + 1, "a `(` without its `)`")),
+            None => Err(self.fault(open..open + 1, "unclosed `(`")),
         }
     }
 
@@ -180,7 +191,7 @@ impl<'t> Parser<'t> {
                 self.arguments(word, place, *arguments)?;
                 self.steps.push(Step::Call(*function));
             }
-            _ => return Err(self.fault(place, format!("a formula does not know `{word}`"))),
+            _ => return Err(self.fault(place, format!("unknown name `{word}` in a formula"))),
         }
         Ok(())
     }
@@ -193,9 +204,7 @@ impl<'t> Parser<'t> {
         self.sum()?;
         for _ in 1..count {
             if self.take(&[',']).is_none() {
-                return Err(
-                    self.fault(place, format!("`{name}` takes {count} values, with commas between them"))
-                );
+                return Err(self.fault(place, format!("`{name}` takes {count} values, separated by commas")));
             }
             self.deeper()?;
             self.sum()?;
@@ -203,13 +212,13 @@ impl<'t> Parser<'t> {
         }
         if self.peek() == Some(',') {
             let takes = words::count(count, "value");
-            return Err(self.fault(place, format!("`{name}` takes {takes}, and here are more")));
+            return Err(self.fault(place, format!("`{name}` takes only {takes}")));
         }
         self.close(open)
     }
 
     fn deeper(&mut self) -> Parsed {
         self.depth += 1;
-        if self.depth >= DEPTH { Err(self.fault_here("this is nested too deeply")) } else { Ok(()) }
+        if self.depth >= DEPTH { Err(self.fault_here("formula nested too deeply")) } else { Ok(()) }
     }
 }

@@ -21,7 +21,7 @@
 //!
 //! Any solution of these inequalities is above the least one, and that is above all sums of finitely many branches. One is
 //! looked for from below, and taken when it solves them as it stands. Where mirrors and glass give on as much light as
-//! they get there is none: then nothing is left out, and [`MAX_RAYS`](crate::render::trace::MAX_RAYS) ends what the distance does
+//! they get there is none: then nothing is left out, and [`MAX_RAYS`](crate::render::limits::MAX_RAYS) ends what the distance does
 //! not.
 //!
 //! **What is left out.** A ray of a camera may leave out [`FAINT`] in all, 1/1024 of a level. That is shared out among the
@@ -35,11 +35,12 @@
 //! Where panes and mirrors give on nearly all that they get, that takes very many rays. From the [`MANY`]th on, a branch is
 //! also left out where `weight * beyond / d < FAINT` by itself.
 
-use crate::geometry::bounds::SLACK;
-use crate::render::trace::MAX_DIST;
+use crate::geometry::bounds::{self, SLACK};
+use crate::geometry::ray::Side;
+use crate::render::culling;
+use crate::render::limits::MAX_DIST;
 use crate::scene::model::{Model, Object};
 use crate::world::accuracy::Accuracy;
-use crate::world::hittable::Side;
 use crate::world::material::{Look, Rgb};
 use glam::DVec3;
 
@@ -192,8 +193,9 @@ impl Scene {
         let (shiny, matt): (Vec<_>, Vec<_>) =
             (0..surfaces.len()).partition(|index| surfaces[*index].goes_on());
         let is_few = shiny.len() <= PAIRS;
-        let lies =
-            |of: usize, object: usize| if is_few { lies(&objects[of], &objects[object]) } else { [true; 2] };
+        let lies = |of: usize, object: usize| {
+            if is_few { lies(&objects[of], &objects[object]) } else { [true; 2] }
+        };
         let ends = shiny.iter().map(|of| {
             let sent = matt
                 .iter()
@@ -351,7 +353,7 @@ fn meets_itself(object: &Object, side: Side) -> bool {
 fn lies(of: &Object, object: &Object) -> Sides<bool> {
     let Some([point, normal]) = of.shape.plane() else { return [true; 2] };
     let size = |at: DVec3| at.abs().max_element();
-    let (middle, reach) = match (object.shape.bounds(), object.shape.plane()) {
+    let (middle, reach) = match (culling::bounds(object), object.shape.plane()) {
         (Some(bounds), _) => (bounds.middle(), bounds.half_size()),
         (None, Some([other, upright])) if upright == normal || upright == -normal => (other, DVec3::ZERO),
         _ => return [true; 2],
@@ -360,6 +362,13 @@ fn lies(of: &Object, object: &Object) -> Sides<bool> {
     let reach =
         normal.abs().dot(reach) + 10.0 * SLACK * (size(middle) + size(reach) + size(point) + MAX_DIST);
     [distance > -reach, distance < reach]
+}
+
+/// How far from a point all of an object is, at least.
+fn clearance(object: &Object, from: DVec3) -> f64 {
+    let by_bounds =
+        || bounds::clearance(from, culling::bounds(object), |region| culling::is_clear_of(object, region));
+    object.shape.clearance(from).unwrap_or_else(by_bounds)
 }
 
 /// The largest magnitude of a channel.
@@ -406,7 +415,7 @@ fn own(model: &Model, object: &Object, look: &Look, any_light_comes: bool) -> f6
         }
         let Some(sent) = light.value.brightest().filter(|_| any_light_comes) else { return f64::INFINITY };
         // A light with a size is seen on a disc across the way to its middle: no nearer than that.
-        let scattered = match object.shape.clearance(light.value.location()) {
+        let scattered = match clearance(object, light.value.location()) {
             _ if diffuse == Rgb::ZERO => Rgb::ZERO,
             0.0 => return f64::INFINITY,
             clearance => diffuse / clearance,

@@ -1,15 +1,16 @@
 //! Which rays of a packet something blocks.
 
-use super::Tracer;
-use super::room::{Vectors, room};
+use super::arrays::{Vectors, room};
+use super::context::Tracer;
 use super::search::{Start, exact, invert};
-use super::shade::Surface;
+use super::surface::Surface;
 use crate::geometry::bounds::{self, Bounds};
 use crate::geometry::packet::{Rays, parts};
+use crate::geometry::ray::Side;
 use crate::render::bundles::PART;
+use crate::render::culling;
 use crate::render::tree::Visitor;
 use crate::render::watch::{Count, Watch};
-use crate::world::hittable::Side;
 use std::mem::take;
 use std::ops::Range;
 
@@ -80,8 +81,9 @@ impl<W: Watch> Block<'_, '_, '_, W> {
             if !self.tracer.may_meet(self.left(), *index) {
                 continue;
             }
-            let shape = &*self.tracer.model.objects[*index].shape;
-            if bounds.is_some_and(|bounds| !bounds.overlaps(&self.region)) || shape.is_clear_of(&self.region)
+            let object = &self.tracer.model.objects[*index];
+            if bounds.is_some_and(|bounds| !bounds.overlaps(&self.region))
+                || culling::is_clear_of(object, &self.region)
             {
                 self.tracer.watch.count(Count::Culled(*index, self.len));
                 continue;
@@ -111,11 +113,11 @@ impl<W: Watch> Block<'_, '_, '_, W> {
     fn test(&mut self, index: usize) {
         let Leaving { rays, ends, surface, sides, .. } = *self.leaving;
         let (rays, ends) = (rays.part(self.part.clone()), &ends[self.part.clone()]);
-        let shape = &*self.tracer.model.objects[index].shape;
+        let shape = &self.tracer.model.objects[index].shape;
         let sides = (index == surface.index).then(|| &sides[self.part.clone()]);
         self.tracer.watch.count(Count::Tested(index, self.len));
         let (blocked, doubt) = (&mut self.blocked[self.part.clone()], &mut self.doubt[self.part.clone()]);
-        if shape.block(self.tracer.cpu, rays, sides, ends, blocked, doubt) {
+        if shape.packets().occluded(self.tracer.cpu, rays, sides, ends, blocked, doubt) {
             for lane in 0..ends.len() {
                 if doubt[lane] != 0 {
                     let leaves = sides.map(|sides| sides[lane]);

@@ -1,16 +1,16 @@
 //! Rays that go together.
 
-use super::MAX_RAYS;
-use super::light;
-use super::room::{Vectors, pick, room};
-use super::shade::Surface;
-use crate::geometry::packet::{Rays, STEP, WIDE};
+use super::arrays::{Vectors, pick, room};
+use super::light::{self, Worth};
+use super::surface::{Errors, Onward, Surface};
+use crate::geometry::packet::{Rays, WIDE};
+use crate::geometry::ray::Side;
 use crate::geometry::sight::Sight;
+use crate::render::limits::MAX_RAYS;
 use crate::render::plan::depth::{Branch, Depth};
 use crate::simd::cpu::Cpu;
+use crate::simd::soa::STEP;
 use crate::world::camera::{self, Camera};
-use crate::world::coincidence;
-use crate::world::hittable::Side;
 use glam::DVec3;
 use std::array;
 use std::mem::swap;
@@ -50,49 +50,6 @@ pub(super) struct Group {
     /// The cosines of the angles at which those came there from which they go on, and how far the origin of any may be from
     /// the point that it stands for.
     pub cosines: Vec<f64>,
-    pub errors: Errors,
-}
-
-/// What rays are worth that have come the same way, from object to object.
-#[derive(Clone, Copy)]
-pub(super) struct Worth {
-    /// What their light is multiplied by on its way, at most.
-    pub weight: f64,
-    /// The part that each may leave out of what its camera ray may.
-    pub share: f64,
-}
-
-/// How far points where rays have come to a surface may be from where they should be: that of one is only computed where
-/// it is asked for.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Errors {
-    /// How large the coordinates are that the points are computed from, the rays' ways apart; nothing where errors make no
-    /// difference.
-    pub reach: Option<f64>,
-    /// The most that any may be off, in world units.
-    pub most: f64,
-}
-
-impl Errors {
-    /// Of points that are what they are.
-    pub const NONE: Self = Self { reach: None, most: 0.0 };
-
-    /// That of one of some points, in world units.
-    pub fn of(&self, travelled: &[f64], cosines: &[f64], lane: usize) -> f64 {
-        self.reach.map_or(0.0, |reach| coincidence::error_after(travelled[lane], reach, cosines[lane]))
-    }
-}
-
-/// Of a group's rays, by their lanes.
-pub(super) struct Onward<'o> {
-    pub points: &'o Vectors,
-    pub dir: &'o Vectors,
-    pub travelled: &'o [f64],
-    /// The object that they leave.
-    pub leaves: usize,
-    pub sides: &'o [Side],
-    /// The cosines of the angles at which the rays came there, and how far the points may be from where they should be.
-    pub cosines: &'o [f64],
     pub errors: Errors,
 }
 

@@ -1,33 +1,19 @@
 //! What the lights of a scene do at the places of a surface.
 
-use super::Tracer;
+use super::arrays::{Vectors, room};
+use super::context::Tracer;
 use super::group::Group;
 use super::light::{self, Colours, Lit, Looks};
-use super::room::{Vectors, room};
-use super::shade::Surface;
-use super::shadow::{Shadows, Ways};
+use super::scratch::Lighting;
+use super::shadow::Ways;
+use super::surface::Surface;
 use crate::geometry::bounds::{self, Bounds};
 use crate::render::watch::{Event, Outcome, Watch};
 use crate::scene::model::Object;
 use crate::world::facing::{Facing, Places};
-use crate::world::hittable::Light;
 use crate::world::material::Rgb;
+use crate::world::packets::light::PacketLight;
 use glam::DVec2;
-
-/// Room for what one light does after the other.
-#[derive(Default)]
-pub(super) struct Lighting {
-    diffuse: Vectors,
-    /// Where each place sees the light, if that is no point.
-    lights: Vectors,
-    toward: Vectors,
-    falloffs: Vec<f64>,
-    ends: Vec<f64>,
-    emissivity: Vectors,
-    shines: Vec<u64>,
-    blocked: Vec<u64>,
-    shadows: Shadows,
-}
 
 impl<W: Watch> Tracer<'_, '_, W> {
     /// Adds what the lights do.
@@ -146,7 +132,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
     /// the sample has it.
     fn places(
         &self,
-        light: &dyn Light,
+        light: &dyn PacketLight,
         index: usize,
         group: &Group,
         surface: &Surface,

@@ -1,11 +1,20 @@
 //! The arithmetic of shading, for all places of a packet at once.
 
-use super::MAX_RAYS;
-use super::group::Worth;
-use crate::geometry::packet::{View, ViewMut, is_any};
+use crate::render::limits::MAX_RAYS;
 use crate::render::plan::depth::{Branch, MANY};
 use crate::simd::cpu::kernels;
+use crate::simd::soa::{View, ViewMut};
 use crate::world::material::{Look, Rgb};
+use crate::world::packets::shader::is_any;
+
+/// What rays are worth that have come the same way, from object to object.
+#[derive(Clone, Copy)]
+pub(super) struct Worth {
+    /// What their light is multiplied by on its way, at most.
+    pub weight: f64,
+    /// The part that each may leave out of what its camera ray may.
+    pub share: f64,
+}
 
 /// Of rays that may cost so few more, [`MANY`] have been followed.
 pub(super) const FEW: u32 = MAX_RAYS as u32 - MANY;

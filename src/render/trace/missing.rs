@@ -1,11 +1,11 @@
 //! What is missing where a pixel has cost as many rays as it may.
 
-use super::Tracer;
+use super::arrays::room;
+use super::context::Tracer;
+use super::found::Found;
 use super::group::Group;
 use super::light;
-use super::room::room;
-use super::search::Found;
-use super::shade::Surface;
+use super::surface::Surface;
 use crate::render::watch::Watch;
 
 impl<W: Watch> Tracer<'_, '_, W> {
@@ -59,12 +59,13 @@ impl<W: Watch> Tracer<'_, '_, W> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::render::limits::MAX_RAYS;
     use crate::render::plan::Plan;
     use crate::render::plan::depth::{Depth, FAINT};
     use crate::render::renderer::Renderer;
     use crate::render::tally::Tally;
-    use crate::render::trace::room::Vectors;
-    use crate::render::trace::{MAX_RAYS, Rooms};
+    use crate::render::trace::Rooms;
+    use crate::render::trace::arrays::Vectors;
     use crate::scene::model::Model;
     use crate::scene::reader;
     use crate::scene::registry::Registry;
@@ -83,22 +84,18 @@ mod tests {
         }
     }
 
-    /// The scene of which nothing is left out.
-    fn whole(entities: &str) -> Model {
-        let model = model(entities);
-        let plan = Plan { depth: Depth::new(&model).map(Depth::uncut), ..Plan::new(&model) };
-        model.plan.set(plan).ok().expect("no plan yet");
-        model
+    /// A plan by which nothing is left out.
+    fn whole(model: &Model) -> Plan<'_> {
+        Plan { depth: Depth::new(model).map(Depth::uncut), ..Plan::new(model) }
     }
 
     /// The colours of all pixels for so many rays each, how much they lack at most, and what that took.
-    fn seen(model: &Model, rays: u32) -> (Vec<(Rgb, f64)>, Tally) {
+    fn seen(plan: &Plan, rays: u32) -> (Vec<(Rgb, f64)>, Tally) {
         let (mut rooms, mut tally, mut colours) = (Rooms::default(), Tally::default(), Vectors::default());
-        let mut tracer = Tracer::new(model, Cpu::best(), &mut rooms, &mut tally);
+        let mut tracer = Tracer::new(plan, Cpu::best(), &mut rooms, &mut tally);
         let pixels = (0..SIDES[1]).flat_map(|y| (0..SIDES[0]).map(move |x| (x, y)));
         let one = |(x, y): (usize, usize)| {
-            let mut group =
-                Group::primary(&model.camera.value.sight(x as f64, y as f64), model.plan().depth.as_ref());
+            let mut group = Group::primary(&plan.camera.sight(x as f64, y as f64), plan.depth.as_ref());
             group.budget.fill(rays);
             tracer.colours(&mut group, &mut colours);
             (colours.get(0), tracer.missing(0))
@@ -125,8 +122,8 @@ mod tests {
     /// nothing is left out.
     fn panes(specular: &str) -> (f64, f64) {
         let panes = PANES.replace("0.1", specular);
-        let (cut, few) = seen(&model(&panes), MAX_RAYS as u32);
-        let (all, many) = deep(|| seen(&whole(&panes), u32::MAX));
+        let (cut, few) = seen(&Plan::new(&model(&panes)), MAX_RAYS as u32);
+        let (all, many) = deep(|| seen(&whole(&model(&panes)), u32::MAX));
         assert!(cut.iter().all(|(_, missing)| *missing == 0.0));
         let error = cut.iter().zip(&all).map(|((cut, _), (all, _))| error(*cut, *all)).fold(0.0, f64::max);
         (error, many.all_rays() as f64 / few.all_rays() as f64)
@@ -204,8 +201,8 @@ mod tests {
     fn what_is_left_out_of_a_look_is_below_a_1024th_of_a_level() {
         let mut saved = 0;
         for scene in scenes(60, 0.55).into_iter().chain(scenes(60, 0.8)) {
-            let (cut, few) = seen(&model(&scene), 1 << 30);
-            let (all, many) = deep(|| seen(&whole(&scene), 1 << 20));
+            let (cut, few) = seen(&Plan::new(&model(&scene)), 1 << 30);
+            let (all, many) = deep(|| seen(&whole(&model(&scene)), 1 << 20));
             saved += many.all_rays() - few.all_rays();
             for ((cut, missing), (all, unseen)) in cut.into_iter().zip(all) {
                 assert_eq!([missing, unseen], [0.0; 2], "{scene}");
@@ -223,8 +220,8 @@ mod tests {
         };
         let balls: String = (0..100).map(ball).collect();
         let scene = format!("{PANES} material m {{ ambient 1 0.5 2 specular 0.3 transparency 0.3 }} {balls}");
-        let (cut, few) = seen(&model(&scene), 1 << 30);
-        let (all, many) = deep(|| seen(&whole(&scene), 1 << 30));
+        let (cut, few) = seen(&Plan::new(&model(&scene)), 1 << 30);
+        let (all, many) = deep(|| seen(&whole(&model(&scene)), 1 << 30));
         for ((cut, _), (all, _)) in cut.into_iter().zip(all) {
             assert!(error(cut, all) < FAINT, "{cut} for {all}");
         }
@@ -234,10 +231,10 @@ mod tests {
     #[test]
     fn what_a_cap_cuts_is_no_more_than_is_said() {
         for scene in scenes(60, 0.6) {
-            let (all, _) = deep(|| seen(&whole(&scene), 1 << 20));
+            let (all, _) = deep(|| seen(&whole(&model(&scene)), 1 << 20));
             let cut = model(&scene);
             for rays in [2, 3, 5, 9, 17, 40, 100] {
-                for ((cut, missing), (all, unseen)) in seen(&cut, rays).0.into_iter().zip(&all) {
+                for ((cut, missing), (all, unseen)) in seen(&Plan::new(&cut), rays).0.into_iter().zip(&all) {
                     assert_eq!(*unseen, 0.0, "{scene}");
                     let error = error(cut, *all);
                     assert!(error <= missing + FAINT, "{error} off, of {missing} at {rays} rays\n{scene}");

@@ -4,109 +4,86 @@
 //! object go on together, as a smaller packet, and so do their shadows (`shadow`), what they see through glass and in
 //! mirrors (`shade`). One ray is a packet of one. A ray's colour does not depend on which others go with it.
 
+mod arrays;
 mod block;
+mod context;
+mod found;
 mod group;
 mod illuminate;
 mod light;
 mod missing;
+mod order;
 mod passage;
-mod room;
+mod scratch;
 mod search;
 mod shade;
 mod shadow;
+mod surface;
 
-use crate::geometry::packet::{View, WIDE};
+pub(crate) use context::Tracer;
+pub(crate) use scratch::Rooms;
+
+use crate::geometry::packet::WIDE;
 use crate::geometry::sight::Sight;
 use crate::render::plan::Plan;
 use crate::render::watch::{Count, Event, Hit, Kind, Purpose, Watch};
-use crate::scene::model::Model;
 use crate::simd::cpu::Cpu;
-use crate::world::accuracy::Accuracy;
+use crate::simd::soa::View;
 use crate::world::camera;
 use crate::world::material::Rgb;
 use crate::world::sample::Sample;
+use arrays::Vectors;
+use found::Found;
 use group::Group;
-pub(crate) use room::Rooms;
-use room::{Level, Primary, Vectors, pick};
-use search::Found;
-
-/// Light that has travelled farther than this is black.
-pub(crate) const MAX_DIST: f64 = 20.0;
-
-/// The rays that one camera ray may cost. Mirrors that nearly touch would otherwise reflect each other for ever;
-/// what lies beyond is black.
-pub(crate) const MAX_RAYS: usize = 20_000;
-
-/// The rays of a packet where there are few.
-const NARROW: usize = 8;
-
-/// From so many reflections on, packets are narrow: a deep hall of mirrors would fill the memory with wide ones.
-const DEEP: usize = 24;
+use scratch::Primary;
 
 /// The colour of a pixel, before it is clamped to what a picture can show: `x` counts from the left and `y`
 /// from the bottom.
-pub fn pixel(model: &Model, x: usize, y: usize) -> Rgb {
-    watch_pixel(model, x, y, &mut ())
+pub fn pixel(plan: &Plan, x: usize, y: usize) -> Rgb {
+    watch_pixel(plan, x, y, &mut ())
 }
 
 /// As [`pixel`], and `watch` sees how it comes about.
-pub fn watch_pixel(model: &Model, x: usize, y: usize, watch: &mut impl Watch) -> Rgb {
-    let camera = &model.camera.value;
+pub fn watch_pixel(plan: &Plan, x: usize, y: usize, watch: &mut impl Watch) -> Rgb {
+    let camera = &plan.camera;
     let colours = camera
         .places(x, y)
-        .map(|(place, sample)| watch_colour(model, &camera.sight(place.x, place.y), sample, watch));
+        .map(|(place, sample)| watch_colour(plan, &camera.sight(place.x, place.y), sample, watch));
     colours.sum::<Rgb>() / f64::from(camera.samples)
 }
 
 /// The colour that a ray sees, before it is clamped. Lights with a size are met where `sample` says, or in their middle.
-pub fn colour(model: &Model, sight: &Sight, sample: Option<Sample>) -> Rgb {
-    watch_colour(model, sight, sample, &mut ())
+pub fn colour(plan: &Plan, sight: &Sight, sample: Option<Sample>) -> Rgb {
+    watch_colour(plan, sight, sample, &mut ())
 }
 
 /// As [`colour`], and `watch` sees how it comes about.
-pub fn watch_colour(model: &Model, sight: &Sight, sample: Option<Sample>, watch: &mut impl Watch) -> Rgb {
+pub fn watch_colour(plan: &Plan, sight: &Sight, sample: Option<Sample>, watch: &mut impl Watch) -> Rgb {
     let (mut rooms, mut colours) = (Rooms::default(), Vectors::default());
     rooms.samples.extend(sample);
-    let mut tracer = Tracer::new(model, Cpu::best(), &mut rooms, watch);
-    let depth = tracer.plan.depth.as_ref();
+    let mut tracer = Tracer::new(plan, Cpu::best(), &mut rooms, watch);
+    let depth = plan.depth.as_ref();
     tracer.colours(&mut Group::primary(sight, depth), &mut colours);
     colours.get(0)
 }
 
 /// What a ray from the viewer meets first.
-pub fn first_hit<'m>(model: &'m Model, sight: &Sight) -> Option<Hit<'m>> {
+pub fn first_hit<'m>(plan: &Plan<'m>, sight: &Sight) -> Option<Hit<'m>> {
     let (mut rooms, mut nobody) = (Rooms::default(), ());
-    let mut tracer = Tracer::new(model, Cpu::best(), &mut rooms, &mut nobody);
+    let mut tracer = Tracer::new(plan, Cpu::best(), &mut rooms, &mut nobody);
     let mut group = Group::primary(sight, None);
     let (mut found, mut distances) = (Found::default(), Vec::new());
     tracer.closest(&mut group, None, &mut found);
     let object = (found.met[0] as usize).checked_sub(1)?;
     tracer.settle(&group, (&found.near, &found.far), object, &mut distances);
     let (distance, ray) = (distances[0], group.rays().get(0));
-    Some(Hit { index: object, object: &model.objects[object], distance, point: ray.at(distance) })
+    Some(Hit { index: object, object: &plan.model.objects[object], distance, point: ray.at(distance) })
 }
 
-/// Traces packets of rays through a model.
-pub(crate) struct Tracer<'m, 'w, W> {
-    model: &'m Model,
-    plan: &'m Plan,
-    cpu: Cpu,
-    /// How far along an axis the viewer is from the world's origin, in world units.
-    viewer: f64,
-    /// How many mirrors and panes of glass the present packet has behind it.
-    depth: usize,
-    rooms: &'w mut Rooms,
-    watch: &'w mut W,
-}
-
-impl<'m, 'w, W: Watch> Tracer<'m, 'w, W> {
-    pub(crate) fn new(model: &'m Model, cpu: Cpu, rooms: &'w mut Rooms, watch: &'w mut W) -> Self {
-        Self { model, plan: model.plan(), cpu, viewer: 0.0, depth: 0, rooms, watch }
-    }
-
+impl<W: Watch> Tracer<'_, '_, W> {
     /// The colours of some pixels, up to [`WIDE`] rays of which are traced together.
     pub(crate) fn pixels(&mut self, pixels: &[[usize; 2]]) -> View<'_> {
-        let camera = &self.model.camera.value;
+        let camera = &self.plan.camera;
         let depth = self.plan.depth.as_ref();
         let mut room = self.rooms.primary.take().unwrap_or_default();
         let Primary { group, seen, colours } = &mut *room;
@@ -171,46 +148,6 @@ impl<'m, 'w, W: Watch> Tracer<'m, 'w, W> {
         }
         self.trace(group, colours);
     }
-
-    /// Whether the notes' own methods are asked for.
-    fn is_classic(&self) -> bool {
-        self.model.camera.value.accuracy == Accuracy::Classic
-    }
-
-    /// The most rays of a packet that goes on from the present one.
-    fn most(&self) -> usize {
-        if self.depth < DEEP { WIDE } else { NARROW }
-    }
-
-    /// The light that comes back along the rays of a packet.
-    fn trace(&mut self, group: &mut Group, colours: &mut Vectors) {
-        let mut level = self.rooms.levels.pop().unwrap_or_default();
-        let Level { found, parts, part, near, far, shading, seen } = &mut *level;
-        self.closest(group, None, found);
-        let met = &found.met[..group.len];
-        if met[0] != 0 && search::is_one(self.cpu, met) {
-            self.shade(group, (&found.near, &found.far), met[0] as usize - 1, shading, colours);
-        } else {
-            colours.room(group.padded());
-            parts.begin(met);
-            while let Some((id, lanes)) = parts.next() {
-                let Some(object) = (id as usize).checked_sub(1) else {
-                    lanes.iter().for_each(|lane| colours.set(usize::from(*lane), Rgb::ZERO));
-                    continue;
-                };
-                part.pick(group, lanes);
-                pick(near, &found.near, lanes, part.padded());
-                pick(far, &found.far, lanes, part.padded());
-                self.shade(part, (near, far), object, shading, seen);
-                colours.put(seen, lanes);
-                group.pay(part, lanes);
-            }
-        }
-        if W::SEES {
-            self.watch.see(Event::Colour(colours.get(0)));
-        }
-        self.rooms.levels.push(level);
-    }
 }
 
 #[cfg(test)]
@@ -227,17 +164,17 @@ mod tests {
         sphere ball { material matt center 4 1 -3 radius 1 }";
 
     /// What rays along the scene's lowest row of pixels see that may cost so many rays each.
-    fn seen(model: &Model, pixels: &[usize], budgets: &[u32]) -> Vec<Rgb> {
+    fn seen(plan: &Plan, pixels: &[usize], budgets: &[u32]) -> Vec<Rgb> {
         let (mut rooms, mut nobody) = (Rooms::default(), ());
         rooms.places = [vec![0.0; WIDE], vec![0.0; WIDE]];
         for (lane, column) in pixels.iter().enumerate() {
             rooms.places[0][lane] = *column as f64;
         }
         let (mut group, mut colours) = (Group::default(), Vectors::default());
-        let depth = model.plan().depth.as_ref();
-        group.look(Cpu::best(), &model.camera.value, depth, &mut rooms.places, pixels.len());
+        let depth = plan.depth.as_ref();
+        group.look(Cpu::best(), &plan.camera, depth, &mut rooms.places, pixels.len());
         group.budget[..budgets.len()].copy_from_slice(budgets);
-        Tracer::new(model, Cpu::best(), &mut rooms, &mut nobody).colours(&mut group, &mut colours);
+        Tracer::new(plan, Cpu::best(), &mut rooms, &mut nobody).colours(&mut group, &mut colours);
         (0..pixels.len()).map(|lane| colours.get(lane)).collect()
     }
 
@@ -245,12 +182,13 @@ mod tests {
     fn what_a_ray_sees_does_not_depend_on_what_others_may_cost() {
         let registry = Registry::get().expect("sound types");
         let model = reader::read(registry, "scene", Path::new(""), SCENE, None).expect("a sound scene").model;
+        let plan = Plan::new(&model);
         let pixels: Vec<_> = (0..8).collect();
         for budgets in [[1; 8], [9; 8], [9, 1, 9, 9, 1, 9, 9, 9], [1, 9, 1, 1, 9, 1, 1, 0]] {
             let alone =
-                pixels.iter().zip(budgets).map(|(pixel, budget)| seen(&model, &[*pixel], &[budget])[0]);
-            assert_eq!(seen(&model, &pixels, &budgets), alone.collect::<Vec<_>>(), "{budgets:?}");
+                pixels.iter().zip(budgets).map(|(pixel, budget)| seen(&plan, &[*pixel], &[budget])[0]);
+            assert_eq!(seen(&plan, &pixels, &budgets), alone.collect::<Vec<_>>(), "{budgets:?}");
         }
-        assert!(seen(&model, &[0], &[1])[0] != Rgb::ZERO, "without a ray to the light it shines");
+        assert!(seen(&plan, &[0], &[1])[0] != Rgb::ZERO, "without a ray to the light it shines");
     }
 }

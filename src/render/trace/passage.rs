@@ -1,31 +1,14 @@
 //! How much of a light comes through glass.
 
-use super::Tracer;
-use super::group::{Group, Parts};
-use super::room::{Vectors, list, pick, room};
-use super::search::Found;
-use super::shade::Surface;
+use super::arrays::{Vectors, list, pick, room};
+use super::context::Tracer;
+use super::group::Group;
+use super::scratch::Passage;
 use super::shadow::Ways;
+use super::surface::Surface;
+use crate::geometry::ray::{Ray, Side};
 use crate::render::watch::{Count, Event, Kind, Purpose, Watch};
-use crate::world::hittable::{Ray, Side};
 use crate::world::material::Rgb;
-
-/// Rays on their way to a light.
-#[derive(Default)]
-pub(super) struct Passage {
-    group: Group,
-    ends: Vec<f64>,
-    /// The part of each channel that has come through.
-    tint: Vectors,
-    /// The opaque object that stands in the way, by its index and 1; 0 where there is none.
-    blocker: Vec<u64>,
-    found: Found,
-    parts: Parts,
-    /// Of those that meet the same pane.
-    near: Vec<f64>,
-    far: Vec<f64>,
-    distances: Vec<f64>,
-}
 
 impl<W: Watch> Tracer<'_, '_, W> {
     /// Takes from the light that shines on some places what does not come through, in a scene with glass. Tells what

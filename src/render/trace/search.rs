@@ -1,52 +1,25 @@
 //! What the rays of a packet meet first.
 
-use super::Tracer;
+use super::arrays::{Vectors, room};
+use super::context::Tracer;
+use super::found::Found;
 use super::group::Group;
-use super::room::{Vectors, room};
+use super::order;
 use crate::geometry::bounds::{self, Bounds};
-use crate::geometry::packet::{Nearest, Rays, parts};
+use crate::geometry::packet::{Rays, parts};
+use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
 use crate::geometry::sight::Sight;
 use crate::numeric::interval::{Interval, Wide};
 use crate::render::bundles::{self, PART};
+use crate::render::culling;
 use crate::render::tree::Visitor;
 use crate::render::watch::{Count, Event, Hit, Reason, Watch};
-use crate::simd::cpu::{Cpu, kernels};
+use crate::simd::cpu::kernels;
+use crate::world::any_shape::AnyShape;
 use crate::world::certify::{self, Enclosure, Precision};
-use crate::world::coincidence;
-use crate::world::hittable::{Bracket, Hittable, MISS, Ray, Side, Span};
+use crate::world::coincidence::CLOSE;
 use std::mem::take;
 use std::ops::Range;
-
-/// What each ray of a packet meets first, and between which distances.
-#[derive(Default)]
-pub(super) struct Found {
-    pub near: Vec<f64>,
-    pub far: Vec<f64>,
-    /// The object's index and 1; 0 for none.
-    pub met: Vec<u64>,
-    doubt: Vec<u64>,
-}
-
-impl Found {
-    /// Nothing yet, before these ends, and counts the rays. Those that have cost as many as they may end where they
-    /// begin; tells whether any has.
-    fn begin(&mut self, cpu: Cpu, budget: &mut [u32], count: usize, ends: Option<&[f64]>) -> bool {
-        let (near, far) = (room(&mut self.near, count), room(&mut self.far, count));
-        // What is in doubt is written by each shape that is looked at.
-        room(&mut self.doubt, count);
-        begin(cpu, &mut budget[..count], ends, near, far, room(&mut self.met, count))
-    }
-
-    /// Of some of the rays.
-    fn part(&mut self, range: Range<usize>) -> Nearest<'_> {
-        Nearest {
-            near: &mut self.near[range.clone()],
-            far: &mut self.far[range.clone()],
-            met: &mut self.met[range.clone()],
-            doubt: &mut self.doubt[range],
-        }
-    }
-}
 
 impl<'m, W: Watch> Tracer<'m, '_, W> {
     /// What each ray meets first before its end, if it has one. A ray that has cost as many as it may meets nothing.
@@ -72,26 +45,29 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
     /// What one ray meets first, with all that leads to it told.
     fn closest_seen(&mut self, group: &Group, found: &mut Found) {
         let start = self.start(group, 0);
+        let mut nearest = found.far[0];
         self.watch.see(Event::Search(&start.ray));
         for index in 0..self.model.objects.len() {
-            let shape = &*self.model.objects[index].shape;
+            let shape = &self.model.objects[index].shape;
             let leaves = start.leaves(shape, group.sides_of(index).map(|sides| sides[0]));
             if leaves.is_some_and(|side| !shape.meets_itself(side)) {
                 self.watch.see(Event::Tested(index, None));
                 continue;
             }
-            let distance = exact(shape, &start, leaves, MISS);
-            let is_first = self.is_first(&start, (index, distance), (found.met[0], found.far[0]));
+            let (distance, bracket) = located(shape, &start, leaves, MISS);
+            let is_first = self.is_first(&start, (index, distance), (found.met[0], nearest));
             self.watch.see(Event::Tested(index, Some(if is_first { distance } else { MISS })));
             if is_first {
-                (found.near[0], found.far[0], found.met[0]) = (distance, distance, index as u64 + 1);
+                // As a packet has it, for the hit to be finished in the same way.
+                (found.near[0], found.far[0], found.met[0]) = (bracket.near, bracket.far, index as u64 + 1);
+                nearest = distance;
             }
         }
         let hit = (found.met[0] as usize).checked_sub(1).map(|index| Hit {
             index,
             object: &self.model.objects[index],
-            distance: found.far[0],
-            point: start.ray.at(found.far[0]),
+            distance: nearest,
+            point: start.ray.at(nearest),
         });
         self.watch.see(Event::Met(hit.as_ref()));
     }
@@ -99,14 +75,14 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
     /// One ray of a packet.
     fn start(&self, group: &Group, lane: usize) -> Start {
         let [x, y] = &self.rooms.places;
-        let sight = group.looks.then(|| self.model.camera.value.sight(x[lane], y[lane])).or(group.sight);
+        let sight = group.looks.then(|| self.plan.camera.sight(x[lane], y[lane])).or(group.sight);
         Start { ray: group.rays().get(lane), error: group.error(lane), sight }
     }
 
     /// Whether rays may meet an object at all: to most that they leave they do not come back.
     pub(super) fn may_meet(&self, left: Option<(usize, &[Side])>, index: usize) -> bool {
         let Some((_, sides)) = left.filter(|(object, _)| *object == index) else { return true };
-        let shape = &*self.model.objects[index].shape;
+        let shape = &self.model.objects[index].shape;
         match [Side::Outside, Side::Inside].map(|side| shape.meets_itself(side)) {
             [true, true] => true,
             [false, false] => false,
@@ -121,10 +97,10 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
         if distance == MISS {
             return false;
         }
-        let shape = |index: usize| &*self.model.objects[index].shape;
+        let shape = |index: usize| &self.model.objects[index].shape;
         let (one, other) = ((shape(index), distance), (shape(rival), far));
-        let is_before = coincidence::is_before(&start.ray, start.error, one, other)
-            .or_else(|| certify::is_before(one.0, other.0, start.sight.as_ref()?));
+        let is_before = order::is_before(&start.ray, start.error, one, other)
+            .or_else(|| order::is_certainly_before(one.0, other.0, start.sight.as_ref()?));
         is_before.unwrap_or(index < rival)
     }
 
@@ -140,9 +116,9 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
         let (near, far, distances) = (&near[..count], &far[..count], room(distances, count));
         distances.copy_from_slice(near);
         if near[..len] != far[..len] {
-            let shape = &*self.model.objects[object].shape;
+            let shape = &self.model.objects[object].shape;
             let sides = group.sides_of(object);
-            shape.distances(self.cpu, group.rays(), sides, (near, far), distances);
+            shape.packets().refine(self.cpu, group.rays(), sides, (near, far), distances);
             if keep_in_brackets(self.cpu, near, far, distances) {
                 for lane in 0..len {
                     if distances[lane].is_nan() {
@@ -172,7 +148,7 @@ pub(super) struct Start {
 impl Start {
     /// The side of a shape that the ray leaves: of its own object's it is known; another one that lies through the same
     /// point is left, too.
-    fn leaves(&self, shape: &dyn Hittable, own: Option<Side>) -> Option<Side> {
+    fn leaves(&self, shape: &AnyShape, own: Option<Side>) -> Option<Side> {
         let Ray { origin, dir } = self.ray;
         let touched = || Side::seen_along(dir, shape.normal(origin)).opposite();
         own.or_else(|| (self.error > 0.0 && shape.touches(origin, self.error)).then(touched))
@@ -180,29 +156,32 @@ impl Start {
 }
 
 /// A shape's exact distance on one ray, which leaves it on a side if it is the object that the packet leaves.
-pub(super) fn exact(shape: &dyn Hittable, start: &Start, leaves: Option<Side>, far: f64) -> f64 {
+pub(super) fn exact(shape: &AnyShape, start: &Start, leaves: Option<Side>, far: f64) -> f64 {
     located(shape, start, leaves, far).0
 }
 
 /// A shape's exact distance, as [`exact`] gives it, and a bracket of that and of the distance of the ray before anything
 /// was rounded.
-fn located(shape: &dyn Hittable, start: &Start, leaves: Option<Side>, far: f64) -> (f64, Bracket) {
+fn located(shape: &AnyShape, start: &Start, leaves: Option<Side>, far: f64) -> (f64, Bracket) {
     let known = |distance| (distance, Bracket::exactly(distance));
     match start.leaves(shape, leaves) {
         Some(side) if !shape.meets_itself(side) => return (MISS, Bracket::MISS),
         None => {}
         leaves => return known(shape.distance(&start.ray, &Span { far, leaves, ..Span::RAY })),
     }
-    let distance = shape.distance(&start.ray, &Span { far, ..Span::RAY });
-    let Some(sight) = &start.sight else { return known(distance) };
+    let within = Span { far, ..Span::RAY };
+    let Some(sight) = &start.sight else { return known(shape.distance(&start.ray, &within)) };
     let bracket = shape.bracket(&start.ray, &Span::RAY);
+    // A bracket that is known exactly has taken the whole search.
+    let is_known = bracket.near == bracket.far;
+    let distance = if is_known { within.keep(bracket.near) } else { shape.distance(&start.ray, &within) };
     // Where what was rounded of the ray may decide whether it meets the shape, the ray does that was not rounded.
     if bracket.is_doubtful() { decided(shape, sight, distance) } else { (distance, bracket) }
 }
 
 /// A distance and a bracket of it, if the ray before anything was rounded has a hit there as far as 237 bits tell, or
 /// [`MISS`].
-fn decided(shape: &dyn Hittable, sight: &Sight, distance: f64) -> (f64, Bracket) {
+fn decided(shape: &AnyShape, sight: &Sight, distance: f64) -> (f64, Bracket) {
     let enclosure = match shape.certify(sight, Precision::Double) {
         Enclosure::Edge(_) | Enclosure::Doubtful(_) => shape.certify(sight, Precision::Octuple),
         certain => certain,
@@ -216,8 +195,7 @@ fn decided(shape: &dyn Hittable, sight: &Sight, distance: f64) -> (f64, Bracket)
         }
         // As of a plane that the ray runs along but for rounding: what is undecided lies farther on.
         Enclosure::Doubtful(from)
-            if certify::in_world_units(Wide::point(from), sight).high * (1.0 - coincidence::CLOSE)
-                > distance =>
+            if certify::in_world_units(Wide::point(from), sight).high * (1.0 - CLOSE) > distance =>
         {
             (MISS, Bracket::MISS)
         }
@@ -226,26 +204,6 @@ fn decided(shape: &dyn Hittable, sight: &Sight, distance: f64) -> (f64, Bracket)
 }
 
 kernels! {
-    /// Counts rays, which have met nothing yet. Tells whether any has cost as many as it may.
-    fn begin(
-        budget: &mut [u32], ends: Option<&[f64]>, near: &mut [f64], far: &mut [f64], met: &mut [u64]
-    ) -> bool {
-        let (count, mut any_over) = (budget.len(), 0);
-        let (near, far, met) = (&mut near[..count], &mut far[..count], &mut met[..count]);
-        match ends {
-            Some(ends) => far.copy_from_slice(&ends[..count]),
-            None => far.fill(MISS),
-        }
-        for lane in 0..count {
-            let is_over = budget[lane] == 0;
-            let end = if is_over { 0.0 } else { far[lane] };
-            (near[lane], far[lane], met[lane]) = (end, end, 0);
-            budget[lane] -= u32::from(!is_over);
-            any_over |= u32::from(is_over);
-        }
-        any_over != 0
-    }
-
     /// Whether all is the same.
     pub(super) fn is_one(of: &[u64]) -> bool {
         of.iter().fold(0, |other, one| other | (one ^ of[0])) == 0
@@ -306,9 +264,9 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
         // Those from the viewer all start there.
         let bundles = bundles::around(cpu, self.group.rays(), self.group.leaves.is_none());
         for index in &plan.unbounded {
-            let shape = &*self.tracer.model.objects[*index].shape;
+            let object = &self.tracer.model.objects[*index];
             if self.tracer.may_meet(self.group.left(), *index) {
-                self.in_parts(*index, bundles.which(|ways| !shape.is_clear_of(ways)));
+                self.in_parts(*index, bundles.which(|ways| !culling::is_clear_of(object, ways)));
             }
         }
         let mut parts = take(&mut self.tracer.rooms.parts);
@@ -349,7 +307,7 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
     fn decide(&mut self, lane: usize, index: usize, leaves: Option<Side>) {
         let objects = &self.tracer.model.objects;
         let start = self.tracer.start(self.group, lane);
-        let (distance, own) = located(&*objects[index].shape, &start, leaves, MISS);
+        let (distance, own) = located(&objects[index].shape, &start, leaves, MISS);
         if distance == MISS {
             return;
         }
@@ -360,7 +318,7 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
         } else {
             let rival = *met as usize - 1;
             let rival_leaves = self.group.sides_of(rival).map(|sides| sides[lane]);
-            exact(&*objects[rival].shape, &start, rival_leaves, MISS)
+            exact(&objects[rival].shape, &start, rival_leaves, MISS)
         };
         let is_first = self.tracer.is_first(&start, (index, distance), (*met, rival_distance));
         let nearest = if is_first { distance } else { rival_distance };
@@ -379,11 +337,17 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
 
     /// Looks at an object.
     fn test(&mut self, index: usize) {
-        let shape = &*self.tracer.model.objects[index].shape;
+        let shape = &self.tracer.model.objects[index].shape;
         let sides = self.group.sides_of(index).map(|sides| &sides[self.part.clone()]);
         self.tracer.watch.count(Count::Tested(index, self.len()));
         let rays = self.group.rays().part(self.part.clone());
-        if shape.meet(self.tracer.cpu, rays, sides, index as u64 + 1, self.found.part(self.part.clone())) {
+        if shape.closest_hits(
+            self.tracer.cpu,
+            rays,
+            sides,
+            index as u64 + 1,
+            self.found.part(self.part.clone()),
+        ) {
             for lane in 0..self.len() {
                 if self.found.doubt[self.part.start + lane] != 0 {
                     self.decide(self.part.start + lane, index, sides.map(|sides| sides[lane]));

@@ -1,84 +1,55 @@
 //! The colours of the places that a packet's rays meet on one object.
 
-use super::group::{Errors, Group, Onward};
-use super::light::{self, Colours};
-use super::room::{Vectors, list, room};
+use super::arrays::{Vectors, list, pick, room};
+use super::context::Tracer;
+use super::group::Group;
+use super::light;
+use super::scratch::{Level, Shading};
 use super::search;
-use super::{MAX_DIST, Tracer};
+use super::surface::Errors;
+use crate::geometry::ray::Side;
+use crate::render::limits::MAX_DIST;
 use crate::render::plan::depth::Branch;
 use crate::render::watch::{Count, Event, Hit, Kind, Purpose, Reason, Watch};
 use crate::scene::model::Object;
-use crate::world::coincidence;
-use crate::world::hittable::{Hittable, Side};
 use crate::world::landing::Landing;
-use crate::world::material::{Look, Rgb};
+use crate::world::material::Rgb;
 use glam::DVec3;
 use std::mem::swap;
 
-/// Places on one object, where the rays of a packet meet it.
-#[derive(Default)]
-pub(super) struct Surface {
-    /// The object's index.
-    pub index: usize,
-    pub points: Vectors,
-    /// The unit normals; turned to the rays' side where both are lit.
-    pub normals: Vectors,
-    /// The side that each ray comes to.
-    pub sides: Vec<Side>,
-    /// How far the light has come from each.
-    pub travelled: Vec<f64>,
-    /// The cosines of the angles between the rays and the normals.
-    pub cosines: Vec<f64>,
-    /// What the places are computed from, and how far any may be from where it should be; see [`Errors`].
-    pub errors: Errors,
-    /// What all answer to light, where that is the same.
-    pub look: Option<Look>,
-    /// Else what each mirrors.
-    pub specular: Vectors,
-    /// Whether any mirrors anything.
-    pub is_mirror: bool,
-}
-
-impl Surface {
-    /// Rays in these directions from its places.
-    pub fn onward<'o>(&'o self, dir: &'o Vectors) -> Onward<'o> {
-        let Self { index, points, sides, travelled, cosines, errors, .. } = self;
-        Onward { points, dir, travelled, leaves: *index, sides, cosines, errors: *errors }
-    }
-
-    /// How far one of the places may be from where it should be, in world units.
-    pub fn error(&self, lane: usize) -> f64 {
-        self.errors.of(&self.travelled, &self.cosines, lane)
-    }
-
-    fn mirrors(&self, count: usize) -> Colours<'_> {
-        match self.look {
-            Some(look) => Colours::Even(look.specular),
-            None => Colours::Each(self.specular.view(count)),
-        }
-    }
-}
-
-/// Room for what one packet needs while others go on from it.
-#[derive(Default)]
-pub(super) struct Shading {
-    distances: Vec<f64>,
-    surface: Surface,
-    /// Where rays go on to.
-    dir: Vectors,
-    /// Which ones: 1 for those, and 0; and a list.
-    goes: Vec<u64>,
-    lanes: Vec<u8>,
-    /// They themselves, and what they see.
-    onward: Group,
-    seen: Vectors,
-    /// What all see, those that do not go on, too.
-    behind: Vectors,
-}
-
 impl<W: Watch> Tracer<'_, '_, W> {
+    /// The light that comes back along the rays of a packet.
+    pub(super) fn trace(&mut self, group: &mut Group, colours: &mut Vectors) {
+        let mut level = self.rooms.levels.pop().unwrap_or_default();
+        let Level { found, parts, part, near, far, shading, seen } = &mut *level;
+        self.closest(group, None, found);
+        let met = &found.met[..group.len];
+        if met[0] != 0 && search::is_one(self.cpu, met) {
+            self.shade(group, (&found.near, &found.far), met[0] as usize - 1, shading, colours);
+        } else {
+            colours.room(group.padded());
+            parts.begin(met);
+            while let Some((id, lanes)) = parts.next() {
+                let Some(object) = (id as usize).checked_sub(1) else {
+                    lanes.iter().for_each(|lane| colours.set(usize::from(*lane), Rgb::ZERO));
+                    continue;
+                };
+                part.pick(group, lanes);
+                pick(near, &found.near, lanes, part.padded());
+                pick(far, &found.far, lanes, part.padded());
+                self.shade(part, (near, far), object, shading, seen);
+                colours.put(seen, lanes);
+                group.pay(part, lanes);
+            }
+        }
+        if W::SEES {
+            self.watch.see(Event::Colour(colours.get(0)));
+        }
+        self.rooms.levels.push(level);
+    }
+
     /// The colours that rays see which all meet the object of this index, in these brackets.
-    pub(super) fn shade(
+    fn shade(
         &mut self,
         group: &mut Group,
         brackets: (&[f64], &[f64]),
@@ -101,7 +72,7 @@ impl<W: Watch> Tracer<'_, '_, W> {
             cosines: room(&mut surface.cosines, count),
             travelled,
         };
-        shape.land(cpu, group.rays(), distances, landing);
+        shape.packets().interact(cpu, group.rays(), distances, landing);
         let points = surface.points.view(count);
         surface.look = shader.even(material);
         surface.is_mirror = match surface.look {
@@ -109,7 +80,10 @@ impl<W: Watch> Tracer<'_, '_, W> {
                 colours.fill(count, look.ambient);
                 look.specular != Rgb::ZERO
             }
-            None => shader.unlit(cpu, material, points, colours.room(count), surface.specular.room(count)),
+            None => {
+                let (ambients, speculars) = (colours.room(count), surface.specular.room(count));
+                shader.ambient_and_specular(cpu, material, points, ambients, speculars)
+            }
         };
         let goes_on = !self.model.lights.is_empty() || surface.is_mirror || material.transparency != 0.0;
         surface.errors = if goes_on {
@@ -133,15 +107,6 @@ impl<W: Watch> Tracer<'_, '_, W> {
         if shading.surface.is_mirror {
             self.look_in_the_mirror(group, shading, colours);
         }
-    }
-
-    /// The errors of places where rays have come to a shape.
-    pub(super) fn errors(&self, shape: &dyn Hittable, travelled: &[f64], cosines: &[f64]) -> Errors {
-        if self.is_classic() {
-            return Errors::NONE;
-        }
-        let reach = shape.reach() + self.viewer;
-        Errors { reach: Some(reach), most: coincidence::most_error(self.cpu, travelled, reach, cosines) }
     }
 
     /// Adds what is seen through glass.

@@ -1,15 +1,16 @@
 //! How much of a light comes to the places of a surface.
 
-use super::Tracer;
+use super::arrays::{Vectors, pick, room};
 use super::block::Leaving;
+use super::context::Tracer;
 use super::group::Group;
-use super::room::{Vectors, pick, room};
-use super::shade::Surface;
+use super::scratch::Shadows;
+use super::surface::Surface;
 use crate::geometry::bounds::Bounds;
-use crate::geometry::packet::{Rays, STEP};
+use crate::geometry::packet::Rays;
 use crate::render::watch::{Count, Kind, Watch};
 use crate::simd::cpu::kernels;
-use crate::world::hittable::Side;
+use crate::simd::soa::STEP;
 
 /// The ways from the places of a surface to a light.
 pub(super) struct Ways<'w> {
@@ -23,18 +24,6 @@ pub(super) struct Ways<'w> {
 
 /// Of a way that need not be gone, which nothing blocks.
 const NOT_GONE: u64 = 2;
-
-/// Room for the shadows of a packet.
-#[derive(Default)]
-pub(super) struct Shadows {
-    /// Those that remain of a packet.
-    lanes: Vec<u8>,
-    origin: Vectors,
-    dir: Vectors,
-    their_ends: Vec<f64>,
-    their_blocked: Vec<u64>,
-    sides: Vec<Side>,
-}
 
 impl<W: Watch> Tracer<'_, '_, W> {
     /// What the ends of the ways are short of the light, as a part of how far that is: a surface that the light lies

@@ -4,8 +4,8 @@ use super::fault::{Fault, Place, Report};
 use super::names::Names;
 use super::values;
 use super::written::{Form, Word, Written};
-use crate::scene::entity::{Entity, Given};
-use crate::scene::pparm::{Attribute, LEAST_LENGTH, MOST_LENGTH};
+use crate::scene::entity::Entity;
+use crate::scene::pparm::{Attribute, Given, LEAST_LENGTH, MOST_LENGTH};
 use crate::scene::value::{Datum, Type};
 use crate::words::{list, nearest};
 
@@ -43,8 +43,8 @@ impl Against<'_> {
                     if let Some((first, _)) = given[at].replace(pair) {
                         self.report.add(
                             Fault::warning(word.place.clone(), format!("{title} has `{}` twice", word.text))
-                                .label("this one counts")
-                                .also(first.place.clone(), "this one does not"),
+                                .label("this one is used")
+                                .also(first.place.clone(), "this one is ignored"),
                         );
                     }
                 }
@@ -74,14 +74,14 @@ impl Against<'_> {
             let fault = format!("{title} lacks {}", list(missing.iter().map(|attribute| attribute.name())));
             self.report.add(
                 Fault::error(written.name.place.clone(), fault)
-                    .help(format!("give it `{}`", wanted.join("` and `"))),
+                    .help(format!("add `{}`", wanted.join("` and `"))),
             );
         } else if written.attributes.is_empty() && !attributes.is_empty() && !written.is_damaged {
             sound = false;
             let names = list(attributes.iter().map(|attribute| attribute.name()));
             self.report.add(
                 Fault::error(written.name.place.clone(), format!("{title} has no attributes"))
-                    .help(format!("give it one at least of {names}")),
+                    .help(format!("add at least one of {names}")),
             );
         }
         sound.then_some(values)
@@ -112,7 +112,7 @@ impl Against<'_> {
             let takes = attribute.takes();
             let message = format!("`{}` of {title} takes {takes}, not {}", word.text, words.len());
             self.report.add(Fault::error(whole(word, words), message).help(format!(
-                "`{}` is {}",
+                "`{}`: {}",
                 attribute.name(),
                 attribute.meaning()
             )));
@@ -141,7 +141,7 @@ impl Against<'_> {
             let message = format!("`{}` of {title} must be {}, not {given}", word.text, attribute.rule());
             let place = words.first().map_or(word.place.clone(), |first| whole(first, words));
             self.report.add(Fault::error(place, message).help(format!(
-                "`{}` is {}",
+                "`{}`: {}",
                 attribute.name(),
                 attribute.meaning()
             )));
@@ -151,7 +151,7 @@ impl Against<'_> {
             let message = format!("`{}` of {title} is {why}", attribute.name());
             let place = words.get(index).map_or(word.place.clone(), |word| word.place.clone());
             self.report.add(Fault::error(place, message).help(format!(
-                "lengths and coordinates go from {LEAST_LENGTH:e} to {MOST_LENGTH:e} world units"
+                "lengths and coordinates other than 0 must be between {LEAST_LENGTH:e} and {MOST_LENGTH:e} world units"
             )));
             return None;
         }

@@ -4,19 +4,20 @@ use super::attributes::{Against, find_attribute, whole};
 use super::fault::{Fault, Place, Report};
 use super::names::{Names, stand_in, suggestion};
 use super::written::{Word, Written};
-use crate::scene::entity::{Args, Construct, Entity, Kind, MATERIAL, Refusal, Setting};
+use crate::scene::entity::{Args, Construct, Entity, MATERIAL, Refusal, Setting};
+use crate::scene::kind::Kind;
 use crate::scene::model::{Item, Model, Object};
 use crate::scene::registry::Registry;
 use crate::scene::value::Datum;
 use crate::words::list;
 use crate::world::accuracy::Accuracy;
+use crate::world::body::{AnyLight, Body};
 use crate::world::camera::Camera;
-use crate::world::hittable::{Body, Light};
 use crate::world::material::Material;
 use crate::world::texture::Texture;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 /// Makes a model of entities as written and reports all their faults. Without faults there is a model. File
 /// names start from `folder`.
@@ -81,7 +82,7 @@ struct Check<'r> {
     materials: Vec<Item<Arc<Material>>>,
     textures: Vec<Item<Arc<Texture>>>,
     objects: Vec<Object>,
-    lights: Vec<Item<Box<dyn Light>>>,
+    lights: Vec<Item<AnyLight>>,
 }
 
 impl Check<'_> {
@@ -100,7 +101,7 @@ impl Check<'_> {
             self.report.add(
                 Fault::error(place.clone(), format!("a second camera `{text}`"))
                     .also(first, "the first one")
-                    .help("a scene has one camera"),
+                    .help("a scene has exactly one camera"),
             );
         }
         let values = Against { entity, names: &mut self.names, report: self.report }.values(written);
@@ -181,7 +182,7 @@ impl Check<'_> {
             Err(refusal) => {
                 debug_assert!(
                     args.has_what_is_refused(&refusal),
-                    "the plugin `{}` refuses `{}`, which is not in the table it registers at {}: name an attribute of that",
+                    "the plugin `{}` refuses `{}`, which is not in the table it registers at {}: name an attribute of that table",
                     args.entity.name,
                     refusal.attribute.unwrap_or_default(),
                     args.entity.place()
@@ -198,7 +199,7 @@ impl Check<'_> {
     fn textures_can_be_read(&mut self, written: &[Written<'_>]) {
         let users =
             self.objects.iter().map(|object| &object.args).chain(self.lights.iter().map(|light| &light.args));
-        let used: BTreeSet<_> = users.flat_map(Args::textures).collect();
+        let used: BTreeSet<_> = users.flat_map(|args| args.textures()).collect();
         for Item { args, value } in &self.textures {
             if used.contains(args.name.as_str())
                 && let Err(reason) = value.load()
@@ -208,8 +209,9 @@ impl Check<'_> {
                 let place =
                     place_of(args.entity, &written[args.order], files.next().map(|(file, _)| file.name()));
                 self.report.add(
-                    Fault::error(place, message)
-                        .help("a texture is a PPM or PNG file; its name starts from the scene's folder"),
+                    Fault::error(place, message).help(
+                        "a texture is a PPM or PNG file, and its name is relative to the scene's folder",
+                    ),
                 );
             }
         }
@@ -224,7 +226,8 @@ impl Check<'_> {
                 near.and_then(|near| self.registry.find(near)).is_some_and(|e| e.kind() == Kind::Camera);
             let known = list(self.registry.iter().map(|entity| entity.name));
             let fault = Fault::error(places[0].clone(), format!("there is no entity type `{name}`"));
-            self.report.add(fault.label(suggestion(near, &places)).help(format!("the types are {known}")));
+            self.report
+                .add(fault.label(suggestion(near, &places)).help(format!("the entity types are {known}")));
         }
         self.names.report_unresolved(self.registry, self.report);
         self.names.report_repeated(self.report);
@@ -234,7 +237,7 @@ impl Check<'_> {
         {
             self.report.add(
                 Fault::error(first.kind.place.clone(), "the scene has no camera")
-                    .label("a camera belongs before this")
+                    .label("expected a camera")
                     .help(format!(
                         "add one: {}",
                         self.registry.example(Kind::Camera, "NAME", self.report.syntax())
@@ -242,7 +245,7 @@ impl Check<'_> {
             );
         }
         let Self { camera, materials, textures, objects, lights, .. } = self;
-        Some(Model { camera: camera?, materials, textures, objects, lights, plan: OnceLock::new() })
+        Some(Model { camera: camera?, materials, textures, objects, lights })
     }
 }
 

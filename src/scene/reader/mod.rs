@@ -12,10 +12,9 @@ mod written;
 
 pub use check::Chosen;
 pub use fault::{Fault, Place, Report, Severity};
-pub use machine::{Message, Span};
-pub use written::{Values, Written};
+pub use machine::Message;
+pub use written::Written;
 
-use crate::scene::entity::Kind;
 use crate::scene::model::Model;
 use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
@@ -36,7 +35,9 @@ pub struct Loaded {
     pub places: Vec<Place>,
 }
 
-/// Reads a scene, as [`read_by`] does. An accuracy that is given here counts in place of the scene's own.
+/// Reads a scene, in TOML if its name ends in `.toml` or its text begins as TOML does, and in the notes'
+/// spelling if not. `name` is what messages call it, and its own file names start from `folder`. An accuracy that is
+/// given here counts in place of the scene's own.
 ///
 /// # Errors
 /// Every fault of the scene, warnings among them, in the order of the text.
@@ -50,8 +51,7 @@ pub fn read(
     read_by(registry, name, folder, bytes, Chosen { above_all: accuracy, ..Chosen::default() })
 }
 
-/// Reads a scene, in TOML if its name ends in `.toml` or its text begins as TOML does, and in the notes'
-/// spelling if not. `name` is what messages call it, and its own file names start from `folder`.
+/// As [`read`], with more to say about the accuracy.
 ///
 /// # Errors
 /// Every fault of the scene, warnings among them, in the order of the text.
@@ -74,7 +74,7 @@ pub fn read_by(
     };
     let written = parse(registry, text, &mut report);
     if written.is_empty() && !report.is_fatal() {
-        report.add(Fault::error(Some(0..0), "the scene is empty").help(first_steps(registry, syntax)));
+        report.add(Fault::error(Some(0..0), "the scene is empty").help(registry.first_steps(syntax)));
     }
     finish(registry, folder, accuracy, written, report)
 }
@@ -83,11 +83,9 @@ pub fn read_by(
 /// file names start from the working directory.
 ///
 /// ```
-/// use tabray::scene::reader::Written;
-/// use tabray::scene::reader;
-/// use tabray::scene::registry::Registry;
+/// use tabray::scene::{self, Registry, Written};
 ///
-/// let built = reader::build(Registry::get()?, [
+/// let built = scene::build(Registry::get()?, [
 ///     Written::new("camera", "cam1")
 ///         .set("pixeldim", [640, 480])
 ///         .set("worlddim", [8.0, 6.0])
@@ -129,12 +127,6 @@ fn finish(
     }
 }
 
-/// What a scene looks like, for those who have none.
-fn first_steps(registry: &Registry, syntax: Syntax) -> String {
-    let camera = registry.example(Kind::Camera, "NAME", syntax);
-    format!("a scene begins with a camera, {camera}; then come materials, objects and lights")
-}
-
 /// The text of a file.
 ///
 /// # Errors
@@ -143,8 +135,8 @@ fn decode<'b>(name: &str, bytes: &'b [u8]) -> Result<&'b str, Report> {
     let nul = bytes.iter().position(|byte| *byte == 0);
     let not_utf8 = std::str::from_utf8(bytes).err().map(|error| error.valid_up_to());
     let (place, message) = match (nul, not_utf8) {
-        (Some(nul), bad) if bad.is_none_or(|bad| nul < bad) => (nul..nul + 1, "a NUL byte"),
-        (_, Some(bad)) => (bad..bad + char::REPLACEMENT_CHARACTER.len_utf8(), "not UTF-8"),
+        (Some(nul), bad) if bad.is_none_or(|bad| nul < bad) => (nul..nul + 1, "unexpected NUL byte"),
+        (_, Some(bad)) => (bad..bad + char::REPLACEMENT_CHARACTER.len_utf8(), "invalid UTF-8"),
         _ => {
             let text = std::str::from_utf8(bytes).unwrap_or_default();
             return Ok(text.strip_prefix('\u{feff}').unwrap_or(text));
@@ -152,7 +144,7 @@ fn decode<'b>(name: &str, bytes: &'b [u8]) -> Result<&'b str, Report> {
     };
     // Up to the fault the lossy text has the same bytes.
     let mut report = Report::new(name, String::from_utf8_lossy(bytes), Syntax::default());
-    let help = "a scene is a text of entities, `TYPE NAME { ATTRIBUTES }`";
+    let help = "a scene is plain text, a sequence of entities `TYPE NAME { ATTRIBUTES }`";
     report.add(Fault::error(Some(place), message).help(help));
     Err(report)
 }

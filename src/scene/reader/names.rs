@@ -2,7 +2,8 @@
 
 use super::fault::{Fault, Place, Report};
 use super::written::{Form, Word, Written};
-use crate::scene::entity::{Entity, Kind};
+use crate::scene::entity::Entity;
+use crate::scene::kind::Kind;
 use crate::scene::registry::Registry;
 use crate::scene::value::Datum;
 use crate::words::{self, nearest};
@@ -71,13 +72,13 @@ impl Names {
         if text.is_empty() && *form == Form::Text {
             report.add(
                 Fault::error(place.clone(), format!("this {kind} has an empty name"))
-                    .help("a name is any word; one with blanks stands in quotes"),
+                    .help("a name is any word; put it in quotes if it contains white space"),
             );
         }
         if text.contains(char::is_control) {
             report.add(
                 Fault::error(place.clone(), format!("`{}` cannot be a name", text.escape_debug()))
-                    .help("a name has no line ends and no other control characters"),
+                    .help("a name must not contain newlines or other control characters"),
             );
         }
         if text.is_empty() || kind == Kind::Camera {
@@ -130,13 +131,12 @@ impl Names {
                     format!("{what} `{text}` and {} are defined more than once", words::count(names, "other"))
                 }
             };
-            let label =
-                if more == 0 { "left out".to_owned() } else { format!("left out, as are {more} more") };
+            let label = if more == 0 { "ignored".to_owned() } else { format!("ignored, as are {more} more") };
             report.add(
                 Fault::warning(places[1].clone(), message)
                     .label(label)
-                    .also(places[0].clone(), "this one counts")
-                    .help("the first definition of a name counts: give the others names of their own"),
+                    .also(places[0].clone(), "this one is used")
+                    .help("only the first definition of a name is used: rename the others"),
             );
         }
         for (Repeated { what, text, places }, names, more) in few(shared) {
@@ -153,7 +153,7 @@ impl Names {
                 Fault::warning(places[1].clone(), message)
                     .label(label)
                     .also(places[0].clone(), "the first one")
-                    .help("all of them count; messages and dumps cannot tell them apart"),
+                    .help("all of them are used, but messages and dumps cannot tell them apart"),
             );
         }
     }
@@ -183,8 +183,8 @@ impl Names {
                 Some(defined) => {
                     Fault::error(places[0].clone(), format!("{kind} `{text}` is used before it is defined"))
                         .label(suggestion(None, places))
-                        .also(defined.clone(), "it is defined here")
-                        .help(format!("a {kind} stands above what refers to it"))
+                        .also(defined.clone(), "defined here")
+                        .help(format!("a {kind} must be defined before it is used"))
                 }
                 None => {
                     let known = self.places.keys().filter(|(known, _)| known == kind);
@@ -192,7 +192,10 @@ impl Names {
                     known.sort_unstable();
                     Fault::error(places[0].clone(), format!("there is no {kind} `{text}`"))
                         .label(suggestion(nearest(text, known), places))
-                        .help(format!("define it above: {}", registry.example(*kind, text, report.syntax())))
+                        .help(format!(
+                            "define it before this: {}",
+                            registry.example(*kind, text, report.syntax())
+                        ))
                 }
             };
             report.add(fault);

@@ -2,7 +2,6 @@
 
 use super::attributes::{find_attribute, near_attribute};
 use super::fault::{Fault, Report};
-use super::first_steps;
 use super::written::{Form, Word, Written};
 use crate::scene::entity::Entity;
 use crate::scene::pparm::Attribute;
@@ -82,8 +81,8 @@ fn quoted<'a>(text: &'a str, at: usize, report: &mut Report) -> (Cow<'a, str>, u
                 other => {
                     let end = index + 1 + other.map_or(0, |(_, letter)| letter.len_utf8());
                     report.add(
-                        Fault::error(Some(at + index..at + end), "a backslash that stands for nothing")
-                            .help("in quotes, `\\\\` stands for a backslash and `\\\"` for a quote"),
+                        Fault::error(Some(at + index..at + end), "unknown escape sequence")
+                            .help("in quotes, write `\\\\` for a backslash and `\\\"` for a quote"),
                     );
                 }
             },
@@ -91,8 +90,8 @@ fn quoted<'a>(text: &'a str, at: usize, report: &mut Report) -> (Cow<'a, str>, u
         }
     }
     report.add(
-        Fault::error(Some(at..at + 1), "this quote is never closed")
-            .help("a word in quotes ends on its line"),
+        Fault::error(Some(at..at + 1), "missing closing quote")
+            .help("a quoted word must end on the line on which it begins"),
     );
     // The first word was meant perhaps.
     let end = text.find(|c: char| c.is_whitespace() || c == '{' || c == '}').unwrap_or(text.len());
@@ -116,8 +115,8 @@ impl<'a> Parser<'a, '_> {
             let first = self.tokens[0].clone();
             self.report.add(
                 Fault::error(Some(first.at), "this is not a scene")
-                    .label("no entity begins like this")
-                    .help(first_steps(self.registry, Syntax::Notes)),
+                    .label("expected an entity type")
+                    .help(self.registry.first_steps(Syntax::Notes)),
             );
             return written;
         }
@@ -183,14 +182,14 @@ impl<'a> Parser<'a, '_> {
             (1, false) => format!("stray word `{}`", first.text),
             _ => format!("stray words from `{}` to `{}`", first.text, last.text),
         };
-        let mut fault =
-            Fault::error(Some(first.at.start..last.at.end), what).label("this belongs to no entity");
+        let mut fault = Fault::error(Some(first.at.start..last.at.end), what).label("not part of any entity");
         if let Some((opened, closed)) = &self.last {
             fault = fault
-                .also(Some(opened.clone()), "the entity before it begins here")
+                .also(Some(opened.clone()), "the previous entity begins here")
                 .also(Some(closed.clone()), "and ends here");
         }
-        self.report.add(fault.help("every word of a scene belongs to an entity, `TYPE NAME { ATTRIBUTES }`"));
+        self.report
+            .add(fault.help("every word of a scene must be part of an entity, `TYPE NAME { ATTRIBUTES }`"));
     }
 
     fn entity(&mut self) -> Written<'a> {
@@ -205,7 +204,7 @@ impl<'a> Parser<'a, '_> {
             _ => {
                 self.report.add(
                     Fault::error(Some(kind.at.clone()), format!("this `{}` has no name", kind.text))
-                        .help(format!("a name follows the type: `{} NAME {{`", kind.text)),
+                        .help(format!("write a name after the type: `{} NAME {{`", kind.text)),
                 );
                 Word::at("", Form::Any, kind.at.end..kind.at.end)
             }
@@ -216,8 +215,8 @@ impl<'a> Parser<'a, '_> {
             let after = name.place.clone().unwrap_or_default();
             self.report.add(
                 Fault::error(Some(after), format!("missing `{{` after {} `{}`", kind.text, name.text))
-                    .label("`{` belongs here")
-                    .help(format!("attributes stand in braces: `{} {} {{ ... }}`", kind.text, name.text)),
+                    .label("expected `{` after this")
+                    .help(format!("attributes go in braces: `{} {} {{ ... }}`", kind.text, name.text)),
             );
         }
         let mut entity =
@@ -228,8 +227,8 @@ impl<'a> Parser<'a, '_> {
                 let brace = self.tokens[self.at].at.clone();
                 self.report.add(
                     Fault::error(Some(brace), "stray `{`")
-                        .label("a brace inside braces")
-                        .also(Some(kind.at.clone()), "this entity is still open"),
+                        .label("braces cannot be nested")
+                        .also(Some(kind.at.clone()), "inside this entity"),
                 );
                 self.at += 1;
             } else {
@@ -254,13 +253,16 @@ impl<'a> Parser<'a, '_> {
         }
         let place = self.token(0).map_or(self.end..self.end, |token| token.at.clone());
         let label = match self.token(0) {
-            Some(next) => format!("`}}` belongs before this `{}`", next.text),
+            Some(next) => format!("expected `}}` before this `{}`", next.text),
             None => "the text ends here".to_owned(),
         };
         self.report.add(
-            Fault::error(Some(place), format!("missing `}}` of {} `{}`", entity.kind.text, entity.name.text))
-                .label(label)
-                .also(entity.kind.place.clone(), "it opens here"),
+            Fault::error(
+                Some(place),
+                format!("missing `}}` for {} `{}`", entity.kind.text, entity.name.text),
+            )
+            .label(label)
+            .also(entity.kind.place.clone(), "opened here"),
         );
         false
     }

@@ -1,7 +1,6 @@
 //! Scenes in TOML: `[entity-type.name]` tables of the same attributes.
 
 use super::fault::{Fault, Report};
-use super::first_steps;
 use super::written::{Form, Word, Written};
 use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
@@ -18,7 +17,7 @@ pub fn parse<'a>(registry: &Registry, text: &'a str, report: &mut Report) -> Vec
         && let Some(first) = errors.first()
     {
         let fault = Fault::error(first.span().or(Some(0..0)), "this is not a scene in TOML");
-        report.add(fault.help(first_steps(registry, Syntax::Toml)));
+        report.add(fault.help(registry.first_steps(Syntax::Toml)));
         return Vec::new();
     }
     let mut written = Vec::new();
@@ -100,24 +99,22 @@ fn fault_of(place: Range<usize>, message: &str, text: &str) -> Fault {
     let (place, message, help) = match message {
         DUPLICATE => {
             let key = text[place.clone()].to_owned();
-            let help = "a title or an attribute stands once; lights of one name are `[[TYPE.NAME]]` each";
-            (place, format!("a second `{key}`"), help)
+            let help = "a table or an attribute may appear only once; for lights that share a name, write `[[TYPE.NAME]]`";
+            (place, format!("duplicate `{key}`"), help)
         }
         _ if message.contains("array") && (begins_line || place.start == text.len()) => {
             let end = before.trim_end().len();
-            (end..end, "missing `]`".to_owned(), "several values stand in brackets: `center = [4, 2, -4]`")
+            (end..end, "missing `]`".to_owned(), "several values go in brackets: `center = [4, 2, -4]`")
         }
         _ if message.starts_with("string values") => {
-            (place, "a word without quotes".to_owned(), "a name stands in quotes: `material = \"red\"`")
+            (place, "unquoted word".to_owned(), "names need quotes: `material = \"red\"`")
         }
         _ if message.starts_with("key with no value") => {
-            (place, "missing `=`".to_owned(), "an attribute is `NAME = VALUE`")
+            (place, "missing `=`".to_owned(), "write attributes as `NAME = VALUE`")
         }
-        _ => (
-            place,
-            message.to_owned(),
-            "a value is a number, a word in quotes, or several of them in brackets",
-        ),
+        _ => {
+            (place, message.to_owned(), "a value is a number, a quoted word, or several of them in brackets")
+        }
     };
     Fault::error(Some(place), message).help(help)
 }
@@ -163,7 +160,7 @@ impl<'a> Parser<'a, '_> {
     /// Reads the entities of one type.
     fn kind(&mut self, kind: &Key<'a>, value: Value<'a>) {
         let DeValue::Table(entities) = value.into_inner() else {
-            let what = format!("`{}` belongs to no entity", kind.get_ref());
+            let what = format!("`{}` is not part of any entity", kind.get_ref());
             self.no_entity(kind, what);
             return;
         };
@@ -184,7 +181,7 @@ impl<'a> Parser<'a, '_> {
                 }
                 _ => {
                     let what = format!(
-                        "`{}` belongs to no entity: this `{}` has no name",
+                        "`{}` is not part of any entity: this `{}` has no name",
                         name.get_ref(),
                         kind.get_ref()
                     );
@@ -195,7 +192,7 @@ impl<'a> Parser<'a, '_> {
     }
 
     fn no_entity(&mut self, at: &Key<'a>, what: String) {
-        let help = "an entity is a title, `[TYPE.NAME]`, and its attributes below it, `NAME = VALUE`";
+        let help = "an entity is a table, `[TYPE.NAME]`, followed by its attributes, `NAME = VALUE`";
         self.fault(Fault::error(Some(at.span()), what).help(help));
     }
 
@@ -278,12 +275,12 @@ impl<'a> Parser<'a, '_> {
             }
             DeValue::Boolean(_) | DeValue::Datetime(_) | DeValue::Array(_) | DeValue::Table(_) => {
                 let what = match value.get_ref() {
-                    DeValue::Boolean(truth) => format!("`{truth}` is no value of an attribute"),
-                    DeValue::Datetime(_) => "a date is no value of an attribute".to_owned(),
-                    DeValue::Array(_) => "an array in an array is no value of an attribute".to_owned(),
-                    _ => "a table is no value of an attribute".to_owned(),
+                    DeValue::Boolean(truth) => format!("`{truth}` cannot be the value of an attribute"),
+                    DeValue::Datetime(_) => "a date cannot be the value of an attribute".to_owned(),
+                    DeValue::Array(_) => "a nested array cannot be the value of an attribute".to_owned(),
+                    _ => "a table cannot be the value of an attribute".to_owned(),
                 };
-                let help = "values are numbers, words in quotes, or several of them in brackets";
+                let help = "values are numbers, quoted words, or several of them in brackets";
                 self.fault(Fault::error(Some(place), what).help(help));
                 return false;
             }

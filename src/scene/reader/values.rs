@@ -26,11 +26,14 @@ pub fn read(value_type: Type, words: &[Word<'_>]) -> Result<Datum, Vec<Fault>> {
 fn text(word: &Word<'_>) -> Result<Datum, Vec<Fault>> {
     let fault = |what| Fault::error(word.place.clone(), format!("`{}` {what}", word.text.escape_debug()));
     if word.form == Form::Number {
-        return Err(vec![fault("is a number").help(format!("in quotes it is a word: \"{}\"", word.text))]);
+        return Err(vec![
+            fault("is a number, not a word").help(format!("put it in quotes: \"{}\"", word.text)),
+        ]);
     }
     if word.text.contains(char::is_control) {
         return Err(vec![
-            fault("has a line end or another control character").help("a word stands on one line"),
+            fault("contains a newline or another control character")
+                .help("a word must not contain control characters"),
         ]);
     }
     Ok(Datum::Word(word.text.to_string()))
@@ -74,7 +77,7 @@ fn all<T>(words: &[Word<'_>], read: fn(&str) -> Result<T, Complaint>) -> Result<
     let mut faults = Vec::new();
     for word in words {
         let value = match word.form {
-            Form::Text => Err(("in quotes", Some("a number stands without quotes"))),
+            Form::Text => Err(("in quotes", Some("write numbers without quotes"))),
             Form::Any | Form::Number => read(&word.text),
         };
         match value {
@@ -102,9 +105,11 @@ fn number(word: &str) -> Result<f64, Complaint> {
         Ok(_) if word.contains(|c: char| c.is_ascii_digit()) => Err(("too large", None)),
         Ok(_) => Err(("not a finite number", None)),
         Err(_) if word.contains(',') => {
-            Err(("not a number", Some("blanks part values, and a decimal point is a point")))
+            Err(("not a number", Some("separate values by white space, and write decimals with a point")))
         }
-        Err(_) if word.contains('#') => Err(("not a number", Some("a comment's `#` has a blank before it"))),
+        Err(_) if word.contains('#') => {
+            Err(("not a number", Some("put white space before the `#` of a comment")))
+        }
         Err(_) => Err(("not a number", None)),
     }
 }

@@ -1,8 +1,18 @@
 //! Hits of a surface of the second degree without rounding, but for that of the roots.
 
-use super::fine::Fine;
-use super::{FINE, OwnRay, Quadratic};
+use super::surface::{FINE, OwnRay, Quadratic};
 use crate::numeric::twofold::{Exact, Twofold};
+
+/// A hit in twice the precision, and what it is off at most.
+#[derive(Clone, Copy)]
+pub(super) struct Fine {
+    pub at: Twofold,
+    pub error: f64,
+}
+
+impl Fine {
+    pub const NONE: Self = Self { at: Twofold { high: f64::NAN, low: 0.0 }, error: 0.0 };
+}
 
 impl Quadratic {
     /// Both hits of the polynomial without rounding, but for that of the roots: no numbers where there are none.

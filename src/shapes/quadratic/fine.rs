@@ -1,23 +1,35 @@
 //! Hits of a surface of the second degree in twice the precision, and what is decided there.
 
-use super::{FINE, OwnRay, Quadratic};
+use super::exact::Fine;
+use super::surface::{FINE, OwnRay, Quadratic};
+use crate::geometry::ray::{MISS, Side};
 use crate::numeric::number::Number;
-use crate::numeric::twofold::{Twofold, product, times_power_of_two};
-use crate::world::hittable::{MISS, Side};
+use crate::numeric::twofold::{Twofold, exponent_to_one, product, times_power_of_two};
 use glam::DVec3;
 
-/// A hit in twice the precision, and what it is off at most.
-#[derive(Clone, Copy)]
-pub(super) struct Fine {
-    pub at: Twofold,
-    pub error: f64,
-}
-
-impl Fine {
-    pub const NONE: Self = Self { at: Twofold { high: f64::NAN, low: 0.0 }, error: 0.0 };
-}
-
 impl Quadratic {
+    /// The unit normal at a point of the world.
+    pub fn normal(&self, at: DVec3, center: DVec3) -> DVec3 {
+        let OwnRay { from, .. } = self.own(at, DVec3::ZERO, center);
+        let place = DVec3::from(from.map(|part| part.high));
+        let gradient = 2.0 * (self.square * place) + self.linear;
+        let size = (2.0 * self.sizes * place.abs().max_element() + self.linear.abs()).max_element();
+        if gradient.abs().max_element() > 1e-3 * size {
+            return gradient.normalize();
+        }
+        // Near an apex, or between two planes that are almost one, its parts cancel.
+        let turned = self.turned(from);
+        let part = |axis: usize| turned[axis] + turned[axis] + Twofold::from(self.linear[axis]);
+        let gradient = [part(0), part(1), part(2)].map(|part| part.high);
+        let exponent = exponent_to_one(gradient.iter().fold(0.0, |most, part| part.abs().max(most)));
+        let gradient = DVec3::from(gradient.map(|part| times_power_of_two(part, exponent)));
+        // A cone's apex has none, and any will do; a plane that is there twice has this one.
+        let longest = (0..3)
+            .map(|axis| self.square.col(axis))
+            .max_by(|one, other| one.length().total_cmp(&other.length()));
+        gradient.try_normalize().or(longest.and_then(DVec3::try_normalize)).unwrap_or(DVec3::Y)
+    }
+
     /// The first hit beyond `near`, in twice the precision, and where that could decide without rounding. What is as near to
     /// the box as twice the precision tells touches it, and a line that touches the surface meets it there.
     #[inline(never)]

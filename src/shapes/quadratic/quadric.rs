@@ -1,16 +1,21 @@
 //! A quadric in a box: its equation in the numbers of the scene, for the notes' formula and for proofs, and the same surface
 //! as it is solved.
 
-use super::{CAMERA, OwnRay, Quadratic, Quick, classic_roots};
-use crate::geometry::bounds::SLACK;
+use super::quick::Quick;
+use super::surface::{OwnRay, Quadratic};
+use crate::geometry::bounds::{Bounds, SLACK};
+use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
 use crate::numeric::number::Number;
-use crate::world::accuracy::Accuracy;
-use crate::world::hittable::{Bracket, MISS, Ray, Span};
+use crate::world::accuracy::{Accuracy, Bounded, Classic};
 use glam::{DMat3, DVec3};
+use std::marker::PhantomData;
+
+/// By what a component of a camera's direction may be off: three units of 2^-53.
+const CAMERA: f64 = 1.5 * f64::EPSILON;
 
 /// `p·Sp + l·p + c = 0`, for points `p` from the center.
 #[derive(Clone, Debug)]
-pub struct Quadric {
+pub struct Quadric<A> {
     square: DMat3,
     linear: DVec3,
     constant: f64,
@@ -22,12 +27,12 @@ pub struct Quadric {
     pub high: DVec3,
     /// The same surface, as it is solved.
     own: Quadratic,
-    accuracy: Accuracy,
+    accuracy: PhantomData<A>,
 }
 
-impl Quadric {
+impl<A> Quadric<A> {
     /// The surface with `Axx + Byy + Czz + Dxy + Exz + Fyz + Gx + Hy + Iz = J`, kept in a box; all count from its center.
-    pub fn new(coefficients: [f64; 10], center: DVec3, [low, high]: [DVec3; 2], accuracy: Accuracy) -> Self {
+    pub fn new(coefficients: [f64; 10], center: DVec3, [low, high]: [DVec3; 2]) -> Self {
         let [a, b, c, d, e, f, g, h, i, j] = coefficients;
         let square = DMat3::from_cols(
             DVec3::new(a, d / 2.0, e / 2.0),
@@ -35,79 +40,21 @@ impl Quadric {
             DVec3::new(e / 2.0, f / 2.0, c),
         );
         let own = Quadratic::new(coefficients, low, high);
-        Self { square, linear: DVec3::new(g, h, i), constant: -j, center, low, high, own, accuracy }
-    }
-
-    fn keeps(&self, at: DVec3) -> bool {
-        let from_center = at - self.center;
-        self.low.cmple(from_center).all() && from_center.cmple(self.high).all()
-    }
-
-    /// The notes' formula.
-    fn classic_distance(&self, ray: &Ray, within: &Span) -> f64 {
-        let origin = ray.origin - self.center;
-        let turned = self.square * ray.dir;
-        let [a, b, c] = [
-            ray.dir.dot(turned),
-            origin.dot(turned) + 0.5 * self.linear.dot(ray.dir),
-            origin.dot(self.square * origin) + self.linear.dot(origin) + self.constant,
-        ];
-        let crossings = classic_roots(a, b, c).map(|distance| within.keep(distance));
-        crossings.into_iter().find(|distance| self.keeps(ray.at(*distance))).unwrap_or(MISS)
-    }
-
-    /// The distance where there is nothing to decide: by the notes' formula, or of a ray that leaves it.
-    #[inline(never)]
-    fn other_distance(&self, ray: &Ray, within: &Span) -> f64 {
-        match within.leaves {
-            // It starts on one hit: the other one is what is left.
-            Some(side) if !self.is_classic() => within.keep(self.own.other_hit(&self.own_ray(ray), side)),
-            _ => self.classic_distance(ray, within),
+        Self {
+            square,
+            linear: DVec3::new(g, h, i),
+            constant: -j,
+            center,
+            low,
+            high,
+            own,
+            accuracy: PhantomData,
         }
     }
 
-    #[inline(always)]
-    fn own_ray(&self, ray: &Ray) -> OwnRay {
-        self.own.own(ray.origin, ray.dir, self.center)
-    }
-
-    /// Whether the notes' own formula is asked for.
-    pub fn is_classic(&self) -> bool {
-        self.accuracy == Accuracy::Classic
-    }
-
-    /// The first hit beyond `near`, in twice the precision or without rounding.
-    pub fn exact_hit(&self, ray: &Ray, near: f64) -> f64 {
-        self.own.exact_hit(&self.own_ray(ray), near)
-    }
-
-    /// The first hit's distance within a span, or NaN where it takes more than plain arithmetic.
-    #[inline(always)]
-    pub fn quick_distance(&self, ray: &Ray, within: &Span) -> f64 {
-        if self.is_classic() || within.leaves.is_some() {
-            return self.other_distance(ray, within);
-        }
-        let own = self.own_ray(ray);
-        if self.accuracy == Accuracy::Strict {
-            return f64::NAN;
-        }
-        let quick = self.own.quick_hit(&own, within.near, 0.0);
-        let corrected = self.own.corrected(&own, quick.distance);
-        let is_unknown = quick.is_unknown | corrected.is_nan();
-        let hit = if is_unknown { f64::NAN } else { within.keep(corrected) };
-        if quick.is_missed { MISS } else { hit }
-    }
-
-    /// Between which distances that is, of a ray that does not start on it.
-    #[inline(always)]
-    pub fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        if self.is_classic() || within.leaves.is_some() {
-            return Bracket::exactly(self.other_distance(ray, within));
-        }
-        let Quick { is_missed, is_unknown, distance, error } =
-            self.own.quick_hit(&self.own_ray(ray), within.near, CAMERA);
-        let (near, far) = if is_unknown { (within.near, MISS) } else { (distance - error, distance + error) };
-        if is_missed { Bracket::MISS } else { Bracket { near, far } }
+    /// The box that it is kept in.
+    pub fn around(&self) -> Bounds {
+        Bounds { low: self.center + self.low, high: self.center + self.high }
     }
 
     /// How far a point is from it at least, as far as the equation tells: at `r` from there its value differs by at most
@@ -123,16 +70,6 @@ impl Quadric {
         let square = (abs * DVec3::ONE).length();
         let radius = 2.0 * value / (gradient + (gradient * gradient + 4.0 * square * value).sqrt());
         if value > 0.0 && radius.is_finite() { radius * (1.0 - 1e-6) } else { 0.0 }
-    }
-
-    /// The unit normal at a point.
-    pub fn upright(&self, at: DVec3) -> DVec3 {
-        if self.is_classic() {
-            let normal = 2.0 * (self.square * (at - self.center)) + self.linear;
-            // A cone's apex has none; any will do.
-            return normal.try_normalize().unwrap_or(DVec3::Y);
-        }
-        self.own.normal(at, self.center)
     }
 
     /// What is 0 on the surface.
@@ -155,4 +92,94 @@ impl Quadric {
         };
         inside(0).min(inside(1)).min(inside(2))
     }
+}
+
+impl Quadric<Classic> {
+    /// The first hit's distance by the notes' formula.
+    pub fn classic_distance(&self, ray: &Ray, within: &Span) -> f64 {
+        let origin = ray.origin - self.center;
+        let turned = self.square * ray.dir;
+        let [a, b, c] = [
+            ray.dir.dot(turned),
+            origin.dot(turned) + 0.5 * self.linear.dot(ray.dir),
+            origin.dot(self.square * origin) + self.linear.dot(origin) + self.constant,
+        ];
+        let keeps = |at: DVec3| {
+            let from_center = at - self.center;
+            self.low.cmple(from_center).all() && from_center.cmple(self.high).all()
+        };
+        let crossings = classic_roots(a, b, c).map(|distance| within.keep(distance));
+        crossings.into_iter().find(|distance| keeps(ray.at(*distance))).unwrap_or(MISS)
+    }
+
+    /// The unit normal at a point.
+    pub fn upright(&self, at: DVec3) -> DVec3 {
+        let normal = 2.0 * (self.square * (at - self.center)) + self.linear;
+        // A cone's apex has none; any will do.
+        normal.try_normalize().unwrap_or(DVec3::Y)
+    }
+}
+
+impl<A: Bounded> Quadric<A> {
+    #[inline(always)]
+    fn own_ray(&self, ray: &Ray) -> OwnRay {
+        self.own.own(ray.origin, ray.dir, self.center)
+    }
+
+    /// The first hit beyond `near`, in twice the precision or without rounding.
+    pub fn exact_hit(&self, ray: &Ray, near: f64) -> f64 {
+        self.own.exact_hit(&self.own_ray(ray), near)
+    }
+
+    /// The distance of a ray that leaves it. It starts on one hit: the other one is what is left.
+    #[inline(never)]
+    fn other_distance(&self, ray: &Ray, side: Side, within: &Span) -> f64 {
+        within.keep(self.own.other_hit(&self.own_ray(ray), side))
+    }
+
+    /// The first hit's distance within a span, or NaN where it takes more than plain arithmetic.
+    #[inline(always)]
+    pub fn quick_distance(&self, ray: &Ray, within: &Span) -> f64 {
+        if let Some(side) = within.leaves {
+            return self.other_distance(ray, side, within);
+        }
+        if A::ACCURACY == Accuracy::Strict {
+            return f64::NAN;
+        }
+        let own = self.own_ray(ray);
+        let quick = self.own.quick_hit(&own, within.near, 0.0);
+        let corrected = self.own.corrected(&own, quick.distance);
+        let is_unknown = quick.is_unknown | corrected.is_nan();
+        let hit = if is_unknown { f64::NAN } else { within.keep(corrected) };
+        if quick.is_missed { MISS } else { hit }
+    }
+
+    /// Between which distances that is, of a ray that does not start on it.
+    #[inline(always)]
+    pub fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
+        if let Some(side) = within.leaves {
+            return Bracket::exactly(self.other_distance(ray, side, within));
+        }
+        let Quick { is_missed, is_unknown, distance, error } =
+            self.own.quick_hit(&self.own_ray(ray), within.near, CAMERA);
+        let (near, far) = if is_unknown { (within.near, MISS) } else { (distance - error, distance + error) };
+        if is_missed { Bracket::MISS } else { Bracket { near, far } }
+    }
+
+    /// The unit normal at a point.
+    pub fn upright(&self, at: DVec3) -> DVec3 {
+        self.own.normal(at, self.center)
+    }
+}
+
+/// The roots by the well-known formula, which the notes have: it loses digits, and double roots.
+#[inline(always)]
+fn classic_roots(a: f64, half_b: f64, c: f64) -> [f64; 2] {
+    let b = 2.0 * half_b;
+    if a == 0.0 {
+        return [-c / b, f64::NAN];
+    }
+    let root = (b * b - 4.0 * a * c).sqrt();
+    let (one, other) = ((-b - root) / (2.0 * a), (-b + root) / (2.0 * a));
+    [one.min(other), one.max(other)]
 }

@@ -1,6 +1,6 @@
 //! Hits of a surface of the second degree in plain arithmetic, without branches: of many rays at a time.
 
-use super::{FINE, OwnRay, Quadratic};
+use super::surface::{FINE, OwnRay, Quadratic};
 use crate::geometry::bounds::smaller;
 use crate::numeric::twofold::{two_product, two_sum};
 use glam::DVec3;

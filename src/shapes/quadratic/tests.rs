@@ -1,5 +1,6 @@
-use super::*;
-use crate::world::hittable::MISS;
+use super::surface::Quadratic;
+use crate::geometry::ray::MISS;
+use glam::DVec3;
 
 const BOX: [DVec3; 2] = [DVec3::splat(-1e9), DVec3::splat(1e9)];
 

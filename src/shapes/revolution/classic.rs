@@ -1,10 +1,11 @@
 //! The notes' method for surfaces of revolution, with the hits that it loses.
 
+use crate::geometry::ray::{MISS, Ray, Span};
+use crate::geometry::roots::bisection::bisect;
 use crate::numeric::interval::Interval;
 use crate::numeric::number::Number;
 use crate::scene::profile::Line;
 use crate::world::certify::Equation;
-use crate::world::hittable::{MISS, Ray, Span};
 use glam::DVec3;
 
 /// A surface of revolution around the y axis, as the notes' program finds it.
@@ -29,18 +30,8 @@ impl Classic {
         if closest.is_nan() || closest <= 0.0 || at_origin * outside(ray.at(closest)) >= 0.0 {
             return MISS;
         }
-        let (mut near, mut far) = (0.0, closest);
-        while far - near > 1e-4 {
-            let middle = (near + far) / 2.0;
-            if middle <= near || middle >= far {
-                break; // Far from the origin there is no number between them.
-            }
-            if at_origin * outside(ray.at(middle)) < 0.0 {
-                far = middle;
-            } else {
-                near = middle;
-            }
-        }
+        let is_across = |along: f64| at_origin * outside(ray.at(along)) < 0.0;
+        let (near, far) = bisect(is_across, (0.0, closest), 1e-4);
         let distance = (near + far) / 2.0;
         let height = ray.at(distance).y;
         if (0.0..=self.height).contains(&height) { within.keep(distance) } else { MISS }

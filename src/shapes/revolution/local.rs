@@ -1,10 +1,11 @@
 //! A ray clipped to a surface's bounding cylinder and counted from a base near it, so that nothing far away is left
 //! in the arithmetic.
 
+use super::quadratic::Quadratic;
 use crate::geometry::frame::{self, BLUR, Frame};
+use crate::geometry::ray::{Ray, Span};
+use crate::geometry::roots::taylor::Stretch;
 use crate::numeric::number::Number;
-use crate::shapes::roots::taylor::Stretch;
-use crate::world::hittable::{Ray, Span};
 use glam::DVec3;
 use std::ops::Range;
 
@@ -15,10 +16,6 @@ pub struct Local {
     pub origin: DVec3,
     /// The ray's direction.
     pub dir: DVec3,
-    /// The squared distance from the axis is `a s^2 + 2 b s + c`, at `s` along the ray from the base.
-    pub a: f64,
-    pub b: f64,
-    pub c: f64,
     /// How far rounding may have moved the base.
     pub blur: f64,
     /// Where the ray begins and ends, along it from the base.
@@ -57,8 +54,6 @@ impl Local {
         }
         // Moved in the world and turned then: what is turned is as small as the surface.
         let moved = frame.direction(frame.from_origin(ray, base));
-        let b = moved.x * dir.x + moved.z * dir.z;
-        let c = moved.x * moved.x + moved.z * moved.z;
         let blur = frame::blur(moved, base);
         let mut stretch = Stretch::from(within.near - base..f64::INFINITY);
         stretch.cut((moved.y, dir.y), [0.0, height], blur, 2.0 * (height + widest));
@@ -66,22 +61,22 @@ impl Local {
         // A hair more than is needed: rounding must not cut anything off.
         let widest = widest + 2.0 * (blur + BLUR * (height + widest));
         let widest = widest * widest * (1.0 + 1e-9);
+        let inside = Quadratic::around(moved, dir).lowered(widest);
         if a > 1e-30 {
-            let room = b * b - a * (c - widest);
+            let (inward, outward, room) = inside.between(1.0 / a);
             if room < 0.0 {
                 return None;
             }
-            let root = room.sqrt();
-            from = from.max((-b - root) / a);
-            to = to.min((root - b) / a);
-        } else if c > widest {
+            from = from.max(inward);
+            to = to.min(outward);
+        } else if inside.c > 0.0 {
             return None;
         }
         if from > to || (to - from).is_nan() || base + from >= within.far {
             return None;
         }
         let (far, inner) = (within.far, stretch.inner);
-        Some(Self { origin: moved, dir, a, b, c, blur, from, to, inner, base, far, ray: *ray, frame: *frame })
+        Some(Self { origin: moved, dir, blur, from, to, inner, base, far, ray: *ray, frame: *frame })
     }
 
     /// The height at a place along the ray.
@@ -90,18 +85,23 @@ impl Local {
         self.origin.y + along * self.dir.y
     }
 
-    /// The squared distance from the axis.
-    #[inline(always)]
-    pub fn around(&self, along: f64) -> f64 {
-        let (x, z) = (self.origin.x + along * self.dir.x, self.origin.z + along * self.dir.z);
-        x * x + z * z
-    }
-
     /// A coordinate of the place along the ray. Its bounds, where a number has any, hold that of the ray which this one
     /// was rounded from.
     #[inline(always)]
     pub fn place<N: Number>(&self, axis: usize, along: N) -> N {
         N::about(self.origin[axis], self.blur) + along * N::about(self.dir[axis], BLUR)
+    }
+
+    /// A coordinate of the place along this ray, and of no other.
+    #[inline(always)]
+    pub fn own_place<N: Number>(&self, axis: usize, along: N) -> N {
+        N::constant(self.origin[axis]) + along * N::constant(self.dir[axis])
+    }
+
+    /// How far rounding may have moved any point of this part of the ray.
+    #[inline(always)]
+    pub fn moved(&self) -> f64 {
+        self.blur + BLUR * self.from.abs().max(self.to.abs())
     }
 
     /// What full precision is along this part of the ray.

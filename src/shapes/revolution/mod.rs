@@ -3,229 +3,30 @@
 //!
 //! Each is cut, when it is made, into slabs in which the profile's square is a parabola but for a proven error
 //! (`slabs`). A ray meets the quadrics of revolution around those in closed form, which brackets its first hit or
-//! proves that there is none (`walk`); where it grazes the error's shell, bounds of the second derivative decide
-//! ([`taylor`](crate::shapes::roots::taylor)), and where rounding hides what they say, twice the precision
-//! ([`twice`]). Nothing has to be tuned. A profile of which all that cannot be proven within a
-//! stated number of operations is refused, with the reason ([`NoSurface`]). The rounding of a ray's own arithmetic is held
-//! by margins that are derived where they stand, and tried against the truth in `tests/truth.rs`.
+//! proves that there is none (`bracket`, for any number of rays). Where it grazes the error's shell, bounds of the second
+//! derivative decide ([`taylor`](crate::geometry::roots::taylor)) on its way alone (`walk`), and where rounding hides what they
+//! say, twice the precision ([`twice`]). Nothing has to be tuned. A profile of which all that cannot be proven within a
+//! stated number of operations is refused, with the reason ([`NoSurface`](no_surface::NoSurface)). The rounding of a ray's own arithmetic is held
+//! by margins that are derived where they stand, and tried against the truth in `tests/slow/truth.rs`.
 
 mod bracket;
 mod budget;
 mod classic;
+mod lanes;
+mod line;
 mod local;
+mod no_surface;
 mod normal;
+mod quadratic;
 mod ranges;
 mod root;
 mod shape;
 mod slabs;
+mod surface;
 #[cfg(test)]
 mod tests;
 mod walk;
 
 pub use classic::Classic;
 pub use shape::InFrame;
-pub use slabs::NoSurface;
-
-use crate::geometry::bounds::Bounds;
-use crate::geometry::frame::{BLUR, Frame};
-use crate::numeric::dual::Dual;
-use crate::numeric::formula::Formula;
-use crate::numeric::interval::Interval;
-use crate::numeric::number::Number;
-use crate::numeric::twofold::Twofold;
-use crate::shapes::roots::Method;
-use crate::shapes::roots::taylor::{Found, Line};
-use crate::shapes::roots::twice;
-use crate::words;
-use crate::world::certify::Equation;
-use crate::world::hittable::{MISS, Ray, Side, Span};
-use glam::DVec3;
-use local::Local;
-use slabs::Slabs;
-use std::fmt;
-
-/// A surface of revolution around the y axis, from the origin upward.
-pub struct Revolution {
-    /// The distance from the axis at each height.
-    profile: Formula,
-    /// The square of that.
-    square: Formula,
-    height: f64,
-    slabs: Slabs,
-    finish: Finish,
-}
-
-/// How the distance of a hit is finished.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Finish {
-    /// Not at all: the middle of its bracket, right to about 1/1000.
-    Bracket,
-    /// To full precision, by Newton's method.
-    Root,
-}
-
-impl Revolution {
-    /// The surface of a profile.
-    ///
-    /// # Errors
-    /// Where the profile has no bound, where it is nowhere above 0, and where it takes too long to prove what it is.
-    pub fn new(profile: &Formula, height: f64, finish: Finish) -> Result<Self, NoSurface> {
-        let square = profile.squared();
-        let slabs = Slabs::new(profile, &square, height)?;
-        Ok(Self { profile: profile.clone(), square, height, slabs, finish })
-    }
-
-    /// The distance of a ray's first hit within a span, whatever the ray does, and whether it is that of all rays that
-    /// this one was rounded from.
-    pub fn first_hit(&self, frame: &Frame, ray: &Ray, within: &Span) -> (f64, bool) {
-        let Some(local) = Local::new(frame, ray, within, self.height, self.slabs.widest()) else {
-            return (MISS, true);
-        };
-        let Found { root, is_certain } = self.walk(&local, within.leaves);
-        (root.map_or(MISS, |along| within.keep(local.base + along)), is_certain)
-    }
-
-    /// Whether it comes into the box of so many units around a point. Beyond the surface's ends the profile may be
-    /// anything, and is not asked.
-    pub fn touches(&self, at: DVec3, error: f64) -> bool {
-        let [x, y, z] = at.to_array().map(|place| Interval { low: place - error, high: place + error });
-        let y = Interval { low: y.low.max(0.0), high: y.high.min(self.height) };
-        y.low <= y.high && self.value([x, y, z]).has_zero()
-    }
-
-    /// A box around it.
-    pub fn bounds(&self) -> Bounds {
-        let widest = self.slabs.widest();
-        Bounds { low: DVec3::new(-widest, 0.0, -widest), high: DVec3::new(widest, self.height, widest) }
-    }
-
-    /// As [`first_hit`](Self::first_hit), by another method and in the same bounding cylinder; but the notes' steps, as
-    /// in the notes, go all the way between the surface's heights.
-    pub fn first_hit_by(&self, method: Method, frame: &Frame, ray: &Ray, within: &Span) -> f64 {
-        let widest = if method == Method::Steps { f64::INFINITY } else { self.slabs.widest() };
-        let Some(local) = Local::new(frame, ray, within, self.height, widest) else { return MISS };
-        let line = Uncut { surface: self, local: &local };
-        let shortest = 4.0 * local.tolerance();
-        match method.first_root(&line, local.from..local.to, local.base, within, shortest) {
-            Some(along) => within.keep(local.base + along),
-            None => MISS,
-        }
-    }
-
-    /// The height at a place along a ray. Beyond its ends the profile may be anything, and rounding must not ask.
-    #[inline(always)]
-    fn height_of(&self, local: &Local, along: f64) -> f64 {
-        local.height(along).clamp(0.0, self.height)
-    }
-
-    /// The profile's square at a height, and its slope.
-    #[inline(always)]
-    fn square_and_slope(&self, y: f64) -> (f64, f64) {
-        // Beyond its ends the profile may be anything, and rounding must not ask.
-        let Dual { value, slope } = self.square.at(Dual::variable(y.clamp(0.0, self.height)));
-        (value, slope)
-    }
-
-    /// How far outside of the surface a place along a ray is: positive outside, negative inside.
-    #[inline(always)]
-    fn outside(&self, local: &Local, along: f64) -> f64 {
-        local.around(along) - self.square.at(self.height_of(local, along))
-    }
-
-    /// As [`outside`](Self::outside), and how fast that grows.
-    #[inline(always)]
-    fn outside_and_slope(&self, local: &Local, along: f64) -> (f64, f64) {
-        let (value, slope) = self.square_and_slope(local.height(along));
-        (local.around(along) - value, 2.0 * (local.a * along + local.b) - slope * local.dir.y)
-    }
-}
-
-/// How its hits are found.
-impl fmt::Display for Revolution {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let error = self.slabs.coarsest();
-        let count = words::count(self.slabs.count(), "slab");
-        let finish = match self.finish {
-            Finish::Bracket => "left in the middle of their brackets",
-            Finish::Root => "finished by Newton's method",
-        };
-        write!(f, "{count}, the profile's square in each a parabola within {error:.1e}; hits {finish}")
-    }
-}
-
-impl Equation for Revolution {
-    /// Beyond its ends the profile may be anything, and rounding must not ask.
-    fn value<N: Number>(&self, [x, y, z]: [N; 3]) -> N {
-        let height = y.max(N::constant(0.0)).min(N::constant(self.height));
-        x.powi(2) + z.powi(2) - self.square.at(height)
-    }
-
-    fn kept<N: Number>(&self, [_, y, _]: [N; 3]) -> N {
-        let below_the_top = N::constant(self.height) - y;
-        y.min(below_the_top).min(self.profile.at(y))
-    }
-
-    fn extent(&self) -> [DVec3; 2] {
-        let Bounds { low, high } = self.bounds();
-        [low, high]
-    }
-}
-
-/// How far outside of the surface the places along a ray are, with any number type.
-struct OnRay<'s> {
-    surface: &'s Revolution,
-    local: &'s Local,
-}
-
-impl Line for OnRay<'_> {
-    #[inline(always)]
-    fn at<N: Number>(&self, along: N) -> N {
-        let place = |axis: usize| self.local.place(axis, along);
-        let height = place(1).max(N::constant(0.0)).min(N::constant(self.surface.height));
-        place(0).powi(2) + place(2).powi(2) - self.surface.square.at(height)
-    }
-
-    /// That of the squared distance from the axis is the same everywhere.
-    fn curvature(&self, piece: Interval) -> Interval {
-        let dir = self.local.dir.to_array().map(|part| Interval::about(part, BLUR));
-        let height = self.local.place(1, piece);
-        let of_square = self.surface.square.at(Dual::variable_twice(height)).second();
-        Interval::constant(2.0) * (dir[0].powi(2) + dir[2].powi(2)) - of_square * dir[1].powi(2)
-    }
-
-    /// Twice the precision, from the ray in the world and the axis as the scene has it, tells nearly all touches from
-    /// misses.
-    fn undecided(&self, piece: Interval, leaves: Option<Side>, hidden: f64) -> Option<f64> {
-        let exact = self.local.frame.exactly(&self.local.ray, self.local.base);
-        let outside = |along: Dual<Twofold>| {
-            let [x, y, z] = exact.along(along);
-            let height = y.max(Dual::constant(0.0)).min(Dual::constant(self.surface.height));
-            x.powi(2) + z.powi(2) - self.surface.square.at(height)
-        };
-        twice::first_root(outside, piece, leaves, hidden)
-    }
-}
-
-/// As [`OnRay`], and where the profile is negative it is 0: methods that know nothing of slabs have nothing to leave
-/// out.
-struct Uncut<'s> {
-    surface: &'s Revolution,
-    local: &'s Local,
-}
-
-impl Line for Uncut<'_> {
-    #[inline(always)]
-    fn at<N: Number>(&self, along: N) -> N {
-        let place =
-            |axis: usize| N::constant(self.local.origin[axis]) + along * N::constant(self.local.dir[axis]);
-        place(0).powi(2) + place(2).powi(2) - self.surface.profile.at(place(1)).max(N::constant(0.0)).powi(2)
-    }
-}
-
-/// The sign of [`Revolution::outside`] on a side.
-fn sign(side: Side) -> f64 {
-    match side {
-        Side::Outside => 1.0,
-        Side::Inside => -1.0,
-    }
-}
+pub use surface::{Finish, Revolution};

@@ -1,12 +1,13 @@
 //! The normals of a surface of revolution.
 
-use super::Revolution;
+use super::surface::Revolution;
 use crate::geometry::frame::Frame;
-use crate::geometry::packet::{Rays, STEP, Vectors};
+use crate::geometry::packet::Rays;
+use crate::geometry::ray::Side;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
 use crate::simd::cpu::kernels;
-use crate::world::hittable::Side;
+use crate::simd::soa::{STEP, Vectors};
 use crate::world::landing;
 use glam::DVec3;
 

@@ -5,8 +5,9 @@
 //! alone hides the sign, however short the piece, the computed sign stands, and how large the profile can be there is
 //! kept: that has to be next to nothing.
 
-use super::NoSurface;
 use super::budget::Budget;
+use super::no_surface::NoSurface;
+use crate::geometry::roots::bisection::bisect;
 use crate::numeric::dual::Dual;
 use crate::numeric::formula::Formula;
 use crate::numeric::interval::Interval;
@@ -76,23 +77,12 @@ impl Ranges {
     }
 
     /// A piece on which the profile only grows or only falls.
-    fn one_change(&mut self, profile: &Formula, mut low: f64, mut high: f64) {
-        let (from, to) = (low, high);
+    fn one_change(&mut self, profile: &Formula, from: f64, to: f64) {
         let (at_from, at_to) = (self.is_void(profile, from), self.is_void(profile, to));
         if at_from == at_to {
             return self.push(from, to, at_from);
         }
-        loop {
-            let middle = low + 0.5 * (high - low);
-            if middle <= low || middle >= high {
-                break;
-            }
-            if (profile.at(middle) < 0.0) == at_from {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
+        let (low, high) = bisect(|y| (profile.at(y) < 0.0) == at_to, (from, to), 0.0);
         self.is_void(profile, low);
         self.is_void(profile, high);
         // The surface ends at a number where it is.

@@ -1,6 +1,7 @@
 //! A profile cut into slabs, in each of which its square is a parabola, but for a proven error.
 
 use super::budget::Budget;
+use super::no_surface::NoSurface;
 use super::ranges::Ranges;
 use crate::numeric::dual::Dual;
 use crate::numeric::formula::Formula;
@@ -51,65 +52,6 @@ impl Slab {
     }
 }
 
-/// Why a profile makes no surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum NoSurface {
-    /// It has no bound.
-    Unbounded {
-        /// A height where that is so.
-        near: f64,
-    },
-    /// It is nowhere above 0.
-    Nowhere,
-    /// Where it is negative is not known above a height after as many operations as it may take.
-    Signs {
-        /// The height.
-        from: f64,
-    },
-    /// It bends more often above a height than as many operations as it may take can follow.
-    Bends {
-        /// The height.
-        from: f64,
-    },
-    /// Rounding hides where it is negative.
-    Rounding {
-        /// A height where that is so.
-        near: f64,
-        /// How large it may be there.
-        hidden: f64,
-    },
-}
-
-impl NoSurface {
-    /// What is wrong with the profile, what would help, for messages: "has a profile ...".
-    pub fn told(self) -> (String, &'static str) {
-        match self {
-            Self::Unbounded { near } => (
-                format!("without a bound near y = {near:.6}"),
-                "a profile is the distance from the axis, finite at each height from 0 to the surface's own",
-            ),
-            Self::Nowhere => (
-                "that is nowhere above 0".to_owned(),
-                "a profile is the distance from the axis, finite at each height from 0 to the surface's own",
-            ),
-            Self::Signs { from } => (
-                format!("whose parts below 0 are too many to be told apart from y = {from:.6} upward"),
-                "a lower height, or a profile that crosses 0 less often",
-            ),
-            Self::Bends { from } => (
-                format!("that bends too often to be followed from y = {from:.6} upward"),
-                "a lower height, or a profile that bends less often",
-            ),
-            Self::Rounding { near, hidden } => (
-                format!(
-                    "that rounding hides near y = {near:.6}: it is 0 there, but for an error of {hidden:.1e}"
-                ),
-                "write the formula so that large terms do not cancel, such as `(y - 3)^2` for `y^2 - 6*y + 9`",
-            ),
-        }
-    }
-}
-
 /// The slabs of a profile, from the bottom up.
 pub struct Slabs {
     slabs: Vec<Slab>,
@@ -118,6 +60,7 @@ pub struct Slabs {
     parts_per_unit: f64,
     widest: f64,
     reach: f64,
+    coarsest: f64,
     is_smooth: bool,
 }
 
@@ -149,6 +92,7 @@ impl Slabs {
             parts_per_unit,
             widest: most.sqrt().next_up(),
             reach: 1.001 * shell,
+            coarsest: slabs.iter().map(|slab| slab.error).fold(0.0, f64::max),
             slabs,
         })
     }
@@ -166,8 +110,9 @@ impl Slabs {
     }
 
     /// The largest of the slabs' errors.
+    #[inline(always)]
     pub fn coarsest(&self) -> f64 {
-        self.slabs.iter().map(|slab| slab.error).fold(0.0, f64::max)
+        self.coarsest
     }
 
     /// Whether the profile's slope is bounded everywhere, so that it does not jump.

@@ -1,6 +1,10 @@
 //! Profiles of all kinds: what loads, what is refused, and that no part is lost or invented.
 
+use super::no_surface::NoSurface;
 use super::*;
+use crate::numeric::formula::Formula;
+use crate::numeric::interval::Interval;
+use crate::numeric::number::Number;
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 
@@ -128,14 +132,14 @@ fn what_cannot_be_told_is_refused_with_the_reason() {
     let wild = "1e-8 + ln(sin(2) ^ 2) + sin(tan(pi ^ y) / 0.5) + min(abs(0.5 - 1e-8), pi ^ 2.11 * 0.5) \
         ^ abs(max(pi, y)) * 1e-9 * 1e-8 * floor(0.5 - (y) * cos(7.27))";
     for (profile, height, told) in [
-        ("sin(y)", 1e9, "whose parts below 0 are too many to be told apart from y = "),
-        (wild, 12.0, "whose parts below 0 are too many to be told apart from y = 0.3"),
-        ("sin(1/y)", 6.0, "whose parts below 0 are too many to be told apart from y = 0.0"),
-        ("2 + sin(y)", 1e9, "that bends too often to be followed from y = "),
-        ("1/(y-3)", 6.0, "without a bound near y = 3.0"),
-        ("ln(y-3)", 6.0, "without a bound near y = "),
-        ("tan(y)", 6.0, "without a bound near y = 1.570796"),
-        ("1e10 + (y - 3) - 1e10", 6.0, "that rounding hides near y = "),
+        ("sin(y)", 1e9, "with too many parts below 0 to separate them from y = "),
+        (wild, 12.0, "with too many parts below 0 to separate them from y = 0.3"),
+        ("sin(1/y)", 6.0, "with too many parts below 0 to separate them from y = 0.0"),
+        ("2 + sin(y)", 1e9, "that bends too often to be bounded from y = "),
+        ("1/(y-3)", 6.0, "that is unbounded near y = 3.0"),
+        ("ln(y-3)", 6.0, "that is unbounded near y = "),
+        ("tan(y)", 6.0, "that is unbounded near y = 1.570796"),
+        ("1e10 + (y - 3) - 1e10", 6.0, "whose sign is lost in rounding near y = "),
         ("-1", 6.0, "that is nowhere above 0"),
     ] {
         let fault = surface(profile, height).err().unwrap_or_else(|| panic!("{profile} loads"));

@@ -1,8 +1,9 @@
 //! What the arithmetic alone of a test costs: the formulas of textbooks in loops over arrays, without bounds, brackets,
 //! shading or any care for rounding. No tracer that tests packets of rays one by one is faster.
 
-use crate::geometry::packet::{Rays, Vectors, WIDE};
+use crate::geometry::packet::{Rays, WIDE};
 use crate::simd::cpu::{Cpu, kernels};
+use crate::simd::soa::Vectors;
 use glam::DVec3;
 use std::hint::black_box;
 

@@ -1,27 +1,28 @@
 //! How fast a scene is traced on one core, and what the arithmetic alone would take there.
 //!
-//! Times are the core's own for the thread that traces ([`clock`]), the least of several rounds.
+//! Times are the core's own for the thread that traces (`clock`), the least of several rounds.
 
-pub mod ceiling;
-pub mod clock;
+mod ceiling;
+pub(crate) mod clock;
 mod packets;
 pub mod scenes;
 
 pub use packets::Times;
 
-use crate::geometry::packet::{View, ViewMut};
+use crate::render::plan::Plan;
 use crate::render::renderer::{Overseer, Renderer};
 use crate::render::tally::Tally;
 use crate::render::tiles::{BAND, Band};
 use crate::render::watch::Kind;
 use crate::scene::model::{Model, Object};
 use crate::simd::cpu::Cpu;
-use crate::world::hittable::Shader;
+use crate::world::body::AnyShader;
 use crate::world::material::{Look, Material, Rgb};
+use crate::world::shader::Shader;
 use ceiling::Bare;
 use glam::DVec3;
 use std::io;
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 /// How fast a scene is traced.
@@ -38,7 +39,7 @@ pub struct Speed {
     /// The tests by the type of the entity, sorted.
     pub tests: Vec<Tests>,
     /// What the frame's tests take as bare arithmetic, in seconds, if each has a formula of textbooks
-    /// ([`ceiling`]).
+    /// (`ceiling`).
     pub bare: Option<f64>,
 }
 
@@ -93,8 +94,9 @@ impl Speed {
     }
 
     fn measure_with(renderer: &Renderer, mut model: Model, cpu: Cpu, patience: Duration) -> Self {
-        let tally = counted(renderer, &model);
-        let tests = tests(&model, &tally, cpu, patience);
+        let plan = Plan::new(&model);
+        let tally = counted(renderer, &plan);
+        let tests = tests(&plan, &tally, cpu, patience);
         let bare: Option<Vec<_>> =
             tests.iter().map(|tests| Some((Bare::of(tests.entity)?, tests.number))).collect();
         let mut arithmetic = || {
@@ -104,13 +106,14 @@ impl Speed {
         };
         let mut room = None;
         let [seconds, arithmetic] =
-            clock::least(patience, [&mut || render(renderer, &model, &mut room), &mut arithmetic]);
+            clock::least(patience, [&mut || render(renderer, &plan, &mut room), &mut arithmetic]);
         let frame = Cost { rays: tally.all_rays(), seconds };
         let bare = bare.filter(|bare| !bare.is_empty()).map(|_| arithmetic);
 
         let mut measured = |model: &Model| {
-            let rays = counted(renderer, model).all_rays();
-            let [seconds] = clock::least(patience, [&mut || render(renderer, model, &mut room)]);
+            let plan = Plan::new(model);
+            let rays = counted(renderer, &plan).all_rays();
+            let [seconds] = clock::least(patience, [&mut || render(renderer, &plan, &mut room)]);
             Cost { rays, seconds }
         };
         let mut lit = frame;
@@ -128,8 +131,8 @@ impl Speed {
 }
 
 /// Makes a frame, in a room that is kept: what the system does to give memory is not measured.
-fn render(renderer: &Renderer, model: &Model, room: &mut Option<Band>) {
-    let [width, height] = model.camera.value.pixels;
+fn render(renderer: &Renderer, plan: &Plan, room: &mut Option<Band>) {
+    let [width, height] = plan.camera.pixels;
     for rows in Band::split(&(0..width), &(0..height), BAND) {
         let mut band = match room.take() {
             Some(band) if band.rows.len() == rows.len() => band,
@@ -137,24 +140,24 @@ fn render(renderer: &Renderer, model: &Model, room: &mut Option<Band>) {
         };
         band.rows = rows;
         band.tiles.fill(false);
-        renderer.fill(model, &mut band, Overseer { stops: &|| false, row: &|| () }, &|()| {});
+        renderer.fill(plan, &mut band, Overseer { stops: &|| false, row: &|| () }, &|()| {});
         *room = Some(band);
     }
 }
 
 /// What a frame takes.
-fn counted(renderer: &Renderer, model: &Model) -> Tally {
-    let [width, height] = model.camera.value.pixels;
+fn counted(renderer: &Renderer, plan: &Plan) -> Tally {
+    let [width, height] = plan.camera.pixels;
     let sum = Mutex::new(Tally::default());
     let add = |part: Tally| sum.lock().unwrap_or_else(PoisonError::into_inner).add(&part);
-    renderer.bands(model, 0..width, 0..height, &add).for_each(drop);
+    renderer.bands(plan, 0..width, 0..height, &add).for_each(drop);
     sum.into_inner().unwrap_or_else(PoisonError::into_inner)
 }
 
-fn tests(model: &Model, tally: &Tally, cpu: Cpu, patience: Duration) -> Vec<Tests> {
+fn tests(plan: &Plan, tally: &Tally, cpu: Cpu, patience: Duration) -> Vec<Tests> {
     /// Textbooks' tests in a round.
     const ROUND: u64 = 1 << 16;
-    let packets = packets::of(model, cpu);
+    let (packets, model) = (packets::of(plan, cpu), plan.model);
     let tests = tally.tests(model).into_iter().filter(|(_, tests)| tests.tested > 0);
     let tests = tests.map(|(entity, tests)| Tests {
         entity,
@@ -174,14 +177,17 @@ fn tests(model: &Model, tally: &Tally, cpu: Cpu, patience: Duration) -> Vec<Test
 fn matt(model: Model) -> Model {
     let matt = |object: Object| {
         let material = Material { specular: Rgb::ZERO, transparency: 0.0, ..(*object.material).clone() };
-        Object { material: Arc::new(material), shader: Box::new(Matt(object.shader)), ..object }
+        // Nearly all shaders mirror what the material does, and are as fast as they were.
+        let is_matt = object.shader.brightest(&material).is_some_and(|look| look.specular == Rgb::ZERO);
+        let shader = if is_matt { object.shader } else { Box::new(Matt(object.shader)) };
+        Object { material: Arc::new(material), shader, ..object }
     };
     let objects = model.objects.into_iter().map(matt).collect();
-    Model { objects, plan: OnceLock::new(), ..model }
+    Model { objects, ..model }
 }
 
 /// A shader that mirrors nothing.
-struct Matt(Box<dyn Shader>);
+struct Matt(AnyShader);
 
 impl Shader for Matt {
     fn ambient(&self, material: &Material, at: DVec3) -> Rgb {
@@ -198,25 +204,5 @@ impl Shader for Matt {
 
     fn even(&self, material: &Material) -> Option<Look> {
         self.0.even(material).map(|look| Look { specular: Rgb::ZERO, ..look })
-    }
-
-    fn unlit(
-        &self,
-        cpu: Cpu,
-        material: &Material,
-        points: View,
-        ambients: ViewMut,
-        mut speculars: ViewMut,
-    ) -> bool {
-        let count = points.len();
-        self.0.unlit(cpu, material, points, ambients, speculars.first(count));
-        for channel in [speculars.x, speculars.y, speculars.z] {
-            channel.fill(0.0);
-        }
-        false
-    }
-
-    fn diffuses(&self, cpu: Cpu, material: &Material, points: View, out: ViewMut) -> bool {
-        self.0.diffuses(cpu, material, points, out)
     }
 }

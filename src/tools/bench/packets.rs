@@ -1,13 +1,15 @@
 //! A scene's own packets, to time the functions of its shapes with.
 
 use super::clock;
-use crate::geometry::packet::{Nearest, Rays, Vectors, WIDE};
+use crate::geometry::packet::{Nearest, Rays, WIDE};
+use crate::geometry::ray::{MISS, Side};
+use crate::render::plan::Plan;
 use crate::render::tiles::{self, TILE};
 use crate::render::trace::{self, Rooms, Tracer};
 use crate::render::watch::{Count, Kind, Watch};
 use crate::scene::model::Model;
 use crate::simd::cpu::Cpu;
-use crate::world::hittable::{MISS, Side};
+use crate::simd::soa::Vectors;
 use std::hint::black_box;
 use std::time::Duration;
 
@@ -56,15 +58,15 @@ pub struct Times {
 }
 
 /// The packets of a model.
-pub(super) fn of(model: &Model, cpu: Cpu) -> Vec<Packet> {
-    let tiles: Vec<_> = split(model).collect();
+pub(super) fn of(plan: &Plan, cpu: Cpu) -> Vec<Packet> {
+    let tiles: Vec<_> = split(plan.camera.pixels).collect();
     let step = tiles.len().div_ceil(TILES);
-    tiles.iter().step_by(step).map(|tile| Packet::new(model, cpu, tile)).collect()
+    tiles.iter().step_by(step).map(|tile| Packet::new(plan, cpu, tile)).collect()
 }
 
 impl Packet {
-    fn new(model: &Model, cpu: Cpu, tile: &[[usize; 2]]) -> Self {
-        let camera = &model.camera.value;
+    fn new(plan: &Plan, cpu: Cpu, tile: &[[usize; 2]]) -> Self {
+        let camera = &plan.camera;
         let mut view = Bundle { origin: Vectors::ZERO, dir: Vectors::ZERO };
         let mut hits = Vec::new();
         for lane in 0..WIDE {
@@ -72,7 +74,7 @@ impl Packet {
             let ray = camera.ray(x as f64, y as f64);
             view.origin.set(lane, ray.origin);
             view.dir.set(lane, ray.dir);
-            hits.extend(trace::first_hit(model, &camera.sight(x as f64, y as f64)).map(|hit| (ray, hit)));
+            hits.extend(trace::first_hit(plan, &camera.sight(x as f64, y as f64)).map(|hit| (ray, hit)));
         }
         let count = |object| hits.iter().filter(|(_, hit)| hit.index == object).count();
         let most = hits.iter().map(|(_, hit)| hit.index).max_by_key(|object| (count(*object), *object));
@@ -91,7 +93,7 @@ impl Packet {
                 view.dir.set(lane, ray.dir);
                 toward.origin.set(lane, hit.point);
                 toward.dir.set(lane, ray.dir);
-                if let Some(light) = model.lights.first() {
+                if let Some(light) = plan.model.lights.first() {
                     let between = light.value.location() - hit.point;
                     toward.dir.set(lane, between.normalize());
                     ends[lane] = if between.dot(normal) > 0.0 { between.length() } else { 0.0 };
@@ -99,7 +101,7 @@ impl Packet {
             }
             Met { object, view, toward, sides, ends }
         });
-        Self { view, tested: Tested::of(model, cpu, tile), met }
+        Self { view, tested: Tested::of(plan, cpu, tile), met }
     }
 }
 
@@ -111,7 +113,7 @@ pub(super) fn times(
     patience: Duration,
     is_wanted: impl Fn(usize) -> bool,
 ) -> Times {
-    let shape = |object: usize| &*model.objects[object].shape;
+    let shape = |object: usize| &model.objects[object].shape;
     let wanted = |objects: &[usize]| objects.iter().copied().filter(|object| is_wanted(*object)).collect();
     let viewed: Vec<(&Packet, Vec<usize>)> =
         packets.iter().map(|packet| (packet, wanted(&packet.tested.primary))).collect();
@@ -135,7 +137,7 @@ pub(super) fn times(
             for object in objects {
                 let (near, far, met, doubt) = (&mut near[..], &mut far[..], &mut met[..], &mut doubt[..]);
                 let nearest = Nearest { near, far, met, doubt };
-                shape(*object).meet(cpu, packet.view.rays(), None, *object as u64 + 1, nearest);
+                shape(*object).closest_hits(cpu, packet.view.rays(), None, *object as u64 + 1, nearest);
             }
             black_box((&near, &far, &met));
         }
@@ -145,7 +147,14 @@ pub(super) fn times(
             let (mut blocked, mut doubt) = ([0; WIDE], [0; WIDE]);
             for object in objects {
                 let sides = (*object == met.object).then_some(&met.sides[..]);
-                shape(*object).block(cpu, met.toward.rays(), sides, &met.ends, &mut blocked, &mut doubt);
+                shape(*object).packets().occluded(
+                    cpu,
+                    met.toward.rays(),
+                    sides,
+                    &met.ends,
+                    &mut blocked,
+                    &mut doubt,
+                );
             }
             black_box(&blocked);
         }
@@ -156,14 +165,14 @@ pub(super) fn times(
             let (mut near, mut far) = ([MISS; WIDE], [MISS; WIDE]);
             let (mut met, mut doubt) = ([0; WIDE], [0; WIDE]);
             let nearest = Nearest { near: &mut near, far: &mut far, met: &mut met, doubt: &mut doubt };
-            shape(view.object).meet(cpu, view.view.rays(), None, 1, nearest);
+            shape(view.object).closest_hits(cpu, view.view.rays(), None, 1, nearest);
             (near, far)
         })
         .collect();
     let mut settle = || {
         for (met, (near, far)) in met.iter().zip(&brackets) {
             let mut distances = [0.0; WIDE];
-            shape(met.object).distances(cpu, met.view.rays(), None, (near, far), &mut distances);
+            shape(met.object).packets().refine(cpu, met.view.rays(), None, (near, far), &mut distances);
             black_box(&distances);
         }
     };
@@ -177,8 +186,7 @@ pub(super) fn times(
 }
 
 /// The pixels of a frame, tile by tile as the renderer takes them: from the left and from the bottom.
-fn split(model: &Model) -> impl Iterator<Item = Vec<[usize; 2]>> {
-    let [width, height] = model.camera.value.pixels;
+fn split([width, height]: [usize; 2]) -> impl Iterator<Item = Vec<[usize; 2]>> {
     (0..height).step_by(TILE).flat_map(move |top| {
         (0..width).step_by(TILE).map(move |left| {
             let mut pixels = Vec::new();
@@ -215,9 +223,9 @@ impl Watch for Tested {
 
 impl Tested {
     /// Those of a tile, each once.
-    fn of(model: &Model, cpu: Cpu, tile: &[[usize; 2]]) -> Self {
+    fn of(plan: &Plan, cpu: Cpu, tile: &[[usize; 2]]) -> Self {
         let mut tested = Self::default();
-        Tracer::new(model, cpu, &mut Rooms::default(), &mut tested).pixels(tile);
+        Tracer::new(plan, cpu, &mut Rooms::default(), &mut tested).pixels(tile);
         for objects in [&mut tested.primary, &mut tested.shadow] {
             objects.sort_unstable();
             objects.dedup();

@@ -1,16 +1,24 @@
 //! The ways in which a scene's hits can be found, each as a model of the scene.
 
-use super::{Family, Load};
+use super::data::Family;
 use crate::geometry::bounds::Bounds;
+use crate::geometry::ray::{MISS, Ray, Side, Span};
+use crate::geometry::roots::Method;
 use crate::geometry::sight::Sight;
+use crate::numeric::twofold::Twofold;
 use crate::scene::choice::Choice;
 use crate::scene::model::{Model, Object};
-use crate::shapes::roots::Method;
 use crate::world::accuracy::Accuracy;
+use crate::world::any_shape::AnyShape;
 use crate::world::certify::{Enclosure, Precision};
-use crate::world::hittable::{Hittable, MISS, Ray, Side, Span};
+use crate::world::hittable::Hittable;
+use crate::world::packets::shape::{Meeting, Proofs};
+use crate::world::shape::{ByDistance, Shape};
 use glam::DVec3;
 use std::io;
+
+/// Loads the scene anew, in an accuracy or in its own.
+pub type Load<'l> = &'l dyn Fn(Option<Accuracy>) -> io::Result<Model>;
 
 /// A scene, and a way to find its hits.
 pub struct Candidate {
@@ -46,11 +54,14 @@ pub fn all(load: Load) -> io::Result<Vec<Candidate>> {
     }
     for method in Method::ALL {
         let mut model = load(Some(Accuracy::Exact))?;
-        if !model.objects.iter().any(|object| is_searched(&*object.shape)) {
+        if !model.objects.iter().any(|object| is_searched(&object.shape)) {
             break;
         }
-        let by = |object: Object| match is_searched(&*object.shape) {
-            true => Object { shape: Box::new(By { shape: object.shape, method }), ..object },
+        let by = |object: Object| match is_searched(&object.shape) {
+            true => Object {
+                shape: Shape::new(By { shape: object.shape, method }).by::<ByDistance, ByItsOwn>().into(),
+                ..object
+            },
             false => object,
         };
         model.objects = model.objects.into_iter().map(by).collect();
@@ -72,20 +83,23 @@ pub fn all(load: Load) -> io::Result<Vec<Candidate>> {
 }
 
 /// Whether a shape's hits are the roots of a function along a ray.
-pub fn is_searched(shape: &dyn Hittable) -> bool {
+pub fn is_searched(shape: &AnyShape) -> bool {
     let any = Ray { origin: DVec3::ZERO, dir: DVec3::Z };
-    shape.distance_by(Method::Steps, &any, &Span::RAY).is_some()
+    shape.packets().distance_by(Method::Steps, &any, &Span::RAY).is_some()
 }
 
 /// A shape that is found by another method.
 struct By {
-    shape: Box<dyn Hittable>,
+    shape: AnyShape,
     method: Method,
 }
 
+/// Proven as the shape is that it stands for.
+struct ByItsOwn;
+
 impl Hittable for By {
     fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        self.shape.distance_by(self.method, ray, within).unwrap_or(MISS)
+        self.shape.packets().distance_by(self.method, ray, within).unwrap_or(MISS)
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {
@@ -100,15 +114,27 @@ impl Hittable for By {
         self.shape.meets_itself(leaving)
     }
 
-    fn touches(&self, at: DVec3, error: f64) -> bool {
-        self.shape.touches(at, error)
-    }
-
     fn is_two_sided(&self) -> bool {
         self.shape.is_two_sided()
     }
+}
+
+impl Meeting for ByItsOwn {}
+
+impl Proofs for Shape<By, ByDistance, ByItsOwn> {
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        self.shape.shape.touches(at, error)
+    }
+
+    fn fine_distance(&self, _ray: &Ray, _distance: f64) -> Option<Twofold> {
+        None
+    }
 
     fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        self.shape.certify(sight, precision)
+        self.shape.shape.certify(sight, precision)
+    }
+
+    fn distance_by(&self, _method: Method, _ray: &Ray, _within: &Span) -> Option<f64> {
+        None
     }
 }

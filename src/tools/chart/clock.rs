@@ -1,7 +1,7 @@
 //! Times that can be compared: the same work of each choice by turns, so that whatever else the machine does meets all
 //! of them, in CPU time of the thread, the least of many rounds.
 
-use super::Progress;
+use super::progress::Progress;
 use crate::tools::bench::clock;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};

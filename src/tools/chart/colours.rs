@@ -1,6 +1,6 @@
 //! How far apart colours are: as light, and as they look.
 
-use crate::output::picture::{shown, to_byte};
+use crate::render::bytes::{shown, to_byte};
 use crate::world::material::Rgb;
 use glam::DVec3;
 

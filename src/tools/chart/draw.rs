@@ -2,8 +2,8 @@
 
 use super::axis::Axis;
 use super::canvas::{Align, BLUE, Canvas, GREEN, GREY, LIGHT, Letters, Marker, ORANGE, PURPLE, VERMILION};
+use super::data::{Chart, Family, Panel, Point, Subject};
 use super::labels::{self, Area};
-use super::{Chart, Family, Panel, Point, Subject};
 use crate::geometry::packet::WIDE;
 use crate::output::picture::{Compression, Format};
 use plotters::prelude::{BLACK, BitMapBackend, DrawingBackend, IntoDrawingArea, RGBColor, SVGBackend};
@@ -69,7 +69,7 @@ fn draw<D: DrawingBackend>(chart: &Chart, backend: D, scale: f64) -> io::Result<
     let (_, height) = size(chart);
     let head = Letters { is_bold: true, ..Letters::new(20.0) };
     let small = Letters { colour: GREY, ..Letters::new(12.5) };
-    let title = format!("{}: what each choice costs, and how wrong it is", chart.scene);
+    let title = format!("{}: cost and error of each choice", chart.scene);
     canvas.text(&title, (20.0, 26.0), Align::Left, head)?;
     let machine = &chart.machine;
     let trust = match (chart.is_noisy(), chart.is_busy()) {
@@ -78,7 +78,7 @@ fn draw<D: DrawingBackend>(chart: &Chart, backend: D, scale: f64) -> io::Result<
         (false, false) => "",
     };
     let caption = format!(
-        "{}; {}; measured on {} UTC; rounds {:.1} % apart{trust}",
+        "{}; {}; measured on {} UTC; rounds differ by {:.1} %{trust}",
         machine.processor,
         machine.build,
         machine.date,
@@ -122,12 +122,12 @@ fn legend<D: DrawingBackend>(canvas: &Canvas<D>, chart: &Chart, y: f64) -> io::R
     }
     let second = y + 24.0;
     canvas.marker((26.0, second), Marker::Disc, GREY, true)?;
-    let text = "hollow: some hits are missed, invented or not the first (percent of all rays); the line is the \
-                front: no choice without wrong hits is faster and more exact";
+    let text = "hollow: some hits are missed, invented or not the first (percent of all rays); line: the Pareto front, \
+                where no choice without wrong hits is both faster and more exact";
     canvas.text(text, (40.0, second), Align::Left, letters)?;
     let text = format!(
-        "times: rays go in packets of up to {WIDE} on one thread, as in a render; where a hit is searched for, all but \
-         tabray's own method take them one by one"
+        "times: packets of up to {WIDE} rays on one thread, as in a render; where a hit is searched for, all methods but \
+         tabray's own take rays one by one"
     );
     canvas.text(&text, (26.0, second + 22.0), Align::Left, Letters { colour: GREY, ..letters })
 }

@@ -1,13 +1,14 @@
 //! A quick measurement of what accuracy and samples make of a scene, to choose from.
 
+use super::candidate::Load;
 use super::colours::difference;
 use super::pictures::{self, Seen, TRUE_SAMPLES, TRUE_TESTS, count, each, render, tests, timed};
 use super::places::{Pixels, spread};
-use super::{Load, Progress};
+use super::progress::Progress;
+use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::render::trace;
 use crate::scene::choice::Choice;
-use crate::scene::model::Model;
 use crate::tools::bench::clock;
 use crate::world::accuracy::Accuracy;
 use crate::world::sample::Sampler;
@@ -44,8 +45,9 @@ pub fn estimates(load: Load, progress: &mut dyn Progress) -> io::Result<Vec<Esti
     let accuracies = Accuracy::all();
     progress.more(TRUE_TESTS / 10 + accuracies.len() * SAMPLES.len() * UNITS);
     let exact = load(Some(Accuracy::Exact))?;
+    let exact = Plan::new(&exact);
     let tests = tests(&exact, &threads);
-    let size = exact.camera.value.pixels;
+    let size = exact.camera.pixels;
     let most = (TRUE_TESTS as f64 / 2.0 / (f64::from(TRUE_SAMPLES) * tests)) as usize;
     let pixels = spread(size, most.clamp(256, 4096));
     let timed = timed(size, tests);
@@ -53,13 +55,14 @@ pub fn estimates(load: Load, progress: &mut dyn Progress) -> io::Result<Vec<Esti
     let right = whole(pictures::truth(&exact, &threads, &pixels, Seen::Picture, progress))?;
     let mut estimates = Vec::new();
     for accuracy in accuracies {
-        let mut model = load(Some(accuracy))?;
-        model.camera.value.sampler = Sampler::Sobol;
+        let model = load(Some(accuracy))?;
+        let mut plan = Plan::new(&model);
+        plan.camera.sampler = Sampler::Sobol;
         for samples in SAMPLES {
-            model.camera.value.samples = samples;
-            let colours = each(&threads, &pixels, |x, y| trace::pixel(&model, x, y));
+            plan.camera.samples = samples;
+            let colours = each(&threads, &pixels, |x, y| trace::pixel(&plan, x, y));
             let rmse = difference(&colours, &right).rmse;
-            let rounds = (0..ROUNDS).map(|_| time(&thread, &model, &timed));
+            let rounds = (0..ROUNDS).map(|_| time(&thread, &plan, &timed));
             let seconds = scale * rounds.fold(f64::INFINITY, f64::min);
             estimates.push(Estimate { accuracy, samples, seconds, rmse });
             whole(progress.done(UNITS))?;
@@ -76,10 +79,10 @@ fn whole<T>(flow: ControlFlow<(), T>) -> io::Result<T> {
 }
 
 /// The CPU time that tiles take on one thread, in seconds.
-fn time(thread: &Renderer, model: &Model, tiles: &[Pixels]) -> f64 {
+fn time(thread: &Renderer, plan: &Plan, tiles: &[Pixels]) -> f64 {
     thread.run(|| {
         let start = clock::now();
-        render(model, tiles);
+        render(plan, tiles);
         (clock::now() - start).as_secs_f64()
     })
 }

@@ -1,6 +1,6 @@
 //! The numbers of a chart, for other programs.
 
-use super::{Chart, Panel, Point, Subject};
+use super::data::{Chart, Panel, Point, Subject};
 use crate::words;
 use serde::Serialize;
 

@@ -1,6 +1,6 @@
 //! The Pareto front: the choices that none beats.
 
-use super::Point;
+use super::data::{Panel, Point};
 
 /// Times that differ by less are equal.
 pub const SAME_TIME: f64 = 1.1;
@@ -27,6 +27,13 @@ fn beats(one: &Point, other: &Point, negligible: f64) -> bool {
     let time = one.times.least / other.times.least;
     let [error, than] = [one, other].map(|point| point.error.max(negligible));
     time <= SAME_TIME && error <= SAME_ERROR * than && (time * SAME_TIME < 1.0 || error * SAME_ERROR < than)
+}
+
+impl Panel {
+    /// Whether each of its points is one of the best.
+    pub fn front(&self) -> Vec<bool> {
+        of(&self.points, self.negligible())
+    }
 }
 
 #[cfg(test)]

@@ -3,16 +3,20 @@
 
 use super::candidate::{Candidate, is_searched};
 use super::clock;
+use super::data::{Panel, Point, Subject, Wrong};
 use super::packets::Packet;
 use super::places::{spread, tiles};
-use super::{Panel, Point, Progress, Study, Subject, Wrong};
+use super::progress::Progress;
+use super::study::Study;
 use crate::geometry::packet::WIDE;
+use crate::geometry::ray::{MISS, Ray, Side, Span};
+use crate::geometry::roots::bisection::bisect;
 use crate::geometry::sight::Sight;
 use crate::numeric::twofold::Twofold;
 use crate::scene::model::Model;
 use crate::simd::cpu::Cpu;
+use crate::world::any_shape::AnyShape;
 use crate::world::certify::{self, Enclosure, Precision};
-use crate::world::hittable::{Hittable, MISS, Ray, Side, Span};
 use std::hint::black_box;
 use std::ops::ControlFlow;
 
@@ -50,8 +54,8 @@ pub fn sets(model: &Model) -> Vec<Set> {
     for is_of_roots in [true, false] {
         let objects = model.objects.iter().enumerate();
         let group: Vec<usize> = objects
-            .filter(|(_, object)| is_searched(&*object.shape) == is_of_roots)
-            .filter(|(_, object)| is_provable(model, &*object.shape))
+            .filter(|(_, object)| is_searched(&object.shape) == is_of_roots)
+            .filter(|(_, object)| is_provable(model, &object.shape))
             .map(|(index, _)| index)
             .collect();
         if group.is_empty() {
@@ -66,8 +70,8 @@ pub fn sets(model: &Model) -> Vec<Set> {
                 sets.push(Set { title, note, packets, is_searched: is_of_roots });
             }
         };
-        add("rays of the camera", camera(model, &group));
-        add("rays that graze silhouettes", grazing(model, &group));
+        add("camera rays", camera(model, &group));
+        add("grazing rays", grazing(model, &group));
     }
     sets
 }
@@ -106,7 +110,7 @@ pub fn panel(study: &Study, set: &Set, progress: &mut dyn Progress) -> ControlFl
     let work = |choice: usize| {
         let objects = &candidates[choice].model.objects;
         for packet in &timed {
-            black_box(black_box(packet).hits(&*objects[packet.object].shape, cpu));
+            black_box(black_box(packet).hits(&objects[packet.object].shape, cpu));
         }
     };
     let count = timed.iter().map(|packet| packet.len()).sum();
@@ -118,7 +122,7 @@ pub fn panel(study: &Study, set: &Set, progress: &mut dyn Progress) -> ControlFl
     }
     let lost = candidates.iter().zip(&errors).filter(|(_, (errors, _))| errors.is_empty());
     let lost: Vec<_> = lost.map(|(candidate, _)| candidate.name.as_str()).collect();
-    let lost = if lost.is_empty() { String::new() } else { format!("; none found: {}", lost.join(", ")) };
+    let lost = if lost.is_empty() { String::new() } else { format!("; none found by {}", lost.join(", ")) };
     let undecided = if undecided == 0 { String::new() } else { format!(", {undecided} undecided") };
     let points = candidates.iter().zip(errors).zip(times).map(|((candidate, (errors, wrong)), times)| {
         let part = |part: f64| {
@@ -153,7 +157,7 @@ fn each<T: Sync, U: Send>(of: &[T], work: impl Fn(&T) -> U + Sync + Send) -> Vec
 }
 
 fn truths_of(model: &Model, packet: &Packet) -> Vec<Truth> {
-    let shape = &*model.objects[packet.object].shape;
+    let shape = &model.objects[packet.object].shape;
     let truth = |(ray, sight): (Ray, &Sight)| match shape.certify(sight, Precision::Octuple) {
         Enclosure::Hits(at) => {
             let at = certify::in_world_units(at, sight);
@@ -166,7 +170,7 @@ fn truths_of(model: &Model, packet: &Packet) -> Vec<Truth> {
 }
 
 /// The side of its surface on which a ray meets a shape.
-fn side(shape: &dyn Hittable, ray: &Ray, distance: f64) -> Side {
+fn side(shape: &AnyShape, ray: &Ray, distance: f64) -> Side {
     Side::seen_along(ray.dir, shape.normal(ray.at(distance)))
 }
 
@@ -175,7 +179,7 @@ fn tally(candidate: &Candidate, set: &Set, truths: &[Truth], screen: f64) -> (Ve
     let (mut errors, mut wrong) = (Vec::new(), Wrong::default());
     let cpu = Cpu::best();
     let found = set.packets.iter().flat_map(|packet| {
-        let shape = &*candidate.model.objects[packet.object].shape;
+        let shape = &candidate.model.objects[packet.object].shape;
         let hits = packet.hits(shape, cpu);
         packet.rays().zip(hits).map(move |(ray, found)| (shape, ray, found))
     });
@@ -203,7 +207,7 @@ fn tally(candidate: &Candidate, set: &Set, truths: &[Truth], screen: f64) -> (Ve
 }
 
 /// Whether anything is certain about rays that meet a shape.
-fn is_provable(model: &Model, shape: &dyn Hittable) -> bool {
+fn is_provable(model: &Model, shape: &AnyShape) -> bool {
     const LOOKS: usize = 64;
     let camera = &model.camera.value;
     let mut places = spread(camera.pixels, LOOKS).into_iter();
@@ -251,14 +255,8 @@ fn grazing(model: &Model, group: &[usize]) -> Vec<Packet> {
     let step = edges.len().div_ceil(GRAZING / rays).max(1);
     let mut places_of = vec![Vec::new(); model.objects.len()];
     for (x, y, index, here) in edges.into_iter().step_by(step) {
-        let (y, mut low, mut high) = (y as f64, x as f64 - 1.0, x as f64);
-        loop {
-            let middle = 0.5 * (low + high);
-            if middle <= low || middle >= high {
-                break;
-            }
-            if hits(middle, y, index) == here { high = middle } else { low = middle }
-        }
+        let y = y as f64;
+        let (_, high) = bisect(|x| hits(x, y, index) == here, (x as f64 - 1.0, x as f64), 0.0);
         for digits in 0..=DIGITS {
             for beside in [-1.0, 1.0] {
                 places_of[index].push([high + beside * 0.1_f64.powi(digits), y]);

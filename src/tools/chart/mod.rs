@@ -9,6 +9,7 @@ mod candidate;
 mod canvas;
 mod clock;
 mod colours;
+mod data;
 mod draw;
 mod estimate;
 mod files;
@@ -19,133 +20,23 @@ mod machine;
 mod packets;
 mod pictures;
 mod places;
+mod progress;
+mod study;
 mod verdict;
 
+pub use candidate::Load;
 pub use clock::Times;
+pub use data::{Chart, Family, Panel, Point, Subject, Wrong};
 pub use draw::{png, svg};
 pub use estimate::{Estimate, estimates};
 pub use files::{csv, json};
 pub use machine::Machine;
+pub use progress::Progress;
 pub use verdict::words;
 
-use crate::render::renderer::Renderer;
-use crate::scene::model::Model;
-use crate::world::accuracy::Accuracy;
-use crate::world::sample::Sampler;
-use candidate::Candidate;
 use std::io;
 use std::ops::ControlFlow;
-
-/// All that is charted of a scene.
-pub struct Chart {
-    /// What the scene is called.
-    pub scene: String,
-    /// Where and when it was measured.
-    pub machine: Machine,
-    /// One picture for each question.
-    pub panels: Vec<Panel>,
-    /// Whether all was measured that was to be.
-    pub is_whole: bool,
-}
-
-/// Choices that answer one question, compared.
-pub struct Panel {
-    /// What is compared.
-    pub title: String,
-    /// On what.
-    pub note: String,
-    /// What the errors are of.
-    pub subject: Subject,
-    /// The choices.
-    pub points: Vec<Point>,
-}
-
-/// What errors are of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Subject {
-    /// Distances of hits, in world units; the times are those of a ray and an object.
-    Distances,
-    /// Colours of pixels, one ray through each; the times are those of a pixel.
-    Methods,
-    /// Colours of pixels, by samples; the times are those of a pixel.
-    Samples,
-}
-
-/// One choice.
-pub struct Point {
-    /// What it is called.
-    pub name: String,
-    /// What it is akin to.
-    pub family: Family,
-    /// Whether the scene is traced so.
-    pub is_default: bool,
-    /// The seconds that it takes for one ray or one pixel.
-    pub times: Times,
-    /// How wrong it is: of distances the 99th percentile of their errors, in world units; of colours the root of the
-    /// mean square of theirs, 1 being as bright as a picture can show. Not a number where no hit is right.
-    pub error: f64,
-    /// The greatest error.
-    pub worst: f64,
-    /// Hits that are not the right ones.
-    pub wrong: Wrong,
-    /// Of colours, how different all but one in a hundred look at most: distances in Oklab, in hundredths of that from
-    /// black to white.
-    pub visible: Option<f64>,
-    /// Of colours, how many of the pixels that were looked at have other bytes in the picture.
-    pub changed: Option<[usize; 2]>,
-    /// The samples that it has for each pixel.
-    pub samples: u32,
-}
-
-/// Hits that are not the right ones.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Wrong {
-    /// The rays that were looked at and whose truth is known.
-    pub of: usize,
-    /// Hits that were not found.
-    pub missed: usize,
-    /// Hits that were found where there are none.
-    pub invented: usize,
-    /// Hits found at another crossing than the first.
-    pub later: usize,
-}
-
-impl Wrong {
-    /// All together.
-    pub fn count(&self) -> usize {
-        self.missed + self.invented + self.later
-    }
-}
-
-/// Choices of a kind, which are drawn alike.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Family {
-    /// The program's own method, by its accuracy.
-    Own,
-    /// The course notes' methods.
-    Notes,
-    /// Samples along the ray.
-    Sampling,
-    /// Sphere tracing.
-    Tracing,
-    /// Methods that prove what they find.
-    Bounds,
-    /// Samples of pixels, spread evenly.
-    Sobol,
-    /// Samples of pixels, anywhere.
-    Random,
-}
-
-/// Whoever is told how far the work is, and may break it off.
-pub trait Progress: Send {
-    /// So much more work is known of, in units of about a microsecond.
-    fn more(&mut self, units: usize);
-    /// So much of it is done; breaks where no more is to be done.
-    fn done(&mut self, units: usize) -> ControlFlow<()>;
-}
-
-/// Loads the scene anew, in an accuracy or in its own.
-pub type Load<'l> = &'l dyn Fn(Option<Accuracy>) -> io::Result<Model>;
+use study::Study;
 
 /// Measures what a scene's choices cost and how wrong they are. Where `progress` breaks off, what is measured by then
 /// is kept.
@@ -153,36 +44,15 @@ pub type Load<'l> = &'l dyn Fn(Option<Accuracy>) -> io::Result<Model>;
 /// # Errors
 /// Those of `load`, and of threads that are not to be had.
 pub fn measure(scene: &str, load: Load, progress: &mut dyn Progress) -> io::Result<Chart> {
-    let mut study = Study::new(load)?;
+    let study = Study::new(load)?;
     let mut chart =
         Chart { scene: scene.to_owned(), machine: Machine::here(), panels: Vec::new(), is_whole: false };
     chart.is_whole = study.run(&mut chart.panels, progress).is_continue();
     Ok(chart)
 }
 
-/// What measuring needs.
-struct Study {
-    candidates: Vec<Candidate>,
-    /// The one in the scene's own accuracy.
-    default: usize,
-    /// The one whose pictures count as true.
-    strict: usize,
-    /// All cores, for what is not timed.
-    threads: Renderer,
-    /// One thread, for what is.
-    thread: Renderer,
-}
-
 impl Study {
-    fn new(load: Load) -> io::Result<Self> {
-        let candidates = candidate::all(load)?;
-        let position = |wanted: &dyn Fn(&Candidate) -> bool| candidates.iter().position(wanted).unwrap_or(0);
-        let default = position(&|candidate| candidate.is_default);
-        let strict = position(&|candidate| candidate.accuracy == Some(Accuracy::Strict));
-        Ok(Self { default, strict, candidates, threads: Renderer::new(0)?, thread: Renderer::new(1)? })
-    }
-
-    fn run(&mut self, panels: &mut Vec<Panel>, progress: &mut dyn Progress) -> ControlFlow<()> {
+    fn run(&self, panels: &mut Vec<Panel>, progress: &mut dyn Progress) -> ControlFlow<()> {
         let sets = hits::sets(&self.candidates[self.strict].model);
         let candidates = self.candidates.len();
         let works = sets.iter().map(|set| hits::work(set, candidates)).sum::<usize>();
@@ -196,77 +66,5 @@ impl Study {
             panels.extend(pictures::samples(self, pictures::Seen::Shadows, progress)?);
         }
         ControlFlow::Continue(())
-    }
-}
-
-impl Panel {
-    /// What errors are, as a table calls them.
-    pub fn measure(&self) -> &'static str {
-        match self.subject {
-            Subject::Distances => "error of the distance, 99th percentile (world units)",
-            Subject::Methods | Subject::Samples => "error of the colour, RMSE (1 = white)",
-        }
-    }
-
-    /// What its points take their times for, and how many of these units are a second.
-    pub fn unit(&self) -> (&'static str, f64) {
-        match self.subject {
-            Subject::Distances => ("CPU time for a ray and an object (ns)", 1e9),
-            Subject::Methods | Subject::Samples => ("CPU time for a pixel (µs)", 1e6),
-        }
-    }
-
-    /// Whether each of its points is one of the best.
-    pub fn front(&self) -> Vec<bool> {
-        front::of(&self.points, self.negligible())
-    }
-
-    /// Errors that make no difference: of a colour, far less than a step of what a picture can show.
-    pub fn negligible(&self) -> f64 {
-        match self.subject {
-            Subject::Distances => 0.0,
-            Subject::Methods | Subject::Samples => 1e-9,
-        }
-    }
-}
-
-/// What noise and waiting may be at most.
-const MOST: f64 = 0.15;
-
-impl Chart {
-    /// How far apart rounds of the same work were, as a part of their time: that of the choice in the middle.
-    pub fn noise(&self) -> f64 {
-        self.middle(Times::spread)
-    }
-
-    /// How long rounds waited for other work of the machine, likewise.
-    pub fn waited(&self) -> f64 {
-        self.middle(|times| times.waited)
-    }
-
-    /// Whether its times cannot be trusted.
-    pub fn is_noisy(&self) -> bool {
-        self.noise() > MOST
-    }
-
-    /// Whether the machine had other work, which slows all choices alike.
-    pub fn is_busy(&self) -> bool {
-        self.waited() > MOST
-    }
-
-    fn middle(&self, of: impl Fn(&Times) -> f64) -> f64 {
-        let points = self.panels.iter().flat_map(|panel| &panel.points);
-        let mut parts: Vec<f64> = points.map(|point| of(&point.times)).collect();
-        parts.sort_by(f64::total_cmp);
-        parts.get(parts.len() / 2).copied().unwrap_or(0.0)
-    }
-}
-
-impl Sampler {
-    fn family(self) -> Family {
-        match self {
-            Self::Random => Family::Random,
-            Self::Sobol => Family::Sobol,
-        }
     }
 }

@@ -1,10 +1,12 @@
 //! Packets of rays, and where they first meet an object: found as a render finds it.
 
-use crate::geometry::packet::{Nearest, Rays, STEP, Vectors, WIDE};
+use crate::geometry::packet::{Nearest, Rays, WIDE};
+use crate::geometry::ray::{MISS, Ray, Span};
 use crate::geometry::sight::Sight;
 use crate::simd::cpu::Cpu;
+use crate::simd::soa::{STEP, Vectors};
+use crate::world::any_shape::AnyShape;
 use crate::world::camera::Camera;
-use crate::world::hittable::{Hittable, MISS, Ray, Span};
 
 /// Rays that are asked about an object.
 pub struct Packet {
@@ -55,13 +57,13 @@ impl Packet {
     }
 
     /// The distances at which its rays first meet the object; [`MISS`] where they do not.
-    pub fn hits(&self, shape: &dyn Hittable, cpu: Cpu) -> [f64; WIDE] {
+    pub fn hits(&self, shape: &AnyShape, cpu: Cpu) -> [f64; WIDE] {
         let (rays, len) = (self.all(), self.len);
         let exactly = |lane: usize| shape.distance(&rays.get(lane), &Span::RAY);
         let (mut near, mut far) = ([MISS; WIDE], [MISS; WIDE]);
         let (mut met, mut doubt) = ([0; WIDE], [0; WIDE]);
         let nearest = Nearest { near: &mut near, far: &mut far, met: &mut met, doubt: &mut doubt };
-        if shape.meet(cpu, rays, None, 1, nearest) {
+        if shape.closest_hits(cpu, rays, None, 1, nearest) {
             for lane in (0..len).filter(|lane| doubt[*lane] != 0) {
                 near[lane] = exactly(lane);
                 far[lane] = near[lane];
@@ -71,7 +73,7 @@ impl Packet {
         if near[..len] != far[..len] {
             let count = rays.len();
             let brackets = (&near[..count], &far[..count]);
-            shape.distances(cpu, rays, None, brackets, &mut hits[..count]);
+            shape.packets().refine(cpu, rays, None, brackets, &mut hits[..count]);
             for lane in 0..len {
                 if near[lane] == far[lane] {
                     hits[lane] = near[lane];

@@ -5,9 +5,12 @@
 
 use super::clock::{self, Times};
 use super::colours::{Difference, difference};
+use super::data::{Family, Panel, Point, Subject, Wrong};
 use super::places::{Pixels, spread, tiles};
-use super::{Family, Panel, Point, Progress, Study, Subject, Wrong};
+use super::progress::Progress;
+use super::study::Study;
 use crate::geometry::packet::WIDE;
+use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::render::trace::{self, Rooms, Tracer};
 use crate::render::watch::{Event, Watch};
@@ -55,39 +58,36 @@ fn has_size(model: &Model) -> bool {
     model.lights.iter().any(|light| light.value.size() > 0.0)
 }
 
+/// The plan for a picture of one ray through the middle of each pixel.
+fn one_ray(model: &Model) -> Plan<'_> {
+    let mut plan = Plan::new(model);
+    plan.camera.samples = 1;
+    plan
+}
+
 /// The picture, one ray through the middle of each pixel, by each way to find hits.
-pub fn methods(study: &mut Study, progress: &mut dyn Progress) -> ControlFlow<(), Panel> {
-    let tests = tests(&study.candidates[study.default].model, &study.threads);
+pub fn methods(study: &Study, progress: &mut dyn Progress) -> ControlFlow<(), Panel> {
+    let tests = tests(&Plan::new(&study.candidates[study.default].model), &study.threads);
     let own = study.candidates[study.default].model.camera.value.pixels;
     let pixels = spread(own, (METHOD_TESTS as f64 / tests) as usize);
     let timed = timed(own, tests);
-    let samples = study.candidates[study.default].model.camera.value.samples;
-    let set = |study: &mut Study, samples: u32| {
-        for candidate in &mut study.candidates {
-            candidate.model.camera.value.samples = samples;
-        }
-    };
-    set(study, 1);
+    let plans: Vec<_> = study.candidates.iter().map(|candidate| one_ray(&candidate.model)).collect();
     let mut colours = Vec::new();
-    for candidate in &study.candidates {
-        colours.push(each(&study.threads, &pixels, |x, y| trace::pixel(&candidate.model, x, y)));
+    for plan in &plans {
+        colours.push(each(&study.threads, &pixels, |x, y| trace::pixel(plan, x, y)));
         progress.done(METHOD_TESTS / 10)?;
     }
     let right = &colours[study.strict];
     let differences: Vec<_> = colours.iter().map(|colours| difference(colours, right)).collect();
-    let times = {
-        let Study { candidates, thread, .. } = &*study;
-        let work = |choice: usize| render(&candidates[choice].model, &timed);
-        thread.run(|| clock::rounds(candidates.len(), count(&timed), work, progress))
-    };
-    set(study, samples);
+    let work = |choice: usize| render(&plans[choice], &timed);
+    let times = study.thread.run(|| clock::rounds(plans.len(), count(&timed), work, progress));
     let points =
         study.candidates.iter().zip(differences).zip(times?).map(|((candidate, off), times)| Point {
             is_default: candidate.is_default,
             ..point(candidate.name.clone(), candidate.family, times, off, (pixels.len(), 1))
         });
     ControlFlow::Continue(Panel {
-        title: "the picture, by method".to_owned(),
+        title: "the image, by method".to_owned(),
         note: format!("{} of {} pixels, against strict", pixels.len(), own[0] * own[1]),
         subject: Subject::Methods,
         points: points.collect(),
@@ -96,32 +96,31 @@ pub fn methods(study: &mut Study, progress: &mut dyn Progress) -> ControlFlow<()
 
 /// The picture by samples, against one of so many that they make no difference any more; nothing where one sample is
 /// right.
-pub fn samples(study: &mut Study, seen: Seen, progress: &mut dyn Progress) -> ControlFlow<(), Option<Panel>> {
+pub fn samples(study: &Study, seen: Seen, progress: &mut dyn Progress) -> ControlFlow<(), Option<Panel>> {
     let Study { candidates, default, threads, thread, .. } = study;
-    let model = &mut candidates[*default].model;
-    let own = model.camera.value.clone();
-    let tests = tests(model, threads);
+    let model = &candidates[*default].model;
+    let own = &model.camera.value;
+    let mut plan = Plan::new(model);
+    let tests = tests(&plan, threads);
     let most = (TRUE_TESTS as f64 / (f64::from(TRUE_SAMPLES) * tests)) as usize;
     let pixels = spread(own.pixels, most.clamp(1024, 8192));
-    let right = truth(model, threads, &pixels, seen, progress)?;
+    let right = truth(&plan, threads, &pixels, seen, progress)?;
     let choices: Vec<_> = choices(own.samples, own.sampler);
     let mut differences = Vec::new();
     for (samples, sampler) in &choices {
-        (model.camera.value.samples, model.camera.value.sampler) = (*samples, *sampler);
-        let model = &*model;
-        let colours = each(threads, &pixels, |x, y| colour(model, [x, y], seen));
+        (plan.camera.samples, plan.camera.sampler) = (*samples, *sampler);
+        let colours = each(threads, &pixels, |x, y| colour(&plan, [x, y], seen));
         differences.push(difference(&colours, &right));
         progress.done(TRUE_TESTS / 40 / choices.len())?;
     }
     let timed = timed(own.pixels, tests);
     let times = thread.run(|| {
         let work = |choice: usize| {
-            (model.camera.value.samples, model.camera.value.sampler) = choices[choice];
-            render(model, &timed);
+            (plan.camera.samples, plan.camera.sampler) = choices[choice];
+            render(&plan, &timed);
         };
         clock::rounds(choices.len(), count(&timed), work, progress)
     });
-    model.camera.value = own.clone();
     if differences.iter().all(|off| off.rmse == 0.0) {
         return ControlFlow::Continue(None);
     }
@@ -137,9 +136,9 @@ pub fn samples(study: &mut Study, seen: Seen, progress: &mut dyn Progress) -> Co
             )
         });
     let title = match (seen, has_size(model)) {
-        (Seen::Picture, false) => "samples for each pixel: edges",
-        (Seen::Picture, true) => "samples for each pixel: edges and soft shadows",
-        (Seen::Shadows, _) => "samples for each pixel: soft shadows alone",
+        (Seen::Picture, false) => "samples per pixel: edges",
+        (Seen::Picture, true) => "samples per pixel: edges and soft shadows",
+        (Seen::Shadows, _) => "samples per pixel: soft shadows alone",
     };
     ControlFlow::Continue(Some(Panel {
         title: title.to_owned(),
@@ -208,27 +207,27 @@ pub(super) fn count(tiles: &[Pixels]) -> usize {
 }
 
 /// Traces tiles as a render does, on this thread.
-pub(super) fn render(model: &Model, tiles: &[Pixels]) {
+pub(super) fn render(plan: &Plan, tiles: &[Pixels]) {
     let (mut rooms, mut nobody) = (Rooms::default(), ());
     for tile in tiles {
-        black_box(Tracer::new(model, Cpu::best(), &mut rooms, &mut nobody).pixels(tile));
+        black_box(Tracer::new(plan, Cpu::best(), &mut rooms, &mut nobody).pixels(tile));
     }
 }
 
 /// The right colours: so many samples that they make no difference any more, other ones than those that are compared.
 pub(super) fn truth(
-    model: &Model,
+    plan: &Plan,
     threads: &Renderer,
     pixels: &Pixels,
     seen: Seen,
     progress: &mut dyn Progress,
 ) -> ControlFlow<(), Vec<Rgb>> {
     let mut colours = Vec::new();
-    let camera = &model.camera.value;
+    let camera = &plan.camera;
     let colour = |x: usize, y: usize| {
         let pixel = !((y * camera.pixels[0] + x) as u32);
         let sample = |index| Sample { sampler: Sampler::Sobol, index, pixel };
-        let one = |index| colour_of(model, [x, y], sample(index), seen);
+        let one = |index| colour_of(plan, [x, y], sample(index), seen);
         (0..TRUE_SAMPLES).map(one).sum::<Rgb>() / f64::from(TRUE_SAMPLES)
     };
     for part in pixels.chunks(pixels.len().div_ceil(50)) {
@@ -239,28 +238,28 @@ pub(super) fn truth(
 }
 
 /// A pixel's colour with the camera's samples.
-fn colour(model: &Model, [x, y]: [usize; 2], seen: Seen) -> Rgb {
+fn colour(plan: &Plan, [x, y]: [usize; 2], seen: Seen) -> Rgb {
     if seen == Seen::Picture {
-        return trace::pixel(model, x, y);
+        return trace::pixel(plan, x, y);
     }
-    let camera = &model.camera.value;
+    let camera = &plan.camera;
     if camera.samples == 1 {
-        return trace::colour(model, &camera.sight(x as f64, y as f64), None);
+        return trace::colour(plan, &camera.sight(x as f64, y as f64), None);
     }
     let pixel = (y * camera.pixels[0] + x) as u32;
     let sample = |index| Sample { sampler: camera.sampler, index, pixel };
-    let colours = (0..camera.samples).map(|index| colour_of(model, [x, y], sample(index), seen));
+    let colours = (0..camera.samples).map(|index| colour_of(plan, [x, y], sample(index), seen));
     colours.sum::<Rgb>() / f64::from(camera.samples)
 }
 
 /// What one sample of a pixel sees.
-fn colour_of(model: &Model, [x, y]: [usize; 2], sample: Sample, seen: Seen) -> Rgb {
+fn colour_of(plan: &Plan, [x, y]: [usize; 2], sample: Sample, seen: Seen) -> Rgb {
     let jitter = match seen {
         Seen::Picture => sample.jitter(),
         Seen::Shadows => DVec2::ZERO,
     };
-    let sight = model.camera.value.sight(x as f64 + jitter.x, y as f64 + jitter.y);
-    trace::colour(model, &sight, Some(sample))
+    let sight = plan.camera.sight(x as f64 + jitter.x, y as f64 + jitter.y);
+    trace::colour(plan, &sight, Some(sample))
 }
 
 /// Something of each of these pixels, on all threads of a renderer.
@@ -274,7 +273,7 @@ pub(super) fn each<T: Send>(
 }
 
 /// How many objects one ray through a pixel and all that follow from it test, in the mean.
-pub(super) fn tests(model: &Model, threads: &Renderer) -> f64 {
+pub(super) fn tests(plan: &Plan, threads: &Renderer) -> f64 {
     struct Tests(usize);
     impl Watch for Tests {
         const SEES: bool = true;
@@ -286,13 +285,22 @@ pub(super) fn tests(model: &Model, threads: &Renderer) -> f64 {
         }
     }
     const PIXELS: usize = 400;
-    let pixels = spread(model.camera.value.pixels, PIXELS);
-    let samples = model.camera.value.samples as usize;
+    let pixels = spread(plan.camera.pixels, PIXELS);
+    let samples = plan.camera.samples as usize;
     let count = |x, y| {
         let mut tests = Tests(0);
-        trace::watch_pixel(model, x, y, &mut tests);
+        trace::watch_pixel(plan, x, y, &mut tests);
         tests.0
     };
     let all: usize = each(threads, &pixels, count).into_iter().sum();
     (all as f64 / (pixels.len() * samples) as f64).max(1.0)
+}
+
+impl Sampler {
+    fn family(self) -> Family {
+        match self {
+            Self::Random => Family::Random,
+            Self::Sobol => Family::Sobol,
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! What a chart says, in words.
 
+use super::data::{Chart, Family, Panel, Point, Subject};
 use super::front::{self, SAME_TIME};
-use super::{Chart, Family, Panel, Point, Subject};
 use std::fmt::Write;
 
 /// How far apart in Oklab, in hundredths, the eye begins to tell colours.
@@ -25,7 +25,7 @@ pub fn words(chart: &Chart) -> String {
     if chart.is_noisy() {
         let _ = writeln!(
             text,
-            "Rounds of the same work were {:.0} % apart. Do not trust the times.",
+            "Rounds of the same work differed by {:.0} %. Do not trust the times.",
             100.0 * chart.noise()
         );
     }
@@ -37,7 +37,7 @@ pub fn words(chart: &Chart) -> String {
         );
     }
     if !chart.is_whole {
-        text += "Interrupted: this is what was measured by then.\n";
+        text += "Interrupted: this is what had been measured by then.\n";
     }
     text
 }
@@ -100,27 +100,29 @@ fn samples(panel: &Panel) -> Vec<String> {
     let (sobol, random) = (of(Family::Sobol), of(Family::Random));
     for (name, points) in [("sobol", &sobol), ("random", &random)] {
         if let Some(slope) = slope(points) {
-            lines.push(format!("{name}: the error falls with the samples to the power of {slope:.2}"));
+            lines.push(format!(
+                "{name}: the error falls with the number of samples to the power of {slope:.2}"
+            ));
         }
     }
     if let Some(last) = random.last() {
         match needed(&sobol, last.error) {
             Some(samples) => {
-                lines.push(format!("sobol needs {samples} samples for what {} reaches", last.name));
+                lines.push(format!("sobol needs {samples} samples for the error of {}", last.name));
             }
-            None => lines.push(format!("sobol does not reach {}", last.name)),
+            None => lines.push(format!("sobol does not reach the error of {}", last.name)),
         }
     }
     let fits = |point: &&Point| point.visible.is_some_and(|part| part <= VISIBLE);
     lines.push(match panel.points.iter().find(fits) {
         Some(first) => {
             format!(
-                "99 of 100 pixels look right (Oklab {VISIBLE} of 100): {}, {}",
+                "99 % of the pixels look right (within {VISIBLE} of 100 in Oklab): {}, {}",
                 first.name,
                 time(panel, first)
             )
         }
-        None => "no choice makes 99 of 100 pixels look right".to_owned(),
+        None => "no choice makes 99 % of the pixels look right".to_owned(),
     });
     lines
 }
@@ -136,7 +138,7 @@ fn front(panel: &Panel) -> String {
         .collect();
     best.sort_by(|a, b| b.error.total_cmp(&a.error).then_with(|| a.name.cmp(&b.name)));
     let each = |point: &&Point| format!("{} ({}, {:.0e})", point.name, time(panel, point), point.error);
-    format!("the front: {}", best.iter().map(each).collect::<Vec<_>>().join("; "))
+    format!("Pareto front: {}", best.iter().map(each).collect::<Vec<_>>().join("; "))
 }
 
 /// Where the default stands.

@@ -1,6 +1,7 @@
 //! Values for attributes, drawn by their types and rules; the same at every run.
 
-use crate::scene::entity::{Entity, Kind};
+use crate::scene::entity::Entity;
+use crate::scene::kind::Kind;
 use crate::scene::pparm::Attribute;
 use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;

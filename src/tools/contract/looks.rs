@@ -2,20 +2,21 @@
 
 use super::draw::Draw;
 use super::promise::{Fault, Promise};
-use crate::geometry::packet::{STEP, Vectors};
 use crate::scene::dump;
 use crate::scene::model::Model;
+use crate::scene::procedural::{Anchor, ProceduralShader};
 use crate::scene::profile::Profile;
 use crate::scene::reader;
 use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
 use crate::shapes::revolution::{Finish, Revolution};
 use crate::simd::cpu::Cpu;
+use crate::simd::soa::{STEP, Vectors};
 use crate::world::camera::Camera;
 use crate::world::facing::{Facing, Places};
-use crate::world::hittable::{Light, Shader};
 use crate::world::material::{Look, Material, Rgb};
-use crate::world::shading::{Anchor, ProceduralShader};
+use crate::world::packets::light::PacketLight;
+use crate::world::packets::shader::PacketShader;
 use glam::DVec3;
 use std::path::Path;
 
@@ -30,14 +31,14 @@ pub fn dump(registry: &Registry, folder: &Path, model: &Model) -> Result<(), Fau
         let again = reader::read(registry, name, folder, text.as_bytes(), None);
         let again = again.map_err(|report| fault(report.to_string()))?.model;
         if dump::scene(&again, syntax) != text || dump::notes(&again) != dump::notes(model) {
-            return Err(fault(format!("another dump, of\n{text}")));
+            return Err(fault(format!("the dump is different, of\n{text}")));
         }
     }
     Ok(())
 }
 
 /// A shader's reflectivities at a point, and in packets.
-pub fn shader(shader: &dyn Shader, at: DVec3) -> Result<(), Fault> {
+pub fn shader(shader: &dyn PacketShader, at: DVec3) -> Result<(), Fault> {
     let material = Material {
         ambient: Rgb::new(0.1, 0.5, 3.0),
         diffuse: Rgb::new(2.0, 0.7, 0.0),
@@ -55,20 +56,28 @@ pub fn shader(shader: &dyn Shader, at: DVec3) -> Result<(), Fault> {
         && one != [ambient, diffuse, specular]
     {
         let even = [ambient, diffuse, specular];
-        return Err(Promise::PacketsAgree.fault(format!("`even` is {even:?}, it answers {one:?} at {at}")));
+        return Err(
+            Promise::PacketsAgree.fault(format!("`even` is {even:?}, and it returns {one:?} at {at}"))
+        );
     }
     if let Some(Look { ambient, diffuse, specular }) = shader.brightest(&material)
         && let most = [ambient, diffuse, specular]
         && one.iter().zip(most).any(|(colour, most)| !colour.abs().cmple(most.abs()).all())
     {
-        let found = format!("`brightest` is {most:?}, it answers {one:?} at {at}");
+        let found = format!("`brightest` is {most:?}, and it returns {one:?} at {at}");
         return Err(Promise::ReflectivityIsSound.fault(found));
     }
     let points = Vectors::<STEP> { x: [at.x; STEP], y: [at.y; STEP], z: [at.z; STEP] };
     for cpu in Cpu::all() {
         let mut many = [const { Vectors::<STEP>::ZERO }; 3];
         let [ambient, diffuse, specular] = &mut many;
-        shader.unlit(cpu, &material, points.view(STEP), ambient.view_mut(STEP), specular.view_mut(STEP));
+        shader.ambient_and_specular(
+            cpu,
+            &material,
+            points.view(STEP),
+            ambient.view_mut(STEP),
+            specular.view_mut(STEP),
+        );
         shader.diffuses(cpu, &material, points.view(STEP), diffuse.view_mut(STEP));
         let many = many.map(|colours| colours.get(STEP - 1));
         if !many.iter().zip(&one).all(|(many, one)| same_bits(*many, *one)) {
@@ -96,7 +105,7 @@ pub fn procedural(shader_type: &ProceduralShader, draw: &mut Draw) -> Result<(),
 }
 
 /// A light, toward points around it and where it is.
-pub fn light(light: &dyn Light, draw: &mut Draw) -> Result<(), Fault> {
+pub fn light(light: &dyn PacketLight, draw: &mut Draw) -> Result<(), Fault> {
     let (location, size) = (light.location(), light.size());
     if !location.is_finite() || !size.is_finite() || size < 0.0 {
         return Err(Promise::LightIsFinite.fault(format!("it is at {location}, its size is {size}")));
@@ -104,18 +113,18 @@ pub fn light(light: &dyn Light, draw: &mut Draw) -> Result<(), Fault> {
     for toward in places(location, draw) {
         let one = light.emissivity(toward);
         if one.is_some_and(|light| !light.is_finite()) {
-            return Err(Promise::LightIsFinite.fault(format!("toward {toward} it sends {one:?}")));
+            return Err(Promise::LightIsFinite.fault(format!("toward {toward} it emits {one:?}")));
         }
         if let Some(even) = light.even()
             && one != Some(even)
         {
-            let found = format!("`even` is {even}, and toward {toward} it sends {one:?}");
+            let found = format!("`even` is {even}, and toward {toward} it emits {one:?}");
             return Err(Promise::PacketsAgree.fault(found));
         }
         if let (Some(most), Some(one)) = (light.brightest(), one)
             && !one.abs().cmple(most.abs()).all()
         {
-            let found = format!("`brightest` is {most}, and toward {toward} it sends {one}");
+            let found = format!("`brightest` is {most}, and toward {toward} it emits {one}");
             return Err(Promise::LightIsFinite.fault(found));
         }
         let all = |of: DVec3| Vectors::<STEP> { x: [of.x; STEP], y: [of.y; STEP], z: [of.z; STEP] };

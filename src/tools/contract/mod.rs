@@ -7,6 +7,7 @@
 mod draw;
 mod looks;
 mod promise;
+mod rays;
 mod shape;
 mod surface;
 
@@ -14,14 +15,15 @@ pub use promise::Promise;
 
 use crate::scene::choice::{Choice, ChoiceName};
 use crate::scene::dump;
-use crate::scene::entity::{Entity, Kind};
+use crate::scene::entity::Entity;
+use crate::scene::kind::Kind;
 use crate::scene::model::Model;
+use crate::scene::procedural::{OnPlane, ProceduralShader};
 use crate::scene::profile::Profile;
 use crate::scene::reader;
 use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
 use crate::world::accuracy::Accuracy;
-use crate::world::shading::{OnPlane, ProceduralShader};
 use draw::{Draw, Room};
 use promise::Fault;
 use std::fmt;
@@ -52,7 +54,7 @@ impl fmt::Display for Breach {
         let Self { plugin, place, promise, found, scene } = self;
         writeln!(f, "{place}: {plugin} breaks its contract: {promise}")?;
         writeln!(f, "  found: {found}")?;
-        writeln!(f, "  cure:  {}", promise.cure())?;
+        writeln!(f, "  fix:   {}", promise.cure())?;
         if !scene.is_empty() {
             writeln!(f, "  in this scene:\n")?;
             scene.lines().try_for_each(|line| writeln!(f, "    {line}"))?;
@@ -88,7 +90,7 @@ pub fn breaches_in(model: &Model) -> Vec<Breach> {
     let mut found = Vec::new();
     for object in &model.objects {
         found.extend(
-            shape::try_object(object, &mut draw, RAYS).gravest.map(|fault| (object.args.entity, fault)),
+            rays::try_object(object, &mut draw, RAYS).gravest.map(|fault| (object.args.entity, fault)),
         );
     }
     for light in &model.lights {
@@ -134,7 +136,7 @@ fn of_entity(registry: &Registry, entity: &'static Entity, room: &Room) -> Optio
             Kind::Texture => Ok(()),
             Kind::Light => model.lights.iter().try_for_each(|item| looks::light(&*item.value, &mut draw)),
             Kind::Object => model.objects.iter().try_for_each(|object| {
-                let outcome = shape::try_object(object, &mut draw, RAYS);
+                let outcome = rays::try_object(object, &mut draw, RAYS);
                 hits += outcome.hits;
                 outcome.gravest.map_or(Ok(()), Err)
             }),
@@ -154,7 +156,7 @@ fn of_entity(registry: &Registry, entity: &'static Entity, room: &Room) -> Optio
             other(Promise::TakesWhatItsTableAllows, report.trim_end(), text)
         }
         _ if entity.kind() == Kind::Object && hits == 0 && gravest.is_none() => {
-            other(Promise::IsMet, "no ray of thousands meets it", seen)
+            other(Promise::IsMet, "none of thousands of rays hits it", seen)
         }
         _ => gravest,
     }
@@ -178,9 +180,10 @@ fn of_choice(what: &str, choice: ChoiceName, outcome: Result<(), Fault>) -> Opti
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::hittable::{Light, Plain, Shader};
+    use crate::scene::procedural::Anchor;
+    use crate::world::light::Light;
     use crate::world::material::{Look, Material, Rgb};
-    use crate::world::shading::Anchor;
+    use crate::world::shader::{Plain, Shader};
     use glam::DVec3;
 
     static SOUND: Profile = Profile::new("sound", "a cone", "4 - y");
@@ -230,7 +233,7 @@ mod tests {
     fn a_profile_that_is_not_finite_or_empty_is_found() {
         assert!(of_profile(&SOUND).is_none());
         for (profile, found) in [
-            (&UNBOUNDED, "it is one without a bound near y = 0.0"),
+            (&UNBOUNDED, "it is one that is unbounded near y = 0.0"),
             (&EMPTY, "it is one that is nowhere above 0"),
             (&STEEP, "its slope is inf at y = 2"),
         ] {
@@ -261,6 +264,6 @@ mod tests {
     fn a_light_that_says_it_is_even_and_is_not_is_found() {
         let fault = looks::light(&Uneven, &mut Draw::new("uneven")).expect_err("a fault");
         assert_eq!(fault.promise, Promise::PacketsAgree);
-        assert_eq!(fault.found, "`even` is [1, 1, 1], and toward [0, 0, 0] it sends None");
+        assert_eq!(fault.found, "`even` is [1, 1, 1], and toward [0, 0, 0] it emits None");
     }
 }

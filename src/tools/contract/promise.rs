@@ -76,48 +76,48 @@ impl Promise {
     pub fn cure(self) -> &'static str {
         match self {
             Self::TakesWhatItsTableAllows => {
-                "say with `must` what each attribute's values must be; refuse only what no single attribute shows"
+                "state the rule of each attribute with `must`; refuse only what no single attribute shows"
             }
             Self::DumpLoadsAgain => {
-                "give a default that keeps its own rule, and rules that depend on values alone"
+                "give a default that satisfies its own rule, and rules that depend on the values alone"
             }
             Self::DistanceIsInItsSpan => {
-                "end `distance` with `within.keep(...)`: what is outside of the span or NaN becomes `MISS`"
+                "end `distance` with `within.keep(...)`: anything outside the span, or NaN, becomes `MISS`"
             }
-            Self::DistanceIsTheSameAgain => "let `distance` depend on the shape, the ray and the span alone",
+            Self::DistanceIsTheSameAgain => "make `distance` depend on the shape, the ray and the span alone",
             Self::PacketsAgree => {
-                "`bracket` holds `distance`, `quick_distance` is it to the last bit or NaN; leave both out, or `even` and the packets' methods, if in doubt"
+                "`bracket` contains `distance`, and `refine` equals it to the last bit or is NaN; if in doubt, leave out `Bracketed`, or `even`"
             }
-            Self::NormalIsUnit => "end `normal` with `.normalize()`, and say what it is where there is none",
+            Self::NormalIsUnit => {
+                "end `normal` with `.normalize()`, and define it where the surface has none"
+            }
             Self::HitIsOnTheSurface => {
-                "let `distance` give the first hit of the same surface for every ray, from both of its sides and from inside"
+                "make `distance` return the first hit of the same surface for every ray, from both sides and from inside"
             }
             Self::AgreesWithItsProof => {
-                "let `distance` and the shape's `Equation` (or `certify`) describe one surface, with the same part kept"
+                "make `distance` and the shape's `Equation` describe the same surface, clipped alike"
             }
-            Self::BoundsHoldHits => "make `bounds` hold every point of the shape; give none if in doubt",
+            Self::BoundsHoldHits => "make `bounds` contain every point of the shape; return none if in doubt",
             Self::HitIsTouched => {
-                "let `touches` hold within the error that it is given at least, and `bracket` be without a certain end there; leave both out if in doubt"
+                "make `touches` true within at least the error that it is given, and `bracket` without a certain end there; if in doubt, leave out `touches`, and `Bracketed`"
             }
-            Self::NormalIsUpright => {
-                "let `normal` be the gradient of the surface's formula, made a unit vector"
-            }
+            Self::NormalIsUpright => "make `normal` the gradient of the surface's formula, normalized",
             Self::NormalsAgree => {
-                "let `normal` depend on the point alone, without a jump on a smooth surface"
+                "make `normal` depend on the point alone, and continuous on a smooth surface"
             }
-            Self::NormalsPointOut => "turn `normal` around: it points out of a closed shape",
-            Self::IsNotMetAgain => "answer `meets_itself` with `true` for that side, which is the default",
+            Self::NormalsPointOut => "negate `normal`: it must point out of a closed shape",
+            Self::IsNotMetAgain => "return `true` from `meets_itself` for that side, which is the default",
             Self::StartIsNoHit => {
-                "where `within.leaves` is given, leave the root out at which the ray starts, however rounding has it"
+                "where `within.leaves` is given, leave out the root at which the ray starts, whatever rounding makes of it"
             }
-            Self::IsMet => "let `distance` give the distance of the first hit, and not `MISS` for all",
+            Self::IsMet => "make `distance` return the distance of the first hit, not `MISS` for every ray",
             Self::ReflectivityIsSound => {
-                "look for a division by 0 or a root of a negative number, and clamp what may fall below 0"
+                "look for a division by 0 or a root of a negative number, and clamp what may become negative"
             }
-            Self::LightIsFinite => "answer `None` where no light goes, the light's own place included",
-            Self::CameraLooks => "state rules for the attributes that the camera is made from",
+            Self::LightIsFinite => "return `None` where no light goes, including the light's own location",
+            Self::CameraLooks => "state rules for the attributes from which the camera is made",
             Self::ProfileIsFinite => {
-                "give a formula that is finite at each height from 0 to 4 and above 0 at some"
+                "give a formula that is finite at every height from 0 to 4 and above 0 at some of them"
             }
         }
     }
@@ -130,28 +130,28 @@ impl Promise {
 impl fmt::Display for Promise {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::TakesWhatItsTableAllows => "the constructor takes values that the table allows",
-            Self::DumpLoadsAgain => "a dumped scene loads again, to the same dump",
-            Self::DistanceIsInItsSpan => "a distance lies inside of the span, or is `MISS`",
-            Self::DistanceIsTheSameAgain => "the same ray has the same distance again",
-            Self::PacketsAgree => "what packets are told is what single rays are told",
+            Self::TakesWhatItsTableAllows => "the constructor accepts all values that the table allows",
+            Self::DumpLoadsAgain => "a dumped scene loads again, and its dump is the same",
+            Self::DistanceIsInItsSpan => "a distance lies within the span, or is `MISS`",
+            Self::DistanceIsTheSameAgain => "the same ray always has the same distance",
+            Self::PacketsAgree => "packets of rays get the same answers as single rays",
             Self::NormalIsUnit => "a normal is a unit vector",
-            Self::HitIsOnTheSurface => "a hit is one wherever its ray starts",
-            Self::AgreesWithItsProof => "the distance is where `certify` proves the first hit",
-            Self::BoundsHoldHits => "the bounds hold every hit",
-            Self::HitIsTouched => "a shape touches the points where it is hit",
-            Self::NormalIsUpright => "a normal stands upright on the surface",
-            Self::NormalsAgree => "normals close together point to the same side",
-            Self::NormalsPointOut => "the normals of a convex shape point out of it",
-            Self::IsNotMetAgain => "a shape that does not meet itself meets no ray that leaves it",
-            Self::StartIsNoHit => "a ray that leaves the surface meets what lies beyond, and not its start",
-            Self::IsMet => "rays meet the shape",
+            Self::HitIsOnTheSurface => "a hit is found wherever its ray starts",
+            Self::AgreesWithItsProof => "the distance is that of the first hit that `certify` proves",
+            Self::BoundsHoldHits => "the bounds contain every hit",
+            Self::HitIsTouched => "`touches` is true of the points where a shape is hit",
+            Self::NormalIsUpright => "a normal is perpendicular to the surface",
+            Self::NormalsAgree => "neighbouring normals point to the same side",
+            Self::NormalsPointOut => "the normals of a convex shape point outward",
+            Self::IsNotMetAgain => "a shape that does not meet itself is not hit by rays that leave it",
+            Self::StartIsNoHit => "a ray that leaves the surface hits what lies beyond, not its own start",
+            Self::IsMet => "rays hit the shape",
             Self::ReflectivityIsSound => {
-                "a reflectivity is finite, and not below 0 where the material's is not"
+                "a reflectivity is finite, and not negative unless the material's is"
             }
-            Self::LightIsFinite => "a light's place, size and light are finite",
-            Self::CameraLooks => "a camera has pixels, samples and rays along unit vectors",
-            Self::ProfileIsFinite => "a profile is finite from 0 to 4, and somewhere above 0",
+            Self::LightIsFinite => "a light's location, size and emission are finite",
+            Self::CameraLooks => "a camera has pixels, samples and rays with unit directions",
+            Self::ProfileIsFinite => "a profile is finite from 0 to 4, and above 0 somewhere",
         })
     }
 }

@@ -1,16 +1,15 @@
-//! The contract of [`Hittable`], tried with rays.
+//! The contract of [`Hittable`](crate::world::hittable::Hittable), tried with rays.
 
-use super::draw::Draw;
-use super::looks::{same_bits, shader};
+use super::looks::same_bits;
 use super::promise::{Fault, Promise};
-use crate::geometry::packet::{Nearest, Rays, STEP, Vectors};
+use crate::geometry::packet::{Nearest, Rays};
+use crate::geometry::ray::{MISS, Ray, Side, Span};
 use crate::geometry::sight::Sight;
 use crate::numeric::interval::{Float, Wide};
-use crate::scene::model::Object;
-use crate::scene::value::Datum;
 use crate::simd::cpu::Cpu;
+use crate::simd::soa::{STEP, Vectors};
+use crate::world::any_shape::AnyShape;
 use crate::world::certify::{Enclosure, Precision};
-use crate::world::hittable::{Hittable, MISS, Ray, Side, Span};
 use crate::world::landing::Landing;
 use glam::DVec3;
 
@@ -24,106 +23,12 @@ pub const SLACK: f64 = 1e-7;
 /// Rays that meet a surface at a smaller cosine graze it: rounding tells how they fare.
 pub const GRAZING: f64 = 0.05;
 
-/// The first rays, which go exactly to what may be a corner or a middle.
-const EXACT: usize = 3;
-
-/// What lies farther away than this is not aimed at: there is nothing but limits.
-const FAR: f64 = 1e4;
-
-/// What comes of trying a shape.
-pub struct Outcome {
-    /// How many rays met it.
-    pub hits: usize,
-    /// The gravest fault.
-    pub gravest: Option<Fault>,
-}
-
-/// Sends rays at an object.
-pub fn try_object(object: &Object, draw: &mut Draw, rays: usize) -> Outcome {
-    let mut aims = aims(object);
-    let mut outcome = Outcome { hits: 0, gravest: None };
-    for index in 0..rays {
-        let ray = ray(&aims, draw, index);
-        let tried = try_ray(&Tried { shape: &*object.shape, ray, is_exact: index < EXACT }, draw);
-        let tried = tried.and_then(|hit| match hit {
-            Some(at) => shader(&*object.shader, at).map(|()| Some(at)),
-            None => Ok(None),
-        });
-        match tried {
-            // What is met once is aimed at again: it may be small.
-            Ok(Some(at)) => {
-                outcome.hits += 1;
-                aims.push(at);
-            }
-            Ok(None) => {}
-            Err(fault) => {
-                if outcome.gravest.as_ref().is_none_or(|gravest| fault.promise < gravest.promise) {
-                    outcome.gravest = Some(fault);
-                }
-            }
-        }
-    }
-    outcome
-}
-
-/// Where an object may be: every three of the numbers that it is made of may be a point.
-fn aims(object: &Object) -> Vec<DVec3> {
-    let mut aims = vec![DVec3::ZERO];
-    for (_, datum) in object.args.values() {
-        if let Datum::Numbers(numbers) = datum {
-            aims.extend(numbers.as_chunks::<3>().0.iter().map(|point| DVec3::from(*point)));
-        }
-    }
-    aims.extend(object.shape.bounds().map(|bounds| bounds.middle()));
-    aims.retain(|aim| aim.abs().max_element() <= FAR);
-    aims
-}
-
-/// A ray toward a place near one of these; at first along the axes, and exactly at them.
-fn ray(aims: &[DVec3], draw: &mut Draw, index: usize) -> Ray {
-    let aim = aims[(draw.part() * aims.len() as f64) as usize % aims.len()];
-    if index < EXACT {
-        return Ray { origin: aim - 10.0 * DVec3::AXES[index], dir: DVec3::AXES[index] };
-    }
-    // From far to close by, evenly over the powers of 10.
-    let off = draw.direction() * libm::exp10(draw.part() * 3.0 - 2.0);
-    let from = draw.direction() * (0.5 + 20.0 * draw.part());
-    let dir = (off - from).normalize();
-    Ray { origin: aim + from, dir }
-}
-
 /// A shape and a ray that it is tried with.
 pub struct Tried<'s> {
-    pub shape: &'s dyn Hittable,
+    pub shape: &'s AnyShape,
     pub ray: Ray,
     /// Whether it may meet an edge or a corner, where rounding tells what is met from elsewhere.
-    is_exact: bool,
-}
-
-/// Tries a shape with a ray; where it is met, if it is.
-fn try_ray(tried: &Tried, draw: &mut Draw) -> Result<Option<DVec3>, Fault> {
-    let distance = tried.in_span(&tried.ray, &Span::RAY)?;
-    tried.repeats(distance)?;
-    tried.packets_agree(distance)?;
-    tried.keeps_to_spans(distance)?;
-    tried.agrees_with_its_proof(distance)?;
-    if distance == MISS {
-        return Ok(None);
-    }
-    let met = tried.met(distance)?;
-    tried.is_held(met.at)?;
-    if !tried.is_exact {
-        tried.is_met_from_elsewhere(&met, draw)?;
-    }
-    if !tried.is_exact && met.normal.dot(tried.ray.dir).abs() >= GRAZING {
-        tried.stands_upright(&met)?;
-        if !tried.shape.meets_itself(Side::Outside) {
-            tried.is_convex(&met)?;
-        }
-        tried.leaves(&met, draw)?;
-        tried.is_touched(&met, draw)?;
-    }
-    Ok(Some(met.at))
+    pub is_exact: bool,
 }
 
 impl Tried<'_> {
@@ -157,7 +62,7 @@ impl Tried<'_> {
             .fault(format!("`distance` gives {distance} between {near} and {far}, {}", told(ray))))
     }
 
-    fn repeats(&self, distance: f64) -> Result<(), Fault> {
+    pub fn repeats(&self, distance: f64) -> Result<(), Fault> {
         let again = self.shape.distance(&self.ray, &Span::RAY);
         if again.to_bits() == distance.to_bits() {
             return Ok(());
@@ -166,7 +71,7 @@ impl Tried<'_> {
             .fault(format!("first {distance}, then {again}, {}", told(&self.ray))))
     }
 
-    fn packets_agree(&self, distance: f64) -> Result<(), Fault> {
+    pub fn packets_agree(&self, distance: f64) -> Result<(), Fault> {
         let Self { shape, ray, .. } = self;
         let fault = |found: String| Err(Promise::PacketsAgree.fault(format!("{found}, {}", told(ray))));
         let bracket = shape.bracket(ray, &Span::RAY);
@@ -174,9 +79,9 @@ impl Tried<'_> {
         {
             return fault(format!("`distance` gives {distance}, and `bracket` {bracket:?}"));
         }
-        let quick = shape.quick_distance(ray, &Span::RAY);
-        if !quick.is_nan() && quick.to_bits() != distance.to_bits() {
-            return fault(format!("`distance` gives {distance}, and `quick_distance` {quick}"));
+        let refined = if bracket.far < MISS { shape.refine(ray, None) } else { f64::NAN };
+        if !refined.is_nan() && refined.to_bits() != distance.to_bits() {
+            return fault(format!("`distance` gives {distance}, and `refine` {refined}"));
         }
         let lanes = |of: DVec3| Vectors::<STEP> { x: [of.x; STEP], y: [of.y; STEP], z: [of.z; STEP] };
         let (origin, dir) = (lanes(ray.origin), lanes(ray.dir));
@@ -185,22 +90,17 @@ impl Tried<'_> {
             let (mut near, mut far) = ([MISS; STEP], [MISS; STEP]);
             let (mut met, mut doubt) = ([0; STEP], [0; STEP]);
             let nearest = Nearest { near: &mut near, far: &mut far, met: &mut met, doubt: &mut doubt };
-            shape.meet(cpu, rays, None, 1, nearest);
+            shape.closest_hits(cpu, rays, None, 1, nearest);
             let (low, high) = (near[0], far[0]);
             if doubt[0] == 0 && !(low <= distance && distance <= high) {
-                return fault(format!(
-                    "`distance` gives {distance}, and packets are from {low} to {high} ({cpu})"
-                ));
+                return fault(format!("`distance` gives {distance}, and packets {low} to {high} ({cpu})"));
             }
             // As the tracer has it: what is known exactly is not asked for again.
             if doubt[0] == 0 && low < high {
                 let mut many = near;
-                shape.distances(cpu, rays, None, (&near, &far), &mut many);
+                shape.packets().refine(cpu, rays, None, (&near, &far), &mut many);
                 if !many[0].is_nan() && many[0].to_bits() != distance.to_bits() {
-                    return fault(format!(
-                        "`distance` gives {distance}, and `distances` {} ({cpu})",
-                        many[0]
-                    ));
+                    return fault(format!("`distance` gives {distance}, and {} in packets ({cpu})", many[0]));
                 }
             }
             if distance != MISS {
@@ -214,7 +114,7 @@ impl Tried<'_> {
                     cosines: &mut cosines,
                     travelled: &mut travelled,
                 };
-                shape.land(cpu, rays, &[distance; STEP], landing);
+                shape.packets().interact(cpu, rays, &[distance; STEP], landing);
                 let (at, normal) = (ray.at(distance), shape.normal(ray.at(distance)));
                 let side = Side::seen_along(ray.dir, normal);
                 let turned = shape.is_two_sided() && side == Side::Inside;
@@ -223,7 +123,7 @@ impl Tried<'_> {
                     return fault(format!("the normal {one} in single rays, and {many} in packets ({cpu})"));
                 }
                 if !same_bits(at, points.get(0)) || sides[0] != side || travelled[0] != 1.0 + distance {
-                    return fault(format!("`land` comes to {} in place of {at} ({cpu})", points.get(0)));
+                    return fault(format!("packets give {} in place of {at} ({cpu})", points.get(0)));
                 }
                 let cosine = ray.dir.dot(normal);
                 if cosine.to_bits() != cosines[0].to_bits() && cosine.is_finite() {
@@ -238,7 +138,7 @@ impl Tried<'_> {
     }
 
     /// What lies outside of a span is no hit.
-    fn keeps_to_spans(&self, distance: f64) -> Result<(), Fault> {
+    pub fn keeps_to_spans(&self, distance: f64) -> Result<(), Fault> {
         let slack = SLACK * self.size(if distance == MISS { 0.0 } else { distance });
         let middle = if distance == MISS { 5.0 } else { distance };
         for within in [
@@ -263,7 +163,7 @@ impl Tried<'_> {
         Ok(())
     }
 
-    fn agrees_with_its_proof(&self, distance: f64) -> Result<(), Fault> {
+    pub fn agrees_with_its_proof(&self, distance: f64) -> Result<(), Fault> {
         let proven = self.shape.certify(&Sight::along(&self.ray), Precision::Double);
         let agrees = |slack: f64| match proven {
             Enclosure::Misses => distance == MISS || slack == MISS,

@@ -4,8 +4,8 @@ use super::draw::Draw;
 use super::promise::{Fault, Promise};
 use super::shape::{GRAZING, SLACK, Tried, told};
 use crate::geometry::bounds::Bounds;
+use crate::geometry::ray::{MISS, Ray, Side, Span};
 use crate::world::coincidence;
-use crate::world::hittable::{MISS, Ray, Side, Span};
 use glam::DVec3;
 
 /// A step that is far longer than what rounding makes, and far shorter than what is to be seen.
@@ -35,12 +35,12 @@ impl Tried<'_> {
         let (up, down) =
             (Bounds { high: DVec3::INFINITY, ..around }, Bounds { low: DVec3::NEG_INFINITY, ..around });
         if let Some(region) = [around, up, down].iter().find(|region| self.shape.is_clear_of(region)) {
-            let found = format!("it says that it is clear of {region:?}, and is hit at {at}");
+            let found = format!("`is_clear_of` is true of {region:?}, yet it is hit at {at}");
             return Err(Promise::BoundsHoldHits.fault(found));
         }
         match self.shape.bounds() {
             Some(bounds) if !bounds.with_slack(100.0).overlaps(&Bounds { low: at, high: at }) => {
-                Err(Promise::BoundsHoldHits.fault(format!("it is hit at {at}, outside of {bounds:?}")))
+                Err(Promise::BoundsHoldHits.fault(format!("it is hit at {at}, outside {bounds:?}")))
             }
             _ => Ok(()),
         }
@@ -93,7 +93,7 @@ impl Tried<'_> {
             let lean = met.normal.dot(between.normalize());
             if lean.abs() > 0.01 {
                 let found = format!(
-                    "at {} it leans: {} instead of 90 degrees",
+                    "at {} it is at {} degrees to the surface instead of 90",
                     met.at,
                     libm::acos(lean).to_degrees()
                 );
@@ -122,12 +122,14 @@ impl Tried<'_> {
                 _ if through <= 10.0 * stride => {}
                 [Side::Outside, Side::Inside] if ends => {}
                 [Side::Inside, Side::Outside] if ends => {
-                    let found =
-                        format!("a ray goes through, and the normals are {sides:?}, {}", told(&self.ray));
+                    let found = format!(
+                        "a ray passes through it, and the normals show the sides {sides:?}, {}",
+                        told(&self.ray)
+                    );
                     return Err(Promise::NormalsPointOut.fault(found));
                 }
                 _ => {
-                    let found = format!("a ray goes in or comes out twice, {}", told(&self.ray));
+                    let found = format!("a ray enters or leaves twice, {}", told(&self.ray));
                     return Err(Promise::IsNotMetAgain.fault(found));
                 }
             }
@@ -142,7 +144,7 @@ impl Tried<'_> {
         let origin_error = coincidence::error(ray, met.distance, met.normal, shape.reach());
         let fault = |what: String| Err(Promise::HitIsTouched.fault(what));
         if !shape.touches(met.at, origin_error) {
-            return fault(format!("it is hit at {}, {}; `touches` says no there", met.at, told(ray)));
+            return fault(format!("it is hit at {}, {}, where `touches` is false", met.at, told(ray)));
         }
         for _ in 0..4 {
             let onward = Ray { origin: met.at, dir: draw.direction() };
@@ -154,7 +156,7 @@ impl Tried<'_> {
             };
             if !(bracket.near <= distance && distance <= bracket.far) {
                 return fault(format!(
-                    "`touches` says that a ray starts on it and leaves it, which gives {distance}; `bracket` is {bracket:?} with an `origin_error` of {origin_error:e}, {}",
+                    "`touches` is true of the start of a ray, whose distance on leaving is {distance}; `bracket` is {bracket:?} with an `origin_error` of {origin_error:e}, {}",
                     told(&onward)
                 ));
             }
@@ -178,7 +180,7 @@ impl Tried<'_> {
             if !self.shape.meets_itself(side) {
                 if self.in_span(&ahead, &Span::RAY)? != MISS {
                     let found = format!(
-                        "`meets_itself` says no for its {side:?}, and a ray that leaves it meets it again, {}",
+                        "`meets_itself` is false for its {side:?}, yet a ray that leaves it hits it again, {}",
                         told(&ahead)
                     );
                     return Err(Promise::IsNotMetAgain.fault(found));

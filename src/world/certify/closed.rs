@@ -1,6 +1,6 @@
 //! First hits of surfaces whose equation is a quadratic along a line: planes, balls, cones and the like.
 
-use super::{Equation, Found, is_kept};
+use super::equation::{Equation, Found, is_kept};
 use crate::geometry::sight::Line;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::{Float, Interval};

@@ -6,15 +6,16 @@
 //! proven of the real numbers.
 
 mod closed;
+mod equation;
 mod search;
 
-use crate::geometry::sight::{Line, Sight};
+pub use equation::Equation;
+
+use crate::geometry::sight::Sight;
 use crate::numeric::interval::{Float, Interval, Wide};
-use crate::numeric::number::Number;
 use crate::numeric::twofold::Twofold;
-use crate::world::hittable::Hittable;
+use equation::Found;
 use f256::f256;
-use glam::DVec3;
 
 /// What is certain about the first hit of a shape. Distances count in lengths of the sight's direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,16 +33,6 @@ pub enum Enclosure {
 impl Enclosure {
     /// Of a shape that says nothing.
     pub const UNKNOWN: Self = Self::Doubtful(f256::ZERO);
-}
-
-/// Whether a ray meets one shape before another, with 237 bits; nothing where these do not tell.
-pub fn is_before(one: &dyn Hittable, other: &dyn Hittable, sight: &Sight) -> Option<bool> {
-    let distance = |shape: &dyn Hittable| match shape.certify(sight, Precision::Octuple) {
-        Enclosure::Hits(at) | Enclosure::Edge(at) => Some(at),
-        Enclosure::Misses | Enclosure::Doubtful(_) => None,
-    };
-    let (one, other) = (distance(one)?, distance(other)?);
-    (one.high < other.low || other.high < one.low).then_some(one.high < other.low)
 }
 
 /// A distance in lengths of a sight's direction, in world units: the middle of what it may be.
@@ -90,42 +81,6 @@ pub enum Precision {
     Octuple,
 }
 
-/// A shape as the solutions of an equation, of which a part is kept.
-///
-/// It is written in the numbers of the scene: a plane's equation has its normal as it is given, not a unit vector, whose
-/// rounding would be proven along with it.
-pub trait Equation {
-    /// Whether [`value`](Self::value) is a polynomial of the second degree at most: its roots are found in closed form.
-    const IS_QUADRATIC: bool = false;
-
-    /// A line in the coordinates that the equation is written in; by default the world's.
-    fn own<N: Number>(&self, line: Line<N>) -> Line<N> {
-        line
-    }
-
-    /// 0 on the surface, and of different signs on its two sides.
-    fn value<N: Number>(&self, at: [N; 3]) -> N;
-
-    /// Above 0 where the surface is kept, below 0 where it is cut off.
-    fn kept<N: Number>(&self, _at: [N; 3]) -> N {
-        N::constant(1.0)
-    }
-
-    /// The low and the high corner of a box, in the equation's coordinates, outside of which nothing is kept. Surfaces
-    /// that are no quadratics need one; it may be infinite in a direction that no ray has to itself.
-    fn extent(&self) -> [DVec3; 2] {
-        [DVec3::NEG_INFINITY, DVec3::INFINITY]
-    }
-}
-
-/// What is certain, with numbers of one precision.
-enum Found<F> {
-    Misses,
-    Hits(Interval<F>),
-    Edge(Interval<F>),
-    Doubtful(F),
-}
-
 /// What is certain about the first hit of a shape.
 pub fn first_hit(shape: &impl Equation, sight: &Sight, precision: Precision) -> Enclosure {
     match precision {
@@ -151,12 +106,6 @@ fn solve<F: Float>(shape: &impl Equation, sight: &Sight) -> Found<F> {
 
 fn is_quadratic<E: Equation>(_: &E) -> bool {
     E::IS_QUADRATIC
-}
-
-/// Whether the surface is kept where a line has one of these distances; nothing where that is not certain.
-fn is_kept<F: Float>(shape: &impl Equation, line: &Line<Interval<F>>, distance: Interval<F>) -> Option<bool> {
-    let kept = shape.kept(line.at(distance));
-    if kept.has_zero() { None } else { Some(kept.low > F::of(0.0)) }
 }
 
 #[cfg(test)]

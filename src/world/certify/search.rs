@@ -1,6 +1,6 @@
 //! First hits of any surface, by halving a line until each piece has no hit for certain, or one.
 
-use super::{Equation, Found, is_kept};
+use super::equation::{Equation, Found, is_kept};
 use crate::geometry::sight::Line;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::{Float, Interval};

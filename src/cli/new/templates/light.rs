@@ -1,24 +1,20 @@
-//! A template: a lamp with a shade, which shines downward. Say here what it is.
+//! A template: a light with a shade, which shines downward. Describe it here.
 
 use super::light::{self, PointLight};
-use crate::scene::entity::Entity;
-use crate::scene::pparm::{Pparm, Table};
-use crate::world::hittable::Light;
-use crate::world::material::Rgb;
-use glam::DVec3;
+use crate::prelude::*;
 
-// Each attribute is one of these: its name, what it is, its unit and its rule. `required` has to be given; `or`
-// has a default. The reader, its messages and the reference are made from them.
+// Each attribute has a name, a meaning, a unit and a rule. One made with `required` must be given, one made with `or`
+// has a default. The parser, its messages and the reference are made from these descriptions.
 static NARROW: Pparm<f64> =
-    Pparm::or("narrow", "how narrow its light is: 0 for as bright to the sides as below", 2.0)
+    Pparm::or("narrow", "how narrow the beam is: 0 is as bright to the sides as below", 2.0)
         .must("0 or more", |narrow| *narrow >= 0.0);
 
 const TABLE: Table = &[&NARROW];
 
-// What scenes call it, what it is, and how it is made of values that have been checked. It takes what every light
-// takes, and its own attributes.
+// Its name in scenes, its meaning, and how it is made from values that have been checked. It takes the attributes of
+// every light and its own.
 inventory::submit! {
-    Entity::light("template", "a lamp that shines downward", &[light::TABLE, TABLE], |args| {
+    Entity::light("template", "a light that shines downward", &[light::TABLE, TABLE], |args| {
         Ok(Box::new(Template { bulb: PointLight::new(args), narrow: args.get(&NARROW) }))
     })
 }
@@ -33,7 +29,7 @@ impl Light for Template {
         self.bulb.location
     }
 
-    /// The light that it sends toward a point, or nothing where it does not point there.
+    /// Returns the light that it emits toward a point, or nothing where it does not shine.
     fn emissivity(&self, toward: DVec3) -> Option<Rgb> {
         let down = (self.bulb.location - toward).normalize_or_zero().y;
         (down > 0.0).then(|| self.bulb.emissivity * down.powf(self.narrow))

@@ -1,0 +1,97 @@
+//! What is pending, as a page shows it.
+
+use super::pending::{self, Content, Pending};
+use crate::cli::explain::Place;
+use crate::cli::failure::{Failure, tell};
+use crate::cli::report::{Change, Decision, Item};
+use crate::cli::{input, picture};
+use crate::output::compare::Comparison;
+use crate::scene::registry::Registry;
+use std::env;
+use std::ffi::OsStr;
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+
+/// What is pending below a folder, and whether all of it could be read; what could not has been told.
+pub fn items(
+    registry: &Registry,
+    folder: &Path,
+    before: Option<&Path>,
+) -> Result<(Vec<Item>, bool), Failure> {
+    let mut items = Vec::new();
+    let found = pending::find(folder)?;
+    for new in &found {
+        match Pending::read(new).and_then(|snapshot| item(registry, &snapshot, before)) {
+            Ok(item) => items.push(item),
+            Err(failure) => {
+                tell(&failure);
+            }
+        }
+    }
+    let is_whole = items.len() == found.len();
+    Ok((items, is_whole))
+}
+
+/// A pending snapshot on the page.
+fn item(registry: &Registry, snapshot: &Pending, before: Option<&Path>) -> Result<Item, Failure> {
+    let path = &snapshot.path;
+    let change = change(snapshot)?;
+    let explanations = match (&change, scene(path)) {
+        (
+            Change::Picture { comparison: Some(Comparison { first: Some(pixel), size, .. }), .. },
+            Some(scene),
+        ) => match input::load(registry, &scene, None) {
+            Ok(model) => Place { scene: &scene, model, size: *size, pixel: *pixel }.explained(before),
+            Err(failure) => {
+                tell(&failure);
+                Vec::new()
+            }
+        },
+        _ => Vec::new(),
+    };
+    let program = env::args_os().next().unwrap_or_else(|| "tabray".into());
+    let command = |option: &str| {
+        [&program, OsStr::new("review"), OsStr::new(option), path.as_os_str()].map(quoted).join(" ")
+    };
+    let decision =
+        Decision { accept: command("--accept"), reject: command("--reject"), version: snapshot.version() };
+    Ok(Item { name: path.display().to_string(), change, explanations, decision: Some(decision) })
+}
+
+/// What is old and new of it.
+fn change(snapshot: &Pending) -> Result<Change, Failure> {
+    let unreadable = |reason: String| {
+        Failure::Usage(format!("cannot show the snapshot `{}`: {reason}", snapshot.path.display()), None)
+    };
+    let (old, new) = (snapshot.old.as_ref(), &snapshot.new);
+    if let Some(new) = new.text() {
+        let old = old.and_then(Content::text).map(str::to_owned);
+        return Ok(Change::Text { old, new: new.to_owned() });
+    }
+    let decode = |content: &Content| picture::decode(Cursor::new(content.bytes()));
+    let new = decode(new).map_err(unreadable)?;
+    // An old picture that is none is a reason to have a new one.
+    let old = old.and_then(|old| decode(old).ok());
+    let comparison = old.as_ref().and_then(|old| Comparison::new(old, &new, 0));
+    Ok(Change::Picture { old, new, names: ["old".to_owned(), "new".to_owned()], comparison })
+}
+
+/// The scene of a picture's snapshot, if there is one: `snapshots/sphere/ball.snap` is of `scenes/sphere/ball.ray`.
+fn scene(snapshot: &Path) -> Option<PathBuf> {
+    let mut parts: Vec<_> = snapshot.components().map(|part| part.as_os_str()).collect();
+    let folder = parts.iter().rposition(|part| *part == "snapshots")?;
+    parts[folder] = OsStr::new("scenes");
+    let scene: PathBuf = parts.iter().collect();
+    ["ray", "toml"].iter().map(|extension| scene.with_extension(extension)).find(|scene| scene.is_file())
+}
+
+/// A word of a command, as a shell takes it.
+fn quoted(word: &OsStr) -> String {
+    let word = word.to_string_lossy();
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "_-./:=+,@%".contains(c);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        word.into_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
+}

@@ -1,0 +1,41 @@
+//! Halving between two places where the answers to a question differ.
+//!
+//! One digit in binary for each answer, whatever the function. Signs are asked for, not computed from a product, which
+//! underflows; and where no number lies between, it ends.
+
+/// The last place of which something is not true and the first of which it is, between such places `low` and `high`: no
+/// farther from each other than `apart`, or as near as numbers go.
+pub fn bisect(is_true: impl Fn(f64) -> bool, (mut low, mut high): (f64, f64), apart: f64) -> (f64, f64) {
+    while high - low > apart {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            break;
+        }
+        if is_true(middle) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    (low, high)
+}
+
+/// The root between two places, where the function is positive at the first if `falls`.
+pub fn root(f: impl Fn(f64) -> f64, ends: (f64, f64), falls: bool, tolerance: f64) -> f64 {
+    let has_crossed = |t: f64| (f(t) >= 0.0) != falls;
+    let (low, high) = bisect(has_crossed, ends, tolerance);
+    0.5 * (low + high)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn halving_ends_where_it_is_near_enough_or_no_number_lies_between() {
+        let (low, high) = bisect(|t| t * t >= 2.0, (1.0, 2.0), 0.0);
+        assert_eq!((low.next_up(), high), (high, 2.0_f64.sqrt()));
+        assert_eq!(bisect(|t| t >= 0.3, (0.0, 1.0), 0.25), (0.25, 0.5));
+        assert_eq!(bisect(|t| t >= 3e17, (1e17, 1e17_f64.next_up()), 1.0), (1e17, 1e17_f64.next_up()));
+    }
+}

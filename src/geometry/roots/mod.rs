@@ -1,0 +1,172 @@
+//! Ways to find the first root of a function along a line, one in each file, to be compared: `tabray chart` does.
+//!
+//! Scenes are traced with two of them. [`taylor`] finds the hits of shapes that are one formula, and decides where a
+//! ray grazes a surface of revolution, whose other hits come from quadrics ([`revolution`](crate::shapes::revolution));
+//! [`newton`] finishes both. The others are what is used elsewhere; each says where it is from and where it fails.
+
+pub mod bisection;
+mod chandrupatla;
+mod intervals;
+pub mod newton;
+mod refiner;
+mod samples;
+mod steps;
+pub mod taylor;
+mod tracing;
+mod turning;
+pub mod twice;
+
+use crate::geometry::ray::Span;
+pub use refiner::Refiner;
+use std::fmt;
+use std::ops::Range;
+use taylor::Line;
+
+/// A way to find the first root.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// The notes' page on procedural surfaces: `steps`.
+    Steps,
+    /// So many samples, and a refiner between the first two that differ in their signs: `samples`.
+    Samples(u32, Refiner),
+    /// As many samples and Newton's method, and the places between them where the function turns: `turning`.
+    Turning(u32),
+    /// Steps as long as a bound of the slope allows: `tracing`.
+    Tracing,
+    /// Bounds of the function's values and slopes: `intervals`.
+    Intervals,
+    /// Bounds of its curvature as well: [`taylor`].
+    Taylor,
+}
+
+impl Method {
+    /// All that are compared.
+    pub const ALL: [Self; 12] = [
+        Self::Steps,
+        Self::Samples(64, Refiner::Bisection3),
+        Self::Samples(64, Refiner::Bisection6),
+        Self::Samples(64, Refiner::Bisection),
+        Self::Samples(64, Refiner::Chandrupatla),
+        Self::Samples(16, Refiner::Newton),
+        Self::Samples(64, Refiner::Newton),
+        Self::Samples(1024, Refiner::Newton),
+        Self::Turning(16),
+        Self::Tracing,
+        Self::Intervals,
+        Self::Taylor,
+    ];
+
+    /// The first root in a piece of a line whose distance, counted from `base`, lies within a span.
+    ///
+    /// [`taylor`] cuts the piece in a way that does not depend on the span; the others look at no more than that.
+    ///
+    /// A line that starts on the surface itself leaves it on a side, and no root where it starts is meant then.
+    /// `shortest` is a few units in the last place of the greatest numbers on the line.
+    pub fn first_root(
+        self,
+        line: &impl Line,
+        span: Range<f64>,
+        base: f64,
+        within: &Span,
+        shortest: f64,
+    ) -> Option<f64> {
+        let leaves = within.leaves;
+        if self == Self::Taylor {
+            return taylor::first_root(line, &span.into(), base, within, shortest).root;
+        }
+        let span = span.start.max(within.near - base)..span.end.min(within.far - base);
+        if span.is_empty() {
+            return None;
+        }
+        match self {
+            Self::Steps => steps::first_root(line, span, leaves),
+            Self::Samples(count, refiner) => {
+                samples::first_root(line, span, shortest, leaves, (count, refiner))
+            }
+            Self::Turning(count) => turning::first_root(line, span, shortest, leaves, count),
+            Self::Tracing => tracing::first_root(line, span, leaves),
+            Self::Intervals => intervals::first_root(line, span, shortest, leaves),
+            Self::Taylor => unreachable!("it has been asked"),
+        }
+    }
+
+    /// What the error of a root that it finds is at most, but for what the function's slope makes of rounding.
+    pub fn promise(self) -> f64 {
+        match self {
+            Self::Samples(_, Refiner::Bisection3) => 1e-3,
+            Self::Steps | Self::Samples(_, Refiner::Bisection6) => 1e-6,
+            Self::Tracing => 1e-5,
+            _ => 1e-9,
+        }
+    }
+}
+
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = match self {
+            Self::Steps => "steps of 0.1".to_owned(),
+            Self::Samples(count, refiner) => format!("{count} + {refiner}"),
+            Self::Turning(count) => format!("{count} + turning points"),
+            Self::Tracing => "sphere tracing".to_owned(),
+            Self::Intervals => "intervals".to_owned(),
+            Self::Taylor => "Taylor bounds".to_owned(),
+        };
+        f.pad(&name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::ray::Side;
+    use crate::numeric::number::Number;
+
+    /// Falls through 0 at the square root of 2, rises at 3.
+    struct Parabola;
+
+    impl Line for Parabola {
+        fn at<N: Number>(&self, t: N) -> N {
+            (t - N::constant(2.0).sqrt()) * (t - N::constant(3.0))
+        }
+    }
+
+    /// Is below 0 for a thousandth around 2 alone.
+    struct Notch;
+
+    impl Line for Notch {
+        fn at<N: Number>(&self, t: N) -> N {
+            (t - N::constant(2.0)).powi(2) - N::constant(2.5e-7)
+        }
+    }
+
+    fn root(method: Method, line: &impl Line, span: Range<f64>, leaves: Option<Side>) -> Option<f64> {
+        method.first_root(line, span, 0.0, &Span { leaves, ..Span::RAY }, 1e-14)
+    }
+
+    #[test]
+    fn every_method_finds_a_plain_root_as_exactly_as_it_promises() {
+        for method in Method::ALL {
+            let found = root(method, &Parabola, 0.0..2.6, None).expect("a root");
+            assert!((found - 2.0_f64.sqrt()).abs() <= method.promise(), "{method}: {found}");
+        }
+    }
+
+    #[test]
+    fn every_method_leaves_the_surface_that_it_starts_on() {
+        let start = 2.0_f64.sqrt().next_up();
+        for method in Method::ALL {
+            let found = root(method, &Parabola, start..4.0, Some(Side::Inside)).expect("a root");
+            assert!((found - 3.0).abs() <= method.promise(), "{method}: {found}");
+            assert_eq!(root(method, &Parabola, 3.1..4.0, Some(Side::Outside)), None, "{method}");
+        }
+    }
+
+    #[test]
+    fn samples_lose_what_lies_between_them_and_bounds_do_not() {
+        for method in Method::ALL {
+            let found = root(method, &Notch, 0.333..5.0, None);
+            let is_blind = matches!(method, Method::Steps | Method::Samples(..));
+            assert_eq!(found.is_none(), is_blind, "{method}: {found:?}");
+        }
+    }
+}

@@ -1,0 +1,21 @@
+//! A number of samples over the part of the ray that is near the shape, then a refiner.
+//!
+//! What most programs do; POV-Ray's `sor` and many course works. However many the samples, a ray that grazes the
+//! surface lies inside of it for less than the distance between two of them, and its two roots are lost together;
+//! and where three lie between two samples, the refiner may find the last.
+
+use super::refiner::{Refiner, evenly, sign_change};
+use super::taylor::Line;
+use crate::geometry::ray::Side;
+use std::ops::Range;
+
+pub fn first_root(
+    line: &impl Line,
+    span: Range<f64>,
+    shortest: f64,
+    leaves: Option<Side>,
+    (count, refiner): (u32, Refiner),
+) -> Option<f64> {
+    let (low, high, falls) = sign_change(line, evenly(&span, count), leaves)?;
+    Some(refiner.root(line, (low, high), falls, shortest))
+}

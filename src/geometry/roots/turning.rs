@@ -1,0 +1,46 @@
+//! Samples of the function and its slope: between two of the same sign the function may turn, and there it is
+//! looked at, too.
+//!
+//! After the notes' advice to look for the minimum between two samples. It finds single silhouettes, and loses what
+//! turns more than once between two samples: ripples and thin discs.
+
+use super::newton;
+use super::refiner::{Refiner, evenly, value_and_slope};
+use super::taylor::Line;
+use crate::geometry::ray::Side;
+use crate::numeric::dual::Dual;
+use std::ops::Range;
+
+pub fn first_root(
+    line: &impl Line,
+    span: Range<f64>,
+    shortest: f64,
+    leaves: Option<Side>,
+    count: u32,
+) -> Option<f64> {
+    let mut places = evenly(&span, count);
+    let mut low = places.next()?;
+    let (value, mut slope) = value_and_slope(line, low);
+    let is_outside = leaves.map_or(value >= 0.0, |side| side == Side::Outside);
+    let has_crossed = |value: f64| (value >= 0.0) != is_outside;
+    let refined = |low, high| Some(Refiner::Newton.root(line, (low, high), is_outside, shortest));
+    for high in places {
+        let (value, slope_there) = value_and_slope(line, high);
+        if has_crossed(value) {
+            return refined(low, high);
+        }
+        // Toward 0 at first, and away from it in the end.
+        if (slope < 0.0) == is_outside && (slope_there > 0.0) == is_outside {
+            let slope_and_bend = |t| {
+                let at = line.at(Dual::variable_twice(t));
+                Dual { value: at.first(), slope: at.second() }
+            };
+            let turn = newton::root(slope_and_bend, (low, high), !is_outside, 0.5 * (low + high), shortest);
+            if has_crossed(line.at(turn)) {
+                return refined(low, turn);
+            }
+        }
+        (low, slope) = (high, slope_there);
+    }
+    None
+}

@@ -1,0 +1,203 @@
+//! The decisions of a plan as text, each with its reason.
+
+use crate::render::culling;
+use crate::render::limits::{MAX_DIST, MAX_RAYS};
+use crate::render::plan::depth::Depth;
+use crate::render::plan::{Plan, TREE};
+use crate::scene::model::{Item, Model, Object};
+use crate::words::{count, list, short};
+use crate::world::accuracy::Accuracy;
+use crate::world::camera::Camera;
+use crate::world::material::Rgb;
+use crate::world::sample::Sampler;
+use crate::world::texture::Texture;
+use std::fmt;
+use std::sync::Arc;
+
+/// So many of several things are named.
+const NAMED: usize = 4;
+
+/// What was decided, and why.
+pub struct Decision {
+    /// What it is about, in a word.
+    pub subject: &'static str,
+    /// The decision and its reason.
+    pub text: String,
+}
+
+/// A line of a table.
+impl fmt::Display for Decision {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:<12} {}", self.subject, self.text)
+    }
+}
+
+/// All decisions of a plan.
+pub fn of(plan: &Plan) -> Vec<Decision> {
+    let model = plan.model;
+    let decision = |subject, text| Decision { subject, text };
+    let mut all = vec![
+        decision("image", picture(&plan.camera)),
+        decision("accuracy", model.camera.value.accuracy.to_string()),
+        decision("lights", lights(model)),
+    ];
+    if !model.lights.is_empty() {
+        all.push(decision("shadows", shadows(plan)));
+    }
+    all.push(decision("glass", glass(&model.objects)));
+    all.push(decision("mirrors", mirrors(&model.objects)));
+    all.extend(plan.depth.as_ref().map(|depth| decision("depth", self::depth(model, depth))));
+    all.extend(textures(model).into_iter().map(|text| decision("texture", text)));
+    all.push(decision("search", search(model, plan)));
+    all.extend(objects(model, plan));
+    all
+}
+
+fn picture(camera: &Camera) -> String {
+    let Camera { pixels: [width, height], samples, sampler, .. } = *camera;
+    let size = format!("{width} x {height} pixels");
+    let rays = (width * height) as u64 * u64::from(samples);
+    match (samples, sampler) {
+        (1, _) => {
+            format!("{size}, one sample at the centre of each and no random numbers: {rays} primary rays")
+        }
+        (_, Sampler::Sobol) => {
+            format!("{size}, {samples} evenly spread samples in each: {rays} primary rays")
+        }
+        (_, Sampler::Random) => {
+            format!("{size}, {samples} random samples in each: {rays} primary rays")
+        }
+    }
+}
+
+fn lights(model: &Model) -> String {
+    let names = some(model.lights.iter().map(|light| light.args.name.as_str()));
+    match model.lights.len() {
+        0 => "none: surfaces show their ambient colour, and no shadow rays are cast".to_owned(),
+        1 => format!("{names}: a shadow ray from each point that faces it and reflects its light"),
+        _ => {
+            format!("{names}: from each point that reflects light, a shadow ray to each light that it faces")
+        }
+    }
+}
+
+fn shadows(plan: &Plan) -> String {
+    if plan.has_glass {
+        "tinted: light may pass through glass, so shadow rays look for the first object on their way, and then the next"
+    } else {
+        "opaque: nothing transmits light, so any object on the way ends the search"
+    }
+    .to_owned()
+}
+
+fn glass(objects: &[Object]) -> String {
+    match of_material(objects, |object| object.material.transparency != 0.0) {
+        names if names.is_empty() => "none: no object is transparent, and no rays are transmitted".to_owned(),
+        names => format!("{names}: each ray that hits one is transmitted"),
+    }
+}
+
+fn mirrors(objects: &[Object]) -> String {
+    match of_material(objects, |object| object.material.specular != Rgb::ZERO) {
+        names if names.is_empty() => {
+            "none: no object has a specular material, and no rays are reflected".to_owned()
+        }
+        names => format!("{names}: each ray that hits one is reflected"),
+    }
+}
+
+fn depth(model: &Model, depth: &Depth) -> String {
+    let ends = format!("after a path of {MAX_DIST} units, and at {MAX_RAYS} rays for one primary ray");
+    let bound =
+        || format!("nothing is brighter than {} divided by the path length of its light", short(depth.most));
+    match (model.camera.value.accuracy, depth.most.is_finite()) {
+        (Accuracy::Classic, true) => format!("as in the notes, branches end {ends}; {}", bound()),
+        (_, true) => {
+            format!("a branch ends where it can add less than 1/1024 of a level, as {}; {ends}", bound())
+        }
+        (_, false) => {
+            let bright = model.objects.iter().zip(&depth.objects).find(|(_, onward)| !onward.own.is_finite());
+            let reason = match bright {
+                Some((object, _)) => format!("`{}` may have any brightness", object.args.name),
+                None => "mirrors and glass pass on as much light as they receive".to_owned(),
+            };
+            format!("branches end {ends}: {reason}, and nothing bounds what they add")
+        }
+    }
+}
+
+/// The names of the objects of which something is true.
+fn of_material(objects: &[Object], is_wanted: impl Fn(&Object) -> bool) -> String {
+    some(objects.iter().filter(|object| is_wanted(object)).map(|object| object.args.name.as_str()))
+}
+
+fn textures(model: &Model) -> Vec<String> {
+    let objects = model.objects.iter().map(|object| &object.args);
+    let users: Vec<_> = objects.chain(model.lights.iter().map(|light| &light.args)).collect();
+    let text = |item: &Item<Arc<Texture>>| {
+        let name = &item.args.name;
+        let its = users.iter().filter(|args| args.textures().any(|used| used == name));
+        let its: Vec<_> = its.map(|args| args.name.as_str()).collect();
+        if its.is_empty() {
+            return format!("`{name}` is not read: nothing uses it");
+        }
+        let [width, height] = item.value.size();
+        format!("`{name}` of {width} x {height} texels, read once: used by {}", some(its))
+    };
+    model.textures.iter().map(text).collect()
+}
+
+fn search(model: &Model, plan: &Plan) -> String {
+    let bounded = model.objects.len() - plan.unbounded.len();
+    let listed = plan.unbounded.len() + plan.bounded.len();
+    let by_one = match model.camera.value.accuracy {
+        Accuracy::Classic => "every ray is tested against each object",
+        _ => "a packet of rays skips those that are not in its way",
+    };
+    match (&plan.tree, bounded) {
+        (Some(tree), _) => {
+            let rest =
+                if listed > 0 { format!(", and a list of the {listed} without") } else { String::new() };
+            format!(
+                "a BVH of {} boxes for the {bounded} objects with bounds, as it pays off from {TREE} on{rest}",
+                tree.size()
+            )
+        }
+        (None, 0) => format!("a list of {}: none has bounds; {by_one}", count(listed, "object")),
+        (None, _) => format!(
+            "a list of {}, {bounded} with bounds: a BVH pays off from {TREE} on; {by_one}",
+            count(listed, "object")
+        ),
+    }
+}
+
+/// The objects, those together that follow each other and are alike.
+fn objects(model: &Model, plan: &Plan) -> Vec<Decision> {
+    let mut alike: Vec<(&'static str, String, Vec<&str>)> = Vec::new();
+    for object in &model.objects {
+        let place = match (&plan.tree, culling::bounds(object)) {
+            (Some(_), Some(_)) => "in the BVH",
+            (None, Some(_)) => "with bounds",
+            (_, None) => "without bounds",
+        };
+        let (kind, text) = (object.args.entity.name, format!("{place}: {}", object.shape.method()));
+        match alike.last_mut() {
+            Some((last, same, names)) if *last == kind && *same == text => names.push(&object.args.name),
+            _ => alike.push((kind, text, vec![&object.args.name])),
+        }
+    }
+    let line = |(subject, text, names): (_, String, Vec<&str>)| Decision {
+        subject,
+        text: format!("{} {text}", some(names)),
+    };
+    alike.into_iter().map(line).collect()
+}
+
+/// The first of some names, and how many there are more.
+fn some<'n>(names: impl IntoIterator<Item = &'n str>) -> String {
+    let names: Vec<_> = names.into_iter().collect();
+    match names.len().checked_sub(NAMED) {
+        Some(more) if more > 1 => format!("{} and {more} more", list(names[..NAMED].iter().copied())),
+        _ => list(names),
+    }
+}

@@ -1,0 +1,32 @@
+//! The kinds of entity that a scene is made of.
+
+use serde::Serialize;
+use std::fmt;
+
+/// The kinds of entity that a scene is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Kind {
+    /// The viewer and the screen; a scene has one.
+    Camera,
+    /// How a surface answers light.
+    Material,
+    /// A picture that colours surfaces or light.
+    Texture,
+    /// A shape made of a material.
+    Object,
+    /// A source of light, itself not visible.
+    Light,
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Kind::Camera => "camera",
+            Kind::Material => "material",
+            Kind::Texture => "texture",
+            Kind::Object => "object",
+            Kind::Light => "light",
+        })
+    }
+}

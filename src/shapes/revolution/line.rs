@@ -1,0 +1,63 @@
+//! The surface along a ray, as a function of the place.
+
+use super::local::Local;
+use super::surface::Revolution;
+use crate::geometry::frame::BLUR;
+use crate::geometry::ray::Side;
+use crate::geometry::roots::taylor::Line;
+use crate::geometry::roots::twice;
+use crate::numeric::dual::Dual;
+use crate::numeric::interval::Interval;
+use crate::numeric::number::Number;
+use crate::world::certify::Equation;
+
+/// How far outside of the surface the places along a ray are, with any number type.
+pub(super) struct OnRay<'s> {
+    pub surface: &'s Revolution,
+    pub local: &'s Local,
+}
+
+impl Line for OnRay<'_> {
+    #[inline(always)]
+    fn at<N: Number>(&self, along: N) -> N {
+        self.surface.value([0, 1, 2].map(|axis| self.local.place(axis, along)))
+    }
+
+    /// That of the squared distance from the axis is the same everywhere.
+    fn curvature(&self, piece: Interval) -> Interval {
+        let dir = self.local.dir.to_array().map(|part| Interval::about(part, BLUR));
+        let height = self.local.place(1, piece);
+        let of_square = self.surface.square.at(Dual::variable_twice(height)).second();
+        Interval::constant(2.0) * (dir[0].powi(2) + dir[2].powi(2)) - of_square * dir[1].powi(2)
+    }
+
+    /// Twice the precision, from the ray in the world and the axis as the scene has it, tells nearly all touches from
+    /// misses.
+    fn undecided(&self, piece: Interval, leaves: Option<Side>) -> Option<f64> {
+        let Self { surface, local } = *self;
+        // What rounding hides of this ray alone, however far those are apart that it was rounded from.
+        let hidden = |along: f64| {
+            let along = Interval::<f64>::constant(along);
+            let place = [0, 1, 2].map(|axis| local.own_place(axis, along));
+            surface.value(place).width()
+        };
+        let hidden = hidden(piece.low).min(hidden(piece.high));
+        let exact = local.frame.exactly(&local.ray, local.base);
+        twice::first_root(|along| surface.value(exact.along(along)), piece, leaves, hidden)
+    }
+}
+
+/// As [`OnRay`], and where the profile is negative it is 0: methods that know nothing of slabs have nothing to leave
+/// out.
+pub(super) struct Uncut<'s> {
+    pub surface: &'s Revolution,
+    pub local: &'s Local,
+}
+
+impl Line for Uncut<'_> {
+    #[inline(always)]
+    fn at<N: Number>(&self, along: N) -> N {
+        let place = |axis: usize| self.local.own_place(axis, along);
+        place(0).powi(2) + place(2).powi(2) - self.surface.profile.at(place(1)).max(N::constant(0.0)).powi(2)
+    }
+}

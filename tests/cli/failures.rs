@@ -1,0 +1,263 @@
+//! What the program says where the system does not give it what it needs.
+#![cfg(target_os = "linux")]
+
+use crate::common::program::{folder, scene};
+use assert_cmd::cargo::cargo_bin;
+use std::collections::BTreeSet;
+use std::fs;
+use std::io::{BufRead, BufReader, Read};
+use std::os::unix::fs::{MetadataExt, PermissionsExt};
+use std::os::unix::process::CommandExt;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use tempfile::TempDir;
+
+/// A working directory with a sound scene, `ball.ray`.
+fn workplace() -> TempDir {
+    let folder = folder();
+    fs::copy(scene("sphere/in-front.ray"), folder.path().join("ball.ray")).expect("a copy");
+    folder
+}
+
+/// The program after some lines of a shell's.
+fn after(lines: &str, folder: &TempDir, args: &[&str]) -> Command {
+    let mut command = Command::new("sh");
+    command.args(["-c", &format!("{lines}\nexec \"$0\" \"$@\"")]).arg(cargo_bin!("tabray")).args(args);
+    command.current_dir(folder.path());
+    command
+}
+
+/// The exit status and what was said.
+fn outcome(command: &mut Command) -> (i32, String) {
+    let Output { status, stderr, .. } = command.output().expect("it runs");
+    (status.code().unwrap_or(-1), String::from_utf8_lossy(&stderr).into_owned())
+}
+
+#[test]
+fn standard_output_that_is_full_is_a_failure() {
+    let folder = workplace();
+    for args in [
+        &["list"][..],
+        &["dump", "ball.ray"],
+        &["probe", "ball.ray", "1", "1"],
+        &["render", "ball.ray", "-o", "-"],
+    ] {
+        let said = "error: cannot write to standard output: no space left on device\n".to_owned();
+        assert_eq!(outcome(&mut after("exec > /dev/full", &folder, args)), (1, said), "{args:?}");
+    }
+}
+
+#[test]
+fn a_full_disk_leaves_the_old_picture() {
+    // What is larger than a file may be is refused as by a full disk, with another reason.
+    let folder = workplace();
+    fs::write(folder.path().join("ball.png"), "precious").expect("a file");
+    let limit = "trap '' XFSZ; ulimit -f 1";
+    let args = ["render", "ball.ray", "--size", "600", "--compress", "fast"];
+    let said = "error: cannot write `ball.png`: file too large\n".to_owned();
+    assert_eq!(outcome(&mut after(limit, &folder, &args)), (1, said));
+    assert_eq!(fs::read(folder.path().join("ball.png")).expect("still there"), b"precious");
+}
+
+#[test]
+fn threads_that_the_system_does_not_give_are_a_failure() {
+    let folder = workplace();
+    let args = ["render", "ball.ray", "--threads", "1000", "-o", "a.png"];
+    let (status, err) = outcome(&mut after("ulimit -v 4000000", &folder, &args));
+    assert_eq!(status, 1, "{err}");
+    assert!(err.starts_with("error: cannot start threads to render with: "), "{err}");
+    assert!(!folder.path().join("a.png").exists());
+}
+
+#[test]
+fn too_few_open_files_are_a_failure_of_whatever_needs_one() {
+    let folder = workplace();
+    let mut told = BTreeSet::new();
+    for limit in 4.. {
+        let limit = format!("ulimit -n {limit}");
+        let mut watch = after(&limit, &folder, &["watch", "ball.ray", "--port", "0"]);
+        let mut watch = watch.stderr(Stdio::piped()).spawn().expect("it runs");
+        let mut stderr = BufReader::new(watch.stderr.take().expect("it is piped"));
+        let mut line = String::new();
+        stderr.read_line(&mut line).expect("text");
+        let starts = line.starts_with("watching ball.ray at http://127.0.0.1:");
+        if starts {
+            // It may end before anybody looks at its page.
+            let _ = watch.kill();
+        }
+        let status = watch.wait().expect("it ends").code();
+        if starts {
+            break;
+        }
+        assert!(matches!(status, Some(1 | 2 | 127)), "{line}");
+        // With fewer still it is not even started.
+        if status != Some(127) {
+            told.insert(line);
+        }
+    }
+    let said = ["cannot read `ball.ray`", "cannot watch files"];
+    assert_eq!(Vec::from_iter(told), said.map(|said| format!("error: {said}: too many open files\n")));
+}
+
+#[test]
+fn a_server_that_gets_no_more_connections_ends_with_the_reason() {
+    let folder = workplace();
+    fs::create_dir(folder.path().join("snapshots")).expect("a folder");
+    fs::write(folder.path().join("snapshots/a.snap.new"), "---\n---\na text\n").expect("a file");
+    for args in [&["watch", "ball.ray", "--port", "0"][..], &["review", "--serve", "--port", "0"]] {
+        let mut command = after("ulimit -n 24", &folder, args);
+        let mut program = command.stderr(Stdio::piped()).spawn().expect("it runs");
+        let mut stderr = BufReader::new(program.stderr.take().expect("it is piped"));
+        let mut line = String::new();
+        stderr.read_line(&mut line).expect("text");
+        let (_, address) = line.split_once("http://").expect("an address");
+        let (host, end) = address.split_once('/').expect("a path");
+        assert!(end.ends_with(")\n"), "{line}");
+        // They say nothing, and each takes a file of the program's.
+        let connections: Vec<_> = (0..24).map(|_| std::net::TcpStream::connect(host)).collect();
+        let mut rest = String::new();
+        stderr.read_to_string(&mut rest).expect("text");
+        drop(connections);
+        assert_eq!(program.wait().expect("it ends").code(), Some(1), "{args:?}: {rest}");
+        assert_eq!(rest, "error: the server stopped: too many open files\n", "{args:?}");
+    }
+}
+
+/// Somebody who may read this folder and what is in it, and change nothing.
+struct Guest {
+    folder: TempDir,
+}
+
+impl Guest {
+    fn new() -> Self {
+        let folder = workplace();
+        // By another process: a program that another test begins meanwhile would hold the copy open for writing, too, and
+        // what is open for writing cannot be run.
+        let copied = Command::new("cp").arg(cargo_bin!("tabray")).arg(folder.path().join("tabray")).status();
+        assert!(copied.expect("cp runs").success());
+        Self { folder }
+    }
+
+    fn path(&self, name: &str) -> std::path::PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn allow(&self, name: &str, mode: u32) {
+        fs::set_permissions(self.path(name), fs::Permissions::from_mode(mode)).expect("permissions");
+    }
+
+    /// Who may do everything lets another user run the program.
+    fn outcome(&self, args: &[&str]) -> (i32, String) {
+        let mut command = Command::new(self.path("tabray"));
+        command.args(args).current_dir(self.folder.path());
+        if fs::metadata("/proc/self").expect("a process").uid() == 0 {
+            command.uid(65534).gid(65534);
+        }
+        outcome(&mut command)
+    }
+}
+
+impl Drop for Guest {
+    fn drop(&mut self) {
+        self.allow("", 0o755);
+    }
+}
+
+#[test]
+fn folders_and_files_without_permission_are_named() {
+    let guest = Guest::new();
+    fs::create_dir(guest.path("snapshots")).expect("a folder");
+    fs::write(guest.path("snapshots/a.snap.new"), "---\n---\na text\n").expect("a file");
+    fs::write(guest.path("secret.ray"), "").expect("a file");
+    fs::create_dir(guest.path("closed")).expect("a folder");
+    fs::copy(guest.path("ball.ray"), guest.path("closed/ball.ray")).expect("a copy");
+    for (name, mode) in [("", 0o555), ("snapshots", 0o555), ("secret.ray", 0o000), ("closed", 0o111)] {
+        guest.allow(name, mode);
+    }
+    for (status, args, said) in [
+        (1, &["render", "ball.ray"][..], "cannot write `ball.png`: permission denied"),
+        (1, &["new", "scene", "a"], "cannot write `a.ray`: permission denied"),
+        (1, &["convert", "ball.ray", "ball.toml"], "cannot write `ball.toml`: permission denied"),
+        (1, &["man", "pages"], "cannot create the folder `pages`: permission denied"),
+        (1, &["chart", "ball.ray", "-o", "charts"], "cannot create the folder `charts`: permission denied"),
+        (2, &["check", "secret.ray"], "cannot read `secret.ray`: permission denied"),
+        (2, &["review", "closed"], "cannot read `closed`: permission denied"),
+        (1, &["review", "--reject", "snapshots"], "cannot remove `snapshots/a.snap.new`: permission denied"),
+        (1, &["watch", "closed/ball.ray"], "cannot watch the folder `CLOSED`: permission denied"),
+    ] {
+        let closed = guest.path("closed").canonicalize().expect("it is there");
+        let said = said.replace("CLOSED", closed.to_str().expect("UTF-8"));
+        assert_eq!(guest.outcome(args), (status, format!("error: {said}\n")), "{args:?}");
+    }
+    let free = fs::read_to_string("/proc/sys/net/ipv4/ip_unprivileged_port_start");
+    if free.is_ok_and(|free| free.trim().parse::<u16>().is_ok_and(|free| free > 80)) {
+        let said = "error: cannot listen on port 80: permission denied\n".to_owned();
+        assert_eq!(guest.outcome(&["watch", "ball.ray", "--port", "80"]), (1, said));
+    }
+    guest.allow("snapshots", 0o755);
+    guest.allow("closed", 0o755);
+    assert!(Path::new(&guest.path("snapshots/a.snap.new")).is_file());
+}
+
+#[test]
+fn a_program_that_cannot_read_itself_says_so_where_a_checkpoint_must_know_it() {
+    let guest = Guest::new();
+    guest.allow("", 0o777);
+    guest.allow("tabray", 0o111);
+    fs::write(guest.path("ball.png.checkpoint"), checkpoint()).expect("a file");
+    let said =
+        "error: cannot read the program's own file, whose hash a checkpoint contains: permission denied\n";
+    assert_eq!(guest.outcome(&["render", "ball.ray", "--resume"]), (1, said.to_owned()));
+}
+
+/// A file that says of itself that it is a checkpoint.
+fn checkpoint() -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, 1, 1);
+    encoder.set_color(png::ColorType::Rgba);
+    encoder.add_itxt_chunk("tabray checkpoint".to_owned(), "{}".to_owned()).expect("a text");
+    encoder.write_header().and_then(|mut writer| writer.write_image_data(&[0; 4])).expect("memory takes it");
+    bytes
+}
+
+#[test]
+fn a_terminal_gets_no_picture() {
+    let folder = workplace();
+    let terminal = |command: &str| {
+        let program = cargo_bin!("tabray").to_str().expect("UTF-8");
+        let mut script = Command::new("script");
+        script.args(["-qec", &command.replace("tabray", &format!("'{program}'")), "/dev/null"]);
+        script.current_dir(folder.path()).stdin(Stdio::null()).env("NO_COLOR", "1").output()
+    };
+    for command in ["tabray render ball.ray -o -", "tabray < ball.ray"] {
+        let Ok(output) = terminal(command) else {
+            eprintln!("SKIPPED: there is no `script` here, which makes a terminal");
+            return;
+        };
+        let said = String::from_utf8_lossy(&output.stdout).replace('\r', "");
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert_eq!(
+            said,
+            "error: standard output is a terminal, which cannot show images\n |\n \
+             = help: redirect it with `> FILE` or `|`, or name a file with `-o FILE`\n"
+        );
+    }
+}
+
+#[test]
+fn a_person_who_types_the_name_alone_gets_the_help() {
+    let folder = folder();
+    let program = cargo_bin!("tabray").to_str().expect("UTF-8");
+    let output = Command::new("script")
+        .args(["-qec", &format!("'{program}'"), "/dev/null"])
+        .current_dir(folder.path())
+        .stdin(Stdio::null())
+        .output();
+    let Ok(output) = output else {
+        eprintln!("SKIPPED: there is no `script` here, which makes a terminal");
+        return;
+    };
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("Usage: tabray [OPTIONS] [COMMAND]"), "{said}");
+}

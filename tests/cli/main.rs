@@ -1,0 +1,15 @@
+//! The program as people run it, command by command.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod bench;
+mod cli;
+mod discovery;
+mod failures;
+mod messages;
+mod new;
+mod refusals;
+mod review;
+mod size;
+mod watch;

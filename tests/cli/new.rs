@@ -1,0 +1,137 @@
+//! `tabray new`: what it writes works at once, and nothing is written in the place of something else.
+
+use crate::common::program::{folder, names_in, outcome, tabray};
+use crate::common::{load, render};
+use std::fs;
+use std::path::Path;
+use tabray::scene::dump;
+use tempfile::TempDir;
+
+#[test]
+fn a_new_scene_is_sound_and_shows_something() {
+    let folder = folder();
+    let (status, _, err) = outcome(tabray(&folder).args(["new", "scene", "still.life"]));
+    assert_eq!(
+        (status, err.as_str()),
+        (0, "wrote still.life.ray; render it with `tabray render still.life.ray`\n")
+    );
+    let (status, _, err) = outcome(tabray(&folder).args(["render", "still.life.ray", "--quick"]));
+    assert_eq!(status, 0, "{err}");
+    let picture = image::open(folder.path().join("still.life.png")).expect("a picture").into_rgb8();
+    let red = picture.pixels().filter(|pixel| pixel.0[0] > 100 && pixel.0[1] < 80).count();
+    assert!(red > 500, "a red ball and a red ring, {red} pixels");
+}
+
+#[test]
+fn a_new_scene_in_toml_is_the_same_one() {
+    let folder = folder();
+    for args in [&["new", "scene", "a"][..], &["new", "scene", "a", "--toml"], &["new", "scene", "b.toml"]] {
+        assert_eq!(outcome(tabray(&folder).args(args)).0, 0);
+    }
+    assert_eq!(names_in(folder.path()), ["a.ray", "a.toml", "b.toml"]);
+    let [notes, toml] = ["a.ray", "b.toml"].map(|name| load(&folder.path().join(name)));
+    assert_eq!(dump::notes(&notes), dump::notes(&toml));
+    assert!(render(&notes) == render(&toml));
+}
+
+#[test]
+fn no_scene_is_written_in_the_place_of_another_file() {
+    let folder = folder();
+    fs::write(folder.path().join("a.ray"), "precious").expect("a file");
+    let (status, _, err) = outcome(tabray(&folder).args(["new", "scene", "a"]));
+    assert_eq!(status, 2);
+    assert!(err.contains("`a.ray` already exists"), "{err}");
+    assert_eq!(fs::read(folder.path().join("a.ray")).expect("still there"), b"precious");
+    let (status, _, err) = outcome(tabray(&folder).args(["new", "scene", "b.ray", "--toml"]));
+    assert_eq!(status, 2);
+    assert!(err.contains("`b.ray` would not be read as TOML"), "{err}");
+    let (status, _, err) = outcome(tabray(&folder).args(["new", "scene", "no/such/folder/a"]));
+    assert_eq!(status, 1);
+    assert!(
+        err.contains("cannot write `no/such/folder/a.ray`: there is no folder `no/such/folder`"),
+        "{err}"
+    );
+    assert_eq!(names_in(folder.path()), ["a.ray"]);
+}
+
+/// A folder that is a checkout as far as the command can see.
+fn checkout() -> TempDir {
+    let folder = folder();
+    for path in ["plugins", "scenes/entities", "scenes/wrong"] {
+        fs::create_dir_all(folder.path().join(path)).expect("a folder");
+    }
+    fs::write(folder.path().join("Cargo.toml"), "[package]\nname = \"tabray\"\n").expect("a file");
+    folder
+}
+
+fn refused(folder: &TempDir, name: &str) -> String {
+    let (status, _, err) = outcome(tabray(folder).args(["new", "plugin", "--", name]));
+    assert_eq!(status, 2, "{name}: {err}");
+    err
+}
+
+const NO_NAME: &str = "a plugin's name must be a Rust module name, such as `tiled_plane`";
+const TAKEN: &str = "give the plugin another name";
+const IN_THE_WAY: &str = "existing files are not overwritten: choose another name";
+
+#[test]
+fn a_plugin_that_cannot_be_is_refused_and_nothing_is_written() {
+    let folder = checkout();
+    fs::write(folder.path().join("plugins/gem.rs"), "precious").expect("a file");
+    fs::write(folder.path().join("scenes/wrong/coil.ray"), "precious").expect("a file");
+    for (name, says, help) in [
+        ("Gem", "`Gem` cannot be the name of a plugin", NO_NAME),
+        ("2d", "`2d` cannot be", NO_NAME),
+        ("a-b", "`a-b` cannot be", NO_NAME),
+        ("../a", "`../a` cannot be", NO_NAME),
+        ("", "`` cannot be", NO_NAME),
+        ("a\nb", "`a\\nb` cannot be", NO_NAME),
+        ("crate", "`crate` is a Rust keyword", NO_NAME),
+        ("sphere", "the entity type `sphere` already exists, at plugins/sphere.rs:", TAKEN),
+        ("tplane", "the entity type `tplane` already exists, at plugins/tiled_plane.rs:", TAKEN),
+        ("rainbow", "the shader `rainbow` already exists", TAKEN),
+        ("cone", "the profile `cone` already exists", TAKEN),
+        ("body", "the template already uses the name `Body`", TAKEN),
+        ("gem", "`plugins/gem.rs` already exists", IN_THE_WAY),
+        ("coil", "`scenes/wrong/coil.ray` already exists", IN_THE_WAY),
+    ] {
+        let err = refused(&folder, name);
+        assert!(err.contains(says) && err.ends_with(&format!("\n |\n = help: {help}\n")), "{name}: {err}");
+    }
+    let written = |path: &str| names_in(&folder.path().join(path));
+    assert_eq!(
+        (written("plugins"), written("scenes/wrong")),
+        (vec!["gem.rs".to_owned()], vec!["coil.ray".to_owned()])
+    );
+    assert!(written("scenes/entities").is_empty());
+}
+
+#[test]
+fn a_plugin_belongs_in_a_checkout() {
+    let folder = folder();
+    assert!(refused(&folder, "gem").contains("this is not the top folder of a checkout of tabray"));
+    fs::write(folder.path().join("Cargo.toml"), "[package]\nname = \"other\"\n").expect("a file");
+    fs::create_dir(folder.path().join("plugins")).expect("a folder");
+    assert!(refused(&folder, "gem").contains("go to the folder with its `Cargo.toml` and `plugins/`"));
+    assert!(names_in(&folder.path().join("plugins")).is_empty());
+}
+
+#[test]
+fn a_plugin_comes_with_its_scenes() {
+    let folder = checkout();
+    let (status, _, err) = outcome(tabray(&folder).args(["new", "plugin", "cut_gem"]));
+    assert_eq!(status, 0, "{err}");
+    for path in ["plugins/cut_gem.rs", "scenes/entities/cut_gem.ray", "scenes/wrong/cut_gem.ray"] {
+        let text = fs::read_to_string(folder.path().join(path)).expect("it is there");
+        assert!(text.contains("cut_gem") && !text.contains("emplate"), "{path}: {text}");
+        assert!(err.contains(&format!("wrote {path}\n")), "{err}");
+    }
+    let last = "render it with `cargo run --release -- render scenes/entities/cut_gem.ray`; docs/plugins.md lists what \
+                else belongs to a plugin\n";
+    assert!(err.ends_with(last), "{err}");
+    assert!(
+        fs::read_to_string(folder.path().join(Path::new("plugins/cut_gem.rs")))
+            .expect("text")
+            .contains("struct CutGem")
+    );
+}

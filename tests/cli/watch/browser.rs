@@ -1,0 +1,123 @@
+//! A headless Chromium, driven over WebDriver (W3C).
+
+use crate::watch::program::{PATIENCE, client};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use serde_json::{Value, json};
+use std::io::{BufRead, BufReader, Read};
+use std::process::{Child, Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// A browser with one page. It ends when it is dropped.
+pub struct Browser {
+    driver: Child,
+    session: String,
+}
+
+impl Browser {
+    /// Shows this page, if there is a browser.
+    pub fn open(url: &str) -> Option<Self> {
+        let there = |program: &str| {
+            let ran =
+                Command::new(program).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status();
+            ran.is_ok_and(|status| status.success())
+        };
+        if !there("chromium") || !there("chromedriver") {
+            eprintln!(
+                "SKIPPED: there is no `chromium` or no `chromedriver` (Debian: chromium chromium-driver)"
+            );
+            return None;
+        }
+        let mut driver = Command::new("chromedriver")
+            .arg("--port=0")
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("chromedriver runs");
+        let mut stdout = BufReader::new(driver.stdout.take().expect("its messages"));
+        let port = loop {
+            let mut line = String::new();
+            assert!(stdout.read_line(&mut line).expect("text") > 0, "chromedriver tells its port");
+            if let Some((_, port)) = line.split_once("started successfully on port ") {
+                break port.trim_end_matches(|c: char| !c.is_ascii_digit()).to_owned();
+            }
+        };
+        thread::spawn(move || stdout.read_to_end(&mut Vec::new()));
+
+        let mut browser = Self { driver, session: format!("http://127.0.0.1:{port}/session") };
+        let args = ["--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--window-size=1360,850"];
+        let options = json!({ "args": args, "binary": "/usr/bin/chromium" });
+        let wanted = json!({ "browserName": "chrome", "goog:chromeOptions": options });
+        let session = browser.post("", json!({ "capabilities": { "alwaysMatch": wanted } }));
+        browser.session += "/";
+        browser.session += session["sessionId"].as_str().expect("a session");
+        browser.post("/url", json!({ "url": url }));
+        Some(browser)
+    }
+
+    fn post(&self, path: &str, body: Value) -> Value {
+        value(client().post(format!("{}{path}", self.session)).send_json(body))
+    }
+
+    /// The value of some JavaScript.
+    pub fn run(&self, script: &str) -> Value {
+        self.post("/execute/sync", json!({ "script": script, "args": [] }))
+    }
+
+    pub fn text(&self, script: &str) -> String {
+        self.run(script).as_str().unwrap_or_default().to_owned()
+    }
+
+    /// Waits until some JavaScript is true.
+    pub fn wait(&self, condition: &str) {
+        let start = Instant::now();
+        while self.run(&format!("return !!({condition})")) != true {
+            assert!(
+                start.elapsed() < PATIENCE,
+                "waited for {condition}: {}",
+                self.run("return document.body.innerText")
+            );
+            thread::sleep(Duration::from_millis(20));
+        }
+    }
+
+    /// Clicks at a place of the window.
+    pub fn click(&self, [x, y]: [i64; 2]) {
+        let actions = json!([
+            { "type": "pointerMove", "x": x, "y": y },
+            { "type": "pointerDown", "button": 0 },
+            { "type": "pointerUp", "button": 0 },
+        ]);
+        self.post(
+            "/actions",
+            json!({ "actions": [{ "type": "pointer", "id": "mouse", "actions": actions }] }),
+        );
+    }
+
+    pub fn press(&self, key: char) {
+        let actions = json!([{ "type": "keyDown", "value": key }, { "type": "keyUp", "value": key }]);
+        self.post("/actions", json!({ "actions": [{ "type": "key", "id": "keys", "actions": actions }] }));
+    }
+
+    /// What the window shows, a PNG.
+    pub fn screenshot(&self) -> Vec<u8> {
+        let answer = value(client().get(format!("{}/screenshot", self.session)).call());
+        STANDARD.decode(answer.as_str().expect("text")).expect("base64")
+    }
+}
+
+impl Drop for Browser {
+    fn drop(&mut self) {
+        let _ = client().delete(&self.session).call();
+        let _ = self.driver.kill();
+        let _ = self.driver.wait();
+    }
+}
+
+fn value(answer: Result<ureq::http::Response<ureq::Body>, ureq::Error>) -> Value {
+    let mut answer = answer.expect("chromedriver answers");
+    let body: Value = answer.body_mut().with_config().limit(1 << 26).read_json().expect("JSON");
+    assert!(answer.status().is_success(), "{body}");
+    body["value"].clone()
+}

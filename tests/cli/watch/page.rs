@@ -1,0 +1,172 @@
+//! The page in a browser: it shows, follows, warns and explains. Skipped where there is no Chromium.
+
+use crate::common::{load, model, render, root};
+use crate::watch::browser::Browser;
+use crate::watch::program::{Watching, ball};
+use image::RgbImage;
+use std::fs;
+use std::time::{SystemTime, UNIX_EPOCH};
+use tabray::render::Plan;
+use tabray::tools::probe;
+use tempfile::TempDir;
+
+/// The page of a scene in a browser, once its picture is whole.
+fn opened(text: &str) -> Option<(Watching, Browser)> {
+    let watching = Watching::text(text);
+    let browser = Browser::open(&watching.url(""))?;
+    shown(&browser, 1);
+    Some((watching, browser))
+}
+
+/// Waits for the whole picture of a version.
+fn shown(browser: &Browser, version: u64) {
+    browser.wait(&format!("document.documentElement.dataset.shown === '{version}'"));
+}
+
+/// The pixels on the page.
+fn canvas(browser: &Browser) -> RgbImage {
+    let pixels = browser.run(
+        "const c = document.querySelector('canvas');
+         return [c.width, c.height, ...c.getContext('2d').getImageData(0, 0, c.width, c.height).data]",
+    );
+    let numbers: Vec<u64> = pixels.as_array().expect("numbers").iter().filter_map(|n| n.as_u64()).collect();
+    let [width, height] = [numbers[0], numbers[1]].map(|side| side as u32);
+    let (pixels, _) = numbers[2..].as_chunks::<4>();
+    let bytes = pixels.iter().flat_map(|[r, g, b, _]| [*r as u8, *g as u8, *b as u8]).collect();
+    RgbImage::from_raw(width, height, bytes).expect("all pixels")
+}
+
+/// Clicks on the middle of a pixel, counted from the left and from the bottom.
+fn click(browser: &Browser, [x, y]: [u32; 2]) {
+    let place = browser.run(&format!(
+        "const c = document.querySelector('canvas'), box = c.getBoundingClientRect();
+         return [box.left + box.width * ({x} + 0.5) / c.width, box.bottom - box.height * ({y} + 0.5) / c.height]"
+    ));
+    browser.click([0, 1].map(|side| place[side].as_f64().expect("a number").floor() as i64));
+}
+
+const REPORT: &str = "document.querySelector('#report')";
+const TOLD: &str = "document.querySelector('#told')";
+
+#[test]
+fn the_page_shows_the_bytes_that_render_writes() {
+    let folder = TempDir::new().expect("a folder");
+    let path = root().join("scenes/light/shadow.ray");
+    fs::copy(&path, folder.path().join("scene.ray")).expect("a copy");
+    let watching = Watching::start(folder, &["--port", "0"]);
+    let Some(browser) = Browser::open(&watching.url("")) else { return };
+    shown(&browser, 1);
+    assert!(canvas(&browser) == render(&load(&path)));
+    assert_eq!(browser.text("return document.title"), "scene.ray – tabray");
+    let text = browser
+        .text("return [...document.querySelectorAll('#text div')].map(d => d.textContent).join('\\n')");
+    assert_eq!(text, fs::read_to_string(&path).expect("a text"));
+    assert_eq!(browser.run(&format!("return {REPORT}.hidden")), true);
+}
+
+#[test]
+fn the_page_follows_edits() {
+    let Some((watching, browser)) = opened(&ball("9 0 0")) else { return };
+    for (version, text) in [(2, ball("0 9 0")), (3, ball("0 0 9").replace("80 60", "100 50"))] {
+        watching.save(&text);
+        shown(&browser, version);
+        assert!(canvas(&browser) == render(&model(&text)), "{text}");
+    }
+}
+
+#[test]
+fn the_page_shows_errors_over_the_last_good_picture() {
+    let Some((watching, browser)) = opened(&ball("9 0 0")) else { return };
+    watching.save(&ball("0 9 0").replace("radius 2", "raduis 2"));
+    browser.wait(&format!("!{REPORT}.hidden"));
+    let report = browser.text(&format!("return {REPORT}.textContent"));
+    assert!(report.contains("did you mean `radius`?"), "{report}");
+    assert!(canvas(&browser) == render(&model(&ball("9 0 0"))), "the last good one");
+    let wrong =
+        browser.text("return [...document.querySelectorAll('.wrong')].map(d => d.textContent).join()");
+    assert_eq!(wrong, "    center 4 3 -3  raduis 2");
+    watching.save(&ball("0 9 0"));
+    shown(&browser, 2);
+    assert_eq!(browser.run(&format!("return {REPORT}.hidden")), true);
+    assert!(canvas(&browser) == render(&model(&ball("0 9 0"))));
+}
+
+#[test]
+fn a_click_explains_a_pixel_and_marks_the_lines_of_its_object() {
+    let Some((_watching, browser)) = opened(&ball("9 0 0")) else { return };
+    let explanation = |x, y| {
+        let mut told = Vec::new();
+        probe::pixel(&Plan::new(&model(&ball("9 0 0"))), x, y, &mut told).expect("memory takes it");
+        String::from_utf8(told).expect("text")
+    };
+    let marked =
+        || browser.text("return [...document.querySelectorAll('.marked')].map(d => d.textContent).join('|')");
+    click(&browser, [40, 30]);
+    browser.wait(&format!("!{TOLD}.hidden"));
+    assert_eq!(browser.text("return document.querySelector('#told pre').textContent"), explanation(40, 30));
+    assert_eq!(marked(), "sphere ball|{|    material paint|    center 4 3 -3  radius 2|}");
+
+    click(&browser, [1, 2]);
+    browser
+        .wait("document.querySelector('#told pre').textContent.startsWith('pixel 1 from the left and 2 ')");
+    assert_eq!(browser.text("return document.querySelector('#told pre').textContent"), explanation(1, 2));
+    assert_eq!(marked(), "");
+}
+
+#[test]
+fn exposure_shows_what_is_dark_and_keys_switch_layers() {
+    let Some((watching, browser)) = opened(&ball("0.01 0.02 0.03")) else { return };
+    let dark = canvas(&browser);
+    for _ in 0..20 {
+        browser.press(']');
+    }
+    let bright = canvas(&browser);
+    // Ten stops. Light of 0.01 has travelled some 7 units.
+    let middle = |picture: &RgbImage| picture.get_pixel(40, 30).0;
+    assert_eq!(middle(&dark), [0, 0, 1]);
+    let [red, green, blue] = render(&model(&ball("10.24 20.48 30.72"))).get_pixel(40, 30).0;
+    assert_eq!(middle(&bright), [red, green, blue]);
+    browser.press('=');
+    assert!(canvas(&browser) == dark);
+
+    for (key, name) in [('2', "depth"), ('3', "normal"), ('4', "object"), ('5', "cost")] {
+        browser.press(key);
+        browser.wait(&format!("document.documentElement.dataset.layer === '1 {name}'"));
+        let (_, bytes) = watching.get(&format!("layer/1/{name}"));
+        assert!(canvas(&browser).into_raw() == bytes, "{name}");
+    }
+    browser.press('1');
+    assert!(canvas(&browser) == dark);
+}
+
+#[test]
+fn a_save_is_on_the_page_soon() {
+    let Some((watching, browser)) = opened(&ball("9 0 0")) else { return };
+    let now = || SystemTime::now().duration_since(UNIX_EPOCH).expect("a clock").as_millis() as i64;
+    let mut took = Vec::new();
+    for version in 2..=21 {
+        let start = now();
+        watching.save(&ball(&format!("{} 9 0", version % 10)));
+        shown(&browser, version);
+        let at = browser.text("return document.documentElement.dataset.shownAt");
+        took.push(at.parse::<i64>().expect("a time") - start);
+    }
+    took.sort_unstable();
+    let (median, most) = (took[took.len() / 2], took[took.len() - 1]);
+    println!("from a save to the whole image on the page: median {median} ms, at most {most} ms");
+    assert!(canvas(&browser) == render(&model(&ball("1 9 0"))));
+}
+
+/// `cargo test --release --test cli -- --ignored the_screenshot_of_the_docs`
+#[test]
+#[ignore = "writes docs/watch.png, for the README"]
+fn the_screenshot_of_the_docs() {
+    let folder = TempDir::new().expect("a folder");
+    fs::copy(root().join("scenes/gallery/marbles.ray"), folder.path().join("scene.ray")).expect("a copy");
+    let watching = Watching::start(folder, &["--port", "0"]);
+    let browser = Browser::open(&watching.url("")).expect("a browser");
+    shown(&browser, 1);
+    click(&browser, [300, 150]);
+    browser.wait(&format!("!{TOLD}.hidden"));
+    fs::write(root().join("docs/watch.png"), browser.screenshot()).expect("a file");
+}

@@ -1,0 +1,183 @@
+//! The program as it watches a scene, and what it tells.
+
+use assert_cmd::cargo::cargo_bin;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use serde_json::Value;
+use std::fs;
+use std::io::{BufRead, BufReader, Lines, Read};
+use std::path::PathBuf;
+use std::process::{Child, Command, Stdio};
+use std::thread;
+use std::time::Duration;
+use tempfile::TempDir;
+
+/// Long enough for any machine; only what is broken takes so long.
+pub const PATIENCE: Duration = Duration::from_secs(180);
+
+/// A scene that is rendered at once: a ball of this colour, on lines 3 to 7.
+pub fn ball(ambient: &str) -> String {
+    format!(
+        "camera eye {{ pixeldim 80 60 worlddim 8 6 viewpoint 4 3 6 }}\n\
+         material paint {{ ambient {ambient} }}\n\
+         sphere ball\n{{\n    material paint\n    center 4 3 -3  radius 2\n}}\n"
+    )
+}
+
+/// A running `tabray watch`, and a folder for its scene. It ends when it is dropped.
+pub struct Watching {
+    pub child: Child,
+    pub folder: TempDir,
+    pub port: u16,
+}
+
+impl Watching {
+    /// Watches a scene of this text, on any free port.
+    pub fn text(text: &str) -> Self {
+        let folder = TempDir::new().expect("a folder");
+        fs::write(folder.path().join("scene.ray"), text).expect("a file");
+        Self::start(folder, &["--port", "0"])
+    }
+
+    /// Watches `scene.ray` in this folder.
+    pub fn start(folder: TempDir, args: &[&str]) -> Self {
+        let mut child = Command::new(cargo_bin!("tabray"))
+            .args(["watch", "scene.ray"])
+            .args(args)
+            .current_dir(folder.path())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the program runs");
+        let mut stderr = BufReader::new(child.stderr.take().expect("its messages"));
+        let mut line = String::new();
+        stderr.read_line(&mut line).expect("text");
+        let (_, rest) = line
+            .split_once("watching scene.ray at http://127.0.0.1:")
+            .unwrap_or_else(|| panic!("an address: {line}"));
+        assert!(rest.ends_with("/ (Ctrl-C quits)\n"), "{line}");
+        let port = rest.split('/').next().and_then(|port| port.parse().ok()).expect("a port");
+        // What comes later must have somewhere to go.
+        thread::spawn(move || stderr.read_to_end(&mut Vec::new()));
+        Self { child, folder, port }
+    }
+
+    pub fn scene(&self) -> PathBuf {
+        self.folder.path().join("scene.ray")
+    }
+
+    /// Puts a new scene in the place of the old one, whole.
+    pub fn save(&self, text: &str) {
+        let beside = self.folder.path().join("scene.ray~");
+        fs::write(&beside, text).expect("a file");
+        fs::rename(&beside, self.scene()).expect("in its place");
+    }
+
+    pub fn url(&self, path: &str) -> String {
+        format!("http://127.0.0.1:{}/{path}", self.port)
+    }
+
+    /// What the page gets from an address: the status and the bytes.
+    pub fn get(&self, path: &str) -> (u16, Vec<u8>) {
+        let mut answer = client().get(self.url(path)).call().expect("an answer");
+        (answer.status().as_u16(), answer.body_mut().read_to_vec().expect("its bytes"))
+    }
+
+    /// What a new page is told.
+    pub fn events(&self) -> Events {
+        let answer = client().get(self.url("events")).call().expect("an answer");
+        let lines = BufReader::new(answer.into_body().into_reader()).lines();
+        let mut events = Events { lines: Box::new(lines) };
+        assert_eq!(events.line(), "retry: 500");
+        assert_eq!(events.line(), "");
+        events
+    }
+}
+
+impl Drop for Watching {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+pub fn client() -> ureq::Agent {
+    let patience = Some(PATIENCE);
+    ureq::Agent::config_builder()
+        .http_status_as_error(false)
+        .timeout_recv_response(patience)
+        .timeout_recv_body(patience)
+        .build()
+        .into()
+}
+
+/// Events, one after another.
+pub struct Events {
+    lines: Box<Lines<BufReader<ureq::BodyReader<'static>>>>,
+}
+
+impl Events {
+    fn line(&mut self) -> String {
+        self.lines.next().expect("more events").expect("text")
+    }
+
+    /// The name and the data of the next one.
+    pub fn next(&mut self) -> (String, String) {
+        let name = self.line().strip_prefix("event: ").expect("a name").to_owned();
+        let data = self.line().strip_prefix("data: ").expect("data").to_owned();
+        assert_eq!(self.line(), "");
+        (name, data)
+    }
+
+    /// The data of the next one of this name.
+    pub fn until(&mut self, name: &str) -> Value {
+        loop {
+            let (found, data) = self.next();
+            if found == name {
+                return serde_json::from_str(&data).expect("JSON");
+            }
+        }
+    }
+
+    /// The parts until the picture is whole.
+    pub fn parts(&mut self) -> Vec<Part> {
+        let mut parts = Vec::new();
+        loop {
+            match self.next() {
+                (name, data) if name == "part" => parts.push(Part::read(&data)),
+                (name, _) => {
+                    assert_eq!(name, "done");
+                    return parts;
+                }
+            }
+        }
+    }
+}
+
+/// A part of a picture.
+pub struct Part {
+    pub left: usize,
+    pub top: usize,
+    pub width: usize,
+    pub height: usize,
+    pub block: usize,
+    pub channels: Vec<f32>,
+}
+
+impl Part {
+    fn read(data: &str) -> Self {
+        let words: Vec<_> = data.split(' ').collect();
+        let [_, left, top, width, height, block, base64] = words[..] else { panic!("{data}") };
+        let number = |word: &str| word.parse().expect("a number");
+        let bytes = STANDARD.decode(base64).expect("base64");
+        let (fours, rest) = bytes.as_chunks();
+        assert!(rest.is_empty());
+        Self {
+            left: number(left),
+            top: number(top),
+            width: number(width),
+            height: number(height),
+            block: number(block),
+            channels: fours.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect(),
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! What the README and the docs show: the scene loads, the pictures are fresh, links lead somewhere.
+
+use crate::common;
+use crate::common::program::{folder, outcome, tabray};
+use crate::common::{block_with, load, model, render, root};
+use std::fs;
+use std::path::{Path, PathBuf};
+use tabray::scene::reference;
+
+fn readme() -> String {
+    fs::read_to_string(root().join("README.md")).expect("the README")
+}
+
+#[test]
+fn the_readmes_scene_is_one() {
+    assert_eq!(model(&block_with(&readme(), "camera eye\n")).objects.len(), 2);
+}
+
+#[test]
+fn the_readmes_mistake_is_told_as_it_says() {
+    let folder = folder();
+    let scene = block_with(&readme(), "camera eye\n").replace("radius", "raduis");
+    fs::write(folder.path().join("ball.ray"), scene).expect("room for a file");
+    let (status, _, err) = outcome(tabray(&folder).args(["render", "ball.ray"]));
+    assert_eq!((status, err), (2, block_with(&readme(), "raduis")));
+}
+
+#[test]
+fn the_pictures_of_the_docs_are_fresh() {
+    for entry in fs::read_dir(root().join("scenes/gallery")).expect("a folder of scenes") {
+        let scene = entry.expect("an entry").path();
+        let stem = scene.file_stem().expect("a name");
+        let picture = root().join("docs").join(stem).with_extension("png");
+        let shown = image::open(&picture).expect("a picture for each scene").into_rgb8();
+        assert!(
+            render(&load(&scene)) == shown,
+            "{} is stale: the README says how to make it",
+            picture.display()
+        );
+    }
+}
+
+#[test]
+fn the_reference_has_every_word_and_what_it_means() {
+    let reference = reference::markdown(common::registry());
+    assert!(
+        reference.starts_with(&fs::read_to_string(root().join("docs/language.md")).expect("the language"))
+    );
+    for (name, page) in reference::pages(common::registry()) {
+        let (_, section) = reference.split_once(&format!("\n### {name}\n")).expect(name);
+        let last = page.lines().last().expect("a line");
+        assert!(section.contains(last), "{name} has no {last}");
+    }
+}
+
+/// The files that a page of Markdown links to, or shows.
+fn links(page: &Path) -> Vec<PathBuf> {
+    let text = fs::read_to_string(page).expect("a page");
+    let links = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+    let files = links.filter(|link| !link.contains("://")).filter_map(|link| link.split('#').next());
+    files.filter(|file| !file.is_empty()).map(|file| page.with_file_name(file)).collect()
+}
+
+#[test]
+fn links_lead_to_files_that_are_there() {
+    let mut pages = vec![root().join("README.md")];
+    for folder in ["docs", "snapshots/reference"] {
+        let entries = fs::read_dir(root().join(folder)).expect("a folder");
+        let files = entries.map(|entry| entry.expect("an entry").path());
+        pages.extend(files.filter(|path| path.extension().is_some_and(|extension| extension == "md")));
+    }
+    for page in pages {
+        for file in links(&page) {
+            assert!(file.exists(), "{} links to {}, which is not there", page.display(), file.display());
+        }
+    }
+}

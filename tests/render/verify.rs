@@ -1,0 +1,169 @@
+//! What the tracer finds first is what is proven to be first, in every scene.
+
+use crate::common::{load, model, root, scenes};
+use assert_cmd::cargo::cargo_bin_cmd;
+use tabray::render::Plan;
+use tabray::tools::verify::{self, Verdict};
+use tempfile::TempDir;
+
+/// Scenes in which many pixels look at an edge on purpose, or at two surfaces in one place.
+const AT_EDGES: [&str; 10] = [
+    "camera/edges-of-the-screen.ray", // two rectangles in one plane
+    "plane/equal-distance.ray",       // two planes in one place
+    "fplane/seam.ray",                // a column of pixels looks at the seam
+    "hard/rug.ray",                   // a rug on a floor
+    "hard/seam.ray",
+    "hard/light-on-the-surface.ray", // a row of pixels looks at the corner of floor and wall
+    "hard/tangent.ray",              // a column of pixels looks at the rim
+    "hard/jump.ray",                 // the rims of a stair
+    "toml/one-line-each.toml",       // rows of pixels look at a rectangle's sides
+    "triangle/seam.ray",
+];
+
+/// Counts of proven, undecided and contradicted pixels: of every `step`-th, both ways.
+fn counts(model: &tabray::scene::Model, step: usize) -> [usize; 3] {
+    let [width, height] = model.camera.value.pixels;
+    let plan = Plan::new(model);
+    let mut counts = [0; 3];
+    for y in (0..height).step_by(step) {
+        for x in (0..width).step_by(step) {
+            counts[match verify::pixel(&plan, x, y) {
+                Verdict::Proven => 0,
+                Verdict::Tie => 1,
+                Verdict::Contradicted => 2,
+            }] += 1;
+        }
+    }
+    counts
+}
+
+#[test]
+fn no_scene_is_contradicted_and_nearly_every_pixel_is_proven() {
+    for path in scenes() {
+        let name = path.strip_prefix(root().join("scenes")).expect("a scene").to_string_lossy().into_owned();
+        let model = load(&path);
+        let [proven, undecided, contradicted] =
+            counts(&model, if model.camera.value.pixels[0] > 320 { 31 } else { 7 });
+        assert_eq!(contradicted, 0, "{name}");
+        let part = undecided as f64 / (proven + undecided) as f64;
+        assert!(part <= 0.001 || AT_EDGES.contains(&name.as_str()), "{name}: {undecided} of {proven}");
+    }
+}
+
+#[test]
+fn accuracies_but_the_classic_one_are_never_contradicted() {
+    let scene = |accuracy: &str| {
+        model(&format!(
+            "camera eye {{ pixeldim 64 48 worlddim 8 6 viewpoint 4 3 7 accuracy {accuracy} }}
+             material m {{ ambient 1 1 1 }}
+             plane floor {{ material m normal 0 1 0 point 0 0 0 }}
+             revsurf ripples {{ material m profile \"1 + 0.3 * sin(20 * y)\" direction 0.1 1 0 base 4 0.1 -4 height 6 }}
+             sphere ball {{ material m center 2 3 -4 radius 1 }}"
+        ))
+    };
+    for accuracy in ["draft", "exact", "strict"] {
+        assert_eq!(counts(&scene(accuracy), 1)[2], 0, "{accuracy}");
+    }
+    assert!(counts(&scene("classic"), 1)[2] > 10);
+}
+
+#[test]
+fn the_program_counts_and_shows_what_is_proven() {
+    let folder = TempDir::new().expect("a folder");
+    let run = |args: &[&str]| {
+        let mut command = cargo_bin_cmd!("tabray");
+        let scene = root().join("scenes/hard/ripples.ray");
+        let output = command.current_dir(folder.path()).arg("verify").arg(scene).args(args).output();
+        let output = output.expect("the program runs");
+        (output.status.code(), String::from_utf8_lossy(&output.stdout).into_owned())
+    };
+    let (status, said) = run(&["-o", "a.png"]);
+    assert_eq!(status, Some(0), "{said}");
+    assert!(said.contains("pixels proven (") && said.ends_with(" 0 contradicted\n"), "{said}");
+    let colours = |name: &str| image::open(folder.path().join(name)).expect("a picture").into_rgb8();
+    let white = colours("a.png").pixels().filter(|pixel| pixel.0 == [255; 3]).count();
+    assert!(said.contains(&format!(", {white} tie")), "{said}");
+    let (status, said) = run(&["--method", "classic", "-o", "b.png"]);
+    assert_eq!(status, Some(1), "{said}");
+    let red = colours("b.png").pixels().filter(|pixel| pixel.0 == [255, 0, 0]).count();
+    assert!(red > 0 && said.ends_with(&format!(" {red} contradicted\n")), "{said}");
+}
+
+#[test]
+fn a_contradiction_is_a_failure_that_counts_it() {
+    let folder = TempDir::new().expect("a folder");
+    let mut verify = cargo_bin_cmd!("tabray");
+    verify.current_dir(folder.path()).args(["verify", "--method", "classic"]);
+    let output = verify.arg(root().join("scenes/hard/ripples.ray")).output().expect("it runs");
+    let (out, err) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert_eq!(output.status.code(), Some(1), "{out}{err}");
+    let (_, contradicted) = out.rsplit_once(", ").expect("three counts");
+    let count: usize =
+        contradicted.strip_suffix(" contradicted\n").and_then(|n| n.parse().ok()).expect("a number");
+    assert!(count > 1, "{out}");
+    assert_eq!(err, format!("error: the tracer finds another object at {count} pixels\n"));
+}
+
+/// The wrong proof that rounding the normals and edges of a sliver gave: 156 of 606 such pixels.
+#[test]
+fn a_sliver_before_another_triangle_is_proven_from_its_corners() {
+    let model = model(
+        "camera eye { pixeldim 1 1 worlddim 8 6 viewpoint 4 3 6 }
+         material red { ambient 10 0 0 }
+         material green { ambient 0 10 0 }
+         triangle sliver { material red vertex1 74.02008166032914 181.20698666173578 -180.57992796863354
+             vertex2 2.5709057906925388 -0.6368328987687811 -1.037175155326901
+             vertex3 2.571131692559333 -0.6369216588530878 -1.037123002404182 }
+         triangle other { material green vertex1 0 0 -4.628004657281974 vertex2 10 0 -4.628004657281974
+             vertex3 4 9 -4.628004657281974 }",
+    );
+    assert_eq!(verify::pixel(&Plan::new(&model), 0, 0), Verdict::Proven);
+    let sight = model.camera.value.sight(0.0, 0.0);
+    let met = tabray::render::trace::first_hit(&Plan::new(&model), &sight).expect("a triangle").index;
+    assert_eq!(met, 0, "rational arithmetic says that the sliver is nearer, by 6e-10");
+}
+
+/// Numbers whose squares nearly overflow or vanish are no reason for a doubt, in any kind of shape.
+#[test]
+fn scenes_of_any_scale_are_proven() {
+    for scale in ["e-150", "", "e150"] {
+        let n = |number: &str| format!("{number}{scale}");
+        let (one, two, three, four, half) = (n("1"), n("2"), n("3"), n("4"), n("0.5"));
+        let model = model(&format!(
+            "camera eye {{ pixeldim 24 18 worlddim {} {} viewpoint {four} {three} {} }}
+             material m {{ ambient 1 0 0 }}
+             sphere s {{ material m center {four} {three} -{four} radius {two} }}
+             torus t {{ material m center {four} {three} -{four} direction 1 2 3 radius {three} tube {half} }}
+             triangle q {{ material m vertex1 0 0 -{three} vertex2 {} 0 -{three} vertex3 {four} {} -{} }}
+             revsurf v {{ material m profile \"{one} + 0*y\" direction 0.1 1 0 base {two} {one} -{three} height {three} }}
+             quadric w {{ material m coefficients 1 1 -1 0 0 0 0 0 0 0 center {} {three} -{four}
+                 box -{one} -{one} -{one} {one} {one} {one} }}",
+            n("8"),
+            n("6"),
+            n("6"),
+            n("8"),
+            n("6"),
+            n("5"),
+            n("6"),
+        ));
+        let [_, ties, contradicted] = counts(&model, 1);
+        assert_eq!((ties, contradicted), (0, 0), "{scale}");
+    }
+}
+
+/// Two surfaces in one place are told from two that are apart, however little.
+#[test]
+fn a_tie_is_a_tie_and_nothing_near_it() {
+    let verdicts = |apart: &str| {
+        let model = model(&format!(
+            "camera eye {{ pixeldim 16 12 worlddim 8 5 viewpoint 4 3 6 }}
+             material m {{ ambient 1 0 0 }}
+             fplane rug {{ material m normal 0 2 1 point 2 {apart} -3 xdir 1 0 0 dimensions 4 4 }}
+             plane floor {{ material m normal 0 2 1 point 0 0 -3 }}"
+        ));
+        counts(&model, 1)
+    };
+    assert!(verdicts("0")[1] > 5, "the rug lies on the floor");
+    assert_eq!(verdicts("1e-30")[1..], [0, 0], "it floats");
+    assert_eq!(verdicts("-1e-30")[1..], [0, 0], "it lies below");
+}

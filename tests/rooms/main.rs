@@ -1,0 +1,206 @@
+//! Who may import whom: each room of `src/` from rooms below it alone, and no file from one that takes from it.
+//!
+//! `docs/architecture.md` lists the rooms, from the top floor down, and is held to the tree here, too. What tests of a
+//! module import is left out.
+
+mod imports;
+
+use imports::{Import, Tree};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// All `.rs` files below a folder, from the package's own.
+fn sources(folder: &str) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    let mut folders = vec![root().join(folder)];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path()) {
+            if entry.is_dir() {
+                folders.push(entry);
+            } else if entry.extension().is_some_and(|extension| extension == "rs") {
+                found.push(entry.strip_prefix(root()).expect("below the package").to_owned());
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+/// The modules of the crate. Programs of their own, and what `tabray new` writes, are none.
+fn tree() -> Tree {
+    let is_module = |path: &PathBuf| {
+        let programs = ["src/main.rs", "src/build.rs", "src/cli/new/templates"];
+        !programs.iter().any(|program| path.starts_with(program))
+    };
+    let files = sources("src").into_iter().filter(is_module);
+    Tree::new(files.map(|path| (path.clone(), fs::read_to_string(root().join(path)).expect("a file"))))
+}
+
+fn architecture() -> String {
+    fs::read_to_string(root().join("docs/architecture.md")).expect("the page")
+}
+
+/// The rooms of the page's table, from the top floor down.
+fn rooms(page: &str) -> Vec<&str> {
+    let table = page.split("\n## ").find(|part| part.starts_with("Rooms\n")).expect("a table of rooms");
+    let rows = table.lines().filter_map(|line| line.strip_prefix("| [`"));
+    rows.filter_map(|row| row.split('`').next()).collect()
+}
+
+/// Imports from a room that is not below.
+fn from_above(tree: &Tree, rooms: &[&str]) -> Vec<String> {
+    let floor =
+        |module: &[String]| rooms.iter().position(|room| Some(*room) == module.first().map(String::as_str));
+    let is_wrong = |import: &&Import| {
+        let (from, to) = (floor(&import.from), floor(&import.to));
+        // The prelude is for plugins.
+        from > to || import.from[0] != import.to[0] && import.to[0] == "prelude"
+    };
+    let told =
+        |import: &Import| format!("{import}, and `{}` does not lie below `{}`", import.to[0], import.from[0]);
+    tree.imports.iter().filter(is_wrong).map(told).collect()
+}
+
+/// A circle of imports, if there is one.
+fn circle(tree: &Tree) -> Option<Vec<String>> {
+    let mut onward: BTreeMap<&[String], Vec<&Import>> = BTreeMap::new();
+    for import in &tree.imports {
+        onward.entry(&import.from).or_default().push(import);
+    }
+    let mut done = BTreeSet::new();
+    for start in onward.keys() {
+        // The way to where we are, and what remains to be looked at of each station.
+        let mut way: Vec<&Import> = Vec::new();
+        let mut waiting = vec![(*start, 0)];
+        while let Some((module, next)) = waiting.last_mut() {
+            let import =
+                if done.contains(module) { None } else { onward.get(module).and_then(|all| all.get(*next)) };
+            *next += 1;
+            let Some(import) = import else {
+                done.insert(*module);
+                waiting.pop();
+                way.pop();
+                continue;
+            };
+            way.push(import);
+            if let Some(begin) = waiting.iter().position(|(module, _)| *module == import.to) {
+                return Some(way[begin..].iter().map(|import| import.to_string()).collect());
+            }
+            waiting.push((&import.to, 0));
+        }
+    }
+    None
+}
+
+#[test]
+fn rooms_take_from_rooms_below_alone() {
+    let (tree, page) = (tree(), architecture());
+    assert!(tree.imports.len() > 900, "{} imports are found", tree.imports.len());
+    let wrong = from_above(&tree, &rooms(&page));
+    assert!(wrong.is_empty(), "\n{}\n", wrong.join("\n"));
+}
+
+#[test]
+fn files_take_from_each_other_in_no_circle() {
+    let circle = circle(&tree());
+    assert_eq!(circle, None, "\n{}\n", circle.iter().flatten().cloned().collect::<Vec<_>>().join("\n"));
+}
+
+#[test]
+fn plugins_take_what_others_see_alone() {
+    let tree = tree();
+    let mut hidden = Vec::new();
+    for path in sources("plugins") {
+        let text = fs::read_to_string(root().join(&path)).expect("a plugin");
+        for (line, segments) in imports::crate_paths(&text) {
+            if !tree.is_public(&segments) {
+                hidden.push(format!("{}:{line}: crate::{} is hidden", path.display(), segments.join("::")));
+            }
+        }
+    }
+    assert!(hidden.is_empty(), "a plugin could not stand outside of the package:\n{}\n", hidden.join("\n"));
+}
+
+#[test]
+fn the_page_lists_the_rooms_that_there_are() {
+    let page = architecture();
+    let listed: BTreeSet<_> = rooms(&page).into_iter().map(str::to_owned).collect();
+    let there: BTreeSet<_> = tree().rooms().into_iter().collect();
+    assert_eq!(listed, there);
+    assert_eq!(listed.len(), rooms(&page).len(), "each once");
+}
+
+#[test]
+fn the_page_links_to_what_is_there() {
+    let page = architecture();
+    let links: Vec<_> = page.split("](").skip(1).filter_map(|rest| rest.split(')').next()).collect();
+    assert!(links.len() > 20, "{links:?}");
+    for link in links {
+        assert!(root().join("docs").join(link).exists(), "{link} leads nowhere");
+    }
+    // What the drawing names lies in `src/`.
+    let drawing = page.split("```").nth(1).expect("a drawing");
+    let words = drawing.split([' ', ',', '\n']).filter(|word| word.contains('/') && word.len() > 3);
+    for word in words.filter(|word| !word.starts_with("plugins/")) {
+        assert!(root().join("src").join(word).exists(), "src/{word} is not there");
+    }
+}
+
+fn example(files: &[(&str, &str)]) -> Tree {
+    Tree::new(files.iter().map(|(path, text)| (Path::new("src").join(path), (*text).to_owned())))
+}
+
+#[test]
+fn imports_from_above_are_found() {
+    let files = |low: &'static str| {
+        [
+            ("high/mod.rs", "pub mod a; pub use a::A;"),
+            ("high/a.rs", "use crate::low::b::B;\npub struct A;"),
+            ("low/mod.rs", "pub mod b;"),
+            ("low/b.rs", low),
+        ]
+    };
+    let wrong = |low: &'static str| from_above(&example(&files(low)), &["high", "low"]);
+    assert!(wrong("pub struct B;").is_empty());
+    for low in [
+        "\nuse crate::high::a::A;",
+        "\nuse {std::fmt, crate::high::{a::{self, A}}};",
+        "\nfn f() { if true { g(crate::high::A::new()) } }",
+        "\nmacro! { fn f() => { let a = $crate::high::a::A; } }",
+        "\nmod inner { use super::super::super::high::A; }",
+    ] {
+        let wrong = wrong(low);
+        assert!(!wrong.is_empty(), "{low}");
+        assert!(wrong[0].starts_with("src/low/b.rs:2: `low::b` takes from `high::a`"), "{wrong:?}");
+    }
+    for low in [
+        "#[cfg(test)]\nmod tests { use crate::high::a::A; }",
+        "/// As [`A`](crate::high::a::A).\n// crate::high::a::A\nconst B: &str = \"crate::high::a::A\";",
+    ] {
+        assert!(wrong(low).is_empty(), "{low}");
+    }
+}
+
+#[test]
+fn circles_are_found() {
+    let wrong = |files: &[(&str, &str)]| circle(&example(files));
+    let straight = [("r/mod.rs", "mod a; mod b; use a::A;"), ("r/a.rs", "use super::b::B;"), ("r/b.rs", "")];
+    assert_eq!(wrong(&straight), None);
+    let by_a_file = [straight[0], straight[1], ("r/b.rs", "\nuse crate::r::a::A;")];
+    assert_eq!(wrong(&by_a_file).map(|circle| circle.len()), Some(2));
+    let by_the_folder =
+        [("r/mod.rs", "mod a; fn f() { a::g() } pub const N: u8 = 1;"), ("r/a.rs", "use super::N;")];
+    assert_eq!(wrong(&by_the_folder).map(|circle| circle.len()), Some(2));
+    // A method that is written elsewhere than its type is taken from there.
+    let by_a_method = [
+        ("r/mod.rs", "mod a; mod b;"),
+        ("r/a.rs", "pub struct A; impl A { fn f(&self) { self.g() } }"),
+        ("r/b.rs", "use super::a::A; impl A { fn g(&self) {} }"),
+    ];
+    assert_eq!(wrong(&by_a_method).map(|circle| circle.len()), Some(2));
+}

@@ -1,0 +1,197 @@
+//! The TextMate grammar: what it takes each word of a scene for is what the reader takes it for.
+
+use crate::common::{registry, root, scenes};
+use fancy_regex::Regex;
+use serde_json::Value;
+use std::collections::HashMap;
+use std::fs;
+use std::path::Path;
+use tabray::scene::{self, Syntax, dump, grammar};
+
+/// A grammar that is applied as editors apply one: line by line, and at each place the rule that matches first.
+struct Highlighter {
+    grammar: Value,
+    patterns: HashMap<String, Regex>,
+}
+
+/// A piece of text, and the scope that a rule gives it.
+type Scoped = (String, String);
+
+impl Highlighter {
+    fn new() -> Self {
+        let grammar = serde_json::to_value(grammar::of(registry())).expect("JSON");
+        let mut highlighter = Self { grammar: grammar.clone(), patterns: HashMap::new() };
+        highlighter.compile(&grammar);
+        highlighter
+    }
+
+    /// Every pattern of the grammar is one.
+    fn compile(&mut self, value: &Value) {
+        match value {
+            Value::Object(fields) => {
+                for (name, value) in fields {
+                    if let (true, Some(text)) =
+                        (["match", "begin", "end"].contains(&name.as_str()), value.as_str())
+                    {
+                        let pattern = Regex::new(text).unwrap_or_else(|error| panic!("{text}: {error}"));
+                        self.patterns.insert(text.to_owned(), pattern);
+                    }
+                    self.compile(value);
+                }
+            }
+            Value::Array(values) => values.iter().for_each(|value| self.compile(value)),
+            _ => {}
+        }
+    }
+
+    /// The rules of a list, those that it includes in their places.
+    fn rules<'g>(&'g self, rule: &'g Value) -> Vec<&'g Value> {
+        let patterns = rule["patterns"].as_array().map(Vec::as_slice).unwrap_or_default();
+        let included = |rule: &'g Value| match rule["include"].as_str() {
+            Some(name) => {
+                let found = self.grammar["repository"].get(name.trim_start_matches('#'));
+                found.unwrap_or_else(|| panic!("the repository has {name}"))
+            }
+            None => rule,
+        };
+        patterns.iter().map(included).collect()
+    }
+
+    fn scopes(&self, text: &str) -> Vec<Scoped> {
+        let mut scoped = Vec::new();
+        let mut open: Vec<&Value> = vec![&self.grammar];
+        for line in text.lines() {
+            let mut at = 0;
+            loop {
+                let top = open[open.len() - 1];
+                let end = top["end"].as_str().map(|end| (end, top, true));
+                let rules = self.rules(top).into_iter().filter_map(|rule| {
+                    Some((rule["match"].as_str().or_else(|| rule["begin"].as_str())?, rule, false))
+                });
+                let matches = end.into_iter().chain(rules).filter_map(|(pattern, rule, ends)| {
+                    let captures =
+                        self.patterns[pattern].captures_from_pos(line, at).expect("a pattern that ends")?;
+                    Some((captures.get(0)?.range(), captures, rule, ends))
+                });
+                // The first of several that match at one place.
+                let Some((whole, captures, rule, ends)) = matches.min_by_key(|(whole, ..)| whole.start)
+                else {
+                    break;
+                };
+                let field = if ends { "endCaptures" } else { "beginCaptures" };
+                if let Some(name) = rule["name"].as_str() {
+                    scoped.push((name.to_owned(), line[whole.clone()].to_owned()));
+                }
+                for group in 1..captures.len() {
+                    let name = rule[field][group.to_string()]["name"].as_str();
+                    if let (Some(name), Some(part)) = (name, captures.get(group)) {
+                        scoped.push((name.to_owned(), part.as_str().to_owned()));
+                    }
+                }
+                assert!(ends || rule.get("begin").is_some() || whole.end > at, "{line}: no way on from {at}");
+                at = whole.end;
+                if ends {
+                    open.pop();
+                } else if rule.get("begin").is_some() {
+                    open.push(rule);
+                }
+            }
+        }
+        assert_eq!(open.len(), 1, "every entity ends");
+        scoped
+    }
+}
+
+/// The scene that the scopes make of a text, in the other spelling: it says of each word what it is.
+fn scene_of(scoped: &[Scoped]) -> String {
+    let mut text = String::new();
+    let mut values: Vec<String> = Vec::new();
+    let end = |text: &mut String, values: &mut Vec<String>| {
+        if !values.is_empty() {
+            text.push_str(&format!("[{}]\n", values.join(", ")));
+            values.clear();
+        }
+    };
+    for (scope, word) in scoped {
+        let word = word.as_str();
+        let quoted = || if word.starts_with('"') { word.to_owned() } else { format!("{word:?}") };
+        match scope.trim_end_matches(".tabray") {
+            "comment.line.number-sign" => {}
+            "storage.type" => {
+                end(&mut text, &mut values);
+                text += &format!("[[{word}.");
+            }
+            "entity.name.type" => text += &format!("{}]]\n", quoted()),
+            "support.type.property-name" => {
+                end(&mut text, &mut values);
+                text += &format!("{word} = ");
+            }
+            "constant.numeric" => values.push(match word.parse::<i64>() {
+                Ok(whole) => whole.to_string(),
+                Err(_) => format!("{:?}", word.parse::<f64>().expect("a number")),
+            }),
+            "constant.language" | "variable.other" | "string.unquoted" | "string.quoted.double" => {
+                values.push(quoted());
+            }
+            other => panic!("`{word}` is {other}"),
+        }
+    }
+    end(&mut text, &mut values);
+    text
+}
+
+/// A scene written again, as its reader understands it.
+fn read(path: &Path, name: &str, text: &str) -> String {
+    let folder = path.parent().expect("a folder");
+    match scene::read(registry(), name, folder, text.as_bytes(), None) {
+        Ok(loaded) => dump::scene(&loaded.model, Syntax::Notes),
+        Err(report) => panic!("{}: {report}\n{text}", path.display()),
+    }
+}
+
+#[test]
+fn a_scene_read_by_its_colours_is_the_same_scene() {
+    let highlighter = Highlighter::new();
+    let in_notes = scenes().into_iter().filter(|path| path.extension().is_some_and(|ending| ending == "ray"));
+    for path in in_notes.chain([root().join("src/cli/new/templates/scene.ray")]) {
+        let text = fs::read_to_string(&path).expect("a scene");
+        let understood = scene_of(&highlighter.scopes(&text));
+        assert_eq!(
+            read(&path, "scene.toml", &understood),
+            read(&path, "scene.ray", &text),
+            "{}",
+            path.display()
+        );
+    }
+}
+
+#[test]
+fn words_are_what_they_are_wherever_they_stand() {
+    let text = "material material{ambient +.5 1. 1e-3# dim\n}sphere \"a # b\"#c\n{ radius # 7\n 2material\n material}";
+    let scoped = Highlighter::new().scopes(text);
+    let shown: Vec<_> =
+        scoped.iter().map(|(scope, word)| format!("{word} {}", &scope[..scope.len() - 7])).collect();
+    assert_eq!(
+        shown,
+        [
+            "material storage.type",
+            "material entity.name.type",
+            "ambient support.type.property-name",
+            "+.5 constant.numeric",
+            "1. constant.numeric",
+            "sphere storage.type",
+            "\"a # b\" entity.name.type",
+            "#c comment.line.number-sign",
+            "radius support.type.property-name",
+            "# 7 comment.line.number-sign",
+            "material support.type.property-name",
+        ]
+    );
+}
+
+#[test]
+fn a_type_that_came_later_leaves_the_rest_as_it_is() {
+    let scoped = Highlighter::new().scopes("gem it { size 2 material red } light lamp { }");
+    let shown: Vec<_> = scoped.iter().map(|(_, word)| word.as_str()).collect();
+    assert_eq!(shown, ["it", "2", "light", "lamp"]);
+}

@@ -1,0 +1,356 @@
+//! Every plugin keeps the contract of its trait, and each way to break it is found.
+
+use crate::common::{block_with, load, registry, root};
+use glam::DVec3;
+use std::fs;
+use std::sync::atomic::{AtomicU32, Ordering};
+use tabray::geometry::{Bounds, Bracket, Frame, MISS, Ray, Side, Span};
+use tabray::numeric::Number;
+use tabray::scene::{Args, Derived, Entity, Kind, Pparm, Refusal, Registry, Row, Table};
+use tabray::shapes::Implicit;
+use tabray::tools::contract::{self, Breach, Promise};
+use tabray::world::certify::Equation;
+use tabray::world::{Body, Bracketed, Camera, Certified, Hittable, Light, Material, Rgb, Shader, Shape};
+
+#[test]
+fn every_plugin_keeps_its_contract() {
+    contract::assert_kept();
+}
+
+#[test]
+fn what_is_in_the_entities_own_scenes_keeps_its_contract() {
+    for entry in fs::read_dir(root().join("scenes/entities")).expect("a folder of scenes") {
+        let breach = contract::breaches_in(&load(&entry.expect("an entry").path())).into_iter().next();
+        assert!(breach.is_none(), "{}", breach.expect("one"));
+    }
+}
+
+/// What `tabray new plugin` starts a shape from: its sides are flat in their middle to the fourth order.
+struct RoundCube(f64);
+
+impl Implicit for RoundCube {
+    fn value<N: Number>(&self, at: [N; 3]) -> N {
+        let [x, y, z] = at.map(|coordinate| coordinate / N::constant(self.0));
+        x.powi(4) + y.powi(4) + z.powi(4) - N::constant(1.0)
+    }
+
+    fn bounds(&self) -> [DVec3; 2] {
+        [DVec3::splat(-self.0), DVec3::splat(self.0)]
+    }
+}
+
+const fn round_cube(name: &'static str) -> Entity {
+    Entity::shape(name, "a cube with round edges", &[TABLE], |args| {
+        Ok(Body::implicit(RoundCube(args.get(&RADIUS)), Frame::at(args.get(&CENTER))))
+    })
+}
+
+static ROUND_CUBES: [Entity; 13] = [
+    round_cube("gem"),
+    round_cube("cube"),
+    round_cube("stone"),
+    round_cube("dice"),
+    round_cube("pebble"),
+    round_cube("soap"),
+    round_cube("ring_box"),
+    round_cube("loop"),
+    round_cube("cut_gem"),
+    round_cube("bead"),
+    round_cube("a"),
+    round_cube("zz"),
+    round_cube("template"),
+];
+
+/// Which rays are tried depends on the name.
+#[test]
+fn a_shape_that_is_flat_to_the_fourth_order_keeps_its_contract_under_any_name() {
+    for entity in &ROUND_CUBES {
+        let found = breaches(entity);
+        assert!(found.is_empty(), "{}", found[0]);
+    }
+}
+
+static CENTER: Pparm<DVec3> = Pparm::required("center", "the point in its middle");
+static RADIUS: Pparm<f64> =
+    Pparm::required("radius", "the distance to its surface").must("positive", |radius| *radius > 0.0);
+const TABLE: Table = &[&CENTER as &dyn Row, &RADIUS];
+
+/// What is wrong with a ball.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Flaw {
+    None,
+    Nan,
+    NoSpan,
+    Restless,
+    Bracket,
+    Quick,
+    LongNormal,
+    NoNormal,
+    NoInside,
+    FromOneSide,
+    Proof,
+    Bounds,
+    Clear,
+    Untouched,
+    Leaning,
+    Flipping,
+    Inward,
+    Shell,
+    MeetsItsStart,
+    MeetsNothingAgain,
+    Invisible,
+    NanColour,
+    NegativeColour,
+}
+
+struct Ball {
+    center: DVec3,
+    radius: f64,
+    flaw: Flaw,
+}
+
+impl Ball {
+    /// The distances at which a ray meets a ball of this radius around the center.
+    fn roots(&self, ray: &Ray, radius: f64) -> [f64; 2] {
+        let from = ray.origin - self.center;
+        let middle = -from.dot(ray.dir);
+        let closest = from + middle * ray.dir;
+        let half = (radius * radius - closest.length_squared()).sqrt();
+        [middle - half, middle + half]
+    }
+
+    /// Whether a point is on the ball or on its shell, within an error.
+    fn is_near(&self, at: DVec3, error: f64) -> bool {
+        let off = at.distance(self.center) - self.radius;
+        off.abs().min((off - self.radius).abs()) <= error + 1e-12
+    }
+
+    fn hit(&self, ray: &Ray, within: &Span) -> f64 {
+        let mut roots = self.roots(ray, self.radius).to_vec();
+        if within.leaves == Some(Side::Inside) {
+            // The near root is where it starts.
+            roots.remove(0);
+        }
+        if matches!(self.flaw, Flaw::Shell | Flaw::MeetsNothingAgain) {
+            roots.extend(self.roots(ray, 2.0 * self.radius));
+        }
+        roots.into_iter().map(|root| within.keep(root)).fold(MISS, f64::min)
+    }
+}
+
+impl Hittable for Ball {
+    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
+        static CALLS: AtomicU32 = AtomicU32::new(0);
+        let [near, _] = self.roots(ray, self.radius);
+        match self.flaw {
+            Flaw::Nan if near.is_nan() => near,
+            Flaw::NoSpan if near > 0.0 => near,
+            Flaw::NoInside => within.keep(near),
+            Flaw::Restless => self.hit(ray, within) + f64::from(CALLS.fetch_add(1, Ordering::Relaxed)),
+            Flaw::FromOneSide if ray.dir.x > 0.0 => MISS,
+            Flaw::MeetsItsStart if within.leaves.is_some() => within.keep(1e-9),
+            Flaw::MeetsNothingAgain if within.leaves.is_some() => MISS,
+            Flaw::Invisible => MISS,
+            _ => self.hit(ray, within),
+        }
+    }
+
+    fn normal(&self, at: DVec3) -> DVec3 {
+        let out = at - self.center;
+        match self.flaw {
+            Flaw::LongNormal => 2.0 * out.normalize(),
+            Flaw::NoNormal => DVec3::NAN,
+            Flaw::Leaning => (out * DVec3::new(1.0, 3.0, 1.0)).normalize(),
+            Flaw::Flipping if at.x.to_bits().count_ones().is_multiple_of(2) => -out.normalize(),
+            Flaw::Inward => -out.normalize(),
+            _ => out.normalize(),
+        }
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        let reach = match self.flaw {
+            Flaw::Bounds => 0.9 * self.radius,
+            _ => 2.0 * self.radius,
+        };
+        Some(Bounds { low: self.center - reach, high: self.center + reach })
+    }
+
+    fn is_clear_of(&self, region: &Bounds) -> bool {
+        self.flaw == Flaw::Clear || !self.bounds().is_some_and(|bounds| bounds.overlaps(region))
+    }
+
+    fn meets_itself(&self, leaving: Side) -> bool {
+        leaving == Side::Inside || matches!(self.flaw, Flaw::MeetsItsStart | Flaw::MeetsNothingAgain)
+    }
+}
+
+impl Bracketed for Ball {
+    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
+        if within.leaves.is_none()
+            && within.origin_error > 0.0
+            && self.is_near(ray.origin, within.origin_error)
+        {
+            return Bracket::UNKNOWN;
+        }
+        let distance = self.distance(ray, within);
+        Bracket::exactly(if self.flaw == Flaw::Bracket { distance + 1.0 } else { distance })
+    }
+
+    fn refine(&self, ray: &Ray, leaves: Option<Side>) -> f64 {
+        let distance = self.distance(ray, &Span { leaves, ..Span::RAY });
+        if self.flaw == Flaw::Quick { distance.next_up() } else { distance }
+    }
+}
+
+impl Certified for Ball {
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        self.flaw != Flaw::Untouched && self.is_near(at, error)
+    }
+}
+
+impl Equation for Ball {
+    const IS_QUADRATIC: bool = true;
+
+    fn value<N: Number>(&self, at: [N; 3]) -> N {
+        let part = |axis: usize| (at[axis] - N::constant(self.center[axis])).powi(2);
+        part(0) + part(1) + part(2) - N::constant(self.radius).powi(2)
+    }
+
+    fn kept<N: Number>(&self, _at: [N; 3]) -> N {
+        N::constant(if self.flaw == Flaw::Proof { -1.0 } else { 1.0 })
+    }
+}
+
+struct Colour(Flaw);
+
+impl Shader for Colour {
+    fn diffuse(&self, material: &Material, _at: DVec3) -> Rgb {
+        match self.0 {
+            Flaw::NanColour => Rgb::NAN,
+            Flaw::NegativeColour => -material.diffuse,
+            _ => material.diffuse,
+        }
+    }
+}
+
+fn ball(args: &Args, flaw: Flaw) -> Result<Body, Refusal> {
+    let ball = Shape::new(Ball { center: args.get(&CENTER), radius: args.get(&RADIUS), flaw }).bracketed();
+    // The others are not what an equation says.
+    Ok(match flaw {
+        Flaw::Proof | Flaw::Untouched => Body::shaded(ball.certified(), Colour(flaw)),
+        _ => Body::shaded(ball, Colour(flaw)),
+    })
+}
+
+fn refuse<T>(_args: &Args) -> Result<T, Refusal> {
+    Err(Refusal { attribute: None, message: "will not be".to_owned(), help: "nothing helps" })
+}
+
+/// What a light sends where it is, and elsewhere.
+struct Lamp;
+
+impl Light for Lamp {
+    fn location(&self) -> DVec3 {
+        DVec3::ONE
+    }
+
+    fn emissivity(&self, toward: DVec3) -> Option<Rgb> {
+        Some(Rgb::ONE + (toward - DVec3::ONE).normalize())
+    }
+}
+
+static COUNTED: Derived = Derived(|_| {
+    static LINES: AtomicU32 = AtomicU32::new(0);
+    format!("line {}\n", LINES.fetch_add(1, Ordering::Relaxed))
+});
+const COUNTS: Table = &[&COUNTED as &dyn Row];
+
+#[track_caller]
+const fn shape(name: &'static str, construct: fn(&Args) -> Result<Body, Refusal>) -> Entity {
+    Entity::shape(name, "a ball", &[TABLE], construct)
+}
+
+static SOUND: Entity = shape("sound", |args| ball(args, Flaw::None));
+
+static BROKEN: [(Promise, Entity); 27] = [
+    (Promise::DistanceIsInItsSpan, shape("nan", |args| ball(args, Flaw::Nan))),
+    (Promise::DistanceIsInItsSpan, shape("no_span", |args| ball(args, Flaw::NoSpan))),
+    (Promise::DistanceIsTheSameAgain, shape("restless", |args| ball(args, Flaw::Restless))),
+    (Promise::PacketsAgree, shape("bracket", |args| ball(args, Flaw::Bracket))),
+    (Promise::PacketsAgree, shape("quick", |args| ball(args, Flaw::Quick))),
+    (Promise::NormalIsUnit, shape("long_normal", |args| ball(args, Flaw::LongNormal))),
+    (Promise::NormalIsUnit, shape("no_normal", |args| ball(args, Flaw::NoNormal))),
+    (Promise::HitIsOnTheSurface, shape("no_inside", |args| ball(args, Flaw::NoInside))),
+    (Promise::HitIsOnTheSurface, shape("from_one_side", |args| ball(args, Flaw::FromOneSide))),
+    (Promise::AgreesWithItsProof, shape("proof", |args| ball(args, Flaw::Proof))),
+    (Promise::BoundsHoldHits, shape("bounds", |args| ball(args, Flaw::Bounds))),
+    (Promise::BoundsHoldHits, shape("clear", |args| ball(args, Flaw::Clear))),
+    (Promise::HitIsTouched, shape("untouched", |args| ball(args, Flaw::Untouched))),
+    (Promise::NormalIsUpright, shape("leaning", |args| ball(args, Flaw::Leaning))),
+    (Promise::NormalsAgree, shape("flipping", |args| ball(args, Flaw::Flipping))),
+    (Promise::NormalsPointOut, shape("inward", |args| ball(args, Flaw::Inward))),
+    (Promise::IsNotMetAgain, shape("shell", |args| ball(args, Flaw::Shell))),
+    (Promise::StartIsNoHit, shape("meets_its_start", |args| ball(args, Flaw::MeetsItsStart))),
+    (Promise::StartIsNoHit, shape("meets_nothing_again", |args| ball(args, Flaw::MeetsNothingAgain))),
+    (Promise::IsMet, shape("invisible", |args| ball(args, Flaw::Invisible))),
+    (Promise::ReflectivityIsSound, shape("nan_colour", |args| ball(args, Flaw::NanColour))),
+    (Promise::ReflectivityIsSound, shape("negative_colour", |args| ball(args, Flaw::NegativeColour))),
+    (Promise::TakesWhatItsTableAllows, shape("refuses", refuse)),
+    (Promise::DumpLoadsAgain, Entity::light("counts", "a lamp", &[COUNTS], |_| Ok(Box::new(Lamp)))),
+    (Promise::LightIsFinite, Entity::light("lamp", "a lamp", &[], |_| Ok(Box::new(Lamp)))),
+    (
+        Promise::CameraLooks,
+        Entity::camera("blind", "a camera", &[], |_| Ok(Camera { pixels: [0, 1], ..Camera::default() })),
+    ),
+    (
+        Promise::ReflectivityIsSound,
+        Entity::material("wax", "a material", &[], |_| {
+            Ok(Material { shininess: f64::NAN, ..Material::default() })
+        }),
+    ),
+];
+
+/// The breaches of one entity type, in the company of the program's own of other kinds.
+fn breaches(entity: &'static Entity) -> Vec<Breach> {
+    let others =
+        registry().iter().filter(|other| other.kind() != entity.kind() && other.kind() < Kind::Object);
+    let registry = Registry::of(others.chain([entity])).expect("no name is taken");
+    let place = entity.place();
+    contract::breaches(&registry).into_iter().filter(|breach| breach.place == place).collect()
+}
+
+#[test]
+fn a_sound_shape_is_found_sound() {
+    assert!(breaches(&SOUND).is_empty(), "{}", breaches(&SOUND)[0]);
+}
+
+#[test]
+fn every_broken_promise_is_found_for_what_it_is() {
+    for (promise, entity) in &BROKEN {
+        let [breach] = &breaches(entity)[..] else { panic!("{entity:?} breaks nothing") };
+        assert_eq!(breach.promise, *promise, "{breach}");
+        let told = breach.to_string();
+        assert!(
+            told.starts_with(&format!("{}: the {} `{}`", entity.place(), entity.kind(), entity.name)),
+            "{told}"
+        );
+        assert!(told.contains(promise.cure()) && told.contains(&format!("\n    {} ", entity.name)), "{told}");
+    }
+}
+
+#[test]
+fn the_docs_tell_each_promise_and_its_cure() {
+    let page = fs::read_to_string(root().join("docs/plugins.md")).expect("the page");
+    for promise in Promise::ALL {
+        let row = format!("\n| {promise} | {} |\n", promise.cure());
+        assert!(page.contains(&row), "docs/plugins.md lacks {row}");
+    }
+}
+
+#[test]
+fn a_breach_is_told_as_the_docs_show_it() {
+    let (_, broken) = &BROKEN[5];
+    let told = breaches(broken)[0].to_string().replace(&broken.place(), "plugins/long_normal.rs:20");
+    let page = fs::read_to_string(root().join("docs/plugins.md")).expect("the page");
+    assert_eq!(block_with(&page, "breaks its contract"), told);
+}

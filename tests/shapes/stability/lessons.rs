@@ -1,0 +1,214 @@
+//! The six mistakes of the prototype.
+
+use super::profiles::{FLANGE, Line, NASTY, STAIR, VASE};
+use super::{Random, distance};
+use glam::{DVec3, dvec3};
+use tabray::geometry::{MISS, Ray, Side, Span};
+use tabray::numeric::Interval;
+
+/// Lesson 1: a rounding margin of 32 eps R^2 for q forgets that the rounding of y comes in by the slope of g.
+#[test]
+fn a_margin_for_rounding_knows_the_slope() {
+    let flat_margin = 32.0 * f64::EPSILON * NASTY.widest * NASTY.widest;
+    let ripples = NASTY.shape();
+    let mut worst = 0.0_f64;
+    // Each ray dips into a ripple for some 1e-4 and less; nearby its q is this.
+    for (eye, dir, truth, near, q) in [
+        (
+            dvec3(17.26556398093873, 6.020514752678376, -9.194359506659884),
+            dvec3(-0.9055023692674403, -0.026756415943405908, 0.4234968163480283),
+            19.706119914378306,
+            19.706140854378305,
+            2.8416668639579354e-10,
+        ),
+        (
+            dvec3(7.034786946526704, 5.38254985908036, -6.9588183027297035),
+            dvec3(-0.6503527617436488, -0.10801284229939158, 0.7519138987881628),
+            10.58665405005954,
+            10.58660706005954,
+            4.001366084810695e-09,
+        ),
+        (
+            dvec3(2.5833769821360577, 1.8204447906206633, 15.976402972364316),
+            dvec3(-0.16513589613889057, 0.17724380662108616, -0.970213774804745),
+            15.315470619323554,
+            15.315417039323554,
+            5.311038000027031e-09,
+        ),
+    ] {
+        worst = worst.max((NASTY.outside(eye + near * dir) - q).abs());
+        let hit = distance(&*ripples, eye, dir);
+        assert!((hit - truth).abs() < 1e-8, "{hit} is not {truth}");
+    }
+    assert!(worst > flat_margin, "{worst:e} is within {flat_margin:e}");
+}
+
+/// Lesson 2: far from where it begins, a steep parabola is a difference of large numbers.
+#[test]
+fn a_slab_is_right_for_a_ray_that_begins_far_from_it() {
+    // Across the rim of the flange, g^2 is 5.3 - 3700 v^2. It is evaluated around s = 0, where v is -1.3.
+    let (curvature, base) = (-3_700.0_f64, -1.3);
+    let expanded = |s: f64| (curvature * s + 2.0 * curvature * base) * s + curvature * base * base;
+    let worst = (0..100).map(|step| {
+        let v = 1e-4 * f64::from(step);
+        (expanded(v - base) - curvature * (v - base + base).powi(2)).abs()
+    });
+    assert!(worst.fold(0.0, f64::max) > 1e-13, "more than any margin for q itself");
+    // Rays that are closest to the axis far above or below the disc, and enter its rim.
+    let flange = FLANGE.shape();
+    let mut random = Random(2);
+    for _ in 0..5_000 {
+        let y = 3.0 + random.between(-0.08, 0.08);
+        let at = dvec3((FLANGE.radius)(y), y, 0.0);
+        let angle = 10_f64.powf(-random.between(0.5, 5.0));
+        let dir = random.around(-FLANGE.normal(at), angle.sin());
+        let eye = at - 12.0 * dir;
+        let hit = distance(&*flange, eye, dir);
+        assert!(hit < 12.0 + 1e-11 / angle, "{hit} from {eye} along {dir}, at an angle of {angle:e}");
+        assert!(FLANGE.off(eye + hit * dir) < 1e-13, "{hit} from {eye} along {dir}");
+    }
+}
+
+/// Lesson 3: a NaN among the products of an interval's ends vanishes in `min` and `max`, and with it the jump.
+#[test]
+fn an_undefined_product_is_no_proof() {
+    // 0 times infinity is NaN, the least and the greatest of two of these are NaN, and the greater of 0 and their size is
+    // 0: that was the error of a slab with a jump in it, as it was proven.
+    let zero = Interval { low: 0.0, high: 0.0 };
+    for product in [zero * Interval::WHOLE, Interval::WHOLE * zero] {
+        assert!(!product.low.is_nan() && !product.high.is_nan(), "{product:?}");
+        assert!(product.low <= 0.0 && product.high >= 0.0, "{product:?}");
+    }
+    // The camera's rays that lost a ledge of the stair by it.
+    let stair = STAIR.shape();
+    for (dir, truth) in [
+        (dvec3(0.0740714372634855, 0.2047857383166952, -0.9760001145306324), 9.766305097413852),
+        (dvec3(0.15911707272725822, 0.2578207114243809, -0.953000649489461), 11.635993025641397),
+        (dvec3(0.047970560786179166, 0.20845389141630588, -0.9768550560094666), 9.59444789642125),
+    ] {
+        let hit = distance(&*stair, dvec3(0.0, 3.0, 11.0), dir);
+        assert!((hit - truth).abs() < 1e-12, "{hit} is not {truth} along {dir}");
+    }
+}
+
+/// Lesson 4: where the error of a slab is infinite, so are both terms of its root, and their quotient is none.
+#[test]
+fn a_slab_without_a_bound_is_not_skipped() {
+    // The part of a ray in which the lower parabola of a slab is below 0 ends at below / (-b - root), where `below` is
+    // c - infinity: infinity by infinity, which is NaN, and `max` makes of it where the part begins. Nothing of the slab
+    // was searched.
+    let stair = STAIR.shape();
+    for (eye, dir, truth) in [
+        (
+            dvec3(0.0, 3.0, 11.0),
+            dvec3(0.13444167212370586, 0.29171306215521076, -0.9470105206198146),
+            10.284078394829642,
+        ),
+        (
+            dvec3(-15.660416586140448, -17.337770477482444, -15.34315054413811),
+            dvec3(0.4656335696485747, 0.7391546260688354, 0.48665780336635506),
+            30.22070036452994,
+        ),
+        (
+            dvec3(18.76514442130499, -20.030976181811756, 3.312886600757488),
+            dvec3(-0.6560621641496052, 0.7479591684467999, -0.10069517916816165),
+            28.117813202937725,
+        ),
+    ] {
+        let hit = distance(&*stair, eye, dir);
+        assert!((hit - truth).abs() < 1e-12, "{hit} is not {truth} from {eye}");
+    }
+}
+
+/// Lesson 5: a few ulps in which nothing can be proven hold a hit only if the sign changes in them, or q is 0 but for
+/// rounding.
+#[test]
+fn a_jump_that_a_ray_passes_is_no_surface() {
+    // Bounds of q over a jump hold all that lies between its sides, and so never exclude 0, however short the piece.
+    let stair = STAIR.shape();
+    for (x, side) in [(0.1, "inside"), (3.0, "outside"), (2.0 + 1e-12, "outside")] {
+        for (eye, dir) in [(dvec3(x, -5.0, 0.0), DVec3::Y), (dvec3(x, 9.0, 0.0), DVec3::NEG_Y)] {
+            assert_eq!(distance(&*stair, eye, dir), MISS, "along the axis and {side}, at x = {x}");
+        }
+    }
+    // Across two steps, and above them: out of reach of the lower one, into the side of the higher one.
+    let (eye, dir) = (dvec3(10.0, 2.5, 0.0), dvec3(-8.0, 0.7, 0.0).normalize());
+    let truth = 8.75 / -dir.x;
+    let hit = distance(&*stair, eye, dir);
+    assert!((hit - truth).abs() < 1e-14, "{hit} is not {truth}");
+}
+
+/// Lesson 6: a ray that leaves the surface enters it where q falls, and no earlier.
+#[test]
+fn a_ray_that_leaves_is_hit_by_the_first_entry_and_not_by_the_first_root() {
+    // The start lies inside by rounding; `root` is where the ray gets out of that.
+    type Case = (Line, DVec3, DVec3, f64, f64);
+    let cases: [Case; 4] = [
+        (
+            VASE,
+            dvec3(0.8224652936805328, 3.257539637415116, 1.6953421320990274),
+            dvec3(0.09269672318029028, 0.6458925404539142, -0.7577797461648244),
+            1.34e-12,
+            1.0403534226067814,
+        ),
+        (
+            VASE,
+            dvec3(0.7474844815364803, 4.725674049966937, 0.6644121071498956),
+            dvec3(-0.17665519546411082, 0.9597220586045937, 0.21846398362956274),
+            5.88e-13,
+            8.366930370656748e-4,
+        ),
+        (
+            NASTY,
+            dvec3(0.5356892853079575, 0.8478448011311897, 0.47417544658048993),
+            dvec3(0.8418097942277675, -0.15041699372536774, -0.518392706681746),
+            1.76e-13,
+            1.8925900930988516e-3,
+        ),
+        (
+            NASTY,
+            dvec3(-0.3704856571036659, 0.47889028458725014, 0.8794161961925451),
+            dvec3(-0.0715808601844208, 0.1517085853747172, -0.9858299475968767),
+            1.76e-14,
+            0.08780963933856202,
+        ),
+    ];
+    for (line, origin, dir, root, truth) in cases {
+        let sign = |distance: f64| line.outside(origin + distance * dir) > 0.0;
+        assert!(!sign(0.0) && sign(100.0 * root), "{}: the first root is next to the start", line.formula);
+        let within = Span { leaves: Some(Side::Outside), ..Span::RAY };
+        let hit = line.shape().distance(&Ray { origin, dir }, &within);
+        // The start is rounded by an ulp, and so is where the ray comes back, by as much as it is steeper here.
+        assert!((hit - truth).abs() < 1e-11, "{}: {hit} is not {truth}", line.formula);
+    }
+}
+
+/// What all six lessons are for: a hit is at a change of sign, and there is none before it.
+#[test]
+fn a_hit_is_the_first_change_of_sign() {
+    let mut random = Random(1);
+    for line in [VASE, NASTY, FLANGE] {
+        let shape = line.shape();
+        for _ in 0..2_000 {
+            // Between the ends and outside, so that no ray comes in by an end.
+            let eye = dvec3(random.between(-4.0, 4.0), random.between(0.1, 6.0), 8.0);
+            let dir = (dvec3(random.between(-2.0, 2.0), random.between(0.0, 6.28), 0.0) - eye).normalize();
+            let hit = distance(&*shape, eye, dir);
+            let outside = |distance: f64| line.outside(eye + distance * dir) > 0.0;
+            let before = if hit < MISS { hit * 0.998 } else { 20.0 };
+            let within = |distance: f64| (0.0..=line.height).contains(&(eye.y + distance * dir.y));
+            let earlier =
+                (0..500).map(|step| before * f64::from(step) / 500.0).find(|at| within(*at) && !outside(*at));
+            assert_eq!(earlier, None, "{}: {hit} from {eye} along {dir}", line.formula);
+            // As steep as it is here, a ray 1e-9 from its hit is above rounding.
+            let steep = hit < MISS && line.normal(eye + hit * dir).dot(dir).abs() > 1e-3;
+            if steep && within(hit + 1e-9) {
+                assert!(
+                    outside(hit - 1e-9) && !outside(hit + 1e-9),
+                    "{}: {hit} from {eye} along {dir}",
+                    line.formula
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,220 @@
+//! Charts of speed against accuracy: what they say of scenes where that is known.
+
+use crate::common::{assert_tells_fields, registry, root};
+use assert_cmd::cargo::cargo_bin_cmd;
+use serde_json::Value;
+use std::io;
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::process::Command;
+use tabray::scene::{self, Model};
+use tabray::tools::chart::{self, Chart, Panel, Progress};
+use tabray::world::Accuracy;
+use tempfile::TempDir;
+
+/// A thin disc on a rod, which samples along a ray step over.
+const FLANGE: &str = "camera eye { pixeldim 64 48 worlddim 8 6 viewpoint 4 7 7 }
+    material m { ambient 2 1 0 diffuse 9 9 9 }
+    revsurf flange
+    {
+        material m profile \"0.3 + 2*exp(-(20*(y-3))^2)\" direction 0 1 0 base 4 0 -4 height 6
+    }
+    light lamp { location 1 7 3 emissivity 9 9 9 size 0.5 }";
+
+/// A disc before a wall, whose edge is all that samples are for.
+const EDGE: &str = "camera eye { pixeldim 40 30 worlddim 8 6 viewpoint 4 3 6 }
+    material white { ambient 8 8 8 }
+    material red { ambient 8 0 0 }
+    plane wall { material white normal 0 0 1 point 0 0 -2 }
+    sphere ball { material red center 4.3 3.1 -1 radius 1.7 }";
+
+/// Stops after so many units of work.
+struct Patience(usize);
+
+impl Progress for Patience {
+    fn more(&mut self, _units: usize) {}
+
+    fn done(&mut self, units: usize) -> ControlFlow<()> {
+        self.0 = self.0.saturating_sub(units);
+        if self.0 == 0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+}
+
+fn measured(text: &str, patience: usize) -> Chart {
+    let load = |accuracy: Option<Accuracy>| -> io::Result<Model> {
+        let loaded = scene::read(registry(), "scene", Path::new(""), text.as_bytes(), accuracy);
+        Ok(loaded.map_err(|report| io::Error::other(report.to_string()))?.model)
+    };
+    chart::measure("scene", &load, &mut Patience(patience)).expect("a chart")
+}
+
+fn panel<'c>(chart: &'c Chart, part: &str) -> &'c Panel {
+    chart
+        .panels
+        .iter()
+        .find(|panel| panel.title.contains(part))
+        .unwrap_or_else(|| panic!("a panel of {part}"))
+}
+
+fn wrong(panel: &Panel, name: &str) -> usize {
+    let point = panel.points.iter().find(|point| point.name == name);
+    point.unwrap_or_else(|| panic!("{name} in {}", panel.title)).wrong.count()
+}
+
+fn error(panel: &Panel, name: &str) -> f64 {
+    let point = panel.points.iter().find(|point| point.name == name);
+    point.unwrap_or_else(|| panic!("{name} in {}", panel.title)).error
+}
+
+#[test]
+fn wrong_hits_are_counted_where_methods_have_them_and_the_default_has_none() {
+    let chart = measured(FLANGE, usize::MAX);
+    assert!(chart.is_whole);
+    let grazing = panel(&chart, "flange: grazing rays");
+    for name in ["classic", "steps of 0.1", "64 + Newton", "16 + turning points"] {
+        assert!(wrong(grazing, name) > 20, "{name}: {}", wrong(grazing, name));
+    }
+    for panel in chart.panels.iter().filter(|panel| panel.title.starts_with("flange")) {
+        for name in ["draft", "exact", "strict", "intervals", "Taylor bounds"] {
+            assert_eq!(wrong(panel, name), 0, "{name}, {}", panel.title);
+        }
+        assert!(error(panel, "exact") < 1e-8 && error(panel, "draft") > 1e-8, "{}", panel.title);
+    }
+    // In the picture those who lose no hit change no pixel, and those who do change some.
+    let picture = panel(&chart, "by method");
+    let changed = |name: &str| {
+        picture
+            .points
+            .iter()
+            .find(|point| point.name == name)
+            .and_then(|point| point.changed)
+            .expect("a count")[0]
+    };
+    assert_eq!((changed("exact"), changed("intervals")), (0, 0));
+    assert!(changed("classic") > 0);
+    // The light has a size, and what each chart says can be drawn.
+    panel(&chart, "soft shadows alone");
+    assert!(chart::svg(&chart).expect("a drawing").contains("steps of 0.1: "));
+    let png = image::load_from_memory(&chart::png(&chart).expect("a drawing")).expect("a PNG");
+    assert!(png.width() >= 1440 && png.height() > 1000);
+}
+
+#[test]
+fn sobol_reaches_with_24_samples_what_random_reaches_with_64() {
+    let chart = measured(EDGE, usize::MAX);
+    let samples = panel(&chart, "edges");
+    assert!(error(samples, "sobol 24") <= error(samples, "random 64"));
+    assert!(error(samples, "random 64") < 0.2 * error(samples, "sobol 1"));
+    assert!(!samples.front()[samples.points.iter().position(|point| point.name == "random 64").expect("it")]);
+}
+
+#[test]
+fn what_breaks_off_keeps_what_is_measured() {
+    let chart = measured(EDGE, 3_000_000);
+    assert!(!chart.is_whole && !chart.panels.is_empty() && chart.panels.len() < 4, "{}", chart.panels.len());
+    assert!(chart::words(&chart).ends_with("Interrupted: this is what had been measured by then.\n"));
+}
+
+fn numbers(folder: &Path) -> Value {
+    let text = std::fs::read_to_string(folder.join("edge.json")).expect("the numbers");
+    serde_json::from_str(&text).expect("JSON")
+}
+
+/// The errors of a chart's numbers, by panel and choice.
+fn errors(folder: &Path) -> Vec<(String, String, Value)> {
+    let numbers = numbers(folder);
+    let panels = numbers["panels"].as_array().expect("panels");
+    panels
+        .iter()
+        .flat_map(|panel| {
+            let title = panel["title"].as_str().expect("a title").to_owned();
+            panel["points"].as_array().expect("points").iter().map(move |point| {
+                let counts = ["error", "worst", "missed", "invented", "later", "visible", "changed"];
+                let counts = counts.map(|count| point[count].clone());
+                (title.clone(), point["choice"].to_string(), Value::from(counts.to_vec()))
+            })
+        })
+        .collect()
+}
+
+#[test]
+fn a_chart_has_all_its_files_and_its_errors_are_the_same_twice() {
+    let folders = [TempDir::new().expect("a folder"), TempDir::new().expect("a folder")];
+    for folder in &folders {
+        std::fs::write(folder.path().join("edge.ray"), EDGE).expect("a file");
+        let mut chart = cargo_bin_cmd!("tabray");
+        let output = chart.current_dir(folder.path()).args(["chart", "edge.ray", "-o", "."]).output();
+        let output = output.expect("the program runs");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        for extension in ["svg", "png", "csv", "json", "txt"] {
+            assert!(folder.path().join("edge").with_extension(extension).is_file(), "{extension}");
+        }
+        let words = std::fs::read_to_string(folder.path().join("edge.txt")).expect("the verdict");
+        assert_eq!(String::from_utf8_lossy(&output.stdout), words);
+        let csv = std::fs::read_to_string(folder.path().join("edge.csv")).expect("the numbers");
+        assert_eq!(csv.lines().count(), 1 + errors(folder.path()).len());
+    }
+    assert_tells_fields("tools.md", &numbers(folders[0].path()));
+    assert_eq!(errors(folders[0].path()), errors(folders[1].path()));
+}
+
+#[test]
+fn what_is_chosen_is_a_command_line_that_renders() {
+    let folder = TempDir::new().expect("a folder");
+    std::fs::write(folder.path().join("edge.ray"), EDGE).expect("a file");
+    let choose = |limit: &[&str]| {
+        let mut choose = cargo_bin_cmd!("tabray");
+        choose.current_dir(folder.path()).args(["choose", "edge.ray"]).args(limit).output().expect("it runs")
+    };
+    let chosen = choose(&["--max-error", "0.01"]);
+    let text = String::from_utf8(chosen.stdout).expect("UTF-8");
+    assert!(
+        text.contains(
+            "\nThe marked choice is the fastest with a measured error of at most 0.01. The others "
+        ),
+        "{text}"
+    );
+    let line = text.lines().last().expect("a command line");
+    let mut words = line.split(' ');
+    assert_eq!(words.next(), Some("tabray"), "{text}");
+    let mut render = Command::new(assert_cmd::cargo::cargo_bin!("tabray"));
+    assert!(render.current_dir(folder.path()).args(words).status().expect("it runs").success(), "{line}");
+    assert!(folder.path().join("edge.png").is_file());
+    // One sample is not enough for that, and the marked line says what its error is.
+    let marked = text.lines().find(|line| line.starts_with('>')).expect("a marked line");
+    let cells: Vec<_> = marked.split_whitespace().collect();
+    assert!(cells[2].parse::<u32>().is_ok_and(|samples| samples > 1), "{text}");
+    assert!(cells[3].parse::<f64>().is_ok_and(|error| error <= 0.01), "{text}");
+
+    let never = choose(&["--max-error", "1e-12"]);
+    assert_eq!(never.status.code(), Some(1));
+    assert!(
+        String::from_utf8_lossy(&never.stderr)
+            .starts_with("error: no choice has a measured error of at most 1e-12; the least is"),
+    );
+    let text = String::from_utf8(choose(&["--max-time", "1000"]).stdout).expect("UTF-8");
+    assert!(text.contains("\nThe marked choice is the one with the least error within 1000 s on "), "{text}");
+    let never = choose(&["--max-time", "1e-9"]);
+    assert_eq!(never.status.code(), Some(1));
+    let said = String::from_utf8_lossy(&never.stderr).into_owned();
+    let least = said.strip_prefix(
+        "error: no choice is estimated to take at most 0.000000001 s; the fastest takes about ",
+    );
+    assert!(least.is_some_and(|least| least.ends_with("s\n") && !least.starts_with("0.00")), "{said}");
+    for wrong in [&["--max-error", "0"][..], &[], &["--max-time", "1", "--max-error", "1"]] {
+        assert_eq!(choose(wrong).status.code(), Some(2), "{wrong:?}");
+    }
+}
+
+#[test]
+fn the_program_refuses_a_folder_that_cannot_be_made() {
+    let folder = TempDir::new().expect("a folder");
+    std::fs::write(folder.path().join("file"), "precious").expect("a file");
+    let scene = root().join("scenes/camera/one-pixel.ray");
+    let mut chart = cargo_bin_cmd!("tabray");
+    let output = chart.current_dir(folder.path()).arg("chart").arg(scene).args(["-o", "file"]).output();
+    let output = output.expect("the program runs");
+    assert_eq!(output.status.code(), Some(1));
+    let said = "error: cannot create the folder `file`: a file of this name exists\n";
+    assert_eq!(String::from_utf8_lossy(&output.stderr), said);
+}

@@ -1,0 +1,171 @@
+//! A copy of the package with further plugins in it, and the crate beside it that has its own; built once for all that
+//! is asked of it.
+
+use crate::common::root;
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+/// The programs of a copy, and what was said when they were built.
+pub struct Built {
+    programs: PathBuf,
+    /// What cargo said.
+    pub said: String,
+    /// Files of the copy that building it added or changed.
+    pub touched: Vec<PathBuf>,
+}
+
+/// The folders and files that are copied.
+const PARTS: [&str; 7] = [
+    "Cargo.toml",
+    "Cargo.lock",
+    "src",
+    "plugins",
+    // The reference begins with it.
+    "docs/language.md",
+    "docs/example-plugin/Cargo.toml",
+    "docs/example-plugin/src",
+];
+
+/// The files of a copy by their paths in it.
+pub type Files = BTreeMap<PathBuf, Vec<u8>>;
+
+/// Where copies are made and built.
+fn base() -> &'static Path {
+    Path::new(env!("CARGO_TARGET_TMPDIR"))
+}
+
+/// Builds a copy with some more files, by their paths in it, and keeps its programs under this name.
+pub fn build(name: &str, more: Files) -> Built {
+    let (lock, folder) = (base().join("copy.lock"), base().join("copy"));
+    let lock = File::create(lock).and_then(|lock| lock.lock().map(|()| lock)).expect("a lock");
+    let files = with_package(more);
+    write(&folder, &files);
+    let said = cargo(&folder).unwrap_or_else(|said| panic!("{said}"));
+    let touched = read(&folder).into_iter().filter(|(path, bytes)| files.get(path) != Some(bytes));
+    let touched = touched.map(|(path, _)| path).filter(|path| !path.ends_with("Cargo.lock")).collect();
+    // The next copy is built in the same place.
+    let programs = base().join(name);
+    fs::create_dir_all(&programs).expect("room for a folder");
+    for program in ["tabray", "contracts", "example-plugin"] {
+        fs::copy(base().join("copy-target/debug").join(program), programs.join(program)).expect("a program");
+    }
+    drop(lock);
+    Built { programs, said, touched }
+}
+
+/// What cargo says where a copy with some more files cannot be built.
+pub fn cannot_be_built(more: Files) -> String {
+    let lock =
+        File::create(base().join("copy.lock")).and_then(|lock| lock.lock().map(|()| lock)).expect("a lock");
+    let folder = base().join("copy");
+    write(&folder, &with_package(more));
+    let said = cargo(&folder).expect_err("it cannot be built");
+    drop(lock);
+    said
+}
+
+/// The package's own files and some more.
+fn with_package(more: Files) -> Files {
+    let mut files = Files::new();
+    for part in PARTS {
+        collect(root(), Path::new(part), &mut files);
+    }
+    // Next to each other both crates are built with the same features of others, and so with the same libraries.
+    let manifest = files.get_mut(Path::new("Cargo.toml")).expect("a manifest");
+    manifest.extend_from_slice(b"\n[workspace]\nmembers = [\"docs/example-plugin\"]\n");
+    files.extend(more);
+    files
+}
+
+/// Builds all programs of a copy; what cargo says of it.
+fn cargo(folder: &Path) -> Result<String, String> {
+    let mut cargo = Command::new(env!("CARGO"));
+    // Where examples may need what tests need, the features of other crates are those that tests have: their libraries
+    // are there already.
+    cargo.args(["build", "--offline", "--workspace", "--bins", "--examples"]).current_dir(folder);
+    cargo.env("CARGO_TARGET_DIR", base().join("copy-target")).env("CARGO_BUILD_BUILD_DIR", base().join(".."));
+    // Its pictures are small: what counts is how long the compiler takes.
+    cargo.env("CARGO_PROFILE_DEV_OPT_LEVEL", "0").env("CARGO_PROFILE_DEV_DEBUG", "0");
+    let output = cargo.output().expect("cargo runs");
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    if output.status.success() { Ok(said) } else { Err(said) }
+}
+
+impl Built {
+    /// What a program of the copy prints.
+    pub fn prints_of(&self, program: &str, args: &[&str]) -> String {
+        let Output { status, stdout, stderr } =
+            Command::new(self.programs.join(program)).args(args).output().expect("the program runs");
+        assert!(status.success(), "{args:?}: {}", String::from_utf8_lossy(&stderr));
+        String::from_utf8(stdout).expect("text")
+    }
+
+    /// What `tabray` prints.
+    pub fn prints(&self, args: &[&str]) -> String {
+        self.prints_of("tabray", args)
+    }
+
+    /// What `tabray` says of a scene on standard input.
+    pub fn says(&self, args: &[&str], scene: &str) -> String {
+        let mut program = Command::new(self.programs.join("tabray"));
+        let mut program =
+            program.args(args).stdin(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it runs");
+        io::copy(&mut scene.as_bytes(), &mut program.stdin.take().expect("it is piped")).expect("it reads");
+        String::from_utf8(program.wait_with_output().expect("it ends").stderr).expect("text")
+    }
+
+    /// The picture that a program makes of a scene's file.
+    pub fn picture_of(&self, program: &str, scene: &Path) -> image::RgbImage {
+        let picture = self.programs.join(scene.file_name().expect("a name")).with_extension("png");
+        let paths = [scene, &picture].map(|path| path.to_str().expect("a path in UTF-8"));
+        self.prints_of(program, &["render", paths[0], "-o", paths[1]]);
+        image::open(&picture).expect("a picture").into_rgb8()
+    }
+
+    /// The picture that `tabray` makes of a scene's text.
+    pub fn picture(&self, name: &str, scene: &str) -> image::RgbImage {
+        self.picture_of("tabray", &self.scene(name, scene))
+    }
+
+    /// A file with a scene's text.
+    pub fn scene(&self, name: &str, scene: &str) -> PathBuf {
+        let path = self.programs.join(name).with_extension("ray");
+        fs::write(&path, scene).expect("room for a file");
+        path
+    }
+}
+
+/// All files of a folder.
+pub fn read(folder: &Path) -> Files {
+    let mut files = Files::new();
+    collect(folder, Path::new(""), &mut files);
+    files
+}
+
+/// Adds a file or all files of a folder, by their paths from `root`.
+fn collect(root: &Path, path: &Path, files: &mut Files) {
+    if root.join(path).is_dir() {
+        for entry in fs::read_dir(root.join(path)).expect("a folder") {
+            collect(root, &path.join(entry.expect("an entry").file_name()), files);
+        }
+    } else {
+        files.insert(path.to_owned(), fs::read(root.join(path)).expect("a file"));
+    }
+}
+
+/// Makes a folder hold these files and no others. What is there already stays as it is, and need not be compiled again.
+fn write(folder: &Path, files: &Files) {
+    fs::create_dir_all(folder).expect("room for a folder");
+    let there = read(folder);
+    for path in there.keys().filter(|path| !files.contains_key(*path)) {
+        fs::remove_file(folder.join(path)).expect("it was there");
+    }
+    for (path, bytes) in files.iter().filter(|(path, bytes)| there.get(*path) != Some(bytes)) {
+        let path = folder.join(path);
+        fs::create_dir_all(path.parent().expect("a folder")).expect("room for a folder");
+        fs::write(path, bytes).expect("room for a file");
+    }
+}

@@ -1,0 +1,67 @@
+//! The program: all that is asked of it, and nothing of it is used elsewhere.
+
+use crate::common::registry;
+use std::path::Path;
+use tabray::render::{Plan, Renderer, trace};
+use tabray::scene::{self, Model};
+use tabray::tools::verify::{self, Verdict};
+
+/// A scene as the program has it.
+pub struct Program(Model);
+
+/// What it says of a pixel, of the proof that it has for it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Claim {
+    /// What is found is certainly right.
+    Right,
+    /// What is found is certainly wrong.
+    Wrong,
+    /// Neither.
+    Unknown,
+}
+
+/// What it finds for a ray.
+pub struct Found {
+    pub first: Option<usize>,
+    pub distance: f64,
+    /// The ray, rounded, as it has it.
+    pub origin: [f64; 3],
+    pub dir: [f64; 3],
+}
+
+impl Program {
+    /// The scene, unless the program refuses it.
+    pub fn read(text: &str) -> Option<Self> {
+        scene::read(registry(), "scene", Path::new(""), text.as_bytes(), None)
+            .ok()
+            .map(|loaded| Self(loaded.model))
+    }
+
+    pub fn find(&self, [x, y]: [usize; 2]) -> Found {
+        let ray = self.0.camera.value.ray(x as f64, y as f64);
+        let hit = trace::first_hit(&Plan::new(&self.0), &self.0.camera.value.sight(x as f64, y as f64));
+        Found {
+            first: hit.as_ref().map(|hit| hit.index),
+            distance: hit.map_or(f64::INFINITY, |hit| hit.distance),
+            origin: ray.origin.to_array(),
+            dir: ray.dir.to_array(),
+        }
+    }
+
+    pub fn claim(&self, [x, y]: [usize; 2]) -> Claim {
+        match verify::pixel(&Plan::new(&self.0), x, y) {
+            Verdict::Proven => Claim::Right,
+            Verdict::Contradicted => Claim::Wrong,
+            Verdict::Tie => Claim::Unknown,
+        }
+    }
+
+    pub fn size(&self) -> [usize; 2] {
+        self.0.camera.value.pixels
+    }
+
+    /// The picture that packets of rays make, from the top and from the left: red, green and blue of each pixel.
+    pub fn picture(&self, renderer: &Renderer) -> Vec<[u8; 3]> {
+        renderer.picture(&Plan::new(&self.0)).chunks(3).map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect()
+    }
+}

@@ -1,0 +1,223 @@
+//! The gallery of charts: writes `docs/charts.md` and the pictures that it shows.
+//!
+//! `cargo test --profile dist --test slow -- --ignored --nocapture gallery`
+
+use crate::common::root;
+use assert_cmd::cargo::cargo_bin_cmd;
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+use tempfile::TempDir;
+
+const COMMAND: &str = "cargo test --profile dist --test slow -- --ignored --nocapture gallery";
+
+/// Scenes, what they are and what to look for.
+const SCENES: [(&str, &str, &str); 8] = [
+    (
+        "revsurf/surfer-0",
+        "The notes' vase",
+        "Steps and samples find nearly all hits of camera rays, but lose a third of those at silhouettes, which are \
+         few pixels of an image and the ones that people look at. There the default proves its hits; turning points, \
+         which prove nothing, are faster and, on so smooth a profile, as accurate. The flange below shows what they \
+         rely on.",
+    ),
+    (
+        "revsurf/surfer-1",
+        "The notes' cone",
+        "Its square is a parabola, so a single slab of the default represents it without an error: `draft` is as \
+         exact as `exact` except for grazing rays.",
+    ),
+    (
+        "hard/ripples",
+        "A column with 20 waves",
+        "Methods whose samples have two turning points between them lose hits, or find later ones.",
+    ),
+    (
+        "hard/flange-from-above",
+        "A thin disc on a rod",
+        "Here every method that samples has wrong hits. That includes the one that looks for turning points, which is \
+         faster than the default where a profile is smooth: nothing says beforehand that 16 samples are enough. \
+         Bounds need no such guess.",
+    ),
+    (
+        "gallery/hall-of-mirrors",
+        "A hall of mirrors",
+        "Planes and spheres near the viewer: the choice of method changes no pixel, and the samples take the time.",
+    ),
+    (
+        "hard/far-camera",
+        "A vase from ten million units away",
+        "No distance is more exact than half a unit in its last place, 9e-10 there, which is the error of all methods \
+         that compute from near the surface. The notes follow a ray for 100 units between a surface's heights, and \
+         have lost it by then.",
+    ),
+    (
+        "camera/samples",
+        "Edges",
+        "The error of evenly spread samples falls with nearly twice the exponent of that of random ones.",
+    ),
+    (
+        "light/size",
+        "Soft shadows",
+        "The last panel samples the centres of pixels only, so it shows the shadows alone.",
+    ),
+];
+
+/// Runs the program, which ends well, and gives what it prints.
+fn tabray(arguments: &[&str], folder: &Path) -> String {
+    let output = cargo_bin_cmd!("tabray").current_dir(folder).args(arguments).output().expect("it runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).expect("text")
+}
+
+/// However crowded a chart is. Of samples the names are numbers, which axes have, too; and a choice that finds nothing
+/// has no error, and no place.
+fn every_choice_has_its_name(table: &str, drawing: &str) {
+    let rows = table.lines().skip(1).filter(|row| !row.starts_with("\"samples"));
+    let has_error = |row: &str| row.rsplit(',').nth(8).is_some_and(|error| error != "NaN");
+    let mut names: Vec<_> =
+        rows.filter(|row| has_error(row)).filter_map(|row| row.split('"').nth(3)).collect();
+    names.sort_unstable();
+    for same in names.chunk_by(|one, other| one == other) {
+        let drawn = drawing.lines().filter(|line| line.starts_with(same[0])).count();
+        assert!(drawn >= same.len(), "{} names of {} points `{}`", drawn, same.len(), same[0]);
+    }
+}
+
+#[test]
+#[ignore = "runs for minutes; its times are a document"]
+fn the_gallery_of_charts_is_drawn() {
+    let docs = root().join("docs");
+    let pictures = docs.join("charts");
+    let _ = fs::remove_dir_all(&pictures);
+    fs::create_dir_all(&pictures).expect("room for pictures");
+    let folder = TempDir::new().expect("a folder");
+    let mut text = INTRODUCTION.replace("COMMAND", COMMAND);
+    for (scene, title, words) in SCENES {
+        let path = root().join("scenes").join(scene).with_extension("ray");
+        let verdict = tabray(&["chart", path.to_str().expect("UTF-8"), "-o", "."], folder.path());
+        let name = path.file_stem().expect("a name").to_str().expect("UTF-8");
+        for extension in ["png", "csv"] {
+            let file = Path::new(name).with_extension(extension);
+            fs::copy(folder.path().join(&file), pictures.join(&file)).expect("a copy");
+        }
+        let read = |extension| {
+            let file = folder.path().join(name).with_extension(extension);
+            fs::read_to_string(file).expect("it is written")
+        };
+        every_choice_has_its_name(&read("csv"), &read("svg"));
+        println!("{title}\n{verdict}");
+        write!(
+            text,
+            "\n## {title}\n\n[{scene}.ray](../scenes/{scene}.ray). {words}\n\n![{title}](charts/{name}.png)\n\n\
+             The numbers: [{name}.csv](charts/{name}.csv). The verdict:\n\n```text\n{}\n```\n",
+            verdict.trim_end()
+        )
+        .expect("text grows");
+    }
+    for method in ["classic", "exact"] {
+        let picture = format!("{method}.png");
+        let scene = root().join("scenes/hard/ripples.ray");
+        let scene = scene.to_str().expect("UTF-8");
+        let arguments = ["render", scene, "--method", method, "--aov", "cost,error", "-o", &picture];
+        tabray(&arguments, folder.path());
+        for aov in ["cost", "error"] {
+            let name = format!("{method}-{aov}.png");
+            fs::copy(folder.path().join(&name), pictures.join(format!("ripples-{name}"))).expect("a copy");
+        }
+    }
+    text += HEAT_MAPS;
+    let path = docs.join("charts.md");
+    fs::write(&path, text).expect("the folder of the documents is there");
+    println!("wrote {}", path.display());
+}
+
+const INTRODUCTION: &str = "# Speed against accuracy
+
+What does each choice cost, how large is its error, and is the default the right choice? `tabray chart SCENE` answers
+this for any scene. This page shows the charts of some scenes, each with its machine and its date; all of them, and the
+page itself, are written by
+
+```sh
+COMMAND
+```
+
+## How to read a chart
+
+Each panel answers one question. The horizontal axis is CPU time and the vertical axis the error, both logarithmic: the
+best place is the lower left. The star is the scene's own setting. A hollow point has hits that are missed, invented or
+not the first; their percentage of all rays is written beside it. The line is the Pareto front: of the choices without
+wrong hits, those that no other beats in both time and error. Times that differ by less than a tenth count as equal, and
+so do errors that differ by less than a half.
+
+- **Camera rays**: about 20000 pairs of a ray through a pixel and an object, in evenly spread tiles of 16 by 16 pixels.
+  Objects are separated by kind: those whose hits are found by a search along the ray, and those with a formula.
+- **Grazing rays**: pairs beside the edge of an object as the camera sees it, at distances from one pixel down to 10^-10
+  of one. An error in the last digit changes their distances by its square root.
+- **The image, by method**: one ray through each pixel, and the difference of its colours from those of `strict`.
+- **Samples per pixel**: the error of the image against 1024 other samples. `sobol` samples are evenly spread, `random`
+  ones are those of the notes.
+
+Errors of distances are the 99th percentile of all right hits. The ground truth is that of the real ray through the
+point of the image and of the scene's numbers as they are written: a hit is isolated by intervals of 237 bits, as in
+`tabray verify`, and the error of a distance includes the effect of rounding the ray. Where the intervals do not decide,
+the pair is left out and counted as undecided. Errors of colours are root mean squares over pixels and channels, of the
+colours as displayed, from 0 to 1. Errors depend on the scene alone: two runs give the same errors to the last digit.
+
+Times are CPU times of one thread, of the same work for each choice in turn, in up to 15 rounds after a warm-up round;
+the minimum counts. Distances are timed on about 2000 of the pairs, images on some of their tiles. Both are traced as in
+a render: up to 256 rays at a time, with the best instructions of the processor. Where a hit is searched for, only
+`draft`, `exact` and `strict` trace the rays of a packet together; all other methods trace them one by one, which
+accounts for part of the default's advantage. Most grazing rays are traced one by one by the default, too.
+
+The caption gives the difference between the median and the minimum round, for the median choice: above 15 % it says not
+to trust the times. If rounds waited long for other work of the machine, the caption says so: waiting is not part of CPU
+time, but cores that share a cache or an arithmetic unit slow each other down, for all choices alike.
+
+## The methods
+
+Those without a link are `tabray`'s own: `classic` is the method of the notes' program, and `draft`, `exact` and
+`strict` are those that a scene chooses with `accuracy`; see [how exact the methods are](accuracy.md).
+
+| point | method | where it fails |
+|---|---|---|
+| `classic` | one bracket, from the viewer to the ray's point closest to the axis | silhouettes, inner walls, distant spheres |
+| [`steps of 0.1`](../src/geometry/roots/steps.rs) | the notes' page on procedural surfaces: steps, then bisection to 1e-6 | anything thinner than a step |
+| [`64 + ...`](../src/geometry/roots/samples.rs) | samples in the bounding cylinder, then a refiner: [bisection](../src/geometry/roots/bisection.rs), [Chandrupatla](../src/geometry/roots/chandrupatla.rs) or [Newton](../src/geometry/roots/newton.rs) | silhouettes, however many samples |
+| [`16 + turning points`](../src/geometry/roots/turning.rs) | samples, and the turning points of the function between them | functions that turn twice between two samples |
+| [`sphere tracing`](../src/geometry/roots/tracing.rs) | steps of a length that a bound of the slope allows | hits surfaces that it only passes closely; slow at silhouettes |
+| [`intervals`](../src/geometry/roots/intervals.rs) | bounds of values and slopes (Mitchell 1990) | slow at silhouettes |
+| [`Taylor bounds`](../src/geometry/roots/taylor.rs) | bounds of the curvature, too; the method for shapes given by one formula | a few of a hundred thousand near tangents: [the falsifier](falsify.md) counts them |
+| `draft`, `exact`, `strict` | for surfaces of revolution, quadrics with a proven error, then Newton; Taylor bounds for grazing rays | a few of a hundred thousand near tangents: [the falsifier](falsify.md) counts them |
+
+The counts here differ from those of [accuracy.md](accuracy.md) and of other tables, because the rays differ. There, all
+rays of a kind go through one scene, with a million for each profile; here they are those of the scene's own camera, and
+grazing rays lie at the silhouettes that it sees. There, the camera is closer, and rays that miss a surface's heights
+are counted as well. Half of the grazing rays miss the object here, and no method loses those: a method that loses 60 of
+100 tangents has 30 % here. What agrees in both is which methods have wrong hits and which have none.
+";
+
+const HEAT_MAPS: &str = "
+## Where time goes and where errors are
+
+`render --aov cost,error` writes both beside the image: the number of rays of each pixel, and the difference of its
+colour from that of 64 exactly traced samples, in red where its centre sees another object. With `-o a.png`,
+`a-error.exr` has the numbers: the error of the colour, the error of the distance, and 1 where the object differs.
+
+| rays, `--method classic` | error, `--method classic` | error, `--method exact` |
+|---|---|---|
+| ![cost](charts/ripples-classic-cost.png) | ![error](charts/ripples-classic-error.png) | ![error](charts/ripples-exact-error.png) |
+
+```sh
+for method in classic exact; do
+    cargo run --release -- render scenes/hard/ripples.ray --method $method --aov cost,error -o $method.png
+done
+```
+
+The classic method loses hits at every ripple; what remains with the exact method are edges, which samples smooth.
+
+## Choosing
+
+`tabray choose SCENE --max-error 0.01` quickly measures the effect of accuracy and samples on a scene, shows the choices
+that it considered, and prints the command line to use; `--max-time 2` chooses the best within two seconds on all cores.
+";

@@ -1,0 +1,18 @@
+//! What takes long: builds of packages with further plugins, hundreds of thousands of rays against true hits, renders that
+//! are stopped midway, charts, and what is measured for the docs.
+
+#[path = "../common/mod.rs"]
+mod common;
+#[path = "../oracle/mod.rs"]
+mod oracle;
+
+mod accuracy;
+mod chart;
+mod copy;
+mod falsify;
+mod gallery;
+mod performance;
+mod plugins;
+mod same;
+mod stop;
+mod truth;

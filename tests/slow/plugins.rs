@@ -1,0 +1,371 @@
+//! Plugins that are dropped into a copy of the package: those that the docs show, those that `tabray new` writes, and ones
+//! with mistakes, which are told as the docs have it; and a crate of its own with a plugin in it.
+
+use super::copy::{self, Built, Files};
+use crate::common::{block_with, root};
+use image::RgbImage;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::LazyLock;
+use tempfile::TempDir;
+
+fn text_of(path: &str) -> String {
+    fs::read_to_string(root().join(path)).expect("a text")
+}
+
+fn readme() -> String {
+    text_of("README.md")
+}
+
+fn page() -> String {
+    text_of("docs/plugins.md")
+}
+
+/// The plugin that the page begins with.
+fn brick() -> String {
+    block_with(&page(), "struct Brick")
+}
+
+/// The line of a plugin's text that registers it.
+fn line(text: &str) -> usize {
+    1 + text.lines().position(|line| line.contains("Entity::shape(")).expect("it registers a shape")
+}
+
+/// What is dropped in, by their paths.
+static PLUGINS: LazyLock<Files> = LazyLock::new(|| {
+    // It asks for what is not in its table.
+    let forgetful = brick().replace("&[&CENTER, &SIZE]", "&[&CENTER]").replace("\"box\"", "\"brick\"");
+    // It takes three numbers for one.
+    let confused = brick()
+        .replace(
+            "const TABLE",
+            "static WIDE: Pparm<f64> = Pparm::required(\"size\", \"its width\");\n\nconst TABLE",
+        )
+        .replace("0.5 * args.get(&SIZE)", "DVec3::splat(0.5 * args.get(&WIDE))")
+        .replace("\"box\"", "\"slab\"");
+    let plugins = [
+        ("disc", block_with(&readme(), "struct Disc")),
+        ("box", brick()),
+        ("brick", forgetful),
+        ("slab", confused),
+        ("barrel", BARREL.to_owned()),
+        ("stripes", STRIPES.to_owned()),
+        ("empty", String::new()),
+    ];
+    let mut files = Files::new();
+    for (name, text) in plugins {
+        files.insert(plugin(name), text.into_bytes());
+    }
+    files.insert(PathBuf::from("src/bin/contracts.rs"), CONTRACTS.into());
+    files.extend(NEW.iter().map(|(path, bytes)| (path.clone(), bytes.clone())));
+    files
+});
+
+fn plugin(name: &str) -> PathBuf {
+    Path::new("plugins").join(name).with_extension("rs")
+}
+
+/// The plugins that `tabray new plugin` writes, by their kinds, and the scenes that show them.
+const KINDS: [(&str, &str, &str); 4] = [
+    ("shape", "loop", "scenes/entities/loop.ray"),
+    ("light", "shade", "scenes/entities/shade.ray"),
+    ("shader", "rings", "scenes/psphere/rings.ray"),
+    ("profile", "ringed_cup", "scenes/revsurf/ringed_cup.ray"),
+];
+
+/// All that it writes for them.
+static NEW: LazyLock<Files> = LazyLock::new(|| {
+    let checkout = TempDir::new().expect("a folder");
+    fs::write(checkout.path().join("Cargo.toml"), "[package]\nname = \"tabray\"\n").expect("room for a file");
+    for folder in ["plugins", "scenes/entities", "scenes/psphere", "scenes/revsurf", "scenes/wrong"] {
+        fs::create_dir_all(checkout.path().join(folder)).expect("room for a folder");
+    }
+    for (kind, name, _) in KINDS {
+        let new = Command::new(env!("CARGO_BIN_EXE_tabray"))
+            .args(["new", "plugin", name, "--kind", kind])
+            .current_dir(checkout.path())
+            .output()
+            .expect("the program runs");
+        assert!(new.status.success(), "{}", String::from_utf8_lossy(&new.stderr));
+    }
+    fs::remove_file(checkout.path().join("Cargo.toml")).expect("it was there");
+    copy::read(checkout.path())
+});
+
+/// The programs with all of these plugins.
+static BUILT: LazyLock<Built> = LazyLock::new(|| copy::build("dropped-in", PLUGINS.clone()));
+
+/// The programs with plugins that claim what others have.
+static CONTRADICTORY: LazyLock<Built> = LazyLock::new(|| {
+    // The one is built after the other, from what is there.
+    LazyLock::force(&BUILT);
+    copy::build("contradictory", with("rival", RIVAL))
+});
+
+/// All that is dropped in and one plugin more.
+fn with(name: &str, text: &str) -> Files {
+    let mut files = PLUGINS.clone();
+    files.insert(plugin(name), text.into());
+    files
+}
+
+#[test]
+fn plugins_dropped_in_are_all_that_changes() {
+    assert!(BUILT.touched.is_empty(), "{:?}", BUILT.touched);
+}
+
+#[test]
+fn plugins_dropped_in_keep_their_contracts() {
+    assert_eq!(BUILT.prints_of("contracts", &[]), "");
+}
+
+#[test]
+fn a_file_that_registers_nothing_is_warned_of() {
+    let warning = |name: &str| format!("plugins/{name}.rs registers nothing, so no scene can use it");
+    assert!(BUILT.said.contains(&warning("empty")), "{}", BUILT.said);
+    assert!(!BUILT.prints(&["list"]).contains("empty "));
+    assert!(page().contains(&warning("box")));
+}
+
+#[test]
+fn a_file_that_is_no_module_is_refused() {
+    LazyLock::force(&CONTRADICTORY);
+    let said = copy::cannot_be_built(with("Bad-Name", ""));
+    assert!(said.contains("Bad-Name.rs: a plugin's file name must be a Rust module name"), "{said}");
+}
+
+// The README's plugin
+
+#[test]
+fn the_readmes_plugin_is_listed_with_its_attributes() {
+    let list = BUILT.prints(&["list"]);
+    let disc = list.lines().find(|line| line.starts_with("disc ")).expect("the list has it");
+    assert!(disc.contains("a circular piece of a plane"));
+    assert!(BUILT.prints(&["list", "disc"]).contains("the distance from the centre to the rim"));
+}
+
+#[test]
+fn the_readmes_plugin_is_dumped() {
+    let scene = BUILT.scene("disc-dumped", &block_with(&readme(), "disc target"));
+    let dump = BUILT.prints(&["dump", scene.to_str().expect("a path in UTF-8")]);
+    assert!(
+        dump.contains("\ndisc         target \nmaterial     red \nnormal         0.0   0.0   1.0 \n"),
+        "{dump}"
+    );
+    assert!(dump.contains("\nradius         2.0 \n"), "{dump}");
+}
+
+#[test]
+fn the_readmes_plugin_is_a_round_disc() {
+    let picture = BUILT.picture("disc", &block_with(&readme(), "disc target"));
+    let red = picture.pixels().filter(|pixel| pixel.0 == [255, 0, 0]).count() as f64;
+    // The disc's radius of 2, seen through the screen, is 2 * 6 / 9 of its 8 by 6 units.
+    let area = std::f64::consts::PI * (2.0_f64 * 6.0 / 9.0).powi(2) / (8.0 * 6.0);
+    assert!((red / (160.0 * 120.0) - area).abs() < 0.005, "a round disc of the right size, {red} pixels");
+}
+
+#[test]
+fn the_readmes_plugin_has_its_rules_checked() {
+    let message = BUILT.says(&["check", "-"], "disc d { radius 0 }");
+    assert!(message.contains("`radius` of disc `d` must be positive, not 0"), "{message}");
+}
+
+// The plugin of docs/plugins.md
+
+#[test]
+fn the_pages_plugin_gives_no_warning() {
+    assert!(!BUILT.said.contains("plugins/box.rs"), "{}", BUILT.said);
+}
+
+#[test]
+fn the_pages_plugin_is_listed_as_the_page_has_it() {
+    assert_eq!(BUILT.prints(&["list", "box"]), block_with(&page(), "box NAME"));
+}
+
+#[test]
+fn the_pages_plugin_looks_as_the_page_shows_it() {
+    assert_shown(&BUILT.picture("box", &block_with(&page(), "box brick")), "box");
+}
+
+/// The docs have this picture.
+fn assert_shown(picture: &RgbImage, name: &str) {
+    let shown = image::open(root().join("docs").join(name).with_extension("png")).expect("a picture");
+    assert!(*picture == shown.into_rgb8(), "docs/{name}.png is stale: docs/plugins.md says how to make it");
+}
+
+// Mistakes
+
+const A_BOX: &str = "camera eye { pixeldim 1 1 worlddim 8 6 viewpoint 4 3 6 } material m { ambient 1 1 1 }
+    box b { material m center 1 1 1 }";
+
+#[test]
+fn a_constructor_that_asks_for_what_is_not_in_its_table_is_told() {
+    let said = BUILT.says(&["check", "-"], &A_BOX.replace("box b", "brick b"));
+    let line = line(&brick());
+    let message = |name: &str| {
+        format!(
+            "the plugin `{name}` asks for `size`, which is not in the table it registers at plugins/{name}.rs:{line}: add it there"
+        )
+    };
+    assert!(said.contains("panicked at src/../plugins/brick.rs:"), "the plugin's own line is told: {said}");
+    assert!(said.contains(&message("brick")), "{said}");
+    assert!(page().contains(&message("box")), "the page has the message");
+}
+
+#[test]
+fn a_constructor_that_asks_for_another_type_is_told() {
+    let scene = A_BOX.replace("box b", "slab b").replace("center 1 1 1", "center 1 1 1 size 1 1 1");
+    let said = BUILT.says(&["check", "-"], &scene);
+    // Two lines were added above.
+    let line = line(&brick()) + 2;
+    let message = format!(
+        "the plugin `slab` asks for `size` with another type than in the table it registers at plugins/slab.rs:{line}: give both the same type"
+    );
+    assert!(said.contains("panicked at src/../plugins/slab.rs:") && said.contains(&message), "{said}");
+}
+
+#[test]
+fn plugins_that_contradict_each_other_are_told_with_their_places() {
+    let mut settings = insta::Settings::clone_current();
+    settings.set_snapshot_path(root().join("snapshots/refusals"));
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    let told = CONTRADICTORY.says(&["list"], "");
+    settings.bind(|| insta::assert_snapshot!("plugins-that-contradict-each-other", told));
+}
+
+#[test]
+fn a_name_that_is_taken_is_told_as_the_page_has_it() {
+    let told = CONTRADICTORY.says(&["list"], "");
+    let registered = "the entity type `sphere` is registered twice, at plugins/";
+    let (_, places) = told.split_once(registered).unwrap_or_else(|| panic!("{told}"));
+    let (_, other) = places.split_once(" and ").expect("two places");
+    let (other, _) = other.split_once(".rs:").expect("a line");
+    assert!(page().contains(&format!("{registered}box.rs:{} and {other}.rs:", line(&brick()))), "{told}");
+}
+
+// Profiles and shaders
+
+#[test]
+fn a_profile_dropped_in_is_known_by_its_name() {
+    let scene = "camera eye { pixeldim 8 6 worlddim 8 6 viewpoint 4 3 6 } material m { ambient 5 5 5 }
+        revsurf cask { material m surfer barrel base 4 0 -4 direction 0 1 0 height 4 }";
+    assert!(BUILT.says(&["check", "-"], scene).contains("-: no errors"));
+}
+
+#[test]
+fn a_shader_dropped_in_is_known_by_its_name() {
+    let scene = "camera eye { pixeldim 8 6 worlddim 8 6 viewpoint 4 3 6 } material m { ambient 5 5 5 }
+        psphere ball { material m shader stripes center 4 3 -3 radius 1 }";
+    assert!(BUILT.says(&["check", "-"], scene).contains("-: no errors"));
+}
+
+// What `tabray new plugin` writes
+
+#[test]
+fn a_new_plugin_of_each_kind_shows_something() {
+    for (_, name, scene) in KINDS {
+        let scene = String::from_utf8_lossy(&NEW[Path::new(scene)]);
+        let picture = BUILT.picture(name, &scene);
+        let orange = picture.pixels().filter(|pixel| pixel.0[0] > 60 && pixel.0[0] / 2 > pixel.0[2]).count();
+        assert!(orange > 300, "{name} shows something orange, {orange} pixels");
+    }
+}
+
+#[test]
+fn a_new_plugins_mistake_is_one() {
+    let mut mistakes = 0;
+    for (_, name, _) in KINDS {
+        let Some(mistake) = NEW.get(&Path::new("scenes/wrong").join(name).with_extension("ray")) else {
+            continue;
+        };
+        let message = BUILT.says(&["check", "-"], &String::from_utf8_lossy(mistake));
+        assert!(message.contains(&format!("{name} `")) && message.contains("2 errors"), "{message}");
+        mistakes += 1;
+    }
+    assert_eq!(mistakes, 2, "of a shape and of a light");
+}
+
+// A crate of its own
+
+#[test]
+fn a_plugin_in_a_crate_of_its_own_is_in_that_program() {
+    assert!(BUILT.prints_of("example-plugin", &["list"]).contains("tangle "));
+}
+
+#[test]
+fn a_program_of_its_own_has_its_own_name_and_version() {
+    let version = format!("example-plugin (tabray {})\n", env!("CARGO_PKG_VERSION"));
+    assert_eq!(BUILT.prints_of("example-plugin", &["--version"]), version);
+    for args in [&["--help"][..], &["render", "--help"], &["completions", "bash"], &["completions", "zsh"]] {
+        let said = BUILT.prints_of("example-plugin", args);
+        assert!(said.contains("example-plugin") && !said.contains("tabray "), "{args:?}: {said}");
+    }
+    assert!(
+        BUILT.prints_of("example-plugin", &["render", "--help"]).contains("Usage: example-plugin render ")
+    );
+}
+
+#[test]
+fn a_plugin_in_a_crate_of_its_own_looks_as_the_page_shows_it() {
+    let picture = BUILT.picture_of("example-plugin", &root().join("docs/example-plugin/tangle.ray"));
+    assert_shown(&picture, "tangle");
+}
+
+#[test]
+fn the_page_has_the_program_of_a_crate_of_its_own() {
+    assert!(page().contains(&text_of("docs/example-plugin/src/main.rs")), "the page shows another program");
+}
+
+/// Tries all plugins but those with a mistake that breaks off the scene.
+const CONTRACTS: &str = "//! Contracts.
+
+use tabray::scene::Registry;
+use tabray::tools::contract;
+
+fn main() {
+    let all = Registry::get().expect(\"no two plugins claim one name\");
+    let sound = all.iter().filter(|entity| ![\"brick\", \"slab\"].contains(&entity.name));
+    for breach in contract::breaches(&Registry::of(sound).expect(\"they were one already\")) {
+        println!(\"{breach}\");
+    }
+}
+";
+
+const RIVAL: &str = "//! What others have already.
+
+use crate::prelude::*;
+
+inventory::submit! { Entity::shape(\"sphere\", \"another ball\", &[], |_| unreachable!()) }
+inventory::submit! { Profile::new(\"cone\", \"another cone\", \"1\") }
+inventory::submit! { Profile::new(\"crooked\", \"no formula\", \"2 +\") }
+inventory::submit! { ProceduralShader::new(\"checks\", \"its number is that of tiles\", |_| unreachable!()).on_plane(0) }
+";
+
+const BARREL: &str = "//! A barrel.
+
+use crate::prelude::*;
+
+inventory::submit! {
+    Profile::new(\"barrel\", \"a barrel 4 high\", \"1.5 - 0.1 * (y - 2)^2\")
+}
+";
+
+const STRIPES: &str = "//! Stripes, as wide as a tenth of the anchor's unit.
+
+use crate::prelude::*;
+
+inventory::submit! {
+    ProceduralShader::new(\"stripes\", \"stripes across y\", |anchor| Box::new(Stripes(anchor)))
+}
+
+struct Stripes(Anchor);
+
+impl Shader for Stripes {
+    fn ambient(&self, material: &Material, at: DVec3) -> Rgb {
+        let stripe = (10.0 * (at - self.0.origin).y / self.0.unit).floor();
+        if stripe.rem_euclid(2.0) == 0.0 { material.ambient } else { Rgb::ZERO }
+    }
+}
+";

@@ -1,0 +1,721 @@
+//! The program's hits against the true ones, with every digit that the program has.
+#![allow(clippy::approx_constant, reason = "the notes' vase is 6.28 high")]
+
+use crate::common::model;
+use crate::oracle::rays::{self, BASE, Random};
+use crate::oracle::revolution::Revolution;
+use crate::oracle::shapes::{self, Plane, Quadric};
+use crate::oracle::tally::{Tally, Tolerance, ulp};
+use crate::oracle::{Crossings, Truth};
+use glam::{DMat3, DVec3, dvec2, dvec3};
+use std::cell::RefCell;
+use std::collections::HashMap;
+use tabray::geometry::{MISS, Ray, Side, Sight, Span};
+use tabray::numeric::{Float, Wide};
+use tabray::scene::Model;
+use tabray::world::certify::{self, Enclosure, Precision};
+
+/// The rays of each set.
+const RAYS: usize = 10_000;
+
+/// Those of the sets that count most.
+const MANY_RAYS: usize = 100_000;
+
+/// The notes' methods stop at 1e-4.
+const ROUGHLY: Tolerance = Tolerance { sure: 1e-3, most: 0.05 };
+
+/// A scene with one object.
+fn scene(accuracy: &str, object: &str) -> Model {
+    model(&format!(
+        "camera eye {{ pixeldim 640 480 worlddim 8 6 viewpoint 4 3 7 accuracy {accuracy} }}
+         material m {{ ambient 1 1 1 }}
+         {object}"
+    ))
+}
+
+/// The distance of its first hit.
+fn distance(model: &Model, ray: &Ray) -> f64 {
+    model.objects[0].shape.distance(ray, &Span::RAY)
+}
+
+/// A vector as scenes spell it.
+fn spelt(vector: DVec3) -> String {
+    format!("{:?} {:?} {:?}", vector.x, vector.y, vector.z)
+}
+
+/// What a shape's hits are compared with.
+struct Subject<'s> {
+    /// Its name in messages.
+    name: &'s str,
+    model: &'s Model,
+    /// The size of its scene against that of the notes.
+    scale: f64,
+    /// An error that is one in the choice of a crossing, in a scene of the notes' size.
+    most: f64,
+    /// The first hit of a ray that is farther than a distance.
+    truth: &'s dyn Fn(&Ray, f64) -> Truth,
+    /// How far off the surface the point at a distance along a ray is.
+    off_surface: &'s dyn Fn(&Ray, f64) -> f64,
+}
+
+impl Subject<'_> {
+    fn tally(&self, rays: impl Iterator<Item = Ray>, tolerance: Tolerance) -> Tally {
+        let mut tally = Tally::default();
+        for ray in rays {
+            let found = distance(self.model, &ray);
+            let next = |near: f64| (self.truth)(&ray, near);
+            tally.count((self.truth)(&ray, 0.0), found, tolerance, next, |found| {
+                (self.off_surface)(&ray, found)
+            });
+        }
+        tally.finish()
+    }
+
+    /// The faults of a set of rays: hits missed, invented or another than the first, more than 1 of 1000 rays without
+    /// a truth, hits farther off the surface than this, distances farther off the true ones than so many units in
+    /// the last place.
+    fn faults(&self, set: &str, rays: &[Ray], off_surface: f64, ulps: f64) -> Vec<String> {
+        // A crossing is not taken for another one, however near they are to each other.
+        let tolerance = Tolerance { sure: 1e-9 * self.scale, most: self.most * self.scale };
+        let tally = self.tally(rays.iter().copied(), tolerance);
+        let name = format!("{}, {set} x {:e}", self.name, self.scale);
+        println!("{name}: {tally}");
+        let mut faults = Vec::new();
+        if let Some((index, truth, found)) = tally.first_wrong {
+            faults.push(format!("wrong: {name}: {tally}\n  {:?}: {truth:?}, not {found:?}", rays[index]));
+        }
+        if tally.undecided * 1000 > tally.rays || tally.off_surface > off_surface || tally.ulps > ulps {
+            faults.push(format!("inexact: {name}: {tally}"));
+        }
+        faults
+    }
+}
+
+/// The greatest of the rays' distances from a point, rounded.
+fn rounding(rays: &[Ray], from: DVec3) -> f64 {
+    rays.iter().map(|ray| ulp((ray.origin - from).length())).fold(0.0, f64::max)
+}
+
+#[track_caller]
+fn assert_none(faults: &[String]) {
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+// Surfaces of revolution
+
+/// A formula for a scene that is larger or smaller.
+fn scaled(formula: &str, scale: f64) -> String {
+    if scale == 1.0 {
+        formula.to_owned()
+    } else {
+        format!("{scale:?}*({})", formula.replace('y', &format!("(y/{scale:?})")))
+    }
+}
+
+/// A formula's surface in a scene of some size: its spelling and its truth.
+fn revsurf(formula: &str, height: f64, scale: f64) -> (String, Revolution) {
+    let (formula, base, height) = (scaled(formula, scale), scale * BASE, scale * height);
+    let place = format!("direction 0 1 0 base {} height {height:?}", spelt(base));
+    let text = format!("revsurf r {{ material m profile \"{formula}\" {place} }}");
+    (text, Revolution::new(&formula, base, height))
+}
+
+/// Likewise, its truth and the program's.
+fn revolution(accuracy: &str, formula: &str, height: f64, scale: f64) -> (Revolution, Model) {
+    let (text, surface) = revsurf(formula, height, scale);
+    (surface, scene(accuracy, &text))
+}
+
+/// All sets of rays find the true hits of a formula's surface.
+#[track_caller]
+fn finds_the_revolution(name: &str, formula: &str, height: f64) {
+    let mut faults = Vec::new();
+    for scale in [1.0, 1e-3, 1e6] {
+        let (surface, model) = revolution("exact", formula, height, scale);
+        let off_surface = |ray: &Ray, distance: f64| {
+            let off = surface.off_surface(ray, distance);
+            if !formula.contains("floor") {
+                return off;
+            }
+            // It may have hit a step, and so be near to a whole height.
+            let step = surface.height_at(ray, distance) / scale;
+            off.min(scale * (step - step.round()).abs())
+        };
+        let subject = Subject {
+            name,
+            model: &model,
+            scale,
+            most: 1e-5,
+            truth: &|ray, near| surface.first_hit(ray, near, Crossings::All),
+            off_surface: &off_surface,
+        };
+        let middle = scale * (BASE + dvec3(0.0, height / 2.0, 0.0));
+        let reach = surface.radius().hypot(scale * height / 2.0);
+        let mut check = |set: &str, rays: &mut dyn Iterator<Item = Ray>| {
+            let rays: Vec<Ray> = rays.collect();
+            let off_surface = 1e-14 * scale + rounding(&rays, middle);
+            faults.extend(subject.faults(set, &rays, off_surface, f64::INFINITY));
+        };
+        // At its own size a surface is asked as often as is bearable here; `tests/slow/accuracy.rs` asks a million times.
+        let many = if scale == 1.0 { MANY_RAYS } else { RAYS };
+        check("camera", &mut rays::camera(many, scale));
+        check("grazing", &mut rays::grazing(many, scale, |random| rays::place_on(&surface, random)));
+        check("inside", &mut rays::inside(RAYS, middle, reach));
+        check("far 1e4", &mut rays::aimed(RAYS, middle, reach, scale * 1e4));
+        check("far 1e7", &mut rays::aimed(RAYS, middle, reach, scale * 1e7));
+    }
+    assert_none(&faults);
+}
+
+/// Profiles and their heights.
+const VASE: (&str, f64) = ("2 + sin(y)", 6.28);
+const NASTY: (&str, f64) = ("1 + 0.3*sin(20*y)", 6.28);
+const CONE: (&str, f64) = ("-4/6*(y - 6)", 6.0);
+const FLANGE: (&str, f64) = ("0.3 + 2*exp(-(20*(y-3))^2)", 6.28);
+const KINK: (&str, f64) = ("0.6 + 0.5*abs(y-3)", 6.28);
+const TUBE: (&str, f64) = ("1.5", 6.0);
+const JUMP: (&str, f64) = ("0.5 + 0.25*floor(y)", 6.28);
+
+#[test]
+fn a_vase_is_found() {
+    finds_the_revolution("vase", VASE.0, VASE.1);
+}
+
+#[test]
+fn a_wavy_column_is_found() {
+    finds_the_revolution("nasty", NASTY.0, NASTY.1);
+}
+
+#[test]
+fn a_cone_is_found() {
+    finds_the_revolution("cone", CONE.0, CONE.1);
+}
+
+#[test]
+fn a_thin_disc_is_found() {
+    finds_the_revolution("flange", FLANGE.0, FLANGE.1);
+}
+
+#[test]
+fn a_waist_with_an_edge_is_found() {
+    finds_the_revolution("kink", KINK.0, KINK.1);
+}
+
+#[test]
+fn stairs_are_found() {
+    finds_the_revolution("jump", JUMP.0, JUMP.1);
+}
+
+#[test]
+fn a_tube_is_found() {
+    finds_the_revolution("tube", TUBE.0, TUBE.1);
+}
+
+/// Thin discs, poles that are cut, roots and waves: all rays find what is there and nothing else.
+#[test]
+fn profiles_that_hide_in_thin_parts_are_found() {
+    let mut faults = Vec::new();
+    for (formula, height) in [
+        ("max(0.3 - y, 2 - 1e14*(y-3.1)^2)", 6.0),
+        ("max(0.2, 2 - 1e8*(y-3.1)^2)", 6.0),
+        ("min(2, 1/abs(y-3))", 6.0),
+        ("max(0.2, ln(y))", 6.0),
+        ("y^y/10", 3.0),
+        ("0.5 + sin(9*y)", 6.0),
+        ("abs(y-3)^0.5 + 0.1", 6.0),
+        ("y^2 - 6*y + 9", 6.0),
+        ("2 - 1e3*abs(y-2)", 4.0),
+    ] {
+        let (surface, model) = revolution("exact", formula, height, 1.0);
+        let subject = Subject {
+            name: formula,
+            model: &model,
+            scale: 1.0,
+            most: 1e-5,
+            truth: &|ray, near| surface.first_hit(ray, near, Crossings::All),
+            off_surface: &|ray, distance| surface.off_surface(ray, distance),
+        };
+        let middle = BASE + dvec3(0.0, height / 2.0, 0.0);
+        let reach = 2.0_f64.hypot(height / 2.0);
+        for (set, rays) in [
+            ("camera", rays::camera(500, 1.0).collect::<Vec<Ray>>()),
+            ("inside", rays::inside(250, middle, reach).collect()),
+            ("far 1e4", rays::aimed(250, middle, reach, 1e4).collect()),
+        ] {
+            faults.extend(subject.faults(set, &rays, 1e-13 + rounding(&rays, middle), f64::INFINITY));
+        }
+    }
+    assert_none(&faults);
+}
+
+/// The truth itself: no sign changes before the hit, and it is where the sign changes.
+#[test]
+fn the_truth_of_a_revolution_is_where_the_function_first_changes_its_sign() {
+    for (formula, height) in [VASE, NASTY, CONE, FLANGE, KINK, TUBE, JUMP] {
+        let surface = Revolution::new(formula, BASE, height);
+        let line = tabray::numeric::Formula::parse(formula).expect("a formula");
+        for ray in rays::camera(500, 1.0).chain(rays::inside(500, BASE + dvec3(0.0, 3.0, 0.0), 4.0)) {
+            let outside = |t: f64| {
+                let at = ray.at(t) - BASE;
+                let radius = line.at(at.y);
+                let there = (0.0..=height).contains(&at.y) && radius >= 0.0;
+                there.then_some(at.x * at.x + at.z * at.z > radius * radius)
+            };
+            let end = match surface.first_hit(&ray, 0.0, Crossings::All) {
+                Truth::Hit(hit) => {
+                    let t = hit.t.high;
+                    let (before, after) = (outside(t - 1e-9), outside(t + 1e-9));
+                    assert!(before != after, "{formula}: {ray:?}, {hit:?}");
+                    t - 1e-9
+                }
+                Truth::Miss => 30.0,
+                Truth::Undecided => panic!("{formula}: {ray:?}"),
+            };
+            let steps = 5_000;
+            let mut last = None;
+            for t in (1..steps).map(|step| end * f64::from(step) / f64::from(steps)) {
+                let now = outside(t);
+                assert!(last.is_none() || now.is_none() || now == last, "{formula}: {ray:?} at {t}");
+                last = now;
+            }
+        }
+    }
+}
+
+/// A cone is a quadric, too.
+#[test]
+fn two_truths_of_a_cone_agree() {
+    let surface = Revolution::new(CONE.0, BASE, CONE.1);
+    let quadric = Quadric {
+        coefficients: [9.0, -4.0, 9.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+        center: BASE + dvec3(0.0, 6.0, 0.0),
+        corners: [dvec3(-9.0, -6.0, -9.0), dvec3(9.0, 0.0, 9.0)],
+    };
+    let grazing = rays::grazing(RAYS, 1.0, |random| rays::place_on(&surface, random));
+    for ray in rays::camera(RAYS, 1.0).chain(grazing) {
+        let (one, other) =
+            (surface.first_hit(&ray, 0.0, Crossings::All), quadric.first_hit(&(&ray).into(), 0.0));
+        match (one, other) {
+            (Truth::Hit(one), Truth::Hit(other)) => {
+                let apart = (one.t - other.t).high.abs();
+                assert!(apart * one.slope.abs() < 1e-25, "{ray:?}: {one:?} {other:?}");
+            }
+            (Truth::Undecided, _) | (_, Truth::Undecided) => {}
+            (one, other) => assert_eq!(one, other, "{ray:?}"),
+        }
+    }
+}
+
+/// The notes' method finds what is in the middle of the picture, to the 1e-4 where it stops.
+#[test]
+fn the_notes_method_finds_the_vase_but_for_its_silhouette() {
+    let (surface, model) = revolution("classic", VASE.0, VASE.1, 1.0);
+    let subject = Subject {
+        name: "vase, classic",
+        model: &model,
+        scale: 1.0,
+        most: ROUGHLY.most,
+        truth: &|ray, near| surface.first_hit(ray, near, Crossings::All),
+        off_surface: &|ray, distance| surface.off_surface(ray, distance),
+    };
+    let tally = subject.tally(rays::camera(RAYS, 1.0), ROUGHLY);
+    println!("vase, classic: {tally}");
+    assert!(tally.hits > RAYS / 4, "{tally}");
+    assert!(tally.wrong() * 20 < tally.hits, "{tally}");
+    assert!(tally.worst() < 1e-3, "{tally}");
+}
+
+// Shapes with a formula for their hits
+
+/// Where the shapes with ends are, and how far they reach.
+const MIDDLE: DVec3 = dvec3(4.0, 3.0, -4.0);
+const REACH: f64 = 3.0;
+
+/// A shape's spelling in a scene of some size, and its truth.
+type Spelt = (String, Box<dyn Fn(&Ray, f64) -> Truth>);
+
+fn sphere(scale: f64) -> Spelt {
+    let (center, radius) = (scale * MIDDLE, scale * 2.0);
+    let text = format!("sphere s {{ material m center {} radius {radius:?} }}", spelt(center));
+    (text, Box::new(move |ray, near| shapes::sphere(center, radius, &ray.into(), near)))
+}
+
+fn ellipsoid(scale: f64) -> Spelt {
+    let (center, radius, stretch) = (scale * MIDDLE, scale, dvec3(2.0, 0.3, 1.1));
+    let text = format!(
+        "ellipsoid e {{ material m center {} radius {radius:?} scale {} }}",
+        spelt(center),
+        spelt(stretch)
+    );
+    (text, Box::new(move |ray, near| shapes::ellipsoid(center, radius, stretch, &ray.into(), near)))
+}
+
+/// A hyperboloid of one sheet, cut to a box.
+fn quadric(scale: f64) -> Spelt {
+    let coefficients = [1.0, -0.5, 1.0, 0.1, 0.2, -0.1, 0.0, 0.0, 0.0, scale * scale];
+    let corners = [scale * dvec3(-1.75, -2.0, -1.875), scale * dvec3(1.875, 2.0, 1.75)];
+    let quadric = Quadric { coefficients, center: scale * MIDDLE, corners };
+    let text = format!(
+        "quadric q {{ material m coefficients {} center {} box {} {} }}",
+        coefficients.map(|coefficient| format!("{coefficient:?}")).join(" "),
+        spelt(quadric.center),
+        spelt(corners[0]),
+        spelt(corners[1]),
+    );
+    (text, Box::new(move |ray, near| quadric.first_hit(&ray.into(), near)))
+}
+
+fn plane(scale: f64) -> Spelt {
+    let (normal, point) = (dvec3(0.3, 1.0, 0.5), scale * MIDDLE);
+    let text = format!("plane p {{ material m normal {} point {} }}", spelt(normal), spelt(point));
+    let plane = Plane::new(normal, point);
+    (text, Box::new(move |ray, near| beyond(plane.first_hit(&ray.into()), near)))
+}
+
+fn fplane(scale: f64) -> Spelt {
+    let (normal, xdir, dimensions) = (dvec3(0.3, 1.0, 0.5), dvec3(1.0, 0.2, 0.0), scale * dvec2(3.0, 2.5));
+    let point = scale * (MIDDLE - dvec3(1.5, 0.0, -1.0));
+    let text = format!(
+        "fplane f {{ material m normal {} point {} xdir {} dimensions {:?} {:?} }}",
+        spelt(normal),
+        spelt(point),
+        spelt(xdir),
+        dimensions.x,
+        dimensions.y
+    );
+    let plane = Plane::new(normal, point);
+    (text, Box::new(move |ray, near| beyond(shapes::rectangle(&plane, xdir, dimensions, &ray.into()), near)))
+}
+
+fn triangle(scale: f64) -> Spelt {
+    let corners = [dvec3(-2.0, -1.5, 0.5), dvec3(2.0, -1.0, -0.5), dvec3(0.25, 2.0, 0.0)];
+    let corners = corners.map(|corner| scale * (MIDDLE + corner));
+    let [a, b, c] = corners.map(spelt);
+    let text = format!("triangle t {{ material m vertex1 {a} vertex2 {b} vertex3 {c} }}");
+    (text, Box::new(move |ray, near| beyond(shapes::triangle(corners, &ray.into()), near)))
+}
+
+/// What is farther than a distance of a shape that is met at most once.
+fn beyond(truth: Truth, near: f64) -> Truth {
+    match truth {
+        Truth::Hit(hit) if hit.t <= near.into() => Truth::Miss,
+        truth => truth,
+    }
+}
+
+/// A random point of a shape, with its normal.
+fn place_on(subject: &Subject, random: &mut Random) -> (DVec3, DVec3) {
+    loop {
+        let origin = subject.scale * (MIDDLE + 9.0 * random.direction());
+        let ray = rays::toward(origin, random.in_ball(subject.scale * MIDDLE, subject.scale * REACH));
+        if let Some(hit) = (subject.truth)(&ray, 0.0).hit() {
+            let at = ray.at(hit.t.high);
+            return (at, subject.model.objects[0].shape.normal(at));
+        }
+    }
+}
+
+/// All sets of rays find the true hits of a shape, their distances to so many units in the last place, but for those
+/// that graze it, and never farther off its surface than rounding makes a point.
+#[track_caller]
+fn finds(name: &str, spelt: fn(f64) -> Spelt, farthest: i32, [exact, strict]: [f64; 2]) {
+    let is_flat = matches!(name, "plane" | "fplane" | "triangle");
+    let mut faults = Vec::new();
+    let methods = [("exact", exact), ("strict", strict)];
+    // The truth takes time, and both methods have the same rays.
+    let known = RefCell::new(HashMap::new());
+    for (scale, (accuracy, ulps)) in
+        [1.0, 1e-3, 1e6].into_iter().flat_map(|scale| methods.map(|m| (scale, m)))
+    {
+        let (text, truth) = spelt(scale);
+        let truth = |ray: &Ray, near: f64| {
+            let numbers = ray.origin.to_array().into_iter().chain(ray.dir.to_array()).chain([near, scale]);
+            let key: Vec<u64> = numbers.map(f64::to_bits).collect();
+            *known.borrow_mut().entry(key).or_insert_with(|| truth(ray, near))
+        };
+        let model = scene(accuracy, &text);
+        let off_surface = |ray: &Ray, found: f64| {
+            let slant = model.objects[0].shape.normal(ray.at(found)).dot(ray.dir).abs();
+            let hit = truth(ray, 0.0).hit();
+            hit.map_or(f64::NAN, |hit| (hit.t - found.into()).high.abs() * slant)
+        };
+        let name = format!("{name}, {accuracy}");
+        let subject = Subject {
+            name: &name,
+            model: &model,
+            scale,
+            most: f64::INFINITY,
+            truth: &truth,
+            off_surface: &off_surface,
+        };
+        let mut check = |set: &str, ulps: f64, rays: &mut dyn Iterator<Item = Ray>| {
+            let rays: Vec<Ray> = rays.collect();
+            let off_surface = 4.0 * rounding(&rays, DVec3::ZERO).max(ulp(10.0 * scale));
+            faults.extend(subject.faults(set, &rays, off_surface, ulps));
+        };
+        let (middle, reach) = (scale * MIDDLE, scale * REACH);
+        check("camera", ulps, &mut rays::camera(RAYS, scale));
+        check("inside", ulps, &mut rays::inside(RAYS, middle, reach));
+        for exponent in 1..=farthest {
+            let distance = scale * 10_f64.powi(exponent);
+            check(&format!("from 1e{exponent}"), ulps, &mut rays::aimed(RAYS, middle, reach, distance));
+        }
+        if !is_flat {
+            let place = |random: &mut Random| place_on(&subject, random);
+            check("grazing", f64::INFINITY, &mut rays::grazing(RAYS, scale, place));
+        }
+    }
+    assert_none(&faults);
+}
+
+#[test]
+fn spheres_are_found() {
+    finds("sphere", sphere, 9, [4.0, 1.0]);
+}
+
+#[test]
+fn ellipsoids_are_found() {
+    finds("ellipsoid", ellipsoid, 9, [4.0, 1.0]);
+}
+
+#[test]
+fn planes_are_found() {
+    finds("plane", plane, 9, [4.0, 1.0]);
+}
+
+#[test]
+fn rectangles_are_found() {
+    finds("fplane", fplane, 9, [4.0, 1.0]);
+}
+
+#[test]
+fn triangles_are_found() {
+    finds("triangle", triangle, 6, [4.0, 1.0]);
+}
+
+#[test]
+fn triangles_are_found_from_afar() {
+    finds("triangle", triangle, 9, [4.0, 1.0]);
+}
+
+/// Where a quadric is met next to the ray's origin, a unit in the last place is nothing.
+#[test]
+fn quadrics_are_found() {
+    finds("quadric", quadric, 9, [f64::INFINITY; 2]);
+}
+
+// Scenes that are the same but for where they are and how large
+
+/// A ray whose numbers have digits to spare, so that moving it loses none.
+fn short(ray: &Ray) -> Ray {
+    let cut = |number: f64| (number * 2_f64.powi(20)).round() / 2_f64.powi(20);
+    Ray { origin: DVec3::from_array(ray.origin.to_array().map(cut)), dir: ray.dir }
+}
+
+/// Rays toward the shapes.
+fn sample() -> impl Iterator<Item = Ray> {
+    rays::camera(RAYS, 1.0).chain(rays::aimed(RAYS, MIDDLE, REACH, 10.0)).map(|ray| short(&ray))
+}
+
+fn vase(scale: f64) -> Spelt {
+    let (text, surface) = revsurf(VASE.0, VASE.1, scale);
+    (text, Box::new(move |ray, near| surface.first_hit(ray, near, Crossings::All)))
+}
+
+const SHAPES: [fn(f64) -> Spelt; 7] = [sphere, ellipsoid, quadric, plane, fplane, triangle, vase];
+
+#[test]
+fn a_scene_twice_as_large_has_its_hits_twice_as_far() {
+    for spelt in SHAPES {
+        let (text, _) = spelt(1.0);
+        let is_cut = text.starts_with("revsurf");
+        let model = scene("exact", &text);
+        for scale in [0.25, 2.0, 1024.0] {
+            let scaled = scene("exact", &spelt(scale).0);
+            for ray in sample() {
+                let scaled_ray = Ray { origin: scale * ray.origin, ..ray };
+                let (one, other) = (distance(&model, &ray), distance(&scaled, &scaled_ray));
+                // How near to the screen a plane is not there any more does not grow with the scene.
+                let in_front = |ray: &Ray, hit: f64| hit != MISS && ray.at(hit).z > 0.0;
+                if in_front(&ray, one) || in_front(&scaled_ray, other) {
+                    continue;
+                }
+                // How finely a surface of revolution is cut does not grow with it either: its last digit may differ.
+                let slack = if is_cut && one != MISS { scale * slack(&model, &ray, one) } else { 0.0 };
+                let is_same = scale * one == other || (scale * one - other).abs() <= slack;
+                assert!(is_same, "{text} x {scale}: {ray:?}, {one} {other}");
+            }
+        }
+    }
+}
+
+/// How far two distances to one hit may be from each other: a few roundings of what the ray has on its way, as the
+/// slant of the surface makes them longer.
+fn slack(model: &Model, ray: &Ray, hit: f64) -> f64 {
+    let slant = model.objects[0].shape.normal(ray.at(hit)).dot(ray.dir).abs();
+    let size = ray.origin.abs().max_element() + hit;
+    8.0 * ulp(size) / slant
+}
+
+/// Both scenes have the same hits, of rays that are the same but for this.
+#[track_caller]
+fn has_the_same_hits(text: &str, moved_text: &str, moved: impl Fn(&Ray) -> Ray) {
+    let (model, moved_model) = (scene("exact", text), scene("exact", moved_text));
+    for ray in sample() {
+        let (one, other) = (distance(&model, &ray), distance(&moved_model, &moved(&ray)));
+        if one == MISS || other == MISS {
+            assert_eq!(one, other, "{text} as {moved_text}: {ray:?}");
+        } else {
+            let slack = slack(&model, &ray, one) + slack(&moved_model, &moved(&ray), other);
+            assert!((one - other).abs() <= slack, "{text} as {moved_text}: {ray:?}, {one} {other}");
+        }
+    }
+}
+
+#[test]
+fn a_scene_that_is_moved_has_the_same_hits() {
+    let by = dvec3(16.0, -8.0, -32.0);
+    let at = |place: DVec3| spelt(place + by);
+    let moved = |ray: &Ray| Ray { origin: ray.origin + by, ..*ray };
+    let ends = |end: &str, place: DVec3| (end.replace("AT", &spelt(place)), end.replace("AT", &at(place)));
+    for (text, place) in [
+        ("sphere s { material m center AT radius 2 }", MIDDLE),
+        ("ellipsoid e { material m center AT radius 1 scale 2 0.3 1.1 }", MIDDLE),
+        (
+            "quadric q { material m coefficients 1 -0.5 1 0.1 0.2 -0.1 0 0 0 1 center AT box -2 -2 -2 2 2 2 }",
+            MIDDLE,
+        ),
+        ("fplane f { material m normal 0.3 1 0.5 point AT xdir 1 0.2 0 dimensions 3 2 }", MIDDLE),
+        ("revsurf r { material m profile \"2 + sin(y)\" direction 0 1 0 base AT height 6.28 }", BASE),
+        ("revsurf r { material m profile \"1 + 0.3*sin(20*y)\" direction 0 1 0 base AT height 6.28 }", BASE),
+    ] {
+        let (text, moved_text) = ends(text, place);
+        has_the_same_hits(&text, &moved_text, moved);
+    }
+}
+
+/// A quarter of a turn around z turns every number into another one, exactly.
+#[test]
+fn a_scene_that_is_turned_has_the_same_hits() {
+    let turn = DMat3::from_cols(DVec3::Y, -DVec3::X, DVec3::Z);
+    let moved = |ray: &Ray| Ray { origin: turn * ray.origin, dir: turn * ray.dir };
+    let (middle, base) = (spelt(turn * MIDDLE), spelt(turn * BASE));
+    let upright = |text: &str| text.replace("MIDDLE", &spelt(MIDDLE)).replace("BASE", &spelt(BASE));
+    for (text, turned) in [
+        ("sphere s { material m center MIDDLE radius 2 }", "sphere s { material m center MIDDLE radius 2 }"),
+        (
+            "ellipsoid e { material m center MIDDLE radius 1 scale 2 0.3 1.1 }",
+            "ellipsoid e { material m center MIDDLE radius 1 scale 0.3 2 1.1 }",
+        ),
+        (
+            "fplane f { material m normal 0.3 1 0.5 point MIDDLE xdir 1 0.2 0 dimensions 3 2 }",
+            "fplane f { material m normal -1 0.3 0.5 point MIDDLE xdir -0.2 1 0 dimensions 3 2 }",
+        ),
+        (
+            "revsurf r { material m profile \"2 + sin(y)\" direction 0 1 0 base BASE height 6.28 }",
+            "revsurf r { material m profile \"2 + sin(y)\" direction -1 0 0 base BASE height 6.28 }",
+        ),
+    ] {
+        let turned = turned.replace("MIDDLE", &middle).replace("BASE", &base);
+        has_the_same_hits(&upright(text), &turned, moved);
+    }
+}
+
+// Rays that leave a surface
+
+/// A ray that leaves a surface of revolution does not meet it where it starts, and meets it where it should.
+#[test]
+fn rays_that_leave_a_surface_meet_it_again_where_they_should() {
+    for (formula, height) in [VASE, NASTY, FLANGE, KINK, TUBE] {
+        let (surface, model) = revolution("exact", formula, height, 1.0);
+        let mut random = Random::new(9);
+        let (mut wrong, mut again) = (Vec::new(), 0);
+        let shape = &model.objects[0].shape;
+        for ray in rays::camera(RAYS, 1.0) {
+            let found = distance(&model, &ray);
+            if found == MISS {
+                continue;
+            }
+            let start = ray.at(found);
+            let normal = shape.normal(start);
+            let dir = random.direction();
+            if dir.dot(normal).abs() < 1e-6 {
+                continue;
+            }
+            let leaves = Side::seen_along(-dir, normal);
+            let crossings = if leaves == Side::Outside { Crossings::Entries } else { Crossings::Exits };
+            let onward = Ray { origin: start, dir };
+            let found = shape.distance(&onward, &Span { leaves: Some(leaves), ..Span::RAY });
+            let truth = surface.first_hit(&onward, 0.0, crossings);
+            let is_right = match truth {
+                Truth::Undecided => true,
+                Truth::Miss => found == MISS,
+                Truth::Hit(hit) => {
+                    again += 1;
+                    (hit.t.high - found).abs() < 1e-6
+                }
+            };
+            if !is_right {
+                wrong.push((onward, leaves, truth, found));
+            }
+        }
+        println!("{formula}: {again} rays meet it again, {} wrong", wrong.len());
+        assert!(wrong.is_empty(), "{formula}: {} wrong, such as {:?}", wrong.len(), wrong[0]);
+    }
+}
+
+// What the program holds for certain
+
+/// The enclosure of a ray's first hit is where the truth is, for every shape and for profiles of each kind.
+#[test]
+fn what_is_certain_is_true() {
+    const RAYS: usize = 1_000;
+    let mut shapes: Vec<Spelt> = SHAPES.into_iter().map(|spelt| spelt(1.0)).collect();
+    for (formula, height) in [NASTY, CONE, FLANGE, KINK, TUBE, JUMP] {
+        let (text, surface) = revsurf(formula, height, 1.0);
+        shapes.push((text, Box::new(move |ray, near| surface.first_hit(ray, near, Crossings::All))));
+    }
+    for (text, truth) in shapes {
+        let model = scene("exact", &text);
+        let shape = &model.objects[0].shape;
+        let (mut doubtful, mut wrong) = (0, Vec::new());
+        let around = rays::aimed(RAYS, MIDDLE, REACH, 10.0).chain(rays::aimed(RAYS, MIDDLE, REACH, 1e6));
+        let rays = rays::camera(RAYS, 1.0).chain(rays::inside(RAYS, MIDDLE, REACH)).chain(around);
+        for (index, ray) in rays.enumerate() {
+            let (sight, truth) = (Sight::along(&ray), truth(&ray, 0.0));
+            let at = truth.hit().map(|hit| hit.t.high);
+            // The truth is rounded here, and nothing else.
+            let slack = ulp(at.unwrap_or(0.0));
+            let is_true = |certain: Enclosure| match certain {
+                Enclosure::Misses => at.is_none(),
+                Enclosure::Hits(hits) => {
+                    let (low, high) = (hits.low.to_f64(), hits.high.to_f64());
+                    at.map_or(truth == Truth::Undecided, |at| low - slack <= at && at <= high + slack)
+                }
+                Enclosure::Edge(Wide { low, .. }) | Enclosure::Doubtful(low) => {
+                    at.is_none_or(|at| at >= low.to_f64() - slack)
+                }
+            };
+            let is_doubtful = |of: &Enclosure| matches!(of, Enclosure::Edge(_) | Enclosure::Doubtful(_));
+            let mut certain = shape.certify(&sight, Precision::Double);
+            // 237 bits take longer, and have all digits of the truth.
+            if index % 40 == 0 || is_doubtful(&certain) {
+                certain = shape.certify(&sight, Precision::Octuple);
+            }
+            doubtful += usize::from(is_doubtful(&certain));
+            let has_all_digits = match (certain, truth.hit()) {
+                (Enclosure::Hits(hits), Some(hit)) if index % 40 == 0 => {
+                    (certify::middle(hits) - hit.t).high.abs() <= 1e-9 * slack
+                }
+                _ => true,
+            };
+            if !is_true(certain) || !has_all_digits {
+                wrong.push(format!("{ray:?}: {certain:?}, {truth:?}"));
+            }
+        }
+        println!("{text}: {doubtful} of {} doubtful, {} wrong", 4 * RAYS, wrong.len());
+        assert!(wrong.is_empty(), "{text}: {} wrong, such as {}", wrong.len(), wrong[0]);
+        // Bounds of a profile that jumps say little near its steps.
+        assert!(doubtful == 0 || text.contains("floor") && doubtful * 10 < 4 * RAYS, "{text}: {doubtful}");
+    }
+}
