@@ -5,7 +5,7 @@ use super::{interrupt, probe};
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::scene::model::Model;
-use crate::tools::debug::{self, Line};
+use crate::tools::debug::{self, LogLine};
 use std::io::{self, BufWriter, Write};
 
 #[derive(clap::Args)]
@@ -73,14 +73,14 @@ pub fn print(model: &Model, args: &Args) -> Result<(), Failure> {
     }
 }
 
-fn line(name: LineName) -> Line {
+fn line(name: LineName) -> LogLine {
     match name {
-        LineName::Pix => Line::Pix,
-        LineName::Hit => Line::Hit,
-        LineName::Drgb => Line::Drgb,
-        LineName::Irgb => Line::Irgb,
-        LineName::Offset => Line::Offset,
-        LineName::Find => Line::Find,
+        LineName::Pix => LogLine::Pix,
+        LineName::Hit => LogLine::Hit,
+        LineName::Drgb => LogLine::Drgb,
+        LineName::Irgb => LogLine::Irgb,
+        LineName::Offset => LogLine::Offset,
+        LineName::Find => LogLine::Find,
     }
 }
 

@@ -1,8 +1,8 @@
 //! `--stats`: what a picture took, in rays, tests, time and memory.
 
 use super::memory;
-use crate::render::tally::{Cuts, Tally};
-use crate::render::watch::Kind;
+use crate::render::observer::RayKind;
+use crate::render::ray_stats::{Cuts, RayStats};
 use crate::scene::model::Model;
 use crate::words::short;
 use serde_json::json;
@@ -63,15 +63,15 @@ impl Args {
 
 /// The counts of all parts of a picture, from all threads.
 #[derive(Default)]
-pub struct Sum(Mutex<Tally>);
+pub struct Sum(Mutex<RayStats>);
 
 impl Sum {
-    fn get(&self) -> MutexGuard<'_, Tally> {
+    fn get(&self) -> MutexGuard<'_, RayStats> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Adds those of a part.
-    pub fn add(&self, part: &Tally) {
+    pub fn add(&self, part: &RayStats) {
         self.get().add(part);
     }
 }
@@ -97,7 +97,7 @@ impl Stats {
     fn table(&self, model: &Model) -> String {
         let tally = self.tally.get();
         let mut out = format!("{:<12} {:>14}\n", "rays", "cast");
-        for kind in Kind::ALL {
+        for kind in RayKind::ALL {
             let _ = writeln!(out, "{kind:<12} {:>14}", tally.rays(kind));
         }
         let Cuts { pixels, most } = tally.cuts;
@@ -125,7 +125,7 @@ impl Stats {
 
     fn json(&self, model: &Model) -> String {
         let tally = self.tally.get();
-        let rays = Kind::ALL.map(|kind| (kind.to_string(), tally.rays(kind).into()));
+        let rays = RayKind::ALL.map(|kind| (kind.to_string(), tally.rays(kind).into()));
         let tests = tally.tests(model).into_iter().map(|(name, tests)| {
             let tests = json!({"objects": tests.objects, "tested": tests.tested, "culled": tests.culled});
             (name.to_owned(), tests)
