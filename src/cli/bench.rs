@@ -6,7 +6,7 @@ use crate::scene::model::Model;
 use crate::scene::reader;
 use crate::scene::registry::Registry;
 use crate::simd::cpu::Cpu;
-use crate::tools::bench::{Cost, Speed, Tests, scenes};
+use crate::tools::bench::{Cost, Speed, TestTimes, scenes};
 use crate::words;
 use serde::Serialize;
 use std::fmt::Write;
@@ -225,7 +225,7 @@ struct Times {
 }
 
 impl Times {
-    fn of(tests: &Tests) -> Self {
+    fn of(tests: &TestTimes) -> Self {
         Self {
             bare_ns: tests.bare,
             block_ns: tests.times.block,

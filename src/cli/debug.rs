@@ -5,7 +5,7 @@ use super::{interrupt, probe};
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::scene::model::Model;
-use crate::tools::debug::{self, Line};
+use crate::tools::debug::{self, LogLine};
 use std::io::{self, BufWriter, Write};
 
 #[derive(clap::Args)]
@@ -13,7 +13,7 @@ use std::io::{self, BufWriter, Write};
 pub struct Args {
     /// Print the course notes' debug lines to standard error before rendering
     #[arg(long, value_name = "LINES", value_delimiter = ',')]
-    debug: Vec<Line>,
+    debug: Vec<LogLine>,
     /// Print the debug lines of one pixel or of a rectangle, both corners included: columns count from 0 at the left,
     /// rows from 0 at the bottom
     #[arg(long, value_name = "X,Y|X0,Y0,X1,Y1", requires = "debug", value_parser = corners)]

@@ -1,8 +1,8 @@
 //! `--stats`: what a picture took, in rays, tests, time and memory.
 
 use super::memory;
-use crate::render::tally::{Cuts, Tally, Tests};
-use crate::render::watch::Kind;
+use crate::render::observer::RayKind;
+use crate::render::ray_stats::{Cuts, RayStats, TestCounts};
 use crate::scene::model::Model;
 use crate::words::{json, short};
 use serde::Serialize;
@@ -64,15 +64,15 @@ impl Args {
 
 /// The counts of all parts of a picture, from all threads.
 #[derive(Default)]
-pub struct Sum(Mutex<Tally>);
+pub struct Sum(Mutex<RayStats>);
 
 impl Sum {
-    fn get(&self) -> MutexGuard<'_, Tally> {
+    fn get(&self) -> MutexGuard<'_, RayStats> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Adds those of a part.
-    pub fn add(&self, part: &Tally) {
+    pub fn add(&self, part: &RayStats) {
         self.get().add(part);
     }
 }
@@ -94,7 +94,7 @@ impl Stats {
     fn table(&self, model: &Model) -> String {
         let tally = self.tally.get();
         let mut out = format!("{:<12} {:>14}\n", "rays", "cast");
-        for kind in Kind::ALL {
+        for kind in RayKind::ALL {
             let _ = writeln!(out, "{kind:<12} {:>14}", tally.rays(kind));
         }
         let Cuts { pixels, most } = tally.cuts;
@@ -129,10 +129,10 @@ impl Stats {
             cut: Cut { levels: 255.0 * tally.cuts.most, pixels: tally.cuts.pixels },
             peak_memory: memory::peak(),
             rays: Rays {
-                primary: tally.rays(Kind::Primary),
-                reflected: tally.rays(Kind::Reflected),
-                shadow: tally.rays(Kind::Shadow),
-                transmitted: tally.rays(Kind::Transmitted),
+                primary: tally.rays(RayKind::Primary),
+                reflected: tally.rays(RayKind::Reflected),
+                shadow: tally.rays(RayKind::Shadow),
+                transmitted: tally.rays(RayKind::Transmitted),
             },
             seconds: self.seconds(),
             tests: tally.tests(model),
@@ -153,7 +153,7 @@ struct Counts {
     /// How long each stage took.
     seconds: Seconds,
     /// What became of the tests, by entity type.
-    tests: BTreeMap<&'static str, Tests>,
+    tests: BTreeMap<&'static str, TestCounts>,
 }
 
 /// How many rays were cast.

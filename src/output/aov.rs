@@ -3,10 +3,10 @@
 
 use crate::geometry::sight::Sight;
 use crate::render::bytes::{shown, to_byte};
+use crate::render::observer::{Event, TraceObserver};
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::render::trace;
-use crate::render::watch::{Event, Watch};
 use clap::ValueEnum;
 use glam::DVec3;
 use image::codecs::openexr::OpenExrEncoder;
@@ -89,7 +89,7 @@ impl Aov {
             Self::Cost => {
                 let costs = each(renderer, plan, done, |x, y| {
                     let mut rays = Rays(0);
-                    trace::watch_pixel(plan, x, y, &mut rays);
+                    trace::observe_pixel(plan, x, y, &mut rays);
                     rays.0
                 })?;
                 Ok(cost(&costs, plan.camera.pixels))
@@ -122,7 +122,7 @@ impl Layer {
 /// Counts rays.
 struct Rays(u64);
 
-impl Watch for Rays {
+impl TraceObserver for Rays {
     const SEES: bool = true;
 
     fn see(&mut self, event: Event) {

@@ -9,7 +9,7 @@ use std::fmt;
 /// Someone who watches rays being traced.
 ///
 /// Nobody, `()`, watches plain rendering; there all of this compiles to nothing.
-pub trait Watch {
+pub trait TraceObserver {
     /// Whether it sees each event. Then rays go one by one, and none is spared a test.
     const SEES: bool;
 
@@ -20,7 +20,7 @@ pub trait Watch {
     fn count(&mut self, _count: Count) {}
 }
 
-impl Watch for () {
+impl TraceObserver for () {
     const SEES: bool = false;
 }
 
@@ -28,7 +28,7 @@ impl Watch for () {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Count {
     /// So many rays of a kind were cast.
-    Rays(Kind, usize),
+    Rays(RayKind, usize),
     /// So many rays were tested against the object of this index.
     Tested(usize, usize),
     /// So many rays were not, as the object's bounds are not in their way.
@@ -39,7 +39,7 @@ pub enum Count {
 
 /// The kinds of rays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Kind {
+pub enum RayKind {
     /// From the viewer.
     Primary,
     /// From a surface to a light; in a scene with glass, anew from behind each pane on its way.
@@ -50,12 +50,12 @@ pub enum Kind {
     Transmitted,
 }
 
-impl Kind {
+impl RayKind {
     /// All of them.
     pub const ALL: [Self; 4] = [Self::Primary, Self::Shadow, Self::Reflected, Self::Transmitted];
 }
 
-impl fmt::Display for Kind {
+impl fmt::Display for RayKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(match self {
             Self::Primary => "primary",

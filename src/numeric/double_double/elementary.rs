@@ -1,7 +1,7 @@
 //! The functions of formulas in twice the precision: their series, so that the truth about any shape can be told.
 
-use super::{Twofold, two_product};
-use crate::numeric::number::Number;
+use super::{DoubleDouble, two_product};
+use crate::numeric::scalar::Scalar;
 
 /// A power of two, also one that is too small for a normal number.
 fn power_of_two(exponent: i32) -> f64 {
@@ -20,7 +20,7 @@ const HALF_PI: [f64; 4] = [
 /// ln 2, likewise.
 const LN_2: [f64; 3] = [std::f64::consts::LN_2, 2.319_046_813_846_299_6e-17, 5.707_708_438_416_212e-34];
 
-impl Twofold {
+impl DoubleDouble {
     const ZERO: Self = Self { high: 0.0, low: 0.0 };
     const ONE: Self = Self { high: 1.0, low: 0.0 };
 
@@ -70,7 +70,7 @@ impl Twofold {
     }
 }
 
-impl Number for Twofold {
+impl Scalar for DoubleDouble {
     fn constant(value: f64) -> Self {
         value.into()
     }

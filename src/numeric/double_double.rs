@@ -92,13 +92,13 @@ impl Exact {
     }
 
     /// It, rounded once to twice the precision.
-    pub fn rounded(&self) -> Twofold {
-        self.parts.iter().rev().fold(Twofold::from(0.0), |sum, part| sum + Twofold::from(*part))
+    pub fn rounded(&self) -> DoubleDouble {
+        self.parts.iter().rev().fold(DoubleDouble::from(0.0), |sum, part| sum + DoubleDouble::from(*part))
     }
 }
 
 /// A sum, rounded once to twice the precision: 0 where it is 0, however much of it cancels.
-pub fn exact_sum(terms: impl IntoIterator<Item = f64>) -> Twofold {
+pub fn exact_sum(terms: impl IntoIterator<Item = f64>) -> DoubleDouble {
     Exact::sum(terms).rounded()
 }
 
@@ -119,7 +119,7 @@ pub fn times_power_of_two(number: f64, exponent: i32) -> f64 {
 ///
 /// For finite numbers of a magnitude below 1e290, products' magnitudes above 1e-290: beyond them parts are lost.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
-pub struct Twofold {
+pub struct DoubleDouble {
     // The order of the fields is that in which numbers compare.
     /// The number, rounded.
     pub high: f64,
@@ -127,14 +127,14 @@ pub struct Twofold {
     pub low: f64,
 }
 
-impl From<f64> for Twofold {
+impl From<f64> for DoubleDouble {
     #[inline(always)]
     fn from(value: f64) -> Self {
         Self { high: value, low: 0.0 }
     }
 }
 
-impl Twofold {
+impl DoubleDouble {
     /// The difference of two numbers, exactly.
     #[inline(always)]
     pub fn difference(a: f64, b: f64) -> Self {
@@ -159,7 +159,7 @@ impl Twofold {
     }
 }
 
-impl Add for Twofold {
+impl Add for DoubleDouble {
     type Output = Self;
 
     #[inline(always)]
@@ -171,7 +171,7 @@ impl Add for Twofold {
     }
 }
 
-impl Neg for Twofold {
+impl Neg for DoubleDouble {
     type Output = Self;
 
     #[inline(always)]
@@ -180,7 +180,7 @@ impl Neg for Twofold {
     }
 }
 
-impl Sub for Twofold {
+impl Sub for DoubleDouble {
     type Output = Self;
 
     #[inline(always)]
@@ -189,7 +189,7 @@ impl Sub for Twofold {
     }
 }
 
-impl Mul for Twofold {
+impl Mul for DoubleDouble {
     type Output = Self;
 
     #[inline(always)]
@@ -199,7 +199,7 @@ impl Mul for Twofold {
     }
 }
 
-impl Div for Twofold {
+impl Div for DoubleDouble {
     type Output = Self;
 
     #[inline(always)]
@@ -214,13 +214,13 @@ impl Div for Twofold {
 
 /// The product of two vectors that is a number.
 #[inline(always)]
-pub fn product(a: [Twofold; 3], b: [Twofold; 3]) -> Twofold {
+pub fn product(a: [DoubleDouble; 3], b: [DoubleDouble; 3]) -> DoubleDouble {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// The product of two vectors that stands upright on both, each component rounded once, however much cancels in it.
-pub fn cross(a: [Twofold; 3], b: [Twofold; 3]) -> [Twofold; 3] {
-    let parts = |of: Twofold, with: Twofold| {
+pub fn cross(a: [DoubleDouble; 3], b: [DoubleDouble; 3]) -> [DoubleDouble; 3] {
+    let parts = |of: DoubleDouble, with: DoubleDouble| {
         let pairs = [(of.high, with.high), (of.high, with.low), (of.low, with.high), (of.low, with.low)];
         pairs.into_iter().flat_map(|(one, other)| <[f64; 2]>::from(two_product(one, other)))
     };
@@ -231,8 +231,8 @@ pub fn cross(a: [Twofold; 3], b: [Twofold; 3]) -> [Twofold; 3] {
 }
 
 /// The product of three vectors, rounded once: which way round they are, for certain, or that they are in one plane.
-pub fn triple_product(a: [Twofold; 3], b: [Twofold; 3], c: [f64; 3]) -> Twofold {
-    let parts = |of: Twofold, with: Twofold, factor: f64| {
+pub fn triple_product(a: [DoubleDouble; 3], b: [DoubleDouble; 3], c: [f64; 3]) -> DoubleDouble {
+    let parts = |of: DoubleDouble, with: DoubleDouble, factor: f64| {
         let pairs = [(of.high, with.high), (of.high, with.low), (of.low, with.high), (of.low, with.low)];
         let products = pairs.into_iter().flat_map(|(one, other)| <[f64; 2]>::from(two_product(one, other)));
         products.flat_map(move |product| <[f64; 2]>::from(two_product(product, factor)))
@@ -243,7 +243,7 @@ pub fn triple_product(a: [Twofold; 3], b: [Twofold; 3], c: [f64; 3]) -> Twofold 
 }
 
 /// A vector's direction, as a vector of length 1. Its components must be of about that magnitude.
-pub fn unit(vector: [Twofold; 3]) -> [Twofold; 3] {
+pub fn unit(vector: [DoubleDouble; 3]) -> [DoubleDouble; 3] {
     let length = product(vector, vector).sqrt();
     vector.map(|part| part / length)
 }
@@ -261,9 +261,9 @@ mod tests {
 
     #[test]
     fn exact_sums_lose_nothing() {
-        assert_eq!(exact_sum([1e200, 1.0, -1e200, 1e-200, -1.0]), Twofold::from(1e-200));
-        assert_eq!(exact_sum([0.1, 0.2, -0.2, -0.1]), Twofold::from(0.0));
-        let Twofold { high, low } = exact_sum([1e-40, 1e-20, 1.0, 1e40, -1e40]);
+        assert_eq!(exact_sum([1e200, 1.0, -1e200, 1e-200, -1.0]), DoubleDouble::from(1e-200));
+        assert_eq!(exact_sum([0.1, 0.2, -0.2, -0.1]), DoubleDouble::from(0.0));
+        let DoubleDouble { high, low } = exact_sum([1e-40, 1e-20, 1.0, 1e40, -1e40]);
         assert_eq!((high, low), (1.0, 1e-20));
     }
 
@@ -278,12 +278,12 @@ mod tests {
 
     #[test]
     fn roots_and_quotients_have_twice_the_digits() {
-        let two = Twofold::from(2.0);
+        let two = DoubleDouble::from(2.0);
         let root = two.sqrt();
         let rest = root * root - two;
         assert!(rest.high.abs() < 1e-31, "{rest:?}");
-        let third = Twofold::from(1.0) / Twofold::from(3.0);
-        let rest = third * Twofold::from(3.0) - Twofold::from(1.0);
+        let third = DoubleDouble::from(1.0) / DoubleDouble::from(3.0);
+        let rest = third * DoubleDouble::from(3.0) - DoubleDouble::from(1.0);
         assert!(rest.high.abs() < 1e-31, "{rest:?}");
     }
 }

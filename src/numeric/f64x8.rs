@@ -3,28 +3,28 @@
 //! Each gets the bits that it would get alone. Sines and cosines are those of the `libm` crate, all eight at once where
 //! that is possible: the reduction and the polynomials are those of FreeBSD's msun, from which that crate comes.
 
-use crate::numeric::number::Number;
-use crate::simd::soa::STEP;
+use crate::numeric::scalar::Scalar;
+use crate::simd::soa::LANES;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Eight numbers, each of which goes its own way.
 #[derive(Clone, Copy, Debug)]
-pub struct Octet(pub [f64; STEP]);
+pub struct F64x8(pub [f64; LANES]);
 
-/// Something of each number, or of each of several octets' numbers: `each!(a = x, b = y => a.hypot(b))`.
+/// Something of each number, or of each of several vectors' numbers: `each!(a = x, b = y => a.hypot(b))`.
 macro_rules! each {
-    ($($number:ident = $octet:expr),+ => $value:expr) => {{
-        let mut all = [0.0; $crate::simd::soa::STEP];
-        for lane in 0..$crate::simd::soa::STEP {
-            $(let $number = $octet.0[lane];)+
+    ($($number:ident = $vector:expr),+ => $value:expr) => {{
+        let mut all = [0.0; $crate::simd::soa::LANES];
+        for lane in 0..$crate::simd::soa::LANES {
+            $(let $number = $vector.0[lane];)+
             all[lane] = $value;
         }
-        $crate::numeric::octet::Octet(all)
+        $crate::numeric::f64x8::F64x8(all)
     }};
 }
 pub(crate) use each;
 
-impl Add for Octet {
+impl Add for F64x8 {
     type Output = Self;
 
     #[inline(always)]
@@ -33,7 +33,7 @@ impl Add for Octet {
     }
 }
 
-impl Sub for Octet {
+impl Sub for F64x8 {
     type Output = Self;
 
     #[inline(always)]
@@ -42,7 +42,7 @@ impl Sub for Octet {
     }
 }
 
-impl Mul for Octet {
+impl Mul for F64x8 {
     type Output = Self;
 
     #[inline(always)]
@@ -51,7 +51,7 @@ impl Mul for Octet {
     }
 }
 
-impl Div for Octet {
+impl Div for F64x8 {
     type Output = Self;
 
     #[inline(always)]
@@ -60,7 +60,7 @@ impl Div for Octet {
     }
 }
 
-impl Neg for Octet {
+impl Neg for F64x8 {
     type Output = Self;
 
     #[inline(always)]
@@ -69,23 +69,23 @@ impl Neg for Octet {
     }
 }
 
-impl Number for Octet {
+impl Scalar for F64x8 {
     #[inline(always)]
     fn constant(value: f64) -> Self {
-        Self([value; STEP])
+        Self([value; LANES])
     }
 
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
-        let (mut sin, mut cos) = ([0.0; STEP], [0.0; STEP]);
-        let (mut odd, mut any) = ([0; STEP], 0);
-        for lane in 0..STEP {
+        let (mut sin, mut cos) = ([0.0; LANES], [0.0; LANES]);
+        let (mut odd, mut any) = ([0; LANES], 0);
+        for lane in 0..LANES {
             let of = sin_cos(self.0[lane]);
             (sin[lane], cos[lane], odd[lane]) = (of.sin, of.cos, of.is_odd);
             any |= of.is_odd;
         }
         if any != 0 {
-            for lane in 0..STEP {
+            for lane in 0..LANES {
                 if odd[lane] != 0 {
                     (sin[lane], cos[lane]) = libm::sincos(self.0[lane]);
                 }
@@ -108,7 +108,7 @@ impl Number for Octet {
 
     #[inline(always)]
     fn sqrt(self) -> Self {
-        each!(a = self => Number::sqrt(a))
+        each!(a = self => Scalar::sqrt(a))
     }
 
     #[inline(always)]
@@ -123,12 +123,12 @@ impl Number for Octet {
 
     #[inline(always)]
     fn min(self, other: Self) -> Self {
-        each!(a = self, b = other => Number::min(a, b))
+        each!(a = self, b = other => Scalar::min(a, b))
     }
 
     #[inline(always)]
     fn max(self, other: Self) -> Self {
-        each!(a = self, b = other => Number::max(a, b))
+        each!(a = self, b = other => Scalar::max(a, b))
     }
 
     fn pow(self, exponent: Self) -> Self {
@@ -166,7 +166,7 @@ impl Number for Octet {
     /// Whether all of them are.
     #[inline(always)]
     fn is_zero(self) -> bool {
-        self.0 == [0.0; STEP]
+        self.0 == [0.0; LANES]
     }
 }
 
@@ -270,10 +270,10 @@ mod tests {
         });
         let special = [0.0, -0.0, 1.0, f64::INFINITY, f64::NAN, f64::MIN_POSITIVE, 1e300, 0.785];
         let numbers: Vec<_> = numbers.chain(special).collect();
-        for eight in numbers.chunks_exact(STEP) {
-            let octet = Octet(std::array::from_fn(|lane| eight[lane]));
-            let (sin, cos) = octet.sin_cos();
-            for lane in 0..STEP {
+        for eight in numbers.chunks_exact(LANES) {
+            let vector = F64x8(std::array::from_fn(|lane| eight[lane]));
+            let (sin, cos) = vector.sin_cos();
+            for lane in 0..LANES {
                 let expected = libm::sincos(eight[lane]);
                 assert!(same(sin.0[lane], expected.0), "sin {:e}", eight[lane]);
                 assert!(same(cos.0[lane], expected.1), "cos {:e}", eight[lane]);
@@ -285,13 +285,13 @@ mod tests {
 
     #[test]
     fn each_number_goes_its_own_way() {
-        fn all<N: Number>(x: N) -> N {
+        fn all<N: Scalar>(x: N) -> N {
             let some = x.powi(3) - x.sqrt() * x.exp() + x.ln().sin() / x.tan() + x.cos().abs();
             some.min(x).max(-x) + x.floor() * x.pow(N::constant(1.5)) - x.powi(-2)
         }
         let numbers = [0.3, 1.1, 2.5, 4.0, -0.7, 1e-3, 12.0, 700.0];
-        let Dual { value, slope } = all(Dual::variable(Octet(numbers)));
-        for lane in 0..STEP {
+        let Dual { value, slope } = all(Dual::variable(F64x8(numbers)));
+        for lane in 0..LANES {
             let alone = all(Dual::variable(numbers[lane]));
             assert!(same(value.0[lane], alone.value), "{}", numbers[lane]);
             assert!(same(slope.0[lane], alone.slope), "{}", numbers[lane]);

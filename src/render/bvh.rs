@@ -3,7 +3,7 @@
 //! It is built from the top by the surface area heuristic over a few bins (Wald, "On fast Construction of SAH-based
 //! Bounding Volume Hierarchies", 2007).
 
-use crate::geometry::bounds::Bounds;
+use crate::geometry::aabb::Aabb;
 use glam::DVec3;
 
 /// Places at which a set of objects may be parted, along the longest way between their middles.
@@ -13,14 +13,14 @@ const BINS: usize = 16;
 const LEAF: usize = 4;
 
 /// Objects in boxes in boxes.
-pub struct Tree {
+pub struct Bvh {
     nodes: Vec<Node>,
     /// The objects' indices, leaf by leaf.
     objects: Vec<u32>,
 }
 
 struct Node {
-    bounds: Bounds,
+    bounds: Aabb,
     content: Content,
 }
 
@@ -31,9 +31,9 @@ enum Content {
     Parts(u32, u8),
 }
 
-impl Tree {
+impl Bvh {
     /// The tree of some objects, each with its index and its box.
-    pub fn new(mut objects: Vec<(u32, Bounds)>) -> Self {
+    pub fn new(mut objects: Vec<(u32, Aabb)>) -> Self {
         let mut tree = Self { nodes: Vec::new(), objects: Vec::new() };
         tree.add(&mut objects);
         tree
@@ -44,8 +44,8 @@ impl Tree {
         self.nodes.len()
     }
 
-    fn add(&mut self, objects: &mut [(u32, Bounds)]) {
-        let bounds = objects.iter().fold(Bounds::EMPTY, |all, (_, bounds)| all.and(bounds));
+    fn add(&mut self, objects: &mut [(u32, Aabb)]) {
+        let bounds = objects.iter().fold(Aabb::EMPTY, |all, (_, bounds)| all.and(bounds));
         let index = self.nodes.len();
         let start = self.objects.len() as u32;
         self.nodes.push(Node { bounds, content: Content::Leaf(start, start + objects.len() as u32) });
@@ -88,7 +88,7 @@ impl Tree {
 /// Someone who looks for objects in a [`Tree`].
 pub trait Visitor {
     /// Whether what is in a box is of interest.
-    fn enters(&mut self, bounds: &Bounds) -> bool;
+    fn enters(&mut self, bounds: &Aabb) -> bool;
 
     /// Looks at the object of this index.
     fn object(&mut self, index: usize);
@@ -96,28 +96,28 @@ pub trait Visitor {
 
 /// Orders objects so that those before the index given lie nearer along an axis; nothing where they are better left
 /// together.
-fn part(objects: &mut [(u32, Bounds)]) -> Option<(usize, usize)> {
+fn part(objects: &mut [(u32, Aabb)]) -> Option<(usize, usize)> {
     if objects.len() <= LEAF {
         return None;
     }
-    let middles = objects.iter().fold(Bounds::EMPTY, |all, (_, bounds)| {
-        all.and(&Bounds { low: bounds.middle(), high: bounds.middle() })
-    });
+    let middles = objects
+        .iter()
+        .fold(Aabb::EMPTY, |all, (_, bounds)| all.and(&Aabb { low: bounds.middle(), high: bounds.middle() }));
     let size = middles.high - middles.low;
     let axis = size.max_position();
-    let bin = |bounds: &Bounds| {
+    let bin = |bounds: &Aabb| {
         let part = (bounds.middle()[axis] - middles.low[axis]) / size[axis];
         ((part * BINS as f64) as usize).min(BINS - 1)
     };
-    let mut bins = [(0, Bounds::EMPTY); BINS];
+    let mut bins = [(0, Aabb::EMPTY); BINS];
     for (_, bounds) in objects.iter() {
         let (count, all) = &mut bins[bin(bounds)];
         (*count, *all) = (*count + 1, all.and(bounds));
     }
     // The area of a box tells how likely a ray comes into it.
-    let cost = |bins: &[(usize, Bounds)]| {
+    let cost = |bins: &[(usize, Aabb)]| {
         let (count, all) =
-            bins.iter().fold((0, Bounds::EMPTY), |(count, all), bin| (count + bin.0, all.and(&bin.1)));
+            bins.iter().fold((0, Aabb::EMPTY), |(count, all), bin| (count + bin.0, all.and(&bin.1)));
         if count == 0 { f64::INFINITY } else { count as f64 * all.half_area() }
     };
     let (cut, best) = (1..BINS)

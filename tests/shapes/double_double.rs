@@ -5,7 +5,7 @@ use dashu_float::FBig;
 use dashu_float::round::mode::HalfEven;
 use dashu_int::{IBig, UBig};
 use f256::f256;
-use tabray::numeric::{Interval, Number, Wide, twofold::Twofold};
+use tabray::numeric::{Interval, Scalar, Wide, double_double::DoubleDouble};
 
 type Big = FBig<HalfEven, 2>;
 
@@ -14,26 +14,26 @@ const ARGUMENTS: usize = 2_000;
 
 const BITS: usize = 160;
 
-fn big(number: Twofold) -> Big {
+fn big(number: DoubleDouble) -> Big {
     let [high, low] = [number.high, number.low]
         .map(|part| Big::try_from(part).expect("finite").with_precision(BITS).value());
     high + low
 }
 
 /// How far a number is from the right one, against that one.
-fn error(number: Twofold, right: &Big) -> f64 {
+fn error(number: DoubleDouble, right: &Big) -> f64 {
     let apart = (big(number) - right).to_f64().value().abs();
     apart / right.to_f64().value().abs()
 }
 
 /// A random number of twice the usual length.
-fn long(random: &mut Random, low: f64, high: f64) -> Twofold {
-    let number = Twofold::from(random.between(low, high));
+fn long(random: &mut Random, low: f64, high: f64) -> DoubleDouble {
+    let number = DoubleDouble::from(random.between(low, high));
     number + number * random.between(-1e-17, 1e-17).into()
 }
 
 #[track_caller]
-fn agrees((low, high): (f64, f64), own: impl Fn(Twofold) -> Twofold, right: impl Fn(&Big) -> Big) {
+fn agrees((low, high): (f64, f64), own: impl Fn(DoubleDouble) -> DoubleDouble, right: impl Fn(&Big) -> Big) {
     let mut random = Random::new(5);
     for _ in 0..ARGUMENTS {
         let argument = long(&mut random, low, high);
@@ -45,7 +45,7 @@ fn agrees((low, high): (f64, f64), own: impl Fn(Twofold) -> Twofold, right: impl
 #[track_caller]
 fn agrees_of_two(
     (low, high): (f64, f64),
-    own: impl Fn(Twofold, Twofold) -> Twofold,
+    own: impl Fn(DoubleDouble, DoubleDouble) -> DoubleDouble,
     right: impl Fn(&Big, &Big) -> Big,
 ) {
     let mut random = Random::new(6);
@@ -68,21 +68,21 @@ fn sums_products_and_quotients_agree() {
 
 #[test]
 fn roots_agree_and_those_below_zero_are_zero() {
-    agrees((0.0, 1.0), Number::sqrt, Big::sqrt);
-    agrees((0.0, 1e18), Number::sqrt, Big::sqrt);
-    assert!(Number::sqrt(Twofold::from(-1.0)).is_zero());
+    agrees((0.0, 1.0), Scalar::sqrt, Big::sqrt);
+    agrees((0.0, 1e18), Scalar::sqrt, Big::sqrt);
+    assert!(Scalar::sqrt(DoubleDouble::from(-1.0)).is_zero());
 }
 
 #[test]
 fn waves_agree() {
     for range in [(-1.0, 1.0), (-1e-9, 1e-9), (-200.0, 200.0), (1e6, 1e7)] {
-        agrees(range, Number::sin, Big::sin);
-        agrees(range, Number::cos, Big::cos);
-        agrees(range, Number::tan, Big::tan);
+        agrees(range, Scalar::sin, Big::sin);
+        agrees(range, Scalar::cos, Big::cos);
+        agrees(range, Scalar::tan, Big::tan);
     }
     // Next to where the wave is 0, most digits of the argument are lost.
     for quarters in 1..200 {
-        let near = Twofold::from(f64::from(quarters) * std::f64::consts::FRAC_PI_2);
+        let near = DoubleDouble::from(f64::from(quarters) * std::f64::consts::FRAC_PI_2);
         assert!(error(near.sin(), &big(near).sin()) < 1e-28, "{near:?}");
         assert!(error(near.cos(), &big(near).cos()) < 1e-28, "{near:?}");
     }
@@ -90,17 +90,17 @@ fn waves_agree() {
 
 #[test]
 fn exponentials_and_logarithms_agree() {
-    agrees((-1.0, 1.0), Number::exp, Big::exp);
-    agrees((-600.0, 600.0), Number::exp, Big::exp);
-    agrees((1e-9, 4.0), Number::ln, Big::ln);
-    agrees((0.999_999, 1.000_001), Number::ln, Big::ln);
-    agrees((1.0, 1e200), Number::ln, Big::ln);
-    assert!(Twofold::from(-3600.0).exp().is_zero());
+    agrees((-1.0, 1.0), Scalar::exp, Big::exp);
+    agrees((-600.0, 600.0), Scalar::exp, Big::exp);
+    agrees((1e-9, 4.0), Scalar::ln, Big::ln);
+    agrees((0.999_999, 1.000_001), Scalar::ln, Big::ln);
+    agrees((1.0, 1e200), Scalar::ln, Big::ln);
+    assert!(DoubleDouble::from(-3600.0).exp().is_zero());
 }
 
 #[test]
 fn powers_agree() {
-    agrees_of_two((1e-3, 20.0), Number::pow, |base, exponent| base.powf(exponent));
+    agrees_of_two((1e-3, 20.0), Scalar::pow, |base, exponent| base.powf(exponent));
     for exponent in [-3, -1, 0, 1, 2, 5, 30] {
         agrees((-9.0, 9.0), |base| base.powi(exponent), |base| base.powi(exponent.into()));
     }
@@ -117,27 +117,27 @@ fn the_least_greatest_and_whole_numbers_are_exact() {
         assert!(!a.abs().is_negative() && (a.abs() - a).is_zero() != a.is_negative());
         assert_eq!(a.step().is_zero(), a.is_negative());
     }
-    let below = Twofold::difference(2.0, 1e-30);
+    let below = DoubleDouble::difference(2.0, 1e-30);
     assert_eq!(below.floor(), 1.0.into());
-    assert_eq!(Twofold::difference(2.0, -1e-30).floor(), 2.0.into());
+    assert_eq!(DoubleDouble::difference(2.0, -1e-30).floor(), 2.0.into());
 }
 
 type Bounds = fn(Interval) -> Interval;
-type Exact = fn(Twofold) -> Twofold;
+type Exact = fn(DoubleDouble) -> DoubleDouble;
 
 /// The bounds that the truth is proven with hold.
 #[test]
 fn intervals_hold_the_true_results() {
     let functions: [(&str, (f64, f64), Bounds, Exact); 9] = [
-        ("sin", (-30.0, 30.0), Number::sin, Number::sin),
-        ("cos", (-30.0, 30.0), Number::cos, Number::cos),
-        ("tan", (-1.5, 1.5), Number::tan, Number::tan),
-        ("exp", (-50.0, 50.0), Number::exp, Number::exp),
-        ("ln", (1e-3, 50.0), Number::ln, Number::ln),
-        ("sqrt", (0.0, 50.0), Number::sqrt, Number::sqrt),
-        ("abs", (-3.0, 3.0), Number::abs, Number::abs),
+        ("sin", (-30.0, 30.0), Scalar::sin, Scalar::sin),
+        ("cos", (-30.0, 30.0), Scalar::cos, Scalar::cos),
+        ("tan", (-1.5, 1.5), Scalar::tan, Scalar::tan),
+        ("exp", (-50.0, 50.0), Scalar::exp, Scalar::exp),
+        ("ln", (1e-3, 50.0), Scalar::ln, Scalar::ln),
+        ("sqrt", (0.0, 50.0), Scalar::sqrt, Scalar::sqrt),
+        ("abs", (-3.0, 3.0), Scalar::abs, Scalar::abs),
         ("cube", (-9.0, 9.0), |x| x.powi(3), |x| x.powi(3)),
-        ("inverse", (0.1, 9.0), |x| Interval::constant(1.0) / x, |x| Twofold::from(1.0) / x),
+        ("inverse", (0.1, 9.0), |x| Interval::constant(1.0) / x, |x| DoubleDouble::from(1.0) / x),
     ];
     let mut random = Random::new(8);
     for (name, (low, high), bounds, exact) in functions {

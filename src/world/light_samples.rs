@@ -5,7 +5,7 @@
 use crate::simd::soa::{View, ViewMut};
 
 /// Places of a surface that may see a light.
-pub struct Places<'p> {
+pub struct ShadingPoints<'p> {
     /// Where they are, in world coordinates.
     pub points: View<'p>,
     /// The unit normals there.
@@ -18,22 +18,22 @@ pub struct Places<'p> {
 }
 
 /// What a light sends to places, and how it comes there.
-pub struct Facing<'f> {
+pub struct LightSamples<'f> {
     /// The directions to it, unit vectors.
     pub toward: ViewMut<'f>,
     /// The colours that it sends, black where it sends nothing; of a light that is even they are left as they are.
     pub emissivity: ViewMut<'f>,
     /// The cosines of the angles between those directions and the normals, divided by the distances to it in world
     /// units.
-    pub falloffs: &'f mut [f64],
+    pub cos_over_distance: &'f mut [f64],
     /// Where the ways to it end, in world units from the places; 0 where none need be gone.
-    pub ends: &'f mut [f64],
+    pub t_max: &'f mut [f64],
     /// 0 for a place to which it sends nothing, or from behind; else 1.
     pub shines: &'f mut [u64],
 }
 
 /// What is so of any of some places.
-pub struct Faced {
+pub struct Lit {
     /// One faces the light.
     pub any_faces: bool,
     /// To one that does the light sends something, too.

@@ -6,7 +6,7 @@ use super::ranges::Ranges;
 use crate::numeric::dual::Dual;
 use crate::numeric::formula::Formula;
 use crate::numeric::interval::Interval;
-use crate::numeric::number::Number;
+use crate::numeric::scalar::Scalar;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
@@ -297,10 +297,10 @@ impl Slab {
                 + 0.5 * wide.second().magnitude() * reach * reach;
             let first = thin_value + wide.first().magnitude() * reach;
             let plain = wide.value.value.magnitude();
-            error = larger(error, second.min(first).min(plain));
+            error = larger_or_infinite(error, second.min(first).min(plain));
             let slope = thin.first().magnitude() + wide.second().magnitude() * reach;
-            slope_error = larger(slope_error, slope.min(wide.first().magnitude()));
-            most = larger(most, value.value.value.high);
+            slope_error = larger_or_infinite(slope_error, slope.min(wide.first().magnitude()));
+            most = larger_or_infinite(most, value.value.value.high);
         }
         (self.error, self.slope_error, self.most) = (error, slope_error, most);
         Some(())
@@ -308,6 +308,6 @@ impl Slab {
 }
 
 /// The larger of two; without end where one is not a number.
-fn larger(a: f64, b: f64) -> f64 {
+fn larger_or_infinite(a: f64, b: f64) -> f64 {
     if b.is_nan() { f64::INFINITY } else { a.max(b) }
 }

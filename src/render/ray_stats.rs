@@ -1,16 +1,16 @@
 //! How much work a picture took: its rays by kind, and their tests by object.
 
-use crate::render::watch::{Count, Kind, Watch};
+use crate::render::observer::{Count, RayKind, TraceObserver};
 use crate::scene::model::Model;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// Counts of rays and tests. It is a watcher that leaves packets together, and so counts what plain rendering does.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Tally {
-    rays: [u64; Kind::ALL.len()],
+pub struct RayStats {
+    rays: [u64; RayKind::ALL.len()],
     /// By the objects' indices.
-    tests: Vec<Tests>,
+    tests: Vec<TestCounts>,
     /// The pixels that have cost as many rays as they may.
     pub cuts: Cuts,
 }
@@ -32,7 +32,7 @@ impl Cuts {
     }
 }
 
-impl Watch for Cuts {
+impl TraceObserver for Cuts {
     const SEES: bool = false;
 
     fn count(&mut self, count: Count) {
@@ -44,7 +44,7 @@ impl Watch for Cuts {
 
 /// What became of the tests of an object, or of all objects of an entity type.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Tests {
+pub struct TestCounts {
     /// How many rays were not tested, as the object's bounds are not in their way.
     ///
     /// What a tree passes over is neither tested nor culled, and no more are rays that leave the object or were blocked
@@ -56,7 +56,7 @@ pub struct Tests {
     pub tested: u64,
 }
 
-impl Watch for Tally {
+impl TraceObserver for RayStats {
     const SEES: bool = false;
 
     fn count(&mut self, count: Count) {
@@ -69,10 +69,10 @@ impl Watch for Tally {
     }
 }
 
-impl Tally {
-    fn of(&mut self, object: usize) -> &mut Tests {
+impl RayStats {
+    fn of(&mut self, object: usize) -> &mut TestCounts {
         if self.tests.len() <= object {
-            self.tests.resize(object + 1, Tests { objects: 1, tested: 0, culled: 0 });
+            self.tests.resize(object + 1, TestCounts { objects: 1, tested: 0, culled: 0 });
         }
         &mut self.tests[object]
     }
@@ -90,7 +90,7 @@ impl Tally {
     }
 
     /// How many rays of a kind were cast.
-    pub fn rays(&self, kind: Kind) -> u64 {
+    pub fn rays(&self, kind: RayKind) -> u64 {
         self.rays[kind as usize]
     }
 
@@ -100,8 +100,8 @@ impl Tally {
     }
 
     /// What became of the tests of a model's objects, by the names of their entity types.
-    pub fn tests(&self, model: &Model) -> BTreeMap<&'static str, Tests> {
-        let mut tests: BTreeMap<_, Tests> = BTreeMap::new();
+    pub fn tests(&self, model: &Model) -> BTreeMap<&'static str, TestCounts> {
+        let mut tests: BTreeMap<_, TestCounts> = BTreeMap::new();
         for (index, object) in model.objects.iter().enumerate() {
             let part = self.tests.get(index).copied().unwrap_or_default();
             let sum = tests.entry(object.args.entity.name).or_default();

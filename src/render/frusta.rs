@@ -1,8 +1,8 @@
 //! Which boxes the rays of a packet may come into, for each part of it: the rays of a part are nearer each other than
 //! all of them, and so come near fewer objects.
 
-use crate::geometry::bounds::{Bounds, SLACK, larger, range, smaller};
-use crate::geometry::packet::{Rays, WIDE, parts};
+use crate::geometry::aabb::{Aabb, SLACK, larger, range, smaller};
+use crate::geometry::ray_packet::{PACKET_SIZE, RayPacket, split};
 use crate::simd::cpu::kernels;
 use glam::DVec3;
 
@@ -10,13 +10,13 @@ use glam::DVec3;
 pub const PART: usize = 64;
 
 /// The most parts of a packet; they are looked at together.
-const PARTS: usize = WIDE / PART;
+const PARTS: usize = PACKET_SIZE / PART;
 
 /// A number for each part.
 type Each = [f64; PARTS];
 
 /// Everywhere that the rays of each part of a packet may go, by axes.
-pub struct Bundles {
+pub struct Frusta {
     /// A bit for each part that has rays.
     parts: u32,
     /// The least and the greatest coordinates of where they start.
@@ -34,7 +34,7 @@ pub struct Bundles {
     reach: f64,
 }
 
-impl Bundles {
+impl Frusta {
     /// Nowhere.
     const NONE: Self = Self {
         parts: 0,
@@ -48,13 +48,13 @@ impl Bundles {
     };
 
     /// The parts of which the ways are such; a bit for each.
-    pub fn which(&self, are_such: impl Fn(&Bounds) -> bool) -> u32 {
+    pub fn which(&self, are_such: impl Fn(&Aabb) -> bool) -> u32 {
         let parts = 0..u32::BITS - self.parts.leading_zeros();
         parts.map(|part| u32::from(are_such(&self.ways(part as usize))) << part).sum()
     }
 
     /// Everywhere that the rays of a part may go; mostly without an end.
-    fn ways(&self, part: usize) -> Bounds {
+    fn ways(&self, part: usize) -> Aabb {
         let (mut low, mut high) = (DVec3::NEG_INFINITY, DVec3::INFINITY);
         for axis in 0..3 {
             if self.falls[axis][part] == f64::NEG_INFINITY {
@@ -64,56 +64,56 @@ impl Bundles {
                 high[axis] = self.high[axis][part];
             }
         }
-        Bounds { low, high }
+        Aabb { low, high }
     }
 }
 
 kernels! {
     /// Where the rays of a packet may go, which may all start at one place.
-    pub fn around(rays: Rays, is_from_one: bool) -> Bundles {
-        let (mut bundles, count) = (Bundles::NONE, rays.len());
+    pub fn around(rays: RayPacket, is_from_one: bool) -> Frusta {
+        let (mut frusta, count) = (Frusta::NONE, rays.len());
         let (mut least, mut greatest) = ([[0.0; PARTS]; 3], [[0.0; PARTS]; 3]);
-        for (part, lanes) in parts(count, PART).enumerate() {
-            let Rays { origin, dir, .. } = rays.part(lanes);
+        for (part, lanes) in split(count, PART).enumerate() {
+            let RayPacket { origin, dir, .. } = rays.part(lanes);
             for (axis, (from, to)) in [(origin.x, dir.x), (origin.y, dir.y), (origin.z, dir.z)].into_iter().enumerate() {
                 let from = if is_from_one { &from[..1] } else { from };
-                (bundles.low[axis][part], bundles.high[axis][part]) = range(from);
+                (frusta.low[axis][part], frusta.high[axis][part]) = range(from);
                 (least[axis][part], greatest[axis][part]) = range(to);
             }
-            bundles.parts |= 1 << part;
+            frusta.parts |= 1 << part;
         }
         for axis in 0..3 {
             for part in 0..PARTS {
                 let (least, greatest) = (least[axis][part], greatest[axis][part]);
                 let (down, up) = (1.0 / least, 1.0 / greatest);
                 // What is infinite says that there is no way there, and no way is so long.
-                bundles.rises[axis][part] = if greatest > 0.0 { smaller(up, f64::MAX) } else { f64::INFINITY };
-                bundles.falls[axis][part] = if least < 0.0 { larger(down, f64::MIN) } else { f64::NEG_INFINITY };
-                bundles.rises_at_most[axis][part] = if least > 0.0 { down } else { f64::NAN };
-                bundles.falls_at_most[axis][part] = if greatest < 0.0 { up } else { f64::NAN };
+                frusta.rises[axis][part] = if greatest > 0.0 { smaller(up, f64::MAX) } else { f64::INFINITY };
+                frusta.falls[axis][part] = if least < 0.0 { larger(down, f64::MIN) } else { f64::NEG_INFINITY };
+                frusta.rises_at_most[axis][part] = if least > 0.0 { down } else { f64::NAN };
+                frusta.falls_at_most[axis][part] = if greatest < 0.0 { up } else { f64::NAN };
             }
             for part in 0..PARTS {
-                let farthest = larger(bundles.low[axis][part].abs(), bundles.high[axis][part].abs());
-                bundles.reach = larger(farthest, bundles.reach);
+                let farthest = larger(frusta.low[axis][part].abs(), frusta.high[axis][part].abs());
+                frusta.reach = larger(farthest, frusta.reach);
             }
         }
-        bundles
+        frusta
     }
 
     /// The parts of which a ray may come into each of some boxes, a bit for each part. Never wrong where it says no.
-    pub fn meet(bundles: &Bundles, boxes: &[(usize, Bounds)], parts: &mut [u32]) {
+    pub fn meet(frusta: &Frusta, boxes: &[(usize, Aabb)], parts: &mut [u32]) {
         for ((_, bounds), parts) in boxes.iter().zip(parts) {
-            let bounds = bounds.with_slack(bundles.reach);
+            let bounds = bounds.with_slack(frusta.reach);
             let (mut enters, mut leaves) = ([0.0; PARTS], [f64::INFINITY; PARTS]);
             for axis in 0..3 {
                 let (low, high) = (bounds.low[axis], bounds.high[axis]);
                 for part in 0..PARTS {
                     // How far the way is to the box's near and far walls, from where it is shortest and longest.
-                    let (up, down) = (low - bundles.high[axis][part], high - bundles.low[axis][part]);
-                    enters[part] = larger(up * bundles.rises[axis][part], enters[part]);
-                    enters[part] = larger(down * bundles.falls[axis][part], enters[part]);
-                    leaves[part] = smaller(down * bundles.rises_at_most[axis][part], leaves[part]);
-                    leaves[part] = smaller(up * bundles.falls_at_most[axis][part], leaves[part]);
+                    let (up, down) = (low - frusta.high[axis][part], high - frusta.low[axis][part]);
+                    enters[part] = larger(up * frusta.rises[axis][part], enters[part]);
+                    enters[part] = larger(down * frusta.falls[axis][part], enters[part]);
+                    leaves[part] = smaller(down * frusta.rises_at_most[axis][part], leaves[part]);
+                    leaves[part] = smaller(up * frusta.falls_at_most[axis][part], leaves[part]);
                 }
             }
             *parts = 0;
@@ -121,7 +121,7 @@ kernels! {
                 let may = (enters[part] <= leaves[part] * (1.0 + SLACK)) & (enters[part] < f64::INFINITY);
                 *parts |= u32::from(may) << part;
             }
-            *parts &= bundles.parts;
+            *parts &= frusta.parts;
         }
     }
 }
@@ -130,7 +130,7 @@ kernels! {
 mod tests {
     use super::*;
     use crate::simd::cpu::Cpu;
-    use crate::simd::soa::{STEP, Vectors};
+    use crate::simd::soa::{LANES, Vectors};
     use proptest::prelude::*;
 
     /// A number as those in scenes are, 0 among them.
@@ -143,9 +143,9 @@ mod tests {
     }
 
     /// Rays from places to others, copies of the last one behind them.
-    fn rays(ways: &[(DVec3, DVec3)]) -> (Vectors<WIDE>, Vectors<WIDE>, usize) {
+    fn rays(ways: &[(DVec3, DVec3)]) -> (Vectors<PACKET_SIZE>, Vectors<PACKET_SIZE>, usize) {
         let (mut origins, mut dirs) = (Vectors::ZERO, Vectors::ZERO);
-        let count = ways.len().next_multiple_of(STEP);
+        let count = ways.len().next_multiple_of(LANES);
         for lane in 0..count {
             let (from, to) = ways[lane.min(ways.len() - 1)];
             origins.set(lane, from);
@@ -157,7 +157,7 @@ mod tests {
     proptest! {
         #[test]
         fn a_part_one_of_whose_rays_comes_into_a_box_is_told(
-            ways in prop::collection::vec((vector(), vector()), 1..WIDE),
+            ways in prop::collection::vec((vector(), vector()), 1..PACKET_SIZE),
             chosen in any::<prop::sample::Index>(),
             size in (0.0..1.0, 0.0..1.0, 0.0..1.0),
         ) {
@@ -165,15 +165,15 @@ mod tests {
             let (from, to) = ways[chosen];
             prop_assume!((to - from).try_normalize().is_some());
             let half = 0.5 * DVec3::from(size);
-            let bounds = Bounds { low: to - half, high: to + half };
+            let bounds = Aabb { low: to - half, high: to + half };
             let (origins, dirs, count) = rays(&ways);
             for cpu in Cpu::all() {
-                let bundles =
-                    around(cpu, Rays { origin: origins.view(count), dir: dirs.view(count), origin_error: 0.0 }, false);
+                let frusta =
+                    around(cpu, RayPacket { origin: origins.view(count), dir: dirs.view(count), origin_error: 0.0 }, false);
                 let (part, mut met) = (1 << (chosen / PART), [0]);
-                meet(cpu, &bundles, &[(0, bounds)], &mut met);
+                meet(cpu, &frusta, &[(0, bounds)], &mut met);
                 prop_assert!(met[0] & part != 0, "{} to {}, {}", from, to, cpu);
-                let reached = bundles.which(|ways| ways.with_slack(1e6).overlaps(&bounds));
+                let reached = frusta.which(|ways| ways.with_slack(1e6).overlaps(&bounds));
                 prop_assert!(reached & part != 0, "{} to {} on its ways, {}", from, to, cpu);
             }
         }
@@ -190,20 +190,20 @@ mod tests {
             .collect();
         let (origins, dirs, count) = rays(&ways);
         for cpu in Cpu::all() {
-            let bundles = around(
+            let frusta = around(
                 cpu,
-                Rays { origin: origins.view(count), dir: dirs.view(count), origin_error: 0.0 },
+                RayPacket { origin: origins.view(count), dir: dirs.view(count), origin_error: 0.0 },
                 false,
             );
-            let at = |x: f64, y: f64| Bounds {
+            let at = |x: f64, y: f64| Aabb {
                 low: DVec3::new(x, y, -1.0),
                 high: DVec3::new(x + 2.0, y + 1.0, 1.0),
             };
             let (boxes, mut met) = ([at(0.0, 5.0), at(0.0, -5.0), at(0.0, -0.5), at(9.0, 5.0)], [9; 4]);
-            meet(cpu, &bundles, &boxes.map(|bounds| (0, bounds)), &mut met);
+            meet(cpu, &frusta, &boxes.map(|bounds| (0, bounds)), &mut met);
             assert_eq!(met, [0b01, 0b10, 0b11, 0]);
-            assert_eq!(bundles.which(|ways| ways.high.y == f64::INFINITY), 0b01);
-            assert_eq!(bundles.which(|ways| ways.high.y > -0.5), 0b11);
+            assert_eq!(frusta.which(|ways| ways.high.y == f64::INFINITY), 0b01);
+            assert_eq!(frusta.which(|ways| ways.high.y > -0.5), 0b11);
         }
     }
 }

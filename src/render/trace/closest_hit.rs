@@ -1,19 +1,19 @@
 //! What the rays of a packet meet first.
 
-use super::arrays::{Vectors, room};
+use super::arrays::{VectorList, resized};
 use super::context::Tracer;
-use super::found::Found;
-use super::group::Group;
+use super::hit_record::HitRecord;
 use super::order;
-use crate::geometry::bounds::{self, Bounds};
-use crate::geometry::packet::{Rays, parts};
-use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
+use super::ray_group::RayGroup;
+use crate::geometry::aabb::{self, Aabb};
+use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
+use crate::geometry::ray_packet::{RayPacket, split};
 use crate::geometry::sight::Sight;
 use crate::numeric::interval::{Interval, Wide};
-use crate::render::bundles::{self, PART};
+use crate::render::bvh::Visitor;
 use crate::render::culling;
-use crate::render::tree::Visitor;
-use crate::render::watch::{Count, Event, Hit, Reason, Watch};
+use crate::render::frusta::{self, PART};
+use crate::render::observer::{Count, Event, Hit, Reason, TraceObserver};
 use crate::simd::cpu::kernels;
 use crate::world::any_shape::AnyShape;
 use crate::world::certify::{self, Enclosure, Precision};
@@ -21,60 +21,60 @@ use crate::world::coincidence::CLOSE;
 use std::mem::take;
 use std::ops::Range;
 
-impl<'m, W: Watch> Tracer<'m, '_, W> {
+impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
     /// What each ray meets first before its end, if it has one. A ray that has cost as many as it may meets nothing.
-    pub(super) fn closest(&mut self, group: &mut Group, ends: Option<&[f64]>, found: &mut Found) {
-        let (is_over, count) = (group.budget[0] == 0, group.padded());
-        if found.begin(self.cpu, &mut group.budget, count, ends) && ends.is_none() {
-            self.miss_beyond(group, found);
+    pub(super) fn closest(&mut self, group: &mut RayGroup, t_max: Option<&[f64]>, hits: &mut HitRecord) {
+        let (is_over, count) = (group.ray_budget[0] == 0, group.padded());
+        if hits.begin(self.cpu, &mut group.ray_budget, count, t_max) && t_max.is_none() {
+            self.miss_beyond(group, hits);
         }
         if W::SEES {
             if is_over {
-                self.watch.see(Event::Dropped(Reason::TooMany));
+                self.observer.see(Event::Dropped(Reason::TooMany));
                 return;
             }
-            self.closest_seen(group, found);
+            self.closest_seen(group, hits);
             return;
         }
-        let (mut ahead, mut inverse) = (take(&mut self.rooms.ahead), take(&mut self.rooms.inverse));
+        let (mut ahead, mut inverse) = (take(&mut self.scratch.ahead), take(&mut self.scratch.inverse));
         let part = 0..group.padded();
-        Closest { tracer: self, group, found, part, inverse: &mut inverse }.run(&mut ahead);
-        (self.rooms.ahead, self.rooms.inverse) = (ahead, inverse);
+        Closest { tracer: self, group, hits, part, inverse: &mut inverse }.run(&mut ahead);
+        (self.scratch.ahead, self.scratch.inverse) = (ahead, inverse);
     }
 
     /// What one ray meets first, with all that leads to it told.
-    fn closest_seen(&mut self, group: &Group, found: &mut Found) {
+    fn closest_seen(&mut self, group: &RayGroup, hits: &mut HitRecord) {
         let start = self.start(group, 0);
-        let mut nearest = found.far[0];
-        self.watch.see(Event::Search(&start.ray));
+        let mut nearest = hits.far[0];
+        self.observer.see(Event::Search(&start.ray));
         for index in 0..self.model.objects.len() {
             let shape = &self.model.objects[index].shape;
-            let leaves = start.leaves(shape, group.sides_of(index).map(|sides| sides[0]));
-            if leaves.is_some_and(|side| !shape.meets_itself(side)) {
-                self.watch.see(Event::Tested(index, None));
+            let origin_side = start.leaves(shape, group.sides_of(index).map(|sides| sides[0]));
+            if origin_side.is_some_and(|side| !shape.can_hit_itself(side)) {
+                self.observer.see(Event::Tested(index, None));
                 continue;
             }
-            let (distance, bracket) = located(shape, &start, leaves, MISS);
-            let is_first = self.is_first(&start, (index, distance), (found.met[0], nearest));
-            self.watch.see(Event::Tested(index, Some(if is_first { distance } else { MISS })));
+            let (distance, bracket) = located(shape, &start, origin_side, MISS);
+            let is_first = self.is_first(&start, (index, distance), (hits.met[0], nearest));
+            self.observer.see(Event::Tested(index, Some(if is_first { distance } else { MISS })));
             if is_first {
                 // As a packet has it, for the hit to be finished in the same way.
-                (found.near[0], found.far[0], found.met[0]) = (bracket.near, bracket.far, index as u64 + 1);
+                (hits.near[0], hits.far[0], hits.met[0]) = (bracket.near, bracket.far, index as u64 + 1);
                 nearest = distance;
             }
         }
-        let hit = (found.met[0] as usize).checked_sub(1).map(|index| Hit {
+        let hit = (hits.met[0] as usize).checked_sub(1).map(|index| Hit {
             index,
             object: &self.model.objects[index],
             distance: nearest,
             point: start.ray.at(nearest),
         });
-        self.watch.see(Event::Met(hit.as_ref()));
+        self.observer.see(Event::Met(hit.as_ref()));
     }
 
     /// One ray of a packet.
-    fn start(&self, group: &Group, lane: usize) -> Start {
-        let [x, y] = &self.rooms.places;
+    fn start(&self, group: &RayGroup, lane: usize) -> Start {
+        let [x, y] = &self.scratch.places;
         let sight = group.looks.then(|| self.plan.camera.sight(x[lane], y[lane])).or(group.sight);
         Start { ray: group.rays().get(lane), error: group.error(lane), sight }
     }
@@ -83,7 +83,7 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
     pub(super) fn may_meet(&self, left: Option<(usize, &[Side])>, index: usize) -> bool {
         let Some((_, sides)) = left.filter(|(object, _)| *object == index) else { return true };
         let shape = &self.model.objects[index].shape;
-        match [Side::Outside, Side::Inside].map(|side| shape.meets_itself(side)) {
+        match [Side::Outside, Side::Inside].map(|side| shape.can_hit_itself(side)) {
             [true, true] => true,
             [false, false] => false,
             [from_outside, _] => sides.contains(if from_outside { &Side::Outside } else { &Side::Inside }),
@@ -107,13 +107,13 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
     /// The distances at which the rays of a packet meet an object, known to lie between `near` and `far`.
     pub(super) fn settle(
         &mut self,
-        group: &Group,
+        group: &RayGroup,
         (near, far): (&[f64], &[f64]),
         object: usize,
         distances: &mut Vec<f64>,
     ) {
         let (len, count) = (group.len, group.padded());
-        let (near, far, distances) = (&near[..count], &far[..count], room(distances, count));
+        let (near, far, distances) = (&near[..count], &far[..count], resized(distances, count));
         distances.copy_from_slice(near);
         if near[..len] != far[..len] {
             let shape = &self.model.objects[object].shape;
@@ -122,8 +122,8 @@ impl<'m, W: Watch> Tracer<'m, '_, W> {
             if keep_in_brackets(self.cpu, near, far, distances) {
                 for lane in 0..len {
                     if distances[lane].is_nan() {
-                        let leaves = sides.map(|sides| sides[lane]);
-                        let distance = exact(shape, &self.start(group, lane), leaves, MISS);
+                        let origin_side = sides.map(|sides| sides[lane]);
+                        let distance = exact(shape, &self.start(group, lane), origin_side, MISS);
                         distances[lane] = distance.max(near[lane]).min(far[lane]);
                     }
                 }
@@ -156,25 +156,27 @@ impl Start {
 }
 
 /// A shape's exact distance on one ray, which leaves it on a side if it is the object that the packet leaves.
-pub(super) fn exact(shape: &AnyShape, start: &Start, leaves: Option<Side>, far: f64) -> f64 {
-    located(shape, start, leaves, far).0
+pub(super) fn exact(shape: &AnyShape, start: &Start, origin_side: Option<Side>, far: f64) -> f64 {
+    located(shape, start, origin_side, far).0
 }
 
 /// A shape's exact distance, as [`exact`] gives it, and a bracket of that and of the distance of the ray before anything
 /// was rounded.
-fn located(shape: &AnyShape, start: &Start, leaves: Option<Side>, far: f64) -> (f64, Bracket) {
+fn located(shape: &AnyShape, start: &Start, origin_side: Option<Side>, far: f64) -> (f64, Bracket) {
     let known = |distance| (distance, Bracket::exactly(distance));
-    match start.leaves(shape, leaves) {
-        Some(side) if !shape.meets_itself(side) => return (MISS, Bracket::MISS),
+    match start.leaves(shape, origin_side) {
+        Some(side) if !shape.can_hit_itself(side) => return (MISS, Bracket::MISS),
         None => {}
-        leaves => return known(shape.distance(&start.ray, &Span { far, leaves, ..Span::RAY })),
+        origin_side => {
+            return known(shape.distance(&start.ray, &RayRange { far, origin_side, ..RayRange::ALL }));
+        }
     }
-    let within = Span { far, ..Span::RAY };
-    let Some(sight) = &start.sight else { return known(shape.distance(&start.ray, &within)) };
-    let bracket = shape.bracket(&start.ray, &Span::RAY);
+    let range = RayRange { far, ..RayRange::ALL };
+    let Some(sight) = &start.sight else { return known(shape.distance(&start.ray, &range)) };
+    let bracket = shape.t_bounds(&start.ray, &RayRange::ALL);
     // A bracket that is known exactly has taken the whole search.
     let is_known = bracket.near == bracket.far;
-    let distance = if is_known { within.keep(bracket.near) } else { shape.distance(&start.ray, &within) };
+    let distance = if is_known { range.keep(bracket.near) } else { shape.distance(&start.ray, &range) };
     // Where what was rounded of the ray may decide whether it meets the shape, the ray does that was not rounded.
     if bracket.is_doubtful() { decided(shape, sight, distance) } else { (distance, bracket) }
 }
@@ -226,8 +228,8 @@ kernels! {
 }
 
 /// The reciprocals of rays' directions.
-pub(super) fn invert(rays: Rays, inverse: &mut Vectors) {
-    let mut inverse = inverse.room(rays.len());
+pub(super) fn invert(rays: RayPacket, inverse: &mut VectorList) {
+    let mut inverse = inverse.resized(rays.len());
     for lane in 0..rays.len() {
         inverse.set(lane, rays.dir.get(lane).recip());
     }
@@ -235,22 +237,22 @@ pub(super) fn invert(rays: Rays, inverse: &mut Vectors) {
 
 struct Closest<'s, 'm, 'w, W> {
     tracer: &'s mut Tracer<'m, 'w, W>,
-    group: &'s Group,
-    found: &'s mut Found,
+    group: &'s RayGroup,
+    hits: &'s mut HitRecord,
     /// Which of the rays are looked after.
     part: Range<usize>,
     /// The reciprocals of their directions, for a tree.
-    inverse: &'s mut Vectors,
+    inverse: &'s mut VectorList,
 }
 
-impl<W: Watch> Closest<'_, '_, '_, W> {
+impl<W: TraceObserver> Closest<'_, '_, '_, W> {
     fn run(mut self, ahead: &mut Vec<usize>) {
         let plan = self.tracer.plan;
         if !plan.unbounded.is_empty() || !plan.bounded.is_empty() {
             self.listed();
         }
         let Some(tree) = &plan.tree else { return };
-        for part in parts(self.group.padded(), PART) {
+        for part in split(self.group.padded(), PART) {
             let rays = self.group.rays().part(part.clone());
             self.part = part;
             invert(rays, self.inverse);
@@ -262,21 +264,21 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
     fn listed(&mut self) {
         let (cpu, plan) = (self.tracer.cpu, self.tracer.plan);
         // Those from the viewer all start there.
-        let bundles = bundles::around(cpu, self.group.rays(), self.group.leaves.is_none());
+        let frusta = frusta::around(cpu, self.group.rays(), self.group.origin_object.is_none());
         for index in &plan.unbounded {
             let object = &self.tracer.model.objects[*index];
             if self.tracer.may_meet(self.group.left(), *index) {
-                self.in_parts(*index, bundles.which(|ways| !culling::is_clear_of(object, ways)));
+                self.in_parts(*index, frusta.which(|paths| !culling::is_clear_of(object, paths)));
             }
         }
-        let mut parts = take(&mut self.tracer.rooms.parts);
-        bundles::meet(cpu, &bundles, &plan.bounded, room(&mut parts, plan.bounded.len()));
+        let mut parts = take(&mut self.tracer.scratch.parts);
+        frusta::meet(cpu, &frusta, &plan.bounded, resized(&mut parts, plan.bounded.len()));
         for ((index, _), parts) in plan.bounded.iter().zip(&parts) {
             if self.tracer.may_meet(self.group.left(), *index) {
                 self.in_parts(*index, *parts);
             }
         }
-        self.tracer.rooms.parts = parts;
+        self.tracer.scratch.parts = parts;
     }
 
     /// Looks at an object for some parts of the packet, whose bits are 1.
@@ -294,7 +296,7 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
             start = end;
         }
         if tested < self.group.len {
-            self.tracer.watch.count(Count::Culled(index, self.group.len - tested));
+            self.tracer.observer.count(Count::Culled(index, self.group.len - tested));
         }
     }
 
@@ -304,15 +306,15 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
     }
 
     /// Which of two objects one ray meets first, where brackets do not tell.
-    fn decide(&mut self, lane: usize, index: usize, leaves: Option<Side>) {
+    fn decide(&mut self, lane: usize, index: usize, origin_side: Option<Side>) {
         let objects = &self.tracer.model.objects;
         let start = self.tracer.start(self.group, lane);
-        let (distance, own) = located(&objects[index].shape, &start, leaves, MISS);
+        let (distance, own) = located(&objects[index].shape, &start, origin_side, MISS);
         if distance == MISS {
             return;
         }
         let (near, far, met) =
-            (&mut self.found.near[lane], &mut self.found.far[lane], &mut self.found.met[lane]);
+            (&mut self.hits.near[lane], &mut self.hits.far[lane], &mut self.hits.met[lane]);
         let rival_distance = if near == far {
             *far
         } else {
@@ -339,17 +341,17 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
     fn test(&mut self, index: usize) {
         let shape = &self.tracer.model.objects[index].shape;
         let sides = self.group.sides_of(index).map(|sides| &sides[self.part.clone()]);
-        self.tracer.watch.count(Count::Tested(index, self.len()));
+        self.tracer.observer.count(Count::Tested(index, self.len()));
         let rays = self.group.rays().part(self.part.clone());
         if shape.closest_hits(
             self.tracer.cpu,
             rays,
             sides,
             index as u64 + 1,
-            self.found.part(self.part.clone()),
+            self.hits.part(self.part.clone()),
         ) {
             for lane in 0..self.len() {
-                if self.found.doubt[self.part.start + lane] != 0 {
+                if self.hits.doubt[self.part.start + lane] != 0 {
                     self.decide(self.part.start + lane, index, sides.map(|sides| sides[lane]));
                 }
             }
@@ -357,11 +359,11 @@ impl<W: Watch> Closest<'_, '_, '_, W> {
     }
 }
 
-impl<W: Watch> Visitor for Closest<'_, '_, '_, W> {
-    fn enters(&mut self, bounds: &Bounds) -> bool {
+impl<W: TraceObserver> Visitor for Closest<'_, '_, '_, W> {
+    fn enters(&mut self, bounds: &Aabb) -> bool {
         let rays = self.group.rays().part(self.part.clone());
-        let ends = &self.found.far[self.part.clone()];
-        bounds::any_meets(self.tracer.cpu, rays, self.inverse.view(rays.len()), ends, bounds)
+        let t_max = &self.hits.far[self.part.clone()];
+        aabb::any_meets(self.tracer.cpu, rays, self.inverse.view(rays.len()), t_max, bounds)
     }
 
     fn object(&mut self, index: usize) {

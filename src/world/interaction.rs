@@ -5,7 +5,7 @@ use crate::simd::soa::ViewMut;
 use glam::DVec3;
 
 /// Places on a surface, each where a ray of a packet comes to it. All arrays are as long as the packet's.
-pub struct Landing<'l> {
+pub struct SurfaceInteraction<'l> {
     /// Where they are, in world coordinates.
     pub points: ViewMut<'l>,
     /// The unit normals there, turned to the rays' side where both are lit.

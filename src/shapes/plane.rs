@@ -6,14 +6,14 @@
 //! where even that is not enough, without rounding. A distance does not depend on how long the normal is, so it
 //! comes from the scene's own one, not from the unit vector that rounding makes of it.
 
-use crate::geometry::bounds::{Bounds, SLACK, larger};
-use crate::geometry::packet::Rays;
-use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
-use crate::numeric::number::Number;
-use crate::numeric::twofold::{
-    Twofold, dot, exact_sum, exponent_to_one, times_power_of_two, two_product, two_sum,
+use crate::geometry::aabb::{Aabb, SLACK, larger};
+use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
+use crate::geometry::ray_packet::RayPacket;
+use crate::numeric::double_double::{
+    DoubleDouble, dot, exact_sum, exponent_to_one, times_power_of_two, two_product, two_sum,
 };
-use crate::simd::soa::STEP;
+use crate::numeric::scalar::Scalar;
+use crate::simd::soa::LANES;
 use crate::world::accuracy::{Accuracy, Bounded, Classic};
 use crate::world::hittable::Bracketed;
 use crate::world::packets::shape::OneRay;
@@ -33,7 +33,7 @@ pub struct Plane<A> {
     /// The unit vector that stands on its lit side, rounded.
     pub normal: DVec3,
     /// The same direction as the scene has it: a vector whose greatest component is between 1/2 and 1.
-    pub upright: [Twofold; 3],
+    pub upright: [DoubleDouble; 3],
     /// A point of it.
     pub point: DVec3,
     /// Whether an axis stands upright on it: a sum of products has one part then, and nothing cancels.
@@ -66,18 +66,18 @@ impl<A> Plane<A> {
     /// The plane through a point with a normal of any length.
     pub fn with_normal(normal: DVec3, point: DVec3) -> Self {
         let exponent = exponent_to_one(normal.abs().max_element());
-        let upright = normal.to_array().map(|part| Twofold::from(times_power_of_two(part, exponent)));
+        let upright = normal.to_array().map(|part| DoubleDouble::from(times_power_of_two(part, exponent)));
         Self::new(normal.normalize(), upright, point)
     }
 
     /// The plane through a point with a unit normal, rounded, and the same direction as exactly as it is known.
-    pub fn new(normal: DVec3, upright: [Twofold; 3], point: DVec3) -> Self {
+    pub fn new(normal: DVec3, upright: [DoubleDouble; 3], point: DVec3) -> Self {
         let is_upright = upright.iter().filter(|part| part.high == 0.0).count() == 2;
         Self { normal, upright, point, is_upright, accuracy: PhantomData }
     }
 
     /// The normal that the scene gives, but for a power of two: exactly, as nothing of it was rounded.
-    pub fn given_normal<N: Number>(&self) -> [N; 3] {
+    pub fn given_normal<N: Scalar>(&self) -> [N; 3] {
         self.upright.map(|part| N::constant(part.high))
     }
 
@@ -87,9 +87,9 @@ impl<A> Plane<A> {
     fn is_before_the_screen(&self, ray: &Ray) -> bool {
         let (away, toward) = self.exact_products(ray);
         let (one, other) =
-            (Twofold::difference(ray.origin.z, SCREEN) * toward, away * Twofold::from(ray.dir.z));
+            (DoubleDouble::difference(ray.origin.z, SCREEN) * toward, away * DoubleDouble::from(ray.dir.z));
         let beyond = (one + other).high * toward.high.signum();
-        // Twofold products and sums are off by 2^-103 of their parts; what is as near as that is on the screen itself.
+        // DoubleDouble products and sums are off by 2^-103 of their parts; what is as near as that is on the screen itself.
         beyond > 2_f64.powi(-98) * (one.high.abs() + other.high.abs())
     }
 
@@ -144,7 +144,7 @@ impl<A> Plane<A> {
 
     /// Between which distances a crossing within a span is.
     #[inline(always)]
-    pub fn bracket(&self, rough: &Rough, ray: &Ray, within: &Span) -> Bracket {
+    pub fn t_bounds(&self, rough: &Rough, ray: &Ray, range: &RayRange) -> Bracket {
         let Rough { distance, error, is_parallel } = *rough;
         let (low, high) = (distance - error, distance + error);
         let z = ray.origin.z + distance * ray.dir.z;
@@ -152,17 +152,17 @@ impl<A> Plane<A> {
         let z_error = error + 4.0 * f64::EPSILON * ray.origin.z.abs();
         // Where the error has no end, or the distance is no number, none of these is so but that it is parallel. What is
         // there is not missed.
-        let is_missed = is_parallel | (high <= within.near) | (z - z_error > SCREEN);
-        let is_there = (low > within.near) & (z + z_error < SCREEN);
+        let is_missed = is_parallel | (high <= range.near) | (z - z_error > SCREEN);
+        let is_there = (low > range.near) & (z + z_error < SCREEN);
         Bracket {
-            near: if is_missed { MISS } else { larger(low, within.near) },
+            near: if is_missed { MISS } else { larger(low, range.near) },
             far: if is_there { high } else { MISS },
         }
     }
 
     /// Whether it does not come into a region.
     #[inline(always)]
-    pub fn is_clear_of(&self, region: &Bounds) -> bool {
+    pub fn is_clear_of(&self, region: &Aabb) -> bool {
         // How far the region's nearest and farthest corners are in front of it, and the sizes of what adds up to that.
         let (mut nearest, mut near_size, mut farthest, mut far_size) = (0.0, 0.0, 0.0, 0.0);
         for axis in 0..3 {
@@ -205,8 +205,8 @@ impl<A> Plane<A> {
     }
 
     /// Both products, each rounded once however much cancels: 0 only where they are.
-    fn exact_products(&self, ray: &Ray) -> (Twofold, Twofold) {
-        let product = |of: [Twofold; 3]| {
+    fn exact_products(&self, ray: &Ray) -> (DoubleDouble, DoubleDouble) {
+        let product = |of: [DoubleDouble; 3]| {
             exact_sum((0..3).flat_map(|axis| {
                 let (one, other) = (self.upright[axis], of[axis]);
                 let parts = [(one.high, other.high), (one.high, other.low), (one.low, other.high)];
@@ -215,13 +215,13 @@ impl<A> Plane<A> {
                 parts.chain([one.low * other.low])
             }))
         };
-        let between = [0, 1, 2].map(|axis| Twofold::difference(self.point[axis], ray.origin[axis]));
-        (product(between), product(ray.dir.to_array().map(Twofold::from)))
+        let between = [0, 1, 2].map(|axis| DoubleDouble::difference(self.point[axis], ray.origin[axis]));
+        (product(between), product(ray.dir.to_array().map(DoubleDouble::from)))
     }
 
     /// As [`crossing`](Self::crossing), in twice the precision.
     #[inline(never)]
-    pub fn exact_crossing(&self, ray: &Ray) -> Twofold {
+    pub fn exact_crossing(&self, ray: &Ray) -> DoubleDouble {
         let (away, toward) = self.exact_products(ray);
         if toward.high == 0.0 { MISS.into() } else { away / toward }
     }
@@ -252,7 +252,7 @@ impl<A: Bounded> Plane<A> {
 
     /// What [`quick_crossing`](Self::quick_crossing) gives for each ray of a packet: where nothing cancels.
     #[inline(always)]
-    fn refine_plain(&self, rays: Rays, out: &mut [f64]) {
+    fn refine_plain(&self, rays: RayPacket, out: &mut [f64]) {
         let rays = rays.first(out.len());
         for lane in 0..out.len() {
             out[lane] = self.products(self.high(), &rays.get(lane)).draft_distance();
@@ -261,32 +261,32 @@ impl<A: Bounded> Plane<A> {
 
     /// The same where something may: a sum is computed in both ways if it cancels for any of eight rays.
     #[inline(always)]
-    fn refine_compensated(&self, rays: Rays, out: &mut [f64]) {
-        for first in (0..out.len()).step_by(STEP) {
-            let (rays, out) = (rays.part(first..first + STEP), &mut out[first..first + STEP]);
-            let (mut away, mut toward) = ([0.0; STEP], [0.0; STEP]);
-            let (mut away_size, mut toward_size) = ([0.0; STEP], [0.0; STEP]);
-            let (mut away_cancels, mut toward_cancels) = ([0; STEP], [0; STEP]);
-            for lane in 0..STEP {
+    fn refine_compensated(&self, rays: RayPacket, out: &mut [f64]) {
+        for first in (0..out.len()).step_by(LANES) {
+            let (rays, out) = (rays.part(first..first + LANES), &mut out[first..first + LANES]);
+            let (mut away, mut toward) = ([0.0; LANES], [0.0; LANES]);
+            let (mut away_size, mut toward_size) = ([0.0; LANES], [0.0; LANES]);
+            let (mut away_cancels, mut toward_cancels) = ([0; LANES], [0; LANES]);
+            for lane in 0..LANES {
                 let products = self.products(self.high(), &rays.get(lane));
                 (away[lane], toward[lane]) = (products.away, products.toward);
                 (away_size[lane], toward_size[lane]) = (products.away_size, products.toward_size);
                 away_cancels[lane] = u64::from(products.away_cancels());
                 toward_cancels[lane] = u64::from(products.toward_cancels());
             }
-            if away_cancels != [0; STEP] {
-                for lane in 0..STEP {
+            if away_cancels != [0; LANES] {
+                for lane in 0..LANES {
                     let fine = self.fine_away(&rays.get(lane));
                     away[lane] = if away_cancels[lane] != 0 { fine } else { away[lane] };
                 }
             }
-            if toward_cancels != [0; STEP] {
-                for lane in 0..STEP {
+            if toward_cancels != [0; LANES] {
+                for lane in 0..LANES {
                     let fine = self.fine_toward(&rays.get(lane));
                     toward[lane] = if toward_cancels[lane] != 0 { fine } else { toward[lane] };
                 }
             }
-            for lane in 0..STEP {
+            for lane in 0..LANES {
                 out[lane] = quotient((away[lane], away_size[lane]), (toward[lane], toward_size[lane]));
             }
         }
@@ -303,20 +303,20 @@ impl<A: Bounded> Plane<A> {
 
     /// The distance within a span; none on the viewer's side of the screen, and none for a ray that leaves it.
     #[inline(always)]
-    pub fn keep(&self, distance: f64, ray: &Ray, within: &Span) -> f64 {
-        let quick = self.quick_keep(distance, ray, within);
+    pub fn keep(&self, distance: f64, ray: &Ray, range: &RayRange) -> f64 {
+        let quick = self.quick_keep(distance, ray, range);
         if !quick.is_nan() {
             quick
         } else if self.is_before_the_screen(ray) {
             MISS
         } else {
-            within.keep(distance)
+            range.keep(distance)
         }
     }
 
     /// As [`keep`](Self::keep), or NaN where the point is on the screen but for rounding, and of NaN.
     #[inline(always)]
-    pub fn quick_keep(&self, distance: f64, ray: &Ray, within: &Span) -> f64 {
+    pub fn quick_keep(&self, distance: f64, ray: &Ray, range: &RayRange) -> f64 {
         let z = ray.at(distance).z;
         // Of 2^-53: a plain product is off by 5 of parts that add up to at most 1.3 times it, so that the distance is
         // off by 14, and the product and the sum here are by 1 each.
@@ -324,10 +324,10 @@ impl<A: Bounded> Plane<A> {
             Accuracy::Draft => DRAFT_ERROR * (distance * ray.dir.z).abs() + f64::EPSILON * SCREEN,
             _ => 8.0 * f64::EPSILON * ((distance * ray.dir.z).abs() + SCREEN),
         };
-        let leaves = within.leaves.is_some();
-        let kept = if (z > SCREEN) | leaves { MISS } else { within.keep(distance) };
+        let origin_side = range.origin_side.is_some();
+        let kept = if (z > SCREEN) | origin_side { MISS } else { range.keep(distance) };
         let is_doubtful = ((z - SCREEN).abs() <= error) & (distance < MISS);
-        if (is_doubtful | distance.is_nan()) & !leaves { f64::NAN } else { kept }
+        if (is_doubtful | distance.is_nan()) & !origin_side { f64::NAN } else { kept }
     }
 }
 
@@ -359,18 +359,18 @@ impl<T: Flat, P> OneRay for Shape<T, ByPlane, P> {
     }
 
     #[inline(always)]
-    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        self.shape.bracket(ray, within)
+    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+        self.shape.t_bounds(ray, range)
     }
 
     #[inline(always)]
-    fn refine(&self, ray: &Ray, leaves: Option<Side>) -> f64 {
-        self.shape.refine(ray, leaves)
+    fn refine(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
+        self.shape.refine(ray, origin_side)
     }
 
     /// A hit that is certain is in the plane, whatever is cut out of that.
     #[inline(always)]
-    fn refine_each(&self, rays: Rays, _sides: Option<&[Side]>, out: &mut [f64]) {
+    fn refine_each(&self, rays: RayPacket, _sides: Option<&[Side]>, out: &mut [f64]) {
         let plane = *self.shape.flat();
         match T::Accuracy::ACCURACY {
             // Upright on an axis, sums have one part, and nothing cancels.
@@ -393,9 +393,9 @@ impl Plane<Classic> {
 
     /// The distance within a span; none on the viewer's side of the screen, and none for a ray that leaves it.
     #[inline(always)]
-    pub fn keep(&self, distance: f64, ray: &Ray, within: &Span) -> f64 {
-        let is_cut_off = (ray.at(distance).z > SCREEN) | within.leaves.is_some();
-        if is_cut_off { MISS } else { within.keep(distance) }
+    pub fn keep(&self, distance: f64, ray: &Ray, range: &RayRange) -> f64 {
+        let is_cut_off = (ray.at(distance).z > SCREEN) | range.origin_side.is_some();
+        if is_cut_off { MISS } else { range.keep(distance) }
     }
 }
 

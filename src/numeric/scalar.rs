@@ -10,7 +10,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 ///
 /// The square root of a number below 0 is 0, so that a profile such as `sqrt(9 - y^2)` has an end and not a gap in
 /// its definition; the logarithm and powers of numbers below 0 are not defined.
-pub trait Number:
+pub trait Scalar:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
     /// A number that does not depend on anything.
@@ -66,19 +66,19 @@ pub trait Number:
 }
 
 /// The product of two vectors, a number.
-pub fn dot<N: Number>(a: [N; 3], b: [N; 3]) -> N {
+pub fn dot<N: Scalar>(a: [N; 3], b: [N; 3]) -> N {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// The product of two vectors, a vector upright on both.
-pub fn cross<N: Number>(a: [N; 3], b: [N; 3]) -> [N; 3] {
+pub fn cross<N: Scalar>(a: [N; 3], b: [N; 3]) -> [N; 3] {
     [0, 1, 2].map(|axis| {
         let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
         a[next] * b[last] - a[last] * b[next]
     })
 }
 
-impl Number for f64 {
+impl Scalar for f64 {
     #[inline(always)]
     fn constant(value: f64) -> Self {
         value

@@ -1,6 +1,6 @@
 //! Boxes around shapes.
 
-use crate::geometry::packet::Rays;
+use crate::geometry::ray_packet::RayPacket;
 use crate::simd::cpu::kernels;
 use crate::simd::soa::View;
 use glam::DVec3;
@@ -10,14 +10,14 @@ pub const SLACK: f64 = 1e-12;
 
 /// A box along the world's axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bounds {
+pub struct Aabb {
     /// Its corner with the least x, y and z.
     pub low: DVec3,
     /// Its corner with the greatest.
     pub high: DVec3,
 }
 
-impl Bounds {
+impl Aabb {
     /// A box that holds nothing, to be grown.
     pub const EMPTY: Self = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
 
@@ -67,17 +67,17 @@ impl Bounds {
 }
 
 /// How far a point is from a shape with these bounds, at least, where the shape tells of which regions it is clear.
-pub fn clearance(from: DVec3, bounds: Option<Bounds>, is_clear_of: impl Fn(&Bounds) -> bool) -> f64 {
+pub fn clearance(from: DVec3, bounds: Option<Aabb>, is_clear_of: impl Fn(&Aabb) -> bool) -> f64 {
     let scale = from.abs().max_element();
     let outside = bounds.map_or(0.0, |bounds| {
-        let Bounds { low, high } = bounds.with_slack(scale);
+        let Aabb { low, high } = bounds.with_slack(scale);
         (low - from).max(from - high).max(DVec3::ZERO).length()
     });
     if outside > 0.0 {
         return outside * (1.0 - SLACK);
     }
     // The largest cube around it that is clear, to an eighth: of a size that is more than rounding makes of its sides.
-    let clear = |half: &f64| is_clear_of(&Bounds { low: from - *half, high: from + *half });
+    let clear = |half: &f64| is_clear_of(&Aabb { low: from - *half, high: from + *half });
     let least = (1e4 * SLACK * scale).max(1e-12);
     let sizes = (-40..60).rev().map(|power| f64::from(power).exp2()).take_while(|half| *half > least);
     sizes.into_iter().find(clear).map_or(0.0, |half| {
@@ -125,13 +125,13 @@ pub(crate) fn larger(one: f64, other: f64) -> f64 {
 
 kernels! {
     /// The box around some points.
-    pub fn around(points: View) -> Bounds {
+    pub fn around(points: View) -> Aabb {
         let (x, y, z) = (range(points.x), range(points.y), range(points.z));
-        Bounds { low: DVec3::new(x.0, y.0, z.0), high: DVec3::new(x.1, y.1, z.1) }
+        Aabb { low: DVec3::new(x.0, y.0, z.0), high: DVec3::new(x.1, y.1, z.1) }
     }
 
     /// Whether any ray may come into a box before its end. Never wrong where it says no.
-    pub fn any_meets(rays: Rays, inverse: View, ends: &[f64], bounds: &Bounds) -> bool {
+    pub fn any_meets(rays: RayPacket, inverse: View, ends: &[f64], bounds: &Aabb) -> bool {
         let count = ends.len();
         let (origin, inverse) = (rays.origin.first(count), inverse.first(count));
         let (low, high) = (bounds.low, bounds.high);

@@ -4,35 +4,35 @@
 //! line's point closest to the centre (Haines, Günther and Akenine-Möller 2019), the root is corrected by a step of
 //! Newton's method, and what rounding could decide is decided in twice the precision.
 
-use crate::geometry::bounds::larger;
-use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
-use crate::numeric::twofold::{Twofold, exponent_to_one, times_power_of_two, two_product};
+use crate::geometry::aabb::larger;
+use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
+use crate::numeric::double_double::{DoubleDouble, exponent_to_one, times_power_of_two, two_product};
 use crate::world::accuracy::{Accuracy, Bounded};
 use glam::DVec3;
 
 /// A half line from a point, in twice the precision.
 #[derive(Clone, Copy, Debug)]
-pub struct Line {
+pub struct SphereLine {
     /// Where it starts, counted from the centre.
-    pub from: [Twofold; 3],
+    pub from: [DoubleDouble; 3],
     /// Where it goes; of any length. Distances are counted in this length.
-    pub dir: [Twofold; 3],
+    pub dir: [DoubleDouble; 3],
 }
 
-impl Line {
+impl SphereLine {
     /// A ray, counted from the centre.
     #[inline(always)]
     pub fn new(ray: &Ray, center: DVec3) -> Self {
-        let from = |axis: usize| Twofold::difference(ray.origin[axis], center[axis]);
-        let dir = |axis: usize| Twofold::from(ray.dir[axis]);
+        let from = |axis: usize| DoubleDouble::difference(ray.origin[axis], center[axis]);
+        let dir = |axis: usize| DoubleDouble::from(ray.dir[axis]);
         Self { from: [from(0), from(1), from(2)], dir: [dir(0), dir(1), dir(2)] }
     }
 
     /// A ray where space around the centre is squeezed: by these factors along the axes.
     #[inline(always)]
-    pub fn squeezed(ray: &Ray, center: DVec3, squeeze: &[Twofold; 3]) -> Self {
+    pub fn squeezed(ray: &Ray, center: DVec3, squeeze: &[DoubleDouble; 3]) -> Self {
         let Self { from, dir } = Self::new(ray, center);
-        let scaled = |of: [Twofold; 3]| [of[0] * squeeze[0], of[1] * squeeze[1], of[2] * squeeze[2]];
+        let scaled = |of: [DoubleDouble; 3]| [of[0] * squeeze[0], of[1] * squeeze[1], of[2] * squeeze[2]];
         Self { from: scaled(from), dir: scaled(dir) }
     }
 }
@@ -65,14 +65,14 @@ pub fn classic(from: DVec3, dir: DVec3, radius: f64) -> f64 {
 /// The distance of the first hit of a ball: of its near side, or from inside of its far one. A line that only
 /// touches it misses it, as in the notes.
 #[inline(always)]
-pub fn first_hit<A: Bounded>(line: &Line, radius: f64) -> f64 {
+pub fn first_hit<A: Bounded>(line: &SphereLine, radius: f64) -> f64 {
     let quick = quick_hit::<A>(line, radius);
     if quick.is_nan() { in_twice_the_precision(line, radius) } else { quick }
 }
 
 /// As [`first_hit`], or NaN where rounding could decide it.
 #[inline(always)]
-pub fn quick_hit<A: Bounded>(line: &Line, radius: f64) -> f64 {
+pub fn quick_hit<A: Bounded>(line: &SphereLine, radius: f64) -> f64 {
     let (from, dir) = (high(&line.from), high(&line.dir));
     let a = dir.dot(dir);
     let toward = -from.dot(dir);
@@ -113,7 +113,7 @@ pub fn quick_hit<A: Bounded>(line: &Line, radius: f64) -> f64 {
 /// The equation's other root is where it starts. Where what rounding makes of the start is not small beside the way into
 /// the ball, the start is taken for a point of the wall, whose far root is twice as far as the middle.
 #[inline(always)]
-pub fn far_hit<A: Bounded>(line: &Line, radius: f64) -> f64 {
+pub fn far_hit<A: Bounded>(line: &SphereLine, radius: f64) -> f64 {
     let (from, dir) = (high(&line.from), high(&line.dir));
     let a = dir.dot(dir);
     let toward = -from.dot(dir);
@@ -128,8 +128,8 @@ pub fn far_hit<A: Bounded>(line: &Line, radius: f64) -> f64 {
 
 /// The distance along a ray that leaves the ball on a side, or does not start on it.
 #[inline(always)]
-pub fn distance<A: Bounded>(line: &Line, radius: f64, leaves: Option<Side>) -> f64 {
-    match leaves {
+pub fn distance<A: Bounded>(line: &SphereLine, radius: f64, origin_side: Option<Side>) -> f64 {
+    match origin_side {
         None => first_hit::<A>(line, radius),
         Some(Side::Inside) => far_hit::<A>(line, radius),
         Some(Side::Outside) => MISS,
@@ -138,13 +138,13 @@ pub fn distance<A: Bounded>(line: &Line, radius: f64, leaves: Option<Side>) -> f
 
 /// As [`distance`], or NaN where rounding could decide it.
 #[inline(always)]
-pub fn refine<A: Bounded>(line: &Line, radius: f64, leaves: Option<Side>) -> f64 {
-    let distance = match leaves {
+pub fn refine<A: Bounded>(line: &SphereLine, radius: f64, origin_side: Option<Side>) -> f64 {
+    let distance = match origin_side {
         None => quick_hit::<A>(line, radius),
         Some(Side::Inside) => far_hit::<A>(line, radius),
         Some(Side::Outside) => MISS,
     };
-    if distance.is_nan() { distance } else { Span::RAY.keep(distance) }
+    if distance.is_nan() { distance } else { RayRange::ALL.keep(distance) }
 }
 
 /// Whether a point so far from the centre lies on a ball's wall, but for an error in the ball's own units and for what
@@ -160,13 +160,13 @@ pub fn touches(from: DVec3, radius: f64, error: f64) -> bool {
 /// `spread` is by how much the direction's components may be further off, against its length, than those of a unit
 /// vector: 1 for one. It is wide, and plain arithmetic tells it quickly: most rays miss most balls.
 #[inline(always)]
-pub fn bracket(
+pub fn t_bounds(
     from: DVec3,
     dir: DVec3,
     inverse: f64,
     spread: f64,
     radius: f64,
-    leaves: Option<Side>,
+    origin_side: Option<Side>,
     origin_error: f64,
 ) -> Bracket {
     // Far more than rounding makes of the root where there is room enough.
@@ -191,7 +191,7 @@ pub fn bracket(
     let doubt = room_error * (radius + room_error);
     let half = (larger(room, 0.0) * inverse).sqrt();
     let (near, far) = (middle - half, middle + half);
-    match leaves {
+    match origin_side {
         None => {}
         Some(Side::Outside) => return Bracket::MISS,
         Some(Side::Inside) => {
@@ -221,15 +221,15 @@ pub fn bracket(
 }
 
 #[inline(always)]
-fn high(of: &[Twofold; 3]) -> DVec3 {
+fn high(of: &[DoubleDouble; 3]) -> DVec3 {
     DVec3::new(of[0].high, of[1].high, of[2].high)
 }
 
 /// A step of Newton's method, from a point in twice the precision: the error of the point's own rounding matters
 /// where the ball is large for its distance or met aslant.
 #[inline(always)]
-fn corrected(line: &Line, radius: f64, distance: f64) -> f64 {
-    let part = |axis: usize| line.from[axis] + Twofold::from(distance) * line.dir[axis];
+fn corrected(line: &SphereLine, radius: f64, distance: f64) -> f64 {
+    let part = |axis: usize| line.from[axis] + DoubleDouble::from(distance) * line.dir[axis];
     let at = [part(0), part(1), part(2)];
     let outside = dot(&at, &at) - square(radius);
     // How steeply it comes there need not be as exact.
@@ -239,15 +239,16 @@ fn corrected(line: &Line, radius: f64, distance: f64) -> f64 {
 /// All of it in twice the precision, counted from a point of the line near its closest to the centre: a ball that is
 /// small for its distance loses nothing to that.
 #[inline(never)]
-fn in_twice_the_precision(line: &Line, radius: f64) -> f64 {
+fn in_twice_the_precision(line: &SphereLine, radius: f64) -> f64 {
     // By powers of two, so that no square is too large or too small.
     let exponent = exponent_to_one(radius);
     let scaled = |part: f64| times_power_of_two(part, exponent);
-    let from = line.from.map(|Twofold { high, low }| Twofold { high: scaled(high), low: scaled(low) });
-    let outside_of = |at: &[Twofold; 3]| dot(at, at) - square(scaled(radius));
+    let from =
+        line.from.map(|DoubleDouble { high, low }| DoubleDouble { high: scaled(high), low: scaled(low) });
+    let outside_of = |at: &[DoubleDouble; 3]| dot(at, at) - square(scaled(radius));
 
     let a = dot(&line.dir, &line.dir);
-    let middle = Twofold::from((-dot(&from, &line.dir) / a).high);
+    let middle = DoubleDouble::from((-dot(&from, &line.dir) / a).high);
     let at = [0, 1, 2].map(|axis| from[axis] + middle * line.dir[axis]);
     let toward = -dot(&at, &line.dir);
     let discriminant = toward * toward - a * outside_of(&at);
@@ -265,12 +266,12 @@ fn in_twice_the_precision(line: &Line, radius: f64) -> f64 {
 }
 
 #[inline(always)]
-fn square(value: f64) -> Twofold {
+fn square(value: f64) -> DoubleDouble {
     let (high, low) = two_product(value, value);
-    Twofold { high, low }
+    DoubleDouble { high, low }
 }
 
 #[inline(always)]
-fn dot(a: &[Twofold; 3], b: &[Twofold; 3]) -> Twofold {
+fn dot(a: &[DoubleDouble; 3], b: &[DoubleDouble; 3]) -> DoubleDouble {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

@@ -2,7 +2,7 @@
 //! processor takes several at a time.
 //!
 //! A plugin is written for one ray. Loops over packets take its functions in and are compiled for each level of
-//! instructions ([`cpu`](crate::simd::cpu)). Arrays are as long as a multiple of [`STEP`](crate::simd::soa::STEP); what
+//! instructions ([`cpu`](crate::simd::cpu)). Arrays are as long as a multiple of [`LANES`](crate::simd::soa::LANES); what
 //! is beyond the last ray is a copy of it, and is computed and ignored.
 
 use crate::geometry::ray::{Bracket, MISS, Ray};
@@ -11,16 +11,16 @@ use crate::simd::soa::View;
 use std::ops::Range;
 
 /// The most rays of a packet.
-pub const WIDE: usize = 256;
+pub const PACKET_SIZE: usize = 256;
 
 /// The lanes of so many rays in parts of at most so many, neighbours together.
-pub fn parts(count: usize, most: usize) -> impl Iterator<Item = Range<usize>> {
+pub fn split(count: usize, most: usize) -> impl Iterator<Item = Range<usize>> {
     (0..count).step_by(most).map(move |first| first..count.min(first + most))
 }
 
 /// Rays. A packet's rays all leave the same object, or none.
 #[derive(Clone, Copy)]
-pub struct Rays<'r> {
+pub struct RayPacket<'r> {
     /// Where each starts.
     pub origin: View<'r>,
     /// Where each goes, a unit vector.
@@ -29,7 +29,7 @@ pub struct Rays<'r> {
     pub origin_error: f64,
 }
 
-impl Rays<'_> {
+impl RayPacket<'_> {
     /// How many there are.
     #[inline(always)]
     pub fn len(&self) -> usize {
@@ -87,19 +87,19 @@ impl Nearest<'_> {
 
 kernels! {
     /// Compares brackets with the nearest so far. Tells whether any is in doubt.
-    pub(crate) fn meet_brackets(near: &[f64], far: &[f64], id: u64, nearest: Nearest) -> bool {
+    pub(crate) fn closest_of_brackets(near: &[f64], far: &[f64], id: u64, nearest: Nearest) -> bool {
         let count = nearest.near.len().min(near.len());
         let (near, far) = (&near[..count], &far[..count]);
         let known = Known { near, far };
-        merge(count, &known, id, nearest.near, nearest.far, nearest.met, nearest.doubt)
+        merge_nearest(count, &known, id, nearest.near, nearest.far, nearest.met, nearest.doubt)
     }
 
     /// Marks the rays that brackets say are blocked before their ends. Tells whether any is in doubt.
-    pub(crate) fn block_brackets(
-        near: &[f64], far: &[f64], ends: &[f64], blocked: &mut [u64], doubt: &mut [u64]
+    pub(crate) fn occluded_by_brackets(
+        near: &[f64], far: &[f64], t_max: &[f64], blocked: &mut [u64], doubt: &mut [u64]
     ) -> bool {
-        let (near, far) = (&near[..ends.len()], &far[..ends.len()]);
-        mark(&Known { near, far }, ends, blocked, doubt)
+        let (near, far) = (&near[..t_max.len()], &far[..t_max.len()]);
+        mark_occluded(&Known { near, far }, t_max, blocked, doubt)
     }
 }
 
@@ -127,7 +127,7 @@ impl Brackets for Known<'_> {
 /// The arrays are arguments of their own, not a [`Nearest`], for the compiler to know that they are not the same: else it
 /// looks at that each time, and takes single rays where there are few.
 #[inline(always)]
-pub(crate) fn merge(
+pub(crate) fn merge_nearest(
     count: usize,
     brackets: &impl Brackets,
     id: u64,
@@ -159,13 +159,18 @@ pub(crate) fn merge(
 
 /// Marks the rays that brackets say are blocked before their ends. Tells whether any is in doubt.
 #[inline(always)]
-pub(crate) fn mark(brackets: &impl Brackets, ends: &[f64], blocked: &mut [u64], doubt: &mut [u64]) -> bool {
-    let count = ends.len();
+pub(crate) fn mark_occluded(
+    brackets: &impl Brackets,
+    t_max: &[f64],
+    blocked: &mut [u64],
+    doubt: &mut [u64],
+) -> bool {
+    let count = t_max.len();
     let (blocked, doubt) = (&mut blocked[..count], &mut doubt[..count]);
     let mut any = 0;
     for lane in 0..count {
-        let Bracket { near: low, far: high } = brackets.get(lane, ends[lane]);
-        let (is_before, is_behind) = (high < ends[lane], low >= ends[lane]);
+        let Bracket { near: low, far: high } = brackets.get(lane, t_max[lane]);
+        let (is_before, is_behind) = (high < t_max[lane], low >= t_max[lane]);
         blocked[lane] |= u64::from(is_before);
         doubt[lane] = u64::from(!(is_before | is_behind)) & !blocked[lane];
         any |= doubt[lane];

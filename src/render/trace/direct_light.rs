@@ -1,39 +1,39 @@
 //! What the lights of a scene do at the places of a surface.
 
-use super::arrays::{Vectors, room};
+use super::arrays::{VectorList, resized};
 use super::context::Tracer;
-use super::group::Group;
-use super::light::{self, Colours, Lit, Looks};
-use super::scratch::Lighting;
-use super::shadow::Ways;
+use super::light::{self, Colours, Lit, Reflectivities};
+use super::ray_group::RayGroup;
+use super::scratch::LightScratch;
+use super::shadow_rays::LightPaths;
 use super::surface::Surface;
-use crate::geometry::bounds::{self, Bounds};
-use crate::render::watch::{Event, Outcome, Watch};
+use crate::geometry::aabb::{self, Aabb};
+use crate::render::observer::{Event, Outcome, TraceObserver};
 use crate::scene::model::Object;
-use crate::world::facing::{Facing, Places};
+use crate::world::light_samples::{LightSamples, ShadingPoints};
 use crate::world::material::Rgb;
 use crate::world::packets::light::PacketLight;
 use glam::DVec2;
 
-impl<W: Watch> Tracer<'_, '_, W> {
+impl<W: TraceObserver> Tracer<'_, '_, W> {
     /// Adds what the lights do.
-    pub(super) fn illuminate(&mut self, group: &mut Group, surface: &Surface, colours: &mut Vectors) {
+    pub(super) fn illuminate(&mut self, group: &mut RayGroup, surface: &Surface, colours: &mut VectorList) {
         if self.model.lights.is_empty() {
             return;
         }
-        let mut lighting = self.rooms.lighting.take().unwrap_or_default();
+        let mut lighting = self.scratch.lighting.take().unwrap_or_default();
         let (cpu, count) = (self.cpu, group.padded());
         let Object { material, shader, .. } = &self.model.objects[surface.index];
         let points = surface.points.view(count);
         let is_matt = match surface.look {
             Some(look) => look.diffuse != Rgb::ZERO,
-            None => shader.diffuses(cpu, material, points, lighting.diffuse.room(count)),
+            None => shader.diffuses(cpu, material, points, lighting.diffuse.resized(count)),
         };
         let scatters = is_matt || material.shininess != 0.0 && surface.is_mirror;
-        let budget = group.budget[0];
+        let ray_budget = group.ray_budget[0];
         // Where nothing is scattered lights make no difference. Whoever looks on is told of them all the same.
         if scatters || W::SEES {
-            let around = bounds::around(cpu, points);
+            let around = aabb::around(cpu, points);
             for index in 0..self.model.lights.len() {
                 self.shine(index, group, surface, &around, &mut lighting, colours);
             }
@@ -43,88 +43,102 @@ impl<W: Watch> Tracer<'_, '_, W> {
         }
         if !scatters {
             // And the ray costs what it does where nobody looks.
-            group.budget[0] = budget;
+            group.ray_budget[0] = ray_budget;
         }
-        self.rooms.lighting = Some(lighting);
+        self.scratch.lighting = Some(lighting);
     }
 
     /// Adds what one light does.
     fn shine(
         &mut self,
         index: usize,
-        group: &mut Group,
+        group: &mut RayGroup,
         surface: &Surface,
-        around: &Bounds,
-        lighting: &mut Lighting,
-        colours: &mut Vectors,
+        around: &Aabb,
+        lighting: &mut LightScratch,
+        colours: &mut VectorList,
     ) {
         let (cpu, count) = (self.cpu, group.padded());
         let light = &*self.model.lights[index].value;
         let material = &self.model.objects[surface.index].material;
-        let Lighting { diffuse, lights, toward, falloffs, ends, emissivity, shines, blocked, shadows } =
-            lighting;
+        let LightScratch {
+            diffuse,
+            lights,
+            toward,
+            cos_over_distance,
+            t_max,
+            emissivity,
+            shines,
+            blocked,
+            shadows,
+        } = lighting;
         let (points, normals) = (surface.points.view(count), surface.normals.view(count));
         let is_point = light.size() == 0.0;
         let source = if is_point {
-            Bounds { low: light.location(), high: light.location() }
+            Aabb { low: light.location(), high: light.location() }
         } else {
             self.places(light, index, group, surface, lights);
-            bounds::around(cpu, lights.view(count))
+            aabb::around(cpu, lights.view(count))
         };
         let lights = (!is_point).then(|| lights.view(count));
-        let (ends, shines, blocked) = (room(ends, count), room(shines, count), room(blocked, count));
-        let facing = Facing {
-            toward: toward.room(count),
-            emissivity: emissivity.room(count),
-            falloffs: room(falloffs, count),
-            ends,
+        let (t_max, shines, blocked) =
+            (resized(t_max, count), resized(shines, count), resized(blocked, count));
+        let facing = LightSamples {
+            toward: toward.resized(count),
+            emissivity: emissivity.resized(count),
+            cos_over_distance: resized(cos_over_distance, count),
+            t_max,
             shines,
         };
-        let faced = light.face(cpu, &Places { points, normals, lights, slack: self.slack() }, facing);
+        let faced =
+            light.sample(cpu, &ShadingPoints { points, normals, lights, slack: self.slack() }, facing);
         if !faced.any_shines {
             if W::SEES {
-                self.watch
+                self.observer
                     .see(Event::Light(index, if faced.any_faces { Outcome::Aside } else { Outcome::Behind }));
             }
             return;
         }
-        let ways = Ways { from: *around, to: source, toward };
-        let (mut sent, mut tint) = (light.even(), Rgb::ONE);
+        let paths = LightPaths { from: *around, to: source, toward };
+        let (mut sent, mut tint) = (light.uniform(), Rgb::ONE);
         if W::SEES || self.plan.has_glass {
             if let Some(sent) = sent.take() {
                 emissivity.fill(count, sent);
             }
-            let (blocker, passed) = self.pass(group, surface, &ways, ends, shines, emissivity);
+            let (blocker, passed) = self.pass(group, surface, &paths, t_max, shines, emissivity);
             if W::SEES
                 && let Some(blocker) = blocker
             {
-                self.watch.see(Event::Light(index, Outcome::Blocked(blocker)));
+                self.observer.see(Event::Light(index, Outcome::Blocked(blocker)));
                 return;
             }
             tint = passed;
             blocked.fill(0);
         } else {
-            self.shadow(group, surface, &ways, ends, shadows, blocked);
+            self.shadow(group, surface, &paths, t_max, shadows, blocked);
         }
         let lit = Lit {
             toward: toward.view(count),
             seen: group.dir.view(count),
             normals,
-            falloffs: &falloffs[..count],
+            cos_over_distance: &cos_over_distance[..count],
             shines,
             blocked,
             emissivity: sent.map_or(Colours::Each(emissivity.view(count)), Colours::Even),
             looks: match surface.look {
-                Some(look) => Looks::Even(look),
-                None => Looks::Each { diffuse: diffuse.view(count), specular: surface.specular.view(count) },
+                Some(look) => Reflectivities::Even(look),
+                None => Reflectivities::Each {
+                    diffuse: diffuse.view(count),
+                    specular: surface.specular.view(count),
+                },
             },
         };
-        light::shine(cpu, &lit, material.shininess, colours.room(count));
+        light::shine(cpu, &lit, material.shininess, colours.resized(count));
         if W::SEES {
-            let mut alone = Vectors::default();
+            let mut alone = VectorList::default();
             alone.fill(count, Rgb::ZERO);
-            light::shine(cpu, &lit, material.shininess, alone.room(count));
-            self.watch.see(Event::Light(index, Outcome::Shines { passed: tint, colour: alone.get(0) }));
+            light::shine(cpu, &lit, material.shininess, alone.resized(count));
+            self.observer.see(Event::Light(index, Outcome::Shines { passed: tint, colour: alone.get(0) }));
         }
     }
 
@@ -134,15 +148,15 @@ impl<W: Watch> Tracer<'_, '_, W> {
         &self,
         light: &dyn PacketLight,
         index: usize,
-        group: &Group,
+        group: &RayGroup,
         surface: &Surface,
-        places: &mut Vectors,
+        places: &mut VectorList,
     ) {
         let (middle, size) = (light.location(), light.size());
         places.fill(group.padded(), middle);
         for lane in 0..group.padded() {
             let camera = group.camera.get(lane).map(|camera| usize::from(*camera));
-            let Some(sample) = camera.and_then(|camera| self.rooms.samples.get(camera)) else { continue };
+            let Some(sample) = camera.and_then(|camera| self.scratch.samples.get(camera)) else { continue };
             let Some(axis) = (middle - surface.points.get(lane)).try_normalize() else { continue };
             let (across, up) = axis.any_orthonormal_pair();
             let DVec2 { x, y } = sample.on_light(index);
