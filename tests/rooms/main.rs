@@ -47,7 +47,7 @@ fn architecture() -> String {
 
 /// The rooms of the page's table, from the top floor down.
 fn rooms(page: &str) -> Vec<&str> {
-    let table = page.split("\n## ").find(|part| part.starts_with("Rooms\n")).expect("a table of rooms");
+    let table = page.split("\n## ").find(|part| part.starts_with("Folders\n")).expect("a table of folders");
     let rows = table.lines().filter_map(|line| line.strip_prefix("| [`"));
     rows.filter_map(|row| row.split('`').next()).collect()
 }
