@@ -106,7 +106,7 @@ fn sign(axis: DVec3) -> f64 {
 
 /// Returns three perpendicular unit vectors, the second of which is `up` (Duff et al., "Building an Orthonormal Basis,
 /// Revisited", 2017).
-fn upright<N: Scalar>(up: [N; 3], sign: f64) -> [[N; 3]; 3] {
+fn orthonormal_basis<N: Scalar>(up: [N; 3], sign: f64) -> [[N; 3]; 3] {
     let ([x, y, z], sign) = (up, N::constant(sign));
     let a = N::constant(-1.0) / (sign + z);
     let b = x * y * a;
