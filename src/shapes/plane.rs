@@ -125,7 +125,7 @@ impl<A> Plane<A> {
         let error = inverse.abs() * (ERROR * (away_size + distance.abs()) + origin_error);
         // For a normal along an axis, `toward` is one component of the direction, in which nothing cancels.
         let is_parallel = (toward == 0.0) & self.is_upright;
-        let error = if inverse.abs() >= LEAST_TOWARD.recip() { f64::INFINITY } else { error };
+        let error = if inverse.abs() >= MIN_TOWARD.recip() { f64::INFINITY } else { error };
         Rough { distance, error, is_parallel }
     }
 
@@ -469,7 +469,7 @@ pub const DRAFT_ERROR: f64 = 512.0 * f64::EPSILON;
 
 /// The `toward` below which a ray is parallel to the plane to within rounding: 34 units of 2^-53, more than three times
 /// the error of 9 that [`Plane::rough`] derives.
-const LEAST_TOWARD: f64 = 17.0 * f64::EPSILON;
+const MIN_TOWARD: f64 = 17.0 * f64::EPSILON;
 
 /// A bound of the relative error of [`reciprocal`]. The initial guess is off by at most 2^-23, two roundings to single
 /// precision; a step of Newton's method squares that.

@@ -151,8 +151,8 @@ impl<A: Bounded> FinitePlane<A> {
             let past = DoubleDouble::from(self.rectangle.dimensions[side]) - along;
             // Each of about ten operations is off by at most 2^-102 of its terms, which are no larger than `size`.
             let size = from.iter().map(|part| part.high.abs()).sum::<f64>() + distance.high.abs();
-            let least = -(2_f64.powi(-97)) * (size + self.rectangle.dimensions[side]);
-            along.high >= least && past.high >= least
+            let lowest = -(2_f64.powi(-97)) * (size + self.rectangle.dimensions[side]);
+            along.high >= lowest && past.high >= lowest
         })
     }
 }

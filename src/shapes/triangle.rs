@@ -122,7 +122,7 @@ fn exact_normal([a, b, c]: [DVec3; 3]) -> [DoubleDouble; 3] {
 
 /// Returns a vector scaled by a power of two so that its largest component is between 1/2 and 1.
 fn scaled_to_one(vector: [DoubleDouble; 3]) -> [DoubleDouble; 3] {
-    let exponent = exponent_to_one(vector.iter().fold(0.0, |most, part| part.high.abs().max(most)));
+    let exponent = exponent_to_one(vector.iter().fold(0.0, |largest, part| part.high.abs().max(largest)));
     let scaled = |part: f64| times_power_of_two(part, exponent);
     vector.map(|DoubleDouble { high, low }| DoubleDouble { high: scaled(high), low: scaled(low) })
 }

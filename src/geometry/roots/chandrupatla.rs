@@ -23,8 +23,8 @@ pub fn root(f: impl Fn(f64) -> f64, (low, high): (f64, f64), tolerance: f64) -> 
         }
         (a, at_a) = (t, at_t);
         let best = if at_a.abs() < at_b.abs() { a } else { b };
-        let least = 0.5 * tolerance / (b - a).abs();
-        if least > 0.5 || at_a == 0.0 || !least.is_finite() {
+        let min_part = 0.5 * tolerance / (b - a).abs();
+        if min_part > 0.5 || at_a == 0.0 || !min_part.is_finite() {
             return best;
         }
         let (across, up) = ((a - b) / (c - b), (at_a - at_b) / (at_c - at_b));
@@ -34,7 +34,7 @@ pub fn root(f: impl Fn(f64) -> f64, (low, high): (f64, f64), tolerance: f64) -> 
         } else {
             0.5
         };
-        part = part.clamp(least, 1.0 - least);
+        part = part.clamp(min_part, 1.0 - min_part);
     }
     a
 }

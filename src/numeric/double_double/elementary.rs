@@ -1,4 +1,5 @@
-//! The functions of formulas in double-double arithmetic, by their series, as the reference for tests of every shape.
+//! The functions of formulas in double-double arithmetic, by their series: for what `f64` leaves undecided, and for the
+//! true hits that tests compare with.
 
 use super::{DoubleDouble, two_product};
 use crate::numeric::scalar::Scalar;

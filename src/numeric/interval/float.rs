@@ -217,9 +217,9 @@ impl Float for f256 {
         let (below, above) = if one_low > zero { (one_low, one_high) } else { (one_high, one_low) };
         // With the first factor taken as positive, the sign of each endpoint of the second selects the endpoint of the
         // first.
-        let least = if low > zero { below } else { above } * low;
-        let greatest = if high > zero { above } else { below } * high;
-        Some(if one_low > zero { (least, greatest) } else { (greatest, least) })
+        let smallest = if low > zero { below } else { above } * low;
+        let largest = if high > zero { above } else { below } * high;
+        Some(if one_low > zero { (smallest, largest) } else { (largest, smallest) })
     }
 
     /// Widens by eight ulps: the crate's functions are trusted to within seven. `wide_intervals_hold_the_right_results`

@@ -21,7 +21,7 @@ impl Quadratic {
         let turned = self.square_times(from);
         let part = |axis: usize| turned[axis] + turned[axis] + DoubleDouble::from(self.linear[axis]);
         let gradient = [part(0), part(1), part(2)].map(|part| part.high);
-        let exponent = exponent_to_one(gradient.iter().fold(0.0, |most, part| part.abs().max(most)));
+        let exponent = exponent_to_one(gradient.iter().fold(0.0, |largest, part| part.abs().max(largest)));
         let gradient = DVec3::from(gradient.map(|part| times_power_of_two(part, exponent)));
         // A cone's apex has no normal, and any unit vector will do; a double plane has this one.
         let longest = (0..3)

@@ -39,8 +39,8 @@ impl Quadratic {
     /// Returns the quadric `Axx + Byy + Czz + Dxy + Exz + Fyz + Gx + Hy + Iz = J`, kept in a box.
     pub fn new(coefficients: [f64; 10], low: DVec3, high: DVec3) -> Self {
         let exponent_of = |of: &[f64]| {
-            let most = of.iter().fold(0.0, |most: f64, part| most.max(part.abs()));
-            (most != 0.0).then(|| -exponent_to_one(most))
+            let largest = of.iter().fold(0.0, |largest: f64, part| largest.max(part.abs()));
+            (largest != 0.0).then(|| -exponent_to_one(largest))
         };
         let (square, linear) = (exponent_of(&coefficients[..6]), exponent_of(&coefficients[6..9]));
         let constant = exponent_of(&coefficients[9..]);

@@ -35,7 +35,7 @@ impl Revolution {
         ends: &[f64],
         lanes: &mut Lanes<N>,
     ) {
-        lanes.begin(rays.len(), sides);
+        lanes.prepare(rays.len(), sides);
         let reach = self.slabs.reach();
         if let Some((low, high)) = enter(cpu, lanes, frame, rays, self.size(), reach, ends) {
             let (first, last) = (self.slabs.index(low), self.slabs.index(high));
@@ -100,7 +100,7 @@ kernels! {
             let is_aligned = (a < MIN_COMPONENT * MIN_COMPONENT) | (dir.y.abs() < MIN_COMPONENT);
             let is_missed = !is_aligned & ((discriminant < 0.0) | (from > to) | (from + base > ends[lane]));
             let is_in = !is_aligned & !is_missed;
-            lanes.put(lane, Ray { origin: moved, dir }, (base, off), (from, to), widest);
+            lanes.set(lane, Ray { origin: moved, dir }, (base, off), (from, to), widest);
             // Other rays take no part.
             lanes.from[lane] = if is_in { from } else { f64::INFINITY };
             lanes.to[lane] = if is_in { to } else { f64::NEG_INFINITY };

@@ -15,7 +15,7 @@ impl Budget {
     }
 
     /// Charges the cost of evaluating a formula's value this many times; returns whether the budget sufficed.
-    pub fn spend(&mut self, formula: &Formula, times: u64) -> bool {
+    pub fn charge(&mut self, formula: &Formula, times: u64) -> bool {
         let cost = formula.cost() * times;
         let can = cost <= self.0;
         self.0 = self.0.saturating_sub(cost);

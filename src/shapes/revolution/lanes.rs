@@ -60,7 +60,7 @@ impl<const N: usize> Lanes<N> {
     }
 
     /// Prepares `count` lanes for rays that leave the surface to these sides, or start elsewhere.
-    pub fn begin(&mut self, count: usize, sides: Option<&[Side]>) {
+    pub fn prepare(&mut self, count: usize, sides: Option<&[Side]>) {
         match sides {
             None => {
                 self.side[..count].fill(1.0);
@@ -82,7 +82,7 @@ impl<const N: usize> Lanes<N> {
     /// Sets a lane to a ray whose origin is the base, at a distance of `base` along the ray with a rounding error of
     /// `off`; the ray is searched between two places.
     #[inline(always)]
-    pub fn put(
+    pub fn set(
         &mut self,
         lane: usize,
         ray: Ray,
@@ -130,7 +130,7 @@ impl<const N: usize> Lanes<N> {
     #[inline(always)]
     pub fn may_meet(&self, lane: usize, slab: &Slab, (from, to): (f64, f64)) -> bool {
         let closest = smaller(larger(self.middle[lane], from), to);
-        let is_near = self.around(lane).at(closest) <= slab.most + 4.0 * self.rounding[lane];
+        let is_near = self.around(lane).at(closest) <= slab.max_square + 4.0 * self.rounding[lane];
         (from < to) & (self.near[lane] > from) & (is_near | (self.side[lane] < 0.0))
     }
 

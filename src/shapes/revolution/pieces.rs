@@ -40,7 +40,7 @@ pub struct Slab {
     pub error: f64,
     pub slope_error: f64,
     /// An upper bound of the square, in square world units.
-    pub most: f64,
+    pub max_square: f64,
     /// Whether the profile is negative, so that there is no surface.
     pub is_void: bool,
 }
@@ -74,16 +74,16 @@ impl Slabs {
         let is_void = |&&(_, _, is_void): &&(f64, f64, bool)| is_void;
         slabs.extend(ranges.list.iter().filter(is_void).map(|(from, to, _)| Slab::void(*from, *to)));
         slabs.sort_by(|a, b| a.from.total_cmp(&b.from));
-        if slabs.iter().all(|slab| slab.most == 0.0) {
+        if slabs.iter().all(|slab| slab.max_square == 0.0) {
             return Err(NoSurface::Nowhere);
         }
         let parts = 256.max(2 * slabs.len());
         let parts_per_unit = parts as f64 / height;
         let slab_at = |y: f64| slabs.partition_point(|slab: &Slab| slab.to <= y).min(slabs.len() - 1) as u32;
         let table = (0..=parts).map(|part| slab_at(part as f64 / parts_per_unit)).collect();
-        let most = slabs.iter().map(|slab| slab.most).fold(0.0, f64::max);
-        let shell = slabs.iter().map(|slab| slab.most + 2.0 * slab.error).fold(0.0, f64::max);
-        if ranges.hidden > HIDDEN * most.sqrt() {
+        let max_square = slabs.iter().map(|slab| slab.max_square).fold(0.0, f64::max);
+        let shell = slabs.iter().map(|slab| slab.max_square + 2.0 * slab.error).fold(0.0, f64::max);
+        if ranges.hidden > HIDDEN * max_square.sqrt() {
             return Err(NoSurface::Rounding { near: ranges.hidden_at, hidden: ranges.hidden });
         }
         let is_smooth = slabs.iter().all(|slab| slab.slope_error.is_finite());
@@ -91,7 +91,7 @@ impl Slabs {
             is_smooth,
             table,
             parts_per_unit,
-            widest: most.sqrt().next_up(),
+            widest: max_square.sqrt().next_up(),
             reach: 1.001 * shell,
             coarsest: slabs.iter().map(|slab| slab.error).fold(0.0, f64::max),
             slabs,
@@ -194,12 +194,12 @@ fn cut(
         let Some(slab) = Slab::fit(square, from, to, budget) else {
             return Err(NoSurface::Bends { from });
         };
-        let Slab { middle, error, most, .. } = slab;
-        let is_finite = error.is_finite() && most.is_finite();
+        let Slab { middle, error, max_square, .. } = slab;
+        let is_finite = error.is_finite() && max_square.is_finite();
         let is_stuck = middle <= from || middle >= to;
         // Where the slope has no bound, as at a jump, halving does not reduce the error.
         let is_steep = !slab.slope_error.is_finite() && halvings >= HALVINGS;
-        let enough = ERROR.max(COARSE * most).max(COARSEST * widest);
+        let enough = ERROR.max(COARSE * max_square).max(COARSEST * widest);
         if is_stuck && !is_finite {
             return Err(NoSurface::Unbounded { near: middle });
         } else if !is_finite || !is_stuck && !is_steep && error > enough {
@@ -245,7 +245,7 @@ impl Slab {
             c2: 0.0,
             error: 0.0,
             slope_error: 0.0,
-            most: 0.0,
+            max_square: 0.0,
             is_void: true,
         }
     }
@@ -261,7 +261,7 @@ impl Slab {
         slab.certify(square, budget)?;
         // Where the square has no bounded slope, a constant is as good as any parabola.
         if !slab.error.is_finite() {
-            slab = Self { c0: 0.5 * slab.most, c1: 0.0, c2: 0.0, ..slab };
+            slab = Self { c0: 0.5 * slab.max_square, c1: 0.0, c2: 0.0, ..slab };
             slab.certify(square, budget)?;
         }
         Some(slab)
@@ -272,14 +272,14 @@ impl Slab {
     fn certify(&mut self, square: &Formula, budget: &mut Budget) -> Option<()> {
         const PARTS: usize = 8;
         // Two evaluations in each part, with bounds of two derivatives: about nine times the cost of the value alone.
-        if !budget.spend(square, 2 * PARTS as u64 * 9) {
+        if !budget.charge(square, 2 * PARTS as u64 * 9) {
             return None;
         }
         let parabola = |y: Dual<Dual<Interval>>| {
             let v = y - Dual::constant(self.middle);
             Dual::constant(self.c0) + v * Dual::constant(self.c1) + v.powi(2) * Dual::constant(self.c2)
         };
-        let (mut error, mut slope_error, mut most) = (0.0_f64, 0.0_f64, 0.0_f64);
+        let (mut error, mut slope_error, mut max_square) = (0.0_f64, 0.0_f64, 0.0_f64);
         let end = |part: usize| self.from + (self.to - self.from) * part as f64 / PARTS as f64;
         for part in 0..PARTS {
             let (low, high) = (end(part), if part + 1 == PARTS { self.to } else { end(part + 1) });
@@ -302,9 +302,9 @@ impl Slab {
             error = larger_or_infinite(error, second.min(first).min(plain));
             let slope = thin.first().magnitude() + wide.second().magnitude() * reach;
             slope_error = larger_or_infinite(slope_error, slope.min(wide.first().magnitude()));
-            most = larger_or_infinite(most, value.value.value.high);
+            max_square = larger_or_infinite(max_square, value.value.value.high);
         }
-        (self.error, self.slope_error, self.most) = (error, slope_error, most);
+        (self.error, self.slope_error, self.max_square) = (error, slope_error, max_square);
         Some(())
     }
 }

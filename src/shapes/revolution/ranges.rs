@@ -30,7 +30,7 @@ impl Ranges {
         let mut waiting = vec![(0.0, height)];
         while let Some((low, high)) = waiting.pop() {
             // Bounds of the value and the slope, and of the value again: about 16 times the cost of the plain value.
-            if !budget.spend(profile, 16) {
+            if !budget.charge(profile, 16) {
                 return Err(NoSurface::Signs { from: low });
             }
             let middle = low + 0.5 * (high - low);
@@ -50,7 +50,7 @@ impl Ranges {
             } else if thin == Interval::WHOLE {
                 return Err(NoSurface::Unbounded { near: middle });
             } else if slope.is_bounded() && !slope.has_zero() {
-                ranges.one_change(profile, low, high);
+                ranges.push_monotone(profile, low, high);
             } else if middle <= low || middle >= high {
                 // The ends are neighbouring numbers: the void, if there is one, ends there.
                 let is_void = ranges.is_void(profile, low) | ranges.is_void(profile, high);
@@ -58,7 +58,7 @@ impl Ranges {
             } else if thin.has_zero() && value.magnitude() <= 4.0 * thin.magnitude() {
                 // The bounds are little more than rounding error: shorter pieces would not help.
                 let is_void = profile.at(middle) < 0.0;
-                ranges.hide(value, is_void, middle);
+                ranges.keep_hidden(value, is_void, middle);
                 ranges.push(low, high, is_void);
             } else {
                 waiting.extend([(middle, high), (low, middle)]);
@@ -76,7 +76,7 @@ impl Ranges {
     }
 
     /// Adds a piece on which the profile is monotone.
-    fn one_change(&mut self, profile: &Formula, from: f64, to: f64) {
+    fn push_monotone(&mut self, profile: &Formula, from: f64, to: f64) {
         let (at_from, at_to) = (self.is_void(profile, from), self.is_void(profile, to));
         if at_from == at_to {
             return self.push(from, to, at_from);
@@ -93,12 +93,12 @@ impl Ranges {
     /// Returns whether the profile is negative at a height, as computed; keeps how far it may be beyond 0.
     fn is_void(&mut self, profile: &Formula, y: f64) -> bool {
         let is_void = profile.at(y) < 0.0;
-        self.hide(profile.at(Interval::constant(y)), is_void, y);
+        self.keep_hidden(profile.at(Interval::constant(y)), is_void, y);
         is_void
     }
 
     /// Keeps how far the profile may be beyond 0 on the side that it is not taken for.
-    fn hide(&mut self, bounds: Interval, is_void: bool, y: f64) {
+    fn keep_hidden(&mut self, bounds: Interval, is_void: bool, y: f64) {
         let beyond = if is_void { bounds.high } else { -bounds.low };
         // Without a bound there is no surface, which is found out when it is cut into slabs.
         if beyond > self.hidden && beyond.is_finite() {

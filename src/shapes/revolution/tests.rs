@@ -91,10 +91,10 @@ fn slabs_are_what_they_say_of_any_profile() {
             // Exactly at a pole, a formula has no value.
             if !slab.is_void && square.is_bounded() {
                 let parabola = slab.parabola(y - slab.middle);
-                let rounding = 1e-13 * (1.0 + parabola.abs() + slab.most);
+                let rounding = 1e-13 * (1.0 + parabola.abs() + slab.max_square);
                 let apart = (square - Interval::constant(parabola)).magnitude() - square.width();
                 assert!(apart <= slab.error + rounding, "{profile} at {y:?}: {apart:e}, {slab:?}");
-                assert!(square.low <= slab.most, "{profile} at {y:?}: {square:?}, {slab:?}");
+                assert!(square.low <= slab.max_square, "{profile} at {y:?}: {square:?}, {slab:?}");
             }
             checked += 1;
         }

@@ -61,9 +61,9 @@ impl Revolution {
     /// count.
     fn walk(&self, local: &Local, origin_side: Option<Side>, mut lanes: Lanes<1>) -> (f64, bool) {
         let (size, cpu) = (self.size(), Cpu::best());
-        lanes.begin(1, origin_side.as_ref().map(from_ref));
+        lanes.prepare(1, origin_side.as_ref().map(from_ref));
         let own = Ray { origin: local.origin, dir: local.dir };
-        lanes.put(0, own, (local.base, local.moved()), (local.from, local.to), self.slabs.widest());
+        lanes.set(0, own, (local.base, local.moved()), (local.from, local.to), self.slabs.widest());
         lanes.near[0] = MISS;
         let is_level = local.dir.y.abs() < LEVEL;
         let is_upward = local.dir.y > 0.0;
@@ -77,8 +77,8 @@ impl Revolution {
             let (from, to) = lanes.part(&slab, 0);
             if slab.is_void {
                 // Where the surface narrows down to the axis, rounding may decide on which side of its end a ray is.
-                let most = self.slabs.coarsest() + lanes.rounding[0];
-                is_certain &= lanes.around(0).at(from) > most && lanes.around(0).at(to) > most;
+                let margin = self.slabs.coarsest() + lanes.rounding[0];
+                is_certain &= lanes.around(0).at(from) > margin && lanes.around(0).at(to) > margin;
                 wanted = None;
             }
             cross(cpu, &mut lanes, &slab, size, 0.0, 1);
