@@ -83,6 +83,8 @@ pub fn quick_hit<A: Bounded>(line: &SphereLine, radius: f64) -> f64 {
     let outside = from.dot(from) - radius * radius;
     // Units of 2^-53 of `size`: `from` is off by 1, `toward` by 5, `a` by 4, their product with the direction by 3 and
     // the sum by 1; these 14 are less than the 32 here. For a tangent line, the discriminant is then off by `doubt`.
+    // `outside` is off by 7 units of `size^2`: 5 for the square of `from`, 1 for that of the radius and 1 for the
+    // difference; 64 are used below.
     let aside_error = 16.0 * f64::EPSILON * size;
     let doubt = aside_error * (2.0 * radius + aside_error);
     let is_missed = discriminant < -doubt;

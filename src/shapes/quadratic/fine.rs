@@ -108,6 +108,8 @@ impl Quadratic {
         if whole.high < -whole_error {
             return Some([PreciseHit::NONE; 2]);
         }
+        // Decided if a number exceeds its error by this factor; `quadrics_are_found` in `tests/shapes/arithmetic.rs` holds
+        // the results to 4 ulps.
         let is_clear = whole.high > 1e15 * whole_error;
         // The polynomial is linear along this ray: the quadric is a plane, or a paraboloid along its axis.
         if a_error == 0.0 {

@@ -70,6 +70,7 @@ impl<A> Quadric<A> {
         let gradient = (2.0 * (self.square * at) + self.linear).length() + rounding;
         let square = (abs * DVec3::ONE).length();
         let radius = 2.0 * value / (gradient + (gradient * gradient + 4.0 * square * value).sqrt());
+        // The factor keeps the radius a lower bound: it is far more than the rounding of the lines above.
         if value > 0.0 && radius.is_finite() { radius * (1.0 - 1e-6) } else { 0.0 }
     }
 

@@ -91,7 +91,8 @@ impl Quadratic {
             + a_error * (c.abs() + c_error)
             + 2.0 * f64::EPSILON * (square + product.abs());
         // The bounds of the roots' errors in `judge` are good if the discriminant and `a` exceed their errors by this
-        // factor.
+        // factor. `quadrics_are_found` and `brackets_hold_the_hits_of_the_real_rays_of_a_camera` in
+        // `tests/shapes/arithmetic.rs` test both.
         const SPARE: f64 = 1024.0;
         let is_clear = (discriminant > SPARE * error) & (a.abs() > SPARE * a_error);
         let root = discriminant.sqrt();
