@@ -2,6 +2,7 @@
 
 use crate::render::observer::{Count, RayKind, TraceObserver};
 use crate::scene::model::Model;
+use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// Counts of rays and tests. It is a watcher that leaves packets together, and so counts what plain rendering does.
@@ -42,17 +43,17 @@ impl TraceObserver for Cuts {
 }
 
 /// What became of the tests of an object, or of all objects of an entity type.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct TestCounts {
+    /// How many rays were not tested, as the object's bounds are not in their way.
+    ///
+    /// What a tree passes over is neither tested nor culled, and no more are rays that leave the object or were blocked
+    /// by another one before.
+    pub culled: u64,
     /// How many objects there are.
     pub objects: u64,
     /// How many rays were tested.
     pub tested: u64,
-    /// How many were not, as the object's bounds are not in their way.
-    ///
-    /// What a tree passes over is in neither number, and no more are rays that leave the object or were blocked by
-    /// another one before.
-    pub culled: u64,
 }
 
 impl TraceObserver for RayStats {

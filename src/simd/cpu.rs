@@ -3,6 +3,8 @@
 //!
 //! The same operations in the same order give the same bits on every level: Rust neither reorders nor fuses them.
 
+use clap::ValueEnum;
+use clap::builder::PossibleValue;
 use std::fmt;
 
 /// A level of instructions that this machine has. A `Cpu` cannot be made for a level that the machine lacks.
@@ -10,19 +12,18 @@ use std::fmt;
 pub struct Cpu(Level);
 
 /// Levels of instructions; each includes those before it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+// The levels' own comments are shown by `--help`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, ValueEnum)]
 pub enum Level {
-    /// The instructions that every machine of the target has; on x86-64, two `f64` per instruction.
+    /// What every machine has: SSE2 on x86-64.
     Baseline,
-    /// AVX2: four `f64` per instruction.
+    /// AVX2: four numbers at a time.
     Avx2,
-    /// AVX-512: eight `f64` per instruction.
+    /// AVX-512: eight numbers at a time.
     Avx512,
 }
 
 impl Level {
-    const ALL: [Self; 3] = [Self::Baseline, Self::Avx2, Self::Avx512];
-
     #[cfg(target_arch = "x86_64")]
     fn is_here(self) -> bool {
         match self {
@@ -46,7 +47,7 @@ impl Level {
 impl Cpu {
     /// Returns the levels that this machine has, from the lowest to the highest.
     pub fn all() -> impl DoubleEndedIterator<Item = Self> {
-        Level::ALL.into_iter().filter(|level| level.is_here()).map(Self)
+        Level::value_variants().iter().filter(|level| level.is_here()).copied().map(Self)
     }
 
     /// Returns this level, or `None` if the machine lacks it.
@@ -68,11 +69,7 @@ impl Cpu {
 
 impl fmt::Display for Cpu {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self.0 {
-            Level::Baseline => "baseline",
-            Level::Avx2 => "avx2",
-            Level::Avx512 => "avx512",
-        })
+        f.pad(self.0.to_possible_value().as_ref().map_or("", PossibleValue::get_name))
     }
 }
 
