@@ -425,11 +425,11 @@ fn tint(object: &Object, look: Option<&Look>) -> f64 {
 
 /// Bounds the light of an object's own surface, times the path length to the surface.
 fn own(model: &Model, object: &Object, look: &Look, any_light_comes: bool) -> f64 {
-    let glint = if object.material.shininess == 0.0 { Rgb::ZERO } else { look.specular.abs() };
+    let highlight = if object.material.shininess == 0.0 { Rgb::ZERO } else { look.specular.abs() };
     let diffuse = look.diffuse.abs();
     let mut own = look.ambient.abs();
     for light in &model.lights {
-        if glint == Rgb::ZERO && diffuse == Rgb::ZERO {
+        if highlight == Rgb::ZERO && diffuse == Rgb::ZERO {
             break;
         }
         let Some(sent) = light.value.brightest().filter(|_| any_light_comes) else { return f64::INFINITY };
@@ -440,7 +440,7 @@ fn own(model: &Model, object: &Object, look: &Look, any_light_comes: bool) -> f6
             0.0 => return f64::INFINITY,
             clearance => diffuse / clearance,
         };
-        own += sent.abs() * (scattered + glint);
+        own += sent.abs() * (scattered + highlight);
     }
     largest(own)
 }
