@@ -1,4 +1,4 @@
-//! A sphere: every point at one distance from a centre.
+//! A sphere: all points at one distance from a centre.
 
 use crate::prelude::*;
 use crate::shapes::sphere::{self, SphereLine};

@@ -51,13 +51,13 @@ impl Frusta {
     };
 
     /// Returns a bit for each sub-packet whose region satisfies a condition.
-    pub fn which(&self, are_such: impl Fn(&Aabb) -> bool) -> u32 {
+    pub fn which(&self, matches: impl Fn(&Aabb) -> bool) -> u32 {
         let parts = 0..u32::BITS - self.parts.leading_zeros();
-        parts.map(|part| u32::from(are_such(&self.ways(part as usize))) << part).sum()
+        parts.map(|part| u32::from(matches(&self.region(part as usize))) << part).sum()
     }
 
     /// Returns the region that the rays of a sub-packet may reach, usually unbounded.
-    fn ways(&self, part: usize) -> Aabb {
+    fn region(&self, part: usize) -> Aabb {
         let (mut low, mut high) = (DVec3::NEG_INFINITY, DVec3::INFINITY);
         for axis in 0..3 {
             if self.falls[axis][part] == f64::NEG_INFINITY {
@@ -180,7 +180,7 @@ mod tests {
                 let (part, mut met) = (1 << (chosen / PART), [0]);
                 meet(cpu, &frusta, &[(0, bounds)], &mut met);
                 prop_assert!(met[0] & part != 0, "{} to {}, {}", from, to, cpu);
-                let reached = frusta.which(|ways| ways.with_slack(1e6).overlaps(&bounds));
+                let reached = frusta.which(|region| region.with_slack(1e6).overlaps(&bounds));
                 prop_assert!(reached & part != 0, "{} to {} on its ways, {}", from, to, cpu);
             }
         }
@@ -209,8 +209,8 @@ mod tests {
             let (boxes, mut met) = ([at(0.0, 5.0), at(0.0, -5.0), at(0.0, -0.5), at(9.0, 5.0)], [9; 4]);
             meet(cpu, &frusta, &boxes.map(|bounds| (0, bounds)), &mut met);
             assert_eq!(met, [0b01, 0b10, 0b11, 0]);
-            assert_eq!(frusta.which(|ways| ways.high.y == f64::INFINITY), 0b01);
-            assert_eq!(frusta.which(|ways| ways.high.y > -0.5), 0b11);
+            assert_eq!(frusta.which(|region| region.high.y == f64::INFINITY), 0b01);
+            assert_eq!(frusta.which(|region| region.high.y > -0.5), 0b11);
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Any shape, whatever it has opted into.
+//! A shape of any type, whatever it has opted into.
 
 use crate::geometry::ray::{Bracket, Ray, RayRange, Side};
 use crate::geometry::ray_packet::{Nearest, RayPacket};

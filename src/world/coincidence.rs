@@ -1,4 +1,4 @@
-//! Several surfaces through one point: which of them a ray sees, and which it leaves when it starts there.
+//! Several surfaces through one point: which of them a ray hits first, and which it leaves when it starts there.
 //!
 //! The point where a ray hits a surface is rounded. Another surface that lies within the rounding error of the point
 //! holds it as well, and a ray that starts there leaves both: a floor casts no shadow on a rug that lies on it, and the

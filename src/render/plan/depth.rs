@@ -192,7 +192,7 @@ struct Scene {
     /// On which sides of one shiny surface another one lies, for each pair; empty for more than [`PAIRS`] surfaces.
     lies: Vec<Sides<bool>>,
     /// For each shiny surface and side, the largest own light of the other surfaces that may be hit from there.
-    t_max: Vec<Sides<f64>>,
+    matt_light: Vec<Sides<f64>>,
 }
 
 impl Scene {
@@ -204,27 +204,27 @@ impl Scene {
         let lies = |of: usize, object: usize| {
             if is_few { lies(&objects[of], &objects[object]) } else { [true; 2] }
         };
-        let t_max = shiny.iter().map(|of| {
+        let matt_light = shiny.iter().map(|of| {
             let sent = matt
                 .iter()
                 .map(|object| lies(*of, *object).map(|lies| if lies { surfaces[*object].own } else { 0.0 }));
             sent.fold([0.0; 2], |[one, other], [outside, inside]| [above(one, outside), above(other, inside)])
         });
-        let t_max = t_max.collect();
+        let matt_light = matt_light.collect();
         let pairs = shiny.iter().flat_map(|of| shiny.iter().map(|object| lies(*of, *object)));
         let lies = if is_few { pairs.collect() } else { Vec::new() };
         let meets = |index: usize| (index, SIDES.map(|side| can_hit_itself(&objects[index], side)));
-        Self { shiny: shiny.into_iter().map(meets).collect(), lies, t_max, surfaces }
+        Self { shiny: shiny.into_iter().map(meets).collect(), lies, matt_light, surfaces }
     }
 
     /// Computes the bounds, and when branches are cut, if they are at all.
     fn depth(&self, cuts: bool) -> Depth {
         let infinite = || vec![[f64::INFINITY; 2]; self.shiny.len()];
         let own = |surface: &Surface| surface.own;
-        let beyond = self.solve(&self.t_max, own).unwrap_or_else(infinite);
-        let one = |end: f64| if end > 0.0 { 1.0 } else { 0.0 };
-        let t_max: Vec<_> = self.t_max.iter().map(|t_max| t_max.map(one)).collect();
-        let shares = self.solve(&t_max, |_| 1.0).unwrap_or_else(infinite);
+        let beyond = self.solve(&self.matt_light, own).unwrap_or_else(infinite);
+        let one = |light: f64| if light > 0.0 { 1.0 } else { 0.0 };
+        let matt_light: Vec<_> = self.matt_light.iter().map(|matt_light| matt_light.map(one)).collect();
+        let shares = self.solve(&matt_light, |_| 1.0).unwrap_or_else(infinite);
         let most = |own: &dyn Fn(&Surface) -> f64, beyond: &[Sides<f64>]| {
             let mut met: Vec<_> = self.surfaces.iter().map(own).collect();
             for ((index, _), beyond) in self.shiny.iter().zip(beyond) {
@@ -243,15 +243,15 @@ impl Scene {
         Depth { most: most(&own, &beyond), objects }
     }
 
-    /// Bounds what rays that leave each shiny surface return, given the surfaces' own light, and in `t_max` that of the
-    /// others. Returns `None` where no bounds are found.
-    fn solve(&self, t_max: &[Sides<f64>], own: impl Fn(&Surface) -> f64) -> Option<Vec<Sides<f64>>> {
+    /// Bounds what rays that leave each shiny surface return, given the surfaces' own light, and in `matt_light` that
+    /// of the others. Returns `None` where no bounds are found.
+    fn solve(&self, matt_light: &[Sides<f64>], own: impl Fn(&Surface) -> f64) -> Option<Vec<Sides<f64>>> {
         let mut bounds = vec![[0.0; 2]; self.shiny.len()];
         let mut before: Option<Vec<Sides<f64>>> = None;
         for _ in 0..ROUNDS {
             // Two steps at once: then the bounds grow steadily where light goes back and forth between two kinds of
             // objects.
-            let better = self.step(t_max, &own, &self.step(t_max, &own, &bounds));
+            let better = self.step(matt_light, &own, &self.step(matt_light, &own, &bounds));
             let gained = each(&better, &bounds, |better, bound| better - bound);
             if let Some(before) = before {
                 // Extrapolates the gains as a geometric series with the largest ratio so far, plus 1%. The factor need
@@ -264,7 +264,7 @@ impl Scene {
                 let ratio = ratios.into_iter().flatten().fold(0.0, above);
                 let rest = 1.01 * ratio / (1.0 - ratio);
                 let beyond = each(&better, &gained, |better, gained| better + gain(rest, gained));
-                let next = self.step(t_max, &own, &beyond);
+                let next = self.step(matt_light, &own, &beyond);
                 let is_above =
                     next.iter().flatten().zip(beyond.iter().flatten()).all(|(next, beyond)| next <= beyond);
                 if ratio < 1.0 && is_above {
@@ -281,7 +281,7 @@ impl Scene {
     /// hits return.
     fn step(
         &self,
-        t_max: &[Sides<f64>],
+        matt_light: &[Sides<f64>],
         own: impl Fn(&Surface) -> f64,
         beyond: &[Sides<f64>],
     ) -> Vec<Sides<f64>> {
@@ -291,11 +291,11 @@ impl Scene {
         });
         let met: Vec<_> = met.collect();
         if self.lies.is_empty() {
-            return self.step_among_many(t_max, &met);
+            return self.step_among_many(matt_light, &met);
         }
         let all = || met.iter().enumerate();
         let of = |index: usize, side: usize| {
-            all().fold(t_max[index][side], |most, (other, met)| {
+            all().fold(matt_light[index][side], |most, (other, met)| {
                 let comes = if other == index {
                     [self.shiny[index].1[side]; 2]
                 } else if self.lies[index * met.len() + other][side] {
@@ -312,7 +312,7 @@ impl Scene {
 
     /// Does the work of [`step`](Self::step) where each surface may be hit from each side of each other one; `met`
     /// bounds what rays that hit each shiny surface return.
-    fn step_among_many(&self, t_max: &[Sides<f64>], met: &[Sides<f64>]) -> Vec<Sides<f64>> {
+    fn step_among_many(&self, matt_light: &[Sides<f64>], met: &[Sides<f64>]) -> Vec<Sides<f64>> {
         let met: Vec<_> = met.iter().map(|[outside, inside]| above(*outside, *inside)).collect();
         let brighter =
             |one: usize, other: usize| if above(met[other], met[one]) > met[one] { other } else { one };
@@ -321,7 +321,7 @@ impl Scene {
         let rest = others.map(|index| met[index]).fold(0.0, above);
         let of = |index: usize, side: usize| {
             let is_left = index == brightest && !self.shiny[index].1[side];
-            above(t_max[index][side], if is_left { rest } else { met[brightest] })
+            above(matt_light[index][side], if is_left { rest } else { met[brightest] })
         };
         (0..met.len()).map(|index| [of(index, 0), of(index, 1)]).collect()
     }

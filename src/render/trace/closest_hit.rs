@@ -273,7 +273,7 @@ impl<W: TraceObserver> Closest<'_, '_, '_, W> {
         for index in &plan.unbounded {
             let object = &self.tracer.model.objects[*index];
             if self.tracer.may_meet(self.group.left(), *index) {
-                self.in_parts(*index, frusta.which(|paths| !culling::is_clear_of(object, paths)));
+                self.in_parts(*index, frusta.which(|region| !culling::is_clear_of(object, region)));
             }
         }
         let mut parts = take(&mut self.tracer.scratch.parts);

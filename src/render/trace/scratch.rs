@@ -15,9 +15,10 @@ pub(crate) struct Scratch {
     pub(super) places: [Vec<f64>; 2],
     /// The samples of the current primary rays, where pixels have more than one.
     pub(super) samples: Vec<Sample>,
-    /// For each level of recursion, the deepest one last.
+    /// The unused scratch space of packets, one for each level of recursion, the outermost one last.
     #[expect(clippy::vec_box, reason = "they come and go, and are large")]
     pub(super) levels: Vec<Box<HitScratch>>,
+    /// The unused scratch space of shadow rays through glass, one for each pane on their way.
     #[expect(clippy::vec_box, reason = "likewise")]
     pub(super) transmittances: Vec<Box<Transmittance>>,
     /// For direct light, which is finished before any rays continue.

@@ -5,7 +5,7 @@ use crate::numeric::interval::{Float, Interval};
 use crate::numeric::scalar::Scalar;
 use glam::DVec3;
 
-/// A shape as the solutions of an equation, of which a part is kept.
+/// A shape given by an equation, of whose solutions a part is kept.
 ///
 /// The equation is written in the numbers of the scene. A plane's equation uses the normal as given, not a unit vector:
 /// otherwise the proof would be about the rounded vector.
