@@ -2,6 +2,7 @@
 
 use crate::render::observer::{Count, RayKind, TraceObserver};
 use crate::scene::model::Model;
+use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// Counts of rays and tests. As an observer, it does not see single events, so packets stay whole and the counts are
@@ -43,17 +44,17 @@ impl TraceObserver for Cuts {
 }
 
 /// The tests against one object, or against all objects of an entity type.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct TestCounts {
+    /// The number of rays that were not tested, since they do not meet the object's bounds.
+    ///
+    /// Objects that the BVH skips, rays that leave the object, and rays that another object has blocked before count
+    /// neither as tested nor as culled.
+    pub culled: u64,
     /// The number of objects.
     pub objects: u64,
     /// The number of rays that were tested.
     pub tested: u64,
-    /// The number of rays that were not tested, since they do not meet the object's bounds.
-    ///
-    /// Neither number includes objects that the BVH skips, rays that leave the object, or rays that another object has
-    /// blocked before.
-    pub culled: u64,
 }
 
 impl TraceObserver for RayStats {

@@ -1,18 +1,22 @@
 //! The random numbers of a pixel's samples: the same for any number of threads.
 
+use clap::ValueEnum;
 use glam::DVec2;
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 
 /// How a pixel's samples are distributed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Sampler {
-    /// Independent uniform samples, as in the notes.
-    Random,
-    /// Low-discrepancy samples: the Sobol sequence with Owen scrambling (Burley, "Practical Hash-based Owen
-    /// Scrambling", 2020), with a different scrambling for each pixel.
+    /// Evenly spread (a Sobol sequence).
+    ///
+    /// With Owen scrambling (Burley, "Practical Hash-based Owen Scrambling", 2020), different for each pixel.
     #[default]
     Sobol,
+    /// Random, as in the course notes.
+    ///
+    /// Samples are independent of each other.
+    Random,
 }
 
 impl Sampler {
