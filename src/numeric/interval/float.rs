@@ -19,6 +19,8 @@ pub trait Float:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
+    /// Whether an operation takes hundreds of instructions, and not a few.
+    const IS_LONG: bool;
     /// What every finite number is below.
     const INFINITY: Self;
     /// The ratio of a circle's circumference to its diameter, rounded.
@@ -85,6 +87,7 @@ pub trait Float:
 const STEP: f64 = 1.04 * f64::EPSILON;
 
 impl Float for f64 {
+    const IS_LONG: bool = false;
     const INFINITY: Self = f64::INFINITY;
     const PI: Self = std::f64::consts::PI;
     const EPSILON: Self = f64::EPSILON;
@@ -175,6 +178,7 @@ impl Float for f64 {
 /// The format `binary256` of IEEE 754: 237 bits, and exponents to 2^262143, so that no square or fourth power of a
 /// scene's numbers overflows.
 impl Float for f256 {
+    const IS_LONG: bool = true;
     const INFINITY: Self = f256::INFINITY;
     const PI: Self = ::f256::consts::PI;
     const EPSILON: Self = f256::EPSILON;

@@ -9,6 +9,20 @@ use f256::f256;
 pub use float::Float;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
+/// An operation on intervals: part of the formula that it is in, but where numbers are [long](Float::IS_LONG) compiled once,
+/// for all formulas. As a part of them it would make megabytes of each.
+macro_rules! apart_if_long {
+    ($F:ident, $operation:expr) => {
+        if $F::IS_LONG { apart(move || $operation) } else { $operation }
+    };
+}
+
+/// Calls a function that does not become part of its caller.
+#[inline(never)]
+fn apart<R>(operation: impl FnOnce() -> R) -> R {
+    operation()
+}
+
 /// All numbers from `low` to `high`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval<F = f64> {
@@ -128,7 +142,7 @@ impl<F: Float> Add for Interval<F> {
 
     #[inline(always)]
     fn add(self, other: Self) -> Self {
-        Self::outward_sum(self.low + other.low, self.high + other.high)
+        apart_if_long!(F, Self::outward_sum(self.low + other.low, self.high + other.high))
     }
 }
 
@@ -137,11 +151,13 @@ impl<F: Float> Sub for Interval<F> {
 
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        // Of one number alone the difference is 0 and not about 0: what is multiplied by it may have no end.
-        if self == other && self.low == self.high {
-            return Self::constant(0.0);
-        }
-        Self::outward_sum(self.low - other.high, self.high - other.low)
+        apart_if_long!(F, {
+            // Of one number alone the difference is 0 and not about 0: what is multiplied by it may have no end.
+            if self == other && self.low == self.high {
+                return Self::constant(0.0);
+            }
+            Self::outward_sum(self.low - other.high, self.high - other.low)
+        })
     }
 }
 
@@ -159,31 +175,33 @@ impl<F: Float> Mul for Interval<F> {
 
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
-        // Nothing times anything is nothing, even where that has no end.
-        if self.is_zero() || other.is_zero() {
-            return Self::constant(0.0);
-        }
-        // Nearly always there is nothing to think about.
-        if let Some((low, high)) = F::product_ends([self.low, self.high], [other.low, other.high]) {
-            return Self::outward(low, high);
-        }
-        let (low, high) = Self::of_four(
-            self.low * other.low,
-            self.low * other.high,
-            self.high * other.low,
-            self.high * other.high,
-        );
-        // 0 times infinity was left out above, where an end at 0 meets no end.
-        let touches = |a: Self, b: Self| a.has_zero() && !b.is_bounded();
-        if touches(self, other) || touches(other, self) {
-            return Self::outward(low.min(F::of(0.0)), high.max(F::of(0.0)));
-        }
-        // No product of what is not negative is: a root can be taken of it.
-        let zero = F::of(0.0);
-        if self.low >= zero && other.low >= zero && low == zero {
-            return Self { low, ..Self::outward(low, high) };
-        }
-        Self::outward(low, high)
+        apart_if_long!(F, {
+            // Nothing times anything is nothing, even where that has no end.
+            if self.is_zero() || other.is_zero() {
+                return Self::constant(0.0);
+            }
+            // Nearly always there is nothing to think about.
+            if let Some((low, high)) = F::product_ends([self.low, self.high], [other.low, other.high]) {
+                return Self::outward(low, high);
+            }
+            let (low, high) = Self::of_four(
+                self.low * other.low,
+                self.low * other.high,
+                self.high * other.low,
+                self.high * other.high,
+            );
+            // 0 times infinity was left out above, where an end at 0 meets no end.
+            let touches = |a: Self, b: Self| a.has_zero() && !b.is_bounded();
+            if touches(self, other) || touches(other, self) {
+                return Self::outward(low.min(F::of(0.0)), high.max(F::of(0.0)));
+            }
+            // No product of what is not negative is: a root can be taken of it.
+            let zero = F::of(0.0);
+            if self.low >= zero && other.low >= zero && low == zero {
+                return Self { low, ..Self::outward(low, high) };
+            }
+            Self::outward(low, high)
+        })
     }
 }
 
@@ -192,34 +210,36 @@ impl<F: Float> Div for Interval<F> {
 
     #[inline(always)]
     fn div(self, other: Self) -> Self {
-        if self.is_zero() && !other.is_zero() {
-            return Self::constant(0.0);
-        }
-        let (zero, one) = (F::of(0.0), F::of(1.0));
-        if other.has_zero() || !other.is_bounded() {
-            // The reciprocals of what lies on one side of 0 have one end, and only those of both sides have none.
-            let inverse = if other.low >= zero && other.high > zero {
-                let high = if other.low > zero { one / other.low } else { F::INFINITY };
-                Self { low: one / other.high, high }
-            } else if other.high <= zero && other.low < zero {
-                let low = if other.high < zero { one / other.high } else { -F::INFINITY };
-                Self { low, high: one / other.low }
-            } else {
-                return Self::whole();
-            };
-            let Self { low, high } = Self::outward(inverse.low, inverse.high);
-            // What has an end at infinity keeps it.
-            let low = if inverse.low == -F::INFINITY { -F::INFINITY } else { low };
-            let high = if inverse.high == F::INFINITY { F::INFINITY } else { high };
-            return self * Self { low, high };
-        }
-        let (low, high) = Self::of_four(
-            self.low / other.low,
-            self.low / other.high,
-            self.high / other.low,
-            self.high / other.high,
-        );
-        Self::outward(low, high)
+        apart_if_long!(F, {
+            if self.is_zero() && !other.is_zero() {
+                return Self::constant(0.0);
+            }
+            let (zero, one) = (F::of(0.0), F::of(1.0));
+            if other.has_zero() || !other.is_bounded() {
+                // The reciprocals of what lies on one side of 0 have one end, and only those of both sides have none.
+                let inverse = if other.low >= zero && other.high > zero {
+                    let high = if other.low > zero { one / other.low } else { F::INFINITY };
+                    Self { low: one / other.high, high }
+                } else if other.high <= zero && other.low < zero {
+                    let low = if other.high < zero { one / other.high } else { -F::INFINITY };
+                    Self { low, high: one / other.low }
+                } else {
+                    return Self::whole();
+                };
+                let Self { low, high } = Self::outward(inverse.low, inverse.high);
+                // What has an end at infinity keeps it.
+                let low = if inverse.low == -F::INFINITY { -F::INFINITY } else { low };
+                let high = if inverse.high == F::INFINITY { F::INFINITY } else { high };
+                return self * Self { low, high };
+            }
+            let (low, high) = Self::of_four(
+                self.low / other.low,
+                self.low / other.high,
+                self.high / other.low,
+                self.high / other.high,
+            );
+            Self::outward(low, high)
+        })
     }
 }
 
@@ -231,8 +251,10 @@ impl<F: Float> Number for Interval<F> {
 
     #[inline(always)]
     fn about(value: f64, error: f64) -> Self {
-        let (value, error) = (F::of(value), F::of(error));
-        Self::outward_sum(value - error, value + error)
+        apart_if_long!(F, {
+            let (value, error) = (F::of(value), F::of(error));
+            Self::outward_sum(value - error, value + error)
+        })
     }
 
     fn sin_cos(self) -> (Self, Self) {
@@ -274,23 +296,27 @@ impl<F: Float> Number for Interval<F> {
 
     #[inline(always)]
     fn sqrt(self) -> Self {
-        let zero = F::of(0.0);
-        // Written so that what is not a number stays one.
-        let root = |of: F| (if of < zero { zero } else { of }).sqrt();
-        let root = Self::outward(root(self.low), root(self.high));
-        Self { low: root.low.max(zero), high: root.high }
+        apart_if_long!(F, {
+            let zero = F::of(0.0);
+            // Written so that what is not a number stays one.
+            let root = |of: F| (if of < zero { zero } else { of }).sqrt();
+            let root = Self::outward(root(self.low), root(self.high));
+            Self { low: root.low.max(zero), high: root.high }
+        })
     }
 
     #[inline(always)]
     fn abs(self) -> Self {
-        let zero = F::of(0.0);
-        if self.low >= zero {
-            self
-        } else if self.high <= zero {
-            -self
-        } else {
-            Self { low: zero, high: self.magnitude() }
-        }
+        apart_if_long!(F, {
+            let zero = F::of(0.0);
+            if self.low >= zero {
+                self
+            } else if self.high <= zero {
+                -self
+            } else {
+                Self { low: zero, high: self.magnitude() }
+            }
+        })
     }
 
     fn floor(self) -> Self {
@@ -299,12 +325,12 @@ impl<F: Float> Number for Interval<F> {
 
     #[inline(always)]
     fn min(self, other: Self) -> Self {
-        Self { low: self.low.min(other.low), high: self.high.min(other.high) }
+        apart_if_long!(F, Self { low: self.low.min(other.low), high: self.high.min(other.high) })
     }
 
     #[inline(always)]
     fn max(self, other: Self) -> Self {
-        Self { low: self.low.max(other.low), high: self.high.max(other.high) }
+        apart_if_long!(F, Self { low: self.low.max(other.low), high: self.high.max(other.high) })
     }
 
     fn pow(self, exponent: Self) -> Self {
@@ -320,35 +346,42 @@ impl<F: Float> Number for Interval<F> {
 
     #[inline(always)]
     fn powi(self, exponent: i32) -> Self {
-        if exponent < 0 {
-            return Self::constant(1.0) / self.powi(-exponent);
-        }
-        let zero = F::of(0.0);
-        match exponent {
-            0 => return Self::constant(1.0),
-            1 => return self,
-            2 => {
-                let Self { low, high } = self.abs();
-                let square = Self::outward(low * low, high * high);
-                return Self { low: if square.low > zero { square.low } else { zero }, high: square.high };
+        apart_if_long!(F, {
+            if exponent < 0 {
+                return Self::constant(1.0) / self.powi(-exponent);
             }
-            _ => {}
-        }
-        let base = if exponent % 2 == 0 { self.abs() } else { self };
-        let mut power = base;
-        for _ in 1..exponent {
-            power = power * base;
-        }
-        if exponent % 2 == 0 { Self { low: power.low.max(zero), high: power.high } } else { power }
+            let zero = F::of(0.0);
+            match exponent {
+                0 => return Self::constant(1.0),
+                1 => return self,
+                2 => {
+                    let Self { low, high } = self.abs();
+                    let square = Self::outward(low * low, high * high);
+                    return Self {
+                        low: if square.low > zero { square.low } else { zero },
+                        high: square.high,
+                    };
+                }
+                _ => {}
+            }
+            let base = if exponent % 2 == 0 { self.abs() } else { self };
+            let mut power = base;
+            for _ in 1..exponent {
+                power = power * base;
+            }
+            if exponent % 2 == 0 { Self { low: power.low.max(zero), high: power.high } } else { power }
+        })
     }
 
     #[inline(always)]
     fn step(self) -> Self {
-        let (zero, one) = (F::of(0.0), F::of(1.0));
-        Self {
-            low: if self.low > zero { one } else { zero },
-            high: if self.high < zero { zero } else { one },
-        }
+        apart_if_long!(F, {
+            let (zero, one) = (F::of(0.0), F::of(1.0));
+            Self {
+                low: if self.low > zero { one } else { zero },
+                high: if self.high < zero { zero } else { one },
+            }
+        })
     }
 
     #[inline(always)]
