@@ -78,9 +78,35 @@ impl fmt::Display for Cpu {
 
 /// Defines functions that are compiled for every level; each takes the [`Cpu`] to use as its first argument.
 ///
-/// What such a function calls takes part in that where it is inlined. Vectors to be written are named behind `=>` and
-/// are its last arguments. Inside, their arrays are arguments of their own, by which the compiler knows that none is
-/// part of another: else it looks at that at every call, and takes rays one by one where there are few.
+/// What such a function calls takes part in that where it is inlined. So
+///
+/// ```text
+/// kernels! {
+///     fn refine[T: OneRay](shape: &T, out: &mut [f64]) { ... }
+/// }
+/// ```
+///
+/// becomes
+///
+/// ```text
+/// fn refine<T: OneRay>(cpu: Cpu, shape: &T, out: &mut [f64]) {
+///     #[inline(always)]
+///     fn body<T: OneRay>(shape: &T, out: &mut [f64]) { ... }
+///     #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw")]
+///     fn avx512<T: OneRay>(shape: &T, out: &mut [f64]) { body(shape, out) }
+///     #[target_feature(enable = "avx2")]
+///     fn avx2<T: OneRay>(shape: &T, out: &mut [f64]) { body(shape, out) }
+///     match cpu.level() {
+///         Level::Avx512 => unsafe { avx512(shape, out) },
+///         Level::Avx2 => unsafe { avx2(shape, out) },
+///         _ => body(shape, out),
+///     }
+/// }
+/// ```
+///
+/// Vectors to be written are named behind `=>` and are its last arguments. Inside, their arrays are arguments of their
+/// own (`x`, `y`, `z`, and `u`, `v`, `w` of the second ones), by which the compiler knows that none is part of another: else
+/// it looks at that at every call, and takes rays one by one where there are few.
 macro_rules! kernels {
     ($(
         $(#[$attribute:meta])*
