@@ -2,7 +2,7 @@
 
 use super::plane;
 use crate::prelude::*;
-use crate::shapes::flat::{CLASSIC_METHOD, Flat, Plane};
+use crate::shapes::plane::{CLASSIC_METHOD, Flat, Plane};
 use crate::shapes::rectangle::{self, FinitePlane, Rectangle};
 
 pub static DIMENSIONS: Pparm<DVec2> =
@@ -20,9 +20,9 @@ static ROTATION_ROWS: Derived = Derived(|args| {
     format!("rotation matrix\n{}", frame(args).to_cols_array_2d().map(row).concat())
 });
 
-/// What planes with sides of their own take, after what a plane takes.
+/// The rows of a plane with sides, after those of [`plane::TABLE`].
 pub const TABLE: Table = &[&DIMENSIONS, &XDIR, &PROJECTED];
-/// The notes' rotation matrix, for the dump.
+/// The row that dumps the notes' rotation matrix.
 pub const ROTATION: Table = &[&ROTATION_ROWS as &dyn Row];
 
 inventory::submit! {
@@ -31,10 +31,10 @@ inventory::submit! {
     })
 }
 
-/// The rectangle of an entity whose table has the rows of a plane's and of this file's.
+/// Makes the rectangle of an entity whose table has the rows of [`plane::TABLE`] and [`TABLE`].
 ///
 /// # Errors
-/// As [`sides`].
+/// If `xdir` is refused by [`sides`].
 pub fn shape(args: &Args) -> Result<AnyShape, Refusal> {
     Ok(match args.accuracy() {
         Accuracy::Classic => Shape::new(finite_plane::<Classic>(args)?).classic().into(),
@@ -44,7 +44,10 @@ pub fn shape(args: &Args) -> Result<AnyShape, Refusal> {
     })
 }
 
-/// Where the same rectangle is; refused likewise.
+/// Returns the position of the rectangle of an entity whose table has the rows of [`plane::TABLE`] and [`TABLE`].
+///
+/// # Errors
+/// If `xdir` is refused by [`sides`].
 pub fn rectangle(args: &Args) -> Result<Rectangle, Refusal> {
     Ok(finite_plane::<Classic>(args)?.rectangle)
 }
@@ -53,10 +56,10 @@ fn frame(args: &Attributes) -> DMat3 {
     rectangle::frame(args.get(&plane::NORMAL), args.get(&XDIR))
 }
 
-/// The directions of a rectangle's two sides.
+/// Returns the unit vectors along a rectangle's two sides.
 ///
 /// # Errors
-/// Where `xdir` is parallel to the normal but for rounding, and so points nowhere on the plane.
+/// If `xdir` is within 1e-6 radians of the normal or its opposite, and so has no direction in the plane.
 pub fn sides(args: &Args) -> Result<[DVec3; 2], Refusal> {
     let (normal, xdir) = (args.get(&plane::NORMAL).normalize(), args.get(&XDIR).normalize());
     if normal.cross(xdir).length() < 1e-6 {
@@ -69,7 +72,10 @@ pub fn sides(args: &Args) -> Result<[DVec3; 2], Refusal> {
     Ok([0, 1].map(|side| frame(args).col(side)))
 }
 
-/// The same, crossed as exactly as its type has it; refused as its sides are.
+/// Makes the rectangle of an entity, with hits of accuracy `A`.
+///
+/// # Errors
+/// If `xdir` is refused by [`sides`].
 pub fn finite_plane<A>(args: &Args) -> Result<FinitePlane<A>, Refusal> {
     let (plane, xdir, classic) = (plane::plane(args), args.get(&XDIR), sides(args)?);
     let sides = match args.accuracy() {
@@ -81,8 +87,8 @@ pub fn finite_plane<A>(args: &Args) -> Result<FinitePlane<A>, Refusal> {
 
 impl Hittable for FinitePlane<Classic> {
     #[inline(always)]
-    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        let distance = self.plane.distance(ray, within);
+    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
+        let distance = self.plane.distance(ray, range);
         if self.has_crossing(ray, distance) { distance } else { MISS }
     }
 
@@ -90,11 +96,11 @@ impl Hittable for FinitePlane<Classic> {
         self.plane.normal
     }
 
-    fn bounds(&self) -> Option<Bounds> {
+    fn bounds(&self) -> Option<Aabb> {
         Some(self.rectangle.around())
     }
 
-    fn meets_itself(&self, _leaving: Side) -> bool {
+    fn can_hit_itself(&self, _leaving: Side) -> bool {
         false
     }
 
@@ -109,8 +115,8 @@ impl Hittable for FinitePlane<Classic> {
 
 impl<A: Bounded> Hittable for FinitePlane<A> {
     #[inline(always)]
-    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        let distance = self.plane.distance(ray, within);
+    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
+        let distance = self.plane.distance(ray, range);
         if self.has_crossing(ray, distance) { distance } else { MISS }
     }
 
@@ -118,15 +124,15 @@ impl<A: Bounded> Hittable for FinitePlane<A> {
         self.plane.normal
     }
 
-    fn bounds(&self) -> Option<Bounds> {
+    fn bounds(&self) -> Option<Aabb> {
         Some(self.rectangle.around())
     }
 
-    fn meets_itself(&self, _leaving: Side) -> bool {
+    fn can_hit_itself(&self, _leaving: Side) -> bool {
         false
     }
 
-    fn is_clear_of(&self, region: &Bounds) -> bool {
+    fn is_clear_of(&self, region: &Aabb) -> bool {
         self.plane.is_clear_of(region) || !self.rectangle.around().overlaps(region)
     }
 
@@ -145,13 +151,13 @@ impl<A: Bounded> Hittable for FinitePlane<A> {
 
 impl<A: Bounded> Bracketed for FinitePlane<A> {
     #[inline(always)]
-    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        FinitePlane::bracket(self, ray, within)
+    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+        FinitePlane::t_bounds(self, ray, range)
     }
 
     #[inline(always)]
-    fn refine(&self, ray: &Ray, _leaves: Option<Side>) -> f64 {
-        // A hit that is certain is inside.
+    fn refine(&self, ray: &Ray, _origin_side: Option<Side>) -> f64 {
+        // A certain hit lies inside the rectangle.
         self.plane.quick_crossing(ray)
     }
 }
@@ -167,11 +173,11 @@ impl<A: Bounded> Flat for FinitePlane<A> {
 
 impl<A: Bounded> Certified for FinitePlane<A> {
     fn touches(&self, at: DVec3, error: f64) -> bool {
-        // What starts on the plane beside the rectangle does not meet it either.
+        // A ray that starts on the plane beside the rectangle does not hit the rectangle either.
         self.plane.touches(at, error)
     }
 
-    fn fine_distance(&self, ray: &Ray, _distance: f64) -> Option<Twofold> {
+    fn fine_distance(&self, ray: &Ray, _distance: f64) -> Option<DoubleDouble> {
         Some(self.plane.exact_crossing(ray))
     }
 }
@@ -179,11 +185,11 @@ impl<A: Bounded> Certified for FinitePlane<A> {
 impl<A> Equation for FinitePlane<A> {
     const IS_QUADRATIC: bool = true;
 
-    fn value<N: Number>(&self, at: [N; 3]) -> N {
+    fn value<N: Scalar>(&self, at: [N; 3]) -> N {
         self.plane.value(at)
     }
 
-    fn kept<N: Number>(&self, at: [N; 3]) -> N {
+    fn kept<N: Scalar>(&self, at: [N; 3]) -> N {
         self.plane.kept(at).min(self.inside_of(at))
     }
 }

@@ -1,64 +1,64 @@
-//! Numbers that carry their derivative along (automatic differentiation, forward).
+//! Dual numbers: forward-mode automatic differentiation.
 
-use crate::numeric::number::Number;
+use crate::numeric::scalar::Scalar;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A number and its derivative. A dual number of dual numbers carries the second derivative, too.
+/// A number and its derivative. A dual number of dual numbers has the second derivative, too.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dual<N = f64> {
-    /// The number.
+    /// The value.
     pub value: N,
-    /// How fast it changes with the variable.
+    /// The derivative with respect to the variable.
     pub slope: N,
 }
 
-impl<N: Number> Dual<N> {
-    /// The variable itself.
+impl<N: Scalar> Dual<N> {
+    /// Returns the variable itself, whose derivative is 1.
     #[inline(always)]
     pub fn variable(value: N) -> Self {
         Self { value, slope: N::constant(1.0) }
     }
 
-    /// A number that does not depend on the variable.
+    /// Returns a number that does not depend on the variable, whose derivative is 0.
     #[inline(always)]
     pub fn fixed(value: N) -> Self {
         Self { value, slope: N::constant(0.0) }
     }
 
-    /// A function of it, by the function's value and derivative there.
+    /// Applies the chain rule: returns a function of the number, given the function's value and derivative there.
     #[inline(always)]
     fn chain(self, value: N, derivative: N) -> Self {
         Self { value, slope: derivative * self.slope }
     }
 }
 
-impl<N: Number> Dual<Dual<N>> {
-    /// The variable, for its functions' first and second derivatives.
+impl<N: Scalar> Dual<Dual<N>> {
+    /// Returns the variable itself, for first and second derivatives.
     #[inline(always)]
     pub fn variable_twice(value: N) -> Self {
         Self::variable(Dual::variable(value))
     }
 
-    /// A number that does not depend on the variable.
+    /// Returns a number that does not depend on the variable, for first and second derivatives.
     #[inline(always)]
     pub fn fixed_twice(value: N) -> Self {
         Self::fixed(Dual::fixed(value))
     }
 
-    /// The first derivative.
+    /// Returns the first derivative.
     #[inline(always)]
     pub fn first(&self) -> N {
         self.value.slope
     }
 
-    /// The second derivative.
+    /// Returns the second derivative.
     #[inline(always)]
     pub fn second(&self) -> N {
         self.slope.slope
     }
 }
 
-impl<N: Number> Add for Dual<N> {
+impl<N: Scalar> Add for Dual<N> {
     type Output = Self;
 
     #[inline(always)]
@@ -67,7 +67,7 @@ impl<N: Number> Add for Dual<N> {
     }
 }
 
-impl<N: Number> Sub for Dual<N> {
+impl<N: Scalar> Sub for Dual<N> {
     type Output = Self;
 
     #[inline(always)]
@@ -76,7 +76,7 @@ impl<N: Number> Sub for Dual<N> {
     }
 }
 
-impl<N: Number> Mul for Dual<N> {
+impl<N: Scalar> Mul for Dual<N> {
     type Output = Self;
 
     #[inline(always)]
@@ -85,7 +85,7 @@ impl<N: Number> Mul for Dual<N> {
     }
 }
 
-impl<N: Number> Div for Dual<N> {
+impl<N: Scalar> Div for Dual<N> {
     type Output = Self;
 
     #[inline(always)]
@@ -95,7 +95,7 @@ impl<N: Number> Div for Dual<N> {
     }
 }
 
-impl<N: Number> Neg for Dual<N> {
+impl<N: Scalar> Neg for Dual<N> {
     type Output = Self;
 
     #[inline(always)]
@@ -104,7 +104,7 @@ impl<N: Number> Neg for Dual<N> {
     }
 }
 
-impl<N: Number> Number for Dual<N> {
+impl<N: Scalar> Scalar for Dual<N> {
     #[inline(always)]
     fn constant(value: f64) -> Self {
         Self { value: N::constant(value), slope: N::constant(0.0) }
@@ -167,7 +167,7 @@ impl<N: Number> Number for Dual<N> {
     fn pow(self, exponent: Self) -> Self {
         let value = self.value.pow(exponent.value);
         let by_base = exponent.value * self.value.pow(exponent.value - N::constant(1.0));
-        // The exponent is mostly a constant; then the base may be 0 or less.
+        // The exponent is nearly always a constant; then the base may be 0 or negative.
         let by_exponent = if exponent.slope.is_zero() { N::constant(0.0) } else { value * self.value.ln() };
         Self { value, slope: by_base * self.slope + by_exponent * exponent.slope }
     }
@@ -211,7 +211,7 @@ impl<N: Number> Number for Dual<N> {
 mod tests {
     use super::*;
 
-    fn cube_and_root<N: Number>(x: N) -> N {
+    fn cube_and_root<N: Scalar>(x: N) -> N {
         x.powi(3) - x.sqrt() * x.exp() + x.ln().sin() / x.tan() + x.cos().abs() + x.pow(N::constant(1.5))
     }
 

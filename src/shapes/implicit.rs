@@ -1,18 +1,17 @@
-//! Shapes that are one formula: the points where f(x, y, z) = 0.
+//! Implicit surfaces: the points where f(x, y, z) = 0.
 //!
-//! A plugin gives the formula, once, for every number type, and a box around it. The rest follows:
-//! [`taylor`] isolates what a ray meets first by interval arithmetic, and [`Dual`]
-//! numbers give the normal.
+//! A plugin gives the formula, once for every number type, and a bounding box. The rest follows: [`taylor`] isolates a
+//! ray's first hit by interval arithmetic, and [`Dual`] numbers give the normal.
 
-use crate::geometry::bounds::Bounds;
+use crate::geometry::aabb::Aabb;
 use crate::geometry::frame::{self, BLUR, Frame};
-use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
+use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
 use crate::geometry::roots::taylor::{self, Found, Stretch};
 use crate::geometry::roots::{Method, twice};
 use crate::geometry::sight::Line;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
-use crate::numeric::number::Number;
+use crate::numeric::scalar::Scalar;
 use crate::world::body::Body;
 use crate::world::certify::Equation;
 use crate::world::hittable::{Bracketed, Certified, Hittable, Searched};
@@ -21,18 +20,18 @@ use crate::world::shape::Shape;
 use glam::DVec3;
 use std::ops::Range;
 
-/// A shape by its formula, in coordinates of its own.
+/// An implicit surface, in coordinates of its own.
 pub trait Implicit: Send + Sync {
-    /// Below 0 inside of the shape, above 0 outside, and 0 on it.
-    fn value<N: Number>(&self, at: [N; 3]) -> N;
+    /// Returns the value of the formula at a point: below 0 inside the shape, above 0 outside, and 0 on the surface.
+    fn value<N: Scalar>(&self, at: [N; 3]) -> N;
 
-    /// The low and the high corner of a box around the shape. What lies outside of it is cut off, and a shape that is
-    /// cut shows its inside.
+    /// Returns the low and the high corner of a box around the shape. What lies outside of the box is cut off, and a
+    /// shape that is cut shows its inside.
     fn bounds(&self) -> [DVec3; 2];
 }
 
 impl Body {
-    /// An object by its formula, that looks like its material.
+    /// Makes an object of an implicit surface, which looks like its material.
     pub fn implicit(formula: impl Implicit + 'static, frame: Frame) -> Self {
         let [low, high] = formula.bounds();
         Self::plain(Shape::new(ImplicitShape { formula, frame, low, high }).bracketed().searched())
@@ -48,13 +47,13 @@ struct ImplicitShape<T> {
 }
 
 impl<T: Implicit> Hittable for ImplicitShape<T> {
-    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        let line = OnRay::new(self, ray);
-        line.distance(line.first_hit(within).root, within)
+    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
+        let line = FormulaOnRay::new(self, ray);
+        line.distance(line.first_hit(range).root, range)
     }
 
-    /// Along the formula's gradient. Where that vanishes or does not exist, as at the tip of a cone, the normal
-    /// points away from the shape's origin, and in the origin along its y.
+    /// Returns the normalized gradient of the formula. Where the gradient vanishes or does not exist, as at the tip of
+    /// a cone, the normal points away from the shape's origin, and at the origin along its y axis.
     fn normal(&self, at: DVec3) -> DVec3 {
         let at = self.frame.point(at);
         let slope = |axis: usize| {
@@ -67,8 +66,8 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
         self.frame.axes * normal
     }
 
-    fn bounds(&self) -> Option<Bounds> {
-        let own = Bounds { low: self.low, high: self.high };
+    fn bounds(&self) -> Option<Aabb> {
+        let own = Aabb { low: self.low, high: self.high };
         Some(self.frame.bounds(&own))
     }
 
@@ -82,40 +81,40 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
 }
 
 impl<T: Implicit> Bracketed for ImplicitShape<T> {
-    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        let touches = || self.touches(ray.origin, within.origin_error);
-        by_distance(within, touches, |within| {
-            let line = OnRay::new(self, ray);
-            let Found { root, is_certain } = line.first_hit(within);
-            is_certain.then(|| line.distance(root, within))
+    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+        let touches = || self.touches(ray.origin, range.origin_error);
+        by_distance(range, touches, |range| {
+            let line = FormulaOnRay::new(self, ray);
+            let Found { root, is_certain } = line.first_hit(range);
+            is_certain.then(|| line.distance(root, range))
         })
     }
 
-    fn refine(&self, ray: &Ray, leaves: Option<Side>) -> f64 {
-        self.distance(ray, &Span { leaves, ..Span::RAY })
+    fn refine(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
+        self.distance(ray, &RayRange { origin_side, ..RayRange::ALL })
     }
 }
 
 impl<T: Implicit> Certified for ImplicitShape<T> {}
 
 impl<T: Implicit> Searched for ImplicitShape<T> {
-    fn distance_by(&self, method: Method, ray: &Ray, within: &Span) -> f64 {
-        let line = OnRay::new(self, ray);
+    fn distance_by(&self, method: Method, ray: &Ray, range: &RayRange) -> f64 {
+        let line = FormulaOnRay::new(self, ray);
         let Stretch { outer, .. } = line.stretch();
-        line.distance(method.first_root(&line, outer.clone(), line.closest, within, shortest(&outer)), within)
+        line.distance(method.first_root(&line, outer.clone(), line.closest, range, shortest(&outer)), range)
     }
 }
 
 impl<T: Implicit> Equation for ImplicitShape<T> {
-    fn own<N: Number>(&self, line: Line<N>) -> Line<N> {
+    fn own<N: Scalar>(&self, line: Line<N>) -> Line<N> {
         self.frame.line(line)
     }
 
-    fn value<N: Number>(&self, at: [N; 3]) -> N {
+    fn value<N: Scalar>(&self, at: [N; 3]) -> N {
         self.formula.value(at)
     }
 
-    fn kept<N: Number>(&self, at: [N; 3]) -> N {
+    fn kept<N: Scalar>(&self, at: [N; 3]) -> N {
         let inside = |axis: usize| {
             let (low, high) = (N::constant(self.low[axis]), N::constant(self.high[axis]));
             (at[axis] - low).min(high - at[axis])
@@ -128,26 +127,26 @@ impl<T: Implicit> Equation for ImplicitShape<T> {
     }
 }
 
-/// The unit vector along a vector, however short or long, that has a direction.
+/// Returns the unit vector along a vector of any length, or `None` if it has no direction.
 fn direction(vector: DVec3) -> Option<DVec3> {
     (vector / vector.abs().max_element()).try_normalize()
 }
 
 /// A formula along a ray.
-struct OnRay<'s, T> {
+struct FormulaOnRay<'s, T> {
     shape: &'s ImplicitShape<T>,
-    /// The ray in the shape's own coordinates, from its point closest to the shape's origin: a shape far away is met as
-    /// exactly as a near one.
+    /// The ray in the shape's own coordinates, starting at its point closest to the shape's origin, so that distant
+    /// shapes are hit as precisely as near ones.
     base: DVec3,
     dir: DVec3,
-    /// How far rounding may have moved that point.
+    /// A bound of the rounding error of each coordinate of that point, in world units.
     blur: f64,
-    /// The ray in the world, and how far along it that point is.
+    /// The ray in the world, and the distance of that point along it, in world units.
     ray: &'s Ray,
     closest: f64,
 }
 
-impl<'s, T: Implicit> OnRay<'s, T> {
+impl<'s, T: Implicit> FormulaOnRay<'s, T> {
     fn new(shape: &'s ImplicitShape<T>, ray: &'s Ray) -> Self {
         let closest = (shape.frame.origin - ray.origin).dot(ray.dir);
         let base = shape.frame.direction(shape.frame.from_origin(ray, closest));
@@ -155,8 +154,8 @@ impl<'s, T: Implicit> OnRay<'s, T> {
         Self { shape, base, dir, blur: frame::blur(base, closest), ray, closest }
     }
 
-    /// From the ray's origin, or where it comes into the box, to where it leaves the box, wherever a span ends: a hit is
-    /// the same in every span that holds it.
+    /// Returns the part of the ray in the box, from the ray's origin on, whatever the range is: so a hit is the same in
+    /// every range that contains it.
     fn stretch(&self) -> Stretch {
         let ImplicitShape { low, high, .. } = self.shape;
         let reach = 2.0 * low.abs().max(high.abs()).element_sum();
@@ -167,33 +166,34 @@ impl<'s, T: Implicit> OnRay<'s, T> {
         stretch
     }
 
-    fn first_hit(&self, within: &Span) -> Found {
+    fn first_hit(&self, range: &RayRange) -> Found {
         let stretch = self.stretch();
-        taylor::first_root(self, &stretch, self.closest, within, shortest(&stretch.outer))
+        taylor::first_root(self, &stretch, self.closest, range, shortest(&stretch.outer))
     }
 
-    /// The distance of a root.
-    fn distance(&self, root: Option<f64>, within: &Span) -> f64 {
-        root.map_or(MISS, |root| within.keep(self.closest + root))
+    /// Returns the distance of a root along the ray in the world; [`MISS`] for none, and outside of the range.
+    fn distance(&self, root: Option<f64>, range: &RayRange) -> f64 {
+        root.map_or(MISS, |root| range.keep(self.closest + root))
     }
 }
 
-/// A few units in the last place of the greatest numbers on a line.
+/// Returns the length below which pieces of a span are not cut: four EPSILON, a few ulps, of its largest number.
 fn shortest(span: &Range<f64>) -> f64 {
     4.0 * f64::EPSILON * span.start.abs().max(span.end.abs())
 }
 
-impl<T: Implicit> taylor::Line for OnRay<'_, T> {
-    fn at<N: Number>(&self, t: N) -> N {
-        // Bounds hold the values along the ray which this one was rounded from.
+impl<T: Implicit> taylor::FunctionOnLine for FormulaOnRay<'_, T> {
+    fn at<N: Scalar>(&self, t: N) -> N {
+        // Intervals enclose the values along every ray that this one may have been rounded from.
         let along = |axis: usize| N::about(self.base[axis], self.blur) + N::about(self.dir[axis], BLUR) * t;
         self.shape.formula.value([along(0), along(1), along(2)])
     }
 
-    /// Twice the precision, from the ray in the world, tells nearly all touches from misses.
-    fn undecided(&self, piece: Interval, leaves: Option<Side>) -> Option<f64> {
+    /// Decides a piece in double-double arithmetic from the ray in the world, which tells nearly all touches from
+    /// misses.
+    fn undecided(&self, piece: Interval, origin_side: Option<Side>) -> Option<f64> {
         let hidden = self.at(Interval::constant(piece.middle())).width();
         let exact = self.shape.frame.exactly(self.ray, self.closest);
-        twice::first_root(|t| self.shape.formula.value(exact.along(t)), piece, leaves, hidden)
+        twice::first_root(|t| self.shape.formula.value(exact.along(t)), piece, origin_side, hidden)
     }
 }

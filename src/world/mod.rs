@@ -1,4 +1,4 @@
-//! What a scene is made of: the traits of shapes, looks and lights, and what they are told.
+//! What a scene is made of: the traits of shapes, shaders and lights, and the types in their signatures.
 
 pub(crate) mod accuracy;
 pub(crate) mod any_shape;
@@ -6,10 +6,10 @@ pub(crate) mod body;
 pub(crate) mod camera;
 pub mod certify;
 pub mod coincidence;
-pub(crate) mod facing;
 pub(crate) mod hittable;
-pub(crate) mod landing;
+pub(crate) mod interaction;
 pub(crate) mod light;
+pub(crate) mod light_samples;
 pub(crate) mod material;
 pub(crate) mod packets;
 pub(crate) mod sample;

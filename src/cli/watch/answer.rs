@@ -7,11 +7,13 @@ use crate::output::aov::Aov;
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::tools::probe;
+use crate::words;
+use clap::ValueEnum;
 use http_body_util::BodyExt;
 use http_body_util::channel::Channel;
 use hyper::body::Bytes;
 use hyper::{Method, Request, Response, StatusCode};
-use serde_json::json;
+use serde::Serialize;
 use std::io;
 use std::sync::Arc;
 
@@ -77,15 +79,26 @@ fn pixel(frame: Arc<Frame>, x: &str, y: &str) -> Option<Job> {
         Renderer::new(1)?.run(|| {
             let mut text = Vec::new();
             probe::pixel(&Plan::new(&frame.model), x, y, &mut text)?;
-            let data = json!({ "text": String::from_utf8_lossy(&text), "lines": frame.lines_of([x, y]) });
-            Ok(("application/json", data.to_string().into_bytes()))
+            let explained =
+                Explained { lines: frame.lines_of([x, y]), text: &String::from_utf8_lossy(&text) };
+            Ok(("application/json", words::json(&explained).into_bytes()))
         })
     }))
 }
 
+/// How a pixel came about.
+#[derive(Serialize)]
+struct Explained<'e> {
+    /// The first and the last line of the object that it shows, counted from 1; null where it shows none.
+    lines: Option<[usize; 2]>,
+    /// What `tabray probe` prints.
+    text: &'e str,
+}
+
 /// A picture beside the main one: red, green and blue of each pixel.
 fn layer(frame: Arc<Frame>, name: &str) -> Option<Job> {
-    let aov = [Aov::Depth, Aov::Normal, Aov::Object, Aov::Cost].into_iter().find(|aov| aov.name() == name)?;
+    // An error is seen against the truth, which there is none of here.
+    let aov = Aov::from_str(name, false).ok().filter(|aov| *aov != Aov::Error)?;
     Some(Box::new(move || {
         let plan = Plan::new(&frame.model);
         let layer = aov.render(&Renderer::new(0)?, &plan, &plan, &|| frame.check())?;

@@ -1,24 +1,28 @@
-//! Steps of 0.1 until the function's sign changes, then bisection to 1e-6.
+//! Steps of 0.1 until the function's sign changes, then bisection to 1e-6, both in world units.
 //!
 //! From the course notes' page on procedural surfaces. It steps over whatever is thinner than a step along the ray:
-//! silhouettes, thin discs, ripples; and far from the ray's origin, where 1e-6 is less than a unit in the last
-//! place, bisection must be told to stop.
+//! silhouettes, thin discs, ripples; and far from the ray's origin, where 1e-6 is less than an ulp, bisection must be
+//! told to stop.
 
 use super::bisection;
 use super::refiner::sign_change;
-use super::taylor::Line;
+use super::taylor::FunctionOnLine;
 use crate::geometry::ray::Side;
 use std::ops::Range;
 
 const STEP: f64 = 0.1;
 
-/// How far the notes follow a ray.
+/// The distance to which the course notes follow a ray, in world units.
 const FAR: f64 = 100.0;
 
-pub fn first_root(line: &impl Line, Range { start, end }: Range<f64>, leaves: Option<Side>) -> Option<f64> {
+pub fn first_root(
+    line: &impl FunctionOnLine,
+    Range { start, end }: Range<f64>,
+    origin_side: Option<Side>,
+) -> Option<f64> {
     let end = end.min(start + FAR);
     let count = ((end - start) / STEP).ceil() as u32;
     let places = (0..=count).map(|index| (start + f64::from(index) * STEP).min(end));
-    let (low, high, falls) = sign_change(line, places, leaves)?;
+    let (low, high, falls) = sign_change(line, places, origin_side)?;
     Some(bisection::root(|t| line.at(t), (low, high), falls, 1e-6))
 }

@@ -1,27 +1,27 @@
-//! Samples of the function and its slope: between two of the same sign the function may turn, and there it is
-//! looked at, too.
+//! Samples of the function and its slope: where the function may turn between two samples of the same sign, it is
+//! evaluated at the turning point, too.
 //!
-//! After the notes' advice to look for the minimum between two samples. It finds single silhouettes, and loses what
-//! turns more than once between two samples: ripples and thin discs.
+//! After the course notes' advice to look for the minimum between two samples. It finds single silhouettes, and loses
+//! what turns more than once between two samples: ripples and thin discs.
 
 use super::newton;
 use super::refiner::{Refiner, evenly, value_and_slope};
-use super::taylor::Line;
+use super::taylor::FunctionOnLine;
 use crate::geometry::ray::Side;
 use crate::numeric::dual::Dual;
 use std::ops::Range;
 
 pub fn first_root(
-    line: &impl Line,
+    line: &impl FunctionOnLine,
     span: Range<f64>,
     shortest: f64,
-    leaves: Option<Side>,
+    origin_side: Option<Side>,
     count: u32,
 ) -> Option<f64> {
     let mut places = evenly(&span, count);
     let mut low = places.next()?;
     let (value, mut slope) = value_and_slope(line, low);
-    let is_outside = leaves.map_or(value >= 0.0, |side| side == Side::Outside);
+    let is_outside = origin_side.map_or(value >= 0.0, |side| side == Side::Outside);
     let has_crossed = |value: f64| (value >= 0.0) != is_outside;
     let refined = |low, high| Some(Refiner::Newton.root(line, (low, high), is_outside, shortest));
     for high in places {
@@ -29,7 +29,7 @@ pub fn first_root(
         if has_crossed(value) {
             return refined(low, high);
         }
-        // Toward 0 at first, and away from it in the end.
+        // The function approaches 0 at first, and moves away from it in the end.
         if (slope < 0.0) == is_outside && (slope_there > 0.0) == is_outside {
             let slope_and_bend = |t| {
                 let at = line.at(Dual::variable_twice(t));

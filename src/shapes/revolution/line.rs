@@ -1,29 +1,29 @@
-//! The surface along a ray, as a function of the place.
+//! A surface of revolution along a ray, as a function of the place.
 
 use super::local::Local;
 use super::surface::Revolution;
 use crate::geometry::frame::BLUR;
 use crate::geometry::ray::Side;
-use crate::geometry::roots::taylor::Line;
+use crate::geometry::roots::taylor::FunctionOnLine;
 use crate::geometry::roots::twice;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
-use crate::numeric::number::Number;
+use crate::numeric::scalar::Scalar;
 use crate::world::certify::Equation;
 
-/// How far outside of the surface the places along a ray are, with any number type.
-pub(super) struct OnRay<'s> {
+/// The left side of the surface's equation along a ray, in any number type: above 0 outside, below 0 inside.
+pub(super) struct ProfileOnRay<'s> {
     pub surface: &'s Revolution,
     pub local: &'s Local,
 }
 
-impl Line for OnRay<'_> {
+impl FunctionOnLine for ProfileOnRay<'_> {
     #[inline(always)]
-    fn at<N: Number>(&self, along: N) -> N {
+    fn at<N: Scalar>(&self, along: N) -> N {
         self.surface.value([0, 1, 2].map(|axis| self.local.place(axis, along)))
     }
 
-    /// That of the squared distance from the axis is the same everywhere.
+    /// Returns bounds of the second derivative; that of the squared distance from the axis is constant.
     fn curvature(&self, piece: Interval) -> Interval {
         let dir = self.local.dir.to_array().map(|part| Interval::about(part, BLUR));
         let height = self.local.place(1, piece);
@@ -31,11 +31,11 @@ impl Line for OnRay<'_> {
         Interval::constant(2.0) * (dir[0].powi(2) + dir[2].powi(2)) - of_square * dir[1].powi(2)
     }
 
-    /// Twice the precision, from the ray in the world and the axis as the scene has it, tells nearly all touches from
-    /// misses.
-    fn undecided(&self, piece: Interval, leaves: Option<Side>) -> Option<f64> {
+    /// Decides a piece in double-double arithmetic from the ray in the world and the axis as the scene gives it, which
+    /// tells nearly all touches from misses.
+    fn undecided(&self, piece: Interval, origin_side: Option<Side>) -> Option<f64> {
         let Self { surface, local } = *self;
-        // What rounding hides of this ray alone, however far those are apart that it was rounded from.
+        // The rounding error along this ray alone, however far apart the rays are that it may have been rounded from.
         let hidden = |along: f64| {
             let along = Interval::<f64>::constant(along);
             let place = [0, 1, 2].map(|axis| local.own_place(axis, along));
@@ -43,20 +43,20 @@ impl Line for OnRay<'_> {
         };
         let hidden = hidden(piece.low).min(hidden(piece.high));
         let exact = local.frame.exactly(&local.ray, local.base);
-        twice::first_root(|along| surface.value(exact.along(along)), piece, leaves, hidden)
+        twice::first_root(|along| surface.value(exact.along(along)), piece, origin_side, hidden)
     }
 }
 
-/// As [`OnRay`], and where the profile is negative it is 0: methods that know nothing of slabs have nothing to leave
-/// out.
+/// The surface along a ray like [`ProfileOnRay`], but with a negative profile taken for 0: other methods know nothing
+/// of slabs, and have no parts to leave out.
 pub(super) struct Uncut<'s> {
     pub surface: &'s Revolution,
     pub local: &'s Local,
 }
 
-impl Line for Uncut<'_> {
+impl FunctionOnLine for Uncut<'_> {
     #[inline(always)]
-    fn at<N: Number>(&self, along: N) -> N {
+    fn at<N: Scalar>(&self, along: N) -> N {
         let place = |axis: usize| self.local.own_place(axis, along);
         place(0).powi(2) + place(2).powi(2) - self.surface.profile.at(place(1)).max(N::constant(0.0)).powi(2)
     }

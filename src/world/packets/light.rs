@@ -1,64 +1,65 @@
-//! How a light comes to many places at once.
+//! Lights, sampled from many shading points at once.
 
-use crate::geometry::bounds::larger;
+use crate::geometry::aabb::larger;
 use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::ViewMut;
-use crate::world::facing::{Faced, Facing, Places};
 use crate::world::light::Light;
+use crate::world::light_samples::{LightSamples, Lit, ShadingPoints};
 use crate::world::material::Rgb;
 use glam::DVec3;
 
-/// A light for packets: every [`Light`] is one.
+/// A light for packets. Every [`Light`] is one.
 pub trait PacketLight: Light {
-    /// How it comes to many places, with what [`emissivity`](Light::emissivity) gives toward each.
-    fn face(&self, cpu: Cpu, places: &Places, facing: Facing) -> Faced;
+    /// Samples the light from many points, with what [`emissivity`](Light::emissivity) returns for each.
+    fn sample(&self, cpu: Cpu, points: &ShadingPoints, samples: LightSamples) -> Lit;
 }
 
 impl<T: Light> PacketLight for T {
-    fn face(&self, cpu: Cpu, places: &Places, facing: Facing) -> Faced {
-        let Facing { toward, emissivity, falloffs, ends, shines } = facing;
-        face(cpu, self, places, falloffs, ends, shines, toward, emissivity)
+    fn sample(&self, cpu: Cpu, points: &ShadingPoints, samples: LightSamples) -> Lit {
+        let LightSamples { toward, emissivity, cos_over_distance, t_max, shines } = samples;
+        sample(cpu, self, points, cos_over_distance, t_max, shines, toward, emissivity)
     }
 }
 
 kernels! {
-    /// How a light comes to places.
-    fn face[T: Light](
+    /// Samples a light from many points.
+    fn sample[T: Light](
         light: &T,
-        places: &Places,
-        falloffs: &mut [f64],
-        ends: &mut [f64],
+        shading: &ShadingPoints,
+        cos_over_distance: &mut [f64],
+        t_max: &mut [f64],
         shines: &mut [u64],
-    ) => toward, emissivity -> Faced {
-        let (count, middle) = (places.points.len(), light.location());
-        let out = (falloffs, ends, shines, toward.first(count), emissivity.first(count));
-        match places.lights {
-            None => face_all(light, places, |_| middle, out),
+    ) => toward, emissivity -> Lit {
+        let (count, middle) = (shading.points.len(), light.location());
+        let out = (cos_over_distance, t_max, shines, toward.first(count), emissivity.first(count));
+        match shading.lights {
+            None => sample_each(light, shading, |_| middle, out),
             Some(lights) => {
                 let lights = lights.first(count);
-                face_all(light, places, |lane| lights.get(lane), out)
+                sample_each(light, shading, |lane| lights.get(lane), out)
             }
         }
     }
 }
 
-/// As `face`, each place with the point of the light that it sees.
+/// Samples a light from many points. `place` returns the point of the light that a lane sees.
 #[inline(always)]
-fn face_all<T: Light>(
+fn sample_each<T: Light>(
     light: &T,
-    places: &Places,
+    shading: &ShadingPoints,
     place: impl Fn(usize) -> DVec3,
-    (falloffs, ends, shines, mut toward, mut emissivity): (
+    (cos_over_distance, t_max, shines, mut toward, mut emissivity): (
         &mut [f64],
         &mut [f64],
         &mut [u64],
         ViewMut,
         ViewMut,
     ),
-) -> Faced {
-    let (count, slack, is_even) = (places.points.len(), places.slack, light.even().is_some());
-    let (points, normals) = (places.points.first(count), places.normals.first(count));
-    let (falloffs, ends, shines) = (&mut falloffs[..count], &mut ends[..count], &mut shines[..count]);
+) -> Lit {
+    let (count, slack, is_uniform) = (shading.points.len(), shading.slack, light.uniform().is_some());
+    let (points, normals) = (shading.points.first(count), shading.normals.first(count));
+    let (cos_over_distance, t_max, shines) =
+        (&mut cos_over_distance[..count], &mut t_max[..count], &mut shines[..count]);
     let (mut any_faces, mut any_shines) = (0, 0);
     for lane in 0..count {
         let point = points.get(lane);
@@ -67,25 +68,25 @@ fn face_all<T: Light>(
         let inverse = 1.0 / distance;
         let dir = between * inverse;
         let cosine = dir.dot(normals.get(lane));
-        // A light on the surface itself makes it NaN, and is behind.
+        // A light on the surface itself makes the cosine NaN, and counts as behind.
         let faces = u64::from(cosine > 0.0);
         let sent = light.emissivity(point);
         let does_shine = faces & u64::from(sent.is_some());
-        let end = distance - slack * (distance + reach(point));
+        let ray_end = distance - slack * (distance + reach(point));
         toward.set(lane, dir);
-        if !is_even {
+        if !is_uniform {
             emissivity.set(lane, sent.unwrap_or(Rgb::ZERO));
         }
-        falloffs[lane] = cosine * inverse;
-        ends[lane] = if does_shine != 0 { end } else { 0.0 };
+        cos_over_distance[lane] = cosine * inverse;
+        t_max[lane] = if does_shine != 0 { ray_end } else { 0.0 };
         shines[lane] = does_shine;
         any_faces |= faces;
         any_shines |= does_shine;
     }
-    Faced { any_faces: any_faces != 0, any_shines: any_shines != 0 }
+    Lit { any_faces: any_faces != 0, any_shines: any_shines != 0 }
 }
 
-/// How far a point is from the world's origin along the axis where that is farthest.
+/// Returns the largest magnitude of a point's coordinates, in world units.
 #[inline(always)]
 fn reach(point: DVec3) -> f64 {
     let reach = point.abs();

@@ -1,0 +1,179 @@
+//! Packets of rays as structures of arrays, so that one call of a shape serves all of them and the processor takes
+//! several rays at a time.
+//!
+//! A plugin is written for one ray. Kernels over packets inline its functions and are compiled for each level of
+//! instructions ([`cpu`](crate::simd::cpu)). Arrays are as long as a multiple of [`LANES`](crate::simd::soa::LANES);
+//! the lanes beyond the last ray are copies of it, whose results are ignored.
+
+use crate::geometry::ray::{Bracket, MISS, Ray};
+use crate::simd::cpu::kernels;
+use crate::simd::soa::View;
+use std::ops::Range;
+
+/// The largest number of rays in a packet.
+pub const PACKET_SIZE: usize = 256;
+
+/// Splits the lanes of `count` rays into consecutive ranges of at most `max_size` lanes.
+pub fn split(count: usize, max_size: usize) -> impl Iterator<Item = Range<usize>> {
+    (0..count).step_by(max_size).map(move |first| first..count.min(first + max_size))
+}
+
+/// A packet of rays, all of which leave the same object, or none.
+#[derive(Clone, Copy)]
+pub struct RayPacket<'r> {
+    /// The origins, in world coordinates.
+    pub origin: View<'r>,
+    /// The directions, unit vectors.
+    pub dir: View<'r>,
+    /// The largest distance of any origin from the point that it stands for, in world units; 0 for camera rays.
+    pub origin_error: f64,
+}
+
+impl RayPacket<'_> {
+    /// Returns the number of rays.
+    #[inline(always)]
+    pub fn len(&self) -> usize {
+        self.origin.len()
+    }
+
+    /// Returns whether there are no rays.
+    pub fn is_empty(&self) -> bool {
+        self.origin.is_empty()
+    }
+
+    /// Returns the ray at an index.
+    #[inline(always)]
+    pub fn get(&self, index: usize) -> Ray {
+        Ray { origin: self.origin.get(index), dir: self.dir.get(index) }
+    }
+
+    /// Returns the first `count` rays.
+    #[inline(always)]
+    pub fn first(&self, count: usize) -> Self {
+        Self { origin: self.origin.first(count), dir: self.dir.first(count), ..*self }
+    }
+
+    /// Returns the rays in a range of indices.
+    #[inline(always)]
+    pub fn part(&self, range: Range<usize>) -> Self {
+        Self { origin: self.origin.part(range.clone()), dir: self.dir.part(range), ..*self }
+    }
+}
+
+/// The closest hits of a packet's rays, as far as they are known. All arrays have one element per ray.
+pub struct Nearest<'n> {
+    /// Lower bounds of the distance of the hit of the object in `met`, in world units.
+    pub near: &'n mut [f64],
+    /// Upper bounds of that distance, equal to `near` where it is known exactly. Both are the end of the search where
+    /// nothing is hit.
+    pub far: &'n mut [f64],
+    /// The object's index plus 1; 0 for no object.
+    pub met: &'n mut [u64],
+    /// Nonzero where brackets overlap, so that it is not known which of two hits is closer.
+    pub doubt: &'n mut [u64],
+}
+
+impl Nearest<'_> {
+    /// Returns the part for the rays in a range of indices.
+    pub fn part(&mut self, range: Range<usize>) -> Nearest<'_> {
+        Nearest {
+            near: &mut self.near[range.clone()],
+            far: &mut self.far[range.clone()],
+            met: &mut self.met[range.clone()],
+            doubt: &mut self.doubt[range],
+        }
+    }
+}
+
+kernels! {
+    /// Merges an object's brackets into the closest hits so far. Returns whether any ray is in doubt.
+    pub(crate) fn closest_of_brackets(near: &[f64], far: &[f64], id: u64, nearest: Nearest) -> bool {
+        let count = nearest.near.len().min(near.len());
+        let (near, far) = (&near[..count], &far[..count]);
+        let known = Known { near, far };
+        merge_nearest(count, &known, id, nearest.near, nearest.far, nearest.met, nearest.doubt)
+    }
+
+    /// Marks the rays that brackets show to be occluded before `t_max`. Returns whether any ray is in doubt.
+    pub(crate) fn occluded_by_brackets(
+        near: &[f64], far: &[f64], t_max: &[f64], blocked: &mut [u64], doubt: &mut [u64]
+    ) -> bool {
+        let (near, far) = (&near[..t_max.len()], &far[..t_max.len()]);
+        mark_occluded(&Known { near, far }, t_max, blocked, doubt)
+    }
+}
+
+/// The brackets of an object's hits, by lane. A trait, as closures are not reliably inlined into kernels.
+pub(crate) trait Brackets {
+    /// Returns the bracket of a hit before `far`.
+    fn get(&self, lane: usize, far: f64) -> Bracket;
+}
+
+/// Brackets that have been computed.
+struct Known<'b> {
+    near: &'b [f64],
+    far: &'b [f64],
+}
+
+impl Brackets for Known<'_> {
+    #[inline(always)]
+    fn get(&self, lane: usize, _far: f64) -> Bracket {
+        Bracket { near: self.near[lane], far: self.far[lane] }
+    }
+}
+
+/// Merges an object's brackets of `count` rays into the closest hits so far. Returns whether any ray is in doubt.
+///
+/// The arrays are arguments of their own, not a [`Nearest`], which tells the compiler that they do not overlap:
+/// otherwise it checks for overlap at every call, and takes small counts of rays one by one.
+#[inline(always)]
+pub(crate) fn merge_nearest(
+    count: usize,
+    brackets: &impl Brackets,
+    id: u64,
+    near: &mut [f64],
+    far: &mut [f64],
+    met: &mut [u64],
+    doubt: &mut [u64],
+) -> bool {
+    let (near, far) = (&mut near[..count], &mut far[..count]);
+    let (met, doubt) = (&mut met[..count], &mut doubt[..count]);
+    let mut any = 0;
+    for lane in 0..count {
+        let Bracket { near: low, far: high } = brackets.get(lane, far[lane]);
+        let is_nearer = high < near[lane];
+        // Of two hits at the same distance, the object that is earlier in the scene wins.
+        let is_earlier = (low == far[lane]) & (met[lane] > id);
+        let is_farther = (low >= far[lane]) & !is_earlier;
+        // A minimum, not a choice between two values: the compiler would turn a choice into masked stores, which are
+        // slow without AVX-512.
+        let (low, high) = if is_nearer { (low, high) } else { (MISS, MISS) };
+        near[lane] = if low < near[lane] { low } else { near[lane] };
+        far[lane] = if high < far[lane] { high } else { far[lane] };
+        met[lane] ^= if is_nearer { met[lane] ^ id } else { 0 };
+        doubt[lane] = u64::from(!(is_nearer | is_farther));
+        any |= doubt[lane];
+    }
+    any != 0
+}
+
+/// Marks the rays that brackets show to be occluded before `t_max`. Returns whether any ray is in doubt.
+#[inline(always)]
+pub(crate) fn mark_occluded(
+    brackets: &impl Brackets,
+    t_max: &[f64],
+    blocked: &mut [u64],
+    doubt: &mut [u64],
+) -> bool {
+    let count = t_max.len();
+    let (blocked, doubt) = (&mut blocked[..count], &mut doubt[..count]);
+    let mut any = 0;
+    for lane in 0..count {
+        let Bracket { near: low, far: high } = brackets.get(lane, t_max[lane]);
+        let (is_before, is_behind) = (high < t_max[lane], low >= t_max[lane]);
+        blocked[lane] |= u64::from(is_before);
+        doubt[lane] = u64::from(!(is_before | is_behind)) & !blocked[lane];
+        any |= doubt[lane];
+    }
+    any != 0
+}

@@ -1,0 +1,166 @@
+//! The number types that formulas are evaluated with: plain numbers here,
+//! [`Interval`](crate::numeric::interval::Interval)s and [`Dual`](crate::numeric::dual::Dual) numbers beside them.
+//!
+//! One formula evaluated with one type after the other gives values, derivatives and proven bounds. The functions are
+//! those of the `libm` crate, whose results do not depend on the machine.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A number type that formulas are evaluated with.
+///
+/// The square root of a number below 0 is 0, so that a profile such as `sqrt(9 - y^2)` has an end and not a gap in its
+/// domain; the logarithm and powers of numbers below 0 are not defined.
+pub trait Scalar:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+{
+    /// Returns a constant.
+    fn constant(value: f64) -> Self;
+    /// Returns a number that is known to within an error: an interval for types with bounds, else the number itself.
+    #[inline(always)]
+    fn about(value: f64, _error: f64) -> Self {
+        Self::constant(value)
+    }
+    /// Returns the sine and the cosine of an angle in radians.
+    fn sin_cos(self) -> (Self, Self);
+    /// Returns the sine of an angle in radians.
+    #[inline(always)]
+    fn sin(self) -> Self {
+        self.sin_cos().0
+    }
+
+    /// Returns the cosine of an angle in radians.
+    #[inline(always)]
+    fn cos(self) -> Self {
+        self.sin_cos().1
+    }
+
+    /// Returns the tangent of an angle in radians.
+    fn tan(self) -> Self;
+    /// Returns e raised to this power.
+    fn exp(self) -> Self;
+    /// Returns the natural logarithm.
+    fn ln(self) -> Self;
+    /// Returns the square root; 0 below 0.
+    fn sqrt(self) -> Self;
+    /// Returns the absolute value.
+    fn abs(self) -> Self;
+    /// Returns the greatest integer that is not greater than the number.
+    fn floor(self) -> Self;
+    /// Returns the smaller of two numbers.
+    fn min(self, other: Self) -> Self;
+    /// Returns the larger of two numbers.
+    fn max(self, other: Self) -> Self;
+    /// Returns the number raised to a power.
+    fn pow(self, exponent: Self) -> Self;
+    /// Returns the number raised to an integer power.
+    fn powi(self, exponent: i32) -> Self;
+
+    /// Returns the step function, 1 above 0 and 0 below: the derivative of `max(0, x)`.
+    fn step(self) -> Self;
+    /// Returns the derivative of [`step`](Self::step): unbounded where the number may be 0, else 0.
+    fn kink(self) -> Self;
+    /// Returns the derivative of [`floor`](Self::floor): unbounded where the number may be an integer, else 0.
+    fn jump(self) -> Self;
+    /// Returns whether the number is exactly 0, with no other value possible.
+    fn is_zero(self) -> bool;
+}
+
+/// Returns the dot product of two vectors.
+pub fn dot<N: Scalar>(a: [N; 3], b: [N; 3]) -> N {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// Returns the cross product of two vectors.
+pub fn cross<N: Scalar>(a: [N; 3], b: [N; 3]) -> [N; 3] {
+    [0, 1, 2].map(|axis| {
+        let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
+        a[next] * b[last] - a[last] * b[next]
+    })
+}
+
+impl Scalar for f64 {
+    #[inline(always)]
+    fn constant(value: f64) -> Self {
+        value
+    }
+
+    fn sin_cos(self) -> (Self, Self) {
+        libm::sincos(self)
+    }
+
+    fn tan(self) -> Self {
+        libm::tan(self)
+    }
+
+    fn exp(self) -> Self {
+        libm::exp(self)
+    }
+
+    fn ln(self) -> Self {
+        libm::log(self)
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        // Written so that a NaN stays a NaN.
+        f64::sqrt(if self < 0.0 { 0.0 } else { self })
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        f64::abs(self)
+    }
+
+    #[inline(always)]
+    fn floor(self) -> Self {
+        f64::floor(self)
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        if other < self { other } else { self }
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        if other > self { other } else { self }
+    }
+
+    fn pow(self, exponent: Self) -> Self {
+        libm::pow(self, exponent)
+    }
+
+    /// Computes the power by repeated squaring, which gives the same bits on every machine.
+    #[inline(always)]
+    fn powi(self, exponent: i32) -> Self {
+        let (mut result, mut square, mut left) = (1.0, self, exponent.unsigned_abs());
+        while left > 0 {
+            if left & 1 == 1 {
+                result *= square;
+            }
+            left >>= 1;
+            square *= square;
+        }
+        if exponent < 0 { 1.0 / result } else { result }
+    }
+
+    #[inline(always)]
+    fn step(self) -> Self {
+        if self < 0.0 { 0.0 } else { 1.0 }
+    }
+
+    #[inline(always)]
+    fn kink(self) -> Self {
+        0.0
+    }
+
+    #[inline(always)]
+    fn jump(self) -> Self {
+        0.0
+    }
+
+    #[inline(always)]
+    fn is_zero(self) -> bool {
+        self == 0.0
+    }
+}

@@ -1,0 +1,116 @@
+//! How much work an image took: its rays by kind, and their tests by object.
+
+use crate::render::observer::{Count, RayKind, TraceObserver};
+use crate::scene::model::Model;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Counts of rays and tests. As an observer, it does not see single events, so packets stay whole and the counts are
+/// those of plain rendering.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RayStats {
+    rays: [u64; RayKind::ALL.len()],
+    /// The counts of each object, by the object's index.
+    tests: Vec<TestCounts>,
+    /// The pixels that have used up their ray budget.
+    pub cuts: Cuts,
+}
+
+/// The pixels that have used up their ray budget. It is an observer that counts nothing else.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Cuts {
+    /// The number of such pixels.
+    pub pixels: u64,
+    /// A bound on the light that any one of them lacks, in any channel; infinite where nothing bounds it.
+    pub most: f64,
+}
+
+impl Cuts {
+    /// Adds the cuts of another part of the image.
+    pub fn add(&mut self, other: Self) {
+        self.pixels += other.pixels;
+        self.most = self.most.max(other.most);
+    }
+}
+
+impl TraceObserver for Cuts {
+    const SEES: bool = false;
+
+    fn count(&mut self, count: Count) {
+        if let Count::Cut(most) = count {
+            self.add(Self { pixels: 1, most });
+        }
+    }
+}
+
+/// The tests against one object, or against all objects of an entity type.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct TestCounts {
+    /// The number of rays that were not tested, since they do not meet the object's bounds.
+    ///
+    /// Objects that the BVH skips, rays that leave the object, and rays that another object has blocked before count
+    /// neither as tested nor as culled.
+    pub culled: u64,
+    /// The number of objects.
+    pub objects: u64,
+    /// The number of rays that were tested.
+    pub tested: u64,
+}
+
+impl TraceObserver for RayStats {
+    const SEES: bool = false;
+
+    fn count(&mut self, count: Count) {
+        match count {
+            Count::Rays(kind, rays) => self.rays[kind as usize] += rays as u64,
+            Count::Tested(object, rays) => self.of(object).tested += rays as u64,
+            Count::Culled(object, rays) => self.of(object).culled += rays as u64,
+            Count::Cut(_) => self.cuts.count(count),
+        }
+    }
+}
+
+impl RayStats {
+    /// Returns the counts of the object of this index.
+    fn of(&mut self, object: usize) -> &mut TestCounts {
+        if self.tests.len() <= object {
+            self.tests.resize(object + 1, TestCounts { objects: 1, tested: 0, culled: 0 });
+        }
+        &mut self.tests[object]
+    }
+
+    /// Adds the counts of another part of the image.
+    pub fn add(&mut self, other: &Self) {
+        for (sum, part) in self.rays.iter_mut().zip(other.rays) {
+            *sum += part;
+        }
+        self.cuts.add(other.cuts);
+        for (object, part) in other.tests.iter().enumerate() {
+            let sum = self.of(object);
+            (sum.tested, sum.culled) = (sum.tested + part.tested, sum.culled + part.culled);
+        }
+    }
+
+    /// Returns the number of rays of a kind that were cast.
+    pub fn rays(&self, kind: RayKind) -> u64 {
+        self.rays[kind as usize]
+    }
+
+    /// Returns the number of rays that were cast.
+    pub fn all_rays(&self) -> u64 {
+        self.rays.iter().sum()
+    }
+
+    /// Sums the tests against a model's objects, by the names of their entity types.
+    pub fn tests(&self, model: &Model) -> BTreeMap<&'static str, TestCounts> {
+        let mut tests: BTreeMap<_, TestCounts> = BTreeMap::new();
+        for (index, object) in model.objects.iter().enumerate() {
+            let part = self.tests.get(index).copied().unwrap_or_default();
+            let sum = tests.entry(object.args.entity.name).or_default();
+            sum.objects += 1;
+            sum.tested += part.tested;
+            sum.culled += part.culled;
+        }
+        tests
+    }
+}

@@ -1,0 +1,379 @@
+//! The closest hits of a packet's rays.
+
+use super::arrays::{VectorList, resized};
+use super::context::Tracer;
+use super::hit_record::HitRecord;
+use super::order;
+use super::ray_group::RayGroup;
+use crate::geometry::aabb::{self, Aabb};
+use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
+use crate::geometry::ray_packet::{RayPacket, split};
+use crate::geometry::sight::Sight;
+use crate::numeric::interval::{Interval, Wide};
+use crate::render::bvh::Visitor;
+use crate::render::culling;
+use crate::render::frusta::{self, PART};
+use crate::render::observer::{Count, Event, Hit, Reason, TraceObserver};
+use crate::simd::cpu::kernels;
+use crate::world::any_shape::AnyShape;
+use crate::world::certify::{self, Enclosure, Precision};
+use crate::world::coincidence::CLOSE;
+use std::mem::take;
+use std::ops::Range;
+
+impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
+    /// Finds each ray's closest hit, before `t_max` where it is given, in world units. A ray whose budget is used up
+    /// hits nothing.
+    pub(super) fn closest(&mut self, group: &mut RayGroup, t_max: Option<&[f64]>, hits: &mut HitRecord) {
+        let (is_over, count) = (group.ray_budget[0] == 0, group.padded());
+        if hits.begin(self.cpu, &mut group.ray_budget, count, t_max) && t_max.is_none() {
+            self.miss_beyond(group, hits);
+        }
+        if W::SEES {
+            if is_over {
+                self.observer.see(Event::Dropped(Reason::TooMany));
+                return;
+            }
+            self.closest_seen(group, hits);
+            return;
+        }
+        let (mut ahead, mut inverse) = (take(&mut self.scratch.ahead), take(&mut self.scratch.inverse));
+        let part = 0..group.padded();
+        Closest { tracer: self, group, hits, part, inverse: &mut inverse }.run(&mut ahead);
+        (self.scratch.ahead, self.scratch.inverse) = (ahead, inverse);
+    }
+
+    /// Finds one ray's closest hit and reports each step to the observer.
+    fn closest_seen(&mut self, group: &RayGroup, hits: &mut HitRecord) {
+        let start = self.start(group, 0);
+        let mut nearest = hits.far[0];
+        self.observer.see(Event::Search(&start.ray));
+        for index in 0..self.model.objects.len() {
+            let shape = &self.model.objects[index].shape;
+            let origin_side = start.leaves(shape, group.sides_of(index).map(|sides| sides[0]));
+            if origin_side.is_some_and(|side| !shape.can_hit_itself(side)) {
+                self.observer.see(Event::Tested(index, None));
+                continue;
+            }
+            let (distance, bracket) = located(shape, &start, origin_side, MISS);
+            let is_first = self.is_first(&start, (index, distance), (hits.met[0], nearest));
+            self.observer.see(Event::Tested(index, Some(if is_first { distance } else { MISS })));
+            if is_first {
+                // As in a packet, so that the hit is refined in the same way.
+                (hits.near[0], hits.far[0], hits.met[0]) = (bracket.near, bracket.far, index as u64 + 1);
+                nearest = distance;
+            }
+        }
+        let hit = (hits.met[0] as usize).checked_sub(1).map(|index| Hit {
+            index,
+            object: &self.model.objects[index],
+            distance: nearest,
+            point: start.ray.at(nearest),
+        });
+        self.observer.see(Event::Met(hit.as_ref()));
+    }
+
+    /// Returns one ray of a group, with what is known of its errors.
+    fn start(&self, group: &RayGroup, lane: usize) -> Start {
+        let [x, y] = &self.scratch.places;
+        let sight = group.looks.then(|| self.plan.camera.sight(x[lane], y[lane])).or(group.sight);
+        Start { ray: group.rays().get(lane), error: group.error(lane), sight }
+    }
+
+    /// Tells whether any ray may hit an object at all: most shapes cannot be hit by rays that leave them.
+    pub(super) fn may_meet(&self, left: Option<(usize, &[Side])>, index: usize) -> bool {
+        let Some((_, sides)) = left.filter(|(object, _)| *object == index) else { return true };
+        let shape = &self.model.objects[index].shape;
+        match [Side::Outside, Side::Inside].map(|side| shape.can_hit_itself(side)) {
+            [true, true] => true,
+            [false, false] => false,
+            [from_outside, _] => sides.contains(if from_outside { &Side::Outside } else { &Side::Inside }),
+        }
+    }
+
+    /// Tells whether a ray hits an object before its closest hit so far, given by the object's index plus 1 (0 for
+    /// none) and the distance. Of coincident objects, the earlier one in the scene is first.
+    fn is_first(&self, start: &Start, (index, distance): (usize, f64), (met, far): (u64, f64)) -> bool {
+        let Some(rival) = (met as usize).checked_sub(1) else { return distance < far };
+        if distance == MISS {
+            return false;
+        }
+        let shape = |index: usize| &self.model.objects[index].shape;
+        let (one, other) = ((shape(index), distance), (shape(rival), far));
+        let is_before = order::is_before(&start.ray, start.error, one, other)
+            .or_else(|| order::is_certainly_before(one.0, other.0, start.sight.as_ref()?));
+        is_before.unwrap_or(index < rival)
+    }
+
+    /// Computes the distances, in world units, at which the rays of a group hit an object. Each lies between `near` and
+    /// `far`.
+    pub(super) fn refine(
+        &mut self,
+        group: &RayGroup,
+        (near, far): (&[f64], &[f64]),
+        object: usize,
+        distances: &mut Vec<f64>,
+    ) {
+        let (len, count) = (group.len, group.padded());
+        let (near, far, distances) = (&near[..count], &far[..count], resized(distances, count));
+        distances.copy_from_slice(near);
+        if near[..len] != far[..len] {
+            let shape = &self.model.objects[object].shape;
+            let sides = group.sides_of(object);
+            shape.packets().refine(self.cpu, group.rays(), sides, (near, far), distances);
+            if clamp_to_brackets(self.cpu, near, far, distances) {
+                for lane in 0..len {
+                    if distances[lane].is_nan() {
+                        let origin_side = sides.map(|sides| sides[lane]);
+                        let distance = exact(shape, &self.start(group, lane), origin_side, MISS);
+                        distances[lane] = distance.max(near[lane]).min(far[lane]);
+                    }
+                }
+            }
+        }
+        // Lanes beyond the last ray continue as copies of it. Plain arithmetic may have left NaNs there, which would
+        // spoil the bounding box of the points.
+        let last = distances[len - 1];
+        distances[len..].fill(last);
+    }
+}
+
+/// A rounded ray, and what is known of the true ray that it stands for.
+pub(super) struct Start {
+    pub ray: Ray,
+    /// A bound on the error of the origin, in world units.
+    pub error: f64,
+    /// The ray before anything is rounded, if it is a primary ray.
+    pub sight: Option<Sight>,
+}
+
+impl Start {
+    /// Returns the side of a shape that the ray leaves, if the ray starts on the shape. `own` is that side if the shape
+    /// belongs to the object that the ray leaves. Another shape that passes through the same point is left, too.
+    fn leaves(&self, shape: &AnyShape, own: Option<Side>) -> Option<Side> {
+        let Ray { origin, dir } = self.ray;
+        let touched = || Side::seen_along(dir, shape.normal(origin)).opposite();
+        own.or_else(|| (self.error > 0.0 && shape.touches(origin, self.error)).then(touched))
+    }
+}
+
+/// Returns the exact distance of one ray's hit of a shape before `far`, in world units, or [`MISS`]. `origin_side` is
+/// the side of the shape that the ray leaves, if the shape belongs to the object that the packet leaves.
+pub(super) fn exact(shape: &AnyShape, start: &Start, origin_side: Option<Side>, far: f64) -> f64 {
+    located(shape, start, origin_side, far).0
+}
+
+/// Returns the exact distance as [`exact`] does, and a bracket of that distance and of the distance along the ray
+/// before anything is rounded.
+fn located(shape: &AnyShape, start: &Start, origin_side: Option<Side>, far: f64) -> (f64, Bracket) {
+    let known = |distance| (distance, Bracket::exactly(distance));
+    match start.leaves(shape, origin_side) {
+        Some(side) if !shape.can_hit_itself(side) => return (MISS, Bracket::MISS),
+        None => {}
+        origin_side => {
+            return known(shape.distance(&start.ray, &RayRange { far, origin_side, ..RayRange::ALL }));
+        }
+    }
+    let range = RayRange { far, ..RayRange::ALL };
+    let Some(sight) = &start.sight else { return known(shape.distance(&start.ray, &range)) };
+    let bracket = shape.t_bounds(&start.ray, &RayRange::ALL);
+    // A bracket of width 0 is the distance itself.
+    let is_known = bracket.near == bracket.far;
+    let distance = if is_known { range.keep(bracket.near) } else { shape.distance(&start.ray, &range) };
+    // Where the rounding of the ray may decide whether it hits the shape, the unrounded ray decides.
+    if bracket.is_doubtful() { decided(shape, sight, distance) } else { (distance, bracket) }
+}
+
+/// Returns a distance and a bracket of it, if the ray before anything is rounded hits the shape as far as a proof with
+/// 237 bits tells, and [`MISS`] otherwise.
+fn decided(shape: &AnyShape, sight: &Sight, distance: f64) -> (f64, Bracket) {
+    let enclosure = match shape.certify(sight, Precision::Double) {
+        Enclosure::Edge(_) | Enclosure::Doubtful(_) => shape.certify(sight, Precision::Octuple),
+        certain => certain,
+    };
+    match enclosure {
+        Enclosure::Misses => (MISS, Bracket::MISS),
+        // Edges belong to their surfaces.
+        Enclosure::Hits(at) | Enclosure::Edge(at) => {
+            let Interval { low, high } = certify::bounds_in_world_units(at, sight);
+            (distance.clamp(low, high), Bracket { near: low, far: high })
+        }
+        // What is undecided lies beyond the computed distance, as for a ray that is parallel to a plane up to rounding.
+        Enclosure::Doubtful(from)
+            if certify::in_world_units(Wide::point(from), sight).high * (1.0 - CLOSE) > distance =>
+        {
+            (MISS, Bracket::MISS)
+        }
+        Enclosure::Doubtful(_) => (distance, Bracket::exactly(distance)),
+    }
+}
+
+kernels! {
+    /// Tells whether all elements are the same.
+    pub(super) fn is_one(of: &[u64]) -> bool {
+        of.iter().fold(0, |other, one| other | (one ^ of[0])) == 0
+    }
+
+    /// Clamps distances to their brackets, which have width 0 where the distance is known. Returns whether any distance
+    /// is NaN.
+    fn clamp_to_brackets(near: &[f64], far: &[f64], distances: &mut [f64]) -> bool {
+        let count = distances.len();
+        let (near, far) = (&near[..count], &far[..count]);
+        let mut any = 0;
+        for lane in 0..count {
+            // The rounded ray may miss what the true one hits, or hit it elsewhere.
+            let (low, high) = (near[lane], far[lane]);
+            let raised = if distances[lane] < low { low } else { distances[lane] };
+            distances[lane] = if raised > high { high } else { raised };
+            any |= u64::from(distances[lane].is_nan());
+        }
+        any != 0
+    }
+}
+
+/// Computes the reciprocals of rays' directions, by component.
+pub(super) fn invert(rays: RayPacket, inverse: &mut VectorList) {
+    let mut inverse = inverse.resized(rays.len());
+    for lane in 0..rays.len() {
+        inverse.set(lane, rays.dir.get(lane).recip());
+    }
+}
+
+/// The search for the closest hits of a packet.
+struct Closest<'s, 'm, 'w, W> {
+    tracer: &'s mut Tracer<'m, 'w, W>,
+    group: &'s RayGroup,
+    hits: &'s mut HitRecord,
+    /// The lanes of the current sub-packets.
+    part: Range<usize>,
+    /// The reciprocals of the rays' directions, for the BVH.
+    inverse: &'s mut VectorList,
+}
+
+impl<W: TraceObserver> Closest<'_, '_, '_, W> {
+    fn run(mut self, ahead: &mut Vec<usize>) {
+        let plan = self.tracer.plan;
+        if !plan.unbounded.is_empty() || !plan.bounded.is_empty() {
+            self.listed();
+        }
+        let Some(tree) = &plan.tree else { return };
+        for part in split(self.group.padded(), PART) {
+            let rays = self.group.rays().part(part.clone());
+            self.part = part;
+            invert(rays, self.inverse);
+            tree.visit(rays.dir.get(0), ahead, &mut self);
+        }
+    }
+
+    /// Tests the objects outside of the BVH, each against the sub-packets that may hit it.
+    fn listed(&mut self) {
+        let (cpu, plan) = (self.tracer.cpu, self.tracer.plan);
+        // Primary rays all start at the viewer.
+        let frusta = frusta::around(cpu, self.group.rays(), self.group.origin_object.is_none());
+        for index in &plan.unbounded {
+            let object = &self.tracer.model.objects[*index];
+            if self.tracer.may_meet(self.group.left(), *index) {
+                self.in_parts(*index, frusta.which(|region| !culling::is_clear_of(object, region)));
+            }
+        }
+        let mut parts = take(&mut self.tracer.scratch.parts);
+        frusta::meet(cpu, &frusta, &plan.bounded, resized(&mut parts, plan.bounded.len()));
+        for ((index, _), parts) in plan.bounded.iter().zip(&parts) {
+            if self.tracer.may_meet(self.group.left(), *index) {
+                self.in_parts(*index, *parts);
+            }
+        }
+        self.tracer.scratch.parts = parts;
+    }
+
+    /// Tests an object against the sub-packets whose bits are 1.
+    fn in_parts(&mut self, index: usize, mut parts: u32) {
+        let (mut start, mut tested) = (0, 0);
+        while parts != 0 {
+            // Neighbouring sub-packets are tested together.
+            start += PART * parts.trailing_zeros() as usize;
+            parts >>= parts.trailing_zeros();
+            let end = start + PART * parts.trailing_ones() as usize;
+            parts >>= parts.trailing_ones();
+            self.part = start..end.min(self.group.padded());
+            tested += self.len();
+            self.test(index);
+            start = end;
+        }
+        if tested < self.group.len {
+            self.tracer.observer.count(Count::Culled(index, self.group.len - tested));
+        }
+    }
+
+    /// Returns the number of current rays, without the copies that pad the arrays.
+    fn len(&self) -> usize {
+        self.part.end.min(self.group.len) - self.part.start
+    }
+
+    /// Decides whether one ray hits an object before its closest hit so far, where the brackets overlap.
+    fn decide(&mut self, lane: usize, index: usize, origin_side: Option<Side>) {
+        let objects = &self.tracer.model.objects;
+        let start = self.tracer.start(self.group, lane);
+        let (distance, own) = located(&objects[index].shape, &start, origin_side, MISS);
+        if distance == MISS {
+            return;
+        }
+        let (near, far, met) =
+            (&mut self.hits.near[lane], &mut self.hits.far[lane], &mut self.hits.met[lane]);
+        let rival_distance = if near == far {
+            *far
+        } else {
+            let rival = *met as usize - 1;
+            let rival_leaves = self.group.sides_of(rival).map(|sides| sides[lane]);
+            exact(&objects[rival].shape, &start, rival_leaves, MISS)
+        };
+        let is_first = self.tracer.is_first(&start, (index, distance), (*met, rival_distance));
+        let nearest = if is_first { distance } else { rival_distance };
+        // The unrounded primary ray hits the object anywhere in its bracket, and may hit other objects there.
+        let bracket = match start.sight {
+            Some(_) if is_first => own,
+            Some(_) => Bracket { near: *near, far: *far },
+            None => Bracket::exactly(nearest),
+        };
+        let is_known = bracket.near <= nearest && nearest <= bracket.far && bracket.far < MISS;
+        (*near, *far) = if is_known { (bracket.near, bracket.far) } else { (nearest, nearest) };
+        if is_first {
+            *met = index as u64 + 1;
+        }
+    }
+
+    /// Tests an object against the current sub-packets.
+    fn test(&mut self, index: usize) {
+        let shape = &self.tracer.model.objects[index].shape;
+        let sides = self.group.sides_of(index).map(|sides| &sides[self.part.clone()]);
+        self.tracer.observer.count(Count::Tested(index, self.len()));
+        let rays = self.group.rays().part(self.part.clone());
+        if shape.closest_hits(
+            self.tracer.cpu,
+            rays,
+            sides,
+            index as u64 + 1,
+            self.hits.part(self.part.clone()),
+        ) {
+            for lane in 0..self.len() {
+                if self.hits.doubt[self.part.start + lane] != 0 {
+                    self.decide(self.part.start + lane, index, sides.map(|sides| sides[lane]));
+                }
+            }
+        }
+    }
+}
+
+impl<W: TraceObserver> Visitor for Closest<'_, '_, '_, W> {
+    fn enters(&mut self, bounds: &Aabb) -> bool {
+        let rays = self.group.rays().part(self.part.clone());
+        let t_max = &self.hits.far[self.part.clone()];
+        aabb::any_meets(self.tracer.cpu, rays, self.inverse.view(rays.len()), t_max, bounds)
+    }
+
+    fn object(&mut self, index: usize) {
+        if self.tracer.may_meet(self.group.left(), index) {
+            self.test(index);
+        }
+    }
+}

@@ -1,0 +1,280 @@
+//! Groups of rays that are traced together.
+
+use super::arrays::{VectorList, gather, resized};
+use super::light::{self, Worth};
+use super::surface::{Errors, Onward, Surface};
+use crate::geometry::ray::Side;
+use crate::geometry::ray_packet::{PACKET_SIZE, RayPacket};
+use crate::geometry::sight::Sight;
+use crate::render::limits::MAX_RAYS;
+use crate::render::plan::depth::{Branch, Depth};
+use crate::simd::cpu::Cpu;
+use crate::simd::soa::LANES;
+use crate::world::camera::{self, Camera};
+use glam::DVec3;
+use std::array;
+use std::mem::swap;
+use std::ops::Range;
+
+/// The lanes of a packet, in ascending order.
+const LANE_INDICES: [u8; PACKET_SIZE] = {
+    let (mut lanes, mut lane) = ([0; PACKET_SIZE], 0);
+    while lane < PACKET_SIZE {
+        lanes[lane] = lane as u8;
+        lane += 1;
+    }
+    lanes
+};
+
+/// A packet of rays that leave the same object, or none.
+#[derive(Default)]
+pub(super) struct RayGroup {
+    /// The number of rays, without the copies that pad the arrays.
+    pub len: usize,
+    pub origin: VectorList,
+    pub dir: VectorList,
+    /// The path length from the viewer to each ray's origin, in world units.
+    pub travelled: Vec<f64>,
+    /// The number of rays that each ray may still cost, itself included.
+    pub ray_budget: Vec<u32>,
+    /// The single primary ray of the group before anything is rounded, if that is what the group is.
+    pub sight: Option<Sight>,
+    /// Whether these are the current primary rays, each through its position in [`Scratch::places`].
+    ///
+    /// [`Scratch::places`]: super::scratch::Scratch::places
+    pub looks: bool,
+    /// What the rays can add to a pixel; `None` where no ray continues, or where that has no bound.
+    pub worth: Option<Worth>,
+    /// The lane of the primary ray that each ray descends from; empty where no ray continues and pixels have one
+    /// sample.
+    pub camera: Vec<u8>,
+    /// The index of the object that the rays leave.
+    pub origin_object: Option<usize>,
+    /// The side of the object that each ray leaves.
+    pub sides: Vec<Side>,
+    /// The cosines of the angles at which the rays' predecessors hit the origins.
+    pub cosines: Vec<f64>,
+    /// The errors of the origins.
+    pub errors: Errors,
+}
+
+impl RayGroup {
+    /// Makes a group of one primary ray.
+    pub fn primary(sight: &Sight, depth: Option<&Depth>) -> Self {
+        let (mut group, ray) = (Self::default(), sight.ray());
+        group.begin(ray.origin, 1, true, depth);
+        group.dir.fill(LANES, ray.dir);
+        group.sight = Some(*sight);
+        group
+    }
+
+    /// Becomes the primary rays through the first `len` image positions, in pixels from the left and from the bottom.
+    pub fn look(
+        &mut self,
+        cpu: Cpu,
+        camera: &Camera,
+        depth: Option<&Depth>,
+        [x, y]: &mut [Vec<f64>; 2],
+        len: usize,
+    ) {
+        self.begin(camera.viewpoint, len, camera.samples > 1, depth);
+        let count = self.padded();
+        let last = (x[len - 1], y[len - 1]);
+        x[len..count].fill(last.0);
+        y[len..count].fill(last.1);
+        camera::look(cpu, camera, &x[..count], &y[..count], self.dir.resized(count));
+        self.looks = true;
+    }
+
+    /// Starts rays from a viewpoint. Their directions are yet to be set.
+    fn begin(&mut self, viewpoint: DVec3, len: usize, is_sampled: bool, depth: Option<&Depth>) {
+        self.len = len;
+        let count = self.padded();
+        self.origin.fill(count, viewpoint);
+        resized(&mut self.travelled, count).fill(0.0);
+        // Where no ray continues, a primary ray costs itself and one shadow ray for each light, so it needs no budget.
+        resized(&mut self.ray_budget, count).fill(if depth.is_some() { MAX_RAYS as u32 } else { u32::MAX });
+        let is_bounded = depth.is_some_and(|depth| depth.most.is_finite());
+        self.worth = is_bounded.then_some(Worth { weight: 1.0, share: 1.0 });
+        if is_sampled || depth.is_some() {
+            // The copies that pad the arrays are of the last ray, so they use its sample.
+            let (cameras, copies) = resized(&mut self.camera, count).split_at_mut(len);
+            cameras.copy_from_slice(&LANE_INDICES[..len]);
+            copies.fill(LANE_INDICES[len - 1]);
+        } else {
+            self.camera.clear();
+        }
+        self.origin_object = None;
+        self.errors = Errors::NONE;
+    }
+
+    /// Marks the rays as known only by their rounded numbers.
+    fn forget_sights(&mut self) {
+        (self.sight, self.looks) = (None, false);
+    }
+
+    /// Clears `goes` for the rays that would return too little to be seen at their path lengths.
+    pub fn leave_out(&self, cpu: Cpu, branch: &Branch, travelled: &[f64], goes: &mut [u64]) {
+        let Some(worth) = self.worth.filter(|_| branch.faint_alone != f64::INFINITY) else { return };
+        let ray_budget = &self.ray_budget[..goes.len()];
+        let ray_budget = (light::fewest(cpu, ray_budget) < light::FEW).then_some(ray_budget);
+        light::leave_out(cpu, travelled, worth, branch, ray_budget, goes);
+    }
+
+    /// Updates what the rays can add to a pixel when they continue along a branch of a surface.
+    pub fn branch(&mut self, branch: &Branch) {
+        if let Some(Worth { weight, share }) = &mut self.worth {
+            *weight *= branch.weight;
+            *share *= branch.share;
+        }
+    }
+
+    /// Returns the number of rays with the copies that pad the arrays.
+    #[inline(always)]
+    pub fn padded(&self) -> usize {
+        self.len.next_multiple_of(LANES)
+    }
+
+    /// Returns the rays as a packet, with the copies that pad the arrays.
+    #[inline(always)]
+    pub fn rays(&self) -> RayPacket<'_> {
+        let count = self.padded();
+        let origin_error = self.errors.most;
+        RayPacket { origin: self.origin.view(count), dir: self.dir.view(count), origin_error }
+    }
+
+    /// Returns a bound on the error of one ray's origin, in world units.
+    pub fn error(&self, lane: usize) -> f64 {
+        self.errors.of(&self.travelled, &self.cosines, lane)
+    }
+
+    /// Returns the index of the object that the rays leave, and the sides that they leave.
+    #[inline(always)]
+    pub fn left(&self) -> Option<(usize, &[Side])> {
+        self.origin_object.map(|object| (object, &self.sides[..self.padded()]))
+    }
+
+    /// Returns the sides of an object that the rays leave, if this is the object that they leave.
+    #[inline(always)]
+    pub fn sides_of(&self, object: usize) -> Option<&[Side]> {
+        (self.origin_object == Some(object)).then(|| &self.sides[..self.padded()])
+    }
+
+    /// Becomes the rays of some lanes of another group.
+    pub fn gather(&mut self, from: &Self, lanes: &[u8]) {
+        self.len = lanes.len();
+        self.forget_sights();
+        let count = self.padded();
+        self.dir.gather(&from.dir, lanes, count);
+        gather(&mut self.ray_budget, &from.ray_budget, lanes, count);
+        self.worth = from.worth;
+        gather(&mut self.camera, &from.camera, lanes, count);
+        self.origin_object = from.origin_object;
+        self.errors = from.errors;
+        if self.origin_object.is_some() {
+            self.gather_cosines(&from.cosines, lanes);
+            self.origin.gather(&from.origin, lanes, count);
+            gather(&mut self.travelled, &from.travelled, lanes, count);
+            gather(&mut self.sides, &from.sides, lanes, count);
+        } else {
+            // All rays start at the viewer.
+            self.origin.fill(count, from.origin.get(0));
+            resized(&mut self.travelled, count).fill(from.travelled[0]);
+        }
+    }
+
+    /// Becomes the rays of some lanes that continue from where another group's rays have hit an object.
+    pub fn go_on(&mut self, from: &Self, onward: &Onward, lanes: &[u8]) {
+        self.len = lanes.len();
+        self.forget_sights();
+        let count = self.padded();
+        self.origin.gather(onward.points, lanes, count);
+        self.dir.gather(onward.dir, lanes, count);
+        gather(&mut self.travelled, onward.travelled, lanes, count);
+        gather(&mut self.ray_budget, &from.ray_budget, lanes, count);
+        self.worth = from.worth;
+        gather(&mut self.camera, &from.camera, lanes, count);
+        self.origin_object = Some(onward.origin_object);
+        gather(&mut self.sides, onward.sides, lanes, count);
+        self.errors = onward.errors;
+        self.gather_cosines(onward.cosines, lanes);
+    }
+
+    /// Gathers the cosines of some lanes, where errors are computed at all.
+    fn gather_cosines(&mut self, from: &[f64], lanes: &[u8]) {
+        if self.errors.reach.is_some() {
+            let count = self.padded();
+            gather(&mut self.cosines, from, lanes, count);
+        }
+    }
+
+    /// Becomes the rays that continue from all lanes of another group. Arrays are swapped with those of that group and
+    /// of the surface, not copied.
+    pub fn take(&mut self, from: &mut Self, surface: &mut Surface, dir: &mut VectorList) {
+        self.len = from.len;
+        self.forget_sights();
+        swap(&mut self.origin, &mut surface.points);
+        swap(&mut self.dir, dir);
+        swap(&mut self.travelled, &mut surface.travelled);
+        swap(&mut self.ray_budget, &mut from.ray_budget);
+        self.worth = from.worth;
+        swap(&mut self.camera, &mut from.camera);
+        self.origin_object = Some(surface.index);
+        swap(&mut self.sides, &mut surface.sides);
+        swap(&mut self.cosines, &mut surface.cosines);
+        self.errors = surface.errors;
+    }
+
+    /// Takes over the ray budgets that remain of some lanes, which were traced as another group.
+    pub fn charge(&mut self, part: &Self, lanes: &[u8]) {
+        for (lane, ray_budget) in lanes.iter().zip(&part.ray_budget) {
+            self.ray_budget[usize::from(*lane)] = *ray_budget;
+        }
+    }
+}
+
+/// Groups a packet's rays by the object that they hit.
+#[derive(Default)]
+pub(super) struct HitGroups {
+    /// Runs of neighbouring lanes that hit the same object: its index plus 1 (0 for a miss), and the lanes. The lanes
+    /// of a run that has been returned are empty.
+    runs: Vec<(u64, Range<usize>)>,
+    /// The lanes of the current group.
+    lanes: Vec<u8>,
+    /// The index of the first run that may not have been returned.
+    next: usize,
+}
+
+impl HitGroups {
+    /// Starts with the hits of a packet, each an object's index plus 1, or 0 for a miss.
+    pub fn begin(&mut self, met: &[u64]) {
+        self.runs.clear();
+        let mut start = 0;
+        for run in met.chunk_by(|one, other| one == other) {
+            self.runs.push((run[0], start..start + run.len()));
+            start += run.len();
+        }
+        // Lanes are written eight at a time, beyond the end of a run.
+        resized(&mut self.lanes, met.len() + LANES);
+        self.next = 0;
+    }
+
+    /// Returns the next object that was hit, by its index plus 1 (0 for a miss), and the lanes that hit it.
+    pub fn next(&mut self) -> Option<(u64, &[u8])> {
+        while self.runs.get(self.next)?.1.is_empty() {
+            self.next += 1;
+        }
+        let (id, mut count) = (self.runs[self.next].0, 0);
+        for (other, run) in &mut self.runs[self.next..] {
+            if *other == id {
+                for first in run.clone().step_by(LANES) {
+                    let eight: [u8; LANES] = array::from_fn(|lane| (first + lane) as u8);
+                    self.lanes[count + first - run.start..][..LANES].copy_from_slice(&eight);
+                }
+                count += run.len();
+                run.end = run.start;
+            }
+        }
+        Some((id, &self.lanes[..count]))
+    }
+}

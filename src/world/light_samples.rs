@@ -1,0 +1,41 @@
+//! A light as seen from the shading points of a surface (the notes' `light_t::illuminate`, without shadows).
+//!
+//! All arrays are as long as those of the packet whose rays hit the points.
+
+use crate::simd::soa::{View, ViewMut};
+
+/// Points of a surface that may see a light.
+pub struct ShadingPoints<'p> {
+    /// The points, in world coordinates.
+    pub points: View<'p>,
+    /// The unit normals at the points.
+    pub normals: View<'p>,
+    /// The point of the light that each point sees, in world coordinates; `None` for the light's own position.
+    pub lights: Option<View<'p>>,
+    /// How far short of the light the shadow rays end, as a fraction of the sum of the distance to the light and of the
+    /// largest magnitude of the point's coordinates.
+    pub slack: f64,
+}
+
+/// What a light sends to shading points, and along which directions.
+pub struct LightSamples<'f> {
+    /// The unit vectors toward the light.
+    pub toward: ViewMut<'f>,
+    /// The colours that the light sends, black where it sends nothing. Left untouched for a uniform light.
+    pub emissivity: ViewMut<'f>,
+    /// The cosines of the angles between `toward` and the normals, divided by the distances to the light in world
+    /// units.
+    pub cos_over_distance: &'f mut [f64],
+    /// Where the shadow rays end, in world units from the points; 0 where no shadow ray is needed.
+    pub t_max: &'f mut [f64],
+    /// 0 for a point that the light does not shine on or lies behind; otherwise 1.
+    pub shines: &'f mut [u64],
+}
+
+/// Whether any of some shading points is lit.
+pub struct Lit {
+    /// Whether any point faces the light.
+    pub any_faces: bool,
+    /// Whether the light shines on any of the points that face it.
+    pub any_shines: bool,
+}
