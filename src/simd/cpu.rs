@@ -76,6 +76,30 @@ impl fmt::Display for Cpu {
 /// Defines kernels: functions that are compiled for every level of instructions. Each takes the [`Cpu`] to use as its
 /// first argument.
 ///
+/// ```text
+/// kernels! {
+///     fn refine[T: OneRay](shape: &T, out: &mut [f64]) { ... }
+/// }
+/// ```
+///
+/// expands to
+///
+/// ```text
+/// fn refine<T: OneRay>(cpu: Cpu, shape: &T, out: &mut [f64]) {
+///     #[inline(always)]
+///     fn body<T: OneRay>(shape: &T, out: &mut [f64]) { ... }
+///     #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw")]
+///     fn avx512<T: OneRay>(shape: &T, out: &mut [f64]) { body(shape, out) }
+///     #[target_feature(enable = "avx2")]
+///     fn avx2<T: OneRay>(shape: &T, out: &mut [f64]) { body(shape, out) }
+///     match cpu.level() {
+///         Level::Avx512 => unsafe { avx512(shape, out) },
+///         Level::Avx2 => unsafe { avx2(shape, out) },
+///         _ => body(shape, out),
+///     }
+/// }
+/// ```
+///
 /// A function that a kernel calls is compiled for the level only where it is inlined. Vectors to be written are named
 /// after `=>` and are the kernel's last arguments. In the body, their arrays are arguments of their own, which tells
 /// the compiler that they do not overlap: otherwise it checks for overlap at every call, and takes small counts of rays

@@ -19,6 +19,8 @@ pub trait Float:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
+    /// Whether an operation takes hundreds of instructions rather than a few.
+    const IS_LONG: bool;
     /// Positive infinity.
     const INFINITY: Self;
     /// π, rounded.
@@ -85,6 +87,7 @@ pub trait Float:
 const OUTWARD: f64 = 1.04 * f64::EPSILON;
 
 impl Float for f64 {
+    const IS_LONG: bool = false;
     const INFINITY: Self = f64::INFINITY;
     const PI: Self = std::f64::consts::PI;
     const EPSILON: Self = f64::EPSILON;
@@ -176,6 +179,7 @@ impl Float for f64 {
 /// The format `binary256` of IEEE 754: 237 bits, and exponents up to 2^262143, so that squares and fourth powers of a
 /// scene's numbers do not overflow.
 impl Float for f256 {
+    const IS_LONG: bool = true;
     const INFINITY: Self = f256::INFINITY;
     const PI: Self = ::f256::consts::PI;
     const EPSILON: Self = f256::EPSILON;

@@ -9,6 +9,20 @@ use f256::f256;
 pub use float::Float;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
+/// Inlines an operation on intervals, or where numbers are [long](Float::IS_LONG) calls it, so that it is compiled once and
+/// not into every formula, which would take megabytes of code.
+macro_rules! apart_if_long {
+    ($F:ident, $operation:expr) => {
+        if $F::IS_LONG { apart(move || $operation) } else { $operation }
+    };
+}
+
+/// Calls a function without inlining it.
+#[inline(never)]
+fn apart<R>(operation: impl FnOnce() -> R) -> R {
+    operation()
+}
+
 /// A closed interval: all numbers from `low` to `high`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval<F = f64> {
@@ -131,7 +145,7 @@ impl<F: Float> Add for Interval<F> {
 
     #[inline(always)]
     fn add(self, other: Self) -> Self {
-        Self::outward_sum(self.low + other.low, self.high + other.high)
+        apart_if_long!(F, Self::outward_sum(self.low + other.low, self.high + other.high))
     }
 }
 
@@ -140,11 +154,13 @@ impl<F: Float> Sub for Interval<F> {
 
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        // The difference of a single number with itself is exactly 0: a product with something unbounded then stays 0.
-        if self == other && self.low == self.high {
-            return Self::constant(0.0);
-        }
-        Self::outward_sum(self.low - other.high, self.high - other.low)
+        apart_if_long!(F, {
+            // The difference of a single number with itself is exactly 0: a product with something unbounded then stays 0.
+            if self == other && self.low == self.high {
+                return Self::constant(0.0);
+            }
+            Self::outward_sum(self.low - other.high, self.high - other.low)
+        })
     }
 }
 
@@ -162,31 +178,33 @@ impl<F: Float> Mul for Interval<F> {
 
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
-        // The product of 0 with anything is 0, even if that is unbounded.
-        if self.is_zero() || other.is_zero() {
-            return Self::constant(0.0);
-        }
-        // The common case: finite endpoints, none of them 0.
-        if let Some((low, high)) = F::product_ends([self.low, self.high], [other.low, other.high]) {
-            return Self::outward(low, high);
-        }
-        let (low, high) = Self::extremes(
-            self.low * other.low,
-            self.low * other.high,
-            self.high * other.low,
-            self.high * other.high,
-        );
-        // `min` and `max` above ignored 0 times infinity, where an endpoint at 0 meets an infinite one.
-        let touches = |a: Self, b: Self| a.has_zero() && !b.is_bounded();
-        if touches(self, other) || touches(other, self) {
-            return Self::outward(low.min(F::of(0.0)), high.max(F::of(0.0)));
-        }
-        // Products of numbers that are not negative are not negative: so a root can be taken of them.
-        let zero = F::of(0.0);
-        if self.low >= zero && other.low >= zero && low == zero {
-            return Self { low, ..Self::outward(low, high) };
-        }
-        Self::outward(low, high)
+        apart_if_long!(F, {
+            // The product of 0 with anything is 0, even if that is unbounded.
+            if self.is_zero() || other.is_zero() {
+                return Self::constant(0.0);
+            }
+            // The common case: finite endpoints, none of them 0.
+            if let Some((low, high)) = F::product_ends([self.low, self.high], [other.low, other.high]) {
+                return Self::outward(low, high);
+            }
+            let (low, high) = Self::extremes(
+                self.low * other.low,
+                self.low * other.high,
+                self.high * other.low,
+                self.high * other.high,
+            );
+            // `min` and `max` above ignored 0 times infinity, where an endpoint at 0 meets an infinite one.
+            let touches = |a: Self, b: Self| a.has_zero() && !b.is_bounded();
+            if touches(self, other) || touches(other, self) {
+                return Self::outward(low.min(F::of(0.0)), high.max(F::of(0.0)));
+            }
+            // Products of numbers that are not negative are not negative: so a root can be taken of them.
+            let zero = F::of(0.0);
+            if self.low >= zero && other.low >= zero && low == zero {
+                return Self { low, ..Self::outward(low, high) };
+            }
+            Self::outward(low, high)
+        })
     }
 }
 
@@ -195,34 +213,36 @@ impl<F: Float> Div for Interval<F> {
 
     #[inline(always)]
     fn div(self, other: Self) -> Self {
-        if self.is_zero() && !other.is_zero() {
-            return Self::constant(0.0);
-        }
-        let (zero, one) = (F::of(0.0), F::of(1.0));
-        if other.has_zero() || !other.is_bounded() {
-            // The reciprocal has one finite endpoint if the divisor is on one side of 0, and none if it is on both.
-            let inverse = if other.low >= zero && other.high > zero {
-                let high = if other.low > zero { one / other.low } else { F::INFINITY };
-                Self { low: one / other.high, high }
-            } else if other.high <= zero && other.low < zero {
-                let low = if other.high < zero { one / other.high } else { -F::INFINITY };
-                Self { low, high: one / other.low }
-            } else {
-                return Self::whole();
-            };
-            let Self { low, high } = Self::outward(inverse.low, inverse.high);
-            // Infinite endpoints stay infinite.
-            let low = if inverse.low == -F::INFINITY { -F::INFINITY } else { low };
-            let high = if inverse.high == F::INFINITY { F::INFINITY } else { high };
-            return self * Self { low, high };
-        }
-        let (low, high) = Self::extremes(
-            self.low / other.low,
-            self.low / other.high,
-            self.high / other.low,
-            self.high / other.high,
-        );
-        Self::outward(low, high)
+        apart_if_long!(F, {
+            if self.is_zero() && !other.is_zero() {
+                return Self::constant(0.0);
+            }
+            let (zero, one) = (F::of(0.0), F::of(1.0));
+            if other.has_zero() || !other.is_bounded() {
+                // The reciprocal has one finite endpoint if the divisor is on one side of 0, and none if it is on both.
+                let inverse = if other.low >= zero && other.high > zero {
+                    let high = if other.low > zero { one / other.low } else { F::INFINITY };
+                    Self { low: one / other.high, high }
+                } else if other.high <= zero && other.low < zero {
+                    let low = if other.high < zero { one / other.high } else { -F::INFINITY };
+                    Self { low, high: one / other.low }
+                } else {
+                    return Self::whole();
+                };
+                let Self { low, high } = Self::outward(inverse.low, inverse.high);
+                // Infinite endpoints stay infinite.
+                let low = if inverse.low == -F::INFINITY { -F::INFINITY } else { low };
+                let high = if inverse.high == F::INFINITY { F::INFINITY } else { high };
+                return self * Self { low, high };
+            }
+            let (low, high) = Self::extremes(
+                self.low / other.low,
+                self.low / other.high,
+                self.high / other.low,
+                self.high / other.high,
+            );
+            Self::outward(low, high)
+        })
     }
 }
 
@@ -234,8 +254,10 @@ impl<F: Float> Scalar for Interval<F> {
 
     #[inline(always)]
     fn about(value: f64, error: f64) -> Self {
-        let (value, error) = (F::of(value), F::of(error));
-        Self::outward_sum(value - error, value + error)
+        apart_if_long!(F, {
+            let (value, error) = (F::of(value), F::of(error));
+            Self::outward_sum(value - error, value + error)
+        })
     }
 
     fn sin_cos(self) -> (Self, Self) {
@@ -280,23 +302,27 @@ impl<F: Float> Scalar for Interval<F> {
 
     #[inline(always)]
     fn sqrt(self) -> Self {
-        let zero = F::of(0.0);
-        // Written so that a NaN stays a NaN.
-        let root = |of: F| (if of < zero { zero } else { of }).sqrt();
-        let root = Self::outward(root(self.low), root(self.high));
-        Self { low: root.low.max(zero), high: root.high }
+        apart_if_long!(F, {
+            let zero = F::of(0.0);
+            // Written so that a NaN stays a NaN.
+            let root = |of: F| (if of < zero { zero } else { of }).sqrt();
+            let root = Self::outward(root(self.low), root(self.high));
+            Self { low: root.low.max(zero), high: root.high }
+        })
     }
 
     #[inline(always)]
     fn abs(self) -> Self {
-        let zero = F::of(0.0);
-        if self.low >= zero {
-            self
-        } else if self.high <= zero {
-            -self
-        } else {
-            Self { low: zero, high: self.magnitude() }
-        }
+        apart_if_long!(F, {
+            let zero = F::of(0.0);
+            if self.low >= zero {
+                self
+            } else if self.high <= zero {
+                -self
+            } else {
+                Self { low: zero, high: self.magnitude() }
+            }
+        })
     }
 
     fn floor(self) -> Self {
@@ -305,12 +331,12 @@ impl<F: Float> Scalar for Interval<F> {
 
     #[inline(always)]
     fn min(self, other: Self) -> Self {
-        Self { low: self.low.min(other.low), high: self.high.min(other.high) }
+        apart_if_long!(F, Self { low: self.low.min(other.low), high: self.high.min(other.high) })
     }
 
     #[inline(always)]
     fn max(self, other: Self) -> Self {
-        Self { low: self.low.max(other.low), high: self.high.max(other.high) }
+        apart_if_long!(F, Self { low: self.low.max(other.low), high: self.high.max(other.high) })
     }
 
     fn pow(self, exponent: Self) -> Self {
@@ -326,35 +352,42 @@ impl<F: Float> Scalar for Interval<F> {
 
     #[inline(always)]
     fn powi(self, exponent: i32) -> Self {
-        if exponent < 0 {
-            return Self::constant(1.0) / self.powi(-exponent);
-        }
-        let zero = F::of(0.0);
-        match exponent {
-            0 => return Self::constant(1.0),
-            1 => return self,
-            2 => {
-                let Self { low, high } = self.abs();
-                let square = Self::outward(low * low, high * high);
-                return Self { low: if square.low > zero { square.low } else { zero }, high: square.high };
+        apart_if_long!(F, {
+            if exponent < 0 {
+                return Self::constant(1.0) / self.powi(-exponent);
             }
-            _ => {}
-        }
-        let base = if exponent % 2 == 0 { self.abs() } else { self };
-        let mut power = base;
-        for _ in 1..exponent {
-            power = power * base;
-        }
-        if exponent % 2 == 0 { Self { low: power.low.max(zero), high: power.high } } else { power }
+            let zero = F::of(0.0);
+            match exponent {
+                0 => return Self::constant(1.0),
+                1 => return self,
+                2 => {
+                    let Self { low, high } = self.abs();
+                    let square = Self::outward(low * low, high * high);
+                    return Self {
+                        low: if square.low > zero { square.low } else { zero },
+                        high: square.high,
+                    };
+                }
+                _ => {}
+            }
+            let base = if exponent % 2 == 0 { self.abs() } else { self };
+            let mut power = base;
+            for _ in 1..exponent {
+                power = power * base;
+            }
+            if exponent % 2 == 0 { Self { low: power.low.max(zero), high: power.high } } else { power }
+        })
     }
 
     #[inline(always)]
     fn step(self) -> Self {
-        let (zero, one) = (F::of(0.0), F::of(1.0));
-        Self {
-            low: if self.low > zero { one } else { zero },
-            high: if self.high < zero { zero } else { one },
-        }
+        apart_if_long!(F, {
+            let (zero, one) = (F::of(0.0), F::of(1.0));
+            Self {
+                low: if self.low > zero { one } else { zero },
+                high: if self.high < zero { zero } else { one },
+            }
+        })
     }
 
     #[inline(always)]
