@@ -1,9 +1,9 @@
 //! An ellipsoid: a sphere stretched along the axes.
 
-use super::sphere;
-use crate::numeric::twofold::{exponent_to_one, times_power_of_two};
+use super::sphere::{TABLE as SPHERE, center_and_radius};
+use crate::numeric::double_double::{exponent_to_one, times_power_of_two};
 use crate::prelude::*;
-use crate::shapes::ball::{self, Line};
+use crate::shapes::sphere::{self, SphereLine};
 use std::marker::PhantomData;
 
 static SCALE: Pparm<DVec3> = Pparm::required("scale", "the scale factors along x, y and z")
@@ -12,13 +12,13 @@ static SCALE: Pparm<DVec3> = Pparm::required("scale", "the scale factors along x
 const TABLE: Table = &[&SCALE as &dyn Row];
 
 inventory::submit! {
-    Entity::shape("ellipsoid", "a sphere scaled along the coordinate axes", &[sphere::TABLE, TABLE], |args| {
+    Entity::shape("ellipsoid", "a sphere scaled along the coordinate axes", &[SPHERE, TABLE], |args| {
         Ok(Body::plain(shape(args)))
     })
 }
 
 fn shape(args: &Args) -> AnyShape {
-    let ((center, radius), scale) = (sphere::ball(args), args.get(&SCALE));
+    let ((center, radius), scale) = (center_and_radius(args), args.get(&SCALE));
     match args.accuracy() {
         Accuracy::Classic => Shape::new(Ellipsoid::<Classic>::new(center, radius, scale)).classic().into(),
         Accuracy::Draft => exact::<Draft>(center, radius, scale),
@@ -31,8 +31,8 @@ fn exact<A: Bounded>(center: DVec3, radius: f64, scale: DVec3) -> AnyShape {
     // A power of two more in the radius and less in the scale changes nothing but how large the squares become.
     let exponent = exponent_to_one(scale.min_element());
     let scale = DVec3::from(scale.to_array().map(|part| times_power_of_two(part, exponent)));
-    let ball = Ellipsoid::<A>::new(center, times_power_of_two(radius, -exponent), scale);
-    Shape::new(ball).bracketed().certified().into()
+    let ellipsoid = Ellipsoid::<A>::new(center, times_power_of_two(radius, -exponent), scale);
+    Shape::new(ellipsoid).bracketed().certified().into()
 }
 
 /// A sphere where space is squeezed by `scale` around its centre.
@@ -41,7 +41,7 @@ struct Ellipsoid<A> {
     radius: f64,
     scale: DVec3,
     /// One over it, in twice the precision.
-    squeeze: [Twofold; 3],
+    squeeze: [DoubleDouble; 3],
     /// One over the least of `scale`.
     most_squeezed: f64,
     accuracy: PhantomData<A>,
@@ -49,7 +49,7 @@ struct Ellipsoid<A> {
 
 impl<A> Ellipsoid<A> {
     fn new(center: DVec3, radius: f64, scale: DVec3) -> Self {
-        let squeeze = scale.to_array().map(|part| Twofold::from(1.0) / Twofold::from(part));
+        let squeeze = scale.to_array().map(|part| DoubleDouble::from(1.0) / DoubleDouble::from(part));
         let most_squeezed = 1.0 / scale.min_element();
         Self { center, radius, scale, squeeze, most_squeezed, accuracy: PhantomData }
     }
@@ -62,13 +62,13 @@ impl<A> Ellipsoid<A> {
 
     /// Likewise in twice the precision.
     #[inline(always)]
-    fn line(&self, ray: &Ray) -> Line {
-        Line::squeezed(ray, self.center, &self.squeeze)
+    fn line(&self, ray: &Ray) -> SphereLine {
+        SphereLine::squeezed(ray, self.center, &self.squeeze)
     }
 
-    fn around(&self) -> Bounds {
+    fn around(&self) -> Aabb {
         let reach = self.radius * self.scale;
-        Bounds { low: self.center - reach, high: self.center + reach }
+        Aabb { low: self.center - reach, high: self.center + reach }
     }
 
     #[inline(always)]
@@ -79,43 +79,43 @@ impl<A> Ellipsoid<A> {
 
 impl Hittable for Ellipsoid<Classic> {
     #[inline(always)]
-    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
+    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
         let (from, dir) = self.squeezed(ray);
-        within.keep(ball::classic(from, dir, self.radius))
+        range.keep(sphere::classic(from, dir, self.radius))
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {
         self.upright(at)
     }
 
-    fn bounds(&self) -> Option<Bounds> {
+    fn bounds(&self) -> Option<Aabb> {
         Some(self.around())
     }
 
-    fn meets_itself(&self, _leaving: Side) -> bool {
+    fn can_hit_itself(&self, _leaving: Side) -> bool {
         false
     }
 
     fn method(&self) -> String {
-        ball::CLASSIC_METHOD.to_owned()
+        sphere::CLASSIC_METHOD.to_owned()
     }
 }
 
 impl<A: Bounded> Hittable for Ellipsoid<A> {
     #[inline(always)]
-    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        within.keep(ball::distance::<A>(&self.line(ray), self.radius, within.leaves))
+    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
+        range.keep(sphere::distance::<A>(&self.line(ray), self.radius, range.origin_side))
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {
         self.upright(at)
     }
 
-    fn bounds(&self) -> Option<Bounds> {
+    fn bounds(&self) -> Option<Aabb> {
         Some(self.around())
     }
 
-    fn meets_itself(&self, leaving: Side) -> bool {
+    fn can_hit_itself(&self, leaving: Side) -> bool {
         leaving == Side::Inside
     }
 
@@ -124,22 +124,22 @@ impl<A: Bounded> Hittable for Ellipsoid<A> {
     }
 
     fn method(&self) -> String {
-        ball::method::<A>().to_owned()
+        sphere::method::<A>().to_owned()
     }
 }
 
 impl<A: Bounded> Bracketed for Ellipsoid<A> {
     #[inline(always)]
-    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
+    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
         let (from, dir) = self.squeezed(ray);
-        let (inverse, error) = (1.0 / dir.dot(dir), within.origin_error / self.scale.min_element());
+        let (inverse, error) = (1.0 / dir.dot(dir), range.origin_error / self.scale.min_element());
         let spread = self.most_squeezed * inverse.sqrt();
-        ball::bracket(from, dir, inverse, spread, self.radius, within.leaves, error)
+        sphere::t_bounds(from, dir, inverse, spread, self.radius, range.origin_side, error)
     }
 
     #[inline(always)]
-    fn refine(&self, ray: &Ray, leaves: Option<Side>) -> f64 {
-        ball::refine::<A>(&self.line(ray), self.radius, leaves)
+    fn refine(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
+        sphere::refine::<A>(&self.line(ray), self.radius, origin_side)
     }
 }
 
@@ -148,14 +148,14 @@ impl<A: Bounded> Certified for Ellipsoid<A> {
         // Where it is squeezed most, an error is largest.
         let from = (at - self.center) / self.scale;
         let squeezed = (from / self.scale).length() / from.length();
-        ball::touches(from, self.radius, error * squeezed)
+        sphere::touches(from, self.radius, error * squeezed)
     }
 }
 
 impl<A> Equation for Ellipsoid<A> {
     const IS_QUADRATIC: bool = true;
 
-    fn value<N: Number>(&self, at: [N; 3]) -> N {
+    fn value<N: Scalar>(&self, at: [N; 3]) -> N {
         let part = |axis: usize| {
             ((at[axis] - N::constant(self.center[axis])) / N::constant(self.scale[axis])).powi(2)
         };

@@ -2,7 +2,7 @@
 
 use super::plane;
 use crate::prelude::*;
-use crate::shapes::flat::{CLASSIC_METHOD, Flat, Plane};
+use crate::shapes::plane::{CLASSIC_METHOD, Flat, Plane};
 use crate::shapes::rectangle::{self, FinitePlane, Rectangle};
 
 pub static DIMENSIONS: Pparm<DVec2> =
@@ -81,8 +81,8 @@ pub fn finite_plane<A>(args: &Args) -> Result<FinitePlane<A>, Refusal> {
 
 impl Hittable for FinitePlane<Classic> {
     #[inline(always)]
-    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        let distance = self.plane.distance(ray, within);
+    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
+        let distance = self.plane.distance(ray, range);
         if self.has_crossing(ray, distance) { distance } else { MISS }
     }
 
@@ -90,11 +90,11 @@ impl Hittable for FinitePlane<Classic> {
         self.plane.normal
     }
 
-    fn bounds(&self) -> Option<Bounds> {
+    fn bounds(&self) -> Option<Aabb> {
         Some(self.rectangle.around())
     }
 
-    fn meets_itself(&self, _leaving: Side) -> bool {
+    fn can_hit_itself(&self, _leaving: Side) -> bool {
         false
     }
 
@@ -109,8 +109,8 @@ impl Hittable for FinitePlane<Classic> {
 
 impl<A: Bounded> Hittable for FinitePlane<A> {
     #[inline(always)]
-    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        let distance = self.plane.distance(ray, within);
+    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
+        let distance = self.plane.distance(ray, range);
         if self.has_crossing(ray, distance) { distance } else { MISS }
     }
 
@@ -118,15 +118,15 @@ impl<A: Bounded> Hittable for FinitePlane<A> {
         self.plane.normal
     }
 
-    fn bounds(&self) -> Option<Bounds> {
+    fn bounds(&self) -> Option<Aabb> {
         Some(self.rectangle.around())
     }
 
-    fn meets_itself(&self, _leaving: Side) -> bool {
+    fn can_hit_itself(&self, _leaving: Side) -> bool {
         false
     }
 
-    fn is_clear_of(&self, region: &Bounds) -> bool {
+    fn is_clear_of(&self, region: &Aabb) -> bool {
         self.plane.is_clear_of(region) || !self.rectangle.around().overlaps(region)
     }
 
@@ -145,12 +145,12 @@ impl<A: Bounded> Hittable for FinitePlane<A> {
 
 impl<A: Bounded> Bracketed for FinitePlane<A> {
     #[inline(always)]
-    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        FinitePlane::bracket(self, ray, within)
+    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+        FinitePlane::t_bounds(self, ray, range)
     }
 
     #[inline(always)]
-    fn refine(&self, ray: &Ray, _leaves: Option<Side>) -> f64 {
+    fn refine(&self, ray: &Ray, _origin_side: Option<Side>) -> f64 {
         // A hit that is certain is inside.
         self.plane.quick_crossing(ray)
     }
@@ -171,7 +171,7 @@ impl<A: Bounded> Certified for FinitePlane<A> {
         self.plane.touches(at, error)
     }
 
-    fn fine_distance(&self, ray: &Ray, _distance: f64) -> Option<Twofold> {
+    fn fine_distance(&self, ray: &Ray, _distance: f64) -> Option<DoubleDouble> {
         Some(self.plane.exact_crossing(ray))
     }
 }
@@ -179,11 +179,11 @@ impl<A: Bounded> Certified for FinitePlane<A> {
 impl<A> Equation for FinitePlane<A> {
     const IS_QUADRATIC: bool = true;
 
-    fn value<N: Number>(&self, at: [N; 3]) -> N {
+    fn value<N: Scalar>(&self, at: [N; 3]) -> N {
         self.plane.value(at)
     }
 
-    fn kept<N: Number>(&self, at: [N; 3]) -> N {
+    fn kept<N: Scalar>(&self, at: [N; 3]) -> N {
         self.plane.kept(at).min(self.inside_of(at))
     }
 }

@@ -22,7 +22,7 @@ struct Heart {
 }
 
 impl Implicit for Heart {
-    fn value<N: Number>(&self, at: [N; 3]) -> N {
+    fn value<N: Scalar>(&self, at: [N; 3]) -> N {
         let n = N::constant;
         let [x, y, z] = at.map(|coordinate| coordinate / n(self.size));
         let ball = x.powi(2) + y.powi(2) + n(2.25) * z.powi(2) - n(1.0);

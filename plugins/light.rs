@@ -43,7 +43,7 @@ impl Light for PointLight {
         Some(self.emissivity)
     }
 
-    fn even(&self) -> Option<Rgb> {
+    fn uniform(&self) -> Option<Rgb> {
         Some(self.emissivity)
     }
 

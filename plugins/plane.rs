@@ -1,7 +1,7 @@
 //! A plane: every point in two directions, without end.
 
 use crate::prelude::*;
-use crate::shapes::flat::{CLASSIC_METHOD, Flat, Plane};
+use crate::shapes::plane::{CLASSIC_METHOD, Flat, Plane};
 
 pub static NORMAL: Pparm<DVec3> =
     Pparm::required("normal", "a vector perpendicular to the plane, pointing to its lit side")
@@ -33,15 +33,15 @@ pub fn plane<A>(args: &Args) -> Plane<A> {
 
 impl Hittable for Plane<Classic> {
     #[inline(always)]
-    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        self.keep(self.crossing(ray), ray, within)
+    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
+        self.keep(self.crossing(ray), ray, range)
     }
 
     fn normal(&self, _at: DVec3) -> DVec3 {
         self.normal
     }
 
-    fn meets_itself(&self, _leaving: Side) -> bool {
+    fn can_hit_itself(&self, _leaving: Side) -> bool {
         false
     }
 
@@ -65,19 +65,19 @@ impl Hittable for Plane<Classic> {
 
 impl<A: Bounded> Hittable for Plane<A> {
     #[inline(always)]
-    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        self.keep(self.crossing(ray), ray, within)
+    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
+        self.keep(self.crossing(ray), ray, range)
     }
 
     fn normal(&self, _at: DVec3) -> DVec3 {
         self.normal
     }
 
-    fn meets_itself(&self, _leaving: Side) -> bool {
+    fn can_hit_itself(&self, _leaving: Side) -> bool {
         false
     }
 
-    fn is_clear_of(&self, region: &Bounds) -> bool {
+    fn is_clear_of(&self, region: &Aabb) -> bool {
         Plane::is_clear_of(self, region)
     }
 
@@ -101,12 +101,12 @@ impl<A: Bounded> Hittable for Plane<A> {
 
 impl<A: Bounded> Bracketed for Plane<A> {
     #[inline(always)]
-    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        Plane::bracket(self, &self.rough(ray, within.origin_error), ray, within)
+    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+        Plane::t_bounds(self, &self.rough(ray, range.origin_error), ray, range)
     }
 
     #[inline(always)]
-    fn refine(&self, ray: &Ray, _leaves: Option<Side>) -> f64 {
+    fn refine(&self, ray: &Ray, _origin_side: Option<Side>) -> f64 {
         self.quick_crossing(ray)
     }
 }
@@ -125,7 +125,7 @@ impl<A: Bounded> Certified for Plane<A> {
         Plane::touches(self, at, error)
     }
 
-    fn fine_distance(&self, ray: &Ray, _distance: f64) -> Option<Twofold> {
+    fn fine_distance(&self, ray: &Ray, _distance: f64) -> Option<DoubleDouble> {
         Some(self.exact_crossing(ray))
     }
 }
@@ -133,11 +133,11 @@ impl<A: Bounded> Certified for Plane<A> {
 impl<A> Equation for Plane<A> {
     const IS_QUADRATIC: bool = true;
 
-    fn value<N: Number>(&self, at: [N; 3]) -> N {
+    fn value<N: Scalar>(&self, at: [N; 3]) -> N {
         dot(self.given_normal(), [0, 1, 2].map(|axis| at[axis] - N::constant(self.point[axis])))
     }
 
-    fn kept<N: Number>(&self, [_, _, z]: [N; 3]) -> N {
+    fn kept<N: Scalar>(&self, [_, _, z]: [N; 3]) -> N {
         N::constant(0.01) - z
     }
 }

@@ -56,7 +56,7 @@ where
 
     /// No texel is above 1.
     fn brightest(&self) -> Option<Rgb> {
-        self.light.even()
+        self.light.uniform()
     }
 
     fn size(&self) -> f64 {

@@ -9,7 +9,7 @@ const TABLE: Table = &[&SHADER as &dyn Row];
 
 inventory::submit! {
     Entity::shape("psphere", "a sphere with a procedural shader", &[sphere::TABLE, TABLE], |args| {
-        let (center, radius) = sphere::ball(args);
+        let (center, radius) = sphere::center_and_radius(args);
         let anchor = Anchor { origin: center, unit: 2.0 * radius };
         Ok(Body::procedural(sphere::shape(args), args.get(&SHADER).0, anchor))
     })

@@ -55,19 +55,19 @@ fn exact<A: Bounded>(quadric: Quadric<A>) -> AnyShape {
 }
 
 impl Hittable for Quadric<Classic> {
-    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        self.classic_distance(ray, within)
+    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
+        self.classic_distance(ray, range)
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {
         self.upright(at)
     }
 
-    fn bounds(&self) -> Option<Bounds> {
+    fn bounds(&self) -> Option<Aabb> {
         Some(self.around())
     }
 
-    fn meets_itself(&self, _leaving: Side) -> bool {
+    fn can_hit_itself(&self, _leaving: Side) -> bool {
         false
     }
 
@@ -83,16 +83,16 @@ impl Hittable for Quadric<Classic> {
 impl<A: Bounded> Hittable for Quadric<A> {
     /// The nearer hit that lies in the box, or the farther one.
     #[inline(always)]
-    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        let quick = self.quick_distance(ray, within);
-        if quick.is_nan() { within.keep(self.exact_hit(ray, within.near)) } else { quick }
+    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
+        let quick = self.fast_distance(ray, range);
+        if quick.is_nan() { range.keep(self.exact_hit(ray, range.near)) } else { quick }
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {
         self.upright(at)
     }
 
-    fn bounds(&self) -> Option<Bounds> {
+    fn bounds(&self) -> Option<Aabb> {
         Some(self.around())
     }
 
@@ -118,17 +118,17 @@ impl<A: Bounded> Hittable for Quadric<A> {
 
 impl<A: Bounded> Bracketed for Quadric<A> {
     #[inline(always)]
-    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        let may_leave = within.origin_error > 0.0 && within.leaves.is_none();
-        if may_leave && self.touches(ray.origin, within.origin_error) {
+    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+        let may_leave = range.origin_error > 0.0 && range.origin_side.is_none();
+        if may_leave && self.touches(ray.origin, range.origin_error) {
             return Bracket::UNKNOWN;
         }
-        Quadric::bracket(self, ray, within)
+        Quadric::t_bounds(self, ray, range)
     }
 
     #[inline(always)]
-    fn refine(&self, ray: &Ray, leaves: Option<Side>) -> f64 {
-        self.quick_distance(ray, &Span { leaves, ..Span::RAY })
+    fn refine(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
+        self.fast_distance(ray, &RayRange { origin_side, ..RayRange::ALL })
     }
 }
 
@@ -137,11 +137,11 @@ impl<A: Bounded> Certified for Quadric<A> {}
 impl<A> Equation for Quadric<A> {
     const IS_QUADRATIC: bool = true;
 
-    fn value<N: Number>(&self, at: [N; 3]) -> N {
+    fn value<N: Scalar>(&self, at: [N; 3]) -> N {
         Quadric::value(self, at)
     }
 
-    fn kept<N: Number>(&self, at: [N; 3]) -> N {
+    fn kept<N: Scalar>(&self, at: [N; 3]) -> N {
         self.inside_box(at)
     }
 }

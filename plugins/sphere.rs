@@ -1,7 +1,7 @@
 //! A sphere: every point at one distance from a centre.
 
 use crate::prelude::*;
-use crate::shapes::ball::{self, Line};
+use crate::shapes::sphere::{self, SphereLine};
 use std::marker::PhantomData;
 
 static CENTER: Pparm<DVec3> =
@@ -29,7 +29,7 @@ pub fn shape(args: &Args) -> AnyShape {
 }
 
 /// The centre and the radius of an entity whose table has [`TABLE`]'s rows.
-pub fn ball(args: &Args) -> (DVec3, f64) {
+pub fn center_and_radius(args: &Args) -> (DVec3, f64) {
     (args.get(&CENTER), args.get(&RADIUS))
 }
 
@@ -41,12 +41,12 @@ struct Sphere<A> {
 
 impl<A> Sphere<A> {
     fn new(args: &Args) -> Self {
-        let (center, radius) = ball(args);
+        let (center, radius) = center_and_radius(args);
         Self { center, radius, accuracy: PhantomData }
     }
 
-    fn around(&self) -> Bounds {
-        Bounds { low: self.center - self.radius, high: self.center + self.radius }
+    fn around(&self) -> Aabb {
+        Aabb { low: self.center - self.radius, high: self.center + self.radius }
     }
 
     fn away(&self, from: DVec3) -> f64 {
@@ -57,22 +57,22 @@ impl<A> Sphere<A> {
 
     /// A ray, counted from the centre.
     #[inline(always)]
-    fn line(&self, ray: &Ray) -> Line {
-        Line::new(ray, self.center)
+    fn line(&self, ray: &Ray) -> SphereLine {
+        SphereLine::new(ray, self.center)
     }
 }
 
 impl Hittable for Sphere<Classic> {
     #[inline(always)]
-    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        within.keep(ball::classic(ray.origin - self.center, ray.dir, self.radius))
+    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
+        range.keep(sphere::classic(ray.origin - self.center, ray.dir, self.radius))
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {
         (at - self.center).normalize()
     }
 
-    fn bounds(&self) -> Option<Bounds> {
+    fn bounds(&self) -> Option<Aabb> {
         Some(self.around())
     }
 
@@ -80,26 +80,26 @@ impl Hittable for Sphere<Classic> {
         Some(self.away(from))
     }
 
-    fn meets_itself(&self, _leaving: Side) -> bool {
+    fn can_hit_itself(&self, _leaving: Side) -> bool {
         false
     }
 
     fn method(&self) -> String {
-        ball::CLASSIC_METHOD.to_owned()
+        sphere::CLASSIC_METHOD.to_owned()
     }
 }
 
 impl<A: Bounded> Hittable for Sphere<A> {
     #[inline(always)]
-    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        within.keep(ball::distance::<A>(&self.line(ray), self.radius, within.leaves))
+    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
+        range.keep(sphere::distance::<A>(&self.line(ray), self.radius, range.origin_side))
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {
         (at - self.center).normalize()
     }
 
-    fn bounds(&self) -> Option<Bounds> {
+    fn bounds(&self) -> Option<Aabb> {
         Some(self.around())
     }
 
@@ -107,7 +107,7 @@ impl<A: Bounded> Hittable for Sphere<A> {
         Some(self.away(from))
     }
 
-    fn meets_itself(&self, leaving: Side) -> bool {
+    fn can_hit_itself(&self, leaving: Side) -> bool {
         leaving == Side::Inside
     }
 
@@ -116,33 +116,33 @@ impl<A: Bounded> Hittable for Sphere<A> {
     }
 
     fn method(&self) -> String {
-        ball::method::<A>().to_owned()
+        sphere::method::<A>().to_owned()
     }
 }
 
 impl<A: Bounded> Bracketed for Sphere<A> {
     #[inline(always)]
-    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
+    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
         let from = ray.origin - self.center;
-        ball::bracket(from, ray.dir, 1.0, 1.0, self.radius, within.leaves, within.origin_error)
+        sphere::t_bounds(from, ray.dir, 1.0, 1.0, self.radius, range.origin_side, range.origin_error)
     }
 
     #[inline(always)]
-    fn refine(&self, ray: &Ray, leaves: Option<Side>) -> f64 {
-        ball::refine::<A>(&self.line(ray), self.radius, leaves)
+    fn refine(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
+        sphere::refine::<A>(&self.line(ray), self.radius, origin_side)
     }
 }
 
 impl<A: Bounded> Certified for Sphere<A> {
     fn touches(&self, at: DVec3, error: f64) -> bool {
-        ball::touches(at - self.center, self.radius, error)
+        sphere::touches(at - self.center, self.radius, error)
     }
 }
 
 impl<A> Equation for Sphere<A> {
     const IS_QUADRATIC: bool = true;
 
-    fn value<N: Number>(&self, at: [N; 3]) -> N {
+    fn value<N: Scalar>(&self, at: [N; 3]) -> N {
         let part = |axis: usize| (at[axis] - N::constant(self.center[axis])).powi(2);
         part(0) + part(1) + part(2) - N::constant(self.radius).powi(2)
     }

@@ -50,7 +50,7 @@ impl Light for Spotlight {
     }
 
     fn brightest(&self) -> Option<Rgb> {
-        self.light.even()
+        self.light.uniform()
     }
 
     fn size(&self) -> f64 {

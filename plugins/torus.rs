@@ -30,7 +30,7 @@ struct Torus {
 }
 
 impl Implicit for Torus {
-    fn value<N: Number>(&self, [x, y, z]: [N; 3]) -> N {
+    fn value<N: Scalar>(&self, [x, y, z]: [N; 3]) -> N {
         let from_circle = (x.powi(2) + z.powi(2)).sqrt() - N::constant(self.radius);
         from_circle.powi(2) + y.powi(2) - N::constant(self.tube).powi(2)
     }

@@ -2,7 +2,7 @@
 
 use crate::prelude::*;
 use crate::shapes::Triangle;
-use crate::shapes::flat::{CLASSIC_METHOD, Flat, Plane};
+use crate::shapes::plane::{CLASSIC_METHOD, Flat, Plane};
 
 static VERTEX1: Pparm<DVec3> = Pparm::required("vertex1", "the first vertex").unit("world coordinates");
 static VERTEX2: Pparm<DVec3> =
@@ -40,8 +40,8 @@ fn shape(args: &Args) -> Option<AnyShape> {
 
 impl Hittable for Triangle<Classic> {
     #[inline(always)]
-    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        let distance = self.plane.distance(ray, within);
+    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
+        let distance = self.plane.distance(ray, range);
         if self.contains(ray.at(distance)) { distance } else { MISS }
     }
 
@@ -49,11 +49,11 @@ impl Hittable for Triangle<Classic> {
         self.plane.normal
     }
 
-    fn bounds(&self) -> Option<Bounds> {
-        Some(Bounds::around(&self.corners))
+    fn bounds(&self) -> Option<Aabb> {
+        Some(Aabb::around(&self.corners))
     }
 
-    fn meets_itself(&self, _leaving: Side) -> bool {
+    fn can_hit_itself(&self, _leaving: Side) -> bool {
         false
     }
 
@@ -68,8 +68,8 @@ impl Hittable for Triangle<Classic> {
 
 impl<A: Bounded> Hittable for Triangle<A> {
     #[inline(always)]
-    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        let distance = self.plane.distance(ray, within);
+    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
+        let distance = self.plane.distance(ray, range);
         if self.is_passed_by(ray) { distance } else { MISS }
     }
 
@@ -77,16 +77,16 @@ impl<A: Bounded> Hittable for Triangle<A> {
         self.plane.normal
     }
 
-    fn bounds(&self) -> Option<Bounds> {
-        Some(Bounds::around(&self.corners))
+    fn bounds(&self) -> Option<Aabb> {
+        Some(Aabb::around(&self.corners))
     }
 
-    fn meets_itself(&self, _leaving: Side) -> bool {
+    fn can_hit_itself(&self, _leaving: Side) -> bool {
         false
     }
 
-    fn is_clear_of(&self, region: &Bounds) -> bool {
-        self.plane.is_clear_of(region) || !Bounds::around(&self.corners).overlaps(region)
+    fn is_clear_of(&self, region: &Aabb) -> bool {
+        self.plane.is_clear_of(region) || !Aabb::around(&self.corners).overlaps(region)
     }
 
     fn plane(&self) -> Option<[DVec3; 2]> {
@@ -100,9 +100,9 @@ impl<A: Bounded> Hittable for Triangle<A> {
 
 impl<A: Bounded> Bracketed for Triangle<A> {
     #[inline(always)]
-    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        let rough = self.plane.rough(ray, within.origin_error);
-        let Bracket { near, far } = self.plane.bracket(&rough, ray, within);
+    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+        let rough = self.plane.rough(ray, range.origin_error);
+        let Bracket { near, far } = self.plane.t_bounds(&rough, ray, range);
         let passed = self.passed(ray);
         Bracket {
             near: if passed == Some(false) { MISS } else { near },
@@ -111,7 +111,7 @@ impl<A: Bounded> Bracketed for Triangle<A> {
     }
 
     #[inline(always)]
-    fn refine(&self, ray: &Ray, _leaves: Option<Side>) -> f64 {
+    fn refine(&self, ray: &Ray, _origin_side: Option<Side>) -> f64 {
         // A hit that is certain is inside.
         self.plane.quick_crossing(ray)
     }
@@ -131,7 +131,7 @@ impl<A: Bounded> Certified for Triangle<A> {
         self.plane.touches(at, error)
     }
 
-    fn fine_distance(&self, ray: &Ray, _distance: f64) -> Option<Twofold> {
+    fn fine_distance(&self, ray: &Ray, _distance: f64) -> Option<DoubleDouble> {
         Some(self.plane.exact_crossing(ray))
     }
 }
@@ -139,12 +139,12 @@ impl<A: Bounded> Certified for Triangle<A> {
 impl<A> Equation for Triangle<A> {
     const IS_QUADRATIC: bool = true;
 
-    fn value<N: Number>(&self, at: [N; 3]) -> N {
+    fn value<N: Scalar>(&self, at: [N; 3]) -> N {
         let corner = self.corners[0].to_array();
         dot(self.upright(), [0, 1, 2].map(|axis| at[axis] - N::constant(corner[axis])))
     }
 
-    fn kept<N: Number>(&self, at: [N; 3]) -> N {
+    fn kept<N: Scalar>(&self, at: [N; 3]) -> N {
         self.plane.kept(at).min(self.inside(at))
     }
 }

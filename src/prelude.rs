@@ -1,7 +1,7 @@
 //! All that a plugin needs, in one `use`: `crate::prelude::*` in `plugins/`, `tabray::prelude::*` elsewhere.
 //!
 //! Arithmetic that only some shapes share is not in it; that is in [`shapes`](crate::shapes) and
-//! [`twofold`](crate::numeric::twofold).
+//! [`double_double`](crate::numeric::double_double).
 
 // What an entity type is registered with: its table, its constructor, and what that is given.
 pub use crate::scene::entity::{Args, Entity, Refusal};
@@ -25,14 +25,14 @@ pub use crate::world::texture::Texture;
 // What scenes choose one of: looks that change from place to place, and profiles.
 pub use crate::numeric::formula::Formula;
 pub use crate::scene::procedural::{Anchor, OnPlane, OnSphere, ProceduralShader};
-pub use crate::scene::profile::{Line as ProfileLine, Profile};
+pub use crate::scene::profile::{Profile, ProfileLine};
 
 // What shapes are asked, and answer.
-pub use crate::geometry::bounds::{Bounds, SLACK};
+pub use crate::geometry::aabb::{Aabb, SLACK};
 pub use crate::geometry::frame::Frame;
-pub use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
-pub use crate::numeric::number::{Number, cross, dot};
-pub use crate::numeric::twofold::Twofold;
+pub use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
+pub use crate::numeric::double_double::DoubleDouble;
+pub use crate::numeric::scalar::{Scalar, cross, dot};
 pub use crate::shapes::implicit::Implicit;
 pub use crate::world::certify::Equation;
 

@@ -1,6 +1,8 @@
-//! Small helps for messages: the word that was meant, lists of words, and reasons.
+//! Small helps for messages: the word that was meant, lists of words, reasons, and texts for programs.
 
+use clap::ValueEnum;
 use image::ImageError;
+use serde::Serialize;
 use std::io;
 use std::panic::Location;
 use std::path::Path;
@@ -79,4 +81,27 @@ pub fn short(number: f64) -> String {
 /// A count with its noun: `1 error`, `2 errors`.
 pub fn count(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
+/// A value as JSON, on one line. Its type says which fields it has, in the order in which they are written.
+pub fn json(value: &impl Serialize) -> String {
+    serde_json::to_string(value).expect(NAMED)
+}
+
+/// A value as JSON, with a field on each line, the last one ended.
+pub fn json_in_lines(value: &impl Serialize) -> String {
+    serde_json::to_string_pretty(value).expect(NAMED) + "\n"
+}
+
+const NAMED: &str = "only a map whose keys are no names has no JSON";
+
+/// What the command line calls one of several values.
+pub fn name(value: &impl ValueEnum) -> String {
+    value.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
+}
+
+/// A text with a capital for its first letter.
+pub fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
 }

@@ -11,7 +11,7 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use tabray::geometry::{MISS, Ray, Sight};
-use tabray::render::{Event, Plan, Watch, trace};
+use tabray::render::{Event, Plan, TraceObserver, trace};
 use tabray::scene::{Model, Profile};
 use tabray::world::certify::{Enclosure, Precision};
 
@@ -117,7 +117,7 @@ type Test = (usize, Option<f64>);
 #[derive(Default)]
 struct Searches(Vec<(Ray, Vec<Test>)>);
 
-impl Watch for Searches {
+impl TraceObserver for Searches {
     const SEES: bool = true;
 
     fn see(&mut self, event: Event) {
@@ -131,7 +131,7 @@ impl Watch for Searches {
 
 fn searches(model: &Model, x: usize, y: usize) -> Searches {
     let mut searches = Searches::default();
-    trace::watch_pixel(&Plan::new(model), x, y, &mut searches);
+    trace::observe_pixel(&Plan::new(model), x, y, &mut searches);
     searches
 }
 

@@ -11,8 +11,8 @@ use super::stop::Stop;
 use crate::output::picture::Format;
 use crate::render::limits::MAX_RAYS;
 use crate::render::plan::Plan;
+use crate::render::ray_stats::{Cuts, RayStats};
 use crate::render::renderer::{Overseer, Renderer};
-use crate::render::tally::{Cuts, Tally};
 use crate::render::tiles::{Band, Tiles};
 use crate::words::{count, short};
 use std::io::{self, BufWriter};
@@ -80,7 +80,7 @@ impl Job<'_> {
             None => self.renderer.fill(self.plan, band, overseer, &cut),
             Some(stats) => {
                 let sum = &stats.tally;
-                let add = |tally: Tally| {
+                let add = |tally: RayStats| {
                     cut(tally.cuts);
                     sum.add(&tally);
                 };

@@ -28,16 +28,16 @@ pub struct Args {
     output: Option<PathBuf>,
     /// The image format, whatever the file's extension
     #[arg(long)]
-    format: Option<FormatName>,
+    format: Option<Format>,
     /// The compression of a PNG
     #[arg(long, value_name = "HOW", default_value = "fast")]
-    compress: CompressionName,
+    compress: Compression,
     /// The number of samples per pixel, to smooth edges; by default that of the scene's camera
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(Sampler::MOST)))]
     samples: Option<u32>,
     /// The distribution of the samples within a pixel
     #[arg(long, value_name = "NAME", default_value = "sobol")]
-    sampler: SamplerName,
+    sampler: Sampler,
     /// The number of threads; by default one per core
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -57,30 +57,6 @@ pub struct Args {
     stop: stop::Args,
 }
 
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum FormatName {
-    Ppm,
-    Png,
-}
-
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum CompressionName {
-    /// Fastest
-    Fast,
-    /// Smaller files
-    Default,
-    /// Smallest files
-    Best,
-}
-
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum SamplerName {
-    /// Evenly spread (a Sobol sequence)
-    Sobol,
-    /// Random, as in the course notes
-    Random,
-}
-
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let path = target(&args)?;
     let format = format(&args, &path)?;
@@ -93,10 +69,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let mut stats = Stats { reading: start.elapsed() - building, building, ..Stats::default() };
     let camera = &mut model.camera.value;
     camera.samples = args.samples.unwrap_or(camera.samples);
-    camera.sampler = match args.sampler {
-        SamplerName::Sobol => Sampler::Sobol,
-        SamplerName::Random => Sampler::Random,
-    };
+    camera.sampler = args.sampler;
     let part = args.size.apply(camera)?;
     interrupt::catch()?;
     let output = Output::open(&path)?;
@@ -138,7 +111,7 @@ fn target(args: &Args) -> Result<PathBuf, Failure> {
     match (&args.output, args.scene.file_name()) {
         (Some(path), _) => Ok(path.clone()),
         (None, Some(name)) if !input::is_standard(&args.scene) => {
-            let extension = if matches!(args.format, Some(FormatName::Ppm)) { "ppm" } else { "png" };
+            let extension = if args.format == Some(Format::Ppm) { "ppm" } else { "png" };
             Ok(Path::new(name).with_extension(extension))
         }
         _ => Err(Failure::Usage(
@@ -149,18 +122,13 @@ fn target(args: &Args) -> Result<PathBuf, Failure> {
 }
 
 fn format(args: &Args, path: &Path) -> Result<Format, Failure> {
-    let compression = match args.compress {
-        CompressionName::Fast => Compression::Fast,
-        CompressionName::Default => Compression::Balanced,
-        CompressionName::Best => Compression::High,
+    let format = match args.format {
+        Some(format) => format,
+        None if path == Path::new("-") => Format::Ppm,
+        None => named(path, "end it in .png or .ppm, or give `--format png` or `--format ppm`")?,
     };
-    match args.format {
-        Some(FormatName::Ppm) => Ok(Format::Ppm),
-        Some(FormatName::Png) => Ok(Format::Png(compression)),
-        None if path == Path::new("-") => Ok(Format::Ppm),
-        None => match named(path, "end it in .png or .ppm, or give `--format png` or `--format ppm`")? {
-            Format::Png(_) => Ok(Format::Png(compression)),
-            Format::Ppm => Ok(Format::Ppm),
-        },
-    }
+    Ok(match format {
+        Format::Png(_) => Format::Png(args.compress),
+        Format::Ppm => Format::Ppm,
+    })
 }

@@ -2,7 +2,7 @@
 
 use super::failure::Failure;
 use super::messages;
-use super::output::Output;
+use super::output::{self, Output};
 use super::size::Part;
 use crate::output::checkpoint::{self, Checkpoint, Identity};
 use crate::output::picture::Format;
@@ -21,9 +21,7 @@ pub struct Begun {
 
 /// Where the checkpoint of a picture is.
 pub fn beside(picture: &Path) -> PathBuf {
-    let mut path = picture.to_owned().into_os_string();
-    path.push(".checkpoint");
-    path.into()
+    output::ended(picture, ".checkpoint")
 }
 
 impl Begun {

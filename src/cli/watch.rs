@@ -19,6 +19,7 @@ use crate::scene::registry::Registry;
 use crate::words;
 use crate::world::accuracy::Accuracy;
 use board::Board;
+use events::Fault;
 use files::Files;
 use frame::{Frame, lines};
 use hyper::Request;
@@ -180,7 +181,8 @@ impl Watched<'_> {
             Ok(read) => read,
             Err(Failure::Usage(message, _)) => {
                 let name = self.path.display().to_string();
-                board.fault(events::fault(&name, None, &format!("error: {message}"), &[]));
+                let report = &format!("error: {message}");
+                board.fault(events::fault(&Fault { lines: &[], name: &name, report, text: None }));
                 self.last = None;
                 return Ok(());
             }
@@ -203,11 +205,11 @@ impl Watched<'_> {
         match read {
             Ok(Loaded { model, .. }) if !fits(&model) => {
                 let [width, height] = model.camera.value.pixels;
-                let message = format!(
+                let report = &format!(
                     "error: an image of {width} x {height} pixels is too large for a page\n\
                      help: the maximum is {LARGEST} pixels, such as 4096 x 4096"
                 );
-                board.fault(events::fault(&name, Some(text), &message, &[]));
+                board.fault(events::fault(&Fault { lines: &[], name: &name, report, text: Some(text) }));
             }
             Ok(Loaded { model, warnings, places, .. }) => {
                 self.version += 1;
@@ -226,9 +228,10 @@ impl Watched<'_> {
             }
             Err(report) => {
                 let places = report.faults().iter().filter_map(|fault| fault.place.as_ref());
-                let marked: Vec<_> =
-                    places.filter_map(|place| lines(text, place)).map(|[first, _]| first).collect();
-                board.fault(events::fault(&name, Some(text), &report.to_string(), &marked));
+                let lines = places.filter_map(|place| lines(text, place)).map(|[first, _]| first);
+                let lines = &lines.collect::<Vec<_>>();
+                let report = &report.to_string();
+                board.fault(events::fault(&Fault { lines, name: &name, report, text: Some(text) }));
             }
         }
         Ok(())

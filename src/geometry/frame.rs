@@ -1,10 +1,10 @@
 //! Where a shape's own coordinates lie in the world.
 
-use crate::geometry::bounds::Bounds;
+use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::Ray;
 use crate::geometry::sight::{Line, Sight};
-use crate::numeric::number::{Number, dot};
-use crate::numeric::twofold::{Twofold, offset};
+use crate::numeric::double_double::{DoubleDouble, offset};
+use crate::numeric::scalar::{Scalar, dot};
 use glam::{DMat3, DVec3};
 
 /// How far rounding moves each coordinate of a point that is turned into a frame, as a part of its distance from the
@@ -63,7 +63,7 @@ impl Frame {
     }
 
     /// A line of the world likewise, from the numbers that the frame was made from.
-    pub fn line<N: Number>(&self, line: Line<N>) -> Line<N> {
+    pub fn line<N: Scalar>(&self, line: Line<N>) -> Line<N> {
         let origin = [0, 1, 2].map(|axis| line.origin[axis] - N::constant(self.origin[axis]));
         let Some(axis) = self.axis else { return Line { origin, dir: line.dir } };
         let given = axis.to_array().map(N::constant);
@@ -81,18 +81,18 @@ impl Frame {
     }
 
     /// A ray in the shape's own coordinates in twice the precision, from the point at a distance along it.
-    pub fn exactly(&self, ray: &Ray, distance: f64) -> Line<Twofold> {
-        let Line { origin, dir } = Sight::along(ray).line::<Twofold>();
-        let start = Line { origin, dir }.at(Twofold::from(distance));
+    pub fn exactly(&self, ray: &Ray, distance: f64) -> Line<DoubleDouble> {
+        let Line { origin, dir } = Sight::along(ray).line::<DoubleDouble>();
+        let start = Line { origin, dir }.at(DoubleDouble::from(distance));
         self.line(Line { origin: start, dir })
     }
 
     /// The box in the world around one in the shape's own coordinates.
-    pub fn bounds(&self, own: &Bounds) -> Bounds {
+    pub fn bounds(&self, own: &Aabb) -> Aabb {
         let DMat3 { x_axis, y_axis, z_axis } = self.axes;
         let middle = self.origin + self.axes * own.middle();
         let reach = DMat3::from_cols(x_axis.abs(), y_axis.abs(), z_axis.abs()) * own.half_size();
-        Bounds { low: middle - reach, high: middle + reach }
+        Aabb { low: middle - reach, high: middle + reach }
     }
 }
 
@@ -103,7 +103,7 @@ fn sign(axis: DVec3) -> f64 {
 
 /// Three unit vectors upright on each other, the second of which is this one (Duff et al., "Building an Orthonormal Basis,
 /// Revisited", 2017).
-fn upright<N: Number>(up: [N; 3], sign: f64) -> [[N; 3]; 3] {
+fn upright<N: Scalar>(up: [N; 3], sign: f64) -> [[N; 3]; 3] {
     let ([x, y, z], sign) = (up, N::constant(sign));
     let a = N::constant(-1.0) / (sign + z);
     let b = x * y * a;

@@ -1,14 +1,14 @@
 //! Rays, boxes and frames: space without shapes.
 
-pub(crate) mod bounds;
+pub(crate) mod aabb;
 pub(crate) mod frame;
-pub(crate) mod packet;
 pub(crate) mod ray;
+pub(crate) mod ray_packet;
 pub(crate) mod roots;
 pub(crate) mod sight;
 
-pub use bounds::{Bounds, clearance};
+pub use aabb::{Aabb, clearance};
 pub use frame::Frame;
-pub use packet::{Nearest, Rays};
-pub use ray::{Bracket, MISS, Ray, Side, Span};
+pub use ray::{Bracket, MISS, Ray, RayRange, Side};
+pub use ray_packet::{Nearest, RayPacket};
 pub use sight::Sight;

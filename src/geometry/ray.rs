@@ -48,25 +48,26 @@ impl Side {
 
 /// Distances along a ray, both ends excluded.
 #[derive(Clone, Copy, Debug)]
-pub struct Span {
+pub struct RayRange {
     /// Hits must lie farther.
     pub near: f64,
     /// Hits must lie nearer.
     pub far: f64,
     /// The side of the shape's own surface that the ray starts on and leaves, if it does: where it starts is no hit,
     /// however rounding has it. Only shapes that may meet themselves on that side are asked then.
-    pub leaves: Option<Side>,
+    pub origin_side: Option<Side>,
     /// How far at most the ray's origin is from the point that it stands for, in world units. 0 for a ray from the
-    /// viewer. A [`bracket`](crate::world::hittable::Bracketed::bracket) is certain only where the shape does not touch the origin within it.
+    /// viewer. A bracket from [`t_bounds`](crate::world::hittable::Bracketed::t_bounds) is certain only where the shape does not touch the origin within it.
     pub origin_error: f64,
 }
 
 /// The distance of a ray that hits nothing.
 pub const MISS: f64 = f64::INFINITY;
 
-impl Span {
+impl RayRange {
     /// All of a ray but its origin.
-    pub const RAY: Span = Span { near: 0.0, far: f64::INFINITY, leaves: None, origin_error: 0.0 };
+    pub const ALL: RayRange =
+        RayRange { near: 0.0, far: f64::INFINITY, origin_side: None, origin_error: 0.0 };
 
     /// The distance itself if it lies in the span, else [`MISS`]; so is a NaN.
     #[inline(always)]

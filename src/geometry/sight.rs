@@ -2,7 +2,7 @@
 
 use crate::geometry::ray::Ray;
 use crate::numeric::dual::Dual;
-use crate::numeric::number::Number;
+use crate::numeric::scalar::Scalar;
 use glam::{DVec2, DVec3};
 
 /// A ray as a scene gives it, before anything is rounded.
@@ -53,7 +53,7 @@ impl Sight {
     }
 
     /// The line that it runs along, from t = 0 on.
-    pub fn line<N: Number>(&self) -> Line<N> {
+    pub fn line<N: Scalar>(&self) -> Line<N> {
         let n = N::constant;
         let dir = match self.toward {
             Toward::Direction(dir) => dir.to_array().map(n),
@@ -66,7 +66,7 @@ impl Sight {
     }
 
     /// The square of how far it gets from t = 0 to 1, in world units.
-    pub fn squared_length<N: Number>(&self) -> N {
+    pub fn squared_length<N: Scalar>(&self) -> N {
         let [x, y, z] = self.line::<N>().dir.map(|part| part.powi(2));
         x + y + z
     }
@@ -78,7 +78,7 @@ pub(crate) fn direction(viewpoint: DVec3, at: DVec2, last: DVec2, size: DVec2) -
     ((at / last * size).extend(0.0) - viewpoint).normalize()
 }
 
-impl<N: Number> Line<N> {
+impl<N: Scalar> Line<N> {
     /// The point at t.
     pub fn at(&self, t: N) -> [N; 3] {
         [0, 1, 2].map(|axis| self.origin[axis] + t * self.dir[axis])

@@ -1,6 +1,6 @@
 //! Numbers that carry their derivative along (automatic differentiation, forward).
 
-use crate::numeric::number::Number;
+use crate::numeric::scalar::Scalar;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A number and its derivative. A dual number of dual numbers carries the second derivative, too.
@@ -12,7 +12,7 @@ pub struct Dual<N = f64> {
     pub slope: N,
 }
 
-impl<N: Number> Dual<N> {
+impl<N: Scalar> Dual<N> {
     /// The variable itself.
     #[inline(always)]
     pub fn variable(value: N) -> Self {
@@ -32,7 +32,7 @@ impl<N: Number> Dual<N> {
     }
 }
 
-impl<N: Number> Dual<Dual<N>> {
+impl<N: Scalar> Dual<Dual<N>> {
     /// The variable, for its functions' first and second derivatives.
     #[inline(always)]
     pub fn variable_twice(value: N) -> Self {
@@ -58,7 +58,7 @@ impl<N: Number> Dual<Dual<N>> {
     }
 }
 
-impl<N: Number> Add for Dual<N> {
+impl<N: Scalar> Add for Dual<N> {
     type Output = Self;
 
     #[inline(always)]
@@ -67,7 +67,7 @@ impl<N: Number> Add for Dual<N> {
     }
 }
 
-impl<N: Number> Sub for Dual<N> {
+impl<N: Scalar> Sub for Dual<N> {
     type Output = Self;
 
     #[inline(always)]
@@ -76,7 +76,7 @@ impl<N: Number> Sub for Dual<N> {
     }
 }
 
-impl<N: Number> Mul for Dual<N> {
+impl<N: Scalar> Mul for Dual<N> {
     type Output = Self;
 
     #[inline(always)]
@@ -85,7 +85,7 @@ impl<N: Number> Mul for Dual<N> {
     }
 }
 
-impl<N: Number> Div for Dual<N> {
+impl<N: Scalar> Div for Dual<N> {
     type Output = Self;
 
     #[inline(always)]
@@ -95,7 +95,7 @@ impl<N: Number> Div for Dual<N> {
     }
 }
 
-impl<N: Number> Neg for Dual<N> {
+impl<N: Scalar> Neg for Dual<N> {
     type Output = Self;
 
     #[inline(always)]
@@ -104,7 +104,7 @@ impl<N: Number> Neg for Dual<N> {
     }
 }
 
-impl<N: Number> Number for Dual<N> {
+impl<N: Scalar> Scalar for Dual<N> {
     #[inline(always)]
     fn constant(value: f64) -> Self {
         Self { value: N::constant(value), slope: N::constant(0.0) }
@@ -211,7 +211,7 @@ impl<N: Number> Number for Dual<N> {
 mod tests {
     use super::*;
 
-    fn cube_and_root<N: Number>(x: N) -> N {
+    fn cube_and_root<N: Scalar>(x: N) -> N {
         x.powi(3) - x.sqrt() * x.exp() + x.ln().sin() / x.tan() + x.cos().abs() + x.pow(N::constant(1.5))
     }
 

@@ -1,13 +1,13 @@
 //! What formulas compute with, and formulas.
 
+pub mod double_double;
 pub(crate) mod dual;
+pub(crate) mod f64x8;
 pub(crate) mod formula;
 pub(crate) mod interval;
-pub(crate) mod number;
-pub(crate) mod octet;
-pub mod twofold;
+pub(crate) mod scalar;
 
 pub use dual::Dual;
 pub use formula::Formula;
 pub use interval::{Float, Interval, Wide};
-pub use number::Number;
+pub use scalar::Scalar;

@@ -54,10 +54,10 @@ mod tests {
 
     #[test]
     fn many_channels_have_the_bytes_of_single_ones() {
-        let ends = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -0.0, -1e-300, 1e-300, 1.0, 1e300];
+        let t_max = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -0.0, -1e-300, 1e-300, 1.0, 1e300];
         let levels = (0..=256).map(|level| f64::from(level) / 255.0);
         let near = levels.flat_map(|level| [level.next_down(), level, level.next_up()]);
-        let channel: Vec<f64> = ends.into_iter().chain(near).collect();
+        let channel: Vec<f64> = t_max.into_iter().chain(near).collect();
         for cpu in Cpu::all() {
             let mut pixels = vec![[1; 3]; channel.len()];
             to_bytes(cpu, View { x: &channel, y: &channel, z: &channel }, &mut pixels);

@@ -1,21 +1,21 @@
 //! From a model to colours: the plan, the tree of boxes, the tracer, and who watches it.
 
-mod bundles;
+pub(crate) mod bvh;
 pub(crate) mod bytes;
 mod culling;
 pub mod decisions;
+mod frusta;
 pub(crate) mod limits;
+pub(crate) mod observer;
 pub(crate) mod plan;
 pub(crate) mod progressive;
+pub(crate) mod ray_stats;
 pub(crate) mod renderer;
-pub(crate) mod tally;
 pub(crate) mod tiles;
 pub mod trace;
-pub(crate) mod tree;
-pub(crate) mod watch;
 
 pub use bytes::to_byte;
+pub use observer::{Count, Event, Hit, Outcome, Purpose, RayKind, Reason, TraceObserver};
 pub use plan::Plan;
+pub use ray_stats::{RayStats, TestCounts};
 pub use renderer::Renderer;
-pub use tally::{Tally, Tests};
-pub use watch::{Count, Event, Hit, Kind, Outcome, Purpose, Reason, Watch};

@@ -4,9 +4,9 @@ pub(crate) mod depth;
 
 use depth::{Depth, Onward};
 
-use crate::geometry::bounds::Bounds;
+use crate::geometry::aabb::Aabb;
+use crate::render::bvh::Bvh;
 use crate::render::culling;
-use crate::render::tree::Tree;
 use crate::scene::model::Model;
 use crate::world::camera::Camera;
 
@@ -23,9 +23,9 @@ pub struct Plan<'m> {
     /// The objects without bounds, by their indices: each is looked at for each ray.
     pub(crate) unbounded: Vec<usize>,
     /// Those with bounds, which a packet of rays looks at one by one, and the boxes around them.
-    pub(crate) bounded: Vec<(usize, Bounds)>,
+    pub(crate) bounded: Vec<(usize, Aabb)>,
     /// Those with bounds, where they are many.
-    pub(crate) tree: Option<Tree>,
+    pub(crate) tree: Option<Bvh>,
     /// Whether any object lets light through, so that shadows have more than two shades.
     pub(crate) has_glass: bool,
     /// How deep rays are followed; nothing where none goes on.
@@ -45,7 +45,7 @@ impl<'m> Plan<'m> {
         }
         let tree = (bounded.len() >= TREE).then(|| {
             let boxes = bounded.drain(..);
-            Tree::new(boxes.map(|(index, bounds)| (index as u32, bounds.with_slack(0.0))).collect())
+            Bvh::new(boxes.map(|(index, bounds)| (index as u32, bounds.with_slack(0.0))).collect())
         });
         let has_glass = objects.iter().any(|object| object.material.transparency != 0.0);
         let (camera, depth) = (model.camera.value.clone(), Depth::new(model));

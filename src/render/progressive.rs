@@ -1,9 +1,9 @@
 //! A picture in parts, for someone who looks on: all of it coarsely, then tile by tile.
 
-use crate::geometry::packet::WIDE;
+use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
-use crate::render::trace::{Rooms, Tracer};
+use crate::render::trace::{Scratch, Tracer};
 use crate::simd::cpu::Cpu;
 use crate::world::material::Rgb;
 use std::ops::ControlFlow;
@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 const BLOCK: usize = 8;
 
 /// The width and height of a tile: short enough to wait for, and a whole number of blocks.
-const TILE: usize = 32;
+const AREA_SIZE: usize = 32;
 
 /// The width and height, in blocks, of what is traced together.
 const SQUARE: usize = 8;
@@ -43,8 +43,8 @@ impl Area {
             let start = index * self.block;
             self.corner[side] + start + (self.block / 2).min(self.size[side] - start - 1)
         };
-        let (mut rooms, mut nobody) = (Rooms::default(), ());
-        let mut tracer = Tracer::new(plan, Cpu::best(), &mut rooms, &mut nobody);
+        let (mut scratch, mut nobody) = (Scratch::default(), ());
+        let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody);
         let mut colours = vec![Rgb::ZERO; across * down];
         for top in (0..down).step_by(SQUARE) {
             for left in (0..across).step_by(SQUARE) {
@@ -52,7 +52,7 @@ impl Area {
                 let square: Vec<_> = rows
                     .flat_map(|row| (left..across.min(left + SQUARE)).map(move |column| [column, row]))
                     .collect();
-                for blocks in square.chunks((WIDE / camera.samples as usize).max(1)) {
+                for blocks in square.chunks((PACKET_SIZE / camera.samples as usize).max(1)) {
                     if check().is_break() {
                         return None;
                     }
@@ -75,17 +75,17 @@ impl Area {
 fn passes([width, height]: [usize; 2]) -> [Vec<Area>; 2] {
     let areas = |wide: usize, block: usize| {
         let corners = (0..height)
-            .step_by(TILE)
+            .step_by(AREA_SIZE)
             .flat_map(move |top| (0..width).step_by(wide).map(move |left| [left, top]));
         corners
             .map(|[left, top]| Area {
                 corner: [left, top],
-                size: [wide.min(width - left), TILE.min(height - top)],
+                size: [wide.min(width - left), AREA_SIZE.min(height - top)],
                 block,
             })
             .collect()
     };
-    [areas(width, BLOCK), areas(TILE, 1)]
+    [areas(width, BLOCK), areas(AREA_SIZE, 1)]
 }
 
 /// Makes a picture and hands out its parts as they are finished: the colours of an area's blocks from the top and

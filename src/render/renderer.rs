@@ -1,10 +1,10 @@
 //! The tile loop: a model's pixels, on all threads.
 
 use crate::render::bytes::to_bytes;
+use crate::render::observer::TraceObserver;
 use crate::render::plan::Plan;
 use crate::render::tiles::{self, BAND, Band, TILE};
-use crate::render::trace::{Rooms, Tracer};
-use crate::render::watch::Watch;
+use crate::render::trace::{Scratch, Tracer};
 use crate::simd::cpu::Cpu;
 use crate::words;
 use rayon::prelude::*;
@@ -54,7 +54,7 @@ impl Renderer {
     /// and neither is empty. The pixels depend on the model alone.
     ///
     /// A new watcher watches each strip of tiles, and `watched` gets it then, on any thread and in no order.
-    pub fn bands<'r, W: Watch + Default>(
+    pub fn bands<'r, W: TraceObserver + Default>(
         &'r self,
         plan: &'r Plan,
         columns: Range<usize>,
@@ -78,7 +78,7 @@ impl Renderer {
 
     /// Renders the tiles of a band that are not rendered yet, or those of them that the overseer lets it, watched as
     /// [`bands`](Self::bands) are.
-    pub fn fill<W: Watch + Default>(
+    pub fn fill<W: TraceObserver + Default>(
         &self,
         plan: &Plan,
         band: &mut Band,
@@ -92,10 +92,10 @@ impl Renderer {
         let strips = strips.zip(rows.clone().step_by(TILE));
         self.pool.install(|| {
             // Whoever is free takes the next one: in parts that are shared out beforehand, one would wait for the others.
-            strips.par_bridge().for_each_init(Rooms::default, |rooms, ((strip, tiles), from_top)| {
+            strips.par_bridge().for_each_init(Scratch::default, |scratch, ((strip, tiles), from_top)| {
                 let (tall, mut watch) = (strip.len() / width, W::default());
                 let top = height - 1 - from_top;
-                let mut tracer = Tracer::new(plan, self.cpu, rooms, &mut watch);
+                let mut tracer = Tracer::new(plan, self.cpu, scratch, &mut watch);
                 let (mut tile, mut bytes) = (Vec::new(), [[0; 3]; TILE * TILE]);
                 for (left, is_done) in columns.clone().step_by(TILE).zip(tiles) {
                     if *is_done {

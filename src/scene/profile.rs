@@ -42,9 +42,9 @@ impl Profile {
     ///
     /// # Panics
     /// Where the plugin's text is no formula; the registry refuses such plugins before.
-    pub fn line(&self) -> Line {
+    pub fn line(&self) -> ProfileLine {
         let parse = |text| Formula::parse(text).expect("the registry refuses what is no formula");
-        Line { radius: parse(self.formula), slope: self.slope.map(parse) }
+        ProfileLine { radius: parse(self.formula), slope: self.slope.map(parse) }
     }
 
     /// What is wrong with its formulas, if anything is.
@@ -61,14 +61,14 @@ impl Profile {
 
 /// A line x = g(y), ready to be turned around an axis.
 #[derive(Clone, Debug)]
-pub struct Line {
+pub struct ProfileLine {
     /// The distance from the axis at a height.
     pub radius: Formula,
     /// How fast that grows, where that is not what the formula says.
     pub slope: Option<Formula>,
 }
 
-impl Line {
+impl ProfileLine {
     /// How fast the radius grows at a height.
     pub fn slope_at(&self, y: f64) -> f64 {
         match &self.slope {

@@ -4,15 +4,15 @@
 //! [`taylor`] isolates what a ray meets first by interval arithmetic, and [`Dual`]
 //! numbers give the normal.
 
-use crate::geometry::bounds::Bounds;
+use crate::geometry::aabb::Aabb;
 use crate::geometry::frame::{self, BLUR, Frame};
-use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
+use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
 use crate::geometry::roots::taylor::{self, Found, Stretch};
 use crate::geometry::roots::{Method, twice};
 use crate::geometry::sight::Line;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
-use crate::numeric::number::Number;
+use crate::numeric::scalar::Scalar;
 use crate::world::body::Body;
 use crate::world::certify::Equation;
 use crate::world::hittable::{Bracketed, Certified, Hittable, Searched};
@@ -24,7 +24,7 @@ use std::ops::Range;
 /// A shape by its formula, in coordinates of its own.
 pub trait Implicit: Send + Sync {
     /// Below 0 inside of the shape, above 0 outside, and 0 on it.
-    fn value<N: Number>(&self, at: [N; 3]) -> N;
+    fn value<N: Scalar>(&self, at: [N; 3]) -> N;
 
     /// The low and the high corner of a box around the shape. What lies outside of it is cut off, and a shape that is
     /// cut shows its inside.
@@ -48,9 +48,9 @@ struct ImplicitShape<T> {
 }
 
 impl<T: Implicit> Hittable for ImplicitShape<T> {
-    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        let line = OnRay::new(self, ray);
-        line.distance(line.first_hit(within).root, within)
+    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
+        let line = FormulaOnRay::new(self, ray);
+        line.distance(line.first_hit(range).root, range)
     }
 
     /// Along the formula's gradient. Where that vanishes or does not exist, as at the tip of a cone, the normal
@@ -67,8 +67,8 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
         self.frame.axes * normal
     }
 
-    fn bounds(&self) -> Option<Bounds> {
-        let own = Bounds { low: self.low, high: self.high };
+    fn bounds(&self) -> Option<Aabb> {
+        let own = Aabb { low: self.low, high: self.high };
         Some(self.frame.bounds(&own))
     }
 
@@ -82,40 +82,40 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
 }
 
 impl<T: Implicit> Bracketed for ImplicitShape<T> {
-    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        let touches = || self.touches(ray.origin, within.origin_error);
-        by_distance(within, touches, |within| {
-            let line = OnRay::new(self, ray);
-            let Found { root, is_certain } = line.first_hit(within);
-            is_certain.then(|| line.distance(root, within))
+    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+        let touches = || self.touches(ray.origin, range.origin_error);
+        by_distance(range, touches, |range| {
+            let line = FormulaOnRay::new(self, ray);
+            let Found { root, is_certain } = line.first_hit(range);
+            is_certain.then(|| line.distance(root, range))
         })
     }
 
-    fn refine(&self, ray: &Ray, leaves: Option<Side>) -> f64 {
-        self.distance(ray, &Span { leaves, ..Span::RAY })
+    fn refine(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
+        self.distance(ray, &RayRange { origin_side, ..RayRange::ALL })
     }
 }
 
 impl<T: Implicit> Certified for ImplicitShape<T> {}
 
 impl<T: Implicit> Searched for ImplicitShape<T> {
-    fn distance_by(&self, method: Method, ray: &Ray, within: &Span) -> f64 {
-        let line = OnRay::new(self, ray);
+    fn distance_by(&self, method: Method, ray: &Ray, range: &RayRange) -> f64 {
+        let line = FormulaOnRay::new(self, ray);
         let Stretch { outer, .. } = line.stretch();
-        line.distance(method.first_root(&line, outer.clone(), line.closest, within, shortest(&outer)), within)
+        line.distance(method.first_root(&line, outer.clone(), line.closest, range, shortest(&outer)), range)
     }
 }
 
 impl<T: Implicit> Equation for ImplicitShape<T> {
-    fn own<N: Number>(&self, line: Line<N>) -> Line<N> {
+    fn own<N: Scalar>(&self, line: Line<N>) -> Line<N> {
         self.frame.line(line)
     }
 
-    fn value<N: Number>(&self, at: [N; 3]) -> N {
+    fn value<N: Scalar>(&self, at: [N; 3]) -> N {
         self.formula.value(at)
     }
 
-    fn kept<N: Number>(&self, at: [N; 3]) -> N {
+    fn kept<N: Scalar>(&self, at: [N; 3]) -> N {
         let inside = |axis: usize| {
             let (low, high) = (N::constant(self.low[axis]), N::constant(self.high[axis]));
             (at[axis] - low).min(high - at[axis])
@@ -134,7 +134,7 @@ fn direction(vector: DVec3) -> Option<DVec3> {
 }
 
 /// A formula along a ray.
-struct OnRay<'s, T> {
+struct FormulaOnRay<'s, T> {
     shape: &'s ImplicitShape<T>,
     /// The ray in the shape's own coordinates, from its point closest to the shape's origin: a shape far away is met as
     /// exactly as a near one.
@@ -147,7 +147,7 @@ struct OnRay<'s, T> {
     closest: f64,
 }
 
-impl<'s, T: Implicit> OnRay<'s, T> {
+impl<'s, T: Implicit> FormulaOnRay<'s, T> {
     fn new(shape: &'s ImplicitShape<T>, ray: &'s Ray) -> Self {
         let closest = (shape.frame.origin - ray.origin).dot(ray.dir);
         let base = shape.frame.direction(shape.frame.from_origin(ray, closest));
@@ -167,14 +167,14 @@ impl<'s, T: Implicit> OnRay<'s, T> {
         stretch
     }
 
-    fn first_hit(&self, within: &Span) -> Found {
+    fn first_hit(&self, range: &RayRange) -> Found {
         let stretch = self.stretch();
-        taylor::first_root(self, &stretch, self.closest, within, shortest(&stretch.outer))
+        taylor::first_root(self, &stretch, self.closest, range, shortest(&stretch.outer))
     }
 
     /// The distance of a root.
-    fn distance(&self, root: Option<f64>, within: &Span) -> f64 {
-        root.map_or(MISS, |root| within.keep(self.closest + root))
+    fn distance(&self, root: Option<f64>, range: &RayRange) -> f64 {
+        root.map_or(MISS, |root| range.keep(self.closest + root))
     }
 }
 
@@ -183,17 +183,17 @@ fn shortest(span: &Range<f64>) -> f64 {
     4.0 * f64::EPSILON * span.start.abs().max(span.end.abs())
 }
 
-impl<T: Implicit> taylor::Line for OnRay<'_, T> {
-    fn at<N: Number>(&self, t: N) -> N {
+impl<T: Implicit> taylor::FunctionOnLine for FormulaOnRay<'_, T> {
+    fn at<N: Scalar>(&self, t: N) -> N {
         // Bounds hold the values along the ray which this one was rounded from.
         let along = |axis: usize| N::about(self.base[axis], self.blur) + N::about(self.dir[axis], BLUR) * t;
         self.shape.formula.value([along(0), along(1), along(2)])
     }
 
     /// Twice the precision, from the ray in the world, tells nearly all touches from misses.
-    fn undecided(&self, piece: Interval, leaves: Option<Side>) -> Option<f64> {
+    fn undecided(&self, piece: Interval, origin_side: Option<Side>) -> Option<f64> {
         let hidden = self.at(Interval::constant(piece.middle())).width();
         let exact = self.shape.frame.exactly(self.ray, self.closest);
-        twice::first_root(|t| self.shape.formula.value(exact.along(t)), piece, leaves, hidden)
+        twice::first_root(|t| self.shape.formula.value(exact.along(t)), piece, origin_side, hidden)
     }
 }

@@ -1,11 +1,11 @@
 //! Arithmetic that several shapes share.
 
-pub mod ball;
-pub mod flat;
 pub(crate) mod implicit;
+pub mod plane;
 pub(crate) mod quadratic;
 pub mod rectangle;
 pub(crate) mod revolution;
+pub mod sphere;
 pub(crate) mod triangle;
 
 pub use implicit::Implicit;

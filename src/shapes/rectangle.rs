@@ -1,10 +1,12 @@
 //! A rectangle cut out of a plane: the arithmetic behind those shapes that have one.
 
-use crate::geometry::bounds::{Bounds, larger, smaller};
-use crate::geometry::ray::{Bracket, MISS, Ray, Span};
-use crate::numeric::number::{self, Number, dot};
-use crate::numeric::twofold::{Twofold, cross, exponent_to_one, product, times_power_of_two, unit};
-use crate::shapes::flat::{DRAFT_ERROR, Plane};
+use crate::geometry::aabb::{Aabb, larger, smaller};
+use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
+use crate::numeric::double_double::{
+    DoubleDouble, cross, exponent_to_one, product, times_power_of_two, unit,
+};
+use crate::numeric::scalar::{self, Scalar, dot};
+use crate::shapes::plane::{DRAFT_ERROR, Plane};
 use crate::world::accuracy::{Accuracy, Bounded, Classic};
 use glam::{DMat3, DVec2, DVec3};
 
@@ -27,7 +29,7 @@ pub struct FinitePlane<A> {
     /// Which part of it that is.
     pub rectangle: Rectangle,
     /// Where its sides go, in twice the precision.
-    pub exact_sides: [[Twofold; 3]; 2],
+    pub exact_sides: [[DoubleDouble; 3]; 2],
     /// The vector right above the first of them that the scene gives, of any length.
     pub given_xdir: DVec3,
     /// How far from the world's origin it reaches, about, in world units.
@@ -43,10 +45,10 @@ impl Rectangle {
     }
 
     /// The box around it.
-    pub fn around(&self) -> Bounds {
+    pub fn around(&self) -> Aabb {
         let corner = |x: f64, y: f64| self.corner + x * self.sides[0] + y * self.sides[1];
         let DVec2 { x, y } = self.dimensions;
-        Bounds::around(&[corner(0.0, 0.0), corner(x, 0.0), corner(0.0, y), corner(x, y)])
+        Aabb::around(&[corner(0.0, 0.0), corner(x, 0.0), corner(0.0, y), corner(x, y)])
     }
 }
 
@@ -63,12 +65,12 @@ impl<A> FinitePlane<A> {
     /// Above 0 inside of the four sides, each in a measure of its own, and below 0 outside, of a point of the plane. By
     /// squares: lengths and unit
     /// vectors would need roots, which are dear with many bits.
-    pub fn inside_of<N: Number>(&self, at: [N; 3]) -> N {
+    pub fn inside_of<N: Scalar>(&self, at: [N; 3]) -> N {
         let n = |of: DVec3| of.to_array().map(N::constant);
         let (normal, xdir, corner) = (self.plane.given_normal(), n(self.given_xdir), n(self.plane.point));
         let from_corner = [0, 1, 2].map(|axis| at[axis] - corner[axis]);
         // Of the first side, which is right below `xdir`, the normal is upright on all that is on the plane.
-        let ydir = number::cross(normal, xdir);
+        let ydir = scalar::cross(normal, xdir);
         let (x, y, square) = (dot(xdir, from_corner), dot(ydir, from_corner), dot(ydir, ydir));
         let inside = |along: N, part: N, length: f64| along.min(N::constant(length).powi(2) * square - part);
         let [width, height] = self.rectangle.dimensions.to_array();
@@ -100,12 +102,12 @@ impl<A> FinitePlane<A> {
 impl<A: Bounded> FinitePlane<A> {
     /// Between which distances a hit within a span is.
     #[inline(always)]
-    pub fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        let rough = self.plane.rough(ray, within.origin_error);
+    pub fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+        let rough = self.plane.rough(ray, range.origin_error);
         let inside = self.inside(ray, rough.distance);
         // A camera's direction is off by 3 units of 2^-53 in each component, which is less than half of the slack.
         let slack = rough.error + 2.0 * self.slack(ray, rough.distance);
-        let Bracket { near, far } = self.plane.bracket(&rough, ray, within);
+        let Bracket { near, far } = self.plane.t_bounds(&rough, ray, range);
         Bracket {
             near: if inside < -slack { MISS } else { near },
             far: if inside > slack { far } else { MISS },
@@ -134,13 +136,13 @@ impl<A: Bounded> FinitePlane<A> {
     #[inline(never)]
     fn exactly_has_crossing(&self, ray: &Ray) -> bool {
         let distance = self.plane.exact_crossing(ray);
-        let from = [0, 1, 2].map(|axis| Twofold::difference(ray.origin[axis], self.plane.point[axis]));
-        let dir = ray.dir.to_array().map(Twofold::from);
+        let from = [0, 1, 2].map(|axis| DoubleDouble::difference(ray.origin[axis], self.plane.point[axis]));
+        let dir = ray.dir.to_array().map(DoubleDouble::from);
         (0..2).all(|side| {
             let (start, onward) =
                 (product(self.exact_sides[side], from), distance * product(self.exact_sides[side], dir));
             let along = start + onward;
-            let past = Twofold::from(self.rectangle.dimensions[side]) - along;
+            let past = DoubleDouble::from(self.rectangle.dimensions[side]) - along;
             // Each of some ten operations is off by at most 2^-102 of its parts, which are no larger than this.
             let size = from.iter().map(|part| part.high.abs()).sum::<f64>() + distance.high.abs();
             let least = -(2_f64.powi(-97)) * (size + self.rectangle.dimensions[side]);
@@ -188,15 +190,15 @@ pub fn frame(normal: DVec3, xdir: DVec3) -> DMat3 {
 }
 
 /// What [`exact_sides`] gives, rounded.
-pub fn rounded_sides(upright: [Twofold; 3], xdir: DVec3) -> [DVec3; 2] {
+pub fn rounded_sides(upright: [DoubleDouble; 3], xdir: DVec3) -> [DVec3; 2] {
     exact_sides(upright, xdir).map(|side| DVec3::from(side.map(|part| part.high)))
 }
 
 /// The directions of the two sides of a rectangle with this normal, the first of which is below `xdir`: unit vectors
 /// in twice the precision.
-pub fn exact_sides(upright: [Twofold; 3], xdir: DVec3) -> [[Twofold; 3]; 2] {
+pub fn exact_sides(upright: [DoubleDouble; 3], xdir: DVec3) -> [[DoubleDouble; 3]; 2] {
     let exponent = exponent_to_one(xdir.abs().max_element());
-    let xdir = xdir.to_array().map(|part| Twofold::from(times_power_of_two(part, exponent)));
+    let xdir = xdir.to_array().map(|part| DoubleDouble::from(times_power_of_two(part, exponent)));
     let second = cross(upright, xdir);
     [unit(cross(second, upright)), unit(second)]
 }

@@ -1,9 +1,11 @@
 //! Where a ray passes the edges of a triangle: the arithmetic behind triangles.
 
 use crate::geometry::ray::Ray;
-use crate::numeric::number::{Number, cross, dot};
-use crate::numeric::twofold::{self, Twofold, exponent_to_one, times_power_of_two, triple_product, unit};
-use crate::shapes::flat::Plane;
+use crate::numeric::double_double::{
+    self, DoubleDouble, exponent_to_one, times_power_of_two, triple_product, unit,
+};
+use crate::numeric::scalar::{Scalar, cross, dot};
+use crate::shapes::plane::Plane;
 use crate::world::accuracy::{Bounded, Classic};
 use glam::DVec3;
 
@@ -39,14 +41,14 @@ impl<A: Bounded> Triangle<A> {
 
 impl<A> Triangle<A> {
     /// A vector upright on it, as long as twice its area.
-    pub fn upright<N: Number>(&self) -> [N; 3] {
+    pub fn upright<N: Scalar>(&self) -> [N; 3] {
         let [a, b, c] = self.corners.map(|corner| corner.to_array().map(N::constant));
         let from_a = |corner: [N; 3]| [0, 1, 2].map(|axis| corner[axis] - a[axis]);
         cross(from_a(b), from_a(c))
     }
 
     /// How far inside of the three edges a point of the plane is, each in a measure of its own; below 0 outside.
-    pub fn inside<N: Number>(&self, at: [N; 3]) -> N {
+    pub fn inside<N: Scalar>(&self, at: [N; 3]) -> N {
         let normal = self.upright();
         let corners = self.corners.map(|corner| corner.to_array().map(N::constant));
         let inside = |from: [N; 3], to: [N; 3]| {
@@ -102,23 +104,23 @@ impl<A> Triangle<A> {
 #[inline(never)]
 fn exact_side(from: DVec3, to: DVec3, ray: &Ray) -> f64 {
     let place =
-        |of: DVec3| scaled_to_one([0, 1, 2].map(|axis| Twofold::difference(of[axis], ray.origin[axis])));
+        |of: DVec3| scaled_to_one([0, 1, 2].map(|axis| DoubleDouble::difference(of[axis], ray.origin[axis])));
     triple_product(place(from), place(to), ray.dir.to_array()).high
 }
 
 /// A vector that stands upright on the plane through three points, each component rounded once, however thin their triangle
 /// is; 0 where they are in one line.
-fn upright([a, b, c]: [DVec3; 3]) -> [Twofold; 3] {
+fn upright([a, b, c]: [DVec3; 3]) -> [DoubleDouble; 3] {
     let edge = |to: DVec3| {
-        let edge = [0, 1, 2].map(|axis| Twofold::difference(to[axis], a[axis]));
+        let edge = [0, 1, 2].map(|axis| DoubleDouble::difference(to[axis], a[axis]));
         scaled_to_one(edge)
     };
-    scaled_to_one(twofold::cross(edge(b), edge(c)))
+    scaled_to_one(double_double::cross(edge(b), edge(c)))
 }
 
 /// A vector times the power of two that makes its greatest component one between 1/2 and 1.
-fn scaled_to_one(vector: [Twofold; 3]) -> [Twofold; 3] {
+fn scaled_to_one(vector: [DoubleDouble; 3]) -> [DoubleDouble; 3] {
     let exponent = exponent_to_one(vector.iter().fold(0.0, |most, part| part.high.abs().max(most)));
     let scaled = |part: f64| times_power_of_two(part, exponent);
-    vector.map(|Twofold { high, low }| Twofold { high: scaled(high), low: scaled(low) })
+    vector.map(|DoubleDouble { high, low }| DoubleDouble { high: scaled(high), low: scaled(low) })
 }

@@ -3,6 +3,8 @@
 //!
 //! The same operations in the same order give the same bits on every level: Rust neither reorders nor fuses them.
 
+use clap::ValueEnum;
+use clap::builder::PossibleValue;
 use std::fmt;
 
 /// A level of instructions that this machine has. There is no way to make one that it has not.
@@ -10,9 +12,9 @@ use std::fmt;
 pub struct Cpu(Level);
 
 /// Sets of instructions, each with those before it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, ValueEnum)]
 pub enum Level {
-    /// What every machine of the kind has; on x86-64 two numbers at a time.
+    /// What every machine has: SSE2 on x86-64.
     Baseline,
     /// AVX2: four numbers at a time.
     Avx2,
@@ -21,8 +23,6 @@ pub enum Level {
 }
 
 impl Level {
-    const ALL: [Self; 3] = [Self::Baseline, Self::Avx2, Self::Avx512];
-
     #[cfg(target_arch = "x86_64")]
     fn is_here(self) -> bool {
         match self {
@@ -46,7 +46,7 @@ impl Level {
 impl Cpu {
     /// The levels that this machine has, the best one last.
     pub fn all() -> impl DoubleEndedIterator<Item = Self> {
-        Level::ALL.into_iter().filter(|level| level.is_here()).map(Self)
+        Level::value_variants().iter().filter(|level| level.is_here()).copied().map(Self)
     }
 
     /// This level, where the machine has it.
@@ -68,11 +68,7 @@ impl Cpu {
 
 impl fmt::Display for Cpu {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self.0 {
-            Level::Baseline => "baseline",
-            Level::Avx2 => "avx2",
-            Level::Avx512 => "avx512",
-        })
+        f.pad(self.0.to_possible_value().as_ref().map_or("", PossibleValue::get_name))
     }
 }
 

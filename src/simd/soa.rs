@@ -4,7 +4,7 @@ use glam::DVec3;
 use std::ops::Range;
 
 /// Arrays are as long as a multiple of this.
-pub const STEP: usize = 8;
+pub const LANES: usize = 8;
 
 /// Vectors, an array for each coordinate.
 #[derive(Clone)]
@@ -124,7 +124,7 @@ impl ViewMut<'_> {
     }
 
     /// Puts some in their places from this one on.
-    pub fn put(&mut self, first: usize, vectors: View) {
+    pub fn copy_at(&mut self, first: usize, vectors: View) {
         let end = first + vectors.len();
         self.x[first..end].copy_from_slice(vectors.x);
         self.y[first..end].copy_from_slice(vectors.y);

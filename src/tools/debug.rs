@@ -1,28 +1,35 @@
 //! The notes' debug lines (`DBG_PIX` and so on): what they print, in their order and their format.
 
-use crate::geometry::ray::{Ray, Span};
+use crate::geometry::ray::{Ray, RayRange};
 use crate::render::bytes::to_byte;
+use crate::render::observer::{Event, Purpose, TraceObserver};
 use crate::render::plan::Plan;
 use crate::render::trace;
-use crate::render::watch::{Event, Purpose, Watch};
 use crate::scene::model::Model;
+use clap::ValueEnum;
 use std::fmt;
 use std::io::{self, Write};
 
 /// One of the notes' debug aids.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Line {
-    /// The pixel, its row first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum LogLine {
+    /// The pixel: its row and its column.
     Pix,
-    /// The object that a ray from the viewer, a mirror or glass meets, and where.
+    /// What a ray hits, and where.
+    ///
+    /// A ray from the viewer, a mirror or glass.
     Hit,
-    /// The colour of what was met, by ambient light and lights.
+    /// The colour of what it hits.
+    ///
+    /// By ambient light and lights.
     Drgb,
     /// The pixel's bytes.
     Irgb,
-    /// The pixel's place in the picture's file, in pixels.
+    /// The pixel's offset in the image file.
+    ///
+    /// In pixels.
     Offset,
-    /// Each object that a search finds, and its distance.
+    /// Each object that a ray finds, and its distance.
     Find,
 }
 
@@ -30,19 +37,19 @@ pub enum Line {
 ///
 /// # Errors
 /// Those of `out`.
-pub fn pixel(plan: &Plan, x: usize, y: usize, lines: &[Line], out: &mut impl Write) -> io::Result<()> {
-    if lines.contains(&Line::Pix) {
+pub fn pixel(plan: &Plan, x: usize, y: usize, lines: &[LogLine], out: &mut impl Write) -> io::Result<()> {
+    if lines.contains(&LogLine::Pix) {
         write!(out, "\nPIX {y:>4} {x:>4} - ")?;
     }
     let mut printer = Printer { model: plan.model, lines, out, ray: None, shadow: false, outcome: Ok(()) };
-    let colour = trace::watch_pixel(plan, x, y, &mut printer);
+    let colour = trace::observe_pixel(plan, x, y, &mut printer);
     printer.outcome?;
-    if lines.contains(&Line::Irgb) {
+    if lines.contains(&LogLine::Irgb) {
         // What the file gets, so a channel of 127.6 is told as 127.
         let [r, g, b] = colour.to_array().map(to_byte);
         write!(out, " IRGB:({r:>5}, {g:>5}, {b:>5})")?;
     }
-    if lines.contains(&Line::Offset) {
+    if lines.contains(&LogLine::Offset) {
         let [width, height] = plan.camera.pixels;
         write!(out, "OFF: {:>7}", (height - 1 - y) * width + x)?;
     }
@@ -51,7 +58,7 @@ pub fn pixel(plan: &Plan, x: usize, y: usize, lines: &[Line], out: &mut impl Wri
 
 struct Printer<'p, W> {
     model: &'p Model,
-    lines: &'p [Line],
+    lines: &'p [LogLine],
     out: &'p mut W,
     /// The present ray, and whether it goes toward a light.
     ray: Option<Ray>,
@@ -60,7 +67,7 @@ struct Printer<'p, W> {
 }
 
 impl<W: Write> Printer<'_, W> {
-    fn print(&mut self, line: Line, text: fmt::Arguments) {
+    fn print(&mut self, line: LogLine, text: fmt::Arguments) {
         if self.outcome.is_ok() && self.lines.contains(&line) {
             self.outcome = self.out.write_fmt(text);
         }
@@ -70,14 +77,14 @@ impl<W: Write> Printer<'_, W> {
     fn find(&mut self, index: usize) {
         let Some(ray) = &self.ray else { return };
         let object = &self.model.objects[index];
-        let distance = object.shape.distance(ray, &Span::RAY);
+        let distance = object.shape.distance(ray, &RayRange::ALL);
         if distance < f64::INFINITY {
-            self.print(Line::Find, format_args!("FND {:>12}: {distance:5.1} - \n ", object.args.name));
+            self.print(LogLine::Find, format_args!("FND {:>12}: {distance:5.1} - \n ", object.args.name));
         }
     }
 }
 
-impl<W: Write> Watch for Printer<'_, W> {
+impl<W: Write> TraceObserver for Printer<'_, W> {
     const SEES: bool = true;
 
     fn see(&mut self, event: Event) {
@@ -88,12 +95,12 @@ impl<W: Write> Watch for Printer<'_, W> {
             Event::Met(Some(hit)) if !self.shadow => {
                 let (name, at) = (&hit.object.args.name, hit.point);
                 let text = format_args!("{name:<12} HIT:({:5.1}, {:5.1}, {:5.1})", at.x, at.y, at.z);
-                self.print(Line::Hit, text);
+                self.print(LogLine::Hit, text);
             }
             Event::Shaded { hit, colour, .. } => {
                 let (name, c) = (&hit.object.args.name, colour);
                 let text = format_args!("{name:<12} DRGB:({:5.2}, {:5.2}, {:5.2})", c.x, c.y, c.z);
-                self.print(Line::Drgb, text);
+                self.print(LogLine::Drgb, text);
             }
             _ => {}
         }

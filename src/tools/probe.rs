@@ -1,11 +1,11 @@
 //! One pixel explained: its rays as an indented tree, with all that was tested, met and added up on the way.
 
-use crate::geometry::ray::{MISS, Ray, Span};
+use crate::geometry::ray::{MISS, Ray, RayRange};
 use crate::render::bytes::to_byte;
 use crate::render::limits::{MAX_DIST, MAX_RAYS};
+use crate::render::observer::{Event, Hit, Outcome, Purpose, Reason, TraceObserver};
 use crate::render::plan::Plan;
 use crate::render::trace::{self};
-use crate::render::watch::{Event, Hit, Outcome, Purpose, Reason, Watch};
 use crate::scene::model::Model;
 use crate::world::material::Rgb;
 use glam::DVec3;
@@ -35,7 +35,7 @@ pub fn pixel(plan: &Plan, x: usize, y: usize, out: &mut impl Write) -> io::Resul
         light: None,
         held: String::new(),
     };
-    let colour = trace::watch_colour(plan, &camera.sight(x as f64, y as f64), None, &mut probe);
+    let colour = trace::observe_colour(plan, &camera.sight(x as f64, y as f64), None, &mut probe);
     probe.outcome?;
     writeln!(out)?;
     conclude(colour, out)?;
@@ -74,7 +74,7 @@ struct Search {
     tests: Vec<(usize, Option<f64>)>,
 }
 
-impl<W: Write> Watch for Probe<'_, W> {
+impl<W: Write> TraceObserver for Probe<'_, W> {
     const SEES: bool = true;
 
     fn see(&mut self, event: Event) {
@@ -181,7 +181,7 @@ impl<W: Write> Probe<'_, W> {
     ) -> (String, String) {
         let Some(given) = given else { return (String::new(), "skipped: the ray leaves it".to_owned()) };
         // The tracer asks for hits nearer than the nearest so far. What lies behind is of interest here.
-        let whole = || self.model.objects[index].shape.distance(&search.ray, &Span::RAY);
+        let whole = || self.model.objects[index].shape.distance(&search.ray, &RayRange::ALL);
         let distance = if given == MISS { whole() } else { given };
         if distance == MISS {
             return (String::new(), "missed".to_owned());

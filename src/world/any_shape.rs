@@ -1,7 +1,7 @@
 //! Any shape, whatever it has opted into.
 
-use crate::geometry::packet::{Nearest, Rays};
-use crate::geometry::ray::{Bracket, Ray, Side, Span};
+use crate::geometry::ray::{Bracket, Ray, RayRange, Side};
+use crate::geometry::ray_packet::{Nearest, RayPacket};
 use crate::geometry::sight::Sight;
 use crate::simd::cpu::Cpu;
 use crate::world::certify::{Enclosure, Precision};
@@ -21,14 +21,14 @@ impl AnyShape {
     }
 
     /// Between which distances its distance is, as far as that is known quickly.
-    pub fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        self.0.bracket(ray, within)
+    pub fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+        self.0.t_bounds(ray, range)
     }
 
-    /// The distance of a hit that [`bracket`](Self::bracket) has found for certain, or NaN where that takes more than
+    /// The distance of a hit that [`t_bounds`](Self::t_bounds) has found for certain, or NaN where that takes more than
     /// plain arithmetic.
-    pub fn refine(&self, ray: &Ray, leaves: Option<Side>) -> f64 {
-        self.0.refine_one(ray, leaves)
+    pub fn refine(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
+        self.0.refine_one(ray, origin_side)
     }
 
     /// Whether a point lies on its surface, but for an error of so many world units.
@@ -46,7 +46,7 @@ impl AnyShape {
     pub fn closest_hits(
         &self,
         cpu: Cpu,
-        rays: Rays,
+        rays: RayPacket,
         sides: Option<&[Side]>,
         id: u64,
         nearest: Nearest,

@@ -4,13 +4,13 @@
 //! what starts there leaves both: a rug on a floor has no shadow of the floor on it, and a floor and a wall have no dots
 //! where they meet. How far off the point is follows from the numbers that it was computed from; nothing is chosen.
 
-use crate::geometry::bounds::larger;
+use crate::geometry::aabb::larger;
 use crate::geometry::ray::Ray;
 use crate::geometry::sight::{Line, Sight};
+use crate::numeric::double_double::DoubleDouble;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
-use crate::numeric::number::Number;
-use crate::numeric::twofold::Twofold;
+use crate::numeric::scalar::Scalar;
 use crate::simd::cpu::kernels;
 use crate::world::certify::Equation;
 use glam::DVec3;
@@ -74,9 +74,9 @@ pub fn touches(shape: &(impl Equation + ?Sized), at: DVec3, error: f64) -> bool 
 /// The distance of a hit by Newton's method in twice the precision:
 /// [`Certified::fine_distance`](crate::world::hittable::Certified::fine_distance) of a shape that has an equation. Nothing
 /// where that does not settle, as at a graze.
-pub fn distance(shape: &(impl Equation + ?Sized), ray: &Ray, near: f64) -> Option<Twofold> {
-    let (mut at, mut moved) = (Twofold::from(near), f64::INFINITY);
-    let line = shape.own(Sight::along(ray).line::<Twofold>());
+pub fn distance(shape: &(impl Equation + ?Sized), ray: &Ray, near: f64) -> Option<DoubleDouble> {
+    let (mut at, mut moved) = (DoubleDouble::from(near), f64::INFINITY);
+    let line = shape.own(Sight::along(ray).line::<DoubleDouble>());
     for _ in 0..4 {
         let Dual { value, slope } = shape.value(line.along(Dual::variable(at)));
         let step = value / slope;

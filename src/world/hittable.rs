@@ -3,10 +3,10 @@
 //! [`Hittable`] is all that a shape needs. What is faster, and what can be proven, is opted into:
 //! [`Bracketed`] and [`Certified`], which [`Shape`](crate::world::shape::Shape) is told of.
 
-use crate::geometry::bounds::Bounds;
-use crate::geometry::ray::{Bracket, Ray, Side, Span};
+use crate::geometry::aabb::Aabb;
+use crate::geometry::ray::{Bracket, Ray, RayRange, Side};
 use crate::geometry::roots::Method;
-use crate::numeric::twofold::Twofold;
+use crate::numeric::double_double::DoubleDouble;
 use crate::world::certify::Equation;
 use crate::world::coincidence;
 use glam::DVec3;
@@ -18,20 +18,20 @@ use glam::DVec3;
 pub trait Hittable: Send + Sync {
     /// The distance from the ray's origin to its first hit of the shape within the span, or
     /// [`MISS`](crate::geometry::ray::MISS).
-    fn distance(&self, ray: &Ray, within: &Span) -> f64;
+    fn distance(&self, ray: &Ray, range: &RayRange) -> f64;
 
     /// The unit normal of the shape at a point of it.
     fn normal(&self, at: DVec3) -> DVec3;
 
     /// A box that holds all of it; nothing where there is none.
-    fn bounds(&self) -> Option<Bounds> {
+    fn bounds(&self) -> Option<Aabb> {
         None
     }
 
     /// Whether a ray that leaves it on this side may meet it again. Where it may not, it is not asked. A plane is never
     /// met again, a ball only from inside; `true` is never wrong, as long as [`distance`](Self::distance) heeds
-    /// `within.leaves`.
-    fn meets_itself(&self, _leaving: Side) -> bool {
+    /// `range.origin_side`.
+    fn can_hit_itself(&self, _leaving: Side) -> bool {
         true
     }
 
@@ -48,7 +48,7 @@ pub trait Hittable: Send + Sync {
 
     /// Whether no part of it lies in a region, which may be without an end. A shape without bounds may know better than
     /// they tell; `false` is never wrong.
-    fn is_clear_of(&self, region: &Bounds) -> bool {
+    fn is_clear_of(&self, region: &Aabb) -> bool {
         self.bounds().is_some_and(|bounds| !bounds.overlaps(region))
     }
 
@@ -78,12 +78,12 @@ pub trait Bracketed: Hittable {
     ///
     /// Where the ray may start on the shape, that is where the shape touches the origin within the span's
     /// `origin_error`, it is a bracket without a certain end.
-    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket;
+    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket;
 
     /// What [`distance`](Hittable::distance) gives for a ray whose hit a bracket has found for certain, to the last bit, or
     /// NaN where that takes more than plain arithmetic. Of other rays it need not tell that they miss. `leaves` is the
     /// side of the shape that the ray starts on, if it does.
-    fn refine(&self, ray: &Ray, leaves: Option<Side>) -> f64;
+    fn refine(&self, ray: &Ray, origin_side: Option<Side>) -> f64;
 }
 
 /// A shape that is the solutions of an equation: what is certain about its hits can be proven.
@@ -96,7 +96,7 @@ pub trait Certified: Hittable + Equation {
 
     /// The distance of the hit at about this one, in twice the precision: it tells which of two surfaces that lie
     /// together is nearer. Nothing where it is not to be had.
-    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold> {
+    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble> {
         coincidence::distance(self, ray, distance)
     }
 }
@@ -104,5 +104,5 @@ pub trait Certified: Hittable + Equation {
 /// A shape whose hits are the roots of a function along a ray, which other methods find as well.
 pub trait Searched: Certified {
     /// The distance by another method of finding roots, to be compared with it.
-    fn distance_by(&self, method: Method, ray: &Ray, within: &Span) -> f64;
+    fn distance_by(&self, method: Method, ray: &Ray, range: &RayRange) -> f64;
 }

@@ -13,14 +13,14 @@ pub trait Light: Send + Sync {
 
     /// What [`emissivity`](Self::emissivity) gives toward every point, if that is the same and never nothing: then it is
     /// not asked for each. `None` is never wrong.
-    fn even(&self) -> Option<Rgb> {
+    fn uniform(&self) -> Option<Rgb> {
         None
     }
 
     /// The largest that [`emissivity`](Self::emissivity) gives toward any point, whatever the sign; nothing where that is
     /// not known. `None` is never wrong.
     fn brightest(&self) -> Option<Rgb> {
-        self.even()
+        self.uniform()
     }
 
     /// The radius of a ball that shines; 0 for a point, whose shadows have sharp edges.

@@ -1,18 +1,23 @@
 //! The random numbers of a pixel's samples: the same for any number of threads.
 
+use clap::ValueEnum;
 use glam::DVec2;
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 
 /// Where a pixel's samples lie.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Sampler {
-    /// Anywhere (the notes): each sample is drawn for itself.
-    Random,
-    /// Spread evenly: Sobol's sequence with Owen scrambling (Burley, "Practical Hash-based Owen Scrambling",
-    /// 2020), scrambled anew for each pixel.
+    /// Evenly spread (a Sobol sequence).
+    ///
+    /// With Owen scrambling (Burley, "Practical Hash-based Owen Scrambling", 2020), scrambled anew for
+    /// each pixel.
     #[default]
     Sobol,
+    /// Random, as in the course notes.
+    ///
+    /// Each sample is drawn for itself.
+    Random,
 }
 
 impl Sampler {

@@ -23,7 +23,7 @@ pub trait Shader: Send + Sync {
     }
 
     /// What those three give at every point, if that is the same: then they are not asked at each. `None` is never wrong.
-    fn even(&self, _material: &Material) -> Option<Look> {
+    fn uniform(&self, _material: &Material) -> Option<Look> {
         None
     }
 
@@ -31,7 +31,7 @@ pub trait Shader: Send + Sync {
     /// looked into; nothing where that is not known, or where a surface that is not even has a diffuse colour below 0.
     /// `None` is never wrong.
     fn brightest(&self, material: &Material) -> Option<Look> {
-        self.even(material)
+        self.uniform(material)
     }
 }
 
@@ -39,7 +39,7 @@ pub trait Shader: Send + Sync {
 pub struct Plain;
 
 impl Shader for Plain {
-    fn even(&self, material: &Material) -> Option<Look> {
+    fn uniform(&self, material: &Material) -> Option<Look> {
         let Material { ambient, diffuse, specular, .. } = *material;
         Some(Look { ambient, diffuse, specular })
     }

@@ -5,7 +5,7 @@
 use divan::{Bencher, black_box, counter::ItemsCount};
 use std::fs;
 use std::path::Path;
-use tabray::geometry::{MISS, Nearest, Ray, Rays, Span};
+use tabray::geometry::{MISS, Nearest, Ray, RayPacket, RayRange};
 use tabray::scene::{self, Model, Registry};
 use tabray::simd::{Cpu, Vectors};
 
@@ -58,7 +58,7 @@ fn distance(bencher: Bencher, name: &str) {
     let shape = &model.objects[object].shape;
     bencher.counter(ItemsCount::new(rays.len())).bench_local(|| {
         for ray in &rays {
-            black_box(shape.distance(black_box(ray), &Span::RAY));
+            black_box(shape.distance(black_box(ray), &RayRange::ALL));
         }
     });
 }
@@ -87,7 +87,7 @@ fn meet(bencher: Bencher, name: &str) {
             let nearest = Nearest { near: &mut near, far: &mut far, met: &mut met, doubt: &mut doubt };
             shape.closest_hits(
                 cpu,
-                Rays { origin: origin.view(WIDE), dir: dir.view(WIDE), origin_error: 0.0 },
+                RayPacket { origin: origin.view(WIDE), dir: dir.view(WIDE), origin_error: 0.0 },
                 None,
                 1,
                 nearest,

@@ -6,7 +6,7 @@ use super::rays::{Random, toward};
 use super::shapes::{self, Line, Plane, Quadric};
 use super::tally::{Tally, Tolerance, ulp};
 use glam::{DMat3, DVec2, DVec3};
-use tabray::geometry::{Ray, Span};
+use tabray::geometry::{Ray, RayRange};
 use tabray::world::Hittable;
 
 /// The first hit of a line beyond a distance.
@@ -337,7 +337,7 @@ impl Subject {
 
     /// Counts a ray's hit by the program, against its truth.
     pub fn count(&self, tally: &mut Tally, shape: &dyn Hittable, ray: &Ray, truth: Truth) {
-        let found = shape.distance(ray, &Span::RAY);
+        let found = shape.distance(ray, &RayRange::ALL);
         let hit = truth.hit();
         // What is nearer to another hit is that one, but for what rounding makes of two that are almost one.
         let sure = hit.map_or(0.0, |hit| 64.0 * ulp(hit.t.high));

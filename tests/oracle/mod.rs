@@ -7,7 +7,7 @@ pub mod revolution;
 pub mod shapes;
 pub mod tally;
 
-use tabray::numeric::twofold::Twofold;
+use tabray::numeric::double_double::DoubleDouble;
 
 /// Where a ray first meets a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,7 +24,7 @@ pub enum Truth {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// How far along the ray, in lengths of its direction.
-    pub t: Twofold,
+    pub t: DoubleDouble,
     /// How fast the surface's function grows along the ray there: negative where the ray enters. At a ledge, where
     /// that has no bound, 1 or -1.
     pub slope: f64,

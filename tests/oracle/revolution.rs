@@ -2,12 +2,12 @@
 //!
 //! All roots are isolated. A piece of the ray is cut in two until bounds that certainly hold say that it has no
 //! root, or that the function only grows or only falls on it, so that the signs at its ends decide. The bounds come
-//! from intervals, and on short pieces, where these are too coarse, from [`Twofold`].
+//! from intervals, and on short pieces, where these are too coarse, from [`DoubleDouble`].
 
 use super::{Crossings, Hit, Truth};
 use glam::DVec3;
 use tabray::geometry::Ray;
-use tabray::numeric::{Dual, Formula, Interval, Number, twofold::Twofold};
+use tabray::numeric::{Dual, Formula, Interval, Scalar, double_double::DoubleDouble};
 
 /// A line x = g(y) turned around the y axis through a base. Where g is below 0 there is nothing.
 pub struct Revolution {
@@ -24,7 +24,7 @@ struct Local {
     /// How far along the ray that point is.
     start: f64,
     /// That point.
-    at: [Twofold; 3],
+    at: [DoubleDouble; 3],
     dir: [f64; 3],
     /// The part of the ray, counted from that point, outside of which the surface is not.
     from: f64,
@@ -37,7 +37,7 @@ struct Bounds {
     slope: Interval,
 }
 
-/// What [`Twofold`]'s errors certainly do not exceed, for numbers of magnitude 1.
+/// What [`DoubleDouble`]'s errors certainly do not exceed, for numbers of magnitude 1.
 const ERROR: f64 = 1e-28;
 
 /// The pieces that one ray may cost.
@@ -90,7 +90,7 @@ impl Revolution {
         let local =
             Local { start: distance, at: self.place_along(ray, distance), dir: [0.0; 3], from: 0.0, to: 0.0 };
         let Dual { value: radius, slope } = self.formula.at(Dual::variable(local.at[1]));
-        let value = self.function(&local, Twofold::from(0.0)).value.high;
+        let value = self.function(&local, DoubleDouble::from(0.0)).value.high;
         // The length of the gradient of x^2 + z^2 - g(y)^2 at a point of the surface.
         let gradient = 2.0 * radius.high * slope.high.hypot(1.0);
         (value / gradient).abs()
@@ -102,10 +102,11 @@ impl Revolution {
     }
 
     /// The point at a distance along a ray, counted from the base.
-    fn place_along(&self, ray: &Ray, distance: f64) -> [Twofold; 3] {
+    fn place_along(&self, ray: &Ray, distance: f64) -> [DoubleDouble; 3] {
         let (origin, base, dir) = (ray.origin.to_array(), self.base.to_array(), ray.dir.to_array());
         std::array::from_fn(|axis| {
-            Twofold::difference(origin[axis], base[axis]) + Twofold::from(distance) * Twofold::from(dir[axis])
+            DoubleDouble::difference(origin[axis], base[axis])
+                + DoubleDouble::from(distance) * DoubleDouble::from(dir[axis])
         })
     }
 
@@ -113,19 +114,19 @@ impl Revolution {
     /// little more.
     fn clip(&self, ray: &Ray, near: f64) -> Option<Local> {
         let [x, y, z] = self.place_along(ray, 0.0);
-        let [dx, dy, dz] = ray.dir.to_array().map(Twofold::from);
-        let (mut from, mut to) = (Twofold::from(near), Twofold::from(1e200));
+        let [dx, dy, dz] = ray.dir.to_array().map(DoubleDouble::from);
+        let (mut from, mut to) = (DoubleDouble::from(near), DoubleDouble::from(1e200));
         if !dy.is_zero() {
-            let (bottom, top) = (-y / dy, (Twofold::from(self.height) - y) / dy);
+            let (bottom, top) = (-y / dy, (DoubleDouble::from(self.height) - y) / dy);
             (from, to) = (from.max(bottom.min(top)), to.min(bottom.max(top)));
-        } else if y.is_negative() || Twofold::from(self.height) < y {
+        } else if y.is_negative() || DoubleDouble::from(self.height) < y {
             return None;
         }
         let across = dx * dx + dz * dz;
         if !across.is_zero() {
             let nearest = -(x * dx + z * dz) / across;
             let (x, z) = (x + nearest * dx, z + nearest * dz);
-            let radius = Twofold::from(1.01 * self.radius);
+            let radius = DoubleDouble::from(1.01 * self.radius);
             let room = radius * radius - x * x - z * z;
             if room.is_negative() {
                 return None;
@@ -136,7 +137,7 @@ impl Revolution {
         if to < from {
             return None;
         }
-        let start = ((from + to) / Twofold::from(2.0)).high;
+        let start = ((from + to) / DoubleDouble::from(2.0)).high;
         let [from, to] = [from, to].map(|end| (end - start.into()).high);
         let slack = 1e-12 * (to - from) + f64::MIN_POSITIVE;
         let at = self.place_along(ray, start);
@@ -144,7 +145,7 @@ impl Revolution {
     }
 
     /// The surface's function along a ray, with its derivative: positive outside.
-    fn function(&self, ray: &Local, t: Twofold) -> Dual<Twofold> {
+    fn function(&self, ray: &Local, t: DoubleDouble) -> Dual<DoubleDouble> {
         let t = Dual::variable(t);
         let [x, y, z] = [0, 1, 2].map(|axis| {
             let place = Dual { value: ray.at[axis], slope: 0.0.into() };
@@ -257,8 +258,8 @@ impl Search<'_> {
         let Dual { value, slope } = self.surface.function(&self.ray, t.into());
         let size = self.surface.radius + reach;
         let steep = 1.0 + slope.high.abs() / size;
-        let around = |number: Twofold, error: f64| {
-            let error = Twofold::from(error);
+        let around = |number: DoubleDouble, error: f64| {
+            let error = DoubleDouble::from(error);
             Interval { low: (number - error).high.next_down(), high: (number + error).high.next_up() }
         };
         Bounds {
@@ -288,9 +289,9 @@ impl Search<'_> {
         if inside_at_first == self.is_inside(to) {
             return None;
         }
-        let (mut low, mut high) = (Twofold::from(from), Twofold::from(to));
-        let mut t = Twofold::from(self.guess(from, to, inside_at_first));
-        let half = Twofold::from(0.5);
+        let (mut low, mut high) = (DoubleDouble::from(from), DoubleDouble::from(to));
+        let mut t = DoubleDouble::from(self.guess(from, to, inside_at_first));
+        let half = DoubleDouble::from(0.5);
         // Newton's steps, and halves of the bracket where these leave it.
         for _ in 0..120 {
             let Dual { value, slope } = self.surface.function(&self.ray, t);
@@ -318,12 +319,12 @@ impl Search<'_> {
             Kind::Root => self.surface.function(&self.ray, t).slope.high,
             Kind::Ledge => sign,
         };
-        let counts = Twofold::from(self.near) < distance && is_surface && self.crossings.count(sign);
+        let counts = DoubleDouble::from(self.near) < distance && is_surface && self.crossings.count(sign);
         counts.then_some(Hit { t: distance, slope })
     }
 
     /// Whether there is a surface as high as the ray is there.
-    fn is_surface(&self, t: Twofold) -> bool {
+    fn is_surface(&self, t: DoubleDouble) -> bool {
         let y = self.ray.at[1] + t * self.ray.dir[1].into();
         !y.is_negative() && y <= self.surface.height.into() && !self.surface.formula.at(y).is_negative()
     }

@@ -8,7 +8,7 @@ use dashu_float::FBig;
 use dashu_float::round::mode::HalfEven;
 use glam::{DVec2, DVec3};
 use tabray::geometry::Ray;
-use tabray::numeric::twofold::Twofold;
+use tabray::numeric::double_double::DoubleDouble;
 
 /// A number of 300 bits.
 pub type Big = FBig<HalfEven, 2>;
@@ -291,7 +291,7 @@ fn roots(a: &Big, b: &Big, c: &Big, size: &Big) -> Roots {
 fn hit(t: &Big, slope: f64) -> Truth {
     let high = t.to_f64().value();
     let low = (t - big(high)).to_f64().value();
-    Truth::Hit(Hit { t: Twofold { high, low }, slope })
+    Truth::Hit(Hit { t: DoubleDouble { high, low }, slope })
 }
 
 /// A number as it is, with room for 300 bits.

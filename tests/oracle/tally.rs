@@ -3,7 +3,7 @@
 use super::{Hit, Truth};
 use std::fmt;
 use tabray::geometry::MISS;
-use tabray::numeric::twofold::Twofold;
+use tabray::numeric::double_double::DoubleDouble;
 
 /// The distance from one number to the next.
 pub fn ulp(number: f64) -> f64 {
@@ -127,8 +127,8 @@ impl fmt::Display for Tally {
 }
 
 /// How far a distance is from the true one.
-fn distance(right: Twofold, found: f64) -> f64 {
-    (Twofold::from(found) - right).high.abs()
+fn distance(right: DoubleDouble, found: f64) -> f64 {
+    (DoubleDouble::from(found) - right).high.abs()
 }
 
 /// Whether what was found is another crossing than this hit.

@@ -8,10 +8,10 @@ use std::collections::BTreeSet;
 use std::f64::consts::PI;
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use tabray::geometry::{MISS, Span};
+use tabray::geometry::{MISS, RayRange};
 use tabray::render::{Plan, trace};
 use tabray::scene::{self, Loaded, Model, Report, dump};
-use tabray::tools::debug::{self, Line};
+use tabray::tools::debug::{self, LogLine};
 use tabray::world::Accuracy::{self, Classic, Exact};
 
 /// The scene of a difference.
@@ -333,7 +333,7 @@ const CHECKS: &[Check] = &[
     ("The debug listing", |scene| {
         let model = scene.model(Exact);
         let mut out = Vec::new();
-        debug::pixel(&Plan::new(&model), 25, 15, &[Line::Pix, Line::Hit, Line::Irgb], &mut out)
+        debug::pixel(&Plan::new(&model), 25, 15, &[LogLine::Pix, LogLine::Hit, LogLine::Irgb], &mut out)
             .expect("memory takes it");
         let listed = String::from_utf8(out).expect("a text");
         let start = "\nPIX   15   25 - wall         HIT:(  5.7,   3.0,  -4.0)";
@@ -397,7 +397,7 @@ const RAYS_THAT_GO_ON: &[Check] = &[
         assert!(scene.with("location 2 1.5 -5", "location 2 1.5 0").lit(Exact) > 1000);
         let model = scene.model(Exact);
         let ray = model.camera.value.ray(20.0, 15.0);
-        assert!(model.objects[0].shape.distance(&ray, &Span::RAY) < MISS, "it is there");
+        assert!(model.objects[0].shape.distance(&ray, &RayRange::ALL) < MISS, "it is there");
     }),
     ("Several surfaces through one point", |scene| {
         let red =

@@ -7,11 +7,12 @@ use insta::Settings;
 use std::fs;
 use std::path::Path;
 use tabray::render::{Plan, trace};
-use tabray::tools::debug::{self, Line};
+use tabray::tools::debug::{self, LogLine};
 use tabray::tools::probe;
 use tempfile::TempDir;
 
-const ALL: [Line; 6] = [Line::Pix, Line::Hit, Line::Drgb, Line::Irgb, Line::Offset, Line::Find];
+const ALL: [LogLine; 6] =
+    [LogLine::Pix, LogLine::Hit, LogLine::Drgb, LogLine::Irgb, LogLine::Offset, LogLine::Find];
 
 fn explained(scene: &str, x: usize, y: usize) -> String {
     let mut out = Vec::new();
@@ -20,7 +21,7 @@ fn explained(scene: &str, x: usize, y: usize) -> String {
     String::from_utf8(out).expect("a text")
 }
 
-fn debugged(scene: &str, x: usize, y: usize, lines: &[Line]) -> String {
+fn debugged(scene: &str, x: usize, y: usize, lines: &[LogLine]) -> String {
     let mut out = Vec::new();
     debug::pixel(&Plan::new(&load(&root().join("scenes").join(scene))), x, y, lines, &mut out)
         .expect("memory takes it");
@@ -68,12 +69,12 @@ fn an_explanation_ends_with_the_bytes_of_the_picture() {
 #[test]
 fn debug_lines_are_those_of_the_notes() {
     // The formats of the notes' `fprintf` calls, in the order in which their program comes to them.
-    let lines = [Line::Pix, Line::Find, Line::Hit, Line::Drgb, Line::Irgb, Line::Offset];
+    let lines = [LogLine::Pix, LogLine::Find, LogLine::Hit, LogLine::Drgb, LogLine::Irgb, LogLine::Offset];
     assert_eq!(
         debugged("light/shadow.ray", 75, 30, &lines),
         fs::read_to_string(root().join("snapshots/probe/debug.txt")).expect("the accepted lines")
     );
-    assert_eq!(debugged("notes/sphere.ray", 3, 4, &[Line::Pix]), "\nPIX    4    3 - ");
+    assert_eq!(debugged("notes/sphere.ray", 3, 4, &[LogLine::Pix]), "\nPIX    4    3 - ");
     assert_eq!(debugged("notes/sphere.ray", 3, 4, &[]), "");
 }
 
@@ -84,7 +85,7 @@ fn debug_prints_bytes_that_the_file_has_at_that_offset() {
     let picture = render(&model);
     let [width, height] = model.camera.value.pixels;
     for (x, y) in [(0, 0), (width / 2, height / 2), (width - 1, height - 1)] {
-        let text = debugged(scene, x, y, &[Line::Irgb, Line::Offset]);
+        let text = debugged(scene, x, y, &[LogLine::Irgb, LogLine::Offset]);
         let numbers: Vec<usize> = text
             .split(|c: char| !c.is_ascii_digit())
             .filter(|word| !word.is_empty())
@@ -102,7 +103,7 @@ fn watching_changes_no_colour() {
     for (x, y) in (0..640).step_by(53).zip((0..480).step_by(31)) {
         let mut out = Vec::new();
         debug::pixel(&plan, x, y, &ALL, &mut out).expect("memory takes it");
-        let watched = trace::watch_pixel(&plan, x, y, &mut ());
+        let watched = trace::observe_pixel(&plan, x, y, &mut ());
         assert_eq!(trace::pixel(&plan, x, y), watched);
     }
 }

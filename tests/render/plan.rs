@@ -8,15 +8,15 @@ use serde_json::Value;
 use std::fs;
 use std::path::Path;
 use std::sync::Mutex;
-use tabray::render::Kind::{Primary, Reflected, Shadow, Transmitted};
-use tabray::render::{Plan, Renderer, Tally, Tests, Watch, decisions, trace};
+use tabray::render::RayKind::{Primary, Reflected, Shadow, Transmitted};
+use tabray::render::{Plan, RayStats, Renderer, TestCounts, TraceObserver, decisions, trace};
 use tabray::scene::{self, Model};
 use tabray::simd::Cpu;
 use tabray::world::Accuracy;
 use tempfile::TempDir;
 
 /// What a scene's picture of 40 x 30 pixels takes.
-fn counted(entities: &str) -> (Model, Tally) {
+fn counted(entities: &str) -> (Model, RayStats) {
     let camera = "camera eye { pixeldim 40 30 worlddim 8 6 viewpoint 4 3 7 }
         material matt { ambient 1 1 1 diffuse 2 2 2 }
         material mirror { specular 0.5 }
@@ -26,9 +26,9 @@ fn counted(entities: &str) -> (Model, Tally) {
     (model, tally)
 }
 
-fn count(model: &Model, threads: usize) -> Tally {
-    let sum = Mutex::new(Tally::default());
-    let add = |part: Tally| sum.lock().expect("no thread panics").add(&part);
+fn count(model: &Model, threads: usize) -> RayStats {
+    let sum = Mutex::new(RayStats::default());
+    let add = |part: RayStats| sum.lock().expect("no thread panics").add(&part);
     let renderer = Renderer::new(threads).expect("threads");
     let plan = Plan::new(model);
     let [width, height] = plan.camera.pixels;
@@ -146,7 +146,7 @@ fn three_planes_are_a_list_and_rays_that_lead_away_from_one_are_not_tested_with_
          plane back {{ material matt normal 0 0 1 point 0 0 -9 }}"
     ));
     assert!(line(&model, "search").contains("a list of 3 objects: none has bounds"));
-    let Tests { objects, tested, culled } = tally.tests(&model)["plane"];
+    let TestCounts { objects, tested, culled } = tally.tests(&model)["plane"];
     assert_eq!((objects, tested + culled), (3, 3 * PIXELS), "a ray is tested or it is not");
     // All rays lead to the back, half of them down and half of them to the left, but for the squares that both are in.
     assert!((2 * PIXELS..5 * PIXELS / 2).contains(&tested), "{tested}");
@@ -156,10 +156,10 @@ fn three_planes_are_a_list_and_rays_that_lead_away_from_one_are_not_tested_with_
 fn a_sphere_in_a_corner_is_hardly_ever_tested() {
     let (model, tally) =
         counted(&format!("{FLOOR} sphere ball {{ material matt center 0.5 0.5 -1 radius 0.4 }}"));
-    let Tests { tested, culled, .. } = tally.tests(&model)["sphere"];
+    let TestCounts { tested, culled, .. } = tally.tests(&model)["sphere"];
     assert_eq!(tested + culled, PIXELS, "a ray is tested or it is not");
     assert!(tested > 0 && tested < PIXELS / 10, "{tested}");
-    let Tests { tested, culled, .. } = tally.tests(&model)["plane"];
+    let TestCounts { tested, culled, .. } = tally.tests(&model)["plane"];
     assert!(tested + culled == PIXELS && tested < 3 * PIXELS / 4, "{tested} look down");
     assert!(line(&model, "search").contains("a list of 2 objects, 1 with bounds"));
 }
@@ -179,7 +179,7 @@ fn many_spheres_are_in_a_tree_and_few_of_them_are_tested() {
         search.contains("for the 400 objects with bounds") && search.contains("a list of the 1 without"),
         "{search}"
     );
-    let Tests { objects, tested, .. } = tally.tests(&model)["sphere"];
+    let TestCounts { objects, tested, .. } = tally.tests(&model)["sphere"];
     assert_eq!(objects, 400);
     assert!(
         tested > 0 && tested < tally.all_rays() * 400 / 10,
@@ -193,7 +193,7 @@ fn no_ray_is_counted_twice() {
     for path in scenes() {
         let model = small(&path, None);
         let tally = count(&model, 2);
-        for (name, Tests { objects, tested, culled }) in tally.tests(&model) {
+        for (name, TestCounts { objects, tested, culled }) in tally.tests(&model) {
             assert!(tested + culled <= tally.all_rays() * objects, "{name} in {}", path.display());
         }
         assert_eq!(count(&model, 1), tally, "{}: counts depend on the threads", path.display());
@@ -407,7 +407,7 @@ fn instructions_are_chosen_among_those_that_are_there() {
 #[test]
 fn whoever_looks_on_sees_the_colours_of_the_picture() {
     struct Onlooker;
-    impl Watch for Onlooker {
+    impl TraceObserver for Onlooker {
         const SEES: bool = true;
     }
     let thread = Renderer::new(1).expect("a thread with room for deep reflections");
@@ -416,7 +416,7 @@ fn whoever_looks_on_sees_the_colours_of_the_picture() {
         let [width, height] = plan.camera.pixels;
         for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
             let [seen, alone] =
-                thread.run(|| [trace::watch_pixel(&plan, x, y, &mut Onlooker), trace::pixel(&plan, x, y)]);
+                thread.run(|| [trace::observe_pixel(&plan, x, y, &mut Onlooker), trace::pixel(&plan, x, y)]);
             assert_eq!(seen, alone, "{name}, pixel {x} {y}");
         }
     };

@@ -8,7 +8,7 @@ use crate::oracle::rays::Random;
 use crate::oracle::shapes::{self, Line, Plane, Quadric};
 use crate::oracle::tally::Tally;
 use glam::{DVec3, dvec2, dvec3};
-use tabray::geometry::{Bracket, MISS, Ray, Span};
+use tabray::geometry::{Bracket, MISS, Ray, RayRange};
 use tabray::scene::Model;
 use tabray::world::{AnyShape, Hittable};
 
@@ -31,7 +31,7 @@ fn shape(object: &str) -> AnyShape {
 
 /// The distance of the first hit.
 fn distance(shape: &dyn Hittable, origin: DVec3, dir: DVec3) -> f64 {
-    shape.distance(&Ray { origin, dir }, &Span::RAY)
+    shape.distance(&Ray { origin, dir }, &RayRange::ALL)
 }
 
 /// A bracket says nothing of a truth that is not so.
@@ -58,8 +58,8 @@ fn finds(kind: &str, ulps: f64) {
                 let before = tally.wrong();
                 let truth = subject.truth(&Line::from(&ray), 0.0);
                 subject.count(&mut tally, &*shape, &ray, truth);
-                let found = shape.distance(&ray, &Span::RAY);
-                let bracket = shape.bracket(&ray, &Span::RAY);
+                let found = shape.distance(&ray, &RayRange::ALL);
+                let bracket = shape.t_bounds(&ray, &RayRange::ALL);
                 let is_certain = bracket.far < MISS;
                 let quick = if is_certain { shape.refine(&ray, None) } else { f64::NAN };
                 if tally.wrong() > before {
@@ -190,7 +190,7 @@ fn brackets_hold_the_hits_of_the_real_rays_of_a_camera() {
                 (text, shapes::rectangle(&Plane::new(normal, point), xdir, dimensions, &line))
             }
         };
-        let bracket = shape(&text).bracket(&ray, &Span::RAY);
+        let bracket = shape(&text).t_bounds(&ray, &RayRange::ALL);
         certain += u32::from(bracket.near == MISS || bracket.far < MISS);
         if !holds(bracket, truth) {
             wrong.push(format!("{text}\n  {ray:?}: {bracket:?}, {truth:?}"));
@@ -249,7 +249,7 @@ fn a_ball_in_the_box_around_it_is_whole() {
     for step in 1..=60 {
         let radius = 0.05 * f64::from(step);
         // Its real radius is the root of a rounded square: where that is more than the box has, both poles are cut off.
-        let is_wider = tabray::numeric::twofold::two_product(radius, radius).1 < 0.0;
+        let is_wider = tabray::numeric::double_double::two_product(radius, radius).1 < 0.0;
         let found = distance(&*ball(radius), dvec3(4.0, 3.0, 6.0), DVec3::NEG_Z);
         let is_right = if is_wider { found == MISS } else { (found - (10.13 - radius)).abs() < 1e-14 };
         assert!(is_right, "of radius {radius}: {found}");
@@ -269,7 +269,7 @@ fn a_double_plane_has_a_normal() {
             let target = dvec3(4.0, 3.0, -4.0) + 2.0 * normal.any_orthonormal_vector() + random.direction();
             let origin = dvec3(4.0, 3.0, 6.0);
             let ray = Ray { origin, dir: (target - origin).normalize() };
-            let found = planes.distance(&ray, &Span::RAY);
+            let found = planes.distance(&ray, &RayRange::ALL);
             let truth = (dvec3(4.0, 3.0, -4.0) - origin).dot(normal) / ray.dir.dot(normal);
             assert!((found - truth).abs() < 1e-6, "{apart}: {found}, not {truth}");
             let cosine = planes.normal(ray.at(found)).dot(normal).abs();

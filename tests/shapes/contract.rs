@@ -4,8 +4,8 @@ use crate::common::{block_with, load, registry, root};
 use glam::DVec3;
 use std::fs;
 use std::sync::atomic::{AtomicU32, Ordering};
-use tabray::geometry::{Bounds, Bracket, Frame, MISS, Ray, Side, Span};
-use tabray::numeric::Number;
+use tabray::geometry::{Aabb, Bracket, Frame, MISS, Ray, RayRange, Side};
+use tabray::numeric::Scalar;
 use tabray::scene::{Args, Derived, Entity, Kind, Pparm, Refusal, Registry, Row, Table};
 use tabray::shapes::Implicit;
 use tabray::tools::contract::{self, Breach, Promise};
@@ -29,7 +29,7 @@ fn what_is_in_the_entities_own_scenes_keeps_its_contract() {
 struct RoundCube(f64);
 
 impl Implicit for RoundCube {
-    fn value<N: Number>(&self, at: [N; 3]) -> N {
+    fn value<N: Scalar>(&self, at: [N; 3]) -> N {
         let [x, y, z] = at.map(|coordinate| coordinate / N::constant(self.0));
         x.powi(4) + y.powi(4) + z.powi(4) - N::constant(1.0)
     }
@@ -125,33 +125,33 @@ impl Ball {
         off.abs().min((off - self.radius).abs()) <= error + 1e-12
     }
 
-    fn hit(&self, ray: &Ray, within: &Span) -> f64 {
+    fn hit(&self, ray: &Ray, range: &RayRange) -> f64 {
         let mut roots = self.roots(ray, self.radius).to_vec();
-        if within.leaves == Some(Side::Inside) {
+        if range.origin_side == Some(Side::Inside) {
             // The near root is where it starts.
             roots.remove(0);
         }
         if matches!(self.flaw, Flaw::Shell | Flaw::MeetsNothingAgain) {
             roots.extend(self.roots(ray, 2.0 * self.radius));
         }
-        roots.into_iter().map(|root| within.keep(root)).fold(MISS, f64::min)
+        roots.into_iter().map(|root| range.keep(root)).fold(MISS, f64::min)
     }
 }
 
 impl Hittable for Ball {
-    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
+    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
         static CALLS: AtomicU32 = AtomicU32::new(0);
         let [near, _] = self.roots(ray, self.radius);
         match self.flaw {
             Flaw::Nan if near.is_nan() => near,
             Flaw::NoSpan if near > 0.0 => near,
-            Flaw::NoInside => within.keep(near),
-            Flaw::Restless => self.hit(ray, within) + f64::from(CALLS.fetch_add(1, Ordering::Relaxed)),
+            Flaw::NoInside => range.keep(near),
+            Flaw::Restless => self.hit(ray, range) + f64::from(CALLS.fetch_add(1, Ordering::Relaxed)),
             Flaw::FromOneSide if ray.dir.x > 0.0 => MISS,
-            Flaw::MeetsItsStart if within.leaves.is_some() => within.keep(1e-9),
-            Flaw::MeetsNothingAgain if within.leaves.is_some() => MISS,
+            Flaw::MeetsItsStart if range.origin_side.is_some() => range.keep(1e-9),
+            Flaw::MeetsNothingAgain if range.origin_side.is_some() => MISS,
             Flaw::Invisible => MISS,
-            _ => self.hit(ray, within),
+            _ => self.hit(ray, range),
         }
     }
 
@@ -167,37 +167,37 @@ impl Hittable for Ball {
         }
     }
 
-    fn bounds(&self) -> Option<Bounds> {
+    fn bounds(&self) -> Option<Aabb> {
         let reach = match self.flaw {
             Flaw::Bounds => 0.9 * self.radius,
             _ => 2.0 * self.radius,
         };
-        Some(Bounds { low: self.center - reach, high: self.center + reach })
+        Some(Aabb { low: self.center - reach, high: self.center + reach })
     }
 
-    fn is_clear_of(&self, region: &Bounds) -> bool {
+    fn is_clear_of(&self, region: &Aabb) -> bool {
         self.flaw == Flaw::Clear || !self.bounds().is_some_and(|bounds| bounds.overlaps(region))
     }
 
-    fn meets_itself(&self, leaving: Side) -> bool {
+    fn can_hit_itself(&self, leaving: Side) -> bool {
         leaving == Side::Inside || matches!(self.flaw, Flaw::MeetsItsStart | Flaw::MeetsNothingAgain)
     }
 }
 
 impl Bracketed for Ball {
-    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        if within.leaves.is_none()
-            && within.origin_error > 0.0
-            && self.is_near(ray.origin, within.origin_error)
+    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+        if range.origin_side.is_none()
+            && range.origin_error > 0.0
+            && self.is_near(ray.origin, range.origin_error)
         {
             return Bracket::UNKNOWN;
         }
-        let distance = self.distance(ray, within);
+        let distance = self.distance(ray, range);
         Bracket::exactly(if self.flaw == Flaw::Bracket { distance + 1.0 } else { distance })
     }
 
     fn refine(&self, ray: &Ray, leaves: Option<Side>) -> f64 {
-        let distance = self.distance(ray, &Span { leaves, ..Span::RAY });
+        let distance = self.distance(ray, &RayRange { origin_side: leaves, ..RayRange::ALL });
         if self.flaw == Flaw::Quick { distance.next_up() } else { distance }
     }
 }
@@ -211,12 +211,12 @@ impl Certified for Ball {
 impl Equation for Ball {
     const IS_QUADRATIC: bool = true;
 
-    fn value<N: Number>(&self, at: [N; 3]) -> N {
+    fn value<N: Scalar>(&self, at: [N; 3]) -> N {
         let part = |axis: usize| (at[axis] - N::constant(self.center[axis])).powi(2);
         part(0) + part(1) + part(2) - N::constant(self.radius).powi(2)
     }
 
-    fn kept<N: Number>(&self, _at: [N; 3]) -> N {
+    fn kept<N: Scalar>(&self, _at: [N; 3]) -> N {
         N::constant(if self.flaw == Flaw::Proof { -1.0 } else { 1.0 })
     }
 }

@@ -7,8 +7,8 @@ use glam::DVec3;
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
 use std::ops::Range;
-use tabray::geometry::{Frame, MISS, Ray, Side, Span};
-use tabray::numeric::Number;
+use tabray::geometry::{Frame, MISS, Ray, RayRange, Side};
+use tabray::numeric::Scalar;
 use tabray::scene::Model;
 use tabray::shapes::Implicit;
 use tabray::world::{AnyShape, Body, Hittable};
@@ -37,14 +37,14 @@ impl Dice {
         Self(Pcg64::new(1, 2))
     }
 
-    fn within(&mut self, range: Range<f64>) -> f64 {
+    fn range(&mut self, range: Range<f64>) -> f64 {
         let part = (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
         range.start + (range.end - range.start) * part
     }
 
     fn direction(&mut self) -> DVec3 {
-        let height = self.within(-1.0..1.0);
-        let (sin, cos) = self.within(0.0..std::f64::consts::TAU).sin_cos();
+        let height = self.range(-1.0..1.0);
+        let (sin, cos) = self.range(0.0..std::f64::consts::TAU).sin_cos();
         DVec3::new(sin, cos, 0.0) * (1.0 - height * height).sqrt() + DVec3::Z * height
     }
 
@@ -52,16 +52,16 @@ impl Dice {
     fn on_torus(&mut self) -> (DVec3, DVec3) {
         let axis = AXIS.normalize();
         let (across, away) = axis.any_orthonormal_pair();
-        let (sin, cos) = self.within(0.0..std::f64::consts::TAU).sin_cos();
+        let (sin, cos) = self.range(0.0..std::f64::consts::TAU).sin_cos();
         let outward = across * sin + away * cos;
-        let (sin, cos) = self.within(0.0..std::f64::consts::TAU).sin_cos();
+        let (sin, cos) = self.range(0.0..std::f64::consts::TAU).sin_cos();
         let normal = outward * sin + axis * cos;
         (CENTER + outward * RADIUS + normal * TUBE, normal)
     }
 
     /// A ray from `far` away that meets the torus's ball somewhere.
     fn aimed(&mut self, far: f64) -> Ray {
-        let target = CENTER + self.direction() * self.within(0.0..1.0).cbrt() * (RADIUS + TUBE);
+        let target = CENTER + self.direction() * self.range(0.0..1.0).cbrt() * (RADIUS + TUBE);
         let origin = CENTER + self.direction() * far;
         Ray { origin, dir: (target - origin).normalize() }
     }
@@ -145,8 +145,8 @@ fn first(roots: Vec<(f64, bool)>, leaves: Option<Side>) -> f64 {
 struct Quartics;
 
 impl Hittable for Quartics {
-    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        within.keep(first(Quartic::new(ray).roots(), within.leaves))
+    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
+        range.keep(first(Quartic::new(ray).roots(), range.origin_side))
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {
@@ -210,7 +210,7 @@ fn roots(coefficients: &[f64]) -> Vec<f64> {
 fn agrees(shape: &dyn Hittable, ray: &Ray, leaves: Option<Side>) -> bool {
     let quartic = Quartic::new(ray);
     let Some(expected) = quartic.first(leaves) else { return false };
-    let found = shape.distance(ray, &Span { leaves, ..Span::RAY });
+    let found = shape.distance(ray, &RayRange { origin_side: leaves, ..RayRange::ALL });
     if found == expected {
         return true;
     }
@@ -265,7 +265,7 @@ fn a_viewer_inside_sees_the_wall() {
     let shape = &*model.objects[0].shape;
     for _ in 0..20_000 {
         let (at, normal) = dice.on_torus();
-        let ray = Ray { origin: at - normal * dice.within(0.1..0.9) * TUBE, dir: dice.direction() };
+        let ray = Ray { origin: at - normal * dice.range(0.1..0.9) * TUBE, dir: dice.direction() };
         assert!(agrees(shape, &ray, None));
     }
 }
@@ -278,7 +278,7 @@ fn what_leaves_a_torus_meets_it_again_where_it_is_and_not_where_it_starts() {
     for turn in 0..60_000 {
         // A point as the tracer finds it, from near and from far.
         let there = dice.aimed([6.0, 1e4, 1e6][turn % 3]);
-        let distance = shape.distance(&there, &Span::RAY);
+        let distance = shape.distance(&there, &RayRange::ALL);
         if distance == MISS {
             continue;
         }
@@ -287,11 +287,11 @@ fn what_leaves_a_torus_meets_it_again_where_it_is_and_not_where_it_starts() {
         // Also very shallow.
         let steep = [1.0, 1e-2, 1e-4][turn / 3 % 3];
         let shallow = dice.direction().cross(normal).normalize();
-        let dir = (shallow + steep * dice.within(0.3..2.0) * normal).normalize();
+        let dir = (shallow + steep * dice.range(0.3..2.0) * normal).normalize();
         for (leaves, dir) in [(Side::Outside, dir), (Side::Inside, -dir)] {
             let ray = Ray { origin, dir };
             assert!(agrees(shape, &ray, Some(leaves)));
-            let found = shape.distance(&ray, &Span { leaves: Some(leaves), ..Span::RAY });
+            let found = shape.distance(&ray, &RayRange { origin_side: Some(leaves), ..RayRange::ALL });
             // A ball as large as the tube, that touches the torus there from either side, meets it nowhere else.
             assert!(found > 1.5 * TUBE * dir.dot(normal).abs(), "{found:e} {leaves:?} {ray:?}");
             again[usize::from(leaves == Side::Inside)] += usize::from(found < MISS);
@@ -329,11 +329,11 @@ struct By<F> {
 
 /// A formula for each number type.
 trait Formula: Send + Sync + 'static {
-    fn value<N: Number>(&self, at: [N; 3]) -> N;
+    fn value<N: Scalar>(&self, at: [N; 3]) -> N;
 }
 
 impl<F: Formula> Implicit for By<F> {
-    fn value<N: Number>(&self, at: [N; 3]) -> N {
+    fn value<N: Scalar>(&self, at: [N; 3]) -> N {
         self.formula.value(at)
     }
 
@@ -349,7 +349,7 @@ fn shape(formula: impl Formula, low: DVec3, high: DVec3) -> AnyShape {
 struct Ball;
 
 impl Formula for Ball {
-    fn value<N: Number>(&self, [x, y, z]: [N; 3]) -> N {
+    fn value<N: Scalar>(&self, [x, y, z]: [N; 3]) -> N {
         x.powi(2) + y.powi(2) + z.powi(2) - N::constant(1.0)
     }
 }
@@ -357,7 +357,9 @@ impl Formula for Ball {
 #[test]
 fn the_box_cuts_and_shows_the_inside() {
     let bowl = shape(Ball, DVec3::splat(-1.0), DVec3::new(1.0, 0.0, 1.0));
-    let hit = |origin, dir, leaves| bowl.distance(&Ray { origin, dir }, &Span { leaves, ..Span::RAY });
+    let hit = |origin, dir, leaves| {
+        bowl.distance(&Ray { origin, dir }, &RayRange { origin_side: leaves, ..RayRange::ALL })
+    };
     let above = DVec3::new(0.0, 3.0, 0.0);
     assert_eq!(hit(above, DVec3::NEG_Y, None), 4.0);
     assert_eq!(hit(above, DVec3::Y, None), MISS);
@@ -373,7 +375,7 @@ fn the_box_cuts_and_shows_the_inside() {
 struct RoundCube;
 
 impl Formula for RoundCube {
-    fn value<N: Number>(&self, [x, y, z]: [N; 3]) -> N {
+    fn value<N: Scalar>(&self, [x, y, z]: [N; 3]) -> N {
         x.powi(4) + y.powi(4) + z.powi(4) - N::constant(1.0)
     }
 }
@@ -386,13 +388,12 @@ fn a_tangency_of_the_fourth_order_is_told_from_a_miss() {
     let (cube, mut dice) = (shape(RoundCube, DVec3::splat(-1.0), DVec3::splat(1.0)), Dice::new());
     let (mut hits, mut misses) = (0, 0);
     for _ in 0..5_000 {
-        let z = dice.within(-0.9..0.9);
+        let z = dice.range(-0.9..0.9);
         let y = (1.0 - z.powi(4)).sqrt().sqrt();
-        let y =
-            y + 0.1_f64.powf(dice.within(2.0..18.0)) * if dice.within(0.0..1.0) < 0.5 { 1.0 } else { -1.0 };
+        let y = y + 0.1_f64.powf(dice.range(2.0..18.0)) * if dice.range(0.0..1.0) < 0.5 { 1.0 } else { -1.0 };
         let below = (real(1.0) - fourth(y) - fourth(z)).to_f64().value();
         let ray = Ray { origin: DVec3::new(-10.0, y, z), dir: DVec3::X };
-        let found = cube.distance(&ray, &Span::RAY);
+        let found = cube.distance(&ray, &RayRange::ALL);
         assert_eq!(found < MISS, below >= 0.0, "{y:?} {z:?}: {found}, {below:e}");
         if found < MISS {
             let half = below.sqrt().sqrt();
@@ -404,7 +405,7 @@ fn a_tangency_of_the_fourth_order_is_told_from_a_miss() {
             misses += 1;
         }
         for far in [found.next_up(), 10.5, 11.5] {
-            let until = cube.distance(&ray, &Span { far, ..Span::RAY });
+            let until = cube.distance(&ray, &RayRange { far, ..RayRange::ALL });
             assert!(
                 until == found || found >= far && until == MISS,
                 "{y:?} {z:?}: {found}, {until} to {far}"
@@ -417,7 +418,7 @@ fn a_tangency_of_the_fourth_order_is_told_from_a_miss() {
 struct Cone;
 
 impl Formula for Cone {
-    fn value<N: Number>(&self, [x, y, z]: [N; 3]) -> N {
+    fn value<N: Scalar>(&self, [x, y, z]: [N; 3]) -> N {
         (x.powi(2) + z.powi(2)).sqrt() - y.abs()
     }
 }
@@ -427,14 +428,14 @@ fn a_tip_has_a_normal() {
     let cone = shape(Cone, DVec3::splat(-1.0), DVec3::splat(1.0));
     assert_eq!(cone.normal(DVec3::ZERO), DVec3::Y);
     let ray = Ray { origin: DVec3::new(3.0, 0.0, 0.0), dir: DVec3::NEG_X };
-    assert_eq!(cone.distance(&ray, &Span::RAY), 3.0);
+    assert_eq!(cone.distance(&ray, &RayRange::ALL), 3.0);
 }
 
 /// A wall of the gyroid, cut to a ball: it has edges, and rays meet it often.
 struct Gyroid;
 
 impl Formula for Gyroid {
-    fn value<N: Number>(&self, [x, y, z]: [N; 3]) -> N {
+    fn value<N: Scalar>(&self, [x, y, z]: [N; 3]) -> N {
         let ball = (x.powi(2) + y.powi(2) + z.powi(2)).sqrt() - N::constant(2.0);
         let [x, y, z] = [x, y, z].map(|coordinate| coordinate * N::constant(4.0));
         let wall = (x.sin() * y.cos() + y.sin() * z.cos() + z.sin() * x.cos()).abs() - N::constant(0.3);
@@ -450,7 +451,7 @@ fn thin_walls_and_edges_are_found_as_by_small_steps() {
         let (from, to) = (dice.direction() * 4.0, dice.direction() * 1.5);
         let ray = Ray { origin: from, dir: (to - from).normalize() };
         let value = |distance: f64| Gyroid.value(ray.at(distance).to_array());
-        let found = gyroid.distance(&ray, &Span::RAY);
+        let found = gyroid.distance(&ray, &RayRange::ALL);
         let stepped = (0..8000).map(|step| f64::from(step) * 1e-3).find(|distance| value(*distance) < 0.0);
         // A step can pass over a hit, and never finds one too early.
         match stepped {
@@ -469,7 +470,7 @@ fn thin_walls_and_edges_are_found_as_by_small_steps() {
 struct Wild;
 
 impl Formula for Wild {
-    fn value<N: Number>(&self, [x, y, z]: [N; 3]) -> N {
+    fn value<N: Scalar>(&self, [x, y, z]: [N; 3]) -> N {
         (N::constant(1.0) / x).tan() * (y * N::constant(1e9)).floor() + (z.ln() / x).exp()
     }
 }
@@ -479,13 +480,13 @@ fn formulas_without_bounds_end() {
     let (wild, mut dice) = (shape(Wild, DVec3::splat(-1.0), DVec3::splat(1.0)), Dice::new());
     for _ in 0..20 {
         let ray = Ray { origin: dice.direction() * 3.0, dir: dice.direction() };
-        let distance = wild.distance(&ray, &Span::RAY);
+        let distance = wild.distance(&ray, &RayRange::ALL);
         assert!(distance > 0.0);
-        wild.distance(&Ray { origin: -0.4 * ray.dir, dir: ray.dir }, &Span::RAY);
+        wild.distance(&Ray { origin: -0.4 * ray.dir, dir: ray.dir }, &RayRange::ALL);
     }
     for far in [1e300, f64::INFINITY, f64::NAN] {
         let ray = Ray { origin: DVec3::splat(far), dir: DVec3::NEG_X };
-        assert_eq!(wild.distance(&ray, &Span::RAY), MISS);
+        assert_eq!(wild.distance(&ray, &RayRange::ALL), MISS);
     }
 }
 
@@ -497,16 +498,18 @@ fn a_heart_has_no_seam_where_its_parts_meet() {
     );
     let (heart, mut dice) = (&*model.objects[0].shape, Dice::new());
     for turn in 0..20_000 {
-        let height = dice.within(-0.5..0.5) * 0.1_f64.powi(turn % 16);
-        let target = DVec3::new(dice.within(-0.3..0.3), height, 0.0);
+        let height = dice.range(-0.5..0.5) * 0.1_f64.powi(turn % 16);
+        let target = DVec3::new(dice.range(-0.3..0.3), height, 0.0);
         let level = dice.direction().reject_from_normalized(DVec3::Y).normalize();
         let ray = Ray { origin: target + 5.0 * level, dir: -level };
-        let distance = heart.distance(&ray, &Span::RAY);
+        let distance = heart.distance(&ray, &RayRange::ALL);
         let (at, normal) = (ray.at(distance), heart.normal(ray.at(distance)));
         assert!(distance < MISS && normal.is_normalized() && normal.dot(ray.dir) < 0.0, "{ray:?}");
         let dir = (normal + 0.9 * dice.direction()).normalize();
-        let left =
-            heart.distance(&Ray { origin: at, dir }, &Span { leaves: Some(Side::Outside), ..Span::RAY });
+        let left = heart.distance(
+            &Ray { origin: at, dir },
+            &RayRange { origin_side: Some(Side::Outside), ..RayRange::ALL },
+        );
         assert!(left > 0.01, "{left:e} from {at}");
     }
 }

@@ -7,7 +7,7 @@ mod oracle;
 
 mod arithmetic;
 mod contract;
+mod double_double;
 mod implicit;
 mod notes;
 mod stability;
-mod twofold;

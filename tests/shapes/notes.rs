@@ -2,7 +2,7 @@
 
 use crate::common::model;
 use glam::{DVec3, dvec3};
-use tabray::geometry::{MISS, Ray, Span};
+use tabray::geometry::{MISS, Ray, RayRange};
 use tabray::render::{Plan, trace};
 use tabray::scene::dump;
 use tabray::world::{AnyShape, Hittable};
@@ -67,7 +67,7 @@ fn shape(object: &str) -> AnyShape {
 }
 
 fn distance(shape: &dyn Hittable, origin: DVec3, toward: DVec3) -> f64 {
-    shape.distance(&Ray { origin, dir: toward.normalize() }, &Span::RAY)
+    shape.distance(&Ray { origin, dir: toward.normalize() }, &RayRange::ALL)
 }
 
 #[test]

@@ -15,7 +15,7 @@ use std::fmt::Write;
 use std::hint::black_box;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
-use tabray::geometry::{MISS, Ray, Span};
+use tabray::geometry::{MISS, Ray, RayRange};
 use tabray::numeric::Formula;
 use tabray::world::{AnyShape, Hittable};
 
@@ -48,7 +48,7 @@ struct Steps {
 }
 
 impl Hittable for Steps {
-    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
+    fn distance(&self, ray: &Ray, within: &RayRange) -> f64 {
         let origin = ray.origin - BASE;
         let outside = |t: f64| {
             let at = origin + t * ray.dir;
@@ -109,7 +109,7 @@ fn shape(method: &str, object: &str) -> Shape {
 
 /// The distances of the first hits.
 fn trace(shape: &Shape, rays: &[Ray]) -> Vec<f64> {
-    rays.iter().map(|ray| shape.distance(black_box(ray), &Span::RAY)).collect()
+    rays.iter().map(|ray| shape.distance(black_box(ray), &RayRange::ALL)).collect()
 }
 
 /// How long each shape takes for these rays. They take turns, so that what else the machine does meets them all.

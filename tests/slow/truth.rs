@@ -10,7 +10,7 @@ use crate::oracle::{Crossings, Truth};
 use glam::{DMat3, DVec3, dvec2, dvec3};
 use std::cell::RefCell;
 use std::collections::HashMap;
-use tabray::geometry::{MISS, Ray, Side, Sight, Span};
+use tabray::geometry::{MISS, Ray, RayRange, Side, Sight};
 use tabray::numeric::{Float, Wide};
 use tabray::scene::Model;
 use tabray::world::certify::{self, Enclosure, Precision};
@@ -35,7 +35,7 @@ fn scene(accuracy: &str, object: &str) -> Model {
 
 /// The distance of its first hit.
 fn distance(model: &Model, ray: &Ray) -> f64 {
-    model.objects[0].shape.distance(ray, &Span::RAY)
+    model.objects[0].shape.distance(ray, &RayRange::ALL)
 }
 
 /// A vector as scenes spell it.
@@ -645,7 +645,7 @@ fn rays_that_leave_a_surface_meet_it_again_where_they_should() {
             let leaves = Side::seen_along(-dir, normal);
             let crossings = if leaves == Side::Outside { Crossings::Entries } else { Crossings::Exits };
             let onward = Ray { origin: start, dir };
-            let found = shape.distance(&onward, &Span { leaves: Some(leaves), ..Span::RAY });
+            let found = shape.distance(&onward, &RayRange { origin_side: Some(leaves), ..RayRange::ALL });
             let truth = surface.first_hit(&onward, 0.0, crossings);
             let is_right = match truth {
                 Truth::Undecided => true,

@@ -9,7 +9,7 @@ use crate::scene::registry::Registry;
 use crate::words;
 use hyper::body::Bytes;
 use hyper::{Request, Response, StatusCode};
-use serde_json::Value;
+use serde::Deserialize;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
@@ -63,18 +63,25 @@ fn page(registry: &Registry, folder: &Path, before: Option<&Path>) -> Response<s
     }
 }
 
-/// Does what was decided on the page, which sends a snapshot's name and the version that it showed, if the snapshot is
-/// still that.
+/// What the page sends to have a snapshot accepted or rejected.
+#[derive(Deserialize)]
+struct Seen {
+    /// The path of the snapshot.
+    snapshot: String,
+    /// The version that the page showed.
+    version: String,
+}
+
+/// Does what was decided on the page, if the snapshot is still the one that it showed.
 fn decide(
     folder: &Path,
     body: &[u8],
     verdict: &str,
     act: impl Fn(&Pending) -> Result<(), Failure>,
 ) -> Result<String, (StatusCode, String)> {
-    let seen: Value = serde_json::from_slice(body).unwrap_or_default();
-    let (Some(name), Some(version)) = (seen["snapshot"].as_str(), seen["version"].as_str()) else {
-        return Err((StatusCode::BAD_REQUEST, "the request names no snapshot".to_owned()));
-    };
+    let seen = serde_json::from_slice(body);
+    let Seen { snapshot: name, version } =
+        seen.map_err(|_| (StatusCode::BAD_REQUEST, "the request names no snapshot".to_owned()))?;
     let failed = |failure: Failure| {
         tell(&failure);
         (StatusCode::INTERNAL_SERVER_ERROR, "failed: see the terminal for the reason".to_owned())

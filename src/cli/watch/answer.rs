@@ -7,11 +7,13 @@ use crate::output::aov::Aov;
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::tools::probe;
+use crate::words;
+use clap::ValueEnum;
 use http_body_util::BodyExt;
 use http_body_util::channel::Channel;
 use hyper::body::Bytes;
 use hyper::{Method, Request, Response, StatusCode};
-use serde_json::json;
+use serde::Serialize;
 use std::io::{self, Write};
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -101,7 +103,7 @@ fn pixel(frame: Arc<Frame>, x: &str, y: &str) -> Option<Job> {
     let y = y.parse().ok().filter(|y| *y < height)?;
     Some(Box::new(move |client| {
         Renderer::new(1)?.run(|| {
-            let mut told = Explanation { text: Vec::new(), check: || check(&frame, client) };
+            let mut told = Bounded { text: Vec::new(), check: || check(&frame, client) };
             match probe::pixel(&Plan::new(&frame.model), x, y, &mut told) {
                 Err(error) if error.kind() == io::ErrorKind::StorageFull => {
                     told.text
@@ -109,20 +111,29 @@ fn pixel(frame: Arc<Frame>, x: &str, y: &str) -> Option<Job> {
                 }
                 written => written?,
             }
-            let data =
-                json!({ "text": String::from_utf8_lossy(&told.text), "lines": frame.lines_of([x, y]) });
-            Ok(("application/json", data.to_string().into_bytes()))
+            let explained =
+                Explained { lines: frame.lines_of([x, y]), text: &String::from_utf8_lossy(&told.text) };
+            Ok(("application/json", words::json(&explained).into_bytes()))
         })
     }))
 }
 
+/// How a pixel came about.
+#[derive(Serialize)]
+struct Explained<'e> {
+    /// The first and the last line of the object that it shows, counted from 1; null where it shows none.
+    lines: Option<[usize; 2]>,
+    /// What `tabray probe` prints, or the beginning of it.
+    text: &'e str,
+}
+
 /// A pixel's explanation while somebody wants it and it is not too long.
-struct Explanation<C> {
+struct Bounded<C> {
     text: Vec<u8>,
     check: C,
 }
 
-impl<C: Fn() -> ControlFlow<()>> Write for Explanation<C> {
+impl<C: Fn() -> ControlFlow<()>> Write for Bounded<C> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         if (self.check)().is_break() {
             // What is interrupted would be tried again.
@@ -141,7 +152,8 @@ impl<C: Fn() -> ControlFlow<()>> Write for Explanation<C> {
 
 /// A picture beside the main one: red, green and blue of each pixel.
 fn layer(frame: Arc<Frame>, name: &str) -> Option<Job> {
-    let aov = [Aov::Depth, Aov::Normal, Aov::Object, Aov::Cost].into_iter().find(|aov| aov.name() == name)?;
+    // An error is seen against the truth, which there is none of here.
+    let aov = Aov::from_str(name, false).ok().filter(|aov| *aov != Aov::Error)?;
     Some(Box::new(move |client| {
         let plan = Plan::new(&frame.model);
         let layer = aov.render(&Renderer::new(0)?, &plan, &plan, &|| check(&frame, client))?;
@@ -155,11 +167,11 @@ mod tests {
 
     #[test]
     fn an_explanation_ends_where_it_is_too_long_or_nobody_wants_it() {
-        let mut told = Explanation { text: Vec::new(), check: || ControlFlow::Continue(()) };
+        let mut told = Bounded { text: Vec::new(), check: || ControlFlow::Continue(()) };
         told.write_all(&vec![b'a'; LONGEST]).expect("it is not too long");
         let full = told.write_all(b"a").expect_err("now it is");
         assert_eq!((full.kind(), told.text.len()), (io::ErrorKind::StorageFull, LONGEST));
-        let mut told = Explanation { text: Vec::new(), check: || ControlFlow::Break(()) };
+        let mut told = Bounded { text: Vec::new(), check: || ControlFlow::Break(()) };
         assert_eq!(told.write_all(b"a").expect_err("nobody").kind(), io::ErrorKind::BrokenPipe);
     }
 }

@@ -5,7 +5,7 @@
 //! with the pieces and not with their squares, so that rays which graze take hundreds of pieces.
 
 use super::refiner::{Refiner, value_and_slope};
-use super::taylor::Line;
+use super::taylor::FunctionOnLine;
 use crate::geometry::ray::Side;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
@@ -14,8 +14,13 @@ use std::ops::Range;
 /// The pieces after which a ray is given up.
 const MOST: usize = 100_000;
 
-pub fn first_root(line: &impl Line, span: Range<f64>, shortest: f64, leaves: Option<Side>) -> Option<f64> {
-    let wants = |falls: bool| leaves.is_none_or(|side| falls == (side == Side::Outside));
+pub fn first_root(
+    line: &impl FunctionOnLine,
+    span: Range<f64>,
+    shortest: f64,
+    origin_side: Option<Side>,
+) -> Option<f64> {
+    let wants = |falls: bool| origin_side.is_none_or(|side| falls == (side == Side::Outside));
     let mut waiting = vec![(span.start, span.end)];
     for _ in 0..MOST {
         let (low, high) = waiting.pop()?;
@@ -28,13 +33,13 @@ pub fn first_root(line: &impl Line, span: Range<f64>, shortest: f64, leaves: Opt
             let ((at_low, _), (at_high, _)) = (value_and_slope(line, low), value_and_slope(line, high));
             // A line that leaves the surface starts there, whatever its sign.
             let starts =
-                leaves.is_some() && low == span.start && line.at(Interval { low, high: low }).has_zero();
+                origin_side.is_some() && low == span.start && line.at(Interval { low, high: low }).has_zero();
             let crosses = (at_low >= 0.0) != (at_high >= 0.0) && !starts;
             if crosses && wants(at_low >= 0.0) {
                 return Some(Refiner::Newton.root(line, (low, high), at_low >= 0.0, shortest));
             }
             // Too short to be cut, and 0 as far as rounding tells: the ray touches.
-            if !is_monotone && leaves.is_none() && over.value.is_bounded() {
+            if !is_monotone && origin_side.is_none() && over.value.is_bounded() {
                 return Some(low);
             }
         } else {

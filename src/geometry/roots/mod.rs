@@ -16,11 +16,11 @@ mod tracing;
 mod turning;
 pub mod twice;
 
-use crate::geometry::ray::Span;
+use crate::geometry::ray::RayRange;
 pub use refiner::Refiner;
 use std::fmt;
 use std::ops::Range;
-use taylor::Line;
+use taylor::FunctionOnLine;
 
 /// A way to find the first root.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,28 +64,28 @@ impl Method {
     /// `shortest` is a few units in the last place of the greatest numbers on the line.
     pub fn first_root(
         self,
-        line: &impl Line,
+        line: &impl FunctionOnLine,
         span: Range<f64>,
         base: f64,
-        within: &Span,
+        range: &RayRange,
         shortest: f64,
     ) -> Option<f64> {
-        let leaves = within.leaves;
+        let origin_side = range.origin_side;
         if self == Self::Taylor {
-            return taylor::first_root(line, &span.into(), base, within, shortest).root;
+            return taylor::first_root(line, &span.into(), base, range, shortest).root;
         }
-        let span = span.start.max(within.near - base)..span.end.min(within.far - base);
+        let span = span.start.max(range.near - base)..span.end.min(range.far - base);
         if span.is_empty() {
             return None;
         }
         match self {
-            Self::Steps => steps::first_root(line, span, leaves),
+            Self::Steps => steps::first_root(line, span, origin_side),
             Self::Samples(count, refiner) => {
-                samples::first_root(line, span, shortest, leaves, (count, refiner))
+                samples::first_root(line, span, shortest, origin_side, (count, refiner))
             }
-            Self::Turning(count) => turning::first_root(line, span, shortest, leaves, count),
-            Self::Tracing => tracing::first_root(line, span, leaves),
-            Self::Intervals => intervals::first_root(line, span, shortest, leaves),
+            Self::Turning(count) => turning::first_root(line, span, shortest, origin_side, count),
+            Self::Tracing => tracing::first_root(line, span, origin_side),
+            Self::Intervals => intervals::first_root(line, span, shortest, origin_side),
             Self::Taylor => unreachable!("it has been asked"),
         }
     }
@@ -119,13 +119,13 @@ impl fmt::Display for Method {
 mod tests {
     use super::*;
     use crate::geometry::ray::Side;
-    use crate::numeric::number::Number;
+    use crate::numeric::scalar::Scalar;
 
     /// Falls through 0 at the square root of 2, rises at 3.
     struct Parabola;
 
-    impl Line for Parabola {
-        fn at<N: Number>(&self, t: N) -> N {
+    impl FunctionOnLine for Parabola {
+        fn at<N: Scalar>(&self, t: N) -> N {
             (t - N::constant(2.0).sqrt()) * (t - N::constant(3.0))
         }
     }
@@ -133,14 +133,19 @@ mod tests {
     /// Is below 0 for a thousandth around 2 alone.
     struct Notch;
 
-    impl Line for Notch {
-        fn at<N: Number>(&self, t: N) -> N {
+    impl FunctionOnLine for Notch {
+        fn at<N: Scalar>(&self, t: N) -> N {
             (t - N::constant(2.0)).powi(2) - N::constant(2.5e-7)
         }
     }
 
-    fn root(method: Method, line: &impl Line, span: Range<f64>, leaves: Option<Side>) -> Option<f64> {
-        method.first_root(line, span, 0.0, &Span { leaves, ..Span::RAY }, 1e-14)
+    fn root(
+        method: Method,
+        line: &impl FunctionOnLine,
+        span: Range<f64>,
+        origin_side: Option<Side>,
+    ) -> Option<f64> {
+        method.first_root(line, span, 0.0, &RayRange { origin_side, ..RayRange::ALL }, 1e-14)
     }
 
     #[test]

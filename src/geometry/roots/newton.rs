@@ -127,7 +127,7 @@ mod tests {
             }
         }
         fn power(lane: usize, x: f64) -> Dual {
-            let sign = if lane % 2 == 0 { 1.0 } else { -1.0 };
+            let sign = if lane.is_multiple_of(2) { 1.0 } else { -1.0 };
             let exponent = lane as i32 + 2;
             Dual {
                 value: sign * (x.powi(exponent) - 3.0),

@@ -1,7 +1,7 @@
 //! From places along a line to a root: the first two between which the function changes its sign, and how the root is
 //! narrowed down there.
 
-use super::taylor::Line;
+use super::taylor::FunctionOnLine;
 use super::{bisection, chandrupatla, newton};
 use crate::geometry::ray::Side;
 use crate::numeric::dual::Dual;
@@ -37,7 +37,13 @@ impl fmt::Display for Refiner {
 
 impl Refiner {
     /// The root between two places, where the function is positive at the first if `falls`.
-    pub(super) fn root(self, line: &impl Line, (low, high): (f64, f64), falls: bool, shortest: f64) -> f64 {
+    pub(super) fn root(
+        self,
+        line: &impl FunctionOnLine,
+        (low, high): (f64, f64),
+        falls: bool,
+        shortest: f64,
+    ) -> f64 {
         let at = |t: f64| line.at(t);
         match self {
             Self::Bisection3 => bisection::root(at, (low, high), falls, 1e-3),
@@ -56,12 +62,12 @@ impl Refiner {
 ///
 /// On which side a line starts is known where it leaves the surface, whatever rounding says.
 pub(super) fn sign_change(
-    line: &impl Line,
+    line: &impl FunctionOnLine,
     mut places: impl Iterator<Item = f64>,
-    leaves: Option<Side>,
+    origin_side: Option<Side>,
 ) -> Option<(f64, f64, bool)> {
     let mut low = places.next()?;
-    let is_outside = leaves.map_or_else(|| line.at(low) >= 0.0, |side| side == Side::Outside);
+    let is_outside = origin_side.map_or_else(|| line.at(low) >= 0.0, |side| side == Side::Outside);
     for high in places {
         if (line.at(high) >= 0.0) != is_outside {
             return Some((low, high, is_outside));
@@ -72,7 +78,7 @@ pub(super) fn sign_change(
 }
 
 /// The value of a function along a line, and how fast it grows.
-pub(super) fn value_and_slope(line: &impl Line, t: f64) -> (f64, f64) {
+pub(super) fn value_and_slope(line: &impl FunctionOnLine, t: f64) -> (f64, f64) {
     let Dual { value, slope } = line.at(Dual::variable(t));
     (value, slope)
 }

@@ -5,17 +5,17 @@
 //! and where three lie between two samples, the refiner may find the last.
 
 use super::refiner::{Refiner, evenly, sign_change};
-use super::taylor::Line;
+use super::taylor::FunctionOnLine;
 use crate::geometry::ray::Side;
 use std::ops::Range;
 
 pub fn first_root(
-    line: &impl Line,
+    line: &impl FunctionOnLine,
     span: Range<f64>,
     shortest: f64,
-    leaves: Option<Side>,
+    origin_side: Option<Side>,
     (count, refiner): (u32, Refiner),
 ) -> Option<f64> {
-    let (low, high, falls) = sign_change(line, evenly(&span, count), leaves)?;
+    let (low, high, falls) = sign_change(line, evenly(&span, count), origin_side)?;
     Some(refiner.root(line, (low, high), falls, shortest))
 }

@@ -6,7 +6,7 @@
 
 use super::bisection;
 use super::refiner::sign_change;
-use super::taylor::Line;
+use super::taylor::FunctionOnLine;
 use crate::geometry::ray::Side;
 use std::ops::Range;
 
@@ -15,10 +15,14 @@ const STEP: f64 = 0.1;
 /// How far the notes follow a ray.
 const FAR: f64 = 100.0;
 
-pub fn first_root(line: &impl Line, Range { start, end }: Range<f64>, leaves: Option<Side>) -> Option<f64> {
+pub fn first_root(
+    line: &impl FunctionOnLine,
+    Range { start, end }: Range<f64>,
+    origin_side: Option<Side>,
+) -> Option<f64> {
     let end = end.min(start + FAR);
     let count = ((end - start) / STEP).ceil() as u32;
     let places = (0..=count).map(|index| (start + f64::from(index) * STEP).min(end));
-    let (low, high, falls) = sign_change(line, places, leaves)?;
+    let (low, high, falls) = sign_change(line, places, origin_side)?;
     Some(bisection::root(|t| line.at(t), (low, high), falls, 1e-6))
 }

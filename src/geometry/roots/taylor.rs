@@ -8,17 +8,17 @@
 //! are of the first order and which shrink more slowly where a ray grazes.
 
 use crate::geometry::frame::BLUR;
-use crate::geometry::ray::{Side, Span};
+use crate::geometry::ray::{RayRange, Side};
 use crate::geometry::roots::{newton, twice};
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
-use crate::numeric::number::Number;
+use crate::numeric::scalar::Scalar;
 use std::ops::Range;
 
 /// The values of a function along a line: above 0 outside of something, below 0 inside.
-pub trait Line {
+pub trait FunctionOnLine {
     /// The value at a place, with any number type.
-    fn at<N: Number>(&self, t: N) -> N;
+    fn at<N: Scalar>(&self, t: N) -> N;
 
     /// Bounds of the second derivative on a piece.
     fn curvature(&self, piece: Interval) -> Interval {
@@ -28,9 +28,9 @@ pub trait Line {
     /// The root on a piece of which bounds in f64 do not tell whether it has one, and more of them would not: where
     /// rounding hides the function's sign, or after more proofs than are made. A line that is itself rounded says it of
     /// the one that it stands for.
-    fn undecided(&self, piece: Interval, leaves: Option<Side>) -> Option<f64> {
+    fn undecided(&self, piece: Interval, origin_side: Option<Side>) -> Option<f64> {
         let hidden = self.at(Interval::constant(piece.middle())).width();
-        twice::first_root(|t| self.at(t), piece, leaves, hidden)
+        twice::first_root(|t| self.at(t), piece, origin_side, hidden)
     }
 }
 
@@ -103,12 +103,18 @@ const WAITING: usize = 64;
 /// Pieces not longer than `shortest` are not cut: a few units in the last place of the greatest numbers on the line.
 ///
 /// What bounds in f64 do not tell, the line is [asked](Line::undecided).
-pub fn first_root(line: &impl Line, stretch: &Stretch, base: f64, within: &Span, shortest: f64) -> Found {
+pub fn first_root(
+    line: &impl FunctionOnLine,
+    stretch: &Stretch,
+    base: f64,
+    range: &RayRange,
+    shortest: f64,
+) -> Found {
     let Range { start, end } = stretch.outer;
     if !(start <= end && start.is_finite() && end.is_finite()) {
         return Found { root: None, is_certain: true };
     }
-    let mut search = Search { line, start, base, within, shortest, is_certain: true };
+    let mut search = Search { line, start, base, range, shortest, is_certain: true };
     // Where the line may have come to the ends, and where it certainly is between them.
     let inner = stretch.inner.start.clamp(start, end)..stretch.inner.end.clamp(start, end);
     let root = if inner.start < inner.end || start == end {
@@ -125,7 +131,7 @@ struct Search<'l, L> {
     line: &'l L,
     start: f64,
     base: f64,
-    within: &'l Span,
+    range: &'l RayRange,
     /// What is not cut any more.
     shortest: f64,
     is_certain: bool,
@@ -140,10 +146,10 @@ enum Judgement {
     Open { left: (f64, f64), right: (f64, f64) },
 }
 
-impl<L: Line> Search<'_, L> {
+impl<L: FunctionOnLine> Search<'_, L> {
     /// The first root on a piece.
     fn on_a_piece(&mut self, start: f64, end: f64) -> Option<f64> {
-        let Span { near, far, .. } = *self.within;
+        let RayRange { near, far, .. } = *self.range;
         let mut waiting = [(0.0, 0.0); WAITING];
         waiting[0] = (start, end);
         let (mut count, mut judged) = (1, 0);
@@ -238,14 +244,14 @@ impl<L: Line> Search<'_, L> {
 
     /// What a piece has on which the function only rises or only falls.
     fn cross(&mut self, low: f64, high: f64, rises: bool, guess: f64) -> Judgement {
-        let leaves = self.within.leaves;
-        if leaves.is_some_and(|side| rises == (side == Side::Outside)) {
+        let origin_side = self.range.origin_side;
+        if origin_side.is_some_and(|side| rises == (side == Side::Outside)) {
             return Judgement::Free;
         }
         let at = |t| if rises { self.value(t) } else { -self.value(t) };
         let (at_low, at_high) = (at(low), at(high));
         // A line that leaves the surface starts there.
-        let starts = leaves.is_some() && low == self.start && at_low.has_zero();
+        let starts = origin_side.is_some() && low == self.start && at_low.has_zero();
         if at_low.low > 0.0 || at_high.high < 0.0 || starts {
             Judgement::Free
         } else if at_low.high < 0.0 && at_high.low > 0.0 {
@@ -273,12 +279,12 @@ impl<L: Line> Search<'_, L> {
         self.is_certain = false;
         let is_short = high - low <= self.shortest;
         // A line that leaves the surface starts there.
-        if is_short && self.within.leaves.is_some() && low == self.start {
+        if is_short && self.range.origin_side.is_some() && low == self.start {
             return Judgement::Free;
         }
         let (at_low, at_high) = (self.line.at(low), self.line.at(high));
         let (falls, rises) = (at_low > 0.0 && at_high <= 0.0, at_low < 0.0 && at_high >= 0.0);
-        let crosses = match self.within.leaves {
+        let crosses = match self.range.origin_side {
             None => falls || rises,
             Some(Side::Outside) => falls,
             Some(Side::Inside) => rises,
@@ -296,11 +302,11 @@ impl<L: Line> Search<'_, L> {
     /// What the line itself says of a piece.
     fn undecided(&mut self, low: f64, high: f64) -> Judgement {
         // A line that leaves the surface starts there.
-        if self.within.leaves.is_some() && low == self.start {
+        if self.range.origin_side.is_some() && low == self.start {
             return Judgement::Free;
         }
         self.is_certain = false;
-        match self.line.undecided(Interval { low, high }, self.within.leaves) {
+        match self.line.undecided(Interval { low, high }, self.range.origin_side) {
             Some(root) => Judgement::Root(root.clamp(low, high)),
             None => Judgement::Free,
         }
@@ -338,8 +344,8 @@ mod tests {
     /// Two roots at 1, and one at 3.
     struct Cubic;
 
-    impl Line for Cubic {
-        fn at<N: Number>(&self, t: N) -> N {
+    impl FunctionOnLine for Cubic {
+        fn at<N: Scalar>(&self, t: N) -> N {
             (t - N::constant(1.0)).powi(2) * (N::constant(3.0) - t)
         }
     }
@@ -347,16 +353,16 @@ mod tests {
     /// A kink at the root 2, a jump past 0 at 3 and a pole at 4.
     struct Broken;
 
-    impl Line for Broken {
-        fn at<N: Number>(&self, t: N) -> N {
+    impl FunctionOnLine for Broken {
+        fn at<N: Scalar>(&self, t: N) -> N {
             let n = N::constant;
             (t - n(2.0)).abs().min(n(2.5) - t.floor()) / (n(4.0) - t)
         }
     }
 
-    fn first(line: &impl Line, span: Range<f64>, leaves: Option<Side>) -> Option<f64> {
-        let within = Span { leaves, ..Span::RAY };
-        first_root(line, &span.into(), 0.0, &within, f64::EPSILON * 36.0).root
+    fn first(line: &impl FunctionOnLine, span: Range<f64>, origin_side: Option<Side>) -> Option<f64> {
+        let range = RayRange { origin_side, ..RayRange::ALL };
+        first_root(line, &span.into(), 0.0, &range, f64::EPSILON * 36.0).root
     }
 
     #[test]

@@ -5,7 +5,7 @@
 //! over. A step below 1e-6 counts as a hit: a ray that only comes near is one, too, and one that runs along the
 //! surface takes steps without end.
 
-use super::taylor::Line;
+use super::taylor::FunctionOnLine;
 use crate::geometry::ray::Side;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
@@ -17,16 +17,16 @@ const NEAR: f64 = 1e-6;
 /// The steps after which a ray is given up.
 const MOST: usize = 10_000;
 
-pub fn first_root(line: &impl Line, span: Range<f64>, leaves: Option<Side>) -> Option<f64> {
+pub fn first_root(line: &impl FunctionOnLine, span: Range<f64>, origin_side: Option<Side>) -> Option<f64> {
     let over = line.at(Dual::variable(Interval { low: span.start, high: span.end }));
     let steepest = over.slope.magnitude();
     if !steepest.is_finite() {
         return None;
     }
-    let is_outside = leaves.map_or_else(|| line.at(span.start) >= 0.0, |side| side == Side::Outside);
+    let is_outside = origin_side.map_or_else(|| line.at(span.start) >= 0.0, |side| side == Side::Outside);
     let away = |t: f64| if is_outside { line.at(t) } else { -line.at(t) };
     // A line that starts on the surface has to get away from it first.
-    let mut is_away = leaves.is_none();
+    let mut is_away = origin_side.is_none();
     let mut t = span.start;
     for _ in 0..MOST {
         let step = away(t) / steepest;

@@ -6,22 +6,22 @@
 
 use super::newton;
 use super::refiner::{Refiner, evenly, value_and_slope};
-use super::taylor::Line;
+use super::taylor::FunctionOnLine;
 use crate::geometry::ray::Side;
 use crate::numeric::dual::Dual;
 use std::ops::Range;
 
 pub fn first_root(
-    line: &impl Line,
+    line: &impl FunctionOnLine,
     span: Range<f64>,
     shortest: f64,
-    leaves: Option<Side>,
+    origin_side: Option<Side>,
     count: u32,
 ) -> Option<f64> {
     let mut places = evenly(&span, count);
     let mut low = places.next()?;
     let (value, mut slope) = value_and_slope(line, low);
-    let is_outside = leaves.map_or(value >= 0.0, |side| side == Side::Outside);
+    let is_outside = origin_side.map_or(value >= 0.0, |side| side == Side::Outside);
     let has_crossed = |value: f64| (value >= 0.0) != is_outside;
     let refined = |low, high| Some(Refiner::Newton.root(line, (low, high), is_outside, shortest));
     for high in places {

@@ -7,9 +7,9 @@
 use crate::geometry::ray::Side;
 use crate::geometry::roots::bisection::bisect;
 use crate::geometry::roots::{chandrupatla, newton};
+use crate::numeric::double_double::DoubleDouble;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
-use crate::numeric::twofold::Twofold;
 
 /// How much of what rounding in f64 hides is hidden in twice the precision, too: 2^-53 but for five digits.
 const STILL_HIDDEN: f64 = 1.0 / 281_474_976_710_656.0;
@@ -20,22 +20,22 @@ const KINK: f64 = 1.0 / 1024.0;
 /// The first root on a piece that has at most one turn, where rounding in f64 hides values up to `hidden`; of a line that
 /// leaves a surface, the first one where the function falls (from outside) or rises (from inside).
 pub fn first_root(
-    f: impl Fn(Dual<Twofold>) -> Dual<Twofold>,
+    f: impl Fn(Dual<DoubleDouble>) -> Dual<DoubleDouble>,
     piece: Interval,
-    leaves: Option<Side>,
+    origin_side: Option<Side>,
     hidden: f64,
 ) -> Option<f64> {
     let Interval { low, high } = piece;
     let precise = f64::EPSILON * piece.magnitude();
     // What cancels in the value and in the slope needs twice the precision; the places do not.
     let at = |t: f64| {
-        let Dual { value, slope } = f(Dual::variable(Twofold::from(t)));
+        let Dual { value, slope } = f(Dual::variable(DoubleDouble::from(t)));
         Dual { value: value.high, slope: slope.high }
     };
     let (first, last) = (at(low), at(high));
     let is_outside = first.value >= 0.0;
     let is_in = |value: f64| (value < 0.0) == is_outside;
-    let is_wanted = |falls: bool| leaves.is_none_or(|side| falls == (side == Side::Outside));
+    let is_wanted = |falls: bool| origin_side.is_none_or(|side| falls == (side == Side::Outside));
     if is_in(last.value) {
         let root = || newton::root(at, (low, high), is_outside, piece.middle(), precise);
         return is_wanted(is_outside).then(root);
@@ -58,7 +58,7 @@ pub fn first_root(
     }
     let at_turn = at_turn.value;
     if at_turn.abs() <= still_hidden {
-        return leaves.is_none().then_some(turn);
+        return origin_side.is_none().then_some(turn);
     }
     if !is_in(at_turn) {
         return None;

@@ -6,13 +6,13 @@ mod step;
 pub use parser::FormulaFault;
 
 use crate::numeric::dual::Dual;
-use crate::numeric::number::Number;
-use crate::numeric::octet::Octet;
-use crate::simd::soa::STEP;
+use crate::numeric::f64x8::F64x8;
+use crate::numeric::scalar::Scalar;
+use crate::simd::soa::LANES;
 use std::fmt;
 use step::{DEPTH, Function, Step};
 
-/// A formula in y, ready to be evaluated with any [`Number`].
+/// A formula in y, ready to be evaluated with any [`Scalar`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Formula {
     text: String,
@@ -58,7 +58,7 @@ impl Formula {
 
     /// Its value at y.
     #[inline(always)]
-    pub fn at<N: Number>(&self, y: N) -> N {
+    pub fn at<N: Scalar>(&self, y: N) -> N {
         // Most formulas are small, and so is then what must be made ready for them.
         if self.needs <= FEW { self.run::<N, FEW>(y) } else { self.run::<N, DEPTH>(y) }
     }
@@ -75,25 +75,25 @@ impl Formula {
         self.steps.iter().map(cost).sum()
     }
 
-    fn run<N: Number, const ROOM: usize>(&self, y: N) -> N {
+    fn run<N: Scalar, const ROOM: usize>(&self, y: N) -> N {
         self.done::<N, ROOM>(y)
     }
 
     /// Its values and slopes at eight y, for kernels.
     #[inline(always)]
-    pub fn at_eight(&self, y: [f64; STEP]) -> Dual<Octet> {
+    pub fn at_eight(&self, y: [f64; LANES]) -> Dual<F64x8> {
         if self.is_plain {
-            return self.done::<_, FEW>(Dual::variable(Octet(y)));
+            return self.done::<_, FEW>(Dual::variable(F64x8(y)));
         }
-        let (mut value, mut slope) = ([0.0; STEP], [0.0; STEP]);
-        for lane in 0..STEP {
+        let (mut value, mut slope) = ([0.0; LANES], [0.0; LANES]);
+        for lane in 0..LANES {
             Dual { value: value[lane], slope: slope[lane] } = self.at(Dual::variable(y[lane]));
         }
-        Dual { value: Octet(value), slope: Octet(slope) }
+        Dual { value: F64x8(value), slope: F64x8(slope) }
     }
 
     #[inline(always)]
-    fn done<N: Number, const ROOM: usize>(&self, y: N) -> N {
+    fn done<N: Scalar, const ROOM: usize>(&self, y: N) -> N {
         let mut stack = [y; ROOM];
         let mut top = 0_usize;
         for step in &self.steps {

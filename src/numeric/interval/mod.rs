@@ -4,7 +4,7 @@
 
 mod float;
 
-use crate::numeric::number::Number;
+use crate::numeric::scalar::Scalar;
 use f256::f256;
 pub use float::Float;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -223,7 +223,7 @@ impl<F: Float> Div for Interval<F> {
     }
 }
 
-impl<F: Float> Number for Interval<F> {
+impl<F: Float> Scalar for Interval<F> {
     #[inline(always)]
     fn constant(value: f64) -> Self {
         Self::point(F::of(value))

@@ -35,7 +35,7 @@
 //! Where panes and mirrors give on nearly all that they get, that takes very many rays. From the [`MANY`]th on, a branch is
 //! also left out where `weight * beyond / d < FAINT` by itself.
 
-use crate::geometry::bounds::{self, SLACK};
+use crate::geometry::aabb::{self, SLACK};
 use crate::geometry::ray::Side;
 use crate::render::culling;
 use crate::render::limits::MAX_DIST;
@@ -184,7 +184,7 @@ struct Scene {
     lies: Vec<Sides<bool>>,
     /// The largest of what those objects send from which no rays go on, where they may be met from each side of one of
     /// those.
-    ends: Vec<Sides<f64>>,
+    t_max: Vec<Sides<f64>>,
 }
 
 impl Scene {
@@ -196,26 +196,26 @@ impl Scene {
         let lies = |of: usize, object: usize| {
             if is_few { lies(&objects[of], &objects[object]) } else { [true; 2] }
         };
-        let ends = shiny.iter().map(|of| {
+        let t_max = shiny.iter().map(|of| {
             let sent = matt
                 .iter()
                 .map(|object| lies(*of, *object).map(|lies| if lies { surfaces[*object].own } else { 0.0 }));
             sent.fold([0.0; 2], |[one, other], [outside, inside]| [above(one, outside), above(other, inside)])
         });
-        let ends = ends.collect();
+        let t_max = t_max.collect();
         let pairs = shiny.iter().flat_map(|of| shiny.iter().map(|object| lies(*of, *object)));
         let lies = if is_few { pairs.collect() } else { Vec::new() };
-        let meets = |index: usize| (index, SIDES.map(|side| meets_itself(&objects[index], side)));
-        Self { shiny: shiny.into_iter().map(meets).collect(), lies, ends, surfaces }
+        let meets = |index: usize| (index, SIDES.map(|side| can_hit_itself(&objects[index], side)));
+        Self { shiny: shiny.into_iter().map(meets).collect(), lies, t_max, surfaces }
     }
 
     fn depth(&self, cuts: bool) -> Depth {
         let infinite = || vec![[f64::INFINITY; 2]; self.shiny.len()];
         let own = |surface: &Surface| surface.own;
-        let beyond = self.solve(&self.ends, own).unwrap_or_else(infinite);
+        let beyond = self.solve(&self.t_max, own).unwrap_or_else(infinite);
         let one = |end: f64| if end > 0.0 { 1.0 } else { 0.0 };
-        let ends: Vec<_> = self.ends.iter().map(|ends| ends.map(one)).collect();
-        let shares = self.solve(&ends, |_| 1.0).unwrap_or_else(infinite);
+        let t_max: Vec<_> = self.t_max.iter().map(|t_max| t_max.map(one)).collect();
+        let shares = self.solve(&t_max, |_| 1.0).unwrap_or_else(infinite);
         let most = |own: &dyn Fn(&Surface) -> f64, beyond: &[Sides<f64>]| {
             let mut met: Vec<_> = self.surfaces.iter().map(own).collect();
             for ((index, _), beyond) in self.shiny.iter().zip(beyond) {
@@ -236,12 +236,12 @@ impl Scene {
 
     /// The least bounds that are found of what rays can bring back that leave each object from which they go on, where
     /// each object's own light and that of the others is this.
-    fn solve(&self, ends: &[Sides<f64>], own: impl Fn(&Surface) -> f64) -> Option<Vec<Sides<f64>>> {
+    fn solve(&self, t_max: &[Sides<f64>], own: impl Fn(&Surface) -> f64) -> Option<Vec<Sides<f64>>> {
         let mut bounds = vec![[0.0; 2]; self.shiny.len()];
         let mut before: Option<Vec<Sides<f64>>> = None;
         for _ in 0..ROUNDS {
             // Two steps at once: what goes to and fro between two kinds of objects grows evenly then.
-            let better = self.step(ends, &own, &self.step(ends, &own, &bounds));
+            let better = self.step(t_max, &own, &self.step(t_max, &own, &bounds));
             let gained = each(&better, &bounds, |better, bound| better - bound);
             if let Some(before) = before {
                 // As if each step went on to gain as much less than the one before it as this one does, and a little more.
@@ -253,7 +253,7 @@ impl Scene {
                 let ratio = ratios.into_iter().flatten().fold(0.0, above);
                 let rest = 1.01 * ratio / (1.0 - ratio);
                 let beyond = each(&better, &gained, |better, gained| better + gain(rest, gained));
-                let next = self.step(ends, &own, &beyond);
+                let next = self.step(t_max, &own, &beyond);
                 let is_above =
                     next.iter().flatten().zip(beyond.iter().flatten()).all(|(next, beyond)| next <= beyond);
                 if ratio < 1.0 && is_above {
@@ -269,7 +269,7 @@ impl Scene {
     /// What rays can bring back that leave each object, if those that leave what they meet can bring back so much.
     fn step(
         &self,
-        ends: &[Sides<f64>],
+        t_max: &[Sides<f64>],
         own: impl Fn(&Surface) -> f64,
         beyond: &[Sides<f64>],
     ) -> Vec<Sides<f64>> {
@@ -279,11 +279,11 @@ impl Scene {
         });
         let met: Vec<_> = met.collect();
         if self.lies.is_empty() {
-            return self.step_among_many(ends, &met);
+            return self.step_among_many(t_max, &met);
         }
         let all = || met.iter().enumerate();
         let of = |index: usize, side: usize| {
-            all().fold(ends[index][side], |most, (other, met)| {
+            all().fold(t_max[index][side], |most, (other, met)| {
                 let comes = if other == index {
                     [self.shiny[index].1[side]; 2]
                 } else if self.lies[index * met.len() + other][side] {
@@ -299,7 +299,7 @@ impl Scene {
     }
 
     /// Likewise, where each may be met from each side of each.
-    fn step_among_many(&self, ends: &[Sides<f64>], met: &[Sides<f64>]) -> Vec<Sides<f64>> {
+    fn step_among_many(&self, t_max: &[Sides<f64>], met: &[Sides<f64>]) -> Vec<Sides<f64>> {
         let met: Vec<_> = met.iter().map(|[outside, inside]| above(*outside, *inside)).collect();
         let brighter =
             |one: usize, other: usize| if above(met[other], met[one]) > met[one] { other } else { one };
@@ -308,7 +308,7 @@ impl Scene {
         let rest = others.map(|index| met[index]).fold(0.0, above);
         let of = |index: usize, side: usize| {
             let is_left = index == brightest && !self.shiny[index].1[side];
-            above(ends[index][side], if is_left { rest } else { met[brightest] })
+            above(t_max[index][side], if is_left { rest } else { met[brightest] })
         };
         (0..met.len()).map(|index| [of(index, 0), of(index, 1)]).collect()
     }
@@ -345,8 +345,8 @@ fn each(one: &[Sides<f64>], other: &[Sides<f64>], of: impl Fn(f64, f64) -> f64) 
 }
 
 /// Whether a ray that leaves an object on a side may meet it again.
-fn meets_itself(object: &Object, side: Side) -> bool {
-    object.shape.meets_itself(side)
+fn can_hit_itself(object: &Object, side: Side) -> bool {
+    object.shape.can_hit_itself(side)
 }
 
 /// On which sides of the plane that an object lies in, if it does, another one may be met.
@@ -367,7 +367,7 @@ fn lies(of: &Object, object: &Object) -> Sides<bool> {
 /// How far from a point all of an object is, at least.
 fn clearance(object: &Object, from: DVec3) -> f64 {
     let by_bounds =
-        || bounds::clearance(from, culling::bounds(object), |region| culling::is_clear_of(object, region));
+        || aabb::clearance(from, culling::bounds(object), |region| culling::is_clear_of(object, region));
     object.shape.clearance(from).unwrap_or_else(by_bounds)
 }
 
@@ -395,7 +395,7 @@ fn gain(weight: f64, light: f64) -> f64 {
 /// What light that passes through an object is multiplied by.
 fn tint(object: &Object, look: Option<&Look>) -> f64 {
     let transparency = object.material.transparency;
-    match (object.shader.even(&object.material), look) {
+    match (object.shader.uniform(&object.material), look) {
         _ if transparency == 0.0 => 0.0,
         (Some(_), _) => largest(object.tint(DVec3::ZERO)),
         // Nowhere is the diffuse colour below 0, and its strongest channel makes 1.

@@ -1,11 +1,11 @@
 //! What is traced, with what, and for whom.
 
 use super::arrays::NARROW;
-use super::scratch::Rooms;
+use super::scratch::Scratch;
 use super::surface::Errors;
-use crate::geometry::packet::WIDE;
+use crate::geometry::ray_packet::PACKET_SIZE;
+use crate::render::observer::TraceObserver;
 use crate::render::plan::Plan;
-use crate::render::watch::Watch;
 use crate::scene::model::Model;
 use crate::simd::cpu::Cpu;
 use crate::world::accuracy::Accuracy;
@@ -24,13 +24,13 @@ pub(crate) struct Tracer<'m, 'w, W> {
     pub(super) viewer: f64,
     /// How many mirrors and panes of glass the present packet has behind it.
     pub(super) depth: usize,
-    pub(super) rooms: &'w mut Rooms,
-    pub(super) watch: &'w mut W,
+    pub(super) scratch: &'w mut Scratch,
+    pub(super) observer: &'w mut W,
 }
 
-impl<'m, 'w, W: Watch> Tracer<'m, 'w, W> {
-    pub(crate) fn new(plan: &'m Plan, cpu: Cpu, rooms: &'w mut Rooms, watch: &'w mut W) -> Self {
-        Self { model: plan.model, plan, cpu, viewer: 0.0, depth: 0, rooms, watch }
+impl<'m, 'w, W: TraceObserver> Tracer<'m, 'w, W> {
+    pub(crate) fn new(plan: &'m Plan, cpu: Cpu, scratch: &'w mut Scratch, watch: &'w mut W) -> Self {
+        Self { model: plan.model, plan, cpu, viewer: 0.0, depth: 0, scratch, observer: watch }
     }
 
     /// Whether the notes' own methods are asked for.
@@ -40,7 +40,7 @@ impl<'m, 'w, W: Watch> Tracer<'m, 'w, W> {
 
     /// The most rays of a packet that goes on from the present one.
     pub(super) fn most(&self) -> usize {
-        if self.depth < DEEP { WIDE } else { NARROW }
+        if self.depth < DEEP { PACKET_SIZE } else { NARROW }
     }
 
     /// The errors of places where rays have come to a shape.

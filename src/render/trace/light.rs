@@ -27,19 +27,19 @@ pub(super) struct Lit<'l> {
     pub seen: View<'l>,
     pub normals: View<'l>,
     /// The cosines of the angles between the normals and the directions of the light, divided by its distances.
-    pub falloffs: &'l [f64],
+    pub cos_over_distance: &'l [f64],
     /// 0 where no light comes.
     pub shines: &'l [u64],
     /// 1 where something stands in its way.
     pub blocked: &'l [u64],
     /// What it sends there.
     pub emissivity: Colours<'l>,
-    pub looks: Looks<'l>,
+    pub looks: Reflectivities<'l>,
 }
 
 /// What places of a surface answer to light.
 #[derive(Clone, Copy)]
-pub(super) enum Looks<'l> {
+pub(super) enum Reflectivities<'l> {
     /// All the same.
     Even(Look),
     /// Each something else.
@@ -83,7 +83,7 @@ kernels! {
     /// Takes the mark from rays that can bring back too little to be seen. `budget` has the rays that each may still cost;
     /// nothing where none has cost [`MANY`].
     pub(super) fn leave_out(
-        travelled: &[f64], worth: Worth, branch: &Branch, budget: Option<&[u32]>, goes: &mut [u64]
+        travelled: &[f64], worth: Worth, branch: &Branch, ray_budget: Option<&[u32]>, goes: &mut [u64]
     ) {
         let (count, Worth { weight, share }) = (goes.len(), worth);
         let (most, most_alone) = (weight * branch.faint, weight * branch.faint_alone);
@@ -92,18 +92,18 @@ kernels! {
             let is_faint = most < share * travelled[lane];
             goes[lane] &= u64::from(!is_faint);
         }
-        if let Some(budget) = budget {
-            let budget = &budget[..count];
+        if let Some(ray_budget) = ray_budget {
+            let ray_budget = &ray_budget[..count];
             for lane in 0..count {
-                let is_faint = (budget[lane] < FEW) & (most_alone < travelled[lane]);
+                let is_faint = (ray_budget[lane] < FEW) & (most_alone < travelled[lane]);
                 goes[lane] &= u64::from(!is_faint);
             }
         }
     }
 
     /// The fewest rays that any may still cost.
-    pub(super) fn fewest(budget: &[u32]) -> u32 {
-        budget.iter().fold(u32::MAX, |fewest, budget| fewest.min(*budget))
+    pub(super) fn fewest(ray_budget: &[u32]) -> u32 {
+        ray_budget.iter().fold(u32::MAX, |fewest, ray_budget| fewest.min(*ray_budget))
     }
 
     /// Directions, mirrored. Marks the rays that go on there: likewise, where the surface is a mirror.
@@ -170,10 +170,10 @@ fn whole_power<const BITS: u32>(of: f64, power: u32) -> f64 {
 fn shine_each(lit: &Lit, glint: Option<impl Fn(f64) -> f64>, colours: ViewMut) {
     let count = lit.shines.len();
     match lit.looks {
-        Looks::Even(Look { diffuse, specular, .. }) => {
+        Reflectivities::Even(Look { diffuse, specular, .. }) => {
             shine_sent(lit, |_| diffuse, |_| specular, glint, colours);
         }
-        Looks::Each { diffuse, specular } => {
+        Reflectivities::Each { diffuse, specular } => {
             let (diffuse, specular) = (diffuse.first(count), specular.first(count));
             shine_sent(lit, |lane| diffuse.get(lane), |lane| specular.get(lane), glint, colours);
         }
@@ -210,10 +210,11 @@ fn shine_all(
 ) {
     let count = lit.shines.len();
     let (toward, seen, normals) = (lit.toward.first(count), lit.seen.first(count), lit.normals.first(count));
-    let (falloffs, shines, blocked) = (&lit.falloffs[..count], &lit.shines[..count], &lit.blocked[..count]);
+    let (cos_over_distance, shines, blocked) =
+        (&lit.cos_over_distance[..count], &lit.shines[..count], &lit.blocked[..count]);
     for lane in 0..count {
         let light = sent(lane);
-        let mut colour = diffuse(lane) * light * falloffs[lane];
+        let mut colour = diffuse(lane) * light * cos_over_distance[lane];
         if let Some(glint) = &glint {
             let half = (toward.get(lane) - seen.get(lane)).normalize();
             let cosine = half.dot(normals.get(lane));

@@ -1,58 +1,58 @@
 //! What is missing where a pixel has cost as many rays as it may.
 
-use super::arrays::room;
+use super::arrays::resized;
 use super::context::Tracer;
-use super::found::Found;
-use super::group::Group;
+use super::hit_record::HitRecord;
 use super::light;
+use super::ray_group::RayGroup;
 use super::surface::Surface;
-use crate::render::watch::Watch;
+use crate::render::observer::TraceObserver;
 
-impl<W: Watch> Tracer<'_, '_, W> {
+impl<W: TraceObserver> Tracer<'_, '_, W> {
     /// Nothing yet, of so many camera rays.
     pub(super) fn begin_missing(&mut self, count: usize) {
-        room(&mut self.rooms.missing, count);
-        self.rooms.any_missing = false;
+        resized(&mut self.scratch.missing, count);
+        self.scratch.any_missing = false;
     }
 
     /// How much light a camera ray lacks at most.
     pub(super) fn missing(&self, camera: usize) -> f64 {
-        if self.rooms.any_missing { self.rooms.missing[camera] } else { 0.0 }
+        if self.scratch.any_missing { self.scratch.missing[camera] } else { 0.0 }
     }
 
     /// Adds what rays could have brought back that end where they begin.
     #[cold]
-    pub(super) fn miss_beyond(&mut self, group: &Group, found: &Found) {
+    pub(super) fn miss_beyond(&mut self, group: &RayGroup, hits: &HitRecord) {
         let Some(depth) = &self.plan.depth else { return };
-        let beyond = depth.beyond(group.leaves);
-        for lane in (0..group.len).filter(|lane| found.far[*lane] == 0.0) {
+        let beyond = depth.beyond(group.origin_object);
+        for lane in (0..group.len).filter(|lane| hits.far[*lane] == 0.0) {
             self.miss(group, lane, beyond / group.travelled[lane]);
         }
     }
 
     /// Adds what lights do at places of a surface, of rays that have cost as many as they may: some shadow of theirs may
     /// not have been looked for.
-    pub(super) fn miss_shadows(&mut self, group: &Group, surface: &Surface) {
+    pub(super) fn miss_shadows(&mut self, group: &RayGroup, surface: &Surface) {
         let Some(depth) = &self.plan.depth else { return };
-        if light::fewest(self.cpu, &group.budget[..group.len]) != 0 {
+        if light::fewest(self.cpu, &group.ray_budget[..group.len]) != 0 {
             return;
         }
         let own = depth.objects[surface.index].own;
-        for lane in (0..group.len).filter(|lane| group.budget[*lane] == 0) {
+        for lane in (0..group.len).filter(|lane| group.ray_budget[*lane] == 0) {
             self.miss(group, lane, own / surface.travelled[lane]);
         }
     }
 
     /// Adds so much light, of the end of a ray.
-    fn miss(&mut self, group: &Group, lane: usize, light: f64) {
-        if !self.rooms.any_missing {
-            self.rooms.missing.fill(0.0);
+    fn miss(&mut self, group: &RayGroup, lane: usize, light: f64) {
+        if !self.scratch.any_missing {
+            self.scratch.missing.fill(0.0);
         }
-        let missing = &mut self.rooms.missing[usize::from(group.camera[lane])];
+        let missing = &mut self.scratch.missing[usize::from(group.camera[lane])];
         let more = group.worth.map_or(f64::INFINITY, |worth| worth.weight * light);
         // What is no number bounds nothing.
         *missing = if more >= 0.0 { *missing + more } else { f64::INFINITY };
-        self.rooms.any_missing = true;
+        self.scratch.any_missing = true;
     }
 }
 
@@ -62,10 +62,10 @@ mod tests {
     use crate::render::limits::MAX_RAYS;
     use crate::render::plan::Plan;
     use crate::render::plan::depth::{Depth, FAINT};
+    use crate::render::ray_stats::RayStats;
     use crate::render::renderer::Renderer;
-    use crate::render::tally::Tally;
-    use crate::render::trace::Rooms;
-    use crate::render::trace::arrays::Vectors;
+    use crate::render::trace::Scratch;
+    use crate::render::trace::arrays::VectorList;
     use crate::scene::model::Model;
     use crate::scene::reader;
     use crate::scene::registry::Registry;
@@ -90,13 +90,14 @@ mod tests {
     }
 
     /// The colours of all pixels for so many rays each, how much they lack at most, and what that took.
-    fn seen(plan: &Plan, rays: u32) -> (Vec<(Rgb, f64)>, Tally) {
-        let (mut rooms, mut tally, mut colours) = (Rooms::default(), Tally::default(), Vectors::default());
-        let mut tracer = Tracer::new(plan, Cpu::best(), &mut rooms, &mut tally);
+    fn seen(plan: &Plan, rays: u32) -> (Vec<(Rgb, f64)>, RayStats) {
+        let (mut scratch, mut tally, mut colours) =
+            (Scratch::default(), RayStats::default(), VectorList::default());
+        let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, &mut tally);
         let pixels = (0..SIDES[1]).flat_map(|y| (0..SIDES[0]).map(move |x| (x, y)));
         let one = |(x, y): (usize, usize)| {
-            let mut group = Group::primary(&plan.camera.sight(x as f64, y as f64), plan.depth.as_ref());
-            group.budget.fill(rays);
+            let mut group = RayGroup::primary(&plan.camera.sight(x as f64, y as f64), plan.depth.as_ref());
+            group.ray_budget.fill(rays);
             tracer.colours(&mut group, &mut colours);
             (colours.get(0), tracer.missing(0))
         };

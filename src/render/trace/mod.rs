@@ -5,99 +5,104 @@
 //! mirrors (`shade`). One ray is a packet of one. A ray's colour does not depend on which others go with it.
 
 mod arrays;
-mod block;
+mod closest_hit;
 mod context;
-mod found;
-mod group;
-mod illuminate;
+mod direct_light;
+mod hit_record;
 mod light;
 mod missing;
+mod occlusion;
 mod order;
-mod passage;
+mod ray_group;
 mod scratch;
-mod search;
 mod shade;
-mod shadow;
+mod shadow_rays;
 mod surface;
+mod transmittance;
 
 pub(crate) use context::Tracer;
-pub(crate) use scratch::Rooms;
+pub(crate) use scratch::Scratch;
 
-use crate::geometry::packet::WIDE;
+use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::geometry::sight::Sight;
+use crate::render::observer::{Count, Event, Hit, Purpose, RayKind, TraceObserver};
 use crate::render::plan::Plan;
-use crate::render::watch::{Count, Event, Hit, Kind, Purpose, Watch};
 use crate::simd::cpu::Cpu;
 use crate::simd::soa::View;
 use crate::world::camera;
 use crate::world::material::Rgb;
 use crate::world::sample::Sample;
-use arrays::Vectors;
-use found::Found;
-use group::Group;
-use scratch::Primary;
+use arrays::VectorList;
+use hit_record::HitRecord;
+use ray_group::RayGroup;
+use scratch::PrimaryScratch;
 
 /// The colour of a pixel, before it is clamped to what a picture can show: `x` counts from the left and `y`
 /// from the bottom.
 pub fn pixel(plan: &Plan, x: usize, y: usize) -> Rgb {
-    watch_pixel(plan, x, y, &mut ())
+    observe_pixel(plan, x, y, &mut ())
 }
 
 /// As [`pixel`], and `watch` sees how it comes about.
-pub fn watch_pixel(plan: &Plan, x: usize, y: usize, watch: &mut impl Watch) -> Rgb {
+pub fn observe_pixel(plan: &Plan, x: usize, y: usize, observer: &mut impl TraceObserver) -> Rgb {
     let camera = &plan.camera;
     let colours = camera
         .places(x, y)
-        .map(|(place, sample)| watch_colour(plan, &camera.sight(place.x, place.y), sample, watch));
+        .map(|(place, sample)| observe_colour(plan, &camera.sight(place.x, place.y), sample, observer));
     colours.sum::<Rgb>() / f64::from(camera.samples)
 }
 
 /// The colour that a ray sees, before it is clamped. Lights with a size are met where `sample` says, or in their middle.
 pub fn colour(plan: &Plan, sight: &Sight, sample: Option<Sample>) -> Rgb {
-    watch_colour(plan, sight, sample, &mut ())
+    observe_colour(plan, sight, sample, &mut ())
 }
 
 /// As [`colour`], and `watch` sees how it comes about.
-pub fn watch_colour(plan: &Plan, sight: &Sight, sample: Option<Sample>, watch: &mut impl Watch) -> Rgb {
-    let (mut rooms, mut colours) = (Rooms::default(), Vectors::default());
-    rooms.samples.extend(sample);
-    let mut tracer = Tracer::new(plan, Cpu::best(), &mut rooms, watch);
+pub fn observe_colour(
+    plan: &Plan,
+    sight: &Sight,
+    sample: Option<Sample>,
+    observer: &mut impl TraceObserver,
+) -> Rgb {
+    let (mut scratch, mut colours) = (Scratch::default(), VectorList::default());
+    scratch.samples.extend(sample);
+    let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, observer);
     let depth = plan.depth.as_ref();
-    tracer.colours(&mut Group::primary(sight, depth), &mut colours);
+    tracer.colours(&mut RayGroup::primary(sight, depth), &mut colours);
     colours.get(0)
 }
 
 /// What a ray from the viewer meets first.
 pub fn first_hit<'m>(plan: &Plan<'m>, sight: &Sight) -> Option<Hit<'m>> {
-    let (mut rooms, mut nobody) = (Rooms::default(), ());
-    let mut tracer = Tracer::new(plan, Cpu::best(), &mut rooms, &mut nobody);
-    let mut group = Group::primary(sight, None);
-    let (mut found, mut distances) = (Found::default(), Vec::new());
-    tracer.closest(&mut group, None, &mut found);
-    let object = (found.met[0] as usize).checked_sub(1)?;
-    tracer.settle(&group, (&found.near, &found.far), object, &mut distances);
+    let (mut scratch, mut nobody) = (Scratch::default(), ());
+    let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody);
+    let mut group = RayGroup::primary(sight, None);
+    let (mut hits, mut distances) = (HitRecord::default(), Vec::new());
+    tracer.closest(&mut group, None, &mut hits);
+    let object = (hits.met[0] as usize).checked_sub(1)?;
+    tracer.settle(&group, (&hits.near, &hits.far), object, &mut distances);
     let (distance, ray) = (distances[0], group.rays().get(0));
     Some(Hit { index: object, object: &plan.model.objects[object], distance, point: ray.at(distance) })
 }
 
-impl<W: Watch> Tracer<'_, '_, W> {
-    /// The colours of some pixels, up to [`WIDE`] rays of which are traced together.
+impl<W: TraceObserver> Tracer<'_, '_, W> {
+    /// The colours of some pixels, up to [`PACKET_SIZE`] rays of which are traced together.
     pub(crate) fn pixels(&mut self, pixels: &[[usize; 2]]) -> View<'_> {
         let camera = &self.plan.camera;
         let depth = self.plan.depth.as_ref();
-        let mut room = self.rooms.primary.take().unwrap_or_default();
-        let Primary { group, seen, colours } = &mut *room;
-        self.rooms.places.iter_mut().for_each(|places| places.resize(WIDE, 0.0));
-        let mut colours = colours.room(pixels.len());
+        let mut room = self.scratch.primary.take().unwrap_or_default();
+        let PrimaryScratch { group, seen, colours } = &mut *room;
+        self.scratch.places.iter_mut().for_each(|places| places.resize(PACKET_SIZE, 0.0));
+        let mut colours = colours.resized(pixels.len());
         if camera.samples == 1 {
-            self.rooms.samples.clear();
-            for (pixels, first) in pixels.chunks(WIDE).zip((0..).step_by(WIDE)) {
-                let [x, y] = &mut self.rooms.places;
+            self.scratch.samples.clear();
+            for (pixels, first) in pixels.chunks(PACKET_SIZE).zip((0..).step_by(PACKET_SIZE)) {
+                let [x, y] = &mut self.scratch.places;
                 camera::middles(self.cpu, pixels, x, y);
-                group.look(self.cpu, camera, depth, &mut self.rooms.places, pixels.len());
+                group.look(self.cpu, camera, depth, &mut self.scratch.places, pixels.len());
                 self.colours(group, seen);
-                colours.put(first, seen.view(pixels.len()));
-                if self.rooms.any_missing {
+                colours.copy_at(first, seen.view(pixels.len()));
+                if self.scratch.any_missing {
                     (0..pixels.len()).for_each(|lane| self.cut(self.missing(lane)));
                 }
             }
@@ -107,14 +112,14 @@ impl<W: Watch> Tracer<'_, '_, W> {
             let (mut sum, mut missing, mut count) = (Rgb::ZERO, 0.0, 0);
             while count < samples * pixels.len() {
                 let mut len = 0;
-                self.rooms.samples.clear();
-                for (place, sample) in rays.by_ref().take(WIDE) {
-                    let [x, y] = &mut self.rooms.places;
+                self.scratch.samples.clear();
+                for (place, sample) in rays.by_ref().take(PACKET_SIZE) {
+                    let [x, y] = &mut self.scratch.places;
                     (x[len], y[len]) = (place.x, place.y);
-                    self.rooms.samples.extend(sample);
+                    self.scratch.samples.extend(sample);
                     len += 1;
                 }
-                group.look(self.cpu, camera, depth, &mut self.rooms.places, len);
+                group.look(self.cpu, camera, depth, &mut self.scratch.places, len);
                 self.colours(group, seen);
                 for lane in 0..len {
                     sum += seen.get(lane);
@@ -128,23 +133,23 @@ impl<W: Watch> Tracer<'_, '_, W> {
                 }
             }
         }
-        self.rooms.primary.insert(room).colours.view(pixels.len())
+        self.scratch.primary.insert(room).colours.view(pixels.len())
     }
 
     /// Counts a pixel if it lacks light, at most so much.
     fn cut(&mut self, missing: f64) {
         if missing > 0.0 {
-            self.watch.count(Count::Cut(missing));
+            self.observer.count(Count::Cut(missing));
         }
     }
 
     /// The colours that rays from the viewer see.
-    fn colours(&mut self, group: &mut Group, colours: &mut Vectors) {
-        self.watch.count(Count::Rays(Kind::Primary, group.len));
+    fn colours(&mut self, group: &mut RayGroup, colours: &mut VectorList) {
+        self.observer.count(Count::Rays(RayKind::Primary, group.len));
         self.viewer = group.origin.get(0).abs().max_element();
         self.begin_missing(group.len);
         if W::SEES {
-            self.watch.see(Event::Begin(Purpose::Primary));
+            self.observer.see(Event::Begin(Purpose::Primary));
         }
         self.trace(group, colours);
     }
@@ -165,16 +170,16 @@ mod tests {
 
     /// What rays along the scene's lowest row of pixels see that may cost so many rays each.
     fn seen(plan: &Plan, pixels: &[usize], budgets: &[u32]) -> Vec<Rgb> {
-        let (mut rooms, mut nobody) = (Rooms::default(), ());
-        rooms.places = [vec![0.0; WIDE], vec![0.0; WIDE]];
+        let (mut scratch, mut nobody) = (Scratch::default(), ());
+        scratch.places = [vec![0.0; PACKET_SIZE], vec![0.0; PACKET_SIZE]];
         for (lane, column) in pixels.iter().enumerate() {
-            rooms.places[0][lane] = *column as f64;
+            scratch.places[0][lane] = *column as f64;
         }
-        let (mut group, mut colours) = (Group::default(), Vectors::default());
+        let (mut group, mut colours) = (RayGroup::default(), VectorList::default());
         let depth = plan.depth.as_ref();
-        group.look(Cpu::best(), &plan.camera, depth, &mut rooms.places, pixels.len());
-        group.budget[..budgets.len()].copy_from_slice(budgets);
-        Tracer::new(plan, Cpu::best(), &mut rooms, &mut nobody).colours(&mut group, &mut colours);
+        group.look(Cpu::best(), &plan.camera, depth, &mut scratch.places, pixels.len());
+        group.ray_budget[..budgets.len()].copy_from_slice(budgets);
+        Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody).colours(&mut group, &mut colours);
         (0..pixels.len()).map(|lane| colours.get(lane)).collect()
     }
 
@@ -185,8 +190,10 @@ mod tests {
         let plan = Plan::new(&model);
         let pixels: Vec<_> = (0..8).collect();
         for budgets in [[1; 8], [9; 8], [9, 1, 9, 9, 1, 9, 9, 9], [1, 9, 1, 1, 9, 1, 1, 0]] {
-            let alone =
-                pixels.iter().zip(budgets).map(|(pixel, budget)| seen(&plan, &[*pixel], &[budget])[0]);
+            let alone = pixels
+                .iter()
+                .zip(budgets)
+                .map(|(pixel, ray_budget)| seen(&plan, &[*pixel], &[ray_budget])[0]);
             assert_eq!(seen(&plan, &pixels, &budgets), alone.collect::<Vec<_>>(), "{budgets:?}");
         }
         assert!(seen(&plan, &[0], &[1])[0] != Rgb::ZERO, "without a ray to the light it shines");

@@ -1,6 +1,6 @@
 //! Which of two surfaces a ray meets first, where rounding does not tell.
 
-use crate::geometry::bounds::larger;
+use crate::geometry::aabb::larger;
 use crate::geometry::ray::Ray;
 use crate::geometry::sight::Sight;
 use crate::world::any_shape::AnyShape;

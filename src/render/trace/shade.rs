@@ -1,61 +1,61 @@
 //! The colours of the places that a packet's rays meet on one object.
 
-use super::arrays::{Vectors, list, pick, room};
+use super::arrays::{VectorList, compact, gather, resized};
+use super::closest_hit;
 use super::context::Tracer;
-use super::group::Group;
 use super::light;
-use super::scratch::{Level, Shading};
-use super::search;
+use super::ray_group::RayGroup;
+use super::scratch::{HitScratch, ShadingScratch};
 use super::surface::Errors;
 use crate::geometry::ray::Side;
 use crate::render::limits::MAX_DIST;
+use crate::render::observer::{Count, Event, Hit, Purpose, RayKind, Reason, TraceObserver};
 use crate::render::plan::depth::Branch;
-use crate::render::watch::{Count, Event, Hit, Kind, Purpose, Reason, Watch};
 use crate::scene::model::Object;
-use crate::world::landing::Landing;
+use crate::world::interaction::SurfaceInteraction;
 use crate::world::material::Rgb;
 use glam::DVec3;
 use std::mem::swap;
 
-impl<W: Watch> Tracer<'_, '_, W> {
+impl<W: TraceObserver> Tracer<'_, '_, W> {
     /// The light that comes back along the rays of a packet.
-    pub(super) fn trace(&mut self, group: &mut Group, colours: &mut Vectors) {
-        let mut level = self.rooms.levels.pop().unwrap_or_default();
-        let Level { found, parts, part, near, far, shading, seen } = &mut *level;
-        self.closest(group, None, found);
-        let met = &found.met[..group.len];
-        if met[0] != 0 && search::is_one(self.cpu, met) {
-            self.shade(group, (&found.near, &found.far), met[0] as usize - 1, shading, colours);
+    pub(super) fn trace(&mut self, group: &mut RayGroup, colours: &mut VectorList) {
+        let mut level = self.scratch.levels.pop().unwrap_or_default();
+        let HitScratch { hits, parts, part, near, far, shading, seen } = &mut *level;
+        self.closest(group, None, hits);
+        let met = &hits.met[..group.len];
+        if met[0] != 0 && closest_hit::is_one(self.cpu, met) {
+            self.shade(group, (&hits.near, &hits.far), met[0] as usize - 1, shading, colours);
         } else {
-            colours.room(group.padded());
+            colours.resized(group.padded());
             parts.begin(met);
             while let Some((id, lanes)) = parts.next() {
                 let Some(object) = (id as usize).checked_sub(1) else {
                     lanes.iter().for_each(|lane| colours.set(usize::from(*lane), Rgb::ZERO));
                     continue;
                 };
-                part.pick(group, lanes);
-                pick(near, &found.near, lanes, part.padded());
-                pick(far, &found.far, lanes, part.padded());
+                part.gather(group, lanes);
+                gather(near, &hits.near, lanes, part.padded());
+                gather(far, &hits.far, lanes, part.padded());
                 self.shade(part, (near, far), object, shading, seen);
-                colours.put(seen, lanes);
-                group.pay(part, lanes);
+                colours.scatter(seen, lanes);
+                group.charge(part, lanes);
             }
         }
         if W::SEES {
-            self.watch.see(Event::Colour(colours.get(0)));
+            self.observer.see(Event::Colour(colours.get(0)));
         }
-        self.rooms.levels.push(level);
+        self.scratch.levels.push(level);
     }
 
     /// The colours that rays see which all meet the object of this index, in these brackets.
     fn shade(
         &mut self,
-        group: &mut Group,
+        group: &mut RayGroup,
         brackets: (&[f64], &[f64]),
         index: usize,
-        shading: &mut Shading,
-        colours: &mut Vectors,
+        shading: &mut ShadingScratch,
+        colours: &mut VectorList,
     ) {
         let (cpu, count) = (self.cpu, group.padded());
         self.settle(group, brackets, index, &mut shading.distances);
@@ -63,25 +63,25 @@ impl<W: Watch> Tracer<'_, '_, W> {
         let object = &self.model.objects[index];
         let Object { material, shape, shader, .. } = object;
         surface.index = index;
-        let travelled = room(&mut surface.travelled, count);
+        let travelled = resized(&mut surface.travelled, count);
         travelled.copy_from_slice(&group.travelled[..count]);
-        let landing = Landing {
-            points: surface.points.room(count),
-            normals: surface.normals.room(count),
-            sides: room(&mut surface.sides, count),
-            cosines: room(&mut surface.cosines, count),
+        let landing = SurfaceInteraction {
+            points: surface.points.resized(count),
+            normals: surface.normals.resized(count),
+            sides: resized(&mut surface.sides, count),
+            cosines: resized(&mut surface.cosines, count),
             travelled,
         };
         shape.packets().interact(cpu, group.rays(), distances, landing);
         let points = surface.points.view(count);
-        surface.look = shader.even(material);
+        surface.look = shader.uniform(material);
         surface.is_mirror = match surface.look {
             Some(look) => {
                 colours.fill(count, look.ambient);
                 look.specular != Rgb::ZERO
             }
             None => {
-                let (ambients, speculars) = (colours.room(count), surface.specular.room(count));
+                let (ambients, speculars) = (colours.resized(count), surface.specular.resized(count));
                 shader.ambient_and_specular(cpu, material, points, ambients, speculars)
             }
         };
@@ -92,14 +92,14 @@ impl<W: Watch> Tracer<'_, '_, W> {
             Errors::NONE
         };
         if W::SEES {
-            self.watch.see(Event::Surface { normal: surface.normals.get(0), ambient: colours.get(0) });
+            self.observer.see(Event::Surface { normal: surface.normals.get(0), ambient: colours.get(0) });
         }
         self.illuminate(group, surface, colours);
-        light::fade(cpu, &surface.travelled[..count], colours.room(count));
+        light::fade(cpu, &surface.travelled[..count], colours.resized(count));
         if W::SEES {
             let (point, travelled) = (surface.points.get(0), surface.travelled[0]);
             let hit = Hit { index, object, distance: distances[0], point };
-            self.watch.see(Event::Shaded { hit: &hit, travelled, colour: colours.get(0) });
+            self.observer.see(Event::Shaded { hit: &hit, travelled, colour: colours.get(0) });
         }
         if material.transparency != 0.0 {
             self.look_through(group, shading, colours);
@@ -110,22 +110,22 @@ impl<W: Watch> Tracer<'_, '_, W> {
     }
 
     /// Adds what is seen through glass.
-    fn look_through(&mut self, group: &mut Group, shading: &mut Shading, colours: &mut Vectors) {
+    fn look_through(&mut self, group: &mut RayGroup, shading: &mut ShadingScratch, colours: &mut VectorList) {
         let (count, surface) = (group.padded(), &mut shading.surface);
         let object = &self.model.objects[surface.index];
         let kept = 1.0 - object.material.transparency;
         if W::SEES {
             let tint = object.tint(surface.points.get(0));
-            self.watch.see(Event::Begin(Purpose::Transmitted { tint, kept }));
+            self.observer.see(Event::Begin(Purpose::Transmitted { tint, kept }));
         }
         let branch = self.plan.onward(surface.index).through;
-        let (travelled, goes) = (&surface.travelled[..count], room(&mut shading.goes, count));
+        let (travelled, goes) = (&surface.travelled[..count], resized(&mut shading.goes, count));
         light::reach(self.cpu, travelled, MAX_DIST, goes);
         group.leave_out(self.cpu, &branch, travelled, goes);
         shading.dir.copy(group.dir.view(count));
         let turn = |sides: &mut [Side]| sides.iter_mut().for_each(|side| *side = side.opposite());
         turn(&mut surface.sides[..count]);
-        self.onward(group, shading, Kind::Transmitted, branch);
+        self.onward(group, shading, RayKind::Transmitted, branch);
         let surface = &mut shading.surface;
         turn(&mut surface.sides[..count]);
         for lane in 0..group.len {
@@ -135,66 +135,71 @@ impl<W: Watch> Tracer<'_, '_, W> {
     }
 
     /// Adds what is mirrored.
-    fn look_in_the_mirror(&mut self, group: &mut Group, shading: &mut Shading, colours: &mut Vectors) {
-        let Shading { surface, goes, dir, .. } = shading;
+    fn look_in_the_mirror(
+        &mut self,
+        group: &mut RayGroup,
+        shading: &mut ShadingScratch,
+        colours: &mut VectorList,
+    ) {
+        let ShadingScratch { surface, goes, dir, .. } = shading;
         if W::SEES {
             let specular = match surface.look {
                 Some(look) => look.specular,
                 None => surface.specular.get(0),
             };
-            self.watch.see(Event::Begin(Purpose::Reflected { specular }));
+            self.observer.see(Event::Begin(Purpose::Reflected { specular }));
         }
         let (cpu, count) = (self.cpu, group.padded());
         let (normals, specular) = (surface.normals.view(count), surface.mirrors(count));
-        let (travelled, goes) = (&surface.travelled[..count], room(goes, count));
-        let dir = dir.room(count);
+        let (travelled, goes) = (&surface.travelled[..count], resized(goes, count));
+        let dir = dir.resized(count);
         let branch = self.plan.onward(surface.index).mirrored;
         light::mirror(cpu, group.dir.view(count), normals, specular, travelled, MAX_DIST, goes, dir);
         group.leave_out(cpu, &branch, travelled, goes);
-        let do_all = goes[0] != 0 && search::is_one(cpu, goes);
+        let do_all = goes[0] != 0 && closest_hit::is_one(cpu, goes);
         if do_all && group.len <= self.most() {
             self.onward_all(group, shading, branch);
         } else {
-            self.onward(group, shading, Kind::Reflected, branch);
+            self.onward(group, shading, RayKind::Reflected, branch);
         }
         let specular = shading.surface.mirrors(count);
-        light::reflect(cpu, specular, shading.behind.view(count), colours.room(count));
+        light::reflect(cpu, specular, shading.behind.view(count), colours.resized(count));
     }
 
     /// What comes to the places of a surface along the rays that go on from there; nothing to those from which none
     /// does, which are too far away, or which can bring back too little.
-    fn onward(&mut self, group: &mut Group, shading: &mut Shading, kind: Kind, branch: Branch) {
-        let Shading { surface, dir, goes, lanes, onward, seen, behind, .. } = shading;
-        let lanes = list(&goes[..group.len], lanes);
+    fn onward(&mut self, group: &mut RayGroup, shading: &mut ShadingScratch, kind: RayKind, branch: Branch) {
+        let ShadingScratch { surface, dir, goes, lanes, onward, seen, behind, .. } = shading;
+        let lanes = compact(&goes[..group.len], lanes);
         if W::SEES && lanes.is_empty() {
             let is_far = surface.travelled[0] > MAX_DIST;
-            self.watch.see(Event::Dropped(if is_far { Reason::TooFar } else { Reason::TooFaint }));
-            self.watch.see(Event::Colour(DVec3::ZERO));
+            self.observer.see(Event::Dropped(if is_far { Reason::TooFar } else { Reason::TooFaint }));
+            self.observer.see(Event::Colour(DVec3::ZERO));
         }
-        self.watch.count(Count::Rays(kind, lanes.len()));
-        let leaving = surface.onward(dir);
+        self.observer.count(Count::Rays(kind, lanes.len()));
+        let shadow_rays = surface.onward(dir);
         behind.fill(group.padded(), DVec3::ZERO);
         let most = self.most();
         self.depth += 1;
         for lanes in lanes.chunks(most) {
-            onward.go_on(group, &leaving, lanes);
+            onward.go_on(group, &shadow_rays, lanes);
             onward.branch(&branch);
             self.trace(onward, seen);
-            behind.put(seen, lanes);
-            group.pay(onward, lanes);
+            behind.scatter(seen, lanes);
+            group.charge(onward, lanes);
         }
         self.depth -= 1;
     }
 
     /// As `onward` for rays all of which are mirrored, and with which nothing else is done here: they are not copied.
-    fn onward_all(&mut self, group: &mut Group, shading: &mut Shading, branch: Branch) {
-        let Shading { surface, dir, onward, behind, .. } = shading;
-        self.watch.count(Count::Rays(Kind::Reflected, group.len));
+    fn onward_all(&mut self, group: &mut RayGroup, shading: &mut ShadingScratch, branch: Branch) {
+        let ShadingScratch { surface, dir, onward, behind, .. } = shading;
+        self.observer.count(Count::Rays(RayKind::Reflected, group.len));
         self.depth += 1;
         onward.take(group, surface, dir);
         onward.branch(&branch);
         self.trace(onward, behind);
-        swap(&mut group.budget, &mut onward.budget);
+        swap(&mut group.ray_budget, &mut onward.ray_budget);
         self.depth -= 1;
     }
 }

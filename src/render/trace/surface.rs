@@ -1,6 +1,6 @@
 //! Places on one object, where the rays of a packet meet it, and what goes on from there.
 
-use super::arrays::Vectors;
+use super::arrays::VectorList;
 use super::light::Colours;
 use crate::geometry::ray::Side;
 use crate::world::coincidence;
@@ -11,9 +11,9 @@ use crate::world::material::Look;
 pub(super) struct Surface {
     /// The object's index.
     pub index: usize,
-    pub points: Vectors,
+    pub points: VectorList,
     /// The unit normals; turned to the rays' side where both are lit.
-    pub normals: Vectors,
+    pub normals: VectorList,
     /// The side that each ray comes to.
     pub sides: Vec<Side>,
     /// How far the light has come from each.
@@ -25,16 +25,16 @@ pub(super) struct Surface {
     /// What all answer to light, where that is the same.
     pub look: Option<Look>,
     /// Else what each mirrors.
-    pub specular: Vectors,
+    pub specular: VectorList,
     /// Whether any mirrors anything.
     pub is_mirror: bool,
 }
 
 impl Surface {
     /// Rays in these directions from its places.
-    pub fn onward<'o>(&'o self, dir: &'o Vectors) -> Onward<'o> {
+    pub fn onward<'o>(&'o self, dir: &'o VectorList) -> Onward<'o> {
         let Self { index, points, sides, travelled, cosines, errors, .. } = self;
-        Onward { points, dir, travelled, leaves: *index, sides, cosines, errors: *errors }
+        Onward { points, dir, travelled, origin_object: *index, sides, cosines, errors: *errors }
     }
 
     /// How far one of the places may be from where it should be, in world units.
@@ -53,11 +53,11 @@ impl Surface {
 
 /// Of a group's rays, by their lanes.
 pub(super) struct Onward<'o> {
-    pub points: &'o Vectors,
-    pub dir: &'o Vectors,
+    pub points: &'o VectorList,
+    pub dir: &'o VectorList,
     pub travelled: &'o [f64],
     /// The object that they leave.
-    pub leaves: usize,
+    pub origin_object: usize,
     pub sides: &'o [Side],
     /// The cosines of the angles at which the rays came there, and how far the points may be from where they should be.
     pub cosines: &'o [f64],

@@ -12,7 +12,7 @@ mod written;
 
 pub use check::Chosen;
 pub use fault::{Fault, Place, Report, Severity};
-pub use machine::message;
+pub use machine::Message;
 pub use written::Written;
 
 use crate::scene::model::Model;

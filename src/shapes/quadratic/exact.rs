@@ -1,17 +1,17 @@
 //! Hits of a surface of the second degree without rounding, but for that of the roots.
 
 use super::surface::{FINE, OwnRay, Quadratic};
-use crate::numeric::twofold::{Exact, Twofold};
+use crate::numeric::double_double::{DoubleDouble, Exact};
 
 /// A hit in twice the precision, and what it is off at most.
 #[derive(Clone, Copy)]
 pub(super) struct Fine {
-    pub at: Twofold,
+    pub at: DoubleDouble,
     pub error: f64,
 }
 
 impl Fine {
-    pub const NONE: Self = Self { at: Twofold { high: f64::NAN, low: 0.0 }, error: 0.0 };
+    pub const NONE: Self = Self { at: DoubleDouble { high: f64::NAN, low: 0.0 }, error: 0.0 };
 }
 
 impl Quadratic {
@@ -21,7 +21,7 @@ impl Quadratic {
         let [a, b, c] = self.exact_polynomial(ray);
         let room = Exact::sum(b.times(&b).chain(a.times(&c).map(|term| -term))).rounded();
         let [a, b, c] = [a, b, c].map(|part| part.rounded());
-        let fine = |at: Twofold| Fine { at, error: FINE * at.high.abs() };
+        let fine = |at: DoubleDouble| Fine { at, error: FINE * at.high.abs() };
         if room.high < 0.0 {
             return [Fine::NONE; 2];
         }
@@ -38,7 +38,7 @@ impl Quadratic {
 
     /// The polynomial `a t^2 + 2 b t + c` along a ray from where it starts.
     fn exact_polynomial(&self, ray: &OwnRay) -> [Exact; 3] {
-        let parts = |of: Twofold| Exact::sum([of.high, of.low]);
+        let parts = |of: DoubleDouble| Exact::sum([of.high, of.low]);
         let (from, dir) = (ray.from.map(parts), ray.dir.to_array().map(|part| Exact::sum([part])));
         let second = |one: &[Exact; 3], other: &[Exact; 3]| {
             Exact::sum((0..9).flat_map(|index| {

@@ -3,9 +3,9 @@
 
 use super::quick::Quick;
 use super::surface::{OwnRay, Quadratic};
-use crate::geometry::bounds::{Bounds, SLACK};
-use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
-use crate::numeric::number::Number;
+use crate::geometry::aabb::{Aabb, SLACK};
+use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
+use crate::numeric::scalar::Scalar;
 use crate::world::accuracy::{Accuracy, Bounded, Classic};
 use glam::{DMat3, DVec3};
 use std::marker::PhantomData;
@@ -53,8 +53,8 @@ impl<A> Quadric<A> {
     }
 
     /// The box that it is kept in.
-    pub fn around(&self) -> Bounds {
-        Bounds { low: self.center + self.low, high: self.center + self.high }
+    pub fn around(&self) -> Aabb {
+        Aabb { low: self.center + self.low, high: self.center + self.high }
     }
 
     /// How far a point is from it at least, as far as the equation tells: at `r` from there its value differs by at most
@@ -73,7 +73,7 @@ impl<A> Quadric<A> {
     }
 
     /// What is 0 on the surface.
-    pub fn value<N: Number>(&self, at: [N; 3]) -> N {
+    pub fn value<N: Scalar>(&self, at: [N; 3]) -> N {
         let from_center = [0, 1, 2].map(|axis| at[axis] - N::constant(self.center[axis]));
         let sum = |part: &dyn Fn(usize) -> N| part(0) + part(1) + part(2);
         let row = |row: usize| {
@@ -84,7 +84,7 @@ impl<A> Quadric<A> {
     }
 
     /// Above 0 in the box, and below 0 outside.
-    pub fn inside_box<N: Number>(&self, at: [N; 3]) -> N {
+    pub fn inside_box<N: Scalar>(&self, at: [N; 3]) -> N {
         let inside = |axis: usize| {
             let from_center = at[axis] - N::constant(self.center[axis]);
             let (low, high) = (N::constant(self.low[axis]), N::constant(self.high[axis]));
@@ -96,7 +96,7 @@ impl<A> Quadric<A> {
 
 impl Quadric<Classic> {
     /// The first hit's distance by the notes' formula.
-    pub fn classic_distance(&self, ray: &Ray, within: &Span) -> f64 {
+    pub fn classic_distance(&self, ray: &Ray, range: &RayRange) -> f64 {
         let origin = ray.origin - self.center;
         let turned = self.square * ray.dir;
         let [a, b, c] = [
@@ -108,7 +108,7 @@ impl Quadric<Classic> {
             let from_center = at - self.center;
             self.low.cmple(from_center).all() && from_center.cmple(self.high).all()
         };
-        let crossings = classic_roots(a, b, c).map(|distance| within.keep(distance));
+        let crossings = classic_roots(a, b, c).map(|distance| range.keep(distance));
         crossings.into_iter().find(|distance| keeps(ray.at(*distance))).unwrap_or(MISS)
     }
 
@@ -133,36 +133,36 @@ impl<A: Bounded> Quadric<A> {
 
     /// The distance of a ray that leaves it. It starts on one hit: the other one is what is left.
     #[inline(never)]
-    fn other_distance(&self, ray: &Ray, side: Side, within: &Span) -> f64 {
-        within.keep(self.own.other_hit(&self.own_ray(ray), side))
+    fn other_distance(&self, ray: &Ray, side: Side, range: &RayRange) -> f64 {
+        range.keep(self.own.other_hit(&self.own_ray(ray), side))
     }
 
     /// The first hit's distance within a span, or NaN where it takes more than plain arithmetic.
     #[inline(always)]
-    pub fn quick_distance(&self, ray: &Ray, within: &Span) -> f64 {
-        if let Some(side) = within.leaves {
-            return self.other_distance(ray, side, within);
+    pub fn fast_distance(&self, ray: &Ray, range: &RayRange) -> f64 {
+        if let Some(side) = range.origin_side {
+            return self.other_distance(ray, side, range);
         }
         if A::ACCURACY == Accuracy::Strict {
             return f64::NAN;
         }
         let own = self.own_ray(ray);
-        let quick = self.own.quick_hit(&own, within.near, 0.0);
+        let quick = self.own.quick_hit(&own, range.near, 0.0);
         let corrected = self.own.corrected(&own, quick.distance);
         let is_unknown = quick.is_unknown | corrected.is_nan();
-        let hit = if is_unknown { f64::NAN } else { within.keep(corrected) };
+        let hit = if is_unknown { f64::NAN } else { range.keep(corrected) };
         if quick.is_missed { MISS } else { hit }
     }
 
     /// Between which distances that is, of a ray that does not start on it.
     #[inline(always)]
-    pub fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        if let Some(side) = within.leaves {
-            return Bracket::exactly(self.other_distance(ray, side, within));
+    pub fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+        if let Some(side) = range.origin_side {
+            return Bracket::exactly(self.other_distance(ray, side, range));
         }
         let Quick { is_missed, is_unknown, distance, error } =
-            self.own.quick_hit(&self.own_ray(ray), within.near, CAMERA);
-        let (near, far) = if is_unknown { (within.near, MISS) } else { (distance - error, distance + error) };
+            self.own.quick_hit(&self.own_ray(ray), range.near, CAMERA);
+        let (near, far) = if is_unknown { (range.near, MISS) } else { (distance - error, distance + error) };
         if is_missed { Bracket::MISS } else { Bracket { near, far } }
     }
 

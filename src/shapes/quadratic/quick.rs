@@ -1,8 +1,8 @@
 //! Hits of a surface of the second degree in plain arithmetic, without branches: of many rays at a time.
 
 use super::surface::{FINE, OwnRay, Quadratic};
-use crate::geometry::bounds::smaller;
-use crate::numeric::twofold::{two_product, two_sum};
+use crate::geometry::aabb::smaller;
+use crate::numeric::double_double::{two_product, two_sum};
 use glam::DVec3;
 
 /// What is known quickly of a ray's first hit.

@@ -1,6 +1,6 @@
 //! The surface, and a ray that is counted as it is.
 
-use crate::numeric::twofold::{Twofold, exponent_to_one, times_power_of_two, two_sum};
+use crate::numeric::double_double::{DoubleDouble, exponent_to_one, times_power_of_two, two_sum};
 use glam::{DMat3, DVec3};
 
 /// The part in a box of what solves `p·Sp + l·p + c = 0`.
@@ -27,7 +27,7 @@ pub struct Quadratic {
 /// A ray, in the surface's own lengths and counted from its centre.
 #[derive(Clone, Copy, Debug)]
 pub struct OwnRay {
-    pub(super) from: [Twofold; 3],
+    pub(super) from: [DoubleDouble; 3],
     pub(super) dir: DVec3,
 }
 
@@ -84,7 +84,7 @@ impl Quadratic {
     pub fn own(&self, origin: DVec3, dir: DVec3, center: DVec3) -> OwnRay {
         let from = [0, 1, 2].map(|axis| {
             let (high, low) = two_sum(origin[axis], -center[axis]);
-            Twofold { high: high * self.scale, low: low * self.scale }
+            DoubleDouble { high: high * self.scale, low: low * self.scale }
         });
         OwnRay { from, dir }
     }

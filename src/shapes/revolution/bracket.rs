@@ -7,13 +7,13 @@
 //! way alone (`walk`), through the same slabs.
 
 use super::lanes::{Crossing, Lanes};
+use super::pieces::Slab;
 use super::quadratic::Quadratic;
-use super::slabs::Slab;
 use super::surface::Revolution;
-use crate::geometry::bounds::{from_order, larger, order, smaller};
+use crate::geometry::aabb::{from_order, larger, order, smaller};
 use crate::geometry::frame::Frame;
-use crate::geometry::packet::Rays;
 use crate::geometry::ray::{MISS, Ray, Side};
+use crate::geometry::ray_packet::RayPacket;
 use crate::simd::cpu::{Cpu, kernels};
 
 /// A direction with less than this of an axis is taken for upright on it.
@@ -26,11 +26,11 @@ pub(super) const MOST: usize = 64;
 impl Revolution {
     /// The brackets of the first hits of rays, up to `N`, which may leave the surface on these sides. What begins beyond
     /// `ends` is of no interest.
-    pub(super) fn bracket<const N: usize>(
+    pub(super) fn t_bounds<const N: usize>(
         &self,
         cpu: Cpu,
         frame: &Frame,
-        rays: Rays,
+        rays: RayPacket,
         sides: Option<&[Side]>,
         ends: &[f64],
         lanes: &mut Lanes<N>,
@@ -67,7 +67,7 @@ kernels! {
     /// Counts rays from near the axis and clips them to the bounding cylinder, whose squared radius `reach` has room
     /// for the error's shell. Gives the least and the greatest height of any ray in it, or nothing where all miss it.
     fn enter<const N>(
-        lanes: &mut Lanes<N>, frame: &Frame, rays: Rays, size: [f64; 2], reach: f64, ends: &[f64]
+        lanes: &mut Lanes<N>, frame: &Frame, rays: RayPacket, size: [f64; 2], reach: f64, ends: &[f64]
     ) -> Option<(f64, f64)> {
         let count = rays.len().min(N);
         let (rays, ends, [height, widest]) = (rays.first(count), &ends[..count], size);

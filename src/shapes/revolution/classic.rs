@@ -1,17 +1,17 @@
 //! The notes' method for surfaces of revolution, with the hits that it loses.
 
-use crate::geometry::ray::{MISS, Ray, Span};
+use crate::geometry::ray::{MISS, Ray, RayRange};
 use crate::geometry::roots::bisection::bisect;
 use crate::numeric::interval::Interval;
-use crate::numeric::number::Number;
-use crate::scene::profile::Line;
+use crate::numeric::scalar::Scalar;
+use crate::scene::profile::ProfileLine;
 use crate::world::certify::Equation;
 use glam::DVec3;
 
 /// A surface of revolution around the y axis, as the notes' program finds it.
 pub struct Classic {
     /// The line that is turned.
-    pub line: Line,
+    pub line: ProfileLine,
     /// How far up it goes.
     pub height: f64,
 }
@@ -19,7 +19,7 @@ pub struct Classic {
 impl Classic {
     /// The distance of a ray's hit: between the ray's origin and its point closest to the axis, bisection to 1e-4. A
     /// ray that grazes the surface is lost, and so is the inner wall.
-    pub fn first_hit(&self, ray: &Ray, within: &Span) -> f64 {
+    pub fn first_hit(&self, ray: &Ray, range: &RayRange) -> f64 {
         let outside = |at: DVec3| {
             let radius = self.line.radius.at(at.y);
             at.x * at.x - radius * radius + at.z * at.z
@@ -34,7 +34,7 @@ impl Classic {
         let (near, far) = bisect(is_across, (0.0, closest), 1e-4);
         let distance = (near + far) / 2.0;
         let height = ray.at(distance).y;
-        if (0.0..=self.height).contains(&height) { within.keep(distance) } else { MISS }
+        if (0.0..=self.height).contains(&height) { range.keep(distance) } else { MISS }
     }
 
     /// The unit normal at a point of it, away from the axis.
@@ -46,11 +46,11 @@ impl Classic {
 
 /// What the notes mean by it, not what their program finds.
 impl Equation for Classic {
-    fn value<N: Number>(&self, [x, y, z]: [N; 3]) -> N {
+    fn value<N: Scalar>(&self, [x, y, z]: [N; 3]) -> N {
         x.powi(2) + z.powi(2) - self.line.radius.squared().at(y)
     }
 
-    fn kept<N: Number>(&self, [_, y, _]: [N; 3]) -> N {
+    fn kept<N: Scalar>(&self, [_, y, _]: [N; 3]) -> N {
         y.min(N::constant(self.height) - y)
     }
 

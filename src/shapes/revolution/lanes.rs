@@ -1,8 +1,8 @@
 //! Some rays along which a surface is looked for, slab by slab: any number of them, one included.
 
+use super::pieces::Slab;
 use super::quadratic::Quadratic;
-use super::slabs::Slab;
-use crate::geometry::bounds::{larger, smaller};
+use crate::geometry::aabb::{larger, smaller};
 use crate::geometry::ray::{MISS, Ray, Side};
 
 /// Rays, each counted from a point near the surface.
@@ -209,8 +209,8 @@ impl Shell {
         let outer = ahead.lowered(error);
         let is_in_shell = outer.at(begin) <= 0.0;
         let (enters, is_entered) = outer.first_not_positive(begin, to);
-        let (leaves, is_left) = ahead.lowered(-error).first_not_positive(enters, to);
-        let falls = larger(a * enters + b, a * leaves + b);
+        let (origin_side, is_left) = ahead.lowered(-error).first_not_positive(enters, to);
+        let falls = larger(a * enters + b, a * origin_side + b);
         let is_certain =
             !is_side_unknown & !is_in_shell & is_left & (2.0 * falls + slope_error + rounding < 0.0);
         let is_met = is_side_unknown | (!never_falls & (is_in_shell | is_entered));
@@ -221,7 +221,7 @@ impl Shell {
         } else {
             enters
         };
-        Crossing { is_met, near, is_certain, far: leaves }
+        Crossing { is_met, near, is_certain, far: origin_side }
     }
 
     /// Where a ray that comes into the shell at `near` is out of it again, and whether it is on the other side then.
@@ -229,9 +229,9 @@ impl Shell {
         if self.is_side_unknown {
             return (self.to, false);
         }
-        let (leaves, is_left) = self.ahead.lowered(-self.error).first_not_positive(near, self.to);
+        let (origin_side, is_left) = self.ahead.lowered(-self.error).first_not_positive(near, self.to);
         if is_left {
-            (leaves, true)
+            (origin_side, true)
         } else {
             (self.ahead.lowered(self.error).next_positive(near, self.to), false)
         }

@@ -4,22 +4,22 @@ use super::local::Local;
 use super::surface::Revolution;
 use crate::geometry::frame::BLUR;
 use crate::geometry::ray::Side;
-use crate::geometry::roots::taylor::Line;
+use crate::geometry::roots::taylor::FunctionOnLine;
 use crate::geometry::roots::twice;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
-use crate::numeric::number::Number;
+use crate::numeric::scalar::Scalar;
 use crate::world::certify::Equation;
 
 /// How far outside of the surface the places along a ray are, with any number type.
-pub(super) struct OnRay<'s> {
+pub(super) struct ProfileOnRay<'s> {
     pub surface: &'s Revolution,
     pub local: &'s Local,
 }
 
-impl Line for OnRay<'_> {
+impl FunctionOnLine for ProfileOnRay<'_> {
     #[inline(always)]
-    fn at<N: Number>(&self, along: N) -> N {
+    fn at<N: Scalar>(&self, along: N) -> N {
         self.surface.value([0, 1, 2].map(|axis| self.local.place(axis, along)))
     }
 
@@ -33,7 +33,7 @@ impl Line for OnRay<'_> {
 
     /// Twice the precision, from the ray in the world and the axis as the scene has it, tells nearly all touches from
     /// misses.
-    fn undecided(&self, piece: Interval, leaves: Option<Side>) -> Option<f64> {
+    fn undecided(&self, piece: Interval, origin_side: Option<Side>) -> Option<f64> {
         let Self { surface, local } = *self;
         // What rounding hides of this ray alone, however far those are apart that it was rounded from.
         let hidden = |along: f64| {
@@ -43,7 +43,7 @@ impl Line for OnRay<'_> {
         };
         let hidden = hidden(piece.low).min(hidden(piece.high));
         let exact = local.frame.exactly(&local.ray, local.base);
-        twice::first_root(|along| surface.value(exact.along(along)), piece, leaves, hidden)
+        twice::first_root(|along| surface.value(exact.along(along)), piece, origin_side, hidden)
     }
 }
 
@@ -54,9 +54,9 @@ pub(super) struct Uncut<'s> {
     pub local: &'s Local,
 }
 
-impl Line for Uncut<'_> {
+impl FunctionOnLine for Uncut<'_> {
     #[inline(always)]
-    fn at<N: Number>(&self, along: N) -> N {
+    fn at<N: Scalar>(&self, along: N) -> N {
         let place = |axis: usize| self.local.own_place(axis, along);
         place(0).powi(2) + place(2).powi(2) - self.surface.profile.at(place(1)).max(N::constant(0.0)).powi(2)
     }

@@ -3,9 +3,9 @@
 
 use super::quadratic::Quadratic;
 use crate::geometry::frame::{self, BLUR, Frame};
-use crate::geometry::ray::{Ray, Span};
+use crate::geometry::ray::{Ray, RayRange};
 use crate::geometry::roots::taylor::Stretch;
-use crate::numeric::number::Number;
+use crate::numeric::scalar::Scalar;
 use glam::DVec3;
 use std::ops::Range;
 
@@ -35,13 +35,13 @@ pub struct Local {
 impl Local {
     /// Clips a ray of the world to heights from 0 to `height` and to `widest` around a frame's y.
     #[inline(always)]
-    pub fn new(frame: &Frame, ray: &Ray, within: &Span, height: f64, widest: f64) -> Option<Self> {
+    pub fn new(frame: &Frame, ray: &Ray, range: &RayRange, height: f64, widest: f64) -> Option<Self> {
         let Ray { origin, dir } = frame.ray(ray);
         let a = dir.x * dir.x + dir.z * dir.z;
         // Far away the next distance is farther on than what is to be told apart: these ends only say where the base
         // lies, and all others are counted from there. Where the span ends has no part in it, so that a hit is the same
         // in every span that holds it.
-        let (mut near, mut far) = (within.near, f64::INFINITY);
+        let (mut near, mut far) = (range.near, f64::INFINITY);
         if dir.y != 0.0 {
             let (bottom, top) = (-origin.y / dir.y, (height - origin.y) / dir.y);
             near = near.max(bottom.min(top));
@@ -55,7 +55,7 @@ impl Local {
         // Moved in the world and turned then: what is turned is as small as the surface.
         let moved = frame.direction(frame.from_origin(ray, base));
         let blur = frame::blur(moved, base);
-        let mut stretch = Stretch::from(within.near - base..f64::INFINITY);
+        let mut stretch = Stretch::from(range.near - base..f64::INFINITY);
         stretch.cut((moved.y, dir.y), [0.0, height], blur, 2.0 * (height + widest));
         let (mut from, mut to) = (stretch.outer.start, stretch.outer.end);
         // A hair more than is needed: rounding must not cut anything off.
@@ -72,10 +72,10 @@ impl Local {
         } else if inside.c > 0.0 {
             return None;
         }
-        if from > to || (to - from).is_nan() || base + from >= within.far {
+        if from > to || (to - from).is_nan() || base + from >= range.far {
             return None;
         }
-        let (far, inner) = (within.far, stretch.inner);
+        let (far, inner) = (range.far, stretch.inner);
         Some(Self { origin: moved, dir, blur, from, to, inner, base, far, ray: *ray, frame: *frame })
     }
 
@@ -88,13 +88,13 @@ impl Local {
     /// A coordinate of the place along the ray. Its bounds, where a number has any, hold that of the ray which this one
     /// was rounded from.
     #[inline(always)]
-    pub fn place<N: Number>(&self, axis: usize, along: N) -> N {
+    pub fn place<N: Scalar>(&self, axis: usize, along: N) -> N {
         N::about(self.origin[axis], self.blur) + along * N::about(self.dir[axis], BLUR)
     }
 
     /// A coordinate of the place along this ray, and of no other.
     #[inline(always)]
-    pub fn own_place<N: Number>(&self, axis: usize, along: N) -> N {
+    pub fn own_place<N: Scalar>(&self, axis: usize, along: N) -> N {
         N::constant(self.origin[axis]) + along * N::constant(self.dir[axis])
     }
 

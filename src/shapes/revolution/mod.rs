@@ -17,11 +17,11 @@ mod line;
 mod local;
 mod no_surface;
 mod normal;
+mod pieces;
 mod quadratic;
 mod ranges;
 mod root;
 mod shape;
-mod slabs;
 mod surface;
 #[cfg(test)]
 mod tests;

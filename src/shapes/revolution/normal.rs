@@ -2,13 +2,13 @@
 
 use super::surface::Revolution;
 use crate::geometry::frame::Frame;
-use crate::geometry::packet::Rays;
 use crate::geometry::ray::Side;
+use crate::geometry::ray_packet::RayPacket;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
 use crate::simd::cpu::kernels;
-use crate::simd::soa::{STEP, Vectors};
-use crate::world::landing;
+use crate::simd::soa::{LANES, Vectors};
+use crate::world::interaction;
 use glam::DVec3;
 
 impl Revolution {
@@ -73,21 +73,21 @@ kernels! {
     pub(super) fn land(
         surface: &Revolution,
         frame: &Frame,
-        rays: Rays,
+        rays: RayPacket,
         distances: &[f64],
         sides: &mut [Side],
         cosines: &mut [f64],
         travelled: &mut [f64],
     ) => points, normals {
         let is_smooth = surface.slabs.is_smooth();
-        for first in (0..travelled.len()).step_by(STEP) {
-            let eight = first..first + STEP;
+        for first in (0..travelled.len()).step_by(LANES) {
+            let eight = first..first + LANES;
             let (rays, distances) = (rays.part(eight.clone()), &distances[eight.clone()]);
             let (mut points, mut normals) = (points.part(eight.clone()), normals.part(eight.clone()));
             let (sides, cosines) = (&mut sides[eight.clone()], &mut cosines[eight.clone()]);
             let travelled = &mut travelled[eight];
-            let (mut at, mut normal) = (Vectors::<STEP>::ZERO, Vectors::<STEP>::ZERO);
-            for lane in 0..STEP {
+            let (mut at, mut normal) = (Vectors::<LANES>::ZERO, Vectors::<LANES>::ZERO);
+            for lane in 0..LANES {
                 let point = rays.get(lane).at(distances[lane]);
                 points.set(lane, point);
                 at.set(lane, frame.point(point));
@@ -95,20 +95,20 @@ kernels! {
             }
             let slope = surface.profile.at_eight(at.y).slope.0;
             let mut any = 0;
-            for lane in 0..STEP {
+            for lane in 0..LANES {
                 normal.set(lane, (frame.axes * upright(at.get(lane), slope[lane])).normalize());
                 // Of what is infinite, or no number.
                 any |= u64::from(0.0 * slope[lane] != 0.0);
             }
             if (any != 0) | !is_smooth {
-                for lane in 0..STEP {
+                for lane in 0..LANES {
                     normal.set(lane, surface.normal_in(frame, points.get(lane)));
                 }
             }
-            for lane in 0..STEP {
+            for lane in 0..LANES {
                 let turned;
                 (sides[lane], cosines[lane], turned) =
-                    landing::turned(rays.dir.get(lane), normal.get(lane), true);
+                    interaction::turned(rays.dir.get(lane), normal.get(lane), true);
                 normals.set(lane, turned);
             }
         }

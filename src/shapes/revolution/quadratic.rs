@@ -1,6 +1,6 @@
 //! Quadratics along a ray.
 
-use crate::geometry::bounds::{larger, smaller};
+use crate::geometry::aabb::{larger, smaller};
 use glam::DVec3;
 
 /// `a s^2 + 2 b s + c`.

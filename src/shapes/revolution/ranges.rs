@@ -11,7 +11,7 @@ use crate::geometry::roots::bisection::bisect;
 use crate::numeric::dual::Dual;
 use crate::numeric::formula::Formula;
 use crate::numeric::interval::Interval;
-use crate::numeric::number::Number;
+use crate::numeric::scalar::Scalar;
 
 /// The ranges of a profile, from the bottom up.
 pub(super) struct Ranges {

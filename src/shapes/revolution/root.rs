@@ -2,15 +2,15 @@
 
 use super::surface::{Finish, Revolution};
 use crate::geometry::frame::Frame;
-use crate::geometry::packet::Rays;
 use crate::geometry::ray::Ray;
+use crate::geometry::ray_packet::RayPacket;
 use crate::geometry::roots::newton::{self, Functions, Start};
+use crate::numeric::double_double::offset;
 use crate::numeric::dual::Dual;
-use crate::numeric::number::Number;
-use crate::numeric::octet::{Octet, each};
-use crate::numeric::twofold::offset;
+use crate::numeric::f64x8::{F64x8, each};
+use crate::numeric::scalar::Scalar;
 use crate::simd::cpu::{Cpu, kernels};
-use crate::simd::soa::{STEP, View};
+use crate::simd::soa::{LANES, View};
 
 /// Rays, counted from the near ends of their brackets.
 struct Ways<'s, N> {
@@ -20,7 +20,7 @@ struct Ways<'s, N> {
 }
 
 // No closure asks for the square: those are taken into kernels only where it pleases the compiler.
-impl<N: Number> Ways<'_, N> {
+impl<N: Scalar> Ways<'_, N> {
     /// The heights at these places. Beyond its ends the profile may be anything.
     #[inline(always)]
     fn heights(&self, along: N) -> N {
@@ -47,10 +47,10 @@ impl Functions<1> for Ways<'_, f64> {
     }
 }
 
-impl Functions<STEP> for Ways<'_, Octet> {
+impl Functions<LANES> for Ways<'_, F64x8> {
     #[inline(always)]
-    fn at(&self, along: [f64; STEP]) -> ([f64; STEP], [f64; STEP]) {
-        let along = Octet(along);
+    fn at(&self, along: [f64; LANES]) -> ([f64; LANES], [f64; LANES]) {
+        let along = F64x8(along);
         let square = self.surface.square.at_eight(self.heights(along).0);
         let (value, slope) = self.outside(along, square);
         (value.0, slope.0)
@@ -63,7 +63,7 @@ impl Revolution {
         &self,
         cpu: Cpu,
         frame: &Frame,
-        rays: Rays,
+        rays: RayPacket,
         (near, far): (&[f64], &[f64]),
         out: &mut [f64],
     ) {
@@ -103,9 +103,9 @@ impl Revolution {
 }
 
 kernels! {
-    fn roots(surface: &Revolution, frame: &Frame, rays: Rays, near: &[f64], far: &[f64], out: &mut [f64]) {
+    fn roots(surface: &Revolution, frame: &Frame, rays: RayPacket, near: &[f64], far: &[f64], out: &mut [f64]) {
         let count = out.len();
-        for first in (0..count).step_by(STEP) {
+        for first in (0..count).step_by(LANES) {
             let (origin, dir) = (eight_vectors(&rays.origin, first), eight_vectors(&rays.dir, first));
             let (near, far) = (eight(near, first), eight(far, first));
             // Moved in the world and turned then: what is turned is as small as the surface.
@@ -116,8 +116,8 @@ kernels! {
             let (from, dir) = (directions(frame, from), directions(frame, dir));
             let width = each!(near = near, far = far => if near < far { far - near } else { 0.0 });
             let along = newton::roots(&Ways { surface, from, dir }, surface.start(width.0));
-            let out = &mut out[first..first + STEP];
-            for lane in 0..STEP {
+            let out = &mut out[first..first + LANES];
+            for lane in 0..LANES {
                 let (near, far) = (near.0[lane], far.0[lane]);
                 out[lane] = if near < far { near + along[lane] } else { out[lane] };
             }
@@ -127,21 +127,21 @@ kernels! {
 
 /// The numbers from this one on.
 #[inline(always)]
-fn eight(of: &[f64], first: usize) -> Octet {
-    let mut all = [0.0; STEP];
-    all.copy_from_slice(&of[first..first + STEP]);
-    Octet(all)
+fn eight(of: &[f64], first: usize) -> F64x8 {
+    let mut all = [0.0; LANES];
+    all.copy_from_slice(&of[first..first + LANES]);
+    F64x8(all)
 }
 
 /// The vectors from this one on.
 #[inline(always)]
-fn eight_vectors(of: &View, first: usize) -> [Octet; 3] {
+fn eight_vectors(of: &View, first: usize) -> [F64x8; 3] {
     [eight(of.x, first), eight(of.y, first), eight(of.z, first)]
 }
 
 /// What [`Frame::direction`] does.
 #[inline(always)]
-fn directions(frame: &Frame, [x, y, z]: [Octet; 3]) -> [Octet; 3] {
+fn directions(frame: &Frame, [x, y, z]: [F64x8; 3]) -> [F64x8; 3] {
     [frame.axes.x_axis, frame.axes.y_axis, frame.axes.z_axis]
-        .map(|axis| Octet::constant(axis.x) * x + Octet::constant(axis.y) * y + Octet::constant(axis.z) * z)
+        .map(|axis| F64x8::constant(axis.x) * x + F64x8::constant(axis.y) * y + F64x8::constant(axis.z) * z)
 }

@@ -5,17 +5,17 @@ use super::classic::Classic;
 use super::lanes::Lanes;
 use super::normal;
 use super::surface::Revolution;
-use crate::geometry::bounds::Bounds;
+use crate::geometry::aabb::Aabb;
 use crate::geometry::frame::Frame;
-use crate::geometry::packet::{self, Nearest, Rays, parts};
-use crate::geometry::ray::{Bracket, Ray, Side, Span};
+use crate::geometry::ray::{Bracket, Ray, RayRange, Side};
+use crate::geometry::ray_packet::{self, Nearest, RayPacket, split};
 use crate::geometry::roots::Method;
 use crate::geometry::sight::Line;
-use crate::numeric::number::Number;
+use crate::numeric::scalar::Scalar;
 use crate::simd::cpu::Cpu;
 use crate::world::certify::Equation;
 use crate::world::hittable::{Certified, Hittable, Searched};
-use crate::world::landing::Landing;
+use crate::world::interaction::SurfaceInteraction;
 use crate::world::packets::shape::{Packets, Proofs, by_distance};
 use crate::world::shape::{ByPackets, Shape};
 use glam::DVec3;
@@ -29,15 +29,15 @@ pub struct InFrame<S> {
 }
 
 impl<S: Equation> Equation for InFrame<S> {
-    fn own<N: Number>(&self, line: Line<N>) -> Line<N> {
+    fn own<N: Scalar>(&self, line: Line<N>) -> Line<N> {
         self.frame.line(line)
     }
 
-    fn value<N: Number>(&self, at: [N; 3]) -> N {
+    fn value<N: Scalar>(&self, at: [N; 3]) -> N {
         self.surface.value(at)
     }
 
-    fn kept<N: Number>(&self, at: [N; 3]) -> N {
+    fn kept<N: Scalar>(&self, at: [N; 3]) -> N {
         self.surface.kept(at)
     }
 
@@ -47,21 +47,21 @@ impl<S: Equation> Equation for InFrame<S> {
 }
 
 impl Hittable for InFrame<Classic> {
-    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        self.surface.first_hit(&self.frame.ray(ray), within)
+    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
+        self.surface.first_hit(&self.frame.ray(ray), range)
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {
         (self.frame.axes * self.surface.normal(self.frame.point(at))).normalize()
     }
 
-    fn meets_itself(&self, _leaving: Side) -> bool {
+    fn can_hit_itself(&self, _leaving: Side) -> bool {
         false
     }
 
-    fn bounds(&self) -> Option<Bounds> {
+    fn bounds(&self) -> Option<Aabb> {
         let [low, high] = self.surface.extent();
-        Some(self.frame.bounds(&Bounds { low, high }))
+        Some(self.frame.bounds(&Aabb { low, high }))
     }
 
     fn method(&self) -> String {
@@ -70,15 +70,15 @@ impl Hittable for InFrame<Classic> {
 }
 
 impl Hittable for InFrame<Revolution> {
-    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        self.surface.first_hit(&self.frame, ray, within).0
+    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
+        self.surface.first_hit(&self.frame, ray, range).0
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {
         self.surface.normal_in(&self.frame, at)
     }
 
-    fn bounds(&self) -> Option<Bounds> {
+    fn bounds(&self) -> Option<Aabb> {
         Some(self.frame.bounds(&self.surface.bounds()))
     }
 
@@ -100,8 +100,8 @@ impl Certified for InFrame<Revolution> {
 }
 
 impl Searched for InFrame<Revolution> {
-    fn distance_by(&self, method: Method, ray: &Ray, within: &Span) -> f64 {
-        self.surface.first_hit_by(method, &self.frame, ray, within)
+    fn distance_by(&self, method: Method, ray: &Ray, range: &RayRange) -> f64 {
+        self.surface.first_hit_by(method, &self.frame, ray, range)
     }
 }
 
@@ -119,18 +119,18 @@ where
     fn closest_hits(
         &self,
         cpu: Cpu,
-        rays: Rays,
+        rays: RayPacket,
         sides: Option<&[Side]>,
         id: u64,
         mut nearest: Nearest,
     ) -> bool {
         let InFrame { surface, frame } = &self.shape;
         let (mut any, mut lanes) = (false, Lanes::<MOST>::none());
-        for part in parts(rays.len(), MOST) {
+        for part in split(rays.len(), MOST) {
             let (rays, sides) = (rays.part(part.clone()), sides.map(|sides| &sides[part.clone()]));
             let nearest = nearest.part(part);
-            surface.bracket(cpu, frame, rays, sides, nearest.far, &mut lanes);
-            any |= packet::meet_brackets(cpu, &lanes.near, &lanes.far, id, nearest);
+            surface.t_bounds(cpu, frame, rays, sides, nearest.far, &mut lanes);
+            any |= ray_packet::closest_of_brackets(cpu, &lanes.near, &lanes.far, id, nearest);
         }
         any
     }
@@ -138,7 +138,7 @@ where
     fn occluded(
         &self,
         cpu: Cpu,
-        rays: Rays,
+        rays: RayPacket,
         sides: Option<&[Side]>,
         ends: &[f64],
         blocked: &mut [u64],
@@ -146,11 +146,11 @@ where
     ) -> bool {
         let InFrame { surface, frame } = &self.shape;
         let (mut any, mut lanes) = (false, Lanes::<MOST>::none());
-        for part in parts(ends.len(), MOST) {
+        for part in split(ends.len(), MOST) {
             let (rays, sides) = (rays.part(part.clone()), sides.map(|sides| &sides[part.clone()]));
             let (ends, blocked, doubt) = (&ends[part.clone()], &mut blocked[part.clone()], &mut doubt[part]);
-            surface.bracket(cpu, frame, rays, sides, ends, &mut lanes);
-            any |= packet::block_brackets(cpu, &lanes.near, &lanes.far, ends, blocked, doubt);
+            surface.t_bounds(cpu, frame, rays, sides, ends, &mut lanes);
+            any |= ray_packet::occluded_by_brackets(cpu, &lanes.near, &lanes.far, ends, blocked, doubt);
         }
         any
     }
@@ -158,7 +158,7 @@ where
     fn refine(
         &self,
         cpu: Cpu,
-        rays: Rays,
+        rays: RayPacket,
         _sides: Option<&[Side]>,
         brackets: (&[f64], &[f64]),
         out: &mut [f64],
@@ -166,21 +166,21 @@ where
         self.shape.surface.roots(cpu, &self.shape.frame, rays, brackets, out);
     }
 
-    fn interact(&self, cpu: Cpu, rays: Rays, distances: &[f64], landing: Landing) {
-        let Landing { points, normals, sides, cosines, travelled } = landing;
+    fn interact(&self, cpu: Cpu, rays: RayPacket, distances: &[f64], landing: SurfaceInteraction) {
+        let SurfaceInteraction { points, normals, sides, cosines, travelled } = landing;
         let InFrame { surface, frame } = &self.shape;
         normal::land(cpu, surface, frame, rays, distances, sides, cosines, travelled, points, normals);
     }
 
-    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        let touches = || self.touches(ray.origin, within.origin_error);
-        by_distance(within, touches, |within| {
-            let (distance, is_certain) = self.shape.surface.first_hit(&self.shape.frame, ray, within);
+    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+        let touches = || self.touches(ray.origin, range.origin_error);
+        by_distance(range, touches, |range| {
+            let (distance, is_certain) = self.shape.surface.first_hit(&self.shape.frame, ray, range);
             is_certain.then_some(distance)
         })
     }
 
-    fn refine_one(&self, ray: &Ray, leaves: Option<Side>) -> f64 {
-        self.shape.distance(ray, &Span { leaves, ..Span::RAY })
+    fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
+        self.shape.distance(ray, &RayRange { origin_side, ..RayRange::ALL })
     }
 }

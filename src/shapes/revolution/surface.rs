@@ -1,11 +1,11 @@
 //! The surface of a profile.
 
 use super::no_surface::NoSurface;
-use super::slabs::Slabs;
-use crate::geometry::bounds::Bounds;
+use super::pieces::Slabs;
+use crate::geometry::aabb::Aabb;
 use crate::numeric::formula::Formula;
 use crate::numeric::interval::Interval;
-use crate::numeric::number::Number;
+use crate::numeric::scalar::Scalar;
 use crate::words;
 use crate::world::certify::Equation;
 use glam::DVec3;
@@ -51,9 +51,9 @@ impl Revolution {
     }
 
     /// A box around it.
-    pub fn bounds(&self) -> Bounds {
+    pub fn bounds(&self) -> Aabb {
         let widest = self.slabs.widest();
-        Bounds { low: DVec3::new(-widest, 0.0, -widest), high: DVec3::new(widest, self.height, widest) }
+        Aabb { low: DVec3::new(-widest, 0.0, -widest), high: DVec3::new(widest, self.height, widest) }
     }
 }
 
@@ -72,18 +72,18 @@ impl fmt::Display for Revolution {
 
 impl Equation for Revolution {
     /// Beyond its ends the profile may be anything, and rounding must not ask.
-    fn value<N: Number>(&self, [x, y, z]: [N; 3]) -> N {
+    fn value<N: Scalar>(&self, [x, y, z]: [N; 3]) -> N {
         let height = y.max(N::constant(0.0)).min(N::constant(self.height));
         x.powi(2) + z.powi(2) - self.square.at(height)
     }
 
-    fn kept<N: Number>(&self, [_, y, _]: [N; 3]) -> N {
+    fn kept<N: Scalar>(&self, [_, y, _]: [N; 3]) -> N {
         let below_the_top = N::constant(self.height) - y;
         y.min(below_the_top).min(self.profile.at(y))
     }
 
     fn extent(&self) -> [DVec3; 2] {
-        let Bounds { low, high } = self.bounds();
+        let Aabb { low, high } = self.bounds();
         [low, high]
     }
 }

@@ -4,7 +4,7 @@ use super::no_surface::NoSurface;
 use super::*;
 use crate::numeric::formula::Formula;
 use crate::numeric::interval::Interval;
-use crate::numeric::number::Number;
+use crate::numeric::scalar::Scalar;
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 

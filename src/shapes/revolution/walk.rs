@@ -5,12 +5,12 @@
 
 use super::bracket::cross;
 use super::lanes::Lanes;
-use super::line::{OnRay, Uncut};
+use super::line::{ProfileOnRay, Uncut};
 use super::local::Local;
 use super::surface::Revolution;
 use crate::geometry::frame::Frame;
-use crate::geometry::packet::Rays;
-use crate::geometry::ray::{MISS, Ray, Side, Span};
+use crate::geometry::ray::{MISS, Ray, RayRange, Side};
+use crate::geometry::ray_packet::RayPacket;
 use crate::geometry::roots::Method;
 use crate::geometry::roots::taylor::{self, Found, Stretch};
 use crate::simd::cpu::Cpu;
@@ -23,50 +23,50 @@ const LEVEL: f64 = 1e-200;
 
 impl Revolution {
     /// The distance of a ray's first hit within a span, and whether it is that of all rays that this one was rounded from.
-    pub fn first_hit(&self, frame: &Frame, ray: &Ray, within: &Span) -> (f64, bool) {
-        let rays = Rays { origin: view(&ray.origin), dir: view(&ray.dir), origin_error: 0.0 };
-        let sides = within.leaves.as_ref().map(from_ref);
+    pub fn first_hit(&self, frame: &Frame, ray: &Ray, range: &RayRange) -> (f64, bool) {
+        let rays = RayPacket { origin: view(&ray.origin), dir: view(&ray.dir), origin_error: 0.0 };
+        let sides = range.origin_side.as_ref().map(from_ref);
         let mut lanes = Lanes::<1>::none();
-        self.bracket(Cpu::best(), frame, rays, sides, &[MISS], &mut lanes);
+        self.t_bounds(Cpu::best(), frame, rays, sides, &[MISS], &mut lanes);
         let (near, far) = (lanes.near[0], lanes.far[0]);
         if near == MISS {
             (MISS, true)
         } else if far < MISS {
-            (within.keep(self.root(frame, ray, (near, far))), true)
+            (range.keep(self.root(frame, ray, (near, far))), true)
         } else {
-            let local = Local::new(frame, ray, within, self.height, self.slabs.reach().sqrt());
+            let local = Local::new(frame, ray, range, self.height, self.slabs.reach().sqrt());
             local.map_or((MISS, true), |local| {
-                let (distance, is_certain) = self.walk(&local, within.leaves, lanes);
-                (within.keep(distance), is_certain)
+                let (distance, is_certain) = self.walk(&local, range.origin_side, lanes);
+                (range.keep(distance), is_certain)
             })
         }
     }
 
     /// As [`first_hit`](Self::first_hit), by another method and in the same bounding cylinder; but the notes' steps, as
     /// in the notes, go all the way between the surface's heights.
-    pub fn first_hit_by(&self, method: Method, frame: &Frame, ray: &Ray, within: &Span) -> f64 {
+    pub fn first_hit_by(&self, method: Method, frame: &Frame, ray: &Ray, range: &RayRange) -> f64 {
         let widest = if method == Method::Steps { f64::INFINITY } else { self.slabs.widest() };
-        let Some(local) = Local::new(frame, ray, within, self.height, widest) else { return MISS };
+        let Some(local) = Local::new(frame, ray, range, self.height, widest) else { return MISS };
         let line = Uncut { surface: self, local: &local };
         let shortest = 4.0 * local.tolerance();
-        match method.first_root(&line, local.from..local.to, local.base, within, shortest) {
-            Some(along) => within.keep(local.base + along),
+        match method.first_root(&line, local.from..local.to, local.base, range, shortest) {
+            Some(along) => range.keep(local.base + along),
             None => MISS,
         }
     }
 
     /// The distance of the first place along a ray where it crosses the surface, and whether that is certain for all rays
     /// that this one was rounded from. A ray that leaves the surface on a side looks for crossings from there alone.
-    fn walk(&self, local: &Local, leaves: Option<Side>, mut lanes: Lanes<1>) -> (f64, bool) {
+    fn walk(&self, local: &Local, origin_side: Option<Side>, mut lanes: Lanes<1>) -> (f64, bool) {
         let (size, cpu) = (self.size(), Cpu::best());
-        lanes.begin(1, leaves.as_ref().map(from_ref));
+        lanes.begin(1, origin_side.as_ref().map(from_ref));
         let own = Ray { origin: local.origin, dir: local.dir };
         lanes.put(0, own, (local.base, local.moved()), (local.from, local.to), self.slabs.widest());
         lanes.near[0] = MISS;
         let is_level = local.dir.y.abs() < LEVEL;
         let is_upward = local.dir.y > 0.0;
         let (mut index, mut wanted, mut is_certain) =
-            (self.slabs.index(local.height(local.from)), leaves, true);
+            (self.slabs.index(local.height(local.from)), origin_side, true);
         loop {
             let mut slab = self.slab(index);
             if is_level {
@@ -111,8 +111,8 @@ impl Revolution {
     fn first_crossing(&self, local: &Local, (from, to): (f64, f64), wanted: Option<Side>) -> Found {
         // The piece's own ends may be crossings: they are where shells begin and end, but where the ray begins.
         let (from, to) = (from.next_down().max(local.from), to.next_up());
-        let line = OnRay { surface: self, local };
-        let all = Span { near: f64::NEG_INFINITY, leaves: wanted, ..Span::RAY };
+        let line = ProfileOnRay { surface: self, local };
+        let all = RayRange { near: f64::NEG_INFINITY, origin_side: wanted, ..RayRange::ALL };
         let stretch =
             Stretch { outer: from..to, inner: from.max(local.inner.start)..to.min(local.inner.end) };
         taylor::first_root(&line, &stretch, 0.0, &all, 4.0 * local.tolerance())

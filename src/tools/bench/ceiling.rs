@@ -1,7 +1,7 @@
 //! What the arithmetic alone of a test costs: the formulas of textbooks in loops over arrays, without bounds, brackets,
 //! shading or any care for rounding. No tracer that tests packets of rays one by one is faster.
 
-use crate::geometry::packet::{Rays, WIDE};
+use crate::geometry::ray_packet::{PACKET_SIZE, RayPacket};
 use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::Vectors;
 use glam::DVec3;
@@ -34,19 +34,20 @@ impl Bare {
 
     /// Makes at least so many tests.
     pub fn run(self, cpu: Cpu, tests: u64) {
-        let (mut origin, mut dir) = (Vectors::<WIDE>::ZERO, Vectors::<WIDE>::ZERO);
-        for lane in 0..WIDE {
+        let (mut origin, mut dir) = (Vectors::<PACKET_SIZE>::ZERO, Vectors::<PACKET_SIZE>::ZERO);
+        for lane in 0..PACKET_SIZE {
             let (x, y) = ((lane % 8) as f64, (lane / 8) as f64);
             origin.set(lane, DVec3::new(4.0, 3.0, 7.0));
             dir.set(lane, DVec3::new(0.1 * x - 0.3, 0.1 * y - 0.3, -1.0).normalize());
         }
-        let rays = Rays { origin: origin.view(WIDE), dir: dir.view(WIDE), origin_error: 0.0 };
+        let rays =
+            RayPacket { origin: origin.view(PACKET_SIZE), dir: dir.view(PACKET_SIZE), origin_error: 0.0 };
         let shapes: [[DVec3; 3]; SHAPES] = std::array::from_fn(|index| {
             let corner = DVec3::new(4.0, 3.0, -4.0 - 0.1 * index as f64);
             [corner, DVec3::X + 0.1 * DVec3::Z, DVec3::Y]
         });
-        for _ in 0..tests.div_ceil((WIDE * SHAPES) as u64) {
-            let (mut near, mut met) = ([f64::INFINITY; WIDE], [0; WIDE]);
+        for _ in 0..tests.div_ceil((PACKET_SIZE * SHAPES) as u64) {
+            let (mut near, mut met) = ([f64::INFINITY; PACKET_SIZE], [0; PACKET_SIZE]);
             let shapes = black_box(&shapes);
             match self {
                 Self::Plane => planes(cpu, rays, shapes, &mut near, &mut met),
@@ -60,14 +61,14 @@ impl Bare {
 
 kernels! {
     /// Planes, as a point and a normal.
-    fn planes(rays: Rays, shapes: &[[DVec3; 3]], near: &mut [f64], met: &mut [u64]) {
+    fn planes(rays: RayPacket, shapes: &[[DVec3; 3]], near: &mut [f64], met: &mut [u64]) {
         each(rays, shapes, near, met, |[point, normal, _], origin, dir| {
             (*point - origin).dot(*normal) / dir.dot(*normal)
         });
     }
 
     /// Spheres of radius 2, as their centres.
-    fn spheres(rays: Rays, shapes: &[[DVec3; 3]], near: &mut [f64], met: &mut [u64]) {
+    fn spheres(rays: RayPacket, shapes: &[[DVec3; 3]], near: &mut [f64], met: &mut [u64]) {
         each(rays, shapes, near, met, |[center, ..], origin, dir| {
             let from = origin - *center;
             let (b, c) = (from.dot(dir), from.dot(from) - 4.0);
@@ -77,7 +78,7 @@ kernels! {
     }
 
     /// Triangles, as a corner and two edges.
-    fn triangles(rays: Rays, shapes: &[[DVec3; 3]], near: &mut [f64], met: &mut [u64]) {
+    fn triangles(rays: RayPacket, shapes: &[[DVec3; 3]], near: &mut [f64], met: &mut [u64]) {
         each(rays, shapes, near, met, |[corner, one, other], origin, dir| {
             let (across, from) = (dir.cross(*other), origin - *corner);
             let inverse = 1.0 / one.dot(across);
@@ -91,7 +92,7 @@ kernels! {
 
 #[inline(always)]
 fn each(
-    rays: Rays,
+    rays: RayPacket,
     shapes: &[[DVec3; 3]],
     near: &mut [f64],
     met: &mut [u64],

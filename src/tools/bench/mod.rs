@@ -9,11 +9,11 @@ pub mod scenes;
 
 pub use packets::Times;
 
+use crate::render::observer::RayKind;
 use crate::render::plan::Plan;
+use crate::render::ray_stats::RayStats;
 use crate::render::renderer::{Overseer, Renderer};
-use crate::render::tally::Tally;
 use crate::render::tiles::{BAND, Band};
-use crate::render::watch::Kind;
 use crate::scene::model::{Model, Object};
 use crate::simd::cpu::Cpu;
 use crate::world::body::AnyShader;
@@ -37,7 +37,7 @@ pub struct Speed {
     /// All rays, and what the whole frame costs, without a file being written.
     pub frame: Cost,
     /// The tests by the type of the entity, sorted.
-    pub tests: Vec<Tests>,
+    pub tests: Vec<TestTimes>,
     /// What the frame's tests take as bare arithmetic, in seconds, if each has a formula of textbooks
     /// (`ceiling`).
     pub bare: Option<f64>,
@@ -66,7 +66,7 @@ impl Cost {
 
 /// The tests of rays against the objects of a type.
 #[derive(Clone, Debug)]
-pub struct Tests {
+pub struct TestTimes {
     /// The type.
     pub entity: &'static str,
     /// How many a frame makes, one for each ray and object.
@@ -117,12 +117,12 @@ impl Speed {
             Cost { rays, seconds }
         };
         let mut lit = frame;
-        if tally.rays(Kind::Reflected) + tally.rays(Kind::Transmitted) > 0 {
+        if tally.rays(RayKind::Reflected) + tally.rays(RayKind::Transmitted) > 0 {
             model = matt(model);
             lit = measured(&model);
         }
         let mut primary = lit;
-        if tally.rays(Kind::Shadow) > 0 {
+        if tally.rays(RayKind::Shadow) > 0 {
             model.lights.clear();
             primary = measured(&model);
         }
@@ -146,20 +146,20 @@ fn render(renderer: &Renderer, plan: &Plan, room: &mut Option<Band>) {
 }
 
 /// What a frame takes.
-fn counted(renderer: &Renderer, plan: &Plan) -> Tally {
+fn counted(renderer: &Renderer, plan: &Plan) -> RayStats {
     let [width, height] = plan.camera.pixels;
-    let sum = Mutex::new(Tally::default());
-    let add = |part: Tally| sum.lock().unwrap_or_else(PoisonError::into_inner).add(&part);
+    let sum = Mutex::new(RayStats::default());
+    let add = |part: RayStats| sum.lock().unwrap_or_else(PoisonError::into_inner).add(&part);
     renderer.bands(plan, 0..width, 0..height, &add).for_each(drop);
     sum.into_inner().unwrap_or_else(PoisonError::into_inner)
 }
 
-fn tests(plan: &Plan, tally: &Tally, cpu: Cpu, patience: Duration) -> Vec<Tests> {
+fn tests(plan: &Plan, tally: &RayStats, cpu: Cpu, patience: Duration) -> Vec<TestTimes> {
     /// Textbooks' tests in a round.
     const ROUND: u64 = 1 << 16;
     let (packets, model) = (packets::of(plan, cpu), plan.model);
     let tests = tally.tests(model).into_iter().filter(|(_, tests)| tests.tested > 0);
-    let tests = tests.map(|(entity, tests)| Tests {
+    let tests = tests.map(|(entity, tests)| TestTimes {
         entity,
         number: tests.tested,
         times: packets::times(&packets, model, cpu, patience, |object| {
@@ -202,7 +202,7 @@ impl Shader for Matt {
         Rgb::ZERO
     }
 
-    fn even(&self, material: &Material) -> Option<Look> {
-        self.0.even(material).map(|look| Look { specular: Rgb::ZERO, ..look })
+    fn uniform(&self, material: &Material) -> Option<Look> {
+        self.0.uniform(material).map(|look| Look { specular: Rgb::ZERO, ..look })
     }
 }

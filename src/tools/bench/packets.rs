@@ -1,12 +1,12 @@
 //! A scene's own packets, to time the functions of its shapes with.
 
 use super::clock;
-use crate::geometry::packet::{Nearest, Rays, WIDE};
 use crate::geometry::ray::{MISS, Side};
+use crate::geometry::ray_packet::{Nearest, PACKET_SIZE, RayPacket};
+use crate::render::observer::{Count, RayKind, TraceObserver};
 use crate::render::plan::Plan;
 use crate::render::tiles::{self, TILE};
-use crate::render::trace::{self, Rooms, Tracer};
-use crate::render::watch::{Count, Kind, Watch};
+use crate::render::trace::{self, Scratch, Tracer};
 use crate::scene::model::Model;
 use crate::simd::cpu::Cpu;
 use crate::simd::soa::Vectors;
@@ -31,18 +31,22 @@ struct Met {
     view: Bundle,
     /// Those to the light, on which sides they leave the object, and how far it is; 0 where it is behind.
     toward: Bundle,
-    sides: [Side; WIDE],
-    ends: [f64; WIDE],
+    sides: [Side; PACKET_SIZE],
+    t_max: [f64; PACKET_SIZE],
 }
 
 struct Bundle {
-    origin: Vectors<WIDE>,
-    dir: Vectors<WIDE>,
+    origin: Vectors<PACKET_SIZE>,
+    dir: Vectors<PACKET_SIZE>,
 }
 
 impl Bundle {
-    fn rays(&self) -> Rays<'_> {
-        Rays { origin: self.origin.view(WIDE), dir: self.dir.view(WIDE), origin_error: 0.0 }
+    fn rays(&self) -> RayPacket<'_> {
+        RayPacket {
+            origin: self.origin.view(PACKET_SIZE),
+            dir: self.dir.view(PACKET_SIZE),
+            origin_error: 0.0,
+        }
     }
 }
 
@@ -69,7 +73,7 @@ impl Packet {
         let camera = &plan.camera;
         let mut view = Bundle { origin: Vectors::ZERO, dir: Vectors::ZERO };
         let mut hits = Vec::new();
-        for lane in 0..WIDE {
+        for lane in 0..PACKET_SIZE {
             let [x, y] = tile[lane.min(tile.len() - 1)];
             let ray = camera.ray(x as f64, y as f64);
             view.origin.set(lane, ray.origin);
@@ -82,8 +86,8 @@ impl Packet {
             hits.retain(|(_, hit)| hit.index == object);
             let bundle = || Bundle { origin: Vectors::ZERO, dir: Vectors::ZERO };
             let (mut view, mut toward) = (bundle(), bundle());
-            let (mut sides, mut ends) = ([Side::Outside; WIDE], [0.0; WIDE]);
-            for (lane, (ray, hit)) in (0..WIDE).zip(hits.iter().cycle()) {
+            let (mut sides, mut t_max) = ([Side::Outside; PACKET_SIZE], [0.0; PACKET_SIZE]);
+            for (lane, (ray, hit)) in (0..PACKET_SIZE).zip(hits.iter().cycle()) {
                 let mut normal = hit.object.shape.normal(hit.point);
                 sides[lane] = Side::seen_along(ray.dir, normal);
                 if hit.object.shape.is_two_sided() && sides[lane] == Side::Inside {
@@ -96,10 +100,10 @@ impl Packet {
                 if let Some(light) = plan.model.lights.first() {
                     let between = light.value.location() - hit.point;
                     toward.dir.set(lane, between.normalize());
-                    ends[lane] = if between.dot(normal) > 0.0 { between.length() } else { 0.0 };
+                    t_max[lane] = if between.dot(normal) > 0.0 { between.length() } else { 0.0 };
                 }
             }
-            Met { object, view, toward, sides, ends }
+            Met { object, view, toward, sides, t_max }
         });
         Self { view, tested: Tested::of(plan, cpu, tile), met }
     }
@@ -120,9 +124,9 @@ pub(super) fn times(
     let lit: Vec<(&Met, Vec<usize>)> = packets
         .iter()
         .filter_map(|packet| Some((packet.met.as_ref()?, wanted(&packet.tested.shadow))))
-        .filter(|(met, _)| met.ends.iter().any(|end| *end > 0.0))
+        .filter(|(met, _)| met.t_max.iter().any(|end| *end > 0.0))
         .map(|(met, mut tested)| {
-            let may_meet_itself = met.sides.iter().any(|side| shape(met.object).meets_itself(*side));
+            let may_meet_itself = met.sides.iter().any(|side| shape(met.object).can_hit_itself(*side));
             tested.retain(|object| *object != met.object || may_meet_itself);
             (met, tested)
         })
@@ -132,8 +136,8 @@ pub(super) fn times(
 
     let mut meet = || {
         for (packet, objects) in &viewed {
-            let (mut near, mut far) = ([MISS; WIDE], [MISS; WIDE]);
-            let (mut met, mut doubt) = ([0; WIDE], [0; WIDE]);
+            let (mut near, mut far) = ([MISS; PACKET_SIZE], [MISS; PACKET_SIZE]);
+            let (mut met, mut doubt) = ([0; PACKET_SIZE], [0; PACKET_SIZE]);
             for object in objects {
                 let (near, far, met, doubt) = (&mut near[..], &mut far[..], &mut met[..], &mut doubt[..]);
                 let nearest = Nearest { near, far, met, doubt };
@@ -144,14 +148,14 @@ pub(super) fn times(
     };
     let mut block = || {
         for (met, objects) in &lit {
-            let (mut blocked, mut doubt) = ([0; WIDE], [0; WIDE]);
+            let (mut blocked, mut doubt) = ([0; PACKET_SIZE], [0; PACKET_SIZE]);
             for object in objects {
                 let sides = (*object == met.object).then_some(&met.sides[..]);
                 shape(*object).packets().occluded(
                     cpu,
                     met.toward.rays(),
                     sides,
-                    &met.ends,
+                    &met.t_max,
                     &mut blocked,
                     &mut doubt,
                 );
@@ -162,8 +166,8 @@ pub(super) fn times(
     let brackets: Vec<_> = met
         .iter()
         .map(|view| {
-            let (mut near, mut far) = ([MISS; WIDE], [MISS; WIDE]);
-            let (mut met, mut doubt) = ([0; WIDE], [0; WIDE]);
+            let (mut near, mut far) = ([MISS; PACKET_SIZE], [MISS; PACKET_SIZE]);
+            let (mut met, mut doubt) = ([0; PACKET_SIZE], [0; PACKET_SIZE]);
             let nearest = Nearest { near: &mut near, far: &mut far, met: &mut met, doubt: &mut doubt };
             shape(view.object).closest_hits(cpu, view.view.rays(), None, 1, nearest);
             (near, far)
@@ -171,13 +175,14 @@ pub(super) fn times(
         .collect();
     let mut settle = || {
         for (met, (near, far)) in met.iter().zip(&brackets) {
-            let mut distances = [0.0; WIDE];
+            let mut distances = [0.0; PACKET_SIZE];
             shape(met.object).packets().refine(cpu, met.view.rays(), None, (near, far), &mut distances);
             black_box(&distances);
         }
     };
     let [meets, blocks, settles] = clock::least(patience, [&mut meet, &mut block, &mut settle]);
-    let per_ray = |seconds: f64, tests: usize| (tests > 0).then(|| 1e9 * seconds / (tests * WIDE) as f64);
+    let per_ray =
+        |seconds: f64, tests: usize| (tests > 0).then(|| 1e9 * seconds / (tests * PACKET_SIZE) as f64);
     Times {
         meet: per_ray(meets, viewed.iter().map(|(_, objects)| objects.len()).sum()),
         block: per_ray(blocks, lit.iter().map(|(_, objects)| objects.len()).sum()),
@@ -205,17 +210,17 @@ fn split([width, height]: [usize; 2]) -> impl Iterator<Item = Vec<[usize; 2]>> {
 struct Tested {
     primary: Vec<usize>,
     shadow: Vec<usize>,
-    kind: Option<Kind>,
+    kind: Option<RayKind>,
 }
 
-impl Watch for Tested {
+impl TraceObserver for Tested {
     const SEES: bool = false;
 
     fn count(&mut self, count: Count) {
         match (count, self.kind) {
             (Count::Rays(kind, _), _) => self.kind = Some(kind),
-            (Count::Tested(object, _), Some(Kind::Primary)) => self.primary.push(object),
-            (Count::Tested(object, _), Some(Kind::Shadow)) => self.shadow.push(object),
+            (Count::Tested(object, _), Some(RayKind::Primary)) => self.primary.push(object),
+            (Count::Tested(object, _), Some(RayKind::Shadow)) => self.shadow.push(object),
             _ => (),
         }
     }
@@ -225,7 +230,7 @@ impl Tested {
     /// Those of a tile, each once.
     fn of(plan: &Plan, cpu: Cpu, tile: &[[usize; 2]]) -> Self {
         let mut tested = Self::default();
-        Tracer::new(plan, cpu, &mut Rooms::default(), &mut tested).pixels(tile);
+        Tracer::new(plan, cpu, &mut Scratch::default(), &mut tested).pixels(tile);
         for objects in [&mut tested.primary, &mut tested.shadow] {
             objects.sort_unstable();
             objects.dedup();

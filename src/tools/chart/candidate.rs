@@ -1,18 +1,18 @@
 //! The ways in which a scene's hits can be found, each as a model of the scene.
 
 use super::data::Family;
-use crate::geometry::bounds::Bounds;
-use crate::geometry::ray::{MISS, Ray, Side, Span};
+use crate::geometry::aabb::Aabb;
+use crate::geometry::ray::{MISS, Ray, RayRange, Side};
 use crate::geometry::roots::Method;
 use crate::geometry::sight::Sight;
-use crate::numeric::twofold::Twofold;
+use crate::numeric::double_double::DoubleDouble;
 use crate::scene::choice::Choice;
 use crate::scene::model::{Model, Object};
 use crate::world::accuracy::Accuracy;
 use crate::world::any_shape::AnyShape;
 use crate::world::certify::{Enclosure, Precision};
 use crate::world::hittable::Hittable;
-use crate::world::packets::shape::{Meeting, Proofs};
+use crate::world::packets::shape::{Coincidence, Proofs};
 use crate::world::shape::{ByDistance, Shape};
 use glam::DVec3;
 use std::io;
@@ -85,7 +85,7 @@ pub fn all(load: Load) -> io::Result<Vec<Candidate>> {
 /// Whether a shape's hits are the roots of a function along a ray.
 pub fn is_searched(shape: &AnyShape) -> bool {
     let any = Ray { origin: DVec3::ZERO, dir: DVec3::Z };
-    shape.packets().distance_by(Method::Steps, &any, &Span::RAY).is_some()
+    shape.packets().distance_by(Method::Steps, &any, &RayRange::ALL).is_some()
 }
 
 /// A shape that is found by another method.
@@ -98,20 +98,20 @@ struct By {
 struct ByItsOwn;
 
 impl Hittable for By {
-    fn distance(&self, ray: &Ray, within: &Span) -> f64 {
-        self.shape.packets().distance_by(self.method, ray, within).unwrap_or(MISS)
+    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
+        self.shape.packets().distance_by(self.method, ray, range).unwrap_or(MISS)
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {
         self.shape.normal(at)
     }
 
-    fn bounds(&self) -> Option<Bounds> {
+    fn bounds(&self) -> Option<Aabb> {
         self.shape.bounds()
     }
 
-    fn meets_itself(&self, leaving: Side) -> bool {
-        self.shape.meets_itself(leaving)
+    fn can_hit_itself(&self, leaving: Side) -> bool {
+        self.shape.can_hit_itself(leaving)
     }
 
     fn is_two_sided(&self) -> bool {
@@ -119,14 +119,14 @@ impl Hittable for By {
     }
 }
 
-impl Meeting for ByItsOwn {}
+impl Coincidence for ByItsOwn {}
 
 impl Proofs for Shape<By, ByDistance, ByItsOwn> {
     fn touches(&self, at: DVec3, error: f64) -> bool {
         self.shape.shape.touches(at, error)
     }
 
-    fn fine_distance(&self, _ray: &Ray, _distance: f64) -> Option<Twofold> {
+    fn fine_distance(&self, _ray: &Ray, _distance: f64) -> Option<DoubleDouble> {
         None
     }
 
@@ -134,7 +134,7 @@ impl Proofs for Shape<By, ByDistance, ByItsOwn> {
         self.shape.shape.certify(sight, precision)
     }
 
-    fn distance_by(&self, _method: Method, _ray: &Ray, _within: &Span) -> Option<f64> {
+    fn distance_by(&self, _method: Method, _ray: &Ray, _range: &RayRange) -> Option<f64> {
         None
     }
 }

@@ -1,6 +1,6 @@
 //! Lines, markers and words, drawn into whatever `plotters` writes: the same for SVG and PNG.
 
-use super::labels::Area;
+use super::labels::PlotArea;
 use plotters::coord::Shift;
 use plotters::element::{PathElement, Polygon, Text};
 use plotters::prelude::{
@@ -104,8 +104,8 @@ impl<D: DrawingBackend> Canvas<D> {
     }
 
     /// The edges of a rectangle.
-    pub fn frame(&self, area: Area, colour: RGBColor) -> io::Result<()> {
-        let Area { left, top, right, bottom } = area;
+    pub fn frame(&self, area: PlotArea, colour: RGBColor) -> io::Result<()> {
+        let PlotArea { left, top, right, bottom } = area;
         self.line(&[(left, top), (right, top), (right, bottom), (left, bottom), (left, top)], colour, 1.0)
     }
 

@@ -3,8 +3,8 @@
 use super::axis::Axis;
 use super::canvas::{Align, BLUE, Canvas, GREEN, GREY, LIGHT, Letters, Marker, ORANGE, PURPLE, VERMILION};
 use super::data::{Chart, Family, Panel, Point, Subject};
-use super::labels::{self, Area};
-use crate::geometry::packet::WIDE;
+use super::labels::{self, PlotArea};
+use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::output::picture::{Compression, Format};
 use plotters::prelude::{BLACK, BitMapBackend, DrawingBackend, IntoDrawingArea, RGBColor, SVGBackend};
 use std::io;
@@ -126,7 +126,7 @@ fn legend<D: DrawingBackend>(canvas: &Canvas<D>, chart: &Chart, y: f64) -> io::R
                 where no choice without wrong hits is both faster and more exact";
     canvas.text(text, (40.0, second), Align::Left, letters)?;
     let text = format!(
-        "times: packets of up to {WIDE} rays on one thread, as in a render; where a hit is searched for, all methods but \
+        "times: packets of up to {PACKET_SIZE} rays on one thread, as in a render; where a hit is searched for, all methods but \
          tabray's own take rays one by one"
     );
     canvas.text(&text, (26.0, second + 22.0), Align::Left, Letters { colour: GREY, ..letters })
@@ -145,7 +145,7 @@ fn look(family: Family) -> (Marker, RGBColor) {
 }
 
 fn draw_panel<D: DrawingBackend>(canvas: &Canvas<D>, panel: &Panel, corner: (f64, f64)) -> io::Result<()> {
-    let plot = Area {
+    let plot = PlotArea {
         left: corner.0 + 92.0,
         top: corner.1 + 56.0,
         right: corner.0 + PANEL.0 - 22.0,

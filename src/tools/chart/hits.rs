@@ -8,11 +8,11 @@ use super::packets::Packet;
 use super::places::{spread, tiles};
 use super::progress::Progress;
 use super::study::Study;
-use crate::geometry::packet::WIDE;
-use crate::geometry::ray::{MISS, Ray, Side, Span};
+use crate::geometry::ray::{MISS, Ray, RayRange, Side};
+use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::geometry::roots::bisection::bisect;
 use crate::geometry::sight::Sight;
-use crate::numeric::twofold::Twofold;
+use crate::numeric::double_double::DoubleDouble;
 use crate::scene::model::Model;
 use crate::simd::cpu::Cpu;
 use crate::world::any_shape::AnyShape;
@@ -42,7 +42,7 @@ pub struct Set {
 /// What is true about a pair.
 enum Truth {
     /// The ray meets the object there, on this side of its surface.
-    Hit(Twofold, Side),
+    Hit(DoubleDouble, Side),
     Miss,
     /// The proof did not tell.
     Undecided,
@@ -189,7 +189,7 @@ fn tally(candidate: &Candidate, set: &Set, truths: &[Truth], screen: f64) -> (Ve
             Truth::Miss => wrong.invented += usize::from(found != MISS),
             Truth::Hit(..) if found == MISS => wrong.missed += 1,
             Truth::Hit(right, on) => {
-                let error = (Twofold::from(found) - *right).high.abs();
+                let error = (DoubleDouble::from(found) - *right).high.abs();
                 // A hit on the other side of the surface is another crossing, unless it is off by no more than it
                 // may be; one far off is in any case.
                 let is_off = error > 10.0 * candidate.promise && side(shape, &ray, found) != *on;
@@ -221,7 +221,7 @@ fn is_provable(model: &Model, shape: &AnyShape) -> bool {
 /// Rays through the middles of pixels, in the packets in which a render has them.
 fn camera(model: &Model, group: &[usize]) -> Vec<Packet> {
     let camera = &model.camera.value;
-    let count = CAMERA.div_ceil(group.len() * WIDE);
+    let count = CAMERA.div_ceil(group.len() * PACKET_SIZE);
     let mut packets = Vec::new();
     for tile in tiles(camera.pixels, count) {
         let places: Vec<_> = tile.into_iter().map(|place| place.map(|at| at as f64)).collect();
@@ -236,7 +236,7 @@ fn grazing(model: &Model, group: &[usize]) -> Vec<Packet> {
     let camera = &model.camera.value;
     let [width, height] = camera.pixels;
     let hits = |x: f64, y: f64, index: usize| {
-        model.objects[index].shape.distance(&camera.ray(x, y), &Span::RAY) != MISS
+        model.objects[index].shape.distance(&camera.ray(x, y), &RayRange::ALL) != MISS
     };
     let mut edges = Vec::new();
     for &index in group {

@@ -2,14 +2,14 @@
 
 /// A rectangle: left, top, right and bottom.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Area {
+pub struct PlotArea {
     pub left: f64,
     pub top: f64,
     pub right: f64,
     pub bottom: f64,
 }
 
-impl Area {
+impl PlotArea {
     /// Around a point.
     pub fn around((x, y): (f64, f64), half: f64) -> Self {
         Self { left: x - half, top: y - half, right: x + half, bottom: y + half }
@@ -38,7 +38,7 @@ impl Area {
     }
 
     /// Whether a line runs through it, seen at so many places that it cannot hide between them.
-    fn is_crossed(&self, ((x, y), (to_x, to_y)): Line) -> bool {
+    fn is_crossed(&self, ((x, y), (to_x, to_y)): Segment) -> bool {
         const STEP: f64 = 4.0;
         let steps = ((to_x - x).hypot(to_y - y) / STEP).ceil().max(1.0);
         (0..=steps as u32).any(|step| {
@@ -49,13 +49,13 @@ impl Area {
 }
 
 /// From a point to another one.
-pub type Line = ((f64, f64), (f64, f64));
+pub type Segment = ((f64, f64), (f64, f64));
 
 /// Where a label went.
 #[derive(Clone, Copy, Debug)]
-pub struct Place {
+pub struct LabelPlace {
     /// What it covers.
-    pub area: Area,
+    pub area: PlotArea,
     /// Where a line from its point to it ends, if it is not right beside that.
     pub leader: Option<(f64, f64)>,
 }
@@ -65,7 +65,12 @@ pub struct Place {
 ///
 /// They are placed one after the other. Then one that is badly placed is, again and again, taken away with some of its
 /// neighbours and chooses before them, and what is better stays.
-pub fn place(points: &[(f64, f64)], sizes: &[(f64, f64)], lines: &[Line], room: Area) -> Vec<Option<Place>> {
+pub fn place(
+    points: &[(f64, f64)],
+    sizes: &[(f64, f64)],
+    lines: &[Segment],
+    room: PlotArea,
+) -> Vec<Option<LabelPlace>> {
     const ROUNDS: usize = 100;
     /// The most labels that are placed anew at one time.
     const MOST: usize = 8;
@@ -81,7 +86,7 @@ pub fn place(points: &[(f64, f64)], sizes: &[(f64, f64)], lines: &[Line], room: 
         bad.sort_by(|a, b| costs[*b].total_cmp(&costs[*a]));
         let first = bad[round % bad.len()];
         let far = |index: &usize| {
-            let label = best[*index].map_or(points[*index], |place: Place| place.area.middle());
+            let label = best[*index].map_or(points[*index], |place: LabelPlace| place.area.middle());
             distance(points[first], label).min(distance(points[first], points[*index]))
         };
         let mut near: Vec<usize> = (0..points.len()).filter(|index| *index != first).collect();
@@ -119,22 +124,27 @@ const MISSING: f64 = 3000.0;
 struct Crowd<'c> {
     points: &'c [(f64, f64)],
     sizes: &'c [(f64, f64)],
-    lines: &'c [Line],
-    room: Area,
+    lines: &'c [Segment],
+    room: PlotArea,
 }
 
 impl Crowd<'_> {
     /// Places some beside those that are placed, one after the other, and tells what is bad about each.
-    fn place(&self, order: impl Iterator<Item = usize>, placed: &mut [Option<Place>], costs: &mut [f64]) {
+    fn place(
+        &self,
+        order: impl Iterator<Item = usize>,
+        placed: &mut [Option<LabelPlace>],
+        costs: &mut [f64],
+    ) {
         const MARKER: f64 = 8.0;
         let Self { points, sizes, lines, room } = *self;
-        let markers: Vec<Area> = points.iter().map(|point| Area::around(*point, MARKER)).collect();
+        let markers: Vec<PlotArea> = points.iter().map(|point| PlotArea::around(*point, MARKER)).collect();
         for index in order {
             let point = points[index];
             let there =
                 || placed.iter().zip(points).filter_map(|(place, from)| Some((place.as_ref()?, *from)));
             let leaders = || there().filter_map(|(place, from)| Some((from, place.leader?)));
-            let is_free = |place: &Place| {
+            let is_free = |place: &LabelPlace| {
                 place.area.is_within(&room)
                     && !markers.iter().any(|marker| marker.overlaps(&place.area))
                     && !lines.iter().any(|line| place.area.is_crossed(*line))
@@ -143,7 +153,7 @@ impl Crowd<'_> {
                     && !there()
                         .any(|(other, _)| place.leader.is_some_and(|end| other.area.is_crossed((point, end))))
             };
-            let cost = |place: &Place| {
+            let cost = |place: &LabelPlace| {
                 let Some(end) = place.leader else { return 0.0 };
                 // The markers that it starts below are there in any case.
                 let others = markers.iter().filter(|marker| !marker.holds(point));
@@ -160,7 +170,7 @@ impl Crowd<'_> {
 }
 
 /// The places for a label of this size around its point, the best first.
-fn around(point: (f64, f64), (width, height): (f64, f64)) -> impl Iterator<Item = Place> {
+fn around(point: (f64, f64), (width, height): (f64, f64)) -> impl Iterator<Item = LabelPlace> {
     const STEP: u32 = 10;
     const TURNS: u32 = 24;
     // Right, left, up and down first.
@@ -177,15 +187,15 @@ fn around(point: (f64, f64), (width, height): (f64, f64)) -> impl Iterator<Item 
             // It begins, ends or has its middle there.
             [natural].into_iter().chain(others.iter().copied()).map(move |begins| {
                 let left = end.0 - begins * width;
-                let area = Area { left, top, right: left + width, bottom: top + height };
-                Place { area, leader: (radius > NEAR).then_some(end) }
+                let area = PlotArea { left, top, right: left + width, bottom: top + height };
+                LabelPlace { area, leader: (radius > NEAR).then_some(end) }
             })
         })
     })
 }
 
 /// Whether two lines cross each other.
-fn do_cross((a, b): Line, (c, d): Line) -> bool {
+fn do_cross((a, b): Segment, (c, d): Segment) -> bool {
     let turn = |a: (f64, f64), b: (f64, f64), c: (f64, f64)| {
         ((b.0 - a.0) * (c.1 - a.1) - (b.1 - a.1) * (c.0 - a.0)).total_cmp(&0.0)
     };
@@ -209,7 +219,7 @@ mod tests {
             (238.0, 162.0),
             (262.0, 162.0),
         ];
-        let room = Area { left: 0.0, top: 0.0, right: 500.0, bottom: 300.0 };
+        let room = PlotArea { left: 0.0, top: 0.0, right: 500.0, bottom: 300.0 };
         let places = place(&points, &[(90.0, 14.0); 9], &[], room);
         assert!(places.iter().all(Option::is_some));
     }
@@ -218,8 +228,8 @@ mod tests {
     fn labels_of_a_crowd_cover_neither_each_other_nor_a_point() {
         let points: Vec<_> = (0..12).map(|index| (200.0 + 6.0 * f64::from(index), 150.0)).collect();
         let sizes = vec![(90.0, 14.0); points.len()];
-        let room = Area { left: 0.0, top: 0.0, right: 500.0, bottom: 300.0 };
-        let places: Vec<Area> = place(&points, &sizes, &[((0.0, 180.0), (500.0, 180.0))], room)
+        let room = PlotArea { left: 0.0, top: 0.0, right: 500.0, bottom: 300.0 };
+        let places: Vec<PlotArea> = place(&points, &sizes, &[((0.0, 180.0), (500.0, 180.0))], room)
             .into_iter()
             .map(|place| place.expect("room").area)
             .collect();

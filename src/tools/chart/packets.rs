@@ -1,10 +1,10 @@
 //! Packets of rays, and where they first meet an object: found as a render finds it.
 
-use crate::geometry::packet::{Nearest, Rays, WIDE};
-use crate::geometry::ray::{MISS, Ray, Span};
+use crate::geometry::ray::{MISS, Ray, RayRange};
+use crate::geometry::ray_packet::{Nearest, PACKET_SIZE, RayPacket};
 use crate::geometry::sight::Sight;
 use crate::simd::cpu::Cpu;
-use crate::simd::soa::{STEP, Vectors};
+use crate::simd::soa::{LANES, Vectors};
 use crate::world::any_shape::AnyShape;
 use crate::world::camera::Camera;
 
@@ -13,19 +13,19 @@ pub struct Packet {
     /// Its index.
     pub object: usize,
     len: usize,
-    origin: Vectors<WIDE>,
-    dir: Vectors<WIDE>,
+    origin: Vectors<PACKET_SIZE>,
+    dir: Vectors<PACKET_SIZE>,
     sights: Vec<Sight>,
 }
 
 impl Packet {
     /// As many packets as the rays through these places of a picture need, in pixels from the left and from the bottom.
     pub fn of(object: usize, camera: &Camera, places: &[[f64; 2]]) -> impl Iterator<Item = Self> {
-        places.chunks(WIDE).map(move |places| {
+        places.chunks(PACKET_SIZE).map(move |places| {
             let (origin, dir) = (Vectors::ZERO, Vectors::ZERO);
             let sights = places.iter().map(|[x, y]| camera.sight(*x, *y)).collect();
             let mut packet = Self { object, len: places.len(), origin, dir, sights };
-            for lane in 0..WIDE {
+            for lane in 0..PACKET_SIZE {
                 let [x, y] = places[lane.min(places.len() - 1)];
                 let ray = camera.ray(x, y);
                 packet.origin.set(lane, ray.origin);
@@ -51,17 +51,17 @@ impl Packet {
     }
 
     /// With the copies that fill it up.
-    fn all(&self) -> Rays<'_> {
-        let count = self.len.next_multiple_of(STEP);
-        Rays { origin: self.origin.view(count), dir: self.dir.view(count), origin_error: 0.0 }
+    fn all(&self) -> RayPacket<'_> {
+        let count = self.len.next_multiple_of(LANES);
+        RayPacket { origin: self.origin.view(count), dir: self.dir.view(count), origin_error: 0.0 }
     }
 
     /// The distances at which its rays first meet the object; [`MISS`] where they do not.
-    pub fn hits(&self, shape: &AnyShape, cpu: Cpu) -> [f64; WIDE] {
+    pub fn hits(&self, shape: &AnyShape, cpu: Cpu) -> [f64; PACKET_SIZE] {
         let (rays, len) = (self.all(), self.len);
-        let exactly = |lane: usize| shape.distance(&rays.get(lane), &Span::RAY);
-        let (mut near, mut far) = ([MISS; WIDE], [MISS; WIDE]);
-        let (mut met, mut doubt) = ([0; WIDE], [0; WIDE]);
+        let exactly = |lane: usize| shape.distance(&rays.get(lane), &RayRange::ALL);
+        let (mut near, mut far) = ([MISS; PACKET_SIZE], [MISS; PACKET_SIZE]);
+        let (mut met, mut doubt) = ([0; PACKET_SIZE], [0; PACKET_SIZE]);
         let nearest = Nearest { near: &mut near, far: &mut far, met: &mut met, doubt: &mut doubt };
         if shape.closest_hits(cpu, rays, None, 1, nearest) {
             for lane in (0..len).filter(|lane| doubt[*lane] != 0) {

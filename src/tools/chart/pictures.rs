@@ -9,11 +9,11 @@ use super::data::{Family, Panel, Point, Subject, Wrong};
 use super::places::{Pixels, spread, tiles};
 use super::progress::Progress;
 use super::study::Study;
-use crate::geometry::packet::WIDE;
+use crate::geometry::ray_packet::PACKET_SIZE;
+use crate::render::observer::{Event, TraceObserver};
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
-use crate::render::trace::{self, Rooms, Tracer};
-use crate::render::watch::{Event, Watch};
+use crate::render::trace::{self, Scratch, Tracer};
 use crate::scene::model::Model;
 use crate::simd::cpu::Cpu;
 use crate::world::material::Rgb;
@@ -198,7 +198,7 @@ fn choices(own: u32, own_sampler: Sampler) -> Vec<(u32, Sampler)> {
 
 /// What is timed of a picture whose pixels take so many tests each.
 pub(super) fn timed(size: [usize; 2], tests: f64) -> Vec<Pixels> {
-    tiles(size, ((TIMED_TESTS as f64 / tests) as usize).div_ceil(WIDE).max(TIMED_TILES))
+    tiles(size, ((TIMED_TESTS as f64 / tests) as usize).div_ceil(PACKET_SIZE).max(TIMED_TILES))
 }
 
 /// How many pixels tiles have.
@@ -208,9 +208,9 @@ pub(super) fn count(tiles: &[Pixels]) -> usize {
 
 /// Traces tiles as a render does, on this thread.
 pub(super) fn render(plan: &Plan, tiles: &[Pixels]) {
-    let (mut rooms, mut nobody) = (Rooms::default(), ());
+    let (mut scratch, mut nobody) = (Scratch::default(), ());
     for tile in tiles {
-        black_box(Tracer::new(plan, Cpu::best(), &mut rooms, &mut nobody).pixels(tile));
+        black_box(Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody).pixels(tile));
     }
 }
 
@@ -275,7 +275,7 @@ pub(super) fn each<T: Send>(
 /// How many objects one ray through a pixel and all that follow from it test, in the mean.
 pub(super) fn tests(plan: &Plan, threads: &Renderer) -> f64 {
     struct Tests(usize);
-    impl Watch for Tests {
+    impl TraceObserver for Tests {
         const SEES: bool = true;
 
         fn see(&mut self, event: Event) {
@@ -289,7 +289,7 @@ pub(super) fn tests(plan: &Plan, threads: &Renderer) -> f64 {
     let samples = plan.camera.samples as usize;
     let count = |x, y| {
         let mut tests = Tests(0);
-        trace::watch_pixel(plan, x, y, &mut tests);
+        trace::observe_pixel(plan, x, y, &mut tests);
         tests.0
     };
     let all: usize = each(threads, &pixels, count).into_iter().sum();

@@ -11,9 +11,9 @@ use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
 use crate::shapes::revolution::{Finish, Revolution};
 use crate::simd::cpu::Cpu;
-use crate::simd::soa::{STEP, Vectors};
+use crate::simd::soa::{LANES, Vectors};
 use crate::world::camera::Camera;
-use crate::world::facing::{Facing, Places};
+use crate::world::light_samples::{LightSamples, ShadingPoints};
 use crate::world::material::{Look, Material, Rgb};
 use crate::world::packets::light::PacketLight;
 use crate::world::packets::shader::PacketShader;
@@ -52,12 +52,12 @@ pub fn shader(shader: &dyn PacketShader, at: DVec3) -> Result<(), Fault> {
             return Err(Promise::ReflectivityIsSound.fault(format!("`{what}` is {colour} at {at}")));
         }
     }
-    if let Some(Look { ambient, diffuse, specular }) = shader.even(&material)
+    if let Some(Look { ambient, diffuse, specular }) = shader.uniform(&material)
         && one != [ambient, diffuse, specular]
     {
         let even = [ambient, diffuse, specular];
         return Err(
-            Promise::PacketsAgree.fault(format!("`even` is {even:?}, and it returns {one:?} at {at}"))
+            Promise::PacketsAgree.fault(format!("`uniform` is {even:?}, and it returns {one:?} at {at}"))
         );
     }
     if let Some(Look { ambient, diffuse, specular }) = shader.brightest(&material)
@@ -67,19 +67,19 @@ pub fn shader(shader: &dyn PacketShader, at: DVec3) -> Result<(), Fault> {
         let found = format!("`brightest` is {most:?}, and it returns {one:?} at {at}");
         return Err(Promise::ReflectivityIsSound.fault(found));
     }
-    let points = Vectors::<STEP> { x: [at.x; STEP], y: [at.y; STEP], z: [at.z; STEP] };
+    let points = Vectors::<LANES> { x: [at.x; LANES], y: [at.y; LANES], z: [at.z; LANES] };
     for cpu in Cpu::all() {
-        let mut many = [const { Vectors::<STEP>::ZERO }; 3];
+        let mut many = [const { Vectors::<LANES>::ZERO }; 3];
         let [ambient, diffuse, specular] = &mut many;
         shader.ambient_and_specular(
             cpu,
             &material,
-            points.view(STEP),
-            ambient.view_mut(STEP),
-            specular.view_mut(STEP),
+            points.view(LANES),
+            ambient.view_mut(LANES),
+            specular.view_mut(LANES),
         );
-        shader.diffuses(cpu, &material, points.view(STEP), diffuse.view_mut(STEP));
-        let many = many.map(|colours| colours.get(STEP - 1));
+        shader.diffuses(cpu, &material, points.view(LANES), diffuse.view_mut(LANES));
+        let many = many.map(|colours| colours.get(LANES - 1));
         if !many.iter().zip(&one).all(|(many, one)| same_bits(*many, *one)) {
             return Err(Promise::PacketsAgree.fault(format!("{many:?} in packets ({cpu}), {one:?} at {at}")));
         }
@@ -115,10 +115,10 @@ pub fn light(light: &dyn PacketLight, draw: &mut Draw) -> Result<(), Fault> {
         if one.is_some_and(|light| !light.is_finite()) {
             return Err(Promise::LightIsFinite.fault(format!("toward {toward} it emits {one:?}")));
         }
-        if let Some(even) = light.even()
+        if let Some(even) = light.uniform()
             && one != Some(even)
         {
-            let found = format!("`even` is {even}, and toward {toward} it emits {one:?}");
+            let found = format!("`uniform` is {even}, and toward {toward} it emits {one:?}");
             return Err(Promise::PacketsAgree.fault(found));
         }
         if let (Some(most), Some(one)) = (light.brightest(), one)
@@ -127,24 +127,24 @@ pub fn light(light: &dyn PacketLight, draw: &mut Draw) -> Result<(), Fault> {
             let found = format!("`brightest` is {most}, and toward {toward} it emits {one}");
             return Err(Promise::LightIsFinite.fault(found));
         }
-        let all = |of: DVec3| Vectors::<STEP> { x: [of.x; STEP], y: [of.y; STEP], z: [of.z; STEP] };
+        let all = |of: DVec3| Vectors::<LANES> { x: [of.x; LANES], y: [of.y; LANES], z: [of.z; LANES] };
         // The light is in front of each place, but for the one that it is on.
         let (points, normals) = (all(toward), all((location - toward).normalize_or_zero()));
-        let (points, normals) = (points.view(STEP), normals.view(STEP));
+        let (points, normals) = (points.view(LANES), normals.view(LANES));
         for cpu in Cpu::all() {
-            let (mut dir, mut emissivity) = (Vectors::<STEP>::ZERO, Vectors::<STEP>::ZERO);
-            let (mut falloffs, mut ends, mut shines) = ([0.0; STEP], [0.0; STEP], [2; STEP]);
-            let facing = Facing {
-                toward: dir.view_mut(STEP),
-                emissivity: emissivity.view_mut(STEP),
-                falloffs: &mut falloffs,
-                ends: &mut ends,
+            let (mut dir, mut emissivity) = (Vectors::<LANES>::ZERO, Vectors::<LANES>::ZERO);
+            let (mut cos_over_distance, mut t_max, mut shines) = ([0.0; LANES], [0.0; LANES], [2; LANES]);
+            let facing = LightSamples {
+                toward: dir.view_mut(LANES),
+                emissivity: emissivity.view_mut(LANES),
+                cos_over_distance: &mut cos_over_distance,
+                t_max: &mut t_max,
                 shines: &mut shines,
             };
-            light.face(cpu, &Places { points, normals, lights: None, slack: 0.0 }, facing);
-            let many = light.even().unwrap_or(emissivity.get(STEP - 1));
+            light.sample(cpu, &ShadingPoints { points, normals, lights: None, slack: 0.0 }, facing);
+            let many = light.uniform().unwrap_or(emissivity.get(LANES - 1));
             let does_shine = one.is_some() && toward != location;
-            if !same_bits(many, one.unwrap_or(Rgb::ZERO)) || shines[STEP - 1] != u64::from(does_shine) {
+            if !same_bits(many, one.unwrap_or(Rgb::ZERO)) || shines[LANES - 1] != u64::from(does_shine) {
                 let found = format!("{many:?} in packets ({cpu}), {one:?} toward {toward}");
                 return Err(Promise::PacketsAgree.fault(found));
             }

@@ -206,8 +206,8 @@ mod tests {
             Rgb::splat(at.x.abs())
         }
 
-        fn even(&self, material: &Material) -> Option<Look> {
-            Plain.even(material)
+        fn uniform(&self, material: &Material) -> Option<Look> {
+            Plain.uniform(material)
         }
     }
 
@@ -220,7 +220,7 @@ mod tests {
             (toward.y < 0.0).then_some(Rgb::ONE)
         }
 
-        fn even(&self) -> Option<Rgb> {
+        fn uniform(&self) -> Option<Rgb> {
             Some(Rgb::ONE)
         }
     }
@@ -257,13 +257,13 @@ mod tests {
     fn a_shader_that_says_it_is_even_and_is_not_is_found() {
         let breach = of_procedural_shader(&UNEVEN).expect("a breach");
         assert_eq!(breach.promise, Promise::PacketsAgree);
-        assert!(breach.found.starts_with("`even` is ["), "{breach}");
+        assert!(breach.found.starts_with("`uniform` is ["), "{breach}");
     }
 
     #[test]
     fn a_light_that_says_it_is_even_and_is_not_is_found() {
         let fault = looks::light(&Uneven, &mut Draw::new("uneven")).expect_err("a fault");
         assert_eq!(fault.promise, Promise::PacketsAgree);
-        assert_eq!(fault.found, "`even` is [1, 1, 1], and toward [0, 0, 0] it emits None");
+        assert_eq!(fault.found, "`uniform` is [1, 1, 1], and toward [0, 0, 0] it emits None");
     }
 }

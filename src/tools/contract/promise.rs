@@ -82,11 +82,11 @@ impl Promise {
                 "give a default that satisfies its own rule, and rules that depend on the values alone"
             }
             Self::DistanceIsInItsSpan => {
-                "end `distance` with `within.keep(...)`: anything outside the span, or NaN, becomes `MISS`"
+                "end `distance` with `range.keep(...)`: anything outside the span, or NaN, becomes `MISS`"
             }
             Self::DistanceIsTheSameAgain => "make `distance` depend on the shape, the ray and the span alone",
             Self::PacketsAgree => {
-                "`bracket` contains `distance`, and `refine` equals it to the last bit or is NaN; if in doubt, leave out `Bracketed`, or `even`"
+                "`t_bounds` contains `distance`, and `refine` equals it to the last bit or is NaN; if in doubt, leave out `Bracketed`, or `uniform`"
             }
             Self::NormalIsUnit => {
                 "end `normal` with `.normalize()`, and define it where the surface has none"
@@ -99,16 +99,16 @@ impl Promise {
             }
             Self::BoundsHoldHits => "make `bounds` contain every point of the shape; return none if in doubt",
             Self::HitIsTouched => {
-                "make `touches` true within at least the error that it is given, and `bracket` without a certain end there; if in doubt, leave out `touches`, and `Bracketed`"
+                "make `touches` true within at least the error that it is given, and `t_bounds` without a certain end there; if in doubt, leave out `touches`, and `Bracketed`"
             }
             Self::NormalIsUpright => "make `normal` the gradient of the surface's formula, normalized",
             Self::NormalsAgree => {
                 "make `normal` depend on the point alone, and continuous on a smooth surface"
             }
             Self::NormalsPointOut => "negate `normal`: it must point out of a closed shape",
-            Self::IsNotMetAgain => "return `true` from `meets_itself` for that side, which is the default",
+            Self::IsNotMetAgain => "return `true` from `can_hit_itself` for that side, which is the default",
             Self::StartIsNoHit => {
-                "where `within.leaves` is given, leave out the root at which the ray starts, whatever rounding makes of it"
+                "where `range.origin_side` is given, leave out the root at which the ray starts, whatever rounding makes of it"
             }
             Self::IsMet => "make `distance` return the distance of the first hit, not `MISS` for every ray",
             Self::ReflectivityIsSound => {

@@ -4,7 +4,7 @@ use super::draw::Draw;
 use super::looks::shader;
 use super::promise::Fault;
 use super::shape::{GRAZING, Tried};
-use crate::geometry::ray::{MISS, Ray, Side, Span};
+use crate::geometry::ray::{MISS, Ray, RayRange, Side};
 use crate::scene::model::Object;
 use crate::scene::value::Datum;
 use glam::DVec3;
@@ -79,7 +79,7 @@ fn ray(aims: &[DVec3], draw: &mut Draw, index: usize) -> Ray {
 
 /// Tries a shape with a ray; where it is met, if it is.
 fn try_ray(tried: &Tried, draw: &mut Draw) -> Result<Option<DVec3>, Fault> {
-    let distance = tried.in_span(&tried.ray, &Span::RAY)?;
+    let distance = tried.in_span(&tried.ray, &RayRange::ALL)?;
     tried.repeats(distance)?;
     tried.packets_agree(distance)?;
     tried.keeps_to_spans(distance)?;
@@ -94,7 +94,7 @@ fn try_ray(tried: &Tried, draw: &mut Draw) -> Result<Option<DVec3>, Fault> {
     }
     if !tried.is_exact && met.normal.dot(tried.ray.dir).abs() >= GRAZING {
         tried.stands_upright(&met)?;
-        if !tried.shape.meets_itself(Side::Outside) {
+        if !tried.shape.can_hit_itself(Side::Outside) {
             tried.is_convex(&met)?;
         }
         tried.leaves(&met, draw)?;

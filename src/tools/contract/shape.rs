@@ -2,15 +2,15 @@
 
 use super::looks::same_bits;
 use super::promise::{Fault, Promise};
-use crate::geometry::packet::{Nearest, Rays};
-use crate::geometry::ray::{MISS, Ray, Side, Span};
+use crate::geometry::ray::{MISS, Ray, RayRange, Side};
+use crate::geometry::ray_packet::{Nearest, RayPacket};
 use crate::geometry::sight::Sight;
 use crate::numeric::interval::{Float, Wide};
 use crate::simd::cpu::Cpu;
-use crate::simd::soa::{STEP, Vectors};
+use crate::simd::soa::{LANES, Vectors};
 use crate::world::any_shape::AnyShape;
 use crate::world::certify::{Enclosure, Precision};
-use crate::world::landing::Landing;
+use crate::world::interaction::SurfaceInteraction;
 use glam::DVec3;
 
 /// How far aside rounding may move a ray, as a part of the numbers that its distance is computed from: generously, for
@@ -39,12 +39,12 @@ impl Tried<'_> {
 
     /// How far off the distance of a ray may be where rounding moves it aside a little: as far as its neighbours' are
     /// from it, and anything where one of them meets what others miss.
-    pub fn tolerance(&self, ray: &Ray, within: &Span, distance: f64) -> f64 {
+    pub fn tolerance(&self, ray: &Ray, range: &RayRange, distance: f64) -> f64 {
         let step = ASIDE * self.size(if distance == MISS { 0.0 } else { distance });
         let (across, up) = ray.dir.any_orthonormal_pair();
         let apart = [across, -across, up, -up].map(|aside| {
             let neighbour = Ray { origin: ray.origin + step * aside, ..*ray };
-            let its = self.shape.distance(&neighbour, within);
+            let its = self.shape.distance(&neighbour, range);
             if its == distance { 0.0 } else { (its - distance).abs() }
         });
         // The direction in which it moves most is half a right angle from one of these at most.
@@ -52,18 +52,18 @@ impl Tried<'_> {
     }
 
     /// The distance along a ray, which is a sound one.
-    pub fn in_span(&self, ray: &Ray, within: &Span) -> Result<f64, Fault> {
-        let distance = self.shape.distance(ray, within);
-        if distance == MISS || (within.near < distance && distance < within.far) {
+    pub fn in_span(&self, ray: &Ray, range: &RayRange) -> Result<f64, Fault> {
+        let distance = self.shape.distance(ray, range);
+        if distance == MISS || (range.near < distance && distance < range.far) {
             return Ok(distance);
         }
-        let Span { near, far, .. } = within;
+        let RayRange { near, far, .. } = range;
         Err(Promise::DistanceIsInItsSpan
             .fault(format!("`distance` gives {distance} between {near} and {far}, {}", told(ray))))
     }
 
     pub fn repeats(&self, distance: f64) -> Result<(), Fault> {
-        let again = self.shape.distance(&self.ray, &Span::RAY);
+        let again = self.shape.distance(&self.ray, &RayRange::ALL);
         if again.to_bits() == distance.to_bits() {
             return Ok(());
         }
@@ -74,21 +74,21 @@ impl Tried<'_> {
     pub fn packets_agree(&self, distance: f64) -> Result<(), Fault> {
         let Self { shape, ray, .. } = self;
         let fault = |found: String| Err(Promise::PacketsAgree.fault(format!("{found}, {}", told(ray))));
-        let bracket = shape.bracket(ray, &Span::RAY);
+        let bracket = shape.t_bounds(ray, &RayRange::ALL);
         if bracket.near.is_nan() || bracket.far.is_nan() || bracket.near > distance || distance > bracket.far
         {
-            return fault(format!("`distance` gives {distance}, and `bracket` {bracket:?}"));
+            return fault(format!("`distance` gives {distance}, and `t_bounds` {bracket:?}"));
         }
         let refined = if bracket.far < MISS { shape.refine(ray, None) } else { f64::NAN };
         if !refined.is_nan() && refined.to_bits() != distance.to_bits() {
             return fault(format!("`distance` gives {distance}, and `refine` {refined}"));
         }
-        let lanes = |of: DVec3| Vectors::<STEP> { x: [of.x; STEP], y: [of.y; STEP], z: [of.z; STEP] };
+        let lanes = |of: DVec3| Vectors::<LANES> { x: [of.x; LANES], y: [of.y; LANES], z: [of.z; LANES] };
         let (origin, dir) = (lanes(ray.origin), lanes(ray.dir));
         for cpu in Cpu::all() {
-            let rays = Rays { origin: origin.view(STEP), dir: dir.view(STEP), origin_error: 0.0 };
-            let (mut near, mut far) = ([MISS; STEP], [MISS; STEP]);
-            let (mut met, mut doubt) = ([0; STEP], [0; STEP]);
+            let rays = RayPacket { origin: origin.view(LANES), dir: dir.view(LANES), origin_error: 0.0 };
+            let (mut near, mut far) = ([MISS; LANES], [MISS; LANES]);
+            let (mut met, mut doubt) = ([0; LANES], [0; LANES]);
             let nearest = Nearest { near: &mut near, far: &mut far, met: &mut met, doubt: &mut doubt };
             shape.closest_hits(cpu, rays, None, 1, nearest);
             let (low, high) = (near[0], far[0]);
@@ -104,17 +104,17 @@ impl Tried<'_> {
                 }
             }
             if distance != MISS {
-                let (mut points, mut normals) = (Vectors::<STEP>::ZERO, Vectors::<STEP>::ZERO);
-                let (mut sides, mut cosines) = ([Side::Inside; STEP], [0.0; STEP]);
-                let mut travelled = [1.0; STEP];
-                let landing = Landing {
-                    points: points.view_mut(STEP),
-                    normals: normals.view_mut(STEP),
+                let (mut points, mut normals) = (Vectors::<LANES>::ZERO, Vectors::<LANES>::ZERO);
+                let (mut sides, mut cosines) = ([Side::Inside; LANES], [0.0; LANES]);
+                let mut travelled = [1.0; LANES];
+                let landing = SurfaceInteraction {
+                    points: points.view_mut(LANES),
+                    normals: normals.view_mut(LANES),
                     sides: &mut sides,
                     cosines: &mut cosines,
                     travelled: &mut travelled,
                 };
-                shape.packets().interact(cpu, rays, &[distance; STEP], landing);
+                shape.packets().interact(cpu, rays, &[distance; LANES], landing);
                 let (at, normal) = (ray.at(distance), shape.normal(ray.at(distance)));
                 let side = Side::seen_along(ray.dir, normal);
                 let turned = shape.is_two_sided() && side == Side::Inside;
@@ -141,18 +141,18 @@ impl Tried<'_> {
     pub fn keeps_to_spans(&self, distance: f64) -> Result<(), Fault> {
         let slack = SLACK * self.size(if distance == MISS { 0.0 } else { distance });
         let middle = if distance == MISS { 5.0 } else { distance };
-        for within in [
-            Span { far: middle - slack, ..Span::RAY },
-            Span { near: middle + slack, ..Span::RAY },
-            Span { near: 0.5 * middle, far: 0.5 * middle + slack, ..Span::RAY },
+        for range in [
+            RayRange { far: middle - slack, ..RayRange::ALL },
+            RayRange { near: middle + slack, ..RayRange::ALL },
+            RayRange { near: 0.5 * middle, far: 0.5 * middle + slack, ..RayRange::ALL },
         ] {
-            self.in_span(&self.ray, &within)?;
+            self.in_span(&self.ray, &range)?;
         }
         // Where the span ends has no part in what is met before.
-        let ends =
+        let t_max =
             if distance == MISS { [middle, 2.0 * middle] } else { [distance.next_up(), distance + slack] };
-        for far in ends {
-            let until = self.in_span(&self.ray, &Span { far, ..Span::RAY })?;
+        for far in t_max {
+            let until = self.in_span(&self.ray, &RayRange { far, ..RayRange::ALL })?;
             if until != distance {
                 return Err(Promise::HitIsOnTheSurface.fault(format!(
                     "`distance` gives {distance}, and {until} where the span ends at {far}, {}",
@@ -172,7 +172,7 @@ impl Tried<'_> {
             }
             Enclosure::Edge(Wide { low, .. }) | Enclosure::Doubtful(low) => low.to_f64() - slack <= distance,
         };
-        if agrees(0.0) || agrees(self.tolerance(&self.ray, &Span::RAY, distance)) {
+        if agrees(0.0) || agrees(self.tolerance(&self.ray, &RayRange::ALL, distance)) {
             return Ok(());
         }
         let found = format!("`distance` gives {distance}, and `certify` {proven:?}, {}", told(&self.ray));

@@ -3,8 +3,8 @@
 use super::draw::Draw;
 use super::promise::{Fault, Promise};
 use super::shape::{GRAZING, SLACK, Tried, told};
-use crate::geometry::bounds::Bounds;
-use crate::geometry::ray::{MISS, Ray, Side, Span};
+use crate::geometry::aabb::Aabb;
+use crate::geometry::ray::{MISS, Ray, RayRange, Side};
 use crate::world::coincidence;
 use glam::DVec3;
 
@@ -31,15 +31,15 @@ impl Tried<'_> {
     }
 
     pub fn is_held(&self, at: DVec3) -> Result<(), Fault> {
-        let around = Bounds { low: at - STRIDE, high: at + STRIDE };
+        let around = Aabb { low: at - STRIDE, high: at + STRIDE };
         let (up, down) =
-            (Bounds { high: DVec3::INFINITY, ..around }, Bounds { low: DVec3::NEG_INFINITY, ..around });
+            (Aabb { high: DVec3::INFINITY, ..around }, Aabb { low: DVec3::NEG_INFINITY, ..around });
         if let Some(region) = [around, up, down].iter().find(|region| self.shape.is_clear_of(region)) {
             let found = format!("`is_clear_of` is true of {region:?}, yet it is hit at {at}");
             return Err(Promise::BoundsHoldHits.fault(found));
         }
         match self.shape.bounds() {
-            Some(bounds) if !bounds.with_slack(100.0).overlaps(&Bounds { low: at, high: at }) => {
+            Some(bounds) if !bounds.with_slack(100.0).overlaps(&Aabb { low: at, high: at }) => {
                 Err(Promise::BoundsHoldHits.fault(format!("it is hit at {at}, outside {bounds:?}")))
             }
             _ => Ok(()),
@@ -59,9 +59,9 @@ impl Tried<'_> {
         for origin in origins {
             let way = met.at - origin;
             let ray = Ray { origin, dir: way.normalize() };
-            let distance = self.in_span(&ray, &Span::RAY)?;
+            let distance = self.in_span(&ray, &RayRange::ALL)?;
             let is_farther = |slack: f64| distance > way.length() + slack;
-            if is_farther(0.0) && is_farther(self.tolerance(&ray, &Span::RAY, distance)) {
+            if is_farther(0.0) && is_farther(self.tolerance(&ray, &RayRange::ALL, distance)) {
                 return Err(Promise::HitIsOnTheSurface.fault(format!(
                     "it is hit at {}, {}; but `distance` gives {distance} for that point, which is {} away, {}",
                     met.at,
@@ -81,7 +81,7 @@ impl Tried<'_> {
         for aside in [stride * across, stride * up] {
             let beside = |aside: DVec3| {
                 let ray = Ray { origin: self.ray.origin + aside, ..self.ray };
-                let distance = self.shape.distance(&ray, &Span::RAY);
+                let distance = self.shape.distance(&ray, &RayRange::ALL);
                 (distance != MISS).then(|| ray.at(distance))
             };
             let (Some(one), Some(other)) = (beside(aside), beside(-aside)) else { continue };
@@ -111,12 +111,12 @@ impl Tried<'_> {
     pub fn is_convex(&self, met: &Met) -> Result<(), Fault> {
         let (Ray { dir, .. }, stride) = (self.ray, STRIDE * self.size(met.distance));
         let beyond = Ray { origin: met.at + stride * dir, dir };
-        let through = self.in_span(&beyond, &Span::RAY)?;
+        let through = self.in_span(&beyond, &RayRange::ALL)?;
         if through != MISS {
             let at = beyond.at(through);
             let behind = Ray { origin: at + stride * dir, dir };
             let sides = [(met.at, met.normal), (at, self.shape.normal(at))];
-            let ends = self.in_span(&behind, &Span::RAY)? == MISS;
+            let ends = self.in_span(&behind, &RayRange::ALL)? == MISS;
             match sides.map(|(_, normal)| Side::seen_along(dir, normal)) {
                 // Too thin to be told from a touch.
                 _ if through <= 10.0 * stride => {}
@@ -148,15 +148,15 @@ impl Tried<'_> {
         }
         for _ in 0..4 {
             let onward = Ray { origin: met.at, dir: draw.direction() };
-            let bracket = shape.bracket(&onward, &Span { origin_error, ..Span::RAY });
+            let bracket = shape.t_bounds(&onward, &RayRange { origin_error, ..RayRange::ALL });
             let side = Side::seen_along(onward.dir, met.normal).opposite();
-            let distance = match shape.meets_itself(side) {
-                true => self.in_span(&onward, &Span { leaves: Some(side), ..Span::RAY })?,
+            let distance = match shape.can_hit_itself(side) {
+                true => self.in_span(&onward, &RayRange { origin_side: Some(side), ..RayRange::ALL })?,
                 false => MISS,
             };
             if !(bracket.near <= distance && distance <= bracket.far) {
                 return fault(format!(
-                    "`touches` is true of the start of a ray, whose distance on leaving is {distance}; `bracket` is {bracket:?} with an `origin_error` of {origin_error:e}, {}",
+                    "`touches` is true of the start of a ray, whose distance on leaving is {distance}; `t_bounds` is {bracket:?} with an `origin_error` of {origin_error:e}, {}",
                     told(&onward)
                 ));
             }
@@ -177,18 +177,18 @@ impl Tried<'_> {
             let side = if cos > 0.0 { Side::Outside } else { Side::Inside };
             let ray = Ray { origin: met.at, dir };
             let ahead = Ray { origin: ray.at(stride), dir };
-            if !self.shape.meets_itself(side) {
-                if self.in_span(&ahead, &Span::RAY)? != MISS {
+            if !self.shape.can_hit_itself(side) {
+                if self.in_span(&ahead, &RayRange::ALL)? != MISS {
                     let found = format!(
-                        "`meets_itself` is false for its {side:?}, yet a ray that leaves it hits it again, {}",
+                        "`can_hit_itself` is false for its {side:?}, yet a ray that leaves it hits it again, {}",
                         told(&ahead)
                     );
                     return Err(Promise::IsNotMetAgain.fault(found));
                 }
                 continue;
             }
-            let leaving = self.in_span(&ray, &Span { leaves: Some(side), ..Span::RAY })?;
-            let from_ahead = self.in_span(&ahead, &Span::RAY)? + stride;
+            let leaving = self.in_span(&ray, &RayRange { origin_side: Some(side), ..RayRange::ALL })?;
+            let from_ahead = self.in_span(&ahead, &RayRange::ALL)? + stride;
             let found = |what: String| Err(Promise::StartIsNoHit.fault(format!("{what}, {}", told(&ray))));
             if leaving <= SLACK * self.size(met.distance) {
                 return found(format!("on leaving its {side:?} `distance` gives {leaving}"));
@@ -197,7 +197,7 @@ impl Tried<'_> {
             let is_near = |distance: f64| distance < 3.0 * stride;
             let apart = if leaving == from_ahead { 0.0 } else { (leaving - from_ahead).abs() };
             let is_told = !is_near(leaving) && !is_near(from_ahead);
-            let differ = apart > 0.0 && apart > self.tolerance(&ahead, &Span::RAY, from_ahead - stride);
+            let differ = apart > 0.0 && apart > self.tolerance(&ahead, &RayRange::ALL, from_ahead - stride);
             if differ && is_told {
                 return found(format!(
                     "on leaving its {side:?} `distance` gives {leaving}, and from a little farther {from_ahead}"

@@ -4,7 +4,7 @@ use super::equation::{Equation, Found, is_kept};
 use crate::geometry::sight::Line;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::{Float, Interval};
-use crate::numeric::number::Number;
+use crate::numeric::scalar::Scalar;
 
 /// What may be a hit.
 enum Candidate<F> {

@@ -2,7 +2,7 @@
 
 use crate::geometry::sight::Line;
 use crate::numeric::interval::{Float, Interval};
-use crate::numeric::number::Number;
+use crate::numeric::scalar::Scalar;
 use glam::DVec3;
 
 /// A shape as the solutions of an equation, of which a part is kept.
@@ -14,15 +14,15 @@ pub trait Equation {
     const IS_QUADRATIC: bool = false;
 
     /// A line in the coordinates that the equation is written in; by default the world's.
-    fn own<N: Number>(&self, line: Line<N>) -> Line<N> {
+    fn own<N: Scalar>(&self, line: Line<N>) -> Line<N> {
         line
     }
 
     /// 0 on the surface, and of different signs on its two sides.
-    fn value<N: Number>(&self, at: [N; 3]) -> N;
+    fn value<N: Scalar>(&self, at: [N; 3]) -> N;
 
     /// Above 0 where the surface is kept, below 0 where it is cut off.
-    fn kept<N: Number>(&self, _at: [N; 3]) -> N {
+    fn kept<N: Scalar>(&self, _at: [N; 3]) -> N {
         N::constant(1.0)
     }
 

@@ -12,8 +12,8 @@ mod search;
 pub use equation::Equation;
 
 use crate::geometry::sight::Sight;
+use crate::numeric::double_double::DoubleDouble;
 use crate::numeric::interval::{Float, Interval, Wide};
-use crate::numeric::twofold::Twofold;
 use equation::Found;
 use f256::f256;
 
@@ -36,7 +36,7 @@ impl Enclosure {
 }
 
 /// A distance in lengths of a sight's direction, in world units: the middle of what it may be.
-pub fn in_world_units(distance: Wide, sight: &Sight) -> Twofold {
+pub fn in_world_units(distance: Wide, sight: &Sight) -> DoubleDouble {
     rounded(distance.middle() * root(sight.squared_length::<Wide>().middle()))
 }
 
@@ -51,19 +51,19 @@ pub fn bounds_in_world_units(distance: Wide, sight: &Sight) -> Interval {
 }
 
 /// The middle of an interval, in twice the precision of `f64`.
-pub fn middle(of: Wide) -> Twofold {
+pub fn middle(of: Wide) -> DoubleDouble {
     rounded(of.middle())
 }
 
 /// A number in twice the precision of `f64`.
-fn rounded(of: f256) -> Twofold {
+fn rounded(of: f256) -> DoubleDouble {
     let high = of.to_f64();
-    Twofold { high, low: (of - f256::from(high)).to_f64() }
+    DoubleDouble { high, low: (of - f256::from(high)).to_f64() }
 }
 
 /// The square root to some 200 bits: a step of Newton's method from half of them takes a part of the time that all 237 do.
 fn root(of: f256) -> f256 {
-    let Twofold { high, low } = rounded(of).sqrt();
+    let DoubleDouble { high, low } = rounded(of).sqrt();
     // The low parts of what is smaller, or squared in between, underflow.
     if !(1e-120..1e120).contains(&high) {
         return of.sqrt();

@@ -4,7 +4,7 @@ use super::equation::{Equation, Found, is_kept};
 use crate::geometry::sight::Line;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::{Float, Interval};
-use crate::numeric::number::Number;
+use crate::numeric::scalar::Scalar;
 
 /// The pieces of a line that are looked at before it is given up.
 const PIECES: usize = 2000;

@@ -1,42 +1,42 @@
 //! How a light comes to many places at once.
 
-use crate::geometry::bounds::larger;
+use crate::geometry::aabb::larger;
 use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::ViewMut;
-use crate::world::facing::{Faced, Facing, Places};
 use crate::world::light::Light;
+use crate::world::light_samples::{LightSamples, Lit, ShadingPoints};
 use crate::world::material::Rgb;
 use glam::DVec3;
 
 /// A light for packets: every [`Light`] is one.
 pub trait PacketLight: Light {
     /// How it comes to many places, with what [`emissivity`](Light::emissivity) gives toward each.
-    fn face(&self, cpu: Cpu, places: &Places, facing: Facing) -> Faced;
+    fn sample(&self, cpu: Cpu, places: &ShadingPoints, facing: LightSamples) -> Lit;
 }
 
 impl<T: Light> PacketLight for T {
-    fn face(&self, cpu: Cpu, places: &Places, facing: Facing) -> Faced {
-        let Facing { toward, emissivity, falloffs, ends, shines } = facing;
-        face(cpu, self, places, falloffs, ends, shines, toward, emissivity)
+    fn sample(&self, cpu: Cpu, places: &ShadingPoints, facing: LightSamples) -> Lit {
+        let LightSamples { toward, emissivity, cos_over_distance, t_max, shines } = facing;
+        sample(cpu, self, places, cos_over_distance, t_max, shines, toward, emissivity)
     }
 }
 
 kernels! {
     /// How a light comes to places.
-    fn face[T: Light](
+    fn sample[T: Light](
         light: &T,
-        places: &Places,
-        falloffs: &mut [f64],
-        ends: &mut [f64],
+        places: &ShadingPoints,
+        cos_over_distance: &mut [f64],
+        t_max: &mut [f64],
         shines: &mut [u64],
-    ) => toward, emissivity -> Faced {
+    ) => toward, emissivity -> Lit {
         let (count, middle) = (places.points.len(), light.location());
-        let out = (falloffs, ends, shines, toward.first(count), emissivity.first(count));
+        let out = (cos_over_distance, t_max, shines, toward.first(count), emissivity.first(count));
         match places.lights {
-            None => face_all(light, places, |_| middle, out),
+            None => sample_each(light, places, |_| middle, out),
             Some(lights) => {
                 let lights = lights.first(count);
-                face_all(light, places, |lane| lights.get(lane), out)
+                sample_each(light, places, |lane| lights.get(lane), out)
             }
         }
     }
@@ -44,21 +44,22 @@ kernels! {
 
 /// As `face`, each place with the point of the light that it sees.
 #[inline(always)]
-fn face_all<T: Light>(
+fn sample_each<T: Light>(
     light: &T,
-    places: &Places,
+    places: &ShadingPoints,
     place: impl Fn(usize) -> DVec3,
-    (falloffs, ends, shines, mut toward, mut emissivity): (
+    (cos_over_distance, t_max, shines, mut toward, mut emissivity): (
         &mut [f64],
         &mut [f64],
         &mut [u64],
         ViewMut,
         ViewMut,
     ),
-) -> Faced {
-    let (count, slack, is_even) = (places.points.len(), places.slack, light.even().is_some());
+) -> Lit {
+    let (count, slack, is_even) = (places.points.len(), places.slack, light.uniform().is_some());
     let (points, normals) = (places.points.first(count), places.normals.first(count));
-    let (falloffs, ends, shines) = (&mut falloffs[..count], &mut ends[..count], &mut shines[..count]);
+    let (cos_over_distance, t_max, shines) =
+        (&mut cos_over_distance[..count], &mut t_max[..count], &mut shines[..count]);
     let (mut any_faces, mut any_shines) = (0, 0);
     for lane in 0..count {
         let point = points.get(lane);
@@ -76,13 +77,13 @@ fn face_all<T: Light>(
         if !is_even {
             emissivity.set(lane, sent.unwrap_or(Rgb::ZERO));
         }
-        falloffs[lane] = cosine * inverse;
-        ends[lane] = if does_shine != 0 { end } else { 0.0 };
+        cos_over_distance[lane] = cosine * inverse;
+        t_max[lane] = if does_shine != 0 { end } else { 0.0 };
         shines[lane] = does_shine;
         any_faces |= faces;
         any_shines |= does_shine;
     }
-    Faced { any_faces: any_faces != 0, any_shines: any_shines != 0 }
+    Lit { any_faces: any_faces != 0, any_shines: any_shines != 0 }
 }
 
 /// How far a point is from the world's origin along the axis where that is farthest.

@@ -4,16 +4,16 @@
 //! compiled for each level of instructions; by packets ([`Packets`]), which follows from that but for surfaces that take
 //! packets themselves; and for what is certain ([`Proofs`]).
 
-use crate::geometry::packet::{Brackets, Nearest, Rays, mark, merge};
-use crate::geometry::ray::{Bracket, MISS, Ray, Side, Span};
+use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
+use crate::geometry::ray_packet::{Brackets, Nearest, RayPacket, mark_occluded, merge_nearest};
 use crate::geometry::roots::Method;
 use crate::geometry::sight::Sight;
-use crate::numeric::twofold::Twofold;
+use crate::numeric::double_double::DoubleDouble;
 use crate::simd::cpu::{Cpu, kernels};
 use crate::world::certify::{self, Enclosure, Equation, Precision};
 use crate::world::coincidence::{CLOSE, ROUNDING};
 use crate::world::hittable::{Bracketed, Certified, Hittable, Searched};
-use crate::world::landing::{Landing, turned};
+use crate::world::interaction::{SurfaceInteraction, turned};
 use crate::world::shape::{ByBracket, ByDistance, ByEquation, ByFormula, ByRoots, Shape, Unproven};
 use glam::DVec3;
 
@@ -36,16 +36,23 @@ where
 pub trait Packets: Send + Sync {
     /// Compares the hits of a packet with the nearest so far, and tells whether any is in doubt. `sides` are those of
     /// this shape that the rays leave, if they do; `id` is its index in the scene and 1.
-    fn closest_hits(&self, cpu: Cpu, rays: Rays, sides: Option<&[Side]>, id: u64, nearest: Nearest) -> bool;
+    fn closest_hits(
+        &self,
+        cpu: Cpu,
+        rays: RayPacket,
+        sides: Option<&[Side]>,
+        id: u64,
+        nearest: Nearest,
+    ) -> bool;
 
     /// Marks the rays of a packet that it blocks before their ends, and those of which that is in doubt; tells
     /// whether any is.
     fn occluded(
         &self,
         cpu: Cpu,
-        rays: Rays,
+        rays: RayPacket,
         sides: Option<&[Side]>,
-        ends: &[f64],
+        t_max: &[f64],
         blocked: &mut [u64],
         doubt: &mut [u64],
     ) -> bool;
@@ -55,20 +62,20 @@ pub trait Packets: Send + Sync {
     fn refine(
         &self,
         cpu: Cpu,
-        rays: Rays,
+        rays: RayPacket,
         sides: Option<&[Side]>,
         brackets: (&[f64], &[f64]),
         out: &mut [f64],
     );
 
     /// Where the rays of a packet come to it after these distances, and its normals there.
-    fn interact(&self, cpu: Cpu, rays: Rays, distances: &[f64], landing: Landing);
+    fn interact(&self, cpu: Cpu, rays: RayPacket, distances: &[f64], landing: SurfaceInteraction);
 
     /// Between which distances the distance of one ray is.
-    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket;
+    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket;
 
-    /// The distance of one ray's hit that [`bracket`](Self::bracket) has found for certain, or NaN.
-    fn refine_one(&self, ray: &Ray, leaves: Option<Side>) -> f64;
+    /// The distance of one ray's hit that [`t_bounds`](Self::t_bounds) has found for certain, or NaN.
+    fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64;
 }
 
 /// What is certain of a shape's hits.
@@ -78,7 +85,7 @@ pub trait Proofs: Send + Sync {
     fn touches(&self, at: DVec3, error: f64) -> bool;
 
     /// The distance of the hit at about this one, in twice the precision, where that is to be had.
-    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold>;
+    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble>;
 
     /// What is certain about the first hit of a ray.
     fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure;
@@ -90,7 +97,7 @@ pub trait Proofs: Send + Sync {
 
     /// The distance by another method of finding roots; nothing where the shape is not the roots of a function along a
     /// ray, or is found in closed form.
-    fn distance_by(&self, method: Method, ray: &Ray, within: &Span) -> Option<f64>;
+    fn distance_by(&self, method: Method, ray: &Ray, range: &RayRange) -> Option<f64>;
 }
 
 impl<T: Hittable, S> Proofs for Shape<T, S, Unproven> {
@@ -98,7 +105,7 @@ impl<T: Hittable, S> Proofs for Shape<T, S, Unproven> {
         is_met_within(&self.shape, at, error)
     }
 
-    fn fine_distance(&self, _ray: &Ray, _distance: f64) -> Option<Twofold> {
+    fn fine_distance(&self, _ray: &Ray, _distance: f64) -> Option<DoubleDouble> {
         None
     }
 
@@ -106,7 +113,7 @@ impl<T: Hittable, S> Proofs for Shape<T, S, Unproven> {
         Enclosure::UNKNOWN
     }
 
-    fn distance_by(&self, _method: Method, _ray: &Ray, _within: &Span) -> Option<f64> {
+    fn distance_by(&self, _method: Method, _ray: &Ray, _range: &RayRange) -> Option<f64> {
         None
     }
 }
@@ -120,7 +127,7 @@ impl<T: Hittable + Equation, S> Proofs for Shape<T, S, ByFormula> {
         is_met_within(&self.shape, at, error)
     }
 
-    fn fine_distance(&self, _ray: &Ray, _distance: f64) -> Option<Twofold> {
+    fn fine_distance(&self, _ray: &Ray, _distance: f64) -> Option<DoubleDouble> {
         None
     }
 
@@ -128,7 +135,7 @@ impl<T: Hittable + Equation, S> Proofs for Shape<T, S, ByFormula> {
         certify::first_hit(&self.shape, sight, precision)
     }
 
-    fn distance_by(&self, _method: Method, _ray: &Ray, _within: &Span) -> Option<f64> {
+    fn distance_by(&self, _method: Method, _ray: &Ray, _range: &RayRange) -> Option<f64> {
         None
     }
 }
@@ -138,7 +145,7 @@ impl<T: Certified, S> Proofs for Shape<T, S, ByEquation> {
         self.shape.touches(at, error)
     }
 
-    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold> {
+    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble> {
         self.shape.fine_distance(ray, distance)
     }
 
@@ -146,7 +153,7 @@ impl<T: Certified, S> Proofs for Shape<T, S, ByEquation> {
         certify::first_hit(&self.shape, sight, precision)
     }
 
-    fn distance_by(&self, _method: Method, _ray: &Ray, _within: &Span) -> Option<f64> {
+    fn distance_by(&self, _method: Method, _ray: &Ray, _range: &RayRange) -> Option<f64> {
         None
     }
 }
@@ -156,7 +163,7 @@ impl<T: Searched, S> Proofs for Shape<T, S, ByRoots> {
         self.shape.touches(at, error)
     }
 
-    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<Twofold> {
+    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble> {
         self.shape.fine_distance(ray, distance)
     }
 
@@ -164,8 +171,8 @@ impl<T: Searched, S> Proofs for Shape<T, S, ByRoots> {
         certify::first_hit(&self.shape, sight, precision)
     }
 
-    fn distance_by(&self, method: Method, ray: &Ray, within: &Span) -> Option<f64> {
-        Some(self.shape.distance_by(method, ray, within))
+    fn distance_by(&self, method: Method, ray: &Ray, range: &RayRange) -> Option<f64> {
+        Some(self.shape.distance_by(method, ray, range))
     }
 }
 
@@ -174,7 +181,7 @@ fn is_met_within(shape: &impl Hittable, at: DVec3, error: f64) -> bool {
     let dir = shape.normal(at);
     let short = 2.0 * error + ROUNDING * at.abs().max_element();
     let ray = Ray { origin: at - short * dir, dir };
-    shape.distance(&ray, &Span { far: 2.0 * short, ..Span::RAY }) < MISS
+    shape.distance(&ray, &RayRange { far: 2.0 * short, ..RayRange::ALL }) < MISS
 }
 
 /// A shape that is asked for one ray at a time.
@@ -186,15 +193,15 @@ pub trait OneRay: Send + Sync {
     fn author(&self) -> &Self::Author;
 
     /// Between which distances the distance is.
-    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket;
+    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket;
 
-    /// The distance of a hit that [`bracket`](Self::bracket) has found for certain, or NaN where that takes more than
+    /// The distance of a hit that [`t_bounds`](Self::t_bounds) has found for certain, or NaN where that takes more than
     /// plain arithmetic.
-    fn refine(&self, ray: &Ray, leaves: Option<Side>) -> f64;
+    fn refine(&self, ray: &Ray, origin_side: Option<Side>) -> f64;
 
     /// What [`refine`](Self::refine) gives for each ray of a packet.
     #[inline(always)]
-    fn refine_each(&self, rays: Rays, sides: Option<&[Side]>, out: &mut [f64]) {
+    fn refine_each(&self, rays: RayPacket, sides: Option<&[Side]>, out: &mut [f64]) {
         let (count, rays) = (out.len(), rays.first(out.len()));
         match sides {
             None => {
@@ -220,18 +227,18 @@ impl<T: Bracketed, P> OneRay for Shape<T, ByBracket, P> {
     }
 
     #[inline(always)]
-    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        self.shape.bracket(ray, within)
+    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+        self.shape.t_bounds(ray, range)
     }
 
     #[inline(always)]
-    fn refine(&self, ray: &Ray, leaves: Option<Side>) -> f64 {
-        self.shape.refine(ray, leaves)
+    fn refine(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
+        self.shape.refine(ray, origin_side)
     }
 }
 
 /// The author's distance and what is known of where a shape is tell its bracket.
-impl<T: Hittable, P: Meeting> OneRay for Shape<T, ByDistance, P>
+impl<T: Hittable, P: Coincidence> OneRay for Shape<T, ByDistance, P>
 where
     Self: Proofs,
 {
@@ -243,17 +250,17 @@ where
     }
 
     #[inline(always)]
-    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
+    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
         if P::IS_PLAIN {
-            return Bracket::exactly(self.shape.distance(ray, within));
+            return Bracket::exactly(self.shape.distance(ray, range));
         }
-        let touches = || self.touches(ray.origin, within.origin_error);
-        by_distance(within, touches, |within| Some(self.shape.distance(ray, within)))
+        let touches = || self.touches(ray.origin, range.origin_error);
+        by_distance(range, touches, |range| Some(self.shape.distance(ray, range)))
     }
 
     #[inline(always)]
-    fn refine(&self, ray: &Ray, leaves: Option<Side>) -> f64 {
-        self.shape.distance(ray, &Span { leaves, ..Span::RAY })
+    fn refine(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
+        self.shape.distance(ray, &RayRange { origin_side, ..RayRange::ALL })
     }
 }
 
@@ -261,16 +268,16 @@ where
 /// whether the shape touches the ray's origin within the span's `origin_error`.
 #[inline(always)]
 pub fn by_distance(
-    within: &Span,
+    range: &RayRange,
     touches: impl FnOnce() -> bool,
-    distance: impl FnOnce(&Span) -> Option<f64>,
+    distance: impl FnOnce(&RayRange) -> Option<f64>,
 ) -> Bracket {
-    let Span { far, leaves, origin_error, .. } = *within;
-    if leaves.is_none() && origin_error > 0.0 && touches() {
+    let RayRange { far, origin_side, origin_error, .. } = *range;
+    if origin_side.is_none() && origin_error > 0.0 && touches() {
         return Bracket::UNKNOWN;
     }
     let close = if far < MISS { CLOSE * far } else { 0.0 };
-    let Some(distance) = distance(&Span { far: far + close, ..*within }) else { return Bracket::UNKNOWN };
+    let Some(distance) = distance(&RayRange { far: far + close, ..*range }) else { return Bracket::UNKNOWN };
     // At the distance of another surface, more digits tell which comes first.
     if (distance - far).abs() <= close {
         return Bracket { near: distance - close, far: distance + close };
@@ -279,15 +286,15 @@ pub fn by_distance(
 }
 
 /// Whether what meets at one distance is looked at closer.
-pub trait Meeting {
+pub trait Coincidence {
     /// Whether it is not.
     const IS_PLAIN: bool = false;
 }
 
-impl Meeting for Unproven {}
-impl Meeting for ByEquation {}
-impl Meeting for ByRoots {}
-impl Meeting for ByFormula {
+impl Coincidence for Unproven {}
+impl Coincidence for ByEquation {}
+impl Coincidence for ByRoots {}
+impl Coincidence for ByFormula {
     const IS_PLAIN: bool = true;
 }
 
@@ -296,26 +303,33 @@ impl<T: Hittable, S, P> Packets for Shape<T, S, P>
 where
     Self: OneRay<Author = T>,
 {
-    fn closest_hits(&self, cpu: Cpu, rays: Rays, sides: Option<&[Side]>, id: u64, nearest: Nearest) -> bool {
+    fn closest_hits(
+        &self,
+        cpu: Cpu,
+        rays: RayPacket,
+        sides: Option<&[Side]>,
+        id: u64,
+        nearest: Nearest,
+    ) -> bool {
         closest_hits(cpu, self, rays, sides, id, nearest)
     }
 
     fn occluded(
         &self,
         cpu: Cpu,
-        rays: Rays,
+        rays: RayPacket,
         sides: Option<&[Side]>,
-        ends: &[f64],
+        t_max: &[f64],
         blocked: &mut [u64],
         doubt: &mut [u64],
     ) -> bool {
-        occluded(cpu, self, rays, sides, ends, blocked, doubt)
+        occluded(cpu, self, rays, sides, t_max, blocked, doubt)
     }
 
     fn refine(
         &self,
         cpu: Cpu,
-        rays: Rays,
+        rays: RayPacket,
         sides: Option<&[Side]>,
         _brackets: (&[f64], &[f64]),
         out: &mut [f64],
@@ -323,52 +337,52 @@ where
         refine(cpu, self, rays, sides, out);
     }
 
-    fn interact(&self, cpu: Cpu, rays: Rays, distances: &[f64], landing: Landing) {
-        let Landing { points, normals, sides, cosines, travelled } = landing;
+    fn interact(&self, cpu: Cpu, rays: RayPacket, distances: &[f64], landing: SurfaceInteraction) {
+        let SurfaceInteraction { points, normals, sides, cosines, travelled } = landing;
         interact(cpu, &self.shape, rays, distances, sides, cosines, travelled, points, normals);
     }
 
-    fn bracket(&self, ray: &Ray, within: &Span) -> Bracket {
-        OneRay::bracket(self, ray, within)
+    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+        OneRay::t_bounds(self, ray, range)
     }
 
-    fn refine_one(&self, ray: &Ray, leaves: Option<Side>) -> f64 {
-        OneRay::refine(self, ray, leaves)
+    fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
+        OneRay::refine(self, ray, origin_side)
     }
 }
 
 kernels! {
     /// Compares a shape's hits with the nearest so far. Tells whether any is in doubt.
-    fn closest_hits[T: OneRay](shape: &T, rays: Rays, sides: Option<&[Side]>, id: u64, nearest: Nearest) -> bool {
+    fn closest_hits[T: OneRay](shape: &T, rays: RayPacket, sides: Option<&[Side]>, id: u64, nearest: Nearest) -> bool {
         let (count, rays) = (rays.len(), rays.first(rays.len()));
         let Nearest { near, far, met, doubt } = nearest;
         match sides {
-            None => merge(count, &Sought { shape, rays }, id, near, far, met, doubt),
+            None => merge_nearest(count, &ShapeBounds { shape, rays }, id, near, far, met, doubt),
             Some(sides) => {
-                merge(count, &Leaving { shape, rays, sides: &sides[..count] }, id, near, far, met, doubt)
+                merge_nearest(count, &LeavingBounds { shape, rays, sides: &sides[..count] }, id, near, far, met, doubt)
             }
         }
     }
 
     /// Marks the rays that a shape's hits block before they come to their ends. Tells whether any is in doubt.
     fn occluded[T: OneRay](
-        shape: &T, rays: Rays, sides: Option<&[Side]>, ends: &[f64], blocked: &mut [u64], doubt: &mut [u64]
+        shape: &T, rays: RayPacket, sides: Option<&[Side]>, t_max: &[f64], blocked: &mut [u64], doubt: &mut [u64]
     ) -> bool {
-        let (count, rays) = (ends.len(), rays.first(ends.len()));
+        let (count, rays) = (t_max.len(), rays.first(t_max.len()));
         match sides {
-            None => mark(&Sought { shape, rays }, ends, blocked, doubt),
-            Some(sides) => mark(&Leaving { shape, rays, sides: &sides[..count] }, ends, blocked, doubt),
+            None => mark_occluded(&ShapeBounds { shape, rays }, t_max, blocked, doubt),
+            Some(sides) => mark_occluded(&LeavingBounds { shape, rays, sides: &sides[..count] }, t_max, blocked, doubt),
         }
     }
 
     /// The distances of a shape's hits, as [`OneRay::refine`] gives them.
-    fn refine[T: OneRay](shape: &T, rays: Rays, sides: Option<&[Side]>, out: &mut [f64]) {
+    fn refine[T: OneRay](shape: &T, rays: RayPacket, sides: Option<&[Side]>, out: &mut [f64]) {
         shape.refine_each(rays, sides, out);
     }
 
     /// Where rays come to a shape after these distances, and its normals there.
     fn interact[T: Hittable](
-        shape: &T, rays: Rays, distances: &[f64], sides: &mut [Side], cosines: &mut [f64], travelled: &mut [f64]
+        shape: &T, rays: RayPacket, distances: &[f64], sides: &mut [Side], cosines: &mut [f64], travelled: &mut [f64]
     ) => points, normals {
         let (count, is_two_sided) = (travelled.len(), shape.is_two_sided());
         let (rays, distances) = (rays.first(count), &distances[..count]);
@@ -387,34 +401,35 @@ kernels! {
 }
 
 /// The brackets that a shape gives.
-struct Sought<'b, T> {
+struct ShapeBounds<'b, T> {
     shape: &'b T,
-    rays: Rays<'b>,
+    rays: RayPacket<'b>,
 }
 
-impl<T: OneRay> Brackets for Sought<'_, T> {
+impl<T: OneRay> Brackets for ShapeBounds<'_, T> {
     #[inline(always)]
     fn get(&self, lane: usize, far: f64) -> Bracket {
         let origin_error = self.rays.origin_error;
-        self.shape.bracket(&self.rays.get(lane), &Span { far, origin_error, ..Span::RAY })
+        self.shape.t_bounds(&self.rays.get(lane), &RayRange { far, origin_error, ..RayRange::ALL })
     }
 }
 
 /// The brackets that a shape gives for rays that leave it.
-struct Leaving<'b, T> {
+struct LeavingBounds<'b, T> {
     shape: &'b T,
-    rays: Rays<'b>,
+    rays: RayPacket<'b>,
     sides: &'b [Side],
 }
 
-impl<T: OneRay> Brackets for Leaving<'_, T> {
+impl<T: OneRay> Brackets for LeavingBounds<'_, T> {
     #[inline(always)]
     fn get(&self, lane: usize, far: f64) -> Bracket {
-        let leaves = self.sides[lane];
-        if !self.shape.author().meets_itself(leaves) {
+        let origin_side = self.sides[lane];
+        if !self.shape.author().can_hit_itself(origin_side) {
             return Bracket::MISS;
         }
-        let (leaves, origin_error) = (Some(leaves), self.rays.origin_error);
-        self.shape.bracket(&self.rays.get(lane), &Span { far, leaves, origin_error, ..Span::RAY })
+        let (origin_side, origin_error) = (Some(origin_side), self.rays.origin_error);
+        self.shape
+            .t_bounds(&self.rays.get(lane), &RayRange { far, origin_side, origin_error, ..RayRange::ALL })
     }
 }

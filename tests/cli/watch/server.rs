@@ -181,7 +181,7 @@ fn the_layers_are_those_of_aov() {
         let plan = Plan::new(&model);
         let layer = aov.render(&renderer, &plan, &plan, &|| ControlFlow::Continue(()));
         let expected = layer.unwrap_or_else(|_| panic!("nobody interrupts {aov:?}")).bytes;
-        assert_eq!(watching.get(&format!("layer/1/{}", aov.name())), (200, expected));
+        assert_eq!(watching.get(&format!("layer/1/{}", format!("{aov:?}").to_lowercase())), (200, expected));
     }
 }
 

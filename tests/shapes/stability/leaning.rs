@@ -5,7 +5,7 @@ use super::{Random, shape, words};
 use dashu_float::FBig;
 use dashu_float::round::mode::HalfEven;
 use glam::{DVec3, dvec3};
-use tabray::geometry::{MISS, Ray, Span};
+use tabray::geometry::{MISS, Ray, RayRange};
 
 type Real = FBig<HalfEven>;
 
@@ -128,7 +128,7 @@ fn leaning_surfaces_are_met_where_the_real_numbers_have_it() {
             if is_rim {
                 continue;
             }
-            let distance = found.distance(&ray, &Span::RAY);
+            let distance = found.distance(&ray, &RayRange::ALL);
             assert_eq!(
                 truth.is_empty(),
                 distance == MISS,

@@ -3,7 +3,7 @@
 use super::profiles::{Line, NASTY, VASE};
 use super::{Random, distance};
 use glam::{DVec3, dvec3};
-use tabray::geometry::{MISS, Ray, Side, Span};
+use tabray::geometry::{MISS, Ray, RayRange, Side};
 use tabray::world::Hittable;
 
 /// A point where a ray of the camera met a surface from outside, as its distance and direction give it, and a way on.
@@ -41,7 +41,7 @@ fn starts(line: &Line, shape: &dyn Hittable, away: f64) -> Vec<Start> {
 /// Asks a shape for the next hit of a ray that leaves it on the outside.
 fn next(shape: &dyn Hittable, start: &Start) -> f64 {
     let ray = Ray { origin: start.point, dir: start.dir };
-    shape.distance(&ray, &Span { leaves: Some(Side::Outside), ..Span::RAY })
+    shape.distance(&ray, &RayRange { origin_side: Some(Side::Outside), ..RayRange::ALL })
 }
 
 /// The first of many samples of a ray that lies inside while the one before lies outside: surely a hit, if not the
@@ -61,7 +61,7 @@ fn sampled(line: &Line, start: &Start) -> Option<f64> {
 /// `rounding` is how far from the surface starts may lie.
 fn leaves_without_meeting_itself(line: &Line, away: f64, rounding: f64) {
     let shape = line.shape();
-    assert!(shape.meets_itself(Side::Outside), "a surface of revolution can meet what leaves it");
+    assert!(shape.can_hit_itself(Side::Outside), "a surface of revolution can meet what leaves it");
     let starts = starts(line, &*shape, away);
     let (mut judged_inside, mut again) = (0, 0);
     let (mut met_itself, mut lost) = (Vec::new(), Vec::new());
@@ -116,11 +116,11 @@ fn a_ray_that_leaves_the_inner_wall_meets_the_opposite_one() {
         let cosine = random.between(0.3, 1.0);
         let along = dvec3(-inward.z, 0.0, inward.x);
         let dir = cosine * inward + (1.0 - cosine * cosine).sqrt() * along;
-        let within = |side| Span { leaves: Some(side), ..Span::RAY };
+        let range = |side| RayRange { origin_side: Some(side), ..RayRange::ALL };
         let ray = Ray { origin: point, dir };
-        let across = pipe.distance(&ray, &within(Side::Inside));
+        let across = pipe.distance(&ray, &range(Side::Inside));
         assert!((across - 2.0 * cosine).abs() < 1e-14, "{across} is not {}", 2.0 * cosine);
         let outward = Ray { origin: point, dir: -dir };
-        assert_eq!(pipe.distance(&outward, &within(Side::Outside)), MISS, "from {point} along {}", -dir);
+        assert_eq!(pipe.distance(&outward, &range(Side::Outside)), MISS, "from {point} along {}", -dir);
     }
 }

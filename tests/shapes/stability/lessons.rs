@@ -3,7 +3,7 @@
 use super::profiles::{FLANGE, Line, NASTY, STAIR, VASE};
 use super::{Random, distance};
 use glam::{DVec3, dvec3};
-use tabray::geometry::{MISS, Ray, Side, Span};
+use tabray::geometry::{MISS, Ray, RayRange, Side};
 use tabray::numeric::Interval;
 
 /// Lesson 1: a rounding margin of 32 eps R^2 for q forgets that the rounding of y comes in by the slope of g.
@@ -176,8 +176,8 @@ fn a_ray_that_leaves_is_hit_by_the_first_entry_and_not_by_the_first_root() {
     for (line, origin, dir, root, truth) in cases {
         let sign = |distance: f64| line.outside(origin + distance * dir) > 0.0;
         assert!(!sign(0.0) && sign(100.0 * root), "{}: the first root is next to the start", line.formula);
-        let within = Span { leaves: Some(Side::Outside), ..Span::RAY };
-        let hit = line.shape().distance(&Ray { origin, dir }, &within);
+        let range = RayRange { origin_side: Some(Side::Outside), ..RayRange::ALL };
+        let hit = line.shape().distance(&Ray { origin, dir }, &range);
         // The start is rounded by an ulp, and so is where the ray comes back, by as much as it is steeper here.
         assert!((hit - truth).abs() < 1e-11, "{}: {hit} is not {truth}", line.formula);
     }
@@ -196,13 +196,13 @@ fn a_hit_is_the_first_change_of_sign() {
             let hit = distance(&*shape, eye, dir);
             let outside = |distance: f64| line.outside(eye + distance * dir) > 0.0;
             let before = if hit < MISS { hit * 0.998 } else { 20.0 };
-            let within = |distance: f64| (0.0..=line.height).contains(&(eye.y + distance * dir.y));
+            let range = |distance: f64| (0.0..=line.height).contains(&(eye.y + distance * dir.y));
             let earlier =
-                (0..500).map(|step| before * f64::from(step) / 500.0).find(|at| within(*at) && !outside(*at));
+                (0..500).map(|step| before * f64::from(step) / 500.0).find(|at| range(*at) && !outside(*at));
             assert_eq!(earlier, None, "{}: {hit} from {eye} along {dir}", line.formula);
             // As steep as it is here, a ray 1e-9 from its hit is above rounding.
             let steep = hit < MISS && line.normal(eye + hit * dir).dot(dir).abs() > 1e-3;
-            if steep && within(hit + 1e-9) {
+            if steep && range(hit + 1e-9) {
                 assert!(
                     outside(hit - 1e-9) && !outside(hit + 1e-9),
                     "{}: {hit} from {eye} along {dir}",

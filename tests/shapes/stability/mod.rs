@@ -23,7 +23,7 @@ mod together;
 use crate::common::{model, registry};
 use glam::{DVec3, dvec3};
 use std::path::Path;
-use tabray::geometry::{Ray, Span};
+use tabray::geometry::{Ray, RayRange};
 use tabray::scene::{self, Model};
 use tabray::world::{AnyShape, Hittable};
 
@@ -62,7 +62,7 @@ fn refusal(object: &str) -> String {
 
 /// The distance to the first hit of a ray whose direction is a unit vector as the row gives it.
 fn distance(shape: &dyn Hittable, origin: DVec3, dir: DVec3) -> f64 {
-    shape.distance(&Ray { origin, dir }, &Span::RAY)
+    shape.distance(&Ray { origin, dir }, &RayRange::ALL)
 }
 
 /// A vector as a scene's text has it, to the last bit.

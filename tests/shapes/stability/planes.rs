@@ -3,7 +3,7 @@
 use super::{DOWN_Z, Random, distance, holds, refusal, shape, text, words};
 use crate::common::model;
 use glam::{DVec3, dvec3};
-use tabray::geometry::{Bounds, MISS, Ray, Sight};
+use tabray::geometry::{Aabb, MISS, Ray, Sight};
 use tabray::render::{Plan, trace};
 
 /// The notes' `hits_plane`: N.Q is computed once, and a ray is parallel if N.D is exactly 0.
@@ -44,7 +44,7 @@ fn a_ray_along_a_plane_misses_and_one_that_sinks_hits_it_where_that_leads() {
 fn rays_along_any_plane_hit_nothing_near() {
     let mut random = Random(21);
     let mut vector = || DVec3::from([0; 3].map(|_| random.whole(-9, 9) as f64));
-    let (mut parallel, mut naive_hits, mut within) = (0, 0, 0);
+    let (mut parallel, mut naive_hits, mut range) = (0, 0, 0);
     for index in 0..3_000 {
         let (normal, other, eye) = (vector(), vector(), vector());
         let (Some(unit), Some(dir)) = (normal.try_normalize(), normal.cross(other).try_normalize()) else {
@@ -54,7 +54,7 @@ fn rays_along_any_plane_hit_nothing_near() {
         let eye = if index % 3 == 0 { normal.cross(eye) } else { eye };
         let away = normal.dot(eye).abs() / normal.length();
         parallel += 1;
-        within += u32::from(away == 0.0);
+        range += u32::from(away == 0.0);
         naive_hits +=
             u32::from(naive(eye, dir, unit, DVec3::ZERO).is_some_and(|hit| hit > 0.0 && hit < 1e14));
         let hit = distance(&*shape(&plane(normal, DVec3::ZERO)), eye, dir);
@@ -62,19 +62,19 @@ fn rays_along_any_plane_hit_nothing_near() {
         let is_far = away > 0.0 && hit >= away * 2.0_f64.powi(52);
         assert!(hit == MISS || is_far, "normal {normal}, eye {eye}, along {dir}: {hit:e}");
     }
-    assert!(naive_hits * 50 > parallel && within > 500, "{naive_hits} of {parallel}, {within} in the plane");
+    assert!(naive_hits * 50 > parallel && range > 500, "{naive_hits} of {parallel}, {range} in the plane");
 }
 
 /// Most rays that leave a surface lead away from most planes, and those are not looked at.
 #[test]
 fn ways_without_an_end_are_clear_of_the_planes_that_they_lead_away_from() {
-    let up_from = |height: f64| Bounds { low: dvec3(-4.0, height, -9.0), high: DVec3::INFINITY };
+    let up_from = |height: f64| Aabb { low: dvec3(-4.0, height, -9.0), high: DVec3::INFINITY };
     let floor = shape(&plane(DVec3::Y, DVec3::ZERO));
     assert!(floor.is_clear_of(&up_from(0.1)) && !floor.is_clear_of(&up_from(0.0)));
-    assert!(!floor.is_clear_of(&Bounds { low: DVec3::NEG_INFINITY, high: DVec3::INFINITY }));
+    assert!(!floor.is_clear_of(&Aabb { low: DVec3::NEG_INFINITY, high: DVec3::INFINITY }));
     let slope = shape(&plane(dvec3(0.0, 1.0, 1.0), DVec3::ZERO));
     assert!(slope.is_clear_of(&up_from(9.1)) && !slope.is_clear_of(&up_from(8.9)));
-    assert!(!slope.is_clear_of(&Bounds { low: dvec3(0.0, 9.1, f64::NEG_INFINITY), high: DVec3::INFINITY }));
+    assert!(!slope.is_clear_of(&Aabb { low: dvec3(0.0, 9.1, f64::NEG_INFINITY), high: DVec3::INFINITY }));
 }
 
 /// F08: `h_z > 0`, without room for rounding, drops pixels of a plane that lies in the screen.
@@ -90,7 +90,7 @@ fn a_plane_in_the_screen_is_seen_through_every_pixel() {
         let hit =
             naive(ray.origin, ray.dir, DVec3::Z, DVec3::ZERO).expect("no ray is parallel to the screen");
         dropped += u32::from(ray.at(hit).z > 0.0);
-        seen += u32::from(scene.objects[0].shape.distance(&ray, &tabray::geometry::Span::RAY) < MISS);
+        seen += u32::from(scene.objects[0].shape.distance(&ray, &tabray::geometry::RayRange::ALL) < MISS);
     }
     assert!(dropped > 100, "{dropped}");
     assert_eq!(seen, 640 * 480);
@@ -132,10 +132,10 @@ fn a_long_normal_does_not_tilt_the_sides() {
     assert_eq!(projected(normal, DVec3::X).dot(normal), -1.0);
     let pane = shape("fplane f { material m normal 1 0 1 point 0 0 -9 xdir 1 0 0 dimensions 2 1 }");
     // The first side runs to (1.41, 0, -10.41), the second one upward.
-    for (x, within) in [(0.01, true), (1.41, true), (-0.01, false), (1.42, false)] {
+    for (x, range) in [(0.01, true), (1.41, true), (-0.01, false), (1.42, false)] {
         let hit = distance(&*pane, dvec3(x, 0.5, 0.0), DOWN_Z);
-        assert_eq!(hit < MISS, within, "at x = {x}");
-        assert!(!within || (hit - (9.0 + x)).abs() < 1e-14, "{hit} at x = {x}");
+        assert_eq!(hit < MISS, range, "at x = {x}");
+        assert!(!range || (hit - (9.0 + x)).abs() < 1e-14, "{hit} at x = {x}");
     }
 }
 

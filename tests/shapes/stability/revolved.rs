@@ -19,7 +19,7 @@ fn cone(camera: &str, height: f64) -> AnyShape {
 fn a_ray_that_grazes_the_vase_hits() {
     let vase = VASE.shape();
     // Conditioning: where the chord is short, an ulp of the vase moves its end by 1e-16 over the chord's slope.
-    for (depth, truth, within) in [
+    for (depth, truth, range) in [
         (1e-2, 9.755255234989594, 1e-14),
         (1e-4, 9.975505306697138, 1e-13),
         (1e-6, 9.99755051046117, 1e-12),
@@ -34,7 +34,7 @@ fn a_ray_that_grazes_the_vase_hits() {
         let seen = (0..=steps as i64).any(|step| !outside(step as f64));
         assert_eq!(seen, depth > 1e-3, "by steps at a depth of {depth:e}");
         let hit = distance(&*vase, eye, DOWN_Z);
-        assert!((hit - truth).abs() < within, "{hit} is not {truth} at a depth of {depth:e}");
+        assert!((hit - truth).abs() < range, "{hit} is not {truth} at a depth of {depth:e}");
     }
 }
 

@@ -4,8 +4,8 @@ use super::Random;
 use crate::common::{model, render};
 use glam::{DVec3, dvec3};
 use image::RgbImage;
-use tabray::geometry::{Ray, Side, Span};
-use tabray::render::{Event, Plan, Watch, to_byte, trace};
+use tabray::geometry::{Ray, RayRange, Side};
+use tabray::render::{Event, Plan, TraceObserver, to_byte, trace};
 
 const BLUE: [u8; 3] = [0, 0, 255];
 
@@ -274,7 +274,7 @@ fn the_first_of_floor_and_wall_is_seen_without_dots_where_they_meet() {
 /// Looks on, and forgets.
 struct Onlooker;
 
-impl Watch for Onlooker {
+impl TraceObserver for Onlooker {
     const SEES: bool = true;
 
     fn see(&mut self, _event: Event) {}
@@ -300,7 +300,7 @@ fn the_colour_of_a_ray_that_starts_on_several_surfaces_is_its_own() {
         let (x, y) = (x as usize, (picture.height() - 1 - row) as usize);
         let alone = trace::pixel(&plan, x, y);
         assert_eq!(alone.to_array().map(to_byte), pixel.0, "{x} {y}");
-        assert_eq!(trace::watch_pixel(&plan, x, y, &mut Onlooker), alone, "{x} {y}");
+        assert_eq!(trace::observe_pixel(&plan, x, y, &mut Onlooker), alone, "{x} {y}");
     }
 }
 
@@ -325,7 +325,7 @@ fn what_may_start_on_a_shape_is_in_doubt() {
             let from = far * random.around(axis, 0.5);
             let aim = dvec3(1.0, 2.0, 3.0) + 2.0 * random.around(axis, 0.3);
             let ray = Ray { origin: from, dir: (aim - from).normalize() };
-            let distance = shape.distance(&ray, &Span::RAY);
+            let distance = shape.distance(&ray, &RayRange::ALL);
             if !distance.is_finite() {
                 continue;
             }
@@ -334,12 +334,14 @@ fn what_may_start_on_a_shape_is_in_doubt() {
             assert!(shape.touches(point, origin_error), "{text} is not where it is hit: {ray:?}");
             let cosine = random.between(-1.0, 1.0);
             let dir = random.around(normal, cosine);
-            let bracket = shape.bracket(&Ray { origin: point, dir }, &Span { origin_error, ..Span::RAY });
+            let bracket =
+                shape.t_bounds(&Ray { origin: point, dir }, &RayRange { origin_error, ..RayRange::ALL });
             let side = Side::seen_along(dir, normal).opposite();
-            let next = match shape.meets_itself(side) {
-                true => {
-                    shape.distance(&Ray { origin: point, dir }, &Span { leaves: Some(side), ..Span::RAY })
-                }
+            let next = match shape.can_hit_itself(side) {
+                true => shape.distance(
+                    &Ray { origin: point, dir },
+                    &RayRange { origin_side: Some(side), ..RayRange::ALL },
+                ),
                 false => f64::INFINITY,
             };
             assert!(bracket.near <= next && next <= bracket.far, "{text}: {bracket:?} {next} {ray:?} {dir}");

@@ -1,0 +1,289 @@
+//! Arithmetic without rounding error, or with that of twice the precision (Dekker 1971, Knuth; Joldes et al. 2017).
+//!
+//! Nothing here multiplies and adds in one step, so the bits are the same on every machine.
+
+mod elementary;
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A sum, and what rounding took from it.
+#[inline(always)]
+pub fn two_sum(a: f64, b: f64) -> (f64, f64) {
+    let sum = a + b;
+    let of_b = sum - a;
+    (sum, (a - (sum - of_b)) + (b - of_b))
+}
+
+/// A product, and what rounding took from it. Factors beyond 1e300 overflow.
+#[inline(always)]
+pub fn two_product(a: f64, b: f64) -> (f64, f64) {
+    /// Half of the digits, and the rest.
+    #[inline(always)]
+    fn split(a: f64) -> (f64, f64) {
+        const SPLITTER: f64 = 134_217_729.0; // 2^27 + 1
+        let scaled = SPLITTER * a;
+        let high = scaled - (scaled - a);
+        (high, a - high)
+    }
+    let product = a * b;
+    let ((a, a_low), (b, b_low)) = (split(a), split(b));
+    (product, ((a * b - product) + a * b_low + a_low * b) + a_low * b_low)
+}
+
+/// `start + distance * step - from`: to a unit in the last place of the result, however far `start` is from there. The
+/// difference is exact where it cancels, and rounded once where it does not.
+#[inline(always)]
+pub fn offset(start: f64, distance: f64, step: f64, from: f64) -> f64 {
+    let (way, way_low) = two_product(distance, step);
+    let (place, place_low) = two_sum(start, way);
+    (place - from) + (way_low + place_low)
+}
+
+/// A sum of three products, the second factors with what rounding took from them, and of something small: rounded about
+/// once, and off by at most 2^-102 of the size of its parts, however much of it cancels (Ogita, Rump and Oishi 2005).
+#[inline(always)]
+pub fn dot(a: [f64; 3], b: [f64; 3], b_low: [f64; 3], small: f64) -> f64 {
+    let (first, first_low) = two_product(a[0], b[0]);
+    let (second, second_low) = two_product(a[1], b[1]);
+    let (third, third_low) = two_product(a[2], b[2]);
+    let (sum, sum_low) = two_sum(first, second);
+    let (sum, rest_low) = two_sum(sum, third);
+    let of_low = a[0] * b_low[0] + a[1] * b_low[1] + a[2] * b_low[2];
+    sum + ((first_low + second_low + third_low) + (sum_low + rest_low) + (of_low + small))
+}
+
+/// A number without rounding: the sum of parts whose digits do not overlap, the least first (Shewchuk 1997).
+#[derive(Clone, Debug, Default)]
+pub struct Exact {
+    parts: Vec<f64>,
+}
+
+impl Exact {
+    /// The sum of some numbers.
+    pub fn sum(terms: impl IntoIterator<Item = f64>) -> Self {
+        let mut parts = Vec::with_capacity(16);
+        for term in terms {
+            let (mut carry, mut kept) = (term, 0);
+            for index in 0..parts.len() {
+                let (sum, low) = two_sum(carry, parts[index]);
+                if low != 0.0 {
+                    parts[kept] = low;
+                    kept += 1;
+                }
+                carry = sum;
+            }
+            parts.truncate(kept);
+            if carry != 0.0 {
+                parts.push(carry);
+            }
+        }
+        Self { parts }
+    }
+
+    /// What it is the sum of.
+    pub fn parts(&self) -> &[f64] {
+        &self.parts
+    }
+
+    /// What its product with another one is the sum of.
+    pub fn times<'e>(&'e self, other: &'e Self) -> impl Iterator<Item = f64> + 'e {
+        let pairs = self.parts.iter().flat_map(|one| other.parts.iter().map(move |other| (*one, *other)));
+        pairs.flat_map(|(one, other)| <[f64; 2]>::from(two_product(one, other)))
+    }
+
+    /// It, rounded once to twice the precision.
+    pub fn rounded(&self) -> DoubleDouble {
+        self.parts.iter().rev().fold(DoubleDouble::from(0.0), |sum, part| sum + DoubleDouble::from(*part))
+    }
+}
+
+/// A sum, rounded once to twice the precision: 0 where it is 0, however much of it cancels.
+pub fn exact_sum(terms: impl IntoIterator<Item = f64>) -> DoubleDouble {
+    Exact::sum(terms).rounded()
+}
+
+/// The power of two that brings numbers of this magnitude to between 1/2 and 1, as its exponent; 0 for 0.
+pub fn exponent_to_one(magnitude: f64) -> i32 {
+    // Numbers too small for all of their digits are near enough to the least that have them.
+    let bits = magnitude.abs().max(f64::MIN_POSITIVE).to_bits() >> 52;
+    if magnitude == 0.0 { 0 } else { 1022 - bits as i32 }
+}
+
+/// A number times a power of two: exactly, unless the result is too small or too large for a normal number.
+pub fn times_power_of_two(number: f64, exponent: i32) -> f64 {
+    let half = exponent / 2;
+    number * 2_f64.powi(half) * 2_f64.powi(exponent - half)
+}
+
+/// A number in twice the precision: the sum of two, the second far smaller.
+///
+/// For finite numbers of a magnitude below 1e290, products' magnitudes above 1e-290: beyond them parts are lost.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+pub struct DoubleDouble {
+    // The order of the fields is that in which numbers compare.
+    /// The number, rounded.
+    pub high: f64,
+    /// What rounding took.
+    pub low: f64,
+}
+
+impl From<f64> for DoubleDouble {
+    #[inline(always)]
+    fn from(value: f64) -> Self {
+        Self { high: value, low: 0.0 }
+    }
+}
+
+impl DoubleDouble {
+    /// The difference of two numbers, exactly.
+    #[inline(always)]
+    pub fn difference(a: f64, b: f64) -> Self {
+        let (high, low) = two_sum(a, -b);
+        Self { high, low }
+    }
+
+    /// The square root; 0 below 0.
+    pub fn sqrt(self) -> Self {
+        if self.high <= 0.0 {
+            return Self::from(0.0);
+        }
+        let root = Self::from(self.high.sqrt());
+        let rest = self - root * root;
+        root + Self::from(rest.high / (2.0 * root.high))
+    }
+
+    #[inline(always)]
+    fn normal(high: f64, low: f64) -> Self {
+        let sum = high + low;
+        Self { high: sum, low: low - (sum - high) }
+    }
+}
+
+impl Add for DoubleDouble {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        let (high, high_low) = two_sum(self.high, other.high);
+        let (low, low_low) = two_sum(self.low, other.low);
+        let Self { high, low } = Self::normal(high, high_low + low);
+        Self::normal(high, low + low_low)
+    }
+}
+
+impl Neg for DoubleDouble {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self { high: -self.high, low: -self.low }
+    }
+}
+
+impl Sub for DoubleDouble {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl Mul for DoubleDouble {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        let (high, low) = two_product(self.high, other.high);
+        Self::normal(high, low + (self.high * other.low + self.low * other.high))
+    }
+}
+
+impl Div for DoubleDouble {
+    type Output = Self;
+
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        let first = self.high / other.high;
+        let rest = self - other * Self::from(first);
+        let second = rest.high / other.high;
+        let rest = rest - other * Self::from(second);
+        Self::normal(first, second) + Self::from(rest.high / other.high)
+    }
+}
+
+/// The product of two vectors that is a number.
+#[inline(always)]
+pub fn product(a: [DoubleDouble; 3], b: [DoubleDouble; 3]) -> DoubleDouble {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// The product of two vectors that stands upright on both, each component rounded once, however much cancels in it.
+pub fn cross(a: [DoubleDouble; 3], b: [DoubleDouble; 3]) -> [DoubleDouble; 3] {
+    let parts = |of: DoubleDouble, with: DoubleDouble| {
+        let pairs = [(of.high, with.high), (of.high, with.low), (of.low, with.high), (of.low, with.low)];
+        pairs.into_iter().flat_map(|(one, other)| <[f64; 2]>::from(two_product(one, other)))
+    };
+    [(1, 2), (2, 0), (0, 1)].map(|(one, other)| {
+        let (plus, minus) = (parts(a[one], b[other]), parts(-a[other], b[one]));
+        exact_sum(plus.chain(minus))
+    })
+}
+
+/// The product of three vectors, rounded once: which way round they are, for certain, or that they are in one plane.
+pub fn triple_product(a: [DoubleDouble; 3], b: [DoubleDouble; 3], c: [f64; 3]) -> DoubleDouble {
+    let parts = |of: DoubleDouble, with: DoubleDouble, factor: f64| {
+        let pairs = [(of.high, with.high), (of.high, with.low), (of.low, with.high), (of.low, with.low)];
+        let products = pairs.into_iter().flat_map(|(one, other)| <[f64; 2]>::from(two_product(one, other)));
+        products.flat_map(move |product| <[f64; 2]>::from(two_product(product, factor)))
+    };
+    exact_sum([(1, 2, 0), (2, 0, 1), (0, 1, 2)].into_iter().flat_map(|(one, other, last)| {
+        parts(a[one], b[other], c[last]).chain(parts(-a[other], b[one], c[last]))
+    }))
+}
+
+/// A vector's direction, as a vector of length 1. Its components must be of about that magnitude.
+pub fn unit(vector: [DoubleDouble; 3]) -> [DoubleDouble; 3] {
+    let length = product(vector, vector).sqrt();
+    vector.map(|part| part / length)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_rounding_takes_is_kept() {
+        assert_eq!(two_sum(1.0, 1e-17), (1.0, 1e-17));
+        let (product, low) = two_product(1.0 + f64::EPSILON, 1.0 + f64::EPSILON);
+        assert_eq!((product, low), (1.0 + 2.0 * f64::EPSILON, f64::EPSILON * f64::EPSILON));
+    }
+
+    #[test]
+    fn exact_sums_lose_nothing() {
+        assert_eq!(exact_sum([1e200, 1.0, -1e200, 1e-200, -1.0]), DoubleDouble::from(1e-200));
+        assert_eq!(exact_sum([0.1, 0.2, -0.2, -0.1]), DoubleDouble::from(0.0));
+        let DoubleDouble { high, low } = exact_sum([1e-40, 1e-20, 1.0, 1e40, -1e40]);
+        assert_eq!((high, low), (1.0, 1e-20));
+    }
+
+    #[test]
+    fn powers_of_two_bring_numbers_to_one() {
+        for number in [1e-310, 1e-150, 0.3, 0.5, 1.0, -7.0, 1e150, f64::MAX] {
+            let one = times_power_of_two(number, exponent_to_one(number)).abs();
+            assert!((0.5..1.0).contains(&one) || number == 1e-310, "{number:e}: {one}");
+        }
+        assert_eq!(exponent_to_one(0.0), 0);
+    }
+
+    #[test]
+    fn roots_and_quotients_have_twice_the_digits() {
+        let two = DoubleDouble::from(2.0);
+        let root = two.sqrt();
+        let rest = root * root - two;
+        assert!(rest.high.abs() < 1e-31, "{rest:?}");
+        let third = DoubleDouble::from(1.0) / DoubleDouble::from(3.0);
+        let rest = third * DoubleDouble::from(3.0) - DoubleDouble::from(1.0);
+        assert!(rest.high.abs() < 1e-31, "{rest:?}");
+    }
+}

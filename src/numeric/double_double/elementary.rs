@@ -1,0 +1,182 @@
+//! The functions of formulas in twice the precision: their series, so that the truth about any shape can be told.
+
+use super::{DoubleDouble, two_product};
+use crate::numeric::scalar::Scalar;
+
+/// A power of two, also one that is too small for a normal number.
+fn power_of_two(exponent: i32) -> f64 {
+    let half = exponent / 2;
+    2_f64.powi(half) * 2_f64.powi(exponent - half)
+}
+
+/// pi / 2, each part the next 53 bits.
+const HALF_PI: [f64; 4] = [
+    std::f64::consts::FRAC_PI_2,
+    6.123_233_995_736_766e-17,
+    -1.497_384_904_859_169_8e-33,
+    5.562_271_104_316_826e-50,
+];
+
+/// ln 2, likewise.
+const LN_2: [f64; 3] = [std::f64::consts::LN_2, 2.319_046_813_846_299_6e-17, 5.707_708_438_416_212e-34];
+
+impl DoubleDouble {
+    const ZERO: Self = Self { high: 0.0, low: 0.0 };
+    const ONE: Self = Self { high: 1.0, low: 0.0 };
+
+    /// Whether it is below 0.
+    pub fn is_negative(self) -> bool {
+        self < Self::ZERO
+    }
+
+    /// Times a power of two, exactly.
+    fn scaled(self, exponent: i32) -> Self {
+        let factor = power_of_two(exponent);
+        Self { high: self.high * factor, low: self.low * factor }
+    }
+
+    /// What is left of it after so many times a number that is given in parts.
+    fn without(self, times: f64, parts: &[f64]) -> Self {
+        parts.iter().fold(self, |left, part| {
+            let (high, low) = two_product(times, *part);
+            left - Self { high, low }
+        })
+    }
+
+    /// The sine and cosine of an angle of at most pi / 4, by their series.
+    fn sin_cos_of_small(self) -> (Self, Self) {
+        // The last term is (pi/4)^28 / 28! = 3e-33.
+        const LAST: i32 = 28;
+        let square = self * self;
+        let (mut sin, mut cos) = (Self::ONE, Self::ONE);
+        for order in (1..=LAST / 2).rev() {
+            let order = f64::from(2 * order);
+            sin = Self::ONE - square * sin / Self::constant(order * (order + 1.0));
+            cos = Self::ONE - square * cos / Self::constant(order * (order - 1.0));
+        }
+        (self * sin, cos)
+    }
+
+    /// Its sine and cosine.
+    fn reduced_sin_cos(self) -> (Self, Self) {
+        let quarters = (self.high / HALF_PI[0]).round();
+        let (sin, cos) = self.without(quarters, &HALF_PI).sin_cos_of_small();
+        match quarters.rem_euclid(4.0) as u8 {
+            0 => (sin, cos),
+            1 => (cos, -sin),
+            2 => (-sin, -cos),
+            _ => (-cos, sin),
+        }
+    }
+}
+
+impl Scalar for DoubleDouble {
+    fn constant(value: f64) -> Self {
+        value.into()
+    }
+
+    fn sin_cos(self) -> (Self, Self) {
+        self.reduced_sin_cos()
+    }
+
+    fn tan(self) -> Self {
+        let (sin, cos) = self.sin_cos();
+        sin / cos
+    }
+
+    fn exp(self) -> Self {
+        // Beyond these every power is 0 or without end, as numbers go.
+        if self.high < -745.2 {
+            return Self::ZERO;
+        }
+        if self.high > 709.8 {
+            return f64::INFINITY.into();
+        }
+        const HALVINGS: i32 = 8;
+        const TERMS: i32 = 13; // (ln 2 / 2 / 2^8)^13 / 13! = 1e-47
+        let doublings = (self.high / LN_2[0]).round();
+        let small = self.without(doublings, &LN_2).scaled(-HALVINGS);
+        // Of e^x - 1, small digits are kept that e^x has no room for.
+        let mut series = Self::ONE;
+        for term in (2..=TERMS).rev() {
+            series = Self::ONE + small * series / f64::from(term).into();
+        }
+        let mut less_one = small * series;
+        for _ in 0..HALVINGS {
+            less_one = less_one * (less_one + 2.0.into());
+        }
+        (less_one + Self::ONE).scaled(doublings as i32)
+    }
+
+    fn ln(self) -> Self {
+        if self.is_zero() {
+            return f64::NEG_INFINITY.into();
+        }
+        if self.is_negative() {
+            return f64::NAN.into();
+        }
+        // As 2^n m, m around 1: ln m = 2 artanh((m - 1) / (m + 1)).
+        let doublings = self.high.log2().round();
+        let m = self.scaled(-(doublings as i32));
+        let ratio = (m - Self::ONE) / (m + Self::ONE);
+        let square = ratio * ratio;
+        const TERMS: i32 = 23; // ((sqrt 2 - 1) / (sqrt 2 + 1))^46 = 6e-36
+        let mut series = Self::ZERO;
+        for term in (0..TERMS).rev() {
+            series = series * square + Self::ONE / f64::from(2 * term + 1).into();
+        }
+        (ratio * series).scaled(1).without(-doublings, &LN_2)
+    }
+
+    fn sqrt(self) -> Self {
+        self.sqrt()
+    }
+
+    fn abs(self) -> Self {
+        if self.is_negative() { -self } else { self }
+    }
+
+    fn floor(self) -> Self {
+        let high = self.high.floor();
+        if high == self.high { Self::normal(high, self.low.floor()) } else { high.into() }
+    }
+
+    fn min(self, other: Self) -> Self {
+        if other < self { other } else { self }
+    }
+
+    fn max(self, other: Self) -> Self {
+        if other > self { other } else { self }
+    }
+
+    fn pow(self, exponent: Self) -> Self {
+        if exponent.is_zero() {
+            Self::ONE
+        } else if self.is_zero() {
+            if exponent.is_negative() { f64::INFINITY.into() } else { Self::ZERO }
+        } else {
+            (exponent * self.ln()).exp()
+        }
+    }
+
+    fn powi(self, exponent: i32) -> Self {
+        let power = (0..exponent.unsigned_abs()).fold(Self::ONE, |power, _| power * self);
+        if exponent < 0 { Self::ONE / power } else { power }
+    }
+
+    fn step(self) -> Self {
+        if self.is_negative() { Self::ZERO } else { Self::ONE }
+    }
+
+    fn kink(self) -> Self {
+        Self::ZERO
+    }
+
+    fn jump(self) -> Self {
+        Self::ZERO
+    }
+
+    fn is_zero(self) -> bool {
+        self == Self::ZERO
+    }
+}

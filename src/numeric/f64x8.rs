@@ -1,0 +1,300 @@
+//! Eight numbers that formulas compute with at one time.
+//!
+//! Each gets the bits that it would get alone. Sines and cosines are those of the `libm` crate, all eight at once where
+//! that is possible: the reduction and the polynomials are those of FreeBSD's msun, from which that crate comes.
+
+use crate::numeric::scalar::Scalar;
+use crate::simd::soa::LANES;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// Eight numbers, each of which goes its own way.
+#[derive(Clone, Copy, Debug)]
+pub struct F64x8(pub [f64; LANES]);
+
+/// Something of each number, or of each of several vectors' numbers: `each!(a = x, b = y => a.hypot(b))`.
+macro_rules! each {
+    ($($number:ident = $vector:expr),+ => $value:expr) => {{
+        let mut all = [0.0; $crate::simd::soa::LANES];
+        for lane in 0..$crate::simd::soa::LANES {
+            $(let $number = $vector.0[lane];)+
+            all[lane] = $value;
+        }
+        $crate::numeric::f64x8::F64x8(all)
+    }};
+}
+pub(crate) use each;
+
+impl Add for F64x8 {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        each!(a = self, b = other => a + b)
+    }
+}
+
+impl Sub for F64x8 {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        each!(a = self, b = other => a - b)
+    }
+}
+
+impl Mul for F64x8 {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        each!(a = self, b = other => a * b)
+    }
+}
+
+impl Div for F64x8 {
+    type Output = Self;
+
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        each!(a = self, b = other => a / b)
+    }
+}
+
+impl Neg for F64x8 {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        each!(a = self => -a)
+    }
+}
+
+impl Scalar for F64x8 {
+    #[inline(always)]
+    fn constant(value: f64) -> Self {
+        Self([value; LANES])
+    }
+
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        let (mut sin, mut cos) = ([0.0; LANES], [0.0; LANES]);
+        let (mut odd, mut any) = ([0; LANES], 0);
+        for lane in 0..LANES {
+            let of = sin_cos(self.0[lane]);
+            (sin[lane], cos[lane], odd[lane]) = (of.sin, of.cos, of.is_odd);
+            any |= of.is_odd;
+        }
+        if any != 0 {
+            for lane in 0..LANES {
+                if odd[lane] != 0 {
+                    (sin[lane], cos[lane]) = libm::sincos(self.0[lane]);
+                }
+            }
+        }
+        (Self(sin), Self(cos))
+    }
+
+    fn tan(self) -> Self {
+        each!(a = self => libm::tan(a))
+    }
+
+    fn exp(self) -> Self {
+        each!(a = self => libm::exp(a))
+    }
+
+    fn ln(self) -> Self {
+        each!(a = self => libm::log(a))
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        each!(a = self => Scalar::sqrt(a))
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        each!(a = self => a.abs())
+    }
+
+    #[inline(always)]
+    fn floor(self) -> Self {
+        each!(a = self => a.floor())
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        each!(a = self, b = other => Scalar::min(a, b))
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        each!(a = self, b = other => Scalar::max(a, b))
+    }
+
+    fn pow(self, exponent: Self) -> Self {
+        each!(a = self, b = exponent => libm::pow(a, b))
+    }
+
+    #[inline(always)]
+    fn powi(self, exponent: i32) -> Self {
+        let (mut result, mut square, mut left) = (Self::constant(1.0), self, exponent.unsigned_abs());
+        while left > 0 {
+            if left & 1 == 1 {
+                result = result * square;
+            }
+            left >>= 1;
+            square = square * square;
+        }
+        if exponent < 0 { Self::constant(1.0) / result } else { result }
+    }
+
+    #[inline(always)]
+    fn step(self) -> Self {
+        each!(a = self => a.step())
+    }
+
+    #[inline(always)]
+    fn kink(self) -> Self {
+        Self::constant(0.0)
+    }
+
+    #[inline(always)]
+    fn jump(self) -> Self {
+        Self::constant(0.0)
+    }
+
+    /// Whether all of them are.
+    #[inline(always)]
+    fn is_zero(self) -> bool {
+        self.0 == [0.0; LANES]
+    }
+}
+
+/// The sine and the cosine of a number, but where it `is_odd` (not 0).
+struct SinCos {
+    sin: f64,
+    cos: f64,
+    is_odd: u64,
+}
+
+/// Without branches. Odd are numbers that are large, no numbers, or so near to where a formula of msun's begins or ends
+/// that another might be used here.
+#[inline(always)]
+fn sin_cos(x: f64) -> SinCos {
+    /// Added, it leaves a whole number in the last bits.
+    const TO_WHOLE: f64 = 1.5 / f64::EPSILON;
+    const INVERSE: f64 = std::f64::consts::FRAC_2_PI;
+    /// The first 33 bits of a quarter turn, and the rest.
+    const QUARTER: f64 = 1.570_796_326_734_125_6;
+    const QUARTER_REST: f64 = 6.077_100_506_506_192e-11;
+    /// What certainly is less than an eighth of a turn, and what is so little that it is its own sine.
+    const REDUCED: f64 = 0.785;
+    const TINY: f64 = 2e-8;
+
+    let shifted = x * INVERSE + TO_WHOLE;
+    let quarters = shifted - TO_WHOLE;
+    let turned = x - quarters * QUARTER;
+    let rest = quarters * QUARTER_REST;
+    let high = turned - rest;
+    let low = (turned - high) - rest;
+    let size = high.abs();
+    // Where much cancels more bits of the turn are needed.
+    let is_fine = (x.abs() < 1e5) & (size < REDUCED) & (size > TINY) & (size * 1000.0 > x.abs());
+
+    let square = high * high;
+    let fourth = square * square;
+    let tail = S[1] + square * (S[2] + square * S[3]) + square * fourth * (S[4] + square * S[5]);
+    let cube = square * high;
+    let unturned_sine = high + cube * (S[0] + square * tail);
+    let turned_sine = high - ((square * (0.5 * low - cube * tail) - low) - cube * S[0]);
+    let sine = if quarters == 0.0 { unturned_sine } else { turned_sine };
+
+    let tail = square * (C[0] + square * (C[1] + square * C[2]))
+        + fourth * fourth * (C[3] + square * (C[4] + square * C[5]));
+    let half = 0.5 * square;
+    let rough = 1.0 - half;
+    let cosine = rough + (((1.0 - rough) - half) + (square * tail - high * low));
+
+    let quadrant = shifted.to_bits() & 3;
+    let is_crossed = quadrant & 1 != 0;
+    let (sin, cos) = if is_crossed { (cosine, sine) } else { (sine, cosine) };
+    // Which of them is below 0 there, as its sign's bit.
+    let (sin_sign, cos_sign) = ((quadrant & 2) << 62, ((quadrant + 1) & 2) << 62);
+    SinCos {
+        sin: f64::from_bits(sin.to_bits() ^ sin_sign),
+        cos: f64::from_bits(cos.to_bits() ^ cos_sign),
+        is_odd: u64::from(!is_fine),
+    }
+}
+
+/// The coefficients of the sine after the first, and of the cosine after the second.
+const S: [f64; 6] = [
+    -1.666_666_666_666_663_2e-1,
+    8.333_333_333_322_49e-3,
+    -1.984_126_982_985_795e-4,
+    2.755_731_370_707_006_8e-6,
+    -2.505_076_025_340_686_3e-8,
+    1.589_690_995_211_55e-10,
+];
+const C: [f64; 6] = [
+    4.166_666_666_666_66e-2,
+    -1.388_888_888_887_411e-3,
+    2.480_158_728_947_673e-5,
+    -2.755_731_435_139_066_3e-7,
+    2.087_572_321_298_175e-9,
+    -1.135_964_755_778_819_5e-11,
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numeric::dual::Dual;
+
+    fn same(a: f64, b: f64) -> bool {
+        a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan()
+    }
+
+    #[test]
+    fn sines_have_the_bits_of_libm() {
+        let mut odd = 0;
+        let numbers = (0..2_000_000_u64).map(|index| {
+            // From 1e-9 to 1e6, both signs, and places near quarters of a turn.
+            let spread = (index as f64 * 0.618_033_988_749_894_9).fract();
+            let size = 10.0_f64.powf(15.0 * spread - 9.0);
+            match index % 4 {
+                0 => size,
+                1 => -size,
+                2 => 20.0 * spread - 10.0,
+                _ => (index % 64) as f64 * std::f64::consts::FRAC_PI_4 * (1.0 + 1e-7 * (spread - 0.5)),
+            }
+        });
+        let special = [0.0, -0.0, 1.0, f64::INFINITY, f64::NAN, f64::MIN_POSITIVE, 1e300, 0.785];
+        let numbers: Vec<_> = numbers.chain(special).collect();
+        for eight in numbers.chunks_exact(LANES) {
+            let vector = F64x8(std::array::from_fn(|lane| eight[lane]));
+            let (sin, cos) = vector.sin_cos();
+            for lane in 0..LANES {
+                let expected = libm::sincos(eight[lane]);
+                assert!(same(sin.0[lane], expected.0), "sin {:e}", eight[lane]);
+                assert!(same(cos.0[lane], expected.1), "cos {:e}", eight[lane]);
+                odd += sin_cos(eight[lane]).is_odd;
+            }
+        }
+        assert!((odd as usize) < numbers.len() / 2, "most are computed at once: {odd} are not");
+    }
+
+    #[test]
+    fn each_number_goes_its_own_way() {
+        fn all<N: Scalar>(x: N) -> N {
+            let some = x.powi(3) - x.sqrt() * x.exp() + x.ln().sin() / x.tan() + x.cos().abs();
+            some.min(x).max(-x) + x.floor() * x.pow(N::constant(1.5)) - x.powi(-2)
+        }
+        let numbers = [0.3, 1.1, 2.5, 4.0, -0.7, 1e-3, 12.0, 700.0];
+        let Dual { value, slope } = all(Dual::variable(F64x8(numbers)));
+        for lane in 0..LANES {
+            let alone = all(Dual::variable(numbers[lane]));
+            assert!(same(value.0[lane], alone.value), "{}", numbers[lane]);
+            assert!(same(slope.0[lane], alone.slope), "{}", numbers[lane]);
+        }
+    }
+}

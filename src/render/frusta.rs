@@ -1,0 +1,209 @@
+//! Which boxes the rays of a packet may come into, for each part of it: the rays of a part are nearer each other than
+//! all of them, and so come near fewer objects.
+
+use crate::geometry::aabb::{Aabb, SLACK, larger, range, smaller};
+use crate::geometry::ray_packet::{PACKET_SIZE, RayPacket, split};
+use crate::simd::cpu::kernels;
+use glam::DVec3;
+
+/// The most rays of a part.
+pub const PART: usize = 64;
+
+/// The most parts of a packet; they are looked at together.
+const PARTS: usize = PACKET_SIZE / PART;
+
+/// A number for each part.
+type Each = [f64; PARTS];
+
+/// Everywhere that the rays of each part of a packet may go, by axes.
+pub struct Frusta {
+    /// A bit for each part that has rays.
+    parts: u32,
+    /// The least and the greatest coordinates of where they start.
+    low: [Each; 3],
+    high: [Each; 3],
+    /// How far a ray goes at least to come up by 1; infinitely far where none comes up.
+    rises: [Each; 3],
+    /// Likewise down, below 0.
+    falls: [Each; 3],
+    /// How far it goes at most to come up by 1; NaN unless all come up.
+    rises_at_most: [Each; 3],
+    /// Likewise down, below 0.
+    falls_at_most: [Each; 3],
+    /// How far they start from the world's origin, in world units along an axis.
+    reach: f64,
+}
+
+impl Frusta {
+    /// Nowhere.
+    const NONE: Self = Self {
+        parts: 0,
+        low: [[0.0; PARTS]; 3],
+        high: [[0.0; PARTS]; 3],
+        rises: [[0.0; PARTS]; 3],
+        falls: [[0.0; PARTS]; 3],
+        rises_at_most: [[0.0; PARTS]; 3],
+        falls_at_most: [[0.0; PARTS]; 3],
+        reach: 0.0,
+    };
+
+    /// The parts of which the ways are such; a bit for each.
+    pub fn which(&self, are_such: impl Fn(&Aabb) -> bool) -> u32 {
+        let parts = 0..u32::BITS - self.parts.leading_zeros();
+        parts.map(|part| u32::from(are_such(&self.ways(part as usize))) << part).sum()
+    }
+
+    /// Everywhere that the rays of a part may go; mostly without an end.
+    fn ways(&self, part: usize) -> Aabb {
+        let (mut low, mut high) = (DVec3::NEG_INFINITY, DVec3::INFINITY);
+        for axis in 0..3 {
+            if self.falls[axis][part] == f64::NEG_INFINITY {
+                low[axis] = self.low[axis][part];
+            }
+            if self.rises[axis][part] == f64::INFINITY {
+                high[axis] = self.high[axis][part];
+            }
+        }
+        Aabb { low, high }
+    }
+}
+
+kernels! {
+    /// Where the rays of a packet may go, which may all start at one place.
+    pub fn around(rays: RayPacket, is_from_one: bool) -> Frusta {
+        let (mut frusta, count) = (Frusta::NONE, rays.len());
+        let (mut least, mut greatest) = ([[0.0; PARTS]; 3], [[0.0; PARTS]; 3]);
+        for (part, lanes) in split(count, PART).enumerate() {
+            let RayPacket { origin, dir, .. } = rays.part(lanes);
+            for (axis, (from, to)) in [(origin.x, dir.x), (origin.y, dir.y), (origin.z, dir.z)].into_iter().enumerate() {
+                let from = if is_from_one { &from[..1] } else { from };
+                (frusta.low[axis][part], frusta.high[axis][part]) = range(from);
+                (least[axis][part], greatest[axis][part]) = range(to);
+            }
+            frusta.parts |= 1 << part;
+        }
+        for axis in 0..3 {
+            for part in 0..PARTS {
+                let (least, greatest) = (least[axis][part], greatest[axis][part]);
+                let (down, up) = (1.0 / least, 1.0 / greatest);
+                // What is infinite says that there is no way there, and no way is so long.
+                frusta.rises[axis][part] = if greatest > 0.0 { smaller(up, f64::MAX) } else { f64::INFINITY };
+                frusta.falls[axis][part] = if least < 0.0 { larger(down, f64::MIN) } else { f64::NEG_INFINITY };
+                frusta.rises_at_most[axis][part] = if least > 0.0 { down } else { f64::NAN };
+                frusta.falls_at_most[axis][part] = if greatest < 0.0 { up } else { f64::NAN };
+            }
+            for part in 0..PARTS {
+                let farthest = larger(frusta.low[axis][part].abs(), frusta.high[axis][part].abs());
+                frusta.reach = larger(farthest, frusta.reach);
+            }
+        }
+        frusta
+    }
+
+    /// The parts of which a ray may come into each of some boxes, a bit for each part. Never wrong where it says no.
+    pub fn meet(frusta: &Frusta, boxes: &[(usize, Aabb)], parts: &mut [u32]) {
+        for ((_, bounds), parts) in boxes.iter().zip(parts) {
+            let bounds = bounds.with_slack(frusta.reach);
+            let (mut enters, mut leaves) = ([0.0; PARTS], [f64::INFINITY; PARTS]);
+            for axis in 0..3 {
+                let (low, high) = (bounds.low[axis], bounds.high[axis]);
+                for part in 0..PARTS {
+                    // How far the way is to the box's near and far walls, from where it is shortest and longest.
+                    let (up, down) = (low - frusta.high[axis][part], high - frusta.low[axis][part]);
+                    enters[part] = larger(up * frusta.rises[axis][part], enters[part]);
+                    enters[part] = larger(down * frusta.falls[axis][part], enters[part]);
+                    leaves[part] = smaller(down * frusta.rises_at_most[axis][part], leaves[part]);
+                    leaves[part] = smaller(up * frusta.falls_at_most[axis][part], leaves[part]);
+                }
+            }
+            *parts = 0;
+            for part in 0..PARTS {
+                let may = (enters[part] <= leaves[part] * (1.0 + SLACK)) & (enters[part] < f64::INFINITY);
+                *parts |= u32::from(may) << part;
+            }
+            *parts &= frusta.parts;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simd::cpu::Cpu;
+    use crate::simd::soa::{LANES, Vectors};
+    use proptest::prelude::*;
+
+    /// A number as those in scenes are, 0 among them.
+    fn number() -> impl Strategy<Value = f64> {
+        prop_oneof![Just(0.0), Just(-0.0), -10.0..10.0, -1e6..1e6]
+    }
+
+    fn vector() -> impl Strategy<Value = DVec3> {
+        (number(), number(), number()).prop_map(|(x, y, z)| DVec3::new(x, y, z))
+    }
+
+    /// Rays from places to others, copies of the last one behind them.
+    fn rays(ways: &[(DVec3, DVec3)]) -> (Vectors<PACKET_SIZE>, Vectors<PACKET_SIZE>, usize) {
+        let (mut origins, mut dirs) = (Vectors::ZERO, Vectors::ZERO);
+        let count = ways.len().next_multiple_of(LANES);
+        for lane in 0..count {
+            let (from, to) = ways[lane.min(ways.len() - 1)];
+            origins.set(lane, from);
+            dirs.set(lane, (to - from).try_normalize().unwrap_or(DVec3::X));
+        }
+        (origins, dirs, count)
+    }
+
+    proptest! {
+        #[test]
+        fn a_part_one_of_whose_rays_comes_into_a_box_is_told(
+            ways in prop::collection::vec((vector(), vector()), 1..PACKET_SIZE),
+            chosen in any::<prop::sample::Index>(),
+            size in (0.0..1.0, 0.0..1.0, 0.0..1.0),
+        ) {
+            let chosen = chosen.index(ways.len());
+            let (from, to) = ways[chosen];
+            prop_assume!((to - from).try_normalize().is_some());
+            let half = 0.5 * DVec3::from(size);
+            let bounds = Aabb { low: to - half, high: to + half };
+            let (origins, dirs, count) = rays(&ways);
+            for cpu in Cpu::all() {
+                let frusta =
+                    around(cpu, RayPacket { origin: origins.view(count), dir: dirs.view(count), origin_error: 0.0 }, false);
+                let (part, mut met) = (1 << (chosen / PART), [0]);
+                meet(cpu, &frusta, &[(0, bounds)], &mut met);
+                prop_assert!(met[0] & part != 0, "{} to {}, {}", from, to, cpu);
+                let reached = frusta.which(|ways| ways.with_slack(1e6).overlaps(&bounds));
+                prop_assert!(reached & part != 0, "{} to {} on its ways, {}", from, to, cpu);
+            }
+        }
+    }
+
+    #[test]
+    fn parts_that_go_elsewhere_are_left_out() {
+        // The first part goes up, the second one down, and there are no others.
+        let ways: Vec<_> = (0..2 * PART)
+            .map(|lane| {
+                let from = DVec3::new(0.01 * lane as f64, 0.0, 0.0);
+                (from, from + if lane < PART { DVec3::Y } else { DVec3::NEG_Y } + 0.001 * from)
+            })
+            .collect();
+        let (origins, dirs, count) = rays(&ways);
+        for cpu in Cpu::all() {
+            let frusta = around(
+                cpu,
+                RayPacket { origin: origins.view(count), dir: dirs.view(count), origin_error: 0.0 },
+                false,
+            );
+            let at = |x: f64, y: f64| Aabb {
+                low: DVec3::new(x, y, -1.0),
+                high: DVec3::new(x + 2.0, y + 1.0, 1.0),
+            };
+            let (boxes, mut met) = ([at(0.0, 5.0), at(0.0, -5.0), at(0.0, -0.5), at(9.0, 5.0)], [9; 4]);
+            meet(cpu, &frusta, &boxes.map(|bounds| (0, bounds)), &mut met);
+            assert_eq!(met, [0b01, 0b10, 0b11, 0]);
+            assert_eq!(frusta.which(|ways| ways.high.y == f64::INFINITY), 0b01);
+            assert_eq!(frusta.which(|ways| ways.high.y > -0.5), 0b11);
+        }
+    }
+}

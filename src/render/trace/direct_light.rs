@@ -1,0 +1,167 @@
+//! What the lights of a scene do at the places of a surface.
+
+use super::arrays::{VectorList, resized};
+use super::context::Tracer;
+use super::light::{self, Colours, Lit, Reflectivities};
+use super::ray_group::RayGroup;
+use super::scratch::LightScratch;
+use super::shadow_rays::LightPaths;
+use super::surface::Surface;
+use crate::geometry::aabb::{self, Aabb};
+use crate::render::observer::{Event, Outcome, TraceObserver};
+use crate::scene::model::Object;
+use crate::world::light_samples::{LightSamples, ShadingPoints};
+use crate::world::material::Rgb;
+use crate::world::packets::light::PacketLight;
+use glam::DVec2;
+
+impl<W: TraceObserver> Tracer<'_, '_, W> {
+    /// Adds what the lights do.
+    pub(super) fn illuminate(&mut self, group: &mut RayGroup, surface: &Surface, colours: &mut VectorList) {
+        if self.model.lights.is_empty() {
+            return;
+        }
+        let mut lighting = self.scratch.lighting.take().unwrap_or_default();
+        let (cpu, count) = (self.cpu, group.padded());
+        let Object { material, shader, .. } = &self.model.objects[surface.index];
+        let points = surface.points.view(count);
+        let is_matt = match surface.look {
+            Some(look) => look.diffuse != Rgb::ZERO,
+            None => shader.diffuses(cpu, material, points, lighting.diffuse.resized(count)),
+        };
+        let scatters = is_matt || material.shininess != 0.0 && surface.is_mirror;
+        let ray_budget = group.ray_budget[0];
+        // Where nothing is scattered lights make no difference. Whoever looks on is told of them all the same.
+        if scatters || W::SEES {
+            let around = aabb::around(cpu, points);
+            for index in 0..self.model.lights.len() {
+                self.shine(index, group, surface, &around, &mut lighting, colours);
+            }
+            if scatters {
+                self.miss_shadows(group, surface);
+            }
+        }
+        if !scatters {
+            // And the ray costs what it does where nobody looks.
+            group.ray_budget[0] = ray_budget;
+        }
+        self.scratch.lighting = Some(lighting);
+    }
+
+    /// Adds what one light does.
+    fn shine(
+        &mut self,
+        index: usize,
+        group: &mut RayGroup,
+        surface: &Surface,
+        around: &Aabb,
+        lighting: &mut LightScratch,
+        colours: &mut VectorList,
+    ) {
+        let (cpu, count) = (self.cpu, group.padded());
+        let light = &*self.model.lights[index].value;
+        let material = &self.model.objects[surface.index].material;
+        let LightScratch {
+            diffuse,
+            lights,
+            toward,
+            cos_over_distance,
+            t_max,
+            emissivity,
+            shines,
+            blocked,
+            shadows,
+        } = lighting;
+        let (points, normals) = (surface.points.view(count), surface.normals.view(count));
+        let is_point = light.size() == 0.0;
+        let source = if is_point {
+            Aabb { low: light.location(), high: light.location() }
+        } else {
+            self.places(light, index, group, surface, lights);
+            aabb::around(cpu, lights.view(count))
+        };
+        let lights = (!is_point).then(|| lights.view(count));
+        let (t_max, shines, blocked) =
+            (resized(t_max, count), resized(shines, count), resized(blocked, count));
+        let facing = LightSamples {
+            toward: toward.resized(count),
+            emissivity: emissivity.resized(count),
+            cos_over_distance: resized(cos_over_distance, count),
+            t_max,
+            shines,
+        };
+        let faced =
+            light.sample(cpu, &ShadingPoints { points, normals, lights, slack: self.slack() }, facing);
+        if !faced.any_shines {
+            if W::SEES {
+                self.observer
+                    .see(Event::Light(index, if faced.any_faces { Outcome::Aside } else { Outcome::Behind }));
+            }
+            return;
+        }
+        let paths = LightPaths { from: *around, to: source, toward };
+        let (mut sent, mut tint) = (light.uniform(), Rgb::ONE);
+        if W::SEES || self.plan.has_glass {
+            if let Some(sent) = sent.take() {
+                emissivity.fill(count, sent);
+            }
+            let (blocker, passed) = self.pass(group, surface, &paths, t_max, shines, emissivity);
+            if W::SEES
+                && let Some(blocker) = blocker
+            {
+                self.observer.see(Event::Light(index, Outcome::Blocked(blocker)));
+                return;
+            }
+            tint = passed;
+            blocked.fill(0);
+        } else {
+            self.shadow(group, surface, &paths, t_max, shadows, blocked);
+        }
+        let lit = Lit {
+            toward: toward.view(count),
+            seen: group.dir.view(count),
+            normals,
+            cos_over_distance: &cos_over_distance[..count],
+            shines,
+            blocked,
+            emissivity: sent.map_or(Colours::Each(emissivity.view(count)), Colours::Even),
+            looks: match surface.look {
+                Some(look) => Reflectivities::Even(look),
+                None => Reflectivities::Each {
+                    diffuse: diffuse.view(count),
+                    specular: surface.specular.view(count),
+                },
+            },
+        };
+        light::shine(cpu, &lit, material.shininess, colours.resized(count));
+        if W::SEES {
+            let mut alone = VectorList::default();
+            alone.fill(count, Rgb::ZERO);
+            light::shine(cpu, &lit, material.shininess, alone.resized(count));
+            self.observer.see(Event::Light(index, Outcome::Shines { passed: tint, colour: alone.get(0) }));
+        }
+    }
+
+    /// The points of a light that the places of a surface see: on the disc that a ball of its size shows to each, where
+    /// the sample has it.
+    fn places(
+        &self,
+        light: &dyn PacketLight,
+        index: usize,
+        group: &RayGroup,
+        surface: &Surface,
+        places: &mut VectorList,
+    ) {
+        let (middle, size) = (light.location(), light.size());
+        places.fill(group.padded(), middle);
+        for lane in 0..group.padded() {
+            let camera = group.camera.get(lane).map(|camera| usize::from(*camera));
+            let Some(sample) = camera.and_then(|camera| self.scratch.samples.get(camera)) else { continue };
+            let Some(axis) = (middle - surface.points.get(lane)).try_normalize() else { continue };
+            let (across, up) = axis.any_orthonormal_pair();
+            let DVec2 { x, y } = sample.on_light(index);
+            let (radius, angle) = (size * x.sqrt(), std::f64::consts::TAU * y);
+            places.set(lane, middle + radius * (libm::cos(angle) * across + libm::sin(angle) * up));
+        }
+    }
+}

@@ -1,0 +1,160 @@
+//! Which rays of a packet something blocks.
+
+use super::arrays::{VectorList, resized};
+use super::closest_hit::{Start, exact, invert};
+use super::context::Tracer;
+use super::surface::Surface;
+use crate::geometry::aabb::{self, Aabb};
+use crate::geometry::ray::Side;
+use crate::geometry::ray_packet::{RayPacket, split};
+use crate::render::bvh::Visitor;
+use crate::render::culling;
+use crate::render::frusta::PART;
+use crate::render::observer::{Count, TraceObserver};
+use std::mem::take;
+use std::ops::Range;
+
+/// Rays that leave the same object.
+pub(super) struct ShadowRays<'r> {
+    pub rays: RayPacket<'r>,
+    /// How many of them are no copies that fill the arrays up, and how many of those need to be gone.
+    pub len: usize,
+    pub going: usize,
+    /// Where they end; 0 for one that need not be gone.
+    pub t_max: &'r [f64],
+    /// Where they start: at places of this surface, of those in these lanes if not at all.
+    pub surface: &'r Surface,
+    pub lanes: Option<&'r [u8]>,
+    /// The sides of it that they leave.
+    pub sides: &'r [Side],
+}
+
+impl ShadowRays<'_> {
+    /// How many of some there are.
+    fn count(&self, part: &Range<usize>) -> usize {
+        let part = part.start..part.end.min(self.len);
+        self.t_max[part].iter().filter(|end| **end > 0.0).count()
+    }
+
+    /// How far the origin of one may be from the point that it stands for, in world units.
+    fn error(&self, lane: usize) -> f64 {
+        let lane = lane.min(self.len - 1);
+        self.surface.error(self.lanes.map_or(lane, |lanes| usize::from(lanes[lane])))
+    }
+}
+
+impl<W: TraceObserver> Tracer<'_, '_, W> {
+    /// Marks the rays that an object blocks before their ends, on their ways from these places to those.
+    pub(super) fn occlude(&mut self, shadow_rays: &ShadowRays, from: &Aabb, to: &Aabb, blocked: &mut [u64]) {
+        let (mut ahead, mut inverse) = (take(&mut self.scratch.ahead), take(&mut self.scratch.inverse));
+        let mut doubt = take(&mut self.scratch.doubt);
+        let (part, doubted) = (0..shadow_rays.t_max.len(), resized(&mut doubt, shadow_rays.t_max.len()));
+        let (len, region) = (shadow_rays.going, from.and(to).with_slack(0.0));
+        Occlusion {
+            tracer: self,
+            shadow_rays,
+            part,
+            len,
+            region,
+            inverse: &mut inverse,
+            blocked,
+            doubt: doubted,
+        }
+        .run(to, &mut ahead);
+        (self.scratch.ahead, self.scratch.inverse, self.scratch.doubt) = (ahead, inverse, doubt);
+    }
+}
+
+struct Occlusion<'s, 'm, 'w, W> {
+    tracer: &'s mut Tracer<'m, 'w, W>,
+    shadow_rays: &'s ShadowRays<'s>,
+    /// Which of the rays are looked after.
+    part: Range<usize>,
+    /// How many of those there are.
+    len: usize,
+    /// Where they go.
+    region: Aabb,
+    /// The reciprocals of their directions, for a tree.
+    inverse: &'s mut VectorList,
+    blocked: &'s mut [u64],
+    doubt: &'s mut [u64],
+}
+
+impl<W: TraceObserver> Occlusion<'_, '_, '_, W> {
+    fn run(mut self, to: &Aabb, ahead: &mut Vec<usize>) {
+        let plan = self.tracer.plan;
+        let unbounded = plan.unbounded.iter().map(|index| (index, None));
+        for (index, bounds) in
+            unbounded.chain(plan.bounded.iter().map(|(index, bounds)| (index, Some(bounds))))
+        {
+            if !self.tracer.may_meet(self.left(), *index) {
+                continue;
+            }
+            let object = &self.tracer.model.objects[*index];
+            if bounds.is_some_and(|bounds| !bounds.overlaps(&self.region))
+                || culling::is_clear_of(object, &self.region)
+            {
+                self.tracer.observer.count(Count::Culled(*index, self.len));
+                continue;
+            }
+            self.test(*index);
+            if self.blocked.iter().all(|blocked| *blocked != 0) {
+                return;
+            }
+        }
+        let Some(tree) = &plan.tree else { return };
+        for part in split(self.shadow_rays.t_max.len(), PART) {
+            let rays = self.shadow_rays.rays.part(part.clone());
+            self.len = self.shadow_rays.count(&part);
+            self.part = part;
+            self.region = aabb::around(self.tracer.cpu, rays.origin).and(to).with_slack(0.0);
+            invert(rays, self.inverse);
+            tree.visit(rays.dir.get(0), ahead, &mut self);
+        }
+    }
+
+    /// The object that the rays leave, and the sides.
+    fn left(&self) -> Option<(usize, &[Side])> {
+        Some((self.shadow_rays.surface.index, self.shadow_rays.sides))
+    }
+
+    /// Looks at an object.
+    fn test(&mut self, index: usize) {
+        let ShadowRays { rays, t_max, surface, sides, .. } = *self.shadow_rays;
+        let (rays, t_max) = (rays.part(self.part.clone()), &t_max[self.part.clone()]);
+        let shape = &self.tracer.model.objects[index].shape;
+        let sides = (index == surface.index).then(|| &sides[self.part.clone()]);
+        self.tracer.observer.count(Count::Tested(index, self.len));
+        let (blocked, doubt) = (&mut self.blocked[self.part.clone()], &mut self.doubt[self.part.clone()]);
+        if shape.packets().occluded(self.tracer.cpu, rays, sides, t_max, blocked, doubt) {
+            for lane in 0..t_max.len() {
+                if doubt[lane] != 0 {
+                    let origin_side = sides.map(|sides| sides[lane]);
+                    let error = self.shadow_rays.error(self.part.start + lane);
+                    let distance = exact(
+                        shape,
+                        &Start { ray: rays.get(lane), error, sight: None },
+                        origin_side,
+                        t_max[lane],
+                    );
+                    blocked[lane] |= u64::from(distance < t_max[lane]);
+                }
+            }
+        }
+    }
+}
+
+impl<W: TraceObserver> Visitor for Occlusion<'_, '_, '_, W> {
+    fn enters(&mut self, bounds: &Aabb) -> bool {
+        let (rays, t_max) =
+            (self.shadow_rays.rays.part(self.part.clone()), &self.shadow_rays.t_max[self.part.clone()]);
+        bounds.overlaps(&self.region)
+            && aabb::any_meets(self.tracer.cpu, rays, self.inverse.view(t_max.len()), t_max, bounds)
+    }
+
+    fn object(&mut self, index: usize) {
+        if self.tracer.may_meet(self.left(), index) {
+            self.test(index);
+        }
+    }
+}

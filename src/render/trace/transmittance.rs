@@ -1,0 +1,105 @@
+//! How much of a light comes through glass.
+
+use super::arrays::{VectorList, compact, gather, resized};
+use super::context::Tracer;
+use super::ray_group::RayGroup;
+use super::scratch::Transmittance;
+use super::shadow_rays::LightPaths;
+use super::surface::Surface;
+use crate::geometry::ray::{Ray, Side};
+use crate::render::observer::{Count, Event, Purpose, RayKind, TraceObserver};
+use crate::world::material::Rgb;
+
+impl<W: TraceObserver> Tracer<'_, '_, W> {
+    /// Takes from the light that shines on some places what does not come through, in a scene with glass. Tells what
+    /// becomes of the first one's: the opaque object that it ends at, and the part of it that came through.
+    pub(super) fn pass(
+        &mut self,
+        group: &mut RayGroup,
+        surface: &Surface,
+        paths: &LightPaths,
+        t_max: &[f64],
+        shines: &mut [u64],
+        emissivity: &mut VectorList,
+    ) -> (Option<usize>, Rgb) {
+        let mut transmittance = self.scratch.transmittances.pop().unwrap_or_default();
+        let mut lanes = Vec::new();
+        let lanes = compact(&shines[..group.len], &mut lanes);
+        let Transmittance { group: part, t_max: far, tint, blocker, .. } = &mut *transmittance;
+        part.go_on(group, &surface.onward(paths.toward), lanes);
+        let count = part.padded();
+        gather(far, t_max, lanes, count);
+        tint.fill(count, Rgb::ONE);
+        resized(blocker, count).fill(0);
+        self.walk(&mut transmittance);
+        for (index, lane) in lanes.iter().enumerate() {
+            let lane = usize::from(*lane);
+            shines[lane] = u64::from(transmittance.blocker[index] == 0);
+            emissivity.set(lane, emissivity.get(lane) * transmittance.tint.get(index));
+        }
+        group.charge(&transmittance.group, lanes);
+        let first = ((transmittance.blocker[0] as usize).checked_sub(1), transmittance.tint.get(0));
+        self.scratch.transmittances.push(transmittance);
+        first
+    }
+
+    /// Goes on toward a light, through glass.
+    fn walk(&mut self, transmittance: &mut Transmittance) {
+        let Transmittance { group, t_max, tint, blocker, hits, parts, .. } = transmittance;
+        self.observer.count(Count::Rays(RayKind::Shadow, group.len));
+        if W::SEES {
+            self.observer.see(Event::Begin(Purpose::Shadow { distance: t_max[0] }));
+        }
+        self.closest(group, Some(t_max), hits);
+        parts.begin(&hits.met[..group.len]);
+        while let Some((id, lanes)) = parts.next() {
+            let Some(index) = (id as usize).checked_sub(1) else { continue };
+            if self.model.objects[index].material.transparency == 0.0 {
+                lanes.iter().for_each(|lane| blocker[usize::from(*lane)] = id);
+                continue;
+            }
+            let mut onward = self.scratch.transmittances.pop().unwrap_or_default();
+            for lanes in lanes.chunks(self.most()) {
+                onward.group.gather(group, lanes);
+                let count = onward.group.padded();
+                gather(&mut onward.near, &hits.near, lanes, count);
+                gather(&mut onward.far, &hits.far, lanes, count);
+                gather(&mut onward.t_max, t_max, lanes, count);
+                onward.tint.gather(tint, lanes, count);
+                resized(&mut onward.blocker, count).fill(0);
+                self.pane(index, &mut onward);
+                tint.scatter(&onward.tint, lanes);
+                for (lane, id) in lanes.iter().zip(&onward.blocker) {
+                    blocker[usize::from(*lane)] = *id;
+                }
+                group.charge(&onward.group, lanes);
+            }
+            self.scratch.transmittances.push(onward);
+        }
+    }
+
+    /// Goes through one object of glass, and on from there.
+    fn pane(&mut self, index: usize, transmittance: &mut Transmittance) {
+        let Transmittance { group, t_max, tint, near, far, distances, .. } = transmittance;
+        self.settle(group, (near, far), index, distances);
+        let object = &self.model.objects[index];
+        let count = group.padded();
+        let (sides, cosines) = (resized(&mut group.sides, count), resized(&mut group.cosines, count));
+        for lane in 0..count {
+            let ray = Ray { origin: group.origin.get(lane), dir: group.dir.get(lane) };
+            let point = ray.at(distances[lane]);
+            let normal = object.shape.normal(point);
+            sides[lane] = Side::seen_along(ray.dir, normal).opposite();
+            cosines[lane] = ray.dir.dot(normal);
+            group.travelled[lane] += distances[lane];
+            group.origin.set(lane, point);
+            tint.set(lane, tint.get(lane) * object.tint(point));
+            t_max[lane] -= distances[lane];
+        }
+        group.errors = self.errors(&*object.shape, &group.travelled[..count], &group.cosines[..count]);
+        group.origin_object = Some(index);
+        self.depth += 1;
+        self.walk(transmittance);
+        self.depth -= 1;
+    }
+}
