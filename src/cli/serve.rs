@@ -1,18 +1,18 @@
 //! A server for a page on this machine, which listens on the loopback address alone.
 
-mod desk;
-mod door;
+mod access;
+mod connections;
 mod response;
 mod work;
 
-pub use desk::Answer;
+pub use connections::Answer;
 pub use response::{Body, content, stream, text};
 pub use work::{Client, Work};
 
 use super::failure::Failure;
 use crate::words;
-use desk::{Desk, Limits};
-use door::Door;
+use access::Access;
+use connections::{Connections, Limits};
 use hyper::Request;
 use hyper::body::Bytes;
 use socket2::SockRef;
@@ -31,7 +31,7 @@ const QUEUE: i32 = 4096;
 /// A server that listens.
 pub struct Server {
     listener: TcpListener,
-    door: Door,
+    access: Access,
 }
 
 impl Server {
@@ -51,9 +51,9 @@ impl Server {
             )),
             _ => Failure::Failed(format!("cannot listen on port {port}: {}", words::reason(&error))),
         })?;
-        let door = Door::new(port)
+        let access = Access::new(port)
             .map_err(|error| Failure::Failed(format!("the system has no random numbers: {error}")))?;
-        Ok(Self { listener, door })
+        Ok(Self { listener, access })
     }
 
     fn listen(port: u16) -> io::Result<(TcpListener, u16)> {
@@ -66,7 +66,7 @@ impl Server {
 
     /// Where the page is. Who has this address is let in.
     pub fn url(&self) -> String {
-        self.door.url()
+        self.access.url()
     }
 
     /// Answers the requests that are let in, until an answer breaks off: it is the last one.
@@ -87,7 +87,7 @@ impl Server {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
         LocalSet::new().block_on(&runtime, async move {
             let listener = tokio::net::TcpListener::from_std(self.listener)?;
-            Desk::new(self.door, limits, answer).open(listener).await;
+            Connections::new(self.access, limits, answer).run(listener).await;
             Ok(())
         })
     }

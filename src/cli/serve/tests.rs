@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 /// Long enough for any machine.
 const PATIENCE: Duration = Duration::from_secs(100);
 
-const LIMITS: Limits = Limits { guests: 8, requests: 4, request: PATIENCE, reader: PATIENCE };
+const LIMITS: Limits = Limits { idle: 8, requests: 4, request_time: PATIENCE, write_time: PATIENCE };
 
 /// What happened in answers.
 #[derive(Default)]
@@ -143,7 +143,7 @@ fn a_panic_ends_one_answer_alone() {
 
 #[test]
 fn a_request_that_does_not_come_is_not_waited_for() {
-    let served = Served::new(Limits { request: Duration::from_millis(200), ..LIMITS });
+    let served = Served::new(Limits { request_time: Duration::from_millis(200), ..LIMITS });
     let head = "GET /TOKEN HTTP/1.1\nHost: HOST\n";
     for (sent, answered) in [
         ("", 0),
@@ -169,7 +169,7 @@ fn a_head_that_does_not_end_is_refused() {
 
 #[test]
 fn a_reader_that_does_not_read_is_given_up() {
-    let served = Served::new(Limits { reader: Duration::from_millis(200), ..LIMITS });
+    let served = Served::new(Limits { write_time: Duration::from_millis(200), ..LIMITS });
     let endless = "GET /endlessTOKEN HTTP/1.1\nHost: HOST\n\n";
     let silent = [served.send(endless), served.send(endless)];
     // One that reads in small steps gets on.
@@ -196,12 +196,12 @@ fn requests_beyond_the_most_at_once_are_refused_until_one_is_done() {
 }
 
 #[test]
-fn the_guest_that_came_first_goes_where_there_are_too_many() {
+fn the_oldest_idle_connection_is_closed_where_there_are_too_many() {
     let served = Served::new(LIMITS);
     let silent: Vec<_> = (0..100).map(|_| served.send("GET")).collect();
     assert_eq!(served.get("fine"), 200);
     // The last few may stay, and have all the time of the world.
-    for stream in silent.into_iter().take(100 - LIMITS.guests) {
+    for stream in silent.into_iter().take(100 - LIMITS.idle) {
         assert_eq!(status(stream), 0);
     }
     served.end();

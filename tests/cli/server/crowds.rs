@@ -68,7 +68,7 @@ fn connections_that_say_nothing_or_half_of_it_hold_nobody_up() {
 }
 
 #[test]
-fn too_few_open_files_are_told_once_and_then_there_are_fewer_guests() {
+fn too_few_open_files_are_told_once_and_hold_nobody_up() {
     for server in both(24) {
         let crowd: Vec<_> = (0..100).map(|_| server.send("")).collect();
         is_prompt(&server, "after 100");

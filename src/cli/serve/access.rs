@@ -18,15 +18,15 @@ const DESTINATION: HeaderName = HeaderName::from_static("sec-fetch-dest");
 /// The query of an address up to its token.
 const QUERY: &str = "token=";
 
-/// What is let in at a port.
-pub struct Door {
+/// Tells the requests that are let in at a port from all others.
+pub struct Access {
     port: u16,
     /// 128 random bits, in hexadecimal digits.
     token: String,
 }
 
-impl Door {
-    /// A door with a new token.
+impl Access {
+    /// Makes a new token for a port.
     ///
     /// # Errors
     /// Where the system has no random numbers.
@@ -36,7 +36,7 @@ impl Door {
         Ok(Self { port, token: format!("{:032x}", u128::from_ne_bytes(bytes)) })
     }
 
-    /// The address of the page. Who has it is let in.
+    /// The address of the page, with the token.
     pub fn url(&self) -> String {
         format!("http://127.0.0.1:{}/?{QUERY}{}", self.port, self.token)
     }
