@@ -2,6 +2,8 @@
 
 use super::board::Board;
 use super::frame::Frame;
+use crate::cli::crash;
+use crate::cli::failure::tell;
 use crate::cli::serve::{self, Body};
 use crate::output::aov::Aov;
 use crate::render::plan::Plan;
@@ -58,10 +60,14 @@ async fn about(board: &Board, version: &str, work: impl FnOnce(Arc<Frame>) -> Op
     let Some(job) = work(frame) else {
         return serve::text(StatusCode::NOT_FOUND, "the image has no such part\n");
     };
-    match tokio::task::spawn_blocking(job).await {
-        Ok(Ok((kind, bytes))) => serve::content(StatusCode::OK, kind, bytes),
-        Ok(Err(error)) if error.kind() == io::ErrorKind::Interrupted => {
+    match tokio::task::spawn_blocking(|| crash::catch(job)).await {
+        Ok(Ok(Ok((kind, bytes)))) => serve::content(StatusCode::OK, kind, bytes),
+        Ok(Ok(Err(error))) if error.kind() == io::ErrorKind::Interrupted => {
             serve::text(StatusCode::GONE, "this image no longer exists\n")
+        }
+        Ok(Err(failure)) => {
+            tell(&failure);
+            serve::text(StatusCode::INTERNAL_SERVER_ERROR, "internal error: see the terminal\n")
         }
         _ => serve::text(StatusCode::INTERNAL_SERVER_ERROR, "internal error\n"),
     }
