@@ -1,7 +1,7 @@
 //! `tabray render --aov`: pictures beside the main one, and exact numbers.
 
 use super::failure::Failure;
-use super::output::{Output, finished};
+use super::output::{self, Output};
 use super::progress::Progress;
 use super::{interrupt, messages};
 use crate::output::aov::Aov;
@@ -9,9 +9,10 @@ use crate::output::picture::Format;
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::scene::model::Model;
+use crate::words;
 use crate::world::sample::Sampler;
 use std::ffi::OsStr;
-use std::io::{self, BufWriter, Write};
+use std::io::Write;
 use std::iter;
 use std::path::{Path, PathBuf};
 
@@ -24,21 +25,7 @@ pub struct Args {
     /// Also write these auxiliary images, beside the main one: `-o a.png --aov depth` writes a-depth.png, and
     /// a-depth.exr with exact numbers
     #[arg(long, value_name = "IMAGES", value_delimiter = ',')]
-    aov: Vec<AovName>,
-}
-
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum AovName {
-    /// Distance of the first hit, near ones bright
-    Depth,
-    /// Surface normal: red, green and blue are x, y and z
-    Normal,
-    /// Object seen, each in its own colour
-    Object,
-    /// Number of rays that a pixel takes
-    Cost,
-    /// Error of a pixel's colour, against four times its samples, at least 64, traced exactly
-    Error,
+    aov: Vec<Aov>,
 }
 
 /// The files of one such picture.
@@ -67,31 +54,18 @@ pub fn open(model: &Model, args: &Args, main: &Path, output: &Output) -> Result<
         ));
     }
     let mut aovs: Vec<Aov> = Vec::new();
-    for name in &args.aov {
-        let aov = match name {
-            AovName::Depth => Aov::Depth,
-            AovName::Normal => Aov::Normal,
-            AovName::Object => Aov::Object,
-            AovName::Cost => Aov::Cost,
-            AovName::Error => Aov::Error,
-        };
-        if !aovs.contains(&aov) {
-            aovs.push(aov);
+    for aov in &args.aov {
+        if !aovs.contains(aov) {
+            aovs.push(*aov);
         }
     }
     let opened = |path: PathBuf| Output::open(&path).map(|output| (path, output));
     aovs.into_iter()
         .map(|aov| {
             let mut stem = main.file_stem().unwrap_or_default().to_owned();
-            stem.push(format!("-{}", aov.name()));
+            stem.push(format!("-{}", words::name(&aov)));
             let picture = main.with_file_name(stem);
-            // `with_extension` would cut a stem that has a dot.
-            let with = |extension: &OsStr| {
-                let mut path = picture.clone().into_os_string();
-                path.push(".");
-                path.push(extension);
-                PathBuf::from(path)
-            };
+            let with = |extension: &OsStr| output::ended(&output::ended(&picture, "."), extension);
             let exact = aov.is_exact().then(|| opened(with("exr".as_ref()))).transpose()?;
             let picture = opened(main.extension().map_or_else(|| picture.clone(), with))?;
             Ok(Files { aov, picture, exact })
@@ -143,22 +117,10 @@ pub fn write(
         }
         if let Some((path, output)) = exact {
             let bytes = layer.exr(size).map_err(|error| Failure::cannot_write(&path, &error))?;
-            put(&path, output, |out| out.write_all(&bytes))?;
+            output::put(&path, output, |out| out.write_all(&bytes))?;
         }
         let (path, output) = picture;
-        put(&path, output, |out| format.write(out, size, iter::once(Ok(layer.bytes))))?;
+        output::put(&path, output, |out| format.write(out, size, iter::once(Ok(layer.bytes))))?;
     }
-    Ok(())
-}
-
-fn put(
-    path: &Path,
-    output: Output,
-    write: impl FnOnce(&mut BufWriter<Output>) -> io::Result<()>,
-) -> Result<(), Failure> {
-    let mut out = BufWriter::new(output);
-    let written = write(&mut out);
-    finished(path, written, out)?;
-    messages::note(&format!("wrote {}", path.display()));
     Ok(())
 }

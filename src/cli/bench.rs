@@ -6,8 +6,9 @@ use crate::scene::model::Model;
 use crate::scene::reader;
 use crate::scene::registry::Registry;
 use crate::simd::cpu::Cpu;
-use crate::tools::bench::{Cost, Speed, scenes};
-use serde_json::{Value, json};
+use crate::tools::bench::{Cost, Speed, TestTimes, scenes};
+use crate::words;
+use serde::Serialize;
 use std::fmt::Write;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -52,18 +53,18 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
             models.push((name.to_owned(), built.model));
         }
     }
-    let mut values = Vec::new();
+    let mut measured = Vec::new();
     for (name, model) in models {
         let about = About::of(name, &model, cpu);
         let speed = Speed::measure(model, cpu, args.seconds)?;
         if args.json {
-            values.push(about.json(&speed));
+            measured.push(about.measured(speed));
         } else {
             print(&about.table(&speed))?;
         }
     }
     if args.json {
-        print(&format!("{:#}\n", Value::from(values)))?;
+        print(&words::json_in_lines(&measured))?;
     }
     Ok(())
 }
@@ -87,8 +88,8 @@ impl About {
         let Self { name, size: [width, height], objects, lights, cpu } = self;
         let mut text = format!(
             "{name}: {width} x {height} pixels, {}, {}, {cpu}, one core\n\n",
-            count(*objects, "object"),
-            count(*lights, "light"),
+            words::count(*objects, "object"),
+            words::count(*lights, "light"),
         );
         let mut line = |cells: [&str; 6]| {
             let [first, cells @ ..] = cells;
@@ -132,39 +133,108 @@ impl About {
         text
     }
 
-    fn json(&self, speed: &Speed) -> Value {
-        let cost = |cost: &Cost| json!({ "rays": cost.rays, "seconds": cost.seconds, "rays_per_second": cost.rate() });
-        let tests = speed.tests.iter().map(|tests| {
-            json!({
-                "entity": tests.entity,
-                "tests": tests.number,
-                "meet_ns": tests.times.meet,
-                "block_ns": tests.times.block,
-                "settle_ns": tests.times.settle,
-                "bare_ns": tests.bare,
-            })
-        });
-        json!({
-            "scene": self.name,
-            "pixels": self.size,
-            "objects": self.objects,
-            "lights": self.lights,
-            "cpu": self.cpu.to_string(),
-            "rays": {
-                "primary": cost(&speed.primary),
-                "shadow": cost(&speed.shadow),
-                "onward": cost(&speed.onward),
-                "all": cost(&speed.frame),
+    fn measured(self, speed: Speed) -> Measured {
+        Measured {
+            bare_seconds: speed.bare,
+            cpu: self.cpu.to_string(),
+            lights: self.lights,
+            objects: self.objects,
+            pixels: self.size,
+            rays: Rays {
+                all: Rate::of(&speed.frame),
+                onward: Rate::of(&speed.onward),
+                primary: Rate::of(&speed.primary),
+                shadow: Rate::of(&speed.shadow),
             },
-            "tests": tests.collect::<Vec<_>>(),
-            "bare_seconds": speed.bare,
-            "share_of_ceiling": speed.share(),
-        })
+            scene: self.name,
+            share_of_ceiling: speed.share(),
+            tests: speed.tests.iter().map(Times::of).collect(),
+        }
     }
 }
 
-fn count(number: usize, of: &str) -> String {
-    format!("{number} {of}{}", if number == 1 { "" } else { "s" })
+/// What was measured of a scene, for programs. Times are the core's own, the least of several rounds.
+#[derive(Serialize)]
+struct Measured {
+    /// What the frame's tests take as bare arithmetic, in seconds; null where one of them has no formula of textbooks.
+    bare_seconds: Option<f64>,
+    /// The instructions that were used, as `--cpu` names them.
+    cpu: String,
+    /// How many lights the scene has.
+    lights: usize,
+    /// How many objects the scene has.
+    objects: usize,
+    /// The width and the height of the picture.
+    pixels: [usize; 2],
+    /// What rays cost, by kind.
+    rays: Rays,
+    /// The scene as the command line names it.
+    scene: String,
+    /// The part of the frame's time that its tests take as bare arithmetic, or null as `bare_seconds` is.
+    share_of_ceiling: Option<f64>,
+    /// The tests of rays, by the type of the entity.
+    tests: Vec<Times>,
+}
+
+/// What rays cost, by kind.
+#[derive(Serialize)]
+struct Rays {
+    /// All of them, and the whole frame without a file being written.
+    all: Rate,
+    /// Those of mirrors and glass, with those from there to lights, and what they add to a frame without them.
+    onward: Rate,
+    /// Those from the viewer, in the scene without lights, mirrors and glass.
+    primary: Rate,
+    /// Those to lights, and what lights add to that, shading included.
+    shadow: Rate,
+}
+
+/// What some rays cost.
+#[derive(Serialize)]
+struct Rate {
+    /// How many there are in a frame.
+    rays: u64,
+    /// How many are traced in a second; null where there are none, or too few to be told from what they are added to.
+    rays_per_second: Option<f64>,
+    /// How long they take, in seconds.
+    seconds: f64,
+}
+
+impl Rate {
+    fn of(cost: &Cost) -> Self {
+        Self { rays: cost.rays, rays_per_second: cost.rate(), seconds: cost.seconds }
+    }
+}
+
+/// The tests of rays against the objects of a type. Times are nanoseconds for each ray; null where nothing was to be
+/// timed.
+#[derive(Serialize)]
+struct Times {
+    /// What the formula of textbooks takes.
+    bare_ns: Option<f64>,
+    /// To find whether it blocks rays to a light.
+    block_ns: Option<f64>,
+    /// The type of the entity.
+    entity: &'static str,
+    /// To find what rays from the viewer meet first.
+    meet_ns: Option<f64>,
+    /// To find exactly where it is met.
+    settle_ns: Option<f64>,
+    /// How many tests a frame makes, one for each ray and object.
+    tests: u64,
+}
+
+impl Times {
+    fn of(tests: &TestTimes) -> Self {
+        Self {
+            bare_ns: tests.bare,
+            block_ns: tests.times.block,
+            entity: tests.entity,
+            meet_ns: tests.times.meet,
+            settle_ns: tests.times.settle,
+            tests: tests.number,
+        }
+    }
 }
 
 fn number(value: Option<f64>, digits: usize) -> String {

@@ -2,17 +2,17 @@
 
 use super::failure::{Failure, print};
 use super::input::{self, Source};
-use super::output::{self, Output, finished};
+use super::interrupt;
+use super::output::{self, Output};
 use super::progress::Progress;
-use super::{interrupt, messages};
 use crate::scene::choice::Choice;
 use crate::scene::model::Model;
 use crate::scene::registry::Registry;
 use crate::tools::chart::{self, Chart};
 use crate::world::accuracy::Accuracy;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, Write};
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Chart the cost and the error of each choice in a scene
 ///
@@ -53,7 +53,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let words = chart::words(&chart);
     for (file, bytes) in files.into_iter().zip(contents(&chart, &words)?) {
         let (path, output) = file?;
-        put(&path, output, &bytes)?;
+        output::put(&path, output, |out| out.write_all(&bytes))?;
     }
     print(&words)?;
     if chart.is_whole {
@@ -71,14 +71,6 @@ fn contents(chart: &Chart, words: &str) -> io::Result<[Vec<u8>; 5]> {
         chart::json(chart).into_bytes(),
         words.as_bytes().to_vec(),
     ])
-}
-
-fn put(path: &Path, output: Output, bytes: &[u8]) -> Result<(), Failure> {
-    let mut out = BufWriter::new(output);
-    let written = out.write_all(bytes);
-    finished(path, written, out)?;
-    messages::note(&format!("wrote {}", path.display()));
-    Ok(())
 }
 
 /// Loads a scene in any accuracy, once it was seen that each can be had.

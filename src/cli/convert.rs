@@ -1,14 +1,12 @@
 //! `tabray convert`: a scene in the other spelling.
 
 use super::failure::{Failure, print};
-use super::output::Output;
-use super::{input, messages};
+use super::{input, messages, output};
 use crate::scene::dump;
 use crate::scene::model::Model;
 use crate::scene::reader;
 use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Write a scene in the other syntax
@@ -23,14 +21,7 @@ pub struct Args {
     output: PathBuf,
     /// The syntax to write, whatever the file name
     #[arg(long, value_name = "SYNTAX")]
-    to: Option<SyntaxName>,
-}
-
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum SyntaxName {
-    /// The syntax of the course notes
-    Ray,
-    Toml,
+    to: Option<Syntax>,
 }
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
@@ -41,22 +32,14 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         return print(&text);
     }
     is_the_same_scene(registry, &model, &text, &args.output)?;
-    let mut output = Output::open(&args.output)?;
-    output
-        .write_all(text.as_bytes())
-        .and_then(|()| output.finish())
-        .map_err(|error| Failure::cannot_write(&args.output, &error))?;
+    output::replace(&args.output, text.as_bytes())?;
     messages::note(&format!("wrote {} (without comments)", args.output.display()));
     Ok(())
 }
 
 /// The spelling that is asked for.
 fn syntax(args: &Args) -> Result<Syntax, Failure> {
-    let asked = args.to.map(|name| match name {
-        SyntaxName::Ray => Syntax::Notes,
-        SyntaxName::Toml => Syntax::Toml,
-    });
-    match (asked, Syntax::of_name(&args.output)) {
+    match (args.to, Syntax::of_name(&args.output)) {
         (Some(Syntax::Notes), Some(Syntax::Toml)) => Err(Failure::Usage(
             format!("the file `{}` would be read as TOML", args.output.display()),
             Some("end its name in .ray".to_owned()),

@@ -2,6 +2,7 @@
 
 use super::failure::Failure;
 use crate::simd::cpu::{Cpu, Level};
+use crate::words;
 
 #[derive(clap::Args)]
 #[group(id = "instructions")]
@@ -9,32 +10,17 @@ pub struct Args {
     /// The highest level of CPU instructions to use, by default the highest that this machine has; the image is the
     /// same with any
     #[arg(long, value_name = "NAME")]
-    cpu: Option<CpuName>,
-}
-
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum CpuName {
-    /// What every machine has: SSE2 on x86-64
-    Baseline,
-    /// AVX2: four numbers at a time
-    Avx2,
-    /// AVX-512: eight numbers at a time
-    Avx512,
+    cpu: Option<Level>,
 }
 
 impl Args {
     /// What is asked for, or the best there is.
     pub fn cpu(&self) -> Result<Cpu, Failure> {
-        let Some(name) = self.cpu else { return Ok(Cpu::best()) };
-        let (level, name) = match name {
-            CpuName::Baseline => (Level::Baseline, "baseline"),
-            CpuName::Avx2 => (Level::Avx2, "AVX2"),
-            CpuName::Avx512 => (Level::Avx512, "AVX-512"),
-        };
+        let Some(level) = self.cpu else { return Ok(Cpu::best()) };
         Cpu::of(level).ok_or_else(|| {
             let here: Vec<_> = Cpu::all().map(|cpu| format!("`--cpu {cpu}`")).collect();
             Failure::Usage(
-                format!("this machine does not have {name} instructions"),
+                format!("this machine does not have the instructions of `{}`", words::name(&level)),
                 Some(format!("it has {}", here.join(", "))),
             )
         })

@@ -13,7 +13,7 @@ use std::io::{self, BufWriter, Write};
 pub struct Args {
     /// Print the course notes' debug lines to standard error before rendering
     #[arg(long, value_name = "LINES", value_delimiter = ',')]
-    debug: Vec<LineName>,
+    debug: Vec<LogLine>,
     /// Print the debug lines of one pixel or of a rectangle, both corners included: columns count from 0 at the left,
     /// rows from 0 at the bottom
     #[arg(long, value_name = "X,Y|X0,Y0,X1,Y1", requires = "debug", value_parser = corners)]
@@ -21,28 +21,11 @@ pub struct Args {
     at: Option<[[i64; 2]; 2]>,
 }
 
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum LineName {
-    /// The pixel: its row and its column
-    Pix,
-    /// What a ray hits, and where
-    Hit,
-    /// The colour of what it hits
-    Drgb,
-    /// The pixel's bytes
-    Irgb,
-    /// The pixel's offset in the image file
-    Offset,
-    /// Each object that a ray finds, and its distance
-    Find,
-}
-
 /// Prints the lines that are asked for.
 pub fn print(model: &Model, args: &Args) -> Result<(), Failure> {
     if args.debug.is_empty() {
         return Ok(());
     }
-    let lines: Vec<_> = args.debug.iter().copied().map(line).collect();
     let [width, height] = model.camera.value.pixels;
     let [a, b] = match args.at {
         Some([a, b]) => [probe::inside(model, a)?, probe::inside(model, b)?],
@@ -54,7 +37,7 @@ pub fn print(model: &Model, args: &Args) -> Result<(), Failure> {
         // The notes' order.
         for y in a[1].min(b[1])..=a[1].max(b[1]) {
             for x in a[0].min(b[0])..=a[0].max(b[0]) {
-                debug::pixel(&plan, x, y, &lines, &mut out)?;
+                debug::pixel(&plan, x, y, &args.debug, &mut out)?;
                 if interrupt::check().is_break() {
                     return Err(io::ErrorKind::Interrupted.into());
                 }
@@ -70,17 +53,6 @@ pub fn print(model: &Model, args: &Args) -> Result<(), Failure> {
         }
         // Where standard error is closed there is nobody to tell.
         _ => Ok(()),
-    }
-}
-
-fn line(name: LineName) -> LogLine {
-    match name {
-        LineName::Pix => LogLine::Pix,
-        LineName::Hit => LogLine::Hit,
-        LineName::Drgb => LogLine::Drgb,
-        LineName::Irgb => LogLine::Irgb,
-        LineName::Offset => LogLine::Offset,
-        LineName::Find => LogLine::Find,
     }
 }
 

@@ -6,8 +6,9 @@ use crate::scene::entity::Entity;
 use crate::scene::pparm::Attribute;
 use crate::scene::reference;
 use crate::scene::registry::Registry;
-use crate::scene::tables;
+use crate::scene::tables::Tables;
 use crate::scene::value::Datum;
+use crate::words;
 
 /// List the entity types, or the attributes of one
 #[derive(clap::Args)]
@@ -27,7 +28,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         return print(&reference::markdown(registry));
     }
     if args.json {
-        return print(&format!("{:#}\n", tables::json(registry)));
+        return print(&words::json_in_lines(&Tables::of(registry)));
     }
     let Some(name) = args.entity else {
         return print(&columns(

@@ -1,12 +1,10 @@
 //! `tabray man`: manual pages, as packages install them.
 
 use super::failure::Failure;
-use super::output::{self, Output};
-use super::{messages, program};
+use super::{messages, output, program};
 use crate::scene::registry::Registry;
 use clap::Command;
 use clap_mangen::Man;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Write the man pages, one for each command
@@ -34,10 +32,8 @@ fn pages(command: Command, folder: &Path) -> Result<usize, Failure> {
     }
     let man = Man::new(command).source(concat!("tabray ", env!("CARGO_PKG_VERSION")));
     let path = folder.join(man.get_filename());
-    let mut output = Output::open(&path)?;
-    man.render(&mut output)
-        .and_then(|()| output.flush())
-        .and_then(|()| output.finish())
-        .map_err(|error| Failure::cannot_write(&path, &error))?;
+    let mut page = Vec::new();
+    man.render(&mut page)?;
+    output::replace(&path, &page)?;
     Ok(count)
 }

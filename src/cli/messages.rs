@@ -1,6 +1,6 @@
 //! What the program says on standard error, in the form that was asked for.
 
-use crate::scene::reader::{self, Report};
+use crate::scene::reader::{Message, Report};
 use annotate_snippets::{Group, Level, Renderer};
 use anstream::AutoStream;
 use std::io::{self, Write};
@@ -69,7 +69,7 @@ pub fn note(message: &str) {
 }
 
 fn json(level: &str, message: &str, help: Option<&str>, rendered: &str) -> String {
-    reader::message(level, message, help, Vec::new(), rendered).to_string() + "\n"
+    Message { help, level, message, rendered, spans: Vec::new() }.line()
 }
 
 /// In one piece, whatever else writes there. Where standard error is closed there is nobody to tell.

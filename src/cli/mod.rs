@@ -8,6 +8,7 @@ mod choose;
 mod completions;
 mod convert;
 mod cpu;
+mod crash;
 mod debug;
 mod diff;
 mod dump;
@@ -102,6 +103,11 @@ fn command() -> clap::Command {
 /// Runs the command that the program's arguments name, with every plugin that is linked into it. Its messages go to
 /// standard error, and its exit status tells how it went.
 pub fn run() -> ExitCode {
+    crash::keep();
+    crash::catch(chosen).unwrap_or_else(|failure| tell(&failure))
+}
+
+fn chosen() -> ExitCode {
     let cli = Cli::from_arg_matches(&command().get_matches()).unwrap_or_else(|error| error.exit());
     messages::choose(cli.message_format);
     let outcome = match Registry::get() {

@@ -1,9 +1,11 @@
 //! Where a picture goes: beside its target first, then in its place, so that no half of one is ever there.
 
 use super::failure::Failure;
+use super::messages;
 use super::temporary::Temporary;
 use crate::output::picture::Format;
 use crate::words;
+use std::ffi::OsStr;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, IsTerminal, Seek, Write};
 use std::path::{Path, PathBuf};
@@ -29,6 +31,43 @@ pub fn create(path: &Path, text: &str) -> Result<(), Failure> {
     let file = Temporary::new(folder).map_err(cannot)?;
     file.file().write_all(text.as_bytes()).map_err(cannot)?;
     file.persist_new(path).map_err(cannot)
+}
+
+/// Writes a file in the place of another, or of none.
+pub fn replace(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    let mut output = Output::open(path)?;
+    output
+        .write_all(bytes)
+        .and_then(|()| output.finish())
+        .map_err(|error| Failure::cannot_write(path, &error))
+}
+
+/// Writes a picture or what is beside it, puts it in its place, and says so.
+pub fn put(
+    path: &Path,
+    output: Output,
+    write: impl FnOnce(&mut BufWriter<Output>) -> io::Result<()>,
+) -> Result<(), Failure> {
+    let mut out = BufWriter::new(output);
+    let written = write(&mut out);
+    finished(path, written, out)?;
+    messages::note(&format!("wrote {}", path.display()));
+    Ok(())
+}
+
+/// Puts a picture in its place, if it was written without an error.
+pub fn finished(path: &Path, written: io::Result<()>, out: BufWriter<Output>) -> Result<(), Failure> {
+    match written.and_then(|()| out.into_inner().map_err(|error| error.into_error())?.finish()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::cannot_write(path, &error)),
+        _ => Ok(()),
+    }
+}
+
+/// A path with something appended: `with_extension` would cut what the name ends in.
+pub fn ended(path: &Path, end: impl AsRef<OsStr>) -> PathBuf {
+    let mut path = path.as_os_str().to_owned();
+    path.push(end);
+    path.into()
 }
 
 /// Makes a folder and those that it is in, where they are not there yet.
@@ -121,14 +160,6 @@ impl Write for Output {
             Self::Special(file) => file.flush(),
             Self::File(file, _) => file.file().flush(),
         }
-    }
-}
-
-/// Puts a picture in its place, if it was written without an error.
-pub fn finished(path: &Path, written: io::Result<()>, out: BufWriter<Output>) -> Result<(), Failure> {
-    match written.and_then(|()| out.into_inner().map_err(|error| error.into_error())?.finish()) {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::cannot_write(path, &error)),
-        _ => Ok(()),
     }
 }
 

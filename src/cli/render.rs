@@ -10,7 +10,7 @@ use super::{aov, cpu, debug, input, interrupt, messages, method, size, stop};
 use crate::output::picture::{Compression, Format};
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
-use crate::scene::reader::Loaded;
+use crate::scene::reader::{Chosen, Loaded};
 use crate::scene::registry::Registry;
 use crate::world::accuracy::Accuracy;
 use crate::world::sample::Sampler;
@@ -28,16 +28,16 @@ pub struct Args {
     output: Option<PathBuf>,
     /// The image format, whatever the file's extension
     #[arg(long)]
-    format: Option<FormatName>,
+    format: Option<Format>,
     /// The compression of a PNG
     #[arg(long, value_name = "HOW", default_value = "fast")]
-    compress: CompressionName,
+    compress: Compression,
     /// The number of samples per pixel, to smooth edges; by default that of the scene's camera
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(Sampler::MOST)))]
     samples: Option<u32>,
     /// The distribution of the samples within a pixel
     #[arg(long, value_name = "NAME", default_value = "sobol")]
-    sampler: SamplerName,
+    sampler: Sampler,
     /// The number of threads; by default one per core
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -57,30 +57,6 @@ pub struct Args {
     stop: stop::Args,
 }
 
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum FormatName {
-    Ppm,
-    Png,
-}
-
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum CompressionName {
-    /// Fastest
-    Fast,
-    /// Smaller files
-    Default,
-    /// Smallest files
-    Best,
-}
-
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum SamplerName {
-    /// Evenly spread (a Sobol sequence)
-    Sobol,
-    /// Random, as in the course notes
-    Random,
-}
-
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let path = target(&args)?;
     let format = format(&args, &path)?;
@@ -89,14 +65,13 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let start = Instant::now();
     let accuracy = args.method.accuracy()?;
     let source = Source::read(&args.scene)?;
-    let Loaded { mut model, building, .. } = input::told(source.load(registry, accuracy))?;
+    let textures = args.stop.left();
+    let chosen = |accuracy| Chosen { above_all: accuracy, textures, ..Chosen::default() };
+    let Loaded { mut model, building, .. } = input::told(source.load_by(registry, chosen(accuracy)))?;
     let mut stats = Stats { reading: start.elapsed() - building, building, ..Stats::default() };
     let camera = &mut model.camera.value;
     camera.samples = args.samples.unwrap_or(camera.samples);
-    camera.sampler = match args.sampler {
-        SamplerName::Sobol => Sampler::Sobol,
-        SamplerName::Random => Sampler::Random,
-    };
+    camera.sampler = args.sampler;
     let part = args.size.apply(camera)?;
     interrupt::catch()?;
     let output = Output::open(&path)?;
@@ -127,7 +102,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         messages::note(&format!("wrote {} ({width} x {height} pixels, {seconds:.2} s)", path.display()));
     }
     args.stats.print(&stats, &model);
-    let exact = || match source.load(registry, Some(Accuracy::Exact)) {
+    let exact = || match source.load_by(registry, chosen(Some(Accuracy::Exact))) {
         Ok(loaded) => Ok(loaded.model),
         Err(report) => Err(Failure::Scene(report)),
     };
@@ -138,7 +113,7 @@ fn target(args: &Args) -> Result<PathBuf, Failure> {
     match (&args.output, args.scene.file_name()) {
         (Some(path), _) => Ok(path.clone()),
         (None, Some(name)) if !input::is_standard(&args.scene) => {
-            let extension = if matches!(args.format, Some(FormatName::Ppm)) { "ppm" } else { "png" };
+            let extension = if args.format == Some(Format::Ppm) { "ppm" } else { "png" };
             Ok(Path::new(name).with_extension(extension))
         }
         _ => Err(Failure::Usage(
@@ -149,18 +124,13 @@ fn target(args: &Args) -> Result<PathBuf, Failure> {
 }
 
 fn format(args: &Args, path: &Path) -> Result<Format, Failure> {
-    let compression = match args.compress {
-        CompressionName::Fast => Compression::Fast,
-        CompressionName::Default => Compression::Balanced,
-        CompressionName::Best => Compression::High,
+    let format = match args.format {
+        Some(format) => format,
+        None if path == Path::new("-") => Format::Ppm,
+        None => named(path, "end it in .png or .ppm, or give `--format png` or `--format ppm`")?,
     };
-    match args.format {
-        Some(FormatName::Ppm) => Ok(Format::Ppm),
-        Some(FormatName::Png) => Ok(Format::Png(compression)),
-        None if path == Path::new("-") => Ok(Format::Ppm),
-        None => match named(path, "end it in .png or .ppm, or give `--format png` or `--format ppm`")? {
-            Format::Png(_) => Ok(Format::Png(compression)),
-            Format::Ppm => Ok(Format::Ppm),
-        },
-    }
+    Ok(match format {
+        Format::Png(_) => Format::Png(args.compress),
+        Format::Ppm => Format::Ppm,
+    })
 }

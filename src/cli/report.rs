@@ -5,10 +5,11 @@ use super::failure::Failure;
 use super::messages;
 use super::output::Output;
 use crate::output::compare::Comparison;
+use crate::words;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use image::{ImageFormat, RgbImage};
-use serde_json::{Value, json};
+use serde::Serialize;
 use similar::{ChangeTag, TextDiff};
 use std::io::{self, Cursor, Write};
 use std::path::{Path, PathBuf};
@@ -62,6 +63,7 @@ fn size(picture: &RgbImage) -> String {
 }
 
 /// How to accept or reject a pending snapshot.
+#[derive(Serialize)]
 pub struct Decision {
     /// The command that accepts it.
     pub accept: String,
@@ -102,38 +104,106 @@ impl Page {
 
 /// The page, as HTML. One that is `served` can accept and reject.
 pub fn html(title: &str, items: &[Item], served: bool) -> io::Result<String> {
-    let items: Vec<_> = items.iter().map(item).collect::<io::Result<_>>()?;
-    let data = json!({ "title": title, "served": served, "items": items });
+    let items = items.iter().map(Shown::of).collect::<io::Result<_>>()?;
+    let data = words::json(&Data { items, served, title });
     // Nothing in the data can end its element: in JSON a `<` can be written otherwise.
-    Ok(PAGE.replacen(DATA, &data.to_string().replace('<', "\\u003c"), 1))
+    Ok(PAGE.replacen(DATA, &data.replace('<', "\\u003c"), 1))
 }
 
-fn item(item: &Item) -> io::Result<Value> {
-    let mut value = match &item.change {
-        Change::Picture { old, new, names, comparison } => {
-            let first = comparison.as_ref().and_then(|comparison| comparison.first);
-            json!({
-                "kind": "picture",
-                "old": old.as_ref().map(data_uri).transpose()?,
-                "new": data_uri(new)?,
-                "names": names,
-                "tolerance": comparison.as_ref().map(|comparison| comparison.tolerance),
-                "first": first.map(|pixel| json!({ "x": pixel.x, "y": pixel.y, "text": pixel.to_string() })),
-            })
-        }
-        Change::Text { old, new } => {
-            let diff = TextDiff::from_lines(old.as_deref().unwrap_or_default(), new);
-            json!({ "kind": "text", "lines": diff.iter_all_changes().map(|line| json!(line_of(&line))).collect::<Vec<_>>() })
-        }
-    };
-    value["name"] = json!(item.name);
-    value["summary"] = json!(item.change.summary());
-    value["explanations"] =
-        item.explanations.iter().map(|Explanation { title, text }| json!([title, text])).collect();
-    if let Some(Decision { accept, reject, version }) = &item.decision {
-        value["decision"] = json!({ "accept": accept, "reject": reject, "version": version });
+/// What the page shows.
+#[derive(Serialize)]
+struct Data<'d> {
+    /// What changed.
+    items: Vec<Shown<'d>>,
+    /// Whether it can accept and reject.
+    served: bool,
+    /// The title of the page.
+    title: &'d str,
+}
+
+/// An item as the page has it.
+#[derive(Serialize)]
+struct Shown<'d> {
+    /// How to decide about it; left out where that is not to be done.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    decision: Option<&'d Decision>,
+    /// How its first differing pixel came about: titles and texts.
+    explanations: Vec<(&'d str, &'d str)>,
+    /// What it is called.
+    name: &'d str,
+    /// A few words on what changed.
+    summary: String,
+    /// What it was and is, among the other fields.
+    #[serde(flatten)]
+    sides: Sides<'d>,
+}
+
+/// What an item was and is. The field `kind` has the variant's name.
+#[derive(Serialize)]
+#[serde(rename_all = "lowercase", tag = "kind")]
+enum Sides<'d> {
+    /// A picture.
+    Picture {
+        /// The first pixel that differs, or null.
+        first: Option<First>,
+        /// What the old and the new picture are called.
+        names: &'d [String; 2],
+        /// The new picture, as the address of an image.
+        new: String,
+        /// The old one, or null.
+        old: Option<String>,
+        /// How many levels of a channel may differ; null where the pictures cannot be compared.
+        tolerance: Option<u8>,
+    },
+    /// A text.
+    Text {
+        /// Its lines, with those that go.
+        lines: Vec<Line>,
+    },
+}
+
+/// Whether a line of a text stays (a blank), goes (`-`) or comes (`+`), its numbers in the old and the new text, from 1,
+/// or null, and the line.
+type Line = (char, Option<usize>, Option<usize>, String);
+
+/// The first pixel that differs.
+#[derive(Serialize)]
+struct First {
+    /// What became of it, in words.
+    text: String,
+    /// Its column, from 0 at the left.
+    x: u32,
+    /// Its row, from 0 at the bottom.
+    y: u32,
+}
+
+impl<'d> Shown<'d> {
+    fn of(item: &'d Item) -> io::Result<Self> {
+        let sides = match &item.change {
+            Change::Picture { old, new, names, comparison } => {
+                let first = comparison.as_ref().and_then(|comparison| comparison.first);
+                Sides::Picture {
+                    first: first.map(|pixel| First { text: pixel.to_string(), x: pixel.x, y: pixel.y }),
+                    names,
+                    new: data_uri(new)?,
+                    old: old.as_ref().map(data_uri).transpose()?,
+                    tolerance: comparison.as_ref().map(|comparison| comparison.tolerance),
+                }
+            }
+            Change::Text { old, new } => {
+                let diff = TextDiff::from_lines(old.as_deref().unwrap_or_default(), new);
+                Sides::Text { lines: diff.iter_all_changes().map(|line| line_of(&line)).collect() }
+            }
+        };
+        let explanation = |Explanation { title, text }: &'d Explanation| (title.as_str(), text.as_str());
+        Ok(Self {
+            decision: item.decision.as_ref(),
+            explanations: item.explanations.iter().map(explanation).collect(),
+            name: &item.name,
+            summary: item.change.summary(),
+            sides,
+        })
     }
-    Ok(value)
 }
 
 /// The picture within the page, written anew: no colour profile that its file may have changes what is seen.
@@ -143,14 +213,13 @@ fn data_uri(picture: &RgbImage) -> io::Result<String> {
     Ok(format!("data:image/png;base64,{}", STANDARD.encode(png.into_inner())))
 }
 
-/// Whether a line stays, comes or goes, its numbers in the old and the new text, and the line.
-fn line_of<'t>(line: &similar::Change<&'t str>) -> (char, Option<usize>, Option<usize>, &'t str) {
+fn line_of(line: &similar::Change<&str>) -> Line {
     let sign = match line.tag() {
         ChangeTag::Equal => ' ',
         ChangeTag::Delete => '-',
         ChangeTag::Insert => '+',
     };
     let number = |index: usize| index + 1;
-    let text = line.value().trim_end_matches('\n');
+    let text = line.value().trim_end_matches('\n').to_owned();
     (sign, line.old_index().map(number), line.new_index().map(number), text)
 }

@@ -2,11 +2,12 @@
 
 use super::memory;
 use crate::render::observer::RayKind;
-use crate::render::ray_stats::{Cuts, RayStats};
+use crate::render::ray_stats::{Cuts, RayStats, TestCounts};
 use crate::scene::model::Model;
-use crate::words::short;
-use serde_json::json;
+use crate::words::{json, short};
+use serde::Serialize;
 use std::cell::Cell;
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::io::{self, Write as _};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -54,7 +55,7 @@ impl Args {
         let text = match self.stats {
             None => return,
             Some(Format::Table) => stats.table(model),
-            Some(Format::Json) => stats.json(model),
+            Some(Format::Json) => json(&stats.counts(model)) + "\n",
         };
         // Where standard error is closed there is nobody to tell.
         let _ = io::stderr().write_all(text.as_bytes());
@@ -84,14 +85,10 @@ impl Stats {
         self.rendering.set(self.rendering.get() + start.elapsed());
     }
 
-    fn stages(&self) -> [(&'static str, f64); 4] {
-        [
-            ("reading", self.reading),
-            ("building", self.building),
-            ("rendering", self.rendering.get()),
-            ("writing", self.writing),
-        ]
-        .map(|(stage, time)| (stage, time.as_secs_f64()))
+    fn seconds(&self) -> Seconds {
+        let [building, reading, rendering, writing] =
+            [self.building, self.reading, self.rendering.get(), self.writing].map(|time| time.as_secs_f64());
+        Seconds { building, reading, rendering, writing }
     }
 
     fn table(&self, model: &Model) -> String {
@@ -114,7 +111,10 @@ impl Stats {
             let _ = writeln!(out, "{name:<12} {objects:>14} {tested:>14} {culled:>14} {percent:>12.1} %");
         }
         let _ = writeln!(out, "\n{:<12} {:>14}", "stages", "seconds");
-        for (stage, seconds) in self.stages() {
+        let Seconds { building, reading, rendering, writing } = self.seconds();
+        for (stage, seconds) in
+            [("reading", reading), ("building", building), ("rendering", rendering), ("writing", writing)]
+        {
             let _ = writeln!(out, "{stage:<12} {seconds:>14.4}");
         }
         if let Some(bytes) = memory::peak() {
@@ -123,22 +123,70 @@ impl Stats {
         out
     }
 
-    fn json(&self, model: &Model) -> String {
+    fn counts(&self, model: &Model) -> Counts {
         let tally = self.tally.get();
-        let rays = RayKind::ALL.map(|kind| (kind.to_string(), tally.rays(kind).into()));
-        let tests = tally.tests(model).into_iter().map(|(name, tests)| {
-            let tests = json!({"objects": tests.objects, "tested": tests.tested, "culled": tests.culled});
-            (name.to_owned(), tests)
-        });
-        let mut all = json!({
-            "rays": serde_json::Map::from_iter(rays),
-            "tests": serde_json::Map::from_iter(tests),
-            "cut": {"pixels": tally.cuts.pixels, "levels": 255.0 * tally.cuts.most},
-            "seconds": serde_json::Map::from_iter(self.stages().map(|(stage, time)| (stage.to_owned(), time.into()))),
-        });
-        if let Some(bytes) = memory::peak() {
-            all["peak_memory"] = bytes.into();
+        Counts {
+            cut: Cut { levels: 255.0 * tally.cuts.most, pixels: tally.cuts.pixels },
+            peak_memory: memory::peak(),
+            rays: Rays {
+                primary: tally.rays(RayKind::Primary),
+                reflected: tally.rays(RayKind::Reflected),
+                shadow: tally.rays(RayKind::Shadow),
+                transmitted: tally.rays(RayKind::Transmitted),
+            },
+            seconds: self.seconds(),
+            tests: tally.tests(model),
         }
-        format!("{all}\n")
     }
+}
+
+/// What a picture took, for programs.
+#[derive(Serialize)]
+struct Counts {
+    /// The pixels that have cost as many rays as they may.
+    cut: Cut,
+    /// The most memory that the program had at one time, in bytes; left out where the system does not tell.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    peak_memory: Option<u64>,
+    /// How many rays were cast.
+    rays: Rays,
+    /// How long each stage took.
+    seconds: Seconds,
+    /// What became of the tests, by entity type.
+    tests: BTreeMap<&'static str, TestCounts>,
+}
+
+/// How many rays were cast.
+#[derive(Serialize)]
+struct Rays {
+    /// From the viewer: pixels times samples.
+    primary: u64,
+    /// From mirrors.
+    reflected: u64,
+    /// To lights, from places that face them; in a scene with glass, anew from behind each pane.
+    shadow: u64,
+    /// Through glass.
+    transmitted: u64,
+}
+
+/// How long each stage took, in seconds.
+#[derive(Serialize)]
+struct Seconds {
+    /// From the text's entities to the model: checks, constructors, textures, and the tree if there is one.
+    building: f64,
+    /// Getting the scene's text and understanding it.
+    reading: f64,
+    /// Tracing rays, on all threads.
+    rendering: f64,
+    /// Making the file.
+    writing: f64,
+}
+
+/// Pixels that have cost as many rays as they may.
+#[derive(Serialize)]
+struct Cut {
+    /// How much light one of them lacks at most, in levels of a channel, from 0 to 255; null where nothing bounds it.
+    levels: f64,
+    /// How many they are.
+    pixels: u64,
 }

@@ -1,6 +1,6 @@
 //! Files that get their names when they are whole.
 
-use std::fs::{self, File, OpenOptions};
+use std::fs::{File, OpenOptions};
 use std::io;
 use std::path::Path;
 use tempfile::NamedTempFile;
@@ -21,8 +21,8 @@ impl Temporary {
         if let Some(file) = unnamed::open(folder) {
             return Ok(Self::Unnamed(file));
         }
-        let open = |path: &Path| OpenOptions::new().read(true).write(true).create_new(true).open(path);
-        tempfile::Builder::new().prefix(".tabray-").make_in(folder, open).map(Self::Named)
+        hidden(folder, |path| OpenOptions::new().read(true).write(true).create_new(true).open(path))
+            .map(Self::Named)
     }
 
     /// To be written, and read again.
@@ -35,14 +35,19 @@ impl Temporary {
     }
 
     /// Gives it a name, in the folder that it is in, and takes the name from the file that has it, if one has.
+    ///
+    /// There is no single step to this for a file without a name: for a moment the file, which is whole, has a hidden one.
     pub fn persist(self, target: &Path) -> io::Result<()> {
         match self {
             #[cfg(target_os = "linux")]
             Self::Unnamed(file) => match unnamed::link(&file, target) {
-                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => unnamed::replace(&file, target),
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
+                    let folder = target.parent().unwrap_or(target);
+                    Ok(hidden(folder, |path| unnamed::link(&file, path))?.persist(target)?)
+                }
                 linked => linked,
             },
-            Self::Named(file) => file.persist(target).map(drop).map_err(|error| error.error),
+            Self::Named(file) => Ok(file.persist(target).map(drop)?),
         }
     }
 
@@ -51,19 +56,22 @@ impl Temporary {
         match self {
             #[cfg(target_os = "linux")]
             Self::Unnamed(file) => unnamed::link(&file, target),
-            Self::Named(file) => file.persist_noclobber(target).map(drop).map_err(|error| error.error),
+            Self::Named(file) => Ok(file.persist_noclobber(target).map(drop)?),
         }
     }
 }
 
+/// What `make` makes at a hidden place in a folder where nothing is yet.
+fn hidden<T>(folder: &Path, make: impl FnMut(&Path) -> io::Result<T>) -> io::Result<NamedTempFile<T>> {
+    tempfile::Builder::new().prefix(".tabray-").make_in(folder, make)
+}
+
 #[cfg(target_os = "linux")]
 mod unnamed {
-    use super::{File, OpenOptions, Path, fs, io};
+    use super::{File, OpenOptions, Path, io};
     use nix::fcntl::{AT_FDCWD, AtFlags, OFlag};
     use nix::unistd::linkat;
-    use sha2::{Digest, Sha256};
     use std::os::fd::AsRawFd;
-    use std::os::unix::ffi::OsStrExt;
     use std::os::unix::fs::OpenOptionsExt;
     use std::path::PathBuf;
 
@@ -82,33 +90,5 @@ mod unnamed {
     /// Gives a file a name that no other one has.
     pub fn link(file: &File, target: &Path) -> io::Result<()> {
         Ok(linkat(AT_FDCWD, &path(file), AT_FDCWD, target, AtFlags::AT_SYMLINK_FOLLOW)?)
-    }
-
-    /// Puts a file in the place of another one. There is no single step to this: for a moment the file, which is whole,
-    /// has a hidden name. If the program is killed right then, the next one with this target takes the name away.
-    pub fn replace(file: &File, target: &Path) -> io::Result<()> {
-        let name = target.file_name().unwrap_or_default();
-        let hash = Sha256::digest(name.as_bytes()).into_iter().take(8).map(|byte| format!("{byte:02x}"));
-        let hidden = target.with_file_name(format!(".tabray-{}", hash.collect::<String>()));
-        loop {
-            match link(file, &hidden) {
-                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
-                    match fs::remove_file(&hidden) {
-                        Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
-                        _ => continue,
-                    }
-                }
-                linked => linked?,
-            }
-            match fs::rename(&hidden, target) {
-                // Another program with the same target took the name away.
-                Err(error) if error.kind() == io::ErrorKind::NotFound => {}
-                Err(error) => {
-                    fs::remove_file(&hidden)?;
-                    return Err(error);
-                }
-                Ok(()) => return Ok(()),
-            }
-        }
     }
 }

@@ -1,15 +1,14 @@
 //! `tabray verify`: a proof, pixel by pixel, of which object is seen.
 
 use super::failure::{Failure, print};
-use super::output::{Output, finished, named};
+use super::output::{self, Output, named};
 use super::progress::Progress;
-use super::{input, interrupt, messages, method};
+use super::{input, interrupt, method};
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::scene::registry::Registry;
 use crate::tools::verify::{self, Verdict};
 use crate::words;
-use std::io::BufWriter;
 use std::iter;
 use std::path::PathBuf;
 
@@ -67,10 +66,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
             Verdict::Contradicted => [255, 0, 0],
         };
         let bytes = verdicts.iter().flat_map(colour).collect();
-        let mut out = BufWriter::new(output);
-        let written = format.write(&mut out, size, iter::once(Ok(bytes)));
-        finished(path, written, out)?;
-        messages::note(&format!("wrote {}", path.display()));
+        output::put(path, output, |out| format.write(out, size, iter::once(Ok(bytes))))?;
     }
     if contradicted > 0 {
         return Err(Failure::Failed(format!("the tracer finds another object at {contradicted} pixels")));

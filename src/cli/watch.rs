@@ -2,13 +2,14 @@
 
 mod answer;
 mod board;
+mod browser;
 mod events;
 mod files;
 mod frame;
 
-use super::failure::Failure;
-use super::serve::Server;
-use super::{input, interrupt, messages, method};
+use super::failure::{Failure, tell};
+use super::serve::{Server, Work};
+use super::{crash, input, interrupt, messages, method};
 use crate::render::plan::Plan;
 use crate::render::progressive;
 use crate::render::renderer::Renderer;
@@ -18,6 +19,7 @@ use crate::scene::registry::Registry;
 use crate::words;
 use crate::world::accuracy::Accuracy;
 use board::Board;
+use events::Fault;
 use files::Files;
 use frame::{Frame, lines};
 use hyper::Request;
@@ -39,8 +41,8 @@ const SETTLED: Duration = Duration::from_millis(10);
 
 /// Show the image in the browser, and render it again whenever the scene changes
 ///
-/// Only a browser on this machine can reach the page. Click a pixel to see how it gets its colour. Ctrl-C quits, with
-/// status 0.
+/// Only this machine can reach the page, and only at the address that is printed: it contains a token, new for each run,
+/// that keeps other users out. Click a pixel to see how it gets its colour. Ctrl-C quits, with status 0.
 #[derive(clap::Args)]
 pub struct Args {
     /// The scene
@@ -84,8 +86,9 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     thread::spawn({
         let board = board.clone();
         move || {
+            let work = Work::new(answer::JOBS);
             let run = server.run(async move |request: Request<Bytes>| {
-                ControlFlow::Continue(answer::answer(&request, &board).await)
+                ControlFlow::Continue(answer::answer(&request, &board, &work).await)
             });
             if let Err(error) = run {
                 let reason = words::reason(&error);
@@ -94,13 +97,11 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         }
     });
     messages::note(&format!("watching {} at {url} (Ctrl-C quits)", args.scene.display()));
-    if args.open
-        && let Err(error) = open::that(&url)
-    {
-        messages::note(&format!(
-            "cannot open a browser: {}; open the address yourself",
-            words::reason(&error)
-        ));
+    // The file that leads the browser to the page.
+    let opened = args.open.then(|| browser::open(&url));
+    if let Some(Err(error)) = &opened {
+        let reason = words::reason(error);
+        messages::note(&format!("cannot open a browser: {reason}; open the address yourself"));
     }
     let mut watched =
         Watched { registry, path: args.scene, accuracy, named: Vec::new(), last: None, version: 0 };
@@ -143,9 +144,13 @@ fn painter(board: Arc<Board>) -> Result<Sender<Arc<Frame>>, Failure> {
         for frame in frames {
             let start = Instant::now();
             let part = |area, colours: Vec<_>| board.add(&frame, events::part(&frame, &area, &colours));
-            let painted = progressive::render(&renderer, &Plan::new(&frame.model), part, || frame.check());
-            if painted.is_continue() {
-                board.add(&frame, events::done(&frame, start.elapsed()));
+            let painted = crash::catch(|| {
+                progressive::render(&renderer, &Plan::new(&frame.model), part, || frame.check())
+            });
+            match painted {
+                Ok(ControlFlow::Continue(())) => board.add(&frame, events::done(&frame, start.elapsed())),
+                Ok(ControlFlow::Break(())) => {}
+                Err(failure) => crashed(&board, &frame.name, &frame.text, &failure),
             }
         }
     });
@@ -180,7 +185,8 @@ impl Watched<'_> {
             Ok(read) => read,
             Err(Failure::Usage(message, _)) => {
                 let name = self.path.display().to_string();
-                board.fault(events::fault(&name, None, &format!("error: {message}"), &[]));
+                let report = &format!("error: {message}");
+                board.fault(events::fault(&Fault { lines: &[], name: &name, report, text: None }));
                 self.last = None;
                 return Ok(());
             }
@@ -196,18 +202,24 @@ impl Watched<'_> {
         let text = String::from_utf8_lossy(bytes);
         let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
         let folder = self.path.parent().unwrap_or(&self.path);
-        let read = reader::read(self.registry, &name, folder, bytes, self.accuracy);
+        let read = match crash::catch(|| reader::read(self.registry, &name, folder, bytes, self.accuracy)) {
+            Ok(read) => read,
+            Err(failure) => {
+                crashed(board, &name, text, &failure);
+                return Ok(());
+            }
+        };
         let report = read.as_ref().map_or_else(|report| report, |loaded| &loaded.warnings);
         self.named = report.files().to_vec();
         files.watch(self.named.iter().chain([&self.path]))?;
         match read {
             Ok(Loaded { model, .. }) if !fits(&model) => {
                 let [width, height] = model.camera.value.pixels;
-                let message = format!(
+                let report = &format!(
                     "error: an image of {width} x {height} pixels is too large for a page\n\
                      help: the maximum is {LARGEST} pixels, such as 4096 x 4096"
                 );
-                board.fault(events::fault(&name, Some(text), &message, &[]));
+                board.fault(events::fault(&Fault { lines: &[], name: &name, report, text: Some(text) }));
             }
             Ok(Loaded { model, warnings, places, .. }) => {
                 self.version += 1;
@@ -226,13 +238,22 @@ impl Watched<'_> {
             }
             Err(report) => {
                 let places = report.faults().iter().filter_map(|fault| fault.place.as_ref());
-                let marked: Vec<_> =
-                    places.filter_map(|place| lines(text, place)).map(|[first, _]| first).collect();
-                board.fault(events::fault(&name, Some(text), &report.to_string(), &marked));
+                let lines = places.filter_map(|place| lines(text, place)).map(|[first, _]| first);
+                let lines = &lines.collect::<Vec<_>>();
+                let report = &report.to_string();
+                board.fault(events::fault(&Fault { lines, name: &name, report, text: Some(text) }));
             }
         }
         Ok(())
     }
+}
+
+/// Tells that the program failed at a scene. It goes on with the next one.
+fn crashed(board: &Board, name: &str, text: &str, failure: &Failure) {
+    tell(failure);
+    let Failure::Failed(message) = failure else { return };
+    let report = &format!("error: {message}");
+    board.fault(events::fault(&Fault { lines: &[], name, report, text: Some(text) }));
 }
 
 fn fits(model: &Model) -> bool {

@@ -7,6 +7,7 @@ use crate::render::observer::{Event, TraceObserver};
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::render::trace;
+use clap::ValueEnum;
 use glam::DVec3;
 use image::codecs::openexr::OpenExrEncoder;
 use image::{ExtendedColorType, ImageEncoder};
@@ -15,17 +16,25 @@ use std::ops::ControlFlow;
 
 /// A picture beside the main one (an arbitrary output variable). All but the cost look along the middle of each
 /// pixel, however many samples it has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Aov {
-    /// How far the first hit is: the nearest white, the farthest dark grey, nothing black.
+    /// Distance of the first hit, near ones bright.
+    ///
+    /// The nearest is white, the farthest dark grey, nothing black.
     Depth,
-    /// The normal of the first hit: red, green and blue are its x, y and z, from -1 to 1.
+    /// Surface normal: red, green and blue are x, y and z.
+    ///
+    /// Each from -1, black, to 1.
     Normal,
-    /// The object of the first hit, each in a colour of its own.
+    /// Object seen, each in its own colour.
     Object,
-    /// How many rays a pixel costs, the most expensive one white.
+    /// Number of rays that a pixel takes.
+    ///
+    /// The most expensive pixel is white.
     Cost,
-    /// How far a pixel's colour is from the true one, the worst one white; red where another object is seen.
+    /// Error of a pixel's colour, against four times its samples, at least 64, traced exactly.
+    ///
+    /// The worst one is white; red where another object is seen.
     Error,
 }
 
@@ -49,17 +58,6 @@ pub struct Layer {
 const FARTHEST: f64 = 0.1;
 
 impl Aov {
-    /// Its name, to tell its file from the others.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Depth => "depth",
-            Self::Normal => "normal",
-            Self::Object => "object",
-            Self::Cost => "cost",
-            Self::Error => "error",
-        }
-    }
-
     /// Whether its layer has exact numbers.
     pub fn is_exact(self) -> bool {
         matches!(self, Self::Depth | Self::Normal | Self::Error)

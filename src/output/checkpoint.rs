@@ -9,9 +9,10 @@ use crate::scene::choice::Choice;
 use crate::scene::dump;
 use crate::scene::model::Model;
 use crate::scene::syntax::Syntax;
-use crate::world::sample::Sampler;
-use serde_json::{Map, Value};
+use crate::words;
+use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
 use std::env;
 use std::fs::File;
 use std::io::{self, BufReader, Read, Write};
@@ -22,14 +23,31 @@ use std::path::Path;
 /// The name of the text in the file.
 const KEYWORD: &str = "tabray checkpoint";
 
-/// What begins the hash of something that is too long to be shown.
-const HASH: &str = "sha256:";
-
-/// The hash that also changes with each build, as plugins are part of the program.
-const PROGRAM: &str = "the program";
-
-/// What the pixels of a picture depend on: names of things, and what they are.
-pub struct Identity(Vec<(String, String)>);
+/// What the pixels of a picture depend on: the text in the file is its JSON. A field that another version did not write
+/// is empty.
+#[derive(Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Identity {
+    /// The name of the accuracy.
+    accuracy: String,
+    /// Column and row of the part that is made, from 0 at the lower left, its width and height; null where that is all
+    /// of the picture.
+    crop: Option<[usize; 4]>,
+    /// The hash of the program's file, which changes with each build, as plugins are part of it.
+    program: String,
+    /// The name of the sampler.
+    sampler: String,
+    /// How many samples each pixel has.
+    samples: u32,
+    /// The hash of the scene's dump.
+    scene: String,
+    /// The width and the height of the picture.
+    size: [usize; 2],
+    /// The hashes of the textures' pictures, by the names of the textures.
+    textures: BTreeMap<String, String>,
+    /// The version of tabray.
+    version: String,
+}
 
 impl Identity {
     /// That of a part of a model's picture, made by this program. `columns` count from the left, `rows` from the top.
@@ -39,66 +57,52 @@ impl Identity {
     pub fn of(model: &Model, columns: &Range<usize>, rows: &Range<usize>) -> io::Result<Self> {
         let camera = &model.camera.value;
         let [width, height] = camera.pixels;
-        let crop = if (columns.len(), rows.len()) == (width, height) {
-            "none".to_owned()
-        } else {
-            format!("{},{},{},{}", columns.start, height - rows.end, columns.len(), rows.len())
-        };
-        let sampler = match camera.sampler {
-            Sampler::Sobol => "sobol",
-            Sampler::Random => "random",
-        };
-        let mut all = vec![
-            ("the version of tabray".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
-            (PROGRAM.to_owned(), program()?),
-            ("the scene".to_owned(), hash(dump::scene(model, Syntax::Notes).as_bytes())),
-        ];
-        for texture in &model.textures {
+        let is_whole = (columns.len(), rows.len()) == (width, height);
+        let textures = model.textures.iter().map(|texture| {
             let [width, height] = texture.value.size();
             let texels = texture.value.load().map_or(&[][..], |picture| picture.as_raw());
-            let title = format!("the image of texture `{}`", texture.args.name);
-            all.push((title, format!("{} ({width} x {height})", hash(texels))));
-        }
-        all.extend(
-            [
-                ("the size", format!("{width} x {height}")),
-                ("the crop", crop),
-                ("the number of samples", camera.samples.to_string()),
-                ("the sampler", sampler.to_owned()),
-                ("the accuracy", camera.accuracy.option().name.to_owned()),
-            ]
-            .map(|(what, is)| (what.to_owned(), is)),
-        );
-        Ok(Self(all))
+            (texture.args.name.clone(), format!("{} ({width} x {height})", hash(texels)))
+        });
+        Ok(Self {
+            accuracy: camera.accuracy.option().name.to_owned(),
+            crop: (!is_whole).then(|| [columns.start, height - rows.end, columns.len(), rows.len()]),
+            program: program()?,
+            sampler: words::name(&camera.sampler),
+            samples: camera.samples,
+            scene: hash(dump::scene(model, Syntax::Notes).as_bytes()),
+            size: camera.pixels,
+            textures: textures.collect(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+        })
     }
 
     /// How it differs from what it was, in words; empty where it does not.
     pub fn differences(&self, old: &Self) -> Vec<String> {
-        let was = |what: &str| old.0.iter().find(|(name, _)| name == what).map(|(_, was)| was);
         let mut differences = Vec::new();
-        for (what, is) in &self.0 {
-            match was(what) {
-                Some(was) if was == is => {}
-                // Another version is another program.
-                _ if what == PROGRAM && !differences.is_empty() => {}
-                _ if what == PROGRAM => differences.push(format!("{what} was rebuilt")),
-                Some(_) if is.starts_with(HASH) => differences.push(format!("{what} has changed")),
-                Some(was) => differences.push(format!("{what} was {was} and is {is}")),
-                None => differences.push(format!("{what} is new")),
-            }
+        if self.version != old.version {
+            // Another version is another program.
+            differences.push(format!("the version of tabray was {} and is {}", old.version, self.version));
+        } else if self.program != old.program {
+            differences.push("the program was rebuilt".to_owned());
         }
+        let textures = self.textures.iter().filter(|(name, hash)| old.textures.get(*name) != Some(hash));
+        let textures = textures.map(|(name, _)| format!("the image of texture `{name}`"));
+        let scene = (self.scene != old.scene).then(|| "the scene".to_owned());
+        differences.extend(scene.into_iter().chain(textures).map(|what| format!("{what} has changed")));
+        let size = |[width, height]: [usize; 2]| format!("{width} x {height}");
+        let crop = |crop: Option<[usize; 4]>| {
+            crop.map_or("none".to_owned(), |crop| crop.map(|number| number.to_string()).join(","))
+        };
+        let values = [
+            ("size", size(old.size), size(self.size)),
+            ("crop", crop(old.crop), crop(self.crop)),
+            ("number of samples", old.samples.to_string(), self.samples.to_string()),
+            ("sampler", old.sampler.clone(), self.sampler.clone()),
+            ("accuracy", old.accuracy.clone(), self.accuracy.clone()),
+        ];
+        let others = values.into_iter().filter(|(_, was, is)| was != is);
+        differences.extend(others.map(|(what, was, is)| format!("the {what} was {was} and is {is}")));
         differences
-    }
-
-    fn to_json(&self) -> String {
-        let pairs = self.0.iter().map(|(what, is)| (what.clone(), is.as_str().into()));
-        Value::Object(Map::from_iter(pairs)).to_string()
-    }
-
-    fn from_json(text: &str) -> Option<Self> {
-        let all: Map<_, _> = serde_json::from_str(text).ok()?;
-        let pairs = all.into_iter().map(|(what, was)| Some((what, was.as_str()?.to_owned())));
-        pairs.collect::<Option<_>>().map(Self)
     }
 }
 
@@ -120,7 +124,7 @@ fn hash(bytes: &[u8]) -> String {
 }
 
 fn shown(hasher: Sha256) -> String {
-    hasher.finalize().iter().fold(HASH.to_owned(), |text, byte| format!("{text}{byte:02x}"))
+    hasher.finalize().iter().fold("sha256:".to_owned(), |text, byte| format!("{text}{byte:02x}"))
 }
 
 /// Writes a checkpoint of a picture of this size. `rows` has all of the picture's rows, whether they are rendered or not.
@@ -140,7 +144,7 @@ pub fn write(
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::Fast);
     encoder.set_source_srgb(AS_SHOWN);
-    encoder.add_itxt_chunk(KEYWORD.to_owned(), identity.to_json())?;
+    encoder.add_itxt_chunk(KEYWORD.to_owned(), words::json(identity))?;
     let mut writer = encoder.write_header()?;
     let mut stream = writer.stream_writer()?;
     let (mut colours, mut pixels) = (vec![[0; 3]; width], vec![[0; 4]; width]);
@@ -172,7 +176,7 @@ impl Checkpoint {
         let png = png::Decoder::new(BufReader::with_capacity(1 << 16, file)).read_info().map_err(invalid)?;
         let info = png.info();
         let text = info.utf8_text.iter().find(|text| text.keyword == KEYWORD);
-        let identity = text.and_then(|text| Identity::from_json(&text.get_text().ok()?));
+        let identity = text.and_then(|text| serde_json::from_str::<Identity>(&text.get_text().ok()?).ok());
         let is_plain =
             png.output_color_type() == (png::ColorType::Rgba, png::BitDepth::Eight) && !info.interlaced;
         let identity = identity.filter(|_| is_plain).ok_or(io::ErrorKind::InvalidData)?;

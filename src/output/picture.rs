@@ -1,19 +1,25 @@
 //! Bytes to picture files, and back.
 
+use clap::ValueEnum;
+use clap::builder::PossibleValue;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::iter;
 use std::path::Path;
 
 /// How hard a file is compressed. The picture is the same.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Compression {
-    /// As quickly as possible.
+    /// Fastest.
     #[default]
     Fast,
-    /// To about half of that size, which takes longer than most pictures take to render.
+    /// Smaller files.
+    ///
+    /// About half as large, which takes longer than most pictures take to render.
+    #[value(name = "default")]
     Balanced,
-    /// As small as possible.
+    /// Smallest files.
+    #[value(name = "best")]
     High,
 }
 
@@ -26,15 +32,24 @@ pub enum Format {
     Png(Compression),
 }
 
+/// By the extensions of its files. A PNG is then as large as it comes soonest.
+impl ValueEnum for Format {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[Self::Ppm, Self::Png(Compression::Fast)]
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(match self {
+            Self::Ppm => "ppm",
+            Self::Png(_) => "png",
+        }))
+    }
+}
+
 impl Format {
     /// The format that a file's extension names, whatever its case.
     pub fn of(path: &Path) -> Option<Self> {
-        let extension = path.extension()?.to_ascii_lowercase();
-        match extension.to_str()? {
-            "ppm" => Some(Self::Ppm),
-            "png" => Some(Self::Png(Compression::default())),
-            _ => None,
-        }
+        Self::from_str(path.extension()?.to_str()?, true).ok()
     }
 
     /// Writes a whole picture: `rows` hands out its bytes, some rows at a time from the top: red, green and blue of each

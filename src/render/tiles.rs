@@ -1,13 +1,14 @@
-//! The tiles of a picture, and which of them are rendered.
+//! The tiles of an image, and which of them are rendered.
 
 use std::iter;
 use std::ops::Range;
 
-/// The width and height of a tile, whose rays go together, in pixels. Those at the right and lower edges may be smaller.
+/// The width and height of a tile in pixels, whose rays are traced together. Tiles at the right and lower edges may be
+/// smaller.
 pub(crate) const TILE: usize = 16;
 
-/// The pixels of a tile, or of a part of one: up to eight side by side at a time, by their columns and their row; those
-/// together that are near each other.
+/// Lists the pixels of a tile as runs of up to eight pixels, each by its columns and its row. The runs go through
+/// blocks of 8 x 8 pixels, so that pixels that follow each other are close together.
 pub(crate) fn runs(columns: Range<usize>, rows: Range<usize>) -> impl Iterator<Item = (Range<usize>, usize)> {
     const SIDE: usize = 8;
     rows.clone().step_by(SIDE).flat_map(move |low| {
@@ -19,7 +20,7 @@ pub(crate) fn runs(columns: Range<usize>, rows: Range<usize>) -> impl Iterator<I
     })
 }
 
-/// Lists the pixels of all [`runs`], by column and row.
+/// Lists the pixels of all [`runs`] in `pixels`, by column and row.
 pub(crate) fn list(columns: Range<usize>, rows: Range<usize>, pixels: &mut Vec<[usize; 2]>) {
     pixels.clear();
     for (columns, y) in runs(columns, rows) {
@@ -27,36 +28,36 @@ pub(crate) fn list(columns: Range<usize>, rows: Range<usize>, pixels: &mut Vec<[
     }
 }
 
-/// Pixels of a picture that are in memory at one time, but for a picture of one longer row of tiles.
+/// The maximum number of pixels that are in memory at one time, unless one row of tiles has more.
 pub const BAND: usize = 1 << 22;
 
-/// Some rows of a picture, or of a part of one.
+/// Some rows of an image, or of a part of one.
 pub struct Band {
-    /// Which columns, from the left of the whole picture.
+    /// The columns, counted from the left of the whole image.
     pub columns: Range<usize>,
-    /// Which rows, from its top.
+    /// The rows, counted from the top of the whole image.
     pub rows: Range<usize>,
-    /// Red, green and blue of each pixel, from the top and from the left; black where nothing is rendered.
+    /// Red, green and blue of each pixel, in rows from the top, each from the left; black where nothing is rendered.
     pub pixels: Vec<[u8; 3]>,
-    /// Whether each tile is rendered, from the top and from the left.
+    /// Whether each tile is rendered, in rows from the top, each from the left.
     pub tiles: Vec<bool>,
 }
 
 impl Band {
-    /// One of which nothing is rendered.
+    /// Makes a band of which nothing is rendered.
     pub fn blank(columns: Range<usize>, rows: Range<usize>) -> Self {
         let (width, height) = (columns.len(), rows.len());
         let tiles = vec![false; width.div_ceil(TILE) * height.div_ceil(TILE)];
         Self { columns, rows, pixels: vec![[0; 3]; width * height], tiles }
     }
 
-    /// Whether all of it is rendered.
+    /// Tells whether all tiles are rendered.
     pub fn is_whole(&self) -> bool {
         self.tiles.iter().all(|is_done| *is_done)
     }
 
-    /// The rows of each band of a picture, from the top: whole tiles, and where there is a choice no more than so many
-    /// pixels.
+    /// Splits an image into bands and returns the rows of each, from the top. A band is at least one row of tiles high,
+    /// and otherwise has at most `pixels` pixels.
     pub fn split(
         columns: &Range<usize>,
         rows: &Range<usize>,
@@ -68,15 +69,15 @@ impl Band {
     }
 }
 
-/// Which tiles of a picture are rendered, as it comes band by band.
+/// Records which tiles of an image are rendered, band by band.
 pub struct Tiles {
     width: usize,
     height: usize,
     strips: Vec<Strip>,
 }
 
-/// The tiles side by side. A picture has few strips that are neither whole nor empty, so that this takes little memory
-/// for large ones.
+/// One row of tiles. An image has few strips that are partly rendered, so this takes little memory even for large
+/// images.
 enum Strip {
     Nothing,
     Whole,
@@ -84,12 +85,12 @@ enum Strip {
 }
 
 impl Tiles {
-    /// None of a picture of this size yet.
+    /// Makes the record of an image of this width and height in pixels, of which nothing is rendered.
     pub fn none([width, height]: [usize; 2]) -> Self {
         Self { width, height, strips: Vec::new() }
     }
 
-    /// Adds those of the next band.
+    /// Adds the tiles of the next band.
     pub fn add(&mut self, band: &Band) {
         let strips = band.tiles.chunks(self.width.div_ceil(TILE));
         self.strips.extend(strips.map(|tiles| match tiles {
@@ -99,7 +100,7 @@ impl Tiles {
         }));
     }
 
-    /// Whether each pixel of a row, counted from the top, is rendered.
+    /// Tells for each pixel of a row, counted from the top, whether it is rendered.
     pub fn row(&self, row: usize) -> impl Iterator<Item = bool> + '_ {
         let strip = self.strips.get(row / TILE).unwrap_or(&Strip::Nothing);
         (0..self.width).map(move |column| match strip {
@@ -109,7 +110,7 @@ impl Tiles {
         })
     }
 
-    /// How many of the picture's pixels are rendered.
+    /// Returns the number of rendered pixels.
     pub fn pixels(&self) -> usize {
         let lengths = |side: usize| (0..side).step_by(TILE).map(move |from| TILE.min(side - from));
         let strips = iter::zip(&self.strips, lengths(self.height));
@@ -126,7 +127,7 @@ impl Tiles {
             .sum()
     }
 
-    /// Whether the whole picture is rendered.
+    /// Tells whether the whole image is rendered.
     pub fn is_whole(&self) -> bool {
         self.pixels() == self.width * self.height
     }

@@ -48,6 +48,15 @@ impl Choices {
         (self.all)()
     }
 
+    /// All of them, by number and name, as messages list them.
+    pub fn listed(&self) -> String {
+        let shown = |choice: ChoiceName| match choice.number {
+            Some(number) => format!("{number} (`{}`)", choice.name),
+            None => format!("`{}`", choice.name),
+        };
+        self.all().into_iter().map(shown).collect::<Vec<_>>().join(", ")
+    }
+
     /// The one of this name.
     pub fn named(&self, name: &str) -> Option<ChoiceName> {
         self.all().into_iter().find(|choice| choice.name == name)

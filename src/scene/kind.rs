@@ -1,9 +1,11 @@
 //! The kinds of entity that a scene is made of.
 
+use serde::Serialize;
 use std::fmt;
 
 /// The kinds of entity that a scene is made of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Kind {
     /// The viewer and the screen; a scene has one.
     Camera,

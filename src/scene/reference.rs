@@ -1,4 +1,4 @@
-//! The reference of the scene language, written from the tables: `docs/language.md`.
+//! The reference of the scene language: what its words mean, written from the tables.
 
 use crate::scene::choice::{Choice, ChoiceName};
 use crate::scene::entity::Entity;
@@ -7,52 +7,22 @@ use crate::scene::pparm::Attribute;
 use crate::scene::procedural::{OnPlane, OnSphere};
 use crate::scene::profile::Profile;
 use crate::scene::registry::Registry;
-use crate::scene::value::{Datum, Type, Value};
+use crate::scene::value::Datum;
+use crate::words;
+use std::iter;
 
-const INTRODUCTION: &str = r#"# The scene language
+/// What is to be said of the language whatever its words are.
+const LANGUAGE: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/language.md"));
 
-This page is generated from the tables of the plugins by `cargo run --release -- list --markdown > docs/language.md`,
-and its images by
-
-```sh
-for scene in scenes/entities/*.ray; do
-    cargo run --release -- render $scene -o docs/entities/$(basename $scene .ray).png
-done
-```
-
-A scene is a sequence of entities, `TYPE NAME { ATTRIBUTES }`. Words are separated by white space and by braces; a `#` at
-the beginning of a word starts a comment, which ends with the line. A name is any word; one that contains white space
-goes in quotes, `"dark red"`, in which `\"` is a quote and `\\` a backslash. Each attribute is followed by its values, and
-attributes may come in any order. A material or a texture must be defined before it is used. Lengths are in world units:
-the image plane is z = 0, the lower left corner of the image is the world's origin, x points right, y up and z toward the
-viewer. A colour is red, green and blue; 1 is the brightest that an image can show, after the light has been divided by
-the distance that it travelled.
-
-The byte of a channel is 255 times its colour, truncated rather than rounded; above 1 it is 255, below 0 it is 0. No
-transfer function is applied. Colours are therefore not amounts of light but the values sent to a display, as in the
-notes: half the colour is half the byte, 127, which a display shows as about a fifth of the light of white. A PNG
-declares its bytes accordingly (`sRGB`), and looks like the PPM of the same scene. In a pixel with several `samples`,
-their colours are averaged first and clamped to 1 afterwards, as in the notes: the edge of something far brighter than
-white is not smooth, since one bright sample is enough for a white pixel.
-
-The same scenes can be written in TOML, in files whose names end in `.toml`: `sphere ball { radius 2 }` becomes the table
-`[sphere.ball]` with `radius = 2` below it; several values go in brackets, `center = [4, 2, -4]`, and names in quotes,
-`material = "red"`. Lights that share a name are written `[[light.lamp]]` each. The order of the file matters in TOML,
-too. `tabray convert` converts either syntax to the other, and `tabray schema` prints a JSON Schema for editors.
-"#;
-
-const PROFILES: &str = "
-A profile, whether a surfer or a formula, is the distance from the axis at each height. Where it is below 0 there is no
-surface. When the scene is loaded, tabray proves where that is, down to heights that are neighbouring f64 numbers, and
-derives bounds by which rays find the surface, so that no part is too thin to be kept. A profile for which the proof
-fails is refused, with the height and the reason: one that is unbounded; one that crosses 0 or bends too often, as
-`sin(y)` does over a height of 1e9; and one whose sign rounding leaves open by more than 1/4294967296 of its largest
-radius. Loading a profile takes at most 60 million operations, where a function counts as eight: some tenths of a second.
-";
-
-/// The reference as Markdown. Pictures are named `entities/TYPE.png`, scenes `../scenes/entities/TYPE.ray`.
+/// All of the reference as one text of Markdown.
 pub fn markdown(registry: &Registry) -> String {
-    let mut text = INTRODUCTION.to_owned();
+    let mut text = LANGUAGE.to_owned();
+    let mut add = |title: &str, words: &mut dyn Iterator<Item = Word>| {
+        text += &format!("\n## {title}\n");
+        text.extend(words.map(|word| {
+            format!("\n### {}\n\n{}.\n{}", word.name, words::capital(word.meaning), word.details)
+        }));
+    };
     for (kind, title) in [
         (Kind::Camera, "The camera"),
         (Kind::Material, "Materials"),
@@ -60,34 +30,79 @@ pub fn markdown(registry: &Registry) -> String {
         (Kind::Light, "Lights"),
         (Kind::Object, "Objects"),
     ] {
-        text += &format!("\n## {title}\n");
-        text.extend(registry.iter().filter(|entity| entity.kind() == kind).map(entity_section));
+        add(title, &mut registry.iter().filter(|entity| entity.kind() == kind).map(Word::entity));
     }
-    text += "\n## Procedural shaders\n\nThe values of `shader`, by name or by number; the numbers differ on spheres.\n\n";
-    text += &choices::<OnPlane>("number on planes");
-    text += "\n";
-    text += &choices::<OnSphere>("number on spheres");
-    text += "\n## Profiles\n\nThe values of `surfer`, by name or by number.\n\n";
-    text += &choices::<&'static Profile>("number");
-    text += PROFILES;
+    add("Procedural shaders", &mut shaders());
+    add("Profiles", &mut profiles());
     text
 }
 
-fn entity_section(entity: &'static Entity) -> String {
-    let name = entity.name;
-    let also = match entity.aliases {
-        [] => String::new(),
-        aliases => {
-            format!("; alias {}", aliases.iter().map(|alias| format!("`{alias}`")).collect::<String>())
-        }
+/// A page for each word of the language, with its name: each entity type, procedural shader and profile. They stand in
+/// `snapshots/reference`, from where they show the pictures beside it.
+pub fn pages(registry: &Registry) -> impl Iterator<Item = (&'static str, String)> {
+    let entities = registry.iter().map(|entity| {
+        let (name, kind) = (entity.name, words::capital(&entity.kind().to_string()));
+        let scene = format!(
+            "\n[This scene](../../scenes/entities/{name}.ray):\n\n![{name}](../entities/{name}.snap.png)\n"
+        );
+        (kind, scene, Word::entity(entity))
+    });
+    let shaders = shaders().map(|word| ("Procedural shader".to_owned(), String::new(), word));
+    let profiles = profiles().map(|word| ("Profile".to_owned(), String::new(), word));
+    entities.chain(shaders).chain(profiles).map(|(what, scene, Word { name, meaning, place, details })| {
+        let file = place.split(':').next().unwrap_or_default();
+        let plugin = format!("[{file}](../../{file})");
+        (name, format!("# {name}\n\n{what}: {meaning}. Its plugin is {plugin}.\n{scene}{details}"))
+    })
+}
+
+/// A word of the language.
+struct Word {
+    name: &'static str,
+    meaning: &'static str,
+    /// The file and line that registers it.
+    place: String,
+    /// What there is to tell beside that: lines of Markdown, the first of them empty.
+    details: String,
+}
+
+impl Word {
+    fn entity(entity: &'static Entity) -> Self {
+        let also = match entity.aliases {
+            [] => String::new(),
+            aliases => format!("\nAlso written {}.\n", words::list(aliases.iter().copied())),
+        };
+        let rows: String = entity.attributes().map(attribute_row).collect();
+        let details =
+            format!("{also}\n| attribute | values | default | meaning |\n|---|---|---|---|\n{rows}");
+        Self { name: entity.name, meaning: entity.meaning, place: entity.place(), details }
+    }
+
+    /// One that has a number in some places.
+    fn choice(choice: ChoiceName, numbers: &[(Option<i64>, &str)]) -> Self {
+        let told = numbers.iter().filter_map(|(number, place)| Some(format!("{}{place}", (*number)?)));
+        let told = told.collect::<Vec<_>>().join(" and ");
+        let details = if told.is_empty() { told } else { format!("\nIts number is {told}.\n") };
+        Self { name: choice.name, meaning: choice.meaning, place: words::place(choice.place), details }
+    }
+}
+
+fn shaders() -> impl Iterator<Item = Word> {
+    let word = |(plane, sphere): (ChoiceName, ChoiceName)| {
+        Word::choice(plane, &[(plane.number, " on planes"), (sphere.number, " on spheres")])
     };
-    let rows: String = entity.attributes().map(attribute_row).collect();
-    format!(
-        "\n### {name}\n\n{}{also}. [This scene](../scenes/entities/{name}.ray):\n\n\
-         ![an image of {name}](entities/{name}.png)\n\n\
-         | attribute | values | default | meaning |\n|---|---|---|---|\n{rows}",
-        capital(entity.meaning)
-    )
+    iter::zip(by_name::<OnPlane>(), by_name::<OnSphere>()).map(word)
+}
+
+fn profiles() -> impl Iterator<Item = Word> {
+    by_name::<&'static Profile>().map(|profile| Word::choice(profile, &[(profile.number, "")]))
+}
+
+/// All things of a sort, sorted by name.
+pub(super) fn by_name<T: Choice>() -> impl Iterator<Item = ChoiceName> {
+    let mut all: Vec<_> = T::all().iter().map(T::option).collect();
+    all.sort_by_key(|choice| choice.name);
+    all.into_iter()
 }
 
 fn attribute_row(attribute: &'static dyn Attribute) -> String {
@@ -109,19 +124,4 @@ fn attribute_row(attribute: &'static dyn Attribute) -> String {
         meaning += &format!("; must be {}", attribute.rule());
     }
     format!("| {} | {} | {default} | {meaning} |\n", names.join(", "), attribute.takes())
-}
-
-fn choices<T: Choice + Value>(number: &str) -> String {
-    let Type::Choice(choices) = T::TYPE else { return String::new() };
-    let row = |ChoiceName { name, number, meaning, .. }: ChoiceName| {
-        let number = number.map_or("".to_owned(), |number| number.to_string());
-        format!("| `{name}` | {number} | {meaning} |\n")
-    };
-    let rows: String = choices.all().into_iter().map(row).collect();
-    format!("| {} | {number} | meaning |\n|---|---|---|\n{rows}", choices.what)
-}
-
-fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
 }

@@ -92,9 +92,10 @@ impl Registry {
         nearest(word, self.entities.keys().copied())
     }
 
-    /// How a scene writes an entity of this kind.
+    /// How a scene writes an entity of this kind: the type that is called as the kind is, whatever others come before it.
     pub(crate) fn example(&self, kind: Kind, name: &str, syntax: Syntax) -> String {
-        let entity = self.iter().find(|entity| entity.kind() == kind);
+        let mut of_kind = self.iter().filter(|entity| entity.kind() == kind);
+        let entity = self.find(&kind.to_string()).or_else(|| of_kind.next());
         entity.map(|entity| syntax.entity_usage(entity, name)).unwrap_or_default()
     }
 

@@ -5,102 +5,187 @@ use crate::scene::kind::Kind;
 use crate::scene::pparm::Attribute;
 use crate::scene::registry::Registry;
 use crate::scene::value::{Datum, Type};
-use serde_json::{Map, Value, json};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::iter;
 
-/// The schema (draft 2020-12). Rules that the language states in words are in the descriptions alone.
-pub fn of(registry: &Registry) -> Value {
-    let names = |entity: &'static Entity| [entity.name].into_iter().chain(entity.aliases.iter().copied());
-    let kinds =
-        registry.iter().flat_map(|entity| names(entity).map(move |name| (name.to_owned(), kind(entity))));
+/// A schema (draft 2020-12), or a part of one: the words of that language that scenes need, those that are not given
+/// left out, in the order in which they are written.
+#[derive(Clone, Default, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Schema {
+    /// The language of the schema, which the whole one names.
+    #[serde(rename = "$schema", skip_serializing_if = "Option::is_none")]
+    pub language: Option<&'static str>,
+    /// What fields beside `properties` hold.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub additional_properties: Option<Others>,
+    /// Schemas of which all fit.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub all_of: Vec<Schema>,
+    /// Schemas of which one or more fit.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub any_of: Vec<Schema>,
+    /// What counts where nothing is given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub default: Option<Constant>,
+    /// What editors tell of it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub description: Option<String>,
+    /// All that it may be.
+    #[serde(rename = "enum", skip_serializing_if = "Option::is_none")]
+    pub choices: Option<Vec<Constant>>,
+    /// What each value of an array is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub items: Option<Box<Schema>>,
+    /// How many values an array has at most.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub max_items: Option<usize>,
+    /// How many fields an object has at most.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub max_properties: Option<usize>,
+    /// How many values an array has at least.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub min_items: Option<usize>,
+    /// How many fields an object has at least.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub min_properties: Option<usize>,
+    /// Schemas of which exactly one fits.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub one_of: Vec<Schema>,
+    /// What an object's fields hold.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub properties: Option<BTreeMap<&'static str, Schema>>,
+    /// The fields that an object must have.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub required: Option<Vec<&'static str>>,
+    /// What editors call it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub title: Option<&'static str>,
+    /// The sort of value: `object`, `array`, `string`, `number` or `integer`.
+    #[serde(rename = "type", skip_serializing_if = "Option::is_none")]
+    pub sort: Option<&'static str>,
+}
+
+/// What fields hold whose names a schema does not have.
+#[derive(Clone, Serialize)]
+#[serde(untagged)]
+pub enum Others {
+    /// Anything (true), or there are none (false).
+    Any(bool),
+    /// What this schema says.
+    Each(Box<Schema>),
+}
+
+/// The values of an attribute.
+#[derive(Clone, Serialize)]
+#[serde(untagged)]
+pub enum Constant {
+    /// A whole number.
+    Whole(i64),
+    /// Several of them.
+    Wholes(Vec<i64>),
+    /// A number.
+    Number(f64),
+    /// Several of them.
+    Numbers(Vec<f64>),
+    /// A word, a name or a formula.
+    Text(String),
+}
+
+/// The schema of scenes. Rules that the language states in words are in the descriptions alone.
+pub fn of(registry: &Registry) -> Schema {
+    let names = |entity: &'static Entity| iter::once(entity.name).chain(entity.aliases.iter().copied());
     let cameras = registry.iter().filter(|entity| entity.kind() == Kind::Camera).flat_map(names);
-    let one_camera: Vec<_> = cameras.map(|name| json!({ "required": [name] })).collect();
-    json!({
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "title": "a tabray scene",
-        "type": "object",
-        "additionalProperties": false,
-        "oneOf": one_camera,
-        "properties": kinds.collect::<Map<_, _>>(),
-    })
+    let kinds = registry.iter().flat_map(|entity| names(entity).map(move |name| (name, kind(entity))));
+    Schema {
+        language: Some("https://json-schema.org/draft/2020-12/schema"),
+        title: Some("a tabray scene"),
+        additional_properties: Some(Others::Any(false)),
+        one_of: cameras.map(requiring).collect(),
+        properties: Some(kinds.collect()),
+        ..Schema::sort("object")
+    }
+}
+
+impl Schema {
+    fn sort(name: &'static str) -> Self {
+        Self { sort: Some(name), ..Self::default() }
+    }
+
+    /// An array of such values.
+    fn array(self, min: usize, max: Option<usize>) -> Self {
+        let items = Some(Box::new(self));
+        Self { items, min_items: Some(min), max_items: max, ..Self::sort("array") }
+    }
+}
+
+fn requiring(name: &'static str) -> Schema {
+    Schema { required: Some(vec![name]), ..Schema::default() }
 }
 
 /// All entities of one type, by name.
-fn kind(entity: &'static Entity) -> Value {
+fn kind(entity: &'static Entity) -> Schema {
     let is_single = matches!(entity.kind(), Kind::Camera | Kind::Material | Kind::Texture);
     let one = body(entity);
     let named = if is_single {
         one
     } else {
         // Objects and lights may share a name.
-        json!({ "anyOf": [one, { "type": "array", "minItems": 1, "items": one }] })
+        Schema { any_of: vec![one.clone(), one.array(1, None)], ..Schema::default() }
     };
-    let mut schema = json!({
-        "description": format!("{}: {}", entity.kind(), entity.meaning),
-        "type": "object",
-        "minProperties": 1,
-        "additionalProperties": named,
-    });
-    if entity.kind() == Kind::Camera {
-        schema["maxProperties"] = json!(1);
+    Schema {
+        description: Some(format!("{}: {}", entity.kind(), entity.meaning)),
+        min_properties: Some(1),
+        max_properties: (entity.kind() == Kind::Camera).then_some(1),
+        additional_properties: Some(Others::Each(Box::new(named))),
+        ..Schema::sort("object")
     }
-    schema
 }
 
 /// The attributes of one entity.
-fn body(entity: &'static Entity) -> Value {
-    let mut properties = Map::new();
+fn body(entity: &'static Entity) -> Schema {
+    let mut properties = BTreeMap::new();
     let (mut required, mut all_of) = (Vec::new(), Vec::new());
     for attribute in entity.attributes() {
-        let names: Vec<_> =
-            [attribute.name()].into_iter().chain(attribute.aliases().iter().copied()).collect();
-        for name in &names {
-            properties.insert((*name).to_owned(), value(attribute));
-        }
+        let names: Vec<_> = iter::once(attribute.name()).chain(attribute.aliases().iter().copied()).collect();
+        properties.extend(names.iter().map(|name| (*name, value(attribute))));
         if attribute.default().is_none() && names.len() == 1 {
             required.push(attribute.name());
         } else if attribute.default().is_none() {
-            let each: Vec<_> = names.iter().map(|name| json!({ "required": [name] })).collect();
-            all_of.push(json!({ "anyOf": each }));
+            let any_of = names.into_iter().map(requiring).collect();
+            all_of.push(Schema { any_of, ..Schema::default() });
         }
     }
-    let mut schema = json!({
-        "type": "object",
-        "additionalProperties": false,
-        "minProperties": usize::from(!properties.is_empty()),
-        "properties": properties,
-        "required": required,
-    });
-    if !all_of.is_empty() {
-        schema["allOf"] = json!(all_of);
+    Schema {
+        additional_properties: Some(Others::Any(false)),
+        min_properties: Some(usize::from(!properties.is_empty())),
+        properties: Some(properties),
+        required: Some(required),
+        all_of,
+        ..Schema::sort("object")
     }
-    schema
 }
 
 /// The values of one attribute.
-fn value(attribute: &'static dyn Attribute) -> Value {
+fn value(attribute: &'static dyn Attribute) -> Schema {
     let one = match attribute.value_type() {
-        Type::Whole => json!({ "type": "integer" }),
-        Type::Number => json!({ "type": "number" }),
-        Type::Word | Type::Name(_) | Type::Formula => json!({ "type": "string" }),
+        Type::Whole => Schema::sort("integer"),
+        Type::Number => Schema::sort("number"),
+        Type::Word | Type::Name(_) | Type::Formula => Schema::sort("string"),
         Type::Choice(choices) => {
             let all = choices.all();
-            let numbers = all.iter().filter_map(|choice| choice.number).map(|number| json!(number));
-            let names: Vec<_> = all.iter().map(|choice| json!(choice.name)).chain(numbers).collect();
-            json!({ "enum": names })
+            let names = all.iter().map(|choice| Constant::Text(choice.name.to_owned()));
+            let numbers = all.iter().filter_map(|choice| choice.number).map(Constant::Whole);
+            Schema { choices: Some(names.chain(numbers).collect()), ..Schema::default() }
         }
     };
-    let several =
-        |count: usize| json!({ "type": "array", "items": one, "minItems": count, "maxItems": count });
-    let mut forms: Vec<_> = attribute.arity().iter().map(|count| several(*count)).collect();
-    if attribute.arity().contains(&1) {
-        forms.insert(0, one.clone());
-    }
-    let mut schema = if forms.len() == 1 { forms.remove(0) } else { json!({ "anyOf": forms }) };
-    schema["description"] = json!(description(attribute));
-    if let Some(default) = attribute.default().filter(|default| *default != Datum::Absent) {
-        schema["default"] = constant(&default);
-    }
-    schema
+    let several = attribute.arity().iter().map(|count| one.clone().array(*count, Some(*count)));
+    let is_alone = attribute.arity().contains(&1).then(|| one.clone());
+    let mut forms: Vec<_> = is_alone.into_iter().chain(several).collect();
+    let any = if forms.len() == 1 { forms.remove(0) } else { Schema { any_of: forms, ..Schema::default() } };
+    let default = attribute.default().as_ref().and_then(Constant::of);
+    Schema { description: Some(description(attribute)), default, ..any }
 }
 
 fn description(attribute: &dyn Attribute) -> String {
@@ -114,17 +199,25 @@ fn description(attribute: &dyn Attribute) -> String {
     text
 }
 
-/// The values of an attribute as JSON.
-pub(crate) fn constant(datum: &Datum) -> Value {
-    match datum {
-        Datum::Whole(numbers) if numbers.len() == 1 => json!(numbers[0]),
-        Datum::Whole(numbers) => json!(numbers),
-        Datum::Numbers(numbers) if numbers.len() == 1 => json!(numbers[0]),
-        Datum::Numbers(numbers) => json!(numbers),
-        Datum::Word(word) => json!(word),
-        Datum::Formula(formula) => json!(formula.to_string()),
-        Datum::Absent => Value::Null,
-        Datum::Material { name, .. } | Datum::Texture { name, .. } => json!(**name),
-        Datum::Choice(choice) => choice.number.map_or(json!(choice.name), |number| json!(number)),
+impl Constant {
+    /// The values of an attribute, if it has any.
+    pub(crate) fn of(datum: &Datum) -> Option<Self> {
+        Some(match datum {
+            Datum::Whole(numbers) => match numbers[..] {
+                [number] => Self::Whole(number),
+                _ => Self::Wholes(numbers.clone()),
+            },
+            Datum::Numbers(numbers) => match numbers[..] {
+                [number] => Self::Number(number),
+                _ => Self::Numbers(numbers.clone()),
+            },
+            Datum::Word(word) => Self::Text(word.clone()),
+            Datum::Formula(formula) => Self::Text(formula.to_string()),
+            Datum::Material { name, .. } | Datum::Texture { name, .. } => Self::Text(name.to_string()),
+            Datum::Choice(choice) => {
+                choice.number.map_or_else(|| Self::Text(choice.name.to_owned()), Self::Whole)
+            }
+            Datum::Absent => return None,
+        })
     }
 }

@@ -3,16 +3,22 @@
 use crate::scene::entity::Entity;
 use crate::scene::pparm::Attribute;
 use crate::scene::value::{Datum, Type};
+use clap::ValueEnum;
 use std::fmt;
 use std::path::Path;
 
 /// A spelling of the scene language.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Syntax {
-    /// The notes' one, `sphere ball { radius 2 }`.
+    /// The syntax of the course notes.
+    ///
+    /// As `sphere ball { radius 2 }`.
     #[default]
+    #[value(name = "ray")]
     Notes,
-    /// TOML, `[sphere.ball]` and below it `radius = 2`.
+    /// TOML.
+    ///
+    /// As `[sphere.ball]` and below it `radius = 2`.
     Toml,
 }
 

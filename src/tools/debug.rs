@@ -6,23 +6,30 @@ use crate::render::observer::{Event, Purpose, TraceObserver};
 use crate::render::plan::Plan;
 use crate::render::trace;
 use crate::scene::model::Model;
+use clap::ValueEnum;
 use std::fmt;
 use std::io::{self, Write};
 
 /// One of the notes' debug aids.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum LogLine {
-    /// The pixel, its row first.
+    /// The pixel: its row and its column.
     Pix,
-    /// The object that a ray from the viewer, a mirror or glass meets, and where.
+    /// What a ray hits, and where.
+    ///
+    /// A ray from the viewer, a mirror or glass.
     Hit,
-    /// The colour of what was met, by ambient light and lights.
+    /// The colour of what it hits.
+    ///
+    /// By ambient light and lights.
     Drgb,
     /// The pixel's bytes.
     Irgb,
-    /// The pixel's place in the picture's file, in pixels.
+    /// The pixel's offset in the image file.
+    ///
+    /// In pixels.
     Offset,
-    /// Each object that a search finds, and its distance.
+    /// Each object that a ray finds, and its distance.
     Find,
 }
 

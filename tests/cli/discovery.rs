@@ -1,26 +1,14 @@
 //! What the program tells of itself and of its language: the tables as JSON, completions, manual pages.
 
-use crate::common::program::{folder, names_in, outcome, tabray};
-use crate::common::{registry, root};
+use crate::common::program::{folder, names_in, outcome, scene, tabray};
+use crate::common::{assert_tells_fields, registry, root};
 use serde_json::Value;
-use std::collections::BTreeSet;
 use std::fs;
 
 fn printed(args: &[&str]) -> String {
     let (status, out, err) = outcome(tabray(&folder()).args(args));
     assert_eq!((status, err.as_str()), (0, ""), "{args:?}");
     String::from_utf8(out).expect("text")
-}
-
-/// The names of all fields of a JSON value, however deep.
-fn fields(value: &Value) -> BTreeSet<&str> {
-    match value {
-        Value::Object(object) => {
-            object.iter().flat_map(|(name, value)| fields(value).into_iter().chain([name.as_str()])).collect()
-        }
-        Value::Array(values) => values.iter().flat_map(fields).collect(),
-        _ => BTreeSet::new(),
-    }
 }
 
 #[test]
@@ -58,15 +46,16 @@ fn the_json_has_every_entity_attribute_and_choice() {
 
 #[test]
 fn the_docs_tell_every_field_of_the_json() {
-    let docs = fs::read_to_string(root().join("docs/tools.md")).expect("the docs");
-    let tables: Value = serde_json::from_str(&printed(&["list", "--json"])).expect("JSON");
-    let scene = root().join("scenes/wrong/duplicate-object.ray");
-    let check = ["check", "--message-format", "json", scene.to_str().expect("UTF-8")];
+    let json = |text: &str| serde_json::from_str::<Value>(text).expect("JSON");
+    assert_tells_fields("tools.md", &json(&printed(&["list", "--json"])));
+    let ball = scene("sphere/in-front.ray").display().to_string();
+    assert_tells_fields("tools.md", &json(&printed(&["bench", "--json", "--seconds", "0", &ball])));
+    let (_, _, stats) = outcome(tabray(&folder()).args(["render", &ball, "-o", "-", "--stats", "json"]));
+    assert_tells_fields("plan.md", &json(&stats));
+    let wrong = scene("wrong/duplicate-object.ray").display().to_string();
+    let check = ["check", "--message-format", "json", &wrong];
     let (_, _, err) = outcome(tabray(&folder()).args(check));
-    let message: Value = serde_json::from_str(err.lines().next().expect("a message")).expect("JSON");
-    for field in fields(&tables).union(&fields(&message)) {
-        assert!(docs.contains(&format!("`{field}`")), "the docs do not tell what `{field}` is");
-    }
+    assert_tells_fields("tools.md", &json(err.lines().next().expect("a message")));
 }
 
 #[test]

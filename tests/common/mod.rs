@@ -4,6 +4,8 @@
 pub mod program;
 
 use image::RgbImage;
+use serde_json::Value;
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use tabray::render::{Plan, Renderer};
@@ -58,6 +60,27 @@ pub fn block_with(page: &str, text: &str) -> String {
     let block = page.split("```").skip(1).step_by(2).find(|block| block.contains(text));
     let block = block.unwrap_or_else(|| panic!("the page has a block with {text}"));
     block.split_once('\n').expect("a first line, which names the language").1.to_owned()
+}
+
+/// The names of all fields of a JSON value, however deep, but for those that are names of entity types.
+pub fn fields(value: &Value) -> BTreeSet<&str> {
+    match value {
+        Value::Object(object) => {
+            let inner = object.values().flat_map(fields);
+            let names = object.keys().map(String::as_str);
+            names.filter(|name| registry().find(name).is_none()).chain(inner).collect()
+        }
+        Value::Array(values) => values.iter().flat_map(fields).collect(),
+        _ => BTreeSet::new(),
+    }
+}
+
+/// Holds a page of the docs to what it tells of: it names each field of a JSON value.
+pub fn assert_tells_fields(page: &str, value: &Value) {
+    let docs = fs::read_to_string(root().join("docs").join(page)).expect("the docs");
+    for field in fields(value) {
+        assert!(docs.contains(&format!("`{field}`")), "docs/{page} does not tell what `{field}` is");
+    }
 }
 
 /// The picture of a model.

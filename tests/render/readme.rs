@@ -1,9 +1,12 @@
-//! What the README and the docs show: the scene loads, the pictures and the reference are fresh.
+//! What the README and the docs show: the scene loads, the pictures are fresh, links lead somewhere.
 
 use crate::common;
 use crate::common::program::{folder, outcome, tabray};
 use crate::common::{block_with, load, model, render, root};
+use std::collections::BTreeSet;
 use std::fs;
+use std::path::{Path, PathBuf};
+use tabray::scene::reference;
 
 fn readme() -> String {
     fs::read_to_string(root().join("README.md")).expect("the README")
@@ -25,39 +28,81 @@ fn the_readmes_mistake_is_told_as_it_says() {
 
 #[test]
 fn the_pictures_of_the_docs_are_fresh() {
-    for (scenes, pictures) in [("scenes/gallery", "docs"), ("scenes/entities", "docs/entities")] {
-        for entry in fs::read_dir(root().join(scenes)).expect("a folder of scenes") {
-            let scene = entry.expect("an entry").path();
-            let stem = scene.file_stem().expect("a name");
-            let picture = root().join(pictures).join(stem).with_extension("png");
-            let shown = image::open(&picture).expect("a picture for each scene").into_rgb8();
-            assert!(
-                render(&load(&scene)) == shown,
-                "{} is stale: the README says how to make it",
-                picture.display()
-            );
-        }
+    for entry in fs::read_dir(root().join("scenes/gallery")).expect("a folder of scenes") {
+        let scene = entry.expect("an entry").path();
+        let stem = scene.file_stem().expect("a name");
+        let picture = root().join("docs").join(stem).with_extension("png");
+        let shown = image::open(&picture).expect("a picture for each scene").into_rgb8();
+        assert!(
+            render(&load(&scene)) == shown,
+            "{} is stale: the README says how to make it",
+            picture.display()
+        );
     }
 }
 
 #[test]
-fn the_reference_of_the_language_is_fresh() {
-    let written = fs::read_to_string(root().join("docs/language.md")).expect("the reference");
+fn the_reference_has_every_word_and_what_it_means() {
+    let reference = reference::markdown(common::registry());
     assert!(
-        written == tabray::scene::reference::markdown(common::registry()),
-        "docs/language.md is stale: its first lines say how to make it"
+        reference.starts_with(&fs::read_to_string(root().join("docs/language.md")).expect("the language"))
     );
+    for (name, page) in reference::pages(common::registry()) {
+        let (_, section) = reference.split_once(&format!("\n### {name}\n")).expect(name);
+        let section = section.split("\n### ").next().expect("a section");
+        let meaning = page.split(": ").nth(1).and_then(|rest| rest.split(". Its").next()).expect("a meaning");
+        let rows = page.lines().filter(|line| line.starts_with("| ") || line.starts_with("Its number"));
+        // It begins with a capital in one of them.
+        let meaning: String = meaning.chars().skip(1).collect();
+        for told in rows.chain([&*meaning]) {
+            assert!(section.contains(told), "{name} has no {told}");
+        }
+    }
+}
+
+/// The files that a page of Markdown links to, or shows.
+fn links(page: &Path) -> Vec<PathBuf> {
+    let text = fs::read_to_string(page).expect("a page");
+    let links = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+    let files = links.filter(|link| !link.contains("://")).filter_map(|link| link.split('#').next());
+    files.filter(|file| !file.is_empty()).map(|file| page.with_file_name(file)).collect()
 }
 
 #[test]
-fn the_readme_shows_every_entity() {
-    let readme = readme();
-    for entity in common::registry().iter() {
-        let picture = format!("![{}](docs/entities/{}.png)", entity.name, entity.name);
-        assert!(
-            readme.contains(&picture),
-            "the README shows no {}: add {picture} to its entities",
-            entity.name
-        );
+fn links_lead_to_files_that_are_there() {
+    let mut pages = vec![root().join("README.md")];
+    for folder in ["docs", "snapshots/reference"] {
+        let entries = fs::read_dir(root().join(folder)).expect("a folder");
+        let files = entries.map(|entry| entry.expect("an entry").path());
+        // Nothing stands beside a page that is not accepted yet.
+        pages.extend(files.filter(|path| {
+            let name = path.to_string_lossy();
+            name.ends_with(".md") && !name.ends_with(".snap.new.md")
+        }));
+    }
+    for page in pages {
+        for file in links(&page) {
+            assert!(file.exists(), "{} links to {}, which is not there", page.display(), file.display());
+        }
+    }
+}
+
+/// The texts in a folder, or that a file is.
+fn texts(path: &Path) -> Vec<(PathBuf, String)> {
+    if !path.is_dir() {
+        return fs::read_to_string(path).map(|text| (path.to_owned(), text)).into_iter().collect();
+    }
+    let entries = fs::read_dir(path).expect("a folder").map(|entry| entry.expect("an entry").path());
+    entries.filter(|path| !path.ends_with("target")).flat_map(|path| texts(&path)).collect()
+}
+
+#[test]
+fn no_file_lists_the_plugins() {
+    // Such a list would have to be edited for each new one.
+    let parts = ["README.md", "Cargo.toml", ".ci", "docs", "scenes", "snapshots", "src", "tests"];
+    for (path, text) in parts.iter().flat_map(|part| texts(&root().join(part))) {
+        let words: BTreeSet<_> = text.split(|c: char| !c.is_alphanumeric() && c != '_').collect();
+        let lacks = common::registry().iter().any(|entity| !words.contains(entity.name));
+        assert!(lacks, "{} names all entity types", path.display());
     }
 }

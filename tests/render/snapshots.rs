@@ -11,7 +11,7 @@ use insta::{Comparator, Settings, Snapshot};
 use std::fs;
 use std::path::Path;
 use tabray::output::Comparison;
-use tabray::scene::{self, dump};
+use tabray::scene::{self, Type, dump, reference};
 
 #[test]
 fn every_scene_dumps_as_before() {
@@ -58,8 +58,29 @@ fn every_mistake_is_explained_as_before() {
             Err(report) => report,
         };
         assert!(!report.faults().is_empty(), "{name} has no fault");
-        folder("wrong").bind(|| insta::assert_snapshot!(stem(path), report.to_string()));
+        folder("wrong").bind(|| insta::assert_snapshot!(stem(path), without_lists(report.to_string())));
     });
+}
+
+/// A message without what plugins add to it: lists of all that they register.
+fn without_lists(message: String) -> String {
+    let names: Vec<_> = registry().iter().map(|entity| format!("`{}`", entity.name)).collect();
+    let types = (names.join(", "), "[all types]".to_owned());
+    let choices = registry().iter().flat_map(|entity| entity.attributes()).filter_map(|attribute| {
+        let Type::Choice(choices) = attribute.value_type() else { return None };
+        // Plugins register no accuracies.
+        (choices.what != "accuracy").then(|| (choices.listed(), format!("[all {}s]", choices.what)))
+    });
+    choices.chain([types]).fold(message, |message, (list, short)| {
+        message.replace(&format!(" are {list}\n"), &format!(" are {short}\n"))
+    })
+}
+
+#[test]
+fn every_word_has_its_page() {
+    for (name, page) in reference::pages(registry()) {
+        folder("reference").bind(|| insta::assert_binary_snapshot!(&format!("{name}.md"), page.into_bytes()));
+    }
 }
 
 /// Where the snapshots of a scene are, by its folder; nothing for scenes that have no picture.
@@ -132,6 +153,11 @@ fn no_snapshot_is_left_of_a_scene_that_is_gone() {
             let subject = path.parent().and_then(|folder| folder.strip_prefix(root().join("snapshots")).ok());
             let name = path.file_name().and_then(|name| name.to_str()).expect("a name in UTF-8");
             let stem = name.split('.').next().expect("a stem");
+            if subject == Some(Path::new("reference")) {
+                let is_there = reference::pages(registry()).any(|(word, _)| word == stem);
+                assert!(is_there, "{} is of no plugin", path.display());
+                continue;
+            }
             let scene = root().join("scenes").join(subject.expect("a subject")).join(stem);
             let is_there = ["ray", "toml"].iter().any(|extension| scene.with_extension(extension).is_file());
             assert!(is_there, "{} has no scene", path.display());

@@ -4,6 +4,7 @@ use crate::common::{load, model, root, scenes};
 use assert_cmd::cargo::cargo_bin_cmd;
 use tabray::render::Plan;
 use tabray::tools::verify::{self, Verdict};
+use tabray::world::certify::{Enclosure, Precision};
 use tempfile::TempDir;
 
 /// Scenes in which many pixels look at an edge on purpose, or at two surfaces in one place.
@@ -37,6 +38,18 @@ fn counts(model: &tabray::scene::Model, step: usize) -> [usize; 3] {
     counts
 }
 
+/// Whether a scene has an object without an equation, of which nothing is proven: at the corners of the image it says so.
+fn has_unproven(model: &tabray::scene::Model) -> bool {
+    let [right, top] = model.camera.value.pixels.map(|side| side as f64 - 1.0);
+    let corners = [[0.0, 0.0], [right, 0.0], [0.0, top], [right, top]];
+    model.objects.iter().any(|object| {
+        corners.iter().all(|[x, y]| {
+            let sight = model.camera.value.sight(*x, *y);
+            object.shape.certify(&sight, Precision::Octuple) == Enclosure::UNKNOWN
+        })
+    })
+}
+
 #[test]
 fn no_scene_is_contradicted_and_nearly_every_pixel_is_proven() {
     for path in scenes() {
@@ -46,7 +59,8 @@ fn no_scene_is_contradicted_and_nearly_every_pixel_is_proven() {
             counts(&model, if model.camera.value.pixels[0] > 320 { 31 } else { 7 });
         assert_eq!(contradicted, 0, "{name}");
         let part = undecided as f64 / (proven + undecided) as f64;
-        assert!(part <= 0.001 || AT_EDGES.contains(&name.as_str()), "{name}: {undecided} of {proven}");
+        let may_be_more = AT_EDGES.contains(&name.as_str()) || has_unproven(&model);
+        assert!(part <= 0.001 || may_be_more, "{name}: {undecided} of {proven}");
     }
 }
 

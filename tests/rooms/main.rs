@@ -1,7 +1,7 @@
 //! Who may import whom: each room of `src/` from rooms below it alone, and no file from one that takes from it.
 //!
-//! `docs/architecture.md` lists the rooms, from the top floor down, and is held to the tree here, too. What tests of a
-//! module import is left out.
+//! `docs/architecture.md` lists the rooms, from the top floor down, and is held to the tree here, too, as
+//! `docs/dependencies.md` is to `Cargo.toml`. What tests of a module import is left out.
 
 mod imports;
 
@@ -47,7 +47,7 @@ fn architecture() -> String {
 
 /// The rooms of the page's table, from the top floor down.
 fn rooms(page: &str) -> Vec<&str> {
-    let table = page.split("\n## ").find(|part| part.starts_with("Rooms\n")).expect("a table of rooms");
+    let table = page.split("\n## ").find(|part| part.starts_with("Folders\n")).expect("a table of folders");
     let rows = table.lines().filter_map(|line| line.strip_prefix("| [`"));
     rows.filter_map(|row| row.split('`').next()).collect()
 }
@@ -148,6 +148,31 @@ fn the_page_links_to_what_is_there() {
     let words = drawing.split([' ', ',', '\n']).filter(|word| word.contains('/') && word.len() > 3);
     for word in words.filter(|word| !word.starts_with("plugins/")) {
         assert!(root().join("src").join(word).exists(), "src/{word} is not there");
+    }
+}
+
+/// The crates that a table of `Cargo.toml` names, and those of the same name for one system.
+fn crates(manifest: &toml::Table, table: &str) -> BTreeSet<String> {
+    let targets = manifest["target"].as_table().expect("targets").values().filter_map(toml::Value::as_table);
+    let tables = targets.chain([manifest]).filter_map(|target| target.get(table)?.as_table());
+    tables.flat_map(toml::Table::keys).cloned().collect()
+}
+
+#[test]
+fn every_dependency_has_its_reason() {
+    let read = |file| fs::read_to_string(root().join(file)).expect("a text");
+    let manifest: toml::Table = toml::from_str(&read("Cargo.toml")).expect("a manifest");
+    let page = read("docs/dependencies.md");
+    for (title, table) in [("In the program", "dependencies"), ("In the tests", "dev-dependencies")] {
+        let section = page.split("\n## ").find(|section| section.starts_with(title)).expect(title);
+        let rows = section.lines().filter_map(|line| line.strip_prefix("| `"));
+        let mut told = BTreeSet::new();
+        for row in rows {
+            let cells: Vec<_> = row.trim_end_matches(" |").split(" | ").collect();
+            assert!(cells.len() == 3 && cells.iter().all(|cell| !cell.is_empty()), "| `{row}");
+            assert!(told.insert(cells[0].trim_end_matches('`').to_owned()), "{row} is there twice");
+        }
+        assert_eq!(told, crates(&manifest, table), "docs/dependencies.md against the {table} of Cargo.toml");
     }
 }
 

@@ -19,8 +19,8 @@ type Scoped = (String, String);
 
 impl Highlighter {
     fn new() -> Self {
-        let mut highlighter = Self { grammar: grammar::of(registry()), patterns: HashMap::new() };
-        let grammar = highlighter.grammar.clone();
+        let grammar = serde_json::to_value(grammar::of(registry())).expect("JSON");
+        let mut highlighter = Self { grammar: grammar.clone(), patterns: HashMap::new() };
         highlighter.compile(&grammar);
         highlighter
     }

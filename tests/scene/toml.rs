@@ -63,6 +63,10 @@ fn entities_of_any_types_stay_in_the_order_of_the_text() {
     assert_eq!(titles, ["plane p", "light lamp", "plane q", "light lamp"]);
 }
 
+fn schema() -> Value {
+    serde_json::to_value(schema::of(registry())).expect("JSON")
+}
+
 fn in_json(text: &str) -> Option<Value> {
     let value: toml::Value = toml::from_str(text).ok()?;
     serde_json::to_value(value).ok()
@@ -70,7 +74,7 @@ fn in_json(text: &str) -> Option<Value> {
 
 #[test]
 fn the_schema_accepts_every_scene() {
-    let schema = jsonschema::validator_for(&schema::of(registry())).expect("a schema");
+    let schema = jsonschema::validator_for(&schema()).expect("a schema");
     for path in scenes() {
         let text = match Syntax::of_name(&path) {
             Some(Syntax::Toml) => fs::read_to_string(&path).expect("a scene"),
@@ -84,7 +88,7 @@ fn the_schema_accepts_every_scene() {
 
 #[test]
 fn the_schema_refuses_what_is_wrong_by_its_form() {
-    let schema = jsonschema::validator_for(&schema::of(registry())).expect("a schema");
+    let schema = jsonschema::validator_for(&schema()).expect("a schema");
     let mut refused = Vec::new();
     for path in wrong() {
         let name = path.file_stem().and_then(|stem| stem.to_str()).expect("a name").to_owned();
@@ -113,7 +117,7 @@ fn wrong() -> Vec<PathBuf> {
 
 #[test]
 fn every_attribute_of_a_scene_is_in_the_schema_with_its_meaning() {
-    let schema = schema::of(registry());
+    let schema = schema();
     for entity in registry().iter() {
         for attribute in entity.attributes() {
             let at = format!("/properties/{}/additionalProperties", entity.name);

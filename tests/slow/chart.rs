@@ -1,6 +1,6 @@
 //! Charts of speed against accuracy: what they say of scenes where that is known.
 
-use crate::common::{registry, root};
+use crate::common::{assert_tells_fields, registry, root};
 use assert_cmd::cargo::cargo_bin_cmd;
 use serde_json::Value;
 use std::io;
@@ -115,10 +115,14 @@ fn what_breaks_off_keeps_what_is_measured() {
     assert!(chart::words(&chart).ends_with("Interrupted: this is what had been measured by then.\n"));
 }
 
+fn numbers(folder: &Path) -> Value {
+    let text = std::fs::read_to_string(folder.join("edge.json")).expect("the numbers");
+    serde_json::from_str(&text).expect("JSON")
+}
+
 /// The errors of a chart's numbers, by panel and choice.
 fn errors(folder: &Path) -> Vec<(String, String, Value)> {
-    let text = std::fs::read_to_string(folder.join("edge.json")).expect("the numbers");
-    let numbers: Value = serde_json::from_str(&text).expect("JSON");
+    let numbers = numbers(folder);
     let panels = numbers["panels"].as_array().expect("panels");
     panels
         .iter()
@@ -150,6 +154,7 @@ fn a_chart_has_all_its_files_and_its_errors_are_the_same_twice() {
         let csv = std::fs::read_to_string(folder.path().join("edge.csv")).expect("the numbers");
         assert_eq!(csv.lines().count(), 1 + errors(folder.path()).len());
     }
+    assert_tells_fields("tools.md", &numbers(folders[0].path()));
     assert_eq!(errors(folders[0].path()), errors(folders[1].path()));
 }
 

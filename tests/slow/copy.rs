@@ -18,11 +18,13 @@ pub struct Built {
 }
 
 /// The folders and files that are copied.
-const PARTS: [&str; 6] = [
+const PARTS: [&str; 7] = [
     "Cargo.toml",
     "Cargo.lock",
     "src",
     "plugins",
+    // The reference begins with it.
+    "docs/language.md",
     "docs/example-plugin/Cargo.toml",
     "docs/example-plugin/src",
 ];

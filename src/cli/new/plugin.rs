@@ -6,9 +6,9 @@ use crate::scene::choice::Choice;
 use crate::scene::procedural::OnPlane;
 use crate::scene::profile::Profile;
 use crate::scene::registry::Registry;
+use serde::Deserialize;
 use std::fs;
 use std::path::Path;
-use toml::de::DeTable;
 
 /// Write a working, commented plugin and its scenes
 ///
@@ -88,15 +88,25 @@ pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
+/// What a `Cargo.toml` says, as far as it is of interest here.
+#[derive(Deserialize)]
+struct Manifest {
+    /// The package that it is of.
+    package: Package,
+}
+
+/// What it says of its package.
+#[derive(Deserialize)]
+struct Package {
+    /// The name.
+    name: String,
+}
+
 /// Whether the working directory is where plugins are compiled from.
 fn is_checkout() -> Result<(), Failure> {
     let manifest = fs::read_to_string("Cargo.toml").unwrap_or_default();
-    let (manifest, _) = DeTable::parse_recoverable(&manifest);
-    let package = manifest
-        .get_ref()
-        .get("package")
-        .and_then(|package| package.get_ref().get("name")?.get_ref().as_str());
-    if package == Some("tabray") && Path::new("plugins").is_dir() {
+    let is_ours = toml::from_str(&manifest).is_ok_and(|Manifest { package }| package.name == "tabray");
+    if is_ours && Path::new("plugins").is_dir() {
         return Ok(());
     }
     Err(Failure::Usage(

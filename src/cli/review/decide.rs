@@ -3,13 +3,13 @@
 use super::items::items;
 use super::pending::{self, Pending};
 use crate::cli::failure::{Failure, tell};
-use crate::cli::serve::{self, Server};
+use crate::cli::serve::{self, Server, Work};
 use crate::cli::{messages, report};
 use crate::scene::registry::Registry;
 use crate::words;
 use hyper::body::Bytes;
 use hyper::{Request, Response, StatusCode};
-use serde_json::Value;
+use serde::Deserialize;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
@@ -22,9 +22,18 @@ pub fn serve(
 ) -> Result<(), Failure> {
     let server = Server::open(port)?;
     messages::note(&format!("review at {} (Ctrl-C quits)", server.url()));
+    // A page is not made while a snapshot is moved.
+    let work = Work::new(1);
     let run = server.run(async move |request: Request<Bytes>| {
-        let verdict = match (request.method().as_str(), request.uri().path()) {
-            ("GET", "/") => return ControlFlow::Continue(page(registry, &folder, before.as_deref())),
+        let path = (request.method().as_str(), request.uri().path());
+        if path == ("GET", "/") {
+            let (folder, before) = (folder.clone(), before.clone());
+            let page = work.run(move |_| page(registry, &folder, before.as_deref())).await;
+            let failed = || serve::text(StatusCode::INTERNAL_SERVER_ERROR, "internal error");
+            return ControlFlow::Continue(page.unwrap_or_else(failed));
+        }
+        let _turn = work.turn().await;
+        let verdict = match path {
             ("POST", "/accept") => decide(&folder, request.body(), "accepted", Pending::accept),
             ("POST", "/reject") => decide(&folder, request.body(), "rejected", Pending::reject),
             _ => Err((StatusCode::NOT_FOUND, "not found".to_owned())),
@@ -54,18 +63,25 @@ fn page(registry: &Registry, folder: &Path, before: Option<&Path>) -> Response<s
     }
 }
 
-/// Does what was decided on the page, which sends a snapshot's name and the version that it showed, if the snapshot is
-/// still that.
+/// What the page sends to have a snapshot accepted or rejected.
+#[derive(Deserialize)]
+struct Seen {
+    /// The path of the snapshot.
+    snapshot: String,
+    /// The version that the page showed.
+    version: String,
+}
+
+/// Does what was decided on the page, if the snapshot is still the one that it showed.
 fn decide(
     folder: &Path,
     body: &[u8],
     verdict: &str,
     act: impl Fn(&Pending) -> Result<(), Failure>,
 ) -> Result<String, (StatusCode, String)> {
-    let seen: Value = serde_json::from_slice(body).unwrap_or_default();
-    let (Some(name), Some(version)) = (seen["snapshot"].as_str(), seen["version"].as_str()) else {
-        return Err((StatusCode::BAD_REQUEST, "the request names no snapshot".to_owned()));
-    };
+    let seen = serde_json::from_slice(body);
+    let Seen { snapshot: name, version } =
+        seen.map_err(|_| (StatusCode::BAD_REQUEST, "the request names no snapshot".to_owned()))?;
     let failed = |failure: Failure| {
         tell(&failure);
         (StatusCode::INTERNAL_SERVER_ERROR, "failed: see the terminal for the reason".to_owned())

@@ -4,7 +4,7 @@ use super::pending::{self, Content, Pending};
 use crate::cli::explain::Place;
 use crate::cli::failure::{Failure, tell};
 use crate::cli::report::{Change, Decision, Item};
-use crate::cli::{input, picture};
+use crate::cli::{crash, input, picture};
 use crate::output::compare::Comparison;
 use crate::scene::registry::Registry;
 use std::env;
@@ -21,7 +21,7 @@ pub fn items(
     let mut items = Vec::new();
     let found = pending::find(folder)?;
     for new in &found {
-        match Pending::read(new).and_then(|snapshot| item(registry, &snapshot, before)) {
+        match Pending::read(new).and_then(|snapshot| crash::catch(|| item(registry, &snapshot, before))?) {
             Ok(item) => items.push(item),
             Err(failure) => {
                 tell(&failure);
@@ -63,26 +63,17 @@ fn change(snapshot: &Pending) -> Result<Change, Failure> {
     let unreadable = |reason: String| {
         Failure::Usage(format!("cannot show the snapshot `{}`: {reason}", snapshot.path.display()), None)
     };
-    match (&snapshot.old, &snapshot.new) {
-        (old, Content::Text(new)) => {
-            let old = match old {
-                Some(Content::Text(old)) => Some(old.clone()),
-                _ => None,
-            };
-            Ok(Change::Text { old, new: new.clone() })
-        }
-        (old, Content::Binary(new, _)) => {
-            let decode = |bytes: &Vec<u8>| picture::decode(Cursor::new(bytes));
-            let new = decode(new).map_err(unreadable)?;
-            // An old picture that is none is a reason to have a new one.
-            let old = match old {
-                Some(Content::Binary(old, _)) => decode(old).ok(),
-                _ => None,
-            };
-            let comparison = old.as_ref().and_then(|old| Comparison::new(old, &new, 0));
-            Ok(Change::Picture { old, new, names: ["old".to_owned(), "new".to_owned()], comparison })
-        }
+    let (old, new) = (snapshot.old.as_ref(), &snapshot.new);
+    if let Some(new) = new.text() {
+        let old = old.and_then(Content::text).map(str::to_owned);
+        return Ok(Change::Text { old, new: new.to_owned() });
     }
+    let decode = |content: &Content| picture::decode(Cursor::new(content.bytes()));
+    let new = decode(new).map_err(unreadable)?;
+    // An old picture that is none is a reason to have a new one.
+    let old = old.and_then(|old| decode(old).ok());
+    let comparison = old.as_ref().and_then(|old| Comparison::new(old, &new, 0));
+    Ok(Change::Picture { old, new, names: ["old".to_owned(), "new".to_owned()], comparison })
 }
 
 /// The scene of a picture's snapshot, if there is one: `snapshots/sphere/ball.snap` is of `scenes/sphere/ball.ray`.

@@ -5,11 +5,12 @@
 //! beside `ball.snap.new`.
 
 use crate::cli::failure::Failure;
-use crate::cli::output::Output;
+use crate::cli::output;
+use crate::files;
 use crate::words;
 use std::fs;
 use std::hash::{DefaultHasher, Hash, Hasher};
-use std::io::{self, Write};
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 /// A snapshot that waits for a decision.
@@ -33,11 +34,30 @@ pub enum Content {
     Binary(Vec<u8>, String),
 }
 
+impl Content {
+    /// The text that it is, if it is one: a page of Markdown is, in a file of its own.
+    pub fn text(&self) -> Option<&str> {
+        match self {
+            Self::Binary(bytes, extension) if extension == "md" => str::from_utf8(bytes).ok(),
+            Self::Binary(..) => None,
+            Self::Text(text) => Some(text),
+        }
+    }
+
+    /// Its bytes.
+    pub fn bytes(&self) -> &[u8] {
+        match self {
+            Self::Text(text) => text.as_bytes(),
+            Self::Binary(bytes, _) => bytes,
+        }
+    }
+}
+
 /// The files of pending snapshots at a path: below a folder, sorted, or the one of a snapshot.
 pub fn find(path: &Path) -> Result<Vec<PathBuf>, Failure> {
     if !path.is_dir() {
         let snapshot = if path.extension() == Some("new".as_ref()) { &path.with_extension("") } else { path };
-        return match with(snapshot, ".new") {
+        return match output::ended(snapshot, ".new") {
             new if new.is_file() => Ok(vec![new]),
             _ if snapshot.is_file() => {
                 Err(Failure::Usage(format!("nothing is pending for `{}`", path.display()), None))
@@ -74,10 +94,12 @@ impl Pending {
         let cannot = |file: &Path, reason: &str| {
             Failure::Usage(format!("cannot read the snapshot `{}`: {reason}", file.display()), None)
         };
-        let file = fs::read_to_string(new).map_err(|error| cannot(new, &words::reason(&error)))?;
+        let file = files::open(new)
+            .and_then(io::read_to_string)
+            .map_err(|error| cannot(new, &words::reason(&error)))?;
         let is = content(new, &file).map_err(|reason| cannot(new, &reason))?;
         let is = is.ok_or_else(|| cannot(new, "the file beside it is missing"))?;
-        let old = match fs::read_to_string(&path) {
+        let old = match files::open(&path).and_then(io::read_to_string) {
             Ok(old) => content(&path, &old).map_err(|reason| cannot(&path, &reason))?,
             Err(error) if error.kind() == io::ErrorKind::NotFound => None,
             Err(error) => return Err(cannot(&path, &words::reason(&error))),
@@ -95,22 +117,22 @@ impl Pending {
     /// Puts what is new in the place of what is old.
     pub fn accept(&self) -> Result<(), Failure> {
         if let Content::Binary(bytes, extension) = &self.new {
-            put(&with(&self.path, &format!(".{extension}")), bytes)?;
+            output::replace(&output::ended(&self.path, format!(".{extension}")), bytes)?;
         }
         // The line of the test's source is for reviewing alone: it changes too often to be kept.
         let kept = |line: &&str| !line.starts_with("assertion_line:");
         let (header, text) = parts(&self.file).unwrap_or_default();
         let header: String = header.split_inclusive('\n').filter(kept).collect();
-        put(&self.path, format!("---\n{header}---\n{text}").as_bytes())?;
+        output::replace(&self.path, format!("---\n{header}---\n{text}").as_bytes())?;
         self.reject()
     }
 
     /// Removes what is new.
     pub fn reject(&self) -> Result<(), Failure> {
-        let new = with(&self.path, ".new");
+        let new = output::ended(&self.path, ".new");
         let binary = match &self.new {
             Content::Text(_) => None,
-            Content::Binary(_, extension) => Some(with(&new, &format!(".{extension}"))),
+            Content::Binary(_, extension) => Some(output::ended(&new, format!(".{extension}"))),
         };
         [Some(new), binary].into_iter().flatten().try_for_each(|file| {
             fs::remove_file(&file).map_err(|error| {
@@ -131,11 +153,17 @@ fn content(path: &Path, file: &str) -> Result<Option<Content>, String> {
     }
     let extension = field("extension").filter(|extension| extension.chars().all(char::is_alphanumeric));
     let extension = extension.ok_or("its header names no extension")?;
-    match fs::read(with(path, &format!(".{extension}"))) {
+    match bytes(&output::ended(path, format!(".{extension}"))) {
         Ok(bytes) => Ok(Some(Content::Binary(bytes, extension.to_owned()))),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
         Err(error) => Err(format!("its .{extension} file: {}", words::reason(&error))),
     }
+}
+
+fn bytes(path: &Path) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    files::open(path)?.read_to_end(&mut bytes)?;
+    Ok(bytes)
 }
 
 /// The header's lines and what comes after them.
@@ -149,20 +177,4 @@ fn parts(file: &str) -> Option<(&str, &str)> {
         end += line.len();
     }
     None
-}
-
-/// A path with something appended: `with_extension` would cut what the name ends in.
-fn with(path: &Path, end: &str) -> PathBuf {
-    let mut path = path.as_os_str().to_owned();
-    path.push(end);
-    path.into()
-}
-
-/// Writes a file in the place of another, or of none.
-fn put(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    let mut output = Output::open(path)?;
-    output
-        .write_all(bytes)
-        .and_then(|()| output.finish())
-        .map_err(|error| Failure::cannot_write(path, &error))
 }

@@ -3,23 +3,39 @@
 use super::frame::Frame;
 use crate::render::bytes::to_byte;
 use crate::render::progressive::Area;
+use crate::words::json;
 use crate::world::material::Rgb;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use hyper::body::Bytes;
-use serde_json::{Value, json};
+use serde::Serialize;
 use std::time::Duration;
 
 /// A sound scene, whose picture follows in parts.
 pub fn scene(frame: &Frame) -> Bytes {
-    let data = json!({
-        "version": frame.version,
-        "name": frame.name,
-        "size": frame.model.camera.value.pixels,
-        "text": frame.text,
-        "warnings": frame.warnings,
-    });
+    let data = Scene {
+        name: &frame.name,
+        size: frame.model.camera.value.pixels,
+        text: &frame.text,
+        version: frame.version,
+        warnings: &frame.warnings,
+    };
     event("scene", &data)
+}
+
+/// A scene as the page has it.
+#[derive(Serialize)]
+struct Scene<'s> {
+    /// What messages call it.
+    name: &'s str,
+    /// The width and the height of its picture.
+    size: [usize; 2],
+    /// What it was read from.
+    text: &'s str,
+    /// Which one it is, counted from 1.
+    version: u64,
+    /// What may not mean what was intended, as people read it; empty where there is nothing.
+    warnings: &'s str,
 }
 
 /// A part of a scene's picture: the area and its colours, red, green and blue of each block.
@@ -36,16 +52,38 @@ pub fn part(frame: &Frame, area: &Area, colours: &[Rgb]) -> Bytes {
 
 /// All parts of a scene's picture were told.
 pub fn done(frame: &Frame, took: Duration) -> Bytes {
-    event("done", &json!({ "version": frame.version, "seconds": took.as_secs_f64() }))
+    event("done", &Done { seconds: took.as_secs_f64(), version: frame.version })
 }
 
-/// What is wrong with the scene as it is now: its text, if it has one, and the lines that are marked there.
-pub fn fault(name: &str, text: Option<&str>, report: &str, lines: &[usize]) -> Bytes {
-    event("fault", &json!({ "name": name, "text": text, "report": report, "lines": lines }))
+/// The end of a picture.
+#[derive(Serialize)]
+struct Done {
+    /// How long the picture took.
+    seconds: f64,
+    /// Which scene it is of.
+    version: u64,
 }
 
-fn event(name: &str, data: &Value) -> Bytes {
-    format!("event: {name}\ndata: {data}\n\n").into()
+/// What is wrong with the scene as it is now.
+pub fn fault(fault: &Fault) -> Bytes {
+    event("fault", fault)
+}
+
+/// What is wrong with a scene.
+#[derive(Serialize)]
+pub struct Fault<'f> {
+    /// The lines of the text that are marked, counted from 1.
+    pub lines: &'f [usize],
+    /// What messages call it.
+    pub name: &'f str,
+    /// What is wrong, as people read it.
+    pub report: &'f str,
+    /// Its text, or null where there is none.
+    pub text: Option<&'f str>,
+}
+
+fn event(name: &str, data: &impl Serialize) -> Bytes {
+    format!("event: {name}\ndata: {}\n\n", json(data)).into()
 }
 
 /// A channel in half the bits, such that its byte in the picture stays the same.

@@ -59,18 +59,10 @@ fn choice(choices: Choices, word: &Word<'_>) -> Result<Datum, Vec<Fault>> {
     let number = word.text.parse().ok().filter(|_| word.form != Form::Text);
     let chosen = number.and_then(|number| choices.numbered(number)).or_else(|| choices.named(&word.text));
     chosen.map(Datum::Choice).ok_or_else(|| {
-        let all = choices.all();
-        let known: Vec<_> = all
-            .iter()
-            .map(|choice| match choice.number {
-                Some(number) => format!("{number} (`{}`)", choice.name),
-                None => format!("`{}`", choice.name),
-            })
-            .collect();
         let mut fault =
             Fault::error(word.place.clone(), format!("there is no {} `{}`", choices.what, word.text))
-                .help(format!("the {}s are {}", choices.what, known.join(", ")));
-        if let Some(near) = nearest(&word.text, all.iter().map(|choice| choice.name)) {
+                .help(format!("the {}s are {}", choices.what, choices.listed()));
+        if let Some(near) = nearest(&word.text, choices.all().iter().map(|choice| choice.name)) {
             fault = fault.label(format!("did you mean `{near}`?"));
         }
         vec![fault]

@@ -62,8 +62,8 @@ fn what_differs_is_named() {
     let said = format!("error: `a.png.checkpoint` belongs to another image: the program was rebuilt\n{HELP}");
     assert_eq!((status, err), (2, said));
 
-    let version = format!("\"the version of tabray\":\"{}\"", env!("CARGO_PKG_VERSION"));
-    rewrite(&at("a.png.checkpoint"), |text| text.replace(&version, "\"the version of tabray\":\"0.0.9\""));
+    let version = format!("\"version\":\"{}\"", env!("CARGO_PKG_VERSION"));
+    rewrite(&at("a.png.checkpoint"), |text| text.replace(&version, "\"version\":\"0.0.9\""));
     let (status, _, err) = render(&folder, &[&args[..], &["--resume"]].concat());
     let now = env!("CARGO_PKG_VERSION");
     let said = format!(
