@@ -1,7 +1,9 @@
 //! The tiles of a picture, and which of them are rendered.
 
 use std::iter;
+use std::mem::take;
 use std::ops::Range;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// The width and height of a tile, whose rays go together, in pixels. Those at the right and lower edges may be smaller.
 pub(crate) const TILE: usize = 16;
@@ -30,29 +32,67 @@ pub(crate) fn list(columns: Range<usize>, rows: Range<usize>, pixels: &mut Vec<[
 /// Pixels of a picture that are in memory at one time, but for a picture of one longer row of tiles.
 pub const BAND: usize = 1 << 22;
 
+/// The tiles side by side in some rows of a picture.
+pub struct Strip {
+    /// Red, green and blue of each pixel, from the top and from the left; black where nothing is rendered.
+    pub pixels: Vec<[u8; 3]>,
+    /// Whether each tile is rendered, from the left.
+    pub tiles: Vec<bool>,
+}
+
 /// Some rows of a picture, or of a part of one.
 pub struct Band {
     /// Which columns, from the left of the whole picture.
     pub columns: Range<usize>,
     /// Which rows, from its top.
     pub rows: Range<usize>,
-    /// Red, green and blue of each pixel, from the top and from the left; black where nothing is rendered.
-    pub pixels: Vec<[u8; 3]>,
-    /// Whether each tile is rendered, from the top and from the left.
-    pub tiles: Vec<bool>,
+    /// Its strips, from the top. A thread that renders holds one only while it adds a tile.
+    pub strips: Arc<[Mutex<Strip>]>,
 }
 
 impl Band {
     /// One of which nothing is rendered.
     pub fn blank(columns: Range<usize>, rows: Range<usize>) -> Self {
-        let (width, height) = (columns.len(), rows.len());
-        let tiles = vec![false; width.div_ceil(TILE) * height.div_ceil(TILE)];
-        Self { columns, rows, pixels: vec![[0; 3]; width * height], tiles }
+        let width = columns.len();
+        let strip = |from: usize| {
+            let pixels = vec![[0; 3]; width * TILE.min(rows.end - from)];
+            Mutex::new(Strip { pixels, tiles: vec![false; width.div_ceil(TILE)] })
+        };
+        let strips = rows.clone().step_by(TILE).map(strip).collect();
+        Self { columns, rows, strips }
+    }
+
+    /// The strip of this index, from the top.
+    pub fn strip(&self, index: usize) -> MutexGuard<'_, Strip> {
+        locked(&self.strips[index])
     }
 
     /// Whether all of it is rendered.
     pub fn is_whole(&self) -> bool {
-        self.tiles.iter().all(|is_done| *is_done)
+        self.strips.iter().all(|strip| locked(strip).tiles.iter().all(|is_done| *is_done))
+    }
+
+    /// A copy of what is rendered of it, to which nothing is added by whoever is still at work on it.
+    pub fn copied(&self) -> Self {
+        let copy = |strip: &Mutex<Strip>| {
+            let Strip { pixels, tiles } = &*locked(strip);
+            Mutex::new(Strip { pixels: pixels.clone(), tiles: tiles.clone() })
+        };
+        let (columns, rows) = (self.columns.clone(), self.rows.clone());
+        Self { columns, rows, strips: self.strips.iter().map(copy).collect() }
+    }
+
+    /// The bytes of its pixels, from the top and from the left: all at once where they are no more than this, and by
+    /// strips.
+    pub fn bytes(&self, at_once: usize) -> Vec<Vec<u8>> {
+        let taken = self.strips.iter().map(|strip| take(&mut locked(strip).pixels));
+        if 3 * self.columns.len() * self.rows.len() <= at_once {
+            let mut all = Vec::with_capacity(3 * self.columns.len() * self.rows.len());
+            taken.for_each(|pixels| all.extend_from_slice(pixels.as_flattened()));
+            vec![all]
+        } else {
+            taken.map(Vec::into_flattened).collect()
+        }
     }
 
     /// The rows of each band of a picture, from the top: whole tiles, and where there is a choice no more than so many
@@ -68,16 +108,21 @@ impl Band {
     }
 }
 
+/// A strip, to be read or to be added to. Whoever panics has added a whole tile or none.
+pub(crate) fn locked(strip: &Mutex<Strip>) -> MutexGuard<'_, Strip> {
+    strip.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 /// Which tiles of a picture are rendered, as it comes band by band.
 pub struct Tiles {
     width: usize,
     height: usize,
-    strips: Vec<Strip>,
+    strips: Vec<Done>,
 }
 
-/// The tiles side by side. A picture has few strips that are neither whole nor empty, so that this takes little memory
-/// for large ones.
-enum Strip {
+/// What is rendered of the tiles side by side. A picture has few strips that are neither whole nor empty, so that this
+/// takes little memory for large ones.
+enum Done {
     Nothing,
     Whole,
     Part(Vec<bool>),
@@ -91,21 +136,20 @@ impl Tiles {
 
     /// Adds those of the next band.
     pub fn add(&mut self, band: &Band) {
-        let strips = band.tiles.chunks(self.width.div_ceil(TILE));
-        self.strips.extend(strips.map(|tiles| match tiles {
-            _ if tiles.iter().all(|is_done| *is_done) => Strip::Whole,
-            _ if tiles.iter().any(|is_done| *is_done) => Strip::Part(tiles.to_vec()),
-            _ => Strip::Nothing,
+        self.strips.extend(band.strips.iter().map(|strip| match &locked(strip).tiles {
+            tiles if tiles.iter().all(|is_done| *is_done) => Done::Whole,
+            tiles if tiles.iter().any(|is_done| *is_done) => Done::Part(tiles.clone()),
+            _ => Done::Nothing,
         }));
     }
 
     /// Whether each pixel of a row, counted from the top, is rendered.
     pub fn row(&self, row: usize) -> impl Iterator<Item = bool> + '_ {
-        let strip = self.strips.get(row / TILE).unwrap_or(&Strip::Nothing);
+        let strip = self.strips.get(row / TILE).unwrap_or(&Done::Nothing);
         (0..self.width).map(move |column| match strip {
-            Strip::Nothing => false,
-            Strip::Whole => true,
-            Strip::Part(tiles) => tiles[column / TILE],
+            Done::Nothing => false,
+            Done::Whole => true,
+            Done::Part(tiles) => tiles[column / TILE],
         })
     }
 
@@ -115,15 +159,21 @@ impl Tiles {
         let strips = iter::zip(&self.strips, lengths(self.height));
         strips
             .map(|(strip, tall)| match strip {
-                Strip::Nothing => 0,
-                Strip::Whole => tall * self.width,
-                Strip::Part(tiles) => {
+                Done::Nothing => 0,
+                Done::Whole => tall * self.width,
+                Done::Part(tiles) => {
                     tall * iter::zip(tiles, lengths(self.width))
                         .map(|(done, wide)| usize::from(*done) * wide)
                         .sum::<usize>()
                 }
             })
             .sum()
+    }
+
+    /// How many rows there are to the end of the last strip of which anything is rendered.
+    pub fn begun(&self) -> usize {
+        let strips = self.strips.iter().rposition(|strip| !matches!(strip, Done::Nothing));
+        strips.map_or(0, |last| self.height.min((last + 1) * TILE))
     }
 
     /// Whether the whole picture is rendered.

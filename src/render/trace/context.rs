@@ -33,6 +33,11 @@ impl<'m, 'w, W: TraceObserver> Tracer<'m, 'w, W> {
         Self { model: plan.model, plan, cpu, viewer: 0.0, depth: 0, scratch, observer: watch }
     }
 
+    /// How many rows of pixels the picture has.
+    pub(crate) fn height(&self) -> usize {
+        self.plan.camera.pixels[1]
+    }
+
     /// Whether the notes' own methods are asked for.
     pub(super) fn is_classic(&self) -> bool {
         self.plan.camera.accuracy == Accuracy::Classic
