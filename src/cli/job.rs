@@ -16,7 +16,7 @@ use crate::render::renderer::{Overseer, Renderer};
 use crate::render::tiles::{Band, Tiles};
 use crate::words::{count, short};
 use std::io::{self, BufWriter};
-use std::mem::take;
+use std::mem::{replace, take};
 use std::ops::Range;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
@@ -64,7 +64,7 @@ impl Job<'_> {
             progress.end();
             warn_of(take(&mut cuts.lock().unwrap_or_else(PoisonError::into_inner)));
             match outcome {
-                Err(Failure::Stopped) => failure::end(&Failure::Stopped),
+                Err(failure) if self.stop.is_due() => failure::end(&failure),
                 outcome => outcome,
             }
         })
@@ -89,6 +89,7 @@ impl Job<'_> {
             let is_blank = self.stop.is_due() && begun.as_ref().is_none_or(Begun::is_over);
             if is_blank && (rows.end - band.start) * columns.len() > MOST_BLANK {
                 is_cut = true;
+                self.tell_once(&mut told, progress);
                 // A row more, for what is before it to come out of the compressor.
                 return vec![Ok(vec![0; 3 * columns.len()]), Err(io::ErrorKind::Other.into())];
             }
@@ -101,10 +102,8 @@ impl Job<'_> {
             };
             fill(&mut band);
             tiles.add(&band);
-            if !band.is_whole() && !told {
-                told = true;
-                progress.end();
-                self.stop.tell();
+            if !band.is_whole() {
+                self.tell_once(&mut told, progress);
             }
             writing = Some(Instant::now());
             band.bytes(AT_ONCE).into_iter().map(Ok).collect()
@@ -120,6 +119,14 @@ impl Job<'_> {
                 finished(self.path, written, out)?;
                 begun.map_or(Ok(()), Begun::remove)
             }
+        }
+    }
+
+    /// Says why the picture is stopped, once.
+    fn tell_once(&self, told: &mut bool, progress: &Progress) {
+        if !replace(told, true) {
+            progress.end();
+            self.stop.tell();
         }
     }
 

@@ -93,8 +93,9 @@ fn hidden<T>(folder: &Path, make: impl FnMut(&Path) -> io::Result<T>) -> io::Res
 /// Has the names in the folder of a file written to the disk, where the system can be asked to: some file systems cannot.
 fn sync_folder(target: &Path) -> io::Result<()> {
     let folder = target.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    let cannot = [io::ErrorKind::InvalidInput, io::ErrorKind::PermissionDenied, io::ErrorKind::Unsupported];
     match File::open(folder).and_then(|folder| folder.sync_all()) {
-        Err(error) if error.kind() == io::ErrorKind::StorageFull => Err(error),
+        Err(error) if !cannot.contains(&error.kind()) => Err(error),
         _ => Ok(()),
     }
 }

@@ -195,6 +195,9 @@ impl<'s> Unfinished<'_, 's> {
         overseer: Overseer<'s>,
         watched: &'s (dyn Fn(W) + Sync),
     ) {
+        if (overseer.stops)() {
+            return;
+        }
         let (renderer, (done, is_done)) = (self.renderer, mpsc::channel());
         let theirs =
             Band { columns: band.columns.clone(), rows: band.rows.clone(), strips: Arc::clone(&band.strips) };
