@@ -10,7 +10,8 @@ inventory::submit! {
 struct Angular(Anchor);
 
 impl Shader for Angular {
-    /// Up and down look alike: the notes' test for the lower half, `coord.y < 3.0`, is always true.
+    /// Returns the same colours above and below the centre: the notes' test for the lower half, `coord.y < 3.0`, is
+    /// always true.
     fn ambient(&self, _material: &Material, at: DVec3) -> Rgb {
         let DVec3 { x, y, .. } = at - self.0.origin;
         rainbow::colour(DVec2::new(x, -y.abs()))

@@ -1,4 +1,4 @@
-//! The camera: the viewer, and the screen in the plane z = 0 that the viewer looks through.
+//! The camera: the viewer, and the image plane at z = 0 through which the viewer looks.
 
 use crate::prelude::*;
 
@@ -39,13 +39,13 @@ inventory::submit! {
             });
         }
         Ok(Camera {
-            // The rules keep the whole numbers in range.
+            // The attributes' rules ensure that these casts are lossless.
             pixels: args.get(&PIXELDIM).map(|side| side as usize),
             screen: args.get(&WORLDDIM),
             viewpoint: args.get(&VIEWPOINT),
             samples: args.get(&SAMPLES) as u32,
             sampler: Sampler::default(),
-            // The notes' way of calling has a default of its own.
+            // The notes' command line has a default accuracy of its own.
             accuracy: args.get_given(&ACCURACY).unwrap_or(args.accuracy()),
         })
     })

@@ -1,4 +1,4 @@
-//! The notes' cone: 4 wide at its base, 6 high.
+//! The notes' cone: base radius 4, height 6.
 
 use crate::prelude::*;
 

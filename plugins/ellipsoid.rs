@@ -28,21 +28,22 @@ fn shape(args: &Args) -> AnyShape {
 }
 
 fn exact<A: Bounded>(center: DVec3, radius: f64, scale: DVec3) -> AnyShape {
-    // A power of two more in the radius and less in the scale changes nothing but how large the squares become.
+    // Moving a power of two from the scale to the radius changes nothing but the size of the squares, which then do not
+    // overflow or underflow as easily.
     let exponent = exponent_to_one(scale.min_element());
     let scale = DVec3::from(scale.to_array().map(|part| times_power_of_two(part, exponent)));
     let ellipsoid = Ellipsoid::<A>::new(center, times_power_of_two(radius, -exponent), scale);
     Shape::new(ellipsoid).bracketed().certified().into()
 }
 
-/// A sphere where space is squeezed by `scale` around its centre.
+/// A sphere in a space that is divided by `scale` around the ellipsoid's centre.
 struct Ellipsoid<A> {
     center: DVec3,
     radius: f64,
     scale: DVec3,
-    /// One over it, in twice the precision.
+    /// The reciprocals of `scale`, in double-double arithmetic.
     squeeze: [DoubleDouble; 3],
-    /// One over the least of `scale`.
+    /// The reciprocal of the smallest component of `scale`.
     most_squeezed: f64,
     accuracy: PhantomData<A>,
 }
@@ -54,13 +55,14 @@ impl<A> Ellipsoid<A> {
         Self { center, radius, scale, squeeze, most_squeezed, accuracy: PhantomData }
     }
 
-    /// A ray, squeezed: its direction is no unit vector any more, so that distances stay what they were.
+    /// Returns the origin and the direction of a ray in the divided space. The direction is no longer a unit vector, so
+    /// distances along the ray are unchanged.
     #[inline(always)]
     fn squeezed(&self, ray: &Ray) -> (DVec3, DVec3) {
         ((ray.origin - self.center) / self.scale, ray.dir / self.scale)
     }
 
-    /// Likewise in twice the precision.
+    /// Returns a ray in the divided space, in double-double arithmetic.
     #[inline(always)]
     fn line(&self, ray: &Ray) -> SphereLine {
         SphereLine::squeezed(ray, self.center, &self.squeeze)
@@ -72,7 +74,7 @@ impl<A> Ellipsoid<A> {
     }
 
     #[inline(always)]
-    fn upright(&self, at: DVec3) -> DVec3 {
+    fn normal_at(&self, at: DVec3) -> DVec3 {
         ((at - self.center) / (self.scale * self.scale)).normalize()
     }
 }
@@ -85,7 +87,7 @@ impl Hittable for Ellipsoid<Classic> {
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {
-        self.upright(at)
+        self.normal_at(at)
     }
 
     fn bounds(&self) -> Option<Aabb> {
@@ -108,7 +110,7 @@ impl<A: Bounded> Hittable for Ellipsoid<A> {
     }
 
     fn normal(&self, at: DVec3) -> DVec3 {
-        self.upright(at)
+        self.normal_at(at)
     }
 
     fn bounds(&self) -> Option<Aabb> {
@@ -145,10 +147,11 @@ impl<A: Bounded> Bracketed for Ellipsoid<A> {
 
 impl<A: Bounded> Certified for Ellipsoid<A> {
     fn touches(&self, at: DVec3, error: f64) -> bool {
-        // Where it is squeezed most, an error is largest.
+        // To first order, an error moves the distance from the centre of the divided space by at most the error times
+        // this distance's gradient.
         let from = (at - self.center) / self.scale;
-        let squeezed = (from / self.scale).length() / from.length();
-        sphere::touches(from, self.radius, error * squeezed)
+        let gradient = (from / self.scale).length() / from.length();
+        sphere::touches(from, self.radius, error * gradient)
     }
 }
 

@@ -20,9 +20,9 @@ static ROTATION_ROWS: Derived = Derived(|args| {
     format!("rotation matrix\n{}", frame(args).to_cols_array_2d().map(row).concat())
 });
 
-/// What planes with sides of their own take, after what a plane takes.
+/// The rows of a plane with sides, after those of [`plane::TABLE`].
 pub const TABLE: Table = &[&DIMENSIONS, &XDIR, &PROJECTED];
-/// The notes' rotation matrix, for the dump.
+/// The row that dumps the notes' rotation matrix.
 pub const ROTATION: Table = &[&ROTATION_ROWS as &dyn Row];
 
 inventory::submit! {
@@ -31,10 +31,10 @@ inventory::submit! {
     })
 }
 
-/// The rectangle of an entity whose table has the rows of a plane's and of this file's.
+/// Makes the rectangle of an entity whose table has the rows of [`plane::TABLE`] and [`TABLE`].
 ///
 /// # Errors
-/// As [`sides`].
+/// If `xdir` is refused by [`sides`].
 pub fn shape(args: &Args) -> Result<AnyShape, Refusal> {
     Ok(match args.accuracy() {
         Accuracy::Classic => Shape::new(finite_plane::<Classic>(args)?).classic().into(),
@@ -44,7 +44,10 @@ pub fn shape(args: &Args) -> Result<AnyShape, Refusal> {
     })
 }
 
-/// Where the same rectangle is; refused likewise.
+/// Returns the position of the rectangle of an entity whose table has the rows of [`plane::TABLE`] and [`TABLE`].
+///
+/// # Errors
+/// If `xdir` is refused by [`sides`].
 pub fn rectangle(args: &Args) -> Result<Rectangle, Refusal> {
     Ok(finite_plane::<Classic>(args)?.rectangle)
 }
@@ -53,10 +56,10 @@ fn frame(args: &Attributes) -> DMat3 {
     rectangle::frame(args.get(&plane::NORMAL), args.get(&XDIR))
 }
 
-/// The directions of a rectangle's two sides.
+/// Returns the unit vectors along a rectangle's two sides.
 ///
 /// # Errors
-/// Where `xdir` is parallel to the normal but for rounding, and so points nowhere on the plane.
+/// If `xdir` is within 1e-6 radians of the normal or its opposite, and so has no direction in the plane.
 pub fn sides(args: &Args) -> Result<[DVec3; 2], Refusal> {
     let (normal, xdir) = (args.get(&plane::NORMAL).normalize(), args.get(&XDIR).normalize());
     if normal.cross(xdir).length() < 1e-6 {
@@ -69,7 +72,10 @@ pub fn sides(args: &Args) -> Result<[DVec3; 2], Refusal> {
     Ok([0, 1].map(|side| frame(args).col(side)))
 }
 
-/// The same, crossed as exactly as its type has it; refused as its sides are.
+/// Makes the rectangle of an entity, with hits of accuracy `A`.
+///
+/// # Errors
+/// If `xdir` is refused by [`sides`].
 pub fn finite_plane<A>(args: &Args) -> Result<FinitePlane<A>, Refusal> {
     let (plane, xdir, classic) = (plane::plane(args), args.get(&XDIR), sides(args)?);
     let sides = match args.accuracy() {
@@ -151,7 +157,7 @@ impl<A: Bounded> Bracketed for FinitePlane<A> {
 
     #[inline(always)]
     fn refine(&self, ray: &Ray, _origin_side: Option<Side>) -> f64 {
-        // A hit that is certain is inside.
+        // A certain hit lies inside the rectangle.
         self.plane.quick_crossing(ray)
     }
 }
@@ -167,7 +173,7 @@ impl<A: Bounded> Flat for FinitePlane<A> {
 
 impl<A: Bounded> Certified for FinitePlane<A> {
     fn touches(&self, at: DVec3, error: f64) -> bool {
-        // What starts on the plane beside the rectangle does not meet it either.
+        // A ray that starts on the plane beside the rectangle does not hit the rectangle either.
         self.plane.touches(at, error)
     }
 

@@ -1,4 +1,4 @@
-//! A heart: G. Taubin's surface of the sixth degree (1993).
+//! A heart: the surface of the sixth degree by G. Taubin (1993).
 
 use crate::prelude::*;
 
@@ -16,7 +16,7 @@ inventory::submit! {
     })
 }
 
-/// A heart that stands upright and faces z.
+/// A heart whose tip points to -y and whose front faces z.
 struct Heart {
     size: f64,
 }
@@ -25,9 +25,10 @@ impl Implicit for Heart {
     fn value<N: Scalar>(&self, at: [N; 3]) -> N {
         let n = N::constant;
         let [x, y, z] = at.map(|coordinate| coordinate / n(self.size));
-        let ball = x.powi(2) + y.powi(2) + n(2.25) * z.powi(2) - n(1.0);
-        // The cube root of Taubin's formula, whose slope is not 0 where ball and y are.
-        ball - (x.powi(2) + n(9.0) / n(80.0) * z.powi(2)).pow(n(1.0) / n(3.0)) * y
+        let ellipsoid = x.powi(2) + y.powi(2) + n(2.25) * z.powi(2) - n(1.0);
+        // The cube root of Taubin's formula: unlike the formula, it has a nonzero slope where `ellipsoid` and y are
+        // both 0.
+        ellipsoid - (x.powi(2) + n(9.0) / n(80.0) * z.powi(2)).pow(n(1.0) / n(3.0)) * y
     }
 
     fn bounds(&self) -> [DVec3; 2] {

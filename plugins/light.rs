@@ -1,4 +1,4 @@
-//! A light: a point that shines evenly in all directions.
+//! A light: a point that emits equally in all directions.
 
 use crate::prelude::*;
 
@@ -11,7 +11,7 @@ static SIZE: Pparm<f64> = Pparm::or("size", "the radius of a spherical light, fo
     .must("0 or more", |size| *size >= 0.0)
     .not_dumped();
 
-/// What every light takes.
+/// The rows of every light.
 pub const TABLE: Table = &[&LOCATION, &EMISSIVITY, &SIZE];
 
 inventory::submit! {
@@ -20,15 +20,16 @@ inventory::submit! {
     })
 }
 
-/// A light that shines evenly. Other lights hold one.
+/// A light that emits equally in all directions. Other lights contain one.
 pub struct PointLight {
     pub location: DVec3,
     pub emissivity: Rgb,
+    /// The radius of a spherical light, in world units; 0 for a point.
     size: f64,
 }
 
 impl PointLight {
-    /// The light of an entity whose table has [`TABLE`]'s rows.
+    /// Makes the light of an entity whose table has the rows of [`TABLE`].
     pub fn new(args: &Attributes) -> Self {
         Self { location: args.get(&LOCATION), emissivity: args.get(&EMISSIVITY), size: args.get(&SIZE) }
     }

@@ -1,4 +1,4 @@
-//! A material: how a surface answers light.
+//! A material: how a surface emits, reflects and transmits light.
 
 use crate::prelude::*;
 

@@ -1,4 +1,4 @@
-//! A procedural finite plane: a rectangle whose look changes from place to place by a rule.
+//! A procedural finite plane: a rectangle whose colours are computed at each point by a shader.
 
 use super::{fplane, plane, pplane};
 use crate::prelude::*;

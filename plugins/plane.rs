@@ -1,4 +1,4 @@
-//! A plane: every point in two directions, without end.
+//! A plane: flat and infinite.
 
 use crate::prelude::*;
 use crate::shapes::plane::{CLASSIC_METHOD, Flat, Plane};
@@ -9,14 +9,14 @@ pub static NORMAL: Pparm<DVec3> =
         .shown(DVec3::normalize);
 pub static POINT: Pparm<DVec3> = Pparm::required("point", "a point on the plane").unit("world coordinates");
 
-/// What every kind of plane takes.
+/// The rows of every kind of plane.
 pub const TABLE: Table = &[&NORMAL, &POINT];
 
 inventory::submit! {
     Entity::shape("plane", "an infinite plane", &[TABLE], |args| Ok(Body::plain(shape(args))))
 }
 
-/// The plane of an entity whose table has [`TABLE`]'s rows.
+/// Makes the plane of an entity whose table has the rows of [`TABLE`].
 pub fn shape(args: &Args) -> AnyShape {
     match args.accuracy() {
         Accuracy::Classic => Shape::new(plane::<Classic>(args)).classic().into(),
@@ -26,7 +26,7 @@ pub fn shape(args: &Args) -> AnyShape {
     }
 }
 
-/// The same, crossed as exactly as its type has it.
+/// Makes the plane of an entity whose table has the rows of [`TABLE`], with hits of accuracy `A`.
 pub fn plane<A>(args: &Args) -> Plane<A> {
     Plane::with_normal(args.get(&NORMAL), args.get(&POINT))
 }

@@ -1,11 +1,11 @@
-//! A procedural plane: a plane whose look changes from place to place by a rule.
+//! A procedural plane: a plane whose colours are computed at each point by a shader.
 
 use super::plane;
 use crate::prelude::*;
 
 static SHADER: Pparm<OnPlane> = Pparm::required("shader", "the procedural shader");
 
-/// What planes with a rule for their look take.
+/// The rows of planes with a procedural shader.
 pub const TABLE: Table = &[&SHADER as &dyn Row];
 
 inventory::submit! {
@@ -14,7 +14,8 @@ inventory::submit! {
     })
 }
 
-/// A plane's shape that looks as the `shader` of an entity whose table has its rows and [`TABLE`]'s.
+/// Makes an object of a plane's shape and the `shader` of an entity whose table has the rows of [`plane::TABLE`] and
+/// [`TABLE`].
 pub fn body(args: &Args, shape: AnyShape) -> Body {
     let anchor = Anchor { origin: args.get(&plane::POINT), unit: 1.0 };
     Body::procedural(shape, args.get(&SHADER).0, anchor)

@@ -1,4 +1,4 @@
-//! A projector: a light that throws a picture.
+//! A projector: a light that projects an image.
 
 use super::fplane::{self, finite_plane};
 use super::light::{self, PointLight};
@@ -26,7 +26,7 @@ inventory::submit! {
     .dumped_as("light")
 }
 
-/// A lamp behind a rectangle, and the picture on that.
+/// A light behind a rectangle, and the image on the rectangle.
 struct Projector<A> {
     light: PointLight,
     window: FinitePlane<A>,
@@ -47,14 +47,15 @@ where
         self.light.location
     }
 
-    /// Light gets only where the way to the lamp leads through the picture, and takes its colours.
+    /// Light reaches a point only if the path from the light passes through the rectangle, and takes on the image's
+    /// colour there.
     fn emissivity(&self, toward: DVec3) -> Option<Rgb> {
         let ray = Ray { origin: toward, dir: (self.light.location - toward).normalize() };
         let distance = self.window.crossing(&ray)?;
         Some(self.light.emissivity * self.picture.colour(ray.at(distance)))
     }
 
-    /// No texel is above 1.
+    /// The emissivity is the bound, since no texel is above 1.
     fn brightest(&self) -> Option<Rgb> {
         self.light.uniform()
     }

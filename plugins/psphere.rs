@@ -1,4 +1,4 @@
-//! A procedural sphere: a sphere whose look changes from place to place by a rule.
+//! A procedural sphere: a sphere whose colours are computed at each point by a shader.
 
 use super::sphere;
 use crate::prelude::*;

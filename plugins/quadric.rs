@@ -1,4 +1,4 @@
-//! A quadric: every point that solves an equation of the second degree (the notes' "General Quadric Surfaces").
+//! A quadric: the solutions of an equation of the second degree (the notes' "General Quadric Surfaces").
 
 use crate::geometry::clearance;
 use crate::prelude::*;
@@ -81,7 +81,7 @@ impl Hittable for Quadric<Classic> {
 }
 
 impl<A: Bounded> Hittable for Quadric<A> {
-    /// The nearer hit that lies in the box, or the farther one.
+    /// Returns the nearer of the two roots that lies in the box.
     #[inline(always)]
     fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
         let quick = self.fast_distance(ray, range);
@@ -111,7 +111,7 @@ impl<A: Bounded> Hittable for Quadric<A> {
     }
 
     fn reach(&self) -> f64 {
-        // The box may be far larger than what is seen of it, and cuts only.
+        // The box only clips, and may be far larger than what is seen of the surface, so its corners do not count.
         self.center.abs().max_element()
     }
 }

@@ -18,25 +18,26 @@ impl Shader for Rainbow {
     }
 }
 
-/// Red, green and blue from 0 to 2, each a third of a turn behind the other, twice around: `1 + cos(2 t + k/3)` for
-/// a direction of the angle t. Without an angle there is no `acos` to lose digits or to be asked for what is none.
+/// Returns red, green and blue from 0 to 2 for a direction of the angle t: `1 + cos(2 t + k/3)` for channel k, with k/3
+/// in turns. The angle itself is not computed, which avoids the rounding of `acos` and arguments outside of its domain.
 pub fn colour(toward: DVec2) -> Rgb {
-    // At the point itself there is no direction; all are alike there.
+    // At the point itself there is no direction, and all channels are equal.
     let DVec2 { x, y } = (toward / toward.abs().max_element()).try_normalize().unwrap_or(DVec2::ZERO);
     let (cos, sin) = (x * x - y * y, 2.0 * x * y);
     let half_root_3 = 0.5 * 3.0_f64.sqrt();
     Rgb::new(1.0 + cos, 1.0 - 0.5 * cos - half_root_3 * sin, 1.0 - 0.5 * cos + half_root_3 * sin)
 }
 
-/// The largest magnitudes of a look with so many times these colours and the rest of a material.
+/// Bounds the reflectivities of a shader whose ambient colours are `times` those of [`colour`], and whose other colours
+/// are the material's.
 pub fn brightest(times: f64, material: &Material) -> Option<Look> {
     let Material { diffuse, specular, .. } = *material;
     let is_sound = diffuse.min_element() >= 0.0;
-    // 2 and more than rounding adds to it.
+    // The largest colour is 2, up to a few ulps; 1e-6 is far more than those.
     is_sound.then_some(Look { ambient: Rgb::splat(2.000001 * times), diffuse, specular })
 }
 
-/// The colour at a point of a surface, as seen from an anchor.
+/// Returns the colour at a point, by its direction from an anchor in x and y.
 pub fn around(anchor: &Anchor, at: DVec3) -> Rgb {
     colour((at - anchor.origin).truncate())
 }

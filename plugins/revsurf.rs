@@ -1,4 +1,4 @@
-//! A surface of revolution: a line turned around an axis.
+//! A surface of revolution: a profile curve rotated around an axis.
 
 use crate::prelude::*;
 use crate::shapes::{Classic, Finish, InFrame, Revolution};
@@ -43,7 +43,7 @@ inventory::submit! {
     })
 }
 
-/// The line that an entity names or spells out.
+/// Returns the profile curve that an entity names or gives as a formula.
 fn line(args: &Args) -> Result<ProfileLine, Refusal> {
     match (args.get(&SURFER), args.get(&PROFILE)) {
         (Some(profile), None) => Ok(profile.line()),

@@ -1,4 +1,4 @@
-//! A sphere: every point at one distance from a centre.
+//! A sphere: all points at one distance from a centre.
 
 use crate::prelude::*;
 use crate::shapes::sphere::{self, SphereLine};
@@ -11,14 +11,14 @@ static RADIUS: Pparm<f64> = Pparm::required("radius", "the distance from the cen
     .must("positive", |radius| *radius > 0.0)
     .dumped("radius", "\n");
 
-/// What every round shape takes.
+/// The rows of every shape with a centre and a radius.
 pub const TABLE: Table = &[&CENTER, &RADIUS];
 
 inventory::submit! {
     Entity::shape("sphere", "a sphere", &[TABLE], |args| Ok(Body::plain(shape(args))))
 }
 
-/// The sphere of an entity whose table has [`TABLE`]'s rows.
+/// Makes the sphere of an entity whose table has the rows of [`TABLE`].
 pub fn shape(args: &Args) -> AnyShape {
     match args.accuracy() {
         Accuracy::Classic => Shape::new(Sphere::<Classic>::new(args)).classic().into(),
@@ -28,7 +28,7 @@ pub fn shape(args: &Args) -> AnyShape {
     }
 }
 
-/// The centre and the radius of an entity whose table has [`TABLE`]'s rows.
+/// Returns the centre and the radius of an entity whose table has the rows of [`TABLE`].
 pub fn center_and_radius(args: &Args) -> (DVec3, f64) {
     (args.get(&CENTER), args.get(&RADIUS))
 }
@@ -55,7 +55,7 @@ impl<A> Sphere<A> {
         ((away - self.radius).abs() - rounding).max(0.0)
     }
 
-    /// A ray, counted from the centre.
+    /// Returns a ray relative to the sphere's centre.
     #[inline(always)]
     fn line(&self, ray: &Ray) -> SphereLine {
         SphereLine::new(ray, self.center)

@@ -28,7 +28,7 @@ inventory::submit! {
     .dumped_as("light")
 }
 
-/// The unit vector along the middle of the beam; NaN where there is none.
+/// Returns the unit vector along the axis of the beam; NaN where `point` is the light's location.
 fn axis(args: &Attributes) -> DVec3 {
     (args.get(&POINT) - PointLight::new(args).location).normalize()
 }

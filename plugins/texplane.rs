@@ -1,4 +1,4 @@
-//! A textured plane: a rectangle that shows a picture.
+//! A textured plane: a rectangle that shows an image.
 
 use super::{fplane, plane};
 use crate::prelude::*;
@@ -13,7 +13,7 @@ static MODE: Pparm<i64> = Pparm::required(
 .must("0 or 1", |mode| (0..=1).contains(mode))
 .dumped("mode", "\n");
 
-/// What shows a texture on a rectangle takes, after what an fplane takes.
+/// The rows of a rectangle with a texture, after those of an fplane.
 pub const TABLE: Table = &[&TEXNAME, &MODE];
 
 inventory::submit! {
@@ -28,16 +28,16 @@ inventory::submit! {
     )
 }
 
-/// A picture on a rectangle.
+/// An image on a rectangle.
 pub struct Picture {
     rectangle: Rectangle,
     texture: Arc<Texture>,
-    /// The width and height of a texel where the picture is tiled; the picture is stretched to fit if there is none.
+    /// The width and height of a texel in world units where the image is tiled; `None` where it is stretched to fit.
     texel: Option<DVec2>,
 }
 
 impl Picture {
-    /// The picture of an entity whose table has [`TABLE`]'s rows.
+    /// Makes the image of an entity whose table has the rows of [`TABLE`].
     pub fn new(args: &Args, rectangle: Rectangle) -> Self {
         let camera = &args.setting.camera;
         let pixel = camera.screen / DVec2::from(camera.pixels.map(|side| side as f64));
@@ -45,7 +45,7 @@ impl Picture {
         Self { rectangle, texture: args.get(&TEXNAME), texel }
     }
 
-    /// The texel at a point of the rectangle, each channel from 0 to below 1.
+    /// Returns the texel at a point of the rectangle, each channel from 0 to 1.
     pub fn colour(&self, at: DVec3) -> Rgb {
         let across = self.rectangle.coordinates(at);
         let size = self.texture.size();
@@ -68,7 +68,7 @@ impl Shader for Textured {
         material.diffuse * self.0.colour(at)
     }
 
-    /// No texel is above 1, nor below 0.
+    /// The material's colours are the bounds, since texels lie between 0 and 1.
     fn brightest(&self, material: &Material) -> Option<Look> {
         let Material { ambient, diffuse, specular, .. } = *material;
         (diffuse.min_element() >= 0.0).then_some(Look { ambient, diffuse, specular })

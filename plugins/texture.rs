@@ -1,4 +1,4 @@
-//! A texture: a picture from a file.
+//! A texture: an image from a file.
 
 use crate::prelude::*;
 

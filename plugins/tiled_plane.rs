@@ -1,4 +1,4 @@
-//! A tiled plane: tiles of two materials, without end.
+//! A tiled plane: an infinite plane with tiles of two materials.
 
 use super::fplane::{self, DIMENSIONS, sides};
 use super::plane;
@@ -30,9 +30,9 @@ struct Tiles {
 }
 
 impl Tiles {
-    /// The material of the tile at a point. Tiles are counted from the world's origin, not from the plane's
-    /// point, and the notes' offset keeps them from meeting twice as wide at 0.
-    fn pick<'m>(&'m self, own: &'m Material, at: DVec3) -> &'m Material {
+    /// Returns the material of the tile at a point. Tiles are counted from the world's origin, not from the plane's
+    /// point. The notes add the offset because a cast to an integer would make the tile at 0 twice as wide.
+    fn material<'m>(&'m self, own: &'m Material, at: DVec3) -> &'m Material {
         let tile = |side: usize| ((self.sides[side].dot(at) + 100_000.0) / self.dimensions[side]).floor();
         if (tile(0) + tile(1)).rem_euclid(2.0) == 0.0 { &self.other } else { own }
     }
@@ -40,11 +40,11 @@ impl Tiles {
 
 impl Shader for Tiles {
     fn ambient(&self, material: &Material, at: DVec3) -> Rgb {
-        self.pick(material, at).ambient
+        self.material(material, at).ambient
     }
 
     fn diffuse(&self, material: &Material, at: DVec3) -> Rgb {
-        self.pick(material, at).diffuse
+        self.material(material, at).diffuse
     }
 
     fn brightest(&self, material: &Material) -> Option<Look> {

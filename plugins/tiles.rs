@@ -20,8 +20,8 @@ impl Shader for Tiles {
     }
 }
 
-/// Whether a point lies on an odd tile. The notes' offset keeps tiles from meeting twice as wide at 0; `floor`
-/// in place of a cast to an integer keeps that so however far away the tile is.
+/// Tells whether a point lies on an odd tile. The notes add the offset because a cast to an integer makes the tile at 0
+/// twice as wide; with `floor` in place of the cast, tiles are equally wide at any distance.
 pub fn is_odd(at: DVec3) -> bool {
     let tile = |coordinate: f64| (2.0 * coordinate + 1000.0).floor();
     (tile(at.x) + tile(at.z)).rem_euclid(2.0) != 0.0

@@ -1,4 +1,4 @@
-//! A torus: a ball's way around a circle.
+//! A torus: a circle rotated around an axis in its plane.
 
 use crate::prelude::*;
 

@@ -9,7 +9,7 @@ static VERTEX2: Pparm<DVec3> =
     Pparm::required("vertex2", "the second vertex, counterclockwise as seen from the lit side")
         .unit("world coordinates");
 static VERTEX3: Pparm<DVec3> = Pparm::required("vertex3", "the third vertex").unit("world coordinates");
-// The course's program had them read and never used them.
+// The course's program reads these two attributes and does not use them.
 static NORMAL: Pparm<DVec3> =
     Pparm::or("normal", "ignored, as the vertices determine which side is lit", DVec3::Z).not_dumped();
 static POINT: Pparm<DVec3> =
@@ -112,7 +112,7 @@ impl<A: Bounded> Bracketed for Triangle<A> {
 
     #[inline(always)]
     fn refine(&self, ray: &Ray, _origin_side: Option<Side>) -> f64 {
-        // A hit that is certain is inside.
+        // A certain hit lies inside the triangle.
         self.plane.quick_crossing(ray)
     }
 }

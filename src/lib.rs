@@ -1,16 +1,15 @@
 //! A ray tracer in which a scene is data and every entity type is a plugin.
 //!
-//! The way of the data is one street: a scene's text becomes entities as written, checked against the tables of their
-//! types, then a [`Model`](scene::Model), then a [`Plan`](render::Plan), and tile by tile a picture
-//! ([`Renderer`](render::Renderer), [`Format`](output::Format)). A model can also be built without any text
-//! ([`scene::build`]), and printed again ([`scene::dump`]). `docs/architecture.md` draws the street, and the rooms that
-//! its stations lie in.
+//! Data flows in one direction: a scene's text becomes entities, checked against the tables of their types, then a
+//! [`Model`](scene::Model), then a [`Plan`](render::Plan), and tile by tile an image ([`Renderer`](render::Renderer),
+//! [`Format`](output::Format)). A model can also be built without any text ([`scene::build`]), and printed again
+//! ([`scene::dump`]). `docs/architecture.md` draws this flow, and the module of each step.
 //!
 //! A file in `plugins/` adds an entity type: it registers an [`Entity`](scene::Entity) and implements a trait of
-//! [`world`]; [`prelude`] has all that it needs. No other file knows its name. A plugin outside of this package does the
-//! same, and its program is [`cli::run`] (see `docs/plugins.md`).
+//! [`world`]; [`prelude`] has all that it needs. No other file mentions it. A plugin outside of this package does the
+//! same, and calls [`cli::run`] from its own `main` (see `docs/plugins.md`).
 
-// What positions and colours are written with.
+// The vectors of positions and colours.
 pub use glam;
 
 pub mod cli;

@@ -1,15 +1,15 @@
 //! All that a plugin needs, in one `use`: `crate::prelude::*` in `plugins/`, `tabray::prelude::*` elsewhere.
 //!
-//! Arithmetic that only some shapes share is not in it; that is in [`shapes`](crate::shapes) and
+//! Arithmetic that only some shapes share is not included; it is in [`shapes`](crate::shapes) and
 //! [`double_double`](crate::numeric::double_double).
 
-// What an entity type is registered with: its table, its constructor, and what that is given.
+// Registration of an entity type: its table, its constructor, and the constructor's arguments.
 pub use crate::scene::entity::{Args, Entity, Refusal};
 pub use crate::scene::pparm::{Attributes, Derived, LEAST_LENGTH, Pparm, Row, Table};
 pub use crate::scene::value::{Datum, PerChannel, Value};
 pub use inventory;
 
-// What it makes: a camera, a material, a texture, an object or a light.
+// What a constructor returns: a camera, a material, a texture, an object or a light.
 pub use crate::world::accuracy::{Accuracy, Bounded, Classic, Draft, Exact, Strict};
 pub use crate::world::any_shape::AnyShape;
 pub use crate::world::body::Body;
@@ -22,12 +22,12 @@ pub use crate::world::shader::Shader;
 pub use crate::world::shape::Shape;
 pub use crate::world::texture::Texture;
 
-// What scenes choose one of: looks that change from place to place, and profiles.
+// What a scene selects by name: procedural shaders and profiles.
 pub use crate::numeric::formula::Formula;
 pub use crate::scene::procedural::{Anchor, OnPlane, OnSphere, ProceduralShader};
 pub use crate::scene::profile::{Profile, ProfileLine};
 
-// What shapes are asked, and answer.
+// What the traits of shapes take and return.
 pub use crate::geometry::aabb::{Aabb, SLACK};
 pub use crate::geometry::frame::Frame;
 pub use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};

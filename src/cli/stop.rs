@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 
 /// A part of an image is left in so many times the time in which it was written: it is read, and written with what is
 /// transparent. The limit of time includes that.
-const LEAVING: u32 = 2;
+const LEAVING: u32 = 3;
 
 /// How often time and memory are looked at.
 const LOOK: Duration = Duration::from_millis(20);

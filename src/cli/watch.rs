@@ -2,12 +2,13 @@
 
 mod answer;
 mod board;
+mod browser;
 mod events;
 mod files;
 mod frame;
 
 use super::failure::Failure;
-use super::serve::Server;
+use super::serve::{Server, Work};
 use super::{input, interrupt, messages, method};
 use crate::render::plan::Plan;
 use crate::render::progressive;
@@ -40,8 +41,8 @@ const SETTLED: Duration = Duration::from_millis(10);
 
 /// Show the image in the browser, and render it again whenever the scene changes
 ///
-/// Only a browser on this machine can reach the page. Click a pixel to see how it gets its colour. Ctrl-C quits, with
-/// status 0.
+/// Only this machine can reach the page, and only at the address that is printed: it contains a token, new for each run,
+/// that keeps other users out. Click a pixel to see how it gets its colour. Ctrl-C quits, with status 0.
 #[derive(clap::Args)]
 pub struct Args {
     /// The scene
@@ -85,8 +86,9 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     thread::spawn({
         let board = board.clone();
         move || {
+            let work = Work::new(answer::JOBS);
             let run = server.run(async move |request: Request<Bytes>| {
-                ControlFlow::Continue(answer::answer(&request, &board).await)
+                ControlFlow::Continue(answer::answer(&request, &board, &work).await)
             });
             if let Err(error) = run {
                 let reason = words::reason(&error);
@@ -95,13 +97,11 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         }
     });
     messages::note(&format!("watching {} at {url} (Ctrl-C quits)", args.scene.display()));
-    if args.open
-        && let Err(error) = open::that(&url)
-    {
-        messages::note(&format!(
-            "cannot open a browser: {}; open the address yourself",
-            words::reason(&error)
-        ));
+    // The file that leads the browser to the page.
+    let opened = args.open.then(|| browser::open(&url));
+    if let Some(Err(error)) = &opened {
+        let reason = words::reason(error);
+        messages::note(&format!("cannot open a browser: {reason}; open the address yourself"));
     }
     let mut watched =
         Watched { registry, path: args.scene, accuracy, named: Vec::new(), last: None, version: 0 };

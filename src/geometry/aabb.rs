@@ -1,62 +1,63 @@
-//! Boxes around shapes.
+//! Axis-aligned bounding boxes.
 
 use crate::geometry::ray_packet::RayPacket;
 use crate::simd::cpu::kernels;
 use crate::simd::soa::View;
 use glam::DVec3;
 
-/// What rounding may make of a place, as a part of how far it is from the world's origin; far more than it does.
+/// The slack for rounding errors, as a fraction of a point's distance from the world's origin: 4500 EPSILON, far more
+/// than the few roundings that a coordinate goes through.
 pub const SLACK: f64 = 1e-12;
 
-/// A box along the world's axes.
+/// An axis-aligned bounding box in world coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aabb {
-    /// Its corner with the least x, y and z.
+    /// The corner with the smallest x, y and z.
     pub low: DVec3,
-    /// Its corner with the greatest.
+    /// The corner with the largest x, y and z.
     pub high: DVec3,
 }
 
 impl Aabb {
-    /// A box that holds nothing, to be grown.
+    /// A box that contains nothing, to be grown.
     pub const EMPTY: Self = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
 
-    /// The box around some points.
+    /// Returns the bounding box of some points.
     pub fn around(points: &[DVec3]) -> Self {
         points.iter().fold(Self::EMPTY, |bounds, point| bounds.and(&Self { low: *point, high: *point }))
     }
 
-    /// The box around two.
+    /// Returns the bounding box of two boxes.
     #[inline(always)]
     pub fn and(&self, other: &Self) -> Self {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
 
-    /// Whether a point lies in both.
+    /// Returns whether two boxes have a point in common.
     #[inline(always)]
     pub fn overlaps(&self, other: &Self) -> bool {
         self.low.cmple(other.high).all() && other.low.cmple(self.high).all()
     }
 
-    /// Its middle.
+    /// Returns the center of the box.
     #[inline(always)]
     pub fn middle(&self) -> DVec3 {
         0.5 * (self.low + self.high)
     }
 
-    /// Half its size each way.
+    /// Returns half the size of the box along each axis, in world units.
     #[inline(always)]
     pub fn half_size(&self) -> DVec3 {
         0.5 * (self.high - self.low)
     }
 
-    /// Half the area of its surface.
+    /// Returns half the surface area of the box, in square world units.
     pub fn half_area(&self) -> f64 {
         let size = (self.high - self.low).max(DVec3::ZERO);
         size.x * size.y + size.y * size.z + size.z * size.x
     }
 
-    /// A box larger by what rounding may make of places in it, and of places at this distance.
+    /// Returns the box grown by the rounding error of the coordinates of points in it, and of points at this distance.
     #[inline(always)]
     pub fn with_slack(&self, distance: f64) -> Self {
         let size = |of: f64| if of.is_finite() { of.abs() } else { 0.0 };
@@ -66,7 +67,8 @@ impl Aabb {
     }
 }
 
-/// How far a point is from a shape with these bounds, at least, where the shape tells of which regions it is clear.
+/// Returns a lower bound of the distance from a point to a shape with these bounds, in world units. `is_clear_of` says
+/// that no part of the shape is in a region.
 pub fn clearance(from: DVec3, bounds: Option<Aabb>, is_clear_of: impl Fn(&Aabb) -> bool) -> f64 {
     let scale = from.abs().max_element();
     let outside = bounds.map_or(0.0, |bounds| {
@@ -76,31 +78,32 @@ pub fn clearance(from: DVec3, bounds: Option<Aabb>, is_clear_of: impl Fn(&Aabb) 
     if outside > 0.0 {
         return outside * (1.0 - SLACK);
     }
-    // The largest cube around it that is clear, to an eighth: of a size that is more than rounding makes of its sides.
+    // The largest clear cube around the point, to one eighth of its size. Its half size exceeds 1e-8 of the
+    // coordinates, so that rounding moves its sides by less than 1e-6 of it.
     let clear = |half: &f64| is_clear_of(&Aabb { low: from - *half, high: from + *half });
-    let least = (1e4 * SLACK * scale).max(1e-12);
-    let sizes = (-40..60).rev().map(|power| f64::from(power).exp2()).take_while(|half| *half > least);
+    let min_half = (1e4 * SLACK * scale).max(1e-12);
+    let sizes = (-40..60).rev().map(|power| f64::from(power).exp2()).take_while(|half| *half > min_half);
     sizes.into_iter().find(clear).map_or(0.0, |half| {
         let eighths = (9..16).rev().map(|eighths| half * f64::from(eighths) / 8.0);
         eighths.into_iter().find(clear).unwrap_or(half) * (1.0 - 1e-6)
     })
 }
 
-/// A number's place in the order of all numbers, as a whole number: of those the least is found several at a time,
-/// without a care for NaN.
+/// Maps a number to an integer such that integers compare as the numbers do. Integer minima are found several lanes at
+/// a time, without special cases for NaN.
 #[inline(always)]
 pub(crate) fn order(number: f64) -> i64 {
     let bits = number.to_bits() as i64;
     bits ^ (((bits >> 63) as u64) >> 1) as i64
 }
 
-/// The number at that place.
+/// Returns the number that [`order`] maps to an integer.
 #[inline(always)]
 pub(crate) fn from_order(place: i64) -> f64 {
     f64::from_bits((place ^ (((place >> 63) as u64) >> 1) as i64) as u64)
 }
 
-/// The least and the greatest of some numbers.
+/// Returns the smallest and the largest of some numbers.
 #[inline(always)]
 pub(crate) fn range(of: &[f64]) -> (f64, f64) {
     let (mut low, mut high) = (i64::MAX, i64::MIN);
@@ -111,26 +114,27 @@ pub(crate) fn range(of: &[f64]) -> (f64, f64) {
     (from_order(low), from_order(high))
 }
 
-/// The smaller of two numbers; the second one where either is NaN.
+/// Returns the smaller of two numbers; the second one where either is NaN.
 #[inline(always)]
 pub(crate) fn smaller(one: f64, other: f64) -> f64 {
     if one < other { one } else { other }
 }
 
-/// The larger of two numbers; the second one where either is NaN.
+/// Returns the larger of two numbers; the second one where either is NaN.
 #[inline(always)]
 pub(crate) fn larger(one: f64, other: f64) -> f64 {
     if one > other { one } else { other }
 }
 
 kernels! {
-    /// The box around some points.
+    /// Returns the bounding box of some points.
     pub fn around(points: View) -> Aabb {
         let (x, y, z) = (range(points.x), range(points.y), range(points.z));
         Aabb { low: DVec3::new(x.0, y.0, z.0), high: DVec3::new(x.1, y.1, z.1) }
     }
 
-    /// Whether any ray may come into a box before its end. Never wrong where it says no.
+    /// Returns whether any ray may enter a box before its end; `false` is certain. `inverse` holds the reciprocals of
+    /// the rays' directions, `ends` the distances in world units at which the rays end.
     pub fn any_meets(rays: RayPacket, inverse: View, ends: &[f64], bounds: &Aabb) -> bool {
         let count = ends.len();
         let (origin, inverse) = (rays.origin.first(count), inverse.first(count));

@@ -1,4 +1,4 @@
-//! Rays, boxes and frames: space without shapes.
+//! Rays, bounding boxes and frames: space without shapes.
 
 pub(crate) mod aabb;
 pub(crate) mod frame;

@@ -1,18 +1,18 @@
-//! Rays, the distances along them, and the sides of what they meet.
+//! Rays, distances along them, and the sides of surfaces that they hit.
 
 use glam::DVec3;
 
-/// A half line.
+/// A ray: a half-line.
 #[derive(Clone, Copy, Debug)]
 pub struct Ray {
-    /// Where it starts, in world coordinates.
+    /// The origin, in world coordinates.
     pub origin: DVec3,
-    /// Where it goes, a unit vector.
+    /// The direction, a unit vector.
     pub dir: DVec3,
 }
 
 impl Ray {
-    /// The point at this distance from the origin.
+    /// Returns the point at a distance from the origin, in world units.
     #[inline(always)]
     pub fn at(&self, distance: f64) -> DVec3 {
         self.origin + distance * self.dir
@@ -22,21 +22,21 @@ impl Ray {
 /// A side of a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Side {
-    /// The one that its normal points to.
+    /// The side that the normal points to.
     #[default]
     Outside,
-    /// The other one.
+    /// The other side.
     Inside,
 }
 
 impl Side {
-    /// The side of a surface with this normal from which something comes that moves along `dir`.
+    /// Returns the side of a surface with this normal that is hit by a ray along `dir`.
     #[inline(always)]
     pub fn seen_along(dir: DVec3, normal: DVec3) -> Self {
         if dir.dot(normal) < 0.0 { Self::Outside } else { Self::Inside }
     }
 
-    /// The other side.
+    /// Returns the opposite side.
     #[inline(always)]
     pub fn opposite(self) -> Self {
         match self {
@@ -46,18 +46,19 @@ impl Side {
     }
 }
 
-/// Distances along a ray, both ends excluded.
+/// An open range of distances along a ray, in world units.
 #[derive(Clone, Copy, Debug)]
 pub struct RayRange {
-    /// Hits must lie farther.
+    /// The lower bound: hits must be farther.
     pub near: f64,
-    /// Hits must lie nearer.
+    /// The upper bound: hits must be nearer.
     pub far: f64,
-    /// The side of the shape's own surface that the ray starts on and leaves, if it does: where it starts is no hit,
-    /// however rounding has it. Only shapes that may meet themselves on that side are asked then.
+    /// The side of the shape's own surface that the ray starts on and leaves, if it does: the origin itself is then not
+    /// a hit, whatever rounding says. Such rays are passed only to shapes that they may hit again from that side.
     pub origin_side: Option<Side>,
-    /// How far at most the ray's origin is from the point that it stands for, in world units. 0 for a ray from the
-    /// viewer. A bracket from [`t_bounds`](crate::world::hittable::Bracketed::t_bounds) is certain only where the shape does not touch the origin within it.
+    /// The largest distance of the ray's origin from the point that it stands for, in world units. 0 for a camera ray.
+    /// A bracket from [`t_bounds`](crate::world::hittable::Bracketed::t_bounds) is certain only where the shape is
+    /// farther from the origin than this.
     pub origin_error: f64,
 }
 
@@ -65,44 +66,45 @@ pub struct RayRange {
 pub const MISS: f64 = f64::INFINITY;
 
 impl RayRange {
-    /// All of a ray but its origin.
+    /// All of a ray except its origin.
     pub const ALL: RayRange =
         RayRange { near: 0.0, far: f64::INFINITY, origin_side: None, origin_error: 0.0 };
 
-    /// The distance itself if it lies in the span, else [`MISS`]; so is a NaN.
+    /// Returns the distance if it is in the range, else [`MISS`]; for NaN, too.
     #[inline(always)]
     pub fn keep(&self, distance: f64) -> f64 {
-        // One after the other: both at once become a question after the kind of number, of one number at a time.
+        // Two comparisons, one after the other: combined, they compile to a classification of the number, one lane at a
+        // time.
         let distance = if distance < self.far { distance } else { MISS };
         if self.near < distance { distance } else { MISS }
     }
 }
 
-/// Between which distances a ray's first hit of a shape within a span is.
+/// Bounds of the distance of a ray's first hit of a shape in a range, in world units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bracket {
-    /// It is no nearer than this; [`MISS`] where there is certainly none.
+    /// A lower bound of the first hit's distance; [`MISS`] where there is certainly no hit.
     pub near: f64,
-    /// It is certainly there and no farther than this; [`MISS`] where that is not certain.
+    /// An upper bound of the first hit's distance where there certainly is a hit; else [`MISS`].
     pub far: f64,
 }
 
 impl Bracket {
-    /// Of a ray that certainly misses.
+    /// The bracket of a ray that certainly misses.
     pub const MISS: Self = Self { near: MISS, far: MISS };
 
-    /// Of a ray whose hit is known.
+    /// Returns the bracket of a hit at a known distance.
     #[inline(always)]
     pub fn exactly(distance: f64) -> Self {
         Self { near: distance, far: distance }
     }
 
-    /// Whether it leaves open if there is a hit.
+    /// Returns whether the bracket leaves open if there is a hit.
     #[inline(always)]
     pub fn is_doubtful(&self) -> bool {
         (self.near < MISS) & (self.far == MISS)
     }
 
-    /// Of a ray of which plain arithmetic tells nothing.
+    /// The bracket of a ray about which plain arithmetic says nothing.
     pub const UNKNOWN: Self = Self { near: 0.0, far: MISS };
 }

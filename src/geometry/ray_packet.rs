@@ -1,80 +1,80 @@
-//! Packets: rays by the dozen, an array for each coordinate, so that one call of a shape serves all of them and the
-//! processor takes several at a time.
+//! Packets of rays as structures of arrays, so that one call of a shape serves all of them and the processor takes
+//! several rays at a time.
 //!
-//! A plugin is written for one ray. Loops over packets take its functions in and are compiled for each level of
-//! instructions ([`cpu`](crate::simd::cpu)). Arrays are as long as a multiple of [`LANES`](crate::simd::soa::LANES); what
-//! is beyond the last ray is a copy of it, and is computed and ignored.
+//! A plugin is written for one ray. Kernels over packets inline its functions and are compiled for each level of
+//! instructions ([`cpu`](crate::simd::cpu)). Arrays are as long as a multiple of [`LANES`](crate::simd::soa::LANES);
+//! the lanes beyond the last ray are copies of it, whose results are ignored.
 
 use crate::geometry::ray::{Bracket, MISS, Ray};
 use crate::simd::cpu::kernels;
 use crate::simd::soa::View;
 use std::ops::Range;
 
-/// The most rays of a packet.
+/// The largest number of rays in a packet.
 pub const PACKET_SIZE: usize = 256;
 
-/// The lanes of so many rays in parts of at most so many, neighbours together.
-pub fn split(count: usize, most: usize) -> impl Iterator<Item = Range<usize>> {
-    (0..count).step_by(most).map(move |first| first..count.min(first + most))
+/// Splits the lanes of `count` rays into consecutive ranges of at most `max_size` lanes.
+pub fn split(count: usize, max_size: usize) -> impl Iterator<Item = Range<usize>> {
+    (0..count).step_by(max_size).map(move |first| first..count.min(first + max_size))
 }
 
-/// Rays. A packet's rays all leave the same object, or none.
+/// A packet of rays, all of which leave the same object, or none.
 #[derive(Clone, Copy)]
 pub struct RayPacket<'r> {
-    /// Where each starts.
+    /// The origins, in world coordinates.
     pub origin: View<'r>,
-    /// Where each goes, a unit vector.
+    /// The directions, unit vectors.
     pub dir: View<'r>,
-    /// How far at most any origin is from the point that it stands for, in world units; 0 for rays from the viewer.
+    /// The largest distance of any origin from the point that it stands for, in world units; 0 for camera rays.
     pub origin_error: f64,
 }
 
 impl RayPacket<'_> {
-    /// How many there are.
+    /// Returns the number of rays.
     #[inline(always)]
     pub fn len(&self) -> usize {
         self.origin.len()
     }
 
-    /// Whether there are none.
+    /// Returns whether there are no rays.
     pub fn is_empty(&self) -> bool {
         self.origin.is_empty()
     }
 
-    /// The one of this index.
+    /// Returns the ray at an index.
     #[inline(always)]
     pub fn get(&self, index: usize) -> Ray {
         Ray { origin: self.origin.get(index), dir: self.dir.get(index) }
     }
 
-    /// The first of them, so many.
+    /// Returns the first `count` rays.
     #[inline(always)]
     pub fn first(&self, count: usize) -> Self {
         Self { origin: self.origin.first(count), dir: self.dir.first(count), ..*self }
     }
 
-    /// Some of them.
+    /// Returns the rays in a range of indices.
     #[inline(always)]
     pub fn part(&self, range: Range<usize>) -> Self {
         Self { origin: self.origin.part(range.clone()), dir: self.dir.part(range), ..*self }
     }
 }
 
-/// What the rays of a packet meet first, as far as it is known.
+/// The closest hits of a packet's rays, as far as they are known. All arrays have one element per ray.
 pub struct Nearest<'n> {
-    /// The hit of the object in `met` is no nearer than this.
+    /// Lower bounds of the distance of the hit of the object in `met`, in world units.
     pub near: &'n mut [f64],
-    /// And no farther than this. Both are the same where it is known exactly, and the end of the search where nothing
-    /// is met.
+    /// Upper bounds of that distance, equal to `near` where it is known exactly. Both are the end of the search where
+    /// nothing is hit.
     pub far: &'n mut [f64],
-    /// The object's index and 1; 0 for none.
+    /// The object's index plus 1; 0 for no object.
     pub met: &'n mut [u64],
-    /// Not 0 where brackets overlap: the nearer one of two is not known yet.
+    /// Nonzero where brackets overlap, so that it is not known which of two hits is closer.
     pub doubt: &'n mut [u64],
 }
 
 impl Nearest<'_> {
-    /// What is known of some of the rays.
+    /// Returns the part for the rays in a range of indices.
     pub fn part(&mut self, range: Range<usize>) -> Nearest<'_> {
         Nearest {
             near: &mut self.near[range.clone()],
@@ -86,7 +86,7 @@ impl Nearest<'_> {
 }
 
 kernels! {
-    /// Compares brackets with the nearest so far. Tells whether any is in doubt.
+    /// Merges an object's brackets into the closest hits so far. Returns whether any ray is in doubt.
     pub(crate) fn closest_of_brackets(near: &[f64], far: &[f64], id: u64, nearest: Nearest) -> bool {
         let count = nearest.near.len().min(near.len());
         let (near, far) = (&near[..count], &far[..count]);
@@ -94,7 +94,7 @@ kernels! {
         merge_nearest(count, &known, id, nearest.near, nearest.far, nearest.met, nearest.doubt)
     }
 
-    /// Marks the rays that brackets say are blocked before their ends. Tells whether any is in doubt.
+    /// Marks the rays that brackets show to be occluded before `t_max`. Returns whether any ray is in doubt.
     pub(crate) fn occluded_by_brackets(
         near: &[f64], far: &[f64], t_max: &[f64], blocked: &mut [u64], doubt: &mut [u64]
     ) -> bool {
@@ -103,13 +103,13 @@ kernels! {
     }
 }
 
-/// The brackets of rays, by lane. No closures: those are taken in only where it pleases the compiler.
+/// The brackets of an object's hits, by lane. A trait, as closures are not reliably inlined into kernels.
 pub(crate) trait Brackets {
-    /// That of a hit before `far`.
+    /// Returns the bracket of a hit before `far`.
     fn get(&self, lane: usize, far: f64) -> Bracket;
 }
 
-/// Brackets that are known.
+/// Brackets that have been computed.
 struct Known<'b> {
     near: &'b [f64],
     far: &'b [f64],
@@ -122,10 +122,10 @@ impl Brackets for Known<'_> {
     }
 }
 
-/// Compares the brackets of so many rays with the nearest so far. Tells whether any is in doubt.
+/// Merges an object's brackets of `count` rays into the closest hits so far. Returns whether any ray is in doubt.
 ///
-/// The arrays are arguments of their own, not a [`Nearest`], for the compiler to know that they are not the same: else it
-/// looks at that each time, and takes single rays where there are few.
+/// The arrays are arguments of their own, not a [`Nearest`], which tells the compiler that they do not overlap:
+/// otherwise it checks for overlap at every call, and takes small counts of rays one by one.
 #[inline(always)]
 pub(crate) fn merge_nearest(
     count: usize,
@@ -142,11 +142,11 @@ pub(crate) fn merge_nearest(
     for lane in 0..count {
         let Bracket { near: low, far: high } = brackets.get(lane, far[lane]);
         let is_nearer = high < near[lane];
-        // Of two at the same distance the earlier one in the scene wins.
+        // Of two hits at the same distance, the object that is earlier in the scene wins.
         let is_earlier = (low == far[lane]) & (met[lane] > id);
         let is_farther = (low >= far[lane]) & !is_earlier;
-        // As the lesser of two, not as one or the other: of that the compiler would make stores that leave some lanes
-        // out, which are slow where there is no AVX-512.
+        // A minimum, not a choice between two values: the compiler would turn a choice into masked stores, which are
+        // slow without AVX-512.
         let (low, high) = if is_nearer { (low, high) } else { (MISS, MISS) };
         near[lane] = if low < near[lane] { low } else { near[lane] };
         far[lane] = if high < far[lane] { high } else { far[lane] };
@@ -157,7 +157,7 @@ pub(crate) fn merge_nearest(
     any != 0
 }
 
-/// Marks the rays that brackets say are blocked before their ends. Tells whether any is in doubt.
+/// Marks the rays that brackets show to be occluded before `t_max`. Returns whether any ray is in doubt.
 #[inline(always)]
 pub(crate) fn mark_occluded(
     brackets: &impl Brackets,

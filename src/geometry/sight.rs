@@ -1,11 +1,11 @@
-//! Rays of which every digit is known, so that something can be proven of them.
+//! Rays whose digits are all known, so that something can be proven about them.
 
 use crate::geometry::ray::Ray;
 use crate::numeric::dual::Dual;
 use crate::numeric::scalar::Scalar;
 use glam::{DVec2, DVec3};
 
-/// A ray as a scene gives it, before anything is rounded.
+/// A ray as the scene gives it, before rounding.
 #[derive(Clone, Copy, Debug)]
 pub struct Sight {
     origin: DVec3,
@@ -14,50 +14,51 @@ pub struct Sight {
 
 #[derive(Clone, Copy, Debug)]
 enum Toward {
-    /// Along this vector.
+    /// A direction, of any length.
     Direction(DVec3),
-    /// Through the place of the screen, in the plane z = 0, whose x and y are each `at / last * size`.
-    Screen { at: DVec2, last: DVec2, size: DVec2 },
+    /// A point on the image plane z = 0, whose x and y are each `at / last * size`: `at` and `last` in pixels, `size`
+    /// in world units.
+    ImagePoint { at: DVec2, last: DVec2, size: DVec2 },
 }
 
-/// A line with numbers of any type: the points `origin + t dir`.
+/// A line in any number type: the points `origin + t dir`.
 #[derive(Clone, Copy, Debug)]
 pub struct Line<N> {
-    /// The point where t is 0.
+    /// The point at t = 0.
     pub origin: [N; 3],
-    /// Its direction, of any length.
+    /// The direction, of any length.
     pub dir: [N; 3],
 }
 
 impl Sight {
-    /// The ray from a viewpoint through a place of a screen, `at / last` of its width and height from its lower left
-    /// corner.
+    /// Returns the ray from a viewpoint through a point of the image plane, at `at / last` of the image's width and
+    /// height from its lower left corner.
     #[inline(always)]
     pub fn through(viewpoint: DVec3, at: DVec2, last: DVec2, size: DVec2) -> Self {
-        Self { origin: viewpoint, toward: Toward::Screen { at, last, size } }
+        Self { origin: viewpoint, toward: Toward::ImagePoint { at, last, size } }
     }
 
-    /// A ray taken for exactly what its numbers are, the length of its direction included.
+    /// Returns a sight along a ray, taking all of its numbers for exact, including the length of its direction.
     pub fn along(ray: &Ray) -> Self {
         Self { origin: ray.origin, toward: Toward::Direction(ray.dir) }
     }
 
-    /// The ray, rounded.
+    /// Returns the ray, rounded.
     #[inline(always)]
     pub fn ray(&self) -> Ray {
         let dir = match self.toward {
             Toward::Direction(dir) => dir,
-            Toward::Screen { at, last, size } => direction(self.origin, at, last, size),
+            Toward::ImagePoint { at, last, size } => direction(self.origin, at, last, size),
         };
         Ray { origin: self.origin, dir }
     }
 
-    /// The line that it runs along, from t = 0 on.
+    /// Returns the line of the ray, which starts at t = 0.
     pub fn line<N: Scalar>(&self) -> Line<N> {
         let n = N::constant;
         let dir = match self.toward {
             Toward::Direction(dir) => dir.to_array().map(n),
-            Toward::Screen { at, last, size } => {
+            Toward::ImagePoint { at, last, size } => {
                 let part = |side: usize| n(at[side]) / n(last[side]) * n(size[side]) - n(self.origin[side]);
                 [part(0), part(1), n(-self.origin.z)]
             }
@@ -65,26 +66,26 @@ impl Sight {
         Line { origin: self.origin.to_array().map(n), dir }
     }
 
-    /// The square of how far it gets from t = 0 to 1, in world units.
+    /// Returns the squared length of the direction of [`line`](Self::line), in square world units.
     pub fn squared_length<N: Scalar>(&self) -> N {
         let [x, y, z] = self.line::<N>().dir.map(|part| part.powi(2));
         x + y + z
     }
 }
 
-/// The unit vector, rounded, from a viewpoint to a place of the screen.
+/// Returns the rounded unit vector from a viewpoint to a point of the image plane.
 #[inline(always)]
 pub(crate) fn direction(viewpoint: DVec3, at: DVec2, last: DVec2, size: DVec2) -> DVec3 {
     ((at / last * size).extend(0.0) - viewpoint).normalize()
 }
 
 impl<N: Scalar> Line<N> {
-    /// The point at t.
+    /// Returns the point at t.
     pub fn at(&self, t: N) -> [N; 3] {
         [0, 1, 2].map(|axis| self.origin[axis] + t * self.dir[axis])
     }
 
-    /// The point at t, which depends on a variable.
+    /// Returns the point at a t that depends on a variable.
     pub fn along(&self, t: Dual<N>) -> [Dual<N>; 3] {
         [0, 1, 2].map(|axis| Dual::fixed(self.origin[axis]) + t * Dual::fixed(self.dir[axis]))
     }

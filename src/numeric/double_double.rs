@@ -1,12 +1,12 @@
-//! Arithmetic without rounding error, or with that of twice the precision (Dekker 1971, Knuth; Joldes et al. 2017).
+//! Error-free transformations and double-double arithmetic (Dekker 1971, Knuth; Joldes et al. 2017).
 //!
-//! Nothing here multiplies and adds in one step, so the bits are the same on every machine.
+//! Nothing here uses a fused multiply-add, so the bits are the same on every machine.
 
 mod elementary;
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A sum, and what rounding took from it.
+/// Returns the rounded sum of two numbers and its rounding error.
 #[inline(always)]
 pub fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
@@ -14,10 +14,10 @@ pub fn two_sum(a: f64, b: f64) -> (f64, f64) {
     (sum, (a - (sum - of_b)) + (b - of_b))
 }
 
-/// A product, and what rounding took from it. Factors beyond 1e300 overflow.
+/// Returns the rounded product of two numbers and its rounding error. Factors beyond 1e300 overflow.
 #[inline(always)]
 pub fn two_product(a: f64, b: f64) -> (f64, f64) {
-    /// Half of the digits, and the rest.
+    /// Splits a number into its upper half of the digits and the rest.
     #[inline(always)]
     fn split(a: f64) -> (f64, f64) {
         const SPLITTER: f64 = 134_217_729.0; // 2^27 + 1
@@ -30,7 +30,7 @@ pub fn two_product(a: f64, b: f64) -> (f64, f64) {
     (product, ((a * b - product) + a * b_low + a_low * b) + a_low * b_low)
 }
 
-/// `start + distance * step - from`: to a unit in the last place of the result, however far `start` is from there. The
+/// Computes `start + distance * step - from` to one ulp of the result, however far `start` is from `from`. The
 /// difference is exact where it cancels, and rounded once where it does not.
 #[inline(always)]
 pub fn offset(start: f64, distance: f64, step: f64, from: f64) -> f64 {
@@ -39,8 +39,9 @@ pub fn offset(start: f64, distance: f64, step: f64, from: f64) -> f64 {
     (place - from) + (way_low + place_low)
 }
 
-/// A sum of three products, the second factors with what rounding took from them, and of something small: rounded about
-/// once, and off by at most 2^-102 of the size of its parts, however much of it cancels (Ogita, Rump and Oishi 2005).
+/// Computes the dot product of `a` and `b + b_low`, plus `small`, where `b_low` holds the rounding errors of `b`. The
+/// result is rounded about once, and off by at most 2^-102 of the size of its terms however much of it cancels (Ogita,
+/// Rump and Oishi 2005).
 #[inline(always)]
 pub fn dot(a: [f64; 3], b: [f64; 3], b_low: [f64; 3], small: f64) -> f64 {
     let (first, first_low) = two_product(a[0], b[0]);
@@ -52,14 +53,14 @@ pub fn dot(a: [f64; 3], b: [f64; 3], b_low: [f64; 3], small: f64) -> f64 {
     sum + ((first_low + second_low + third_low) + (sum_low + rest_low) + (of_low + small))
 }
 
-/// A number without rounding: the sum of parts whose digits do not overlap, the least first (Shewchuk 1997).
+/// An exact number: an unevaluated sum of parts whose digits do not overlap, smallest first (Shewchuk 1997).
 #[derive(Clone, Debug, Default)]
 pub struct Exact {
     parts: Vec<f64>,
 }
 
 impl Exact {
-    /// The sum of some numbers.
+    /// Returns the exact sum of some numbers.
     pub fn sum(terms: impl IntoIterator<Item = f64>) -> Self {
         let mut parts = Vec::with_capacity(16);
         for term in terms {
@@ -80,50 +81,51 @@ impl Exact {
         Self { parts }
     }
 
-    /// What it is the sum of.
+    /// Returns the parts that the number is the sum of.
     pub fn parts(&self) -> &[f64] {
         &self.parts
     }
 
-    /// What its product with another one is the sum of.
+    /// Returns the terms whose exact sum is the product with another number.
     pub fn times<'e>(&'e self, other: &'e Self) -> impl Iterator<Item = f64> + 'e {
         let pairs = self.parts.iter().flat_map(|one| other.parts.iter().map(move |other| (*one, *other)));
         pairs.flat_map(|(one, other)| <[f64; 2]>::from(two_product(one, other)))
     }
 
-    /// It, rounded once to twice the precision.
+    /// Returns the number rounded once to a double-double.
     pub fn rounded(&self) -> DoubleDouble {
         self.parts.iter().rev().fold(DoubleDouble::from(0.0), |sum, part| sum + DoubleDouble::from(*part))
     }
 }
 
-/// A sum, rounded once to twice the precision: 0 where it is 0, however much of it cancels.
+/// Returns a sum, rounded once to a double-double: 0 exactly where the sum is 0, however much of it cancels.
 pub fn exact_sum(terms: impl IntoIterator<Item = f64>) -> DoubleDouble {
     Exact::sum(terms).rounded()
 }
 
-/// The power of two that brings numbers of this magnitude to between 1/2 and 1, as its exponent; 0 for 0.
+/// Returns the exponent of the power of two that scales a magnitude to between 1/2 and 1; 0 for 0.
 pub fn exponent_to_one(magnitude: f64) -> i32 {
-    // Numbers too small for all of their digits are near enough to the least that have them.
+    // Subnormal numbers are scaled as the smallest normal number is.
     let bits = magnitude.abs().max(f64::MIN_POSITIVE).to_bits() >> 52;
     if magnitude == 0.0 { 0 } else { 1022 - bits as i32 }
 }
 
-/// A number times a power of two: exactly, unless the result is too small or too large for a normal number.
+/// Returns a number times 2^`exponent`: exactly, unless the result is too small or too large for a normal number.
 pub fn times_power_of_two(number: f64, exponent: i32) -> f64 {
     let half = exponent / 2;
     number * 2_f64.powi(half) * 2_f64.powi(exponent - half)
 }
 
-/// A number in twice the precision: the sum of two, the second far smaller.
+/// A double-double: the unevaluated sum of two numbers, of which the second is about 2^-53 of the first.
 ///
-/// For finite numbers of a magnitude below 1e290, products' magnitudes above 1e-290: beyond them parts are lost.
+/// Holds for finite magnitudes below 1e290 whose products have magnitudes above 1e-290; outside that range, parts
+/// overflow or underflow.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct DoubleDouble {
-    // The order of the fields is that in which numbers compare.
-    /// The number, rounded.
+    // Numbers compare by the fields in this order.
+    /// The number, rounded to `f64`.
     pub high: f64,
-    /// What rounding took.
+    /// The rounding error of `high`.
     pub low: f64,
 }
 
@@ -135,14 +137,14 @@ impl From<f64> for DoubleDouble {
 }
 
 impl DoubleDouble {
-    /// The difference of two numbers, exactly.
+    /// Returns the exact difference of two numbers.
     #[inline(always)]
     pub fn difference(a: f64, b: f64) -> Self {
         let (high, low) = two_sum(a, -b);
         Self { high, low }
     }
 
-    /// The square root; 0 below 0.
+    /// Returns the square root; 0 below 0.
     pub fn sqrt(self) -> Self {
         if self.high <= 0.0 {
             return Self::from(0.0);
@@ -212,13 +214,13 @@ impl Div for DoubleDouble {
     }
 }
 
-/// The product of two vectors that is a number.
+/// Returns the dot product of two vectors.
 #[inline(always)]
 pub fn product(a: [DoubleDouble; 3], b: [DoubleDouble; 3]) -> DoubleDouble {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// The product of two vectors that stands upright on both, each component rounded once, however much cancels in it.
+/// Returns the cross product of two vectors, each component rounded once however much of it cancels.
 pub fn cross(a: [DoubleDouble; 3], b: [DoubleDouble; 3]) -> [DoubleDouble; 3] {
     let parts = |of: DoubleDouble, with: DoubleDouble| {
         let pairs = [(of.high, with.high), (of.high, with.low), (of.low, with.high), (of.low, with.low)];
@@ -230,7 +232,8 @@ pub fn cross(a: [DoubleDouble; 3], b: [DoubleDouble; 3]) -> [DoubleDouble; 3] {
     })
 }
 
-/// The product of three vectors, rounded once: which way round they are, for certain, or that they are in one plane.
+/// Returns the triple product of three vectors, rounded once: its sign tells their orientation, and it is 0 exactly
+/// where they are coplanar.
 pub fn triple_product(a: [DoubleDouble; 3], b: [DoubleDouble; 3], c: [f64; 3]) -> DoubleDouble {
     let parts = |of: DoubleDouble, with: DoubleDouble, factor: f64| {
         let pairs = [(of.high, with.high), (of.high, with.low), (of.low, with.high), (of.low, with.low)];
@@ -242,7 +245,7 @@ pub fn triple_product(a: [DoubleDouble; 3], b: [DoubleDouble; 3], c: [f64; 3]) -
     }))
 }
 
-/// A vector's direction, as a vector of length 1. Its components must be of about that magnitude.
+/// Returns the unit vector along a vector whose components have magnitudes around 1.
 pub fn unit(vector: [DoubleDouble; 3]) -> [DoubleDouble; 3] {
     let length = product(vector, vector).sqrt();
     vector.map(|part| part / length)

@@ -1,31 +1,31 @@
-//! Numbers that carry their derivative along (automatic differentiation, forward).
+//! Dual numbers: forward-mode automatic differentiation.
 
 use crate::numeric::scalar::Scalar;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A number and its derivative. A dual number of dual numbers carries the second derivative, too.
+/// A number and its derivative. A dual number of dual numbers has the second derivative, too.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dual<N = f64> {
-    /// The number.
+    /// The value.
     pub value: N,
-    /// How fast it changes with the variable.
+    /// The derivative with respect to the variable.
     pub slope: N,
 }
 
 impl<N: Scalar> Dual<N> {
-    /// The variable itself.
+    /// Returns the variable itself, whose derivative is 1.
     #[inline(always)]
     pub fn variable(value: N) -> Self {
         Self { value, slope: N::constant(1.0) }
     }
 
-    /// A number that does not depend on the variable.
+    /// Returns a number that does not depend on the variable, whose derivative is 0.
     #[inline(always)]
     pub fn fixed(value: N) -> Self {
         Self { value, slope: N::constant(0.0) }
     }
 
-    /// A function of it, by the function's value and derivative there.
+    /// Applies the chain rule: returns a function of the number, given the function's value and derivative there.
     #[inline(always)]
     fn chain(self, value: N, derivative: N) -> Self {
         Self { value, slope: derivative * self.slope }
@@ -33,25 +33,25 @@ impl<N: Scalar> Dual<N> {
 }
 
 impl<N: Scalar> Dual<Dual<N>> {
-    /// The variable, for its functions' first and second derivatives.
+    /// Returns the variable itself, for first and second derivatives.
     #[inline(always)]
     pub fn variable_twice(value: N) -> Self {
         Self::variable(Dual::variable(value))
     }
 
-    /// A number that does not depend on the variable.
+    /// Returns a number that does not depend on the variable, for first and second derivatives.
     #[inline(always)]
     pub fn fixed_twice(value: N) -> Self {
         Self::fixed(Dual::fixed(value))
     }
 
-    /// The first derivative.
+    /// Returns the first derivative.
     #[inline(always)]
     pub fn first(&self) -> N {
         self.value.slope
     }
 
-    /// The second derivative.
+    /// Returns the second derivative.
     #[inline(always)]
     pub fn second(&self) -> N {
         self.slope.slope
@@ -167,7 +167,7 @@ impl<N: Scalar> Scalar for Dual<N> {
     fn pow(self, exponent: Self) -> Self {
         let value = self.value.pow(exponent.value);
         let by_base = exponent.value * self.value.pow(exponent.value - N::constant(1.0));
-        // The exponent is mostly a constant; then the base may be 0 or less.
+        // The exponent is nearly always a constant; then the base may be 0 or negative.
         let by_exponent = if exponent.slope.is_zero() { N::constant(0.0) } else { value * self.value.ln() };
         Self { value, slope: by_base * self.slope + by_exponent * exponent.slope }
     }

@@ -1,17 +1,18 @@
-//! Eight numbers that formulas compute with at one time.
+//! Eight lanes of `f64` that formulas are evaluated with at a time.
 //!
-//! Each gets the bits that it would get alone. Sines and cosines are those of the `libm` crate, all eight at once where
-//! that is possible: the reduction and the polynomials are those of FreeBSD's msun, from which that crate comes.
+//! Each lane gets the bits that it would get alone. Sines and cosines are those of the `libm` crate, all eight at once
+//! where that is possible: the reduction and the polynomials are those of FreeBSD's msun, from which that crate is
+//! ported.
 
 use crate::numeric::scalar::Scalar;
 use crate::simd::soa::LANES;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Eight numbers, each of which goes its own way.
+/// Eight independent numbers, one per lane.
 #[derive(Clone, Copy, Debug)]
 pub struct F64x8(pub [f64; LANES]);
 
-/// Something of each number, or of each of several vectors' numbers: `each!(a = x, b = y => a.hypot(b))`.
+/// Evaluates an expression for each lane of one or more vectors: `each!(a = x, b = y => a.hypot(b))`.
 macro_rules! each {
     ($($number:ident = $vector:expr),+ => $value:expr) => {{
         let mut all = [0.0; $crate::simd::soa::LANES];
@@ -78,15 +79,15 @@ impl Scalar for F64x8 {
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         let (mut sin, mut cos) = ([0.0; LANES], [0.0; LANES]);
-        let (mut odd, mut any) = ([0; LANES], 0);
+        let (mut fallback, mut any) = ([0; LANES], 0);
         for lane in 0..LANES {
             let of = sin_cos(self.0[lane]);
-            (sin[lane], cos[lane], odd[lane]) = (of.sin, of.cos, of.is_odd);
-            any |= of.is_odd;
+            (sin[lane], cos[lane], fallback[lane]) = (of.sin, of.cos, of.needs_libm);
+            any |= of.needs_libm;
         }
         if any != 0 {
             for lane in 0..LANES {
-                if odd[lane] != 0 {
+                if fallback[lane] != 0 {
                     (sin[lane], cos[lane]) = libm::sincos(self.0[lane]);
                 }
             }
@@ -163,31 +164,32 @@ impl Scalar for F64x8 {
         Self::constant(0.0)
     }
 
-    /// Whether all of them are.
+    /// Returns whether all lanes are 0.
     #[inline(always)]
     fn is_zero(self) -> bool {
         self.0 == [0.0; LANES]
     }
 }
 
-/// The sine and the cosine of a number, but where it `is_odd` (not 0).
+/// The sine and the cosine of a number, valid unless `needs_libm` is nonzero.
 struct SinCos {
     sin: f64,
     cos: f64,
-    is_odd: u64,
+    needs_libm: u64,
 }
 
-/// Without branches. Odd are numbers that are large, no numbers, or so near to where a formula of msun's begins or ends
-/// that another might be used here.
+/// Computes the sine and the cosine of an angle in radians without branches. `needs_libm` is nonzero for large angles,
+/// for NaN, and for angles so near to where msun switches between formulas that it might use another one.
 #[inline(always)]
 fn sin_cos(x: f64) -> SinCos {
-    /// Added, it leaves a whole number in the last bits.
+    /// Adding this rounds to an integer, which is left in the last bits.
     const TO_WHOLE: f64 = 1.5 / f64::EPSILON;
     const INVERSE: f64 = std::f64::consts::FRAC_2_PI;
-    /// The first 33 bits of a quarter turn, and the rest.
+    /// The first 33 bits of π / 2, and the rest.
     const QUARTER: f64 = 1.570_796_326_734_125_6;
     const QUARTER_REST: f64 = 6.077_100_506_506_192e-11;
-    /// What certainly is less than an eighth of a turn, and what is so little that it is its own sine.
+    /// Bounds in radians: angles below the first are certainly below π / 4; the sine of an angle below the second is
+    /// the angle itself.
     const REDUCED: f64 = 0.785;
     const TINY: f64 = 2e-8;
 
@@ -198,7 +200,7 @@ fn sin_cos(x: f64) -> SinCos {
     let high = turned - rest;
     let low = (turned - high) - rest;
     let size = high.abs();
-    // Where much cancels more bits of the turn are needed.
+    // Where much of the angle cancels, more bits of π / 2 are needed.
     let is_fine = (x.abs() < 1e5) & (size < REDUCED) & (size > TINY) & (size * 1000.0 > x.abs());
 
     let square = high * high;
@@ -218,16 +220,16 @@ fn sin_cos(x: f64) -> SinCos {
     let quadrant = shifted.to_bits() & 3;
     let is_crossed = quadrant & 1 != 0;
     let (sin, cos) = if is_crossed { (cosine, sine) } else { (sine, cosine) };
-    // Which of them is below 0 there, as its sign's bit.
+    // The sign bits of the sine and of the cosine in this quadrant.
     let (sin_sign, cos_sign) = ((quadrant & 2) << 62, ((quadrant + 1) & 2) << 62);
     SinCos {
         sin: f64::from_bits(sin.to_bits() ^ sin_sign),
         cos: f64::from_bits(cos.to_bits() ^ cos_sign),
-        is_odd: u64::from(!is_fine),
+        needs_libm: u64::from(!is_fine),
     }
 }
 
-/// The coefficients of the sine after the first, and of the cosine after the second.
+/// The coefficients of the sine's polynomial after its first term, and of the cosine's after its second.
 const S: [f64; 6] = [
     -1.666_666_666_666_663_2e-1,
     8.333_333_333_322_49e-3,
@@ -256,9 +258,9 @@ mod tests {
 
     #[test]
     fn sines_have_the_bits_of_libm() {
-        let mut odd = 0;
+        let mut fallback = 0;
         let numbers = (0..2_000_000_u64).map(|index| {
-            // From 1e-9 to 1e6, both signs, and places near quarters of a turn.
+            // From 1e-9 to 1e6, both signs, and angles near multiples of π / 4.
             let spread = (index as f64 * 0.618_033_988_749_894_9).fract();
             let size = 10.0_f64.powf(15.0 * spread - 9.0);
             match index % 4 {
@@ -277,10 +279,10 @@ mod tests {
                 let expected = libm::sincos(eight[lane]);
                 assert!(same(sin.0[lane], expected.0), "sin {:e}", eight[lane]);
                 assert!(same(cos.0[lane], expected.1), "cos {:e}", eight[lane]);
-                odd += sin_cos(eight[lane]).is_odd;
+                fallback += sin_cos(eight[lane]).needs_libm;
             }
         }
-        assert!((odd as usize) < numbers.len() / 2, "most are computed at once: {odd} are not");
+        assert!((fallback as usize) < numbers.len() / 2, "most are computed at once: {fallback} are not");
     }
 
     #[test]

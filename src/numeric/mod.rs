@@ -1,4 +1,4 @@
-//! What formulas compute with, and formulas.
+//! Number types that formulas are evaluated with, and formulas.
 
 pub mod double_double;
 pub(crate) mod dual;

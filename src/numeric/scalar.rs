@@ -1,76 +1,76 @@
-//! What formulas compute with: plain numbers here, [`Interval`](crate::numeric::interval::Interval)s and
-//! [`Dual`](crate::numeric::dual::Dual) numbers beside them.
+//! The number types that formulas are evaluated with: plain numbers here,
+//! [`Interval`](crate::numeric::interval::Interval)s and [`Dual`](crate::numeric::dual::Dual) numbers beside them.
 //!
-//! One formula evaluated with one type after the other gives values, derivatives and proven bounds. The functions
-//! are those of the `libm` crate, whose results do not depend on the machine.
+//! One formula evaluated with one type after the other gives values, derivatives and proven bounds. The functions are
+//! those of the `libm` crate, whose results do not depend on the machine.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// What a formula computes with.
+/// A number type that formulas are evaluated with.
 ///
-/// The square root of a number below 0 is 0, so that a profile such as `sqrt(9 - y^2)` has an end and not a gap in
-/// its definition; the logarithm and powers of numbers below 0 are not defined.
+/// The square root of a number below 0 is 0, so that a profile such as `sqrt(9 - y^2)` has an end and not a gap in its
+/// domain; the logarithm and powers of numbers below 0 are not defined.
 pub trait Scalar:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
-    /// A number that does not depend on anything.
+    /// Returns a constant.
     fn constant(value: f64) -> Self;
-    /// A number that is known but for an error: with bounds where there are bounds, else the number itself.
+    /// Returns a number that is known to within an error: an interval for types with bounds, else the number itself.
     #[inline(always)]
     fn about(value: f64, _error: f64) -> Self {
         Self::constant(value)
     }
-    /// The sine and the cosine.
+    /// Returns the sine and the cosine of an angle in radians.
     fn sin_cos(self) -> (Self, Self);
-    /// The sine.
+    /// Returns the sine of an angle in radians.
     #[inline(always)]
     fn sin(self) -> Self {
         self.sin_cos().0
     }
 
-    /// The cosine.
+    /// Returns the cosine of an angle in radians.
     #[inline(always)]
     fn cos(self) -> Self {
         self.sin_cos().1
     }
 
-    /// The tangent.
+    /// Returns the tangent of an angle in radians.
     fn tan(self) -> Self;
-    /// e to the power of it.
+    /// Returns e raised to this power.
     fn exp(self) -> Self;
-    /// The natural logarithm.
+    /// Returns the natural logarithm.
     fn ln(self) -> Self;
-    /// The square root; 0 below 0.
+    /// Returns the square root; 0 below 0.
     fn sqrt(self) -> Self;
-    /// Its distance from 0.
+    /// Returns the absolute value.
     fn abs(self) -> Self;
-    /// The greatest whole number that is not above it.
+    /// Returns the greatest integer that is not greater than the number.
     fn floor(self) -> Self;
-    /// The lesser of two.
+    /// Returns the smaller of two numbers.
     fn min(self, other: Self) -> Self;
-    /// The greater of two.
+    /// Returns the larger of two numbers.
     fn max(self, other: Self) -> Self;
-    /// A power.
+    /// Returns the number raised to a power.
     fn pow(self, exponent: Self) -> Self;
-    /// A whole power.
+    /// Returns the number raised to an integer power.
     fn powi(self, exponent: i32) -> Self;
 
-    /// 1 above 0, 0 below: the slope of `max(0, x)`.
+    /// Returns the step function, 1 above 0 and 0 below: the derivative of `max(0, x)`.
     fn step(self) -> Self;
-    /// The slope of [`step`](Self::step): unbounded where this may be 0, else 0.
+    /// Returns the derivative of [`step`](Self::step): unbounded where the number may be 0, else 0.
     fn kink(self) -> Self;
-    /// The slope of [`floor`](Self::floor): unbounded where this may be whole, else 0.
+    /// Returns the derivative of [`floor`](Self::floor): unbounded where the number may be an integer, else 0.
     fn jump(self) -> Self;
-    /// Whether it is 0 and nothing else.
+    /// Returns whether the number is exactly 0, with no other value possible.
     fn is_zero(self) -> bool;
 }
 
-/// The product of two vectors, a number.
+/// Returns the dot product of two vectors.
 pub fn dot<N: Scalar>(a: [N; 3], b: [N; 3]) -> N {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// The product of two vectors, a vector upright on both.
+/// Returns the cross product of two vectors.
 pub fn cross<N: Scalar>(a: [N; 3], b: [N; 3]) -> [N; 3] {
     [0, 1, 2].map(|axis| {
         let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
@@ -102,7 +102,7 @@ impl Scalar for f64 {
 
     #[inline(always)]
     fn sqrt(self) -> Self {
-        // Written so that a NaN stays one.
+        // Written so that a NaN stays a NaN.
         f64::sqrt(if self < 0.0 { 0.0 } else { self })
     }
 
@@ -130,7 +130,7 @@ impl Scalar for f64 {
         libm::pow(self, exponent)
     }
 
-    /// By repeated squaring: the same bits on every machine.
+    /// Computes the power by repeated squaring, which gives the same bits on every machine.
     #[inline(always)]
     fn powi(self, exponent: i32) -> Self {
         let (mut result, mut square, mut left) = (1.0, self, exponent.unsigned_abs());

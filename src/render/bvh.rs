@@ -1,18 +1,18 @@
-//! A tree of boxes (a bounding volume hierarchy), for scenes of many objects.
+//! A bounding volume hierarchy (BVH), for scenes of many objects.
 //!
-//! It is built from the top by the surface area heuristic over a few bins (Wald, "On fast Construction of SAH-based
-//! Bounding Volume Hierarchies", 2007).
+//! It is built top down by the surface area heuristic over bins (Wald, "On fast Construction of SAH-based Bounding
+//! Volume Hierarchies", 2007).
 
 use crate::geometry::aabb::Aabb;
 use glam::DVec3;
 
-/// Places at which a set of objects may be parted, along the longest way between their middles.
+/// The number of bins along the longest axis of the objects' centres; a set of objects is split between two bins.
 const BINS: usize = 16;
 
-/// So few objects are not parted any more.
+/// The maximum number of objects in a leaf.
 const LEAF: usize = 4;
 
-/// Objects in boxes in boxes.
+/// A binary tree of bounding boxes.
 pub struct Bvh {
     nodes: Vec<Node>,
     /// The objects' indices, leaf by leaf.
@@ -25,31 +25,33 @@ struct Node {
 }
 
 enum Content {
-    /// Objects, by their range.
+    /// The start and end of a range of [`Bvh::objects`].
     Leaf(u32, u32),
-    /// Two nodes, the one that follows in the list and this one, which lies farther along this axis.
+    /// Two child nodes: the one that follows in the list, and the one of this index, which lies farther along this axis
+    /// (0 to 2).
     Parts(u32, u8),
 }
 
 impl Bvh {
-    /// The tree of some objects, each with its index and its box.
+    /// Builds the tree of objects, each given by its index and its bounding box.
     pub fn new(mut objects: Vec<(u32, Aabb)>) -> Self {
         let mut tree = Self { nodes: Vec::new(), objects: Vec::new() };
         tree.add(&mut objects);
         tree
     }
 
-    /// How many nodes it has.
+    /// Returns the number of nodes.
     pub fn size(&self) -> usize {
         self.nodes.len()
     }
 
+    /// Appends the subtree of some objects.
     fn add(&mut self, objects: &mut [(u32, Aabb)]) {
         let bounds = objects.iter().fold(Aabb::EMPTY, |all, (_, bounds)| all.and(bounds));
         let index = self.nodes.len();
         let start = self.objects.len() as u32;
         self.nodes.push(Node { bounds, content: Content::Leaf(start, start + objects.len() as u32) });
-        match part(objects) {
+        match partition(objects) {
             Some((axis, middle)) => {
                 let (near, far) = objects.split_at_mut(middle);
                 self.add(near);
@@ -60,8 +62,8 @@ impl Bvh {
         }
     }
 
-    /// Hands out, with `object`, the objects in the boxes that `enters` lets in, about from near to far along a
-    /// direction. `ahead` is room to work in.
+    /// Visits the objects in the boxes that [`Visitor::enters`] accepts, roughly from near to far along a direction.
+    /// `ahead` is scratch space for the traversal stack.
     pub fn visit(&self, dir: DVec3, ahead: &mut Vec<usize>, visitor: &mut impl Visitor) {
         ahead.clear();
         ahead.push(0);
@@ -85,18 +87,18 @@ impl Bvh {
     }
 }
 
-/// Someone who looks for objects in a [`Tree`].
+/// A search for objects in a [`Bvh`].
 pub trait Visitor {
-    /// Whether what is in a box is of interest.
+    /// Tells whether the contents of a box are to be visited.
     fn enters(&mut self, bounds: &Aabb) -> bool;
 
-    /// Looks at the object of this index.
+    /// Visits the object of this index.
     fn object(&mut self, index: usize);
 }
 
-/// Orders objects so that those before the index given lie nearer along an axis; nothing where they are better left
-/// together.
-fn part(objects: &mut [(u32, Aabb)]) -> Option<(usize, usize)> {
+/// Partitions objects so that those before the returned index lie nearer along the returned axis. Returns `None` where
+/// they stay together in one leaf.
+fn partition(objects: &mut [(u32, Aabb)]) -> Option<(usize, usize)> {
     if objects.len() <= LEAF {
         return None;
     }
@@ -106,15 +108,15 @@ fn part(objects: &mut [(u32, Aabb)]) -> Option<(usize, usize)> {
     let size = middles.high - middles.low;
     let axis = size.max_position();
     let bin = |bounds: &Aabb| {
-        let part = (bounds.middle()[axis] - middles.low[axis]) / size[axis];
-        ((part * BINS as f64) as usize).min(BINS - 1)
+        let fraction = (bounds.middle()[axis] - middles.low[axis]) / size[axis];
+        ((fraction * BINS as f64) as usize).min(BINS - 1)
     };
     let mut bins = [(0, Aabb::EMPTY); BINS];
     for (_, bounds) in objects.iter() {
         let (count, all) = &mut bins[bin(bounds)];
         (*count, *all) = (*count + 1, all.and(bounds));
     }
-    // The area of a box tells how likely a ray comes into it.
+    // The probability that a ray enters a box is proportional to its surface area.
     let cost = |bins: &[(usize, Aabb)]| {
         let (count, all) =
             bins.iter().fold((0, Aabb::EMPTY), |(count, all), bin| (count + bin.0, all.and(&bin.1)));
@@ -124,10 +126,10 @@ fn part(objects: &mut [(u32, Aabb)]) -> Option<(usize, usize)> {
         .map(|cut| (cut, cost(&bins[..cut]) + cost(&bins[cut..])))
         .fold((0, f64::INFINITY), |best, other| if other.1 < best.1 { other } else { best });
     if best == f64::INFINITY {
-        // Their middles are one point: any parting is as good as another.
+        // All centres are one point: any partition is as good as another.
         return Some((axis, objects.len() / 2));
     }
-    // Stable, so that one scene makes one tree.
+    // The sort is stable, so that the same scene always makes the same tree.
     objects.sort_by_key(|(_, bounds)| bin(bounds) >= cut);
     Some((axis, objects.partition_point(|(_, bounds)| bin(bounds) < cut)))
 }

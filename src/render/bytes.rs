@@ -1,21 +1,21 @@
-//! Colours to bytes.
+//! Conversion of colours to bytes.
 
 use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::View;
 use crate::world::material::Rgb;
 use glam::DVec3;
 
-/// The byte of a channel: 1 and more is 255, 0 and less is 0, and between them it is cut, not rounded.
-/// A NaN is 0.
+/// Converts a channel to a byte: 1 and more becomes 255, 0 and less becomes 0, and values between are truncated, not
+/// rounded. A NaN becomes 0.
 pub fn to_byte(channel: f64) -> u8 {
     (255.0 * channel) as u8
 }
 
-/// The bytes of colours.
+/// Converts colours to bytes.
 pub(crate) fn to_bytes(cpu: Cpu, colours: View, pixels: &mut [[u8; 3]]) {
-    const MOST: usize = 64;
-    let mut bytes = [[0; MOST]; 3];
-    for (pixels, first) in pixels.chunks_mut(MOST).zip((0..).step_by(MOST)) {
+    const CHUNK: usize = 64;
+    let mut bytes = [[0; CHUNK]; 3];
+    for (pixels, first) in pixels.chunks_mut(CHUNK).zip((0..).step_by(CHUNK)) {
         let colours = colours.part(first..first + pixels.len());
         for (channel, bytes) in [colours.x, colours.y, colours.z].into_iter().zip(&mut bytes) {
             quantize(cpu, channel, &mut bytes[..channel.len()]);
@@ -27,9 +27,9 @@ pub(crate) fn to_bytes(cpu: Cpu, colours: View, pixels: &mut [[u8; 3]]) {
 }
 
 kernels! {
-    /// What [`to_byte`] gives, in steps that processors have for many numbers at a time, as a conversion is not.
+    /// Computes what [`to_byte`] returns, in operations that have vector instructions; a conversion to a byte has none.
     fn quantize(channel: &[f64], bytes: &mut [u8]) {
-        // Beside it a number from 0 to 255 is rounded to a whole one, which is then in its last bits.
+        // Adding 2^52 rounds a number from 0 to 255 to an integer, which then is the lowest bits of the sum.
         const WHOLE: f64 = (1_u64 << 52) as f64;
         let channel = &channel[..bytes.len()];
         for lane in 0..bytes.len() {
@@ -43,7 +43,7 @@ kernels! {
     }
 }
 
-/// What a picture shows of a colour: each channel from 0 to 1, a NaN as 0.
+/// Clamps a colour to what an image can show: each channel from 0 to 1, a NaN as 0.
 pub fn shown(colour: Rgb) -> Rgb {
     DVec3::from_array(colour.to_array().map(|channel| if channel > 0.0 { channel.min(1.0) } else { 0.0 }))
 }
@@ -54,10 +54,10 @@ mod tests {
 
     #[test]
     fn many_channels_have_the_bytes_of_single_ones() {
-        let t_max = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -0.0, -1e-300, 1e-300, 1.0, 1e300];
+        let extremes = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -0.0, -1e-300, 1e-300, 1.0, 1e300];
         let levels = (0..=256).map(|level| f64::from(level) / 255.0);
         let near = levels.flat_map(|level| [level.next_down(), level, level.next_up()]);
-        let channel: Vec<f64> = t_max.into_iter().chain(near).collect();
+        let channel: Vec<f64> = extremes.into_iter().chain(near).collect();
         for cpu in Cpu::all() {
             let mut pixels = vec![[1; 3]; channel.len()];
             to_bytes(cpu, View { x: &channel, y: &channel, z: &channel }, &mut pixels);

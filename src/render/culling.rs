@@ -1,15 +1,15 @@
-//! Which objects say that they are not in a ray's way, where that is heeded: the notes' program tests every ray against each
-//! of its shapes, and loses none of them.
+//! Which objects may be culled by their bounds. Shapes of the notes never are, since the notes' program tests every ray
+//! against every shape.
 
 use crate::geometry::aabb::Aabb;
 use crate::scene::model::Object;
 
-/// The box around an object.
+/// Returns the bounding box by which an object may be culled, if there is one.
 pub(super) fn bounds(object: &Object) -> Option<Aabb> {
     object.shape.bounds().filter(|_| !object.shape.packets().is_of_the_notes())
 }
 
-/// Whether an object is not in a region.
+/// Tells whether an object may be culled because no part of it lies in a region.
 pub(super) fn is_clear_of(object: &Object, region: &Aabb) -> bool {
     object.shape.is_clear_of(region) && !object.shape.packets().is_of_the_notes()
 }

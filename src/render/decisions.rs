@@ -1,4 +1,4 @@
-//! The decisions of a plan as text, each with its reason.
+//! A plan's decisions as text, each with its reason.
 
 use crate::render::culling;
 use crate::render::limits::{MAX_DIST, MAX_RAYS};
@@ -14,25 +14,25 @@ use crate::world::texture::Texture;
 use std::fmt;
 use std::sync::Arc;
 
-/// So many of several things are named.
+/// The maximum number of names that are listed.
 const NAMED: usize = 4;
 
-/// What was decided, and why.
+/// A decision, and the reason for it.
 pub struct Decision {
-    /// What it is about, in a word.
+    /// What the decision is about, in a word.
     pub subject: &'static str,
     /// The decision and its reason.
     pub text: String,
 }
 
-/// A line of a table.
+/// One row of a table, without the newline.
 impl fmt::Display for Decision {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:<12} {}", self.subject, self.text)
     }
 }
 
-/// All decisions of a plan.
+/// Lists all decisions of a plan.
 pub fn of(plan: &Plan) -> Vec<Decision> {
     let model = plan.model;
     let decision = |subject, text| Decision { subject, text };
@@ -126,7 +126,7 @@ fn depth(model: &Model, depth: &Depth) -> String {
     }
 }
 
-/// The names of the objects of which something is true.
+/// Lists the names of the objects that satisfy a condition.
 fn of_material(objects: &[Object], is_wanted: impl Fn(&Object) -> bool) -> String {
     some(objects.iter().filter(|object| is_wanted(object)).map(|object| object.args.name.as_str()))
 }
@@ -171,7 +171,7 @@ fn search(model: &Model, plan: &Plan) -> String {
     }
 }
 
-/// The objects, those together that follow each other and are alike.
+/// Describes the objects; consecutive objects of the same kind and method share a line.
 fn objects(model: &Model, plan: &Plan) -> Vec<Decision> {
     let mut alike: Vec<(&'static str, String, Vec<&str>)> = Vec::new();
     for object in &model.objects {
@@ -193,7 +193,7 @@ fn objects(model: &Model, plan: &Plan) -> Vec<Decision> {
     alike.into_iter().map(line).collect()
 }
 
-/// The first of some names, and how many there are more.
+/// Lists the first [`NAMED`] names, and how many more there are.
 fn some<'n>(names: impl IntoIterator<Item = &'n str>) -> String {
     let names: Vec<_> = names.into_iter().collect();
     match names.len().checked_sub(NAMED) {

@@ -1,41 +1,44 @@
-//! Which boxes the rays of a packet may come into, for each part of it: the rays of a part are nearer each other than
-//! all of them, and so come near fewer objects.
+//! Which boxes the rays of a packet may enter, for each sub-packet: the rays of a sub-packet lie closer together than
+//! those of the whole packet, and so may hit fewer objects.
 
 use crate::geometry::aabb::{Aabb, SLACK, larger, range, smaller};
 use crate::geometry::ray_packet::{PACKET_SIZE, RayPacket, split};
 use crate::simd::cpu::kernels;
 use glam::DVec3;
 
-/// The most rays of a part.
+/// The maximum number of rays of a sub-packet.
 pub const PART: usize = 64;
 
-/// The most parts of a packet; they are looked at together.
+/// The maximum number of sub-packets of a packet, which are tested together.
 const PARTS: usize = PACKET_SIZE / PART;
 
-/// A number for each part.
+/// A number for each sub-packet.
 type Each = [f64; PARTS];
 
-/// Everywhere that the rays of each part of a packet may go, by axes.
+/// Bounds of the rays of each sub-packet of a packet, by axis.
 pub struct Frusta {
-    /// A bit for each part that has rays.
+    /// A bit for each sub-packet that has rays, the first one lowest.
     parts: u32,
-    /// The least and the greatest coordinates of where they start.
+    /// The least coordinates of the origins, in world units.
     low: [Each; 3],
+    /// The greatest coordinates of the origins, in world units.
     high: [Each; 3],
-    /// How far a ray goes at least to come up by 1; infinitely far where none comes up.
+    /// The least distance along any ray in which its coordinate rises by 1; infinite where no ray rises.
     rises: [Each; 3],
-    /// Likewise down, below 0.
+    /// The negative of the least distance along any ray in which its coordinate falls by 1; negative infinity where no
+    /// ray falls.
     falls: [Each; 3],
-    /// How far it goes at most to come up by 1; NaN unless all come up.
+    /// The greatest distance along any ray in which its coordinate rises by 1; NaN unless all rays rise.
     rises_at_most: [Each; 3],
-    /// Likewise down, below 0.
+    /// The negative of the greatest distance along any ray in which its coordinate falls by 1; NaN unless all rays
+    /// fall.
     falls_at_most: [Each; 3],
-    /// How far they start from the world's origin, in world units along an axis.
+    /// The largest magnitude of the origins' coordinates, in world units.
     reach: f64,
 }
 
 impl Frusta {
-    /// Nowhere.
+    /// The frusta of no rays.
     const NONE: Self = Self {
         parts: 0,
         low: [[0.0; PARTS]; 3],
@@ -47,14 +50,14 @@ impl Frusta {
         reach: 0.0,
     };
 
-    /// The parts of which the ways are such; a bit for each.
-    pub fn which(&self, are_such: impl Fn(&Aabb) -> bool) -> u32 {
+    /// Returns a bit for each sub-packet whose region satisfies a condition.
+    pub fn which(&self, matches: impl Fn(&Aabb) -> bool) -> u32 {
         let parts = 0..u32::BITS - self.parts.leading_zeros();
-        parts.map(|part| u32::from(are_such(&self.ways(part as usize))) << part).sum()
+        parts.map(|part| u32::from(matches(&self.region(part as usize))) << part).sum()
     }
 
-    /// Everywhere that the rays of a part may go; mostly without an end.
-    fn ways(&self, part: usize) -> Aabb {
+    /// Returns the region that the rays of a sub-packet may reach, usually unbounded.
+    fn region(&self, part: usize) -> Aabb {
         let (mut low, mut high) = (DVec3::NEG_INFINITY, DVec3::INFINITY);
         for axis in 0..3 {
             if self.falls[axis][part] == f64::NEG_INFINITY {
@@ -69,7 +72,7 @@ impl Frusta {
 }
 
 kernels! {
-    /// Where the rays of a packet may go, which may all start at one place.
+    /// Bounds the rays of a packet. `is_from_one` tells that all rays start at one point.
     pub fn around(rays: RayPacket, is_from_one: bool) -> Frusta {
         let (mut frusta, count) = (Frusta::NONE, rays.len());
         let (mut least, mut greatest) = ([[0.0; PARTS]; 3], [[0.0; PARTS]; 3]);
@@ -86,7 +89,7 @@ kernels! {
             for part in 0..PARTS {
                 let (least, greatest) = (least[axis][part], greatest[axis][part]);
                 let (down, up) = (1.0 / least, 1.0 / greatest);
-                // What is infinite says that there is no way there, and no way is so long.
+                // Infinity stands for a direction that no ray takes, so a reciprocal that overflows is clamped.
                 frusta.rises[axis][part] = if greatest > 0.0 { smaller(up, f64::MAX) } else { f64::INFINITY };
                 frusta.falls[axis][part] = if least < 0.0 { larger(down, f64::MIN) } else { f64::NEG_INFINITY };
                 frusta.rises_at_most[axis][part] = if least > 0.0 { down } else { f64::NAN };
@@ -100,7 +103,8 @@ kernels! {
         frusta
     }
 
-    /// The parts of which a ray may come into each of some boxes, a bit for each part. Never wrong where it says no.
+    /// Tests boxes against the sub-packets. Sets in `parts`, for each box, a bit for each sub-packet of which a ray may
+    /// enter the box; where a bit is 0, no ray of the sub-packet does.
     pub fn meet(frusta: &Frusta, boxes: &[(usize, Aabb)], parts: &mut [u32]) {
         for ((_, bounds), parts) in boxes.iter().zip(parts) {
             let bounds = bounds.with_slack(frusta.reach);
@@ -108,7 +112,8 @@ kernels! {
             for axis in 0..3 {
                 let (low, high) = (bounds.low[axis], bounds.high[axis]);
                 for part in 0..PARTS {
-                    // How far the way is to the box's near and far walls, from where it is shortest and longest.
+                    // From the origins to the box's slab along the axis: the least rise to its low plane, and the
+                    // greatest rise to its high plane.
                     let (up, down) = (low - frusta.high[axis][part], high - frusta.low[axis][part]);
                     enters[part] = larger(up * frusta.rises[axis][part], enters[part]);
                     enters[part] = larger(down * frusta.falls[axis][part], enters[part]);
@@ -118,6 +123,8 @@ kernels! {
             }
             *parts = 0;
             for part in 0..PARTS {
+                // `SLACK` covers the rounding of the distances; `a_part_one_of_whose_rays_comes_into_a_box_is_told`
+                // below holds it.
                 let may = (enters[part] <= leaves[part] * (1.0 + SLACK)) & (enters[part] < f64::INFINITY);
                 *parts |= u32::from(may) << part;
             }
@@ -133,7 +140,7 @@ mod tests {
     use crate::simd::soa::{LANES, Vectors};
     use proptest::prelude::*;
 
-    /// A number as those in scenes are, 0 among them.
+    /// Generates coordinates like those of scenes, 0 among them.
     fn number() -> impl Strategy<Value = f64> {
         prop_oneof![Just(0.0), Just(-0.0), -10.0..10.0, -1e6..1e6]
     }
@@ -142,7 +149,7 @@ mod tests {
         (number(), number(), number()).prop_map(|(x, y, z)| DVec3::new(x, y, z))
     }
 
-    /// Rays from places to others, copies of the last one behind them.
+    /// Makes rays from points to others, padded with copies of the last ray.
     fn rays(ways: &[(DVec3, DVec3)]) -> (Vectors<PACKET_SIZE>, Vectors<PACKET_SIZE>, usize) {
         let (mut origins, mut dirs) = (Vectors::ZERO, Vectors::ZERO);
         let count = ways.len().next_multiple_of(LANES);
@@ -173,7 +180,7 @@ mod tests {
                 let (part, mut met) = (1 << (chosen / PART), [0]);
                 meet(cpu, &frusta, &[(0, bounds)], &mut met);
                 prop_assert!(met[0] & part != 0, "{} to {}, {}", from, to, cpu);
-                let reached = frusta.which(|ways| ways.with_slack(1e6).overlaps(&bounds));
+                let reached = frusta.which(|region| region.with_slack(1e6).overlaps(&bounds));
                 prop_assert!(reached & part != 0, "{} to {} on its ways, {}", from, to, cpu);
             }
         }
@@ -202,8 +209,8 @@ mod tests {
             let (boxes, mut met) = ([at(0.0, 5.0), at(0.0, -5.0), at(0.0, -0.5), at(9.0, 5.0)], [9; 4]);
             meet(cpu, &frusta, &boxes.map(|bounds| (0, bounds)), &mut met);
             assert_eq!(met, [0b01, 0b10, 0b11, 0]);
-            assert_eq!(frusta.which(|ways| ways.high.y == f64::INFINITY), 0b01);
-            assert_eq!(frusta.which(|ways| ways.high.y > -0.5), 0b11);
+            assert_eq!(frusta.which(|region| region.high.y == f64::INFINITY), 0b01);
+            assert_eq!(frusta.which(|region| region.high.y > -0.5), 0b11);
         }
     }
 }

@@ -1,8 +1,8 @@
-//! How far light is followed, and how many rays a look costs at most.
+//! How far light is followed, and how many rays a primary ray may cost.
 
-/// Light that has travelled farther than this is black.
+/// The path length from the viewer, in world units, beyond which no reflected or transmitted ray is followed.
 pub(crate) const MAX_DIST: f64 = 20.0;
 
-/// The rays that one camera ray may cost. Mirrors that nearly touch would otherwise reflect each other for ever;
-/// what lies beyond is black.
+/// The number of rays that one primary ray may cost, itself included; the rays beyond are black. Without a limit,
+/// mirrors that nearly touch would reflect each other almost endlessly.
 pub(crate) const MAX_RAYS: usize = 20_000;

@@ -1,4 +1,4 @@
-//! From a model to colours: the plan, the tree of boxes, the tracer, and who watches it.
+//! From a model to colours: the plan, the BVH, the tracer, and its observers.
 
 pub(crate) mod bvh;
 pub(crate) mod bytes;

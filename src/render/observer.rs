@@ -1,4 +1,4 @@
-//! What the tracer tells whoever watches it: each ray, each test, each light, as it happens.
+//! What the tracer reports to an observer: each ray, each test and each light, as it happens.
 
 use crate::geometry::ray::Ray;
 use crate::scene::model::Object;
@@ -6,17 +6,17 @@ use crate::world::material::Rgb;
 use glam::DVec3;
 use std::fmt;
 
-/// Someone who watches rays being traced.
+/// An observer of rays being traced.
 ///
-/// Nobody, `()`, watches plain rendering; there all of this compiles to nothing.
+/// Plain rendering uses `()`, for which all of this compiles to nothing.
 pub trait TraceObserver {
-    /// Whether it sees each event. Then rays go one by one, and none is spared a test.
+    /// Whether the observer sees each event. If so, rays are traced one by one, and no test is culled.
     const SEES: bool;
 
-    /// Something happened.
+    /// Receives an event.
     fn see(&mut self, _event: Event) {}
 
-    /// So much was done.
+    /// Receives a count of work done or saved.
     fn count(&mut self, _count: Count) {}
 }
 
@@ -24,34 +24,34 @@ impl TraceObserver for () {
     const SEES: bool = false;
 }
 
-/// Work that was done, or spared. Rays go in packets; it is their rays that are counted.
+/// Work that was done or saved. Counts are of single rays, not of packets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Count {
-    /// So many rays of a kind were cast.
+    /// A number of rays of a kind were cast.
     Rays(RayKind, usize),
-    /// So many rays were tested against the object of this index.
+    /// The object of this index was tested against a number of rays.
     Tested(usize, usize),
-    /// So many rays were not, as the object's bounds are not in their way.
+    /// The object of this index was not tested against a number of rays, since they do not meet its bounds.
     Culled(usize, usize),
-    /// A pixel has cost as many rays as it may, and lacks so much light at most, in any channel.
+    /// A pixel has used up its ray budget; it lacks at most this much light in any channel.
     Cut(f64),
 }
 
 /// The kinds of rays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum RayKind {
-    /// From the viewer.
+    /// A ray from the viewer.
     Primary,
-    /// From a surface to a light; in a scene with glass, anew from behind each pane on its way.
+    /// A ray from a surface to a light; in a scene with glass, one more from each pane on its way.
     Shadow,
-    /// From a mirror.
+    /// A ray reflected by a mirror.
     Reflected,
-    /// Through glass.
+    /// A ray transmitted through glass.
     Transmitted,
 }
 
 impl RayKind {
-    /// All of them.
+    /// All kinds, in the order of their declaration.
     pub const ALL: [Self; 4] = [Self::Primary, Self::Shadow, Self::Reflected, Self::Transmitted];
 }
 
@@ -68,65 +68,66 @@ impl fmt::Display for RayKind {
 
 /// What happens to rays.
 ///
-/// A ray begins (`Begin`). Its search starts (`Search`), tests objects (`Tested`) and ends (`Met`), or it is not
-/// worth one (`Dropped`). Unless it is a shadow ray there follow, where it met something, the surface there
-/// (`Surface`), for each light its shadow rays and then its outcome (`Light`), what they make together (`Shaded`)
-/// and the rays that go on from there; and always the colour that it brings back (`Colour`).
+/// A ray begins (`Begin`). Its search starts (`Search`), tests objects (`Tested`) and ends (`Met`), or the ray is not
+/// followed (`Dropped`). Unless it is a shadow ray, a hit is followed by the surface (`Surface`), for each light by its
+/// shadow rays and then its outcome (`Light`), by the shaded colour (`Shaded`), and by the reflected and transmitted
+/// rays; and with or without a hit by the ray's colour (`Colour`).
 #[derive(Clone, Copy)]
 pub enum Event<'e> {
     /// A ray begins.
     Begin(Purpose),
-    /// It goes this way, and looks for what it meets first.
+    /// The search for the first hit of this ray starts.
     Search(&'e Ray),
-    /// It is not followed.
+    /// The ray is not followed.
     Dropped(Reason),
-    /// An object, by its index, was asked for its distance, within what was the nearest so far; nothing where
-    /// it was passed over because the ray leaves it.
+    /// The object of this index was tested. The number is the distance of its hit in world units, or
+    /// [`MISS`](crate::geometry::ray::MISS) where there is none nearer than the nearest so far; `None` where the object
+    /// was skipped because the ray leaves it.
     Tested(usize, Option<f64>),
-    /// A search ended: what the ray meets first.
+    /// A search ended with this first hit, if any.
     Met(Option<&'e Hit<'e>>),
-    /// The surface where it was met.
+    /// The surface at the first hit.
     Surface {
-        /// The unit normal there.
+        /// The unit normal at the hit point.
         normal: DVec3,
-        /// What it reflects of the light from nowhere in particular.
+        /// The ambient reflectivity at the hit point.
         ambient: Rgb,
     },
-    /// What became of one light, by its index.
+    /// The outcome of the light of this index.
     Light(usize, Outcome),
-    /// Ambient light and lights together, as they look from the viewer.
+    /// The surface's own colour, by ambient light and by all lights, as seen by the viewer.
     Shaded {
-        /// What was met.
+        /// The first hit.
         hit: &'e Hit<'e>,
-        /// How far the light has come, and what it was divided by.
+        /// The path length from the viewer in world units, by which the colour was divided.
         travelled: f64,
-        /// The colour, without what shines through or is mirrored.
+        /// The colour, without transmitted and reflected light.
         colour: Rgb,
     },
-    /// The colour that a ray brings back.
+    /// The colour that a ray returns.
     Colour(Rgb),
 }
 
 /// What a ray is for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Purpose {
-    /// From the viewer through a pixel.
+    /// A ray from the viewer through a pixel.
     Primary,
-    /// Onward through a transparent surface.
+    /// A ray that continues through a transparent surface.
     Transmitted {
-        /// What its colour is multiplied by.
+        /// The factor by which the ray's colour is multiplied.
         tint: Rgb,
-        /// The part of the surface's own colour that stays beside it.
+        /// The fraction of the surface's own colour that is kept, from 0 to 1.
         kept: f64,
     },
-    /// Mirrored by a surface.
+    /// A ray reflected by a surface.
     Reflected {
-        /// What its colour is multiplied by.
+        /// The factor by which the ray's colour is multiplied.
         specular: Rgb,
     },
-    /// Toward a light, to see what stands between.
+    /// A ray toward a light, to find what blocks it.
     Shadow {
-        /// How far away that is.
+        /// The distance at which the ray ends, in world units.
         distance: f64,
     },
 }
@@ -134,40 +135,40 @@ pub enum Purpose {
 /// Why a ray is not followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reason {
-    /// Its light has travelled too far to be seen.
+    /// The path from the viewer is too long.
     TooFar,
-    /// What it can add to the pixel is too little to be seen.
+    /// What the ray can add to the pixel is too little to be seen.
     TooFaint,
-    /// The pixel has cost as many rays as it may.
+    /// The ray budget is used up.
     TooMany,
 }
 
-/// What becomes of a light at a hit.
+/// The effect of a light at a hit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Outcome {
-    /// It is behind the surface.
+    /// The light is behind the surface.
     Behind,
-    /// It does not point there.
+    /// The light does not point at the hit.
     Aside,
-    /// An opaque object, by its index, stands between.
+    /// The opaque object of this index blocks the light.
     Blocked(usize),
-    /// It shines.
+    /// The light shines on the hit.
     Shines {
-        /// The part of each channel that gets there.
+        /// The fraction of each channel that passes through glass on the way.
         passed: Rgb,
-        /// What it adds to the colour, before that is divided by the distance travelled.
+        /// What the light adds to the colour, before the division by the path length.
         colour: Rgb,
     },
 }
 
-/// What a ray meets first.
+/// A ray's first hit.
 pub struct Hit<'m> {
-    /// Which of the model's objects.
+    /// The index of the object in the model.
     pub index: usize,
     /// The object.
     pub object: &'m Object,
-    /// How far from the ray's origin.
+    /// The distance from the ray's origin, in world units.
     pub distance: f64,
-    /// Where.
+    /// The hit point, in world coordinates.
     pub point: DVec3,
 }

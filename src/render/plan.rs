@@ -1,4 +1,4 @@
-//! What a scene needs, decided once before any ray is traced: everything else is left out.
+//! What a scene needs, decided once before any ray is traced, so that rendering can leave out everything else.
 
 pub(crate) mod depth;
 
@@ -10,30 +10,30 @@ use crate::render::culling;
 use crate::scene::model::Model;
 use crate::world::camera::Camera;
 
-/// From so many objects with bounds on, a tree finds them faster than a list.
+/// The number of bounded objects from which on a BVH is faster than a list.
 pub(crate) const TREE: usize = 24;
 
-/// A model with the decisions that depend on its objects and lights: what rays are traced through.
+/// A model, with the decisions that depend on its objects and lights. Rays are traced through a plan.
 pub struct Plan<'m> {
     /// The scene.
     pub model: &'m Model,
-    /// How it is looked at, at first by the model's own camera. Size, samples and sampler are free to be others; the rest
-    /// is what the plan was made for.
+    /// The camera, initially the model's own. Image size, samples and sampler may be changed; the rest is what the plan
+    /// was made for.
     pub camera: Camera,
-    /// The objects without bounds, by their indices: each is looked at for each ray.
+    /// The indices of the objects without bounds.
     pub(crate) unbounded: Vec<usize>,
-    /// Those with bounds, which a packet of rays looks at one by one, and the boxes around them.
+    /// The indices and bounding boxes of the objects with bounds, unless they are in `tree`.
     pub(crate) bounded: Vec<(usize, Aabb)>,
-    /// Those with bounds, where they are many.
+    /// The objects with bounds, if there are at least [`TREE`].
     pub(crate) tree: Option<Bvh>,
-    /// Whether any object lets light through, so that shadows have more than two shades.
+    /// Whether any object is transparent, so that shadows may be partial.
     pub(crate) has_glass: bool,
-    /// How deep rays are followed; nothing where none goes on.
+    /// How deep rays are followed; `None` where no object reflects or transmits rays.
     pub(crate) depth: Option<Depth>,
 }
 
 impl<'m> Plan<'m> {
-    /// The plan for a model.
+    /// Makes the plan for a model.
     pub fn new(model: &'m Model) -> Self {
         let objects = &model.objects;
         let (mut unbounded, mut bounded) = (Vec::new(), Vec::new());
@@ -52,11 +52,11 @@ impl<'m> Plan<'m> {
         Self { model, camera, unbounded, bounded, tree, has_glass, depth }
     }
 
-    /// How rays go on from an object, by its index.
+    /// Returns how rays continue from the object of this index.
     pub(crate) fn onward(&self, index: usize) -> Onward {
         match &self.depth {
             Some(depth) => depth.objects[index],
-            // Where no ray goes on, nobody asks.
+            // Without reflecting or transmitting objects, no ray continues.
             None => Onward::NONE,
         }
     }

@@ -1,4 +1,4 @@
-//! A picture in parts, for someone who looks on: all of it coarsely, then tile by tile.
+//! Progressive rendering: the whole image coarsely, then tile by tile.
 
 use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::render::plan::Plan;
@@ -9,33 +9,34 @@ use crate::world::material::Rgb;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// The coarse pass traces one pixel of each block of so many each way.
+/// The width and height of a block, in pixels. The coarse pass traces one pixel of each block.
 const BLOCK: usize = 8;
 
-/// The width and height of a tile: short enough to wait for, and a whole number of blocks.
+/// The width and height of a tile, in pixels: small enough to be rendered quickly, and a multiple of [`BLOCK`].
 const AREA_SIZE: usize = 32;
 
-/// The width and height, in blocks, of what is traced together.
+/// The width and height, in blocks, of the squares that are traced together.
 const SQUARE: usize = 8;
 
-/// A rectangle of a picture, counted from the left and from the top.
+/// A rectangle of an image. Positions count pixels from the left and from the top.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Area {
-    /// Its left upper pixel.
+    /// The upper left pixel.
     pub corner: [usize; 2],
-    /// Its width and height in pixels.
+    /// The width and height in pixels.
     pub size: [usize; 2],
-    /// The width and height of its blocks, each of one colour. Those at the right and lower edges may be smaller.
+    /// The width and height of a block in pixels. Each block has one colour; blocks at the right and lower edges may be
+    /// smaller.
     pub block: usize,
 }
 
 impl Area {
-    /// How many blocks it has each way.
+    /// Returns the number of blocks across and down.
     pub fn blocks(&self) -> [usize; 2] {
         self.size.map(|side| side.div_ceil(self.block))
     }
 
-    /// The colours of its blocks, or nothing where `check`, asked before each packet of rays, breaks off.
+    /// Computes the colours of the blocks. Returns `None` if `check`, called before each packet of rays, breaks.
     fn colours(&self, plan: &Plan, check: &impl Fn() -> ControlFlow<()>) -> Option<Vec<Rgb>> {
         let camera = &plan.camera;
         let [across, down] = self.blocks();
@@ -71,7 +72,8 @@ impl Area {
     }
 }
 
-/// The areas of a picture in the order in which they are made, first those of the coarse pass.
+/// Lists the areas of an image in the order in which they are rendered: those of the coarse pass, then those of the
+/// fine one.
 fn passes([width, height]: [usize; 2]) -> [Vec<Area>; 2] {
     let areas = |wide: usize, block: usize| {
         let corners = (0..height)
@@ -88,10 +90,10 @@ fn passes([width, height]: [usize; 2]) -> [Vec<Area>; 2] {
     [areas(width, BLOCK), areas(AREA_SIZE, 1)]
 }
 
-/// Makes a picture and hands out its parts as they are finished: the colours of an area's blocks from the top and
-/// from the left, before they are clamped. A finer part comes after all the coarser ones.
+/// Renders an image and passes each area to `part` as it is finished, with the unclamped colours of its blocks in rows
+/// from the top, each from the left. All areas of the coarse pass come before those of the fine one.
 ///
-/// `check` is asked before each packet of rays. Once it has broken off, it must go on to.
+/// `check` is called before each packet of rays. Once it has returned `Break`, it must keep doing so.
 pub fn render(
     renderer: &Renderer,
     plan: &Plan,
@@ -100,7 +102,7 @@ pub fn render(
 ) -> ControlFlow<()> {
     for areas in passes(plan.camera.pixels) {
         let next = AtomicUsize::new(0);
-        // Each thread takes the next area, so that they come in their order, as nearly as they can.
+        // Each thread takes the next area, so that areas are finished roughly in their order.
         renderer.run(|| {
             rayon::broadcast(|_| {
                 while let Some(area) = areas.get(next.fetch_add(1, Ordering::Relaxed)) {

@@ -1,31 +1,32 @@
-//! How much work a picture took: its rays by kind, and their tests by object.
+//! How much work an image took: its rays by kind, and their tests by object.
 
 use crate::render::observer::{Count, RayKind, TraceObserver};
 use crate::scene::model::Model;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Counts of rays and tests. It is a watcher that leaves packets together, and so counts what plain rendering does.
+/// Counts of rays and tests. As an observer, it does not see single events, so packets stay whole and the counts are
+/// those of plain rendering.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RayStats {
     rays: [u64; RayKind::ALL.len()],
-    /// By the objects' indices.
+    /// The counts of each object, by the object's index.
     tests: Vec<TestCounts>,
-    /// The pixels that have cost as many rays as they may.
+    /// The pixels that have used up their ray budget.
     pub cuts: Cuts,
 }
 
-/// Pixels that have cost as many rays as they may. It is a watcher, too, which counts nothing else.
+/// The pixels that have used up their ray budget. It is an observer that counts nothing else.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Cuts {
-    /// How many they are.
+    /// The number of such pixels.
     pub pixels: u64,
-    /// How much light one of them lacks at most, in any channel; infinite where nothing bounds it.
+    /// A bound on the light that any one of them lacks, in any channel; infinite where nothing bounds it.
     pub most: f64,
 }
 
 impl Cuts {
-    /// Adds those of another part of the picture.
+    /// Adds the cuts of another part of the image.
     pub fn add(&mut self, other: Self) {
         self.pixels += other.pixels;
         self.most = self.most.max(other.most);
@@ -42,17 +43,17 @@ impl TraceObserver for Cuts {
     }
 }
 
-/// What became of the tests of an object, or of all objects of an entity type.
+/// The tests against one object, or against all objects of an entity type.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct TestCounts {
-    /// How many rays were not tested, as the object's bounds are not in their way.
+    /// The number of rays that were not tested, since they do not meet the object's bounds.
     ///
-    /// What a tree passes over is neither tested nor culled, and no more are rays that leave the object or were blocked
-    /// by another one before.
+    /// Objects that the BVH skips, rays that leave the object, and rays that another object has blocked before count
+    /// neither as tested nor as culled.
     pub culled: u64,
-    /// How many objects there are.
+    /// The number of objects.
     pub objects: u64,
-    /// How many rays were tested.
+    /// The number of rays that were tested.
     pub tested: u64,
 }
 
@@ -70,6 +71,7 @@ impl TraceObserver for RayStats {
 }
 
 impl RayStats {
+    /// Returns the counts of the object of this index.
     fn of(&mut self, object: usize) -> &mut TestCounts {
         if self.tests.len() <= object {
             self.tests.resize(object + 1, TestCounts { objects: 1, tested: 0, culled: 0 });
@@ -77,7 +79,7 @@ impl RayStats {
         &mut self.tests[object]
     }
 
-    /// Adds the counts of another part of the picture.
+    /// Adds the counts of another part of the image.
     pub fn add(&mut self, other: &Self) {
         for (sum, part) in self.rays.iter_mut().zip(other.rays) {
             *sum += part;
@@ -89,17 +91,17 @@ impl RayStats {
         }
     }
 
-    /// How many rays of a kind were cast.
+    /// Returns the number of rays of a kind that were cast.
     pub fn rays(&self, kind: RayKind) -> u64 {
         self.rays[kind as usize]
     }
 
-    /// How many rays were cast.
+    /// Returns the number of rays that were cast.
     pub fn all_rays(&self) -> u64 {
         self.rays.iter().sum()
     }
 
-    /// What became of the tests of a model's objects, by the names of their entity types.
+    /// Sums the tests against a model's objects, by the names of their entity types.
     pub fn tests(&self, model: &Model) -> BTreeMap<&'static str, TestCounts> {
         let mut tests: BTreeMap<_, TestCounts> = BTreeMap::new();
         for (index, object) in model.objects.iter().enumerate() {

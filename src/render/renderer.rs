@@ -1,4 +1,4 @@
-//! The tile loop: a model's pixels, on all threads.
+//! The tile loop: renders a model's pixels, on all threads.
 
 use crate::render::bytes::to_bytes;
 use crate::render::observer::TraceObserver;
@@ -15,30 +15,31 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-/// Room for the deepest chain of reflections that a pixel may cost. It is taken only where it is used.
+/// The stack size of a thread in bytes, enough for the deepest chain of reflections that the ray budget allows. The
+/// system commits only what is used.
 const STACK: usize = 128 << 20;
 
-/// Who decides how long a renderer goes on, and learns how far it is.
+/// Callbacks that stop a renderer and report its progress.
 #[derive(Clone, Copy)]
 pub struct Overseer<'o> {
-    /// Asked before each tile, on any thread: whether this one and all others are left out. Once it has said so, it must
-    /// go on to.
+    /// Called before each tile, on any thread: returns whether this tile and all further ones are skipped. Once it has
+    /// returned true, it must keep doing so.
     pub stops: &'o (dyn Fn() -> bool + Sync),
-    /// Told of each row that nothing is left to do on, on any thread and in no order.
+    /// Called for each row on which no work is left, on any thread and in no particular order.
     pub row: &'o (dyn Fn() + Sync),
 }
 
-/// The threads that render.
+/// A pool of threads that render.
 pub struct Renderer {
     pool: rayon::ThreadPool,
     cpu: Cpu,
 }
 
 impl Renderer {
-    /// A renderer with this many threads; 0 for one on each core.
+    /// Makes a renderer with this many threads; 0 for one on each core.
     ///
     /// # Errors
-    /// Where the system does not give the threads.
+    /// If the threads cannot be started.
     pub fn new(threads: usize) -> io::Result<Self> {
         let builder = rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK);
         let cannot = |error| {
@@ -48,16 +49,17 @@ impl Renderer {
         Ok(Self { pool: builder.build().map_err(cannot)?, cpu: Cpu::best() })
     }
 
-    /// With these instructions in place of the best that this machine has. The picture is the same.
+    /// Uses this instruction set in place of the best that this machine has. The image is the same.
     pub fn on(mut self, cpu: Cpu) -> Self {
         self.cpu = cpu;
         self
     }
 
-    /// A part of the picture from the top, some rows at a time. `columns` count from the left and `rows` from the top,
-    /// and neither is empty. The pixels depend on the model alone.
+    /// Renders a part of the image from the top, some rows at a time. `columns` count from the left and `rows` from the
+    /// top, and neither is empty. The pixels depend on the plan alone, not on the threads.
     ///
-    /// A new watcher watches each strip of tiles, and `watched` gets it then, on any thread and in no order.
+    /// Each strip of tiles has a new observer, which is then passed to `watched`, on any thread and in no particular
+    /// order.
     pub fn bands<'r, W: TraceObserver + Default>(
         &'r self,
         plan: &'r Plan,
@@ -72,7 +74,7 @@ impl Renderer {
         })
     }
 
-    /// The whole picture, as [`bands`](Self::bands) gives it in parts: red, green and blue of each pixel.
+    /// Renders the whole image: red, green and blue of each pixel, in rows from the top, each from the left.
     pub fn picture(&self, plan: &Plan) -> Vec<u8> {
         let [width, height] = plan.camera.pixels;
         let band = Band::blank(0..width, 0..height);
@@ -80,8 +82,8 @@ impl Renderer {
         band.bytes(usize::MAX).concat()
     }
 
-    /// Renders the tiles of a band that are not rendered yet, or those of them that the overseer lets it, watched as
-    /// [`bands`](Self::bands) are.
+    /// Renders the tiles of a band that are not rendered yet, until the overseer stops it. Observers are passed to
+    /// `watched` as in [`bands`](Self::bands).
     pub fn fill<W: TraceObserver + Default>(
         &self,
         plan: &Plan,
@@ -90,15 +92,16 @@ impl Renderer {
         watched: &(dyn Fn(W) + Sync),
     ) {
         self.pool.install(|| {
-            // Whoever is free takes the next one: in parts that are shared out beforehand, one would wait for the others.
+            // Each thread takes the next strip when it is free: with strips assigned beforehand, threads would wait for
+            // the slowest one.
             let strips = band.strips.iter().zip(band.rows.clone().step_by(TILE)).par_bridge();
             strips.for_each_init(Scratch::default, |scratch, (strip, from_top)| {
-                let mut watch = W::default();
+                let mut observer = W::default();
                 let tall = TILE.min(band.rows.end - from_top);
                 let rows = from_top..from_top + tall;
-                let tracer = Tracer::new(plan, self.cpu, scratch, &mut watch);
+                let tracer = Tracer::new(plan, self.cpu, scratch, &mut observer);
                 self.strip(tracer, strip, [&band.columns, &rows], overseer);
-                watched(watch);
+                watched(observer);
                 (0..tall).for_each(|_| (overseer.row)());
             });
         });
@@ -143,8 +146,8 @@ impl Renderer {
         self.pool.in_place_scope(|scope| work(&Unfinished { renderer: self, scope }))
     }
 
-    /// Something of each pixel, from the top and from the left, for some rows counted from the top; nothing
-    /// where `done` broke off.
+    /// Computes a value for each pixel, in rows counted from the top, each from the left. Returns `None` if `done`,
+    /// called after each row, breaks.
     pub(crate) fn pixels<T: Clone + Default + Send>(
         &self,
         plan: &Plan,
@@ -166,7 +169,7 @@ impl Renderer {
         finished.is_continue().then_some(pixels)
     }
 
-    /// Runs something else on one of the threads, which have room for deep reflections.
+    /// Runs other work on one of the threads, whose stacks are large enough for deep reflections.
     pub fn run<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
         self.pool.install(work)
     }

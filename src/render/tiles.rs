@@ -1,15 +1,16 @@
-//! The tiles of a picture, and which of them are rendered.
+//! The tiles of an image, and which of them are rendered.
 
 use std::iter;
 use std::mem::take;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// The width and height of a tile, whose rays go together, in pixels. Those at the right and lower edges may be smaller.
+/// The width and height of a tile in pixels, whose rays are traced together. Tiles at the right and lower edges may be
+/// smaller.
 pub(crate) const TILE: usize = 16;
 
-/// The pixels of a tile, or of a part of one: up to eight side by side at a time, by their columns and their row; those
-/// together that are near each other.
+/// Lists the pixels of a tile as runs of up to eight pixels, each by its columns and its row. The runs go through
+/// blocks of 8 x 8 pixels, so that pixels that follow each other are close together.
 pub(crate) fn runs(columns: Range<usize>, rows: Range<usize>) -> impl Iterator<Item = (Range<usize>, usize)> {
     const SIDE: usize = 8;
     rows.clone().step_by(SIDE).flat_map(move |low| {
@@ -21,7 +22,7 @@ pub(crate) fn runs(columns: Range<usize>, rows: Range<usize>) -> impl Iterator<I
     })
 }
 
-/// Lists the pixels of all [`runs`], by column and row.
+/// Lists the pixels of all [`runs`] in `pixels`, by column and row.
 pub(crate) fn list(columns: Range<usize>, rows: Range<usize>, pixels: &mut Vec<[usize; 2]>) {
     pixels.clear();
     for (columns, y) in runs(columns, rows) {
@@ -29,29 +30,29 @@ pub(crate) fn list(columns: Range<usize>, rows: Range<usize>, pixels: &mut Vec<[
     }
 }
 
-/// Pixels of a picture that are in memory at one time, but for a picture of one longer row of tiles.
+/// The maximum number of pixels that are in memory at one time, unless one row of tiles has more.
 pub const BAND: usize = 1 << 22;
 
-/// The tiles side by side in some rows of a picture.
+/// A row of tiles of an image.
 pub struct Strip {
-    /// Red, green and blue of each pixel, from the top and from the left; black where nothing is rendered.
+    /// Red, green and blue of each pixel, in rows from the top, each from the left; black where nothing is rendered.
     pub pixels: Vec<[u8; 3]>,
     /// Whether each tile is rendered, from the left.
     pub tiles: Vec<bool>,
 }
 
-/// Some rows of a picture, or of a part of one.
+/// Some rows of an image, or of a part of one.
 pub struct Band {
-    /// Which columns, from the left of the whole picture.
+    /// The columns, counted from the left of the whole image.
     pub columns: Range<usize>,
-    /// Which rows, from its top.
+    /// The rows, counted from the top of the whole image.
     pub rows: Range<usize>,
-    /// Its strips, from the top. A thread that renders holds one only while it adds a tile.
+    /// The rows of tiles, from the top. A thread that renders locks one only while it adds a tile.
     pub strips: Arc<[Mutex<Strip>]>,
 }
 
 impl Band {
-    /// One of which nothing is rendered.
+    /// Makes a band of which nothing is rendered.
     pub fn blank(columns: Range<usize>, rows: Range<usize>) -> Self {
         let width = columns.len();
         let strip = |from: usize| {
@@ -62,17 +63,17 @@ impl Band {
         Self { columns, rows, strips }
     }
 
-    /// The strip of this index, from the top.
+    /// Locks a row of tiles, by its index from the top.
     pub fn strip(&self, index: usize) -> MutexGuard<'_, Strip> {
         locked(&self.strips[index])
     }
 
-    /// Whether all of it is rendered.
+    /// Tells whether all tiles are rendered.
     pub fn is_whole(&self) -> bool {
         self.strips.iter().all(|strip| locked(strip).tiles.iter().all(|is_done| *is_done))
     }
 
-    /// A copy of what is rendered of it, to which nothing is added by whoever is still at work on it.
+    /// Copies what is rendered of the band. Threads that are still at work on the band add nothing to the copy.
     pub fn copied(&self) -> Self {
         let copy = |strip: &Mutex<Strip>| {
             let Strip { pixels, tiles } = &*locked(strip);
@@ -82,8 +83,8 @@ impl Band {
         Self { columns, rows, strips: self.strips.iter().map(copy).collect() }
     }
 
-    /// The bytes of its pixels, from the top and from the left: all at once where they are no more than this, and by
-    /// strips.
+    /// Takes the bytes of the pixels, in rows from the top: in one piece of up to `at_once` bytes, or in one for each row
+    /// of tiles.
     pub fn bytes(&self, at_once: usize) -> Vec<Vec<u8>> {
         let taken = self.strips.iter().map(|strip| take(&mut locked(strip).pixels));
         if 3 * self.columns.len() * self.rows.len() <= at_once {
@@ -95,8 +96,8 @@ impl Band {
         }
     }
 
-    /// The rows of each band of a picture, from the top: whole tiles, and where there is a choice no more than so many
-    /// pixels.
+    /// Splits an image into bands and returns the rows of each, from the top. A band is at least one row of tiles high,
+    /// and otherwise has at most `pixels` pixels.
     pub fn split(
         columns: &Range<usize>,
         rows: &Range<usize>,
@@ -108,20 +109,20 @@ impl Band {
     }
 }
 
-/// A strip, to be read or to be added to. Whoever panics has added a whole tile or none.
+/// Locks a strip. A thread that panicked has added a whole tile or none.
 pub(crate) fn locked(strip: &Mutex<Strip>) -> MutexGuard<'_, Strip> {
     strip.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Which tiles of a picture are rendered, as it comes band by band.
+/// Records which tiles of an image are rendered, band by band.
 pub struct Tiles {
     width: usize,
     height: usize,
     strips: Vec<Done>,
 }
 
-/// What is rendered of the tiles side by side. A picture has few strips that are neither whole nor empty, so that this
-/// takes little memory for large ones.
+/// What is rendered of a row of tiles. An image has few strips that are partly rendered, so this takes little memory even for large
+/// images.
 enum Done {
     Nothing,
     Whole,
@@ -129,12 +130,12 @@ enum Done {
 }
 
 impl Tiles {
-    /// None of a picture of this size yet.
+    /// Makes the record of an image of this width and height in pixels, of which nothing is rendered.
     pub fn none([width, height]: [usize; 2]) -> Self {
         Self { width, height, strips: Vec::new() }
     }
 
-    /// Adds those of the next band.
+    /// Adds the tiles of the next band.
     pub fn add(&mut self, band: &Band) {
         self.strips.extend(band.strips.iter().map(|strip| match &locked(strip).tiles {
             tiles if tiles.iter().all(|is_done| *is_done) => Done::Whole,
@@ -143,7 +144,7 @@ impl Tiles {
         }));
     }
 
-    /// Whether each pixel of a row, counted from the top, is rendered.
+    /// Tells for each pixel of a row, counted from the top, whether it is rendered.
     pub fn row(&self, row: usize) -> impl Iterator<Item = bool> + '_ {
         let strip = self.strips.get(row / TILE).unwrap_or(&Done::Nothing);
         (0..self.width).map(move |column| match strip {
@@ -153,7 +154,7 @@ impl Tiles {
         })
     }
 
-    /// How many of the picture's pixels are rendered.
+    /// Returns the number of rendered pixels.
     pub fn pixels(&self) -> usize {
         let lengths = |side: usize| (0..side).step_by(TILE).map(move |from| TILE.min(side - from));
         let strips = iter::zip(&self.strips, lengths(self.height));
@@ -170,13 +171,13 @@ impl Tiles {
             .sum()
     }
 
-    /// How many rows there are to the end of the last strip of which anything is rendered.
+    /// Returns the number of rows to the end of the last row of tiles of which anything is rendered.
     pub fn begun(&self) -> usize {
         let strips = self.strips.iter().rposition(|strip| !matches!(strip, Done::Nothing));
         strips.map_or(0, |last| self.height.min((last + 1) * TILE))
     }
 
-    /// Whether the whole picture is rendered.
+    /// Tells whether the whole image is rendered.
     pub fn is_whole(&self) -> bool {
         self.pixels() == self.width * self.height
     }

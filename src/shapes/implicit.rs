@@ -1,8 +1,7 @@
-//! Shapes that are one formula: the points where f(x, y, z) = 0.
+//! Implicit surfaces: the points where f(x, y, z) = 0.
 //!
-//! A plugin gives the formula, once, for every number type, and a box around it. The rest follows:
-//! [`taylor`] isolates what a ray meets first by interval arithmetic, and [`Dual`]
-//! numbers give the normal.
+//! A plugin gives the formula, once for every number type, and a bounding box. The rest follows: [`taylor`] isolates a
+//! ray's first hit by interval arithmetic, and [`Dual`] numbers give the normal.
 
 use crate::geometry::aabb::Aabb;
 use crate::geometry::frame::{self, BLUR, Frame};
@@ -21,18 +20,18 @@ use crate::world::shape::Shape;
 use glam::DVec3;
 use std::ops::Range;
 
-/// A shape by its formula, in coordinates of its own.
+/// An implicit surface, in coordinates of its own.
 pub trait Implicit: Send + Sync {
-    /// Below 0 inside of the shape, above 0 outside, and 0 on it.
+    /// Returns the value of the formula at a point: below 0 inside the shape, above 0 outside, and 0 on the surface.
     fn value<N: Scalar>(&self, at: [N; 3]) -> N;
 
-    /// The low and the high corner of a box around the shape. What lies outside of it is cut off, and a shape that is
-    /// cut shows its inside.
+    /// Returns the low and the high corner of a box around the shape. What lies outside of the box is cut off, and a
+    /// shape that is cut shows its inside.
     fn bounds(&self) -> [DVec3; 2];
 }
 
 impl Body {
-    /// An object by its formula, that looks like its material.
+    /// Makes an object of an implicit surface, which looks like its material.
     pub fn implicit(formula: impl Implicit + 'static, frame: Frame) -> Self {
         let [low, high] = formula.bounds();
         Self::plain(Shape::new(ImplicitShape { formula, frame, low, high }).bracketed().searched())
@@ -53,8 +52,8 @@ impl<T: Implicit> Hittable for ImplicitShape<T> {
         line.distance(line.first_hit(range).root, range)
     }
 
-    /// Along the formula's gradient. Where that vanishes or does not exist, as at the tip of a cone, the normal
-    /// points away from the shape's origin, and in the origin along its y.
+    /// Returns the normalized gradient of the formula. Where the gradient vanishes or does not exist, as at the tip of
+    /// a cone, the normal points away from the shape's origin, and at the origin along its y axis.
     fn normal(&self, at: DVec3) -> DVec3 {
         let at = self.frame.point(at);
         let slope = |axis: usize| {
@@ -128,7 +127,7 @@ impl<T: Implicit> Equation for ImplicitShape<T> {
     }
 }
 
-/// The unit vector along a vector, however short or long, that has a direction.
+/// Returns the unit vector along a vector of any length, or `None` if it has no direction.
 fn direction(vector: DVec3) -> Option<DVec3> {
     (vector / vector.abs().max_element()).try_normalize()
 }
@@ -136,13 +135,13 @@ fn direction(vector: DVec3) -> Option<DVec3> {
 /// A formula along a ray.
 struct FormulaOnRay<'s, T> {
     shape: &'s ImplicitShape<T>,
-    /// The ray in the shape's own coordinates, from its point closest to the shape's origin: a shape far away is met as
-    /// exactly as a near one.
+    /// The ray in the shape's own coordinates, starting at its point closest to the shape's origin, so that distant
+    /// shapes are hit as precisely as near ones.
     base: DVec3,
     dir: DVec3,
-    /// How far rounding may have moved that point.
+    /// A bound of the rounding error of each coordinate of that point, in world units.
     blur: f64,
-    /// The ray in the world, and how far along it that point is.
+    /// The ray in the world, and the distance of that point along it, in world units.
     ray: &'s Ray,
     closest: f64,
 }
@@ -155,8 +154,8 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
         Self { shape, base, dir, blur: frame::blur(base, closest), ray, closest }
     }
 
-    /// From the ray's origin, or where it comes into the box, to where it leaves the box, wherever a span ends: a hit is
-    /// the same in every span that holds it.
+    /// Returns the part of the ray in the box, from the ray's origin on, whatever the range is: so a hit is the same in
+    /// every range that contains it.
     fn stretch(&self) -> Stretch {
         let ImplicitShape { low, high, .. } = self.shape;
         let reach = 2.0 * low.abs().max(high.abs()).element_sum();
@@ -172,25 +171,26 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
         taylor::first_root(self, &stretch, self.closest, range, shortest(&stretch.outer))
     }
 
-    /// The distance of a root.
+    /// Returns the distance of a root along the ray in the world; [`MISS`] for none, and outside of the range.
     fn distance(&self, root: Option<f64>, range: &RayRange) -> f64 {
         root.map_or(MISS, |root| range.keep(self.closest + root))
     }
 }
 
-/// A few units in the last place of the greatest numbers on a line.
+/// Returns the length below which pieces of a span are not cut: four EPSILON, a few ulps, of its largest number.
 fn shortest(span: &Range<f64>) -> f64 {
     4.0 * f64::EPSILON * span.start.abs().max(span.end.abs())
 }
 
 impl<T: Implicit> taylor::FunctionOnLine for FormulaOnRay<'_, T> {
     fn at<N: Scalar>(&self, t: N) -> N {
-        // Bounds hold the values along the ray which this one was rounded from.
+        // Intervals enclose the values along every ray that this one may have been rounded from.
         let along = |axis: usize| N::about(self.base[axis], self.blur) + N::about(self.dir[axis], BLUR) * t;
         self.shape.formula.value([along(0), along(1), along(2)])
     }
 
-    /// Twice the precision, from the ray in the world, tells nearly all touches from misses.
+    /// Decides a piece in double-double arithmetic from the ray in the world, which tells nearly all touches from
+    /// misses.
     fn undecided(&self, piece: Interval, origin_side: Option<Side>) -> Option<f64> {
         let hidden = self.at(Interval::constant(piece.middle())).width();
         let exact = self.shape.frame.exactly(self.ray, self.closest);

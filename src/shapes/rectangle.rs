@@ -1,4 +1,4 @@
-//! A rectangle cut out of a plane: the arithmetic behind those shapes that have one.
+//! Rectangles cut out of planes: the arithmetic behind the shapes that have one.
 
 use crate::geometry::aabb::{Aabb, larger, smaller};
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
@@ -10,14 +10,14 @@ use crate::shapes::plane::{DRAFT_ERROR, Plane};
 use crate::world::accuracy::{Accuracy, Bounded, Classic};
 use glam::{DMat3, DVec2, DVec3};
 
-/// Where a rectangle is.
+/// The place and the size of a rectangle.
 #[derive(Clone, Copy, Debug)]
 pub struct Rectangle {
-    /// Its lower left corner, in world coordinates.
+    /// The lower left corner, in world coordinates.
     pub corner: DVec3,
-    /// How long its sides are, in world units.
+    /// The lengths of the sides, in world units.
     pub dimensions: DVec2,
-    /// Where they go from the corner, unit vectors, rounded.
+    /// The directions of the sides from the corner: unit vectors, rounded.
     pub sides: [DVec3; 2],
 }
 
@@ -26,25 +26,25 @@ pub struct Rectangle {
 pub struct FinitePlane<A> {
     /// The plane, whose point is the rectangle's corner.
     pub plane: Plane<A>,
-    /// Which part of it that is.
+    /// The part of the plane.
     pub rectangle: Rectangle,
-    /// Where its sides go, in twice the precision.
+    /// The directions of the sides, as double-doubles.
     pub exact_sides: [[DoubleDouble; 3]; 2],
-    /// The vector right above the first of them that the scene gives, of any length.
+    /// The vector that the scene gives, of any length, whose projection onto the plane is along the first side.
     pub given_xdir: DVec3,
-    /// How far from the world's origin it reaches, about, in world units.
+    /// A bound of the rectangle's coordinates, in world units.
     pub reach: f64,
 }
 
 impl Rectangle {
-    /// How far along its two sides a point of its plane is, from its corner.
+    /// Returns the coordinates along the two sides of a point of the plane, in world units from the corner.
     #[inline(always)]
     pub fn coordinates(&self, at: DVec3) -> DVec2 {
         let from_corner = at - self.corner;
         DVec2::new(self.sides[0].dot(from_corner), self.sides[1].dot(from_corner))
     }
 
-    /// The box around it.
+    /// Returns the bounding box.
     pub fn around(&self) -> Aabb {
         let corner = |x: f64, y: f64| self.corner + x * self.sides[0] + y * self.sides[1];
         let DVec2 { x, y } = self.dimensions;
@@ -53,8 +53,8 @@ impl Rectangle {
 }
 
 impl<A> FinitePlane<A> {
-    /// The part of a plane with a corner at its point, so long sides in these directions, and the first of them right below a
-    /// vector.
+    /// Returns the part of a plane with a corner at the plane's point, sides of these lengths (in world units) and
+    /// directions; the first side is along the projection of `given_xdir`.
     pub fn cut_from(plane: Plane<A>, dimensions: DVec2, given_xdir: DVec3, sides: [DVec3; 2]) -> Self {
         let reach = plane.point.abs().max_element() + dimensions.element_sum();
         let exact_sides = exact_sides(plane.upright, given_xdir);
@@ -62,14 +62,15 @@ impl<A> FinitePlane<A> {
         Self { plane, rectangle, exact_sides, given_xdir, reach }
     }
 
-    /// Above 0 inside of the four sides, each in a measure of its own, and below 0 outside, of a point of the plane. By
-    /// squares: lengths and unit
-    /// vectors would need roots, which are dear with many bits.
+    /// Returns a number above 0 for a point of the plane inside the four sides, and below 0 outside; its unit differs
+    /// from side to side. Works with squares: lengths and unit vectors would need square roots, which are expensive
+    /// with many bits.
     pub fn inside_of<N: Scalar>(&self, at: [N; 3]) -> N {
         let n = |of: DVec3| of.to_array().map(N::constant);
         let (normal, xdir, corner) = (self.plane.given_normal(), n(self.given_xdir), n(self.plane.point));
         let from_corner = [0, 1, 2].map(|axis| at[axis] - corner[axis]);
-        // Of the first side, which is right below `xdir`, the normal is upright on all that is on the plane.
+        // The first side is along the projection of `xdir`, from which it differs by a multiple of the normal; the
+        // normal is perpendicular to all vectors in the plane.
         let ydir = scalar::cross(normal, xdir);
         let (x, y, square) = (dot(xdir, from_corner), dot(ydir, from_corner), dot(ydir, ydir));
         let inside = |along: N, part: N, length: f64| along.min(N::constant(length).powi(2) * square - part);
@@ -77,12 +78,14 @@ impl<A> FinitePlane<A> {
         inside(x, dot(normal, normal) * x.powi(2), width).min(inside(y, y.powi(2), height))
     }
 
-    /// What rounding may make of the place where a ray crosses its plane.
+    /// Returns a bound of the rounding error of the point where a ray intersects the plane, along a side, in world
+    /// units.
     ///
     /// Units of 2^-53, along a side, whose components add up to at most 1.74: a distance is off by 14, its product with
-    /// the direction by 1, the point by 1 of what it is from the world's origin, which is at most the ray's origin
-    /// and the distance, and by 1 of itself from the corner; a side's components by 1, a product by 1, the sum of
-    /// three by 2. In all less than 16 of the distance, 2 of the origin and 5 of `reach` in each component, or 28 in sum.
+    /// the direction by 1; the point by 1 of its distance from the world's origin, which is at most that of the ray's
+    /// origin plus the distance, and by 1 of its distance from the corner; a side's components by 1, a product by 1,
+    /// the sum of three by 2. In all, less than 16 of the distance, 2 of the origin and 5 of `reach` in each component,
+    /// or 28 in sum.
     #[inline(always)]
     pub fn slack(&self, ray: &Ray, distance: f64) -> f64 {
         let origin = ray.origin.abs();
@@ -90,7 +93,8 @@ impl<A> FinitePlane<A> {
         16.0 * f64::EPSILON * (farthest + distance.abs() + self.reach)
     }
 
-    /// How far inside of its nearest side a ray crosses its plane; below 0 outside, NaN for none.
+    /// Returns the distance from the rectangle's nearest side at which a ray intersects the plane, in world units:
+    /// below 0 outside, NaN for a ray that does not.
     #[inline(always)]
     pub fn inside(&self, ray: &Ray, distance: f64) -> f64 {
         let at = self.rectangle.coordinates(ray.at(distance));
@@ -100,12 +104,12 @@ impl<A> FinitePlane<A> {
 }
 
 impl<A: Bounded> FinitePlane<A> {
-    /// Between which distances a hit within a span is.
+    /// Returns bounds of the distance of a hit in a range.
     #[inline(always)]
     pub fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
         let rough = self.plane.rough(ray, range.origin_error);
         let inside = self.inside(ray, rough.distance);
-        // A camera's direction is off by 3 units of 2^-53 in each component, which is less than half of the slack.
+        // A camera ray's direction is off by 3 units of 2^-53 in each component, which is less than half of the slack.
         let slack = rough.error + 2.0 * self.slack(ray, rough.distance);
         let Bracket { near, far } = self.plane.t_bounds(&rough, ray, range);
         Bracket {
@@ -114,13 +118,14 @@ impl<A: Bounded> FinitePlane<A> {
         }
     }
 
-    /// Whether it has the point of its plane where a ray crosses that, its sides included.
+    /// Returns whether the rectangle contains the point where a ray intersects its plane; the sides belong to it.
     #[inline(always)]
     pub fn has_crossing(&self, ray: &Ray, distance: f64) -> bool {
-        self.quickly_has_crossing(ray, distance).unwrap_or_else(|| self.exactly_has_crossing(ray))
+        self.quickly_has_crossing(ray, distance).unwrap_or_else(|| self.precisely_has_crossing(ray))
     }
 
-    /// Likewise, or nothing where it is on a side but for rounding.
+    /// Returns what [`has_crossing`](Self::has_crossing) does, or `None` where the point is on a side to within
+    /// rounding.
     #[inline(always)]
     pub fn quickly_has_crossing(&self, ray: &Ray, distance: f64) -> Option<bool> {
         let slack = match A::ACCURACY {
@@ -132,9 +137,10 @@ impl<A: Bounded> FinitePlane<A> {
         if is_doubtful { None } else { Some(inside >= 0.0) }
     }
 
-    /// As [`has_crossing`](Self::has_crossing), in twice the precision. What is as near to a side as its rounding is on it.
+    /// Returns what [`has_crossing`](Self::has_crossing) does, in double-double arithmetic. A point that is as near to
+    /// a side as the rounding error counts as on the side.
     #[inline(never)]
-    fn exactly_has_crossing(&self, ray: &Ray) -> bool {
+    fn precisely_has_crossing(&self, ray: &Ray) -> bool {
         let distance = self.plane.exact_crossing(ray);
         let from = [0, 1, 2].map(|axis| DoubleDouble::difference(ray.origin[axis], self.plane.point[axis]));
         let dir = ray.dir.to_array().map(DoubleDouble::from);
@@ -143,25 +149,25 @@ impl<A: Bounded> FinitePlane<A> {
                 (product(self.exact_sides[side], from), distance * product(self.exact_sides[side], dir));
             let along = start + onward;
             let past = DoubleDouble::from(self.rectangle.dimensions[side]) - along;
-            // Each of some ten operations is off by at most 2^-102 of its parts, which are no larger than this.
+            // Each of about ten operations is off by at most 2^-102 of its terms, which are no larger than `size`.
             let size = from.iter().map(|part| part.high.abs()).sum::<f64>() + distance.high.abs();
-            let least = -(2_f64.powi(-97)) * (size + self.rectangle.dimensions[side]);
-            along.high >= least && past.high >= least
+            let lowest = -(2_f64.powi(-97)) * (size + self.rectangle.dimensions[side]);
+            along.high >= lowest && past.high >= lowest
         })
     }
 }
 
 impl FinitePlane<Classic> {
-    /// Whether it has the point of its plane where a ray crosses that, its sides included.
+    /// Returns whether the rectangle contains the point where a ray intersects its plane; the sides belong to it.
     #[inline(always)]
     pub fn has_crossing(&self, ray: &Ray, distance: f64) -> bool {
         self.inside(ray, distance) >= 0.0
     }
 }
 
-/// A rectangle that rays go through.
+/// A rectangle that rays pass through.
 pub trait Window: Send + Sync {
-    /// The distance ahead at which a ray goes through it, if it does.
+    /// Returns the distance in world units at which a ray passes through the rectangle ahead, or `None`.
     fn crossing(&self, ray: &Ray) -> Option<f64>;
 }
 
@@ -181,21 +187,21 @@ impl Window for FinitePlane<Classic> {
     }
 }
 
-/// The directions of a rectangle's two sides and its normal, as columns, all unit vectors: the rows of the notes' rotation
-/// matrix.
+/// Returns the directions of a rectangle's two sides and its normal as columns, all unit vectors: the rows of the
+/// course notes' rotation matrix.
 pub fn frame(normal: DVec3, xdir: DVec3) -> DMat3 {
     let normal = normal.normalize();
     let x = (xdir - normal.dot(xdir) * normal).normalize();
     DMat3::from_cols(x, normal.cross(x), normal)
 }
 
-/// What [`exact_sides`] gives, rounded.
+/// Returns the sides of [`exact_sides`], rounded.
 pub fn rounded_sides(upright: [DoubleDouble; 3], xdir: DVec3) -> [DVec3; 2] {
     exact_sides(upright, xdir).map(|side| DVec3::from(side.map(|part| part.high)))
 }
 
-/// The directions of the two sides of a rectangle with this normal, the first of which is below `xdir`: unit vectors
-/// in twice the precision.
+/// Returns the directions of the two sides of a rectangle with this normal, as double-double unit vectors; the first is
+/// along the projection of `xdir` onto the plane.
 pub fn exact_sides(upright: [DoubleDouble; 3], xdir: DVec3) -> [[DoubleDouble; 3]; 2] {
     let exponent = exponent_to_one(xdir.abs().max_element());
     let xdir = xdir.to_array().map(|part| DoubleDouble::from(times_power_of_two(part, exponent)));

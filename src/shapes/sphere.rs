@@ -1,8 +1,8 @@
-//! Where a line meets a ball around the origin: the arithmetic behind spheres and ellipsoids.
+//! Line-sphere intersection: the arithmetic behind spheres and ellipsoids.
 //!
-//! The notes' formula loses far, small and grazed balls, as `b^2 - 4ac` cancels. Here the discriminant comes from the
-//! line's point closest to the centre (Haines, Günther and Akenine-Möller 2019), the root is corrected by a step of
-//! Newton's method, and what rounding could decide is decided in twice the precision.
+//! The course notes' formula loses far, small and grazed spheres, as `b^2 - 4ac` cancels. Here the discriminant comes
+//! from the line's point closest to the center (Haines, Günther and Akenine-Möller 2019), the root is corrected by a
+//! step of Newton's method, and what rounding could decide is decided in double-double arithmetic.
 
 use crate::geometry::aabb::larger;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
@@ -10,17 +10,17 @@ use crate::numeric::double_double::{DoubleDouble, exponent_to_one, times_power_o
 use crate::world::accuracy::{Accuracy, Bounded};
 use glam::DVec3;
 
-/// A half line from a point, in twice the precision.
+/// A half-line from a point, in double-double arithmetic.
 #[derive(Clone, Copy, Debug)]
 pub struct SphereLine {
-    /// Where it starts, counted from the centre.
+    /// The origin, relative to the center.
     pub from: [DoubleDouble; 3],
-    /// Where it goes; of any length. Distances are counted in this length.
+    /// The direction, of any length. Distances are in units of this length.
     pub dir: [DoubleDouble; 3],
 }
 
 impl SphereLine {
-    /// A ray, counted from the centre.
+    /// Returns a ray relative to the center.
     #[inline(always)]
     pub fn new(ray: &Ray, center: DVec3) -> Self {
         let from = |axis: usize| DoubleDouble::difference(ray.origin[axis], center[axis]);
@@ -28,7 +28,7 @@ impl SphereLine {
         Self { from: [from(0), from(1), from(2)], dir: [dir(0), dir(1), dir(2)] }
     }
 
-    /// A ray where space around the centre is squeezed: by these factors along the axes.
+    /// Returns a ray relative to the center, with coordinates scaled by these factors along the axes.
     #[inline(always)]
     pub fn squeezed(ray: &Ray, center: DVec3, squeeze: &[DoubleDouble; 3]) -> Self {
         let Self { from, dir } = Self::new(ray, center);
@@ -37,7 +37,7 @@ impl SphereLine {
     }
 }
 
-/// How hits are computed, in a few words.
+/// Returns the method of intersection, in a few words.
 pub fn method<A: Bounded>() -> &'static str {
     match A::ACCURACY {
         Accuracy::Draft => "a closed form, in twice the precision where rounding could decide",
@@ -48,49 +48,54 @@ pub fn method<A: Bounded>() -> &'static str {
     }
 }
 
-/// How the notes compute hits, in a few words.
+/// The course notes' method, in a few words.
 pub const CLASSIC_METHOD: &str = "the notes' formula";
 
-/// The notes' distance of a ball, for a ray that starts `from` its centre.
+/// Returns the distance of a sphere by the course notes' formula, for a ray that starts at `from`, relative to the
+/// center.
 #[inline(always)]
 pub fn classic(from: DVec3, dir: DVec3, radius: f64) -> f64 {
     let a = dir.dot(dir);
     let b = 2.0 * from.dot(dir);
     let c = from.dot(from) - radius * radius;
     let discriminant = b * b - 4.0 * a * c;
-    // A ray that only touches the sphere misses it.
+    // A tangent ray misses the sphere.
     if discriminant <= 0.0 { MISS } else { (-b - discriminant.sqrt()) / (2.0 * a) }
 }
 
-/// The distance of the first hit of a ball: of its near side, or from inside of its far one. A line that only
-/// touches it misses it, as in the notes.
+/// Returns the distance of the first hit of a sphere: of its near side, or from inside of its far side. A tangent line
+/// misses it, as in the course notes.
 #[inline(always)]
 pub fn first_hit<A: Bounded>(line: &SphereLine, radius: f64) -> f64 {
     let quick = quick_hit::<A>(line, radius);
-    if quick.is_nan() { in_twice_the_precision(line, radius) } else { quick }
+    if quick.is_nan() { in_double_double(line, radius) } else { quick }
 }
 
-/// As [`first_hit`], or NaN where rounding could decide it.
+/// Returns what [`first_hit`] does, or NaN where rounding could decide it.
 #[inline(always)]
 pub fn quick_hit<A: Bounded>(line: &SphereLine, radius: f64) -> f64 {
     let (from, dir) = (high(&line.from), high(&line.dir));
     let a = dir.dot(dir);
     let toward = -from.dot(dir);
     let aside = from + (toward / a) * dir;
-    let room = radius * radius - aside.dot(aside);
+    let discriminant = radius * radius - aside.dot(aside);
     let size = from.abs().element_sum() + radius;
     let outside = from.dot(from) - radius * radius;
-    // Units of 2^-53 of the way from the centre: `from` is off by 1, `toward` by 5, `a` by 4, their product with the
-    // direction by 3 and the sum by 1: 14, less than 32. Of a line that touches the ball, the room is then off by this.
+    // Units of 2^-53 of `size`: `from` is off by 1, `toward` by 5, `a` by 4, their product with the direction by 3 and
+    // the sum by 1; these 14 are less than the 32 here. For a tangent line, the discriminant is then off by `doubt`.
+    // `outside` is off by 7 units of `size^2`: 5 for the square of `from`, 1 for that of the radius and 1 for the
+    // difference; 64 are used below.
     let aside_error = 16.0 * f64::EPSILON * size;
     let doubt = aside_error * (2.0 * radius + aside_error);
-    let is_missed = room < -doubt;
-    // Where the room is GRAZE times its error, the root is right to 1 / 2 GRAZE of itself, and a step of Newton's method
-    // makes 1 / 8 GRAZE^2 of that.
+    let is_missed = discriminant < -doubt;
+    // Where the discriminant is GRAZE times its error, the root is off by a fraction of 1 / (2 GRAZE), of which a step
+    // of Newton's method leaves 1 / (8 GRAZE^2). `spheres_are_found` and `ellipsoids_are_found` in
+    // `tests/shapes/arithmetic.rs` hold the results to 4 ulps.
     const GRAZE: f64 = (1 << 18) as f64;
     let is_doubtful = (A::ACCURACY == Accuracy::Strict)
-        | (!is_missed & ((room <= GRAZE * doubt) | (outside.abs() <= 32.0 * f64::EPSILON * size * size)));
-    let root = (a * room).sqrt();
+        | (!is_missed
+            & ((discriminant <= GRAZE * doubt) | (outside.abs() <= 32.0 * f64::EPSILON * size * size)));
+    let root = (a * discriminant).sqrt();
     let is_ahead = toward > 0.0;
     let larger = if is_ahead { toward + root } else { toward - root };
     let (one, other) = (outside / larger, larger / a);
@@ -107,11 +112,12 @@ pub fn quick_hit<A: Bounded>(line: &SphereLine, radius: f64) -> f64 {
     }
 }
 
-/// The distance at which a line from the inner side of a ball's wall meets the wall again; [`MISS`] where it does not go
-/// inward.
+/// Returns the distance at which a line from the inner side of a sphere hits the sphere again; [`MISS`] where it does
+/// not go inward.
 ///
-/// The equation's other root is where it starts. Where what rounding makes of the start is not small beside the way into
-/// the ball, the start is taken for a point of the wall, whose far root is twice as far as the middle.
+/// The equation's other root is where the line starts. Where the rounding error of the start is not small against the
+/// discriminant, the start is taken for a point of the sphere, whose far root is twice as far as the midpoint of the
+/// chord.
 #[inline(always)]
 pub fn far_hit<A: Bounded>(line: &SphereLine, radius: f64) -> f64 {
     let (from, dir) = (high(&line.from), high(&line.dir));
@@ -126,7 +132,7 @@ pub fn far_hit<A: Bounded>(line: &SphereLine, radius: f64) -> f64 {
     if toward > 0.0 { distance } else { MISS }
 }
 
-/// The distance along a ray that leaves the ball on a side, or does not start on it.
+/// Returns the distance of the first hit of a ray that leaves the sphere to a side, or does not start on it.
 #[inline(always)]
 pub fn distance<A: Bounded>(line: &SphereLine, radius: f64, origin_side: Option<Side>) -> f64 {
     match origin_side {
@@ -136,7 +142,7 @@ pub fn distance<A: Bounded>(line: &SphereLine, radius: f64, origin_side: Option<
     }
 }
 
-/// As [`distance`], or NaN where rounding could decide it.
+/// Returns what [`distance`] does, or NaN where rounding could decide it.
 #[inline(always)]
 pub fn refine<A: Bounded>(line: &SphereLine, radius: f64, origin_side: Option<Side>) -> f64 {
     let distance = match origin_side {
@@ -147,18 +153,19 @@ pub fn refine<A: Bounded>(line: &SphereLine, radius: f64, origin_side: Option<Si
     if distance.is_nan() { distance } else { RayRange::ALL.keep(distance) }
 }
 
-/// Whether a point so far from the centre lies on a ball's wall, but for an error in the ball's own units and for what
-/// rounding makes of both distances from the centre.
+/// Returns whether a point at `from`, relative to the center, is on a sphere to within `error`, in units of the
+/// sphere's own coordinates, and the rounding error of its distance from the center. That is less than 2 EPSILON of the
+/// length: half an EPSILON for the coordinates, 3/4 for the sum of squares and 1/2 for the root.
 #[inline(always)]
 pub fn touches(from: DVec3, radius: f64, error: f64) -> bool {
     (from.length() - radius).abs() <= error + 4.0 * f64::EPSILON * radius
 }
 
-/// Between which distances the first hit is, of a line whose direction has the length `1 / sqrt(inverse)` and whose
-/// origin may be off by an error, in the ball's own units.
+/// Returns a bracket of the first hit of a line whose direction has the length `1 / sqrt(inverse)` and whose origin may
+/// be off by `origin_error`, in units of the sphere's own coordinates.
 ///
-/// `spread` is by how much the direction's components may be further off, against its length, than those of a unit
-/// vector: 1 for one. It is wide, and plain arithmetic tells it quickly: most rays miss most balls.
+/// `spread` is a bound of the rounding error of the direction's components relative to its length, as a multiple of
+/// that of a unit vector. The bracket is wide, and quick to compute in plain arithmetic: most rays miss most spheres.
 #[inline(always)]
 pub fn t_bounds(
     from: DVec3,
@@ -169,44 +176,45 @@ pub fn t_bounds(
     origin_side: Option<Side>,
     origin_error: f64,
 ) -> Bracket {
-    // Far more than rounding makes of the root where there is room enough.
+    // Far more than the relative rounding error of the root where the discriminant exceeds `doubt`.
     const ERROR: f64 = 1.0 / (1 << 29) as f64;
-    const ROOM: f64 = 32_768.0 * f64::EPSILON;
-    // A line that starts within an error e of the wall has one root no farther from its origin than `2 r e` divided by
-    // the other, which is at least `sqrt(ROOM r size)`: less than `ERROR size` where the size is so many e.
+    const ASIDE_ERROR: f64 = 32_768.0 * f64::EPSILON;
+    // A line that starts within an error e of the sphere has one root no farther from its origin than `2 r e` divided
+    // by the other root, which is at least `sqrt(ASIDE_ERROR r size)`: less than `ERROR size` where the size is this
+    // many e.
     const ORIGIN_ERRORS: f64 = (1_u64 << 49) as f64;
-    // A line that goes so far inward, as a part of the size, does so by far more than it may start off the wall.
+    // A line that goes inward by this fraction of the size does so by far more than it may start off the sphere.
     const INWARD: f64 = 1.0 / (1 << 20) as f64;
 
     let middle = -from.dot(dir) * inverse;
     let aside = from + middle * dir;
-    let room = radius * radius - aside.dot(aside);
-    // Of what `aside` is off by: 14 units of 2^-53 of the way from the centre, as in `quick_hit`, and 3 in each
-    // component for a camera's direction. ROOM is thousands of times as much, so that the half chord is off by less
-    // than ERROR where there is that room.
-    // The sum of what all rays of a packet have in common comes first.
+    let discriminant = radius * radius - aside.dot(aside);
+    // `aside` is off by 14 units of 2^-53 of `size`, as in `quick_hit`, and by 3 in each component for a camera ray's
+    // direction. ASIDE_ERROR is thousands of times as much, so that half the chord is off by less than ERROR where the
+    // discriminant exceeds `doubt`; `brackets_hold_the_hits_of_the_real_rays_of_a_camera` in
+    // `tests/shapes/arithmetic.rs` tests this. The sum of what all rays of a packet have in common comes first.
     let size = spread * from.abs().element_sum() + (spread * radius + ORIGIN_ERRORS * origin_error);
     let error = ERROR * size * inverse.sqrt();
-    let room_error = ROOM * size;
-    let doubt = room_error * (radius + room_error);
-    let half = (larger(room, 0.0) * inverse).sqrt();
+    let aside_error = ASIDE_ERROR * size;
+    let doubt = aside_error * (radius + aside_error);
+    let half = (larger(discriminant, 0.0) * inverse).sqrt();
     let (near, far) = (middle - half, middle + half);
     match origin_side {
         None => {}
         Some(Side::Outside) => return Bracket::MISS,
         Some(Side::Inside) => {
-            let is_there = (room > doubt) & (middle > INWARD * size * inverse.sqrt()) & (far > error);
+            let is_there = (discriminant > doubt) & (middle > INWARD * size * inverse.sqrt()) & (far > error);
             return Bracket {
                 near: if is_there { far - error } else { 0.0 },
                 far: if is_there { far + error } else { MISS },
             };
         }
     }
-    let is_missed = (room < -doubt) | (far < -error);
-    // From outside of it, or from inside.
+    let is_missed = (discriminant < -doubt) | (far < -error);
+    // A hit from outside of the sphere, or from inside.
     let is_ahead = near > error;
     let is_inside = (near < -error) & (far > error);
-    let is_there = (room > doubt) & (is_ahead | is_inside);
+    let is_there = (discriminant > doubt) & (is_ahead | is_inside);
     let distance = if is_ahead { near } else { far };
     Bracket {
         near: if is_missed {
@@ -225,22 +233,22 @@ fn high(of: &[DoubleDouble; 3]) -> DVec3 {
     DVec3::new(of[0].high, of[1].high, of[2].high)
 }
 
-/// A step of Newton's method, from a point in twice the precision: the error of the point's own rounding matters
-/// where the ball is large for its distance or met aslant.
+/// Corrects a distance by a step of Newton's method from a point in double-double arithmetic: the rounding error of the
+/// point matters where the sphere is large for its distance or is hit at a grazing angle.
 #[inline(always)]
 fn corrected(line: &SphereLine, radius: f64, distance: f64) -> f64 {
     let part = |axis: usize| line.from[axis] + DoubleDouble::from(distance) * line.dir[axis];
     let at = [part(0), part(1), part(2)];
     let outside = dot(&at, &at) - square(radius);
-    // How steeply it comes there need not be as exact.
+    // The slope need not be as precise.
     distance - outside.high / (2.0 * high(&at).dot(high(&line.dir)))
 }
 
-/// All of it in twice the precision, counted from a point of the line near its closest to the centre: a ball that is
-/// small for its distance loses nothing to that.
+/// Computes the first hit in double-double arithmetic, relative to a point of the line near its closest to the center,
+/// so that a sphere that is small for its distance loses no precision.
 #[inline(never)]
-fn in_twice_the_precision(line: &SphereLine, radius: f64) -> f64 {
-    // By powers of two, so that no square is too large or too small.
+fn in_double_double(line: &SphereLine, radius: f64) -> f64 {
+    // Scaled by powers of two, so that squares neither overflow nor underflow.
     let exponent = exponent_to_one(radius);
     let scaled = |part: f64| times_power_of_two(part, exponent);
     let from =

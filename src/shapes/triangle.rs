@@ -1,4 +1,4 @@
-//! Where a ray passes the edges of a triangle: the arithmetic behind triangles.
+//! The tests of a ray against the edges of a triangle: the arithmetic behind triangles.
 
 use crate::geometry::ray::Ray;
 use crate::numeric::double_double::{
@@ -12,25 +12,25 @@ use glam::DVec3;
 /// A triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct Triangle<A> {
-    /// The plane that it lies in.
+    /// The plane of the triangle.
     pub plane: Plane<A>,
-    /// Against the clock as seen from its lit side.
+    /// The corners in world coordinates, counterclockwise as seen from the lit side.
     pub corners: [DVec3; 3],
 }
 
 impl Triangle<Classic> {
-    /// The triangle with these corners; nothing where they are in one line.
+    /// Returns the triangle with these corners; `None` where they are collinear as far as `f64` tells.
     pub fn classic(corners: [DVec3; 3]) -> Option<Self> {
         let [a, b, c] = corners;
         let normal = (b - a).cross(c - a).try_normalize()?;
-        Some(Self { plane: Plane::new(normal, upright(corners), a), corners })
+        Some(Self { plane: Plane::new(normal, exact_normal(corners), a), corners })
     }
 }
 
 impl<A: Bounded> Triangle<A> {
-    /// The triangle with these corners; nothing where they are in one line.
+    /// Returns the triangle with these corners; `None` where they are collinear.
     pub fn new(corners: [DVec3; 3]) -> Option<Self> {
-        let upright = upright(corners);
+        let upright = exact_normal(corners);
         if upright.iter().all(|part| part.high == 0.0) {
             return None;
         }
@@ -40,19 +40,20 @@ impl<A: Bounded> Triangle<A> {
 }
 
 impl<A> Triangle<A> {
-    /// A vector upright on it, as long as twice its area.
+    /// Returns a normal whose length is twice the triangle's area.
     pub fn upright<N: Scalar>(&self) -> [N; 3] {
         let [a, b, c] = self.corners.map(|corner| corner.to_array().map(N::constant));
         let from_a = |corner: [N; 3]| [0, 1, 2].map(|axis| corner[axis] - a[axis]);
         cross(from_a(b), from_a(c))
     }
 
-    /// How far inside of the three edges a point of the plane is, each in a measure of its own; below 0 outside.
+    /// Returns a number above 0 for a point of the plane inside the three edges, and below 0 outside; its unit differs
+    /// from edge to edge.
     pub fn inside<N: Scalar>(&self, at: [N; 3]) -> N {
         let normal = self.upright();
         let corners = self.corners.map(|corner| corner.to_array().map(N::constant));
         let inside = |from: [N; 3], to: [N; 3]| {
-            // Upright on the edge, in the plane, toward the inside.
+            // Perpendicular to the edge, in the plane, toward the inside.
             let inward = cross(normal, [0, 1, 2].map(|axis| to[axis] - from[axis]));
             dot(inward, [0, 1, 2].map(|axis| at[axis] - from[axis]))
         };
@@ -60,7 +61,7 @@ impl<A> Triangle<A> {
         inside(a, b).min(inside(b, c)).min(inside(c, a))
     }
 
-    /// Whether a point of the plane is to the left of every edge.
+    /// Returns whether a point of the plane is to the left of every edge, or on it.
     #[inline(always)]
     pub fn contains(&self, at: DVec3) -> bool {
         let left_of = |from: DVec3, to: DVec3| (to - from).cross(at - from).dot(self.plane.normal) >= 0.0;
@@ -68,9 +69,9 @@ impl<A> Triangle<A> {
         left_of(a, b) && left_of(b, c) && left_of(c, a)
     }
 
-    /// Whether a ray, continued both ways, passes every edge on the same side.
+    /// Returns whether the line of a ray, extended both ways, passes every edge on the same side.
     ///
-    /// Of an edge that two triangles share, each computes the same number but for its sign, so that no ray falls
+    /// For an edge that two triangles share, both compute the same number except for its sign, so that no ray falls
     /// through between them (Woop, Benthin and Wald 2013).
     #[inline(always)]
     pub fn is_passed_by(&self, ray: &Ray) -> bool {
@@ -81,15 +82,15 @@ impl<A> Triangle<A> {
         })
     }
 
-    /// Likewise, or nothing where rounding could have turned a sign.
+    /// Returns what [`is_passed_by`](Self::is_passed_by) does, or `None` where rounding could have changed a sign.
     #[inline(always)]
     pub fn passed(&self, ray: &Ray) -> Option<bool> {
         let [a, b, c] = self.corners.map(|corner| corner - ray.origin);
         let side = |from: DVec3, to: DVec3| {
             let side = from.cross(to).dot(ray.dir);
-            // Units of 2^-53 of the greatest components' product: a component of the cross product is off by 4 of its
-            // two parts, a camera's direction by 3 and the product by 4; of at most 1.74 components in sum, 3 for the
-            // direction: 14 + 6 * 3 + 14 = 46, less than 64.
+            // Units of 2^-53 of the product of the largest components: a component of the cross product is off by 4 of
+            // its two terms, the direction of a camera ray by 3 and the product by 4; components of the direction add
+            // up to at most 1.74, so that the sum is off by 14 + 6 * 3 + 14 = 46, less than 64.
             let error = 32.0 * f64::EPSILON * from.abs().max_element() * to.abs().max_element();
             (side > error, side < -error)
         };
@@ -100,7 +101,8 @@ impl<A> Triangle<A> {
     }
 }
 
-/// On which side of the line from one point to another a ray passes: the sign tells, and 0 where it meets the line.
+/// Returns a number whose sign tells on which side of the line from one point to another a ray passes; 0 where the
+/// ray's line meets it.
 #[inline(never)]
 fn exact_side(from: DVec3, to: DVec3, ray: &Ray) -> f64 {
     let place =
@@ -108,9 +110,9 @@ fn exact_side(from: DVec3, to: DVec3, ray: &Ray) -> f64 {
     triple_product(place(from), place(to), ray.dir.to_array()).high
 }
 
-/// A vector that stands upright on the plane through three points, each component rounded once, however thin their triangle
-/// is; 0 where they are in one line.
-fn upright([a, b, c]: [DVec3; 3]) -> [DoubleDouble; 3] {
+/// Returns a normal of the plane through three points, each component rounded once however thin their triangle is; 0
+/// where the points are collinear.
+fn exact_normal([a, b, c]: [DVec3; 3]) -> [DoubleDouble; 3] {
     let edge = |to: DVec3| {
         let edge = [0, 1, 2].map(|axis| DoubleDouble::difference(to[axis], a[axis]));
         scaled_to_one(edge)
@@ -118,9 +120,9 @@ fn upright([a, b, c]: [DVec3; 3]) -> [DoubleDouble; 3] {
     scaled_to_one(double_double::cross(edge(b), edge(c)))
 }
 
-/// A vector times the power of two that makes its greatest component one between 1/2 and 1.
+/// Returns a vector scaled by a power of two so that its largest component is between 1/2 and 1.
 fn scaled_to_one(vector: [DoubleDouble; 3]) -> [DoubleDouble; 3] {
-    let exponent = exponent_to_one(vector.iter().fold(0.0, |most, part| part.high.abs().max(most)));
+    let exponent = exponent_to_one(vector.iter().fold(0.0, |largest, part| part.high.abs().max(largest)));
     let scaled = |part: f64| times_power_of_two(part, exponent);
     vector.map(|DoubleDouble { high, low }| DoubleDouble { high: scaled(high), low: scaled(low) })
 }

@@ -1,5 +1,5 @@
-//! Which of a processor's instructions are used: loops over packets of rays are compiled for each level, and the best
-//! one that is there is chosen at run time.
+//! Instruction sets: kernels, the loops over packets of rays, are compiled for each level of instructions, and the best
+//! level that the processor has is chosen at run time.
 //!
 //! The same operations in the same order give the same bits on every level: Rust neither reorders nor fuses them.
 
@@ -7,11 +7,12 @@ use clap::ValueEnum;
 use clap::builder::PossibleValue;
 use std::fmt;
 
-/// A level of instructions that this machine has. There is no way to make one that it has not.
+/// A level of instructions that this machine has. A `Cpu` cannot be made for a level that the machine lacks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Cpu(Level);
 
-/// Sets of instructions, each with those before it.
+/// Levels of instructions; each includes those before it.
+// The levels' own comments are shown by `--help`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, ValueEnum)]
 pub enum Level {
     /// What every machine has: SSE2 on x86-64.
@@ -44,22 +45,22 @@ impl Level {
 }
 
 impl Cpu {
-    /// The levels that this machine has, the best one last.
+    /// Returns the levels that this machine has, from the lowest to the highest.
     pub fn all() -> impl DoubleEndedIterator<Item = Self> {
         Level::value_variants().iter().filter(|level| level.is_here()).copied().map(Self)
     }
 
-    /// This level, where the machine has it.
+    /// Returns this level, or `None` if the machine lacks it.
     pub fn of(level: Level) -> Option<Self> {
         level.is_here().then_some(Self(level))
     }
 
-    /// The best level that this machine has.
+    /// Returns the highest level that this machine has.
     pub fn best() -> Self {
         Self::all().next_back().unwrap_or(Self(Level::Baseline))
     }
 
-    /// What it is.
+    /// Returns the level.
     #[inline(always)]
     pub fn level(self) -> Level {
         self.0
@@ -72,11 +73,37 @@ impl fmt::Display for Cpu {
     }
 }
 
-/// Defines functions that are compiled for every level; each takes the [`Cpu`] to use as its first argument.
+/// Defines kernels: functions that are compiled for every level of instructions. Each takes the [`Cpu`] to use as its
+/// first argument.
 ///
-/// What such a function calls takes part in that where it is inlined. Vectors to be written are named behind `=>` and
-/// are its last arguments. Inside, their arrays are arguments of their own, by which the compiler knows that none is
-/// part of another: else it looks at that at every call, and takes rays one by one where there are few.
+/// ```text
+/// kernels! {
+///     fn refine[T: OneRay](shape: &T, out: &mut [f64]) { ... }
+/// }
+/// ```
+///
+/// expands to
+///
+/// ```text
+/// fn refine<T: OneRay>(cpu: Cpu, shape: &T, out: &mut [f64]) {
+///     #[inline(always)]
+///     fn body<T: OneRay>(shape: &T, out: &mut [f64]) { ... }
+///     #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw")]
+///     fn avx512<T: OneRay>(shape: &T, out: &mut [f64]) { body(shape, out) }
+///     #[target_feature(enable = "avx2")]
+///     fn avx2<T: OneRay>(shape: &T, out: &mut [f64]) { body(shape, out) }
+///     match cpu.level() {
+///         Level::Avx512 => unsafe { avx512(shape, out) },
+///         Level::Avx2 => unsafe { avx2(shape, out) },
+///         _ => body(shape, out),
+///     }
+/// }
+/// ```
+///
+/// A function that a kernel calls is compiled for the level only where it is inlined. Vectors to be written are named
+/// after `=>` and are the kernel's last arguments. In the body, their arrays are arguments of their own, which tells
+/// the compiler that they do not overlap: otherwise it checks for overlap at every call, and takes small counts of rays
+/// one by one.
 macro_rules! kernels {
     ($(
         $(#[$attribute:meta])*
@@ -115,7 +142,7 @@ macro_rules! kernels {
                 }
             }
             match cpu.level() {
-                // SAFETY: there is no `Cpu` of a level that the machine has not.
+                // SAFETY: a `Cpu` exists only for levels that the machine has.
                 #[cfg(target_arch = "x86_64")]
                 #[allow(unsafe_code)]
                 $crate::simd::cpu::Level::Avx512 => unsafe { avx512($($argument,)* $($out.x, $out.y, $out.z, $($second.x, $second.y, $second.z)?)?) },
@@ -128,7 +155,7 @@ macro_rules! kernels {
     )*};
 }
 
-/// A kernel's body, and the functions that it becomes part of for each level.
+/// Defines a kernel's body and, for each level, the function that the body is inlined into.
 macro_rules! levels {
     (($($generics:tt)*) ($($arguments:tt)*) ($($result:tt)*) $body:block $call:block) => {
         #[inline(always)]
@@ -147,7 +174,7 @@ macro_rules! levels {
     };
 }
 
-/// Something that is there where a kernel has vectors to be written.
+/// Expands to its second argument; repeats it for each vector that a kernel writes.
 macro_rules! beside {
     ($out:ident, $($what:tt)*) => { $($what)* };
 }

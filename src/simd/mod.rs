@@ -1,4 +1,4 @@
-//! Loops that are compiled for each level of instructions.
+//! Kernels, compiled for each level of instructions, and the arrays that they work on.
 
 pub(crate) mod cpu;
 pub(crate) mod soa;

@@ -1,4 +1,4 @@
-//! How exactly a scene is traced: by the notes' own methods, or by stable ones of a chosen accuracy.
+//! How exactly a scene is traced: by the course notes' own methods, or by stable ones of a chosen accuracy.
 
 use std::fmt;
 
@@ -7,20 +7,20 @@ use std::fmt;
 pub enum Accuracy {
     /// The course notes' methods, with the hits that they lose and the artefacts that they make.
     Classic,
-    /// As exact, with points only within about 1/1000 of a unit of the surface where that saves time.
+    /// Like `Exact`, but with hit points only within about 1/1000 of a world unit of the surface where that saves time.
     Draft,
-    /// First hits by error bounds, their points on the surface but for rounding.
+    /// First hits found with error bounds, and hit points on the surface up to rounding.
     #[default]
     Exact,
-    /// As exact, and in twice the precision wherever that exists.
+    /// Like `Exact`, but in double-double arithmetic wherever a shape supports it.
     Strict,
 }
 
 impl Accuracy {
-    /// All of them.
+    /// All accuracies, in the order of their declaration.
     pub const ALL: [Self; 4] = [Self::Classic, Self::Draft, Self::Exact, Self::Strict];
 
-    /// Its name, and what choosing it does, in a few words.
+    /// Returns the accuracy's name, and what choosing it does, in a few words.
     pub fn named(self) -> (&'static str, &'static str) {
         match self {
             Self::Classic => ("classic", "the course notes' methods"),
@@ -35,7 +35,7 @@ impl Accuracy {
     }
 }
 
-/// What choosing it does, in a few words.
+/// The accuracy's name, and what choosing it does, in a few words.
 impl fmt::Display for Accuracy {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (name, meaning) = self.named();
@@ -43,25 +43,26 @@ impl fmt::Display for Accuracy {
     }
 }
 
-/// The course notes' formula, as a type of a shape's: it is chosen when the shape is made.
+/// Marks a shape that uses the course notes' formula. The marker is a type, so the choice is made once, when the shape
+/// is constructed.
 #[derive(Clone, Copy, Debug)]
 pub struct Classic;
 
-/// As [`Classic`], of hits by error bounds that are not finished.
+/// Marks a shape whose hits are found with error bounds and left unrefined where that saves time.
 #[derive(Clone, Copy, Debug)]
 pub struct Draft;
 
-/// As [`Classic`], of hits by error bounds that are finished.
+/// Marks a shape whose hits are found with error bounds and refined to the surface up to rounding.
 #[derive(Clone, Copy, Debug)]
 pub struct Exact;
 
-/// As [`Classic`], of hits in twice the precision.
+/// Marks a shape whose hits are computed in double-double arithmetic.
 #[derive(Clone, Copy, Debug)]
 pub struct Strict;
 
-/// Those of the types that find first hits by error bounds.
+/// A marker of an accuracy that finds first hits with error bounds: [`Draft`], [`Exact`] or [`Strict`].
 pub trait Bounded: Copy + Send + Sync + 'static {
-    /// The accuracy that it stands for.
+    /// The accuracy that the marker stands for.
     const ACCURACY: Accuracy;
 }
 

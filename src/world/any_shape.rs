@@ -1,4 +1,4 @@
-//! Any shape, whatever it has opted into.
+//! A shape of any type, whatever it has opted into.
 
 use crate::geometry::ray::{Bracket, Ray, RayRange, Side};
 use crate::geometry::ray_packet::{Nearest, RayPacket};
@@ -11,38 +11,40 @@ use crate::world::shape::Shape;
 use glam::DVec3;
 use std::ops::Deref;
 
-/// Any shape, as the objects of a scene have one. What [`Hittable`] says of it can be asked of it.
+/// The shape of an object, of any type. It dereferences to [`Hittable`].
 pub struct AnyShape(Box<dyn PacketShape>);
 
 impl AnyShape {
-    /// What packets of rays ask.
+    /// Returns the shape's interface for packets of rays.
     pub(crate) fn packets(&self) -> &dyn PacketShape {
         &*self.0
     }
 
-    /// Between which distances its distance is, as far as that is known quickly.
+    /// Returns a bracket of the distance of the ray's first hit, as tight as is quickly known.
     pub fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
         self.0.t_bounds(ray, range)
     }
 
-    /// The distance of a hit that [`t_bounds`](Self::t_bounds) has found for certain, or NaN where that takes more than
-    /// plain arithmetic.
+    /// Returns the distance of a hit that [`t_bounds`](Self::t_bounds) has found for certain, or NaN where it takes
+    /// more than plain arithmetic. `origin_side` is the side of the shape that the ray starts on, if it starts on the
+    /// shape.
     pub fn refine(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
         self.0.refine_one(ray, origin_side)
     }
 
-    /// Whether a point lies on its surface, but for an error of so many world units.
+    /// Tells whether a point lies on the surface, up to an error in world units.
     pub fn touches(&self, at: DVec3, error: f64) -> bool {
         self.0.touches(at, error)
     }
 
-    /// What is certain about the first hit of a ray. Of a shape without an equation nothing is.
+    /// Returns what is certain about a ray's first hit. For a shape without an equation, nothing is.
     pub fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
         self.0.certify(sight, precision)
     }
 
-    /// Compares its hits by a packet's rays with the nearest so far, and tells whether any is in doubt. `sides` are those
-    /// of this shape that the rays leave, if they do; `id` is its index in the scene and 1.
+    /// Merges the hits of a packet's rays with this shape into the nearest hits so far, and tells whether the order of
+    /// any is in doubt. `sides` has the side of this shape that each ray leaves, if the rays leave this shape; `id` is
+    /// the object's index in the scene plus 1.
     pub fn closest_hits(
         &self,
         cpu: Cpu,
@@ -63,7 +65,7 @@ impl Deref for AnyShape {
     }
 }
 
-/// A shape that has opted into nothing.
+/// Wraps a shape that has opted into nothing.
 impl<T: Hittable + 'static> From<T> for AnyShape {
     fn from(shape: T) -> Self {
         Shape::new(shape).into()

@@ -1,4 +1,4 @@
-//! What a constructor of an object makes.
+//! What an object's constructor returns.
 
 use crate::world::any_shape::AnyShape;
 use crate::world::packets::light::PacketLight;
@@ -11,21 +11,21 @@ pub type AnyShader = Box<dyn PacketShader>;
 /// Any [`Light`](crate::world::light::Light): `Box::new(light)` makes one.
 pub type AnyLight = Box<dyn PacketLight>;
 
-/// What the constructor of an object makes: its shape and its shader.
+/// What an object's constructor returns: the object's shape and its shader.
 pub struct Body {
-    /// Where it is.
+    /// The object's geometry.
     pub shape: AnyShape,
-    /// What it looks like.
+    /// The object's reflectivities.
     pub shader: AnyShader,
 }
 
 impl Body {
-    /// An object that looks like its material.
+    /// Makes an object whose reflectivities are its material's.
     pub fn plain(shape: impl Into<AnyShape>) -> Self {
         Self::shaded(shape, Plain)
     }
 
-    /// An object with a look of its own.
+    /// Makes an object with a shader of its own.
     pub fn shaded(shape: impl Into<AnyShape>, shader: impl Shader + 'static) -> Self {
         Self { shape: shape.into(), shader: Box::new(shader) }
     }

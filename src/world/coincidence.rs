@@ -1,8 +1,9 @@
-//! Several surfaces through one point: which of them a ray sees, and which it leaves when it starts there.
+//! Several surfaces through one point: which of them a ray hits first, and which it leaves when it starts there.
 //!
-//! A point where a ray comes to a surface is rounded. A surface that lies no farther from it than that holds it, too, and
-//! what starts there leaves both: a rug on a floor has no shadow of the floor on it, and a floor and a wall have no dots
-//! where they meet. How far off the point is follows from the numbers that it was computed from; nothing is chosen.
+//! The point where a ray hits a surface is rounded. Another surface that lies within the rounding error of the point
+//! holds it as well, and a ray that starts there leaves both: a floor casts no shadow on a rug that lies on it, and the
+//! edge where a floor meets a wall shows no dots. The size of the error follows from the numbers that the point was
+//! computed from.
 
 use crate::geometry::aabb::larger;
 use crate::geometry::ray::Ray;
@@ -15,22 +16,25 @@ use crate::simd::cpu::kernels;
 use crate::world::certify::Equation;
 use glam::DVec3;
 
-/// What rounding may make of a point, as a part of the coordinates that it is computed from: 8 units in the last place
-/// for its distance along the ray, and one and a half for each of the two operations that lead there, each way.
+/// A bound on the rounding error of a hit point, as a fraction of the coordinates that it is computed from: 8 ulps for
+/// the distance along the ray and 1.5 ulps for each of the two operations that follow, together 11, rounded up to 16.
 pub(crate) const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// The least cosine that counts: at the square root of the rounding, a curved surface is met within that of where it is.
+/// The least cosine by which an error is divided: the square root of `f64::EPSILON`. At a grazing hit, the distance to
+/// a curved surface is off by about the square root of the rounding error, however small the cosine is.
 pub(crate) const LEAST_COSINE: f64 = 1.0 / (1 << 26) as f64;
 
-/// Distances that differ by less than this part of them may be the same but for rounding.
+/// The relative difference below which two distances may be equal up to rounding: [`ROUNDING`] divided by a cosine of
+/// 2^-18. `a_rug_on_a_floor_of_any_tilt_looks_as_the_floor_does` in `tests/shapes` holds it.
 pub(crate) const CLOSE: f64 = 1.0 / (1 << 30) as f64;
 
-/// What is left of the difference of two distances in twice the precision where they are the same, as a part of the
-/// coordinates: a few thousand of its last places.
+/// A bound on the computed difference of two equal distances in double-double arithmetic, as a fraction of the
+/// coordinates: about 8000 times its unit of rounding, 2^-106. The test named at [`CLOSE`] holds it.
 pub(crate) const SAME: f64 = 1e-28;
 
-/// How far the computed point of a hit may be from the true one, in world units: the error of a distance is that of a
-/// place upright on the surface, divided by the cosine. `reach` is [`Hittable::reach`](crate::world::hittable::Hittable::reach).
+/// Returns a bound on how far the computed point of a hit is from the true one, in world units: the error along the ray
+/// is the error along the normal, divided by the cosine between them. `distance` is in world units; `reach` is
+/// [`Hittable::reach`](crate::world::hittable::Hittable::reach).
 #[inline(always)]
 pub fn error(ray: &Ray, distance: f64, normal: DVec3, reach: f64) -> f64 {
     let origin = ray.origin.abs();
@@ -38,54 +42,54 @@ pub fn error(ray: &Ray, distance: f64, normal: DVec3, reach: f64) -> f64 {
     ROUNDING * size / larger(ray.dir.dot(normal).abs(), LEAST_COSINE)
 }
 
-/// A bound of the error of a point that a ray comes to, as [`error`] has it, from the cosine of its angle with the normal.
-/// `reach` is that of the shape and of the viewer together: no ray starts farther from the viewer than its light has
-/// `travelled`.
+/// Returns the bound that [`error`] gives for a hit point, or a larger one, in world units, from the cosine of the
+/// angle between the ray and the normal. `travelled` is the length of the whole path from the viewer, and `reach` is
+/// that of the shape and of the viewer together: no ray starts farther from the viewer than `travelled`.
 #[inline(always)]
 pub(crate) fn error_after(travelled: f64, reach: f64, cosine: f64) -> f64 {
-    // A division of single precision takes a third of the time, and what it rounds is nothing to a bound.
+    // A division in single precision takes a third of the time, and its relative error of 2^-24 or so does not matter
+    // to a bound that is rounded up from 11 to 16 ulps.
     ROUNDING * (travelled + reach) * f64::from(1.0 / larger(cosine.abs(), LEAST_COSINE) as f32)
 }
 
 kernels! {
-    /// No less than [`error_after`] of any of some points: it rises with the way, and falls as the cosine rises, after
-    /// rounding as before.
+    /// Returns an upper bound of [`error_after`] over some points. The bound of one point grows with the path length
+    /// and shrinks as the cosine grows, and rounding keeps both monotonic.
     pub(crate) fn most_error(travelled: &[f64], reach: f64, cosines: &[f64]) -> f64 {
         let travelled = &travelled[..cosines.len()];
-        let (mut most, mut least) = (0, i64::MAX);
+        let (mut max_travelled, mut min_cosine) = (0, i64::MAX);
         for lane in 0..cosines.len() {
-            // None of these is below 0, and so their bits are in their order.
-            most = most.max(travelled[lane].to_bits() as i64);
-            least = least.min(larger(cosines[lane].abs(), LEAST_COSINE).to_bits() as i64);
+            // None of these numbers is negative, so their bits compare as the numbers do.
+            max_travelled = max_travelled.max(travelled[lane].to_bits() as i64);
+            min_cosine = min_cosine.min(larger(cosines[lane].abs(), LEAST_COSINE).to_bits() as i64);
         }
-        error_after(f64::from_bits(most as u64), reach, f64::from_bits(least as u64))
+        error_after(f64::from_bits(max_travelled as u64), reach, f64::from_bits(min_cosine as u64))
     }
 }
 
-/// Whether a surface comes into the box of so many world units around a point:
-/// [`Certified::touches`](crate::world::hittable::Certified::touches) of a shape that has
-/// an equation.
+/// Tells whether a surface may pass through the box that extends `error` world units from a point along each axis:
+/// [`Certified::touches`](crate::world::hittable::Certified::touches) of a shape that has an equation.
 pub fn touches(shape: &(impl Equation + ?Sized), at: DVec3, error: f64) -> bool {
     let origin = at.to_array().map(|place| Interval { low: place - error, high: place + error });
     let point = Line { origin, dir: [Interval::constant(0.0); 3] };
     shape.value(shape.own(point).origin).has_zero()
 }
 
-/// The distance of a hit by Newton's method in twice the precision:
-/// [`Certified::fine_distance`](crate::world::hittable::Certified::fine_distance) of a shape that has an equation. Nothing
-/// where that does not settle, as at a graze.
+/// Returns the distance of a hit by Newton's method in double-double arithmetic, starting from `near`:
+/// [`Certified::fine_distance`](crate::world::hittable::Certified::fine_distance) of a shape that has an equation.
+/// Returns `None` where the iteration does not converge, as for a grazing ray.
 pub fn distance(shape: &(impl Equation + ?Sized), ray: &Ray, near: f64) -> Option<DoubleDouble> {
-    let (mut at, mut moved) = (DoubleDouble::from(near), f64::INFINITY);
+    let (mut at, mut last_step) = (DoubleDouble::from(near), f64::INFINITY);
     let line = shape.own(Sight::along(ray).line::<DoubleDouble>());
     for _ in 0..4 {
         let Dual { value, slope } = shape.value(line.along(Dual::variable(at)));
         let step = value / slope;
         at = at - step;
-        moved = step.high.abs();
+        last_step = step.high.abs();
     }
     let size = ray.origin.abs().max_element() + near;
-    let is_settled = moved <= SAME * size && (at.high - near).abs() <= CLOSE * size;
-    is_settled.then_some(at)
+    let has_converged = last_step <= SAME * size && (at.high - near).abs() <= CLOSE * size;
+    has_converged.then_some(at)
 }
 
 #[cfg(test)]

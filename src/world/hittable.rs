@@ -1,7 +1,7 @@
 //! Shapes: the traits that a plugin implements, each for one ray.
 //!
-//! [`Hittable`] is all that a shape needs. What is faster, and what can be proven, is opted into:
-//! [`Bracketed`] and [`Certified`], which [`Shape`](crate::world::shape::Shape) is told of.
+//! [`Hittable`] is all that a shape needs. A shape opts into faster methods with [`Bracketed`] and into proofs with
+//! [`Certified`], and declares both to [`Shape`](crate::world::shape::Shape).
 
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{Bracket, Ray, RayRange, Side};
@@ -11,98 +11,100 @@ use crate::world::certify::Equation;
 use crate::world::coincidence;
 use glam::DVec3;
 
-/// A shape that rays can hit. Shapes do not change while a picture is made.
+/// A shape that rays can hit. Shapes do not change while an image is rendered.
 ///
-/// A plugin implements `distance` and `normal`, and of the others what it knows better than their defaults, each of which
-/// is right for every shape.
+/// A plugin implements `distance` and `normal`, and overrides those other methods of which it knows more. Each default
+/// is correct for every shape.
 pub trait Hittable: Send + Sync {
-    /// The distance from the ray's origin to its first hit of the shape within the span, or
+    /// Returns the distance from the ray's origin to its first hit of the shape within the range, in world units, or
     /// [`MISS`](crate::geometry::ray::MISS).
     fn distance(&self, ray: &Ray, range: &RayRange) -> f64;
 
-    /// The unit normal of the shape at a point of it.
+    /// Returns the unit normal at a point of the surface.
     fn normal(&self, at: DVec3) -> DVec3;
 
-    /// A box that holds all of it; nothing where there is none.
+    /// Returns a bounding box of the shape, or `None` for an unbounded shape.
     fn bounds(&self) -> Option<Aabb> {
         None
     }
 
-    /// Whether a ray that leaves it on this side may meet it again. Where it may not, it is not asked. A plane is never
-    /// met again, a ball only from inside; `true` is never wrong, as long as [`distance`](Self::distance) heeds
-    /// `range.origin_side`.
+    /// Tells whether a ray that leaves the shape on this side may hit it again. Where it may not, the ray is not tested
+    /// against the shape. A plane is not hit again, a sphere only from inside. `true` is correct for every shape whose
+    /// [`distance`](Self::distance) respects `range.origin_side`.
     fn can_hit_itself(&self, _leaving: Side) -> bool {
         true
     }
 
-    /// Whether both its sides are lit: then its normal is turned to the side that a ray comes from. A plane shows
+    /// Tells whether both sides of the surface are lit. If so, the normal is flipped to face the ray. A plane is lit on
     /// one side.
     fn is_two_sided(&self) -> bool {
         false
     }
 
-    /// How its hits are found, in a few words, for the plan of a scene.
+    /// Describes how hits are found, in a few words, for the plan of a scene.
     fn method(&self) -> String {
         "its own distance".to_owned()
     }
 
-    /// Whether no part of it lies in a region, which may be without an end. A shape without bounds may know better than
-    /// they tell; `false` is never wrong.
+    /// Tells whether no part of the shape lies in a region, which may be unbounded. An unbounded shape may know more
+    /// than the default does; `false` is always correct.
     fn is_clear_of(&self, region: &Aabb) -> bool {
         self.bounds().is_some_and(|bounds| !bounds.overlaps(region))
     }
 
-    /// A point and the unit normal of the plane that all of it lies in, if there is one: rays that leave it stay on their
-    /// side of that. `None` is never wrong.
+    /// Returns a point and the unit normal of the plane that contains the whole shape, if there is one: rays that leave
+    /// the shape stay on their side of the plane. `None` is always correct.
     fn plane(&self) -> Option<[DVec3; 2]> {
         None
     }
 
-    /// How far from a point all of it is, at least, in world units; nothing where its bounds tell as much.
+    /// Returns a lower bound on the distance from a point to the shape, in world units, or `None` where the bounding
+    /// box gives as good a bound.
     fn clearance(&self, _from: DVec3) -> Option<f64> {
         None
     }
 
-    /// How large the coordinates are that its hits are computed from, in world units: its own, not the ray's.
+    /// Returns the largest magnitude of the shape's own coordinates that its hits are computed from, in world units.
+    /// The ray's coordinates do not count.
     fn reach(&self) -> f64 {
         self.bounds().map_or(0.0, |bounds| bounds.low.abs().max(bounds.high.abs()).max_element())
     }
 }
 
-/// A shape whose [`distance`](Hittable::distance) is dear, and which knows quickly about where it is.
+/// A shape whose [`distance`](Hittable::distance) is expensive, and which can quickly bracket it.
 ///
-/// Plain arithmetic without branches says which shape a ray may meet first, several rays at a time, and the rest is
-/// computed for that shape alone.
+/// Branch-free arithmetic on several rays at a time finds the shape that each ray may hit first, and the exact distance
+/// is computed for that shape alone.
 pub trait Bracketed: Hittable {
-    /// Between which distances [`distance`](Hittable::distance) is.
+    /// Returns a bracket of [`distance`](Hittable::distance).
     ///
-    /// Where the ray may start on the shape, that is where the shape touches the origin within the span's
-    /// `origin_error`, it is a bracket without a certain end.
+    /// Where the ray may start on the shape, because the shape touches the origin within the range's `origin_error`,
+    /// the bracket has no certain upper end.
     fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket;
 
-    /// What [`distance`](Hittable::distance) gives for a ray whose hit a bracket has found for certain, to the last bit, or
-    /// NaN where that takes more than plain arithmetic. Of other rays it need not tell that they miss. `leaves` is the
-    /// side of the shape that the ray starts on, if it does.
+    /// Returns what [`distance`](Hittable::distance) returns, to the last bit, for a ray whose hit a bracket has found
+    /// for certain, or NaN where it takes more than plain arithmetic. For other rays it need not detect a miss.
+    /// `origin_side` is the side of the shape that the ray starts on, if it starts on the shape.
     fn refine(&self, ray: &Ray, origin_side: Option<Side>) -> f64;
 }
 
-/// A shape that is the solutions of an equation: what is certain about its hits can be proven.
+/// A shape given by an equation, so that what is certain about its hits can be proven.
 pub trait Certified: Hittable + Equation {
-    /// Whether a point lies on its surface, but for an error of so many world units and for what rounding makes of the
-    /// shape's own numbers. Rays that start there leave it.
+    /// Tells whether a point lies on the surface, up to an error in world units and to the rounding of the shape's own
+    /// numbers. Rays that start at such a point leave the shape.
     fn touches(&self, at: DVec3, error: f64) -> bool {
         coincidence::touches(self, at, error)
     }
 
-    /// The distance of the hit at about this one, in twice the precision: it tells which of two surfaces that lie
-    /// together is nearer. Nothing where it is not to be had.
+    /// Returns the distance of the hit near `distance` in double-double arithmetic, which tells which of two coincident
+    /// surfaces is nearer. Returns `None` where no such distance can be computed.
     fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble> {
         coincidence::distance(self, ray, distance)
     }
 }
 
-/// A shape whose hits are the roots of a function along a ray, which other methods find as well.
+/// A shape whose hits are the roots of a function along the ray, which other root-finding methods can find as well.
 pub trait Searched: Certified {
-    /// The distance by another method of finding roots, to be compared with it.
+    /// Returns the distance by another root-finding method, for comparison.
     fn distance_by(&self, method: Method, ray: &Ray, range: &RayRange) -> f64;
 }

@@ -1,25 +1,25 @@
-//! Where rays come to a surface.
+//! Surface interactions: where rays hit a surface.
 
 use crate::geometry::ray::Side;
 use crate::simd::soa::ViewMut;
 use glam::DVec3;
 
-/// Places on a surface, each where a ray of a packet comes to it. All arrays are as long as the packet's.
+/// Hit points on one surface, one for each ray of a packet. All arrays are as long as the packet's.
 pub struct SurfaceInteraction<'l> {
-    /// Where they are, in world coordinates.
+    /// The hit points, in world coordinates.
     pub points: ViewMut<'l>,
-    /// The unit normals there, turned to the rays' side where both are lit.
+    /// The unit normals at the hit points, flipped to face the rays where both sides are lit.
     pub normals: ViewMut<'l>,
-    /// The side that each ray comes to.
+    /// The side that each ray hits.
     pub sides: &'l mut [Side],
-    /// The cosines of the angles between the rays and the normals, of either sign.
+    /// The cosines of the angles between the rays and the unflipped normals, from -1 to 1.
     pub cosines: &'l mut [f64],
-    /// How far the way from the viewer is, in world units: to where the rays start at first, and then to the places.
+    /// The path lengths from the viewer, in world units: on entry to the rays' origins, on return to the hit points.
     pub travelled: &'l mut [f64],
 }
 
-/// The side that a ray along `dir` comes to of a surface with this normal, the cosine of the angle between them, and the
-/// normal, turned to that side if both are lit.
+/// Returns the side of a surface that a ray along `dir` hits, the cosine of the angle between `dir` and `normal`, and
+/// the normal, flipped to face the ray if both sides are lit.
 #[inline(always)]
 pub(crate) fn turned(dir: DVec3, normal: DVec3, is_two_sided: bool) -> (Side, f64, DVec3) {
     let side = Side::seen_along(dir, normal);

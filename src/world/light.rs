@@ -5,25 +5,25 @@ use glam::DVec3;
 
 /// A source of light.
 pub trait Light: Send + Sync {
-    /// Where it is, in world coordinates.
+    /// Returns the light's position, in world coordinates.
     fn location(&self) -> DVec3;
 
-    /// The light that it sends toward a point, or nothing where it does not point there (the notes' `vischeck`).
+    /// Returns the light sent toward a point, or `None` where the light does not point there (the notes' `vischeck`).
     fn emissivity(&self, toward: DVec3) -> Option<Rgb>;
 
-    /// What [`emissivity`](Self::emissivity) gives toward every point, if that is the same and never nothing: then it is
-    /// not asked for each. `None` is never wrong.
+    /// Returns the light sent toward every point, if [`emissivity`](Self::emissivity) is `Some` and the same
+    /// everywhere. Then `emissivity` is not called for each point. `None` is always correct.
     fn uniform(&self) -> Option<Rgb> {
         None
     }
 
-    /// The largest that [`emissivity`](Self::emissivity) gives toward any point, whatever the sign; nothing where that is
-    /// not known. `None` is never wrong.
+    /// Returns the largest magnitude of each channel of [`emissivity`](Self::emissivity) over all points, with either
+    /// sign, or `None` where it is not known. `None` is always correct.
     fn brightest(&self) -> Option<Rgb> {
         self.uniform()
     }
 
-    /// The radius of a ball that shines; 0 for a point, whose shadows have sharp edges.
+    /// Returns the radius of a spherical light in world units; 0 for a point light, whose shadows have sharp edges.
     fn size(&self) -> f64 {
         0.0
     }

@@ -1,41 +1,41 @@
-//! A light as the places of a surface see it (the notes' `light_t::illuminate`, but for shadows).
+//! A light as seen from the shading points of a surface (the notes' `light_t::illuminate`, without shadows).
 //!
-//! All arrays are as long as the packet's whose rays came to the places.
+//! All arrays are as long as those of the packet whose rays hit the points.
 
 use crate::simd::soa::{View, ViewMut};
 
-/// Places of a surface that may see a light.
+/// Points of a surface that may see a light.
 pub struct ShadingPoints<'p> {
-    /// Where they are, in world coordinates.
+    /// The points, in world coordinates.
     pub points: View<'p>,
-    /// The unit normals there.
+    /// The unit normals at the points.
     pub normals: View<'p>,
-    /// Where each sees the light; nothing where that is the light's own place.
+    /// The point of the light that each point sees, in world coordinates; `None` for the light's own position.
     pub lights: Option<View<'p>>,
-    /// What the ends of the ways are short of the light, as a part of how far that is, and of how far the places are from
-    /// the world's origin.
+    /// How far short of the light the shadow rays end, as a fraction of the sum of the distance to the light and of the
+    /// largest magnitude of the point's coordinates.
     pub slack: f64,
 }
 
-/// What a light sends to places, and how it comes there.
+/// What a light sends to shading points, and along which directions.
 pub struct LightSamples<'f> {
-    /// The directions to it, unit vectors.
+    /// The unit vectors toward the light.
     pub toward: ViewMut<'f>,
-    /// The colours that it sends, black where it sends nothing; of a light that is even they are left as they are.
+    /// The colours that the light sends, black where it sends nothing. Left untouched for a uniform light.
     pub emissivity: ViewMut<'f>,
-    /// The cosines of the angles between those directions and the normals, divided by the distances to it in world
+    /// The cosines of the angles between `toward` and the normals, divided by the distances to the light in world
     /// units.
     pub cos_over_distance: &'f mut [f64],
-    /// Where the ways to it end, in world units from the places; 0 where none need be gone.
+    /// Where the shadow rays end, in world units from the points; 0 where no shadow ray is needed.
     pub t_max: &'f mut [f64],
-    /// 0 for a place to which it sends nothing, or from behind; else 1.
+    /// 0 for a point that the light does not shine on or lies behind; otherwise 1.
     pub shines: &'f mut [u64],
 }
 
-/// What is so of any of some places.
+/// Whether any of some shading points is lit.
 pub struct Lit {
-    /// One faces the light.
+    /// Whether any point faces the light.
     pub any_faces: bool,
-    /// To one that does the light sends something, too.
+    /// Whether the light shines on any of the points that face it.
     pub any_shines: bool,
 }

@@ -1,32 +1,32 @@
-//! Colours, and how a surface answers light.
+//! Colours, and how a surface reflects light.
 
 use glam::DVec3;
 
-/// A colour or a reflectivity: red, green and blue; 1 is as bright as a picture can show.
+/// A colour or a reflectivity: red, green and blue. 1 is as bright as an image can show; there is no upper limit.
 pub type Rgb = DVec3;
 
-/// How a surface answers light, per channel.
+/// How a surface reflects light, per channel.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Material {
-    /// The part of light from nowhere in particular that it reflects.
+    /// The reflectivity for ambient light.
     pub ambient: Rgb,
-    /// The part of light from the scene's lights that it scatters evenly.
+    /// The reflectivity for light from the scene's lights, scattered diffusely.
     pub diffuse: Rgb,
-    /// The part of light that it reflects as a mirror does.
+    /// The mirror reflectivity.
     pub specular: Rgb,
-    /// The sharpness of the glint that a light leaves on it; 0 for none.
+    /// The exponent of the specular highlight; 0 for no highlight.
     pub shininess: f64,
-    /// The part of light that passes through it, from 0 to 1.
+    /// The fraction of light that passes through the surface, from 0 to 1.
     pub transparency: f64,
 }
 
-/// How a surface answers light, per channel, where that is the same all over it.
+/// A surface's reflectivities, per channel, where they are the same at every point, or bounds of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Look {
-    /// The reflectivity for light from nowhere in particular.
+    /// The reflectivity for ambient light.
     pub ambient: Rgb,
-    /// The reflectivity for light from the scene's lights, scattered evenly.
+    /// The reflectivity for light from the scene's lights, scattered diffusely.
     pub diffuse: Rgb,
-    /// The reflectivity as a mirror.
+    /// The mirror reflectivity.
     pub specular: Rgb,
 }

@@ -5,49 +5,48 @@ use glam::DVec2;
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 
-/// Where a pixel's samples lie.
+/// How a pixel's samples are distributed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Sampler {
     /// Evenly spread (a Sobol sequence).
     ///
-    /// With Owen scrambling (Burley, "Practical Hash-based Owen Scrambling", 2020), scrambled anew for
-    /// each pixel.
+    /// With Owen scrambling (Burley, "Practical Hash-based Owen Scrambling", 2020), different for each pixel.
     #[default]
     Sobol,
     /// Random, as in the course notes.
     ///
-    /// Each sample is drawn for itself.
+    /// Samples are independent of each other.
     Random,
 }
 
 impl Sampler {
-    /// The most samples that a pixel can have: as far as the sequence of `sobol_burley` goes.
+    /// The maximum number of samples per pixel: the length of the sequence of `sobol_burley`.
     pub const MOST: u32 = 1 << 16;
 }
 
 /// One of several samples of a pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample {
-    /// How it is drawn.
+    /// How the sample is drawn.
     pub sampler: Sampler,
-    /// Which of the pixel's samples it is, from 0.
+    /// The sample's index among the pixel's samples, from 0.
     pub index: u32,
-    /// Which pixel, as a number of its own.
+    /// The pixel's index in the image.
     pub pixel: u32,
 }
 
 impl Sample {
-    /// Its place in the pixel, from -0.5 to 0.5 each way.
+    /// Returns the sample's offset from the pixel's centre, in pixels from -0.5 to 0.5 along each axis.
     pub fn jitter(&self) -> DVec2 {
         self.draw(0) - 0.5
     }
 
-    /// A place on the light of this index, from 0 to 1 each way.
+    /// Returns two random numbers from 0 to 1 that choose a point on the light of this index.
     pub fn on_light(&self, light: usize) -> DVec2 {
         self.draw(1 + light as u32)
     }
 
-    /// Two numbers from 0 to 1 for each purpose.
+    /// Returns two numbers from 0 to 1, different for each purpose.
     fn draw(&self, purpose: u32) -> DVec2 {
         match self.sampler {
             Sampler::Random => {
@@ -57,7 +56,8 @@ impl Sample {
                 DVec2::new(draw(), draw())
             }
             Sampler::Sobol => {
-                // Purposes differ in their scrambling, so that any number of lights has a sequence.
+                // Purposes differ in their scrambling, not in their dimension, so that any number of lights has a
+                // sequence.
                 let seed = self.pixel ^ purpose.wrapping_mul(0x9e37_79b9);
                 let draw = |dimension| sobol_burley::sample(self.index, dimension, seed).into();
                 DVec2::new(draw(0), draw(1))

@@ -1,35 +1,36 @@
-//! Looks: the trait that a plugin implements for one point of a surface.
+//! Shaders: the trait that a plugin implements for one point of a surface.
 
 use crate::world::material::{Look, Material, Rgb};
 use glam::DVec3;
 
-/// How a surface answers light where its material alone does not say.
+/// The reflectivities of a surface, which may differ from point to point.
 ///
-/// The defaults are the notes' `material_getamb`, `material_getdiff` and `material_getspec`.
+/// The defaults are the material's, as in the notes' `material_getamb`, `material_getdiff` and `material_getspec`.
 pub trait Shader: Send + Sync {
-    /// The reflectivity for light from nowhere in particular.
+    /// Returns the reflectivity for ambient light at a point, in world coordinates.
     fn ambient(&self, material: &Material, _at: DVec3) -> Rgb {
         material.ambient
     }
 
-    /// The reflectivity for light from the scene's lights, scattered evenly.
+    /// Returns the diffuse reflectivity for light from the scene's lights at a point, in world coordinates.
     fn diffuse(&self, material: &Material, _at: DVec3) -> Rgb {
         material.diffuse
     }
 
-    /// The reflectivity of the surface as a mirror.
+    /// Returns the mirror reflectivity at a point, in world coordinates.
     fn specular(&self, material: &Material, _at: DVec3) -> Rgb {
         material.specular
     }
 
-    /// What those three give at every point, if that is the same: then they are not asked at each. `None` is never wrong.
+    /// Returns the three reflectivities, if each is the same at every point. Then the methods above are not called for
+    /// each point. `None` is always correct.
     fn uniform(&self, _material: &Material) -> Option<Look> {
         None
     }
 
-    /// The largest that those three give anywhere, whatever the sign, from which follows how deep mirrors and glass are
-    /// looked into; nothing where that is not known, or where a surface that is not even has a diffuse colour below 0.
-    /// `None` is never wrong.
+    /// Returns the largest magnitudes of the three reflectivities over all points, with either sign. They decide how
+    /// deep rays are followed into mirrors and glass. Returns `None` where they are not known, or where a surface that
+    /// is not uniform has a negative diffuse channel somewhere. `None` is always correct.
     fn brightest(&self, material: &Material) -> Option<Look> {
         self.uniform(material)
     }

@@ -1,4 +1,4 @@
-//! Textures: pictures that colour surfaces and light.
+//! Textures: images that colour surfaces and light.
 
 use crate::words;
 use crate::world::material::Rgb;
@@ -7,14 +7,14 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-/// A picture in a file. It is read once, when something first needs it, and never if nothing does.
+/// An image in a file. It is read once, when it is first needed.
 #[derive(Debug, Default)]
 pub struct Texture {
     path: PathBuf,
-    picture: OnceLock<Result<RgbImage, String>>,
+    image: OnceLock<Result<RgbImage, String>>,
 }
 
-/// Textures are the same where their files are.
+/// Textures are equal if their paths are.
 impl PartialEq for Texture {
     fn eq(&self, other: &Self) -> bool {
         self.path == other.path
@@ -22,27 +22,27 @@ impl PartialEq for Texture {
 }
 
 impl Texture {
-    /// The picture of this file: PPM, PGM, PBM or PNG.
+    /// Makes a texture of an image file: PPM, PGM, PBM or PNG. Nothing is read yet.
     pub fn new(path: PathBuf) -> Self {
-        Self { path, picture: OnceLock::new() }
+        Self { path, image: OnceLock::new() }
     }
 
-    /// The file of its picture.
+    /// Returns the path of the image file.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// The picture, read from its file at the first call.
+    /// Returns the image, and reads its file at the first call.
     ///
     /// # Errors
     /// The reason why it cannot be read.
     pub fn load(&self) -> Result<&RgbImage, &str> {
         let read = || {
             let reader = ImageReader::open(&self.path).and_then(ImageReader::with_guessed_format);
-            let picture = reader.map_err(|error| self.not_read(&error))?.decode();
-            picture.map(|picture| picture.into_rgb8()).map_err(|error| words::picture_reason(&error))
+            let image = reader.map_err(|error| self.not_read(&error))?.decode();
+            image.map(|image| image.into_rgb8()).map_err(|error| words::picture_reason(&error))
         };
-        self.picture.get_or_init(read).as_ref().map_err(String::as_str)
+        self.image.get_or_init(read).as_ref().map_err(String::as_str)
     }
 
     fn not_read(&self, error: &io::Error) -> String {
@@ -53,17 +53,17 @@ impl Texture {
         }
     }
 
-    /// Width and height in texels; none where there is no picture.
+    /// Returns the width and height in texels; 0 and 0 where the image cannot be read.
     pub fn size(&self) -> [u32; 2] {
-        self.load().map_or([0, 0], |picture| picture.dimensions().into())
+        self.load().map_or([0, 0], |image| image.dimensions().into())
     }
 
-    /// A texel by its column from the left and its row from the bottom, each channel from 0 to below 1. Past
-    /// an edge is the texel at the edge; no picture is white.
+    /// Returns a texel by its column from the left and its row from the bottom, each channel from 0 to below 1. Beyond
+    /// an edge, the texel at the edge is returned; a texture whose image cannot be read is white.
     pub fn texel(&self, column: u32, row: u32) -> Rgb {
-        let Ok(picture) = self.load() else { return Rgb::ONE };
-        let (width, height) = picture.dimensions();
-        let pixel = picture.get_pixel(column.min(width - 1), height - 1 - row.min(height - 1));
+        let Ok(image) = self.load() else { return Rgb::ONE };
+        let (width, height) = image.dimensions();
+        let pixel = image.get_pixel(column.min(width - 1), height - 1 - row.min(height - 1));
         Rgb::from_array(pixel.0.map(f64::from)) / 256.0
     }
 }

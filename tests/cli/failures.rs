@@ -5,7 +5,7 @@ use crate::common::program::{folder, scene};
 use assert_cmd::cargo::cargo_bin;
 use std::collections::BTreeSet;
 use std::fs;
-use std::io::{BufRead, BufReader, Read};
+use std::io::{BufRead, BufReader};
 use std::os::unix::fs::{MetadataExt, PermissionsExt, symlink};
 use std::os::unix::process::CommandExt;
 use std::path::Path;
@@ -187,30 +187,6 @@ fn too_few_open_files_are_a_failure_of_whatever_needs_one() {
     }
     let said = ["cannot read `ball.ray`", "cannot watch files"];
     assert_eq!(Vec::from_iter(told), said.map(|said| format!("error: {said}: too many open files\n")));
-}
-
-#[test]
-fn a_server_that_gets_no_more_connections_ends_with_the_reason() {
-    let folder = workplace();
-    fs::create_dir(folder.path().join("snapshots")).expect("a folder");
-    fs::write(folder.path().join("snapshots/a.snap.new"), "---\n---\na text\n").expect("a file");
-    for args in [&["watch", "ball.ray", "--port", "0"][..], &["review", "--serve", "--port", "0"]] {
-        let mut command = after("ulimit -n 24", &folder, args);
-        let mut program = command.stderr(Stdio::piped()).spawn().expect("it runs");
-        let mut stderr = BufReader::new(program.stderr.take().expect("it is piped"));
-        let mut line = String::new();
-        stderr.read_line(&mut line).expect("text");
-        let (_, address) = line.split_once("http://").expect("an address");
-        let (host, end) = address.split_once('/').expect("a path");
-        assert!(end.ends_with(")\n"), "{line}");
-        // They say nothing, and each takes a file of the program's.
-        let connections: Vec<_> = (0..24).map(|_| std::net::TcpStream::connect(host)).collect();
-        let mut rest = String::new();
-        stderr.read_to_string(&mut rest).expect("text");
-        drop(connections);
-        assert_eq!(program.wait().expect("it ends").code(), Some(1), "{args:?}: {rest}");
-        assert_eq!(rest, "error: the server stopped: too many open files\n", "{args:?}");
-    }
 }
 
 /// Somebody who may read this folder and what is in it, and change nothing.

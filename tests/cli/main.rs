@@ -11,5 +11,6 @@ mod messages;
 mod new;
 mod refusals;
 mod review;
+mod server;
 mod size;
 mod watch;

@@ -23,7 +23,7 @@ struct Tangle {
 }
 
 impl Implicit for Tangle {
-    fn value<N: Number>(&self, at: [N; 3]) -> N {
+    fn value<N: Scalar>(&self, at: [N; 3]) -> N {
         let side = |at: N| {
             let square = (at * N::constant(REACH / self.size)).powi(2);
             square * (square - N::constant(5.0))

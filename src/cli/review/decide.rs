@@ -3,7 +3,7 @@
 use super::items::items;
 use super::pending::{self, Pending};
 use crate::cli::failure::{Failure, tell};
-use crate::cli::serve::{self, Server};
+use crate::cli::serve::{self, Server, Work};
 use crate::cli::{messages, report};
 use crate::scene::registry::Registry;
 use crate::words;
@@ -22,9 +22,18 @@ pub fn serve(
 ) -> Result<(), Failure> {
     let server = Server::open(port)?;
     messages::note(&format!("review at {} (Ctrl-C quits)", server.url()));
+    // A page is not made while a snapshot is moved.
+    let work = Work::new(1);
     let run = server.run(async move |request: Request<Bytes>| {
-        let verdict = match (request.method().as_str(), request.uri().path()) {
-            ("GET", "/") => return ControlFlow::Continue(page(registry, &folder, before.as_deref())),
+        let path = (request.method().as_str(), request.uri().path());
+        if path == ("GET", "/") {
+            let (folder, before) = (folder.clone(), before.clone());
+            let page = work.run(move |_| page(registry, &folder, before.as_deref())).await;
+            let failed = || serve::text(StatusCode::INTERNAL_SERVER_ERROR, "internal error");
+            return ControlFlow::Continue(page.unwrap_or_else(failed));
+        }
+        let _turn = work.turn().await;
+        let verdict = match path {
             ("POST", "/accept") => decide(&folder, request.body(), "accepted", Pending::accept),
             ("POST", "/reject") => decide(&folder, request.body(), "rejected", Pending::reject),
             _ => Err((StatusCode::NOT_FOUND, "not found".to_owned())),

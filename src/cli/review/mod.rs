@@ -28,7 +28,7 @@ pub struct Args {
     #[arg(long, value_name = "PROGRAM")]
     before: Option<PathBuf>,
     /// Serve the page instead, to accept or reject from the browser until nothing is pending; only this machine can
-    /// reach it
+    /// reach it, and only at the address that is printed: it contains a token that keeps other users out
     #[arg(long, conflicts_with = "output")]
     serve: bool,
     /// The port to serve on; by default the first free one from 3000

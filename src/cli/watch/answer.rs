@@ -2,7 +2,7 @@
 
 use super::board::Board;
 use super::frame::Frame;
-use crate::cli::serve::{self, Body};
+use crate::cli::serve::{self, Body, Client, Work};
 use crate::output::aov::Aov;
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
@@ -14,13 +14,25 @@ use http_body_util::channel::Channel;
 use hyper::body::Bytes;
 use hyper::{Method, Request, Response, StatusCode};
 use serde::Serialize;
-use std::io;
+use std::io::{self, Write};
+use std::ops::ControlFlow;
 use std::sync::Arc;
+use std::time::Duration;
+use tokio::time::timeout;
 
 const PAGE: &str = include_str!("page.html");
 
+/// How many pixels and layers are worked at at once, for all pages.
+pub const JOBS: usize = 4;
+
+/// A page is told something that often, if only that there is no news: so one that has gone is noticed.
+const QUIET: Duration = Duration::from_secs(60);
+
+/// The most bytes of a pixel's explanation that a page gets.
+const LONGEST: usize = 1 << 22;
+
 /// The answer to a request.
-pub async fn answer(request: &Request<Bytes>, board: &Board) -> Response<Body> {
+pub async fn answer(request: &Request<Bytes>, board: &Board, work: &Work) -> Response<Body> {
     if request.method() != Method::GET {
         return serve::text(StatusCode::METHOD_NOT_ALLOWED, "this server is read-only\n");
     }
@@ -28,8 +40,8 @@ pub async fn answer(request: &Request<Bytes>, board: &Board) -> Response<Body> {
     match path[..] {
         [""] => serve::content(StatusCode::OK, "text/html; charset=utf-8", PAGE),
         ["events"] => serve::stream("text/event-stream", events(board)),
-        ["probe", version, x, y] => about(board, version, |frame| pixel(frame, x, y)).await,
-        ["layer", version, name] => about(board, version, |frame| layer(frame, name)).await,
+        ["probe", version, x, y] => about(board, work, version, |frame| pixel(frame, x, y)).await,
+        ["layer", version, name] => about(board, work, version, |frame| layer(frame, name)).await,
         _ => serve::text(StatusCode::NOT_FOUND, "there is no such page\n"),
     }
 }
@@ -44,23 +56,31 @@ fn events(board: &Board) -> Body {
             if sender.send_data(bytes).await.is_err() {
                 return;
             }
-            event = reader.next().await;
+            let quiet = Some(Bytes::from_static(b":\n\n"));
+            event = timeout(QUIET, reader.next()).await.unwrap_or(quiet);
         }
     });
     body.boxed()
 }
 
 /// An answer about the present picture, which may take a while; none about one that is not there any more.
-async fn about(board: &Board, version: &str, work: impl FnOnce(Arc<Frame>) -> Option<Job>) -> Response<Body> {
+async fn about(
+    board: &Board,
+    work: &Work,
+    version: &str,
+    job: impl FnOnce(Arc<Frame>) -> Option<Job>,
+) -> Response<Body> {
     let Some(frame) = version.parse().ok().and_then(|version| board.frame(version)) else {
         return serve::text(StatusCode::GONE, "this image no longer exists\n");
     };
-    let Some(job) = work(frame) else {
+    let Some(job) = job(frame) else {
         return serve::text(StatusCode::NOT_FOUND, "the image has no such part\n");
     };
-    match tokio::task::spawn_blocking(job).await {
-        Ok(Ok((kind, bytes))) => serve::content(StatusCode::OK, kind, bytes),
-        Ok(Err(error)) if error.kind() == io::ErrorKind::Interrupted => {
+    match work.run(job).await {
+        Some(Ok((kind, bytes))) => serve::content(StatusCode::OK, kind, bytes),
+        Some(Err(error))
+            if [io::ErrorKind::Interrupted, io::ErrorKind::BrokenPipe].contains(&error.kind()) =>
+        {
             serve::text(StatusCode::GONE, "this image no longer exists\n")
         }
         _ => serve::text(StatusCode::INTERNAL_SERVER_ERROR, "internal error\n"),
@@ -68,19 +88,31 @@ async fn about(board: &Board, version: &str, work: impl FnOnce(Arc<Frame>) -> Op
 }
 
 /// Work that ends with the type of its result and the result.
-type Job = Box<dyn FnOnce() -> io::Result<(&'static str, Vec<u8>)> + Send>;
+type Job = Box<dyn FnOnce(&Client) -> io::Result<(&'static str, Vec<u8>)> + Send>;
+
+/// Breaks where a picture, or who asked for something about it, is gone.
+fn check(frame: &Frame, client: &Client) -> ControlFlow<()> {
+    frame.check()?;
+    client.check()
+}
 
 /// The explanation of a pixel, and the lines of the object that it shows.
 fn pixel(frame: Arc<Frame>, x: &str, y: &str) -> Option<Job> {
     let [width, height] = frame.model.camera.value.pixels;
     let x = x.parse().ok().filter(|x| *x < width)?;
     let y = y.parse().ok().filter(|y| *y < height)?;
-    Some(Box::new(move || {
+    Some(Box::new(move |client| {
         Renderer::new(1)?.run(|| {
-            let mut text = Vec::new();
-            probe::pixel(&Plan::new(&frame.model), x, y, &mut text)?;
+            let mut told = Bounded { text: Vec::new(), check: || check(&frame, client) };
+            match probe::pixel(&Plan::new(&frame.model), x, y, &mut told) {
+                Err(error) if error.kind() == io::ErrorKind::StorageFull => {
+                    told.text
+                        .extend(b"\n...\n\nthis is too long for a page; `tabray probe` prints all of it\n");
+                }
+                written => written?,
+            }
             let explained =
-                Explained { lines: frame.lines_of([x, y]), text: &String::from_utf8_lossy(&text) };
+                Explained { lines: frame.lines_of([x, y]), text: &String::from_utf8_lossy(&told.text) };
             Ok(("application/json", words::json(&explained).into_bytes()))
         })
     }))
@@ -91,17 +123,55 @@ fn pixel(frame: Arc<Frame>, x: &str, y: &str) -> Option<Job> {
 struct Explained<'e> {
     /// The first and the last line of the object that it shows, counted from 1; null where it shows none.
     lines: Option<[usize; 2]>,
-    /// What `tabray probe` prints.
+    /// What `tabray probe` prints, or the beginning of it.
     text: &'e str,
+}
+
+/// A pixel's explanation while somebody wants it and it is not too long.
+struct Bounded<C> {
+    text: Vec<u8>,
+    check: C,
+}
+
+impl<C: Fn() -> ControlFlow<()>> Write for Bounded<C> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if (self.check)().is_break() {
+            // What is interrupted would be tried again.
+            return Err(io::ErrorKind::BrokenPipe.into());
+        }
+        if self.text.len() + bytes.len() > LONGEST {
+            return Err(io::ErrorKind::StorageFull.into());
+        }
+        self.text.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
 }
 
 /// A picture beside the main one: red, green and blue of each pixel.
 fn layer(frame: Arc<Frame>, name: &str) -> Option<Job> {
     // An error is seen against the truth, which there is none of here.
     let aov = Aov::from_str(name, false).ok().filter(|aov| *aov != Aov::Error)?;
-    Some(Box::new(move || {
+    Some(Box::new(move |client| {
         let plan = Plan::new(&frame.model);
-        let layer = aov.render(&Renderer::new(0)?, &plan, &plan, &|| frame.check())?;
+        let layer = aov.render(&Renderer::new(0)?, &plan, &plan, &|| check(&frame, client))?;
         Ok(("application/octet-stream", layer.bytes))
     }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_explanation_ends_where_it_is_too_long_or_nobody_wants_it() {
+        let mut told = Bounded { text: Vec::new(), check: || ControlFlow::Continue(()) };
+        told.write_all(&vec![b'a'; LONGEST]).expect("it is not too long");
+        let full = told.write_all(b"a").expect_err("now it is");
+        assert_eq!((full.kind(), told.text.len()), (io::ErrorKind::StorageFull, LONGEST));
+        let mut told = Bounded { text: Vec::new(), check: || ControlFlow::Break(()) };
+        assert_eq!(told.write_all(b"a").expect_err("nobody").kind(), io::ErrorKind::BrokenPipe);
+    }
 }

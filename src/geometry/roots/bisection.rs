@@ -1,12 +1,12 @@
-//! Halving between two places where the answers to a question differ.
+//! Bisection between two places where a predicate differs.
 //!
-//! One digit in binary for each answer, whatever the function. Signs are asked for, not computed from a product, which
-//! underflows; and where no number lies between, it ends.
+//! Each evaluation gives one binary digit, whatever the function. Signs are compared, not taken from a product, which
+//! underflows; and bisection ends where no number lies between.
 
-/// The last place of which something is not true and the first of which it is, between such places `low` and `high`: no
-/// farther from each other than `apart`, or as near as numbers go.
-pub fn bisect(is_true: impl Fn(f64) -> bool, (mut low, mut high): (f64, f64), apart: f64) -> (f64, f64) {
-    while high - low > apart {
+/// Returns the last place where the predicate is false and the first where it is true, between a `low` where it is
+/// false and a `high` where it is true: at most `tolerance` apart, or neighbouring numbers.
+pub fn bisect(is_true: impl Fn(f64) -> bool, (mut low, mut high): (f64, f64), tolerance: f64) -> (f64, f64) {
+    while high - low > tolerance {
         let middle = 0.5 * (low + high);
         if middle <= low || middle >= high {
             break;
@@ -20,7 +20,7 @@ pub fn bisect(is_true: impl Fn(f64) -> bool, (mut low, mut high): (f64, f64), ap
     (low, high)
 }
 
-/// The root between two places, where the function is positive at the first if `falls`.
+/// Returns the root between two places, to within the tolerance; the function is positive at the first if `falls`.
 pub fn root(f: impl Fn(f64) -> f64, ends: (f64, f64), falls: bool, tolerance: f64) -> f64 {
     let has_crossed = |t: f64| (f(t) >= 0.0) != falls;
     let (low, high) = bisect(has_crossed, ends, tolerance);

@@ -1,17 +1,17 @@
-//! Parabolas through the last three places where they can be trusted, halving where they cannot.
+//! Inverse quadratic interpolation through the last three places where that can be trusted, bisection elsewhere.
 //!
-//! T. R. Chandrupatla, "A new hybrid quadratic/bisection algorithm for finding the zero of a nonlinear function
-//! without using derivatives" (1997). Without slopes, the least evaluations of its kind; where slopes are to be had,
-//! Newton's method takes half of them.
+//! T. R. Chandrupatla, "A new hybrid quadratic/bisection algorithm for finding the zero of a nonlinear function without
+//! using derivatives" (1997). Among methods without derivatives, it takes few evaluations; where derivatives are to be
+//! had, Newton's method takes half as many.
 
-/// The root between two places where the function's signs differ.
+/// Returns the root between two places where the function's signs differ, to within the tolerance.
 pub fn root(f: impl Fn(f64) -> f64, (low, high): (f64, f64), tolerance: f64) -> f64 {
-    const MOST: usize = 200;
+    const MAX_STEPS: usize = 200;
     // `a` is the last place, `b` the one on the other side of the root, `c` the one before.
     let (mut a, mut b) = (low, high);
     let (mut at_a, mut at_b) = (f(a), f(b));
     let mut part = 0.5;
-    for _ in 0..MOST {
+    for _ in 0..MAX_STEPS {
         let t = a + part * (b - a);
         let at_t = f(t);
         let (c, at_c);
@@ -23,8 +23,8 @@ pub fn root(f: impl Fn(f64) -> f64, (low, high): (f64, f64), tolerance: f64) -> 
         }
         (a, at_a) = (t, at_t);
         let best = if at_a.abs() < at_b.abs() { a } else { b };
-        let least = 0.5 * tolerance / (b - a).abs();
-        if least > 0.5 || at_a == 0.0 || !least.is_finite() {
+        let min_part = 0.5 * tolerance / (b - a).abs();
+        if min_part > 0.5 || at_a == 0.0 || !min_part.is_finite() {
             return best;
         }
         let (across, up) = ((a - b) / (c - b), (at_a - at_b) / (at_c - at_b));
@@ -34,7 +34,7 @@ pub fn root(f: impl Fn(f64) -> f64, (low, high): (f64, f64), tolerance: f64) -> 
         } else {
             0.5
         };
-        part = part.clamp(least, 1.0 - least);
+        part = part.clamp(min_part, 1.0 - min_part);
     }
     a
 }

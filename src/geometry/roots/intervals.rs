@@ -1,8 +1,8 @@
-//! Halving, until bounds of the values say that no root is there, or bounds of the slope that the function rises or
-//! falls all along, so that the signs at the ends tell.
+//! Bisection until bounds of the values exclude a root, or bounds of the slope show that the function is monotone, so
+//! that the signs at the ends decide.
 //!
-//! D. P. Mitchell, "Robust ray intersection with interval arithmetic" (1990). It loses nothing; but the bounds shrink
-//! with the pieces and not with their squares, so that rays which graze take hundreds of pieces.
+//! D. P. Mitchell, "Robust ray intersection with interval arithmetic" (1990). It loses no root; but the bounds shrink
+//! with the length of a piece and not with its square, so that grazing rays take hundreds of pieces.
 
 use super::refiner::{Refiner, value_and_slope};
 use super::taylor::FunctionOnLine;
@@ -11,8 +11,8 @@ use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
 use std::ops::Range;
 
-/// The pieces after which a ray is given up.
-const MOST: usize = 100_000;
+/// The number of pieces after which a ray is given up.
+const MAX_PIECES: usize = 100_000;
 
 pub fn first_root(
     line: &impl FunctionOnLine,
@@ -22,7 +22,7 @@ pub fn first_root(
 ) -> Option<f64> {
     let wants = |falls: bool| origin_side.is_none_or(|side| falls == (side == Side::Outside));
     let mut waiting = vec![(span.start, span.end)];
-    for _ in 0..MOST {
+    for _ in 0..MAX_PIECES {
         let (low, high) = waiting.pop()?;
         let over = line.at(Dual::variable(Interval { low, high }));
         if !over.value.has_zero() {
@@ -31,14 +31,14 @@ pub fn first_root(
         let is_monotone = !over.slope.has_zero();
         if is_monotone || high - low <= shortest {
             let ((at_low, _), (at_high, _)) = (value_and_slope(line, low), value_and_slope(line, high));
-            // A line that leaves the surface starts there, whatever its sign.
+            // A line that leaves the surface starts on it, whatever the computed sign.
             let starts =
                 origin_side.is_some() && low == span.start && line.at(Interval { low, high: low }).has_zero();
             let crosses = (at_low >= 0.0) != (at_high >= 0.0) && !starts;
             if crosses && wants(at_low >= 0.0) {
                 return Some(Refiner::Newton.root(line, (low, high), at_low >= 0.0, shortest));
             }
-            // Too short to be cut, and 0 as far as rounding tells: the ray touches.
+            // Too short to be divided, and 0 to within rounding: a tangent ray.
             if !is_monotone && origin_side.is_none() && over.value.is_bounded() {
                 return Some(low);
             }

@@ -1,8 +1,9 @@
-//! Ways to find the first root of a function along a line, one in each file, to be compared: `tabray chart` does.
+//! Methods that find the first root of a function along a line, one per file, which `tabray chart` compares.
 //!
 //! Scenes are traced with two of them. [`taylor`] finds the hits of shapes that are one formula, and decides where a
 //! ray grazes a surface of revolution, whose other hits come from quadrics ([`revolution`](crate::shapes::revolution));
-//! [`newton`] finishes both. The others are what is used elsewhere; each says where it is from and where it fails.
+//! [`newton`] refines the roots of both. The others are what other programs use; each file says where its method is
+//! from and where it fails.
 
 pub mod bisection;
 mod chandrupatla;
@@ -22,25 +23,25 @@ use std::fmt;
 use std::ops::Range;
 use taylor::FunctionOnLine;
 
-/// A way to find the first root.
+/// A method that finds the first root.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// The notes' page on procedural surfaces: `steps`.
+    /// Fixed steps, as on the course notes' page on procedural surfaces: `steps`.
     Steps,
-    /// So many samples, and a refiner between the first two that differ in their signs: `samples`.
+    /// This number of samples, and a refiner between the first two of different sign: `samples`.
     Samples(u32, Refiner),
-    /// As many samples and Newton's method, and the places between them where the function turns: `turning`.
+    /// This number of samples, Newton's method, and the turning points between samples: `turning`.
     Turning(u32),
-    /// Steps as long as a bound of the slope allows: `tracing`.
+    /// Sphere tracing, with steps as long as a bound of the slope allows: `tracing`.
     Tracing,
-    /// Bounds of the function's values and slopes: `intervals`.
+    /// Interval bounds of the function's values and slopes: `intervals`.
     Intervals,
-    /// Bounds of its curvature as well: [`taylor`].
+    /// Interval bounds of the curvature as well: [`taylor`].
     Taylor,
 }
 
 impl Method {
-    /// All that are compared.
+    /// All methods that are compared.
     pub const ALL: [Self; 12] = [
         Self::Steps,
         Self::Samples(64, Refiner::Bisection3),
@@ -56,12 +57,13 @@ impl Method {
         Self::Taylor,
     ];
 
-    /// The first root in a piece of a line whose distance, counted from `base`, lies within a span.
+    /// Returns the first root on the span of a line for which the distance `base + root` is in the range.
     ///
-    /// [`taylor`] cuts the piece in a way that does not depend on the span; the others look at no more than that.
+    /// [`taylor`] divides the span in a way that does not depend on the range; the other methods search only the part
+    /// of the span that is in the range.
     ///
-    /// A line that starts on the surface itself leaves it on a side, and no root where it starts is meant then.
-    /// `shortest` is a few units in the last place of the greatest numbers on the line.
+    /// If the line starts on the surface and leaves it to a side, the root where it starts is not meant. `shortest` is
+    /// a few ulps of the largest numbers on the line.
     pub fn first_root(
         self,
         line: &impl FunctionOnLine,
@@ -90,7 +92,8 @@ impl Method {
         }
     }
 
-    /// What the error of a root that it finds is at most, but for what the function's slope makes of rounding.
+    /// Returns a bound of the error of a root that the method finds, in world units, apart from rounding errors divided
+    /// by the function's slope. `every_method_finds_a_plain_root_as_exactly_as_it_promises` tests this.
     pub fn promise(self) -> f64 {
         match self {
             Self::Samples(_, Refiner::Bisection3) => 1e-3,
@@ -121,7 +124,7 @@ mod tests {
     use crate::geometry::ray::Side;
     use crate::numeric::scalar::Scalar;
 
-    /// Falls through 0 at the square root of 2, rises at 3.
+    /// Falls through 0 at the square root of 2, rises through 0 at 3.
     struct Parabola;
 
     impl FunctionOnLine for Parabola {
@@ -130,7 +133,7 @@ mod tests {
         }
     }
 
-    /// Is below 0 for a thousandth around 2 alone.
+    /// Is below 0 only within 0.0005 of 2.
     struct Notch;
 
     impl FunctionOnLine for Notch {

@@ -1,14 +1,15 @@
-//! Newton's method that cannot leave its bracket, for one function or for several at a time.
+//! Newton's method safeguarded by a bracket, for one function or for several at a time.
 
 use crate::numeric::dual::Dual;
 use std::array::from_fn;
 
-/// Steps after which a root is taken as it is; a bracket that is only halved has none left.
-const MOST: usize = 100;
+/// The largest number of steps, after which a root is taken as it is; a bracket that is only bisected has shrunk by
+/// 2^-100 then.
+const MAX_STEPS: usize = 100;
 
-/// So many functions that are asked together. No closure: those are taken into kernels only where it pleases the compiler.
+/// `N` functions that are evaluated together. A trait, as closures are not reliably inlined into kernels.
 pub trait Functions<const N: usize> {
-    /// The value and the slope of each at a place of its own.
+    /// Returns the value and the slope of each function, each at a place of its own.
     fn at(&self, places: [f64; N]) -> ([f64; N], [f64; N]);
 }
 
@@ -20,22 +21,24 @@ impl<F: Fn(f64) -> Dual> Functions<1> for F {
     }
 }
 
-/// Where each function's root is looked for.
+/// The brackets and initial guesses of the roots of `N` functions.
 #[derive(Clone, Copy)]
 pub struct Start<const N: usize> {
-    /// The lower ends between which it is, where the signs differ.
+    /// The lower ends of the brackets.
     pub low: [f64; N],
-    /// The higher ends; where one is not above the lower, the guess stays.
+    /// The upper ends of the brackets, where the signs differ from those at the lower ends. Where one is not above the
+    /// lower end, the guess is returned.
     pub high: [f64; N],
-    /// 1 where the function falls from the one to the other, -1 where it rises; 0 where its slope tells at the first guess.
+    /// 1 where the function falls across the bracket, -1 where it rises; 0 to take the sign from the slope at the
+    /// guess.
     pub falls: [f64; N],
-    /// The first guesses.
+    /// The initial guesses.
     pub guess: [f64; N],
-    /// What is precise enough.
+    /// The tolerance of the roots, in the unit of the places.
     pub tolerance: f64,
 }
 
-/// The root of one function between `low` and `high`, where it falls or rises.
+/// Returns the root of one function between `low` and `high`, where it falls or rises.
 #[inline(always)]
 pub fn root(
     f: impl Fn(f64) -> Dual,
@@ -48,14 +51,14 @@ pub fn root(
     roots(&f, Start { low: [low], high: [high], falls: [falls], guess: [guess], tolerance })[0]
 }
 
-/// The root of each function in its bracket. Halves a bracket where a step would leave it, and stops where a step is
-/// below the tolerance or predicts that the next one will be: steps shrink with their square.
+/// Returns the root of each function in its bracket. Bisects a bracket where a step would leave it, and stops where a
+/// step is below the tolerance, or where quadratic convergence predicts that the next one will be.
 #[inline(always)]
 pub fn roots<const N: usize>(functions: &impl Functions<N>, start: Start<N>) -> [f64; N] {
     let Start { mut low, mut high, mut falls, guess: mut at, tolerance } = start;
     let mut last_step = [f64::INFINITY; N];
     let mut goes_on: [f64; N] = from_fn(|lane| flag(low[lane] < high[lane]));
-    for _ in 0..MOST {
+    for _ in 0..MAX_STEPS {
         let (value, slope) = functions.at(at);
         let mut any = 0;
         for lane in 0..N {
@@ -64,7 +67,7 @@ pub fn roots<const N: usize>(functions: &impl Functions<N>, start: Start<N>) -> 
             let is_before = value * falling > 0.0;
             let (below, above) = if is_before { (here, high[lane]) } else { (low[lane], here) };
             let (next, middle) = (here - value / slope, 0.5 * (below + above));
-            // Written so that what is not a number is outside.
+            // Written so that a NaN is outside.
             let is_inside = (next > below) & (next < above);
             let is_stuck = (middle == below) | (middle == above);
             let step = (next - here).abs();
@@ -92,7 +95,7 @@ pub fn roots<const N: usize>(functions: &impl Functions<N>, start: Start<N>) -> 
     at
 }
 
-/// As a number, which goes with other numbers eight at a time.
+/// Returns 1 or 0: flags as numbers are vectorized with the other numbers.
 #[inline(always)]
 fn flag(is_so: bool) -> f64 {
     if is_so { 1.0 } else { 0.0 }
@@ -110,7 +113,7 @@ mod tests {
 
     #[test]
     fn a_step_out_of_the_bracket_halves_it() {
-        // Newton alone swings ever wider around the root of this one.
+        // Newton's method alone diverges on this function.
         let flat = |x: f64| Dual { value: x.atan(), slope: 1.0 / (1.0 + x * x) };
         assert!(root(flat, (-30.0, 40.0), false, 40.0, 1e-16).abs() < 1e-15);
         let kink = |x: f64| Dual { value: if x < 1.0 { -1.0 } else { 1.0 }, slope: 0.0 };

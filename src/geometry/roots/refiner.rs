@@ -1,5 +1,5 @@
-//! From places along a line to a root: the first two between which the function changes its sign, and how the root is
-//! narrowed down there.
+//! Sampling and refinement: the first two places along a line between which the function changes its sign, and how the
+//! root between them is refined.
 
 use super::taylor::FunctionOnLine;
 use super::{bisection, chandrupatla, newton};
@@ -8,18 +8,18 @@ use crate::numeric::dual::Dual;
 use std::fmt;
 use std::ops::Range;
 
-/// A way to narrow down a root between two places where the function's signs differ.
+/// A method that refines a root between two places where the function's signs differ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refiner {
-    /// Halving, to 1/1000: `bisection`.
+    /// Bisection to 1/1000 of a world unit: `bisection`.
     Bisection3,
-    /// Halving, to 1/1000000.
+    /// Bisection to 1/1000000 of a world unit.
     Bisection6,
-    /// Halving, to the last place.
+    /// Bisection to neighbouring numbers.
     Bisection,
-    /// Parabolas and halving: `chandrupatla`.
+    /// Inverse quadratic interpolation and bisection: `chandrupatla`.
     Chandrupatla,
-    /// Slopes and halving: [`newton`].
+    /// Newton's method and bisection: [`newton`].
     Newton,
 }
 
@@ -36,7 +36,7 @@ impl fmt::Display for Refiner {
 }
 
 impl Refiner {
-    /// The root between two places, where the function is positive at the first if `falls`.
+    /// Returns the root between two places; the function is positive at the first if `falls`.
     pub(super) fn root(
         self,
         line: &impl FunctionOnLine,
@@ -58,9 +58,9 @@ impl Refiner {
     }
 }
 
-/// The first two of some places between which the function's sign changes, and whether it falls there.
+/// Returns the first two consecutive places between which the function's sign changes, and whether it falls there.
 ///
-/// On which side a line starts is known where it leaves the surface, whatever rounding says.
+/// If the line leaves the surface, the side is known that it starts on, whatever the computed sign.
 pub(super) fn sign_change(
     line: &impl FunctionOnLine,
     mut places: impl Iterator<Item = f64>,
@@ -77,13 +77,13 @@ pub(super) fn sign_change(
     None
 }
 
-/// The value of a function along a line, and how fast it grows.
+/// Returns the value of a function along a line, and its slope.
 pub(super) fn value_and_slope(line: &impl FunctionOnLine, t: f64) -> (f64, f64) {
     let Dual { value, slope } = line.at(Dual::variable(t));
     (value, slope)
 }
 
-/// So many places at equal distances, from the first to the last of a span.
+/// Returns the ends of `parts` equal parts of a span, both ends of the span included.
 pub(super) fn evenly(span: &Range<f64>, parts: u32) -> impl Iterator<Item = f64> + use<> {
     let Range { start, end } = *span;
     let part = (end - start) / f64::from(parts);

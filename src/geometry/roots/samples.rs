@@ -1,8 +1,8 @@
-//! A number of samples over the part of the ray that is near the shape, then a refiner.
+//! Equidistant samples over the part of the ray that is near the shape, then a refiner.
 //!
-//! What most programs do; POV-Ray's `sor` and many course works. However many the samples, a ray that grazes the
-//! surface lies inside of it for less than the distance between two of them, and its two roots are lost together;
-//! and where three lie between two samples, the refiner may find the last.
+//! What most programs do; POV-Ray's `sor` and much course work. However many samples there are, a grazing ray is inside
+//! the surface for less than the distance between two of them, and its two roots are lost together; and where three
+//! roots lie between two samples, the refiner may find the last one.
 
 use super::refiner::{Refiner, evenly, sign_change};
 use super::taylor::FunctionOnLine;

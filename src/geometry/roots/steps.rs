@@ -1,8 +1,8 @@
-//! Steps of 0.1 until the function's sign changes, then bisection to 1e-6.
+//! Steps of 0.1 until the function's sign changes, then bisection to 1e-6, both in world units.
 //!
 //! From the course notes' page on procedural surfaces. It steps over whatever is thinner than a step along the ray:
-//! silhouettes, thin discs, ripples; and far from the ray's origin, where 1e-6 is less than a unit in the last
-//! place, bisection must be told to stop.
+//! silhouettes, thin discs, ripples; and far from the ray's origin, where 1e-6 is less than an ulp, bisection must be
+//! told to stop.
 
 use super::bisection;
 use super::refiner::sign_change;
@@ -12,7 +12,7 @@ use std::ops::Range;
 
 const STEP: f64 = 0.1;
 
-/// How far the notes follow a ray.
+/// The distance to which the course notes follow a ray, in world units.
 const FAR: f64 = 100.0;
 
 pub fn first_root(

@@ -1,11 +1,11 @@
 //! The first root of a function along a line, proven to be the first.
 //!
-//! A piece of the line is judged by the function's value and slope at its middle and by bounds of its curvature over
-//! all of the piece: Taylor's theorem of the second order, computed with [`Interval`]s, so that rounding is part of
-//! what is proven. Either no root is there, or the function rises or falls all along and the signs at its ends tell
-//! (then Newton's method finishes), or what is left of the piece is cut in two. No step in the line is guessed, so
-//! no root is stepped over: D. P. Mitchell, "Robust ray intersection with interval arithmetic" (1990), whose bounds
-//! are of the first order and which shrink more slowly where a ray grazes.
+//! A piece of the line is judged by the function's value and slope at its midpoint and by bounds of the curvature over
+//! the whole piece: Taylor's theorem of the second order, computed with [`Interval`]s, so that rounding is part of what
+//! is proven. Either the piece has no root, or the function is monotone there and the signs at its ends decide (then
+//! Newton's method refines the root), or what is left of the piece is cut in two. No step along the line is guessed, so
+//! no root is stepped over: D. P. Mitchell, "Robust ray intersection with interval arithmetic" (1990), whose bounds are
+//! of the first order and shrink more slowly where a ray grazes.
 
 use crate::geometry::frame::BLUR;
 use crate::geometry::ray::{RayRange, Side};
@@ -15,31 +15,31 @@ use crate::numeric::interval::Interval;
 use crate::numeric::scalar::Scalar;
 use std::ops::Range;
 
-/// The values of a function along a line: above 0 outside of something, below 0 inside.
+/// A function along a line: above 0 outside an object, below 0 inside.
 pub trait FunctionOnLine {
-    /// The value at a place, with any number type.
+    /// Returns the value at a place, in any number type.
     fn at<N: Scalar>(&self, t: N) -> N;
 
-    /// Bounds of the second derivative on a piece.
+    /// Returns bounds of the second derivative on a piece.
     fn curvature(&self, piece: Interval) -> Interval {
         self.at(Dual::variable_twice(piece)).second()
     }
 
-    /// The root on a piece of which bounds in f64 do not tell whether it has one, and more of them would not: where
-    /// rounding hides the function's sign, or after more proofs than are made. A line that is itself rounded says it of
-    /// the one that it stands for.
+    /// Returns the root on a piece that bounds in `f64` cannot decide, however short: where rounding hides the
+    /// function's sign, or after the largest number of pieces. A line that is itself rounded answers for the line that
+    /// it stands for.
     fn undecided(&self, piece: Interval, origin_side: Option<Side>) -> Option<f64> {
         let hidden = self.at(Interval::constant(piece.middle())).width();
         twice::first_root(|t| self.at(t), piece, origin_side, hidden)
     }
 }
 
-/// The part of a line on which a search goes.
+/// The part of a line that is searched.
 #[derive(Clone, Debug)]
 pub struct Stretch {
-    /// Nothing is outside of it, of the line and of those that it was rounded from.
+    /// Contains the part between the ends, for the line and for all lines that it may have been rounded from.
     pub outer: Range<f64>,
-    /// All of these lines are within the ends of what is looked for there.
+    /// Certainly lies between the ends, for all of these lines.
     pub inner: Range<f64>,
 }
 
@@ -50,8 +50,9 @@ impl From<Range<f64>> for Stretch {
 }
 
 impl Stretch {
-    /// Cuts off what lies beyond two heights, where a line's height `t` along it is `start + t dir`. Rounding may have
-    /// moved the start by `blur` and the direction by [`BLUR`], and the search goes no farther than `reach` from t = 0.
+    /// Cuts off what lies beyond two heights, where a line's height at `t` is `start + t dir`. Rounding may have moved
+    /// `start` by `blur` and `dir` by [`BLUR`], and the search goes no farther than `reach` from t = 0, all in world
+    /// units.
     pub fn cut(&mut self, (start, dir): (f64, f64), [low, high]: [f64; 2], blur: f64, reach: f64) {
         // The line that this one was rounded from may be parallel to the ends.
         if dir.abs() <= 2.0 * BLUR {
@@ -65,44 +66,47 @@ impl Stretch {
             return;
         }
         let (one, other) = ((low - start) / dir, (high - start) / dir);
-        // The direction is more than half of what it may be, and the division itself rounds by less than BLUR.
-        let hair = |t: f64| 2.0 * (blur + BLUR * t.abs()) / dir.abs() + BLUR * t.abs();
+        // The true direction is more than half of the rounded one, and the division itself rounds by less than BLUR.
+        let margin = |t: f64| 2.0 * (blur + BLUR * t.abs()) / dir.abs() + BLUR * t.abs();
         let (first, last) = (one.min(other), one.max(other));
-        self.outer = self.outer.start.max(first - hair(first))..self.outer.end.min(last + hair(last));
-        self.inner = self.inner.start.max(first + hair(first))..self.inner.end.min(last - hair(last));
+        self.outer = self.outer.start.max(first - margin(first))..self.outer.end.min(last + margin(last));
+        self.inner = self.inner.start.max(first + margin(first))..self.inner.end.min(last - margin(last));
     }
 }
 
-/// What a search finds.
+/// The result of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Found {
     /// The first root.
     pub root: Option<f64>,
-    /// Whether every line that this one was rounded from has its first root there, or none, as bounds in f64 prove.
+    /// Whether bounds in `f64` prove that every line that this one may have been rounded from has its first root there,
+    /// or has none.
     pub is_certain: bool,
 }
 
-/// The pieces looked at before proofs are given up: far more than any but the wildest function takes.
-const PIECES: usize = 16_384;
+/// The largest number of pieces that are judged before the proof is given up; only the wildest functions take more.
+const MAX_PIECES: usize = 16_384;
 
-/// Bounds of this many times an evaluation's rounding error are not worth halving their piece for: the part that they
-/// owe to its length is at most three times the part that stays.
+/// Pieces are not cut whose bounds are below this many times the rounding error of one evaluation: the part of the
+/// bounds that shrinks with the length of the piece is at most three times the part that does not.
 const HIDDEN: f64 = 4.0;
 
-/// The pieces that can wait: as a cut halves a piece at least, and few units in the last place are not cut, no more
-/// ever wait.
-const WAITING: usize = 64;
+/// The capacity of the stack of pieces. A cut leaves pieces of at most half the length, and pieces of a few ulps are
+/// not cut, so that at most some 53 pieces wait.
+const STACK_SIZE: usize = 64;
 
-/// The first root on a stretch of a line whose distance, counted from `base`, lies within a span.
+/// Returns the first root on a stretch of a line for which the distance `base + root` is in the range.
 ///
-/// The stretch is cut in the same way whatever the span is, so that a root is the same in every span that holds it.
+/// The stretch is divided in a way that does not depend on the range, so that a root is the same in every range that
+/// contains it.
 ///
-/// A line that starts on the surface itself leaves it on a side, which the span tells, and no root where it starts is
-/// meant then: from outside, only a root where the values fall from above 0 to below, from inside only one where they rise.
+/// If the line starts on the surface, the range tells the side that it leaves to, and the root where it starts is not
+/// meant: only a root where the function falls counts if it leaves to the outside, and only one where it rises if it
+/// leaves to the inside.
 ///
-/// Pieces not longer than `shortest` are not cut: a few units in the last place of the greatest numbers on the line.
+/// Pieces that are not longer than `shortest` are not cut: a few ulps of the largest numbers on the line.
 ///
-/// What bounds in f64 do not tell, the line is [asked](Line::undecided).
+/// What bounds in `f64` do not decide is left to [`undecided`](FunctionOnLine::undecided).
 pub fn first_root(
     line: &impl FunctionOnLine,
     stretch: &Stretch,
@@ -115,7 +119,7 @@ pub fn first_root(
         return Found { root: None, is_certain: true };
     }
     let mut search = Search { line, start, base, range, shortest, is_certain: true };
-    // Where the line may have come to the ends, and where it certainly is between them.
+    // The line may have reached the ends outside of `inner`, and is certainly between them inside.
     let inner = stretch.inner.start.clamp(start, end)..stretch.inner.end.clamp(start, end);
     let root = if inner.start < inner.end || start == end {
         let before = search.at_an_end(start, inner.start);
@@ -132,31 +136,31 @@ struct Search<'l, L> {
     start: f64,
     base: f64,
     range: &'l RayRange,
-    /// What is not cut any more.
+    /// Pieces of this length are not cut.
     shortest: f64,
     is_certain: bool,
 }
 
 enum Judgement {
-    /// No root that is wanted is there.
+    /// The piece has no root that counts.
     Free,
-    /// The first root there.
+    /// The first root on the piece.
     Root(f64),
-    /// Only these parts can have roots.
+    /// Only these parts of the piece can have roots.
     Open { left: (f64, f64), right: (f64, f64) },
 }
 
 impl<L: FunctionOnLine> Search<'_, L> {
-    /// The first root on a piece.
+    /// Returns the first root on a piece.
     fn on_a_piece(&mut self, start: f64, end: f64) -> Option<f64> {
         let RayRange { near, far, .. } = *self.range;
-        let mut waiting = [(0.0, 0.0); WAITING];
+        let mut waiting = [(0.0, 0.0); STACK_SIZE];
         waiting[0] = (start, end);
         let (mut count, mut judged) = (1, 0);
         while count > 0 {
             count -= 1;
             let (low, high) = waiting[count];
-            // Sums that are rounded keep their order.
+            // Rounded sums keep their order.
             if self.base + high <= near {
                 continue;
             }
@@ -164,8 +168,8 @@ impl<L: FunctionOnLine> Search<'_, L> {
                 return None;
             }
             judged += 1;
-            let may_cut = judged < PIECES && count + 2 <= WAITING && high - low > self.shortest;
-            let judgement = if may_cut { self.judge(low, high) } else { self.last_word(low, high) };
+            let may_cut = judged < MAX_PIECES && count + 2 <= STACK_SIZE && high - low > self.shortest;
+            let judgement = if may_cut { self.judge(low, high) } else { self.judge_uncut(low, high) };
             match judgement {
                 Judgement::Free => {}
                 Judgement::Root(root) => {
@@ -187,8 +191,8 @@ impl<L: FunctionOnLine> Search<'_, L> {
         None
     }
 
-    /// The first root where rounding hides whether the line is still between the ends: nothing is certain of what is
-    /// there.
+    /// Returns the first root where rounding hides whether the line is still between the ends: there, nothing is
+    /// certain.
     fn at_an_end(&mut self, low: f64, high: f64) -> Option<f64> {
         if low >= high || !self.line.at(Interval { low, high }).has_zero() {
             return None;
@@ -204,7 +208,7 @@ impl<L: FunctionOnLine> Search<'_, L> {
         let around = Interval { low: -half, high: half };
         let Dual { value, slope } = self.line.at(Dual::variable(Interval::constant(middle)));
         let curvature = self.line.curvature(piece);
-        // Taylor's theorem of the second order, or where there is no bound for that, of the first.
+        // Taylor's theorem of the second order, or of the first where the curvature has no bound.
         let (values, slopes) = if curvature.is_bounded() {
             let bend = curvature * around;
             (value + (slope + Interval::constant(0.5) * bend) * around, slope + bend)
@@ -219,20 +223,21 @@ impl<L: FunctionOnLine> Search<'_, L> {
             return Judgement::Free;
         }
         if !slopes.has_zero() {
-            return self.cross(low, high, slopes.low > 0.0, middle - value.low / slope.low);
+            return self.judge_monotone(low, high, slopes.low > 0.0, middle - value.low / slope.low);
         }
-        // Little more than rounding is left: shorter pieces say no more.
+        // The bounds are little more than rounding error: shorter pieces would not help.
         if value.has_zero() && values.magnitude() <= HIDDEN * value.magnitude() {
             return self.undecided(low, high);
         }
-        // |value| from the middle on is above `away + slope u + curvature u²/2`, as its mirror image is to the left.
+        // Right of the midpoint, |value| is above `away + slope u + curvature u²/2`, and left of it above its mirror
+        // image.
         let (away, slope, bend) = if value.low > 0.0 {
             (value.low, slope, curvature.low)
         } else {
             (-value.high, -slope, -curvature.high)
         };
         let (to_left, to_right) = if away > 0.0 && bend.is_finite() {
-            (reach(away, -slope.high, bend), reach(away, slope.low, bend))
+            (clear_up_to(away, -slope.high, bend), clear_up_to(away, slope.low, bend))
         } else {
             (0.0, 0.0)
         };
@@ -242,15 +247,15 @@ impl<L: FunctionOnLine> Search<'_, L> {
         }
     }
 
-    /// What a piece has on which the function only rises or only falls.
-    fn cross(&mut self, low: f64, high: f64, rises: bool, guess: f64) -> Judgement {
+    /// Judges a piece on which the function is monotone.
+    fn judge_monotone(&mut self, low: f64, high: f64, rises: bool, guess: f64) -> Judgement {
         let origin_side = self.range.origin_side;
         if origin_side.is_some_and(|side| rises == (side == Side::Outside)) {
             return Judgement::Free;
         }
         let at = |t| if rises { self.value(t) } else { -self.value(t) };
         let (at_low, at_high) = (at(low), at(high));
-        // A line that leaves the surface starts there.
+        // A line that leaves the surface starts on it.
         let starts = origin_side.is_some() && low == self.start && at_low.has_zero();
         if at_low.low > 0.0 || at_high.high < 0.0 || starts {
             Judgement::Free
@@ -261,16 +266,16 @@ impl<L: FunctionOnLine> Search<'_, L> {
         }
     }
 
-    /// The root of a piece by Newton's method, from a guess that may be any number.
+    /// Returns the root on a piece by Newton's method, from a guess that may be any number.
     fn newton(&self, low: f64, high: f64, rises: bool, guess: f64) -> f64 {
         let guess = if low < guess && guess < high { guess } else { low + 0.5 * (high - low) };
         let line = |t| self.line.at(Dual::variable(t));
         newton::root(line, (low, high), !rises, guess, 0.5 * self.shortest)
     }
 
-    /// What a piece has that is not cut any more: a root if the sign changes; none if it is so short that only a jump
-    /// or a pole makes bounds of it hold 0.
-    fn last_word(&mut self, low: f64, high: f64) -> Judgement {
+    /// Judges a piece that is not cut any more: it has a root if the sign changes; it has none if it is so short that
+    /// only a jump or a pole makes its bounds contain 0.
+    fn judge_uncut(&mut self, low: f64, high: f64) -> Judgement {
         let piece = Interval { low, high };
         let over = self.line.at(piece);
         if !over.has_zero() {
@@ -278,7 +283,7 @@ impl<L: FunctionOnLine> Search<'_, L> {
         }
         self.is_certain = false;
         let is_short = high - low <= self.shortest;
-        // A line that leaves the surface starts there.
+        // A line that leaves the surface starts on it.
         if is_short && self.range.origin_side.is_some() && low == self.start {
             return Judgement::Free;
         }
@@ -299,9 +304,9 @@ impl<L: FunctionOnLine> Search<'_, L> {
         self.undecided(low, high)
     }
 
-    /// What the line itself says of a piece.
+    /// Judges a piece by what the line itself says of it.
     fn undecided(&mut self, low: f64, high: f64) -> Judgement {
-        // A line that leaves the surface starts there.
+        // A line that leaves the surface starts on it.
         if self.range.origin_side.is_some() && low == self.start {
             return Judgement::Free;
         }
@@ -312,14 +317,14 @@ impl<L: FunctionOnLine> Search<'_, L> {
         }
     }
 
-    /// The value at a place and how far rounding can have moved it.
+    /// Returns bounds of the value at a place, with its rounding error.
     fn value(&self, t: f64) -> Interval {
         self.line.at(Interval::constant(t))
     }
 }
 
-/// How far `away + slope u + bend u²/2` certainly stays above 0, for u from 0 on.
-fn reach(away: f64, slope: f64, bend: f64) -> f64 {
+/// Returns a u up to which `away + slope u + bend u²/2` certainly stays above 0, from u = 0 on.
+fn clear_up_to(away: f64, slope: f64, bend: f64) -> f64 {
     let [away, slope, bend] = [away, slope, bend].map(Interval::<f64>::constant);
     let two = Interval::constant(2.0);
     let discriminant = slope * slope - two * bend * away;
@@ -327,7 +332,7 @@ fn reach(away: f64, slope: f64, bend: f64) -> f64 {
         return f64::INFINITY;
     }
     let root = discriminant.sqrt();
-    // The same root in two forms, of which one does not cancel.
+    // The same root in two forms; the one that does not cancel is used.
     if slope.low <= 0.0 {
         (two * away / (root - slope)).low.max(0.0)
     } else if bend.high < 0.0 {
@@ -341,7 +346,7 @@ fn reach(away: f64, slope: f64, bend: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Two roots at 1, and one at 3.
+    /// A double root at 1, and a single one at 3.
     struct Cubic;
 
     impl FunctionOnLine for Cubic {

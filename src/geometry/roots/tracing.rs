@@ -1,9 +1,9 @@
-//! Steps that are as long as the function's value divided by a bound of its slope: none can go past a root.
+//! Sphere tracing: steps of the function's value divided by a bound of its slope, which cannot step past a root.
 //!
-//! J. C. Hart, "Sphere tracing" (1996); what shaders with distance fields do. Here the bound comes from intervals over
-//! all of the span; programs that ask the user for it, as POV-Ray's isosurfaces do, lose what a guess too low steps
-//! over. A step below 1e-6 counts as a hit: a ray that only comes near is one, too, and one that runs along the
-//! surface takes steps without end.
+//! J. C. Hart, "Sphere tracing" (1996); what shaders with distance fields do. Here the bound comes from interval
+//! arithmetic over the whole span; programs that ask the user for it, as POV-Ray does for isosurfaces, lose what they
+//! step over where the user's guess is too low. A step below 1e-6 counts as a hit: a ray that only comes near counts as
+//! a hit, too, and one that runs along the surface takes very many steps.
 
 use super::taylor::FunctionOnLine;
 use crate::geometry::ray::Side;
@@ -11,11 +11,11 @@ use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
 use std::ops::Range;
 
-/// A step that counts as a hit.
+/// The step that counts as a hit, in world units.
 const NEAR: f64 = 1e-6;
 
-/// The steps after which a ray is given up.
-const MOST: usize = 10_000;
+/// The number of steps after which a ray is given up.
+const MAX_STEPS: usize = 10_000;
 
 pub fn first_root(line: &impl FunctionOnLine, span: Range<f64>, origin_side: Option<Side>) -> Option<f64> {
     let over = line.at(Dual::variable(Interval { low: span.start, high: span.end }));
@@ -25,10 +25,10 @@ pub fn first_root(line: &impl FunctionOnLine, span: Range<f64>, origin_side: Opt
     }
     let is_outside = origin_side.map_or_else(|| line.at(span.start) >= 0.0, |side| side == Side::Outside);
     let away = |t: f64| if is_outside { line.at(t) } else { -line.at(t) };
-    // A line that starts on the surface has to get away from it first.
+    // A line that starts on the surface has to move away from it first.
     let mut is_away = origin_side.is_none();
     let mut t = span.start;
-    for _ in 0..MOST {
+    for _ in 0..MAX_STEPS {
         let step = away(t) / steepest;
         is_away |= step > NEAR;
         if is_away && step <= NEAR {

@@ -1,8 +1,8 @@
-//! Samples of the function and its slope: between two of the same sign the function may turn, and there it is
-//! looked at, too.
+//! Samples of the function and its slope: where the function may turn between two samples of the same sign, it is
+//! evaluated at the turning point, too.
 //!
-//! After the notes' advice to look for the minimum between two samples. It finds single silhouettes, and loses what
-//! turns more than once between two samples: ripples and thin discs.
+//! After the course notes' advice to look for the minimum between two samples. It finds single silhouettes, and loses
+//! what turns more than once between two samples: ripples and thin discs.
 
 use super::newton;
 use super::refiner::{Refiner, evenly, value_and_slope};
@@ -29,7 +29,7 @@ pub fn first_root(
         if has_crossed(value) {
             return refined(low, high);
         }
-        // Toward 0 at first, and away from it in the end.
+        // The function approaches 0 at first, and moves away from it in the end.
         if (slope < 0.0) == is_outside && (slope_there > 0.0) == is_outside {
             let slope_and_bend = |t| {
                 let at = line.at(Dual::variable_twice(t));

@@ -1,8 +1,9 @@
-//! Roots on short pieces where bounds in f64 end: in twice the precision.
+//! Roots on short pieces where bounds in `f64` are inconclusive, in double-double arithmetic.
 //!
-//! Where a line only touches a surface, as far as f64 tells, the function has one turn there: its value at the turn
-//! tells whether the line goes in. What twice the precision does not tell from 0 either counts as a touch: a line that
-//! touches meets the surface, and one that leaves it does not.
+//! Where a line touches a surface to within the rounding error of `f64`, the function has one turning point there, and
+//! the function's sign at that point tells whether the line goes in. A value that double-double arithmetic cannot tell
+//! from 0 either counts as a touch: a tangent line meets the surface, but one that leaves the surface does not meet it
+//! there.
 
 use crate::geometry::ray::Side;
 use crate::geometry::roots::bisection::bisect;
@@ -11,14 +12,16 @@ use crate::numeric::double_double::DoubleDouble;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
 
-/// How much of what rounding in f64 hides is hidden in twice the precision, too: 2^-53 but for five digits.
+/// The rounding error of double-double arithmetic as a fraction of that of `f64`: 2^-53, with five bits to spare.
 const STILL_HIDDEN: f64 = 1.0 / 281_474_976_710_656.0;
 
-/// A slope that is still this part of what it was where a piece begins does not go through 0 but jumps.
+/// If the slope at a turning point is still larger than this fraction of the slope where the piece begins, it does not
+/// pass through 0 but jumps.
 const KINK: f64 = 1.0 / 1024.0;
 
-/// The first root on a piece that has at most one turn, where rounding in f64 hides values up to `hidden`; of a line that
-/// leaves a surface, the first one where the function falls (from outside) or rises (from inside).
+/// Returns the first root on a piece that has at most one turning point, where rounding in `f64` hides values up to
+/// `hidden`. On a line that leaves a surface, returns the first root where the function falls (from outside) or rises
+/// (from inside).
 pub fn first_root(
     f: impl Fn(Dual<DoubleDouble>) -> Dual<DoubleDouble>,
     piece: Interval,
@@ -27,7 +30,7 @@ pub fn first_root(
 ) -> Option<f64> {
     let Interval { low, high } = piece;
     let precise = f64::EPSILON * piece.magnitude();
-    // What cancels in the value and in the slope needs twice the precision; the places do not.
+    // The value and the slope cancel and need double-double arithmetic; the places do not.
     let at = |t: f64| {
         let Dual { value, slope } = f(Dual::variable(DoubleDouble::from(t)));
         Dual { value: value.high, slope: slope.high }
@@ -40,18 +43,19 @@ pub fn first_root(
         let root = || newton::root(at, (low, high), is_outside, piece.middle(), precise);
         return is_wanted(is_outside).then(root);
     }
-    // Toward 0 first, and away from it in the end.
+    // The function approaches 0 at first, and moves away from it in the end.
     let approaches = |slope: f64| (slope < 0.0) == is_outside;
     if !approaches(first.slope) || approaches(last.slope) {
         return None;
     }
     let still_hidden = STILL_HIDDEN * hidden;
-    // The value so near to the turn is the turn's, but for what is hidden.
+    // So near to the turning point, the value differs from the value there by less than the hidden error.
     let bend = ((last.slope - first.slope) / (high - low)).abs();
     let near = 0.125 * (still_hidden / bend).sqrt();
     let mut turn = chandrupatla::root(|t| at(t).slope, (low, high), near);
     let mut at_turn = at(turn);
-    // At a kink the value is as far from 0 as the place is from the kink: that is taken to its last digit.
+    // At a kink, the error of the value is proportional to that of the place, so that the place is found to its last
+    // digit.
     if at_turn.slope.abs() > KINK * first.slope.abs() {
         turn = bisect(|t| !approaches(at(t).slope), (low, high), 0.0).1;
         at_turn = at(turn);
@@ -65,7 +69,7 @@ pub fn first_root(
     }
     let is_first = is_wanted(is_outside);
     let (end, slope) = if is_first { (low, first.slope) } else { (high, last.slope) };
-    // About a parabola: that is where it crosses 0.
+    // The function is about a parabola, which crosses 0 there.
     let guess = turn + (2.0 * (at_turn * (end - turn) / slope).abs()).sqrt().copysign(end - turn);
     let (low, high) = (end.min(turn), end.max(turn));
     let guess = if low < guess && guess < high { guess } else { 0.5 * (low + high) };

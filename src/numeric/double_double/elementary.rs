@@ -1,15 +1,16 @@
-//! The functions of formulas in twice the precision: their series, so that the truth about any shape can be told.
+//! The functions of formulas in double-double arithmetic, by their series: for what `f64` leaves undecided, and for the
+//! true hits that tests compare with.
 
 use super::{DoubleDouble, two_product};
 use crate::numeric::scalar::Scalar;
 
-/// A power of two, also one that is too small for a normal number.
+/// Returns 2^`exponent`, which may be subnormal.
 fn power_of_two(exponent: i32) -> f64 {
     let half = exponent / 2;
     2_f64.powi(half) * 2_f64.powi(exponent - half)
 }
 
-/// pi / 2, each part the next 53 bits.
+/// π / 2 as an unevaluated sum; each part has the next 53 bits.
 const HALF_PI: [f64; 4] = [
     std::f64::consts::FRAC_PI_2,
     6.123_233_995_736_766e-17,
@@ -17,25 +18,25 @@ const HALF_PI: [f64; 4] = [
     5.562_271_104_316_826e-50,
 ];
 
-/// ln 2, likewise.
+/// ln 2 as an unevaluated sum; each part has the next 53 bits.
 const LN_2: [f64; 3] = [std::f64::consts::LN_2, 2.319_046_813_846_299_6e-17, 5.707_708_438_416_212e-34];
 
 impl DoubleDouble {
     const ZERO: Self = Self { high: 0.0, low: 0.0 };
     const ONE: Self = Self { high: 1.0, low: 0.0 };
 
-    /// Whether it is below 0.
+    /// Returns whether the number is below 0.
     pub fn is_negative(self) -> bool {
         self < Self::ZERO
     }
 
-    /// Times a power of two, exactly.
+    /// Returns the number times 2^`exponent`, exactly.
     fn scaled(self, exponent: i32) -> Self {
         let factor = power_of_two(exponent);
         Self { high: self.high * factor, low: self.low * factor }
     }
 
-    /// What is left of it after so many times a number that is given in parts.
+    /// Returns the number less `times` a constant that is given as an unevaluated sum.
     fn without(self, times: f64, parts: &[f64]) -> Self {
         parts.iter().fold(self, |left, part| {
             let (high, low) = two_product(times, *part);
@@ -43,9 +44,9 @@ impl DoubleDouble {
         })
     }
 
-    /// The sine and cosine of an angle of at most pi / 4, by their series.
+    /// Returns the sine and cosine of an angle of at most π / 4 radians, by their Taylor series.
     fn sin_cos_of_small(self) -> (Self, Self) {
-        // The last term is (pi/4)^28 / 28! = 3e-33.
+        // The last term is (π / 4)^28 / 28! = 4e-33.
         const LAST: i32 = 28;
         let square = self * self;
         let (mut sin, mut cos) = (Self::ONE, Self::ONE);
@@ -57,7 +58,7 @@ impl DoubleDouble {
         (self * sin, cos)
     }
 
-    /// Its sine and cosine.
+    /// Returns the sine and cosine of an angle in radians, after reduction by multiples of π / 2.
     fn reduced_sin_cos(self) -> (Self, Self) {
         let quarters = (self.high / HALF_PI[0]).round();
         let (sin, cos) = self.without(quarters, &HALF_PI).sin_cos_of_small();
@@ -85,7 +86,7 @@ impl Scalar for DoubleDouble {
     }
 
     fn exp(self) -> Self {
-        // Beyond these every power is 0 or without end, as numbers go.
+        // Below the first bound the result underflows to 0, above the second it overflows.
         if self.high < -745.2 {
             return Self::ZERO;
         }
@@ -96,7 +97,7 @@ impl Scalar for DoubleDouble {
         const TERMS: i32 = 13; // (ln 2 / 2 / 2^8)^13 / 13! = 1e-47
         let doublings = (self.high / LN_2[0]).round();
         let small = self.without(doublings, &LN_2).scaled(-HALVINGS);
-        // Of e^x - 1, small digits are kept that e^x has no room for.
+        // e^x - 1 keeps small digits that e^x has no room for.
         let mut series = Self::ONE;
         for term in (2..=TERMS).rev() {
             series = Self::ONE + small * series / f64::from(term).into();
@@ -115,7 +116,7 @@ impl Scalar for DoubleDouble {
         if self.is_negative() {
             return f64::NAN.into();
         }
-        // As 2^n m, m around 1: ln m = 2 artanh((m - 1) / (m + 1)).
+        // With x = 2^n m, where m is around 1: ln m = 2 artanh((m - 1) / (m + 1)).
         let doublings = self.high.log2().round();
         let m = self.scaled(-(doublings as i32));
         let ratio = (m - Self::ONE) / (m + Self::ONE);

@@ -10,34 +10,34 @@ use crate::numeric::f64x8::F64x8;
 use crate::numeric::scalar::Scalar;
 use crate::simd::soa::LANES;
 use std::fmt;
-use step::{DEPTH, Function, Step};
+use step::{Function, MAX_DEPTH, Step};
 
 /// A formula in y, ready to be evaluated with any [`Scalar`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Formula {
     text: String,
-    /// The operations in the order in which they are done: operands first.
+    /// The operations in postfix order: operands first.
     steps: Vec<Step>,
-    /// The most values that wait for their operation at one time.
-    needs: usize,
-    /// Whether it can be done for eight y at once.
+    /// The largest depth of the stack while the formula is evaluated, in values.
+    stack_depth: usize,
+    /// Whether the formula can be evaluated for eight y at a time.
     is_plain: bool,
 }
 
-/// The values that wait in most formulas.
-const FEW: usize = 4;
+/// The stack depth that suffices for most formulas, in values.
+const SMALL_STACK: usize = 4;
 
 impl Formula {
-    /// Reads a formula.
+    /// Parses a formula.
     ///
     /// # Errors
-    /// The first place where the text is none.
+    /// Returns the first place where the text is not a formula.
     pub fn parse(text: &str) -> Result<Self, FormulaFault> {
         Ok(Self::new(text.to_owned(), parser::parse(text)?))
     }
 
-    /// The square of a formula. That of a root has no root any more: where a sphere's profile ends, its slope is
-    /// without end, and that of its square is not.
+    /// Returns the square of the formula. The square of a root is its operand: where a sphere's profile ends, its slope
+    /// is infinite, and that of its square is not.
     pub fn squared(&self) -> Self {
         let mut steps = self.steps.clone();
         match steps.last() {
@@ -50,20 +50,24 @@ impl Formula {
     }
 
     fn new(text: String, steps: Vec<Step>) -> Self {
-        let needs = needs(&steps);
-        // What a general power's slope is takes more than arithmetic.
-        let is_plain = needs <= FEW && !steps.contains(&Step::Call(Function::Pow));
-        Self { text, steps, needs, is_plain }
+        let stack_depth = stack_depth(&steps);
+        // The derivative of a general power takes more than arithmetic.
+        let is_plain = stack_depth <= SMALL_STACK && !steps.contains(&Step::Call(Function::Pow));
+        Self { text, steps, stack_depth, is_plain }
     }
 
-    /// Its value at y.
+    /// Evaluates the formula at y.
     #[inline(always)]
     pub fn at<N: Scalar>(&self, y: N) -> N {
-        // Most formulas are small, and so is then what must be made ready for them.
-        if self.needs <= FEW { self.run::<N, FEW>(y) } else { self.run::<N, DEPTH>(y) }
+        // Most formulas need a small stack, which is quicker to set up.
+        if self.stack_depth <= SMALL_STACK {
+            self.run::<N, SMALL_STACK>(y)
+        } else {
+            self.run::<N, MAX_DEPTH>(y)
+        }
     }
 
-    /// How many operations one evaluation takes, a function of `libm` counted as eight.
+    /// Returns the estimated number of arithmetic operations per evaluation: 8 for a `libm` function, 24 for a power.
     pub fn cost(&self) -> u64 {
         let cost = |step: &Step| match step {
             Step::Call(Function::Abs | Function::Floor | Function::Min | Function::Max) => 1,
@@ -75,15 +79,15 @@ impl Formula {
         self.steps.iter().map(cost).sum()
     }
 
-    fn run<N: Scalar, const ROOM: usize>(&self, y: N) -> N {
-        self.done::<N, ROOM>(y)
+    fn run<N: Scalar, const STACK: usize>(&self, y: N) -> N {
+        self.run_inline::<N, STACK>(y)
     }
 
-    /// Its values and slopes at eight y, for kernels.
+    /// Evaluates the formula and its derivative at eight y, for kernels.
     #[inline(always)]
     pub fn at_eight(&self, y: [f64; LANES]) -> Dual<F64x8> {
         if self.is_plain {
-            return self.done::<_, FEW>(Dual::variable(F64x8(y)));
+            return self.run_inline::<_, SMALL_STACK>(Dual::variable(F64x8(y)));
         }
         let (mut value, mut slope) = ([0.0; LANES], [0.0; LANES]);
         for lane in 0..LANES {
@@ -93,11 +97,11 @@ impl Formula {
     }
 
     #[inline(always)]
-    fn done<N: Scalar, const ROOM: usize>(&self, y: N) -> N {
-        let mut stack = [y; ROOM];
+    fn run_inline<N: Scalar, const STACK: usize>(&self, y: N) -> N {
+        let mut stack = [y; STACK];
         let mut top = 0_usize;
         for step in &self.steps {
-            // The parser has seen to it that operands are there and that they fit.
+            // The parser has checked that the operands are there and that they fit on the stack.
             let (a, b) = (stack[top.saturating_sub(2)], stack[top.saturating_sub(1)]);
             let (used, value) = match *step {
                 Step::Y => (0, y),
@@ -127,8 +131,8 @@ impl Formula {
     }
 }
 
-/// The most values that wait at one time while these operations are done.
-fn needs(steps: &[Step]) -> usize {
+/// Returns the largest depth of the stack while these operations are evaluated, in values.
+fn stack_depth(steps: &[Step]) -> usize {
     let mut waiting = 0_usize;
     let after = steps.iter().map(|step| {
         let used = match step {
@@ -144,7 +148,7 @@ fn needs(steps: &[Step]) -> usize {
     after.max().unwrap_or(1)
 }
 
-/// The text that it was read from.
+/// Displays the text that the formula was parsed from.
 impl fmt::Display for Formula {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(&self.text)

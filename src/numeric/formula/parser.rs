@@ -1,14 +1,14 @@
-//! From the text of a formula to its steps, operands first.
+//! The parser: from the text of a formula to its operations in postfix order.
 
-use super::step::{DEPTH, Function, Step};
+use super::step::{Function, MAX_DEPTH, Step};
 use crate::words;
 use std::f64::consts::PI;
 use std::ops::Range;
 
-/// What is wrong with the text of a formula.
+/// An error in the text of a formula.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FormulaFault {
-    /// The bytes of the text to mark.
+    /// The byte range of the text to mark.
     pub place: Range<usize>,
     /// What is wrong.
     pub message: String,
@@ -16,7 +16,7 @@ pub struct FormulaFault {
     pub help: &'static str,
 }
 
-/// The functions of a formula, by name, each with how many arguments it takes.
+/// The functions of a formula: name, function and number of arguments.
 const FUNCTIONS: [(&str, Function, usize); 10] = [
     ("sin", Function::Sin, 1),
     ("cos", Function::Cos, 1),
@@ -33,7 +33,7 @@ const FUNCTIONS: [(&str, Function, usize); 10] = [
 const LANGUAGE: &str = "a formula consists of numbers, `y`, `pi`, + - * / ^, parentheses, and the functions \
     sin cos tan exp ln sqrt abs floor of one value and min max of two";
 
-/// Reads the steps of a formula.
+/// Parses the operations of a formula.
 pub(super) fn parse(text: &str) -> Result<Vec<Step>, FormulaFault> {
     let mut parser = Parser { text, at: 0, steps: Vec::new(), depth: 0 };
     parser.sum()?;
@@ -48,21 +48,21 @@ struct Parser<'t> {
     text: &'t str,
     at: usize,
     steps: Vec<Step>,
-    /// How many values wait for their operation, or how deep parentheses go, whichever is more.
+    /// The number of values on the stack or the depth of parentheses, whichever is greater.
     depth: usize,
 }
 
 type Parsed = Result<(), FormulaFault>;
 
 impl<'t> Parser<'t> {
-    /// The next character that is no blank.
+    /// Skips blanks and returns the next character.
     fn peek(&mut self) -> Option<char> {
         let rest = &self.text[self.at..];
         self.at += rest.len() - rest.trim_start().len();
         self.text[self.at..].chars().next()
     }
 
-    /// Reads past one of these characters if it is the next.
+    /// Consumes and returns the next character if it is one of these.
     fn take(&mut self, any: &[char]) -> Option<char> {
         let next = self.peek().filter(|next| any.contains(next))?;
         self.at += next.len_utf8();
@@ -100,7 +100,7 @@ impl<'t> Parser<'t> {
         Ok(())
     }
 
-    /// Minus binds less than a power: -y^2 is -(y^2).
+    /// Parses a sign and its operand. Unary minus binds less tightly than a power: -y^2 is -(y^2).
     fn signed(&mut self) -> Parsed {
         if self.take(&['-']).is_some() {
             self.deeper()?;
@@ -219,6 +219,6 @@ impl<'t> Parser<'t> {
 
     fn deeper(&mut self) -> Parsed {
         self.depth += 1;
-        if self.depth >= DEPTH { Err(self.fault_here("formula nested too deeply")) } else { Ok(()) }
+        if self.depth >= MAX_DEPTH { Err(self.fault_here("formula nested too deeply")) } else { Ok(()) }
     }
 }

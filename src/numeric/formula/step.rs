@@ -1,6 +1,6 @@
 //! The operations of a formula.
 
-/// One of the operations of a formula.
+/// One operation of a formula.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Step {
     Y,
@@ -10,12 +10,12 @@ pub(super) enum Step {
     Sub,
     Mul,
     Div,
-    /// A power with a whole exponent.
+    /// A power with an integer exponent.
     Powi(i32),
     Call(Function),
 }
 
-/// A function of one value or two.
+/// A function of one or two values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Function {
     Sin,
@@ -31,5 +31,5 @@ pub(super) enum Function {
     Pow,
 }
 
-/// The most values that wait for their operation, and so how deep a formula can be nested.
-pub(super) const DEPTH: usize = 32;
+/// The largest stack depth, in values, and with it the deepest nesting that a formula may have.
+pub(super) const MAX_DEPTH: usize = 32;

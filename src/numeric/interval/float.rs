@@ -1,14 +1,14 @@
-//! What the ends of an interval are: numbers that are rounded, and how far outward that asks for.
+//! The endpoints of an interval: floating-point numbers, and how far outward to round them.
 
 use f256::f256;
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A floating-point number that can be an end of an [`Interval`](super::Interval).
+/// A floating-point number that can be an endpoint of an [`Interval`](super::Interval).
 ///
-/// Sums, products, quotients and square roots are those of IEEE 754, rounded to nearest. Every other function is
-/// trusted to a stated number of units in the last place, which [`around`](Self::around) takes outward; the tests of
-/// this module compare them with correctly rounded ones.
+/// Sums, products, quotients and square roots are those of IEEE 754, rounded to nearest. All other functions are
+/// trusted to a stated number of ulps, by which [`around`](Self::around) widens; `intervals_hold_the_true_results` and
+/// `wide_intervals_hold_the_right_results` in `tests/shapes/double_double.rs` compare them with more precise ones.
 pub trait Float:
     Copy
     + Debug
@@ -19,61 +19,63 @@ pub trait Float:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// What every finite number is below.
+    /// Whether an operation takes hundreds of instructions rather than a few.
+    const IS_LONG: bool;
+    /// Positive infinity.
     const INFINITY: Self;
-    /// The ratio of a circle's circumference to its diameter, rounded.
+    /// π, rounded.
     const PI: Self;
-    /// The distance from 1 to the next number.
+    /// The difference between 1 and the next larger number.
     const EPSILON: Self;
 
-    /// A number of `f64`, exactly.
+    /// Converts from `f64`, exactly.
     fn of(value: f64) -> Self;
-    /// The number as `f64`, rounded to one of the two next to it; infinite where it is too large.
+    /// Converts to one of the two neighbouring `f64`; infinite where the number is too large.
     fn to_f64(self) -> f64;
-    /// The ends of an interval around exact ends that were rounded to these: at least one unit in the last place outward.
-    /// An end that is no number stays one.
+    /// Widens rounded endpoints by at least one ulp, so that they enclose the exact ones. A NaN stays a NaN.
     fn outward(low: Self, high: Self) -> (Self, Self);
-    /// As [`outward`](Self::outward), of sums and differences: what is 0 stays 0, as a sum never underflows.
+    /// Widens the rounded endpoints of a sum or difference like [`outward`](Self::outward), except that 0 stays 0, as a
+    /// sum does not underflow.
     fn outward_sum(low: Self, high: Self) -> (Self, Self);
-    /// The ends of an interval around values that a function other than those of IEEE 754 gave.
+    /// Widens the endpoints that a function outside of IEEE 754 has returned by that function's error bound.
     fn around(low: Self, high: Self) -> (Self, Self);
-    /// The least and the greatest product of the ends of two intervals, rounded to nearest; nothing where that takes more
-    /// thought, as with ends that are 0 or infinite.
+    /// Returns the smallest and the largest product of the endpoints of two intervals, rounded to nearest; `None` for
+    /// cases that need more care, such as endpoints that are 0 or infinite.
     fn product_ends(one: [Self; 2], other: [Self; 2]) -> Option<(Self, Self)>;
-    /// The square root of a number that is not negative.
+    /// Returns the square root of a number that is not negative.
     fn sqrt(self) -> Self;
-    /// The sine and the cosine.
+    /// Returns the sine and the cosine of an angle in radians.
     fn sin_cos(self) -> (Self, Self);
-    /// The tangent.
+    /// Returns the tangent of an angle in radians.
     fn tan(self) -> Self;
-    /// e to the power of it.
+    /// Returns e raised to this power.
     fn exp(self) -> Self;
-    /// The natural logarithm of a number that is not negative; that of 0 is infinite.
+    /// Returns the natural logarithm of a number that is not negative; that of 0 is negative infinity.
     fn ln(self) -> Self;
-    /// The greatest whole number that is not above it.
+    /// Returns the greatest integer that is not greater than the number.
     fn floor(self) -> Self;
-    /// Its distance from 0.
+    /// Returns the absolute value.
     fn abs(self) -> Self;
 
-    /// Whether it is neither infinite nor no number.
+    /// Returns whether the number is neither infinite nor NaN.
     #[inline(always)]
     fn is_finite(self) -> bool {
         self.abs() < Self::INFINITY
     }
 
-    /// The lesser of two; the other one where one is no number.
+    /// Returns the smaller of two numbers; if one is NaN, the other one.
     #[inline(always)]
     fn min(self, other: Self) -> Self {
         if self < other || other.is_nan() { self } else { other }
     }
 
-    /// The greater of two; the other one where one is no number.
+    /// Returns the larger of two numbers; if one is NaN, the other one.
     #[inline(always)]
     fn max(self, other: Self) -> Self {
         if self > other || other.is_nan() { self } else { other }
     }
 
-    /// Whether it is no number.
+    /// Returns whether the number is NaN.
     #[inline(always)]
     #[expect(clippy::eq_op, reason = "what is no number differs from itself")]
     fn is_nan(self) -> bool {
@@ -81,10 +83,11 @@ pub trait Float:
     }
 }
 
-/// What is taken outward from a number of `f64`, as a part of it.
-const STEP: f64 = 1.04 * f64::EPSILON;
+/// The relative amount by which an endpoint in `f64` is moved outward: a little more than one ulp.
+const OUTWARD: f64 = 1.04 * f64::EPSILON;
 
 impl Float for f64 {
+    const IS_LONG: bool = false;
     const INFINITY: Self = f64::INFINITY;
     const PI: Self = std::f64::consts::PI;
     const EPSILON: Self = f64::EPSILON;
@@ -99,22 +102,22 @@ impl Float for f64 {
         self
     }
 
-    /// A product and a difference are many times faster than the next number of `f64`. The product is at least 1.04
-    /// units in the last place, which leaves at least one whole unit of the difference; `LEAST` is more than what
-    /// results lose that underflow.
+    /// Widens by a product and a difference, which are many times faster than `next_up` and `next_down`. The product is
+    /// at least 1.04 ulps, so at least one whole ulp is left after the difference is rounded; `UNDERFLOW` is more than
+    /// what results that underflow lose.
     #[inline(always)]
     fn outward(low: Self, high: Self) -> (Self, Self) {
-        const LEAST: f64 = 1e-305;
-        (low - (f64::abs(low) * STEP + LEAST), high + (f64::abs(high) * STEP + LEAST))
+        const UNDERFLOW: f64 = 1e-305;
+        (low - (f64::abs(low) * OUTWARD + UNDERFLOW), high + (f64::abs(high) * OUTWARD + UNDERFLOW))
     }
 
-    /// Where the product underflows the sum that it is to be taken from was exact.
+    /// Where the product underflows, the sum that it widens was exact.
     #[inline(always)]
     fn outward_sum(low: Self, high: Self) -> (Self, Self) {
-        (low - f64::abs(low) * STEP, high + f64::abs(high) * STEP)
+        (low - f64::abs(low) * OUTWARD, high + f64::abs(high) * OUTWARD)
     }
 
-    /// Of all four products, without a branch for their signs.
+    /// Takes the minimum and the maximum of all four products, without a branch for their signs.
     #[inline(always)]
     fn product_ends([one_low, one_high]: [Self; 2], [low, high]: [Self; 2]) -> Option<(Self, Self)> {
         let [a, b, c, d] = [one_low * low, one_low * high, one_high * low, one_high * high];
@@ -124,7 +127,8 @@ impl Float for f64 {
         is_plain.then(|| (less(less(a, b), less(c, d)), more(more(a, b), more(c, d))))
     }
 
-    /// The `libm` functions are trusted to within one unit in the last place: two steps.
+    /// Widens by two ulps: the `libm` functions are trusted to within one. `intervals_hold_the_true_results` tests
+    /// this.
     fn around(low: Self, high: Self) -> (Self, Self) {
         let (low, high) = Self::outward(low, high);
         Self::outward(low, high)
@@ -172,9 +176,10 @@ impl Float for f64 {
     }
 }
 
-/// The format `binary256` of IEEE 754: 237 bits, and exponents to 2^262143, so that no square or fourth power of a
-/// scene's numbers overflows.
+/// The format `binary256` of IEEE 754: 237 bits, and exponents up to 2^262143, so that squares and fourth powers of a
+/// scene's numbers do not overflow.
 impl Float for f256 {
+    const IS_LONG: bool = true;
     const INFINITY: Self = f256::INFINITY;
     const PI: Self = ::f256::consts::PI;
     const EPSILON: Self = f256::EPSILON;
@@ -188,7 +193,8 @@ impl Float for f256 {
             return if self.is_nan() { f64::NAN } else { f64::INFINITY.copysign(sign(self)) };
         }
         let (_, exponent, (high, low)) = self.as_sign_exp_signif();
-        // Both halves are rounded to nearest and so is their sum, in which the lower half is below the upper's last bit.
+        // Both halves are rounded to nearest, and so is their sum, in which the lower half is below the upper half's
+        // last bit.
         let magnitude = libm::ldexp(high as f64, 128) + low as f64;
         libm::ldexp(magnitude, exponent).copysign(sign(self))
     }
@@ -204,7 +210,8 @@ impl Float for f256 {
         )
     }
 
-    /// Of the two products that the signs leave, where none of the ends is 0: each takes longer than looking at signs.
+    /// Computes only the two products that the signs select, where no endpoint is 0: a product takes longer than the
+    /// tests of signs.
     fn product_ends([one_low, one_high]: [Self; 2], [low, high]: [Self; 2]) -> Option<(Self, Self)> {
         let zero = Self::ZERO;
         let is_plain = |of: Self| of.is_finite() && !of.eq_zero();
@@ -212,13 +219,15 @@ impl Float for f256 {
             return None;
         }
         let (below, above) = if one_low > zero { (one_low, one_high) } else { (one_high, one_low) };
-        // Of factors above 0, the far end of the first goes with what is on the far side of 0 of the second.
-        let least = if low > zero { below } else { above } * low;
-        let greatest = if high > zero { above } else { below } * high;
-        Some(if one_low > zero { (least, greatest) } else { (greatest, least) })
+        // With the first factor taken as positive, the sign of each endpoint of the second selects the endpoint of the
+        // first.
+        let smallest = if low > zero { below } else { above } * low;
+        let largest = if high > zero { above } else { below } * high;
+        Some(if one_low > zero { (smallest, largest) } else { (largest, smallest) })
     }
 
-    /// The functions of the crate are trusted to within seven units in the last place: eight steps.
+    /// Widens by eight ulps: the crate's functions are trusted to within seven. `wide_intervals_hold_the_right_results`
+    /// tests this.
     fn around(low: Self, high: Self) -> (Self, Self) {
         let steps = |of: Self| Self::from(8.0) * of.abs() * Self::EPSILON;
         ((low - steps(low)).next_down(), (high + steps(high)).next_up())
@@ -229,7 +238,7 @@ impl Float for f256 {
     }
 
     fn sin_cos(self) -> (Self, Self) {
-        // The crate's own function of both takes longer than both.
+        // The crate's combined function takes longer than the two separate ones.
         (self.sin(), self.cos())
     }
 
@@ -262,7 +271,7 @@ impl Float for f256 {
     }
 }
 
-/// 1 or -1.
+/// Returns 1 or -1, with the sign of a number.
 fn sign(of: f256) -> f64 {
     if of.is_sign_negative() { -1.0 } else { 1.0 }
 }

@@ -1,39 +1,41 @@
-//! How deep rays are followed into mirrors and glass: what a branch can still add to a pixel, at most.
+//! How deep rays are followed into mirrors and glass: an upper bound on what a branch can still add to a pixel.
 //!
-//! **What rays bring back.** A ray that meets object `j` after its light has come `d` from the viewer brings back
+//! **What a ray returns.** A ray that hits object `j` at a path length `d` from the viewer returns
 //!
 //! ```text
-//! kept_j * S / d  +  tint_j * what comes through  +  specular_j * what is mirrored
+//! kept_j * S / d  +  tint_j * transmitted light  +  specular_j * reflected light
 //! ```
 //!
-//! where `S` is the ambient colour and what the lights do, and the two rays that go on bring back the same sum of what they
-//! meet, farther away. So rays that leave object `i` on a side of it, on a way of `d` so far, bring back at most
-//! `beyond / d`, where for each object `j` and side of it that they may come to
+//! where `S` is the ambient colour plus the contribution of the lights, and the transmitted and the reflected ray
+//! return the same sum for the object that they hit, farther away. So rays that leave object `i` on one side, at a path
+//! length `d`, return at most `beyond / d`, where for each object `j` and side of it that they may hit
 //!
 //! ```text
 //! beyond(i, side) >= kept_j * S_j + T_j * beyond(j, other side) + s_j * beyond(j, same side)
 //! ```
 //!
-//! Each letter is the largest magnitude of any channel at any place: `T` of the tint, `s` of the specular colour, and `S` of
-//! ambient and, for each light, emissivity times (diffuse / the least distance of the object from it, and specular if
-//! there are glints). Cosines, powers of them, and what glass lets through of a light are at most 1. Rays do not come to
-//! what lies behind the plane that they leave, nor to an object that they leave and that says so.
+//! Each letter is the largest magnitude of any channel at any point: `T` of the tint, `s` of the specular colour, and
+//! `S` of ambient plus, for each light, emissivity times (diffuse divided by the least distance of the object from the
+//! light, plus specular if there are highlights). Cosines, their powers, and the fraction of a light that passes
+//! through glass are at most 1. Rays do not hit what lies behind the plane that they leave, nor the object that they
+//! leave if it cannot be hit again.
 //!
-//! Any solution of these inequalities is above the least one, and that is above all sums of finitely many branches. One is
-//! looked for from below, and taken when it solves them as it stands. Where mirrors and glass give on as much light as
-//! they get there is none: then nothing is left out, and [`MAX_RAYS`](crate::render::limits::MAX_RAYS) ends what the distance does
-//! not.
+//! Any solution of these inequalities is at least the least one, which is at least every sum of finitely many branches.
+//! A solution is searched for by iteration from below, and accepted when it satisfies the inequalities as it stands.
+//! Where mirrors and glass pass on as much light as they receive, there is none: then no branch is cut, and
+//! [`MAX_RAYS`](crate::render::limits::MAX_RAYS) ends what the path length does not.
 //!
-//! **What is left out.** A ray of a camera may leave out [`FAINT`] in all, 1/1024 of a level. That is shared out among the
-//! branches. Let `P(i, side)` solve the inequalities with 1 for each `kept_j * S_j`. A ray whose share is `u * P` where it
-//! leaves one object gives the ray through the next one `u * (T_j + 1/2 / P) * P` with the `P` of that one and its side,
-//! and the mirrored one `u * (s_j + 1/2 / P) * P`: together `u * (T_j P + s_j P + 1)`, no more than it has. Where only one
-//! goes on, it gets the other half, too. A branch is left out where `weight * beyond / d < share * FAINT`, `weight` being
-//! the product of all `T` and `s` on the way. A branch's weight falls by more than its share does with each step, so that
-//! each ends; and what is left out of a ray's colour adds up to less than [`FAINT`].
+//! **What is cut.** A primary ray may lose [`FAINT`] in all, 1/1024 of a level. This allowance is shared among the
+//! branches. Let `P(i, side)` solve the inequalities with 1 for each `kept_j * S_j`. A ray whose share is `u * P` where
+//! it leaves one object gives its transmitted ray `u * (T_j + 1/2 / P) * P`, with the `P` of the object that this ray
+//! leaves and its side, and its reflected ray `u * (s_j + 1/2 / P) * P`: together `u * (T_j P + s_j P + 1)`, no more
+//! than its own. Where only one of the two rays continues, it gets the other half as well. A branch is cut where
+//! `weight * beyond / d < share * FAINT`, where `weight` is the product of all `T` and `s` on the path. With each step
+//! a branch's weight falls by more than its share does, so each branch ends; and the cuts in a ray's colour add up to
+//! less than [`FAINT`].
 //!
-//! Where panes and mirrors give on nearly all that they get, that takes very many rays. From the [`MANY`]th on, a branch is
-//! also left out where `weight * beyond / d < FAINT` by itself.
+//! Where glass and mirrors pass on nearly all that they receive, that takes very many rays. From the [`MANY`]th ray on,
+//! a branch is also cut where `weight * beyond / d < FAINT` by itself.
 
 use crate::geometry::aabb::{self, SLACK};
 use crate::geometry::ray::Side;
@@ -44,58 +46,59 @@ use crate::world::accuracy::Accuracy;
 use crate::world::material::{Look, Rgb};
 use glam::DVec3;
 
-/// What may be left out of the colour of a camera ray: 1/1024 of a level of 1/255.
+/// The most that cuts may take from a channel of a primary ray's colour: 1/1024 of a level of 1/255.
 pub(crate) const FAINT: f64 = 1.0 / (1024.0 * 255.0);
 
-/// From so many rays on that a camera ray has cost, branches are left out each for itself.
+/// The number of rays that a primary ray may cost before branches are cut one by one, each without regard to the
+/// others.
 pub(crate) const MANY: u32 = 4000;
 
-/// More than rounding makes of a bound: of the products along a branch, fewer than 2^15 with an error of 2^-53 each, and
-/// of sums over as many lights.
+/// A factor larger than the rounding error of a bound: that of the products along a branch, fewer than 2^15 with a
+/// relative error of 2^-53 each, and of sums over as many lights; 2^16 such errors are less than 8e-12.
 const ROUNDING: f64 = 1.0 + 1e-11;
 
-/// How often the bounds are made better before they are given up.
+/// The number of iterations after which the search for bounds is given up.
 const ROUNDS: usize = 50;
 
-/// Of so many mirrors and panes it is looked at which lie behind which.
+/// The maximum number of reflecting and transmitting objects for which it is determined which lie behind which.
 const PAIRS: usize = 64;
 
-/// What the branches of a scene with mirrors or glass can bring back.
+/// Bounds on what the branches of a scene with mirrors or glass can return.
 pub(crate) struct Depth {
-    /// What a camera ray can, times how far its light has come.
+    /// A bound on any channel of what a primary ray returns, times the path length; infinite where there is none.
     pub most: f64,
-    /// By the objects' indices.
+    /// The bounds for each object, by the object's index.
     pub objects: Vec<Onward>,
 }
 
-/// What can come back from where rays meet an object.
+/// Bounds on what can be returned from where rays hit an object.
 #[derive(Clone, Copy)]
 pub(crate) struct Onward {
-    /// From the object's own surface, times how far the light has come.
+    /// A bound on the light of the object's own surface, times the path length to the surface.
     pub own: f64,
-    /// From what rays that leave it meet, times how far that light has come.
+    /// A bound on what rays that leave the object return, times the path length to the object.
     pub beyond: f64,
-    /// What goes on through it.
+    /// How transmitted rays continue.
     pub through: Branch,
-    /// What it mirrors.
+    /// How reflected rays continue.
     pub mirrored: Branch,
 }
 
-/// How rays go on in one way.
+/// How rays continue in one way.
 #[derive(Clone, Copy)]
 pub(crate) struct Branch {
-    /// What their light is multiplied by, at most.
+    /// The largest factor by which the rays' light is multiplied.
     pub weight: f64,
-    /// Their part of what may be left out.
+    /// The fraction of the allowance for cuts that the rays get.
     pub share: f64,
-    /// They are left out where the weight so far, times this, is less than the share so far times the way so far.
+    /// The rays are cut where the path's weight times this number is less than its share times its length.
     pub faint: f64,
-    /// Where many rays have been followed, also where the weight so far, times this, is less than the way so far.
+    /// After [`MANY`] rays, the rays are also cut where the path's weight times this number is less than its length.
     pub faint_alone: f64,
 }
 
 impl Onward {
-    /// Where nothing goes on.
+    /// The value of an object from which no rays continue.
     pub const NONE: Self = Self { own: 0.0, beyond: 0.0, through: Branch::NONE, mirrored: Branch::NONE };
 }
 
@@ -104,7 +107,7 @@ impl Branch {
 }
 
 impl Depth {
-    /// That of a scene; nothing where no ray goes on.
+    /// Computes the bounds of a scene; `None` where no object reflects or transmits rays.
     pub fn new(model: &Model) -> Option<Self> {
         let looks: Vec<_> =
             model.objects.iter().map(|object| object.shader.brightest(&object.material)).collect();
@@ -116,7 +119,7 @@ impl Depth {
         }
         let objects = || model.objects.iter().zip(&looks);
         let tints: Vec<_> = objects().map(|(object, look)| tint(object, look.as_ref())).collect();
-        // Else more light may come through many panes than is sent.
+        // Otherwise many panes may let through more light than is sent.
         let any_light_comes = tints.iter().all(|tint| *tint <= 1.0);
         let surfaces = objects().zip(&tints).map(|((object, look), tint)| {
             let own = look.map_or(f64::INFINITY, |look| own(model, object, &look, any_light_comes));
@@ -131,12 +134,13 @@ impl Depth {
         Some(scene.depth(cuts))
     }
 
-    /// What rays that leave an object can bring back, or rays from the viewer.
+    /// Returns a bound on what rays that leave the object of this index return, times the path length; for `None`, of
+    /// what primary rays return.
     pub fn beyond(&self, leaves: Option<usize>) -> f64 {
         leaves.map_or(self.most, |index| self.objects[index].beyond)
     }
 
-    /// Leaves nothing out.
+    /// Disables all cuts.
     #[cfg(test)]
     pub fn uncut(mut self) -> Self {
         for object in &mut self.objects {
@@ -148,21 +152,25 @@ impl Depth {
     }
 }
 
-/// What an object's surface does with light: the largest magnitudes of any channel at any place.
+/// What an object's surface does with light: the largest magnitudes of any channel at any point.
 #[derive(Clone, Copy)]
 struct Surface {
+    /// The surface's own light, times the path length.
     own: f64,
+    /// The tint of transmitted light.
     through: f64,
+    /// The specular reflectivity.
     mirrored: f64,
 }
 
 impl Surface {
-    /// Whether rays go on from it.
+    /// Tells whether rays continue from the surface.
     fn goes_on(&self) -> bool {
         self.through != 0.0 || self.mirrored != 0.0
     }
 
-    /// What rays can bring back that come to it on each side, of which so much is its own.
+    /// Bounds what rays that hit the surface on each side return, given its own light and what rays that leave it on
+    /// each side return.
     fn met(&self, own: f64, [outside, inside]: [f64; 2]) -> [f64; 2] {
         let onward =
             |through: f64, mirrored: f64| gain(self.through, through) + gain(self.mirrored, mirrored);
@@ -170,21 +178,21 @@ impl Surface {
     }
 }
 
-/// Something for each side of an object: first the outside, which its normal points to.
+/// A value for each side of an object: first the outside, to which the normal points.
 type Sides<T> = [T; 2];
 
 const SIDES: Sides<Side> = [Side::Outside, Side::Inside];
 
-/// The surfaces of a scene, and which of them rays come to from which.
+/// The surfaces of a scene, and which of them rays may hit from which.
 struct Scene {
     surfaces: Vec<Surface>,
-    /// Those from which rays go on, by their indices, and whether rays that leave them on a side may meet them again.
+    /// The indices of the surfaces from which rays continue, and whether rays that leave one on a side may hit it
+    /// again.
     shiny: Vec<(usize, Sides<bool>)>,
-    /// On which sides of one of those another one lies, for each pair of them; empty where they are many.
+    /// On which sides of one shiny surface another one lies, for each pair; empty for more than [`PAIRS`] surfaces.
     lies: Vec<Sides<bool>>,
-    /// The largest of what those objects send from which no rays go on, where they may be met from each side of one of
-    /// those.
-    t_max: Vec<Sides<f64>>,
+    /// For each shiny surface and side, the largest own light of the other surfaces that may be hit from there.
+    matt_light: Vec<Sides<f64>>,
 }
 
 impl Scene {
@@ -196,26 +204,27 @@ impl Scene {
         let lies = |of: usize, object: usize| {
             if is_few { lies(&objects[of], &objects[object]) } else { [true; 2] }
         };
-        let t_max = shiny.iter().map(|of| {
+        let matt_light = shiny.iter().map(|of| {
             let sent = matt
                 .iter()
                 .map(|object| lies(*of, *object).map(|lies| if lies { surfaces[*object].own } else { 0.0 }));
             sent.fold([0.0; 2], |[one, other], [outside, inside]| [above(one, outside), above(other, inside)])
         });
-        let t_max = t_max.collect();
+        let matt_light = matt_light.collect();
         let pairs = shiny.iter().flat_map(|of| shiny.iter().map(|object| lies(*of, *object)));
         let lies = if is_few { pairs.collect() } else { Vec::new() };
         let meets = |index: usize| (index, SIDES.map(|side| can_hit_itself(&objects[index], side)));
-        Self { shiny: shiny.into_iter().map(meets).collect(), lies, t_max, surfaces }
+        Self { shiny: shiny.into_iter().map(meets).collect(), lies, matt_light, surfaces }
     }
 
+    /// Computes the bounds, and when branches are cut, if they are at all.
     fn depth(&self, cuts: bool) -> Depth {
         let infinite = || vec![[f64::INFINITY; 2]; self.shiny.len()];
         let own = |surface: &Surface| surface.own;
-        let beyond = self.solve(&self.t_max, own).unwrap_or_else(infinite);
-        let one = |end: f64| if end > 0.0 { 1.0 } else { 0.0 };
-        let t_max: Vec<_> = self.t_max.iter().map(|t_max| t_max.map(one)).collect();
-        let shares = self.solve(&t_max, |_| 1.0).unwrap_or_else(infinite);
+        let beyond = self.solve(&self.matt_light, own).unwrap_or_else(infinite);
+        let one = |light: f64| if light > 0.0 { 1.0 } else { 0.0 };
+        let matt_light: Vec<_> = self.matt_light.iter().map(|matt_light| matt_light.map(one)).collect();
+        let shares = self.solve(&matt_light, |_| 1.0).unwrap_or_else(infinite);
         let most = |own: &dyn Fn(&Surface) -> f64, beyond: &[Sides<f64>]| {
             let mut met: Vec<_> = self.surfaces.iter().map(own).collect();
             for ((index, _), beyond) in self.shiny.iter().zip(beyond) {
@@ -234,17 +243,19 @@ impl Scene {
         Depth { most: most(&own, &beyond), objects }
     }
 
-    /// The least bounds that are found of what rays can bring back that leave each object from which they go on, where
-    /// each object's own light and that of the others is this.
-    fn solve(&self, t_max: &[Sides<f64>], own: impl Fn(&Surface) -> f64) -> Option<Vec<Sides<f64>>> {
+    /// Bounds what rays that leave each shiny surface return, given the surfaces' own light, and in `matt_light` that
+    /// of the others. Returns `None` where no bounds are found.
+    fn solve(&self, matt_light: &[Sides<f64>], own: impl Fn(&Surface) -> f64) -> Option<Vec<Sides<f64>>> {
         let mut bounds = vec![[0.0; 2]; self.shiny.len()];
         let mut before: Option<Vec<Sides<f64>>> = None;
         for _ in 0..ROUNDS {
-            // Two steps at once: what goes to and fro between two kinds of objects grows evenly then.
-            let better = self.step(t_max, &own, &self.step(t_max, &own, &bounds));
+            // Two steps at once: then the bounds grow steadily where light goes back and forth between two kinds of
+            // objects.
+            let better = self.step(matt_light, &own, &self.step(matt_light, &own, &bounds));
             let gained = each(&better, &bounds, |better, bound| better - bound);
             if let Some(before) = before {
-                // As if each step went on to gain as much less than the one before it as this one does, and a little more.
+                // Extrapolates the gains as a geometric series with the largest ratio so far, plus 1%. The factor need
+                // not be proven: the result is checked below.
                 let ratios = each(
                     &gained,
                     &before,
@@ -253,7 +264,7 @@ impl Scene {
                 let ratio = ratios.into_iter().flatten().fold(0.0, above);
                 let rest = 1.01 * ratio / (1.0 - ratio);
                 let beyond = each(&better, &gained, |better, gained| better + gain(rest, gained));
-                let next = self.step(t_max, &own, &beyond);
+                let next = self.step(matt_light, &own, &beyond);
                 let is_above =
                     next.iter().flatten().zip(beyond.iter().flatten()).all(|(next, beyond)| next <= beyond);
                 if ratio < 1.0 && is_above {
@@ -266,10 +277,11 @@ impl Scene {
         None
     }
 
-    /// What rays can bring back that leave each object, if those that leave what they meet can bring back so much.
+    /// Bounds what rays that leave each shiny surface return, given bounds on what the rays that continue from their
+    /// hits return.
     fn step(
         &self,
-        t_max: &[Sides<f64>],
+        matt_light: &[Sides<f64>],
         own: impl Fn(&Surface) -> f64,
         beyond: &[Sides<f64>],
     ) -> Vec<Sides<f64>> {
@@ -279,11 +291,11 @@ impl Scene {
         });
         let met: Vec<_> = met.collect();
         if self.lies.is_empty() {
-            return self.step_among_many(t_max, &met);
+            return self.step_among_many(matt_light, &met);
         }
         let all = || met.iter().enumerate();
         let of = |index: usize, side: usize| {
-            all().fold(t_max[index][side], |most, (other, met)| {
+            all().fold(matt_light[index][side], |most, (other, met)| {
                 let comes = if other == index {
                     [self.shiny[index].1[side]; 2]
                 } else if self.lies[index * met.len() + other][side] {
@@ -298,8 +310,9 @@ impl Scene {
         (0..met.len()).map(|index| [of(index, 0), of(index, 1)]).collect()
     }
 
-    /// Likewise, where each may be met from each side of each.
-    fn step_among_many(&self, t_max: &[Sides<f64>], met: &[Sides<f64>]) -> Vec<Sides<f64>> {
+    /// Does the work of [`step`](Self::step) where each surface may be hit from each side of each other one; `met`
+    /// bounds what rays that hit each shiny surface return.
+    fn step_among_many(&self, matt_light: &[Sides<f64>], met: &[Sides<f64>]) -> Vec<Sides<f64>> {
         let met: Vec<_> = met.iter().map(|[outside, inside]| above(*outside, *inside)).collect();
         let brighter =
             |one: usize, other: usize| if above(met[other], met[one]) > met[one] { other } else { one };
@@ -308,18 +321,20 @@ impl Scene {
         let rest = others.map(|index| met[index]).fold(0.0, above);
         let of = |index: usize, side: usize| {
             let is_left = index == brightest && !self.shiny[index].1[side];
-            above(t_max[index][side], if is_left { rest } else { met[brightest] })
+            above(matt_light[index][side], if is_left { rest } else { met[brightest] })
         };
         (0..met.len()).map(|index| [of(index, 0), of(index, 1)]).collect()
     }
 }
 
 impl Surface {
-    /// How rays go on from it which can bring back so much. `whole` is the share of a camera ray, in the unit of `shares`.
+    /// Computes how rays continue from the surface, given bounds on what they return. `whole` is the share of a primary
+    /// ray, in the unit of `shares`.
     fn onward(&self, beyond: Sides<f64>, shares: Sides<f64>, whole: f64, cuts: bool) -> Onward {
         let Self { own, through, mirrored } = *self;
         let part = if through == 0.0 || mirrored == 0.0 { 1.0 } else { 0.5 };
-        // Of the sides on which rays may leave it, whichever bounds less. From where nothing is met nothing comes.
+        // The larger ratio of the two sides, since rays may leave on either. A side from which nothing is hit returns
+        // nothing.
         let ratio = |side: usize| if beyond[side] == 0.0 { 0.0 } else { beyond[side] / shares[side] };
         let (ratio, most) = (above(ratio(0), ratio(1)), above(shares[0], shares[1]));
         let branch = |weight: f64| {
@@ -339,44 +354,47 @@ impl Surface {
     }
 }
 
-/// Something of two bounds for each object and side.
+/// Combines two bounds for each object and side.
 fn each(one: &[Sides<f64>], other: &[Sides<f64>], of: impl Fn(f64, f64) -> f64) -> Vec<Sides<f64>> {
     one.iter().zip(other).map(|(one, other)| [of(one[0], other[0]), of(one[1], other[1])]).collect()
 }
 
-/// Whether a ray that leaves an object on a side may meet it again.
+/// Tells whether a ray that leaves an object on a side may hit it again.
 fn can_hit_itself(object: &Object, side: Side) -> bool {
     object.shape.can_hit_itself(side)
 }
 
-/// On which sides of the plane that an object lies in, if it does, another one may be met.
+/// Tells on which sides of the plane that contains an object, if there is one, another object may be hit.
 fn lies(of: &Object, object: &Object) -> Sides<bool> {
     let Some([point, normal]) = of.shape.plane() else { return [true; 2] };
     let size = |at: DVec3| at.abs().max_element();
     let (middle, reach) = match (culling::bounds(object), object.shape.plane()) {
         (Some(bounds), _) => (bounds.middle(), bounds.half_size()),
-        (None, Some([other, upright])) if upright == normal || upright == -normal => (other, DVec3::ZERO),
+        (None, Some([other, its_normal])) if its_normal == normal || its_normal == -normal => {
+            (other, DVec3::ZERO)
+        }
         _ => return [true; 2],
     };
     let distance = normal.dot(middle - point);
+    // The margin is tens of thousands of ulps of the coordinates and of the path length.
     let reach =
         normal.abs().dot(reach) + 10.0 * SLACK * (size(middle) + size(reach) + size(point) + MAX_DIST);
     [distance > -reach, distance < reach]
 }
 
-/// How far from a point all of an object is, at least.
+/// Returns a lower bound on the distance from a point to an object, in world units.
 fn clearance(object: &Object, from: DVec3) -> f64 {
     let by_bounds =
         || aabb::clearance(from, culling::bounds(object), |region| culling::is_clear_of(object, region));
     object.shape.clearance(from).unwrap_or_else(by_bounds)
 }
 
-/// The largest magnitude of a channel.
+/// Returns the largest magnitude of a channel.
 fn largest(colour: Rgb) -> f64 {
     colour.abs().max_element()
 }
 
-/// The larger of two bounds; what is no number bounds nothing.
+/// Returns the larger of two bounds; infinity if either is NaN.
 fn above(one: f64, other: f64) -> f64 {
     if one >= other {
         one
@@ -387,40 +405,42 @@ fn above(one: f64, other: f64) -> f64 {
     }
 }
 
-/// What comes back of some light. Of what is not mirrored nothing does, however bright.
+/// Multiplies a weight by an amount of light; 0 if either is 0, even if the other is infinite.
 fn gain(weight: f64, light: f64) -> f64 {
     if weight == 0.0 || light == 0.0 { 0.0 } else { weight * light }
 }
 
-/// What light that passes through an object is multiplied by.
+/// Bounds the factor by which an object multiplies light that passes through it.
 fn tint(object: &Object, look: Option<&Look>) -> f64 {
     let transparency = object.material.transparency;
     match (object.shader.uniform(&object.material), look) {
         _ if transparency == 0.0 => 0.0,
         (Some(_), _) => largest(object.tint(DVec3::ZERO)),
-        // Nowhere is the diffuse colour below 0, and its strongest channel makes 1.
+        // The diffuse colour is not negative anywhere, and the tint is scaled so that its largest channel is the
+        // transparency.
         (None, Some(_)) => transparency,
         (None, None) => f64::INFINITY,
     }
 }
 
-/// What comes from an object's own surface, times how far the light has come from there.
+/// Bounds the light of an object's own surface, times the path length to the surface.
 fn own(model: &Model, object: &Object, look: &Look, any_light_comes: bool) -> f64 {
-    let glint = if object.material.shininess == 0.0 { Rgb::ZERO } else { look.specular.abs() };
+    let highlight = if object.material.shininess == 0.0 { Rgb::ZERO } else { look.specular.abs() };
     let diffuse = look.diffuse.abs();
     let mut own = look.ambient.abs();
     for light in &model.lights {
-        if glint == Rgb::ZERO && diffuse == Rgb::ZERO {
+        if highlight == Rgb::ZERO && diffuse == Rgb::ZERO {
             break;
         }
         let Some(sent) = light.value.brightest().filter(|_| any_light_comes) else { return f64::INFINITY };
-        // A light with a size is seen on a disc across the way to its middle: no nearer than that.
+        // A light with a size is sampled on a disc perpendicular to the direction of its centre, so no sample is nearer
+        // than the centre.
         let scattered = match clearance(object, light.value.location()) {
             _ if diffuse == Rgb::ZERO => Rgb::ZERO,
             0.0 => return f64::INFINITY,
             clearance => diffuse / clearance,
         };
-        own += sent.abs() * (scattered + glint);
+        own += sent.abs() * (scattered + highlight);
     }
     largest(own)
 }

@@ -1,4 +1,4 @@
-//! What the rays of a packet meet first.
+//! The closest hits of a packet's rays.
 
 use super::arrays::{VectorList, resized};
 use super::context::Tracer;
@@ -22,7 +22,8 @@ use std::mem::take;
 use std::ops::Range;
 
 impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
-    /// What each ray meets first before its end, if it has one. A ray that has cost as many as it may meets nothing.
+    /// Finds each ray's closest hit, before `t_max` where it is given, in world units. A ray whose budget is used up
+    /// hits nothing.
     pub(super) fn closest(&mut self, group: &mut RayGroup, t_max: Option<&[f64]>, hits: &mut HitRecord) {
         let (is_over, count) = (group.ray_budget[0] == 0, group.padded());
         if hits.begin(self.cpu, &mut group.ray_budget, count, t_max) && t_max.is_none() {
@@ -42,7 +43,7 @@ impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
         (self.scratch.ahead, self.scratch.inverse) = (ahead, inverse);
     }
 
-    /// What one ray meets first, with all that leads to it told.
+    /// Finds one ray's closest hit and reports each step to the observer.
     fn closest_seen(&mut self, group: &RayGroup, hits: &mut HitRecord) {
         let start = self.start(group, 0);
         let mut nearest = hits.far[0];
@@ -58,7 +59,7 @@ impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
             let is_first = self.is_first(&start, (index, distance), (hits.met[0], nearest));
             self.observer.see(Event::Tested(index, Some(if is_first { distance } else { MISS })));
             if is_first {
-                // As a packet has it, for the hit to be finished in the same way.
+                // As in a packet, so that the hit is refined in the same way.
                 (hits.near[0], hits.far[0], hits.met[0]) = (bracket.near, bracket.far, index as u64 + 1);
                 nearest = distance;
             }
@@ -72,14 +73,14 @@ impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
         self.observer.see(Event::Met(hit.as_ref()));
     }
 
-    /// One ray of a packet.
+    /// Returns one ray of a group, with what is known of its errors.
     fn start(&self, group: &RayGroup, lane: usize) -> Start {
         let [x, y] = &self.scratch.places;
         let sight = group.looks.then(|| self.plan.camera.sight(x[lane], y[lane])).or(group.sight);
         Start { ray: group.rays().get(lane), error: group.error(lane), sight }
     }
 
-    /// Whether rays may meet an object at all: to most that they leave they do not come back.
+    /// Tells whether any ray may hit an object at all: most shapes cannot be hit by rays that leave them.
     pub(super) fn may_meet(&self, left: Option<(usize, &[Side])>, index: usize) -> bool {
         let Some((_, sides)) = left.filter(|(object, _)| *object == index) else { return true };
         let shape = &self.model.objects[index].shape;
@@ -90,8 +91,8 @@ impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
         }
     }
 
-    /// Whether a ray meets an object before what it has met so far, by its index and 1, or nothing before the end of the
-    /// search. Of two that lie together the earlier one in the scene is first.
+    /// Tells whether a ray hits an object before its closest hit so far, given by the object's index plus 1 (0 for
+    /// none) and the distance. Of coincident objects, the earlier one in the scene is first.
     fn is_first(&self, start: &Start, (index, distance): (usize, f64), (met, far): (u64, f64)) -> bool {
         let Some(rival) = (met as usize).checked_sub(1) else { return distance < far };
         if distance == MISS {
@@ -104,8 +105,9 @@ impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
         is_before.unwrap_or(index < rival)
     }
 
-    /// The distances at which the rays of a packet meet an object, known to lie between `near` and `far`.
-    pub(super) fn settle(
+    /// Computes the distances, in world units, at which the rays of a group hit an object. Each lies between `near` and
+    /// `far`.
+    pub(super) fn refine(
         &mut self,
         group: &RayGroup,
         (near, far): (&[f64], &[f64]),
@@ -119,7 +121,7 @@ impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
             let shape = &self.model.objects[object].shape;
             let sides = group.sides_of(object);
             shape.packets().refine(self.cpu, group.rays(), sides, (near, far), distances);
-            if keep_in_brackets(self.cpu, near, far, distances) {
+            if clamp_to_brackets(self.cpu, near, far, distances) {
                 for lane in 0..len {
                     if distances[lane].is_nan() {
                         let origin_side = sides.map(|sides| sides[lane]);
@@ -129,25 +131,25 @@ impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
                 }
             }
         }
-        // What is beyond the last ray goes on as a copy of it: what plain arithmetic left open there is no number, and
-        // would make no box of the places.
+        // Lanes beyond the last ray continue as copies of it. Plain arithmetic may have left NaNs there, which would
+        // spoil the bounding box of the points.
         let last = distances[len - 1];
         distances[len..].fill(last);
     }
 }
 
-/// A ray, and what is known of the one that it stands for.
+/// A rounded ray, and what is known of the true ray that it stands for.
 pub(super) struct Start {
     pub ray: Ray,
-    /// How far its origin may be from the point that it stands for, in world units.
+    /// A bound on the error of the origin, in world units.
     pub error: f64,
-    /// The ray before anything was rounded, where it comes from the viewer.
+    /// The ray before anything is rounded, if it is a primary ray.
     pub sight: Option<Sight>,
 }
 
 impl Start {
-    /// The side of a shape that the ray leaves: of its own object's it is known; another one that lies through the same
-    /// point is left, too.
+    /// Returns the side of a shape that the ray leaves, if the ray starts on the shape. `own` is that side if the shape
+    /// belongs to the object that the ray leaves. Another shape that passes through the same point is left, too.
     fn leaves(&self, shape: &AnyShape, own: Option<Side>) -> Option<Side> {
         let Ray { origin, dir } = self.ray;
         let touched = || Side::seen_along(dir, shape.normal(origin)).opposite();
@@ -155,13 +157,14 @@ impl Start {
     }
 }
 
-/// A shape's exact distance on one ray, which leaves it on a side if it is the object that the packet leaves.
+/// Returns the exact distance of one ray's hit of a shape before `far`, in world units, or [`MISS`]. `origin_side` is
+/// the side of the shape that the ray leaves, if the shape belongs to the object that the packet leaves.
 pub(super) fn exact(shape: &AnyShape, start: &Start, origin_side: Option<Side>, far: f64) -> f64 {
     located(shape, start, origin_side, far).0
 }
 
-/// A shape's exact distance, as [`exact`] gives it, and a bracket of that and of the distance of the ray before anything
-/// was rounded.
+/// Returns the exact distance as [`exact`] does, and a bracket of that distance and of the distance along the ray
+/// before anything is rounded.
 fn located(shape: &AnyShape, start: &Start, origin_side: Option<Side>, far: f64) -> (f64, Bracket) {
     let known = |distance| (distance, Bracket::exactly(distance));
     match start.leaves(shape, origin_side) {
@@ -174,15 +177,15 @@ fn located(shape: &AnyShape, start: &Start, origin_side: Option<Side>, far: f64)
     let range = RayRange { far, ..RayRange::ALL };
     let Some(sight) = &start.sight else { return known(shape.distance(&start.ray, &range)) };
     let bracket = shape.t_bounds(&start.ray, &RayRange::ALL);
-    // A bracket that is known exactly has taken the whole search.
+    // A bracket of width 0 is the distance itself.
     let is_known = bracket.near == bracket.far;
     let distance = if is_known { range.keep(bracket.near) } else { shape.distance(&start.ray, &range) };
-    // Where what was rounded of the ray may decide whether it meets the shape, the ray does that was not rounded.
+    // Where the rounding of the ray may decide whether it hits the shape, the unrounded ray decides.
     if bracket.is_doubtful() { decided(shape, sight, distance) } else { (distance, bracket) }
 }
 
-/// A distance and a bracket of it, if the ray before anything was rounded has a hit there as far as 237 bits tell, or
-/// [`MISS`].
+/// Returns a distance and a bracket of it, if the ray before anything is rounded hits the shape as far as a proof with
+/// 237 bits tells, and [`MISS`] otherwise.
 fn decided(shape: &AnyShape, sight: &Sight, distance: f64) -> (f64, Bracket) {
     let enclosure = match shape.certify(sight, Precision::Double) {
         Enclosure::Edge(_) | Enclosure::Doubtful(_) => shape.certify(sight, Precision::Octuple),
@@ -190,12 +193,12 @@ fn decided(shape: &AnyShape, sight: &Sight, distance: f64) -> (f64, Bracket) {
     };
     match enclosure {
         Enclosure::Misses => (MISS, Bracket::MISS),
-        // What has edges has them inclusive.
+        // Edges belong to their surfaces.
         Enclosure::Hits(at) | Enclosure::Edge(at) => {
             let Interval { low, high } = certify::bounds_in_world_units(at, sight);
             (distance.clamp(low, high), Bracket { near: low, far: high })
         }
-        // As of a plane that the ray runs along but for rounding: what is undecided lies farther on.
+        // What is undecided lies beyond the computed distance, as for a ray that is parallel to a plane up to rounding.
         Enclosure::Doubtful(from)
             if certify::in_world_units(Wide::point(from), sight).high * (1.0 - CLOSE) > distance =>
         {
@@ -206,28 +209,29 @@ fn decided(shape: &AnyShape, sight: &Sight, distance: f64) -> (f64, Bracket) {
 }
 
 kernels! {
-    /// Whether all is the same.
+    /// Tells whether all elements are the same.
     pub(super) fn is_one(of: &[u64]) -> bool {
         of.iter().fold(0, |other, one| other | (one ^ of[0])) == 0
     }
 
-    /// Keeps distances in their brackets, which are of no width where they are known. Tells whether any is no number.
-    fn keep_in_brackets(near: &[f64], far: &[f64], distances: &mut [f64]) -> bool {
+    /// Clamps distances to their brackets, which have width 0 where the distance is known. Returns whether any distance
+    /// is NaN.
+    fn clamp_to_brackets(near: &[f64], far: &[f64], distances: &mut [f64]) -> bool {
         let count = distances.len();
         let (near, far) = (&near[..count], &far[..count]);
         let mut any = 0;
         for lane in 0..count {
-            // A ray that was rounded may miss what the real one touches, or meet it elsewhere.
+            // The rounded ray may miss what the true one hits, or hit it elsewhere.
             let (low, high) = (near[lane], far[lane]);
-            let held = if distances[lane] < low { low } else { distances[lane] };
-            distances[lane] = if held > high { high } else { held };
+            let raised = if distances[lane] < low { low } else { distances[lane] };
+            distances[lane] = if raised > high { high } else { raised };
             any |= u64::from(distances[lane].is_nan());
         }
         any != 0
     }
 }
 
-/// The reciprocals of rays' directions.
+/// Computes the reciprocals of rays' directions, by component.
 pub(super) fn invert(rays: RayPacket, inverse: &mut VectorList) {
     let mut inverse = inverse.resized(rays.len());
     for lane in 0..rays.len() {
@@ -235,13 +239,14 @@ pub(super) fn invert(rays: RayPacket, inverse: &mut VectorList) {
     }
 }
 
+/// The search for the closest hits of a packet.
 struct Closest<'s, 'm, 'w, W> {
     tracer: &'s mut Tracer<'m, 'w, W>,
     group: &'s RayGroup,
     hits: &'s mut HitRecord,
-    /// Which of the rays are looked after.
+    /// The lanes of the current sub-packets.
     part: Range<usize>,
-    /// The reciprocals of their directions, for a tree.
+    /// The reciprocals of the rays' directions, for the BVH.
     inverse: &'s mut VectorList,
 }
 
@@ -260,15 +265,15 @@ impl<W: TraceObserver> Closest<'_, '_, '_, W> {
         }
     }
 
-    /// Looks at the objects that are listed, each for those parts of the packet that may come there.
+    /// Tests the objects outside of the BVH, each against the sub-packets that may hit it.
     fn listed(&mut self) {
         let (cpu, plan) = (self.tracer.cpu, self.tracer.plan);
-        // Those from the viewer all start there.
+        // Primary rays all start at the viewer.
         let frusta = frusta::around(cpu, self.group.rays(), self.group.origin_object.is_none());
         for index in &plan.unbounded {
             let object = &self.tracer.model.objects[*index];
             if self.tracer.may_meet(self.group.left(), *index) {
-                self.in_parts(*index, frusta.which(|paths| !culling::is_clear_of(object, paths)));
+                self.in_parts(*index, frusta.which(|region| !culling::is_clear_of(object, region)));
             }
         }
         let mut parts = take(&mut self.tracer.scratch.parts);
@@ -281,11 +286,11 @@ impl<W: TraceObserver> Closest<'_, '_, '_, W> {
         self.tracer.scratch.parts = parts;
     }
 
-    /// Looks at an object for some parts of the packet, whose bits are 1.
+    /// Tests an object against the sub-packets whose bits are 1.
     fn in_parts(&mut self, index: usize, mut parts: u32) {
         let (mut start, mut tested) = (0, 0);
         while parts != 0 {
-            // Neighbours go together.
+            // Neighbouring sub-packets are tested together.
             start += PART * parts.trailing_zeros() as usize;
             parts >>= parts.trailing_zeros();
             let end = start + PART * parts.trailing_ones() as usize;
@@ -300,12 +305,12 @@ impl<W: TraceObserver> Closest<'_, '_, '_, W> {
         }
     }
 
-    /// How many of the rays are no copies.
+    /// Returns the number of current rays, without the copies that pad the arrays.
     fn len(&self) -> usize {
         self.part.end.min(self.group.len) - self.part.start
     }
 
-    /// Which of two objects one ray meets first, where brackets do not tell.
+    /// Decides whether one ray hits an object before its closest hit so far, where the brackets overlap.
     fn decide(&mut self, lane: usize, index: usize, origin_side: Option<Side>) {
         let objects = &self.tracer.model.objects;
         let start = self.tracer.start(self.group, lane);
@@ -324,7 +329,7 @@ impl<W: TraceObserver> Closest<'_, '_, '_, W> {
         };
         let is_first = self.tracer.is_first(&start, (index, distance), (*met, rival_distance));
         let nearest = if is_first { distance } else { rival_distance };
-        // The ray from the viewer that was not rounded meets it anywhere in its bracket, and may meet others there.
+        // The unrounded primary ray hits the object anywhere in its bracket, and may hit other objects there.
         let bracket = match start.sight {
             Some(_) if is_first => own,
             Some(_) => Bracket { near: *near, far: *far },
@@ -337,7 +342,7 @@ impl<W: TraceObserver> Closest<'_, '_, '_, W> {
         }
     }
 
-    /// Looks at an object.
+    /// Tests an object against the current sub-packets.
     fn test(&mut self, index: usize) {
         let shape = &self.tracer.model.objects[index].shape;
         let sides = self.group.sides_of(index).map(|sides| &sides[self.part.clone()]);

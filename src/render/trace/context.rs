@@ -1,4 +1,4 @@
-//! What is traced, with what, and for whom.
+//! The tracer: its plan, its scratch space and its observer.
 
 use super::arrays::NARROW;
 use super::scratch::Scratch;
@@ -12,43 +12,44 @@ use crate::world::accuracy::Accuracy;
 use crate::world::coincidence;
 use crate::world::hittable::Hittable;
 
-/// From so many reflections on, packets are narrow: a deep hall of mirrors would fill the memory with wide ones.
+/// The number of reflections and transmissions after which packets are narrow: with wide packets, facing mirrors would
+/// use too much memory.
 const DEEP: usize = 24;
 
-/// Traces packets of rays through a model, as planned.
+/// Traces packets of rays through a plan.
 pub(crate) struct Tracer<'m, 'w, W> {
     pub(super) model: &'m Model,
     pub(super) plan: &'m Plan<'m>,
     pub(super) cpu: Cpu,
-    /// How far along an axis the viewer is from the world's origin, in world units.
+    /// The largest magnitude of the viewer's coordinates, in world units.
     pub(super) viewer: f64,
-    /// How many mirrors and panes of glass the present packet has behind it.
+    /// The number of reflections and transmissions on the path of the current packet.
     pub(super) depth: usize,
     pub(super) scratch: &'w mut Scratch,
     pub(super) observer: &'w mut W,
 }
 
 impl<'m, 'w, W: TraceObserver> Tracer<'m, 'w, W> {
-    pub(crate) fn new(plan: &'m Plan, cpu: Cpu, scratch: &'w mut Scratch, watch: &'w mut W) -> Self {
-        Self { model: plan.model, plan, cpu, viewer: 0.0, depth: 0, scratch, observer: watch }
+    pub(crate) fn new(plan: &'m Plan, cpu: Cpu, scratch: &'w mut Scratch, observer: &'w mut W) -> Self {
+        Self { model: plan.model, plan, cpu, viewer: 0.0, depth: 0, scratch, observer }
     }
 
-    /// How many rows of pixels the picture has.
+    /// Returns the height of the image in pixels.
     pub(crate) fn height(&self) -> usize {
         self.plan.camera.pixels[1]
     }
 
-    /// Whether the notes' own methods are asked for.
+    /// Tells whether the scene is traced by the notes' own methods.
     pub(super) fn is_classic(&self) -> bool {
         self.plan.camera.accuracy == Accuracy::Classic
     }
 
-    /// The most rays of a packet that goes on from the present one.
-    pub(super) fn most(&self) -> usize {
+    /// Returns the maximum number of rays of a packet that continues from the current one.
+    pub(super) fn max_packet(&self) -> usize {
         if self.depth < DEEP { PACKET_SIZE } else { NARROW }
     }
 
-    /// The errors of places where rays have come to a shape.
+    /// Returns the errors of the points where rays have hit a shape.
     pub(super) fn errors(&self, shape: &dyn Hittable, travelled: &[f64], cosines: &[f64]) -> Errors {
         if self.is_classic() {
             return Errors::NONE;

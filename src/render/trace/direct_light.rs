@@ -1,4 +1,4 @@
-//! What the lights of a scene do at the places of a surface.
+//! Direct light: what a scene's lights contribute at the points of a surface.
 
 use super::arrays::{VectorList, resized};
 use super::context::Tracer;
@@ -16,7 +16,7 @@ use crate::world::packets::light::PacketLight;
 use glam::DVec2;
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
-    /// Adds what the lights do.
+    /// Adds the contributions of all lights.
     pub(super) fn illuminate(&mut self, group: &mut RayGroup, surface: &Surface, colours: &mut VectorList) {
         if self.model.lights.is_empty() {
             return;
@@ -31,7 +31,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         };
         let scatters = is_matt || material.shininess != 0.0 && surface.is_mirror;
         let ray_budget = group.ray_budget[0];
-        // Where nothing is scattered lights make no difference. Whoever looks on is told of them all the same.
+        // Where nothing is scattered, lights make no difference, but an observer is told of them all the same.
         if scatters || W::SEES {
             let around = aabb::around(cpu, points);
             for index in 0..self.model.lights.len() {
@@ -42,13 +42,13 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             }
         }
         if !scatters {
-            // And the ray costs what it does where nobody looks.
+            // Observed or not, a ray costs the same.
             group.ray_budget[0] = ray_budget;
         }
         self.scratch.lighting = Some(lighting);
     }
 
-    /// Adds what one light does.
+    /// Adds the contribution of one light.
     fn shine(
         &mut self,
         index: usize,
@@ -77,13 +77,13 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let source = if is_point {
             Aabb { low: light.location(), high: light.location() }
         } else {
-            self.places(light, index, group, surface, lights);
+            self.sample_light(light, index, group, surface, lights);
             aabb::around(cpu, lights.view(count))
         };
         let lights = (!is_point).then(|| lights.view(count));
         let (t_max, shines, blocked) =
             (resized(t_max, count), resized(shines, count), resized(blocked, count));
-        let facing = LightSamples {
+        let samples = LightSamples {
             toward: toward.resized(count),
             emissivity: emissivity.resized(count),
             cos_over_distance: resized(cos_over_distance, count),
@@ -91,7 +91,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             shines,
         };
         let faced =
-            light.sample(cpu, &ShadingPoints { points, normals, lights, slack: self.slack() }, facing);
+            light.sample(cpu, &ShadingPoints { points, normals, lights, slack: self.slack() }, samples);
         if !faced.any_shines {
             if W::SEES {
                 self.observer
@@ -124,9 +124,9 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             cos_over_distance: &cos_over_distance[..count],
             shines,
             blocked,
-            emissivity: sent.map_or(Colours::Each(emissivity.view(count)), Colours::Even),
+            emissivity: sent.map_or(Colours::Each(emissivity.view(count)), Colours::Uniform),
             looks: match surface.look {
-                Some(look) => Reflectivities::Even(look),
+                Some(look) => Reflectivities::Uniform(look),
                 None => Reflectivities::Each {
                     diffuse: diffuse.view(count),
                     specular: surface.specular.view(count),
@@ -142,18 +142,18 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         }
     }
 
-    /// The points of a light that the places of a surface see: on the disc that a ball of its size shows to each, where
-    /// the sample has it.
-    fn places(
+    /// Samples the point of a light that each point of a surface sees: on the disc around the light's centre that faces
+    /// the point, where the primary ray's sample chooses.
+    fn sample_light(
         &self,
         light: &dyn PacketLight,
         index: usize,
         group: &RayGroup,
         surface: &Surface,
-        places: &mut VectorList,
+        lights: &mut VectorList,
     ) {
         let (middle, size) = (light.location(), light.size());
-        places.fill(group.padded(), middle);
+        lights.fill(group.padded(), middle);
         for lane in 0..group.padded() {
             let camera = group.camera.get(lane).map(|camera| usize::from(*camera));
             let Some(sample) = camera.and_then(|camera| self.scratch.samples.get(camera)) else { continue };
@@ -161,7 +161,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             let (across, up) = axis.any_orthonormal_pair();
             let DVec2 { x, y } = sample.on_light(index);
             let (radius, angle) = (size * x.sqrt(), std::f64::consts::TAU * y);
-            places.set(lane, middle + radius * (libm::cos(angle) * across + libm::sin(angle) * up));
+            lights.set(lane, middle + radius * (libm::cos(angle) * across + libm::sin(angle) * up));
         }
     }
 }

@@ -1,4 +1,4 @@
-//! What the rays of a packet have met so far.
+//! The closest hits of a packet's rays so far.
 
 use super::arrays::resized;
 use crate::geometry::ray::MISS;
@@ -6,27 +6,30 @@ use crate::geometry::ray_packet::Nearest;
 use crate::simd::cpu::{Cpu, kernels};
 use std::ops::Range;
 
-/// What each ray of a packet meets first, and between which distances.
+/// The object that each ray of a packet hits first, and a bracket of the distance.
 #[derive(Default)]
 pub(super) struct HitRecord {
+    /// The lower bounds of the distances, in world units.
     pub near: Vec<f64>,
+    /// The upper bounds of the distances, in world units.
     pub far: Vec<f64>,
-    /// The object's index and 1; 0 for none.
+    /// The object's index plus 1; 0 for no object.
     pub met: Vec<u64>,
+    /// Not 0 where the last tested object's bracket overlaps that of another one.
     pub doubt: Vec<u64>,
 }
 
 impl HitRecord {
-    /// Nothing yet, before these ends, and counts the rays. Those that have cost as many as they may end where they
-    /// begin; tells whether any has.
+    /// Starts with no hits before `t_max`, and charges each ray to its budget. Rays whose budget is used up end at 0.
+    /// Returns whether there are any such rays.
     pub fn begin(&mut self, cpu: Cpu, ray_budget: &mut [u32], count: usize, t_max: Option<&[f64]>) -> bool {
         let (near, far) = (resized(&mut self.near, count), resized(&mut self.far, count));
-        // What is in doubt is written by each shape that is looked at.
+        // Each shape that is tested overwrites `doubt`.
         resized(&mut self.doubt, count);
         begin(cpu, &mut ray_budget[..count], t_max, near, far, resized(&mut self.met, count))
     }
 
-    /// Of some of the rays.
+    /// Borrows the hits of some of the rays.
     pub fn part(&mut self, range: Range<usize>) -> Nearest<'_> {
         Nearest {
             near: &mut self.near[range.clone()],
@@ -38,7 +41,7 @@ impl HitRecord {
 }
 
 kernels! {
-    /// Counts rays, which have met nothing yet. Tells whether any has cost as many as it may.
+    /// Starts rays with no hits and charges each to its budget. Returns whether the budget of any is used up.
     fn begin(
         ray_budget: &mut [u32], t_max: Option<&[f64]>, near: &mut [f64], far: &mut [f64], met: &mut [u64]
     ) -> bool {

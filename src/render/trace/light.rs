@@ -1,4 +1,4 @@
-//! The arithmetic of shading, for all places of a packet at once.
+//! The arithmetic of shading, for all points of a packet at once.
 
 use crate::render::limits::MAX_RAYS;
 use crate::render::plan::depth::{Branch, MANY};
@@ -7,56 +7,57 @@ use crate::simd::soa::{View, ViewMut};
 use crate::world::material::{Look, Rgb};
 use crate::world::packets::shader::is_any;
 
-/// What rays are worth that have come the same way, from object to object.
+/// What rays on the same path, from object to object, can add to a pixel.
 #[derive(Clone, Copy)]
 pub(super) struct Worth {
-    /// What their light is multiplied by on its way, at most.
+    /// The largest factor by which the rays' light is multiplied on the path.
     pub weight: f64,
-    /// The part that each may leave out of what its camera ray may.
+    /// The fraction of the primary ray's allowance for cuts that each ray gets.
     pub share: f64,
 }
 
-/// Of rays that may cost so few more, [`MANY`] have been followed.
+/// A ray budget below this means that [`MANY`] rays have been followed.
 pub(super) const FEW: u32 = MAX_RAYS as u32 - MANY;
 
-/// Places that a light shines on.
+/// Points on which a light shines.
 pub(super) struct Lit<'l> {
-    /// From each place to the light.
+    /// The unit vectors toward the light.
     pub toward: View<'l>,
-    /// Along which each is seen.
+    /// The directions of the rays that hit the points.
     pub seen: View<'l>,
     pub normals: View<'l>,
-    /// The cosines of the angles between the normals and the directions of the light, divided by its distances.
+    /// The cosines of the angles between the normals and `toward`, divided by the distances to the light in world
+    /// units.
     pub cos_over_distance: &'l [f64],
-    /// 0 where no light comes.
+    /// 0 where the light does not shine.
     pub shines: &'l [u64],
-    /// 1 where something stands in its way.
+    /// 1 where the light is blocked.
     pub blocked: &'l [u64],
-    /// What it sends there.
+    /// The colours that the light sends.
     pub emissivity: Colours<'l>,
     pub looks: Reflectivities<'l>,
 }
 
-/// What places of a surface answer to light.
+/// The reflectivities of points of a surface.
 #[derive(Clone, Copy)]
 pub(super) enum Reflectivities<'l> {
-    /// All the same.
-    Even(Look),
-    /// Each something else.
+    /// The same at all points.
+    Uniform(Look),
+    /// One for each point.
     Each { diffuse: View<'l>, specular: View<'l> },
 }
 
-/// Colours at places of a surface.
+/// Colours at points of a surface.
 #[derive(Clone, Copy)]
 pub(super) enum Colours<'c> {
-    /// The same at all.
-    Even(Rgb),
-    /// That of each.
+    /// The same at all points.
+    Uniform(Rgb),
+    /// One for each point.
     Each(View<'c>),
 }
 
 kernels! {
-    /// Adds the light that comes to places, where it does.
+    /// Adds the light that reaches points, where it does.
     pub(super) fn shine(lit: &Lit, shininess: f64) => colours {
         let (count, whole) = (lit.shines.len(), shininess as u32);
         let colours = colours.first(count);
@@ -67,48 +68,49 @@ kernels! {
         } else if f64::from(whole) == shininess && whole < 1 << 17 {
             shine_each(lit, Some(|cos| whole_power::<17>(cos, whole)), colours);
         } else {
-            // Rounding may make a cosine more than 1, and a large power of that anything.
+            // Rounding may make a cosine larger than 1, and a large power of it much larger.
             shine_each(lit, Some(|cos: f64| libm::pow(cos.min(1.0), shininess)), colours);
         }
     }
 
-    /// Marks the rays that go on from a surface: those which have not travelled too far yet.
-    pub(super) fn reach(travelled: &[f64], most: f64, goes: &mut [u64]) {
+    /// Marks the rays that continue from a surface: those whose path length is at most `max_travelled`, in world units.
+    pub(super) fn reach(travelled: &[f64], max_travelled: f64, goes: &mut [u64]) {
         let (count, travelled) = (goes.len(), &travelled[..goes.len()]);
         for lane in 0..count {
-            goes[lane] = u64::from(travelled[lane] <= most);
+            goes[lane] = u64::from(travelled[lane] <= max_travelled);
         }
     }
 
-    /// Takes the mark from rays that can bring back too little to be seen. `budget` has the rays that each may still cost;
-    /// nothing where none has cost [`MANY`].
+    /// Clears `goes` for the rays that can return too little to be seen. `ray_budget` has the number of rays that each
+    /// ray may still cost; `None` where none has cost [`MANY`] yet.
     pub(super) fn leave_out(
         travelled: &[f64], worth: Worth, branch: &Branch, ray_budget: Option<&[u32]>, goes: &mut [u64]
     ) {
         let (count, Worth { weight, share }) = (goes.len(), worth);
-        let (most, most_alone) = (weight * branch.faint, weight * branch.faint_alone);
+        let (faint, faint_alone) = (weight * branch.faint, weight * branch.faint_alone);
         let travelled = &travelled[..count];
         for lane in 0..count {
-            let is_faint = most < share * travelled[lane];
+            let is_faint = faint < share * travelled[lane];
             goes[lane] &= u64::from(!is_faint);
         }
         if let Some(ray_budget) = ray_budget {
             let ray_budget = &ray_budget[..count];
             for lane in 0..count {
-                let is_faint = (ray_budget[lane] < FEW) & (most_alone < travelled[lane]);
+                let is_faint = (ray_budget[lane] < FEW) & (faint_alone < travelled[lane]);
                 goes[lane] &= u64::from(!is_faint);
             }
         }
     }
 
-    /// The fewest rays that any may still cost.
+    /// Returns the smallest ray budget.
     pub(super) fn fewest(ray_budget: &[u32]) -> u32 {
         ray_budget.iter().fold(u32::MAX, |fewest, ray_budget| fewest.min(*ray_budget))
     }
 
-    /// Directions, mirrored. Marks the rays that go on there: likewise, where the surface is a mirror.
+    /// Reflects directions. Marks the rays that continue: those whose path length is at most `max_travelled`, in world
+    /// units, and that hit a point whose specular reflectivity is not 0.
     pub(super) fn mirror(
-        dir: View, normals: View, specular: Colours, travelled: &[f64], most: f64, goes: &mut [u64]
+        dir: View, normals: View, specular: Colours, travelled: &[f64], max_travelled: f64, goes: &mut [u64]
     ) => out {
         let count = dir.len();
         let (normals, mut out) = (normals.first(count), out.first(count));
@@ -116,7 +118,7 @@ kernels! {
         for lane in 0..count {
             let (dir, normal) = (dir.get(lane), normals.get(lane));
             out.set(lane, dir - 2.0 * dir.dot(normal) * normal);
-            goes[lane] = u64::from(travelled[lane] <= most);
+            goes[lane] = u64::from(travelled[lane] <= max_travelled);
         }
         if let Colours::Each(specular) = specular {
             let specular = specular.first(count);
@@ -126,7 +128,7 @@ kernels! {
         }
     }
 
-    /// Divides colours by how far their light has travelled.
+    /// Divides colours by the path lengths of their light, in world units.
     pub(super) fn fade(travelled: &[f64]) => colours {
         let count = travelled.len();
         let mut colours = colours.first(count);
@@ -135,12 +137,12 @@ kernels! {
         }
     }
 
-    /// Adds what is mirrored.
+    /// Adds reflected light.
     pub(super) fn reflect(specular: Colours, seen: View) => colours {
         let count = seen.len();
         let mut colours = colours.first(count);
         match specular {
-            Colours::Even(specular) => for lane in 0..count {
+            Colours::Uniform(specular) => for lane in 0..count {
                 colours.set(lane, colours.get(lane) + specular * seen.get(lane));
             },
             Colours::Each(specular) => {
@@ -153,8 +155,8 @@ kernels! {
     }
 }
 
-/// A power of less than so many bits by repeated squaring: of many numbers at a time, which a general power is not, nor
-/// one that ends with its last bit.
+/// Computes a power whose exponent has fewer than `BITS` bits, by repeated squaring. The number of steps is fixed, so
+/// that the loop around it is vectorized, unlike one around a general power function.
 #[inline(always)]
 fn whole_power<const BITS: u32>(of: f64, power: u32) -> f64 {
     let (mut product, mut square) = (1.0, of);
@@ -165,47 +167,47 @@ fn whole_power<const BITS: u32>(of: f64, power: u32) -> f64 {
     product
 }
 
-/// As `shine`, with what a glint is of the cosine of its angle.
+/// Adds the light that reaches points. `highlight` returns the strength of a highlight from the cosine of its angle.
 #[inline(always)]
-fn shine_each(lit: &Lit, glint: Option<impl Fn(f64) -> f64>, colours: ViewMut) {
+fn shine_each(lit: &Lit, highlight: Option<impl Fn(f64) -> f64>, colours: ViewMut) {
     let count = lit.shines.len();
     match lit.looks {
-        Reflectivities::Even(Look { diffuse, specular, .. }) => {
-            shine_sent(lit, |_| diffuse, |_| specular, glint, colours);
+        Reflectivities::Uniform(Look { diffuse, specular, .. }) => {
+            shine_sent(lit, |_| diffuse, |_| specular, highlight, colours);
         }
         Reflectivities::Each { diffuse, specular } => {
             let (diffuse, specular) = (diffuse.first(count), specular.first(count));
-            shine_sent(lit, |lane| diffuse.get(lane), |lane| specular.get(lane), glint, colours);
+            shine_sent(lit, |lane| diffuse.get(lane), |lane| specular.get(lane), highlight, colours);
         }
     }
 }
 
-/// Likewise, with the reflectivities.
+/// Adds the light that reaches points, given their reflectivities by lane.
 #[inline(always)]
 fn shine_sent(
     lit: &Lit,
     diffuse: impl Fn(usize) -> Rgb,
     specular: impl Fn(usize) -> Rgb,
-    glint: Option<impl Fn(f64) -> f64>,
+    highlight: Option<impl Fn(f64) -> f64>,
     colours: ViewMut,
 ) {
     match lit.emissivity {
-        Colours::Even(sent) => shine_all(lit, |_| sent, diffuse, specular, glint, colours),
+        Colours::Uniform(sent) => shine_all(lit, |_| sent, diffuse, specular, highlight, colours),
         Colours::Each(sent) => {
             let sent = sent.first(lit.shines.len());
-            shine_all(lit, |lane| sent.get(lane), diffuse, specular, glint, colours);
+            shine_all(lit, |lane| sent.get(lane), diffuse, specular, highlight, colours);
         }
     }
 }
 
-/// Likewise, with what the light sends.
+/// Adds the light that reaches points, given their reflectivities and the colours that the light sends by lane.
 #[inline(always)]
 fn shine_all(
     lit: &Lit,
     sent: impl Fn(usize) -> Rgb,
     diffuse: impl Fn(usize) -> Rgb,
     specular: impl Fn(usize) -> Rgb,
-    glint: Option<impl Fn(f64) -> f64>,
+    highlight: Option<impl Fn(f64) -> f64>,
     mut colours: ViewMut,
 ) {
     let count = lit.shines.len();
@@ -215,12 +217,12 @@ fn shine_all(
     for lane in 0..count {
         let light = sent(lane);
         let mut colour = diffuse(lane) * light * cos_over_distance[lane];
-        if let Some(glint) = &glint {
+        if let Some(highlight) = &highlight {
             let half = (toward.get(lane) - seen.get(lane)).normalize();
             let cosine = half.dot(normals.get(lane));
-            // From the wrong side there is none: powers of what is below 0 are light of the wrong sign, or no numbers.
-            let lustre = light * specular(lane) * glint(cosine);
-            colour = if cosine > 0.0 { colour + lustre } else { colour };
+            // There is no highlight from behind: powers of a negative cosine have the wrong sign, or are NaN.
+            let added = light * specular(lane) * highlight(cosine);
+            colour = if cosine > 0.0 { colour + added } else { colour };
         }
         let before = colours.get(lane);
         let is_lit = (shines[lane] != 0) & (blocked[lane] != 1);

@@ -1,4 +1,4 @@
-//! What is missing where a pixel has cost as many rays as it may.
+//! Bounds on the light that is missing where a pixel's ray budget is used up.
 
 use super::arrays::resized;
 use super::context::Tracer;
@@ -9,18 +9,18 @@ use super::surface::Surface;
 use crate::render::observer::TraceObserver;
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
-    /// Nothing yet, of so many camera rays.
+    /// Starts `count` primary rays, which lack nothing yet.
     pub(super) fn begin_missing(&mut self, count: usize) {
         resized(&mut self.scratch.missing, count);
         self.scratch.any_missing = false;
     }
 
-    /// How much light a camera ray lacks at most.
+    /// Returns a bound on the light that a primary ray lacks, in any channel.
     pub(super) fn missing(&self, camera: usize) -> f64 {
         if self.scratch.any_missing { self.scratch.missing[camera] } else { 0.0 }
     }
 
-    /// Adds what rays could have brought back that end where they begin.
+    /// Adds the light that rays could have returned that are not traced because their budget is used up.
     #[cold]
     pub(super) fn miss_beyond(&mut self, group: &RayGroup, hits: &HitRecord) {
         let Some(depth) = &self.plan.depth else { return };
@@ -30,8 +30,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         }
     }
 
-    /// Adds what lights do at places of a surface, of rays that have cost as many as they may: some shadow of theirs may
-    /// not have been looked for.
+    /// Adds the direct light at the hits of rays whose budget is used up, since some of their shadow rays may not have
+    /// been cast.
     pub(super) fn miss_shadows(&mut self, group: &RayGroup, surface: &Surface) {
         let Some(depth) = &self.plan.depth else { return };
         if light::fewest(self.cpu, &group.ray_budget[..group.len]) != 0 {
@@ -43,14 +43,14 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         }
     }
 
-    /// Adds so much light, of the end of a ray.
+    /// Adds an amount of light at the end of a ray, weighted by its path, to what its primary ray lacks.
     fn miss(&mut self, group: &RayGroup, lane: usize, light: f64) {
         if !self.scratch.any_missing {
             self.scratch.missing.fill(0.0);
         }
         let missing = &mut self.scratch.missing[usize::from(group.camera[lane])];
         let more = group.worth.map_or(f64::INFINITY, |worth| worth.weight * light);
-        // What is no number bounds nothing.
+        // A NaN bounds nothing.
         *missing = if more >= 0.0 { *missing + more } else { f64::INFINITY };
         self.scratch.any_missing = true;
     }
@@ -84,16 +84,17 @@ mod tests {
         }
     }
 
-    /// A plan by which nothing is left out.
+    /// Makes a plan without cuts.
     fn whole(model: &Model) -> Plan<'_> {
         Plan { depth: Depth::new(model).map(Depth::uncut), ..Plan::new(model) }
     }
 
-    /// The colours of all pixels for so many rays each, how much they lack at most, and what that took.
+    /// Renders all pixels with a ray budget: returns their colours, bounds on what these lack, and the rays that were
+    /// cast.
     fn seen(plan: &Plan, rays: u32) -> (Vec<(Rgb, f64)>, RayStats) {
-        let (mut scratch, mut tally, mut colours) =
+        let (mut scratch, mut stats, mut colours) =
             (Scratch::default(), RayStats::default(), VectorList::default());
-        let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, &mut tally);
+        let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, &mut stats);
         let pixels = (0..SIDES[1]).flat_map(|y| (0..SIDES[0]).map(move |x| (x, y)));
         let one = |(x, y): (usize, usize)| {
             let mut group = RayGroup::primary(&plan.camera.sight(x as f64, y as f64), plan.depth.as_ref());
@@ -102,10 +103,10 @@ mod tests {
             (colours.get(0), tracer.missing(0))
         };
         let pixels = pixels.map(one).collect();
-        (pixels, tally)
+        (pixels, stats)
     }
 
-    /// On a thread with room for deep reflections.
+    /// Runs work on a thread whose stack is large enough for deep reflections.
     fn deep<T: Send>(work: impl FnOnce() -> T + Send) -> T {
         Renderer::new(1).expect("a thread").run(work)
     }
@@ -119,8 +120,8 @@ mod tests {
         plane p1 { material g normal 0 0 1 point 0 0 -1.5 }
         plane p2 { material g normal 0 0 1 point 0 0 -2 }";
 
-    /// What three panes that mirror so much of their light are off, and how many times as many rays they take of which
-    /// nothing is left out.
+    /// Renders three panes of this specular reflectivity with and without cuts: returns the largest difference, and how
+    /// many times as many rays are cast without cuts.
     fn panes(specular: &str) -> (f64, f64) {
         let panes = PANES.replace("0.1", specular);
         let (cut, few) = seen(&Plan::new(&model(&panes)), MAX_RAYS as u32);
@@ -134,14 +135,14 @@ mod tests {
     fn panes_look_the_same_for_a_part_of_the_rays() {
         let (error, times) = panes("0.1");
         assert!(error < FAINT && times > 50.0, "{error} off, {times} times as many");
-        // They give on as much as they get, or nearly. What is off is far below a level.
+        // These panes pass on all or nearly all light that they receive. The error is far below a level.
         for specular in ["0.4", "0.5"] {
             let (error, times) = panes(specular);
             assert!(error < 64.0 * FAINT && times > 2.0, "{error} off, {times} times as many");
         }
     }
 
-    /// Glass that lets through and mirrors more than it gets, where all of that leads out of it.
+    /// Glass that transmits and reflects more than it receives, where no ray returns to it.
     #[test]
     fn what_gives_on_more_than_it_gets_has_a_bound_where_rays_do_not_come_back() {
         let pane = "material g { ambient 1 1 1 specular 0.9 transparency 0.9 } material m { ambient 3 3 3 }
@@ -154,13 +155,13 @@ mod tests {
         }
     }
 
-    /// Numbers that look like any, from 0 to 1.
+    /// Returns a pseudorandom number from 0 to 1.
     fn random(state: &mut u64) -> f64 {
         *state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         (*state >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Scenes of planes and balls that mirror and are seen through, with a light, not all of whose colours are above 0.
+    /// Makes scenes of reflecting and transparent planes and spheres, with a light; some colours are negative.
     fn scenes(count: usize, gain: f64) -> Vec<String> {
         let mut state = 14;
         let mut from = |low: f64, high: f64| low + (high - low) * random(&mut state);

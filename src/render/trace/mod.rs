@@ -1,8 +1,9 @@
-//! The colours that rays see: first hits, light, shadows, mirrors and glass (the notes' `ray_trace`).
+//! The colours that rays return: first hits, lights, shadows, mirrors and glass (the notes' `ray_trace`).
 //!
-//! Rays go in packets. What a packet meets first is found for all its rays at once (`search`); those that meet the same
-//! object go on together, as a smaller packet, and so do their shadows (`shadow`), what they see through glass and in
-//! mirrors (`shade`). One ray is a packet of one. A ray's colour does not depend on which others go with it.
+//! Rays are traced in packets. The first hits of a packet are found for all its rays at once (`closest_hit`). The rays
+//! that hit the same object continue together, as a smaller packet (`shade`), and so do their shadow rays
+//! (`shadow_rays`) and the rays that are transmitted and reflected there. A single ray is a packet of one. A ray's
+//! colour does not depend on the other rays of its packet.
 
 mod arrays;
 mod closest_hit;
@@ -37,13 +38,13 @@ use hit_record::HitRecord;
 use ray_group::RayGroup;
 use scratch::PrimaryScratch;
 
-/// The colour of a pixel, before it is clamped to what a picture can show: `x` counts from the left and `y`
-/// from the bottom.
+/// Computes the colour of a pixel, before it is clamped to what an image can show. `x` counts pixels from the left and
+/// `y` from the bottom.
 pub fn pixel(plan: &Plan, x: usize, y: usize) -> Rgb {
     observe_pixel(plan, x, y, &mut ())
 }
 
-/// As [`pixel`], and `watch` sees how it comes about.
+/// Computes the colour of a pixel as [`pixel`] does, and reports each step to `observer`.
 pub fn observe_pixel(plan: &Plan, x: usize, y: usize, observer: &mut impl TraceObserver) -> Rgb {
     let camera = &plan.camera;
     let colours = camera
@@ -52,12 +53,13 @@ pub fn observe_pixel(plan: &Plan, x: usize, y: usize, observer: &mut impl TraceO
     colours.sum::<Rgb>() / f64::from(camera.samples)
 }
 
-/// The colour that a ray sees, before it is clamped. Lights with a size are met where `sample` says, or in their middle.
+/// Computes the colour that a primary ray returns, before it is clamped. Lights with a size are sampled at the point
+/// that `sample` chooses, or at their centre.
 pub fn colour(plan: &Plan, sight: &Sight, sample: Option<Sample>) -> Rgb {
     observe_colour(plan, sight, sample, &mut ())
 }
 
-/// As [`colour`], and `watch` sees how it comes about.
+/// Computes the colour that a primary ray returns as [`colour`] does, and reports each step to `observer`.
 pub fn observe_colour(
     plan: &Plan,
     sight: &Sight,
@@ -72,7 +74,7 @@ pub fn observe_colour(
     colours.get(0)
 }
 
-/// What a ray from the viewer meets first.
+/// Finds the first hit of a primary ray.
 pub fn first_hit<'m>(plan: &Plan<'m>, sight: &Sight) -> Option<Hit<'m>> {
     let (mut scratch, mut nobody) = (Scratch::default(), ());
     let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody);
@@ -80,18 +82,19 @@ pub fn first_hit<'m>(plan: &Plan<'m>, sight: &Sight) -> Option<Hit<'m>> {
     let (mut hits, mut distances) = (HitRecord::default(), Vec::new());
     tracer.closest(&mut group, None, &mut hits);
     let object = (hits.met[0] as usize).checked_sub(1)?;
-    tracer.settle(&group, (&hits.near, &hits.far), object, &mut distances);
+    tracer.refine(&group, (&hits.near, &hits.far), object, &mut distances);
     let (distance, ray) = (distances[0], group.rays().get(0));
     Some(Hit { index: object, object: &plan.model.objects[object], distance, point: ray.at(distance) })
 }
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
-    /// The colours of some pixels, up to [`PACKET_SIZE`] rays of which are traced together.
+    /// Computes the colours of pixels, given by column and row from the bottom. Up to [`PACKET_SIZE`] rays are traced
+    /// together.
     pub(crate) fn pixels(&mut self, pixels: &[[usize; 2]]) -> View<'_> {
         let camera = &self.plan.camera;
         let depth = self.plan.depth.as_ref();
-        let mut room = self.scratch.primary.take().unwrap_or_default();
-        let PrimaryScratch { group, seen, colours } = &mut *room;
+        let mut primary = self.scratch.primary.take().unwrap_or_default();
+        let PrimaryScratch { group, seen, colours } = &mut *primary;
         self.scratch.places.iter_mut().for_each(|places| places.resize(PACKET_SIZE, 0.0));
         let mut colours = colours.resized(pixels.len());
         if camera.samples == 1 {
@@ -133,17 +136,17 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 }
             }
         }
-        self.scratch.primary.insert(room).colours.view(pixels.len())
+        self.scratch.primary.insert(primary).colours.view(pixels.len())
     }
 
-    /// Counts a pixel if it lacks light, at most so much.
+    /// Reports a pixel that lacks light. `missing` bounds how much, in any channel.
     fn cut(&mut self, missing: f64) {
         if missing > 0.0 {
             self.observer.count(Count::Cut(missing));
         }
     }
 
-    /// The colours that rays from the viewer see.
+    /// Computes the colours that primary rays return.
     fn colours(&mut self, group: &mut RayGroup, colours: &mut VectorList) {
         self.observer.count(Count::Rays(RayKind::Primary, group.len));
         self.viewer = group.origin.get(0).abs().max_element();
@@ -168,7 +171,7 @@ mod tests {
         plane floor { material matt normal 0 1 0 point 0 0 0 }
         sphere ball { material matt center 4 1 -3 radius 1 }";
 
-    /// What rays along the scene's lowest row of pixels see that may cost so many rays each.
+    /// Traces rays through the lowest row of pixels, each with its own ray budget.
     fn seen(plan: &Plan, pixels: &[usize], budgets: &[u32]) -> Vec<Rgb> {
         let (mut scratch, mut nobody) = (Scratch::default(), ());
         scratch.places = [vec![0.0; PACKET_SIZE], vec![0.0; PACKET_SIZE]];

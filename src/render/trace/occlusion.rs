@@ -1,4 +1,4 @@
-//! Which rays of a packet something blocks.
+//! Occlusion: which rays of a packet any object blocks.
 
 use super::arrays::{VectorList, resized};
 use super::closest_hit::{Start, exact, invert};
@@ -14,29 +14,31 @@ use crate::render::observer::{Count, TraceObserver};
 use std::mem::take;
 use std::ops::Range;
 
-/// Rays that leave the same object.
+/// Shadow rays that leave the same object.
 pub(super) struct ShadowRays<'r> {
     pub rays: RayPacket<'r>,
-    /// How many of them are no copies that fill the arrays up, and how many of those need to be gone.
+    /// The number of rays, without the copies that pad the arrays.
     pub len: usize,
+    /// The number of those rays that are cast.
     pub going: usize,
-    /// Where they end; 0 for one that need not be gone.
+    /// The distances at which the rays end, in world units; 0 for a ray that is not cast.
     pub t_max: &'r [f64],
-    /// Where they start: at places of this surface, of those in these lanes if not at all.
+    /// The surface from which the rays start.
     pub surface: &'r Surface,
+    /// The lanes of the surface's points from which the rays start; `None` for all lanes.
     pub lanes: Option<&'r [u8]>,
-    /// The sides of it that they leave.
+    /// The sides of the surface that the rays leave.
     pub sides: &'r [Side],
 }
 
 impl ShadowRays<'_> {
-    /// How many of some there are.
+    /// Returns how many rays of a sub-packet are cast.
     fn count(&self, part: &Range<usize>) -> usize {
         let part = part.start..part.end.min(self.len);
-        self.t_max[part].iter().filter(|end| **end > 0.0).count()
+        self.t_max[part].iter().filter(|t_max| **t_max > 0.0).count()
     }
 
-    /// How far the origin of one may be from the point that it stands for, in world units.
+    /// Returns a bound on the error of one ray's origin, in world units.
     fn error(&self, lane: usize) -> f64 {
         let lane = lane.min(self.len - 1);
         self.surface.error(self.lanes.map_or(lane, |lanes| usize::from(lanes[lane])))
@@ -44,7 +46,8 @@ impl ShadowRays<'_> {
 }
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
-    /// Marks the rays that an object blocks before their ends, on their ways from these places to those.
+    /// Marks the rays that any object blocks before their ends. The rays go from points in the box `from` to points in
+    /// the box `to`.
     pub(super) fn occlude(&mut self, shadow_rays: &ShadowRays, from: &Aabb, to: &Aabb, blocked: &mut [u64]) {
         let (mut ahead, mut inverse) = (take(&mut self.scratch.ahead), take(&mut self.scratch.inverse));
         let mut doubt = take(&mut self.scratch.doubt);
@@ -65,16 +68,17 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     }
 }
 
+/// The search for objects that block the rays of a packet.
 struct Occlusion<'s, 'm, 'w, W> {
     tracer: &'s mut Tracer<'m, 'w, W>,
     shadow_rays: &'s ShadowRays<'s>,
-    /// Which of the rays are looked after.
+    /// The lanes of the current sub-packet.
     part: Range<usize>,
-    /// How many of those there are.
+    /// The number of rays of the current sub-packet that are cast.
     len: usize,
-    /// Where they go.
+    /// A box that contains the rays of the current sub-packet.
     region: Aabb,
-    /// The reciprocals of their directions, for a tree.
+    /// The reciprocals of the rays' directions, for the BVH.
     inverse: &'s mut VectorList,
     blocked: &'s mut [u64],
     doubt: &'s mut [u64],
@@ -113,12 +117,12 @@ impl<W: TraceObserver> Occlusion<'_, '_, '_, W> {
         }
     }
 
-    /// The object that the rays leave, and the sides.
+    /// Returns the index of the object that the rays leave, and the sides that they leave.
     fn left(&self) -> Option<(usize, &[Side])> {
         Some((self.shadow_rays.surface.index, self.shadow_rays.sides))
     }
 
-    /// Looks at an object.
+    /// Tests the current sub-packet against an object.
     fn test(&mut self, index: usize) {
         let ShadowRays { rays, t_max, surface, sides, .. } = *self.shadow_rays;
         let (rays, t_max) = (rays.part(self.part.clone()), &t_max[self.part.clone()]);

@@ -1,4 +1,4 @@
-//! Which of two surfaces a ray meets first, where rounding does not tell.
+//! Which of two surfaces a ray hits first, where rounded distances do not tell.
 
 use crate::geometry::aabb::larger;
 use crate::geometry::ray::Ray;
@@ -7,11 +7,11 @@ use crate::world::any_shape::AnyShape;
 use crate::world::certify::{Enclosure, Precision};
 use crate::world::coincidence::{CLOSE, LEAST_COSINE, SAME};
 
-/// Whether a ray meets one shape before another, which both lie about so far away; nothing where they lie in one place
-/// as far as the ray is known, whose origin may be off by an error.
+/// Tells whether a ray hits one shape before another, given their approximate distances in world units. Returns `None`
+/// where they coincide as far as the ray is known, whose origin may be off by `origin_error` world units.
 ///
-/// Where two surfaces cross, a ray that is moved aside meets them in the other order. How far a ray may be aside follows
-/// from what rounding makes of its direction, two units in the last place in each part, and from its origin's error.
+/// Where two surfaces cross, a ray that is shifted sideways hits them in the other order. How far the ray may be
+/// shifted follows from the rounding of its direction, two ulps in each component, and from the error of its origin.
 pub(super) fn is_before(
     ray: &Ray,
     origin_error: f64,
@@ -26,17 +26,19 @@ pub(super) fn is_before(
         let apart = (fine - fine_far).high;
         let normals = [one, other].map(|shape| shape.normal(ray.at(distance)));
         let [cosine, other_cosine] = normals.map(|normal| ray.dir.dot(normal));
-        // How fast the distances part where the ray moves aside.
-        let parting = (normals[0] / cosine - normals[1] / other_cosine).length();
-        let aside = 4.0 * f64::EPSILON * distance + origin_error;
-        let least = larger(cosine.abs().min(other_cosine.abs()), LEAST_COSINE);
-        let same = aside * parting + SAME * (size + one.reach() + other.reach()) / least;
+        // The change of the distances' difference per unit of sideways shift.
+        let divergence = (normals[0] / cosine - normals[1] / other_cosine).length();
+        // Two ulps in each of three components are less than 4 ulps in length.
+        let shift = 4.0 * f64::EPSILON * distance + origin_error;
+        let min_cosine = larger(cosine.abs().min(other_cosine.abs()), LEAST_COSINE);
+        let same = shift * divergence + SAME * (size + one.reach() + other.reach()) / min_cosine;
         return (apart.abs() > same).then_some(apart < 0.0);
     }
     (distance != far).then_some(distance < far)
 }
 
-/// Whether a ray meets one shape before another, with 237 bits; nothing where these do not tell.
+/// Tells whether a ray certainly hits one shape before another, by a proof with 237 bits; `None` where that decides
+/// nothing.
 pub(super) fn is_certainly_before(one: &AnyShape, other: &AnyShape, sight: &Sight) -> Option<bool> {
     let distance = |shape: &AnyShape| match shape.certify(sight, Precision::Octuple) {
         Enclosure::Hits(at) | Enclosure::Edge(at) => Some(at),

@@ -1,4 +1,4 @@
-//! Rays that go together.
+//! Groups of rays that are traced together.
 
 use super::arrays::{VectorList, gather, resized};
 use super::light::{self, Worth};
@@ -16,7 +16,7 @@ use std::array;
 use std::mem::swap;
 use std::ops::Range;
 
-/// The lanes of a packet, in their order.
+/// The lanes of a packet, in ascending order.
 const LANE_INDICES: [u8; PACKET_SIZE] = {
     let (mut lanes, mut lane) = ([0; PACKET_SIZE], 0);
     while lane < PACKET_SIZE {
@@ -29,32 +29,37 @@ const LANE_INDICES: [u8; PACKET_SIZE] = {
 /// A packet of rays that leave the same object, or none.
 #[derive(Default)]
 pub(super) struct RayGroup {
+    /// The number of rays, without the copies that pad the arrays.
     pub len: usize,
     pub origin: VectorList,
     pub dir: VectorList,
-    /// How far the light of each has come already.
+    /// The path length from the viewer to each ray's origin, in world units.
     pub travelled: Vec<f64>,
-    /// The rays that each may still cost.
+    /// The number of rays that each ray may still cost, itself included.
     pub ray_budget: Vec<u32>,
-    /// The one ray from the viewer, before anything was rounded.
+    /// The single primary ray of the group before anything is rounded, if that is what the group is.
     pub sight: Option<Sight>,
-    /// Whether they look through the places that are under way, each through its own.
+    /// Whether these are the current primary rays, each through its position in [`Scratch::places`].
+    ///
+    /// [`Scratch::places`]: super::scratch::Scratch::places
     pub looks: bool,
-    /// What they are worth; nothing where no ray goes on, or nothing bounds what that can bring back.
+    /// What the rays can add to a pixel; `None` where no ray continues, or where that has no bound.
     pub worth: Option<Worth>,
-    /// The camera ray that each comes from; empty where none goes on and no pixel has more than one.
+    /// The lane of the primary ray that each ray descends from; empty where no ray continues and pixels have one
+    /// sample.
     pub camera: Vec<u8>,
-    /// The object that they leave, by its index, and on which side of it each goes.
+    /// The index of the object that the rays leave.
     pub origin_object: Option<usize>,
+    /// The side of the object that each ray leaves.
     pub sides: Vec<Side>,
-    /// The cosines of the angles at which those came there from which they go on, and how far the origin of any may be from
-    /// the point that it stands for.
+    /// The cosines of the angles at which the rays' predecessors hit the origins.
     pub cosines: Vec<f64>,
+    /// The errors of the origins.
     pub errors: Errors,
 }
 
 impl RayGroup {
-    /// One ray from the viewer.
+    /// Makes a group of one primary ray.
     pub fn primary(sight: &Sight, depth: Option<&Depth>) -> Self {
         let (mut group, ray) = (Self::default(), sight.ray());
         group.begin(ray.origin, 1, true, depth);
@@ -63,7 +68,7 @@ impl RayGroup {
         group
     }
 
-    /// The rays that look through so many places, in pixels from the left and from the bottom.
+    /// Becomes the primary rays through the first `len` image positions, in pixels from the left and from the bottom.
     pub fn look(
         &mut self,
         cpu: Cpu,
@@ -81,18 +86,18 @@ impl RayGroup {
         self.looks = true;
     }
 
-    /// Rays from a viewpoint, with their directions yet to be given.
+    /// Starts rays from a viewpoint. Their directions are yet to be set.
     fn begin(&mut self, viewpoint: DVec3, len: usize, is_sampled: bool, depth: Option<&Depth>) {
         self.len = len;
         let count = self.padded();
         self.origin.fill(count, viewpoint);
         resized(&mut self.travelled, count).fill(0.0);
-        // Where no ray goes on, each costs one and those to the lights.
+        // Where no ray continues, a primary ray costs itself and one shadow ray for each light, so it needs no budget.
         resized(&mut self.ray_budget, count).fill(if depth.is_some() { MAX_RAYS as u32 } else { u32::MAX });
         let is_bounded = depth.is_some_and(|depth| depth.most.is_finite());
         self.worth = is_bounded.then_some(Worth { weight: 1.0, share: 1.0 });
         if is_sampled || depth.is_some() {
-            // The copies that fill the arrays up are of the last ray, its sample of a light too.
+            // The copies that pad the arrays are of the last ray, so they use its sample.
             let (cameras, copies) = resized(&mut self.camera, count).split_at_mut(len);
             cameras.copy_from_slice(&LANE_INDICES[..len]);
             copies.fill(LANE_INDICES[len - 1]);
@@ -103,12 +108,12 @@ impl RayGroup {
         self.errors = Errors::NONE;
     }
 
-    /// For rays whose numbers are only known as they are.
+    /// Marks the rays as known only by their rounded numbers.
     fn forget_sights(&mut self) {
         (self.sight, self.looks) = (None, false);
     }
 
-    /// Takes the mark from those that would bring back too little to be seen, so far from the viewer.
+    /// Clears `goes` for the rays that would return too little to be seen at their path lengths.
     pub fn leave_out(&self, cpu: Cpu, branch: &Branch, travelled: &[f64], goes: &mut [u64]) {
         let Some(worth) = self.worth.filter(|_| branch.faint_alone != f64::INFINITY) else { return };
         let ray_budget = &self.ray_budget[..goes.len()];
@@ -116,7 +121,7 @@ impl RayGroup {
         light::leave_out(cpu, travelled, worth, branch, ray_budget, goes);
     }
 
-    /// What its rays are worth from here on, which go on in one of the ways of a surface.
+    /// Updates what the rays can add to a pixel when they continue along a branch of a surface.
     pub fn branch(&mut self, branch: &Branch) {
         if let Some(Worth { weight, share }) = &mut self.worth {
             *weight *= branch.weight;
@@ -124,12 +129,13 @@ impl RayGroup {
         }
     }
 
-    /// How many rays there are with the copies that fill the arrays up.
+    /// Returns the number of rays with the copies that pad the arrays.
     #[inline(always)]
     pub fn padded(&self) -> usize {
         self.len.next_multiple_of(LANES)
     }
 
+    /// Returns the rays as a packet, with the copies that pad the arrays.
     #[inline(always)]
     pub fn rays(&self) -> RayPacket<'_> {
         let count = self.padded();
@@ -137,24 +143,24 @@ impl RayGroup {
         RayPacket { origin: self.origin.view(count), dir: self.dir.view(count), origin_error }
     }
 
-    /// How far the origin of one may be from the point that it stands for, in world units.
+    /// Returns a bound on the error of one ray's origin, in world units.
     pub fn error(&self, lane: usize) -> f64 {
         self.errors.of(&self.travelled, &self.cosines, lane)
     }
 
-    /// The object that they leave, and the sides.
+    /// Returns the index of the object that the rays leave, and the sides that they leave.
     #[inline(always)]
     pub fn left(&self) -> Option<(usize, &[Side])> {
         self.origin_object.map(|object| (object, &self.sides[..self.padded()]))
     }
 
-    /// The sides of an object that they leave, if that is the one.
+    /// Returns the sides of an object that the rays leave, if this is the object that they leave.
     #[inline(always)]
     pub fn sides_of(&self, object: usize) -> Option<&[Side]> {
         (self.origin_object == Some(object)).then(|| &self.sides[..self.padded()])
     }
 
-    /// Becomes some rays of another group.
+    /// Becomes the rays of some lanes of another group.
     pub fn gather(&mut self, from: &Self, lanes: &[u8]) {
         self.len = lanes.len();
         self.forget_sights();
@@ -166,18 +172,18 @@ impl RayGroup {
         self.origin_object = from.origin_object;
         self.errors = from.errors;
         if self.origin_object.is_some() {
-            self.pick_cosines(&from.cosines, lanes);
+            self.gather_cosines(&from.cosines, lanes);
             self.origin.gather(&from.origin, lanes, count);
             gather(&mut self.travelled, &from.travelled, lanes, count);
             gather(&mut self.sides, &from.sides, lanes, count);
         } else {
-            // They all come from the viewer.
+            // All rays start at the viewer.
             self.origin.fill(count, from.origin.get(0));
             resized(&mut self.travelled, count).fill(from.travelled[0]);
         }
     }
 
-    /// Becomes rays that go on where those of another group have met an object.
+    /// Becomes the rays of some lanes that continue from where another group's rays have hit an object.
     pub fn go_on(&mut self, from: &Self, onward: &Onward, lanes: &[u8]) {
         self.len = lanes.len();
         self.forget_sights();
@@ -191,18 +197,19 @@ impl RayGroup {
         self.origin_object = Some(onward.origin_object);
         gather(&mut self.sides, onward.sides, lanes, count);
         self.errors = onward.errors;
-        self.pick_cosines(onward.cosines, lanes);
+        self.gather_cosines(onward.cosines, lanes);
     }
 
-    fn pick_cosines(&mut self, from: &[f64], lanes: &[u8]) {
+    /// Gathers the cosines of some lanes, where errors are computed at all.
+    fn gather_cosines(&mut self, from: &[f64], lanes: &[u8]) {
         if self.errors.reach.is_some() {
             let count = self.padded();
             gather(&mut self.cosines, from, lanes, count);
         }
     }
 
-    /// Becomes all the rays that go on, with the arrays of those that they have been until now, and of where they met an
-    /// object.
+    /// Becomes the rays that continue from all lanes of another group. Arrays are swapped with those of that group and
+    /// of the surface, not copied.
     pub fn take(&mut self, from: &mut Self, surface: &mut Surface, dir: &mut VectorList) {
         self.len = from.len;
         self.forget_sights();
@@ -218,7 +225,7 @@ impl RayGroup {
         self.errors = surface.errors;
     }
 
-    /// What some of its rays, which have gone on as others, have cost.
+    /// Takes over the ray budgets that remain of some lanes, which were traced as another group.
     pub fn charge(&mut self, part: &Self, lanes: &[u8]) {
         for (lane, ray_budget) in lanes.iter().zip(&part.ray_budget) {
             self.ray_budget[usize::from(*lane)] = *ray_budget;
@@ -226,17 +233,20 @@ impl RayGroup {
     }
 }
 
-/// Sorts rays by what they met: the rays of one object after those of another.
+/// Groups a packet's rays by the object that they hit.
 #[derive(Default)]
 pub(super) struct HitGroups {
-    /// What neighbours met, and which those are; none where they are done.
+    /// Runs of neighbouring lanes that hit the same object: its index plus 1 (0 for a miss), and the lanes. The lanes
+    /// of a run that has been returned are empty.
     runs: Vec<(u64, Range<usize>)>,
+    /// The lanes of the current group.
     lanes: Vec<u8>,
+    /// The index of the first run that may not have been returned.
     next: usize,
 }
 
 impl HitGroups {
-    /// Begins with rays that met these.
+    /// Starts with the hits of a packet, each an object's index plus 1, or 0 for a miss.
     pub fn begin(&mut self, met: &[u64]) {
         self.runs.clear();
         let mut start = 0;
@@ -244,12 +254,12 @@ impl HitGroups {
             self.runs.push((run[0], start..start + run.len()));
             start += run.len();
         }
-        // Lanes are written by eights.
+        // Lanes are written eight at a time, beyond the end of a run.
         resized(&mut self.lanes, met.len() + LANES);
         self.next = 0;
     }
 
-    /// What some rays met, and which rays those are.
+    /// Returns the next object that was hit, by its index plus 1 (0 for a miss), and the lanes that hit it.
     pub fn next(&mut self) -> Option<(u64, &[u8])> {
         while self.runs.get(self.next)?.1.is_empty() {
             self.next += 1;

@@ -1,4 +1,4 @@
-//! Room for packets: what is kept from one to the next.
+//! Scratch space for packets, which is reused from one packet to the next.
 
 use super::arrays::VectorList;
 use super::hit_record::HitRecord;
@@ -7,111 +7,137 @@ use super::surface::Surface;
 use crate::geometry::ray::Side;
 use crate::world::sample::Sample;
 
-/// All that the packets of one thread need, one after the other.
+/// The scratch space of one thread.
 #[derive(Default)]
 pub(crate) struct Scratch {
     pub(super) primary: Option<Box<PrimaryScratch>>,
-    /// The x and y of the places of the picture that the camera rays under way look through, in pixels.
+    /// The image positions of the current primary rays, x and y in pixels.
     pub(super) places: [Vec<f64>; 2],
-    /// Of the camera rays under way, where pixels have more than one.
+    /// The samples of the current primary rays, where pixels have more than one.
     pub(super) samples: Vec<Sample>,
-    /// For packets that wait for those which have gone on from them, the foremost one last.
+    /// The unused scratch space of packets, one for each level of recursion, the outermost one last.
     #[expect(clippy::vec_box, reason = "they come and go, and are large")]
     pub(super) levels: Vec<Box<HitScratch>>,
+    /// The unused scratch space of shadow rays through glass, one for each pane on their way.
     #[expect(clippy::vec_box, reason = "likewise")]
     pub(super) transmittances: Vec<Box<Transmittance>>,
-    /// For what is over before any go on.
+    /// For direct light, which is finished before any rays continue.
     pub(super) lighting: Option<Box<LightScratch>>,
+    /// Not 0 for shadow rays whose occlusion is in doubt.
     pub(super) doubt: Vec<u64>,
-    /// For each object that is listed with its bounds.
+    /// For each object of the list with bounds, a bit for each sub-packet that may hit the object.
     pub(super) parts: Vec<u32>,
-    /// For the way through a tree.
+    /// The stack for the traversal of the BVH.
     pub(super) ahead: Vec<usize>,
+    /// The reciprocals of the rays' directions, for the BVH.
     pub(super) inverse: VectorList,
-    /// How much light each camera ray under way lacks at most, as it has cost as many rays as it may.
+    /// For each current primary ray, a bound on the light that it lacks because its ray budget is used up. Valid only
+    /// if `any_missing` is set.
     pub(super) missing: Vec<f64>,
-    /// Whether any lacks some.
+    /// Whether any primary ray may lack light.
     pub(super) any_missing: bool,
 }
 
-/// Rays from the viewer.
+/// The scratch space of primary rays.
 #[derive(Default)]
 pub(super) struct PrimaryScratch {
     pub group: RayGroup,
+    /// The colours that the rays return.
     pub seen: VectorList,
-    /// Of pixels.
+    /// The colours of the pixels.
     pub colours: VectorList,
 }
 
-/// The rays of a packet that meet the same object, while they are followed.
+/// The scratch space of a packet whose rays are sorted by the objects that they hit.
 #[derive(Default)]
 pub(super) struct HitScratch {
     pub hits: HitRecord,
     pub parts: HitGroups,
+    /// The rays that hit the same object.
     pub part: RayGroup,
+    /// The lower bounds of the distances of their hits, in world units.
     pub near: Vec<f64>,
+    /// The upper bounds of the distances of their hits, in world units.
     pub far: Vec<f64>,
     pub shading: ShadingScratch,
+    /// The colours that they return.
     pub seen: VectorList,
 }
 
-/// Room for what one packet needs while others go on from it.
+/// The scratch space of a packet while other rays continue from its hits.
 #[derive(Default)]
 pub(super) struct ShadingScratch {
+    /// The distances of the hits, in world units.
     pub distances: Vec<f64>,
     pub surface: Surface,
-    /// Where rays go on to.
+    /// The directions in which rays continue.
     pub dir: VectorList,
-    /// Which ones: 1 for those, and 0; and a list.
+    /// 1 for each ray that continues, and 0 for the others.
     pub goes: Vec<u64>,
+    /// The lanes of the rays that continue.
     pub lanes: Vec<u8>,
-    /// They themselves, and what they see.
+    /// The rays that continue.
     pub onward: RayGroup,
+    /// The colours that the rays that continue return.
     pub seen: VectorList,
-    /// What all see, those that do not go on, too.
+    /// The colours that come back to all lanes, black for rays that do not continue.
     pub behind: VectorList,
 }
 
-/// Room for what one light does after the other.
+/// The scratch space of one light after the other.
 #[derive(Default)]
 pub(super) struct LightScratch {
+    /// The diffuse reflectivities at the shading points.
     pub diffuse: VectorList,
-    /// Where each place sees the light, if that is no point.
+    /// The point of the light that each shading point sees, if the light has a size.
     pub lights: VectorList,
+    /// The unit vectors toward the light.
     pub toward: VectorList,
+    /// The cosines of the angles between `toward` and the normals, divided by the distances to the light in world
+    /// units.
     pub cos_over_distance: Vec<f64>,
+    /// The distances at which the shadow rays end, in world units; 0 where none is needed.
     pub t_max: Vec<f64>,
+    /// The colours that the light sends.
     pub emissivity: VectorList,
+    /// 0 where the light does not shine.
     pub shines: Vec<u64>,
+    /// 1 where the light is blocked.
     pub blocked: Vec<u64>,
     pub shadows: ShadowScratch,
 }
 
-/// Room for the shadows of a packet.
+/// The scratch space of the shadow rays of a packet.
 #[derive(Default)]
 pub(super) struct ShadowScratch {
-    /// Those that remain of a packet.
+    /// The lanes of the shadow rays that are cast.
     pub lanes: Vec<u8>,
     pub origin: VectorList,
     pub dir: VectorList,
+    /// The distances at which the cast rays end, in world units.
     pub their_t_max: Vec<f64>,
+    /// 1 for the cast rays that are blocked.
     pub their_blocked: Vec<u64>,
+    /// The side of the surface that each cast ray leaves.
     pub sides: Vec<Side>,
 }
 
-/// Rays on their way to a light.
+/// The scratch space of shadow rays that pass through glass.
 #[derive(Default)]
 pub(super) struct Transmittance {
     pub group: RayGroup,
+    /// The distances at which the rays end, in world units.
     pub t_max: Vec<f64>,
-    /// The part of each channel that has come through.
+    /// The fraction of each channel that is transmitted.
     pub tint: VectorList,
-    /// The opaque object that stands in the way, by its index and 1; 0 where there is none.
+    /// The index of the opaque object that blocks the ray, plus 1; 0 where there is none.
     pub blocker: Vec<u64>,
     pub hits: HitRecord,
     pub parts: HitGroups,
-    /// Of those that meet the same pane.
+    /// The lower bounds of the distances to the pane that these rays hit, in world units.
     pub near: Vec<f64>,
+    /// The upper bounds of the distances to the pane that these rays hit, in world units.
     pub far: Vec<f64>,
+    /// The distances to the pane that these rays hit, in world units.
     pub distances: Vec<f64>,
 }

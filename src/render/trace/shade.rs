@@ -1,4 +1,4 @@
-//! The colours of the places that a packet's rays meet on one object.
+//! The colours of the points where a packet's rays hit objects.
 
 use super::arrays::{VectorList, compact, gather, resized};
 use super::closest_hit;
@@ -18,7 +18,7 @@ use glam::DVec3;
 use std::mem::swap;
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
-    /// The light that comes back along the rays of a packet.
+    /// Computes the light that returns along the rays of a packet.
     pub(super) fn trace(&mut self, group: &mut RayGroup, colours: &mut VectorList) {
         let mut level = self.scratch.levels.pop().unwrap_or_default();
         let HitScratch { hits, parts, part, near, far, shading, seen } = &mut *level;
@@ -48,7 +48,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         self.scratch.levels.push(level);
     }
 
-    /// The colours that rays see which all meet the object of this index, in these brackets.
+    /// Computes the colours that rays return which all hit the object of this index, at distances in these brackets.
     fn shade(
         &mut self,
         group: &mut RayGroup,
@@ -58,21 +58,21 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         colours: &mut VectorList,
     ) {
         let (cpu, count) = (self.cpu, group.padded());
-        self.settle(group, brackets, index, &mut shading.distances);
+        self.refine(group, brackets, index, &mut shading.distances);
         let (distances, surface) = (&shading.distances[..count], &mut shading.surface);
         let object = &self.model.objects[index];
         let Object { material, shape, shader, .. } = object;
         surface.index = index;
         let travelled = resized(&mut surface.travelled, count);
         travelled.copy_from_slice(&group.travelled[..count]);
-        let landing = SurfaceInteraction {
+        let interaction = SurfaceInteraction {
             points: surface.points.resized(count),
             normals: surface.normals.resized(count),
             sides: resized(&mut surface.sides, count),
             cosines: resized(&mut surface.cosines, count),
             travelled,
         };
-        shape.packets().interact(cpu, group.rays(), distances, landing);
+        shape.packets().interact(cpu, group.rays(), distances, interaction);
         let points = surface.points.view(count);
         surface.look = shader.uniform(material);
         surface.is_mirror = match surface.look {
@@ -102,15 +102,20 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             self.observer.see(Event::Shaded { hit: &hit, travelled, colour: colours.get(0) });
         }
         if material.transparency != 0.0 {
-            self.look_through(group, shading, colours);
+            self.add_transmitted(group, shading, colours);
         }
         if shading.surface.is_mirror {
-            self.look_in_the_mirror(group, shading, colours);
+            self.add_reflected(group, shading, colours);
         }
     }
 
-    /// Adds what is seen through glass.
-    fn look_through(&mut self, group: &mut RayGroup, shading: &mut ShadingScratch, colours: &mut VectorList) {
+    /// Adds transmitted light.
+    fn add_transmitted(
+        &mut self,
+        group: &mut RayGroup,
+        shading: &mut ShadingScratch,
+        colours: &mut VectorList,
+    ) {
         let (count, surface) = (group.padded(), &mut shading.surface);
         let object = &self.model.objects[surface.index];
         let kept = 1.0 - object.material.transparency;
@@ -123,19 +128,19 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         light::reach(self.cpu, travelled, MAX_DIST, goes);
         group.leave_out(self.cpu, &branch, travelled, goes);
         shading.dir.copy(group.dir.view(count));
-        let turn = |sides: &mut [Side]| sides.iter_mut().for_each(|side| *side = side.opposite());
-        turn(&mut surface.sides[..count]);
+        let flip = |sides: &mut [Side]| sides.iter_mut().for_each(|side| *side = side.opposite());
+        flip(&mut surface.sides[..count]);
         self.onward(group, shading, RayKind::Transmitted, branch);
         let surface = &mut shading.surface;
-        turn(&mut surface.sides[..count]);
+        flip(&mut surface.sides[..count]);
         for lane in 0..group.len {
             let tint = object.tint(surface.points.get(lane));
             colours.set(lane, kept * colours.get(lane) + tint * shading.behind.get(lane));
         }
     }
 
-    /// Adds what is mirrored.
-    fn look_in_the_mirror(
+    /// Adds reflected light.
+    fn add_reflected(
         &mut self,
         group: &mut RayGroup,
         shading: &mut ShadingScratch,
@@ -157,7 +162,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         light::mirror(cpu, group.dir.view(count), normals, specular, travelled, MAX_DIST, goes, dir);
         group.leave_out(cpu, &branch, travelled, goes);
         let do_all = goes[0] != 0 && closest_hit::is_one(cpu, goes);
-        if do_all && group.len <= self.most() {
+        if do_all && group.len <= self.max_packet() {
             self.onward_all(group, shading, branch);
         } else {
             self.onward(group, shading, RayKind::Reflected, branch);
@@ -166,8 +171,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         light::reflect(cpu, specular, shading.behind.view(count), colours.resized(count));
     }
 
-    /// What comes to the places of a surface along the rays that go on from there; nothing to those from which none
-    /// does, which are too far away, or which can bring back too little.
+    /// Computes the light that returns along the rays that continue from a surface. It is black for points from which
+    /// no ray continues: those that are too far away, or whose ray can return too little.
     fn onward(&mut self, group: &mut RayGroup, shading: &mut ShadingScratch, kind: RayKind, branch: Branch) {
         let ShadingScratch { surface, dir, goes, lanes, onward, seen, behind, .. } = shading;
         let lanes = compact(&goes[..group.len], lanes);
@@ -177,12 +182,12 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             self.observer.see(Event::Colour(DVec3::ZERO));
         }
         self.observer.count(Count::Rays(kind, lanes.len()));
-        let shadow_rays = surface.onward(dir);
+        let rays = surface.onward(dir);
         behind.fill(group.padded(), DVec3::ZERO);
-        let most = self.most();
+        let max_packet = self.max_packet();
         self.depth += 1;
-        for lanes in lanes.chunks(most) {
-            onward.go_on(group, &shadow_rays, lanes);
+        for lanes in lanes.chunks(max_packet) {
+            onward.go_on(group, &rays, lanes);
             onward.branch(&branch);
             self.trace(onward, seen);
             behind.scatter(seen, lanes);
@@ -191,7 +196,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         self.depth -= 1;
     }
 
-    /// As `onward` for rays all of which are mirrored, and with which nothing else is done here: they are not copied.
+    /// Does the work of [`onward`](Self::onward) where all rays of the group are reflected. The rays are not needed
+    /// here afterwards, so their arrays are swapped, not copied.
     fn onward_all(&mut self, group: &mut RayGroup, shading: &mut ShadingScratch, branch: Branch) {
         let ShadingScratch { surface, dir, onward, behind, .. } = shading;
         self.observer.count(Count::Rays(RayKind::Reflected, group.len));

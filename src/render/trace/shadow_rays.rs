@@ -1,4 +1,4 @@
-//! How much of a light comes to the places of a surface.
+//! Shadow rays in a scene without glass: from which points of a surface a light is occluded.
 
 use super::arrays::{VectorList, gather, resized};
 use super::context::Tracer;
@@ -12,27 +12,33 @@ use crate::render::observer::{Count, RayKind, TraceObserver};
 use crate::simd::cpu::kernels;
 use crate::simd::soa::LANES;
 
-/// The ways from the places of a surface to a light.
+/// The paths from the points of a surface to a light.
 pub(super) struct LightPaths<'w> {
-    /// Where those places are.
+    /// A bounding box of the points.
     pub from: Aabb,
-    /// Where they go.
+    /// A bounding box of the light's points.
     pub to: Aabb,
-    /// The directions there.
+    /// The unit vectors toward the light.
     pub toward: &'w VectorList,
 }
 
-/// Of a way that need not be gone, which nothing blocks.
-const NOT_GONE: u64 = 2;
+/// The mark in `blocked` of a shadow ray that is not cast, which is not blocked.
+const NOT_CAST: u64 = 2;
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
-    /// What the ends of the ways are short of the light, as a part of how far that is: a surface that the light lies
-    /// on is no blocker, however rounding has it.
+    /// Returns how far short of the light shadow rays end, as a fraction of the sizes at [`ShadingPoints::slack`]: a
+    /// surface on which the light lies must not block it, however the distances are rounded.
+    ///
+    /// The fraction is that of the error of a hit point, [`ROUNDING`]; the test
+    /// `a_light_on_a_wall_lights_the_floor_evenly` holds it.
+    ///
+    /// [`ShadingPoints::slack`]: crate::world::light_samples::ShadingPoints::slack
+    /// [`ROUNDING`]: crate::world::coincidence::ROUNDING
     pub(super) fn slack(&self) -> f64 {
         if self.is_classic() { 0.0 } else { 16.0 * f64::EPSILON }
     }
 
-    /// Marks the places (1 in `blocked`) from which an object stands in the way of the light, in a scene without glass.
+    /// Marks with 1 in `blocked` the points from which an object blocks the light, in a scene without glass.
     pub(super) fn shadow(
         &mut self,
         group: &mut RayGroup,
@@ -45,8 +51,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let (cpu, count) = (self.cpu, group.padded());
         let ShadowScratch { lanes, origin, dir, their_t_max, their_blocked, sides } = shadows;
         let origin_error = surface.errors.most;
-        // A ray that has cost as many as it may finds nothing in the way.
-        let len = set_out(cpu, group.len, &mut group.ray_budget[..count], t_max, blocked);
+        // A ray whose budget is used up counts as not blocked.
+        let len = charge_shadow_rays(cpu, group.len, &mut group.ray_budget[..count], t_max, blocked);
         if len == 0 {
             return;
         }
@@ -67,28 +73,28 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         dir.gather(paths.toward, lanes, count);
         gather(their_t_max, t_max, lanes, count);
         gather(sides, &surface.sides, lanes, count);
-        let theirs = resized(their_blocked, count);
-        theirs.fill(0);
+        let their_blocked = resized(their_blocked, count);
+        their_blocked.fill(0);
         let rays = RayPacket { origin: origin.view(count), dir: dir.view(count), origin_error };
         let (t_max, sides) = (&their_t_max[..count], &sides[..count]);
         let shadow_rays = ShadowRays { rays, len, going: len, t_max, surface, lanes: Some(lanes), sides };
-        self.occlude(&shadow_rays, &paths.from, &paths.to, theirs);
-        for (lane, is_blocked) in lanes.iter().zip(theirs) {
+        self.occlude(&shadow_rays, &paths.from, &paths.to, their_blocked);
+        for (lane, is_blocked) in lanes.iter().zip(their_blocked) {
             blocked[usize::from(*lane)] = *is_blocked;
         }
     }
 }
 
 kernels! {
-    /// Counts a ray for each way to a light. Those of rays that have cost as many as they may need not be gone. What need
-    /// not is marked with [`NOT_GONE`]; tells how many of the first `len` are left.
-    fn set_out(len: usize, ray_budget: &mut [u32], t_max: &mut [f64], blocked: &mut [u64]) -> usize {
+    /// Charges each shadow ray to its ray budget. Shadow rays with a `t_max` of 0 or whose budget is used up are marked
+    /// with [`NOT_CAST`]. Returns how many of the first `len` are cast.
+    fn charge_shadow_rays(len: usize, ray_budget: &mut [u32], t_max: &mut [f64], blocked: &mut [u64]) -> usize {
         let (count, mut left) = (t_max.len(), 0);
         let (ray_budget, blocked) = (&mut ray_budget[..count], &mut blocked[..count]);
         for lane in 0..count {
             let goes = (t_max[lane] > 0.0) & (ray_budget[lane] > 0);
             t_max[lane] = if goes { t_max[lane] } else { 0.0 };
-            blocked[lane] = if goes { 0 } else { NOT_GONE };
+            blocked[lane] = if goes { 0 } else { NOT_CAST };
             ray_budget[lane] -= u32::from(goes);
             left += u64::from(goes & (lane < len));
         }

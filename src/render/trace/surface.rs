@@ -1,4 +1,4 @@
-//! Places on one object, where the rays of a packet meet it, and what goes on from there.
+//! The points where the rays of a packet hit one object, and the rays that continue from there.
 
 use super::arrays::VectorList;
 use super::light::Colours;
@@ -6,80 +6,82 @@ use crate::geometry::ray::Side;
 use crate::world::coincidence;
 use crate::world::material::Look;
 
-/// Places on one object, where the rays of a packet meet it.
+/// The points where the rays of a packet hit one object.
 #[derive(Default)]
 pub(super) struct Surface {
     /// The object's index.
     pub index: usize,
     pub points: VectorList,
-    /// The unit normals; turned to the rays' side where both are lit.
+    /// The unit normals, flipped to face the rays where both sides are lit.
     pub normals: VectorList,
-    /// The side that each ray comes to.
+    /// The side that each ray hits.
     pub sides: Vec<Side>,
-    /// How far the light has come from each.
+    /// The path length from the viewer to each point, in world units.
     pub travelled: Vec<f64>,
-    /// The cosines of the angles between the rays and the normals.
+    /// The cosines of the angles between the rays and the normals before they are flipped, from -1 to 1.
     pub cosines: Vec<f64>,
-    /// What the places are computed from, and how far any may be from where it should be; see [`Errors`].
+    /// The errors of the points.
     pub errors: Errors,
-    /// What all answer to light, where that is the same.
+    /// The reflectivities, where they are the same at all points.
     pub look: Option<Look>,
-    /// Else what each mirrors.
+    /// The specular reflectivity at each point, where `look` is `None`.
     pub specular: VectorList,
-    /// Whether any mirrors anything.
+    /// Whether the specular reflectivity is not 0 at any point.
     pub is_mirror: bool,
 }
 
 impl Surface {
-    /// Rays in these directions from its places.
+    /// Returns rays from the points in these directions.
     pub fn onward<'o>(&'o self, dir: &'o VectorList) -> Onward<'o> {
         let Self { index, points, sides, travelled, cosines, errors, .. } = self;
         Onward { points, dir, travelled, origin_object: *index, sides, cosines, errors: *errors }
     }
 
-    /// How far one of the places may be from where it should be, in world units.
+    /// Returns a bound on the error of a point, in world units.
     pub fn error(&self, lane: usize) -> f64 {
         self.errors.of(&self.travelled, &self.cosines, lane)
     }
 
-    /// What each place mirrors.
+    /// Returns the specular reflectivities at the points.
     pub fn mirrors(&self, count: usize) -> Colours<'_> {
         match self.look {
-            Some(look) => Colours::Even(look.specular),
+            Some(look) => Colours::Uniform(look.specular),
             None => Colours::Each(self.specular.view(count)),
         }
     }
 }
 
-/// Of a group's rays, by their lanes.
+/// Rays that continue from the points where a group's rays have hit an object, in the same lanes.
 pub(super) struct Onward<'o> {
     pub points: &'o VectorList,
     pub dir: &'o VectorList,
+    /// The path length from the viewer to each point, in world units.
     pub travelled: &'o [f64],
-    /// The object that they leave.
+    /// The index of the object that the rays leave.
     pub origin_object: usize,
+    /// The side of the object that each ray leaves.
     pub sides: &'o [Side],
-    /// The cosines of the angles at which the rays came there, and how far the points may be from where they should be.
+    /// The cosines of the angles at which the group's rays hit the points.
     pub cosines: &'o [f64],
+    /// The errors of the points.
     pub errors: Errors,
 }
 
-/// How far points where rays have come to a surface may be from where they should be: that of one is only computed where
-/// it is asked for.
+/// Bounds on the errors of computed hit points. The bound of a single point is computed on demand.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Errors {
-    /// How large the coordinates are that the points are computed from, the rays' ways apart; nothing where errors make no
-    /// difference.
+    /// The largest magnitude of the coordinates that the points are computed from, in world units, without the path
+    /// length; `None` where errors make no difference.
     pub reach: Option<f64>,
-    /// The most that any may be off, in world units.
+    /// A bound on the error of every point, in world units.
     pub most: f64,
 }
 
 impl Errors {
-    /// Of points that are what they are.
+    /// The errors of exact points.
     pub const NONE: Self = Self { reach: None, most: 0.0 };
 
-    /// That of one of some points, in world units.
+    /// Returns a bound on the error of one point, in world units.
     pub fn of(&self, travelled: &[f64], cosines: &[f64], lane: usize) -> f64 {
         self.reach.map_or(0.0, |reach| coincidence::error_after(travelled[lane], reach, cosines[lane]))
     }

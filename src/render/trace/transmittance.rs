@@ -1,4 +1,4 @@
-//! How much of a light comes through glass.
+//! How much of a light passes through glass.
 
 use super::arrays::{VectorList, compact, gather, resized};
 use super::context::Tracer;
@@ -11,8 +11,9 @@ use crate::render::observer::{Count, Event, Purpose, RayKind, TraceObserver};
 use crate::world::material::Rgb;
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
-    /// Takes from the light that shines on some places what does not come through, in a scene with glass. Tells what
-    /// becomes of the first one's: the opaque object that it ends at, and the part of it that came through.
+    /// Multiplies the light that shines on some points by what passes through the glass on the way, in a scene with
+    /// glass, and clears `shines` where an opaque object blocks it. Returns, for the first point, the index of the
+    /// opaque object that blocks the light, if any, and the fraction of each channel that passes.
     pub(super) fn pass(
         &mut self,
         group: &mut RayGroup,
@@ -43,7 +44,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         first
     }
 
-    /// Goes on toward a light, through glass.
+    /// Follows shadow rays toward a light, through glass, until they reach the light or an opaque object.
     fn walk(&mut self, transmittance: &mut Transmittance) {
         let Transmittance { group, t_max, tint, blocker, hits, parts, .. } = transmittance;
         self.observer.count(Count::Rays(RayKind::Shadow, group.len));
@@ -59,7 +60,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 continue;
             }
             let mut onward = self.scratch.transmittances.pop().unwrap_or_default();
-            for lanes in lanes.chunks(self.most()) {
+            for lanes in lanes.chunks(self.max_packet()) {
                 onward.group.gather(group, lanes);
                 let count = onward.group.padded();
                 gather(&mut onward.near, &hits.near, lanes, count);
@@ -78,10 +79,10 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         }
     }
 
-    /// Goes through one object of glass, and on from there.
+    /// Passes through one transparent object, and follows the shadow rays from there.
     fn pane(&mut self, index: usize, transmittance: &mut Transmittance) {
         let Transmittance { group, t_max, tint, near, far, distances, .. } = transmittance;
-        self.settle(group, (near, far), index, distances);
+        self.refine(group, (near, far), index, distances);
         let object = &self.model.objects[index];
         let count = group.padded();
         let (sides, cosines) = (resized(&mut group.sides, count), resized(&mut group.cosines, count));

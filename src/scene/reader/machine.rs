@@ -29,7 +29,7 @@ impl Report {
         self.faults.iter().map(line).collect()
     }
 
-    /// An object of JSON for each fault, a [`Message`], each on a line of its own.
+    /// an object of JSON for each fault, a `Message`, each on a line of its own.
     pub fn json(&self) -> String {
         let lines = Lines::of(&self.text);
         let line = |fault: &Fault| {

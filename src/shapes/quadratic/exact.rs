@@ -1,42 +1,42 @@
-//! Hits of a surface of the second degree without rounding, but for that of the roots.
+//! Hits of a quadric computed exactly, except for the rounding of the roots.
 
-use super::surface::{FINE, OwnRay, Quadratic};
+use super::surface::{DD_ERROR, OwnRay, Quadratic};
 use crate::numeric::double_double::{DoubleDouble, Exact};
 
-/// A hit in twice the precision, and what it is off at most.
+/// A hit as a double-double, and a bound of its error, both in the quadric's own unit of length.
 #[derive(Clone, Copy)]
-pub(super) struct Fine {
+pub(super) struct PreciseHit {
     pub at: DoubleDouble,
     pub error: f64,
 }
 
-impl Fine {
+impl PreciseHit {
     pub const NONE: Self = Self { at: DoubleDouble { high: f64::NAN, low: 0.0 }, error: 0.0 };
 }
 
 impl Quadratic {
-    /// Both hits of the polynomial without rounding, but for that of the roots: no numbers where there are none.
+    /// Computes both hits from the exact polynomial, rounding only the roots; NaN where there are none.
     #[cold]
-    pub(super) fn exact_hits(&self, ray: &OwnRay) -> [Fine; 2] {
+    pub(super) fn exact_hits(&self, ray: &OwnRay) -> [PreciseHit; 2] {
         let [a, b, c] = self.exact_polynomial(ray);
-        let room = Exact::sum(b.times(&b).chain(a.times(&c).map(|term| -term))).rounded();
+        let discriminant = Exact::sum(b.times(&b).chain(a.times(&c).map(|term| -term))).rounded();
         let [a, b, c] = [a, b, c].map(|part| part.rounded());
-        let fine = |at: DoubleDouble| Fine { at, error: FINE * at.high.abs() };
-        if room.high < 0.0 {
-            return [Fine::NONE; 2];
+        let fine = |at: DoubleDouble| PreciseHit { at, error: DD_ERROR * at.high.abs() };
+        if discriminant.high < 0.0 {
+            return [PreciseHit::NONE; 2];
         }
         if a.high == 0.0 {
-            // A line in it, or one that is nowhere on it, has none.
-            return [if b.high == 0.0 { Fine::NONE } else { fine(-c / (b + b)) }, Fine::NONE];
+            // A line in the quadric, or one that does not meet it anywhere, has no hits.
+            return [if b.high == 0.0 { PreciseHit::NONE } else { fine(-c / (b + b)) }, PreciseHit::NONE];
         }
-        let root = room.sqrt();
+        let root = discriminant.sqrt();
         let larger = if b.high > 0.0 { -b - root } else { root - b };
         // Both are 0 where b and c are.
         let other = if larger.high == 0.0 { larger } else { c / larger };
         [fine(larger / a), fine(other)]
     }
 
-    /// The polynomial `a t^2 + 2 b t + c` along a ray from where it starts.
+    /// Computes the polynomial `a t^2 + 2 b t + c` along a ray from its origin.
     fn exact_polynomial(&self, ray: &OwnRay) -> [Exact; 3] {
         let parts = |of: DoubleDouble| Exact::sum([of.high, of.low]);
         let (from, dir) = (ray.from.map(parts), ray.dir.to_array().map(|part| Exact::sum([part])));

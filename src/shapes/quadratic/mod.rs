@@ -1,8 +1,8 @@
-//! Where a ray meets a surface of the second degree.
+//! Ray-quadric intersection.
 //!
-//! The polynomial along a ray comes from the ray's point closest to the middle of its two hits: neither the viewer nor the
-//! place that the equation counts from need be near. Every number has a bound of its rounding. Where that could decide
-//! whether there is a hit, which one is first or whether a box keeps it, all of it is done again in twice the precision.
+//! The polynomial along a ray is expanded around the midpoint of its two hits: neither the viewer nor the origin of the
+//! equation need be near. Every number has a bound of its rounding error. Where that could decide whether there is a
+//! hit, which one is first or whether a box keeps it, everything is computed again in double-double arithmetic.
 
 mod exact;
 mod fine;

@@ -1,5 +1,5 @@
-//! A quadric in a box: its equation in the numbers of the scene, for the notes' formula and for proofs, and the same surface
-//! as it is solved.
+//! A quadric in a box: its equation in the numbers of the scene, for the course notes' formula and for proofs, and the
+//! same surface scaled for the solver.
 
 use super::quick::Quick;
 use super::surface::{OwnRay, Quadratic};
@@ -10,28 +10,29 @@ use crate::world::accuracy::{Accuracy, Bounded, Classic};
 use glam::{DMat3, DVec3};
 use std::marker::PhantomData;
 
-/// By what a component of a camera's direction may be off: three units of 2^-53.
+/// A bound of the error of a component of a camera ray's direction: 3 units of 2^-53.
 const CAMERA: f64 = 1.5 * f64::EPSILON;
 
-/// `p·Sp + l·p + c = 0`, for points `p` from the center.
+/// A quadric `p·Sp + l·p + c = 0`, for points `p` relative to the center, in a box.
 #[derive(Clone, Debug)]
 pub struct Quadric<A> {
     square: DMat3,
     linear: DVec3,
     constant: f64,
-    /// Where the equation counts from.
+    /// The origin of the equation's coordinates, in world coordinates.
     pub center: DVec3,
-    /// The corners of the box that it is kept in, counted from there.
+    /// The low corner of the box that the quadric is kept in, relative to the center.
     pub low: DVec3,
-    /// Likewise.
+    /// The high corner of the box, relative to the center.
     pub high: DVec3,
-    /// The same surface, as it is solved.
+    /// The same quadric, scaled for the solver.
     own: Quadratic,
     accuracy: PhantomData<A>,
 }
 
 impl<A> Quadric<A> {
-    /// The surface with `Axx + Byy + Czz + Dxy + Exz + Fyz + Gx + Hy + Iz = J`, kept in a box; all count from its center.
+    /// Returns the quadric `Axx + Byy + Czz + Dxy + Exz + Fyz + Gx + Hy + Iz = J`, kept in a box; the coordinates of
+    /// both are relative to the center.
     pub fn new(coefficients: [f64; 10], center: DVec3, [low, high]: [DVec3; 2]) -> Self {
         let [a, b, c, d, e, f, g, h, i, j] = coefficients;
         let square = DMat3::from_cols(
@@ -52,13 +53,13 @@ impl<A> Quadric<A> {
         }
     }
 
-    /// The box that it is kept in.
+    /// Returns the box in world coordinates that the quadric is kept in.
     pub fn around(&self) -> Aabb {
         Aabb { low: self.center + self.low, high: self.center + self.high }
     }
 
-    /// How far a point is from it at least, as far as the equation tells: at `r` from there its value differs by at most
-    /// `|gradient| r + |square| r^2`.
+    /// Returns a lower bound of the distance from a point to the quadric in world units, as far as the equation tells:
+    /// at a distance `r` from the point, its value differs by at most `|gradient| r + |square| r^2`.
     pub fn clearance_by_value(&self, from: DVec3) -> f64 {
         let at = from - self.center;
         let abs = DMat3::from_cols_array(&self.square.to_cols_array().map(f64::abs));
@@ -69,10 +70,11 @@ impl<A> Quadric<A> {
         let gradient = (2.0 * (self.square * at) + self.linear).length() + rounding;
         let square = (abs * DVec3::ONE).length();
         let radius = 2.0 * value / (gradient + (gradient * gradient + 4.0 * square * value).sqrt());
+        // The factor keeps the radius a lower bound: it is far more than the rounding of the lines above.
         if value > 0.0 && radius.is_finite() { radius * (1.0 - 1e-6) } else { 0.0 }
     }
 
-    /// What is 0 on the surface.
+    /// Returns the left side of the equation at a point of the world: 0 on the quadric.
     pub fn value<N: Scalar>(&self, at: [N; 3]) -> N {
         let from_center = [0, 1, 2].map(|axis| at[axis] - N::constant(self.center[axis]));
         let sum = |part: &dyn Fn(usize) -> N| part(0) + part(1) + part(2);
@@ -83,7 +85,7 @@ impl<A> Quadric<A> {
         sum(&row) + N::constant(self.constant)
     }
 
-    /// Above 0 in the box, and below 0 outside.
+    /// Returns a number above 0 for a point of the world in the box, and below 0 outside.
     pub fn inside_box<N: Scalar>(&self, at: [N; 3]) -> N {
         let inside = |axis: usize| {
             let from_center = at[axis] - N::constant(self.center[axis]);
@@ -95,7 +97,7 @@ impl<A> Quadric<A> {
 }
 
 impl Quadric<Classic> {
-    /// The first hit's distance by the notes' formula.
+    /// Returns the distance of the first hit by the course notes' formula.
     pub fn classic_distance(&self, ray: &Ray, range: &RayRange) -> f64 {
         let origin = ray.origin - self.center;
         let turned = self.square * ray.dir;
@@ -112,10 +114,10 @@ impl Quadric<Classic> {
         crossings.into_iter().find(|distance| keeps(ray.at(*distance))).unwrap_or(MISS)
     }
 
-    /// The unit normal at a point.
+    /// Returns the unit normal at a point.
     pub fn upright(&self, at: DVec3) -> DVec3 {
         let normal = 2.0 * (self.square * (at - self.center)) + self.linear;
-        // A cone's apex has none; any will do.
+        // A cone's apex has no normal; any unit vector will do.
         normal.try_normalize().unwrap_or(DVec3::Y)
     }
 }
@@ -126,18 +128,19 @@ impl<A: Bounded> Quadric<A> {
         self.own.own(ray.origin, ray.dir, self.center)
     }
 
-    /// The first hit beyond `near`, in twice the precision or without rounding.
+    /// Computes the distance of the first hit beyond `near` in double-double arithmetic, or exactly.
     pub fn exact_hit(&self, ray: &Ray, near: f64) -> f64 {
         self.own.exact_hit(&self.own_ray(ray), near)
     }
 
-    /// The distance of a ray that leaves it. It starts on one hit: the other one is what is left.
+    /// Returns the distance of the first hit of a ray that leaves the quadric. The ray starts on one hit, so that the
+    /// other one is left.
     #[inline(never)]
     fn other_distance(&self, ray: &Ray, side: Side, range: &RayRange) -> f64 {
         range.keep(self.own.other_hit(&self.own_ray(ray), side))
     }
 
-    /// The first hit's distance within a span, or NaN where it takes more than plain arithmetic.
+    /// Returns the distance of the first hit in a range, or NaN where that takes more than plain arithmetic.
     #[inline(always)]
     pub fn fast_distance(&self, ray: &Ray, range: &RayRange) -> f64 {
         if let Some(side) = range.origin_side {
@@ -154,7 +157,7 @@ impl<A: Bounded> Quadric<A> {
         if quick.is_missed { MISS } else { hit }
     }
 
-    /// Between which distances that is, of a ray that does not start on it.
+    /// Returns bounds of the distance of the first hit in a range, for a ray that does not start on the quadric.
     #[inline(always)]
     pub fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
         if let Some(side) = range.origin_side {
@@ -166,13 +169,13 @@ impl<A: Bounded> Quadric<A> {
         if is_missed { Bracket::MISS } else { Bracket { near, far } }
     }
 
-    /// The unit normal at a point.
+    /// Returns the unit normal at a point.
     pub fn upright(&self, at: DVec3) -> DVec3 {
         self.own.normal(at, self.center)
     }
 }
 
-/// The roots by the well-known formula, which the notes have: it loses digits, and double roots.
+/// Returns the roots by the well-known formula, which is the course notes': it loses digits, and double roots.
 #[inline(always)]
 fn classic_roots(a: f64, half_b: f64, c: f64) -> [f64; 2] {
     let b = 2.0 * half_b;

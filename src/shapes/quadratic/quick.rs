@@ -1,28 +1,28 @@
-//! Hits of a surface of the second degree in plain arithmetic, without branches: of many rays at a time.
+//! Hits of a quadric in plain arithmetic without branches, for many rays at a time.
 
-use super::surface::{FINE, OwnRay, Quadratic};
+use super::surface::{DD_ERROR, OwnRay, Quadratic};
 use crate::geometry::aabb::smaller;
 use crate::numeric::double_double::{two_product, two_sum};
 use glam::DVec3;
 
-/// What is known quickly of a ray's first hit.
+/// A ray's first hit in plain arithmetic.
 #[derive(Clone, Copy, Debug)]
 pub struct Quick {
-    /// Whether there is certainly none.
+    /// Whether there certainly is no hit.
     pub is_missed: bool,
-    /// Whether rounding could decide it, if it is not missed.
+    /// Whether rounding could decide the hit, unless it is missed.
     pub is_unknown: bool,
-    /// Else its distance, in the world's lengths.
+    /// The distance of the hit if it is neither missed nor unknown, in world units.
     pub distance: f64,
-    /// By how much that is off at most.
+    /// A bound of the distance's error, in world units.
     pub error: f64,
 }
 
-/// The polynomial `a t^2 + 2 b t + c` along a ray in plain arithmetic, and by how much each is off at most.
-struct Along {
-    /// Where on the ray `t` is 0.
+/// The polynomial `a t^2 + 2 b t + c` along a ray in plain arithmetic, and bounds of the errors.
+struct RayPolynomial {
+    /// The distance along the ray where `t` is 0.
     base: f64,
-    /// The point there, and by how much each coordinate is off at most.
+    /// The point at `t = 0`, and a bound of the error of each coordinate.
     at: DVec3,
     at_error: f64,
     a: f64,
@@ -34,20 +34,20 @@ struct Along {
 }
 
 impl Quadratic {
-    /// The polynomial along a ray whose direction may be off by this in each component.
+    /// Computes the polynomial along a ray whose direction may be off by `dir_error` in each component.
     ///
-    /// Units of 2^-53: a point is off by 1, a product of three factors and the sums that it goes into are off by 8, and the
-    /// point comes into it twice at most: less than 16. What moves the point, or turns the direction, comes on top,
-    /// with the gradient there.
+    /// Units of 2^-53: a point is off by 1; a product of three factors and the sums that it enters are off by 8, and
+    /// the point enters it at most twice: less than 16. An error of the point or the direction adds to this, multiplied
+    /// by the gradient.
     #[inline(always)]
-    fn along(&self, ray: &OwnRay, dir_error: f64) -> Along {
+    fn along(&self, ray: &OwnRay, dir_error: f64) -> RayPolynomial {
         const ROUNDING: f64 = 8.0 * f64::EPSILON;
         let OwnRay { from, dir } = *ray;
         let high = DVec3::new(from[0].high, from[1].high, from[2].high);
         let turned = self.square * dir;
         let (a, a_size) = (dir.dot(turned), self.sizes.dot(dir * dir));
         let slope = 0.5 * self.linear.dot(dir);
-        // Any base will do; without a middle, the point closest to the centre.
+        // Any base will do; where the chord has no midpoint, it is the point closest to the center.
         let is_bent = a.abs() > 1e-9 * a_size;
         let middle = -(high.dot(turned) + slope) / a;
         let base = if is_bent { middle } else { -high.dot(dir) };
@@ -60,11 +60,11 @@ impl Quadratic {
         let at_size = self.sizes.dot(at * at);
         let linear = self.linear.abs();
         let gradient = 2.0 * self.sizes.dot(at.abs()) + linear.element_sum();
-        let at_error = FINE * (high.abs().element_sum() + base.abs()) + dir_error * base.abs();
+        let at_error = DD_ERROR * (high.abs().element_sum() + base.abs()) + dir_error * base.abs();
         let b_size = (at_size * a_size).sqrt() + 0.5 * linear.dot(dir.abs());
         let c_size = at_size + linear.dot(at.abs()) + self.constant.abs();
         let reach = self.sizes.dot(dir.abs());
-        Along {
+        RayPolynomial {
             base,
             at,
             at_error,
@@ -73,48 +73,51 @@ impl Quadratic {
             c: at.dot(self.square * at) + self.linear.dot(at) + self.constant,
             a_error: ROUNDING * a_size + 2.0 * dir_error * reach,
             b_error: ROUNDING * b_size + at_error * reach + dir_error * gradient,
-            // The components of `square` are at most 1.
+            // The nine components of `square` are at most 1.
             c_error: ROUNDING * c_size + at_error * gradient + 9.0 * at_error * at_error,
         }
     }
 
-    /// The first hit beyond `near` in plain arithmetic without branches, of a ray whose direction may be off by this in
-    /// each component.
+    /// Computes the first hit beyond `near` in plain arithmetic without branches, for a ray whose direction may be off
+    /// by `dir_error` in each component.
     #[inline(always)]
     pub fn quick_hit(&self, ray: &OwnRay, near: f64, dir_error: f64) -> Quick {
         let along = self.along(ray, dir_error);
-        let Along { a, b, c, a_error, b_error, c_error, .. } = along;
+        let RayPolynomial { a, b, c, a_error, b_error, c_error, .. } = along;
         let (square, product) = (b * b, a * c);
-        let room = square - product;
+        let discriminant = square - product;
         let error = b_error * (2.0 * b.abs() + b_error)
             + a.abs() * c_error
             + a_error * (c.abs() + c_error)
             + 2.0 * f64::EPSILON * (square + product.abs());
-        // With that much to spare, roots are off by what is below.
+        // The bounds of the roots' errors in `judge` are good if the discriminant and `a` exceed their errors by this
+        // factor. `quadrics_are_found` and `brackets_hold_the_hits_of_the_real_rays_of_a_camera` in
+        // `tests/shapes/arithmetic.rs` test both.
         const SPARE: f64 = 1024.0;
-        let is_clear = (room > SPARE * error) & (a.abs() > SPARE * a_error);
-        let root = room.sqrt();
+        let is_clear = (discriminant > SPARE * error) & (a.abs() > SPARE * a_error);
+        let root = discriminant.sqrt();
         let larger = if b > 0.0 { -b - root } else { root - b };
         let (one, other) = (larger / a, c / larger);
         let (nearer, farther) = if one < other { (one, other) } else { (other, one) };
         let near = near * self.scale;
         let (first, second) =
-            (self.met(&along, ray, near, nearer, root), self.met(&along, ray, near, farther, root));
+            (self.judge(&along, ray, near, nearer, root), self.judge(&along, ray, near, farther, root));
         let is_first = !first.is_missed;
         Quick {
-            is_missed: (room < -error) | (is_clear & first.is_missed & second.is_missed),
+            is_missed: (discriminant < -error) | (is_clear & first.is_missed & second.is_missed),
             is_unknown: !is_clear | first.is_unknown | (first.is_missed & second.is_unknown),
             distance: self.unscale * if is_first { first.distance } else { second.distance },
             error: self.unscale * if is_first { first.error } else { second.error },
         }
     }
 
-    /// Whether one of two hits counts, as far as plain arithmetic tells, in the surface's own lengths: it must be beyond
-    /// `near` and in the box.
+    /// Judges whether one of two hits counts: whether it is beyond `near` and in the box. In the quadric's own unit of
+    /// length.
     #[inline(always)]
-    fn met(&self, along: &Along, ray: &OwnRay, near: f64, hit: f64, root: f64) -> Quick {
-        let Along { base, at, at_error, a, a_error, b_error, c_error, .. } = *along;
-        // The polynomial's error there by its slope, twice: it is bent.
+    fn judge(&self, along: &RayPolynomial, ray: &OwnRay, near: f64, hit: f64, root: f64) -> Quick {
+        let RayPolynomial { base, at, at_error, a, a_error, b_error, c_error, .. } = *along;
+        // The polynomial's error divided by half its slope: twice the error of a linear function's root, as this one is
+        // curved.
         let off = a_error * hit * hit + 2.0 * b_error * hit.abs() + c_error;
         let hit_error = off / root + 4.0 * f64::EPSILON * hit.abs();
         let distance = base + hit;
@@ -134,8 +137,8 @@ impl Quadratic {
         Quick { is_missed: is_certain & is_missed, is_unknown: !is_certain, distance, error }
     }
 
-    /// A quick hit, corrected to half a unit in its last place by a step of Newton's method in twice the precision; NaN
-    /// where one is not enough.
+    /// Returns a quick hit, corrected by a step of Newton's method in double-double arithmetic to half an ulp; NaN
+    /// where one step is not enough.
     #[inline(always)]
     pub fn corrected(&self, ray: &OwnRay, quick: f64) -> f64 {
         let t = quick * self.scale;
@@ -147,7 +150,7 @@ impl Quadratic {
         let ((x, x_low), (y, y_low), (z, z_low)) = (place(0), place(1), place(2));
         let (at, low) = (DVec3::new(x, y, z), DVec3::new(x_low, y_low, z_low));
         let (s, l) = (&self.square, self.linear);
-        // As x (Ax + Dy + Ez + G) + y (By + Fz + H) + z (Cz + I) - J, each sum with what rounding takes from it.
+        // The equation as x (Ax + Dy + Ez + G) + y (By + Fz + H) + z (Cz + I) - J, each sum with its rounding error.
         let (of_x, of_x_low) = compensated([s.x_axis.x, 2.0 * s.y_axis.x, 2.0 * s.z_axis.x], [x, y, z], l.x);
         let (of_y, of_y_low) = compensated([s.y_axis.y, 2.0 * s.z_axis.y, 0.0], [y, z, 0.0], l.y);
         let (of_z, of_z_low) = compensated([s.z_axis.z, 0.0, 0.0], [z, 0.0, 0.0], l.z);
@@ -158,13 +161,13 @@ impl Quadratic {
         let step = value / slope;
         let bend = ray.dir.dot(self.square * ray.dir) * step * step;
         let size = self.sizes.dot(at * at) + l.abs().dot(at.abs()) + self.constant.abs();
-        let error = bend.abs() + FINE * size;
+        let error = bend.abs() + DD_ERROR * size;
         let is_enough = error <= 0.125 * f64::EPSILON * (t * slope).abs();
         if is_enough { (t - step) * self.unscale } else { f64::NAN }
     }
 }
 
-/// A sum of three products and a number, and what rounding takes from it, but for what it takes from that.
+/// Returns the sum of three products and a number, and its rounding error, which is itself rounded.
 #[inline(always)]
 fn compensated(a: [f64; 3], b: [f64; 3], more: f64) -> (f64, f64) {
     let (first, first_low) = two_product(a[0], b[0]);

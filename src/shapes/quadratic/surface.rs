@@ -1,50 +1,50 @@
-//! The surface, and a ray that is counted as it is.
+//! A quadric scaled for the solver, and rays in its coordinates.
 
 use crate::numeric::double_double::{DoubleDouble, exponent_to_one, times_power_of_two, two_sum};
 use glam::{DMat3, DVec3};
 
-/// The part in a box of what solves `p·Sp + l·p + c = 0`.
+/// The part of the quadric `p·Sp + l·p + c = 0` in a box, scaled.
 ///
-/// Lengths are counted in a power of two of the world's, and the equation is multiplied by one, both such that its
-/// numbers are around 1: that loses nothing, and their squares are neither too large nor too small.
+/// Lengths are multiplied by one power of two and the equation by another, so that its numbers are around 1: this loses
+/// no digits, and squares neither overflow nor underflow.
 #[derive(Clone, Debug)]
 pub struct Quadratic {
     pub(super) square: DMat3,
     pub(super) linear: DVec3,
     pub(super) constant: f64,
-    /// The sums of the magnitudes of each row of `square`, or column: `|x|·|S||y|` is at most the root of the sums of
-    /// `size x^2` and of `size y^2`, multiplied.
+    /// The sums of the magnitudes of each row of `square`, or column: `|x|·|S||y|` is at most the square root of the
+    /// product of the sums of `size x^2` and of `size y^2`.
     pub(super) sizes: DVec3,
     pub(super) low: DVec3,
     pub(super) high: DVec3,
-    /// The power of two that a length of the world is multiplied by, as its exponent.
+    /// The exponent of the power of two that lengths in world units are multiplied by.
     pub(super) exponent: i32,
-    /// That power of two, and one over it.
+    /// That power of two, and its reciprocal.
     pub(super) scale: f64,
     pub(super) unscale: f64,
 }
 
-/// A ray, in the surface's own lengths and counted from its centre.
+/// A ray, in the quadric's own unit of length and relative to its center.
 #[derive(Clone, Copy, Debug)]
 pub struct OwnRay {
     pub(super) from: [DoubleDouble; 3],
     pub(super) dir: DVec3,
 }
 
-/// What a number is off at most after about ten operations in twice the precision, against the size of its parts: each
-/// makes less than 2^-102.
-pub(super) const FINE: f64 = 1.0 / (1_u128 << 98) as f64;
+/// A bound of the relative error of about ten operations in double-double arithmetic, each of which is off by less than
+/// 2^-102 of its terms.
+pub(super) const DD_ERROR: f64 = 1.0 / (1_u128 << 98) as f64;
 
 impl Quadratic {
-    /// The surface with `Axx + Byy + Czz + Dxy + Exz + Fyz + Gx + Hy + Iz = J`, kept in a box.
+    /// Returns the quadric `Axx + Byy + Czz + Dxy + Exz + Fyz + Gx + Hy + Iz = J`, kept in a box.
     pub fn new(coefficients: [f64; 10], low: DVec3, high: DVec3) -> Self {
         let exponent_of = |of: &[f64]| {
-            let most = of.iter().fold(0.0, |most: f64, part| most.max(part.abs()));
-            (most != 0.0).then(|| -exponent_to_one(most))
+            let largest = of.iter().fold(0.0, |largest: f64, part| largest.max(part.abs()));
+            (largest != 0.0).then(|| -exponent_to_one(largest))
         };
         let (square, linear) = (exponent_of(&coefficients[..6]), exponent_of(&coefficients[6..9]));
         let constant = exponent_of(&coefficients[9..]);
-        // The lengths at which two of the three parts are about the same.
+        // The lengths at which two of the three terms are about the same.
         let length = match (square, linear, constant) {
             (Some(square), linear, constant) => {
                 let of_linear = linear.map(|linear| linear - square);
@@ -53,7 +53,7 @@ impl Quadratic {
             (None, Some(linear), Some(constant)) => Some(constant - linear),
             _ => None,
         };
-        // Of a length of 1e150 the square of what is left is still a number, and of one of 1e-150.
+        // Lengths of 1e150 and 1e-150 leave numbers of 1e90 and 1e-90, whose squares neither overflow nor underflow.
         let length = length.unwrap_or(0).clamp(-200, 200);
         let sizes = [square.map(|of| of + 2 * length), linear.map(|of| of + length), constant];
         let factor = -sizes.into_iter().flatten().max().unwrap_or(0);
@@ -79,7 +79,7 @@ impl Quadratic {
         }
     }
 
-    /// A ray of the world in the surface's own lengths, from its centre.
+    /// Returns a ray of the world in the quadric's own unit of length, relative to its center.
     #[inline(always)]
     pub fn own(&self, origin: DVec3, dir: DVec3, center: DVec3) -> OwnRay {
         let from = [0, 1, 2].map(|axis| {

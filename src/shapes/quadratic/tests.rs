@@ -19,29 +19,29 @@ fn hit(coefficients: [f64; 10], [low, high]: [DVec3; 2], origin: DVec3, dir: DVe
     exact
 }
 
-const BALL: [f64; 10] = [1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+const SPHERE: [f64; 10] = [1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
 
 #[test]
 fn balls_of_every_size_are_hit() {
     for exponent in [-150, -80, -20, 0, 20, 80, 150] {
         let radius = 10_f64.powi(exponent);
-        let mut ball = BALL;
-        ball[9] = radius * radius;
+        let mut sphere = SPHERE;
+        sphere[9] = radius * radius;
         let all = BOX.map(|corner| corner * radius);
-        let found = hit(ball, all, DVec3::new(0.0, 0.0, 3.0) * radius, DVec3::NEG_Z);
+        let found = hit(sphere, all, DVec3::new(0.0, 0.0, 3.0) * radius, DVec3::NEG_Z);
         assert!((found / radius - 2.0).abs() < 1e-14, "{radius:e}: {found:e}");
-        assert_eq!(hit(ball, all, DVec3::new(1.1, 0.0, 3.0) * radius, DVec3::NEG_Z), MISS);
+        assert_eq!(hit(sphere, all, DVec3::new(1.1, 0.0, 3.0) * radius, DVec3::NEG_Z), MISS);
     }
 }
 
 #[test]
 fn coefficients_of_every_size_make_the_same_ball() {
     for exponent in [-301, -150, 1, 150, 301] {
-        let ball = BALL.map(|coefficient| coefficient * 10_f64.powi(exponent));
-        let found = hit(ball, BOX, DVec3::new(0.6, 0.0, 3.0), DVec3::NEG_Z);
+        let sphere = SPHERE.map(|coefficient| coefficient * 10_f64.powi(exponent));
+        let found = hit(sphere, BOX, DVec3::new(0.6, 0.0, 3.0), DVec3::NEG_Z);
         assert!((found - 2.2).abs() < 1e-14, "1e{exponent}: {found:e}");
     }
-    // That has a radius of 3e150, and nothing of it is in the box.
+    // Its radius is 3e150, and no part of it is in the box.
     let huge = [1e-301, 1e-301, 1e-301, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
     assert_eq!(hit(huge, BOX, DVec3::new(0.6, 0.0, 3.0), DVec3::NEG_Z), MISS);
 }
@@ -63,7 +63,7 @@ fn straight_lines_and_planes_are_hit_once() {
     let plane = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 2.0, 1.0];
     assert_eq!(hit(plane, BOX, DVec3::Z, DVec3::NEG_Z), 0.5);
     assert_eq!(hit(plane, BOX, DVec3::Z, DVec3::X), MISS);
-    // A bowl, met along its axis.
+    // A paraboloid, hit along its axis.
     let bowl = [1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0];
     assert_eq!(hit(bowl, BOX, DVec3::new(1.0, 0.0, 3.0), DVec3::NEG_Z), 2.0);
 }

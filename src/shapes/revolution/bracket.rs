@@ -1,10 +1,10 @@
-//! Brackets of the first hits of rays, slab by slab for all of them at once, in plain arithmetic without branches.
+//! Brackets of the first hits of rays, slab by slab for all rays at once, in plain arithmetic without branches.
 //!
-//! In a slab the surface lies between two quadrics, the parabola's with its error added and taken away. A ray that
-//! misses the nearer one misses the surface; one that crosses both while falling all the way has one root between
-//! them, bracketed by the error. Where a ray grazes the shell between them, starts in it, runs along the axis or upright
-//! on it, or crosses the surface where slabs meet, the bracket says no more than where that begins, and the ray goes its
-//! way alone (`walk`), through the same slabs.
+//! In a slab the surface lies between two quadrics, the parabola's with its error added and subtracted. A ray that
+//! misses the nearer one misses the surface; a ray that crosses both while its distance from the surface falls all the
+//! way has one root between them, bracketed by the error. Where a ray grazes the shell between them, starts in it, runs
+//! parallel or perpendicular to the axis, or crosses the surface where slabs meet, the bracket only says where that
+//! begins, and the ray is traced alone (`walk`), through the same slabs.
 
 use super::lanes::{Crossing, Lanes};
 use super::pieces::Slab;
@@ -16,16 +16,16 @@ use crate::geometry::ray::{MISS, Ray, Side};
 use crate::geometry::ray_packet::RayPacket;
 use crate::simd::cpu::{Cpu, kernels};
 
-/// A direction with less than this of an axis is taken for upright on it.
-const UPRIGHT: f64 = 1e-9;
+/// A unit direction whose component along the axis, or perpendicular to it, is below this is traced alone.
+const MIN_COMPONENT: f64 = 1e-9;
 
-/// The most rays that go together: few enough for what is computed of them to stay near the processor, and for slabs
-/// that no ray comes to.
-pub(super) const MOST: usize = 64;
+/// The largest number of rays that are bracketed together: few enough for their data to stay in the cache, and for
+/// slabs that none of them reaches to be skipped.
+pub(super) const MAX_RAYS: usize = 64;
 
 impl Revolution {
-    /// The brackets of the first hits of rays, up to `N`, which may leave the surface on these sides. What begins beyond
-    /// `ends` is of no interest.
+    /// Computes the brackets of the first hits of rays, up to `N`, which may leave the surface to these sides. Hits
+    /// beyond `ends`, in world units, are of no interest.
     pub(super) fn t_bounds<const N: usize>(
         &self,
         cpu: Cpu,
@@ -35,7 +35,7 @@ impl Revolution {
         ends: &[f64],
         lanes: &mut Lanes<N>,
     ) {
-        lanes.begin(rays.len(), sides);
+        lanes.prepare(rays.len(), sides);
         let reach = self.slabs.reach();
         if let Some((low, high)) = enter(cpu, lanes, frame, rays, self.size(), reach, ends) {
             let (first, last) = (self.slabs.index(low), self.slabs.index(high));
@@ -47,12 +47,12 @@ impl Revolution {
         leave(cpu, lanes, rays.len());
     }
 
-    /// How high and how wide it is.
+    /// Returns the height of the surface and its largest distance from the axis, in world units.
     pub(super) fn size(&self) -> [f64; 2] {
         [self.height, self.slabs.widest()]
     }
 
-    /// A slab. The lowest and the highest go on, for what rounding cuts off.
+    /// Returns a slab. The lowest and the highest are extended to infinity, for what rounding cuts off.
     pub(super) fn slab(&self, index: usize) -> Slab {
         let slab = self.slabs.get(index);
         Slab {
@@ -64,8 +64,9 @@ impl Revolution {
 }
 
 kernels! {
-    /// Counts rays from near the axis and clips them to the bounding cylinder, whose squared radius `reach` has room
-    /// for the error's shell. Gives the least and the greatest height of any ray in it, or nothing where all miss it.
+    /// Sets up rays relative to a base near the axis, and clips them to the bounding cylinder, whose squared radius
+    /// `reach` includes the shell of the error. Returns the smallest and the largest height of any ray in it; `None`
+    /// where all rays miss it.
     fn enter<const N>(
         lanes: &mut Lanes<N>, frame: &Frame, rays: RayPacket, size: [f64; 2], reach: f64, ends: &[f64]
     ) -> Option<(f64, f64)> {
@@ -80,29 +81,31 @@ kernels! {
             let closest = -(origin.x * dir.x + origin.z * dir.z) * inverse_a;
             let base = if is_free & (closest > 0.0) { closest } else { 0.0 };
             let moved = origin + base * dir;
-            // How far rounding moves that point, in units of EPSILON. Each coordinate of the origin: 1/2 in its difference
-            // from the frame's, 3 in the axes, 3/2 in the turning; sqrt(3) of these 5 across three axes are below 9. The
-            // direction: sqrt(3) of 3 in the axes and 3/2 in the turning, 1 for the ray of a real camera, which is that
-            // far from one of f64, and 1 for the point on the way: below 10.
+            // The rounding error of that point, in units of EPSILON. Each coordinate of the origin: 1/2 in its
+            // difference from the frame's, 3 in the axes, 3/2 in the rotation; sqrt(3) of these 5 across three axes are
+            // below 9. The direction: sqrt(3) of 3 in the axes and 3/2 in the rotation, 1 for a camera ray's rounded
+            // direction, and 1 for the point along the ray: below 10.
             let off = 12.0 * f64::EPSILON * (origin.abs().element_sum() + base);
 
             let inverse_dy = 1.0 / dir.y;
             let (bottom, top) = (-moved.y * inverse_dy, (height - moved.y) * inverse_dy);
-            let hair = 2.0 * off * inverse_dy.abs() + 16.0 * f64::EPSILON * (bottom.abs() + top.abs() + base);
-            let (first, last) = if bottom < top { (bottom - hair, top + hair) } else { (top - hair, bottom + hair) };
-            let (inward, outward, room) = Quadratic::around(moved, dir).lowered(reach).between(inverse_a);
+            // The hits in `tests/slow/truth.rs` hold this margin.
+            let end_error = 2.0 * off * inverse_dy.abs() + 16.0 * f64::EPSILON * (bottom.abs() + top.abs() + base);
+            let (first, last) = if bottom < top { (bottom, top) } else { (top, bottom) };
+            let (first, last) = (first - end_error, last + end_error);
+            let (inward, outward, discriminant) = Quadratic::around(moved, dir).lowered(reach).between(inverse_a);
             let from = larger(larger(-base, first), inward);
             let to = smaller(last, outward);
 
-            let is_upright = (a < UPRIGHT * UPRIGHT) | (dir.y.abs() < UPRIGHT);
-            let is_missed = !is_upright & ((room < 0.0) | (from > to) | (from + base > ends[lane]));
-            let is_in = !is_upright & !is_missed;
-            lanes.put(lane, Ray { origin: moved, dir }, (base, off), (from, to), widest);
-            // Others take no part.
+            let is_aligned = (a < MIN_COMPONENT * MIN_COMPONENT) | (dir.y.abs() < MIN_COMPONENT);
+            let is_missed = !is_aligned & ((discriminant < 0.0) | (from > to) | (from + base > ends[lane]));
+            let is_in = !is_aligned & !is_missed;
+            lanes.set(lane, Ray { origin: moved, dir }, (base, off), (from, to), widest);
+            // Other rays take no part.
             lanes.from[lane] = if is_in { from } else { f64::INFINITY };
             lanes.to[lane] = if is_in { to } else { f64::NEG_INFINITY };
-            lanes.hair[lane] = hair;
-            lanes.near[lane] = if is_upright { -base } else { MISS };
+            lanes.end_error[lane] = end_error;
+            lanes.near[lane] = if is_aligned { -base } else { MISS };
             let (one, other) = (moved.y + from * dir.y, moved.y + to * dir.y);
             low = low.min(if is_in { order(smaller(one, other)) } else { i64::MAX });
             high = high.max(if is_in { order(larger(one, other)) } else { i64::MIN });
@@ -110,7 +113,7 @@ kernels! {
         (low <= high).then(|| (from_order(low), from_order(high)))
     }
 
-    /// Compares the brackets with those of a slab, of a surface of this size.
+    /// Merges the hits in a slab into the brackets, for a surface of this size.
     pub(super) fn cross<const N>(
         lanes: &mut Lanes<N>, slab: &Slab, size: [f64; 2], origin_error: f64, count: usize
     ) {
@@ -141,15 +144,15 @@ kernels! {
         }
     }
 
-    /// Counts the brackets from the rays' origins, a hair wider.
+    /// Converts the brackets to distances from the rays' origins, widened by their rounding errors.
     fn leave<const N>(lanes: &mut Lanes<N>, count: usize) {
         let count = count.min(N);
         for lane in 0..count {
-            let (near, far, hair) = (lanes.near[lane], lanes.far[lane], 2.0 * lanes.hair[lane]);
+            let (near, far, margin) = (lanes.near[lane], lanes.far[lane], 2.0 * lanes.end_error[lane]);
             let (low, high) = lanes.counted_from_origin(lane, (near, far));
             let is_met = near < MISS;
-            // Rounding may have made an end of the cylinder a part of the surface.
-            let is_certain = (far < MISS) & (near > lanes.from[lane] + hair) & (far < lanes.to[lane] - hair);
+            // Rounding may have mistaken an end of the cylinder for a part of the surface.
+            let is_certain = (far < MISS) & (near > lanes.from[lane] + margin) & (far < lanes.to[lane] - margin);
             lanes.near[lane] = if is_met { low } else { MISS };
             lanes.far[lane] = if is_certain & (low > 0.0) { high } else { MISS };
         }

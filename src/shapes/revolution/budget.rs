@@ -1,12 +1,12 @@
-//! What cutting a profile may cost.
+//! The budget of operations for cutting a profile.
 
 use crate::numeric::formula::Formula;
 
-/// The operations of formulas that one profile may take, a function counted as eight: half a second's worth in a
-/// program built without optimisation, a tenth of that in one built with it.
+/// The number of formula operations that one profile may take, a function counted as eight: half a second's worth in a
+/// program built without optimization, a tenth of that in an optimized one.
 pub const OPERATIONS: u64 = 60_000_000;
 
-/// How many of them are left.
+/// The number of operations that are left.
 pub(super) struct Budget(u64);
 
 impl Budget {
@@ -14,8 +14,8 @@ impl Budget {
         Self(OPERATIONS)
     }
 
-    /// Pays for evaluating a formula, so many times as the value alone costs; tells whether that could be paid.
-    pub fn spend(&mut self, formula: &Formula, times: u64) -> bool {
+    /// Charges the cost of evaluating a formula's value this many times; returns whether the budget sufficed.
+    pub fn charge(&mut self, formula: &Formula, times: u64) -> bool {
         let cost = formula.cost() * times;
         let can = cost <= self.0;
         self.0 = self.0.saturating_sub(cost);

@@ -1,4 +1,4 @@
-//! The notes' method for surfaces of revolution, with the hits that it loses.
+//! The course notes' method for surfaces of revolution, which loses some hits.
 
 use crate::geometry::ray::{MISS, Ray, RayRange};
 use crate::geometry::roots::bisection::bisect;
@@ -8,17 +8,17 @@ use crate::scene::profile::ProfileLine;
 use crate::world::certify::Equation;
 use glam::DVec3;
 
-/// A surface of revolution around the y axis, as the notes' program finds it.
+/// A surface of revolution around the y axis, as the course notes' program finds it.
 pub struct Classic {
-    /// The line that is turned.
+    /// The profile that is revolved.
     pub line: ProfileLine,
-    /// How far up it goes.
+    /// The height of the surface, in world units.
     pub height: f64,
 }
 
 impl Classic {
-    /// The distance of a ray's hit: between the ray's origin and its point closest to the axis, bisection to 1e-4. A
-    /// ray that grazes the surface is lost, and so is the inner wall.
+    /// Returns the distance of a ray's hit: bisection to 1e-4 world units between the ray's origin and its point
+    /// closest to the axis. Grazing rays are lost, and so is the inner wall.
     pub fn first_hit(&self, ray: &Ray, range: &RayRange) -> f64 {
         let outside = |at: DVec3| {
             let radius = self.line.radius.at(at.y);
@@ -37,14 +37,14 @@ impl Classic {
         if (0.0..=self.height).contains(&height) { range.keep(distance) } else { MISS }
     }
 
-    /// The unit normal at a point of it, away from the axis.
+    /// Returns the unit normal at a point of the surface, away from the axis.
     pub fn normal(&self, at: DVec3) -> DVec3 {
         let downhill = -self.line.radius.at(at.y) * self.line.slope_at(at.y);
         DVec3::new(2.0 * at.x, 2.0 * downhill, 2.0 * at.z).normalize()
     }
 }
 
-/// What the notes mean by it, not what their program finds.
+/// The surface that the course notes mean, not the one that their program finds.
 impl Equation for Classic {
     fn value<N: Scalar>(&self, [x, y, z]: [N; 3]) -> N {
         x.powi(2) + z.powi(2) - self.line.radius.squared().at(y)

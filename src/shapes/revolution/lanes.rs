@@ -1,41 +1,41 @@
-//! Some rays along which a surface is looked for, slab by slab: any number of them, one included.
+//! The state of rays that are intersected with a surface, slab by slab: any number of lanes, including one.
 
 use super::pieces::Slab;
 use super::quadratic::Quadratic;
 use crate::geometry::aabb::{larger, smaller};
 use crate::geometry::ray::{MISS, Ray, Side};
 
-/// Rays, each counted from a point near the surface.
+/// Rays, each parametrized from a base: a point of the ray near the surface. Lengths are in world units.
 pub(super) struct Lanes<const N: usize> {
-    /// The height of that point, how fast the ray rises, and the reciprocal of that.
+    /// The height of the base, the direction's component along the axis, and its reciprocal.
     pub y: [f64; N],
     pub dy: [f64; N],
     pub inverse_dy: [f64; N],
-    /// The squared distance from the axis is `a s^2 + 2 b s + c`, and the least at `middle`.
+    /// The coefficients of the squared distance from the axis, `a s^2 + 2 b s + c`, and the `s` of its minimum.
     pub a: [f64; N],
     pub b: [f64; N],
     pub c: [f64; N],
     pub middle: [f64; N],
-    /// Where the ray is in the surface's bounding cylinder.
+    /// The part of the ray in the surface's bounding cylinder.
     pub from: [f64; N],
     pub to: [f64; N],
-    /// How far that point is from the ray's origin, and how far off it may be.
+    /// The distance of the base from the ray's origin, and a bound of the base's rounding error.
     pub base: [f64; N],
     pub off: [f64; N],
-    /// What rounding makes of the quadratic, and of the places where the ray comes to the cylinder's ends.
+    /// Bounds of the rounding errors of the quadratic, and of the places where the ray reaches the cylinder's ends.
     pub rounding: [f64; N],
-    pub hair: [f64; N],
+    pub end_error: [f64; N],
     /// 1 where the ray is outside of the surface, -1 where it is inside.
     pub side: [f64; N],
-    /// 1 where the ray does not start on the surface.
+    /// 1 where the ray does not start on the surface, else 0.
     pub is_free: [f64; N],
-    /// The bracket so far, counted as `from`; in the end from the ray's origin.
+    /// The bracket so far, from the base; in the end, from the ray's origin.
     pub near: [f64; N],
     pub far: [f64; N],
 }
 
 impl<const N: usize> Lanes<N> {
-    /// None yet.
+    /// Returns lanes without rays.
     pub fn none() -> Self {
         let zero = [0.0; N];
         Self {
@@ -51,7 +51,7 @@ impl<const N: usize> Lanes<N> {
             base: zero,
             off: zero,
             rounding: zero,
-            hair: zero,
+            end_error: zero,
             side: zero,
             is_free: zero,
             near: zero,
@@ -59,8 +59,8 @@ impl<const N: usize> Lanes<N> {
         }
     }
 
-    /// So many rays that are put there next, and leave the surface on these sides, or begin elsewhere.
-    pub fn begin(&mut self, count: usize, sides: Option<&[Side]>) {
+    /// Prepares `count` lanes for rays that leave the surface to these sides, or start elsewhere.
+    pub fn prepare(&mut self, count: usize, sides: Option<&[Side]>) {
         match sides {
             None => {
                 self.side[..count].fill(1.0);
@@ -79,9 +79,10 @@ impl<const N: usize> Lanes<N> {
         self.far[..count].fill(MISS);
     }
 
-    /// Puts a ray in its place, from a point so far along it that may be `off`, and between two places.
+    /// Sets a lane to a ray whose origin is the base, at a distance of `base` along the ray with a rounding error of
+    /// `off`; the ray is searched between two places.
     #[inline(always)]
-    pub fn put(
+    pub fn set(
         &mut self,
         lane: usize,
         ray: Ray,
@@ -94,12 +95,15 @@ impl<const N: usize> Lanes<N> {
         (self.a[lane], self.b[lane], self.c[lane], self.middle[lane]) = (a, b, c, -b * (1.0 / a));
         (self.base[lane], self.off[lane]) = (base, off);
         (self.from[lane], self.to[lane]) = (from, to);
+        // The coefficients and the value go through about ten roundings of half an EPSILON of terms that add up to at
+        // most `2 (c + a s^2)`, which makes 10 EPSILON of that sum. A base that is off by `off` changes the squared
+        // distance by `2 widest off` on the surface.
         let farthest = larger(from.abs(), to.abs());
         self.rounding[lane] =
             16.0 * f64::EPSILON * (c + a * farthest * farthest + widest * widest) + 4.0 * widest * off;
     }
 
-    /// The part of a ray in a slab.
+    /// Returns the part of a ray in a slab.
     #[inline(always)]
     pub fn part(&self, slab: &Slab, lane: usize) -> (f64, f64) {
         let (y, inverse) = (self.y[lane], self.inverse_dy[lane]);
@@ -107,7 +111,8 @@ impl<const N: usize> Lanes<N> {
         (larger(self.from[lane], smaller(one, other)), smaller(self.to[lane], larger(one, other)))
     }
 
-    /// A bracket counted from a ray's origin, a hair wider.
+    /// Converts a bracket to distances from the ray's origin, widened by the rounding errors of the base and of the
+    /// sums. The hits in `tests/slow/truth.rs` hold this margin.
     #[inline(always)]
     pub fn counted_from_origin(&self, lane: usize, (near, far): (f64, f64)) -> (f64, f64) {
         let base = self.base[lane];
@@ -115,22 +120,22 @@ impl<const N: usize> Lanes<N> {
         (larger(base + near - slack, 0.0), base + far + slack)
     }
 
-    /// The squared distance from the axis along a ray.
+    /// Returns the squared distance from the axis along a ray.
     #[inline(always)]
     pub fn around(&self, lane: usize) -> Quadratic {
         Quadratic { a: self.a[lane], b: self.b[lane], c: self.c[lane] }
     }
 
-    /// Whether a ray may meet a slab's surface before what it has met, on its part from `from` to `to`.
+    /// Returns whether a ray may hit a slab's surface before its hit so far, on its part from `from` to `to`.
     #[inline(always)]
     pub fn may_meet(&self, lane: usize, slab: &Slab, (from, to): (f64, f64)) -> bool {
         let closest = smaller(larger(self.middle[lane], from), to);
-        let is_near = self.around(lane).at(closest) <= slab.most + 4.0 * self.rounding[lane];
+        let is_near = self.around(lane).at(closest) <= slab.max_square + 4.0 * self.rounding[lane];
         (from < to) & (self.near[lane] > from) & (is_near | (self.side[lane] < 0.0))
     }
 
-    /// A slab's surface along a ray's part from `from` to `to`. The surface is so high and wide, and the ray's origin may be
-    /// off by `origin_error`.
+    /// Returns a slab's surface along a ray's part from `from` to `to`. The surface has this height and largest radius,
+    /// and the ray's origin may be off by `origin_error`, all in world units.
     #[inline(always)]
     pub fn shell(
         &self,
@@ -144,6 +149,8 @@ impl<const N: usize> Lanes<N> {
         let v = self.y[lane] - slab.middle;
         let farthest = larger(larger((v + from * dy).abs(), (v + to * dy).abs()), v.abs());
         let slope = slab.c1.abs() + 2.0 * slab.c2.abs() * farthest;
+        // A height that is off by `off` changes the parabola by `slope off`. The parabola's value goes through about
+        // ten roundings of half an EPSILON of its terms, in which `v` is off by half an EPSILON of the height.
         let rounding = self.rounding[lane]
             + 4.0 * self.off[lane] * slope
             + 16.0
@@ -156,12 +163,12 @@ impl<const N: usize> Lanes<N> {
             b: b - (0.5 * slab.c1 + slab.c2 * v) * dy,
             c: c - slab.parabola(v),
         };
-        // Where the ray comes into the cylinder it is seen on which side that is.
+        // The side is seen where the ray enters the cylinder.
         let at_start = outside.at(from);
         let is_start = (from == self.from[lane]) & (self.is_free[lane] != 0.0);
         let side = if is_start { 1.0_f64.copysign(at_start) } else { self.side[lane] };
-        // In the shell it may be either; and rays that rise and that fall go through slabs in one order, so that
-        // some come to a slab before their side is known.
+        // In the shell, the ray may be on either side; and as rising and falling rays go through slabs in the same
+        // order, some reach a slab before their side is known.
         let start_error = error + 4.0 * origin_error * (widest + slope);
         let is_side_unknown = (is_start & (at_start.abs() <= start_error)) | (side * at_start < -error);
         let slope_error = slab.slope_error * dy.abs();
@@ -169,11 +176,12 @@ impl<const N: usize> Lanes<N> {
     }
 }
 
-/// A slab's surface along a ray: between two quadrics, its parabola's with its error added and taken away.
+/// A slab's surface along a ray: between two quadrics, the parabola's with its error added and subtracted.
 #[derive(Clone, Copy)]
 pub(super) struct Shell {
-    /// How far the ray is on its side of the parabola's: it crosses the surface where this falls through 0, but for the
-    /// error; and how far the slope may be from this one's, but for rounding.
+    /// The distance from the parabola's quadric on the ray's side, in squared world units: the ray crosses the surface
+    /// where this falls through 0, to within `error`. `slope_error` bounds the difference of the slopes, apart from
+    /// `rounding`.
     ahead: Quadratic,
     error: f64,
     slope_error: f64,
@@ -181,28 +189,28 @@ pub(super) struct Shell {
     /// The ray's part in the slab.
     from: f64,
     to: f64,
-    /// The side that the ray is on at first, and whether it may be the other one.
+    /// The side that the ray is on at first (1 outside, -1 inside), and whether it may be the other one.
     pub side: f64,
     pub is_side_unknown: bool,
 }
 
-/// What a ray does in a slab.
+/// The hit of a ray in a slab.
 pub(super) struct Crossing {
-    /// Whether it comes into the shell, and where.
+    /// Whether the ray enters the shell, and where.
     pub is_met: bool,
     pub near: f64,
-    /// Whether it certainly crosses the surface then, once, before it leaves the shell at `far`.
+    /// Whether the ray then certainly crosses the surface exactly once before it leaves the shell at `far`.
     pub is_certain: bool,
     pub far: f64,
 }
 
 impl Shell {
-    /// The first crossing of the surface to the other side.
+    /// Returns the first crossing of the surface to the other side.
     #[inline(always)]
     pub fn crossing(&self) -> Crossing {
         let Self { ahead, error, slope_error, rounding, from, to, is_side_unknown, .. } = *self;
         let Quadratic { a, b, .. } = ahead;
-        // A crossing to the other side falls: begin where it can.
+        // At a crossing to the other side, `ahead` falls: begin where it can.
         let rises = 2.0 * (a * from + b) - slope_error - rounding;
         let begin = if rises > 0.0 { from - rises / (2.0 * a) } else { from };
         let never_falls = (rises > 0.0) & ((a >= 0.0) | (begin >= to));
@@ -224,7 +232,7 @@ impl Shell {
         Crossing { is_met, near, is_certain, far: origin_side }
     }
 
-    /// Where a ray that comes into the shell at `near` is out of it again, and whether it is on the other side then.
+    /// Returns where a ray that enters the shell at `near` leaves it again, and whether it is on the other side then.
     pub fn end(&self, near: f64) -> (f64, bool) {
         if self.is_side_unknown {
             return (self.to, false);

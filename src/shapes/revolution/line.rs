@@ -1,4 +1,4 @@
-//! The surface along a ray, as a function of the place.
+//! A surface of revolution along a ray, as a function of the place.
 
 use super::local::Local;
 use super::surface::Revolution;
@@ -11,7 +11,7 @@ use crate::numeric::interval::Interval;
 use crate::numeric::scalar::Scalar;
 use crate::world::certify::Equation;
 
-/// How far outside of the surface the places along a ray are, with any number type.
+/// The left side of the surface's equation along a ray, in any number type: above 0 outside, below 0 inside.
 pub(super) struct ProfileOnRay<'s> {
     pub surface: &'s Revolution,
     pub local: &'s Local,
@@ -23,7 +23,7 @@ impl FunctionOnLine for ProfileOnRay<'_> {
         self.surface.value([0, 1, 2].map(|axis| self.local.place(axis, along)))
     }
 
-    /// That of the squared distance from the axis is the same everywhere.
+    /// Returns bounds of the second derivative; that of the squared distance from the axis is constant.
     fn curvature(&self, piece: Interval) -> Interval {
         let dir = self.local.dir.to_array().map(|part| Interval::about(part, BLUR));
         let height = self.local.place(1, piece);
@@ -31,11 +31,11 @@ impl FunctionOnLine for ProfileOnRay<'_> {
         Interval::constant(2.0) * (dir[0].powi(2) + dir[2].powi(2)) - of_square * dir[1].powi(2)
     }
 
-    /// Twice the precision, from the ray in the world and the axis as the scene has it, tells nearly all touches from
-    /// misses.
+    /// Decides a piece in double-double arithmetic from the ray in the world and the axis as the scene gives it, which
+    /// tells nearly all touches from misses.
     fn undecided(&self, piece: Interval, origin_side: Option<Side>) -> Option<f64> {
         let Self { surface, local } = *self;
-        // What rounding hides of this ray alone, however far those are apart that it was rounded from.
+        // The rounding error along this ray alone, however far apart the rays are that it may have been rounded from.
         let hidden = |along: f64| {
             let along = Interval::<f64>::constant(along);
             let place = [0, 1, 2].map(|axis| local.own_place(axis, along));
@@ -47,8 +47,8 @@ impl FunctionOnLine for ProfileOnRay<'_> {
     }
 }
 
-/// As [`OnRay`], and where the profile is negative it is 0: methods that know nothing of slabs have nothing to leave
-/// out.
+/// The surface along a ray like [`ProfileOnRay`], but with a negative profile taken for 0: other methods know nothing
+/// of slabs, and have no parts to leave out.
 pub(super) struct Uncut<'s> {
     pub surface: &'s Revolution,
     pub local: &'s Local,

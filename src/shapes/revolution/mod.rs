@@ -1,13 +1,16 @@
-//! Surfaces of revolution of a profile that has a bound: every point at the distance g(y) from the axis, for heights y from 0 to
+//! Surfaces of revolution of a bounded profile: all points at the distance g(y) from the axis, for heights y from 0 to
 //! the surface's own, wherever g is not negative.
 //!
-//! Each is cut, when it is made, into slabs in which the profile's square is a parabola but for a proven error
-//! (`slabs`). A ray meets the quadrics of revolution around those in closed form, which brackets its first hit or
-//! proves that there is none (`bracket`, for any number of rays). Where it grazes the error's shell, bounds of the second
-//! derivative decide ([`taylor`](crate::geometry::roots::taylor)) on its way alone (`walk`), and where rounding hides what they
-//! say, twice the precision ([`twice`]). Nothing has to be tuned. A profile of which all that cannot be proven within a
-//! stated number of operations is refused, with the reason ([`NoSurface`](no_surface::NoSurface)). The rounding of a ray's own arithmetic is held
-//! by margins that are derived where they stand, and tried against the truth in `tests/slow/truth.rs`.
+//! When a surface is made, it is cut into slabs in which the square of the profile is a parabola to within a proven
+//! error (`pieces`). Along a ray, these are quadrics of revolution with closed-form hits, which bracket the ray's first
+//! hit or prove that there is none (`bracket`, for any number of rays). Where a ray grazes the shell of that error,
+//! bounds of the second derivative decide ([`taylor`](crate::geometry::roots::taylor)) for that ray alone (`walk`), and
+//! where rounding hides what they say, double-double arithmetic ([`twice`]). Nothing has to be tuned. A profile for
+//! which this cannot be proven within a stated number of operations is refused, with the reason
+//! ([`NoSurface`](no_surface::NoSurface)). The margins for a ray's own rounding errors are derived where they stand, or
+//! held by the tests in `tests/slow/truth.rs`, which compare hits with true ones.
+//!
+//! [`twice`]: crate::geometry::roots::twice
 
 mod bracket;
 mod budget;

@@ -1,36 +1,36 @@
-//! Profiles that make no surface.
+//! Profiles that do not make a surface.
 
-/// Why a profile makes no surface.
+/// The reason why a profile does not make a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NoSurface {
-    /// It has no bound.
+    /// The profile is unbounded.
     Unbounded {
-        /// A height where that is so.
+        /// A height near which the profile is unbounded, in world units.
         near: f64,
     },
-    /// It is nowhere above 0.
+    /// The profile is nowhere above 0.
     Nowhere,
-    /// Where it is negative is not known above a height after as many operations as it may take.
+    /// The parts where the profile is negative cannot be separated within the budget of operations.
     Signs {
-        /// The height.
+        /// The height above which they are not separated, in world units.
         from: f64,
     },
-    /// It bends more often above a height than as many operations as it may take can follow.
+    /// The profile bends more often than can be bounded within the budget of operations.
     Bends {
-        /// The height.
+        /// The height above which it is not bounded, in world units.
         from: f64,
     },
-    /// Rounding hides where it is negative.
+    /// Rounding hides where the profile is negative.
     Rounding {
-        /// A height where that is so.
+        /// A height near which rounding hides it, in world units.
         near: f64,
-        /// How large it may be there.
+        /// A bound of the profile there, in world units.
         hidden: f64,
     },
 }
 
 impl NoSurface {
-    /// What is wrong with the profile, what would help, for messages: "has a profile ...".
+    /// Returns what is wrong with the profile and what would help, for messages: "has a profile ...".
     pub fn told(self) -> (String, &'static str) {
         match self {
             Self::Unbounded { near } => (

@@ -12,30 +12,32 @@ use crate::world::interaction;
 use glam::DVec3;
 
 impl Revolution {
-    /// The unit normal at a point of the surface, away from the axis. At an apex it points along the axis.
+    /// Returns the unit normal at a point of the surface, away from the axis; at an apex, along the axis.
     pub fn normal(&self, at: DVec3) -> DVec3 {
         if let Some(up_or_down) = self.ledge(at.y) {
             return up_or_down;
         }
         let Dual { value, slope } = self.profile.at(Dual::variable(at.y));
         if slope.is_finite() {
-            return upright(at, slope);
+            return normal_at_slope(at, slope);
         }
-        // The profile ends there, as a ball's does at its poles: its square has a slope, and that is finite.
+        // The profile ends there, as a sphere's does at its poles, with an infinite slope; the slope of its square is
+        // finite.
         let twice = self.square.at(Dual::variable(at.y)).slope;
         let DVec3 { x, z, .. } = outward(at);
         DVec3::new(x * value, -0.5 * twice, z * value).try_normalize().unwrap_or(DVec3::Y)
     }
 
-    /// The normal in the world at a point of it.
+    /// Returns the unit normal in the world at a point of the world.
     #[inline(always)]
     pub(super) fn normal_in(&self, frame: &Frame, at: DVec3) -> DVec3 {
         (frame.axes * self.normal(frame.point(at))).normalize()
     }
 
-    /// The normal of the ledge at a height where the profile jumps, if it does: upward where it is narrower above.
+    /// Returns the normal of the ledge at a height where the profile jumps, upward where it is narrower above; `None`
+    /// where it does not jump.
     fn ledge(&self, y: f64) -> Option<DVec3> {
-        // Slopes that have no bound are in few slabs, if in any.
+        // Slopes without a bound are in few slabs, if in any.
         if self.slabs.get(self.slabs.index(y)).slope_error.is_finite() {
             return None;
         }
@@ -48,10 +50,10 @@ impl Revolution {
     }
 }
 
-/// The direction from the axis to a point; 0 on the axis.
+/// Returns the unit vector from the axis to a point; 0 on the axis.
 #[inline(always)]
 fn outward(at: DVec3) -> DVec3 {
-    // Squares of what is next to nothing are nothing.
+    // Scaled where squares would underflow.
     let is_tiny = (at.x.abs() < 1e-100) & (at.z.abs() < 1e-100);
     let scale = if is_tiny { 1e200 } else { 1.0 };
     let (x, z) = (scale * at.x, scale * at.z);
@@ -60,17 +62,17 @@ fn outward(at: DVec3) -> DVec3 {
     DVec3::new(x * inverse, 0.0, z * inverse)
 }
 
-/// The unit normal at a point where the profile has this slope.
+/// Returns the unit normal at a point where the profile has this slope.
 #[inline(always)]
-fn upright(at: DVec3, slope: f64) -> DVec3 {
+fn normal_at_slope(at: DVec3, slope: f64) -> DVec3 {
     let normal = outward(at) - slope * DVec3::Y;
     let inverse = 1.0 / normal.length();
     if (inverse > 0.0) & (inverse < f64::INFINITY) { normal * inverse } else { DVec3::Y }
 }
 
 kernels! {
-    /// Where rays come to a surface after these distances, both of whose sides are lit.
-    pub(super) fn land(
+    /// Computes where rays hit a surface at these distances; both sides of the surface are lit.
+    pub(super) fn interact(
         surface: &Revolution,
         frame: &Frame,
         rays: RayPacket,
@@ -96,8 +98,8 @@ kernels! {
             let slope = surface.profile.at_eight(at.y).slope.0;
             let mut any = 0;
             for lane in 0..LANES {
-                normal.set(lane, (frame.axes * upright(at.get(lane), slope[lane])).normalize());
-                // Of what is infinite, or no number.
+                normal.set(lane, (frame.axes * normal_at_slope(at.get(lane), slope[lane])).normalize());
+                // The product with 0 is NaN if the slope is infinite or NaN.
                 any |= u64::from(0.0 * slope[lane] != 0.0);
             }
             if (any != 0) | !is_smooth {

@@ -1,9 +1,9 @@
-//! Quadratics along a ray.
+//! Quadratic polynomials along a ray.
 
 use crate::geometry::aabb::{larger, smaller};
 use glam::DVec3;
 
-/// `a s^2 + 2 b s + c`.
+/// The polynomial `a s^2 + 2 b s + c`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Quadratic {
     pub a: f64,
@@ -12,7 +12,7 @@ pub(super) struct Quadratic {
 }
 
 impl Quadratic {
-    /// The squared distance from the y axis, at `s` along a ray from a point.
+    /// Returns the squared distance from the y axis, at `s` along a ray from a point.
     #[inline(always)]
     pub fn around(from: DVec3, dir: DVec3) -> Self {
         Self {
@@ -22,48 +22,48 @@ impl Quadratic {
         }
     }
 
-    /// The value at a place.
+    /// Returns the value at a place.
     #[inline(always)]
     pub fn at(&self, s: f64) -> f64 {
         (self.a * s + 2.0 * self.b) * s + self.c
     }
 
-    /// It, less so much.
+    /// Returns the polynomial less a constant.
     #[inline(always)]
     pub fn lowered(&self, by: f64) -> Self {
         Self { c: self.c - by, ..*self }
     }
 
-    /// It, times so much.
+    /// Returns the polynomial times a constant.
     #[inline(always)]
     pub fn times(&self, by: f64) -> Self {
         Self { a: by * self.a, b: by * self.b, c: by * self.c }
     }
 
-    /// The places between which it is below 0, and what is below 0 where there are none. `a` is positive, and its
-    /// reciprocal given.
+    /// Returns the places between which the polynomial is below 0, and its discriminant, which is negative if there are
+    /// none. `a` must be positive, and its reciprocal is given.
     #[inline(always)]
     pub fn between(&self, inverse_a: f64) -> (f64, f64, f64) {
-        let room = self.b * self.b - self.a * self.c;
-        let root = if room > 0.0 { room } else { 0.0 }.sqrt();
-        ((-self.b - root) * inverse_a, (root - self.b) * inverse_a, room)
+        let discriminant = self.b * self.b - self.a * self.c;
+        let root = if discriminant > 0.0 { discriminant } else { 0.0 }.sqrt();
+        ((-self.b - root) * inverse_a, (root - self.b) * inverse_a, discriminant)
     }
 
-    /// The first place where it is not positive, without cancellation, and whether there is one from `from` to `to`; it is
-    /// positive at `from`.
+    /// Returns the first place between `from` and `to` where the polynomial is not positive, computed without
+    /// cancellation, and whether there is one; it must be positive at `from`.
     #[inline(always)]
     pub fn first_not_positive(&self, from: f64, to: f64) -> (f64, bool) {
         let Self { a, b, c } = *self;
         let discriminant = b * b - a * c;
         let root = if discriminant > 0.0 { discriminant } else { 0.0 }.sqrt();
         let s = if b > 0.0 { -(b + root) } else { c } / if b > 0.0 { a } else { root - b };
-        // One that opens downward, or is straight, ends below 0 for good.
+        // A polynomial that opens downward or is linear stays below 0 once it is there.
         let is_there =
             if a > 0.0 { (discriminant >= 0.0) & (s >= from) & (s <= to) } else { self.at(to) <= 0.0 };
         (smaller(larger(s, from), to), is_there)
     }
 
-    /// Where it is positive again after a place where it is not, `to` at the latest.
+    /// Returns where the polynomial is positive again after a place where it is not, `to` at the latest.
     pub fn next_positive(&self, from: f64, to: f64) -> f64 {
         let Self { a, b, c } = *self;
         if a <= 0.0 {
@@ -71,7 +71,7 @@ impl Quadratic {
         }
         let root = (b * b - a * c).max(0.0).sqrt();
         let s = if b < 0.0 { (root - b) / a } else { c / (-b - root) };
-        // Written so that what is not a number is the end.
+        // Written so that a NaN gives `to`.
         if s < to { s.max(from) } else { to }
     }
 }

@@ -1,9 +1,8 @@
-//! Where a profile is negative and where it is not, proven by bounds of its value and slope.
+//! The ranges of heights where a profile is negative and where it is not, proven by bounds of its value and slope.
 //!
-//! A range of heights is halved until bounds say that the profile has one sign there, or that it only grows or only
-//! falls, so that it changes its sign once at most: between two numbers that are next to each other. Where rounding
-//! alone hides the sign, however short the piece, the computed sign stands, and how large the profile can be there is
-//! kept: that has to be next to nothing.
+//! A range is halved until bounds show that the profile has one sign there, or that it is monotone, so that it changes
+//! its sign at most once: between two neighbouring numbers. Where rounding hides the sign however short the piece is,
+//! the computed sign stands, and a bound of the profile there is kept, which has to be negligible.
 
 use super::budget::Budget;
 use super::no_surface::NoSurface;
@@ -15,23 +14,23 @@ use crate::numeric::scalar::Scalar;
 
 /// The ranges of a profile, from the bottom up.
 pub(super) struct Ranges {
-    /// Each with whether the profile is negative there.
+    /// The ends of each range in world units, and whether the profile is negative there.
     pub list: Vec<(f64, f64, bool)>,
-    /// Where the profile is taken for negative it is not above this, and elsewhere not below its opposite, whatever
-    /// rounding hides.
+    /// A bound of the profile where it is wrongly taken for negative, and of its absolute value where it is wrongly
+    /// taken for not negative, in world units.
     pub hidden: f64,
-    /// The height of the largest of those.
+    /// The height of the largest of those, in world units.
     pub hidden_at: f64,
 }
 
 impl Ranges {
-    /// The ranges of a profile from 0 to a height.
+    /// Computes the ranges of a profile for heights from 0 to `height`.
     pub fn new(profile: &Formula, height: f64, budget: &mut Budget) -> Result<Self, NoSurface> {
         let mut ranges = Self { list: Vec::new(), hidden: 0.0, hidden_at: 0.0 };
         let mut waiting = vec![(0.0, height)];
         while let Some((low, high)) = waiting.pop() {
-            // Bounds of the value and the slope, and the value again: as long as about 16 plain operations each.
-            if !budget.spend(profile, 16) {
+            // Bounds of the value and the slope, and of the value again: about 16 times the cost of the plain value.
+            if !budget.charge(profile, 16) {
                 return Err(NoSurface::Signs { from: low });
             }
             let middle = low + 0.5 * (high - low);
@@ -51,15 +50,15 @@ impl Ranges {
             } else if thin == Interval::WHOLE {
                 return Err(NoSurface::Unbounded { near: middle });
             } else if slope.is_bounded() && !slope.has_zero() {
-                ranges.one_change(profile, low, high);
+                ranges.push_monotone(profile, low, high);
             } else if middle <= low || middle >= high {
-                // Next to each other: what belongs to the void ends there.
+                // The ends are neighbouring numbers: the void, if there is one, ends there.
                 let is_void = ranges.is_void(profile, low) | ranges.is_void(profile, high);
                 ranges.push(low, high, is_void);
             } else if thin.has_zero() && value.magnitude() <= 4.0 * thin.magnitude() {
-                // Little more than rounding is left: shorter pieces say no more.
+                // The bounds are little more than rounding error: shorter pieces would not help.
                 let is_void = profile.at(middle) < 0.0;
-                ranges.hide(value, is_void, middle);
+                ranges.keep_hidden(value, is_void, middle);
                 ranges.push(low, high, is_void);
             } else {
                 waiting.extend([(middle, high), (low, middle)]);
@@ -76,8 +75,8 @@ impl Ranges {
         }
     }
 
-    /// A piece on which the profile only grows or only falls.
-    fn one_change(&mut self, profile: &Formula, from: f64, to: f64) {
+    /// Adds a piece on which the profile is monotone.
+    fn push_monotone(&mut self, profile: &Formula, from: f64, to: f64) {
         let (at_from, at_to) = (self.is_void(profile, from), self.is_void(profile, to));
         if at_from == at_to {
             return self.push(from, to, at_from);
@@ -85,23 +84,23 @@ impl Ranges {
         let (low, high) = bisect(|y| (profile.at(y) < 0.0) == at_to, (from, to), 0.0);
         self.is_void(profile, low);
         self.is_void(profile, high);
-        // The surface ends at a number where it is.
+        // The surface ends at a number where it exists.
         let change = if at_from { high } else { low };
         self.push(from, change, at_from);
         self.push(change, to, at_to);
     }
 
-    /// Whether the profile is negative at a height, as computed; keeps how far it may be from that.
+    /// Returns whether the profile is negative at a height, as computed; keeps how far it may be beyond 0.
     fn is_void(&mut self, profile: &Formula, y: f64) -> bool {
         let is_void = profile.at(y) < 0.0;
-        self.hide(profile.at(Interval::constant(y)), is_void, y);
+        self.keep_hidden(profile.at(Interval::constant(y)), is_void, y);
         is_void
     }
 
-    /// Keeps how far beyond 0 the profile may be where it is taken for negative or not.
-    fn hide(&mut self, bounds: Interval, is_void: bool, y: f64) {
+    /// Keeps how far the profile may be beyond 0 on the side that it is not taken for.
+    fn keep_hidden(&mut self, bounds: Interval, is_void: bool, y: f64) {
         let beyond = if is_void { bounds.high } else { -bounds.low };
-        // Without a bound it is no surface, which is found out where it is cut.
+        // Without a bound there is no surface, which is found out when it is cut into slabs.
         if beyond > self.hidden && beyond.is_finite() {
             (self.hidden, self.hidden_at) = (beyond, y);
         }

@@ -1,4 +1,4 @@
-//! The first hits of rays, each in its bracket: Newton's method, for one of them or for eight at a time.
+//! The first hits of rays, each in its bracket: Newton's method for one ray or for eight at a time.
 
 use super::surface::{Finish, Revolution};
 use crate::geometry::frame::Frame;
@@ -12,23 +12,23 @@ use crate::numeric::scalar::Scalar;
 use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::{LANES, View};
 
-/// Rays, counted from the near ends of their brackets.
-struct Ways<'s, N> {
+/// Rays that start at the near ends of their brackets, in one number type for one ray or for eight.
+struct BracketedRays<'s, N> {
     surface: &'s Revolution,
     from: [N; 3],
     dir: [N; 3],
 }
 
-// No closure asks for the square: those are taken into kernels only where it pleases the compiler.
-impl<N: Scalar> Ways<'_, N> {
-    /// The heights at these places. Beyond its ends the profile may be anything.
+// The square is an argument, as closures are not reliably inlined into kernels.
+impl<N: Scalar> BracketedRays<'_, N> {
+    /// Returns the heights at these places, clamped to the surface's: beyond its ends the profile may be anything.
     #[inline(always)]
     fn heights(&self, along: N) -> N {
         let height = self.from[1] + along * self.dir[1];
         height.max(N::constant(0.0)).min(N::constant(self.surface.height))
     }
 
-    /// How far outside of the surface they are, and how fast that grows, by the profile's square at their heights.
+    /// Returns the left side of the surface's equation and its slope, given the square of the profile at the heights.
     #[inline(always)]
     fn outside(&self, along: N, square: Dual<N>) -> (N, N) {
         let Self { from: [x, _, z], dir: [dx, dy, dz], .. } = *self;
@@ -38,7 +38,7 @@ impl<N: Scalar> Ways<'_, N> {
     }
 }
 
-impl Functions<1> for Ways<'_, f64> {
+impl Functions<1> for BracketedRays<'_, f64> {
     #[inline(always)]
     fn at(&self, [along]: [f64; 1]) -> ([f64; 1], [f64; 1]) {
         let square = self.surface.square.at(Dual::variable(self.heights(along)));
@@ -47,7 +47,7 @@ impl Functions<1> for Ways<'_, f64> {
     }
 }
 
-impl Functions<LANES> for Ways<'_, F64x8> {
+impl Functions<LANES> for BracketedRays<'_, F64x8> {
     #[inline(always)]
     fn at(&self, along: [f64; LANES]) -> ([f64; LANES], [f64; LANES]) {
         let along = F64x8(along);
@@ -58,7 +58,7 @@ impl Functions<LANES> for Ways<'_, F64x8> {
 }
 
 impl Revolution {
-    /// The distances of the hits that lie between two distances each; those of other rays stay as they are.
+    /// Computes the distances of hits between two distances each; the distances of other rays stay unchanged.
     pub(super) fn roots(
         &self,
         cpu: Cpu,
@@ -76,19 +76,19 @@ impl Revolution {
         }
     }
 
-    /// The distance of a ray's hit that lies between two distances.
+    /// Returns the distance of a ray's hit between two distances.
     pub(super) fn root(&self, frame: &Frame, ray: &Ray, (near, far): (f64, f64)) -> f64 {
         if self.finish == Finish::Bracket {
             return 0.5 * (near + far);
         }
-        // Moved in the world and turned then: what is turned is as small as the surface.
+        // Offset in the world before it is rotated: the rotated vector is as small as the surface.
         let from = frame.direction(frame.from_origin(ray, near)).to_array();
-        let ways = Ways { surface: self, from, dir: frame.direction(ray.dir).to_array() };
-        near + newton::roots(&ways, self.start([far - near]))[0]
+        let bracketed = BracketedRays { surface: self, from, dir: frame.direction(ray.dir).to_array() };
+        near + newton::roots(&bracketed, self.start([far - near]))[0]
     }
 
-    /// Where roots are looked for in brackets of these widths. In a bracket the surface's function falls all the way, or
-    /// rises.
+    /// Returns the start of Newton's method in brackets of these widths. In a bracket, the function falls all the way,
+    /// or rises all the way.
     #[inline(always)]
     fn start<const N: usize>(&self, width: [f64; N]) -> Start<N> {
         let tolerance = 2.0 * f64::EPSILON * self.slabs.widest();
@@ -108,14 +108,14 @@ kernels! {
         for first in (0..count).step_by(LANES) {
             let (origin, dir) = (eight_vectors(&rays.origin, first), eight_vectors(&rays.dir, first));
             let (near, far) = (eight(near, first), eight(far, first));
-            // Moved in the world and turned then: what is turned is as small as the surface.
+            // Offset in the world before it is rotated: the rotated vector is as small as the surface.
             let from = frame.origin.to_array();
             let from = [0, 1, 2].map(|axis| {
                 each!(origin = origin[axis], near = near, dir = dir[axis] => offset(origin, near, dir, from[axis]))
             });
             let (from, dir) = (directions(frame, from), directions(frame, dir));
             let width = each!(near = near, far = far => if near < far { far - near } else { 0.0 });
-            let along = newton::roots(&Ways { surface, from, dir }, surface.start(width.0));
+            let along = newton::roots(&BracketedRays { surface, from, dir }, surface.start(width.0));
             let out = &mut out[first..first + LANES];
             for lane in 0..LANES {
                 let (near, far) = (near.0[lane], far.0[lane]);
@@ -125,7 +125,7 @@ kernels! {
     }
 }
 
-/// The numbers from this one on.
+/// Returns eight numbers from an index on.
 #[inline(always)]
 fn eight(of: &[f64], first: usize) -> F64x8 {
     let mut all = [0.0; LANES];
@@ -133,13 +133,13 @@ fn eight(of: &[f64], first: usize) -> F64x8 {
     F64x8(all)
 }
 
-/// The vectors from this one on.
+/// Returns eight vectors from an index on.
 #[inline(always)]
 fn eight_vectors(of: &View, first: usize) -> [F64x8; 3] {
     [eight(of.x, first), eight(of.y, first), eight(of.z, first)]
 }
 
-/// What [`Frame::direction`] does.
+/// Does what [`Frame::direction`] does, for eight directions.
 #[inline(always)]
 fn directions(frame: &Frame, [x, y, z]: [F64x8; 3]) -> [F64x8; 3] {
     [frame.axes.x_axis, frame.axes.y_axis, frame.axes.z_axis]

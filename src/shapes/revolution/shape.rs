@@ -1,6 +1,6 @@
-//! Surfaces of revolution as shapes, wherever they stand.
+//! Surfaces of revolution as shapes, anywhere in the world.
 
-use super::bracket::MOST;
+use super::bracket::MAX_RAYS;
 use super::classic::Classic;
 use super::lanes::Lanes;
 use super::normal;
@@ -24,7 +24,7 @@ use glam::DVec3;
 pub struct InFrame<S> {
     /// The surface.
     pub surface: S,
-    /// Where it stands.
+    /// The frame.
     pub frame: Frame,
 }
 
@@ -93,7 +93,8 @@ impl Hittable for InFrame<Revolution> {
 
 impl Certified for InFrame<Revolution> {
     fn touches(&self, at: DVec3, error: f64) -> bool {
-        // Rounding moves the point once more on its way into the frame.
+        // Transforming the point into the frame rounds it once more. `every_plugin_keeps_its_contract` in
+        // `tests/shapes/contract.rs` tests that hits are touched.
         let moved = 8.0 * f64::EPSILON * (at - self.frame.origin).abs().max_element();
         self.surface.touches(self.frame.point(at), error + moved)
     }
@@ -106,7 +107,7 @@ impl Searched for InFrame<Revolution> {
 }
 
 impl Shape<InFrame<Revolution>> {
-    /// Found by functions of its own that take packets.
+    /// Returns the shape, found by its own functions for packets.
     pub fn in_packets(self) -> Shape<InFrame<Revolution>, ByPackets> {
         self.by()
     }
@@ -125,8 +126,8 @@ where
         mut nearest: Nearest,
     ) -> bool {
         let InFrame { surface, frame } = &self.shape;
-        let (mut any, mut lanes) = (false, Lanes::<MOST>::none());
-        for part in split(rays.len(), MOST) {
+        let (mut any, mut lanes) = (false, Lanes::<MAX_RAYS>::none());
+        for part in split(rays.len(), MAX_RAYS) {
             let (rays, sides) = (rays.part(part.clone()), sides.map(|sides| &sides[part.clone()]));
             let nearest = nearest.part(part);
             surface.t_bounds(cpu, frame, rays, sides, nearest.far, &mut lanes);
@@ -145,8 +146,8 @@ where
         doubt: &mut [u64],
     ) -> bool {
         let InFrame { surface, frame } = &self.shape;
-        let (mut any, mut lanes) = (false, Lanes::<MOST>::none());
-        for part in split(ends.len(), MOST) {
+        let (mut any, mut lanes) = (false, Lanes::<MAX_RAYS>::none());
+        for part in split(ends.len(), MAX_RAYS) {
             let (rays, sides) = (rays.part(part.clone()), sides.map(|sides| &sides[part.clone()]));
             let (ends, blocked, doubt) = (&ends[part.clone()], &mut blocked[part.clone()], &mut doubt[part]);
             surface.t_bounds(cpu, frame, rays, sides, ends, &mut lanes);
@@ -169,7 +170,7 @@ where
     fn interact(&self, cpu: Cpu, rays: RayPacket, distances: &[f64], landing: SurfaceInteraction) {
         let SurfaceInteraction { points, normals, sides, cosines, travelled } = landing;
         let InFrame { surface, frame } = &self.shape;
-        normal::land(cpu, surface, frame, rays, distances, sides, cosines, travelled, points, normals);
+        normal::interact(cpu, surface, frame, rays, distances, sides, cosines, travelled, points, normals);
     }
 
     fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {

@@ -13,51 +13,51 @@ use std::fmt;
 
 /// A surface of revolution around the y axis, from the origin upward.
 pub struct Revolution {
-    /// The distance from the axis at each height.
+    /// The distance from the axis at each height, in world units.
     pub(super) profile: Formula,
-    /// The square of that.
+    /// The square of the profile.
     pub(super) square: Formula,
     pub(super) height: f64,
     pub(super) slabs: Slabs,
     pub(super) finish: Finish,
 }
 
-/// How the distance of a hit is finished.
+/// The way in which the distance of a hit is refined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Finish {
-    /// Not at all: the middle of its bracket, right to about 1/1000.
+    /// Not refined: the midpoint of the bracket, off by about 1/1000 of a world unit.
     Bracket,
-    /// To full precision, by Newton's method.
+    /// Refined to full precision by Newton's method.
     Root,
 }
 
 impl Revolution {
-    /// The surface of a profile.
+    /// Returns the surface of a profile.
     ///
     /// # Errors
-    /// Where the profile has no bound, where it is nowhere above 0, and where it takes too long to prove what it is.
+    /// Returns why there is no surface: the profile is unbounded, is nowhere above 0, or takes too long to analyze.
     pub fn new(profile: &Formula, height: f64, finish: Finish) -> Result<Self, NoSurface> {
         let square = profile.squared();
         let slabs = Slabs::new(profile, &square, height)?;
         Ok(Self { profile: profile.clone(), square, height, slabs, finish })
     }
 
-    /// Whether it comes into the box of so many units around a point. Beyond the surface's ends the profile may be
-    /// anything, and is not asked.
+    /// Returns whether the surface may intersect the cube of half size `error` around a point. Beyond the surface's
+    /// ends the profile may be anything, and is not evaluated.
     pub fn touches(&self, at: DVec3, error: f64) -> bool {
         let [x, y, z] = at.to_array().map(|place| Interval { low: place - error, high: place + error });
         let y = Interval { low: y.low.max(0.0), high: y.high.min(self.height) };
         y.low <= y.high && self.value([x, y, z]).has_zero()
     }
 
-    /// A box around it.
+    /// Returns a bounding box of the surface.
     pub fn bounds(&self) -> Aabb {
         let widest = self.slabs.widest();
         Aabb { low: DVec3::new(-widest, 0.0, -widest), high: DVec3::new(widest, self.height, widest) }
     }
 }
 
-/// How its hits are found.
+/// Displays the method by which hits are found.
 impl fmt::Display for Revolution {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let error = self.slabs.coarsest();
@@ -71,7 +71,8 @@ impl fmt::Display for Revolution {
 }
 
 impl Equation for Revolution {
-    /// Beyond its ends the profile may be anything, and rounding must not ask.
+    /// Clamps the height to the surface's: beyond its ends the profile may be anything, and rounding must not evaluate
+    /// it there.
     fn value<N: Scalar>(&self, [x, y, z]: [N; 3]) -> N {
         let height = y.max(N::constant(0.0)).min(N::constant(self.height));
         x.powi(2) + z.powi(2) - self.square.at(height)

@@ -28,7 +28,7 @@ impl Random {
         libm::exp10(self.between(low, high))
     }
 
-    /// A profile of thin discs, steps, kinks, poles, waves and what is cut at 0.
+    /// Returns a profile of thin discs, steps, kinks, poles, waves and parts cut off at 0.
     fn profile(&mut self) -> String {
         let mut profile = format!("{:?}", self.between(-1.0, 1.5));
         for _ in 0..1 + self.0.next_u32() % 4 {
@@ -49,7 +49,7 @@ impl Random {
     }
 }
 
-/// Heights where something may be wrong: any, and those next to where slabs meet.
+/// Returns heights where something may be wrong: random ones, and some next to where slabs meet.
 fn heights(surface: &Revolution, random: &mut Random) -> Vec<f64> {
     let mut heights: Vec<f64> = (0..300).map(|_| random.between(0.0, surface.height)).collect();
     for index in 0..surface.slabs.count() {
@@ -63,7 +63,7 @@ fn heights(surface: &Revolution, random: &mut Random) -> Vec<f64> {
     heights
 }
 
-/// A piece of heights is dense enough to say so.
+/// Checks many heights of each slab.
 #[test]
 fn slabs_are_what_they_say_of_any_profile() {
     let mut random = Random(Pcg32::new(5, 0));
@@ -80,7 +80,7 @@ fn slabs_are_what_they_say_of_any_profile() {
         );
         for y in heights(&surface, &mut random) {
             let slab = slabs.get(slabs.index(y));
-            // Ends belong to the slab on either side.
+            // An end belongs to the slabs on both sides.
             if y == slab.from || y == slab.to {
                 continue;
             }
@@ -88,13 +88,13 @@ fn slabs_are_what_they_say_of_any_profile() {
             assert!(!slab.is_void || radius.low <= 0.0, "{profile} is lost at {y:?}: {radius:?}");
             assert!(slab.is_void || radius.high >= 0.0, "{profile} is invented at {y:?}: {radius:?}");
             let square = surface.square.at(Interval::<f64>::constant(y));
-            // Exactly at a pole a formula has no value.
+            // Exactly at a pole, a formula has no value.
             if !slab.is_void && square.is_bounded() {
                 let parabola = slab.parabola(y - slab.middle);
-                let rounding = 1e-13 * (1.0 + parabola.abs() + slab.most);
+                let rounding = 1e-13 * (1.0 + parabola.abs() + slab.max_square);
                 let apart = (square - Interval::constant(parabola)).magnitude() - square.width();
                 assert!(apart <= slab.error + rounding, "{profile} at {y:?}: {apart:e}, {slab:?}");
-                assert!(square.low <= slab.most, "{profile} at {y:?}: {square:?}, {slab:?}");
+                assert!(square.low <= slab.max_square, "{profile} at {y:?}: {square:?}, {slab:?}");
             }
             checked += 1;
         }

@@ -1,7 +1,7 @@
-//! A ray's way alone, where plain arithmetic leaves its first hit in doubt.
+//! The search along one ray whose first hit plain arithmetic leaves in doubt.
 //!
-//! It goes through the slabs again, from a point near the surface that is accurate to the last place. What grazes a
-//! slab's shell is looked at more closely on that short piece.
+//! The ray goes through the slabs again, from a base near the surface that is accurate to the last digit. Where it
+//! grazes a slab's shell, bounds of the second derivative decide on that short piece.
 
 use super::bracket::cross;
 use super::lanes::Lanes;
@@ -18,11 +18,12 @@ use crate::simd::soa::View;
 use glam::DVec3;
 use std::slice::from_ref;
 
-/// A direction with less than this of the axis stays in one slab, and is not divided by.
+/// A unit direction whose component along the axis is below this stays in one slab, and is not divided by.
 const LEVEL: f64 = 1e-200;
 
 impl Revolution {
-    /// The distance of a ray's first hit within a span, and whether it is that of all rays that this one was rounded from.
+    /// Returns the distance of a ray's first hit in a range, and whether that is certain for all rays that this one may
+    /// have been rounded from.
     pub fn first_hit(&self, frame: &Frame, ray: &Ray, range: &RayRange) -> (f64, bool) {
         let rays = RayPacket { origin: view(&ray.origin), dir: view(&ray.dir), origin_error: 0.0 };
         let sides = range.origin_side.as_ref().map(from_ref);
@@ -42,8 +43,8 @@ impl Revolution {
         }
     }
 
-    /// As [`first_hit`](Self::first_hit), by another method and in the same bounding cylinder; but the notes' steps, as
-    /// in the notes, go all the way between the surface's heights.
+    /// Returns what [`first_hit`](Self::first_hit) does, by another method in the same bounding cylinder; only the
+    /// course notes' steps go all the way between the surface's heights, as in the notes.
     pub fn first_hit_by(&self, method: Method, frame: &Frame, ray: &Ray, range: &RayRange) -> f64 {
         let widest = if method == Method::Steps { f64::INFINITY } else { self.slabs.widest() };
         let Some(local) = Local::new(frame, ray, range, self.height, widest) else { return MISS };
@@ -55,13 +56,14 @@ impl Revolution {
         }
     }
 
-    /// The distance of the first place along a ray where it crosses the surface, and whether that is certain for all rays
-    /// that this one was rounded from. A ray that leaves the surface on a side looks for crossings from there alone.
+    /// Returns the distance of the first crossing of the surface, and whether that is certain for all rays that this
+    /// one may have been rounded from. For a ray that leaves the surface to a side, only crossings from that side
+    /// count.
     fn walk(&self, local: &Local, origin_side: Option<Side>, mut lanes: Lanes<1>) -> (f64, bool) {
         let (size, cpu) = (self.size(), Cpu::best());
-        lanes.begin(1, origin_side.as_ref().map(from_ref));
+        lanes.prepare(1, origin_side.as_ref().map(from_ref));
         let own = Ray { origin: local.origin, dir: local.dir };
-        lanes.put(0, own, (local.base, local.moved()), (local.from, local.to), self.slabs.widest());
+        lanes.set(0, own, (local.base, local.moved()), (local.from, local.to), self.slabs.widest());
         lanes.near[0] = MISS;
         let is_level = local.dir.y.abs() < LEVEL;
         let is_upward = local.dir.y > 0.0;
@@ -75,8 +77,8 @@ impl Revolution {
             let (from, to) = lanes.part(&slab, 0);
             if slab.is_void {
                 // Where the surface narrows down to the axis, rounding may decide on which side of its end a ray is.
-                let most = self.slabs.coarsest() + lanes.rounding[0];
-                is_certain &= lanes.around(0).at(from) > most && lanes.around(0).at(to) > most;
+                let margin = self.slabs.coarsest() + lanes.rounding[0];
+                is_certain &= lanes.around(0).at(from) > margin && lanes.around(0).at(to) > margin;
                 wanted = None;
             }
             cross(cpu, &mut lanes, &slab, size, 0.0, 1);
@@ -90,7 +92,7 @@ impl Revolution {
                 let (end, is_across) = shell.end(near);
                 let found = self.first_crossing(local, (near, end), wanted);
                 is_certain &= found.is_certain && (found.root.is_some() || !is_across);
-                // What is on the other side has crossed.
+                // A ray that is on the other side has crossed the surface.
                 if let Some(root) = found.root.or(is_across.then_some(near)) {
                     return (local.base + root, is_certain);
                 }
@@ -107,9 +109,10 @@ impl Revolution {
         }
     }
 
-    /// The first crossing on a short piece, from a side if it matters from which.
+    /// Returns the first crossing on a short piece, only from one side if a side is given.
     fn first_crossing(&self, local: &Local, (from, to): (f64, f64), wanted: Option<Side>) -> Found {
-        // The piece's own ends may be crossings: they are where shells begin and end, but where the ray begins.
+        // The ends of the piece may themselves be crossings, as shells begin and end there, unless the ray begins
+        // there.
         let (from, to) = (from.next_down().max(local.from), to.next_up());
         let line = ProfileOnRay { surface: self, local };
         let all = RayRange { near: f64::NEG_INFINITY, origin_side: wanted, ..RayRange::ALL };

@@ -1,4 +1,4 @@
-//! First hits of surfaces whose equation is a quadratic along a line: planes, balls, cones and the like.
+//! First hits of surfaces whose equation is a quadratic along a line: planes, spheres, cones and the like.
 
 use super::equation::{Equation, Found, is_kept};
 use crate::geometry::sight::Line;
@@ -6,15 +6,15 @@ use crate::numeric::dual::Dual;
 use crate::numeric::interval::{Float, Interval};
 use crate::numeric::scalar::Scalar;
 
-/// What may be a hit.
+/// A possible hit.
 enum Candidate<F> {
-    /// A root that is there, at one of these distances.
+    /// A root that exists, enclosed by this interval.
     Root(Interval<F>),
-    /// One that may be there, at one of these.
+    /// A root that may exist; if it does, this interval encloses it.
     Perhaps(Interval<F>),
 }
 
-/// The first hit from t = 0 on, where the line itself starts on nothing.
+/// Finds the first hit with t > 0. The start of the line itself is not a hit.
 pub fn first_hit<F: Float>(shape: &impl Equation, line: &Line<Interval<F>>) -> Found<F> {
     let zero = F::of(0.0);
     for candidate in candidates(coefficients(shape, line)).into_iter().flatten() {
@@ -38,9 +38,9 @@ pub fn first_hit<F: Float>(shape: &impl Equation, line: &Line<Interval<F>>) -> F
     Found::Misses
 }
 
-/// The coefficients of `a t^2 + 2 b t + c`, the value along the line.
+/// Computes the coefficients of `a t^2 + 2 b t + c`, the equation's value along the line.
 fn coefficients<F: Float>(shape: &impl Equation, line: &Line<Interval<F>>) -> [Interval<F>; 3] {
-    // The line itself with its derivatives, so that where it starts nothing is rounded.
+    // The value and its derivatives are computed at t = 0, so that the start of the line is not rounded.
     let zero = Interval::constant(0.0);
     let at = [0, 1, 2].map(|axis| {
         let (origin, dir) = (line.origin[axis], line.dir[axis]);
@@ -51,7 +51,8 @@ fn coefficients<F: Float>(shape: &impl Equation, line: &Line<Interval<F>>) -> [I
     [half * value.second(), half * value.first(), value.value.value]
 }
 
-/// The roots, the nearer one first. A line within the surface, or that starts on it, does not meet it there.
+/// Returns the roots, the nearer one first. A line that lies in the surface has none; for one that starts on the
+/// surface, the start is an exact root at 0.
 fn candidates<F: Float>([a, b, c]: [Interval<F>; 3]) -> [Option<Candidate<F>>; 2] {
     use Candidate::{Perhaps, Root};
     let beyond = |low: F| Interval { low, high: F::INFINITY };
@@ -74,7 +75,7 @@ fn candidates<F: Float>([a, b, c]: [Interval<F>; 3]) -> [Option<Candidate<F>>; 2
         return [None, None];
     }
     let root = discriminant.sqrt();
-    // Of the two forms of each root, the one whose sum does not cancel.
+    // Each root has two forms; this is the one whose sum does not cancel.
     let sum = if b.low > F::of(0.0) {
         -(b + root)
     } else if b.high < F::of(0.0) {
@@ -87,7 +88,7 @@ fn candidates<F: Float>([a, b, c]: [Interval<F>; 3]) -> [Option<Candidate<F>>; 2
     let near = if c.is_zero() { start } else { c / sum };
     let is_there = discriminant.low > F::of(0.0);
     if a.has_zero() {
-        // The other one is far away, on either side.
+        // The other root is far away, on either side.
         let far = farther_than(sum, a);
         if near.high >= far {
             return [Some(Perhaps(anywhere)), None];
@@ -98,18 +99,18 @@ fn candidates<F: Float>([a, b, c]: [Interval<F>; 3]) -> [Option<Candidate<F>>; 2
     in_order(near, sum / a, is_there)
 }
 
-/// Two roots, the nearer one first.
+/// Returns two roots, the nearer one first, or one enclosure of both where their order is uncertain.
 fn in_order<F: Float>(one: Interval<F>, other: Interval<F>, is_there: bool) -> [Option<Candidate<F>>; 2] {
     let (near, far) = if one.low < other.low { (one, other) } else { (other, one) };
     if is_there && near.high < far.low {
         return [Some(Candidate::Root(near)), Some(Candidate::Root(far))];
     }
-    // Which is which is not certain.
+    // The order of the roots is uncertain, or they may not exist.
     [Some(Candidate::Perhaps(Interval { low: near.low, high: near.high.max(far.high) })), None]
 }
 
-/// How far away the root of `a + b t` is at least, where b may be 0.
+/// Returns a lower bound on the magnitude of the root of `a + b t`, where b may be 0.
 fn farther_than<F: Float>(a: Interval<F>, b: Interval<F>) -> F {
-    let least = if a.has_zero() { F::of(0.0) } else { a.low.abs().min(a.high.abs()) };
-    (Interval::point(least) / Interval::point(b.magnitude())).low.max(F::of(0.0))
+    let min_magnitude = if a.has_zero() { F::of(0.0) } else { a.low.abs().min(a.high.abs()) };
+    (Interval::point(min_magnitude) / Interval::point(b.magnitude())).low.max(F::of(0.0))
 }

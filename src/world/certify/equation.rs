@@ -1,39 +1,40 @@
-//! Shapes as the solutions of equations, and what can be certain about their hits.
+//! Shapes as the solutions of equations, and what can be proven about their hits.
 
 use crate::geometry::sight::Line;
 use crate::numeric::interval::{Float, Interval};
 use crate::numeric::scalar::Scalar;
 use glam::DVec3;
 
-/// A shape as the solutions of an equation, of which a part is kept.
+/// A shape given by an equation, of whose solutions a part is kept.
 ///
-/// It is written in the numbers of the scene: a plane's equation has its normal as it is given, not a unit vector, whose
-/// rounding would be proven along with it.
+/// The equation is written in the numbers of the scene. A plane's equation uses the normal as given, not a unit vector:
+/// otherwise the proof would be about the rounded vector.
 pub trait Equation {
-    /// Whether [`value`](Self::value) is a polynomial of the second degree at most: its roots are found in closed form.
+    /// Whether [`value`](Self::value) is a polynomial of at most second degree, whose roots are found in closed form.
     const IS_QUADRATIC: bool = false;
 
-    /// A line in the coordinates that the equation is written in; by default the world's.
+    /// Transforms a line into the coordinates that the equation is written in; by default, those are world coordinates.
     fn own<N: Scalar>(&self, line: Line<N>) -> Line<N> {
         line
     }
 
-    /// 0 on the surface, and of different signs on its two sides.
+    /// Returns the equation's value at a point: 0 on the surface, with opposite signs on the two sides.
     fn value<N: Scalar>(&self, at: [N; 3]) -> N;
 
-    /// Above 0 where the surface is kept, below 0 where it is cut off.
+    /// Returns a positive number where the surface is kept, and a negative number where it is cut off.
     fn kept<N: Scalar>(&self, _at: [N; 3]) -> N {
         N::constant(1.0)
     }
 
-    /// The low and the high corner of a box, in the equation's coordinates, outside of which nothing is kept. Surfaces
-    /// that are no quadratics need one; it may be infinite in a direction that no ray has to itself.
+    /// Returns the low and the high corner of a box, in the equation's coordinates, outside of which nothing is kept.
+    /// Surfaces that are not quadratic need one. The box may be infinite along an axis, but the hits of a ray parallel
+    /// to that axis are then in doubt.
     fn extent(&self) -> [DVec3; 2] {
         [DVec3::NEG_INFINITY, DVec3::INFINITY]
     }
 }
 
-/// What is certain, with numbers of one precision.
+/// What is certain about a first hit, with numbers of one precision; see [`Enclosure`](super::Enclosure).
 pub(super) enum Found<F> {
     Misses,
     Hits(Interval<F>),
@@ -41,7 +42,7 @@ pub(super) enum Found<F> {
     Doubtful(F),
 }
 
-/// Whether the surface is kept where a line has one of these distances; nothing where that is not certain.
+/// Tells whether the surface is kept at all distances of an interval along a line; `None` where that is uncertain.
 pub(super) fn is_kept<F: Float>(
     shape: &impl Equation,
     line: &Line<Interval<F>>,

@@ -1,9 +1,9 @@
-//! What is certain about a ray's first hit, proven with outward-rounded intervals, apart from the way in which
-//! pictures are made.
+//! What is certain about a ray's first hit, proven in outward-rounded interval arithmetic, independently of how images
+//! are rendered.
 //!
 //! A proof starts from the numbers of the scene: a shape's [`Equation`] is written in them, not in what its constructor
-//! made of them, and the ray is a [`Sight`]. All that follows is computed with intervals, so that what is proven is
-//! proven of the real numbers.
+//! derived from them, and the ray is a [`Sight`]. Everything after that is computed with intervals, so that a proof
+//! holds for the real numbers.
 
 mod closed;
 mod equation;
@@ -17,54 +17,56 @@ use crate::numeric::interval::{Float, Interval, Wide};
 use equation::Found;
 use f256::f256;
 
-/// What is certain about the first hit of a shape. Distances count in lengths of the sight's direction.
+/// What is certain about a ray's first hit of a shape. Distances are multiples of the length of the sight's direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Enclosure {
-    /// There is none.
+    /// There is no hit.
     Misses,
-    /// There is one, at one of these distances.
+    /// There is a hit, and this interval encloses its distance.
     Hits(Wide),
-    /// There is one, at one of these distances, if the edge of the surface belongs to it: the ray goes through that.
+    /// The ray passes through the edge of the surface: there is a hit in this interval if the edge belongs to the
+    /// surface.
     Edge(Wide),
-    /// There may be one, not nearer than this.
+    /// There may be a hit, no nearer than this distance.
     Doubtful(f256),
 }
 
 impl Enclosure {
-    /// Of a shape that says nothing.
+    /// The enclosure for a shape without an equation: there may be a hit at any distance.
     pub const UNKNOWN: Self = Self::Doubtful(f256::ZERO);
 }
 
-/// A distance in lengths of a sight's direction, in world units: the middle of what it may be.
+/// Converts the midpoint of an enclosed distance from lengths of a sight's direction to world units.
 pub fn in_world_units(distance: Wide, sight: &Sight) -> DoubleDouble {
     rounded(distance.middle() * root(sight.squared_length::<Wide>().middle()))
 }
 
-/// Bounds of a distance in lengths of a sight's direction, in world units.
+/// Converts the bounds of an enclosed distance from lengths of a sight's direction to world units, rounded outward.
 pub fn bounds_in_world_units(distance: Wide, sight: &Sight) -> Interval {
     let length = root(sight.squared_length::<Wide>().middle());
-    // A unit in the last place of `f64` holds all that is rounded with so many bits.
+    // One ulp of `f64` covers the rounding errors of arithmetic with some 200 bits.
     Interval {
         low: (distance.low * length).to_f64().next_down(),
         high: (distance.high * length).to_f64().next_up(),
     }
 }
 
-/// The middle of an interval, in twice the precision of `f64`.
+/// Returns the midpoint of an interval as a double-double number.
 pub fn middle(of: Wide) -> DoubleDouble {
     rounded(of.middle())
 }
 
-/// A number in twice the precision of `f64`.
+/// Rounds a number to a double-double number.
 fn rounded(of: f256) -> DoubleDouble {
     let high = of.to_f64();
     DoubleDouble { high, low: (of - f256::from(high)).to_f64() }
 }
 
-/// The square root to some 200 bits: a step of Newton's method from half of them takes a part of the time that all 237 do.
+/// Computes the square root to some 195 bits. One step of Newton's method from a double-double root is faster than the
+/// root to all 237 bits.
 fn root(of: f256) -> f256 {
     let DoubleDouble { high, low } = rounded(of).sqrt();
-    // The low parts of what is smaller, or squared in between, underflow.
+    // Outside of this range, the low parts of intermediate results may underflow.
     if !(1e-120..1e120).contains(&high) {
         return of.sqrt();
     }
@@ -72,16 +74,16 @@ fn root(of: f256) -> f256 {
     f256::from(0.5) * (start + of / start)
 }
 
-/// How many bits a proof is tried with.
+/// The precision in which a proof is tried.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Precision {
-    /// 53: enough nearly everywhere.
+    /// 53 bits, which decide nearly all rays.
     Double,
-    /// 237. What they leave open is as good as a tie.
+    /// 237 bits. What they leave open counts as a tie.
     Octuple,
 }
 
-/// What is certain about the first hit of a shape.
+/// Returns what is certain about a ray's first hit of a shape.
 pub fn first_hit(shape: &impl Equation, sight: &Sight, precision: Precision) -> Enclosure {
     match precision {
         Precision::Double => match solve::<f64>(shape, sight) {

@@ -1,4 +1,4 @@
-//! First hits of any surface, by halving a line until each piece has no hit for certain, or one.
+//! First hits of any surface, by splitting a line until each piece certainly has no root, or exactly one.
 
 use super::equation::{Equation, Found, is_kept};
 use crate::geometry::sight::Line;
@@ -6,25 +6,26 @@ use crate::numeric::dual::Dual;
 use crate::numeric::interval::{Float, Interval};
 use crate::numeric::scalar::Scalar;
 
-/// The pieces of a line that are looked at before it is given up.
+/// The maximum number of pieces of a line that are examined before the search is given up.
 const PIECES: usize = 2000;
 
-/// The first hit from t = 0 on.
+/// Finds the first hit with t > 0.
 pub fn first_hit<F: Float>(shape: &impl Equation, line: &Line<Interval<F>>) -> Found<F> {
     let zero = F::of(0.0);
     let Some((from, to)) = clip(shape, line) else { return Found::Misses };
     if !to.is_finite() {
         return Found::Doubtful(from);
     }
-    // Counted from near the shape, so that a piece of the line is not a small difference of large numbers.
+    // The parameter counts from near the shape, so that a piece of the line is not a small difference of large numbers.
     let base = Interval::point(from + F::of(0.5) * (to - from));
     let near = Line { origin: line.at(base), dir: line.dir };
     let (from, to) = ((Interval::point(from) - base).low, (Interval::point(to) - base).high);
+    // A piece shorter than about 8 ulps of the whole is too short to split.
     let shortest = F::of(8.0) * F::EPSILON * (to - from);
     let search = Search { shape, line: &near };
-    let mut waiting = vec![(from, to)];
+    let mut pending = vec![(from, to)];
     for _ in 0..PIECES {
-        let Some((low, high)) = waiting.pop() else { return Found::Misses };
+        let Some((low, high)) = pending.pop() else { return Found::Misses };
         let piece = Interval { low, high };
         let start = || (base + Interval::point(low)).low.max(zero);
         match search.judge(piece) {
@@ -44,11 +45,11 @@ pub fn first_hit<F: Float>(shape: &impl Equation, line: &Line<Interval<F>>) -> F
                 }
             }
             Judgement::Open if high - low > shortest => {
-                // Not the middle, where the numbers of scenes like to have something.
+                // Not the middle, where the round numbers of scenes often put a root.
                 let cut = low + F::of(0.493) * (high - low);
-                waiting.extend([(cut, high), (low, cut)]);
+                pending.extend([(cut, high), (low, cut)]);
             }
-            // What is cut off there in any case is no hit.
+            // A root that is certainly cut off is no hit.
             Judgement::Open => {
                 if is_kept(shape, &near, piece) != Some(false) {
                     return Found::Doubtful(start());
@@ -56,10 +57,10 @@ pub fn first_hit<F: Float>(shape: &impl Equation, line: &Line<Interval<F>>) -> F
             }
         }
     }
-    Found::Doubtful(waiting.last().map_or(zero, |(low, _)| (base + Interval::point(*low)).low.max(zero)))
+    Found::Doubtful(pending.last().map_or(zero, |(low, _)| (base + Interval::point(*low)).low.max(zero)))
 }
 
-/// The part of a line, from t = 0 on, outside of which nothing of the shape is.
+/// Clips a line, from t = 0 on, to the shape's extent. Returns `None` where the line misses the extent.
 fn clip<F: Float>(shape: &impl Equation, line: &Line<Interval<F>>) -> Option<(F, F)> {
     let [low, high] = shape.extent();
     let (mut from, mut to) = (F::of(0.0), F::INFINITY);
@@ -79,18 +80,19 @@ fn clip<F: Float>(shape: &impl Equation, line: &Line<Interval<F>>) -> Option<(F,
     (from <= to).then_some((from, to))
 }
 
+/// The search for roots of an equation along a line.
 struct Search<'s, S, F> {
     shape: &'s S,
     line: &'s Line<Interval<F>>,
 }
 
-/// What is certain of a piece of a line.
+/// What is certain about the roots in a piece of a line.
 enum Judgement<F> {
-    /// The equation has no solution there.
+    /// The piece has no root.
     Free,
-    /// It has one, and no other, at one of these distances.
+    /// The piece has exactly one root, enclosed by this interval.
     Root(Interval<F>),
-    /// Neither.
+    /// Neither is certain.
     Open,
 }
 
@@ -99,12 +101,12 @@ impl<S: Equation, F: Float> Search<'_, S, F> {
         self.shape.value(self.line.at(t))
     }
 
-    /// The value, with its slope.
+    /// Encloses the value and its first derivative.
     fn slope(&self, t: Interval<F>) -> Dual<Interval<F>> {
         self.shape.value(self.line.along(Dual::variable(t)))
     }
 
-    /// How fast the slope changes.
+    /// Encloses the second derivative.
     fn bend(&self, t: Interval<F>) -> Interval<F> {
         let t = Dual::variable_twice(t);
         let Line { origin, dir } = self.line;
@@ -112,6 +114,7 @@ impl<S: Equation, F: Float> Search<'_, S, F> {
         self.shape.value(at).second()
     }
 
+    /// Judges a piece by the mean value theorem of first and then of second order.
     fn judge(&self, piece: Interval<F>) -> Judgement<F> {
         let Dual { value, slope } = self.slope(piece);
         if !value.has_zero() {
@@ -126,14 +129,15 @@ impl<S: Equation, F: Float> Search<'_, S, F> {
         if !slope.has_zero() {
             return self.only(piece, slope);
         }
-        let by_bend = at_middle.slope + self.bend(piece) * around;
-        if !(at_middle.value + by_bend * around).has_zero() {
+        // The slope on the whole piece, by the second derivative.
+        let mean_slope = at_middle.slope + self.bend(piece) * around;
+        if !(at_middle.value + mean_slope * around).has_zero() {
             return Judgement::Free;
         }
-        if by_bend.has_zero() { Judgement::Open } else { self.only(piece, by_bend) }
+        if mean_slope.has_zero() { Judgement::Open } else { self.only(piece, mean_slope) }
     }
 
-    /// What a piece has on which the value rises or falls all the way, with these slopes: one solution at most.
+    /// Judges a piece on which the value is strictly monotonic, with these slopes, and which so has at most one root.
     fn only(&self, piece: Interval<F>, slope: Interval<F>) -> Judgement<F> {
         let sign = |at: F| self.value(Interval::point(at));
         let (first, last) = (sign(piece.low), sign(piece.high));
@@ -145,9 +149,9 @@ impl<S: Equation, F: Float> Search<'_, S, F> {
                 Judgement::Root(self.narrowed(piece, slope))
             };
         }
-        // It may lie where two pieces meet. On a wider piece Newton's method proves that it is there.
-        let room = piece.width();
-        let wide = Interval { low: piece.low - room, high: piece.high + room };
+        // The root may lie where two pieces meet. On a wider piece, the interval Newton method proves that it exists.
+        let margin = piece.width();
+        let wide = Interval { low: piece.low - margin, high: piece.high + margin };
         let slope = self.slope(wide).slope;
         if slope.has_zero() {
             return Judgement::Open;
@@ -161,19 +165,19 @@ impl<S: Equation, F: Float> Search<'_, S, F> {
         Judgement::Open
     }
 
-    /// Where a piece with these slopes can have a solution: a step of the interval Newton method. Where all of that is
-    /// inside of the piece there is one.
+    /// Encloses the root that a piece with these slopes may have, by a step of the interval Newton method. If the
+    /// result lies inside the piece, the root exists.
     fn step(&self, piece: Interval<F>, slope: Interval<F>) -> Interval<F> {
         let middle = Interval::point(piece.middle());
         middle - self.value(middle) / slope
     }
 
-    /// The solution that a piece has, as narrow as rounding allows.
+    /// Narrows the enclosure of a piece's root as far as rounding allows.
     fn narrowed(&self, mut piece: Interval<F>, mut slope: Interval<F>) -> Interval<F> {
         loop {
             let step = self.step(piece, slope);
             let next = Interval { low: step.low.max(piece.low), high: step.high.min(piece.high) };
-            // Written so that what is not a number ends it, too.
+            // Written so that a NaN ends the loop, too.
             if !(next.low <= next.high && next.width() < F::of(0.75) * piece.width()) {
                 return piece;
             }

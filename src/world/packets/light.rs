@@ -1,4 +1,4 @@
-//! How a light comes to many places at once.
+//! Lights, sampled from many shading points at once.
 
 use crate::geometry::aabb::larger;
 use crate::simd::cpu::{Cpu, kernels};
@@ -8,45 +8,45 @@ use crate::world::light_samples::{LightSamples, Lit, ShadingPoints};
 use crate::world::material::Rgb;
 use glam::DVec3;
 
-/// A light for packets: every [`Light`] is one.
+/// A light for packets. Every [`Light`] is one.
 pub trait PacketLight: Light {
-    /// How it comes to many places, with what [`emissivity`](Light::emissivity) gives toward each.
-    fn sample(&self, cpu: Cpu, places: &ShadingPoints, facing: LightSamples) -> Lit;
+    /// Samples the light from many points, with what [`emissivity`](Light::emissivity) returns for each.
+    fn sample(&self, cpu: Cpu, points: &ShadingPoints, samples: LightSamples) -> Lit;
 }
 
 impl<T: Light> PacketLight for T {
-    fn sample(&self, cpu: Cpu, places: &ShadingPoints, facing: LightSamples) -> Lit {
-        let LightSamples { toward, emissivity, cos_over_distance, t_max, shines } = facing;
-        sample(cpu, self, places, cos_over_distance, t_max, shines, toward, emissivity)
+    fn sample(&self, cpu: Cpu, points: &ShadingPoints, samples: LightSamples) -> Lit {
+        let LightSamples { toward, emissivity, cos_over_distance, t_max, shines } = samples;
+        sample(cpu, self, points, cos_over_distance, t_max, shines, toward, emissivity)
     }
 }
 
 kernels! {
-    /// How a light comes to places.
+    /// Samples a light from many points.
     fn sample[T: Light](
         light: &T,
-        places: &ShadingPoints,
+        shading: &ShadingPoints,
         cos_over_distance: &mut [f64],
         t_max: &mut [f64],
         shines: &mut [u64],
     ) => toward, emissivity -> Lit {
-        let (count, middle) = (places.points.len(), light.location());
+        let (count, middle) = (shading.points.len(), light.location());
         let out = (cos_over_distance, t_max, shines, toward.first(count), emissivity.first(count));
-        match places.lights {
-            None => sample_each(light, places, |_| middle, out),
+        match shading.lights {
+            None => sample_each(light, shading, |_| middle, out),
             Some(lights) => {
                 let lights = lights.first(count);
-                sample_each(light, places, |lane| lights.get(lane), out)
+                sample_each(light, shading, |lane| lights.get(lane), out)
             }
         }
     }
 }
 
-/// As `face`, each place with the point of the light that it sees.
+/// Samples a light from many points. `place` returns the point of the light that a lane sees.
 #[inline(always)]
 fn sample_each<T: Light>(
     light: &T,
-    places: &ShadingPoints,
+    shading: &ShadingPoints,
     place: impl Fn(usize) -> DVec3,
     (cos_over_distance, t_max, shines, mut toward, mut emissivity): (
         &mut [f64],
@@ -56,8 +56,8 @@ fn sample_each<T: Light>(
         ViewMut,
     ),
 ) -> Lit {
-    let (count, slack, is_even) = (places.points.len(), places.slack, light.uniform().is_some());
-    let (points, normals) = (places.points.first(count), places.normals.first(count));
+    let (count, slack, is_uniform) = (shading.points.len(), shading.slack, light.uniform().is_some());
+    let (points, normals) = (shading.points.first(count), shading.normals.first(count));
     let (cos_over_distance, t_max, shines) =
         (&mut cos_over_distance[..count], &mut t_max[..count], &mut shines[..count]);
     let (mut any_faces, mut any_shines) = (0, 0);
@@ -68,17 +68,17 @@ fn sample_each<T: Light>(
         let inverse = 1.0 / distance;
         let dir = between * inverse;
         let cosine = dir.dot(normals.get(lane));
-        // A light on the surface itself makes it NaN, and is behind.
+        // A light on the surface itself makes the cosine NaN, and counts as behind.
         let faces = u64::from(cosine > 0.0);
         let sent = light.emissivity(point);
         let does_shine = faces & u64::from(sent.is_some());
-        let end = distance - slack * (distance + reach(point));
+        let ray_end = distance - slack * (distance + reach(point));
         toward.set(lane, dir);
-        if !is_even {
+        if !is_uniform {
             emissivity.set(lane, sent.unwrap_or(Rgb::ZERO));
         }
         cos_over_distance[lane] = cosine * inverse;
-        t_max[lane] = if does_shine != 0 { end } else { 0.0 };
+        t_max[lane] = if does_shine != 0 { ray_end } else { 0.0 };
         shines[lane] = does_shine;
         any_faces |= faces;
         any_shines |= does_shine;
@@ -86,7 +86,7 @@ fn sample_each<T: Light>(
     Lit { any_faces: any_faces != 0, any_shines: any_shines != 0 }
 }
 
-/// How far a point is from the world's origin along the axis where that is farthest.
+/// Returns the largest magnitude of a point's coordinates, in world units.
 #[inline(always)]
 fn reach(point: DVec3) -> f64 {
     let reach = point.abs();

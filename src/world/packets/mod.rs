@@ -1,4 +1,4 @@
-//! What follows from the traits of shapes, looks and lights for packets of rays. No plugin needs to know of it.
+//! The packet versions of the traits of shapes, shaders and lights. Plugins do not use them.
 
 pub mod light;
 pub mod shader;

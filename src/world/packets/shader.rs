@@ -1,14 +1,14 @@
-//! What surfaces answer to light at many points at once.
+//! Shaders, evaluated at many points at once.
 
 use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::{View, ViewMut};
 use crate::world::material::{Material, Rgb};
 use crate::world::shader::Shader;
 
-/// A look for packets: every [`Shader`] is one.
+/// A shader for packets. Every [`Shader`] is one.
 pub trait PacketShader: Shader {
-    /// What [`ambient`](Shader::ambient) and [`specular`](Shader::specular) give at many points; tells whether any of
-    /// the second is not 0.
+    /// Evaluates [`ambient`](Shader::ambient) and [`specular`](Shader::specular) at many points. Returns whether any
+    /// specular reflectivity is not 0.
     fn ambient_and_specular(
         &self,
         cpu: Cpu,
@@ -18,7 +18,7 @@ pub trait PacketShader: Shader {
         speculars: ViewMut,
     ) -> bool;
 
-    /// What [`diffuse`](Shader::diffuse) gives at many points; tells whether any is not 0.
+    /// Evaluates [`diffuse`](Shader::diffuse) at many points. Returns whether any reflectivity is not 0.
     fn diffuses(&self, cpu: Cpu, material: &Material, points: View, out: ViewMut) -> bool;
 }
 
@@ -40,8 +40,8 @@ impl<T: Shader> PacketShader for T {
 }
 
 kernels! {
-    /// The reflectivities at points of a surface: for light from nowhere in particular, and as a mirror. Tells whether
-    /// any of those is not 0.
+    /// Evaluates the ambient and the mirror reflectivities at points of a surface. Returns whether any mirror
+    /// reflectivity is not 0.
     fn ambient_and_specular[T: Shader](shader: &T, material: &Material, points: View) => ambients, speculars -> bool {
         let (count, mut any) = (points.len(), 0);
         let (mut ambients, mut speculars) = (ambients.first(count), speculars.first(count));
@@ -55,7 +55,7 @@ kernels! {
         any != 0
     }
 
-    /// Likewise for light from the scene's lights. Tells whether any is not 0.
+    /// Evaluates the diffuse reflectivities at points of a surface. Returns whether any is not 0.
     fn diffuses[T: Shader](shader: &T, material: &Material, points: View) => out -> bool {
         let (count, mut any) = (points.len(), 0);
         let mut out = out.first(count);
@@ -68,7 +68,7 @@ kernels! {
     }
 }
 
-/// 1 for a colour that is not black, else 0.
+/// Returns 1 for a colour that is not black, and 0 for black.
 #[inline(always)]
 pub(crate) fn is_any(colour: Rgb) -> u64 {
     u64::from((colour.x != 0.0) | (colour.y != 0.0) | (colour.z != 0.0))

@@ -1,8 +1,8 @@
 //! Shapes for packets of rays.
 //!
-//! A [`Shape`] is asked in three ways: by an author's functions for one ray ([`OneRay`]), which loops take in that are
-//! compiled for each level of instructions; by packets ([`Packets`]), which follows from that but for surfaces that take
-//! packets themselves; and for what is certain ([`Proofs`]).
+//! A [`Shape`] has three interfaces. [`OneRay`] is the plugin author's functions for one ray, inlined into loops that
+//! are compiled for each instruction set. [`Packets`] takes packets; it is derived from [`OneRay`], except for shapes
+//! that take packets themselves. [`Proofs`] tells what is certain about hits.
 
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
 use crate::geometry::ray_packet::{Brackets, Nearest, RayPacket, mark_occluded, merge_nearest};
@@ -17,9 +17,9 @@ use crate::world::interaction::{SurfaceInteraction, turned};
 use crate::world::shape::{ByBracket, ByDistance, ByEquation, ByFormula, ByRoots, Shape, Unproven};
 use glam::DVec3;
 
-/// Any shape as packets of rays ask it.
+/// A shape of any type, with its interfaces for packets and proofs.
 pub trait PacketShape: Packets + Proofs {
-    /// The author's shape.
+    /// Returns the plugin author's shape.
     fn hittable(&self) -> &(dyn Hittable + 'static);
 }
 
@@ -32,10 +32,11 @@ where
     }
 }
 
-/// What packets of rays ask.
+/// A shape against which packets of rays are tested.
 pub trait Packets: Send + Sync {
-    /// Compares the hits of a packet with the nearest so far, and tells whether any is in doubt. `sides` are those of
-    /// this shape that the rays leave, if they do; `id` is its index in the scene and 1.
+    /// Merges the hits of a packet's rays with this shape into the nearest hits so far, and tells whether the order of
+    /// any is in doubt. `sides` has the side of this shape that each ray leaves, if the rays leave this shape; `id` is
+    /// the object's index in the scene plus 1.
     fn closest_hits(
         &self,
         cpu: Cpu,
@@ -45,8 +46,8 @@ pub trait Packets: Send + Sync {
         nearest: Nearest,
     ) -> bool;
 
-    /// Marks the rays of a packet that it blocks before their ends, and those of which that is in doubt; tells
-    /// whether any is.
+    /// Marks in `blocked` the rays that this shape blocks before `t_max`, and in `doubt` the rays for which that is
+    /// uncertain. Returns whether any is in doubt.
     fn occluded(
         &self,
         cpu: Cpu,
@@ -57,8 +58,8 @@ pub trait Packets: Send + Sync {
         doubt: &mut [u64],
     ) -> bool;
 
-    /// The distances of hits that are certain, each between two distances where
-    /// [`closest_hits`](Self::closest_hits) has bracketed it; NaN where it takes more than plain arithmetic.
+    /// Computes the distances of certain hits that [`closest_hits`](Self::closest_hits) has bracketed; NaN where a
+    /// distance takes more than plain arithmetic.
     fn refine(
         &self,
         cpu: Cpu,
@@ -68,35 +69,37 @@ pub trait Packets: Send + Sync {
         out: &mut [f64],
     );
 
-    /// Where the rays of a packet come to it after these distances, and its normals there.
-    fn interact(&self, cpu: Cpu, rays: RayPacket, distances: &[f64], landing: SurfaceInteraction);
+    /// Computes the points, normals and sides that the rays of a packet hit at these distances, in world units.
+    fn interact(&self, cpu: Cpu, rays: RayPacket, distances: &[f64], interaction: SurfaceInteraction);
 
-    /// Between which distances the distance of one ray is.
+    /// Returns a bracket of the distance of one ray's first hit.
     fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket;
 
-    /// The distance of one ray's hit that [`t_bounds`](Self::t_bounds) has found for certain, or NaN.
+    /// Returns the distance of one ray's hit that [`t_bounds`](Self::t_bounds) has found for certain, or NaN where it
+    /// takes more than plain arithmetic.
     fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64;
 }
 
-/// What is certain of a shape's hits.
+/// A shape about whose hits something may be proven.
 pub trait Proofs: Send + Sync {
-    /// Whether a point lies on its surface, but for an error of so many world units and for what rounding makes of the
-    /// shape's own numbers. Rays that start there leave it.
+    /// Tells whether a point lies on the surface, up to an error in world units and to the rounding of the shape's own
+    /// numbers. Rays that start at such a point leave the shape.
     fn touches(&self, at: DVec3, error: f64) -> bool;
 
-    /// The distance of the hit at about this one, in twice the precision, where that is to be had.
+    /// Returns the distance of the hit near `distance` in double-double arithmetic, or `None` where no such distance
+    /// can be computed.
     fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble>;
 
-    /// What is certain about the first hit of a ray.
+    /// Returns what is certain about a ray's first hit.
     fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure;
 
-    /// Whether it is found by a formula of the notes, whose program tests every ray against each.
+    /// Tells whether hits are found by a formula of the notes, whose program tests every ray against every shape.
     fn is_of_the_notes(&self) -> bool {
         false
     }
 
-    /// The distance by another method of finding roots; nothing where the shape is not the roots of a function along a
-    /// ray, or is found in closed form.
+    /// Returns the distance by another root-finding method, or `None` where the shape's hits are not the roots of a
+    /// function along the ray, or are found in closed form.
     fn distance_by(&self, method: Method, ray: &Ray, range: &RayRange) -> Option<f64>;
 }
 
@@ -176,30 +179,31 @@ impl<T: Searched, S> Proofs for Shape<T, S, ByRoots> {
     }
 }
 
-/// Whether a short ray through a point, upright on a shape, meets the shape within an error.
+/// Tells whether a short ray through a point, perpendicular to a shape, hits the shape within an error in world units.
 fn is_met_within(shape: &impl Hittable, at: DVec3, error: f64) -> bool {
     let dir = shape.normal(at);
-    let short = 2.0 * error + ROUNDING * at.abs().max_element();
-    let ray = Ray { origin: at - short * dir, dir };
-    shape.distance(&ray, &RayRange { far: 2.0 * short, ..RayRange::ALL }) < MISS
+    // Twice the error, so that a surface at the error itself lies inside the range; and the rounding of the new origin.
+    let half_length = 2.0 * error + ROUNDING * at.abs().max_element();
+    let ray = Ray { origin: at - half_length * dir, dir };
+    shape.distance(&ray, &RayRange { far: 2.0 * half_length, ..RayRange::ALL }) < MISS
 }
 
-/// A shape that is asked for one ray at a time.
+/// A shape that is tested against one ray at a time.
 pub trait OneRay: Send + Sync {
-    /// The author's shape.
+    /// The type of the plugin author's shape.
     type Author: Hittable;
 
-    /// The author's shape.
+    /// Returns the plugin author's shape.
     fn author(&self) -> &Self::Author;
 
-    /// Between which distances the distance is.
+    /// Returns a bracket of the distance of the ray's first hit.
     fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket;
 
-    /// The distance of a hit that [`t_bounds`](Self::t_bounds) has found for certain, or NaN where that takes more than
-    /// plain arithmetic.
+    /// Returns the distance of a hit that [`t_bounds`](Self::t_bounds) has found for certain, or NaN where it takes
+    /// more than plain arithmetic.
     fn refine(&self, ray: &Ray, origin_side: Option<Side>) -> f64;
 
-    /// What [`refine`](Self::refine) gives for each ray of a packet.
+    /// Writes what [`refine`](Self::refine) returns for each ray of a packet.
     #[inline(always)]
     fn refine_each(&self, rays: RayPacket, sides: Option<&[Side]>, out: &mut [f64]) {
         let (count, rays) = (out.len(), rays.first(out.len()));
@@ -237,7 +241,7 @@ impl<T: Bracketed, P> OneRay for Shape<T, ByBracket, P> {
     }
 }
 
-/// The author's distance and what is known of where a shape is tell its bracket.
+/// The bracket follows from the author's distance, and from whether the shape touches the ray's origin.
 impl<T: Hittable, P: Coincidence> OneRay for Shape<T, ByDistance, P>
 where
     Self: Proofs,
@@ -264,8 +268,8 @@ where
     }
 }
 
-/// The bracket of a shape that has no quicker one than its distance, where rounding does not decide that; `touches` tells
-/// whether the shape touches the ray's origin within the span's `origin_error`.
+/// Returns the bracket of a shape that has no quicker one than its distance. The bracket is unknown where rounding
+/// decides the distance. `touches` tells whether the shape touches the ray's origin within the range's `origin_error`.
 #[inline(always)]
 pub fn by_distance(
     range: &RayRange,
@@ -278,16 +282,16 @@ pub fn by_distance(
     }
     let close = if far < MISS { CLOSE * far } else { 0.0 };
     let Some(distance) = distance(&RayRange { far: far + close, ..*range }) else { return Bracket::UNKNOWN };
-    // At the distance of another surface, more digits tell which comes first.
+    // At the distance of another surface, the bracket is widened, so that more digits decide which comes first.
     if (distance - far).abs() <= close {
         return Bracket { near: distance - close, far: distance + close };
     }
     Bracket::exactly(distance)
 }
 
-/// Whether what meets at one distance is looked at closer.
+/// Whether the order of hits at nearly equal distances is refined.
 pub trait Coincidence {
-    /// Whether it is not.
+    /// Whether distances are taken as they are, without refinement.
     const IS_PLAIN: bool = false;
 }
 
@@ -298,7 +302,7 @@ impl Coincidence for ByFormula {
     const IS_PLAIN: bool = true;
 }
 
-/// For packets, one ray after the other, as many at a time as the processor takes.
+/// Tests packets one ray after the other, in loops that the compiler vectorizes.
 impl<T: Hittable, S, P> Packets for Shape<T, S, P>
 where
     Self: OneRay<Author = T>,
@@ -337,8 +341,8 @@ where
         refine(cpu, self, rays, sides, out);
     }
 
-    fn interact(&self, cpu: Cpu, rays: RayPacket, distances: &[f64], landing: SurfaceInteraction) {
-        let SurfaceInteraction { points, normals, sides, cosines, travelled } = landing;
+    fn interact(&self, cpu: Cpu, rays: RayPacket, distances: &[f64], interaction: SurfaceInteraction) {
+        let SurfaceInteraction { points, normals, sides, cosines, travelled } = interaction;
         interact(cpu, &self.shape, rays, distances, sides, cosines, travelled, points, normals);
     }
 
@@ -352,7 +356,7 @@ where
 }
 
 kernels! {
-    /// Compares a shape's hits with the nearest so far. Tells whether any is in doubt.
+    /// Merges a shape's hits into the nearest so far. Returns whether the order of any is in doubt.
     fn closest_hits[T: OneRay](shape: &T, rays: RayPacket, sides: Option<&[Side]>, id: u64, nearest: Nearest) -> bool {
         let (count, rays) = (rays.len(), rays.first(rays.len()));
         let Nearest { near, far, met, doubt } = nearest;
@@ -364,7 +368,7 @@ kernels! {
         }
     }
 
-    /// Marks the rays that a shape's hits block before they come to their ends. Tells whether any is in doubt.
+    /// Marks the rays that a shape blocks before `t_max`. Returns whether any is in doubt.
     fn occluded[T: OneRay](
         shape: &T, rays: RayPacket, sides: Option<&[Side]>, t_max: &[f64], blocked: &mut [u64], doubt: &mut [u64]
     ) -> bool {
@@ -375,12 +379,12 @@ kernels! {
         }
     }
 
-    /// The distances of a shape's hits, as [`OneRay::refine`] gives them.
+    /// Computes the distances of a shape's hits, as [`OneRay::refine`] returns them.
     fn refine[T: OneRay](shape: &T, rays: RayPacket, sides: Option<&[Side]>, out: &mut [f64]) {
         shape.refine_each(rays, sides, out);
     }
 
-    /// Where rays come to a shape after these distances, and its normals there.
+    /// Computes the points, normals and sides that rays hit at these distances, in world units.
     fn interact[T: Hittable](
         shape: &T, rays: RayPacket, distances: &[f64], sides: &mut [Side], cosines: &mut [f64], travelled: &mut [f64]
     ) => points, normals {
@@ -400,7 +404,7 @@ kernels! {
     }
 }
 
-/// The brackets that a shape gives.
+/// A shape's brackets for rays that do not leave the shape.
 struct ShapeBounds<'b, T> {
     shape: &'b T,
     rays: RayPacket<'b>,
@@ -414,7 +418,7 @@ impl<T: OneRay> Brackets for ShapeBounds<'_, T> {
     }
 }
 
-/// The brackets that a shape gives for rays that leave it.
+/// A shape's brackets for rays that leave the shape.
 struct LeavingBounds<'b, T> {
     shape: &'b T,
     rays: RayPacket<'b>,

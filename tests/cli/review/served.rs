@@ -13,12 +13,17 @@ use tempfile::TempDir;
 struct Served {
     program: Child,
     host: String,
+    token: String,
 }
 
 impl Served {
     fn new(folder: &TempDir) -> Self {
+        Self::at(folder, "0")
+    }
+
+    fn at(folder: &TempDir, port: &str) -> Self {
         let mut program = Command::new(cargo_bin!("tabray"))
-            .args(["review", "--serve", "--port", "0"])
+            .args(["review", "--serve", "--port", port])
             .current_dir(folder.path())
             .stderr(Stdio::piped())
             .spawn()
@@ -26,19 +31,23 @@ impl Served {
         let mut line = String::new();
         let mut told = BufReader::new(program.stderr.take().expect("it is piped"));
         told.read_line(&mut line).expect("a line");
-        let (_, url) = line.split_once("review at http://").expect("where the page is");
-        assert!(url.ends_with("/ (Ctrl-C quits)\n"), "{line}");
-        let (host, _) = url.split_once('/').expect("an end");
+        let (host, token) = line
+            .strip_prefix("review at http://")
+            .and_then(|rest| rest.strip_suffix(" (Ctrl-C quits)\n"))
+            .and_then(|address| address.split_once("/?token="))
+            .unwrap_or_else(|| panic!("an address: {line}"));
+        let (host, token) = (host.to_owned(), token.to_owned());
         // What else it says must not stop it.
         std::thread::spawn(move || std::io::copy(&mut told, &mut std::io::sink()));
-        Self { program, host: host.to_owned() }
+        Self { program, host, token }
     }
 
-    /// The status and the body of the answer to a request with these headers.
+    /// The status and the body of the answer to a request with the token and with these headers.
     fn ask(&self, line: &str, headers: &[(&str, &str)], body: &str) -> (u16, String) {
         let mut stream = TcpStream::connect(&self.host).expect("it listens");
         let headers: String = headers.iter().map(|(name, value)| format!("{name}: {value}\r\n")).collect();
-        write!(stream, "{line} HTTP/1.1\r\n{headers}Content-Length: {}\r\n\r\n{body}", body.len())
+        let (token, length) = (&self.token, body.len());
+        write!(stream, "{line}?token={token} HTTP/1.1\r\n{headers}Content-Length: {length}\r\n\r\n{body}")
             .expect("it listens");
         let mut answer = String::new();
         stream.read_to_string(&mut answer).expect("it answers");

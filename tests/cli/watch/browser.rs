@@ -52,8 +52,13 @@ impl Browser {
         let session = browser.post("", json!({ "capabilities": { "alwaysMatch": wanted } }));
         browser.session += "/";
         browser.session += session["sessionId"].as_str().expect("a session");
-        browser.post("/url", json!({ "url": url }));
+        browser.go(url);
         Some(browser)
+    }
+
+    /// Shows another page.
+    pub fn go(&self, url: &str) {
+        self.post("/url", json!({ "url": url }));
     }
 
     fn post(&self, path: &str, body: Value) -> Value {

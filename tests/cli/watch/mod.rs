@@ -1,6 +1,6 @@
 //! `tabray watch`: the program and its page.
 
-mod browser;
+pub mod browser;
 mod page;
-mod program;
+pub mod program;
 mod server;

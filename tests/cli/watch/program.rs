@@ -29,6 +29,8 @@ pub struct Watching {
     pub child: Child,
     pub folder: TempDir,
     pub port: u16,
+    /// What lets a page in.
+    pub token: String,
 }
 
 impl Watching {
@@ -51,14 +53,15 @@ impl Watching {
         let mut stderr = BufReader::new(child.stderr.take().expect("its messages"));
         let mut line = String::new();
         stderr.read_line(&mut line).expect("text");
-        let (_, rest) = line
-            .split_once("watching scene.ray at http://127.0.0.1:")
+        let (port, token) = line
+            .strip_prefix("watching scene.ray at http://127.0.0.1:")
+            .and_then(|rest| rest.strip_suffix(" (Ctrl-C quits)\n"))
+            .and_then(|address| address.split_once("/?token="))
             .unwrap_or_else(|| panic!("an address: {line}"));
-        assert!(rest.ends_with("/ (Ctrl-C quits)\n"), "{line}");
-        let port = rest.split('/').next().and_then(|port| port.parse().ok()).expect("a port");
+        let (port, token) = (port.parse().expect("a port"), token.to_owned());
         // What comes later must have somewhere to go.
         thread::spawn(move || stderr.read_to_end(&mut Vec::new()));
-        Self { child, folder, port }
+        Self { child, folder, port, token }
     }
 
     pub fn scene(&self) -> PathBuf {
@@ -73,7 +76,7 @@ impl Watching {
     }
 
     pub fn url(&self, path: &str) -> String {
-        format!("http://127.0.0.1:{}/{path}", self.port)
+        format!("http://127.0.0.1:{}/{path}?token={}", self.port, self.token)
     }
 
     /// What the page gets from an address: the status and the bytes.
@@ -122,7 +125,13 @@ impl Events {
 
     /// The name and the data of the next one.
     pub fn next(&mut self) -> (String, String) {
-        let name = self.line().strip_prefix("event: ").expect("a name").to_owned();
+        let mut line = self.line();
+        // After a minute without news that is told.
+        while line == ":" {
+            assert_eq!(self.line(), "");
+            line = self.line();
+        }
+        let name = line.strip_prefix("event: ").expect("a name").to_owned();
         let data = self.line().strip_prefix("data: ").expect("data").to_owned();
         assert_eq!(self.line(), "");
         (name, data)

@@ -199,7 +199,8 @@ fn foreign_hosts_and_origins_are_refused() {
     let watching = Watching::text(&ball("9 0 0"));
     let port = watching.port;
     let status = |headers: &str| {
-        let answer = raw(port, &format!("GET / HTTP/1.1\nConnection: close\n{headers}\n"));
+        let request = format!("GET /?token={} HTTP/1.1\nConnection: close\n{headers}\n", watching.token);
+        let answer = raw(port, &request);
         answer.split(' ').nth(1).and_then(|status| status.parse::<u16>().ok()).expect("a status")
     };
     for own in ["127.0.0.1", "localhost"] {
@@ -221,7 +222,8 @@ fn foreign_hosts_and_origins_are_refused() {
         let status = status(&foreign);
         assert!(status == 403 || status == 400, "{status} for {foreign}");
     }
-    let post = format!("POST / HTTP/1.1\nHost: 127.0.0.1:{port}\nConnection: close\n");
+    let token = &watching.token;
+    let post = format!("POST /?token={token} HTTP/1.1\nHost: 127.0.0.1:{port}\nConnection: close\n");
     let answer = raw(port, &format!("{post}\n"));
     assert!(answer.starts_with("HTTP/1.1 403 "), "{answer}");
     let answer = raw(port, &format!("{post}Origin: http://127.0.0.1:{port}\n\n"));
@@ -242,9 +244,14 @@ fn the_page_is_one_file_without_links() {
     }
     let head = raw(
         watching.port,
-        &format!("GET / HTTP/1.1\nHost: 127.0.0.1:{}\nConnection: close\n\n", watching.port),
+        &format!(
+            "GET /?token={} HTTP/1.1\nHost: 127.0.0.1:{}\nConnection: close\n\n",
+            watching.token, watching.port
+        ),
     );
-    assert!(head.contains("content-security-policy: default-src 'none';"), "{head}");
+    for header in ["content-security-policy: default-src 'none';", "referrer-policy: no-referrer"] {
+        assert!(head.contains(header), "{head}");
+    }
 }
 
 #[cfg(target_os = "linux")]

@@ -159,11 +159,10 @@ fn a_wall_on_the_edge_of_a_tile_has_no_speckles() {
     }
 }
 
-/// F14: what a cast makes of a channel that is no number, or too large for it.
+/// F14: what a cast makes of a channel that is no number, or too large for it. In an integer, 1.004 is 256, of which a byte
+/// keeps 0, and what is clamped stays NaN where it was that, as 0 times infinity is.
 #[test]
 fn a_channel_is_a_byte_whatever_it_is() {
-    assert_eq!(((1.004_f64 * 255.0 + 0.5) as i32) & 255, 0, "white turns black");
-    assert!(f64::NAN.clamp(0.0, 1.0).is_nan() && (0.0 * (1.0 / 1e-310_f64)).is_nan());
     let bytes =
         [f64::NAN, -1.0, -0.0, 0.999, 1.0, 1.004, 1e300, f64::INFINITY, f64::NEG_INFINITY].map(to_byte);
     assert_eq!(bytes, [0, 0, 0, 254, 255, 255, 255, 255, 0]);

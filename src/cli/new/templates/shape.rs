@@ -29,7 +29,7 @@ struct Template {
 // in `docs/plugins.md` does; `Bracketed` and `Certified` are for shapes that are faster and whose hits are proven.
 impl Implicit for Template {
     /// Returns a value below 0 inside the shape, above 0 outside, and 0 on its surface.
-    fn value<N: Number>(&self, at: [N; 3]) -> N {
+    fn value<N: Scalar>(&self, at: [N; 3]) -> N {
         let [x, y, z] = at.map(|coordinate| coordinate / N::constant(self.size));
         x.powi(4) + y.powi(4) + z.powi(4) - N::constant(1.0)
     }

@@ -1,0 +1,194 @@
+//! Connections: how many there may be, how long they may take, and what becomes of the request of each.
+//!
+//! Whoever can connect can do so a thousand times and send nothing. A connection is idle until it has sent the head of a
+//! request that is let in; where there are too many idle ones, the oldest is closed. So who sends a request at once is
+//! answered, however many others send nothing.
+
+use super::access::Access;
+use super::response::{Body, guard, text};
+use crate::cli::messages;
+use crate::words;
+use http_body_util::{BodyExt, Limited};
+use hyper::body::{Bytes, Incoming};
+use hyper::server::conn::http1;
+use hyper::service::service_fn;
+use hyper::{Request, Response, StatusCode};
+use hyper_util::rt::{TokioIo, TokioTimer};
+use std::cell::{Cell, RefCell};
+use std::collections::BTreeMap;
+use std::convert::Infallible;
+use std::future::poll_fn;
+use std::io;
+use std::ops::ControlFlow;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::pin::pin;
+use std::rc::Rc;
+use std::task::Poll;
+use std::time::Duration;
+use tokio::net::{TcpListener, TcpStream};
+use tokio::sync::{Notify, Semaphore};
+use tokio::task::{AbortHandle, spawn_local, yield_now};
+use tokio::time::{sleep, timeout};
+use tokio_io_timeout::TimeoutStream;
+
+/// The most bytes of a request's head that are read.
+const LARGEST_HEAD: usize = 1 << 14;
+
+/// The most bytes of a request's body that are read.
+const LARGEST: usize = 1 << 16;
+
+/// How long nobody is accepted after the system refused to.
+const PAUSE: Duration = Duration::from_millis(50);
+
+/// The fewest idle connections that are kept, even where the system allows hardly any open files. What one of them has
+/// sent is read before so many others are accepted.
+const FEWEST: usize = 4;
+
+/// An answer, after which there may be more or not.
+pub type Answer = ControlFlow<Response<Body>, Response<Body>>;
+
+/// How much is allowed at once, and how long.
+#[derive(Clone, Copy)]
+pub struct Limits {
+    /// The most idle connections: those that have sent no request yet that is let in.
+    pub idle: usize,
+    /// The most requests that are being answered. A page keeps one of them open.
+    pub requests: usize,
+    /// The time that a request's head may take, and its body.
+    pub request_time: Duration,
+    /// The time that an answer may wait for its reader without getting on. It is long: a page that takes in a large
+    /// picture, or stands still in a debugger, reads nothing meanwhile.
+    pub write_time: Duration,
+}
+
+impl Limits {
+    /// Those of a server for one person: a small part of the files that a process may have open.
+    pub const USUAL: Self = Self {
+        idle: 32,
+        requests: 64,
+        request_time: Duration::from_secs(10),
+        write_time: Duration::from_secs(60),
+    };
+}
+
+/// The connections of a server.
+pub struct Connections<A> {
+    access: Access,
+    limits: Limits,
+    answer: A,
+    /// The tasks of idle connections, oldest first.
+    idle: RefCell<BTreeMap<u64, AbortHandle>>,
+    /// A slot for each request that may be answered now.
+    slots: Semaphore,
+    end: Notify,
+}
+
+impl<A> Connections<A>
+where
+    A: AsyncFn(Request<Bytes>) -> Answer + 'static,
+{
+    pub fn new(access: Access, limits: Limits, answer: A) -> Self {
+        let slots = Semaphore::new(limits.requests);
+        Self { access, limits, answer, idle: RefCell::default(), slots, end: Notify::new() }
+    }
+
+    /// Accepts connections and answers their requests, until an answer breaks off: it is the last one.
+    pub async fn run(self, listener: TcpListener) {
+        let connections = Rc::new(self);
+        spawn_local(connections.clone().accept(listener));
+        connections.end.notified().await;
+    }
+
+    async fn accept(self: Rc<Self>, listener: TcpListener) {
+        let mut most = self.limits.idle;
+        let mut is_told = false;
+        for number in 0.. {
+            match listener.accept().await {
+                Ok((stream, _)) => {
+                    let task = spawn_local(self.clone().serve(stream, number));
+                    self.idle.borrow_mut().insert(number, task.abort_handle());
+                    self.close_oldest(most);
+                    // What has been sent meanwhile is read before more connections are accepted.
+                    yield_now().await;
+                }
+                // A connection that failed on its way here concerns nobody.
+                Err(error) if error.kind() == io::ErrorKind::ConnectionAborted => {}
+                // Mostly there are too many open files. Answering needs some, too.
+                Err(error) => {
+                    if !is_told {
+                        let reason = words::reason(&error);
+                        messages::warning(&format!("cannot accept every connection: {reason}"), None);
+                    }
+                    is_told = true;
+                    most = FEWEST.max(self.idle.borrow().len().min(most) / 2);
+                    self.close_oldest(most);
+                    sleep(PAUSE).await;
+                }
+            }
+        }
+    }
+
+    /// Closes the oldest idle connections, until there are no more than so many.
+    fn close_oldest(&self, most: usize) {
+        let mut idle = self.idle.borrow_mut();
+        while idle.len() > most
+            && let Some((_, task)) = idle.pop_first()
+        {
+            task.abort();
+        }
+    }
+
+    /// Takes one request from a connection and answers it.
+    async fn serve(self: Rc<Self>, stream: TcpStream, number: u64) {
+        let (slot, is_last) = (Cell::new(None), Cell::new(false));
+        let service = service_fn(async |request: Request<Incoming>| {
+            let mut response = if let Err(reason) = self.access.admit(&request) {
+                text(StatusCode::FORBIDDEN, reason)
+            } else if let Ok(taken) = self.slots.try_acquire() {
+                slot.set(Some(taken));
+                self.idle.borrow_mut().remove(&number);
+                let answer = self.respond(request).await;
+                is_last.set(answer.is_break());
+                let (ControlFlow::Continue(response) | ControlFlow::Break(response)) = answer;
+                response
+            } else {
+                text(StatusCode::SERVICE_UNAVAILABLE, "too many requests at once")
+            };
+            guard(&mut response);
+            Ok::<_, Infallible>(response)
+        });
+        let mut stream = TimeoutStream::new(stream);
+        stream.set_write_timeout(Some(self.limits.write_time));
+        // Who does not listen to the end has gone.
+        let _ = http1::Builder::new()
+            .timer(TokioTimer::new())
+            .header_read_timeout(self.limits.request_time)
+            .max_buf_size(LARGEST_HEAD)
+            .keep_alive(false)
+            .serve_connection(TokioIo::new(Box::pin(stream)), service)
+            .await;
+        self.idle.borrow_mut().remove(&number);
+        if is_last.get() {
+            self.end.notify_one();
+        }
+    }
+
+    /// The answer to a request that is let in.
+    async fn respond(&self, request: Request<Incoming>) -> Answer {
+        let (head, body) = request.into_parts();
+        let refusal = |status, reason| ControlFlow::Continue(text(status, reason));
+        let body = match timeout(self.limits.request_time, Limited::new(body, LARGEST).collect()).await {
+            Ok(Ok(body)) => body.to_bytes(),
+            Ok(Err(_)) => return refusal(StatusCode::PAYLOAD_TOO_LARGE, "the request is too large"),
+            Err(_) => return refusal(StatusCode::REQUEST_TIMEOUT, "the request did not arrive in time"),
+        };
+        let mut answer = pin!((self.answer)(Request::from_parts(head, body)));
+        // A panic ends this answer, and no other.
+        poll_fn(|context| {
+            let polled = catch_unwind(AssertUnwindSafe(|| answer.as_mut().poll(context)));
+            polled
+                .unwrap_or_else(|_| Poll::Ready(refusal(StatusCode::INTERNAL_SERVER_ERROR, "internal error")))
+        })
+        .await
+    }
+}

@@ -1,0 +1,204 @@
+//! The distance of a ray's intersection with a plane, by the methods of each accuracy.
+
+use super::products::{DRAFT_ERROR, quotient};
+use super::surface::{MAX_Z, Plane};
+use crate::geometry::ray::{MISS, Ray, RayRange};
+use crate::geometry::ray_packet::RayPacket;
+use crate::numeric::double_double::{DoubleDouble, dot, exact_sum, two_product, two_sum};
+use crate::simd::soa::LANES;
+use crate::world::accuracy::{Accuracy, Bounded, Classic};
+
+impl<A> Plane<A> {
+    /// Returns whether a ray intersects the plane on the viewer's side of the image plane: whether z, which is the
+    /// origin's plus `away / toward` of the direction's, is beyond it.
+    #[inline(never)]
+    fn is_before_image_plane(&self, ray: &Ray) -> bool {
+        let (away, toward) = self.exact_products(ray);
+        let (one, other) =
+            (DoubleDouble::difference(ray.origin.z, MAX_Z) * toward, away * DoubleDouble::from(ray.dir.z));
+        let beyond = (one + other).high * toward.high.signum();
+        // Double-double products and sums are off by 2^-103 of their terms; an intersection as near as that is on the
+        // image plane itself.
+        beyond > 2_f64.powi(-98) * (one.high.abs() + other.high.abs())
+    }
+
+    /// Computes the dot product of the normal and the vector from the ray's origin to the plane, off by a few ulps and
+    /// 2^-102 of the size of its terms.
+    #[inline(always)]
+    fn compensated_away(&self, ray: &Ray) -> f64 {
+        let (x, x_low) = two_sum(self.point.x, -ray.origin.x);
+        let (y, y_low) = two_sum(self.point.y, -ray.origin.y);
+        let (z, z_low) = two_sum(self.point.z, -ray.origin.z);
+        dot(self.rounded_normal().to_array(), [x, y, z], [x_low, y_low, z_low], self.normal_error([x, y, z]))
+    }
+
+    /// Computes the dot product of the normal and the ray's direction, off by a few ulps and 2^-102 of the size of its
+    /// terms.
+    #[inline(always)]
+    fn compensated_toward(&self, ray: &Ray) -> f64 {
+        dot(
+            self.rounded_normal().to_array(),
+            ray.dir.to_array(),
+            [0.0; 3],
+            self.normal_error(ray.dir.to_array()),
+        )
+    }
+
+    /// Computes the dot product of a vector and the rounding error of the normal: 0 except for triangles.
+    #[inline(always)]
+    fn normal_error(&self, of: [f64; 3]) -> f64 {
+        self.upright[0].low * of[0] + self.upright[1].low * of[1] + self.upright[2].low * of[2]
+    }
+
+    /// Computes both dot products, each rounded once however much of it cancels: 0 only where they are exactly 0.
+    fn exact_products(&self, ray: &Ray) -> (DoubleDouble, DoubleDouble) {
+        let product = |of: [DoubleDouble; 3]| {
+            exact_sum((0..3).flat_map(|axis| {
+                let (one, other) = (self.upright[axis], of[axis]);
+                let parts = [(one.high, other.high), (one.high, other.low), (one.low, other.high)];
+                let parts =
+                    parts.into_iter().flat_map(|(one, other)| <[f64; 2]>::from(two_product(one, other)));
+                parts.chain([one.low * other.low])
+            }))
+        };
+        let between = [0, 1, 2].map(|axis| DoubleDouble::difference(self.point[axis], ray.origin[axis]));
+        (product(between), product(ray.dir.to_array().map(DoubleDouble::from)))
+    }
+
+    /// Returns the distance that [`crossing`](Self::crossing) rounds, as a double-double.
+    #[inline(never)]
+    pub fn exact_crossing(&self, ray: &Ray) -> DoubleDouble {
+        let (away, toward) = self.exact_products(ray);
+        if toward.high == 0.0 { MISS.into() } else { away / toward }
+    }
+}
+
+impl<A: Bounded> Plane<A> {
+    /// Returns the distance in world units at which a ray intersects the plane, forward or backward; [`MISS`] for a
+    /// parallel ray.
+    #[inline(always)]
+    pub fn crossing(&self, ray: &Ray) -> f64 {
+        let quick = self.quick_crossing(ray);
+        if quick.is_nan() { self.exact_crossing(ray).high } else { quick }
+    }
+
+    /// Returns what [`crossing`](Self::crossing) does, or NaN where that takes more than plain or compensated
+    /// arithmetic.
+    #[inline(always)]
+    pub fn quick_crossing(&self, ray: &Ray) -> f64 {
+        match A::ACCURACY {
+            Accuracy::Draft => self.products(self.rounded_normal(), ray).draft_distance(),
+            Accuracy::Exact => {
+                let products = self.products(self.rounded_normal(), ray);
+                let away = if products.away_cancels() { self.compensated_away(ray) } else { products.away };
+                let toward =
+                    if products.toward_cancels() { self.compensated_toward(ray) } else { products.toward };
+                products.quotient(away, toward)
+            }
+            _ => f64::NAN,
+        }
+    }
+
+    /// Computes [`quick_crossing`](Self::quick_crossing) for each ray of a packet in plain arithmetic.
+    #[inline(always)]
+    pub(super) fn refine_plain(&self, rays: RayPacket, out: &mut [f64]) {
+        let rays = rays.first(out.len());
+        for lane in 0..out.len() {
+            out[lane] = self.products(self.rounded_normal(), &rays.get(lane)).draft_distance();
+        }
+    }
+
+    /// Computes [`quick_crossing`](Self::quick_crossing) for each ray of a packet; a dot product that cancels for any
+    /// of eight rays is computed with compensation as well.
+    #[inline(always)]
+    pub(super) fn refine_compensated(&self, rays: RayPacket, out: &mut [f64]) {
+        for first in (0..out.len()).step_by(LANES) {
+            let (rays, out) = (rays.part(first..first + LANES), &mut out[first..first + LANES]);
+            let (mut away, mut toward) = ([0.0; LANES], [0.0; LANES]);
+            let (mut away_size, mut toward_size) = ([0.0; LANES], [0.0; LANES]);
+            let (mut away_cancels, mut toward_cancels) = ([0; LANES], [0; LANES]);
+            for lane in 0..LANES {
+                let products = self.products(self.rounded_normal(), &rays.get(lane));
+                (away[lane], toward[lane]) = (products.away, products.toward);
+                (away_size[lane], toward_size[lane]) = (products.away_size, products.toward_size);
+                away_cancels[lane] = u64::from(products.away_cancels());
+                toward_cancels[lane] = u64::from(products.toward_cancels());
+            }
+            if away_cancels != [0; LANES] {
+                for lane in 0..LANES {
+                    let fine = self.compensated_away(&rays.get(lane));
+                    away[lane] = if away_cancels[lane] != 0 { fine } else { away[lane] };
+                }
+            }
+            if toward_cancels != [0; LANES] {
+                for lane in 0..LANES {
+                    let fine = self.compensated_toward(&rays.get(lane));
+                    toward[lane] = if toward_cancels[lane] != 0 { fine } else { toward[lane] };
+                }
+            }
+            for lane in 0..LANES {
+                out[lane] = quotient((away[lane], away_size[lane]), (toward[lane], toward_size[lane]));
+            }
+        }
+    }
+
+    /// Returns the method of intersection, in a few words.
+    pub fn method(&self) -> &'static str {
+        match A::ACCURACY {
+            Accuracy::Draft => "plain arithmetic",
+            Accuracy::Exact => "plain arithmetic, compensated for rounding where sums cancel",
+            _ => "twice the precision",
+        }
+    }
+
+    /// Returns the distance if it is in the range, else [`MISS`]; also [`MISS`] on the viewer's side of the image
+    /// plane, and for a ray that leaves the plane.
+    #[inline(always)]
+    pub fn keep(&self, distance: f64, ray: &Ray, range: &RayRange) -> f64 {
+        let quick = self.quick_keep(distance, ray, range);
+        if !quick.is_nan() {
+            quick
+        } else if self.is_before_image_plane(ray) {
+            MISS
+        } else {
+            range.keep(distance)
+        }
+    }
+
+    /// Returns what [`keep`](Self::keep) does, or NaN where the point is on the image plane to within rounding; NaN for
+    /// NaN.
+    #[inline(always)]
+    pub fn quick_keep(&self, distance: f64, ray: &Ray, range: &RayRange) -> f64 {
+        let z = ray.at(distance).z;
+        // Units of 2^-53: a plain dot product is off by 5 of terms that add up to at most 1.3 times it, so that the
+        // distance is off by 14; the product and the sum here are off by 1 each.
+        let error = match A::ACCURACY {
+            Accuracy::Draft => DRAFT_ERROR * (distance * ray.dir.z).abs() + f64::EPSILON * MAX_Z,
+            _ => 8.0 * f64::EPSILON * ((distance * ray.dir.z).abs() + MAX_Z),
+        };
+        let origin_side = range.origin_side.is_some();
+        let kept = if (z > MAX_Z) | origin_side { MISS } else { range.keep(distance) };
+        let is_doubtful = ((z - MAX_Z).abs() <= error) & (distance < MISS);
+        if (is_doubtful | distance.is_nan()) & !origin_side { f64::NAN } else { kept }
+    }
+}
+
+impl Plane<Classic> {
+    /// Returns the distance in world units at which a ray intersects the plane, forward or backward; [`MISS`] for a
+    /// parallel ray.
+    #[inline(always)]
+    pub fn crossing(&self, ray: &Ray) -> f64 {
+        let toward = self.normal.dot(ray.dir);
+        let away = self.normal.dot(self.point) - self.normal.dot(ray.origin);
+        // Both are 0 for a ray in the plane.
+        if toward == 0.0 { MISS } else { away / toward }
+    }
+
+    /// Returns the distance if it is in the range, else [`MISS`]; also [`MISS`] on the viewer's side of the image
+    /// plane, and for a ray that leaves the plane.
+    #[inline(always)]
+    pub fn keep(&self, distance: f64, ray: &Ray, range: &RayRange) -> f64 {
+        let is_cut_off = (ray.at(distance).z > MAX_Z) | range.origin_side.is_some();
+        if is_cut_off { MISS } else { range.keep(distance) }
+    }
+}

@@ -1,0 +1,59 @@
+//! Shapes that are all or a part of a plane, for packets of rays.
+
+use super::surface::Plane;
+use crate::geometry::ray::{Bracket, Ray, RayRange, Side};
+use crate::geometry::ray_packet::RayPacket;
+use crate::world::accuracy::{Accuracy, Bounded};
+use crate::world::hittable::Bracketed;
+use crate::world::packets::shape::OneRay;
+use crate::world::shape::Shape;
+
+/// A bracketed shape that is all or a part of a plane.
+pub trait Flat: Bracketed {
+    /// The accuracy of intersections with the plane.
+    type Accuracy: Bounded;
+
+    /// Returns the plane.
+    fn flat(&self) -> &Plane<Self::Accuracy>;
+}
+
+/// The strategy of shapes that are found by their brackets and refined by their plane, eight rays at a time.
+pub struct ByPlane;
+
+impl<T: Flat> Shape<T> {
+    /// Returns the shape, found by its brackets and refined by its plane.
+    pub fn flat(self) -> Shape<T, ByPlane> {
+        self.by()
+    }
+}
+
+impl<T: Flat, P> OneRay for Shape<T, ByPlane, P> {
+    type Author = T;
+
+    #[inline(always)]
+    fn author(&self) -> &T {
+        &self.shape
+    }
+
+    #[inline(always)]
+    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+        self.shape.t_bounds(ray, range)
+    }
+
+    #[inline(always)]
+    fn refine(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
+        self.shape.refine(ray, origin_side)
+    }
+
+    /// Refines by the plane alone: a hit that is certain is in the plane, whatever is cut out of it.
+    #[inline(always)]
+    fn refine_each(&self, rays: RayPacket, _sides: Option<&[Side]>, out: &mut [f64]) {
+        let plane = *self.shape.flat();
+        match T::Accuracy::ACCURACY {
+            // With a normal along an axis, dot products have one term, and nothing cancels.
+            Accuracy::Exact if !plane.is_upright => plane.refine_compensated(rays, out),
+            Accuracy::Exact | Accuracy::Draft => plane.refine_plain(rays, out),
+            _ => out.fill(f64::NAN),
+        }
+    }
+}

@@ -1,0 +1,155 @@
+//! A plane, and what plain arithmetic tells of its intersections.
+
+use super::products::{MIN_TOWARD, Products, RECIPROCAL_ERROR, reciprocal};
+use crate::geometry::aabb::{Aabb, SLACK, larger};
+use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
+use crate::numeric::double_double::{DoubleDouble, exponent_to_one, times_power_of_two};
+use crate::numeric::scalar::Scalar;
+use glam::DVec3;
+use std::marker::PhantomData;
+
+/// The z, in world units, beyond which planes are cut off: the viewer's side of the image plane (the course notes'
+/// "wrong side").
+pub(super) const MAX_Z: f64 = 0.01;
+
+/// The course notes' method, in a few words.
+pub const CLASSIC_METHOD: &str = "the notes' formula";
+
+/// An infinite plane; its type selects the accuracy of intersections.
+#[derive(Clone, Copy, Debug)]
+pub struct Plane<A> {
+    /// The unit normal, rounded; it points to the lit side.
+    pub normal: DVec3,
+    /// The normal as the scene gives it, scaled by a power of two so that its largest component is between 1/2 and 1.
+    pub upright: [DoubleDouble; 3],
+    /// A point of the plane, in world coordinates.
+    pub point: DVec3,
+    /// Whether the normal is along an axis: dot products with it have one term then, and nothing cancels.
+    pub is_upright: bool,
+    accuracy: PhantomData<A>,
+}
+
+/// A ray's intersection with a plane in plain arithmetic.
+#[derive(Clone, Copy, Debug)]
+pub struct Rough {
+    /// The distance along the ray, in world units.
+    pub distance: f64,
+    /// A bound of the distance's error, in world units; infinite where the ray is parallel to within rounding.
+    pub error: f64,
+    /// Whether the ray is parallel to the plane.
+    pub is_parallel: bool,
+}
+
+impl<A> Plane<A> {
+    /// Returns the plane through a point with a normal of any length.
+    pub fn with_normal(normal: DVec3, point: DVec3) -> Self {
+        let exponent = exponent_to_one(normal.abs().max_element());
+        let upright = normal.to_array().map(|part| DoubleDouble::from(times_power_of_two(part, exponent)));
+        Self::new(normal.normalize(), upright, point)
+    }
+
+    /// Returns the plane through a point with a rounded unit normal, and a vector along the normal as exact as it is
+    /// known.
+    pub fn new(normal: DVec3, upright: [DoubleDouble; 3], point: DVec3) -> Self {
+        let is_upright = upright.iter().filter(|part| part.high == 0.0).count() == 2;
+        Self { normal, upright, point, is_upright, accuracy: PhantomData }
+    }
+
+    /// Returns the normal that the scene gives, times a power of two, without rounding.
+    pub fn given_normal<N: Scalar>(&self) -> [N; 3] {
+        self.upright.map(|part| N::constant(part.high))
+    }
+
+    /// Returns whether a point is on the plane to within `error` world units and the rounding error of its distance
+    /// from the plane, which is at most 4 EPSILON of the terms: half an ulp each for three operations on each term, and
+    /// for the normal.
+    #[inline(always)]
+    pub fn touches(&self, at: DVec3, error: f64) -> bool {
+        let between = self.point - at;
+        let size = (self.normal * between).abs().element_sum();
+        self.normal.dot(between).abs() <= error + 4.0 * f64::EPSILON * size
+    }
+
+    /// Computes the intersection to within a few ulps, and a bound of its error, which includes that of the ray's
+    /// origin.
+    ///
+    /// Units of 2^-53: the normal's components are off by 1 against each other, the vector between the points by 1, a
+    /// product by 1 and the sum of three by 2, so that `away` is off by 5 of its size and `toward` by 4; by 5 more
+    /// because a camera ray's direction is off by 3 in each component, which add up to at most 1.74. As `toward` is
+    /// more than 3 times its error of 9, these 9 become at most 14 in the quotient, less than the 16 here. Where the
+    /// ray runs exactly along the plane, the reciprocal is infinite or NaN, and so are the results.
+    #[inline(always)]
+    pub fn rough(&self, ray: &Ray, origin_error: f64) -> Rough {
+        let Products { away, away_size, toward, .. } = self.products(self.normal, ray);
+        let inverse = reciprocal(toward);
+        let distance = away * inverse;
+        // The reciprocal's own error is relative to the distance, which is at most `away_size` times the reciprocal.
+        const ERROR: f64 = RECIPROCAL_ERROR + 8.0 * f64::EPSILON;
+        let error = inverse.abs() * (ERROR * (away_size + distance.abs()) + origin_error);
+        // For a normal along an axis, `toward` is one component of the direction, in which nothing cancels.
+        let is_parallel = (toward == 0.0) & self.is_upright;
+        let error = if inverse.abs() >= MIN_TOWARD.recip() { f64::INFINITY } else { error };
+        Rough { distance, error, is_parallel }
+    }
+
+    /// Computes the dot products with a normal of any length.
+    #[inline(always)]
+    pub(super) fn products(&self, normal: DVec3, ray: &Ray) -> Products {
+        let between = self.point - ray.origin;
+        let size = |of: DVec3| (normal * of).abs().element_sum();
+        Products {
+            away: normal.dot(between),
+            away_size: size(between),
+            toward: normal.dot(ray.dir),
+            toward_size: size(ray.dir),
+        }
+    }
+
+    /// Returns the scene's normal, rounded.
+    #[inline(always)]
+    pub(super) fn rounded_normal(&self) -> DVec3 {
+        DVec3::new(self.upright[0].high, self.upright[1].high, self.upright[2].high)
+    }
+
+    /// Returns bounds of the distance of an intersection in a range.
+    #[inline(always)]
+    pub fn t_bounds(&self, rough: &Rough, ray: &Ray, range: &RayRange) -> Bracket {
+        let Rough { distance, error, is_parallel } = *rough;
+        let (low, high) = (distance - error, distance + error);
+        let z = ray.origin.z + distance * ray.dir.z;
+        // The error of z: that of the distance, and of the sum. The error of the product is far less than a
+        // reciprocal's.
+        let z_error = error + 4.0 * f64::EPSILON * ray.origin.z.abs();
+        // If the error is infinite or the distance is NaN, all of these are false but `is_parallel`: neither a hit nor
+        // a miss is certain.
+        let is_missed = is_parallel | (high <= range.near) | (z - z_error > MAX_Z);
+        let is_there = (low > range.near) & (z + z_error < MAX_Z);
+        Bracket {
+            near: if is_missed { MISS } else { larger(low, range.near) },
+            far: if is_there { high } else { MISS },
+        }
+    }
+
+    /// Returns whether the plane does not intersect a region.
+    #[inline(always)]
+    pub fn is_clear_of(&self, region: &Aabb) -> bool {
+        // The signed distances of the region's nearest and farthest corners in front of the plane, and the sizes of
+        // their terms.
+        let (mut nearest, mut near_size, mut farthest, mut far_size) = (0.0, 0.0, 0.0, 0.0);
+        for axis in 0..3 {
+            let (normal, point) = (self.normal[axis], self.point[axis]);
+            // Regions may be infinite along an axis, which is of no matter where the plane is parallel to it.
+            if normal != 0.0 {
+                let low = normal * (region.low[axis] - point);
+                let high = normal * (region.high[axis] - point);
+                let (near, far) = if normal > 0.0 { (low, high) } else { (high, low) };
+                let size = 2.0 * (normal * point).abs();
+                nearest += near;
+                near_size += near.abs() + size;
+                farthest += far;
+                far_size += far.abs() + size;
+            }
+        }
+        nearest > SLACK * near_size || farthest < -SLACK * far_size
+    }
+}
