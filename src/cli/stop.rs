@@ -104,8 +104,8 @@ impl Stop {
 
     /// From here on interruptions and limits are noted, as there is something to keep.
     pub fn begin(&self) {
-        let _ = self.begun.set(());
         interrupt::from_here(Manner::Notes);
+        let _ = self.begun.set(());
     }
 
     /// From here on interruptions and limits end the program, and the picture is not there, or those beside it are not.
