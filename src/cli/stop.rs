@@ -13,7 +13,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 /// A part of an image is left in so many times the time in which it was written: it is read, and written with what is
-/// transparent. The limit of time includes that.
+/// transparent. The limit of time includes that, up to a quarter of the limit.
 const LEAVING: u32 = 3;
 
 /// How often time and memory are looked at.
@@ -137,7 +137,7 @@ impl Args {
         let written = stop.written.clone();
         let left = move || {
             let leaving = LEAVING * Duration::from_micros(written.load(Ordering::Relaxed));
-            time_limit.map(|limit| limit.saturating_sub(start.elapsed() + leaving))
+            time_limit.map(|limit| limit.saturating_sub(start.elapsed() + leaving.min(limit / 4)))
         };
         let watch = move || {
             let look = || {

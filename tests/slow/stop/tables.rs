@@ -126,11 +126,13 @@ fn faults_table() {
         ("a full disk while it stops", format!("ulimit -f 20; exec \"$0\" {ARGS} --time-limit 300ms")),
         ("killed (SIGKILL) after 0.3 s", format!("timeout -s KILL 0.3 \"$0\" {ARGS}")),
         ("killed (SIGKILL) while it stops", format!("timeout -s KILL 0.33 \"$0\" {ARGS} --time-limit 300ms")),
-        ("told to end (SIGTERM) after 0.5 s", format!("timeout 0.5 \"$0\" {ARGS}")),
+        ("told to end (SIGTERM) after 0.5 s", format!("timeout --preserve-status 0.5 \"$0\" {ARGS}")),
         ("a scene that is its own output", "exec \"$0\" render hall.ray --format png -o hall.ray".to_owned()),
         (
             "a reader that is gone",
-            "\"$0\" render hall.ray -o - 2>said | true; cat said >&2; rm said".to_owned(),
+            "{ \"$0\" render hall.ray -o - 2> said; echo $? > status; } | true
+                cat said >&2; status=$(cat status); rm said status; exit $status"
+                .to_owned(),
         ),
         ("little address space", format!("ulimit -v 200000; exec \"$0\" {ARGS}")),
         (
