@@ -13,6 +13,7 @@
 pub use glam;
 
 pub mod cli;
+mod files;
 pub mod geometry;
 pub mod numeric;
 pub mod output;

@@ -6,6 +6,8 @@ use crate::scene::registry::Registry;
 use std::path::PathBuf;
 
 /// Check scenes for errors
+///
+/// Of each scene, the first 100 errors and the first 100 warnings are printed, and the others are counted.
 #[derive(clap::Args)]
 pub struct Args {
     /// The scenes; `-` reads one from standard input

@@ -1,13 +1,13 @@
 //! Reading scenes from files and from standard input.
 
 use super::failure::Failure;
-use super::{memory, messages};
+use super::{crash, memory, messages};
+use crate::files;
 use crate::scene::model::Model;
 use crate::scene::reader::{self, Chosen, Loaded, Report};
 use crate::scene::registry::Registry;
 use crate::words;
 use crate::world::accuracy::Accuracy;
-use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
@@ -70,8 +70,9 @@ pub fn read(path: &Path) -> Result<(String, Vec<u8>), Failure> {
     let (name, bytes) = if is_standard(path) {
         ("<stdin>".to_owned(), to_first_nul(io::stdin().lock()))
     } else {
-        (path.display().to_string(), File::open(path).and_then(to_first_nul))
+        (path.display().to_string(), files::open_stream(path).and_then(to_first_nul))
     };
+    crash::about(&name);
     match bytes {
         Ok(bytes) if bytes.len() as u64 > LARGEST => {
             let message = format!("`{name}` is larger than {} MiB, too large for a scene", LARGEST >> 20);

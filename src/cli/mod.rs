@@ -8,6 +8,7 @@ mod choose;
 mod completions;
 mod convert;
 mod cpu;
+mod crash;
 mod debug;
 mod diff;
 mod dump;
@@ -108,6 +109,11 @@ pub fn run() -> ExitCode {
     // Where the signal cannot be blocked, it ends the program as before.
     #[cfg(target_os = "linux")]
     let _ = SigSet::from(Signal::SIGXFSZ).thread_block();
+    crash::keep();
+    crash::catch(chosen).unwrap_or_else(|failure| tell(&failure))
+}
+
+fn chosen() -> ExitCode {
     let cli = Cli::from_arg_matches(&command().get_matches()).unwrap_or_else(|error| error.exit());
     messages::choose(cli.message_format);
     let outcome = match Registry::get() {

@@ -22,7 +22,7 @@ pub fn run(registry: &Registry) -> Result<(), Failure> {
     let standard = Path::new("-");
     let output = Output::open(standard)?;
     // The course's own picture, unless the camera asks for another.
-    let accuracy = Chosen { by_default: Accuracy::Classic, above_all: None };
+    let accuracy = Chosen { by_default: Accuracy::Classic, ..Chosen::default() };
     let model = input::told(Source::read(standard)?.load_by(registry, accuracy))?.model;
     interrupt::catch(Manner::Ends("the image was not finished"))?;
     let _ = write!(std::io::stderr(), "{}", dump::notes(&model));

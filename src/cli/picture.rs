@@ -1,16 +1,16 @@
 //! Reading pictures, to compare them.
 
 use super::failure::Failure;
+use crate::files;
 use crate::words;
 use image::{DynamicImage, ImageReader, RgbImage};
-use std::fs::File;
 use std::io::{BufRead, BufReader, Seek};
 use std::path::Path;
 
 /// The picture in a file.
 pub fn read(path: &Path) -> Result<RgbImage, Failure> {
     let cannot = |reason: String| Failure::Usage(format!("cannot read `{}`: {reason}", path.display()), None);
-    let file = File::open(path).map_err(|error| cannot(words::reason(&error)))?;
+    let file = files::open(path).map_err(|error| cannot(words::reason(&error)))?;
     decode(BufReader::new(file)).map_err(cannot)
 }
 

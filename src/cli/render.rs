@@ -10,7 +10,7 @@ use super::{aov, cpu, debug, input, messages, method, output, size, stop};
 use crate::output::picture::{Compression, Format};
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
-use crate::scene::reader::Loaded;
+use crate::scene::reader::{Chosen, Loaded};
 use crate::scene::registry::Registry;
 use crate::world::accuracy::Accuracy;
 use crate::world::sample::Sampler;
@@ -65,7 +65,9 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let start = Instant::now();
     let accuracy = args.method.accuracy()?;
     let source = Source::read(&args.scene)?;
-    let Loaded { mut model, building, .. } = input::told(source.load(registry, accuracy))?;
+    let textures = args.stop.left();
+    let chosen = |accuracy| Chosen { above_all: accuracy, textures, ..Chosen::default() };
+    let Loaded { mut model, building, .. } = input::told(source.load_by(registry, chosen(accuracy)))?;
     let mut stats = Stats { reading: start.elapsed() - building, building, ..Stats::default() };
     let camera = &mut model.camera.value;
     camera.samples = args.samples.unwrap_or(camera.samples);
@@ -100,7 +102,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         messages::note(&format!("wrote {} ({width} x {height} pixels, {seconds:.2} s)", path.display()));
     }
     args.stats.print(&stats, &model);
-    let exact = || match source.load(registry, Some(Accuracy::Exact)) {
+    let exact = || match source.load_by(registry, chosen(Some(Accuracy::Exact))) {
         Ok(loaded) => Ok(loaded.model),
         Err(report) => Err(Failure::Scene(report)),
     };

@@ -4,12 +4,13 @@ use super::failure::Failure;
 use super::messages;
 use super::output::{self, Output};
 use super::size::Part;
+use crate::files;
 use crate::output::checkpoint::{self, Checkpoint, Identity};
 use crate::output::picture::Format;
 use crate::render::tiles::{Band, Tiles};
 use crate::scene::model::Model;
 use crate::words;
-use std::fs::{self, File};
+use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
@@ -51,7 +52,7 @@ impl Begun {
             }
             return Ok(None);
         }
-        let file = match File::open(&path) {
+        let file = match files::open(&path) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
                 messages::note(&format!(
                     "there is no {shown} to continue from: the render starts from the beginning"

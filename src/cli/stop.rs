@@ -166,6 +166,12 @@ impl Args {
         })
     }
 
+    /// How many bytes the textures of a scene may take, if there is a limit.
+    pub fn left(&self) -> Option<u64> {
+        let now = memory::now().unwrap_or(0) + ASIDE;
+        self.max_memory.map(|limit| limit.as_u64().saturating_sub(now))
+    }
+
     /// How many pixels may be in memory at one time, of a picture of this width.
     pub fn band(&self, width: usize) -> Result<usize, Failure> {
         let Some(limit) = self.max_memory else { return Ok(BAND) };

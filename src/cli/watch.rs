@@ -7,9 +7,9 @@ mod events;
 mod files;
 mod frame;
 
-use super::failure::Failure;
+use super::failure::{Failure, tell};
 use super::serve::{Server, Work};
-use super::{input, interrupt, messages, method};
+use super::{crash, input, interrupt, messages, method};
 use crate::render::plan::Plan;
 use crate::render::progressive;
 use crate::render::renderer::Renderer;
@@ -144,9 +144,13 @@ fn painter(board: Arc<Board>) -> Result<Sender<Arc<Frame>>, Failure> {
         for frame in frames {
             let start = Instant::now();
             let part = |area, colours: Vec<_>| board.add(&frame, events::part(&frame, &area, &colours));
-            let painted = progressive::render(&renderer, &Plan::new(&frame.model), part, || frame.check());
-            if painted.is_continue() {
-                board.add(&frame, events::done(&frame, start.elapsed()));
+            let painted = crash::catch(|| {
+                progressive::render(&renderer, &Plan::new(&frame.model), part, || frame.check())
+            });
+            match painted {
+                Ok(ControlFlow::Continue(())) => board.add(&frame, events::done(&frame, start.elapsed())),
+                Ok(ControlFlow::Break(())) => {}
+                Err(failure) => crashed(&board, &frame.name, &frame.text, &failure),
             }
         }
     });
@@ -198,7 +202,13 @@ impl Watched<'_> {
         let text = String::from_utf8_lossy(bytes);
         let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
         let folder = self.path.parent().unwrap_or(&self.path);
-        let read = reader::read(self.registry, &name, folder, bytes, self.accuracy);
+        let read = match crash::catch(|| reader::read(self.registry, &name, folder, bytes, self.accuracy)) {
+            Ok(read) => read,
+            Err(failure) => {
+                crashed(board, &name, text, &failure);
+                return Ok(());
+            }
+        };
         let report = read.as_ref().map_or_else(|report| report, |loaded| &loaded.warnings);
         self.named = report.files().to_vec();
         files.watch(self.named.iter().chain([&self.path]))?;
@@ -236,6 +246,14 @@ impl Watched<'_> {
         }
         Ok(())
     }
+}
+
+/// Tells that the program failed at a scene. It goes on with the next one.
+fn crashed(board: &Board, name: &str, text: &str, failure: &Failure) {
+    tell(failure);
+    let Failure::Failed(message) = failure else { return };
+    let report = &format!("error: {message}");
+    board.fault(events::fault(&Fault { lines: &[], name, report, text: Some(text) }));
 }
 
 fn fits(model: &Model) -> bool {

@@ -1,11 +1,17 @@
 //! Textures: images that colour surfaces and light.
 
+use crate::files;
 use crate::words;
 use crate::world::material::Rgb;
-use image::{ImageReader, RgbImage};
-use std::io;
+use bytesize::ByteSize;
+use image::{ColorType, DynamicImage, ImageDecoder, ImageError, ImageReader, Limits, RgbImage};
+use std::fs;
+use std::io::{self, BufReader};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
+
+/// What a decoder may take beside the picture, in bytes.
+const ASIDE: u64 = 1 << 20;
 
 /// An image in a file. It is read once, when it is first needed.
 #[derive(Debug, Default)]
@@ -37,20 +43,54 @@ impl Texture {
     /// # Errors
     /// The reason why it cannot be read.
     pub fn load(&self) -> Result<&RgbImage, &str> {
-        let read = || {
-            let reader = ImageReader::open(&self.path).and_then(ImageReader::with_guessed_format);
-            let image = reader.map_err(|error| self.not_read(&error))?.decode();
-            image.map(|image| image.into_rgb8()).map_err(|error| words::picture_reason(&error))
-        };
-        self.image.get_or_init(read).as_ref().map_err(String::as_str)
+        self.load_within(u64::MAX)
     }
 
-    fn not_read(&self, error: &io::Error) -> String {
-        let near = words::nearest_file(&self.path).filter(|_| error.kind() == io::ErrorKind::NotFound);
-        match near {
-            Some(near) => format!("it does not exist, but `{near}` does"),
-            None => words::reason(error),
+    /// As [`load`](Self::load), if it takes no more memory than so many bytes.
+    ///
+    /// # Errors
+    /// The reason why it cannot be read.
+    pub fn load_within(&self, bytes: u64) -> Result<&RgbImage, &str> {
+        self.image.get_or_init(|| self.read(bytes)).as_ref().map_err(String::as_str)
+    }
+
+    fn read(&self, most: u64) -> Result<RgbImage, String> {
+        let file = files::open(&self.path).map_err(|error| words::reason(&error))?;
+        let mut limits = Limits::no_limits();
+        limits.max_alloc = Some(most.saturating_add(ASIDE));
+        let cannot = |error: ImageError| match error {
+            ImageError::Limits(_) => format!("it takes more than {} of memory", ByteSize(most)),
+            _ => words::picture_reason(&error),
+        };
+        let reader = ImageReader::new(BufReader::new(file)).with_guessed_format();
+        let mut reader = reader.map_err(|error| words::reason(&error))?;
+        reader.limits(limits);
+        let decoder = reader.into_decoder().map_err(cannot)?;
+        let (width, height) = decoder.dimensions();
+        if width == 0 || height == 0 {
+            return Err(format!("it is {width} x {height} pixels, and has none"));
         }
+        // As it is decoded, and as bytes of red, green and blue.
+        let pixels = u64::from(width) * u64::from(height);
+        let bytes = if decoder.color_type() == ColorType::Rgb8 { 0 } else { 3 * pixels };
+        let bytes = decoder.total_bytes().saturating_add(bytes);
+        if bytes > most {
+            return Err(format!("it takes more than {} of memory", ByteSize(most)));
+        }
+        let picture = DynamicImage::from_decoder(decoder).map_err(cannot)?;
+        Ok(picture.into_rgb8())
+    }
+
+    /// How many bytes its picture takes; 0 where it was not read.
+    pub fn bytes(&self) -> u64 {
+        let picture = self.image.get().and_then(|picture| picture.as_ref().ok());
+        picture.map_or(0, |picture| picture.as_raw().len() as u64)
+    }
+
+    /// A file whose name is like that of this one, if this one does not exist.
+    pub fn near(&self) -> Option<String> {
+        let is_missing = fs::metadata(&self.path).is_err_and(|error| error.kind() == io::ErrorKind::NotFound);
+        if is_missing { words::nearest_file(&self.path) } else { None }
     }
 
     /// Returns the width and height in texels; 0 and 0 where the image cannot be read.

@@ -4,6 +4,7 @@
 mod common;
 
 mod dump;
+mod extremes;
 mod grammar;
 mod model;
 mod names;

@@ -4,7 +4,7 @@ use crate::common;
 use crate::common::{model, registry};
 use proptest::prelude::*;
 use std::path::Path;
-use tabray::scene::{self, Severity};
+use tabray::scene::{self, Report, Severity};
 
 /// Reads bytes as a scene; either there is a model, or there is an error that can be printed.
 fn read(bytes: &[u8]) {
@@ -62,7 +62,7 @@ fn brackets_in_brackets_are_refused_however_many() {
 }
 
 #[test]
-fn a_scene_with_a_fault_in_each_toml_table_reports_them_all() {
+fn a_scene_with_a_fault_in_each_toml_table_counts_them_all() {
     let mut text =
         "[camera.eye]\npixeldim = [8, 6]\nworlddim = [8, 6]\nviewpoint = [4, 3, 6]\n[material.m]\nambient = [1, 1, 1]\n"
             .to_owned();
@@ -72,11 +72,11 @@ fn a_scene_with_a_fault_in_each_toml_table_reports_them_all() {
     let Err(report) = scene::read(registry(), "many.toml", Path::new(""), text.as_bytes(), None) else {
         panic!("faults")
     };
-    assert_eq!(report.faults().len(), 10_000);
+    assert_eq!(report.count(Severity::Error), 10_000);
 }
 
 #[test]
-fn a_scene_with_a_fault_in_each_of_ten_thousand_entities_reports_them_all() {
+fn a_scene_with_a_fault_in_each_of_ten_thousand_entities_counts_them_all() {
     let mut text =
         "camera eye { pixeldim 8 6 worlddim 8 6 viewpoint 4 3 6 }\nmaterial m { ambient 1 1 1 }\n".to_owned();
     for index in 0..10_000 {
@@ -85,8 +85,154 @@ fn a_scene_with_a_fault_in_each_of_ten_thousand_entities_reports_them_all() {
     let Err(report) = scene::read(registry(), "many", Path::new(""), text.as_bytes(), None) else {
         panic!("faults")
     };
-    assert_eq!(report.faults().len(), 20_000);
-    assert!(report.to_string().ends_with("many: 20000 errors\n"));
+    assert_eq!(report.count(Severity::Error), 20_000);
+    assert_eq!(report.faults().len(), 100);
+    assert!(report.to_string().ends_with("\n\nand 19900 more errors\n\nmany: 20000 errors\n"));
+}
+
+/// What a scene is refused with.
+fn refused(name: &str, text: &str) -> Report {
+    match scene::read(registry(), name, Path::new(""), text.as_bytes(), None) {
+        Ok(_) => panic!("it is read"),
+        Err(report) => report,
+    }
+}
+
+const HEAD: &str = "camera eye { pixeldim 8 6 worlddim 8 6 viewpoint 4 3 6 }\nmaterial m { ambient 1 1 1 }\n";
+
+const TOML_HEAD: &str = "[camera.eye]\npixeldim = [8, 6]\nworlddim = [8, 6]\nviewpoint = [4, 3, 6]\n[material.m]\nambient = [1, 1, 1]\n";
+
+#[test]
+fn messages_stay_short_however_long_a_line_is() {
+    let runs = [
+        "{}",
+        "{",
+        "}",
+        "[]",
+        "[",
+        "\"",
+        "a",
+        "\"\\x",
+        "=",
+        ",",
+        "a.",
+        "sphere s{",
+        "ü",
+        "a ",
+        "}\n",
+        "x = y\n",
+    ];
+    for run in runs {
+        let junk = run.repeat(60_000 / run.len());
+        for text in
+            [format!("{HEAD}{junk}"), format!("{HEAD}sphere s {{ material m center {junk} radius 2 }}")]
+        {
+            short(&refused("long", &text), run);
+        }
+        for text in
+            [format!("{TOML_HEAD}{junk}"), format!("{TOML_HEAD}[sphere.s]\ncenter = {junk}\nradius = 2\n")]
+        {
+            short(&refused("long.toml", &text), run);
+        }
+    }
+}
+
+/// What is said is no longer than somebody reads, in any form.
+fn short(report: &Report, of: &str) {
+    for said in [report.to_string(), report.short(), report.json()] {
+        assert!(said.len() < 200_000, "{} bytes are said of {of:?}", said.len());
+    }
+}
+
+#[test]
+fn a_place_in_a_long_line_is_told_by_its_own_line_and_column() {
+    let report = refused("long", &format!("{HEAD}# \n{}sphere s {{ material m }}", " ".repeat(9_000)));
+    let told = report.to_string();
+    assert!(told.contains(" --> long:4:9008\n"), "{told}");
+    assert!(told.contains("sphere s { material m }"), "{told}");
+}
+
+#[test]
+fn errors_that_differ_in_their_places_alone_are_one() {
+    let report = refused("many", &format!("{HEAD}{}", "}\n".repeat(5_000)));
+    let [fault] = report.faults() else { panic!("{report}") };
+    assert_eq!((fault.message.as_str(), fault.alike.0), ("stray `}`", 4_999));
+    let told = report.to_string();
+    assert!(told.contains("note: the same in 4999 more places, first in line 4, 5, 6\n"), "{told}");
+    assert!(told.ends_with("\nmany: 5000 errors\n"), "{told}");
+    assert_eq!(report.short().lines().count(), 1);
+    assert_eq!(report.json().lines().count(), 1);
+}
+
+#[test]
+fn a_few_errors_of_one_kind_are_told_one_by_one() {
+    assert_eq!(refused("few", &format!("{HEAD}{}", "}\n".repeat(8))).faults().len(), 8);
+    assert_eq!(refused("few", &format!("{HEAD}{}", "}\n".repeat(9))).faults().len(), 1);
+}
+
+#[test]
+fn an_error_is_told_after_any_number_of_warnings() {
+    let balls: String = (0..200)
+        .map(|ball| format!("sphere s{ball} {{ material m center 1 1 1 radius 1 radius 1 }}\n"))
+        .collect();
+    let report = refused("warnings", &format!("{HEAD}{balls}plane p {{ material m }}"));
+    assert!(report.to_string().contains("error: plane `p` lacks `normal`, `point`"), "{report}");
+    assert!(report.to_string().contains("\n\nand 100 more warnings\n\n"), "{report}");
+}
+
+#[test]
+fn ten_thousand_misspelt_names_are_guessed_at_for_a_while() {
+    let names = |what: fn(usize) -> String| (0..10_000).map(what).collect::<String>();
+    let materials = names(|name| format!("material red{name} {{ ambient 1 1 1 }}\n"));
+    let balls = names(|name| format!("sphere s{name} {{ material rde{name} center 1 1 1 radius 1 }}\n"));
+    let report = refused("names", &format!("{HEAD}{materials}{balls}"));
+    assert_eq!(report.count(Severity::Error), 10_000);
+    assert!(report.to_string().contains("did you mean `red0`?"), "{report}");
+}
+
+#[test]
+fn many_attributes_and_values_are_refused_and_not_kept() {
+    let values = format!("{HEAD}sphere s {{ material m radius 1 center {}}}", "1 ".repeat(100_000));
+    assert!(refused("values", &values).to_string().contains("takes 3 numbers, not 1000 or more"));
+    let attributes = format!("{HEAD}sphere s {{ material m center 1 1 1 {}}}", "radius 1 ".repeat(100_000));
+    assert!(
+        refused("attributes", &attributes).to_string().contains("this sphere has more than 1000 attributes")
+    );
+}
+
+#[test]
+fn a_line_of_toml_is_not_longer_than_it_may_be() {
+    let told = refused("line.toml", &format!("{TOML_HEAD}x = {}", "[".repeat(70_000))).to_string();
+    assert!(told.contains("error: this line is 70004 bytes long\n --> line.toml:7:1\n"), "{told}");
+}
+
+#[test]
+fn a_second_equals_sign_is_told_where_it_stands() {
+    let told = refused(
+        "twice.toml",
+        &format!("{TOML_HEAD}[sphere.s]\nmaterial = \"m\"\ncenter == [4, 3, -4]\nradius = 2\n"),
+    );
+    assert!(told.to_string().contains("extra `=`, expected nothing\n --> twice.toml:9:9\n"), "{told}");
+    refused("short.toml", "[sphere.a]\ncenter==");
+    assert!(refused("dotted.toml", "[camera.eye]\n1.pixeldim = [8, 6]\n").is_fatal());
+}
+
+#[test]
+fn a_long_scene_in_toml_is_read_as_a_short_one_is() {
+    let ball =
+        |ball: usize| format!("[sphere.s{ball}]\nmaterial = \"m\"\ncenter = [\n1, 1,\n1]\nradius = 1\n");
+    let balls: String = (0..4_000).map(ball).collect();
+    let text = format!("{TOML_HEAD}{balls}");
+    let loaded = scene::read(registry(), "long.toml", Path::new(""), text.as_bytes(), None);
+    assert_eq!(loaded.unwrap_or_else(|report| panic!("{report}")).model.objects.len(), 4_000);
+    let again = refused("long.toml", &format!("{text}{}", ball(7)));
+    assert!(again.to_string().contains("error: duplicate `s7`\n"), "{again}");
+    let inline: String = (0..4_000)
+        .map(|ball| format!("sphere.s{ball} = {{ material = \"m\", center = [1, 1, 1], radius = 1 }}\n"))
+        .collect();
+    let text = format!("{inline}{TOML_HEAD}");
+    let late = refused("long.toml", &text);
+    assert!(late.to_string().contains("material `m` is used before it is defined"), "{late}");
 }
 
 #[test]

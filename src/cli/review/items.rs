@@ -4,7 +4,7 @@ use super::pending::{self, Content, Pending};
 use crate::cli::explain::Place;
 use crate::cli::failure::{Failure, tell};
 use crate::cli::report::{Change, Decision, Item};
-use crate::cli::{input, picture};
+use crate::cli::{crash, input, picture};
 use crate::output::compare::Comparison;
 use crate::scene::registry::Registry;
 use std::env;
@@ -21,7 +21,7 @@ pub fn items(
     let mut items = Vec::new();
     let found = pending::find(folder)?;
     for new in &found {
-        match Pending::read(new).and_then(|snapshot| item(registry, &snapshot, before)) {
+        match Pending::read(new).and_then(|snapshot| crash::catch(|| item(registry, &snapshot, before))?) {
             Ok(item) => items.push(item),
             Err(failure) => {
                 tell(&failure);

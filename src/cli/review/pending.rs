@@ -6,10 +6,11 @@
 
 use crate::cli::failure::Failure;
 use crate::cli::output;
+use crate::files;
 use crate::words;
 use std::fs;
 use std::hash::{DefaultHasher, Hash, Hasher};
-use std::io;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 /// A snapshot that waits for a decision.
@@ -93,10 +94,12 @@ impl Pending {
         let cannot = |file: &Path, reason: &str| {
             Failure::Usage(format!("cannot read the snapshot `{}`: {reason}", file.display()), None)
         };
-        let file = fs::read_to_string(new).map_err(|error| cannot(new, &words::reason(&error)))?;
+        let file = files::open(new)
+            .and_then(io::read_to_string)
+            .map_err(|error| cannot(new, &words::reason(&error)))?;
         let is = content(new, &file).map_err(|reason| cannot(new, &reason))?;
         let is = is.ok_or_else(|| cannot(new, "the file beside it is missing"))?;
-        let old = match fs::read_to_string(&path) {
+        let old = match files::open(&path).and_then(io::read_to_string) {
             Ok(old) => content(&path, &old).map_err(|reason| cannot(&path, &reason))?,
             Err(error) if error.kind() == io::ErrorKind::NotFound => None,
             Err(error) => return Err(cannot(&path, &words::reason(&error))),
@@ -150,11 +153,17 @@ fn content(path: &Path, file: &str) -> Result<Option<Content>, String> {
     }
     let extension = field("extension").filter(|extension| extension.chars().all(char::is_alphanumeric));
     let extension = extension.ok_or("its header names no extension")?;
-    match fs::read(output::ended(path, format!(".{extension}"))) {
+    match bytes(&output::ended(path, format!(".{extension}"))) {
         Ok(bytes) => Ok(Some(Content::Binary(bytes, extension.to_owned()))),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
         Err(error) => Err(format!("its .{extension} file: {}", words::reason(&error))),
     }
+}
+
+fn bytes(path: &Path) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    files::open(path)?.read_to_end(&mut bytes)?;
+    Ok(bytes)
 }
 
 /// The header's lines and what comes after them.

@@ -2,6 +2,8 @@
 
 use super::board::Board;
 use super::frame::Frame;
+use crate::cli::crash;
+use crate::cli::failure::tell;
 use crate::cli::serve::{self, Body, Client, Work};
 use crate::output::aov::Aov;
 use crate::render::plan::Plan;
@@ -76,12 +78,16 @@ async fn about(
     let Some(job) = job(frame) else {
         return serve::text(StatusCode::NOT_FOUND, "the image has no such part\n");
     };
-    match work.run(job).await {
-        Some(Ok((kind, bytes))) => serve::content(StatusCode::OK, kind, bytes),
-        Some(Err(error))
+    match work.run(|client| crash::catch(|| job(client))).await {
+        Some(Ok(Ok((kind, bytes)))) => serve::content(StatusCode::OK, kind, bytes),
+        Some(Ok(Err(error)))
             if [io::ErrorKind::Interrupted, io::ErrorKind::BrokenPipe].contains(&error.kind()) =>
         {
             serve::text(StatusCode::GONE, "this image no longer exists\n")
+        }
+        Some(Err(failure)) => {
+            tell(&failure);
+            serve::text(StatusCode::INTERNAL_SERVER_ERROR, "internal error: see the terminal\n")
         }
         _ => serve::text(StatusCode::INTERNAL_SERVER_ERROR, "internal error\n"),
     }

@@ -1,13 +1,15 @@
 //! One entity as written, checked against the table of its type.
 
-use super::fault::{Fault, Place, Report};
+use super::fault::{Fault, Place};
+use super::guesses::{find_attribute, near_attribute};
 use super::names::Names;
+use super::report::Report;
 use super::values;
-use super::written::{Form, Word, Written};
+use super::written::{Form, MOST_VALUES, Word, Written};
 use crate::scene::entity::Entity;
 use crate::scene::pparm::{Attribute, Given, LEAST_LENGTH, MOST_LENGTH};
 use crate::scene::value::{Datum, Type};
-use crate::words::{list, nearest};
+use crate::words::{self, list};
 
 /// Checks an entity against the table of its type and reports what is wrong with it.
 pub struct Against<'c> {
@@ -25,7 +27,7 @@ impl Against<'_> {
         let entity = self.entity;
         let title = match written.name.text.as_ref() {
             "" => format!("this {}", entity.name),
-            name => format!("{} `{name}`", entity.name),
+            name => format!("{} `{}`", entity.name, words::abridged(name)),
         };
         let attributes: Vec<_> = entity.attributes().collect();
         let mut given: Vec<Option<&(Word<'_>, Vec<Word<'_>>)>> = vec![None; attributes.len()];
@@ -90,7 +92,7 @@ impl Against<'_> {
     /// Reports an attribute that the type does not have, and returns the one that was meant perhaps.
     fn unknown_attribute(&mut self, title: &str, word: &Word<'_>) -> Option<&'static str> {
         let entity = self.entity;
-        let near = near_attribute(entity, &word.text).map(|near| near.name());
+        let near = near_attribute(entity, &word.text, self.report.guesses()).map(|near| near.name());
         let mut fault = Fault::error(word.place.clone(), format!("{title} has no attribute `{}`", word.text));
         if let Some(near) = near {
             fault = fault.label(format!("did you mean `{near}`?"));
@@ -110,7 +112,8 @@ impl Against<'_> {
     ) -> Option<Datum> {
         if !attribute.arity().contains(&words.len()) {
             let takes = attribute.takes();
-            let message = format!("`{}` of {title} takes {takes}, not {}", word.text, words.len());
+            let more = if words.len() < MOST_VALUES { "" } else { " or more" };
+            let message = format!("`{}` of {title} takes {takes}, not {}{more}", word.text, words.len());
             self.report.add(Fault::error(whole(word, words), message).help(format!(
                 "`{}`: {}",
                 attribute.name(),
@@ -157,17 +160,6 @@ impl Against<'_> {
         }
         Some(datum)
     }
-}
-
-/// The attribute of this name or alias.
-pub fn find_attribute(entity: &'static Entity, name: &str) -> Option<&'static dyn Attribute> {
-    entity.attributes().find(|attribute| attribute.name() == name || attribute.aliases().contains(&name))
-}
-
-/// The attribute that a misspelt word was meant to be.
-pub fn near_attribute(entity: &'static Entity, word: &str) -> Option<&'static dyn Attribute> {
-    nearest(word, entity.attributes().map(|attribute| attribute.name()))
-        .and_then(|name| find_attribute(entity, name))
 }
 
 /// From an attribute's name, or its first value, to its last value.

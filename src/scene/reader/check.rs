@@ -1,8 +1,10 @@
 //! Entities as written, checked and made into a [`Model`].
 
-use super::attributes::{Against, find_attribute, whole};
-use super::fault::{Fault, Place, Report};
+use super::attributes::{Against, whole};
+use super::fault::{Fault, Place, Severity};
+use super::guesses::find_attribute;
 use super::names::{Names, stand_in, suggestion};
+use super::report::Report;
 use super::written::{Word, Written};
 use crate::scene::entity::{Args, Construct, Entity, MATERIAL, Refusal, Setting};
 use crate::scene::kind::Kind;
@@ -15,8 +17,9 @@ use crate::world::body::{AnyLight, Body};
 use crate::world::camera::Camera;
 use crate::world::material::Material;
 use crate::world::texture::Texture;
-use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
+use std::collections::hash_map::Entry;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Makes a model of entities as written and reports all their faults. Without faults there is a model. File
@@ -42,6 +45,8 @@ pub fn model(
         camera: None,
         materials: Vec::new(),
         textures: Vec::new(),
+        files: HashMap::new(),
+        room: accuracy.textures.unwrap_or(TEXTURES),
         objects: Vec::new(),
         lights: Vec::new(),
     };
@@ -55,13 +60,19 @@ pub fn model(
     check.finish(&written)
 }
 
-/// How exactly a scene is traced, as far as others than itself have a say.
+/// How many bytes the images of all textures of a scene may take, unless something else is asked for: far more than
+/// scenes have, and far less than a small file can claim to hold.
+const TEXTURES: u64 = 1 << 30;
+
+/// How exactly a scene is traced and how much memory its textures may take, as far as others than itself have a say.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Chosen {
     /// What counts in place of the scene's own.
     pub above_all: Option<Accuracy>,
     /// What counts where the scene says nothing.
     pub by_default: Accuracy,
+    /// How many bytes its textures may take, in place of a gibibyte.
+    pub textures: Option<u64>,
 }
 
 /// An entity's checked values, and how it was written.
@@ -81,6 +92,10 @@ struct Check<'r> {
     camera: Option<Item<Camera>>,
     materials: Vec<Item<Arc<Material>>>,
     textures: Vec<Item<Arc<Texture>>>,
+    /// The textures by their files.
+    files: HashMap<PathBuf, Arc<Texture>>,
+    /// How many bytes the images of textures may still take.
+    room: u64,
     objects: Vec<Object>,
     lights: Vec<Item<AnyLight>>,
 }
@@ -148,8 +163,10 @@ impl Check<'_> {
                 if let Some(Item { args, value }) = self.made(written, args, construct) {
                     self.report.add_file(value.path().to_owned());
                     // Two that have one file are one, so that it is read once.
-                    let known = self.textures.iter().map(|item| &item.value).find(|known| ***known == value);
-                    let texture = known.cloned().unwrap_or_else(|| Arc::new(value));
+                    let texture = match self.files.entry(value.path().to_owned()) {
+                        Entry::Occupied(known) => known.get().clone(),
+                        Entry::Vacant(free) => free.insert(Arc::new(value)).clone(),
+                    };
                     let shown = Datum::Texture { name: Arc::from(name.as_str()), texture: texture.clone() };
                     self.names.define(kind, &name, shown);
                     self.textures.push(Item { args, value: texture });
@@ -201,9 +218,16 @@ impl Check<'_> {
             self.objects.iter().map(|object| &object.args).chain(self.lights.iter().map(|light| &light.args));
         let used: BTreeSet<_> = users.flat_map(|args| args.textures()).collect();
         for Item { args, value } in &self.textures {
-            if used.contains(args.name.as_str())
-                && let Err(reason) = value.load()
-            {
+            if !used.contains(args.name.as_str()) {
+                continue;
+            }
+            let read = value.load_within(self.room);
+            self.room -= value.bytes().min(self.room);
+            if let Err(reason) = read {
+                let is_told = self.report.tells(Severity::Error, &written[args.order].place);
+                let near = if is_told { value.near() } else { None };
+                let reason =
+                    near.map_or(reason.to_owned(), |near| format!("it does not exist, but `{near}` does"));
                 let message = format!("the file of texture `{}` cannot be read: {reason}", args.name);
                 let mut files = args.values().filter(|(_, datum)| matches!(datum, Datum::Word(_)));
                 let place =
@@ -220,8 +244,11 @@ impl Check<'_> {
     /// The model, or the faults that show only when all is read.
     fn finish(mut self, written: &[Written<'_>]) -> Option<Model> {
         let mut camera_misspelt = false;
-        for (name, places) in std::mem::take(&mut self.unknown) {
-            let near = self.registry.nearest(&name);
+        let mut unknown: Vec<_> = std::mem::take(&mut self.unknown).into_iter().collect();
+        unknown.sort_by_key(|(_, places)| places[0].as_ref().map(|place| place.start));
+        for (name, places) in unknown {
+            let is_told = self.report.tells(Severity::Error, &places[0]);
+            let near = if is_told { self.registry.nearest(&name) } else { None };
             camera_misspelt |=
                 near.and_then(|near| self.registry.find(near)).is_some_and(|e| e.kind() == Kind::Camera);
             let known = list(self.registry.iter().map(|entity| entity.name));

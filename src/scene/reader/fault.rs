@@ -1,11 +1,10 @@
 //! Faults: what is wrong with a scene, where, and what would be right.
 
-use crate::scene::syntax::Syntax;
 use crate::words;
-use annotate_snippets::{AnnotationKind, Level, Origin, Renderer, Snippet};
-use std::fmt;
 use std::ops::Range;
-use std::path::PathBuf;
+
+/// The most places of other faults that one of them names.
+const PLACES: usize = 3;
 
 /// Where something stands in a scene's text, in bytes; nothing for what was built without a text.
 pub type Place = Option<Range<usize>>;
@@ -34,6 +33,8 @@ pub struct Fault {
     pub also: Vec<(Place, String)>,
     /// What would be right.
     pub help: Option<String>,
+    /// How many other faults it stands for that differ in their places alone, and the first of those places.
+    pub alike: (usize, Vec<Place>),
 }
 
 impl Fault {
@@ -46,6 +47,7 @@ impl Fault {
             label: String::new(),
             also: Vec::new(),
             help: None,
+            alike: (0, Vec::new()),
         }
     }
 
@@ -72,129 +74,41 @@ impl Fault {
         self
     }
 
-    fn title(&self) -> annotate_snippets::Title<'_> {
-        let level = match self.severity {
-            Severity::Error => Level::ERROR,
-            Severity::Warning => Level::WARNING,
-        };
-        level.primary_title(self.message.as_str())
-    }
-}
-
-/// All faults of one scene, in the order of its text.
-#[derive(Clone, Debug, Default)]
-pub struct Report {
-    pub(super) name: String,
-    pub(super) text: String,
-    syntax: Syntax,
-    pub(super) faults: Vec<Fault>,
-    files: Vec<PathBuf>,
-}
-
-impl Report {
-    /// A report without faults on a scene's text; `name` is what messages call it.
-    pub fn new(name: impl Into<String>, text: impl Into<String>, syntax: Syntax) -> Self {
-        Self { name: name.into(), text: text.into(), syntax, faults: Vec::new(), files: Vec::new() }
+    pub(super) fn start(&self) -> usize {
+        self.place.as_ref().map_or(0, |place| place.start)
     }
 
-    /// The spelling in which messages tell what would be right.
-    pub fn syntax(&self) -> Syntax {
-        self.syntax
+    /// How many it stands for, in brackets; empty where that is itself alone.
+    pub(super) fn more(&self) -> String {
+        let (count, _) = self.alike;
+        if count == 0 { String::new() } else { format!(" (and in {})", words::count(count, "more place")) }
     }
 
-    /// Adds a fault at its place in the order.
-    pub fn add(&mut self, mut fault: Fault) {
-        // A name with a line end must not look like a message of its own.
-        if fault.message.contains(char::is_control) {
-            fault.message = fault.message.replace(char::is_control, "\u{fffd}");
+    /// Counts another fault that is like it, and keeps its place if that is one of the first.
+    pub(super) fn stand_for(&mut self, place: Place) {
+        let (count, places) = &mut self.alike;
+        *count += 1;
+        if places.len() < PLACES {
+            places.push(place);
         }
-        let start = |fault: &Fault| fault.place.as_ref().map_or(0, |place| place.start);
-        let at = self.faults.partition_point(|earlier| start(earlier) <= start(&fault));
-        self.faults.insert(at, fault);
     }
 
-    /// The faults, in the order of the text.
-    pub fn faults(&self) -> &[Fault] {
-        &self.faults
+    pub(super) fn is_like(&self, other: &Self) -> bool {
+        self.severity == other.severity && self.message == other.message
     }
 
-    /// The files that the scene names, whether they are there or not.
-    pub fn files(&self) -> &[PathBuf] {
-        &self.files
-    }
-
-    /// Adds a file that the scene names.
-    pub(super) fn add_file(&mut self, file: PathBuf) {
-        self.files.push(file);
-    }
-
-    /// Whether any fault leaves the scene without a meaning.
-    pub fn is_fatal(&self) -> bool {
-        self.count(Severity::Error) > 0
-    }
-
-    fn count(&self, severity: Severity) -> usize {
-        self.faults.iter().filter(|fault| fault.severity == severity).count()
-    }
-
-    /// The faults as text for a terminal that knows colours.
-    pub fn styled(&self) -> String {
-        self.render(&Renderer::styled())
-    }
-
-    fn render(&self, renderer: &Renderer) -> String {
-        let mut text = String::new();
-        let newlines: Vec<usize> = self.text.match_indices('\n').map(|(at, _)| at).collect();
-        for fault in &self.faults {
-            text += &self.render_fault(fault, &newlines, renderer);
-            text += "\n\n";
-        }
-        if self.is_fatal() {
-            let mut counts = words::count(self.count(Severity::Error), "error");
-            if self.count(Severity::Warning) > 0 {
-                counts = format!("{counts}, {}", words::count(self.count(Severity::Warning), "warning"));
+    /// Cuts what is too long to be read, and what might look like a message of its own: a name with a line end. Its
+    /// places then lie in this text, and none begins after it ends.
+    pub(super) fn tidy(&mut self, text: &str) {
+        let also = self.also.iter_mut().map(|(place, label)| (place, label));
+        for (place, label) in also.chain([(&mut self.place, &mut self.label)]) {
+            *label = words::abridged(label).into_owned();
+            if let Some(place) = place {
+                let (one, other) = (words::boundary(text, place.start), words::boundary(text, place.end));
+                *place = one.min(other)..one.max(other);
             }
-            text += &format!("{}: {counts}\n", self.name);
         }
-        text
-    }
-
-    pub(super) fn render_fault(&self, fault: &Fault, newlines: &[usize], renderer: &Renderer) -> String {
-        let help = fault.help.as_deref().map(|help| Level::HELP.message(help));
-        let Some(place) = &fault.place else {
-            let origin = Origin::path(self.name.as_str());
-            return renderer.render(&[fault.title().element(origin).elements(help)]);
-        };
-        // Only the lines that are marked: a long scene with many faults must not be read over and over.
-        let places = || fault.also.iter().filter_map(|(place, _)| place.as_ref()).chain([place]);
-        let first = places().map(|place| place.start).min().unwrap_or(0);
-        let last = places().map(|place| place.end).max().unwrap_or(0);
-        let lines_before = newlines.partition_point(|newline| *newline < first);
-        let start = lines_before.checked_sub(1).map_or(0, |line| newlines[line] + 1);
-        let end = newlines.get(newlines.partition_point(|newline| *newline < last)).copied();
-        let end = end.unwrap_or(self.text.len());
-        let end = if end > last && self.text[..end].ends_with('\r') { end - 1 } else { end };
-        let shift = |place: &Range<usize>| place.start - start..place.end - start;
-
-        let mark = AnnotationKind::Primary.span(shift(place));
-        let mark = if fault.label.is_empty() { mark } else { mark.label(fault.label.as_str()) };
-        let also = fault.also.iter().filter_map(|(place, label)| {
-            Some(AnnotationKind::Context.span(shift(place.as_ref()?)).label(label.as_str()))
-        });
-        let snippet = Snippet::source(&self.text[start..end])
-            .path(self.name.as_str())
-            .line_start(1 + lines_before)
-            .annotation(mark)
-            .annotations(also);
-        renderer.render(&[fault.title().element(snippet).elements(help)])
+        self.help = self.help.as_deref().map(|help| words::abridged(help).into_owned());
+        self.message = words::abridged(&self.message).replace(char::is_control, "\u{fffd}");
     }
 }
-
-/// Plain text, free of colour.
-impl fmt::Display for Report {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.render(&Renderer::plain()))
-    }
-}
-
-impl std::error::Error for Report {}

@@ -1,6 +1,8 @@
 //! Reports for programs: a line for each fault, as editors read them, or an object of JSON.
 
-use super::fault::{Fault, Report, Severity};
+use super::excerpt;
+use super::fault::{Fault, Severity};
+use super::report::Report;
 use crate::words;
 use annotate_snippets::Renderer;
 use serde::Serialize;
@@ -24,9 +26,11 @@ impl Report {
             let place = fault.place.as_ref().map(|place| lines.at(place.start));
             let place = place.map(|(line, column)| format!(":{line}:{column}")).unwrap_or_default();
             let label = if fault.label.is_empty() { String::new() } else { format!(": {}", fault.label) };
+            let label = label + &fault.more();
             format!("{}{place}: {}: {}{label}\n", self.name, fault.severity, fault.message)
         };
-        self.faults.iter().map(line).collect()
+        let rest = self.rest().map(|rest| format!("{}: {rest}\n", self.name));
+        self.faults.iter().map(line).chain(rest).collect()
     }
 
     /// an object of JSON for each fault, a `Message`, each on a line of its own.
@@ -34,9 +38,7 @@ impl Report {
         let lines = Lines::of(&self.text);
         let line = |fault: &Fault| {
             let first = fault.place.iter().map(|place| lines.span(&self.name, place, &fault.label, true));
-            let also = fault
-                .also
-                .iter()
+            let also = excerpt::others(fault)
                 .filter_map(|(place, label)| Some(lines.span(&self.name, place.as_ref()?, label, false)));
             Message {
                 help: fault.help.as_deref(),
@@ -47,7 +49,10 @@ impl Report {
             }
             .line()
         };
-        self.faults.iter().map(line).collect()
+        let rest = self.rest().map(|rest| {
+            Message { help: None, level: "note", message: &rest, rendered: &rest, spans: Vec::new() }.line()
+        });
+        self.faults.iter().map(line).chain(rest).collect()
     }
 }
 

@@ -2,17 +2,21 @@
 
 mod attributes;
 mod check;
+mod excerpt;
 mod fault;
+mod guesses;
 mod machine;
 mod names;
 mod notes;
+mod report;
 mod toml;
 mod values;
 mod written;
 
 pub use check::Chosen;
-pub use fault::{Fault, Place, Report, Severity};
+pub use fault::{Fault, Place, Severity};
 pub use machine::Message;
+pub use report::Report;
 pub use written::Written;
 
 use crate::scene::model::Model;
@@ -73,6 +77,9 @@ pub fn read_by(
         Syntax::Toml => toml::parse,
     };
     let written = parse(registry, text, &mut report);
+    if report.has_enough() {
+        return Err(report);
+    }
     if written.is_empty() && !report.is_fatal() {
         report.add(Fault::error(Some(0..0), "the scene is empty").help(registry.first_steps(syntax)));
     }

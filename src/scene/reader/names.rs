@@ -1,6 +1,7 @@
 //! The names of a scene: who has them, and what those that refer to them mean.
 
-use super::fault::{Fault, Place, Report};
+use super::fault::{Fault, Place, Severity};
+use super::report::Report;
 use super::written::{Form, Word, Written};
 use crate::scene::entity::Entity;
 use crate::scene::kind::Kind;
@@ -20,6 +21,8 @@ type Title = &'static str;
 /// Where a name was claimed, and for what: first, and again.
 struct Claims {
     first: (Title, Place),
+    /// What else it was claimed for.
+    titles: Vec<Title>,
     again: Vec<(Title, Place)>,
 }
 
@@ -88,12 +91,15 @@ impl Names {
         let title = if kind == Kind::Object { entity.name } else { "" };
         match self.claimed.entry((kind, text.to_string())) {
             Entry::Vacant(free) => {
-                free.insert(Claims { first: (title, place.clone()), again: Vec::new() });
+                free.insert(Claims { first: (title, place.clone()), titles: Vec::new(), again: Vec::new() });
                 true
             }
             Entry::Occupied(mut taken) => {
-                let Claims { first, again } = taken.get_mut();
-                let is_first = first.0 != title && again.iter().all(|(other, _)| *other != title);
+                let Claims { first, titles, again } = taken.get_mut();
+                let is_first = first.0 != title && !titles.contains(&title);
+                if is_first {
+                    titles.push(title);
+                }
                 again.push((title, place.clone()));
                 is_first || kind == Kind::Light
             }
@@ -103,7 +109,7 @@ impl Names {
     /// Warns of names that several entities have: once for each name, and once for all of them where they are many.
     pub fn report_repeated(&self, report: &mut Report) {
         let (mut left_out, mut shared) = (Vec::new(), Vec::new());
-        for ((kind, text), Claims { first, again }) in
+        for ((kind, text), Claims { first, again, .. }) in
             self.claimed.iter().filter(|(_, all)| !all.again.is_empty())
         {
             let mut titles: BTreeMap<Title, Vec<&Place>> = BTreeMap::new();
@@ -178,7 +184,16 @@ impl Names {
 
     /// Reports the references to what was not there, one fault for each name.
     pub fn report_unresolved(&self, registry: &Registry, report: &mut Report) {
-        for ((kind, text), places) in &self.unresolved {
+        let mut known: BTreeMap<Kind, Vec<&str>> = BTreeMap::new();
+        for (kind, text) in self.places.keys() {
+            known.entry(*kind).or_default().push(text);
+        }
+        known.values_mut().for_each(|known| known.sort_unstable());
+        // In the order of the text, so that no more is looked for than is told.
+        let mut unresolved: Vec<_> = self.unresolved.iter().collect();
+        unresolved.sort_by_key(|(_, places)| places[0].as_ref().map(|place| place.start));
+        for ((kind, text), places) in unresolved {
+            let is_told = report.tells(Severity::Error, &places[0]);
             let fault = match self.places.get(&(*kind, text.clone())) {
                 Some(defined) => {
                     Fault::error(places[0].clone(), format!("{kind} `{text}` is used before it is defined"))
@@ -187,9 +202,7 @@ impl Names {
                         .help(format!("a {kind} must be defined before it is used"))
                 }
                 None => {
-                    let known = self.places.keys().filter(|(known, _)| known == kind);
-                    let mut known: Vec<_> = known.map(|(_, text)| text.as_str()).collect();
-                    known.sort_unstable();
+                    let known = known.get(kind).filter(|_| is_told).into_iter().flatten().copied();
                     Fault::error(places[0].clone(), format!("there is no {kind} `{text}`"))
                         .label(suggestion(nearest(text, known), places))
                         .help(format!(

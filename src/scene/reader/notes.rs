@@ -1,8 +1,9 @@
 //! The notes' scene language: `entity-type name { attribute values ... }`, one word after another.
 
-use super::attributes::{find_attribute, near_attribute};
-use super::fault::{Fault, Report};
-use super::written::{Form, Word, Written};
+use super::fault::Fault;
+use super::guesses::{Guesses, find_attribute, near_attribute};
+use super::report::Report;
+use super::written::{Form, MOST_VALUES, Word, Written};
 use crate::scene::entity::Entity;
 use crate::scene::pparm::Attribute;
 use crate::scene::registry::Registry;
@@ -14,9 +15,41 @@ use std::ops::Range;
 /// Reads the entities of a text and reports what does not have their form. What can be made out beyond a
 /// fault is read all the same, so that one run finds the faults that follow.
 pub fn parse<'a>(registry: &Registry, text: &'a str, report: &mut Report) -> Vec<Written<'a>> {
-    let tokens = tokens(text, report);
-    let mut parser = Parser { registry, tokens, at: 0, end: text.len(), report, last: None };
-    parser.scene()
+    let first = Tokens::of(text, &mut Report::new("", "", Syntax::Notes)).ahead[0].clone();
+    if let Some(first) = first
+        && !looks_like_a_scene(registry, text)
+    {
+        let mut tokens = Tokens::of(text, report);
+        while tokens.ahead[0].is_some() {
+            tokens.step(report);
+        }
+        report.add(
+            Fault::error(Some(first.at), "this is not a scene")
+                .label("expected an entity type")
+                .help(registry.first_steps(Syntax::Notes)),
+        );
+        return Vec::new();
+    }
+    let tokens = Tokens::of(text, report);
+    Parser { registry, tokens, end: text.len(), report, before: 0..0, last: None }.scene()
+}
+
+/// Whether anything of a text is an entity.
+fn looks_like_a_scene(registry: &Registry, text: &str) -> bool {
+    let mut nowhere = Report::new("", "", Syntax::Notes);
+    let tokens = Tokens::of(text, &mut nowhere);
+    let mut parser =
+        Parser { registry, tokens, end: text.len(), report: &mut nowhere, before: 0..0, last: None };
+    if parser.begins_entity() {
+        return true;
+    }
+    while parser.token().is_some() {
+        if parser.is_entity_type() && parser.has_form() {
+            return true;
+        }
+        parser.step();
+    }
+    false
 }
 
 /// A word or a brace, and where it stands.
@@ -41,31 +74,51 @@ impl<'a> Token<'a> {
     }
 }
 
-/// Splits a text into words and braces. A `#` that begins a word begins a comment, and a `"` a word with blanks.
-fn tokens<'a>(text: &'a str, report: &mut Report) -> Vec<Token<'a>> {
-    let mut tokens = Vec::new();
-    let mut at = 0;
-    while let Some(c) = text[at..].chars().next() {
-        let rest = &text[at..];
-        let length = match c {
-            '#' => rest.find('\n').unwrap_or(rest.len()),
-            '"' => {
-                let (text, length) = quoted(rest, at, report);
-                tokens.push(Token { text, form: Form::Text, at: at..at + length });
-                at += length;
-                continue;
-            }
-            '{' | '}' => 1,
-            c if c.is_whitespace() => c.len_utf8(),
-            _ => rest.find(|c: char| c.is_whitespace() || c == '{' || c == '}').unwrap_or(rest.len()),
-        };
-        if c != '#' && !c.is_whitespace() {
-            let text = Cow::Borrowed(&rest[..length]);
-            tokens.push(Token { text, form: Form::Any, at: at..at + length });
-        }
-        at += length;
+/// A text's words and braces, one after another: the next ones, as far as an entity's beginning can be told by them.
+struct Tokens<'a> {
+    text: &'a str,
+    at: usize,
+    ahead: [Option<Token<'a>>; 3],
+}
+
+impl<'a> Tokens<'a> {
+    fn of(text: &'a str, report: &mut Report) -> Self {
+        let mut tokens = Self { text, at: 0, ahead: [const { None }; 3] };
+        (0..3).for_each(|_| drop(tokens.step(report)));
+        tokens
     }
-    tokens
+
+    /// Goes on by one token, which is returned.
+    fn step(&mut self, report: &mut Report) -> Option<Token<'a>> {
+        self.ahead.rotate_left(1);
+        let next = self.read(report);
+        std::mem::replace(&mut self.ahead[2], next)
+    }
+
+    /// Reads the token after those. A `#` that begins a word begins a comment, and a `"` a word with blanks.
+    fn read(&mut self, report: &mut Report) -> Option<Token<'a>> {
+        loop {
+            let (at, rest) = (self.at, &self.text[self.at..]);
+            let (length, text, form) = match rest.chars().next()? {
+                '#' => (rest.find('\n').unwrap_or(rest.len()), None, Form::Any),
+                '"' => {
+                    let (text, length) = quoted(rest, at, report);
+                    (length, Some(text), Form::Text)
+                }
+                c @ ('{' | '}') => (1, Some(Cow::Borrowed(if c == '{' { "{" } else { "}" })), Form::Any),
+                c if c.is_whitespace() => (c.len_utf8(), None, Form::Any),
+                _ => {
+                    let end = |c: char| c.is_whitespace() || c == '{' || c == '}';
+                    let length = rest.find(end).unwrap_or(rest.len());
+                    (length, Some(Cow::Borrowed(&rest[..length])), Form::Any)
+                }
+            };
+            self.at += length;
+            if let Some(text) = text {
+                return Some(Token { text, form, at: at..at + length });
+            }
+        }
+    }
 }
 
 /// What stands in the quotes that a text begins with, and how long it is with them. `\\` and `\"` stand for a
@@ -100,10 +153,11 @@ fn quoted<'a>(text: &'a str, at: usize, report: &mut Report) -> (Cow<'a, str>, u
 
 struct Parser<'a, 'r> {
     registry: &'r Registry,
-    tokens: Vec<Token<'a>>,
-    at: usize,
+    tokens: Tokens<'a>,
     end: usize,
     report: &'r mut Report,
+    /// The token read last.
+    before: Range<usize>,
     /// The entity read last: its first word and where it ended.
     last: Option<(Range<usize>, Range<usize>)>,
 }
@@ -111,18 +165,9 @@ struct Parser<'a, 'r> {
 impl<'a> Parser<'a, '_> {
     fn scene(&mut self) -> Vec<Written<'a>> {
         let mut written = Vec::new();
-        if !self.tokens.is_empty() && !self.looks_like_a_scene() {
-            let first = self.tokens[0].clone();
-            self.report.add(
-                Fault::error(Some(first.at), "this is not a scene")
-                    .label("expected an entity type")
-                    .help(self.registry.first_steps(Syntax::Notes)),
-            );
-            return written;
-        }
-        while self.at < self.tokens.len() {
-            if self.begins_entity(self.at) {
-                written.push(self.entity());
+        while self.token().is_some() && !self.report.has_enough() {
+            if self.begins_entity() {
+                written.extend(self.entity());
             } else {
                 self.stray();
             }
@@ -130,54 +175,54 @@ impl<'a> Parser<'a, '_> {
         written
     }
 
-    fn token(&self, ahead: usize) -> Option<&Token<'a>> {
-        self.tokens.get(self.at + ahead)
+    fn token(&self) -> Option<&Token<'a>> {
+        self.tokens.ahead[0].as_ref()
     }
 
-    fn is(&self, at: usize, brace: &str) -> bool {
-        self.tokens.get(at).is_some_and(|token| token.is(brace))
+    fn step(&mut self) -> Option<Token<'a>> {
+        let token = self.tokens.step(self.report);
+        if let Some(token) = &token {
+            self.before = token.at.clone();
+        }
+        token
     }
 
-    fn is_word(&self, at: usize) -> bool {
-        self.tokens.get(at).is_some_and(|token| !token.is_brace())
+    fn is(&self, ahead: usize, brace: &str) -> bool {
+        self.tokens.ahead[ahead].as_ref().is_some_and(|token| token.is(brace))
     }
 
-    fn is_entity_type(&self, at: usize) -> bool {
-        self.tokens.get(at).is_some_and(|token| self.registry.find(&token.text).is_some())
+    fn is_word(&self, ahead: usize) -> bool {
+        self.tokens.ahead[ahead].as_ref().is_some_and(|token| !token.is_brace())
     }
 
-    fn looks_like_a_scene(&self) -> bool {
-        self.begins_entity(0) || (0..self.tokens.len()).any(|at| self.is_entity_type(at) && self.has_form(at))
+    fn is_entity_type(&self) -> bool {
+        self.token().is_some_and(|token| self.registry.find(&token.text).is_some())
     }
 
     /// Whether a word, a name and an opening brace stand here.
-    fn has_form(&self, at: usize) -> bool {
-        self.is_word(at)
-            && self.is_word(at + 1)
-            && self.is(at + 2, "{")
-            && !looks_like_number(&self.tokens[at].text)
+    fn has_form(&self) -> bool {
+        self.is_word(0)
+            && self.is_word(1)
+            && self.is(2, "{")
+            && self.token().is_some_and(|token| !looks_like_number(&token.text))
     }
 
     /// Whether an entity begins here, its name or its brace forgotten perhaps.
-    fn begins_entity(&self, at: usize) -> bool {
-        self.has_form(at)
-            || (self.is_word(at) && self.is(at + 1, "{"))
-            || (self.is_entity_type(at) && self.is_word(at + 1))
+    fn begins_entity(&self) -> bool {
+        self.has_form() || (self.is_word(0) && self.is(1, "{")) || (self.is_entity_type() && self.is_word(1))
     }
 
     /// Reads past words that belong to no entity.
     fn stray(&mut self) {
-        let start = self.at;
-        while self.at < self.tokens.len() && !self.begins_entity(self.at) {
-            let closes = self.is(self.at, "}");
-            self.at += 1;
-            if closes {
-                break;
-            }
+        let Some(first) = self.step() else { return };
+        let (mut last, mut count) = (first.clone(), 1);
+        while !last.is("}")
+            && !self.begins_entity()
+            && let Some(next) = self.step()
+        {
+            (last, count) = (next, count + 1);
         }
-        let run = &self.tokens[start..self.at];
-        let (first, last) = (&run[0], &run[run.len() - 1]);
-        let what = match (run.len(), first.is_brace()) {
+        let what = match (count, first.is_brace()) {
             (1, true) => format!("stray `{}`", first.text),
             (1, false) => format!("stray word `{}`", first.text),
             _ => format!("stray words from `{}` to `{}`", first.text, last.text),
@@ -192,13 +237,12 @@ impl<'a> Parser<'a, '_> {
             .add(fault.help("every word of a scene must be part of an entity, `TYPE NAME { ATTRIBUTES }`"));
     }
 
-    fn entity(&mut self) -> Written<'a> {
-        let kind = self.tokens[self.at].clone();
-        self.at += 1;
-        let name = match self.token(0) {
+    fn entity(&mut self) -> Option<Written<'a>> {
+        let kind = self.step()?;
+        let name = match self.token() {
             Some(name) if !name.is_brace() => {
                 let name = name.word();
-                self.at += 1;
+                self.step();
                 name
             }
             _ => {
@@ -209,8 +253,8 @@ impl<'a> Parser<'a, '_> {
                 Word::at("", Form::Any, kind.at.end..kind.at.end)
             }
         };
-        if self.is(self.at, "{") {
-            self.at += 1;
+        if self.is(0, "{") {
+            self.step();
         } else {
             let after = name.place.clone().unwrap_or_default();
             self.report.add(
@@ -222,37 +266,35 @@ impl<'a> Parser<'a, '_> {
         let mut entity =
             Written { kind: kind.word(), name, attributes: Vec::new(), place: None, is_damaged: false };
         let known = self.registry.find(&kind.text);
-        while self.body_goes_on(&entity) {
-            if self.is(self.at, "{") {
-                let brace = self.tokens[self.at].at.clone();
+        while !self.report.has_enough() && self.body_goes_on(&entity) {
+            if self.is(0, "{") {
+                let brace = self.step().map(|brace| brace.at);
                 self.report.add(
-                    Fault::error(Some(brace), "stray `{`")
+                    Fault::error(brace, "stray `{`")
                         .label("braces cannot be nested")
                         .also(Some(kind.at.clone()), "inside this entity"),
                 );
-                self.at += 1;
-            } else {
-                let attribute = self.attribute(known);
-                entity.attributes.push(attribute);
+            } else if let Some((name, values)) = self.attribute(known) {
+                entity.add(name, values, self.report);
             }
         }
-        let closed = self.tokens.get(self.at - 1).map_or(self.end..self.end, |token| token.at.clone());
-        entity.place = Some(kind.at.start..closed.end);
-        self.last = Some((kind.at, closed));
-        entity
+        entity.attributes.shrink_to_fit();
+        entity.place = Some(kind.at.start..self.before.end);
+        self.last = Some((kind.at, self.before.clone()));
+        Some(entity)
     }
 
     /// Whether another attribute of the entity follows; reads past its closing brace if not.
     fn body_goes_on(&mut self, entity: &Written<'a>) -> bool {
-        if self.is(self.at, "}") {
-            self.at += 1;
+        if self.is(0, "}") {
+            self.step();
             return false;
         }
-        if self.at < self.tokens.len() && !self.has_form(self.at) {
+        if self.token().is_some() && !self.has_form() {
             return true;
         }
-        let place = self.token(0).map_or(self.end..self.end, |token| token.at.clone());
-        let label = match self.token(0) {
+        let place = self.token().map_or(self.end..self.end, |token| token.at.clone());
+        let label = match self.token() {
             Some(next) => format!("expected `}}` before this `{}`", next.text),
             None => "the text ends here".to_owned(),
         };
@@ -268,22 +310,26 @@ impl<'a> Parser<'a, '_> {
     }
 
     /// Reads an attribute and the values that are meant for it, however many and of whatever form.
-    fn attribute(&mut self, entity: Option<&'static Entity>) -> (Word<'a>, Vec<Word<'a>>) {
-        let name = self.tokens[self.at].clone();
-        self.at += 1;
+    fn attribute(&mut self, entity: Option<&'static Entity>) -> Option<(Word<'a>, Vec<Word<'a>>)> {
+        let name = self.step()?;
         let described = entity.and_then(|entity| {
-            find_attribute(entity, &name.text).or_else(|| near_attribute(entity, &name.text))
+            let known = find_attribute(entity, &name.text);
+            known.or_else(|| near_attribute(entity, &name.text, self.report.guesses()))
         });
-        let mut values = Vec::new();
-        while let Some(token) = self.token(0)
+        let (mut values, mut count) = (Vec::new(), 0);
+        while let Some(token) = &self.tokens.ahead[0]
             && !token.is_brace()
-            && !self.has_form(self.at)
-            && (token.form == Form::Text || is_value(entity, described, values.len(), &token.text))
+            && !self.has_form()
+            && (token.form == Form::Text
+                || is_value(entity, described, count, &token.text, self.report.guesses()))
         {
-            values.push(token.word());
-            self.at += 1;
+            if count < MOST_VALUES {
+                values.push(token.word());
+            }
+            count += 1;
+            self.step();
         }
-        (name.word(), values)
+        Some((name.word(), values))
     }
 }
 
@@ -293,6 +339,7 @@ fn is_value(
     attribute: Option<&'static dyn Attribute>,
     already: usize,
     word: &str,
+    guesses: &mut Guesses,
 ) -> bool {
     let most = attribute.map_or(1, |attribute| attribute.arity().iter().copied().max().unwrap_or(0));
     match attribute.map(|attribute| attribute.value_type()) {
@@ -301,7 +348,9 @@ fn is_value(
         _ if looks_like_number(word) => true,
         _ => {
             let Some(entity) = entity else { return already < most };
-            already < most && find_attribute(entity, word).is_none() && near_attribute(entity, word).is_none()
+            already < most
+                && find_attribute(entity, word).is_none()
+                && near_attribute(entity, word, guesses).is_none()
         }
     }
 }

@@ -1,39 +1,86 @@
 //! Scenes in TOML: `[entity-type.name]` tables of the same attributes.
 
-use super::fault::{Fault, Report};
-use super::written::{Form, Word, Written};
+use super::fault::Fault;
+use super::report::Report;
+use super::written::{Form, MOST_VALUES, Word, Written};
 use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
 use std::borrow::Cow;
+use std::mem::take;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Error};
 
+/// The longest line, and the longest part of a text that is parsed at a time before all of it is known to be sound, in
+/// bytes. What the parser keeps of each token and each error is many times as long as they are.
+const LINE: usize = 1 << 16;
+const PART: usize = 1 << 17;
+
 /// Reads the entities of a text, in their order, and reports what does not have their form. What can be made
 /// out beyond a fault is read all the same, so that one run finds the faults that follow.
 pub fn parse<'a>(registry: &Registry, text: &'a str, report: &mut Report) -> Vec<Written<'a>> {
-    let (document, errors) = DeTable::parse_recoverable(text);
-    if document.get_ref().is_empty()
-        && let Some(first) = errors.first()
-    {
-        let fault = Fault::error(first.span().or(Some(0..0)), "this is not a scene in TOML");
-        report.add(fault.help(registry.first_steps(Syntax::Toml)));
+    if let Some(place) = long_line(text) {
+        let message = format!("this line is {} bytes long", place.len());
+        let help = format!("a line of a scene in TOML is at most {LINE} bytes long");
+        report.add(Fault::error(Some(place), message).help(help));
         return Vec::new();
     }
     let mut written = Vec::new();
-    if errors.iter().all(is_duplicate) {
-        Parser { text, at: 0, errors: places(&errors, text), report, written: &mut written }.read(document);
-    } else {
-        // A bracket that is never closed makes nonsense of all that follows. The next title is a new start.
-        for piece in pieces(text) {
-            let at = piece.start;
-            let text = &text[piece];
-            let (document, errors) = DeTable::parse_recoverable(text);
-            Parser { text, at, errors: places(&errors, text), report, written: &mut written }.read(document);
+    if is_sound(text) {
+        let (document, errors) = DeTable::parse_recoverable(text);
+        if document.get_ref().is_empty()
+            && let Some(first) = errors.first()
+        {
+            let fault = Fault::error(first.span().or(Some(0..0)), "this is not a scene in TOML");
+            report.add(fault.help(registry.first_steps(Syntax::Toml)));
+            return Vec::new();
         }
+        if errors.iter().all(is_duplicate) {
+            Parser::new((text, 0), &errors, report, &mut written).read(document);
+            written.sort_by_key(|entity| entity.name.place.as_ref().map(|place| place.start));
+            return written;
+        }
+    }
+    // A bracket that is never closed makes nonsense of all that follows. The next title is a new start.
+    for piece in pieces(text) {
+        if report.has_enough() {
+            break;
+        }
+        let at = piece.start;
+        let text = &text[piece];
+        let (document, errors) = DeTable::parse_recoverable(text);
+        Parser::new((text, at), &errors, report, &mut written).read(document);
     }
     written.sort_by_key(|entity| entity.name.place.as_ref().map(|place| place.start));
     written
+}
+
+/// The first line that is too long.
+fn long_line(text: &str) -> Option<Range<usize>> {
+    let mut at = 0;
+    let mut lines = text.split('\n').map(|line| {
+        at += line.len() + 1;
+        at - 1 - line.len()..at - 1
+    });
+    lines.find(|line| line.len() > LINE)
+}
+
+/// Whether a text can be parsed at once: it is short, or has no syntax errors, as far as its parts tell.
+fn is_sound(text: &str) -> bool {
+    let mut parts = pieces(text);
+    // A part is as many pieces as fit.
+    parts.dedup_by(|next, part| {
+        let fits = next.end - part.start <= PART;
+        if fits {
+            part.end = next.end;
+        }
+        fits
+    });
+    let has_errors = |part: Range<usize>| {
+        let (_, errors) = DeTable::parse_recoverable(&text[part]);
+        !errors.iter().all(is_duplicate)
+    };
+    text.len() <= PART || !parts.into_iter().any(has_errors)
 }
 
 /// A syntax error: its place and what it is.
@@ -45,7 +92,7 @@ fn is_duplicate(error: &Error) -> bool {
 
 const DUPLICATE: &str = "duplicate key";
 
-/// Where a text can be parted: before each line that is a title.
+/// Where a text can be parted: before each line that is a title, and before any other where there is none for long.
 fn pieces(text: &str) -> Vec<Range<usize>> {
     let is_title = |line: &str| {
         let line = line.split('#').next().unwrap_or_default().trim();
@@ -55,7 +102,8 @@ fn pieces(text: &str) -> Vec<Range<usize>> {
     let mut starts = vec![0];
     let mut at = 0;
     for line in text.split_inclusive('\n') {
-        if is_title(line) && at > 0 {
+        let is_long = at + line.len() - starts[starts.len() - 1] > PART;
+        if at > 0 && (is_long || is_title(line)) {
             starts.push(at);
         }
         at += line.len();
@@ -64,24 +112,32 @@ fn pieces(text: &str) -> Vec<Range<usize>> {
     starts.iter().copied().zip(ends).map(|(start, end)| start..end).collect()
 }
 
+/// The ends of the lines that are followed by a line that begins with a bracket.
+fn before_titles(text: &str) -> Vec<usize> {
+    text.match_indices("\n[").map(|(at, _)| at).collect()
+}
+
 /// The first syntax error of each line, in their order: what follows one on its line mostly follows from it.
-fn places(errors: &[Error], text: &str) -> Vec<SyntaxError> {
-    let mut places: Vec<_> = errors
-        .iter()
-        .map(|error| (error.span().unwrap_or(text.len()..text.len()), error.message().to_owned()))
-        .collect();
+fn places(errors: &[Error], text: &str, titles: &[usize]) -> Vec<SyntaxError> {
+    let place = |error: &Error| {
+        let place = error.span().unwrap_or(text.len()..text.len());
+        // What is missing between two tokens may end before it begins.
+        place.start.min(place.end)..place.start.max(place.end)
+    };
+    let mut places: Vec<_> = errors.iter().map(|error| (place(error), error.message().to_owned())).collect();
     places.sort_by_key(|(place, _)| place.start);
     let mut end = 0;
     let mut second_title = 0..0;
     places.retain(|(place, message)| {
         // What a second title repeats of the first one is no fault of its own.
-        let line = text[..place.start].rfind('\n').map_or(0, |end| end + 1);
-        if message == DUPLICATE && text[line..].starts_with('[') {
-            let next = text[place.end..].find("\n[").map_or(text.len(), |length| place.end + length);
-            second_title = place.end..next;
-        }
-        if message == DUPLICATE && second_title.contains(&place.start) {
-            return false;
+        if message == DUPLICATE {
+            let line = text[..place.start].rfind('\n').map_or(0, |end| end + 1);
+            if text[line..].starts_with('[') {
+                second_title = place.end..next(titles, place.end).unwrap_or(text.len());
+            }
+            if second_title.contains(&place.start) {
+                return false;
+            }
         }
         let is_first = place.start >= end;
         if is_first {
@@ -90,6 +146,11 @@ fn places(errors: &[Error], text: &str) -> Vec<SyntaxError> {
         is_first
     });
     places
+}
+
+/// The first of some places in their order that is not before this one.
+fn next(places: &[usize], from: usize) -> Option<usize> {
+    places.get(places.partition_point(|place| *place < from)).copied()
 }
 
 /// A syntax error as the fault that it is.
@@ -124,7 +185,10 @@ struct Parser<'a, 'r> {
     text: &'a str,
     /// Where it begins.
     at: usize,
+    /// Where it has its errors, and which of them go without saying.
     errors: Vec<SyntaxError>,
+    is_told: Vec<bool>,
+    titles: Vec<usize>,
     report: &'r mut Report,
     written: &'r mut Vec<Written<'a>>,
 }
@@ -133,13 +197,26 @@ struct Parser<'a, 'r> {
 type Key<'a> = Spanned<toml::de::DeString<'a>>;
 type Value<'a> = Spanned<DeValue<'a>>;
 
-impl<'a> Parser<'a, '_> {
+impl<'a, 'r> Parser<'a, 'r> {
+    fn new(
+        (text, at): (&'a str, usize),
+        errors: &[Error],
+        report: &'r mut Report,
+        written: &'r mut Vec<Written<'a>>,
+    ) -> Self {
+        let titles = before_titles(text);
+        let errors = places(errors, text, &titles);
+        Self { text, at, is_told: vec![true; errors.len()], errors, titles, report, written }
+    }
+
     fn read(&mut self, document: Spanned<DeTable<'a>>) {
         for (kind, value) in document.into_inner() {
             self.kind(&kind, value);
         }
-        for (place, message) in std::mem::take(&mut self.errors) {
-            self.fault(fault_of(place, &message, self.text));
+        for ((place, message), is_told) in take(&mut self.errors).into_iter().zip(take(&mut self.is_told)) {
+            if is_told {
+                self.fault(fault_of(place, &message, self.text));
+            }
         }
     }
 
@@ -219,7 +296,10 @@ impl<'a> Parser<'a, '_> {
         let mut end = name_at.end.max(span.end);
         for (key, value) in attributes {
             end = end.max(value.span().end);
-            if self.is_faulty(key.span().start..value.span().end) {
+            // What stands in for a value that is missing has a place before its key, and the error is behind that.
+            let is_before = value.span().start < key.span().end;
+            let value_end = if is_before { self.line_end(key.span().end) } else { value.span().end };
+            if self.is_faulty(key.span().start..value_end) {
                 self.only_the_first_error_of(value.span());
                 entity.is_damaged = true;
                 continue;
@@ -227,29 +307,41 @@ impl<'a> Parser<'a, '_> {
             let mut values = Vec::new();
             if self.values(&value, &mut values) {
                 let key = self.word(key.get_ref().clone(), Form::Text, key.span());
-                entity.attributes.push((key, values));
+                entity.add(key, values, self.report);
             } else {
                 entity.is_damaged = true;
             }
         }
         entity.place = Some(self.placed(start..end));
         // What could not be made out at all stands after the last attribute, and before the next title.
-        let next = self.text[end..].find("\n[").map_or(self.text.len(), |length| end + length);
+        let next = next(&self.titles, end).unwrap_or(self.text.len());
         entity.is_damaged |= self.is_faulty(name_at.start..next);
+        entity.attributes.shrink_to_fit();
         self.written.push(entity);
     }
 
+    /// The errors that begin in a span, its end included.
+    fn errors_in(&self, span: Range<usize>) -> Range<usize> {
+        let first = self.errors.partition_point(|(place, _)| place.start < span.start);
+        first..self.errors.partition_point(|(place, _)| place.start <= span.end).max(first)
+    }
+
+    fn line_end(&self, at: usize) -> usize {
+        self.text[at..].find('\n').map_or(self.text.len(), |length| at + length)
+    }
+
     fn is_faulty(&self, span: Range<usize>) -> bool {
-        self.errors.iter().any(|(place, _)| place.start >= span.start && place.start <= span.end)
+        self.errors_in(span).any(|error| self.is_told[error])
     }
 
     /// Where a value is broken, what follows inside it follows from that.
     fn only_the_first_error_of(&mut self, span: Range<usize>) {
         let mut is_first = true;
-        self.errors.retain(|(place, _)| {
-            let inside = place.start >= span.start && place.start <= span.end;
-            !inside || std::mem::take(&mut is_first)
-        });
+        for error in self.errors_in(span) {
+            if self.is_told[error] {
+                self.is_told[error] = take(&mut is_first);
+            }
+        }
     }
 
     /// Reads the values of an attribute; whether they have the form of values.
@@ -268,7 +360,7 @@ impl<'a> Parser<'a, '_> {
             }
             DeValue::Array(values) if values.iter().all(|value| !value.get_ref().is_array()) => {
                 let mut sound = true;
-                for value in values.iter() {
+                for value in values.iter().take(MOST_VALUES) {
                     sound &= self.values(value, words);
                 }
                 return sound;

@@ -1,6 +1,7 @@
 //! Entities as they are written: kind, name, attributes and values, each with its place, none of it checked.
 
-use super::fault::Place;
+use super::fault::{Fault, Place};
+use super::report::Report;
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
 use std::ops::Range;
@@ -34,6 +35,12 @@ impl<'a> Word<'a> {
     }
 }
 
+/// The most values of an attribute that are kept. No attribute takes as many.
+pub(super) const MOST_VALUES: usize = 1000;
+
+/// The most attributes of an entity that are kept. No type has as many.
+pub(super) const MOST_ATTRIBUTES: usize = 1000;
+
 /// An entity as it is written.
 #[derive(Clone, Debug)]
 pub struct Written<'a> {
@@ -44,6 +51,24 @@ pub struct Written<'a> {
     pub(super) place: Place,
     /// Whether its text could not all be made out: then what it lacks is no fault of its own.
     pub(super) is_damaged: bool,
+}
+
+impl<'a> Written<'a> {
+    /// Adds an attribute, but no more than can be of use.
+    pub(super) fn add(&mut self, name: Word<'a>, mut values: Vec<Word<'a>>, report: &mut Report) {
+        match self.attributes.len() {
+            MOST_ATTRIBUTES if !self.is_damaged => {
+                self.is_damaged = true;
+                let message = format!("this {} has more than {MOST_ATTRIBUTES} attributes", self.kind.text);
+                report.add(Fault::error(name.place, message).label("the first that is too many"));
+            }
+            MOST_ATTRIBUTES.. => {}
+            _ => {
+                values.shrink_to_fit();
+                self.attributes.push((name, values));
+            }
+        }
+    }
 }
 
 impl Written<'static> {

@@ -1,0 +1,56 @@
+//! Panics: faults of the program itself. They are told as messages, and servers go on.
+
+use super::failure::Failure;
+use super::program;
+use std::panic::{self, AssertUnwindSafe, Location};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// What the last panic said, and the scene that was read last.
+static LAST: Mutex<(String, String)> = Mutex::new((String::new(), String::new()));
+
+fn last() -> MutexGuard<'static, (String, String)> {
+    LAST.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// From here on panics are not printed, but kept for [`catch`] to tell.
+pub fn keep() {
+    panic::set_hook(Box::new(|info| {
+        let payload = info.payload();
+        let text = payload.downcast_ref::<String>().map(String::as_str);
+        let said = text.or_else(|| payload.downcast_ref().copied()).unwrap_or("no reason");
+        let place = info.location().map(Location::to_string).unwrap_or_default();
+        last().0 = format!("{said} ({place})");
+    }));
+}
+
+/// From here on panics are told as being about this scene.
+pub fn about(scene: &str) {
+    scene.clone_into(&mut last().1);
+}
+
+/// Does something, of which a panic is a failure.
+pub fn catch<T>(work: impl FnOnce() -> T) -> Result<T, Failure> {
+    panic::catch_unwind(AssertUnwindSafe(work)).map_err(|_| {
+        let (said, scene) = &*last();
+        let scene = if scene.is_empty() { String::new() } else { format!(" at `{scene}`") };
+        Failure::Failed(format!(
+            "internal error{scene}: {said}; this is a bug in {} {}, please report it with the scene",
+            program::name(),
+            env!("CARGO_PKG_VERSION")
+        ))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_is_a_failure_that_names_the_scene_and_the_version() {
+        about("ball.ray");
+        let Err(Failure::Failed(told)) = catch(|| panic!("a bug")) else { panic!("no failure") };
+        assert!(told.starts_with("internal error at `ball.ray`: "), "{told}");
+        assert!(told.contains(env!("CARGO_PKG_VERSION")), "{told}");
+        assert_eq!(catch(|| 1).ok(), Some(1));
+    }
+}

@@ -1,0 +1,139 @@
+//! Faults as text: a message, and the lines of the scene that it is about, as much of them as can be read.
+
+use super::fault::{Fault, Place, Severity};
+use crate::words::{self, boundary};
+use annotate_snippets::{AnnotationKind, Element, Level, Origin, Renderer, Snippet};
+use std::ops::Range;
+
+/// The longest part of a text that is shown as it is, in bytes, from the first line that is marked to the last one. Of a
+/// longer one each marked place is shown by itself.
+const WHOLE: usize = 4096;
+
+/// What is shown of a longer line before and after a mark, and the longest mark in it, in bytes.
+const AROUND: usize = 48;
+const MARK: usize = 64;
+
+/// The fault as text. `newlines` are the places of the text's line ends.
+pub fn rendered(
+    fault: &Fault,
+    (name, text): (&str, &str),
+    newlines: &[usize],
+    renderer: &Renderer,
+) -> String {
+    let level = match fault.severity {
+        Severity::Error => Level::ERROR,
+        Severity::Warning => Level::WARNING,
+    };
+    let title = level.primary_title(fault.message.as_str());
+    let help = fault.help.as_deref().map(|help| Level::HELP.message(help));
+    let alike = alike(fault, newlines);
+    let notes = help.into_iter().chain(alike.as_deref().map(|alike| Level::NOTE.message(alike)));
+    let Some(place) = &fault.place else {
+        return renderer.render(&[title.element(Origin::path(name)).elements(notes)]);
+    };
+    let also = fault.also.iter().filter_map(|(place, label)| Some((place.as_ref()?, label.as_str())));
+    let marks: Vec<_> = [(place, fault.label.as_str())].into_iter().chain(also).collect();
+    // Only the lines that are marked: a long scene with many faults must not be read over and over.
+    let first = marks.iter().map(|(place, _)| place.start).min().unwrap_or(0);
+    let last = marks.iter().map(|(place, _)| place.end).max().unwrap_or(0);
+    let lines = lines(text, first..last, newlines);
+    if lines.len() <= WHOLE {
+        let shift = |place: &Range<usize>| place.start - lines.start..place.end - lines.start;
+        let mut kind = AnnotationKind::Primary;
+        let annotations = marks.iter().map(|(place, label)| {
+            let mark = std::mem::replace(&mut kind, AnnotationKind::Context).span(shift(place));
+            if label.is_empty() { mark } else { mark.label(*label) }
+        });
+        let snippet = Snippet::source(&text[lines.clone()])
+            .path(name)
+            .line_start(line(lines.start, newlines))
+            .annotations(annotations);
+        return renderer.render(&[title.element(snippet).elements(notes)]);
+    }
+    let pieces: Vec<_> =
+        marks.iter().map(|(place, label)| (Piece::of(text, place, newlines), *label)).collect();
+    let mut elements: Vec<Element> = Vec::new();
+    let mut kind = AnnotationKind::Primary;
+    for (piece, label) in &pieces {
+        let mark = std::mem::replace(&mut kind, AnnotationKind::Context).span(piece.mark.clone());
+        let mark = if label.is_empty() { mark } else { mark.label(*label) };
+        let snippet = Snippet::source(piece.text.as_str()).path(name).line_start(piece.line);
+        elements.push(snippet.annotation(mark).into());
+    }
+    let rendered = renderer.render(&[title.elements(elements).elements(notes)]);
+    // The renderer knows the columns of what it is given alone.
+    pieces.iter().fold(rendered, |rendered, (piece, _)| {
+        let [shown, column] =
+            [piece.shown, piece.column].map(|column| format!("{name}:{}:{column}", piece.line));
+        rendered.replacen(&shown, &column, 1)
+    })
+}
+
+/// What is said of the faults that one stands for.
+fn alike(fault: &Fault, newlines: &[usize]) -> Option<String> {
+    let (count, places) = &fault.alike;
+    let mut lines: Vec<_> = places.iter().flatten().map(|place| line(place.start, newlines)).collect();
+    lines.dedup();
+    let lines = lines.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");
+    let first = if lines.is_empty() { String::new() } else { format!(", first in line {lines}") };
+    (*count > 0).then(|| format!("the same in {}{first}", words::count(*count, "more place")))
+}
+
+/// The line of a byte, from 1.
+fn line(at: usize, newlines: &[usize]) -> usize {
+    1 + newlines.partition_point(|newline| *newline < at)
+}
+
+/// The lines in which a place lies, without the last one's end.
+fn lines(text: &str, place: Range<usize>, newlines: &[usize]) -> Range<usize> {
+    let start = newlines.partition_point(|newline| *newline < place.start);
+    let start = start.checked_sub(1).map_or(0, |line| newlines[line] + 1);
+    let end = newlines.get(newlines.partition_point(|newline| *newline < place.end)).copied();
+    let end = end.unwrap_or(text.len());
+    let end = if end > place.end && text[..end].ends_with('\r') { end - 1 } else { end };
+    start..end
+}
+
+/// The line of a marked place, cut around it where it is long.
+struct Piece {
+    text: String,
+    /// The place in it.
+    mark: Range<usize>,
+    /// The line and the column, in characters, at which the place begins, both from 1.
+    line: usize,
+    column: usize,
+    /// The column in the text that is shown.
+    shown: usize,
+}
+
+impl Piece {
+    fn of(text: &str, place: &Range<usize>, newlines: &[usize]) -> Self {
+        let own = lines(text, place.start..place.start, newlines);
+        let whole = own.len() <= WHOLE;
+        let end = if whole { place.end } else { boundary(text, place.end.min(place.start + MARK)) };
+        let mark = place.start..end.clamp(place.start, own.end.max(place.start));
+        let (start, end) = if whole {
+            (own.start, own.end.max(mark.end))
+        } else {
+            let start = boundary(text, place.start.saturating_sub(AROUND)).max(own.start);
+            (start, boundary(text, mark.end + AROUND).min(own.end).max(mark.end))
+        };
+        let [before, after] =
+            [(start > own.start), (end < own.end)].map(|is_cut| if is_cut { "…" } else { "" });
+        let shift = |at: usize| before.len() + at - start;
+        let shown = format!("{before}{}{after}", &text[start..end]);
+        Self {
+            shown: 1 + shown[..shift(mark.start)].chars().count(),
+            text: shown,
+            mark: shift(mark.start)..shift(mark.end),
+            line: line(place.start, newlines),
+            column: 1 + text[own.start..place.start].chars().count(),
+        }
+    }
+}
+
+/// The places of a fault beside its own: those that help to understand it, and the first of those that it stands for.
+pub fn others(fault: &Fault) -> impl Iterator<Item = (&Place, &str)> {
+    let also = fault.also.iter().map(|(place, label)| (place, label.as_str()));
+    also.chain(fault.alike.1.iter().map(|place| (place, "and here")))
+}

@@ -1,0 +1,35 @@
+//! Attributes by their names, and those that misspelt words were meant to be.
+
+use crate::scene::entity::Entity;
+use crate::scene::pparm::Attribute;
+use crate::words::{self, nearest};
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+
+/// The attribute of this name or alias.
+pub fn find_attribute(entity: &'static Entity, name: &str) -> Option<&'static dyn Attribute> {
+    entity.attributes().find(|attribute| attribute.name() == name || attribute.aliases().contains(&name))
+}
+
+/// The attributes that misspelt words of entity types were meant to be, so that none is looked for twice.
+pub type Guesses = HashMap<(&'static str, String), Option<&'static str>>;
+
+/// The most words of a scene that are guessed at. So many are no misspellings.
+const GUESSES: usize = 10_000;
+
+/// The attribute that a misspelt word was meant to be.
+pub fn near_attribute(
+    entity: &'static Entity,
+    word: &str,
+    guesses: &mut Guesses,
+) -> Option<&'static dyn Attribute> {
+    let is_full = guesses.len() >= GUESSES;
+    let near = match guesses.entry((entity.name, words::abridged(word).into_owned())) {
+        Entry::Occupied(known) => *known.get(),
+        Entry::Vacant(_) if is_full => None,
+        Entry::Vacant(free) => {
+            *free.insert(nearest(word, entity.attributes().map(|attribute| attribute.name())))
+        }
+    };
+    near.and_then(|name| find_attribute(entity, name))
+}

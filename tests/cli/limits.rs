@@ -1,0 +1,123 @@
+//! What is read stays within limits: no picture that only claims to be large, and nothing that never ends.
+#![cfg(target_os = "linux")]
+
+use crate::common::program::{folder, outcome, scene, tabray};
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+use std::process::Command;
+use std::thread;
+use std::time::{Duration, Instant};
+use tempfile::TempDir;
+
+const TEXTURED: &str = "camera eye { pixeldim 8 6 worlddim 8 6 viewpoint 4 3 6 }
+material m { ambient 1 1 1 }
+texture t { filename picture }
+texplane p { material m normal 0 0 1 point 0 0 -1 dimensions 3 3 texname t xdir 1 0 0 mode 0 }
+";
+
+/// A working directory with a scene, `textured.ray`, whose texture is the file `picture`.
+fn textured() -> TempDir {
+    let folder = folder();
+    fs::write(folder.path().join("textured.ray"), TEXTURED).expect("a scene");
+    folder
+}
+
+fn pipe(path: &Path) {
+    assert!(Command::new("mkfifo").arg(path).status().expect("a pipe").success());
+}
+
+#[test]
+fn a_texture_without_pixels_is_refused() {
+    let folder = textured();
+    for header in ["P6 0 5 255\n", "P6 5 0 255\n", "P3 0 0 255\n"] {
+        fs::write(folder.path().join("picture"), header).expect("a picture");
+        for command in [&["check", "textured.ray"][..], &["render", "textured.ray", "-o", "x.png"]] {
+            let (status, _, said) = outcome(tabray(&folder).args(command));
+            assert_eq!(status, 2, "{header} {command:?}: {said}");
+            assert!(said.contains("the file of texture `t` cannot be read: "), "{said}");
+        }
+    }
+}
+
+#[test]
+fn a_texture_that_is_a_pipe_a_device_or_a_folder_is_refused() {
+    let folder = textured();
+    pipe(&folder.path().join("pipe"));
+    let picture = folder.path().join("picture");
+    for (what, reason) in [
+        ("pipe", "it is a pipe or a device, not a file"),
+        ("/dev/zero", "it is a pipe or a device, not a file"),
+        (".", "is a directory"),
+    ] {
+        std::os::unix::fs::symlink(what, &picture).expect("a link");
+        let (status, _, said) = outcome(tabray(&folder).args(["check", "textured.ray"]));
+        assert_eq!(status, 2, "{what}: {said}");
+        assert!(said.contains(&format!("the file of texture `t` cannot be read: {reason}")), "{said}");
+        fs::remove_file(&picture).expect("a link");
+    }
+}
+
+#[test]
+fn a_checkpoint_that_is_a_pipe_is_refused() {
+    let folder = folder();
+    fs::copy(scene("sphere/in-front.ray"), folder.path().join("ball.ray")).expect("a copy");
+    pipe(&folder.path().join("ball.png.checkpoint"));
+    let (status, _, said) = outcome(tabray(&folder).args(["render", "ball.ray", "--resume"]));
+    assert_eq!(status, 2, "{said}");
+    assert!(
+        said.contains("cannot read `ball.png.checkpoint`: it is a pipe or a device, not a file"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_scene_comes_through_a_pipe_if_somebody_writes() {
+    let folder = folder();
+    let path = folder.path().join("pipe");
+    pipe(&path);
+    let text = fs::read(scene("sphere/in-front.ray")).expect("a scene");
+    let writer = thread::spawn({
+        let path = path.clone();
+        move || {
+            thread::sleep(Duration::from_millis(200));
+            fs::OpenOptions::new().write(true).open(path).and_then(|mut pipe| pipe.write_all(&text))
+        }
+    });
+    let (status, _, said) = outcome(tabray(&folder).args(["check", "pipe"]));
+    assert_eq!((status, said.as_str()), (0, "pipe: no errors\n"));
+    writer.join().expect("no panic").expect("it was read");
+
+    let start = Instant::now();
+    let (status, _, said) = outcome(tabray(&folder).args(["check", "pipe"]));
+    assert_eq!(
+        (status, said.as_str()),
+        (2, "error: cannot read `pipe`: no program writes to this pipe (waited 5 s)\n")
+    );
+    assert!(start.elapsed() < Duration::from_secs(30), "it ends");
+}
+
+#[test]
+fn a_picture_that_claims_to_be_huge_takes_no_memory() {
+    let folder = textured();
+    let file = fs::File::create(folder.path().join("picture")).expect("a file");
+    let mut encoder = png::Encoder::new(file, 6_000, 6_000);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_compression(png::Compression::Fast);
+    let mut writer = encoder.write_header().and_then(|writer| writer.into_stream_writer()).expect("a header");
+    for _ in 0..6_000 {
+        writer.write_all(&[0; 18_000]).expect("a row");
+    }
+    writer.finish().expect("a picture");
+    let args = ["render", "textured.ray", "-o", "x.ppm", "--max-memory"];
+    let (status, _, said) = outcome(tabray(&folder).args(args).arg("60MiB"));
+    assert_eq!(status, 2, "{said}");
+    assert!(said.contains("the file of texture `t` cannot be read: it takes more than "), "{said}");
+    let (status, _, said) = outcome(tabray(&folder).args(args).arg("1GiB"));
+    assert_eq!(status, 0, "{said}");
+    // 30000 x 30000 pixels are 2.5 GiB.
+    fs::write(folder.path().join("picture"), "P6 30000 30000 255\n").expect("a picture");
+    let (status, _, said) = outcome(tabray(&folder).args(["check", "textured.ray"]));
+    assert_eq!(status, 2, "{said}");
+    assert!(said.contains("it takes more than 1.0 GiB of memory"), "{said}");
+}

@@ -1,0 +1,46 @@
+//! Numbers as large and as small as there are, in place of each number of a scene, are refused or drawn at once.
+
+use crate::common::{registry, render, root};
+use std::fs;
+use std::time::{Duration, Instant};
+use tabray::scene;
+
+/// Zeros, numbers whose squares and cubes are none, and numbers at the limits of lengths.
+const NUMBERS: [&str; 16] = [
+    "0", "-0", "1e-320", "1e-160", "1e-152", "1e-9", "-1e-9", "1e9", "-1e9", "1e16", "1e77", "1e152",
+    "1e154", "1e166", "1e300", "-1e300",
+];
+
+/// How long a picture of 48 pixels may take on a machine with other things to do.
+const LONG: Duration = Duration::from_secs(20);
+
+#[test]
+fn extreme_numbers_are_refused_or_drawn_at_once() {
+    let folder = root().join("scenes/entities");
+    let mut files: Vec<_> =
+        fs::read_dir(&folder).expect("scenes").map(|file| file.expect("a file").path()).collect();
+    files.retain(|file| file.extension().is_some_and(|extension| extension == "ray"));
+    files.sort();
+    let mut drawn = 0;
+    for (first, file) in files.iter().enumerate() {
+        let text = fs::read_to_string(file).expect("a scene");
+        // What stands in quotes or in a comment is no number of an attribute.
+        let parts: Vec<&str> = text.split_inclusive(char::is_whitespace).collect();
+        let is_number = |part: &&str| part.trim().parse::<f64>().is_ok();
+        let places: Vec<_> = (0..parts.len()).filter(|at| is_number(&parts[*at])).collect();
+        for (index, at) in places.iter().enumerate() {
+            let number = format!("{} ", NUMBERS[(first + 7 * index) % NUMBERS.len()]);
+            let text = [&parts[..*at], &[&number], &parts[at + 1..]].concat().concat();
+            let start = Instant::now();
+            if let Ok(mut loaded) = scene::read(registry(), "extreme", &folder, text.as_bytes(), None) {
+                let camera = &mut loaded.model.camera.value;
+                (camera.pixels, camera.samples) = ([8, 6], 1);
+                render(&loaded.model);
+                drawn += 1;
+            }
+            let took = start.elapsed();
+            assert!(took < LONG, "{} with {number}for number {index} takes {took:?}", file.display());
+        }
+    }
+    assert!(drawn > 100, "{drawn} are drawn");
+}
