@@ -109,7 +109,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     if beside.is_empty() {
         return Ok(());
     }
-    stop.from_here_at_once()?;
+    stop.ends_from_here()?;
     aov::write(&plan, exact, threads, format, beside)
 }
 

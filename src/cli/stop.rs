@@ -109,7 +109,7 @@ impl Stop {
     }
 
     /// From here on interruptions and limits end the program, and the picture is not there, or those beside it are not.
-    pub fn from_here_at_once(&self) -> Result<(), Failure> {
+    pub fn ends_from_here(&self) -> Result<(), Failure> {
         interrupt::from_here(Manner::Ends(NOT_FINISHED));
         match self.reached.get() {
             Some(limit) if matches!(limit, Limit::Time(_)) => {
