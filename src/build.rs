@@ -1,7 +1,7 @@
-//! Names every file of `plugins/`, so that dropping one in compiles it in and deleting it takes it out.
+//! Lists the files of `plugins/`, so that a file put there is compiled in, and a file deleted there is left out.
 //!
-//! Writes `$OUT_DIR/plugins.rs`, one macro with a `mod` per file in sorted order; `lib.rs` expands it. The modules'
-//! names are raw, so that a plugin can be named after a word of Rust: `box`.
+//! Writes `$OUT_DIR/plugins.rs`, a macro with a `mod` for each file in sorted order; `lib.rs` expands it. The modules'
+//! names are raw identifiers, so that a plugin can be named after a keyword of Rust: `box`.
 
 use std::path::Path;
 use std::{env, fs, io};

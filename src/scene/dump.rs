@@ -1,4 +1,4 @@
-//! A model as text: as the notes' program dumps it, or as a scene that loads again.
+//! Writes a model as text: as the notes' program dumps it, or as a scene that loads again.
 
 use crate::scene::entity::Args;
 use crate::scene::kind::Kind;
@@ -7,7 +7,7 @@ use crate::scene::pparm::Attribute;
 use crate::scene::syntax::Syntax;
 use crate::scene::value::Datum;
 
-/// The notes' dump: camera, materials, objects and lights, numbers to one decimal. Textures are not in it.
+/// Returns the notes' dump: camera, materials, objects and lights, with numbers to one decimal. Textures are not in it.
 pub fn notes(model: &Model) -> String {
     let kinds = [Kind::Camera, Kind::Material, Kind::Object, Kind::Light];
     kinds.into_iter().flat_map(|kind| model.entities(kind)).map(notes_block).collect()
@@ -23,8 +23,8 @@ fn notes_block(args: &Args) -> String {
     format!("{before}{:<12} {}{after_name}\n{lines}{after}", args.entity.dump_name, args.name)
 }
 
-/// A scene that loads again to the identical model, in either spelling: every number to its last bit, the
-/// entities in their order, and of their attributes those that were given.
+/// Returns a scene, in either syntax, that loads to the identical model: every number to its last bit, the entities in
+/// their order, and only the attributes that were given.
 pub fn scene(model: &Model, syntax: Syntax) -> String {
     let entities = in_order(model);
     let count = |args: &Args| entities.iter().filter(|other| same_title(other, args)).count();
@@ -32,7 +32,7 @@ pub fn scene(model: &Model, syntax: Syntax) -> String {
     blocks.join("\n")
 }
 
-/// Whether TOML needs an array of tables, as two entities have one title.
+/// Tells whether two entities have the same TOML title, so that they need an array of tables.
 fn same_title(a: &Args, b: &Args) -> bool {
     (a.entity.name, &a.name) == (b.entity.name, &b.name)
 }
@@ -58,7 +58,7 @@ fn scene_block(args: &Args, syntax: Syntax, repeated: bool) -> String {
     }
 }
 
-/// All entities of a model in the order of its scene.
+/// Returns all entities of a model in the order of its scene.
 fn in_order(model: &Model) -> Vec<&Args> {
     let kinds = [Kind::Camera, Kind::Material, Kind::Texture, Kind::Object, Kind::Light];
     let mut all: Vec<_> = kinds.into_iter().flat_map(|kind| model.entities(kind)).collect();

@@ -1,4 +1,4 @@
-//! From a scene's text to a model, and back: the tables of entity types, and what is written from them.
+//! From a scene's text to a model, and back: the tables of entity types, and the documents generated from them.
 
 pub(crate) mod choice;
 pub mod dump;

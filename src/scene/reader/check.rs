@@ -1,4 +1,4 @@
-//! Entities as written, checked and made into a [`Model`].
+//! Checks parsed entities and makes a [`Model`] of them.
 
 use super::attributes::{Against, whole};
 use super::fault::{Fault, Place, Severity};
@@ -22,8 +22,8 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Makes a model of entities as written and reports all their faults. Without faults there is a model. File
-/// names start from `folder`.
+/// Makes a model of parsed entities and reports all their faults. Returns a model only if there are no faults. File
+/// names are relative to `folder`.
 pub fn model(
     registry: &Registry,
     folder: &Path,
@@ -50,7 +50,7 @@ pub fn model(
         objects: Vec::new(),
         lights: Vec::new(),
     };
-    // Objects and lights may ask for the camera, wherever it stands.
+    // Objects and lights may ask for the camera, wherever it stands in the text, so they are constructed last.
     let waiting: Vec<_> =
         written.iter().enumerate().filter_map(|(order, entity)| check.table(order, entity)).collect();
     for (written, args) in waiting {
@@ -60,48 +60,49 @@ pub fn model(
     check.finish(&written)
 }
 
-/// How many bytes the images of all textures of a scene may take, unless something else is asked for: far more than
-/// scenes have, and far less than a small file can claim to hold.
+/// The default limit on the memory of all textures of a scene, in bytes: far more than scenes need, and far less than a
+/// small file can claim to hold.
 const TEXTURES: u64 = 1 << 30;
 
-/// How exactly a scene is traced and how much memory its textures may take, as far as others than itself have a say.
+/// The accuracy of a scene and the memory limit of its textures, as far as the caller chooses them.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Chosen {
-    /// What counts in place of the scene's own.
+    /// The accuracy that overrides the scene's own.
     pub above_all: Option<Accuracy>,
-    /// What counts where the scene says nothing.
+    /// The accuracy where the scene chooses none.
     pub by_default: Accuracy,
-    /// How many bytes its textures may take, in place of a gibibyte.
+    /// The limit on the memory of the scene's textures, in bytes; by default 1 GiB.
     pub textures: Option<u64>,
 }
 
-/// An entity's checked values, and how it was written.
+/// An entity's checked values, with its parsed text.
 type Checked<'w> = (&'w Written<'w>, Args);
 
 struct Check<'r> {
     registry: &'r Registry,
     report: &'r mut Report,
     names: Names,
-    /// Entity types that are not there, each with all its places.
+    /// Unknown entity types, each with all its places.
     unknown: BTreeMap<String, Vec<Place>>,
-    /// Where the first camera is named.
+    /// The place of the first camera's name.
     first_camera: Option<Place>,
     setting: Arc<Setting>,
-    /// What counts in place of the scene's own.
+    /// The accuracy that overrides the scene's own.
     accuracy: Option<Accuracy>,
     camera: Option<Item<Camera>>,
     materials: Vec<Item<Arc<Material>>>,
     textures: Vec<Item<Arc<Texture>>>,
-    /// The textures by their files.
+    /// The textures by the paths of their files.
     files: HashMap<PathBuf, Arc<Texture>>,
-    /// How many bytes the images of textures may still take.
+    /// How many more bytes the images of textures may take.
     room: u64,
     objects: Vec<Object>,
     lights: Vec<Item<AnyLight>>,
 }
 
 impl Check<'_> {
-    /// Checks an entity against its table. What others refer to is made at once, the rest is handed back.
+    /// Checks an entity against its table. An entity that others can refer to is constructed at once; the others are
+    /// returned.
     fn table<'w>(&mut self, order: usize, written: &'w Written<'w>) -> Option<Checked<'w>> {
         let Some(entity) = self.registry.find(&written.kind.text) else {
             let kind = written.kind.text.to_string();
@@ -130,14 +131,14 @@ impl Check<'_> {
         if let Some(args) = args {
             self.construct(written, args);
         }
-        // Where it is faulty, something stands in, so that its users are checked too.
+        // If the entity is faulty, a stand-in takes its place, so that the entities that refer to it are checked too.
         if matches!(entity.kind(), Kind::Material | Kind::Texture) {
             self.names.define(entity.kind(), text, stand_in(entity.kind(), text));
         }
         None
     }
 
-    /// Makes an entity of its checked values.
+    /// Constructs an entity from its checked values.
     fn construct(&mut self, written: &Written<'_>, mut args: Args) {
         args.setting = self.setting.clone();
         let (kind, name) = (args.entity.kind(), args.name.clone());
@@ -162,7 +163,7 @@ impl Check<'_> {
             Construct::Texture(construct) => {
                 if let Some(Item { args, value }) = self.made(written, args, construct) {
                     self.report.add_file(value.path().to_owned());
-                    // Two that have one file are one, so that it is read once.
+                    // Textures with the same file share one image, so that the file is read once.
                     let texture = match self.files.entry(value.path().to_owned()) {
                         Entry::Occupied(known) => known.get().clone(),
                         Entry::Vacant(free) => free.insert(Arc::new(value)).clone(),
@@ -187,7 +188,7 @@ impl Check<'_> {
         }
     }
 
-    /// What a constructor makes of checked values.
+    /// Calls a constructor with checked values and reports a refusal.
     fn made<T>(
         &mut self,
         written: &Written<'_>,
@@ -212,7 +213,7 @@ impl Check<'_> {
         }
     }
 
-    /// Reads the textures that something refers to, and no others.
+    /// Reads the textures that some entity refers to, and no others.
     fn textures_can_be_read(&mut self, written: &[Written<'_>]) {
         let users =
             self.objects.iter().map(|object| &object.args).chain(self.lights.iter().map(|light| &light.args));
@@ -241,7 +242,7 @@ impl Check<'_> {
         }
     }
 
-    /// The model, or the faults that show only when all is read.
+    /// Returns the model, after reporting the faults that show only when the whole scene has been read.
     fn finish(mut self, written: &[Written<'_>]) -> Option<Model> {
         let mut camera_misspelt = false;
         let mut unknown: Vec<_> = std::mem::take(&mut self.unknown).into_iter().collect();
@@ -276,7 +277,7 @@ impl Check<'_> {
     }
 }
 
-/// Where an attribute of an entity stands with its values; the entity's name where it does not stand.
+/// Returns the place of an attribute with its values, or of the entity's name where the attribute is not given.
 fn place_of(entity: &'static Entity, written: &Written<'_>, attribute: Option<&str>) -> Place {
     let known = |word: &Word<'_>| find_attribute(entity, &word.text).map(|known| known.name());
     let given = attribute
