@@ -40,7 +40,7 @@ fn main() -> io::Result<()> {
 }
 
 fn is_module_name(name: &str) -> bool {
-    // These cannot be raw.
+    // These three keywords cannot be raw identifiers.
     !["crate", "self", "super"].contains(&name)
         && name.starts_with(|c: char| c.is_ascii_lowercase())
         && name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')

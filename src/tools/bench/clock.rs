@@ -1,11 +1,12 @@
-//! How long work takes, as the thread that does it has it on its core: what else the machine does hardly counts.
+//! The duration of work in CPU time of the thread that does it, so that other work of the machine hardly counts.
 
 use std::time::Duration;
 
-/// Shorter work is repeated until it takes so long, so that looking at the clock does not count.
+/// The shortest duration that is measured. Shorter work is repeated, so that the cost of reading the clock does not
+/// count.
 const SHORTEST: Duration = Duration::from_micros(200);
 
-/// The core's time that this thread has had so far.
+/// Returns the CPU time that this thread has used so far.
 #[cfg(target_os = "linux")]
 pub fn now() -> Duration {
     use nix::time::{ClockId, clock_gettime};
@@ -13,7 +14,7 @@ pub fn now() -> Duration {
     clock_gettime(ClockId::CLOCK_THREAD_CPUTIME_ID).map_or(Duration::ZERO, Duration::from)
 }
 
-/// The time on the wall, where no clock counts a thread's own.
+/// Returns the wall-clock time, on systems without a clock for each thread.
 #[cfg(not(target_os = "linux"))]
 pub fn now() -> Duration {
     use std::sync::OnceLock;

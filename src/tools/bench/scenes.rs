@@ -1,10 +1,10 @@
-//! Scenes to measure with, where none is given.
+//! Built-in scenes to measure when no scene is given.
 
 use crate::scene::reader::Written;
 use glam::{DVec3, dvec3};
 use std::f64::consts::TAU;
 
-/// The scenes and what they are.
+/// Returns the built-in scenes with their names.
 pub fn all() -> [(&'static str, Vec<Written<'static>>); 4] {
     [
         ("3 planes and 2 spheres", planes_and_spheres()),
@@ -14,7 +14,7 @@ pub fn all() -> [(&'static str, Vec<Written<'static>>); 4] {
     ]
 }
 
-/// Two balls in the corner of a room, with two lights.
+/// Two spheres in the corner of a room, with two lights.
 pub fn planes_and_spheres() -> Vec<Written<'static>> {
     let plane = |name, normal: [f64; 3]| {
         Written::new("plane", name)
@@ -33,7 +33,7 @@ pub fn planes_and_spheres() -> Vec<Written<'static>> {
     scene
 }
 
-/// The course notes' vase, as exactly as it can be.
+/// The course notes' vase, with its profile as a formula.
 pub fn vase() -> Vec<Written<'static>> {
     let mut scene = setting(dvec3(4.0, 3.0, 7.0));
     scene.push(
@@ -47,7 +47,8 @@ pub fn vase() -> Vec<Written<'static>> {
     scene
 }
 
-/// So many spheres in a box behind the screen, which together cover about as much of it however many they are.
+/// This many spheres in a box behind the image plane. Together they cover about the same area of it, however many there
+/// are.
 pub fn spheres(count: usize) -> Vec<Written<'static>> {
     let radius = 1.5 / (count as f64).sqrt();
     let mut scene = setting(dvec3(4.0, 3.0, 7.0));
@@ -55,7 +56,7 @@ pub fn spheres(count: usize) -> Vec<Written<'static>> {
     scene
 }
 
-/// So many triangles or one less: the notes' vase, in rings of facets.
+/// This many triangles or one less: the notes' vase, in rings of facets.
 pub fn triangles(count: usize) -> Vec<Written<'static>> {
     let rings = ((count / 2) as f64).sqrt() as usize;
     let around = count / 2 / rings.max(1);
@@ -104,8 +105,8 @@ fn triangle(name: &str, corners: [DVec3; 3]) -> Written<'static> {
         .set("vertex3", c)
 }
 
-/// A place in the box, spread evenly: multiples of powers of the plastic ratio (Roberts, "The Unreasonable
-/// Effectiveness of Quasirandom Sequences", 2018).
+/// Returns a point in the box. The points are spread evenly: multiples of powers of the plastic ratio (Roberts, "The
+/// Unreasonable Effectiveness of Quasirandom Sequences", 2018).
 fn scattered(index: usize) -> DVec3 {
     const STEP: DVec3 = dvec3(0.819_172_513_396_164_5, 0.671_043_606_703_789_3, 0.549_700_477_901_970_2);
     let part = ((index + 1) as f64 * STEP).fract();
