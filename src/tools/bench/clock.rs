@@ -23,8 +23,8 @@ pub fn now() -> Duration {
     START.get_or_init(Instant::now).elapsed()
 }
 
-/// The least time that each of several works takes, in seconds. They take turns for about as long as `patience`, three
-/// times at least, so that a machine that grows slower meets them all.
+/// Returns the least time of each of several pieces of work, in seconds. They take turns for about as long as
+/// `patience`, and three times at least, so that a machine that becomes slower slows down all of them.
 pub fn least<const N: usize>(patience: Duration, works: [&mut dyn FnMut(); N]) -> [f64; N] {
     let mut works = works.map(|work| {
         let repeats = SHORTEST.as_nanos().div_ceil(time(work, 1).as_nanos().max(1));
