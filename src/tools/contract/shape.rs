@@ -13,8 +13,9 @@ use crate::world::certify::{Enclosure, Precision};
 use crate::world::interaction::SurfaceInteraction;
 use glam::DVec3;
 
-/// How far aside rounding may move a ray, as a part of the numbers that its distance is computed from: generously, for
-/// methods that lose a third of the digits. How far off its distance may be follows from that.
+/// How far rounding may shift a ray sideways, as a fraction of the numbers from which its distance is computed. It is
+/// above 2^-52 to the power of 2/3, about 4e-11, for methods that lose a third of the digits. The tolerance of a
+/// distance is derived from it.
 const ASIDE: f64 = 1e-10;
 
 /// A step, as a fraction of the same numbers, that is longer than the rounding error of a hit that does not graze:
