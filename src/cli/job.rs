@@ -1,4 +1,4 @@
-//! A picture being made: rendered and written, or stopped and left to be gone on with.
+//! Renders an image and writes it, or stops and leaves what a later render can continue from.
 
 use super::failure::Failure;
 use super::messages;
@@ -19,23 +19,23 @@ use std::io::{self, BufWriter};
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
-/// A part of a plan's picture, and how it is made.
+/// A part of a plan's image, and how it is rendered.
 pub struct Job<'a> {
     pub plan: &'a Plan<'a>,
     pub part: &'a Part,
     pub renderer: &'a Renderer,
     pub format: Format,
-    /// Where it belongs.
+    /// The path of the image.
     pub path: &'a Path,
-    /// How many pixels may be in memory at one time.
+    /// The maximum number of pixels in memory at one time.
     pub band: usize,
     pub stop: &'a Stop,
-    /// What it takes goes in here, if anybody wants to know.
+    /// The statistics to fill in, if they are wanted.
     pub stats: Option<&'a Stats>,
 }
 
 impl Job<'_> {
-    /// Renders what a checkpoint does not have, and puts the picture where it belongs.
+    /// Renders what a checkpoint does not have, and writes the image to its path.
     pub fn run(&self, output: Output, mut begun: Option<Begun>) -> Result<(), Failure> {
         let Part { columns, rows } = self.part;
         let progress = Progress::new(rows.len());
@@ -89,12 +89,12 @@ impl Job<'_> {
         }
     }
 
-    /// Puts a part of the picture where it belongs, and says what is there. `out` has it, and black for the rest.
+    /// Writes an unfinished image to its path, and reports it. `out` contains the finished part, and black elsewhere.
     fn leave(&self, out: BufWriter<Output>, tiles: &Tiles) -> Result<(), Failure> {
         let output =
             out.into_inner().map_err(|error| Failure::cannot_write(self.path, &error.into_error()))?;
         let [width, height] = self.part.size();
-        // Not rounded: what is not finished is not 100 %.
+        // Rounded down, so that an unfinished image does not show 100 %.
         let share = (1000.0 * tiles.pixels() as f64 / (width * height) as f64).floor() / 10.0;
         messages::note(&match &output {
             Output::File(..) if tiles.pixels() == 0 => {
@@ -118,7 +118,7 @@ impl Job<'_> {
     }
 }
 
-/// Says which pixels are not as the scene has them, if there are any.
+/// Warns of pixels that reached the limit on their number of rays, if there are any.
 fn warn_of(cuts: Cuts) {
     if cuts.pixels == 0 {
         return;

@@ -1,4 +1,4 @@
-//! When a render stops before its picture is finished: at an interruption, or at a limit of time or memory.
+//! Stops a render before its image is finished: at an interruption, or at a limit of time or memory.
 
 use super::failure::Failure;
 use super::{interrupt, memory, messages};
@@ -10,16 +10,16 @@ use std::sync::{Arc, OnceLock};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// How often memory is looked at.
+/// The interval at which the memory use is checked.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// What a pixel of a band takes, in bytes: three, and room for what its tiles need.
+/// The memory for a pixel of a band, in bytes: three for its colour, the rest for its share of the tiles' state.
 const PIXEL: u64 = 4;
 
-/// What the row that is being written takes for each of its pixels, in bytes.
+/// The memory for each pixel of the row that is being written, in bytes.
 const ROW: u64 = 64;
 
-/// What rendering takes beside the picture at least, in bytes.
+/// The minimum memory of a render beside the image, in bytes.
 const ASIDE: u64 = 2 << 20;
 
 #[derive(clap::Args)]
@@ -39,7 +39,7 @@ pub struct Args {
     max_memory: Option<ByteSize>,
 }
 
-/// What a render may not go beyond.
+/// A limit on a render.
 #[derive(Clone, Copy)]
 enum Limit {
     Time(Duration),
@@ -55,19 +55,19 @@ impl fmt::Display for Limit {
     }
 }
 
-/// Knows whether a render is to stop.
+/// Tells whether a render is to stop.
 #[derive(Default)]
 pub struct Stop {
     reached: Arc<OnceLock<Limit>>,
 }
 
 impl Stop {
-    /// Whether it is.
+    /// Tells whether the render is to stop.
     pub fn is_due(&self) -> bool {
         interrupt::check().is_break() || self.reached.get().is_some()
     }
 
-    /// Says why it is.
+    /// Reports why the render stops.
     pub fn tell(&self) {
         messages::note(&match self.reached.get() {
             Some(limit) => format!("the {limit} has been reached"),
@@ -77,7 +77,7 @@ impl Stop {
 }
 
 impl Args {
-    /// From here on, somebody watches the limits.
+    /// Starts watching the limits.
     pub fn watch(&self) -> Result<Stop, Failure> {
         let stop = Stop::default();
         let &Self { time_limit, max_memory, .. } = self;
@@ -91,7 +91,7 @@ impl Args {
             let over = max_memory.filter(|limit| memory::now().is_some_and(|now| now > limit.as_u64()));
             time.map(Limit::Time).or(over.map(Limit::Memory))
         };
-        // A limit may be reached before anything is begun, and then nothing is.
+        // If a limit is already reached, the render does not start.
         if let Some(limit) = look() {
             let _ = reached.set(limit);
             return Ok(stop);
@@ -112,13 +112,13 @@ impl Args {
         })
     }
 
-    /// How many bytes the textures of a scene may take, if there is a limit.
+    /// Returns the memory that the textures of a scene may take, in bytes, if there is a limit.
     pub fn left(&self) -> Option<u64> {
         let now = memory::now().unwrap_or(0) + ASIDE;
         self.max_memory.map(|limit| limit.as_u64().saturating_sub(now))
     }
 
-    /// How many pixels may be in memory at one time, of a picture of this width.
+    /// Returns how many pixels of an image of this width may be in memory at one time.
     pub fn band(&self, width: usize) -> Result<usize, Failure> {
         let Some(limit) = self.max_memory else { return Ok(BAND) };
         let Some(now) = memory::now() else {
@@ -134,7 +134,7 @@ impl Args {
                 Some(format!("it needs at least about {}", ByteSize(least))),
             ));
         }
-        // Most is left to the rays: how deep their reflections go shows when they are there.
+        // Three quarters are left for the rays: how much their reflections need shows only during the render.
         let bytes = ((limit.as_u64() - now - row) / 4).max(strip);
         Ok(usize::try_from(bytes / PIXEL).map_or(BAND, |pixels| pixels.min(BAND)))
     }
