@@ -36,7 +36,7 @@ pub struct Files {
     exact: Option<(PathBuf, Output)>,
 }
 
-/// Opens all files that are asked for; their names are derived from the main image's.
+/// Opens all files that are asked for, named after the main picture's.
 pub fn open(model: &Model, args: &Args, main: &Path, output: &Output) -> Result<Vec<Files>, Failure> {
     if args.aov.is_empty() {
         return Ok(Vec::new());

@@ -51,7 +51,7 @@ pub fn print(model: &Model, args: &Args) -> Result<(), Failure> {
         Err(error) if error.kind() == io::ErrorKind::Interrupted => {
             Err(Failure::Interrupted("the image was not finished"))
         }
-        // If standard error is closed, no one can be told.
+        // Where standard error is closed there is nobody to tell.
         _ => Ok(()),
     }
 }

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 /// The maximum size of a scene, in bytes: far more than written scenes have, and far less than memory holds.
 const LARGEST: u64 = 1 << 30;
 
-/// Tells whether this path stands for standard input.
+/// Whether this path stands for standard input.
 pub fn is_standard(path: &Path) -> bool {
     path == Path::new("-")
 }

@@ -6,12 +6,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
-/// From here on an interruption is only noted, and [`check`] reports it.
+/// From here on an interruption is only noted, for [`check`] to act on.
 pub fn catch() -> Result<(), Failure> {
     catch_and(|| ())
 }
 
-/// Notes interruptions as [`catch`] does, and calls `then` at the first one, on a thread of its own.
+/// As [`catch`], and the first one calls `then`, on a thread of its own.
 pub fn catch_and(mut then: impl FnMut() + Send + 'static) -> Result<(), Failure> {
     ctrlc::set_handler(move || {
         if INTERRUPTED.swap(true, Ordering::Relaxed) {
@@ -22,7 +22,7 @@ pub fn catch_and(mut then: impl FnMut() + Send + 'static) -> Result<(), Failure>
     .map_err(|error| Failure::Failed(format!("cannot catch interruptions: {error}")))
 }
 
-/// Breaks if the user has interrupted the program.
+/// Breaks if the user wants to stop.
 pub fn check() -> ControlFlow<()> {
     if INTERRUPTED.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 }

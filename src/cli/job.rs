@@ -27,7 +27,7 @@ pub struct Job<'a> {
     pub format: Format,
     /// The path of the image.
     pub path: &'a Path,
-    /// The maximum number of pixels in memory at one time.
+    /// How many pixels may be in memory at one time.
     pub band: usize,
     pub stop: &'a Stop,
     /// The statistics to fill in, if they are wanted.
@@ -35,7 +35,7 @@ pub struct Job<'a> {
 }
 
 impl Job<'_> {
-    /// Renders what a checkpoint does not have, and writes the image to its path.
+    /// Renders what a checkpoint does not have, and puts the picture where it belongs.
     pub fn run(&self, output: Output, mut begun: Option<Begun>) -> Result<(), Failure> {
         let Part { columns, rows } = self.part;
         let progress = Progress::new(rows.len());
@@ -89,7 +89,7 @@ impl Job<'_> {
         }
     }
 
-    /// Writes an unfinished image to its path, and reports it. `out` contains the finished part, and black elsewhere.
+    /// Puts a part of the picture where it belongs, and says what is there. `out` has it, and black for the rest.
     fn leave(&self, out: BufWriter<Output>, tiles: &Tiles) -> Result<(), Failure> {
         let output =
             out.into_inner().map_err(|error| Failure::cannot_write(self.path, &error.into_error()))?;

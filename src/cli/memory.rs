@@ -2,7 +2,7 @@
 
 use std::fs;
 
-/// Returns the memory that the program uses now, in bytes.
+/// The memory that it has now, in bytes.
 pub fn now() -> Option<u64> {
     status("VmRSS:")
 }

@@ -55,7 +55,7 @@ pub fn put(
     Ok(())
 }
 
-/// Moves an image to its path, if it was written without an error.
+/// Puts a picture in its place, if it was written without an error.
 pub fn finished(path: &Path, written: io::Result<()>, out: BufWriter<Output>) -> Result<(), Failure> {
     match written.and_then(|()| out.into_inner().map_err(|error| error.into_error())?.finish()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::cannot_write(path, &error)),
@@ -106,7 +106,7 @@ impl Output {
             return Ok(Self::Standard);
         }
         let cannot = |error: io::Error| Failure::cannot_write(path, &error);
-        // A link stays a link: its target is replaced.
+        // A link stays a link; the file that it leads to is the one replaced.
         let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
         let folder = match target.parent() {
             Some(folder) if folder != Path::new("") => folder,
@@ -136,7 +136,7 @@ impl Output {
         Ok(file)
     }
 
-    /// Moves what was written to its path.
+    /// Puts what was written in its place.
     pub fn finish(self) -> io::Result<()> {
         match self {
             Self::Standard | Self::Special(_) => Ok(()),

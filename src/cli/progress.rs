@@ -3,7 +3,7 @@
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::time::{Duration, Instant};
 
-/// A progress bar on a terminal, shown once the work takes noticeable time.
+/// A bar on a terminal, once work takes long enough to ask how long it will take.
 pub struct Progress {
     bar: ProgressBar,
     start: Instant,

@@ -76,7 +76,7 @@ impl Begun {
         Ok(Some(Self { path, checkpoint }))
     }
 
-    /// Fills a band with the pixels that are already rendered. Bands must be passed in order, from the top.
+    /// Fills a band with what is rendered of it. Bands come from the top.
     pub fn fill(&mut self, band: &mut Band) -> Result<(), Failure> {
         self.checkpoint.fill(band).map_err(|error| cannot_read(&self.path, &error))
     }
@@ -102,8 +102,8 @@ fn cannot_read(path: &Path, error: &io::Error) -> Failure {
     Failure::Usage(format!("cannot read `{}`: {reason}", path.display()), Some(BEGIN_ANEW.to_owned()))
 }
 
-/// Writes an unfinished image to its path, and a checkpoint beside it, whose path is returned. `written` contains the
-/// image, black where nothing is rendered.
+/// Leaves a part of a picture at its place, and a checkpoint beside it, whose path is returned. `written` is the picture,
+/// black where nothing is rendered.
 ///
 /// Both files are complete before either is moved to its path.
 pub fn leave(
@@ -128,7 +128,7 @@ pub fn leave(
         .map_err(cannot_write)?;
     let partial = match format {
         Format::Ppm => written,
-        // The checkpoint's transparency shows which pixels are missing.
+        // The checkpoint shows what is wanted.
         Format::Png(_) => {
             let mut shown = checkpoint.read().map_err(cannot_write)?;
             let mut partial = Output::open(picture)?;

@@ -10,7 +10,7 @@ use std::sync::{Arc, OnceLock};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// The interval at which the memory use is checked.
+/// How often memory is looked at.
 const LOOK: Duration = Duration::from_millis(20);
 
 /// The memory for a pixel of a band, in bytes: three for its colour, the rest for its share of the tiles' state.
@@ -77,7 +77,7 @@ impl Stop {
 }
 
 impl Args {
-    /// Starts watching the limits.
+    /// From here on, somebody watches the limits.
     pub fn watch(&self) -> Result<Stop, Failure> {
         let stop = Stop::default();
         let &Self { time_limit, max_memory, .. } = self;
@@ -91,7 +91,7 @@ impl Args {
             let over = max_memory.filter(|limit| memory::now().is_some_and(|now| now > limit.as_u64()));
             time.map(Limit::Time).or(over.map(Limit::Memory))
         };
-        // If a limit is already reached, the render does not start.
+        // A limit may be reached before anything is begun, and then nothing is.
         if let Some(limit) = look() {
             let _ = reached.set(limit);
             return Ok(stop);

@@ -5,7 +5,7 @@ use std::io;
 use std::path::Path;
 use tempfile::NamedTempFile;
 
-/// A file in a folder that is not visible under its final name before it is complete.
+/// A file in a folder, written before anybody sees it.
 pub enum Temporary {
     /// A file without a name, which disappears with the program, however that ends.
     #[cfg(target_os = "linux")]
@@ -36,7 +36,7 @@ impl Temporary {
 
     /// Gives the file this name in its folder, replacing an existing file.
     ///
-    /// A file without a name cannot replace another in a single step: for a moment the complete file has a hidden name.
+    /// There is no single step to this for a file without a name: for a moment the file, which is whole, has a hidden one.
     pub fn persist(self, target: &Path) -> io::Result<()> {
         match self {
             #[cfg(target_os = "linux")]

@@ -127,10 +127,10 @@ fn shown(hasher: Sha256) -> String {
     hasher.finalize().iter().fold("sha256:".to_owned(), |text, byte| format!("{text}{byte:02x}"))
 }
 
-/// Writes a checkpoint of an image of this size. `rows` yields all rows of the image, whether they are rendered or not.
+/// Writes a checkpoint of a picture of this size. `rows` has all of the picture's rows, whether they are rendered or not.
 ///
 /// # Errors
-/// Those of `out` and `rows`, and an error where a PNG cannot have the size.
+/// Those of `out` and `rows`, and a size that a PNG cannot have.
 pub fn write(
     out: impl Write,
     [width, height]: [usize; 2],
@@ -184,15 +184,15 @@ impl Checkpoint {
         Ok(Self { identity, png, row })
     }
 
-    /// Returns the width and the height of the image in pixels.
+    /// The width and height of its picture.
     pub fn size(&self) -> [usize; 2] {
         [self.png.info().width, self.png.info().height].map(|side| side as usize)
     }
 
-    /// Fills a band with the pixels that are already rendered. Bands must be passed in order, from the top.
+    /// Fills a band with what is rendered of it. Bands come from the top.
     ///
     /// # Errors
-    /// Those of the file; of kind `InvalidData` if it is corrupt or ends before the band does.
+    /// Those of the file; of kind `InvalidData` where it is broken, or ends before the band does.
     pub fn fill(&mut self, band: &mut Band) -> io::Result<()> {
         let across = self.row.len().div_ceil(TILE);
         band.tiles.fill(true);

@@ -69,7 +69,7 @@ impl Format {
         }
     }
 
-    /// Opens a file that [`write`](Self::write) wrote, to read it from its first row.
+    /// Reads a file that [`write`](Self::write) wrote, from its beginning.
     ///
     /// # Errors
     /// Those of the file.
@@ -129,7 +129,7 @@ fn write_ppm(
 /// its PPM.
 pub(crate) const AS_SHOWN: png::SrgbRenderingIntent = png::SrgbRenderingIntent::RelativeColorimetric;
 
-/// The largest image that is encoded in one piece, in bytes.
+/// A picture of up to so many bytes is encoded at once.
 const AT_ONCE: usize = 1 << 20;
 
 fn write_png(

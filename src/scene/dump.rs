@@ -32,7 +32,7 @@ pub fn scene(model: &Model, syntax: Syntax) -> String {
     blocks.join("\n")
 }
 
-/// Tells whether two entities have the same TOML title, so that they need an array of tables.
+/// Whether TOML needs an array of tables, as two entities have one title.
 fn same_title(a: &Args, b: &Args) -> bool {
     (a.entity.name, &a.name) == (b.entity.name, &b.name)
 }
@@ -58,7 +58,7 @@ fn scene_block(args: &Args, syntax: Syntax, repeated: bool) -> String {
     }
 }
 
-/// Returns all entities of a model in the order of its scene.
+/// All entities of a model in the order of its scene.
 fn in_order(model: &Model) -> Vec<&Args> {
     let kinds = [Kind::Camera, Kind::Material, Kind::Texture, Kind::Object, Kind::Light];
     let mut all: Vec<_> = kinds.into_iter().flat_map(|kind| model.entities(kind)).collect();

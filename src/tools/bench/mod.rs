@@ -131,17 +131,17 @@ impl Speed {
 }
 
 /// Renders a frame into a buffer that is reused, so that the allocation of memory is not measured.
-fn render(renderer: &Renderer, plan: &Plan, reused: &mut Option<Band>) {
+fn render(renderer: &Renderer, plan: &Plan, room: &mut Option<Band>) {
     let [width, height] = plan.camera.pixels;
     for rows in Band::split(&(0..width), &(0..height), BAND) {
-        let mut band = match reused.take() {
+        let mut band = match room.take() {
             Some(band) if band.rows.len() == rows.len() => band,
             _ => Band::blank(0..width, rows.clone()),
         };
         band.rows = rows;
         band.tiles.fill(false);
         renderer.fill(plan, &mut band, Overseer { stops: &|| false, row: &|| () }, &|()| {});
-        *reused = Some(band);
+        *room = Some(band);
     }
 }
 
