@@ -34,7 +34,7 @@ pub fn catch<T>(work: impl FnOnce() -> T) -> Result<T, Failure> {
         let (said, scene) = &*last();
         let scene = if scene.is_empty() { String::new() } else { format!(" at `{scene}`") };
         Failure::Failed(format!(
-            "internal error{scene}: {said}; this is a bug in {} {}, please report it with the scene",
+            "internal error{scene}: {said}; this is a bug in {} {} or in one of its plugins; please report it with the scene",
             program::name(),
             env!("CARGO_PKG_VERSION")
         ))

@@ -1,0 +1,58 @@
+//! Writes what fuzzing starts from: the project's scenes as corpora, and the words of its tables as a dictionary.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::{env, fs, io};
+use tabray::scene::Registry;
+
+/// The files below a folder, in the order of their names.
+fn files(folder: &Path) -> io::Result<Vec<PathBuf>> {
+    let mut paths = fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<io::Result<Vec<_>>>()?;
+    paths.sort();
+    let mut files = Vec::new();
+    for path in paths {
+        if path.is_dir() { files.extend(self::files(&path)?) } else { files.push(path) }
+    }
+    Ok(files)
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let out = PathBuf::from(env::args().nth(1).ok_or("the folder to write to is missing")?);
+    let project = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).ok_or("there is no project")?;
+    let write = |target: &str, name: usize, bytes: &[u8]| {
+        let folder = out.join("corpus").join(target);
+        fs::create_dir_all(&folder)?;
+        fs::write(folder.join(format!("seed-{name}")), bytes)
+    };
+    let mut formulas = BTreeSet::from(["y".to_owned(), "2 + sin(y)".to_owned()]);
+    for (index, path) in files(&project.join("scenes"))?.iter().enumerate() {
+        let bytes = fs::read(path)?;
+        match path.extension().and_then(|extension| extension.to_str()) {
+            Some(kind @ ("ray" | "toml")) => {
+                let is_toml = kind == "toml";
+                write(if is_toml { "toml" } else { "notes" }, index, &bytes)?;
+                for accuracy in 0..4 {
+                    let first = accuracy + if is_toml { 4 } else { 0 };
+                    write("render", 8 * index + usize::from(first), &[&[first], &*bytes].concat())?;
+                }
+                let text = String::from_utf8_lossy(&bytes);
+                formulas.extend(text.split('"').skip(1).step_by(2).map(str::to_owned));
+            }
+            Some("png" | "ppm" | "pgm" | "pbm") if bytes.len() < 1 << 14 => write("texture", index, &bytes)?,
+            _ => {}
+        }
+    }
+    for (index, formula) in formulas.iter().enumerate() {
+        write("formula", index, formula.as_bytes())?;
+    }
+    let mut words = BTreeSet::new();
+    for entity in Registry::get()?.iter() {
+        words.insert(entity.name.to_owned());
+        words.extend(entity.attributes().map(|attribute| attribute.name().to_owned()));
+    }
+    let functions = "sin cos tan exp ln sqrt abs floor min max 1e300 1e-320 -0 nan inf".split(' ');
+    words.extend(functions.map(str::to_owned));
+    let lines: String = words.iter().map(|word| format!("\"{word}\"\n")).collect();
+    fs::write(out.join("words.dict"), lines)?;
+    Ok(())
+}

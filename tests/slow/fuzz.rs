@@ -1,0 +1,90 @@
+//! The targets of `tests/fuzz/`, on a fixed sequence of mutated inputs: the same ones on every machine and in every run.
+
+use crate::common::{root, scenes};
+use rand_pcg::Pcg32;
+use rand_pcg::rand_core::{RngCore, SeedableRng};
+use std::fs;
+use target::{formula, notes, render, texture, toml};
+
+#[path = "../fuzz/target.rs"]
+mod target;
+
+/// Words that mutations insert: what readers treat specially.
+const WORDS: [&str; 20] = [
+    "{", "}", "[", "]", "\"", "=", "==", "#", "\n", "\0", "é", "1e300", "1e-320", "-0", "nan", "0", "sphere",
+    "material", "^", "(",
+];
+
+/// Changes some bytes: up to eight times a part is removed, repeated, overwritten, or taken from another seed.
+fn mutated(seeds: &[Vec<u8>], random: &mut Pcg32) -> Vec<u8> {
+    let below = |random: &mut Pcg32, end: usize| random.next_u32() as usize % end.max(1);
+    let mut bytes = seeds[below(random, seeds.len())].clone();
+    for _ in 0..=below(random, 8) {
+        let start = below(random, bytes.len() + 1);
+        let end = bytes.len().min(start + below(random, 16));
+        match below(random, 5) {
+            0 => drop(bytes.drain(start..end)),
+            1 => drop(bytes.splice(end..end, bytes[start..end].to_vec())),
+            2 => bytes[start..end].iter_mut().for_each(|byte| *byte = random.next_u32() as u8),
+            3 => drop(bytes.splice(start..end, WORDS[below(random, WORDS.len())].bytes())),
+            _ => {
+                let other = &seeds[below(random, seeds.len())];
+                let from = below(random, other.len() + 1);
+                let to = other.len().min(from + below(random, 64));
+                drop(bytes.splice(start..end, other[from..to].to_vec()));
+            }
+        }
+    }
+    bytes
+}
+
+/// Runs a target on so many inputs.
+fn run(target: impl Fn(&[u8]), seeds: &[Vec<u8>], count: usize) {
+    let mut random = Pcg32::seed_from_u64(1);
+    for _ in 0..count {
+        target(&mutated(seeds, &mut random));
+    }
+}
+
+/// The project's scenes whose file names end so.
+fn scenes_in(extension: &str) -> Vec<Vec<u8>> {
+    let paths = scenes().into_iter().filter(|path| path.extension().is_some_and(|is| is == extension));
+    paths.map(|path| fs::read(path).expect("a scene")).collect()
+}
+
+#[test]
+fn scenes_in_the_notes_syntax_are_refused_or_dumped() {
+    run(notes, &scenes_in("ray"), 4000);
+}
+
+#[test]
+fn scenes_in_toml_are_refused_or_dumped() {
+    run(toml, &scenes_in("toml"), 4000);
+}
+
+#[test]
+fn formulas_are_refused_or_evaluated() {
+    let formulas =
+        ["y", "2 + sin(y)", "sqrt(1 - y^2)", "max(0.2, ln(y))", "min(2, 1/abs(y-3))", "exp(-y)*cos(3*y)"];
+    run(formula, &formulas.map(|formula| formula.as_bytes().to_vec()), 20_000);
+}
+
+#[test]
+fn textures_are_refused_or_read() {
+    let files = ["letter.ppm", "bricks.png"].map(|name| fs::read(root().join("scenes/textures").join(name)));
+    let files: Vec<_> = files.into_iter().flatten().collect();
+    assert!(!files.is_empty(), "there are textures to begin with");
+    run(texture, &files, 2000);
+}
+
+#[test]
+fn scenes_are_refused_or_rendered_alike_by_packets_and_by_single_rays() {
+    let with_kind = |kind: u8| move |text: Vec<u8>| [&[kind], &*text].concat();
+    let seeds: Vec<_> = (0..4)
+        .flat_map(|accuracy| {
+            let notes = scenes_in("ray").into_iter().map(with_kind(accuracy));
+            notes.chain(scenes_in("toml").into_iter().map(with_kind(accuracy + 4)))
+        })
+        .collect();
+    run(render, &seeds, 300);
+}
