@@ -9,32 +9,32 @@ use std::panic::Location;
 use std::path::Path;
 
 /// The longest word for which a guess is made, in bytes. Names are shorter, so a longer word is not a misspelt name.
-const LONGEST: usize = 128;
+const MAX_LENGTH: usize = 128;
 
 /// The budget of one search for the word that was meant, in pairs of letters to compare: enough for about 1,000 names
 /// of 8 letters, and about a millisecond.
-const EFFORT: usize = 1 << 16;
+const BUDGET: usize = 1 << 16;
 
-/// Returns the word of `known` that `word` was most likely meant to be, as far as [`EFFORT`] allows finding it.
+/// Returns the word of `known` that `word` was most likely meant to be, as far as [`BUDGET`] allows finding it.
 pub fn nearest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
-    if word.len() > LONGEST {
+    if word.len() > MAX_LENGTH {
         return None;
     }
     let lower = word.to_lowercase();
     let letters = lower.chars().count();
-    let mut left = EFFORT;
+    let mut left = BUDGET;
     known
         .into_iter()
         .filter_map(|candidate| {
-            let most = candidate.len().max(lower.len()).div_ceil(3);
-            let count = if candidate.len() > LONGEST { usize::MAX } else { candidate.chars().count() };
+            let max_distance = candidate.len().max(lower.len()).div_ceil(3);
+            let count = if candidate.len() > MAX_LENGTH { usize::MAX } else { candidate.chars().count() };
             // Each letter of difference in length costs one edit.
-            if count.abs_diff(letters) > most {
+            if count.abs_diff(letters) > max_distance {
                 return None;
             }
             left = left.checked_sub(count * letters)?;
             let distance = strsim::damerau_levenshtein(&lower, candidate);
-            (distance <= most).then_some((distance, candidate))
+            (distance <= max_distance).then_some((distance, candidate))
         })
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, candidate)| candidate)
@@ -65,8 +65,8 @@ pub fn abridged(text: &str) -> Cow<'_, str> {
     Cow::Owned(cut(&short, MESSAGE).into_owned())
 }
 
-fn cut(text: &str, (most, [first, last]): (usize, [usize; 2])) -> Cow<'_, str> {
-    if text.len() <= most {
+fn cut(text: &str, (max_len, [first, last]): (usize, [usize; 2])) -> Cow<'_, str> {
+    if text.len() <= max_len {
         return Cow::Borrowed(text);
     }
     let [first, last] = [first, text.len() - last].map(|at| boundary(text, at));

@@ -5,7 +5,7 @@ use crate::world::camera::Camera;
 use std::ops::Range;
 
 /// The maximum width and the maximum height in pixels, as for `pixeldim`.
-const LARGEST: usize = 100_000;
+const MAX_SIDE: usize = 100_000;
 
 #[derive(clap::Args)]
 #[group(id = "how large")]
@@ -62,11 +62,11 @@ impl Args {
         if let Some(size) = self.size {
             let in_proportion = (size.width as f64 * height as f64 / width as f64).round() as usize;
             camera.pixels = [size.width, size.height.unwrap_or(in_proportion.max(1))];
-            if camera.pixels[1] > LARGEST {
+            if camera.pixels[1] > MAX_SIDE {
                 return Err(Failure::Usage(
                     format!("an image {} pixels wide would be {} high", size.width, camera.pixels[1]),
                     Some(format!(
-                        "the maximum is {LARGEST} in each dimension: give a smaller width, or both as `WxH`"
+                        "the maximum is {MAX_SIDE} in each dimension: give a smaller width, or both as `WxH`"
                     )),
                 ));
             }
@@ -98,7 +98,7 @@ fn part(camera: &Camera, [x, y, wide, high]: [i64; 4]) -> Result<Part, Failure> 
 }
 
 fn size(text: &str) -> Result<Size, String> {
-    let side = |text: &str| text.parse().ok().filter(|side| (1..=LARGEST).contains(side));
+    let side = |text: &str| text.parse().ok().filter(|side| (1..=MAX_SIDE).contains(side));
     let (width, height) = match text.split_once('x') {
         Some((width, height)) => (side(width), side(height).map(Some)),
         None => (side(text), Some(None)),
@@ -106,7 +106,7 @@ fn size(text: &str) -> Result<Size, String> {
     width
         .zip(height)
         .map(|(width, height)| Size { width, height })
-        .ok_or_else(|| format!("give a width as `800`, or both as `800x600`, each from 1 to {LARGEST}"))
+        .ok_or_else(|| format!("give a width as `800`, or both as `800x600`, each from 1 to {MAX_SIDE}"))
 }
 
 fn crop(text: &str) -> Result<[i64; 4], String> {

@@ -34,7 +34,7 @@ use std::thread;
 use std::time::{Duration, Instant, SystemTime};
 
 /// The maximum number of pixels of an image on a page: all of it is in memory, here and in the browser.
-const LARGEST: usize = 1 << 24;
+const MAX_PIXELS: usize = 1 << 24;
 
 /// How long a file must have been left alone before it is read: many editors write a file in several steps.
 const SETTLED: Duration = Duration::from_millis(10);
@@ -217,7 +217,7 @@ impl Watched<'_> {
                 let [width, height] = model.camera.value.pixels;
                 let report = &format!(
                     "error: an image of {width} x {height} pixels is too large for a page\n\
-                     help: the maximum is {LARGEST} pixels, such as 4096 x 4096"
+                     help: the maximum is {MAX_PIXELS} pixels, such as 4096 x 4096"
                 );
                 board.fault(events::fault(&Fault { lines: &[], name: &name, report, text: Some(text) }));
             }
@@ -258,5 +258,5 @@ fn crashed(board: &Board, name: &str, text: &str, failure: &Failure) {
 
 fn fits(model: &Model) -> bool {
     let [width, height] = model.camera.value.pixels;
-    width * height <= LARGEST
+    width * height <= MAX_PIXELS
 }

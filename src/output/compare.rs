@@ -43,10 +43,10 @@ impl Comparison {
         let (mut differing, mut largest, mut squares, mut first) = (0, 0, 0, None);
         for ((x, from_top, a), b) in old.enumerate_pixels().zip(new.pixels()) {
             let apart = [0, 1, 2].map(|channel| a[channel].abs_diff(b[channel]));
-            let most = apart.into_iter().max().unwrap_or(0);
-            largest = largest.max(most);
+            let max = apart.into_iter().max().unwrap_or(0);
+            largest = largest.max(max);
             squares += apart.map(|levels| u64::from(levels).pow(2)).iter().sum::<u64>();
-            if most > tolerance {
+            if max > tolerance {
                 differing += 1;
                 first.get_or_insert(Pixel { x, y: old.height() - 1 - from_top, old: a.0, new: b.0 });
             }

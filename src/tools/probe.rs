@@ -13,7 +13,7 @@ use std::io::{self, Write};
 
 /// The greatest depth of a ray that is still indented farther: between parallel mirrors the indentation would otherwise
 /// fill the line.
-const DEEPEST: usize = 20;
+const MAX_INDENT: usize = 20;
 
 /// Explains a pixel: `x` counts from the left and `y` from the bottom. Of several samples it explains the ray through
 /// the centre of the pixel, and then gives the colour of all.
@@ -237,7 +237,7 @@ fn dropped(reason: Reason) -> String {
 }
 
 fn indent(depth: usize) -> String {
-    "    ".repeat(depth.min(DEEPEST))
+    "    ".repeat(depth.min(MAX_INDENT))
 }
 
 fn triple(v: DVec3) -> String {

@@ -32,17 +32,17 @@ use tokio::time::{sleep, timeout};
 use tokio_io_timeout::TimeoutStream;
 
 /// The maximum size of a request's head, in bytes.
-const LARGEST_HEAD: usize = 1 << 14;
+const MAX_HEAD: usize = 1 << 14;
 
 /// The maximum size of a request's body, in bytes.
-const LARGEST: usize = 1 << 16;
+const MAX_BODY: usize = 1 << 16;
 
 /// The pause before the next connection is accepted, after the system refused one.
 const PAUSE: Duration = Duration::from_millis(50);
 
 /// The minimum number of idle connections that are kept, even where the system allows hardly any open files. What a
 /// connection has sent is read before this many others are accepted.
-const FEWEST: usize = 4;
+const MIN_IDLE: usize = 4;
 
 /// An answer; `Break` if it is the last one.
 pub type Answer = ControlFlow<Response<Body>, Response<Body>>;
@@ -100,14 +100,14 @@ where
     }
 
     async fn accept(self: Rc<Self>, listener: TcpListener) {
-        let mut most = self.limits.idle;
+        let mut max_idle = self.limits.idle;
         let mut is_told = false;
         for number in 0.. {
             match listener.accept().await {
                 Ok((stream, _)) => {
                     let task = spawn_local(self.clone().serve(stream, number));
                     self.idle.borrow_mut().insert(number, task.abort_handle());
-                    self.close_oldest(most);
+                    self.close_oldest(max_idle);
                     // What has been sent meanwhile is read before more connections are accepted.
                     yield_now().await;
                 }
@@ -120,18 +120,18 @@ where
                         messages::warning(&format!("cannot accept every connection: {reason}"), None);
                     }
                     is_told = true;
-                    most = FEWEST.max(self.idle.borrow().len().min(most) / 2);
-                    self.close_oldest(most);
+                    max_idle = MIN_IDLE.max(self.idle.borrow().len().min(max_idle) / 2);
+                    self.close_oldest(max_idle);
                     sleep(PAUSE).await;
                 }
             }
         }
     }
 
-    /// Closes the oldest idle connections until at most `most` are left.
-    fn close_oldest(&self, most: usize) {
+    /// Closes the oldest idle connections until at most `max_idle` are left.
+    fn close_oldest(&self, max_idle: usize) {
         let mut idle = self.idle.borrow_mut();
-        while idle.len() > most
+        while idle.len() > max_idle
             && let Some((_, task)) = idle.pop_first()
         {
             task.abort();
@@ -163,7 +163,7 @@ where
         let _ = http1::Builder::new()
             .timer(TokioTimer::new())
             .header_read_timeout(self.limits.request_time)
-            .max_buf_size(LARGEST_HEAD)
+            .max_buf_size(MAX_HEAD)
             .keep_alive(false)
             .serve_connection(TokioIo::new(Box::pin(stream)), service)
             .await;
@@ -177,7 +177,7 @@ where
     async fn respond(&self, request: Request<Incoming>) -> Answer {
         let (head, body) = request.into_parts();
         let refusal = |status, reason| ControlFlow::Continue(text(status, reason));
-        let body = match timeout(self.limits.request_time, Limited::new(body, LARGEST).collect()).await {
+        let body = match timeout(self.limits.request_time, Limited::new(body, MAX_BODY).collect()).await {
             Ok(Ok(body)) => body.to_bytes(),
             Ok(Err(_)) => return refusal(StatusCode::PAYLOAD_TOO_LARGE, "the request is too large"),
             Err(_) => return refusal(StatusCode::REQUEST_TIMEOUT, "the request did not arrive in time"),

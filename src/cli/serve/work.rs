@@ -22,8 +22,8 @@ impl Client {
 
 impl Work {
     /// Allows this many jobs at the same time.
-    pub fn new(most: usize) -> Self {
-        Self { turns: Arc::new(Semaphore::new(most)) }
+    pub fn new(max_jobs: usize) -> Self {
+        Self { turns: Arc::new(Semaphore::new(max_jobs)) }
     }
 
     /// Waits for a permit, which is held until the value is dropped.

@@ -32,7 +32,7 @@ pub const JOBS: usize = 4;
 const QUIET: Duration = Duration::from_secs(60);
 
 /// The maximum length of a pixel's explanation, in bytes.
-const LONGEST: usize = 1 << 22;
+const MAX_EXPLANATION: usize = 1 << 22;
 
 /// Answers a request.
 pub async fn answer(request: &Request<Bytes>, board: &Board, work: &Work) -> Response<Body> {
@@ -146,7 +146,7 @@ impl<C: Fn() -> ControlFlow<()>> Write for Bounded<C> {
             // An operation that fails with `Interrupted` would be tried again.
             return Err(io::ErrorKind::BrokenPipe.into());
         }
-        if self.text.len() + bytes.len() > LONGEST {
+        if self.text.len() + bytes.len() > MAX_EXPLANATION {
             return Err(io::ErrorKind::StorageFull.into());
         }
         self.text.write(bytes)
@@ -175,9 +175,9 @@ mod tests {
     #[test]
     fn an_explanation_ends_where_it_is_too_long_or_nobody_wants_it() {
         let mut told = Bounded { text: Vec::new(), check: || ControlFlow::Continue(()) };
-        told.write_all(&vec![b'a'; LONGEST]).expect("it is not too long");
+        told.write_all(&vec![b'a'; MAX_EXPLANATION]).expect("it is not too long");
         let full = told.write_all(b"a").expect_err("now it is");
-        assert_eq!((full.kind(), told.text.len()), (io::ErrorKind::StorageFull, LONGEST));
+        assert_eq!((full.kind(), told.text.len()), (io::ErrorKind::StorageFull, MAX_EXPLANATION));
         let mut told = Bounded { text: Vec::new(), check: || ControlFlow::Break(()) };
         assert_eq!(told.write_all(b"a").expect_err("nobody").kind(), io::ErrorKind::BrokenPipe);
     }

@@ -5,7 +5,7 @@ use super::guesses::{find_attribute, near_attribute};
 use super::names::Names;
 use super::report::Report;
 use super::values;
-use super::written::{Form, MOST_VALUES, Word, Written};
+use super::written::{Form, MAX_VALUES, Word, Written};
 use crate::scene::entity::Entity;
 use crate::scene::pparm::{Attribute, Given, LEAST_LENGTH, MOST_LENGTH};
 use crate::scene::value::{Datum, Type};
@@ -112,7 +112,7 @@ impl Against<'_> {
     ) -> Option<Datum> {
         if !attribute.arity().contains(&words.len()) {
             let takes = attribute.takes();
-            let more = if words.len() < MOST_VALUES { "" } else { " or more" };
+            let more = if words.len() < MAX_VALUES { "" } else { " or more" };
             let message = format!("`{}` of {title} takes {takes}, not {}{more}", word.text, words.len());
             self.report.add(Fault::error(whole(word, words), message).help(format!(
                 "`{}`: {}",

@@ -46,7 +46,7 @@ pub fn model(
         materials: Vec::new(),
         textures: Vec::new(),
         files: HashMap::new(),
-        room: accuracy.textures.unwrap_or(TEXTURES),
+        texture_memory: accuracy.textures.unwrap_or(TEXTURE_MEMORY),
         objects: Vec::new(),
         lights: Vec::new(),
     };
@@ -62,7 +62,7 @@ pub fn model(
 
 /// The default limit on the memory of all textures of a scene, in bytes: far more than scenes need, and far less than a
 /// small file can claim to hold.
-const TEXTURES: u64 = 1 << 30;
+const TEXTURE_MEMORY: u64 = 1 << 30;
 
 /// The accuracy of a scene and the memory limit of its textures, as far as the caller chooses them.
 #[derive(Clone, Copy, Debug, Default)]
@@ -95,7 +95,7 @@ struct Check<'r> {
     /// The textures by the paths of their files.
     files: HashMap<PathBuf, Arc<Texture>>,
     /// How many more bytes the images of textures may take.
-    room: u64,
+    texture_memory: u64,
     objects: Vec<Object>,
     lights: Vec<Item<AnyLight>>,
 }
@@ -222,8 +222,8 @@ impl Check<'_> {
             if !used.contains(args.name.as_str()) {
                 continue;
             }
-            let read = value.load_within(self.room);
-            self.room -= value.bytes().min(self.room);
+            let read = value.load_within(self.texture_memory);
+            self.texture_memory -= value.bytes().min(self.texture_memory);
             if let Err(reason) = read {
                 let is_told = self.report.tells(Severity::Error, &written[args.order].place);
                 let near = if is_told { value.near() } else { None };

@@ -16,7 +16,7 @@ pub type Guesses = HashMap<(&'static str, String), Option<&'static str>>;
 
 /// The maximum number of different words of a scene for which a guess is made. A scene with more has other faults than
 /// misspellings.
-const GUESSES: usize = 10_000;
+const MAX_GUESSES: usize = 10_000;
 
 /// Returns the attribute that a misspelt word was probably meant to be.
 pub fn near_attribute(
@@ -24,7 +24,7 @@ pub fn near_attribute(
     word: &str,
     guesses: &mut Guesses,
 ) -> Option<&'static dyn Attribute> {
-    let is_full = guesses.len() >= GUESSES;
+    let is_full = guesses.len() >= MAX_GUESSES;
     let near = match guesses.entry((entity.name, words::abridged(word).into_owned())) {
         Entry::Occupied(known) => *known.get(),
         Entry::Vacant(_) if is_full => None,

@@ -28,7 +28,7 @@ struct Claims {
 }
 
 /// The maximum number of faults of one sort that are listed separately.
-const FEW: usize = 8;
+const MAX_LISTED: usize = 8;
 
 /// The names of a scene, as far as the scene has been checked.
 pub struct Names {
@@ -225,12 +225,12 @@ struct Repeated<'n> {
 }
 
 /// Keeps the names that are repeated, each with the number of further names and further places that it stands for. Of
-/// more than [`FEW`] names, keeps only the first.
+/// more than [`MAX_LISTED`] names, keeps only the first.
 fn few(mut all: Vec<Repeated<'_>>) -> Vec<(Repeated<'_>, usize, usize)> {
     all.retain(|repeated| repeated.places.len() > 1);
     all.sort_by_key(|repeated| (repeated.places[1].as_ref().map(|place| place.start), repeated.text));
     let (names, later) = (all.len(), all.iter().map(|repeated| repeated.places.len() - 1).sum::<usize>());
-    if names > FEW {
+    if names > MAX_LISTED {
         return all.into_iter().take(1).map(|first| (first, names - 1, later - 1)).collect();
     }
     let more: Vec<_> = all.iter().map(|repeated| repeated.places.len() - 2).collect();

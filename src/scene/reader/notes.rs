@@ -3,7 +3,7 @@
 use super::fault::Fault;
 use super::guesses::{Guesses, find_attribute, near_attribute};
 use super::report::Report;
-use super::written::{Form, MOST_VALUES, Word, Written};
+use super::written::{Form, MAX_VALUES, Word, Written};
 use crate::scene::entity::Entity;
 use crate::scene::pparm::Attribute;
 use crate::scene::registry::Registry;
@@ -324,7 +324,7 @@ impl<'a> Parser<'a, '_> {
             && (token.form == Form::Text
                 || is_value(entity, described, count, &token.text, self.report.guesses()))
         {
-            if count < MOST_VALUES {
+            if count < MAX_VALUES {
                 values.push(token.word());
             }
             count += 1;
@@ -342,14 +342,14 @@ fn is_value(
     word: &str,
     guesses: &mut Guesses,
 ) -> bool {
-    let most = attribute.map_or(1, |attribute| attribute.arity().iter().copied().max().unwrap_or(0));
+    let max = attribute.map_or(1, |attribute| attribute.arity().iter().copied().max().unwrap_or(0));
     match attribute.map(|attribute| attribute.value_type()) {
         // A name may look like anything, even like a number or an attribute: `material material`.
-        Some(Type::Word | Type::Name(_) | Type::Choice(_) | Type::Formula) => already < most,
+        Some(Type::Word | Type::Name(_) | Type::Choice(_) | Type::Formula) => already < max,
         _ if looks_like_number(word) => true,
         _ => {
-            let Some(entity) = entity else { return already < most };
-            already < most
+            let Some(entity) = entity else { return already < max };
+            already < max
                 && find_attribute(entity, word).is_none()
                 && near_attribute(entity, word, guesses).is_none()
         }

@@ -11,14 +11,14 @@ use std::path::PathBuf;
 
 /// The maximum number of errors of one scene that are listed, and the maximum number of warnings. The others are
 /// counted.
-const TOLD: usize = 100;
+const MAX_LISTED: usize = 100;
 
 /// The maximum number of faults differing only in their places that are listed separately. Of more, only the first is
 /// listed, with their number.
-const ALIKE: usize = 8;
+const MAX_ALIKE: usize = 8;
 
 /// The number of syntax errors after which the rest of a scene is not read.
-const ENOUGH: usize = 100_000;
+const MAX_ERRORS: usize = 100_000;
 
 /// The faults of one scene, in the order of its text: all of them, or the first ones and the number of all.
 #[derive(Clone, Debug, Default)]
@@ -67,17 +67,17 @@ impl Report {
 
     fn insert(&mut self, fault: Fault) {
         let severity = fault.severity as usize;
-        if self.faults.iter().filter(|told| told.is_like(&fault)).count() == ALIKE {
+        if self.faults.iter().filter(|told| told.is_like(&fault)).count() == MAX_ALIKE {
             let mut like: Vec<_> = self.faults.extract_if(.., |told| told.is_like(&fault)).collect();
             let mut first = like.remove(0);
             like.into_iter().chain([fault]).for_each(|fault| first.stand_for(fault.place));
-            self.notes.told[severity] -= ALIKE;
+            self.notes.told[severity] -= MAX_ALIKE;
             return self.insert(first);
         }
         let at = self.faults.partition_point(|earlier| earlier.start() <= fault.start());
         self.faults.insert(at, fault);
         self.notes.told[severity] += 1;
-        if self.notes.told[severity] > TOLD
+        if self.notes.told[severity] > MAX_LISTED
             && let Some(last) = self.faults.iter().rposition(|told| told.severity as usize == severity)
         {
             self.faults.remove(last);
@@ -89,7 +89,7 @@ impl Report {
     pub(super) fn tells(&self, severity: Severity, place: &Place) -> bool {
         let is_after = |told: &Fault| place.as_ref().map_or(0, |place| place.start) >= told.start();
         let last = self.faults.iter().rfind(|told| told.severity == severity);
-        self.notes.told[severity as usize] < TOLD || !last.is_some_and(is_after)
+        self.notes.told[severity as usize] < MAX_LISTED || !last.is_some_and(is_after)
     }
 
     /// Returns the listed faults, in the order of the text.
@@ -115,7 +115,7 @@ impl Report {
     /// Tells whether there are so many errors that reading on is of no use. From then on the report is marked as cut
     /// short.
     pub(super) fn has_enough(&mut self) -> bool {
-        self.notes.is_cut_short |= self.count(Severity::Error) >= ENOUGH;
+        self.notes.is_cut_short |= self.count(Severity::Error) >= MAX_ERRORS;
         self.notes.is_cut_short
     }
 

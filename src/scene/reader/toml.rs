@@ -2,7 +2,7 @@
 
 use super::fault::Fault;
 use super::report::Report;
-use super::written::{Form, MOST_VALUES, Word, Written};
+use super::written::{Form, MAX_VALUES, Word, Written};
 use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
 use std::borrow::Cow;
@@ -361,7 +361,7 @@ impl<'a, 'r> Parser<'a, 'r> {
             }
             DeValue::Array(values) if values.iter().all(|value| !value.get_ref().is_array()) => {
                 let mut sound = true;
-                for value in values.iter().take(MOST_VALUES) {
+                for value in values.iter().take(MAX_VALUES) {
                     sound &= self.values(value, words);
                 }
                 return sound;

@@ -36,10 +36,10 @@ impl<'a> Word<'a> {
 }
 
 /// The maximum number of values that are kept for an attribute. No attribute takes as many.
-pub(super) const MOST_VALUES: usize = 1000;
+pub(super) const MAX_VALUES: usize = 1000;
 
 /// The maximum number of attributes that are kept for an entity. No type has as many.
-pub(super) const MOST_ATTRIBUTES: usize = 1000;
+pub(super) const MAX_ATTRIBUTES: usize = 1000;
 
 /// An entity as parsed, not yet checked.
 #[derive(Clone, Debug)]
@@ -54,15 +54,15 @@ pub struct Written<'a> {
 }
 
 impl<'a> Written<'a> {
-    /// Adds an attribute; beyond [`MOST_ATTRIBUTES`] reports it instead.
+    /// Adds an attribute; beyond [`MAX_ATTRIBUTES`] reports it instead.
     pub(super) fn add(&mut self, name: Word<'a>, mut values: Vec<Word<'a>>, report: &mut Report) {
         match self.attributes.len() {
-            MOST_ATTRIBUTES if !self.is_damaged => {
+            MAX_ATTRIBUTES if !self.is_damaged => {
                 self.is_damaged = true;
-                let message = format!("this {} has more than {MOST_ATTRIBUTES} attributes", self.kind.text);
+                let message = format!("this {} has more than {MAX_ATTRIBUTES} attributes", self.kind.text);
                 report.add(Fault::error(name.place, message).label("the first that is too many"));
             }
-            MOST_ATTRIBUTES.. => {}
+            MAX_ATTRIBUTES.. => {}
             _ => {
                 values.shrink_to_fit();
                 self.attributes.push((name, values));

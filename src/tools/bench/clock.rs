@@ -4,7 +4,7 @@ use std::time::Duration;
 
 /// The shortest duration that is measured. Shorter work is repeated, so that the cost of reading the clock does not
 /// count.
-const SHORTEST: Duration = Duration::from_micros(200);
+const MIN_DURATION: Duration = Duration::from_micros(200);
 
 /// Returns the CPU time that this thread has used so far.
 #[cfg(target_os = "linux")]
@@ -27,7 +27,7 @@ pub fn now() -> Duration {
 /// `patience`, and three times at least, so that a machine that becomes slower slows down all of them.
 pub fn least<const N: usize>(patience: Duration, works: [&mut dyn FnMut(); N]) -> [f64; N] {
     let mut works = works.map(|work| {
-        let repeats = SHORTEST.as_nanos().div_ceil(time(work, 1).as_nanos().max(1));
+        let repeats = MIN_DURATION.as_nanos().div_ceil(time(work, 1).as_nanos().max(1));
         (work, repeats.max(1) as u32, Duration::MAX)
     });
     let (start, mut rounds) = (now(), 0);

@@ -7,16 +7,16 @@ use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 /// The maximum number of rounds.
-const MOST: usize = 15;
+const MAX_ROUNDS: usize = 15;
 
 /// The minimum number of rounds, however long they take.
-const LEAST: usize = 3;
+const MIN_ROUNDS: usize = 3;
 
 /// The time that one choice may take in all its rounds.
-const ENOUGH: Duration = Duration::from_millis(200);
+const CHOICE_TIME: Duration = Duration::from_millis(200);
 
 /// The shortest duration that is measured; shorter work is repeated within a round.
-const SHORTEST: Duration = Duration::from_millis(2);
+const MIN_DURATION: Duration = Duration::from_millis(2);
 
 /// The estimate of the work for one choice before it is known, in units of [`Progress`].
 const UNITS: usize = 100_000;
@@ -59,18 +59,18 @@ pub fn rounds(
     // The first round warms up the caches and tells how long the work takes.
     for (choice, repeats) in repeats.iter_mut().enumerate() {
         let (took, _) = time(|| work(choice));
-        *repeats = (SHORTEST.as_nanos() / took.as_nanos().max(1)).clamp(1, 1000) as u32;
-        progress.done(UNITS / (MOST + 1))?;
+        *repeats = (MIN_DURATION.as_nanos() / took.as_nanos().max(1)).clamp(1, 1000) as u32;
+        progress.done(UNITS / (MAX_ROUNDS + 1))?;
     }
-    'rounds: for round in 0..MOST {
+    'rounds: for round in 0..MAX_ROUNDS {
         for choice in 0..choices {
             let spent: Duration = all[choice].iter().sum::<Duration>() * repeats[choice];
-            if round < LEAST || spent < ENOUGH {
+            if round < MIN_ROUNDS || spent < CHOICE_TIME {
                 let (took, waited) = time(|| (0..repeats[choice]).for_each(|_| work(choice)));
                 all[choice].push(took / repeats[choice]);
                 waits[choice] += waited / repeats[choice];
             }
-            let is_broken_off = progress.done(UNITS / (MOST + 1)).is_break();
+            let is_broken_off = progress.done(UNITS / (MAX_ROUNDS + 1)).is_break();
             if is_broken_off && round == 0 {
                 return ControlFlow::Break(());
             } else if is_broken_off {

@@ -130,7 +130,7 @@ impl Panel {
 }
 
 /// The greatest noise and the greatest waiting time, as fractions, for times that can be trusted.
-const MOST: f64 = 0.15;
+const MAX_NOISE: f64 = 0.15;
 
 impl Chart {
     /// Returns the relative excess of the median round over the shortest: the median over all choices.
@@ -146,12 +146,12 @@ impl Chart {
 
     /// Tells whether the times are too noisy to be trusted.
     pub fn is_noisy(&self) -> bool {
-        self.noise() > MOST
+        self.noise() > MAX_NOISE
     }
 
     /// Tells whether the machine had other work, which slows all choices alike.
     pub fn is_busy(&self) -> bool {
-        self.waited() > MOST
+        self.waited() > MAX_NOISE
     }
 
     fn middle(&self, of: impl Fn(&Times) -> f64) -> f64 {

@@ -48,8 +48,8 @@ pub fn estimates(load: Load, progress: &mut dyn Progress) -> io::Result<Vec<Esti
     let exact = Plan::new(&exact);
     let tests = tests(&exact, &threads);
     let size = exact.camera.pixels;
-    let most = (TRUE_TESTS as f64 / 2.0 / (f64::from(TRUE_SAMPLES) * tests)) as usize;
-    let pixels = spread(size, most.clamp(256, 4096));
+    let max_pixels = (TRUE_TESTS as f64 / 2.0 / (f64::from(TRUE_SAMPLES) * tests)) as usize;
+    let pixels = spread(size, max_pixels.clamp(256, 4096));
     let timed = timed(size, tests);
     let scale = (size[0] * size[1]) as f64 / count(&timed) as f64;
     let right = whole(pictures::truth(&exact, &threads, &pixels, Seen::Picture, progress))?;

@@ -269,10 +269,10 @@ fn grazing(model: &Model, group: &[usize]) -> Vec<Packet> {
 
 /// Lists names, each once, for a sentence.
 fn list(mut names: Vec<&str>) -> String {
-    const MOST: usize = 4;
+    const MAX_NAMES: usize = 4;
     names.sort_unstable();
     names.dedup();
-    let more = names.len() > MOST;
-    names.truncate(MOST);
+    let more = names.len() > MAX_NAMES;
+    names.truncate(MAX_NAMES);
     names.join(", ") + if more { ", ..." } else { "" }
 }

@@ -73,7 +73,7 @@ pub fn place(
 ) -> Vec<Option<LabelPlace>> {
     const ROUNDS: usize = 100;
     /// The maximum number of labels that are placed anew at one time.
-    const MOST: usize = 8;
+    const MAX_MOVED: usize = 8;
     let crowd = Crowd { points, sizes, lines, room };
     let mut best = vec![None; points.len()];
     let mut costs = vec![0.0; points.len()];
@@ -91,8 +91,8 @@ pub fn place(
         };
         let mut near: Vec<usize> = (0..points.len()).filter(|index| *index != first).collect();
         near.sort_by(|a, b| far(a).total_cmp(&far(b)));
-        near.truncate(1 + round % MOST);
-        let turn = (round / MOST) % near.len().max(1);
+        near.truncate(1 + round % MAX_MOVED);
+        let turn = (round / MAX_MOVED) % near.len().max(1);
         near.rotate_left(turn);
         let (mut places, mut sums) = (best.clone(), costs.clone());
         near.iter().chain([&first]).for_each(|index| places[*index] = None);
@@ -110,10 +110,10 @@ fn distance(from: (f64, f64), to: (f64, f64)) -> f64 {
 }
 
 /// The greatest distance of a label from its point without a leader line, in pixels.
-const NEAR: f64 = 13.0;
+const MAX_WITHOUT_LEADER: f64 = 13.0;
 
 /// The greatest distance of a label from its point, in pixels.
-const FAR: u32 = 250;
+const MAX_DISTANCE: u32 = 250;
 
 /// The cost of a leader line that crosses a marker or another line, and that of a label without a place, in the same
 /// unit as the cost of a leader line: pixels of its length.
@@ -176,19 +176,20 @@ fn around(point: (f64, f64), (width, height): (f64, f64)) -> impl Iterator<Item 
     // Right, left, below and above come first.
     let mut turns: Vec<u32> = (0..TURNS).collect();
     turns.sort_by_key(|turn| (turn % (TURNS / 4) != 0, turn % (TURNS / 2) != 0));
-    (0..FAR / STEP).map(|step| NEAR + f64::from(step * STEP)).flat_map(move |radius| {
+    (0..MAX_DISTANCE / STEP).map(|step| MAX_WITHOUT_LEADER + f64::from(step * STEP)).flat_map(move |radius| {
         turns.clone().into_iter().flat_map(move |turn| {
             let (down, right) = libm::sincos(std::f64::consts::TAU * f64::from(turn) / f64::from(TURNS));
             let natural = if right.abs() < 0.1 { 0.5 } else { f64::from(right < 0.0) };
             // At a steep leader line the label can be on either side.
-            let others = if right.abs() < 0.8 && radius > NEAR { [0.0, 1.0].as_slice() } else { &[] };
+            let others =
+                if right.abs() < 0.8 && radius > MAX_WITHOUT_LEADER { [0.0, 1.0].as_slice() } else { &[] };
             let end = (point.0 + radius * right, point.1 + radius * down);
             let top = end.1 + 0.5 * height * (down - 1.0);
             // The label begins, ends or has its middle at the end of the line.
             [natural].into_iter().chain(others.iter().copied()).map(move |begins| {
                 let left = end.0 - begins * width;
                 let area = PlotArea { left, top, right: left + width, bottom: top + height };
-                LabelPlace { area, leader: (radius > NEAR).then_some(end) }
+                LabelPlace { area, leader: (radius > MAX_WITHOUT_LEADER).then_some(end) }
             })
         })
     })

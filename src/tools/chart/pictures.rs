@@ -103,8 +103,8 @@ pub fn samples(study: &Study, seen: Seen, progress: &mut dyn Progress) -> Contro
     let own = &model.camera.value;
     let mut plan = Plan::new(model);
     let tests = tests(&plan, threads);
-    let most = (TRUE_TESTS as f64 / (f64::from(TRUE_SAMPLES) * tests)) as usize;
-    let pixels = spread(own.pixels, most.clamp(1024, 8192));
+    let max_pixels = (TRUE_TESTS as f64 / (f64::from(TRUE_SAMPLES) * tests)) as usize;
+    let pixels = spread(own.pixels, max_pixels.clamp(1024, 8192));
     let right = truth(&plan, threads, &pixels, seen, progress)?;
     let choices: Vec<_> = choices(own.samples, own.sampler);
     let mut differences = Vec::new();

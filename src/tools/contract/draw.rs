@@ -22,14 +22,14 @@ const PICTURE: &str = "picture.png";
 const FORMULAS: [&str; 4] = ["2 + sin(y)", "1", "0.5 * y", "sqrt(abs(4 - y^2))"];
 
 /// The folder to which the drawn scenes' file names are relative.
-pub struct Room(TempDir);
+pub struct SceneFolder(TempDir);
 
-impl Room {
+impl SceneFolder {
     pub fn new() -> Self {
-        let room = Self(TempDir::new().expect("room for a temporary folder"));
+        let scenes = Self(TempDir::new().expect("room for a temporary folder"));
         let colours = RgbImage::from_fn(5, 4, |x, y| [50 * x as u8, 60 * y as u8, 255].into());
-        colours.save(room.folder().join(PICTURE)).expect("room for a picture");
-        room
+        colours.save(scenes.folder().join(PICTURE)).expect("room for a picture");
+        scenes
     }
 
     pub fn folder(&self) -> &Path {

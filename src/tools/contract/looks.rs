@@ -61,10 +61,10 @@ pub fn shader(shader: &dyn PacketShader, at: DVec3) -> Result<(), Fault> {
         );
     }
     if let Some(Look { ambient, diffuse, specular }) = shader.brightest(&material)
-        && let most = [ambient, diffuse, specular]
-        && one.iter().zip(most).any(|(colour, most)| !colour.abs().cmple(most.abs()).all())
+        && let limit = [ambient, diffuse, specular]
+        && one.iter().zip(limit).any(|(colour, limit)| !colour.abs().cmple(limit.abs()).all())
     {
-        let found = format!("`brightest` is {most:?}, and it returns {one:?} at {at}");
+        let found = format!("`brightest` is {limit:?}, and it returns {one:?} at {at}");
         return Err(Promise::ReflectivityIsSound.fault(found));
     }
     let points = Vectors::<LANES> { x: [at.x; LANES], y: [at.y; LANES], z: [at.z; LANES] };
@@ -121,10 +121,10 @@ pub fn light(light: &dyn PacketLight, draw: &mut Draw) -> Result<(), Fault> {
             let found = format!("`uniform` is {even}, and toward {toward} it emits {one:?}");
             return Err(Promise::PacketsAgree.fault(found));
         }
-        if let (Some(most), Some(one)) = (light.brightest(), one)
-            && !one.abs().cmple(most.abs()).all()
+        if let (Some(limit), Some(one)) = (light.brightest(), one)
+            && !one.abs().cmple(limit.abs()).all()
         {
-            let found = format!("`brightest` is {most}, and toward {toward} it emits {one}");
+            let found = format!("`brightest` is {limit}, and toward {toward} it emits {one}");
             return Err(Promise::LightIsFinite.fault(found));
         }
         let all = |of: DVec3| Vectors::<LANES> { x: [of.x; LANES], y: [of.y; LANES], z: [of.z; LANES] };

@@ -24,7 +24,7 @@ use crate::scene::reader;
 use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
 use crate::world::accuracy::Accuracy;
-use draw::{Draw, Room};
+use draw::{Draw, SceneFolder};
 use promise::Fault;
 use std::fmt;
 
@@ -77,8 +77,9 @@ pub fn assert_kept() {
 
 /// Returns the gravest breach of each entity type of a registry, and of each procedural shader and profile.
 pub fn breaches(registry: &Registry) -> Vec<Breach> {
-    let room = Room::new();
-    let mut found: Vec<_> = registry.iter().filter_map(|entity| of_entity(registry, entity, &room)).collect();
+    let scenes = SceneFolder::new();
+    let mut found: Vec<_> =
+        registry.iter().filter_map(|entity| of_entity(registry, entity, &scenes)).collect();
     found.extend(inventory::iter::<ProceduralShader>().filter_map(of_procedural_shader));
     found.extend(inventory::iter::<Profile>().filter_map(of_profile));
     found.sort_by(|a, b| (&a.place, &a.plugin).cmp(&(&b.place, &b.plugin)));
@@ -116,14 +117,14 @@ fn breach(entity: &Entity, Fault { promise, found }: Fault, scene: String) -> Br
 }
 
 /// Returns the gravest breach of an entity type in the scenes that are drawn for it.
-fn of_entity(registry: &Registry, entity: &'static Entity, room: &Room) -> Option<Breach> {
+fn of_entity(registry: &Registry, entity: &'static Entity, scenes: &SceneFolder) -> Option<Breach> {
     let mut draw = Draw::new(entity.name);
     let (mut gravest, mut refused, mut models, mut hits): (Option<Breach>, _, _, _) = (None, None, 0, 0);
     let mut seen = String::new();
     for index in 0..SCENES {
         let text = draw.scene(registry, entity);
         let accuracy = if index % 4 == 3 { Accuracy::Strict } else { Accuracy::Exact };
-        let model = match reader::read(registry, "scene", room.folder(), text.as_bytes(), Some(accuracy)) {
+        let model = match reader::read(registry, "scene", scenes.folder(), text.as_bytes(), Some(accuracy)) {
             Ok(loaded) => loaded.model,
             Err(report) => {
                 refused.get_or_insert_with(|| (report.to_string(), text));
@@ -142,7 +143,7 @@ fn of_entity(registry: &Registry, entity: &'static Entity, room: &Room) -> Optio
                 outcome.gravest.map_or(Ok(()), Err)
             }),
         };
-        let fault = looks::dump(registry, room.folder(), &model).and(tried).err();
+        let fault = looks::dump(registry, scenes.folder(), &model).and(tried).err();
         if let Some(fault) = fault
             && gravest.as_ref().is_none_or(|breach| fault.promise < breach.promise)
         {
