@@ -3,9 +3,9 @@
 use super::fault::{Fault, Place};
 use super::guesses::{find_attribute, near_attribute};
 use super::names::Names;
+use super::parsed::{Form, MAX_VALUES, Parsed, Word};
 use super::report::Report;
 use super::values;
-use super::written::{Form, MAX_VALUES, Word, Written};
 use crate::scene::entity::Entity;
 use crate::scene::pparm::{Attribute, Given, LEAST_LENGTH, MOST_LENGTH};
 use crate::scene::value::{Datum, Type};
@@ -23,17 +23,17 @@ pub struct Against<'c> {
 
 impl Against<'_> {
     /// Returns a datum for each attribute of the type, or `None` if a fault was reported.
-    pub fn values(&mut self, written: &Written<'_>) -> Option<Vec<Given>> {
+    pub fn values(&mut self, parsed: &Parsed<'_>) -> Option<Vec<Given>> {
         let entity = self.entity;
-        let title = match written.name.text.as_ref() {
+        let title = match parsed.name.text.as_ref() {
             "" => format!("this {}", entity.name),
             name => format!("{} `{}`", entity.name, words::abridged(name)),
         };
         let attributes: Vec<_> = entity.attributes().collect();
         let mut given: Vec<Option<&(Word<'_>, Vec<Word<'_>>)>> = vec![None; attributes.len()];
-        let mut sound = !written.is_damaged;
+        let mut sound = !parsed.is_damaged;
         let mut meant = Vec::new();
-        for pair in &written.attributes {
+        for pair in &parsed.attributes {
             let (word, _) = pair;
             let known = find_attribute(entity, &word.text);
             match known.and_then(|known| attributes.iter().position(|a| a.name() == known.name())) {
@@ -60,7 +60,7 @@ impl Against<'_> {
                 Some((word, words)) => self.datum(*attribute, &title, word, words),
                 None => {
                     // An attribute that may be present, misspelt or unreadable, is not reported as missing.
-                    let may_be_there = meant.contains(&attribute.name()) || written.is_damaged;
+                    let may_be_there = meant.contains(&attribute.name()) || parsed.is_damaged;
                     if attribute.default().is_none() && !may_be_there {
                         missing.push(*attribute);
                     }
@@ -75,14 +75,14 @@ impl Against<'_> {
                 missing.iter().map(|attribute| self.report.syntax().usage(*attribute)).collect();
             let fault = format!("{title} lacks {}", list(missing.iter().map(|attribute| attribute.name())));
             self.report.add(
-                Fault::error(written.name.place.clone(), fault)
+                Fault::error(parsed.name.place.clone(), fault)
                     .help(format!("add `{}`", wanted.join("` and `"))),
             );
-        } else if written.attributes.is_empty() && !attributes.is_empty() && !written.is_damaged {
+        } else if parsed.attributes.is_empty() && !attributes.is_empty() && !parsed.is_damaged {
             sound = false;
             let names = list(attributes.iter().map(|attribute| attribute.name()));
             self.report.add(
-                Fault::error(written.name.place.clone(), format!("{title} has no attributes"))
+                Fault::error(parsed.name.place.clone(), format!("{title} has no attributes"))
                     .help(format!("add at least one of {names}")),
             );
         }

@@ -8,16 +8,16 @@ mod guesses;
 mod machine;
 mod names;
 mod notes;
+mod parsed;
 mod report;
 mod toml;
 mod values;
-mod written;
 
 pub use check::Chosen;
 pub use fault::{Fault, Place, Severity};
 pub use machine::Message;
+pub use parsed::Parsed;
 pub use report::Report;
-pub use written::Written;
 
 use crate::scene::model::Model;
 use crate::scene::registry::Registry;
@@ -76,29 +76,29 @@ pub fn read_by(
         Syntax::Notes => notes::parse,
         Syntax::Toml => toml::parse,
     };
-    let written = parse(registry, text, &mut report);
+    let parsed = parse(registry, text, &mut report);
     if report.has_enough() {
         return Err(report);
     }
-    if written.is_empty() && !report.is_fatal() {
+    if parsed.is_empty() && !report.is_fatal() {
         report.add(Fault::error(Some(0..0), "the scene is empty").help(registry.first_steps(syntax)));
     }
-    finish(registry, folder, accuracy, written, report)
+    finish(registry, folder, accuracy, parsed, report)
 }
 
 /// Makes a model without any text (the notes' `modelstat.c`). The entities are checked like those of a text; file names
 /// are relative to the working directory.
 ///
 /// ```
-/// use tabray::scene::{self, Registry, Written};
+/// use tabray::scene::{self, Parsed, Registry};
 ///
 /// let built = scene::build(Registry::get()?, [
-///     Written::new("camera", "cam1")
+///     Parsed::new("camera", "cam1")
 ///         .set("pixeldim", [640, 480])
 ///         .set("worlddim", [8.0, 6.0])
 ///         .set("viewpoint", [4.0, 3.0, 6.0]),
-///     Written::new("material", "green").set("ambient", [0.0, 5.0, 0.0]),
-///     Written::new("plane", "leftwall")
+///     Parsed::new("material", "green").set("ambient", [0.0, 5.0, 0.0]),
+///     Parsed::new("plane", "leftwall")
 ///         .set("material", "green")
 ///         .set("normal", [3.0, 0.0, 1.0])
 ///         .set("point", [0.0, 0.0, 0.0]),
@@ -111,22 +111,22 @@ pub fn read_by(
 /// Every fault of the scene, without places.
 pub fn build(
     registry: &Registry,
-    written: impl IntoIterator<Item = Written<'static>>,
+    parsed: impl IntoIterator<Item = Parsed<'static>>,
 ) -> Result<Loaded, Report> {
     let report = Report::new("model", "", Syntax::Notes);
-    finish(registry, Path::new(""), Chosen::default(), written.into_iter().collect(), report)
+    finish(registry, Path::new(""), Chosen::default(), parsed.into_iter().collect(), report)
 }
 
 fn finish(
     registry: &Registry,
     folder: &Path,
     accuracy: Chosen,
-    written: Vec<Written<'_>>,
+    parsed: Vec<Parsed<'_>>,
     mut report: Report,
 ) -> Result<Loaded, Report> {
-    let places = written.iter().map(|entity| entity.place.clone()).collect();
+    let places = parsed.iter().map(|entity| entity.place.clone()).collect();
     let start = Instant::now();
-    match check::model(registry, folder, accuracy, written, &mut report) {
+    match check::model(registry, folder, accuracy, parsed, &mut report) {
         Some(model) if !report.is_fatal() => {
             Ok(Loaded { model, warnings: report, building: start.elapsed(), places })
         }

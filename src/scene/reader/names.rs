@@ -1,8 +1,8 @@
 //! The names of a scene: which entities have them, and what references to them mean.
 
 use super::fault::{Fault, Place, Severity};
+use super::parsed::{Form, Parsed, Word};
 use super::report::Report;
-use super::written::{Form, Word, Written};
 use crate::scene::entity::Entity;
 use crate::scene::kind::Kind;
 use crate::scene::registry::Registry;
@@ -46,9 +46,9 @@ pub struct Names {
 
 impl Names {
     /// Collects all names of a scene; none is claimed yet.
-    pub fn of(registry: &Registry, written: &[Written<'_>]) -> Self {
+    pub fn of(registry: &Registry, parsed: &[Parsed<'_>]) -> Self {
         let (mut places, mut doubtful) = (HashMap::new(), HashSet::new());
-        for Written { kind, name, .. } in written {
+        for Parsed { kind, name, .. } in parsed {
             let text = name.text.to_string();
             match registry.find(&kind.text) {
                 Some(entity) => {

@@ -2,8 +2,8 @@
 
 use super::fault::Fault;
 use super::guesses::{Guesses, find_attribute, near_attribute};
+use super::parsed::{Form, MAX_VALUES, Parsed, Word};
 use super::report::Report;
-use super::written::{Form, MAX_VALUES, Word, Written};
 use crate::scene::entity::Entity;
 use crate::scene::pparm::Attribute;
 use crate::scene::registry::Registry;
@@ -14,7 +14,7 @@ use std::ops::Range;
 
 /// Parses the entities of a text and reports syntax errors. Parsing goes on after an error, so that one run finds the
 /// faults that follow.
-pub fn parse<'a>(registry: &Registry, text: &'a str, report: &mut Report) -> Vec<Written<'a>> {
+pub fn parse<'a>(registry: &Registry, text: &'a str, report: &mut Report) -> Vec<Parsed<'a>> {
     let first = Tokens::of(text, &mut Report::new("", "", Syntax::Notes)).ahead[0].clone();
     if let Some(first) = first
         && !looks_like_a_scene(registry, text)
@@ -164,16 +164,16 @@ struct Parser<'a, 'r> {
 }
 
 impl<'a> Parser<'a, '_> {
-    fn scene(&mut self) -> Vec<Written<'a>> {
-        let mut written = Vec::new();
+    fn scene(&mut self) -> Vec<Parsed<'a>> {
+        let mut parsed = Vec::new();
         while self.token().is_some() && !self.report.has_enough() {
             if self.begins_entity() {
-                written.extend(self.entity());
+                parsed.extend(self.entity());
             } else {
                 self.stray();
             }
         }
-        written
+        parsed
     }
 
     fn token(&self) -> Option<&Token<'a>> {
@@ -238,7 +238,7 @@ impl<'a> Parser<'a, '_> {
             .add(fault.help("every word of a scene must be part of an entity, `TYPE NAME { ATTRIBUTES }`"));
     }
 
-    fn entity(&mut self) -> Option<Written<'a>> {
+    fn entity(&mut self) -> Option<Parsed<'a>> {
         let kind = self.step()?;
         let name = match self.token() {
             Some(name) if !name.is_brace() => {
@@ -265,7 +265,7 @@ impl<'a> Parser<'a, '_> {
             );
         }
         let mut entity =
-            Written { kind: kind.word(), name, attributes: Vec::new(), place: None, is_damaged: false };
+            Parsed { kind: kind.word(), name, attributes: Vec::new(), place: None, is_damaged: false };
         let known = self.registry.find(&kind.text);
         while !self.report.has_enough() && self.body_goes_on(&entity) {
             if self.is(0, "{") {
@@ -286,7 +286,7 @@ impl<'a> Parser<'a, '_> {
     }
 
     /// Tells whether another attribute of the entity follows; if not, skips the closing brace.
-    fn body_goes_on(&mut self, entity: &Written<'a>) -> bool {
+    fn body_goes_on(&mut self, entity: &Parsed<'a>) -> bool {
         if self.is(0, "}") {
             self.step();
             return false;

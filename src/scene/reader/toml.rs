@@ -1,8 +1,8 @@
 //! Parses scenes in TOML: `[entity-type.name]` tables of the same attributes.
 
 use super::fault::Fault;
+use super::parsed::{Form, MAX_VALUES, Parsed, Word};
 use super::report::Report;
-use super::written::{Form, MAX_VALUES, Word, Written};
 use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
 use std::borrow::Cow;
@@ -19,14 +19,14 @@ const PART: usize = 1 << 17;
 
 /// Parses the entities of a text, in their order, and reports syntax errors. Parsing goes on after an error, so that
 /// one run finds the faults that follow.
-pub fn parse<'a>(registry: &Registry, text: &'a str, report: &mut Report) -> Vec<Written<'a>> {
+pub fn parse<'a>(registry: &Registry, text: &'a str, report: &mut Report) -> Vec<Parsed<'a>> {
     if let Some(place) = long_line(text) {
         let message = format!("this line is {} bytes long", place.len());
         let help = format!("a line of a scene in TOML is at most {LINE} bytes long");
         report.add(Fault::error(Some(place), message).help(help));
         return Vec::new();
     }
-    let mut written = Vec::new();
+    let mut parsed = Vec::new();
     if is_sound(text) {
         let (document, errors) = DeTable::parse_recoverable(text);
         if document.get_ref().is_empty()
@@ -37,9 +37,9 @@ pub fn parse<'a>(registry: &Registry, text: &'a str, report: &mut Report) -> Vec
             return Vec::new();
         }
         if errors.iter().all(is_duplicate) {
-            Parser::new((text, 0), &errors, report, &mut written).read(document);
-            written.sort_by_key(|entity| entity.name.place.as_ref().map(|place| place.start));
-            return written;
+            Parser::new((text, 0), &errors, report, &mut parsed).read(document);
+            parsed.sort_by_key(|entity| entity.name.place.as_ref().map(|place| place.start));
+            return parsed;
         }
     }
     // After a bracket that is never closed, nothing can be parsed. Parsing starts again at the next title.
@@ -50,10 +50,10 @@ pub fn parse<'a>(registry: &Registry, text: &'a str, report: &mut Report) -> Vec
         let at = piece.start;
         let text = &text[piece];
         let (document, errors) = DeTable::parse_recoverable(text);
-        Parser::new((text, at), &errors, report, &mut written).read(document);
+        Parser::new((text, at), &errors, report, &mut parsed).read(document);
     }
-    written.sort_by_key(|entity| entity.name.place.as_ref().map(|place| place.start));
-    written
+    parsed.sort_by_key(|entity| entity.name.place.as_ref().map(|place| place.start));
+    parsed
 }
 
 /// Finds the first line that is too long.
@@ -191,7 +191,7 @@ struct Parser<'a, 'r> {
     is_told: Vec<bool>,
     titles: Vec<usize>,
     report: &'r mut Report,
-    written: &'r mut Vec<Written<'a>>,
+    parsed: &'r mut Vec<Parsed<'a>>,
 }
 
 /// A key with its place, and a value with its place.
@@ -203,11 +203,11 @@ impl<'a, 'r> Parser<'a, 'r> {
         (text, at): (&'a str, usize),
         errors: &[Error],
         report: &'r mut Report,
-        written: &'r mut Vec<Written<'a>>,
+        parsed: &'r mut Vec<Parsed<'a>>,
     ) -> Self {
         let titles = before_titles(text);
         let errors = places(errors, text, &titles);
-        Self { text, at, is_told: vec![true; errors.len()], errors, titles, report, written }
+        Self { text, at, is_told: vec![true; errors.len()], errors, titles, report, parsed }
     }
 
     fn read(&mut self, document: Spanned<DeTable<'a>>) {
@@ -285,7 +285,7 @@ impl<'a, 'r> Parser<'a, 'r> {
         };
         let (kind_at, name_at) = (place_of(kind), place_of(name));
         let start = kind_at.start;
-        let mut entity = Written {
+        let mut entity = Parsed {
             kind: self.word(kind.get_ref().clone(), Form::Text, kind_at),
             name: self.word(name.get_ref().clone(), Form::Text, name_at.clone()),
             attributes: Vec::new(),
@@ -318,7 +318,7 @@ impl<'a, 'r> Parser<'a, 'r> {
         let next = next(&self.titles, end).unwrap_or(self.text.len());
         entity.is_damaged |= self.is_faulty(name_at.start..next);
         entity.attributes.shrink_to_fit();
-        self.written.push(entity);
+        self.parsed.push(entity);
     }
 
     /// Returns the errors that begin in a span, its end included.

@@ -1,7 +1,7 @@
 //! Reads words as the values of an attribute.
 
 use super::fault::Fault;
-use super::written::{Form, Word};
+use super::parsed::{Form, Word};
 use crate::numeric::formula::Formula;
 use crate::scene::choice::Choices;
 use crate::scene::value::{Datum, Type};

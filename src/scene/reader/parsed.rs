@@ -43,7 +43,7 @@ pub(super) const MAX_ATTRIBUTES: usize = 1000;
 
 /// An entity as parsed, not yet checked.
 #[derive(Clone, Debug)]
-pub struct Written<'a> {
+pub struct Parsed<'a> {
     pub(super) kind: Word<'a>,
     pub(super) name: Word<'a>,
     pub(super) attributes: Vec<(Word<'a>, Vec<Word<'a>>)>,
@@ -53,7 +53,7 @@ pub struct Written<'a> {
     pub(super) is_damaged: bool,
 }
 
-impl<'a> Written<'a> {
+impl<'a> Parsed<'a> {
     /// Adds an attribute; beyond [`MAX_ATTRIBUTES`] reports it instead.
     pub(super) fn add(&mut self, name: Word<'a>, mut values: Vec<Word<'a>>, report: &mut Report) {
         match self.attributes.len() {
@@ -71,7 +71,7 @@ impl<'a> Written<'a> {
     }
 }
 
-impl Written<'static> {
+impl Parsed<'static> {
     /// Starts an entity built in Rust, with its type and its name.
     pub fn new(kind: &str, name: &str) -> Self {
         Self {
