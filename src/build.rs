@@ -1,7 +1,7 @@
-//! Names every file of `plugins/`, so that dropping one in compiles it in and deleting it takes it out.
+//! Lists the files of `plugins/`, so that a file put there is compiled in, and a file deleted there is left out.
 //!
-//! Writes `$OUT_DIR/plugins.rs`, one macro with a `mod` per file in sorted order; `lib.rs` expands it. The modules'
-//! names are raw, so that a plugin can be named after a word of Rust: `box`.
+//! Writes `$OUT_DIR/plugins.rs`, a macro with a `mod` for each file in sorted order; `lib.rs` expands it. The modules'
+//! names are raw identifiers, so that a plugin can be named after a keyword of Rust: `box`.
 
 use std::path::Path;
 use std::{env, fs, io};
@@ -40,7 +40,7 @@ fn main() -> io::Result<()> {
 }
 
 fn is_module_name(name: &str) -> bool {
-    // These cannot be raw.
+    // These three keywords cannot be raw identifiers.
     !["crate", "self", "super"].contains(&name)
         && name.starts_with(|c: char| c.is_ascii_lowercase())
         && name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')

@@ -1,4 +1,4 @@
-//! Opening what a scene or a command names, which may be no file at all.
+//! Opens files that a scene or a command names; the path may lead to something else than a file.
 
 use std::fs::{self, File};
 use std::io;
@@ -7,13 +7,14 @@ use std::sync::mpsc;
 use std::thread;
 use std::time::Duration;
 
-/// How long somebody may take to begin to write to a named pipe.
+/// How long a program may take to begin to write to a named pipe.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// Opens a file to read it. A pipe, at which this might wait for ever, and a device, which might never end, are none.
+/// Opens a file to read it. Refuses a pipe, at which opening might wait for ever, and a device, which might have no
+/// end.
 ///
 /// # Errors
-/// Those of the system, and where there is something else than a file.
+/// Those of the system, and an error where the path does not lead to a file.
 pub fn open(path: &Path) -> io::Result<File> {
     let kind = fs::metadata(path)?;
     if kind.is_dir() {
@@ -25,17 +26,17 @@ pub fn open(path: &Path) -> io::Result<File> {
     File::open(path)
 }
 
-/// Opens a file, a device or a pipe to read it once. At a pipe it waits for somebody to write, but not for ever.
+/// Opens a file, a device or a pipe to read it once. At a pipe it waits up to 5 s for a program to write.
 ///
 /// # Errors
-/// Those of the system, and where nobody writes.
+/// Those of the system, and an error where no program writes to the pipe.
 pub fn open_stream(path: &Path) -> io::Result<File> {
     if !is_pipe(path) {
         return File::open(path);
     }
     let (sender, opened) = mpsc::channel();
     let path = path.to_owned();
-    // Where nobody ever writes, the thread ends with the program.
+    // If no program ever writes, the thread ends with this process.
     thread::Builder::new().name("pipe".to_owned()).spawn(move || sender.send(File::open(path)))?;
     opened.recv_timeout(PATIENCE).unwrap_or_else(|_| {
         Err(io::Error::other(format!("no program writes to this pipe (waited {} s)", PATIENCE.as_secs())))

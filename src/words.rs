@@ -1,4 +1,4 @@
-//! Small helps for messages: the word that was meant, lists of words, reasons, and texts for programs.
+//! Small helpers for the text of messages: guesses at misspelt words, lists of words, reasons, and JSON.
 
 use clap::ValueEnum;
 use image::ImageError;
@@ -8,46 +8,47 @@ use std::io;
 use std::panic::Location;
 use std::path::Path;
 
-/// The longest word that is guessed at, in bytes. No misspelt name is longer.
-const LONGEST: usize = 128;
+/// The longest word for which a guess is made, in bytes. Names are shorter, so a longer word is not a misspelt name.
+const MAX_LENGTH: usize = 128;
 
-/// How much one search for the word that was meant may cost: pairs of letters that are compared. That is 1,000 names
+/// The budget of one search for the word that was meant, in pairs of letters to compare: enough for about 1,000 names
 /// of 8 letters, and about a millisecond.
-const EFFORT: usize = 1 << 16;
+const BUDGET: usize = 1 << 16;
 
-/// The word of `known` that `word` was most likely meant to be, as far as [`EFFORT`] suffices to find it.
+/// Returns the word of `known` that `word` was most likely meant to be, as far as [`BUDGET`] allows finding it.
 pub fn nearest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
-    if word.len() > LONGEST {
+    if word.len() > MAX_LENGTH {
         return None;
     }
     let lower = word.to_lowercase();
     let letters = lower.chars().count();
-    let mut left = EFFORT;
+    let mut left = BUDGET;
     known
         .into_iter()
         .filter_map(|candidate| {
-            let most = candidate.len().max(lower.len()).div_ceil(3);
-            let count = if candidate.len() > LONGEST { usize::MAX } else { candidate.chars().count() };
-            // Each letter more or less is a step.
-            if count.abs_diff(letters) > most {
+            let max_distance = candidate.len().max(lower.len()).div_ceil(3);
+            let count = if candidate.len() > MAX_LENGTH { usize::MAX } else { candidate.chars().count() };
+            // Each letter of difference in length costs one edit.
+            if count.abs_diff(letters) > max_distance {
                 return None;
             }
             left = left.checked_sub(count * letters)?;
             let distance = strsim::damerau_levenshtein(&lower, candidate);
-            (distance <= most).then_some((distance, candidate))
+            (distance <= max_distance).then_some((distance, candidate))
         })
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, candidate)| candidate)
 }
 
-/// The longest run of letters without white space that a message shows whole, and how much of a longer one is left at
-/// its beginning and at its end.
+/// The longest run of letters without white space that a message shows in full, in bytes, and how many bytes of a
+/// longer run are kept at its beginning and at its end.
 const RUN: (usize, [usize; 2]) = (120, [64, 24]);
 
-/// As [`RUN`], for a message as a whole.
+/// The longest message that is shown in full, in bytes, and how many bytes of a longer message are kept at its
+/// beginning and at its end.
 const MESSAGE: (usize, [usize; 2]) = (4000, [1600, 400]);
 
-/// A message in which what is too long to be read is cut: a word of a scene may be as long as its file.
+/// Shortens a message that is too long to be read: a word of a scene may be as long as its file.
 pub fn abridged(text: &str) -> Cow<'_, str> {
     if text.len() <= RUN.0 {
         return Cow::Borrowed(text);
@@ -55,7 +56,7 @@ pub fn abridged(text: &str) -> Cow<'_, str> {
     let mut short = String::new();
     for part in text.split_inclusive(char::is_whitespace) {
         short += &cut(part, RUN);
-        // What is beyond is cut off in any case, but for the end.
+        // What comes later is cut off in any case, except for the end.
         if short.len() > 8 * MESSAGE.0 {
             short += &cut(&text[boundary(text, text.len() - MESSAGE.1[1])..], RUN);
             break;
@@ -64,30 +65,30 @@ pub fn abridged(text: &str) -> Cow<'_, str> {
     Cow::Owned(cut(&short, MESSAGE).into_owned())
 }
 
-fn cut(text: &str, (most, [first, last]): (usize, [usize; 2])) -> Cow<'_, str> {
-    if text.len() <= most {
+fn cut(text: &str, (max_len, [first, last]): (usize, [usize; 2])) -> Cow<'_, str> {
+    if text.len() <= max_len {
         return Cow::Borrowed(text);
     }
     let [first, last] = [first, text.len() - last].map(|at| boundary(text, at));
     Cow::Owned(format!("{}…{}", &text[..first], &text[last..]))
 }
 
-/// The last place up to this one between two letters of a text, in bytes.
+/// Returns the last boundary between two characters of a text that is not after byte `at`.
 pub fn boundary(text: &str, at: usize) -> usize {
     (0..=at.min(text.len())).rev().find(|at| text.is_char_boundary(*at)).unwrap_or(0)
 }
 
-/// The file that a path which leads nowhere was most likely meant to lead to: the name of one in the same folder.
+/// Returns the file that was probably meant by a path that leads nowhere: the name of a file in the same folder.
 pub fn nearest_file(path: &Path) -> Option<String> {
     let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
     let entries = folder.read_dir().ok()?.filter_map(Result::ok);
     let mut names: Vec<_> = entries.filter_map(|entry| entry.file_name().into_string().ok()).collect();
-    // A folder hands them out in any order.
+    // A folder lists its files in any order.
     names.sort();
     nearest(path.file_name()?.to_str()?, names.iter().map(String::as_str)).map(str::to_owned)
 }
 
-/// Why the system refused something: lower case, without its number.
+/// Returns why the system refused an operation: in lower case, without the error's number.
 pub fn reason(error: &io::Error) -> String {
     let text = error.to_string();
     let text = text.split(" (os error").next().unwrap_or_default();
@@ -99,7 +100,7 @@ pub fn reason(error: &io::Error) -> String {
     }
 }
 
-/// Why a file gives no picture.
+/// Returns why a file could not be read as an image.
 pub fn picture_reason(error: &ImageError) -> String {
     match error {
         ImageError::IoError(error) if error.kind() != io::ErrorKind::UnexpectedEof => reason(error),
@@ -109,18 +110,18 @@ pub fn picture_reason(error: &ImageError) -> String {
     }
 }
 
-/// The file and line of a plugin that registers something.
+/// Returns the file and line of a source position; for a plugin, the path from the top folder.
 pub fn place(location: &Location<'_>) -> String {
     let file = location.file().replace('\\', "/");
     format!("{}:{}", file.strip_prefix("src/../").unwrap_or(&file), location.line())
 }
 
-/// Words in backticks, commas between them.
+/// Lists words in backticks, separated by commas.
 pub fn list<'w>(words: impl IntoIterator<Item = &'w str>) -> String {
     words.into_iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ")
 }
 
-/// A number that is not below 0 to three digits.
+/// Writes a number that is not below 0 to about three significant digits.
 pub fn short(number: f64) -> String {
     if number == 0.0 || (1e-3..1e6).contains(&number) {
         let digits = if number < 1e-2 {
@@ -137,29 +138,29 @@ pub fn short(number: f64) -> String {
     }
 }
 
-/// A count with its noun: `1 error`, `2 errors`.
+/// Writes a count with its noun: `1 error`, `2 errors`.
 pub fn count(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
 
-/// A value as JSON, on one line. Its type says which fields it has, in the order in which they are written.
+/// Writes a value as JSON on one line. The fields stand in the order in which its type declares them.
 pub fn json(value: &impl Serialize) -> String {
     serde_json::to_string(value).expect(NAMED)
 }
 
-/// A value as JSON, with a field on each line, the last one ended.
+/// Writes a value as JSON with a field on each line, and a line end after the last.
 pub fn json_in_lines(value: &impl Serialize) -> String {
     serde_json::to_string_pretty(value).expect(NAMED) + "\n"
 }
 
 const NAMED: &str = "only a map whose keys are no names has no JSON";
 
-/// What the command line calls one of several values.
+/// Returns the name of a value on the command line.
 pub fn name(value: &impl ValueEnum) -> String {
     value.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
 }
 
-/// A text with a capital for its first letter.
+/// Returns a text with its first letter in upper case.
 pub fn capital(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()

@@ -1,4 +1,4 @@
-//! `tabray render --aov`: pictures beside the main one, and exact numbers.
+//! `tabray render --aov`: auxiliary images beside the main one, and exact numbers.
 
 use super::failure::Failure;
 use super::messages;
@@ -17,7 +17,8 @@ use std::iter;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-/// The largest picture that these are made of: unlike the main one, they are in memory as a whole.
+/// The maximum number of pixels of an image with auxiliary images: unlike the main image, they are held in memory as a
+/// whole.
 const LARGEST: usize = 1 << 26;
 
 #[derive(clap::Args)]
@@ -29,7 +30,7 @@ pub struct Args {
     aov: Vec<Aov>,
 }
 
-/// The files of one such picture.
+/// The files of one auxiliary image.
 pub struct Files {
     aov: Aov,
     picture: (PathBuf, Output),
@@ -82,11 +83,11 @@ pub fn open(
         .collect()
 }
 
-/// The samples of a model that errors are seen against: so many times its own, and at least so many.
+/// The samples per pixel of the reference for errors: this many times the model's own, and at least [`TRUE_LEAST`].
 const TRUE_TIMES: u32 = 4;
 const TRUE_LEAST: u32 = 64;
 
-/// Makes the pictures and writes their files. `exact` makes the model that errors are seen against.
+/// Renders the auxiliary images and writes their files. `exact` makes the model of the reference for errors.
 pub fn write(
     plan: &Plan,
     exact: impl FnOnce() -> Result<Model, Failure>,

@@ -69,7 +69,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What was measured.
+/// What was measured, for the heading.
 struct About {
     name: String,
     size: [usize; 2],
@@ -153,50 +153,51 @@ impl About {
     }
 }
 
-/// What was measured of a scene, for programs. Times are the core's own, the least of several rounds.
+/// The measurements of a scene, for other programs. Times are CPU times of one core, the minimum of several rounds.
 #[derive(Serialize)]
 struct Measured {
-    /// What the frame's tests take as bare arithmetic, in seconds; null where one of them has no formula of textbooks.
+    /// The time of the frame's tests as bare arithmetic, in seconds; null if there is no textbook formula for one of
+    /// them.
     bare_seconds: Option<f64>,
-    /// The instructions that were used, as `--cpu` names them.
+    /// The level of CPU instructions that was used, as `--cpu` names it.
     cpu: String,
-    /// How many lights the scene has.
+    /// The number of lights in the scene.
     lights: usize,
-    /// How many objects the scene has.
+    /// The number of objects in the scene.
     objects: usize,
-    /// The width and the height of the picture.
+    /// The width and the height of the image in pixels.
     pixels: [usize; 2],
-    /// What rays cost, by kind.
+    /// The cost of rays, by kind.
     rays: Rays,
     /// The scene as the command line names it.
     scene: String,
-    /// The part of the frame's time that its tests take as bare arithmetic, or null as `bare_seconds` is.
+    /// The fraction of the frame's time that its tests take as bare arithmetic; null where `bare_seconds` is.
     share_of_ceiling: Option<f64>,
-    /// The tests of rays, by the type of the entity.
+    /// The tests of rays, by entity type.
     tests: Vec<Times>,
 }
 
-/// What rays cost, by kind.
+/// The cost of rays, by kind.
 #[derive(Serialize)]
 struct Rays {
-    /// All of them, and the whole frame without a file being written.
+    /// All rays, and the whole frame without writing a file.
     all: Rate,
-    /// Those of mirrors and glass, with those from there to lights, and what they add to a frame without them.
+    /// Reflected and transmitted rays, with the shadow rays from their hits, and what they add to the cost.
     onward: Rate,
-    /// Those from the viewer, in the scene without lights, mirrors and glass.
+    /// Primary rays, in the scene without lights, mirrors and glass.
     primary: Rate,
-    /// Those to lights, and what lights add to that, shading included.
+    /// Shadow rays of primary hits, and what lights add to the cost, shading included.
     shadow: Rate,
 }
 
-/// What some rays cost.
+/// The number and the cost of rays of one kind.
 #[derive(Serialize)]
 struct Rate {
-    /// How many there are in a frame.
+    /// The number of rays in a frame.
     rays: u64,
-    /// How many are traced in a second; null where there are none, or too few to be told from what they are added to.
+    /// The number of rays per second; null where there are none or their share of the time is too small to measure.
     rays_per_second: Option<f64>,
-    /// How long they take, in seconds.
+    /// The time for all of them, in seconds.
     seconds: f64,
 }
 
@@ -206,21 +207,21 @@ impl Rate {
     }
 }
 
-/// The tests of rays against the objects of a type. Times are nanoseconds for each ray; null where nothing was to be
-/// timed.
+/// The tests of rays against the objects of one type. Times are in nanoseconds per ray, and null where there was
+/// nothing to time.
 #[derive(Serialize)]
 struct Times {
-    /// What the formula of textbooks takes.
+    /// The textbook formula.
     bare_ns: Option<f64>,
-    /// To find whether it blocks rays to a light.
+    /// The occlusion test of shadow rays.
     block_ns: Option<f64>,
-    /// The type of the entity.
+    /// The entity type.
     entity: &'static str,
-    /// To find what rays from the viewer meet first.
+    /// The closest-hit test of primary rays.
     meet_ns: Option<f64>,
-    /// To find exactly where it is met.
+    /// The refinement of the hit's distance.
     settle_ns: Option<f64>,
-    /// How many tests a frame makes, one for each ray and object.
+    /// The number of tests in a frame, one for each ray and object.
     tests: u64,
 }
 

@@ -74,7 +74,7 @@ fn contents(chart: &Chart, words: &str) -> io::Result<[Vec<u8>; 5]> {
     ])
 }
 
-/// Loads a scene in any accuracy, once it was seen that each can be had.
+/// Returns a function that loads a scene with any accuracy, after checking that the scene loads with each.
 pub fn all_accuracies<'s>(
     registry: &'s Registry,
     source: &'s Source,
@@ -88,7 +88,7 @@ pub fn all_accuracies<'s>(
     })
 }
 
-/// Measuring on a terminal: a bar, which an interruption ends.
+/// The progress of a measurement on a terminal: a bar, which an interruption ends.
 pub struct Work(Progress);
 
 impl Work {

@@ -1,4 +1,4 @@
-//! `tabray check`: the faults of scenes, and nothing else.
+//! `tabray check`: reports the faults of scenes.
 
 use super::failure::{Failure, tell};
 use super::{input, messages};

@@ -1,4 +1,4 @@
-//! `tabray choose`: accuracy and samples for an error or a time.
+//! `tabray choose`: chooses accuracy and samples for a maximum error or time.
 
 use super::chart::{Work, all_accuracies};
 use super::failure::{Failure, print};
@@ -33,7 +33,7 @@ pub struct Args {
     max_time: Option<f64>,
 }
 
-/// Times and errors that differ by less are equal: then the default accuracy is taken.
+/// The ratio up to which times and errors count as equal; among equal choices the default accuracy is taken.
 const SAME: f64 = 1.1;
 
 fn positive(text: &str) -> Result<f64, String> {
@@ -60,7 +60,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let (chosen, why) = if let Some(error) = args.max_error {
         (choice.for_error(error)?, format!("the fastest with a measured error of at most {error}"))
     } else {
-        // One of the two is given.
+        // Either the error or the time is given.
         let time = args.max_time.unwrap_or(f64::INFINITY);
         (choice.for_time(time)?, format!("the one with the least error within {time} s on {cores} threads"))
     };
@@ -73,7 +73,7 @@ struct Weighed<'e> {
 }
 
 impl<'e> Weighed<'e> {
-    /// How long a choice takes on all cores, in seconds.
+    /// Returns the time of a choice on all cores, in seconds.
     fn time(&self, estimate: &Estimate) -> f64 {
         estimate.seconds / self.cores as f64
     }
@@ -108,7 +108,7 @@ impl<'e> Weighed<'e> {
             .unwrap_or(best))
     }
 
-    /// What was weighed, what was chosen, and the command line.
+    /// Says which choices were considered and which one was chosen, and shows the command line.
     fn words(&self, chosen: &Estimate, why: &str, scene: &Path) -> String {
         let mut text = format!("  {:<9}{:>8}{:>12}{:>12}\n", "accuracy", "samples", "error", "time");
         let mut shown: Vec<_> =
@@ -136,7 +136,8 @@ impl<'e> Weighed<'e> {
         text
     }
 
-    /// Whether no other choice is as fast and as right, and clearly better in one of these or the default.
+    /// Tells whether no other choice is as fast and as accurate, and also clearly better in one of the two or the
+    /// default.
     fn is_best(&self, one: &Estimate) -> bool {
         let is_default = |own: &Estimate| own.accuracy == Accuracy::default();
         !self.estimates.iter().any(|other| {

@@ -1,4 +1,4 @@
-//! `tabray completions`: what shells need to complete the command line.
+//! `tabray completions`: scripts with which shells complete the command line.
 
 use super::failure::{Failure, print};
 use super::program;

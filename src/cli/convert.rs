@@ -1,4 +1,4 @@
-//! `tabray convert`: a scene in the other spelling.
+//! `tabray convert`: writes a scene in the other syntax.
 
 use super::failure::{Failure, print};
 use super::{input, messages, output};
@@ -37,7 +37,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The spelling that is asked for.
+/// Returns the syntax that is asked for.
 fn syntax(args: &Args) -> Result<Syntax, Failure> {
     match (args.to, Syntax::of_name(&args.output)) {
         (Some(Syntax::Notes), Some(Syntax::Toml)) => Err(Failure::Usage(
@@ -52,7 +52,8 @@ fn syntax(args: &Args) -> Result<Syntax, Failure> {
     }
 }
 
-/// Reads the copy as from its place, where it may not find the files that the scene names.
+/// Checks that the copy loads to the same model. It is read as from its own path, from where it may not find the files
+/// that the scene names.
 fn is_the_same_scene(registry: &Registry, model: &Model, text: &str, path: &Path) -> Result<(), Failure> {
     let folder = path.parent().unwrap_or(path);
     match reader::read(registry, &path.display().to_string(), folder, text.as_bytes(), None) {

@@ -1,4 +1,4 @@
-//! `--cpu`: which of the processor's instructions are used.
+//! `--cpu`: the level of CPU instructions.
 
 use super::failure::Failure;
 use crate::simd::cpu::{Cpu, Level};
@@ -14,7 +14,7 @@ pub struct Args {
 }
 
 impl Args {
-    /// What is asked for, or the best there is.
+    /// Returns the level that is asked for, or the highest of this machine.
     pub fn cpu(&self) -> Result<Cpu, Failure> {
         let Some(level) = self.cpu else { return Ok(Cpu::best()) };
         Cpu::of(level).ok_or_else(|| {

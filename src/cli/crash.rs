@@ -1,18 +1,18 @@
-//! Panics: faults of the program itself. They are told as messages, and servers go on.
+//! Panics: faults of the program itself. They are reported as messages, and servers keep running.
 
 use super::failure::Failure;
 use super::program;
 use std::panic::{self, AssertUnwindSafe, Location};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// What the last panic said, and the scene that was read last.
+/// The message of the last panic, and the name of the scene that was read last.
 static LAST: Mutex<(String, String)> = Mutex::new((String::new(), String::new()));
 
 fn last() -> MutexGuard<'static, (String, String)> {
     LAST.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// From here on panics are not printed, but kept for [`catch`] to tell.
+/// From here on panics are not printed, but kept, so that [`catch`] can report them.
 pub fn keep() {
     panic::set_hook(Box::new(|info| {
         let payload = info.payload();
@@ -23,12 +23,12 @@ pub fn keep() {
     }));
 }
 
-/// From here on panics are told as being about this scene.
+/// From here on panics are reported as concerning this scene.
 pub fn about(scene: &str) {
     scene.clone_into(&mut last().1);
 }
 
-/// Does something, of which a panic is a failure.
+/// Runs `work` and turns a panic into a failure.
 pub fn catch<T>(work: impl FnOnce() -> T) -> Result<T, Failure> {
     panic::catch_unwind(AssertUnwindSafe(work)).map_err(|_| {
         let (said, scene) = &*last();

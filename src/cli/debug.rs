@@ -21,7 +21,7 @@ pub struct Args {
     at: Option<[[i64; 2]; 2]>,
 }
 
-/// Prints the lines that are asked for.
+/// Prints the debug lines that are asked for.
 pub fn print(model: &Model, args: &Args) -> Result<(), Failure> {
     if args.debug.is_empty() {
         return Ok(());
@@ -35,20 +35,20 @@ pub fn print(model: &Model, args: &Args) -> Result<(), Failure> {
     // Where standard error is closed there is nobody to tell.
     let _: io::Result<()> = Renderer::new(1)?.run(|| {
         let mut out = BufWriter::new(io::stderr());
-        // The notes' order.
+        // The notes' order of pixels.
         for y in a[1].min(b[1])..=a[1].max(b[1]) {
             for x in a[0].min(b[0])..=a[0].max(b[0]) {
                 debug::pixel(&plan, x, y, &args.debug, &mut out)?;
             }
         }
-        // The notes begin lines and do not end them; what else comes begins one of its own.
+        // The notes' lines begin with a line end and have none at their end, so later output needs one here.
         writeln!(out)?;
         out.flush()
     });
     Ok(())
 }
 
-/// One pixel or two corners.
+/// Parses one pixel or two corners.
 fn corners(text: &str) -> Result<[[i64; 2]; 2], String> {
     let numbers: Result<Vec<i64>, _> = text.split(',').map(str::parse).collect();
     match numbers.as_deref() {

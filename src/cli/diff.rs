@@ -1,4 +1,4 @@
-//! `tabray diff`: how two pictures differ.
+//! `tabray diff`: compares two images.
 
 use super::explain::Place;
 use super::failure::{Failure, print, tell};
@@ -42,7 +42,7 @@ Exit status:
     1  the images differ
     2  trouble: an image could not be read, the sizes differ, or the page could not be written";
 
-/// Compares; trouble of any kind is told from a difference by its status, as `diff` and `cmp` do.
+/// Compares two images. The exit status distinguishes errors of any kind from a difference, as with `diff` and `cmp`.
 pub fn run(registry: &Registry, args: &Args) -> ExitCode {
     match compare(registry, args) {
         Ok(same) => ExitCode::from(u8::from(!same)),
@@ -53,7 +53,7 @@ pub fn run(registry: &Registry, args: &Args) -> ExitCode {
     }
 }
 
-/// Whether the pictures are the same.
+/// Tells whether the images are equal.
 fn compare(registry: &Registry, args: &Args) -> Result<bool, Failure> {
     let page = args.output.as_deref().map(Page::open).transpose()?;
     let model = args.scene.as_deref().map(|scene| input::load(registry, scene, None)).transpose()?;

@@ -1,4 +1,4 @@
-//! What `probe` says of a picture's pixel, for reports: by this program, and by one from before.
+//! Explanations of an image's pixel by `probe`, for reports: from this program, and from an older one.
 
 use crate::output::compare::Pixel;
 use crate::render::plan::Plan;
@@ -9,28 +9,28 @@ use crate::words;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// How a pixel got its colour, as far as that can be known.
+/// An explanation of how a pixel got its colour, as far as possible.
 pub struct Explanation {
-    /// Which picture's pixel it is, and who explains it.
+    /// The image to which the pixel belongs, and the program that explains it.
     pub title: String,
-    /// What `probe` prints, or why it does not.
+    /// The output of `probe`, or the reason why there is none.
     pub text: String,
 }
 
-/// A pixel of a picture of a scene.
+/// A pixel of an image of a scene.
 pub struct Place<'p> {
     /// The scene's file.
     pub scene: &'p Path,
     /// The scene as it is now.
     pub model: Model,
-    /// The picture's width and height: it may be smaller than its scene says.
+    /// The width and the height of the image in pixels; it may be smaller than the scene says.
     pub size: [u32; 2],
     /// The pixel.
     pub pixel: Pixel,
 }
 
 impl Place<'_> {
-    /// How the pixel came about: in the old picture if there is a program from before, and in the new one.
+    /// Explains how the pixel came about: in the old image if there is an older program, and in the new one.
     pub fn explained(self, before: Option<&Path>) -> Vec<Explanation> {
         let Pixel { old, new, .. } = self.pixel;
         let scene = self.scene.display();
@@ -78,7 +78,7 @@ impl Place<'_> {
     }
 }
 
-/// An explanation of a pixel that has these bytes, which says so where it comes to others.
+/// Makes an explanation of a pixel with these bytes; says so if the explanation arrives at other bytes.
 fn explanation(title: String, told: Result<String, String>, [r, g, b]: [u8; 3]) -> Explanation {
     let bytes = format!("({r}, {g}, {b})");
     let text = match told {

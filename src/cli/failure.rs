@@ -1,4 +1,4 @@
-//! How a command ends: with what it prints, or with a failure.
+//! The end of a command: its output, or a failure.
 
 use super::{messages, progress, temporary};
 use crate::scene::reader::Report;
@@ -7,19 +7,19 @@ use std::io::{self, Write};
 use std::path::Path;
 use std::process::{self, ExitCode};
 
-/// Why a command did not do what it was asked to.
+/// The reason why a command did not do what it was asked to do.
 pub enum Failure {
     /// The scene has faults.
     Scene(Report),
-    /// What was asked for makes no sense; what would, if that can be said.
+    /// The request makes no sense; with what would, where that can be said.
     Usage(String, Option<String>),
-    /// The machine or another program stood in the way.
+    /// The system or another program caused the failure.
     Failed(String),
-    /// The user stopped it: what is there of it, or is not.
+    /// The user interrupted the command; with what is left of its work.
     Interrupted(&'static str),
-    /// It was stopped with a part of its work done, of which the user was told already.
+    /// The command stopped with a part of its work done, and the user was told already.
     Stopped,
-    /// Faults that were printed already.
+    /// Faults were printed already.
     Told,
 }
 
@@ -30,7 +30,7 @@ impl From<io::Error> for Failure {
 }
 
 impl Failure {
-    /// What the system does not let be written, and why.
+    /// Makes a failure of a path that could not be written, with the reason.
     pub fn cannot_write(path: &Path, error: &io::Error) -> Self {
         if path == Path::new("-") {
             return Self::Failed(format!("cannot write to standard output: {}", words::reason(error)));
@@ -46,7 +46,7 @@ impl Failure {
     }
 }
 
-/// Says why a command failed, and gives the exit status that tells it.
+/// Prints why a command failed, and returns the exit status.
 pub fn tell(failure: &Failure) -> ExitCode {
     told(failure).into()
 }
@@ -76,7 +76,7 @@ fn told(failure: &Failure) -> u8 {
     }
 }
 
-/// Prints to standard output. A reader that has had enough is no failure.
+/// Prints to standard output. A reader that closes the pipe is no failure.
 pub fn print(text: &str) -> Result<(), Failure> {
     match io::stdout().write_all(text.as_bytes()).and_then(|()| io::stdout().flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {

@@ -1,4 +1,4 @@
-//! `tabray grammar`: what editors need to colour scenes in the notes' spelling.
+//! `tabray grammar`: a grammar with which editors colour scenes in the notes' syntax.
 
 use super::failure::{Failure, print};
 use crate::scene::grammar;

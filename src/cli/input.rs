@@ -1,4 +1,4 @@
-//! Reading scenes from files and from standard input.
+//! Reads scenes from files and from standard input.
 
 use super::failure::Failure;
 use super::{crash, memory, messages};
@@ -11,7 +11,7 @@ use crate::world::accuracy::Accuracy;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-/// The largest scene that is read: far beyond any written one, and far below what memory holds.
+/// The maximum size of a scene, in bytes: far more than written scenes have, and far less than memory holds.
 const LARGEST: u64 = 1 << 30;
 
 /// What a model of many objects takes while it is made, for each byte of its text.
@@ -22,12 +22,12 @@ pub fn is_standard(path: &Path) -> bool {
     path == Path::new("-")
 }
 
-/// Reads a scene, prints its warnings and makes its model, of this accuracy or of its own.
+/// Reads a scene, prints its warnings and returns its model, with the given accuracy or with its own.
 pub fn load(registry: &Registry, path: &Path, accuracy: Option<Accuracy>) -> Result<Model, Failure> {
     loaded(registry, path, accuracy).map(|loaded| loaded.model)
 }
 
-/// As [`load`], with what else is known of it.
+/// Reads a scene and prints its warnings as [`load`] does, and returns the model with the warnings and places.
 pub fn loaded(registry: &Registry, path: &Path, accuracy: Option<Accuracy>) -> Result<Loaded, Failure> {
     told(Source::read(path)?.load(registry, accuracy))
 }
@@ -39,7 +39,7 @@ pub fn told(loaded: Result<Loaded, Report>) -> Result<Loaded, Failure> {
     Ok(loaded)
 }
 
-/// The text of a scene, of which any number of models can be made.
+/// The text of a scene, from which any number of models can be made.
 pub struct Source {
     name: String,
     folder: PathBuf,
@@ -47,25 +47,25 @@ pub struct Source {
 }
 
 impl Source {
-    /// Reads it.
+    /// Reads the text of a scene.
     pub fn read(path: &Path) -> Result<Self, Failure> {
         let (name, bytes) = read(path)?;
         memory::room(MODEL * bytes.len(), &format!("the model of `{name}`"))?;
         Ok(Self { name, folder: path.parent().unwrap_or(path).to_owned(), bytes })
     }
 
-    /// A model of it, of this accuracy or of its own, and the warnings that it gave rise to.
+    /// Makes a model, with the given accuracy or with the scene's own, and its warnings.
     pub fn load(&self, registry: &Registry, accuracy: Option<Accuracy>) -> Result<Loaded, Report> {
         self.load_by(registry, Chosen { above_all: accuracy, ..Chosen::default() })
     }
 
-    /// As [`load`](Self::load), with a say in what its accuracy is where it has none of its own.
+    /// Makes a model and its warnings, with the choices of [`Chosen`].
     pub fn load_by(&self, registry: &Registry, accuracy: Chosen) -> Result<Loaded, Report> {
         reader::read_by(registry, &self.name, &self.folder, &self.bytes, accuracy)
     }
 }
 
-/// The bytes of a scene, and what messages call it; or why it has none.
+/// Returns the name of a scene in messages, and its bytes.
 pub fn read(path: &Path) -> Result<(String, Vec<u8>), Failure> {
     let (name, bytes) = if is_standard(path) {
         ("<stdin>".to_owned(), to_first_nul(io::stdin().lock()))
@@ -89,7 +89,7 @@ pub fn read(path: &Path) -> Result<(String, Vec<u8>), Failure> {
     }
 }
 
-/// Reads all there is, but no farther than a block with a NUL byte: no scene has one, and devices have no end.
+/// Reads a stream to its end, or to the end of a block with a NUL byte: scenes have none, and devices may have no end.
 fn to_first_nul(source: impl Read) -> io::Result<Vec<u8>> {
     let mut source = source.take(LARGEST + 1);
     let mut bytes = Vec::new();

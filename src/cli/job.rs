@@ -1,4 +1,4 @@
-//! A picture being made: rendered and written, or stopped and left to be gone on with.
+//! Renders an image and writes it, or stops and leaves what a later render can continue from.
 
 use super::failure::{self, Failure};
 use super::output::{Output, finished};
@@ -25,18 +25,18 @@ use std::time::Instant;
 /// Pixels that are written where nothing is rendered, at most. An image that lacks more ends where it lacks all.
 const MOST_BLANK: usize = 1 << 24;
 
-/// A part of a plan's picture, and how it is made.
+/// A part of a plan's image, and how it is rendered.
 pub struct Job<'a> {
     pub plan: &'a Plan<'a>,
     pub part: &'a Part,
     pub renderer: &'a Renderer,
     pub format: Format,
-    /// Where it belongs.
+    /// The path of the image.
     pub path: &'a Path,
     /// How many pixels may be in memory at one time.
     pub at_once: usize,
     pub stop: &'a Stop,
-    /// What it takes goes in here, if anybody wants to know.
+    /// The statistics to fill in, if they are wanted.
     pub stats: Option<&'a Stats>,
 }
 
@@ -145,7 +145,7 @@ impl Job<'_> {
         let output =
             out.into_inner().map_err(|error| Failure::cannot_write(self.path, &error.into_error()))?;
         let [width, height] = self.part.size();
-        // Not rounded: what is not finished is not 100 %.
+        // Rounded down, so that an unfinished image does not show 100 %.
         let share = (1000.0 * tiles.pixels() as f64 / (width * height) as f64).floor() / 10.0;
         messages::note(&match &output {
             Output::File(..) if tiles.pixels() == 0 => {
@@ -175,7 +175,7 @@ impl Job<'_> {
     }
 }
 
-/// Says which pixels are not as the scene has them, if there are any.
+/// Warns of pixels that reached the limit on their number of rays, if there are any.
 fn warn_of(cuts: Cuts) {
     if cuts.pixels == 0 {
         return;

@@ -65,7 +65,7 @@ fn details(entity: &'static Entity) -> String {
     )
 }
 
-/// Whether an attribute must be given, what its values must be, and in what unit they are.
+/// Says whether an attribute is required, what its values must be, and their unit.
 fn condition(attribute: &dyn Attribute) -> String {
     let mut parts = vec![match attribute.default() {
         Some(Datum::Absent) => "optional".to_owned(),
@@ -81,7 +81,7 @@ fn condition(attribute: &dyn Attribute) -> String {
     parts.join(", ")
 }
 
-/// Rows of text in columns as wide as their widest entry.
+/// Formats rows of text in columns as wide as their widest entry.
 fn columns<const N: usize>(rows: impl Iterator<Item = [String; N]>) -> String {
     let rows: Vec<_> = rows.collect();
     let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);

@@ -24,7 +24,7 @@ pub fn run(registry: &Registry, args: &Args, command: clap::Command) -> Result<(
     Ok(())
 }
 
-/// Writes the page of a command and those of its own commands; how many they are.
+/// Writes the page of a command and those of its subcommands; returns the number of pages.
 fn pages(command: Command, folder: &Path) -> Result<usize, Failure> {
     let mut count = 1;
     for command in command.get_subcommands() {

@@ -1,4 +1,4 @@
-//! How much memory the program has, where the system tells: on Linux.
+//! The memory use of the program, on systems that report it: Linux.
 
 use super::failure::Failure;
 use bytesize::ByteSize;
@@ -18,9 +18,9 @@ pub fn now() -> Option<u64> {
     status("VmRSS:")
 }
 
-/// The most that it has had at one time, in bytes.
+/// Returns the most memory that the program has used at one time, in bytes.
 ///
-/// What `getrusage` says of it counts the program that started this one, too.
+/// The number from `getrusage` would include the program that started this one.
 pub fn peak() -> Option<u64> {
     status("VmHWM:")
 }

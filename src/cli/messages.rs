@@ -1,4 +1,4 @@
-//! What the program says on standard error, in the form that was asked for.
+//! Messages on standard error, in the form that was asked for.
 
 use crate::scene::reader::{Message, Report};
 use annotate_snippets::{Group, Level, Renderer};
@@ -6,7 +6,7 @@ use anstream::AutoStream;
 use std::io::{self, Write};
 use std::sync::OnceLock;
 
-/// How messages are written.
+/// The form of messages.
 #[derive(Clone, Copy, Default, PartialEq, clap::ValueEnum)]
 pub enum Form {
     /// For people: with the lines of the scene concerned
@@ -20,7 +20,7 @@ pub enum Form {
 
 static FORM: OnceLock<Form> = OnceLock::new();
 
-/// From here on messages have this form.
+/// Sets the form of all later messages.
 pub fn choose(form: Form) {
     FORM.get_or_init(|| form);
 }
@@ -29,7 +29,7 @@ fn form() -> Form {
     FORM.get().copied().unwrap_or_default()
 }
 
-/// The faults of a scene.
+/// Prints the faults of a scene.
 pub fn report(report: &Report) {
     say(&match form() {
         Form::Human => report.styled(),
@@ -38,12 +38,12 @@ pub fn report(report: &Report) {
     });
 }
 
-/// An error that is no fault of a scene, and what would be right if that can be said.
+/// Prints an error that is no fault of a scene, and what would be right where that can be said.
 pub fn error(message: &str, help: Option<&str>) {
     titled("error", Level::ERROR, message, help);
 }
 
-/// Something about a picture that its viewer should know, and what there is to do about it.
+/// Prints a warning about an image, and what the user can do about it.
 pub fn warning(message: &str, help: Option<&str>) {
     titled("warning", Level::WARNING, message, help);
 }
@@ -60,7 +60,7 @@ fn titled(word: &str, level: Level, message: &str, help: Option<&str>) {
     });
 }
 
-/// Something that went well, or how it ended.
+/// Prints a note: that something went well, or how it ended.
 pub fn note(message: &str) {
     say(&match form() {
         Form::Human | Form::Short => format!("{message}\n"),
@@ -72,7 +72,7 @@ fn json(level: &str, message: &str, help: Option<&str>, rendered: &str) -> Strin
     Message { help, level, message, rendered, spans: Vec::new() }.line()
 }
 
-/// In one piece, whatever else writes there. Where standard error is closed there is nobody to tell.
+/// Writes a message in one piece, whatever else is written there. If standard error is closed, no one can be told.
 fn say(text: &str) {
     let stderr = io::stderr();
     let mut said = AutoStream::new(Vec::new(), AutoStream::choice(&stderr));

@@ -1,4 +1,4 @@
-//! `--method` and `--accuracy`: how exactly a scene is traced, whatever it says itself.
+//! `--method` and `--accuracy`: the accuracy of a render, overriding the scene's own.
 
 use super::failure::Failure;
 use crate::scene::choice::{Choice, ChoiceName};
@@ -17,7 +17,7 @@ pub struct Args {
     accuracy: Option<Accuracy>,
 }
 
-/// The values of an option that takes some accuracies, by the names that scenes call them.
+/// Makes a parser of an option that takes some accuracies, by the names that scenes use.
 fn among<const N: usize>(some: [Accuracy; N]) -> impl TypedValueParser<Value = Accuracy> {
     let value = |ChoiceName { name, meaning, .. }| PossibleValue::new(name).help(words::capital(meaning));
     let values = PossibleValuesParser::new(some.map(|one| value(one.option())));
@@ -25,7 +25,7 @@ fn among<const N: usize>(some: [Accuracy; N]) -> impl TypedValueParser<Value = A
 }
 
 impl Args {
-    /// What is asked for, if anything is.
+    /// Returns the accuracy that is asked for, if any.
     pub fn accuracy(&self) -> Result<Option<Accuracy>, Failure> {
         if self.method == Some(Accuracy::Classic) && self.accuracy.is_some() {
             return Err(Failure::Usage(

@@ -1,4 +1,4 @@
-//! The command line: one file per subcommand, and what they share.
+//! The command line: one file per subcommand, and the code that they share.
 
 mod aov;
 mod bench;
@@ -97,13 +97,13 @@ Exit status:
     2  bad input: a scene or a command line with errors
   130  interrupted, or stopped at a limit";
 
-/// The command line, under the name of the program that runs.
+/// Returns the command line, under the name of the running program.
 fn command() -> clap::Command {
     program::named(Cli::command())
 }
 
-/// Runs the command that the program's arguments name, with every plugin that is linked into it. Its messages go to
-/// standard error, and its exit status tells how it went.
+/// Runs the command that the program's arguments name, with every plugin that is linked in. Messages go to standard
+/// error, and the exit status tells how the command ended.
 pub fn run() -> ExitCode {
     // A file that becomes larger than one may be is then an error like that of a full disk, and no end without a word.
     // Where the signal cannot be blocked, it ends the program as before.

@@ -1,4 +1,4 @@
-//! Without a command: the notes' program, a filter from a scene to its dump and its picture.
+//! Without a subcommand: the notes' program, a filter from a scene to its dump and its image.
 
 use super::failure::Failure;
 use super::input::{self, Source};
@@ -21,7 +21,7 @@ use std::path::Path;
 pub fn run(registry: &Registry) -> Result<(), Failure> {
     let standard = Path::new("-");
     let output = Output::open(standard)?;
-    // The course's own picture, unless the camera asks for another.
+    // The course's own image, unless the camera asks for another method.
     let accuracy = Chosen { by_default: Accuracy::Classic, ..Chosen::default() };
     let model = input::told(Source::read(standard)?.load_by(registry, accuracy))?.model;
     interrupt::catch(Manner::Ends("the image was not finished"))?;

@@ -1,4 +1,4 @@
-//! Where a picture goes: beside its target first, then in its place, so that no half of one is ever there.
+//! Writes images beside their targets first and then replaces the targets, so that a target never holds half an image.
 
 use super::failure::Failure;
 use super::temporary::Temporary;
@@ -14,17 +14,17 @@ use std::io::{self, BufWriter, IsTerminal, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// A place to write to, found fit before any work is done.
+/// A place to write to, which is opened before any work is done.
 pub enum Output {
     /// Standard output.
     Standard,
-    /// What is no ordinary file, such as a device or a pipe; it cannot be replaced.
+    /// A target that is not a regular file, such as a device or a pipe; it cannot be replaced.
     Special(File),
-    /// A file beside the target, and the target.
+    /// A temporary file beside the target, and the target's path.
     File(Temporary, PathBuf),
 }
 
-/// Writes a new file as a whole, and none in place of another one.
+/// Writes a new file as a whole; an existing file is not replaced.
 pub fn create(path: &Path, text: &str) -> Result<(), Failure> {
     is_new(path)?;
     let cannot = |error: io::Error| match error.kind() {
@@ -37,7 +37,7 @@ pub fn create(path: &Path, text: &str) -> Result<(), Failure> {
     file.persist_new(path).map_err(cannot)
 }
 
-/// Writes a file in the place of another, or of none.
+/// Writes a file, replacing an existing one.
 pub fn replace(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     let mut output = Output::open(path)?;
     output
@@ -46,7 +46,7 @@ pub fn replace(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
         .map_err(|error| Failure::cannot_write(path, &error))
 }
 
-/// Writes a picture or what is beside it, puts it in its place, and says so.
+/// Writes an image or a file beside it, moves it to its path, and reports it.
 pub fn put(
     path: &Path,
     output: Output,
@@ -67,14 +67,14 @@ pub fn finished(path: &Path, written: io::Result<()>, out: BufWriter<Output>) ->
     }
 }
 
-/// A path with something appended: `with_extension` would cut what the name ends in.
+/// Appends to a path. `with_extension` would replace the end of the name.
 pub fn ended(path: &Path, end: impl AsRef<OsStr>) -> PathBuf {
     let mut path = path.as_os_str().to_owned();
     path.push(end);
     path.into()
 }
 
-/// Makes a folder and those that it is in, where they are not there yet.
+/// Makes a folder and its parents, where they do not exist.
 pub fn folder(path: &Path) -> Result<(), Failure> {
     fs::create_dir_all(path).map_err(|error| {
         let reason = match error.kind() {
@@ -85,7 +85,7 @@ pub fn folder(path: &Path) -> Result<(), Failure> {
     })
 }
 
-/// Refuses a path at which something is already.
+/// Refuses a path that already exists.
 pub fn is_new(path: &Path) -> Result<(), Failure> {
     if path.symlink_metadata().is_ok() { Err(is_there(path)) } else { Ok(()) }
 }
@@ -133,7 +133,7 @@ pub fn is_no_source(path: &Path, scene: &Path, model: &Model) -> Result<(), Fail
 }
 
 impl Output {
-    /// Opens `path`, or standard output for `-`. What is there already stays until [`finish`](Self::finish).
+    /// Opens `path`, or standard output for `-`. An existing file stays as it is until [`finish`](Self::finish).
     pub fn open(path: &Path) -> Result<Self, Failure> {
         if path == Path::new("-") {
             if io::stdout().is_terminal() {
@@ -167,7 +167,7 @@ impl Output {
         }
     }
 
-    /// What was written so far, from its beginning.
+    /// Opens what was written so far, from its beginning.
     pub fn read(&self) -> io::Result<File> {
         let Self::File(file, _) = self else { return Err(io::ErrorKind::Unsupported.into()) };
         let mut file = file.file().try_clone()?;
@@ -210,7 +210,7 @@ impl Write for Output {
     }
 }
 
-/// The format that a file's name says, or what would be right.
+/// Returns the format that a file's name implies, or an error with this help.
 pub fn named(path: &Path, help: &str) -> Result<Format, Failure> {
     Format::of(path).ok_or_else(|| {
         let message = format!("the name `{}` does not determine the format of the image", path.display());

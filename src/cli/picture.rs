@@ -1,4 +1,4 @@
-//! Reading pictures, to compare them.
+//! Reads images, to compare them.
 
 use super::failure::Failure;
 use crate::files;
@@ -7,14 +7,14 @@ use image::{DynamicImage, ImageReader, RgbImage};
 use std::io::{BufRead, BufReader, Seek};
 use std::path::Path;
 
-/// The picture in a file.
+/// Reads the image in a file.
 pub fn read(path: &Path) -> Result<RgbImage, Failure> {
     let cannot = |reason: String| Failure::Usage(format!("cannot read `{}`: {reason}", path.display()), None);
     let file = files::open(path).map_err(|error| cannot(words::reason(&error)))?;
     decode(BufReader::new(file)).map_err(cannot)
 }
 
-/// A picture from its file's bytes. What bytes of red, green and blue cannot tell is refused, not left out.
+/// Decodes an image. Content that 8-bit red, green and blue cannot represent is an error, and is not dropped.
 pub fn decode(bytes: impl BufRead + Seek) -> Result<RgbImage, String> {
     let reader = ImageReader::new(bytes).with_guessed_format().map_err(|error| words::reason(&error))?;
     let picture = reader.decode().map_err(|error| words::picture_reason(&error))?;

@@ -1,4 +1,4 @@
-//! `tabray plan`: what a scene needs, and why.
+//! `tabray plan`: how a scene would be rendered, and why.
 
 use super::failure::{Failure, print};
 use super::{input, method};

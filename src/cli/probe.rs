@@ -1,4 +1,4 @@
-//! `tabray probe`: one pixel, explained.
+//! `tabray probe`: explains one pixel.
 
 use super::failure::Failure;
 use super::{input, method};
@@ -32,7 +32,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let printed =
         Renderer::new(1)?.run(|| probe::pixel(&Plan::new(&model), x, y, &mut out).and_then(|()| out.flush()));
     match printed {
-        // A reader that has had enough is no failure.
+        // A reader that closes the pipe is no failure.
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             Err(Failure::cannot_write(Path::new("-"), &error))
         }
@@ -40,7 +40,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     }
 }
 
-/// A pixel that a user named, if the picture has it.
+/// Returns a pixel that the user named, if the image contains it.
 pub fn inside(model: &Model, pixel: [i64; 2]) -> Result<[usize; 2], Failure> {
     let size = model.camera.value.pixels;
     let find = |side: usize| usize::try_from(pixel[side]).ok().filter(|at| *at < size[side]);

@@ -1,4 +1,4 @@
-//! What the program is called, and its command line under that name.
+//! The name of the program, and its command line under that name.
 
 use crate::scene::registry::Registry;
 use clap::Command;
@@ -7,7 +7,7 @@ use std::env::{self, consts};
 use std::path::Path;
 use std::sync::LazyLock;
 
-/// The name of the library, and of the program that has no plugins but its own.
+/// The name of the library, and of the program with no plugins but those of the library.
 const LIBRARY: &str = env!("CARGO_PKG_NAME");
 
 static NAME: LazyLock<String> = LazyLock::new(|| {
@@ -17,12 +17,12 @@ static NAME: LazyLock<String> = LazyLock::new(|| {
     file.strip_suffix(consts::EXE_SUFFIX).unwrap_or(&file).to_owned()
 });
 
-/// The name of the file that runs: `tabray`, or that of a program with more plugins.
+/// Returns the name of the running file: `tabray`, or that of a program with more plugins.
 pub fn name() -> &'static str {
     &NAME
 }
 
-/// A command line under that name. A program of another name tells the library that it is built on by its version.
+/// Gives a command line the program's name. The version of a program of another name includes that of the library.
 pub fn named(command: Command) -> Command {
     if name() == LIBRARY {
         return command;
@@ -30,8 +30,8 @@ pub fn named(command: Command) -> Command {
     command.name(name()).version(concat!("(", env!("CARGO_PKG_NAME"), " ", env!("CARGO_PKG_VERSION"), ")"))
 }
 
-/// The command line for shells and manuals, which want to know the entity types too. The program itself takes any word
-/// and says which was meant.
+/// Returns the command line for shells and manuals, with the entity types as possible values. The program itself
+/// accepts any word, and says which type was probably meant.
 pub fn described(command: Command, registry: &Registry) -> Command {
     let types = registry.iter().map(|entity| PossibleValue::new(entity.name).help(entity.meaning));
     let types = PossibleValuesParser::new(types);

@@ -1,4 +1,4 @@
-//! How far the work is, on a terminal.
+//! Shows progress on a terminal.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::sync::{Mutex, PoisonError};
@@ -30,7 +30,7 @@ impl Progress {
         }
     }
 
-    /// So many more steps are to be done.
+    /// Adds steps that are to be done.
     pub fn lengthen(&self, steps: usize) {
         self.bar.inc_length(steps as u64);
     }
@@ -39,7 +39,7 @@ impl Progress {
         self.advance(1);
     }
 
-    /// So many steps are done.
+    /// Counts steps as done.
     pub fn advance(&self, steps: usize) {
         if self.bar.is_hidden() && self.start.elapsed() > Duration::from_millis(500) {
             self.bar.set_draw_target(ProgressDrawTarget::stderr());

@@ -1,4 +1,4 @@
-//! `tabray render`: a scene's picture.
+//! `tabray render`: renders a scene's image.
 
 use super::failure::Failure;
 use super::input::Source;

@@ -1,4 +1,4 @@
-//! The page that shows what changed: one file with everything in it, which works without a network.
+//! The page that shows changes: one self-contained file, which works without a network.
 
 use super::explain::Explanation;
 use super::failure::Failure;
@@ -16,31 +16,31 @@ use std::path::{Path, PathBuf};
 
 const PAGE: &str = include_str!("report.html");
 
-/// Where the page wants its data: one place, in an element that no script is.
+/// The placeholder for the page's data: its only occurrence, in an element that is not executed as a script.
 const DATA: &str = "\"the data\"";
 
-/// Something that changed, or may have.
+/// Something that has changed, or may have changed.
 pub struct Item {
-    /// What it is called.
+    /// The name.
     pub name: String,
-    /// What it was and is.
+    /// The old and the new content.
     pub change: Change,
-    /// How its first differing pixel came about.
+    /// Explanations of the first pixel that differs.
     pub explanations: Vec<Explanation>,
-    /// How to decide about it, where that is to be done.
+    /// How to accept or reject the change, where the user is to decide.
     pub decision: Option<Decision>,
 }
 
-/// What is shown.
+/// The old and the new content of an item.
 pub enum Change {
-    /// A picture, as it was if it was, and as it is; and what one picture and the other are called.
+    /// An image, with the old one if there is one, the names of both, and their comparison.
     Picture { old: Option<RgbImage>, new: RgbImage, names: [String; 2], comparison: Option<Comparison> },
     /// A text.
     Text { old: Option<String>, new: String },
 }
 
 impl Change {
-    /// A few words on what changed.
+    /// Summarizes the change in a few words.
     pub fn summary(&self) -> String {
         match self {
             Self::Picture { comparison: Some(comparison), .. } => comparison.to_string(),
@@ -62,25 +62,25 @@ fn size(picture: &RgbImage) -> String {
     format!("{} x {} pixels", picture.width(), picture.height())
 }
 
-/// How to accept or reject a pending snapshot.
+/// The ways to accept or reject a pending snapshot.
 #[derive(Serialize)]
 pub struct Decision {
     /// The command that accepts it.
     pub accept: String,
     /// The command that rejects it.
     pub reject: String,
-    /// What tells this content from any other that the snapshot may have later.
+    /// A hash that tells this content from other contents of the snapshot.
     pub version: String,
 }
 
-/// The file of a page, found fit before any work is done.
+/// The file of a page, opened before any work is done.
 pub struct Page {
     path: PathBuf,
     output: Output,
 }
 
 impl Page {
-    /// Opens the file; it must be named as a page, so that no picture is taken for one and written over.
+    /// Opens the file. It must have the extension of a page, so that an image named by mistake is not overwritten.
     pub fn open(path: &Path) -> Result<Self, Failure> {
         if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("html")) {
             return Err(Failure::Usage(
@@ -91,7 +91,7 @@ impl Page {
         Ok(Self { path: path.to_owned(), output: Output::open(path)? })
     }
 
-    /// Writes it.
+    /// Writes the page.
     pub fn write(mut self, title: &str, items: &[Item]) -> Result<(), Failure> {
         let written = html(title, items, false)
             .and_then(|html| self.output.write_all(html.as_bytes()))
@@ -102,78 +102,78 @@ impl Page {
     }
 }
 
-/// The page, as HTML. One that is `served` can accept and reject.
+/// Returns the page as HTML. A page that is `served` can accept and reject.
 pub fn html(title: &str, items: &[Item], served: bool) -> io::Result<String> {
     let items = items.iter().map(Shown::of).collect::<io::Result<_>>()?;
     let data = words::json(&Data { items, served, title });
-    // Nothing in the data can end its element: in JSON a `<` can be written otherwise.
+    // Nothing in the data may end the element; in JSON a `<` can be escaped.
     Ok(PAGE.replacen(DATA, &data.replace('<', "\\u003c"), 1))
 }
 
-/// What the page shows.
+/// The data of the page.
 #[derive(Serialize)]
 struct Data<'d> {
-    /// What changed.
+    /// The items that have changed.
     items: Vec<Shown<'d>>,
-    /// Whether it can accept and reject.
+    /// Whether the page can accept and reject.
     served: bool,
     /// The title of the page.
     title: &'d str,
 }
 
-/// An item as the page has it.
+/// An item, as the page receives it.
 #[derive(Serialize)]
 struct Shown<'d> {
-    /// How to decide about it; left out where that is not to be done.
+    /// How to decide about the item; left out where there is nothing to decide.
     #[serde(skip_serializing_if = "Option::is_none")]
     decision: Option<&'d Decision>,
-    /// How its first differing pixel came about: titles and texts.
+    /// Explanations of the first pixel that differs: titles and texts.
     explanations: Vec<(&'d str, &'d str)>,
-    /// What it is called.
+    /// The name.
     name: &'d str,
-    /// A few words on what changed.
+    /// A summary of the change in a few words.
     summary: String,
-    /// What it was and is, among the other fields.
+    /// The old and the new content, as fields of the item.
     #[serde(flatten)]
     sides: Sides<'d>,
 }
 
-/// What an item was and is. The field `kind` has the variant's name.
+/// The old and the new content of an item. The field `kind` has the variant's name.
 #[derive(Serialize)]
 #[serde(rename_all = "lowercase", tag = "kind")]
 enum Sides<'d> {
-    /// A picture.
+    /// An image.
     Picture {
         /// The first pixel that differs, or null.
         first: Option<First>,
-        /// What the old and the new picture are called.
+        /// The names of the old and the new image.
         names: &'d [String; 2],
-        /// The new picture, as the address of an image.
+        /// The new image, as a data URI.
         new: String,
-        /// The old one, or null.
+        /// The old image, or null.
         old: Option<String>,
-        /// How many levels of a channel may differ; null where the pictures cannot be compared.
+        /// The tolerance in levels of a channel; null where the images cannot be compared.
         tolerance: Option<u8>,
     },
     /// A text.
     Text {
-        /// Its lines, with those that go.
+        /// The lines of both texts, as a diff.
         lines: Vec<Line>,
     },
 }
 
-/// Whether a line of a text stays (a blank), goes (`-`) or comes (`+`), its numbers in the old and the new text, from 1,
-/// or null, and the line.
+/// A line of a diff: a blank if the line stays, `-` if it is removed, `+` if it is added; its numbers in the old and
+/// the new text, from 1, or null; and the line itself.
 type Line = (char, Option<usize>, Option<usize>, String);
 
 /// The first pixel that differs.
 #[derive(Serialize)]
 struct First {
-    /// What became of it, in words.
+    /// The pixel's colours before and after, in words.
     text: String,
-    /// Its column, from 0 at the left.
+    /// The column, from 0 at the left.
     x: u32,
-    /// Its row, from 0 at the bottom.
+    /// The row, from 0 at the bottom.
     y: u32,
 }
 
@@ -206,7 +206,7 @@ impl<'d> Shown<'d> {
     }
 }
 
-/// The picture within the page, written anew: no colour profile that its file may have changes what is seen.
+/// Encodes an image as a data URI. It is encoded anew, so that no colour profile in its file changes its look.
 fn data_uri(picture: &RgbImage) -> io::Result<String> {
     let mut png = Cursor::new(Vec::new());
     picture.write_to(&mut png, ImageFormat::Png).map_err(io::Error::other)?;

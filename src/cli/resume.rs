@@ -1,4 +1,4 @@
-//! Checkpoints beside pictures: left where a render stops, and gone on from by `--resume`.
+//! Checkpoints beside images: written where a render stops, and continued from by `--resume`.
 
 use super::failure::Failure;
 use super::messages;
@@ -14,19 +14,19 @@ use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-/// The checkpoint that a render goes on from.
+/// The checkpoint that a render continues from.
 pub struct Begun {
     path: PathBuf,
     checkpoint: Checkpoint,
 }
 
-/// Where the checkpoint of a picture is.
+/// Returns the path of an image's checkpoint.
 pub fn beside(picture: &Path) -> PathBuf {
     output::ended(picture, ".checkpoint")
 }
 
 impl Begun {
-    /// Opens the checkpoint of a picture, if there is one and it is `wanted`.
+    /// Opens the checkpoint of an image, if there is one and it is `wanted`.
     pub fn open(
         wanted: bool,
         model: &Model,
@@ -86,7 +86,7 @@ impl Begun {
         self.checkpoint.fill(band).map_err(|error| cannot_read(&self.path, &error))
     }
 
-    /// Removes the checkpoint, as its picture is finished.
+    /// Removes the checkpoint after its image is finished.
     pub fn remove(self) -> Result<(), Failure> {
         fs::remove_file(&self.path).map_err(|error| {
             let (path, reason) = (self.path.display(), words::reason(&error));
@@ -110,7 +110,7 @@ fn cannot_read(path: &Path, error: &io::Error) -> Failure {
 /// Leaves a part of a picture at its place, and a checkpoint beside it, whose path is returned. `written` is the picture,
 /// or so many rows of it, black where nothing is rendered.
 ///
-/// Neither is put in its place before both are whole.
+/// Both files are complete before either is moved to its path.
 pub fn leave(
     model: &Model,
     part: &Part,

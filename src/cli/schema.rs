@@ -1,4 +1,4 @@
-//! `tabray schema`: what editors need to check and complete scenes in TOML.
+//! `tabray schema`: a schema with which editors check and complete scenes in TOML.
 
 use super::failure::{Failure, print};
 use crate::scene::registry::Registry;

@@ -1,4 +1,4 @@
-//! A server for a page on this machine, which listens on the loopback address alone.
+//! A server for a page on this machine. It listens on the loopback address only.
 
 mod access;
 mod connections;
@@ -21,14 +21,14 @@ use std::net::{Ipv4Addr, TcpListener};
 use std::ops::RangeInclusive;
 use tokio::task::LocalSet;
 
-/// Where it looks for a port that is free.
+/// The ports that are tried when none is given.
 const PORTS: RangeInclusive<u16> = 3000..=u16::MAX;
 
-/// How many connections the system keeps until they are accepted, if it can. One for which there is no room tries again
-/// after a second or more.
+/// The maximum length of the system's queue of connections that are not yet accepted. If the queue is full, a client
+/// tries again after a second or more.
 const QUEUE: i32 = 4096;
 
-/// A server that listens.
+/// A listening server.
 pub struct Server {
     listener: TcpListener,
     access: Access,
@@ -64,15 +64,15 @@ impl Server {
         Ok((listener, port))
     }
 
-    /// Where the page is. Who has this address is let in.
+    /// Returns the address of the page. Anyone who has this address is let in.
     pub fn url(&self) -> String {
         self.access.url()
     }
 
-    /// Answers the requests that are let in, until an answer breaks off: it is the last one.
+    /// Answers the requests that are let in, until an answer breaks.
     ///
     /// # Errors
-    /// The reason why it cannot begin.
+    /// The reason why the server cannot start.
     pub fn run<A>(self, answer: A) -> io::Result<()>
     where
         A: AsyncFn(Request<Bytes>) -> Answer + 'static,

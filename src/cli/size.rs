@@ -1,11 +1,11 @@
-//! `--size`, `--quick` and `--crop`: how large the picture is, and which part of it is made.
+//! `--size`, `--quick` and `--crop`: the size of the image, and the part of it that is rendered.
 
 use super::failure::Failure;
 use crate::world::camera::Camera;
 use std::ops::Range;
 
-/// What `pixeldim` allows each way.
-const LARGEST: usize = 100_000;
+/// The maximum width and the maximum height in pixels, as for `pixeldim`.
+const MAX_SIDE: usize = 100_000;
 
 #[derive(clap::Args)]
 #[group(id = "how large")]
@@ -23,28 +23,28 @@ pub struct Args {
     crop: Option<[i64; 4]>,
 }
 
-/// A size as it was asked for.
+/// A size, as the user asked for it.
 #[derive(Clone, Copy)]
 struct Size {
     width: usize,
     height: Option<usize>,
 }
 
-/// A part of a picture.
+/// A part of an image.
 pub struct Part {
-    /// From the left.
+    /// The columns, from 0 at the left.
     pub columns: Range<usize>,
-    /// From the top.
+    /// The rows, from 0 at the top.
     pub rows: Range<usize>,
 }
 
 impl Part {
-    /// Its width and height.
+    /// Returns the width and the height in pixels.
     pub fn size(&self) -> [usize; 2] {
         [self.columns.len(), self.rows.len()]
     }
 
-    /// All of a camera's picture.
+    /// Returns the whole image of a camera.
     pub fn whole(camera: &Camera) -> Self {
         let [width, height] = camera.pixels;
         Self { columns: 0..width, rows: 0..height }
@@ -52,7 +52,7 @@ impl Part {
 }
 
 impl Args {
-    /// Gives the picture the size that is asked for, and finds the part of it that is.
+    /// Gives the image the requested size, and returns the requested part of it.
     pub fn apply(&self, camera: &mut Camera) -> Result<Part, Failure> {
         let [width, height] = camera.pixels;
         if self.quick {
@@ -62,11 +62,11 @@ impl Args {
         if let Some(size) = self.size {
             let in_proportion = (size.width as f64 * height as f64 / width as f64).round() as usize;
             camera.pixels = [size.width, size.height.unwrap_or(in_proportion.max(1))];
-            if camera.pixels[1] > LARGEST {
+            if camera.pixels[1] > MAX_SIDE {
                 return Err(Failure::Usage(
                     format!("an image {} pixels wide would be {} high", size.width, camera.pixels[1]),
                     Some(format!(
-                        "the maximum is {LARGEST} in each dimension: give a smaller width, or both as `WxH`"
+                        "the maximum is {MAX_SIDE} in each dimension: give a smaller width, or both as `WxH`"
                     )),
                 ));
             }
@@ -78,7 +78,7 @@ impl Args {
     }
 }
 
-/// The part that a user named, if the picture has it.
+/// Returns the part that the user named, if the image contains it.
 fn part(camera: &Camera, [x, y, wide, high]: [i64; 4]) -> Result<Part, Failure> {
     let [width, height] = camera.pixels;
     let range = |from: i64, count: i64, whole: usize| {
@@ -98,7 +98,7 @@ fn part(camera: &Camera, [x, y, wide, high]: [i64; 4]) -> Result<Part, Failure> 
 }
 
 fn size(text: &str) -> Result<Size, String> {
-    let side = |text: &str| text.parse().ok().filter(|side| (1..=LARGEST).contains(side));
+    let side = |text: &str| text.parse().ok().filter(|side| (1..=MAX_SIDE).contains(side));
     let (width, height) = match text.split_once('x') {
         Some((width, height)) => (side(width), side(height).map(Some)),
         None => (side(text), Some(None)),
@@ -106,7 +106,7 @@ fn size(text: &str) -> Result<Size, String> {
     width
         .zip(height)
         .map(|(width, height)| Size { width, height })
-        .ok_or_else(|| format!("give a width as `800`, or both as `800x600`, each from 1 to {LARGEST}"))
+        .ok_or_else(|| format!("give a width as `800`, or both as `800x600`, each from 1 to {MAX_SIDE}"))
 }
 
 fn crop(text: &str) -> Result<[i64; 4], String> {

@@ -1,4 +1,4 @@
-//! `--stats`: what a picture took, in rays, tests, time and memory.
+//! `--stats`: statistics of a render: rays, tests, time and memory.
 
 use super::memory;
 use crate::render::observer::RayKind;
@@ -30,39 +30,39 @@ enum Format {
     Json,
 }
 
-/// What a picture took.
+/// The statistics of a render.
 #[derive(Default)]
 pub struct Stats {
     pub tally: Sum,
-    /// Getting and understanding the scene's text.
+    /// The time to read and parse the scene's text.
     pub reading: Duration,
-    /// From the text's entities to the model, and the search tree if there is one.
+    /// The time to make the model of the parsed entities, and the BVH if there is one.
     pub building: Duration,
-    /// Tracing rays.
+    /// The time to trace rays.
     pub rendering: Cell<Duration>,
-    /// Making a file of the picture.
+    /// The time to write the image's file.
     pub writing: Duration,
 }
 
 impl Args {
-    /// Whether anything is to be counted.
+    /// Tells whether anything is to be counted.
     pub fn wants_any(&self) -> bool {
         self.stats.is_some()
     }
 
-    /// Prints what was counted.
+    /// Prints the statistics.
     pub fn print(&self, stats: &Stats, model: &Model) {
         let text = match self.stats {
             None => return,
             Some(Format::Table) => stats.table(model),
             Some(Format::Json) => json(&stats.counts(model)) + "\n",
         };
-        // Where standard error is closed there is nobody to tell.
+        // If standard error is closed, no one can be told.
         let _ = io::stderr().write_all(text.as_bytes());
     }
 }
 
-/// The counts of all parts of a picture, from all threads.
+/// The counts of all parts of an image, from all threads.
 #[derive(Default)]
 pub struct Sum(Mutex<RayStats>);
 
@@ -71,14 +71,14 @@ impl Sum {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Adds those of a part.
+    /// Adds the counts of a part.
     pub fn add(&self, part: &RayStats) {
         self.get().add(part);
     }
 }
 
 impl Stats {
-    /// Renders, and adds how long that takes.
+    /// Runs `render`, and adds the time that it takes.
     pub fn timed(&self, render: impl FnOnce()) {
         let start = Instant::now();
         render();
@@ -140,53 +140,54 @@ impl Stats {
     }
 }
 
-/// What a picture took, for programs.
+/// The statistics of a render, for other programs.
 #[derive(Serialize)]
 struct Counts {
-    /// The pixels that have cost as many rays as they may.
+    /// The pixels that reached the limit on their number of rays.
     cut: Cut,
-    /// The most memory that the program had at one time, in bytes; left out where the system does not tell.
+    /// The most memory that the program used at one time, in bytes; left out where the system does not report it.
     #[serde(skip_serializing_if = "Option::is_none")]
     peak_memory: Option<u64>,
-    /// How many rays were cast.
+    /// The numbers of rays that were traced.
     rays: Rays,
-    /// How long each stage took.
+    /// The time of each stage.
     seconds: Seconds,
-    /// What became of the tests, by entity type.
+    /// The outcomes of the tests, by entity type.
     tests: BTreeMap<&'static str, TestCounts>,
 }
 
-/// How many rays were cast.
+/// The numbers of rays that were traced.
 #[derive(Serialize)]
 struct Rays {
-    /// From the viewer: pixels times samples.
+    /// Primary rays: pixels times samples.
     primary: u64,
-    /// From mirrors.
+    /// Reflected rays.
     reflected: u64,
-    /// To lights, from places that face them; in a scene with glass, anew from behind each pane.
+    /// Shadow rays, from points that face the light; in a scene with glass, a new one from behind each pane.
     shadow: u64,
-    /// Through glass.
+    /// Rays through glass.
     transmitted: u64,
 }
 
-/// How long each stage took, in seconds.
+/// The time of each stage, in seconds.
 #[derive(Serialize)]
 struct Seconds {
-    /// From the text's entities to the model: checks, constructors, textures, and the tree if there is one.
+    /// Making the model of the parsed entities: checks, constructors, textures, and the BVH if there is one.
     building: f64,
-    /// Getting the scene's text and understanding it.
+    /// Reading and parsing the scene's text.
     reading: f64,
     /// Tracing rays, on all threads.
     rendering: f64,
-    /// Making the file.
+    /// Writing the file.
     writing: f64,
 }
 
-/// Pixels that have cost as many rays as they may.
+/// Pixels that reached the limit on their number of rays.
 #[derive(Serialize)]
 struct Cut {
-    /// How much light one of them lacks at most, in levels of a channel, from 0 to 255; null where nothing bounds it.
+    /// The maximum amount of light missing from one pixel, in levels of a channel, from 0 to 255; null if it is
+    /// unbounded.
     levels: f64,
-    /// How many they are.
+    /// The number of these pixels.
     pixels: u64,
 }

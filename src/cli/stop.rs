@@ -1,4 +1,4 @@
-//! When a render stops before its picture is finished: at an interruption, or at a limit of time or memory.
+//! Stops a render before its image is finished: at an interruption, or at a limit of time or memory.
 
 use super::failure::Failure;
 use super::interrupt::{self, Manner};
@@ -19,13 +19,13 @@ const LEAVING: u32 = 3;
 /// How often time and memory are looked at.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// What a pixel of a band takes, in bytes: three, and room for what its tiles need.
+/// The memory for a pixel of a band, in bytes: three for its colour, the rest for its share of the tiles' state.
 const PIXEL: u64 = 4;
 
-/// What the row that is being written takes for each of its pixels, in bytes.
+/// The memory for each pixel of the row that is being written, in bytes.
 const ROW: u64 = 64;
 
-/// What rendering takes beside the picture at least, in bytes.
+/// The minimum memory of a render beside the image, in bytes.
 const ASIDE: u64 = 2 << 20;
 
 /// What is said where no picture is left.
@@ -51,7 +51,7 @@ pub struct Args {
     max_memory: Option<ByteSize>,
 }
 
-/// What a render may not go beyond.
+/// A limit on a render.
 #[derive(Clone, Copy)]
 enum Limit {
     Time(Duration),
@@ -73,7 +73,7 @@ impl fmt::Display for Limit {
     }
 }
 
-/// Knows whether a render is to stop.
+/// Tells whether a render is to stop.
 #[derive(Default)]
 pub struct Stop {
     reached: Arc<OnceLock<Limit>>,
@@ -84,12 +84,12 @@ pub struct Stop {
 }
 
 impl Stop {
-    /// Whether it is.
+    /// Tells whether the render is to stop.
     pub fn is_due(&self) -> bool {
         interrupt::check().is_break() || self.reached.get().is_some()
     }
 
-    /// Says why it is.
+    /// Reports why the render stops.
     pub fn tell(&self) {
         match self.reached.get() {
             Some(limit) => limit.tell(),
@@ -166,13 +166,13 @@ impl Args {
         })
     }
 
-    /// How many bytes the textures of a scene may take, if there is a limit.
+    /// Returns the memory that the textures of a scene may take, in bytes, if there is a limit.
     pub fn left(&self) -> Option<u64> {
         let now = memory::now().unwrap_or(0) + ASIDE;
         self.max_memory.map(|limit| limit.as_u64().saturating_sub(now))
     }
 
-    /// How many pixels may be in memory at one time, of a picture of this width.
+    /// Returns how many pixels of an image of this width may be in memory at one time.
     pub fn band(&self, width: usize) -> Result<usize, Failure> {
         let Some(limit) = self.max_memory else { return Ok(BAND) };
         let Some(now) = memory::now() else {
@@ -188,7 +188,7 @@ impl Args {
                 Some(format!("it needs at least about {}", ByteSize(least))),
             ));
         }
-        // Most is left to the rays: how deep their reflections go shows when they are there.
+        // Three quarters are left for the rays: how much their reflections need shows only during the render.
         let bytes = ((limit.as_u64() - now - row) / 4).max(strip);
         Ok(usize::try_from(bytes / PIXEL).map_or(BAND, |pixels| pixels.min(BAND)))
     }

@@ -1,4 +1,4 @@
-//! Files that get their names when they are whole.
+//! Files that get their names only when they are complete.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File, OpenOptions};
@@ -19,15 +19,15 @@ pub fn remove_all() {
 
 /// A file in a folder, written before anybody sees it.
 pub enum Temporary {
-    /// Without a name: it goes with the program, however that ends.
+    /// A file without a name, which disappears with the program, however that ends.
     #[cfg(target_os = "linux")]
     Unnamed(File),
-    /// Hidden, where the system has no files without names. It goes when it is dropped.
+    /// A file with a hidden name, where the system has no files without names. It is removed when it is dropped.
     Named(NamedTempFile),
 }
 
 impl Temporary {
-    /// A new one, with the permissions that any new file gets.
+    /// Makes a temporary file, with the permissions of any new file.
     pub fn new(folder: &Path) -> io::Result<Self> {
         #[cfg(target_os = "linux")]
         if let Some(file) = unnamed::open(folder) {
@@ -37,7 +37,7 @@ impl Temporary {
             .map(Self::Named)
     }
 
-    /// To be written, and read again.
+    /// Returns the file, to write it and read it again.
     pub fn file(&self) -> &File {
         match self {
             #[cfg(target_os = "linux")]
@@ -46,7 +46,7 @@ impl Temporary {
         }
     }
 
-    /// Gives it a name, in the folder that it is in, and takes the name from the file that has it, if one has.
+    /// Gives the file this name in its folder, replacing an existing file.
     ///
     /// There is no single step to this for a file without a name: for a moment the file, which is whole, has a hidden one.
     ///
@@ -71,7 +71,7 @@ impl Temporary {
         }
     }
 
-    /// As [`persist`](Self::persist), but for a name that another file has already.
+    /// Gives the file a name as [`persist`](Self::persist) does, but fails if a file has that name already.
     pub fn persist_new(self, target: &Path) -> io::Result<()> {
         self.file().sync_all()?;
         match self {
@@ -83,7 +83,7 @@ impl Temporary {
     }
 }
 
-/// What `make` makes at a hidden place in a folder where nothing is yet.
+/// Returns what `make` makes under a hidden, unused name in a folder.
 fn hidden<T>(folder: &Path, make: impl FnMut(&Path) -> io::Result<T>) -> io::Result<NamedTempFile<T>> {
     let file = tempfile::Builder::new().prefix(".tabray-").make_in(folder, make)?;
     HIDDEN.lock().unwrap_or_else(PoisonError::into_inner).insert(file.path().to_owned());
@@ -109,19 +109,19 @@ mod unnamed {
     use std::os::unix::fs::OpenOptionsExt;
     use std::path::PathBuf;
 
-    /// The name that the system has for an open file.
+    /// Returns the path by which the system names an open file.
     fn path(file: &File) -> PathBuf {
         format!("/proc/self/fd/{}", file.as_raw_fd()).into()
     }
 
-    /// A file that can be given a name later, unless the file system or the machine has none such.
+    /// Makes a file that can be given a name later; `None` if the file system or the machine does not support that.
     pub fn open(folder: &Path) -> Option<File> {
         let mut options = OpenOptions::new();
         let file = options.read(true).write(true).custom_flags(OFlag::O_TMPFILE.bits()).open(folder).ok()?;
         path(&file).symlink_metadata().is_ok().then_some(file)
     }
 
-    /// Gives a file a name that no other one has.
+    /// Gives a file a name; fails if another file has it.
     pub fn link(file: &File, target: &Path) -> io::Result<()> {
         Ok(linkat(AT_FDCWD, &path(file), AT_FDCWD, target, AtFlags::AT_SYMLINK_FOLLOW)?)
     }

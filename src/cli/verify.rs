@@ -1,4 +1,4 @@
-//! `tabray verify`: a proof, pixel by pixel, of which object is seen.
+//! `tabray verify`: proves, pixel by pixel, which object is seen.
 
 use super::failure::{Failure, print};
 use super::interrupt::{self, Manner};

@@ -1,4 +1,4 @@
-//! `tabray watch`: a page that shows the picture while its scene is edited.
+//! `tabray watch`: a page that shows the image while its scene is edited.
 
 mod answer;
 mod board;
@@ -33,10 +33,10 @@ use std::sync::mpsc::{self, Receiver, Sender};
 use std::thread;
 use std::time::{Duration, Instant, SystemTime};
 
-/// The largest picture that a page shows: all of it is in memory, there and here.
-const LARGEST: usize = 1 << 24;
+/// The maximum number of pixels of an image on a page: all of it is in memory, here and in the browser.
+const MAX_PIXELS: usize = 1 << 24;
 
-/// A file is read once it has been left alone for so long: many editors write it in several steps.
+/// How long a file must have been left alone before it is read: many editors write a file in several steps.
 const SETTLED: Duration = Duration::from_millis(10);
 
 /// Show the image in the browser, and render it again whenever the scene changes
@@ -57,7 +57,7 @@ pub struct Args {
     method: method::Args,
 }
 
-/// What the command waits for.
+/// The events that the command waits for.
 enum News {
     Changed,
     Interrupted,
@@ -75,7 +75,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let (sender, news) = mpsc::channel();
     let mut files = Files::new(teller(&sender, || News::Changed))?;
     files.watch([&args.scene])?;
-    // A scene with faults has a page. A file that is not there, or no file, has none.
+    // A scene with faults has a page; a path that cannot be read has none.
     input::read(&args.scene)?;
     let server = Server::open(args.port)?;
     let url = server.url();
@@ -97,7 +97,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         }
     });
     messages::note(&format!("watching {} at {url} (Ctrl-C quits)", args.scene.display()));
-    // The file that leads the browser to the page.
+    // Keeps the file that leads the browser to the page.
     let opened = args.open.then(|| browser::open(&url));
     if let Some(Err(error)) = &opened {
         let reason = words::reason(error);
@@ -115,16 +115,16 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     }
 }
 
-/// A function that sends news, from any thread.
+/// Returns a function that sends news, from any thread.
 fn teller(sender: &Sender<News>, news: impl Fn() -> News + Send + 'static) -> impl Fn() + Send + 'static {
     let sender = sender.clone();
     move || {
-        // When nobody waits any more, the program is about to end.
+        // If no one receives the news, the program is about to end.
         let _ = sender.send(news());
     }
 }
 
-/// Waits for news. Changes that follow one another are one.
+/// Waits for news. Changes that follow one another count as one.
 fn next(news: &Receiver<News>) -> News {
     let mut last = news.recv().unwrap_or(News::Interrupted);
     while let News::Changed = last {
@@ -136,7 +136,7 @@ fn next(news: &Receiver<News>) -> News {
     last
 }
 
-/// Starts the thread that makes pictures, of one scene after another.
+/// Starts the thread that renders images, one scene after another.
 fn painter(board: Arc<Board>) -> Result<Sender<Arc<Frame>>, Failure> {
     let renderer = Renderer::new(0)?;
     let (sender, frames) = mpsc::channel::<Arc<Frame>>();
@@ -157,7 +157,7 @@ fn painter(board: Arc<Board>) -> Result<Sender<Arc<Frame>>, Failure> {
     Ok(sender)
 }
 
-/// When a file was written last, and its length.
+/// The modification time of a file, and its length in bytes.
 type Stamp = (SystemTime, u64);
 
 fn stamp(file: &Path) -> Option<Stamp> {
@@ -165,21 +165,21 @@ fn stamp(file: &Path) -> Option<Stamp> {
     Some((meta.modified().ok()?, meta.len()))
 }
 
-/// A scene's file that is read over and over.
+/// The file of a scene, which is read again and again.
 struct Watched<'r> {
     registry: &'r Registry,
     path: PathBuf,
     accuracy: Option<Accuracy>,
-    /// The files that it names.
+    /// The files that the scene names.
     named: Vec<PathBuf>,
-    /// What was read last: the scene, and how old and how long the files were that it names.
+    /// What was read last: the scene, and the stamps of the files that it names.
     last: Option<(Vec<u8>, Vec<Option<Stamp>>)>,
-    /// How many times it was sound.
+    /// The number of times that the scene was valid.
     version: u64,
 }
 
 impl Watched<'_> {
-    /// Reads the scene as it is now, shows it or what is wrong with it, and watches all files that it names.
+    /// Reads the current scene, shows it or its faults, and watches all files that it names.
     fn read(&mut self, board: &Board, frames: &Sender<Arc<Frame>>, files: &mut Files) -> Result<(), Failure> {
         let (name, bytes) = match input::read(&self.path) {
             Ok(read) => read,
@@ -192,8 +192,8 @@ impl Watched<'_> {
             }
             Err(failure) => return Err(failure),
         };
-        // One save may be told in several steps. How old the files are is asked before they are read, so that what
-        // changes meanwhile counts as a change.
+        // One save may cause several events. The stamps of the files are taken before the files are read, so that a
+        // change in the meantime is noticed.
         let now = (bytes, self.named.iter().map(|file| stamp(file)).collect());
         if self.last.as_ref() == Some(&now) {
             return Ok(());
@@ -217,7 +217,7 @@ impl Watched<'_> {
                 let [width, height] = model.camera.value.pixels;
                 let report = &format!(
                     "error: an image of {width} x {height} pixels is too large for a page\n\
-                     help: the maximum is {LARGEST} pixels, such as 4096 x 4096"
+                     help: the maximum is {MAX_PIXELS} pixels, such as 4096 x 4096"
                 );
                 board.fault(events::fault(&Fault { lines: &[], name: &name, report, text: Some(text) }));
             }
@@ -233,7 +233,7 @@ impl Watched<'_> {
                     stale: AtomicBool::new(false),
                 });
                 board.show(&frame);
-                // The thread that makes pictures ends with the program.
+                // Sending fails only when the program ends, and the thread that renders with it.
                 let _ = frames.send(frame);
             }
             Err(report) => {
@@ -248,7 +248,7 @@ impl Watched<'_> {
     }
 }
 
-/// Tells that the program failed at a scene. It goes on with the next one.
+/// Reports that the program failed at a scene. It goes on with the next one.
 fn crashed(board: &Board, name: &str, text: &str, failure: &Failure) {
     tell(failure);
     let Failure::Failed(message) = failure else { return };
@@ -258,5 +258,5 @@ fn crashed(board: &Board, name: &str, text: &str, failure: &Failure) {
 
 fn fits(model: &Model) -> bool {
     let [width, height] = model.camera.value.pixels;
-    width * height <= LARGEST
+    width * height <= MAX_PIXELS
 }

@@ -1,5 +1,4 @@
-//! Pictures of what a renderer works with beside colours: depth, normals, objects, what each pixel costs, and how
-//! wrong it is.
+//! Images of what a renderer computes beside colours: depth, normals, objects, the cost of each pixel and its error.
 
 use crate::geometry::sight::Sight;
 use crate::render::bytes::{shown, to_byte};
@@ -14,8 +13,8 @@ use image::{ExtendedColorType, ImageEncoder};
 use std::io::{self, Cursor};
 use std::ops::ControlFlow;
 
-/// A picture beside the main one (an arbitrary output variable). All but the cost look along the middle of each
-/// pixel, however many samples it has.
+/// An image beside the main one (an arbitrary output variable). All but the cost and the colours of the error are taken
+/// along the ray through the centre of each pixel, however many samples the pixel has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Aov {
     /// Distance of the first hit, near ones bright.
@@ -38,36 +37,36 @@ pub enum Aov {
     Error,
 }
 
-/// Such a picture, from the top and from the left.
+/// An auxiliary image, row by row from the top, each row from the left.
 pub struct Layer {
     /// Red, green and blue of each pixel, to be looked at.
     pub bytes: Vec<u8>,
-    /// The numbers behind it, three for each pixel, where there is more to them than the bytes tell. A depth
-    /// fills all three channels and is infinite where there is nothing; a normal is 0 there. An error has that of the
-    /// colour, the root of the mean square over its channels, then that of the first hit's distance, and 1 where that
-    /// is another object's.
+    /// The numbers behind the image, three for each pixel, where they say more than the bytes. A depth, in world units,
+    /// fills all three channels and is infinite where nothing is hit; a normal is 0 there. An error consists of the
+    /// error of the colour, the root of the mean square over its channels; the error of the distance to the first hit,
+    /// in world units; and 1 where another object is hit, else 0.
     pub exact: Option<Vec<f32>>,
-    /// The rays that the most expensive pixel costs, and that pixel, counted as everywhere: from the left and
-    /// from the bottom.
+    /// The number of rays of the most expensive pixel, and that pixel: its column from the left and its row from the
+    /// bottom.
     pub most: Option<(u64, [usize; 2])>,
-    /// The greatest error of a colour, and its pixel.
+    /// The greatest error of a colour, where 1 is white, and its pixel: column from the left, row from the bottom.
     pub worst: Option<(f64, [usize; 2])>,
 }
 
-/// The part of white that the farthest depth has, to tell it from nothing.
+/// The grey of the farthest depth, as a fraction of white, so that it differs from the black where nothing is hit.
 const FARTHEST: f64 = 0.1;
 
 impl Aov {
-    /// Whether its layer has exact numbers.
+    /// Tells whether the image has exact numbers.
     pub fn is_exact(self) -> bool {
         matches!(self, Self::Depth | Self::Normal | Self::Error)
     }
 
-    /// Makes this picture. `truth` is the same scene, exact and with many samples, which only the error is
-    /// seen against. `done` is told of each row, and may break off.
+    /// Renders this image. `truth` is a plan of the same scene, exact and with many samples; only the error uses it.
+    /// `done` is called after each row, and may break off.
     ///
     /// # Errors
-    /// `Interrupted` where `done` broke off.
+    /// `Interrupted` if `done` broke off.
     pub fn render(
         self,
         renderer: &Renderer,
@@ -95,7 +94,7 @@ impl Aov {
                 Ok(cost(&costs, plan.camera.pixels))
             }
             Self::Error => {
-                let errors = each(renderer, plan, done, |x, y| Off::of(plan, truth, x, y))?;
+                let errors = each(renderer, plan, done, |x, y| PixelError::of(plan, truth, x, y))?;
                 Ok(error(&errors, plan.camera.pixels))
             }
         }
@@ -103,10 +102,10 @@ impl Aov {
 }
 
 impl Layer {
-    /// The exact numbers as an OpenEXR file.
+    /// Encodes the exact numbers as an OpenEXR file.
     ///
     /// # Errors
-    /// Where there are none, and a size that the format cannot hold.
+    /// If there are no exact numbers, or if the format cannot hold the size.
     pub fn exr(&self, [width, height]: [usize; 2]) -> io::Result<Vec<u8>> {
         let size = |pixels: usize| u32::try_from(pixels).map_err(io::Error::other);
         let numbers = self.exact.as_ref().ok_or(io::ErrorKind::InvalidInput)?;
@@ -119,7 +118,7 @@ impl Layer {
     }
 }
 
-/// Counts rays.
+/// Counts the rays of a pixel.
 struct Rays(u64);
 
 impl TraceObserver for Rays {
@@ -151,7 +150,8 @@ fn shown_all(colours: impl Iterator<Item = DVec3>) -> Vec<u8> {
 }
 
 fn depth(depths: &[f64]) -> Layer {
-    // As light fades: with 1 / distance. So a plane that goes on for ever leaves the near things their contrast.
+    // Brightness falls with 1 / distance, so that near objects keep their contrast beside a plane that extends to
+    // infinity.
     let finite = || depths.iter().filter(|depth| depth.is_finite()).map(|depth| 1.0 / depth);
     let (far, near) = (finite().fold(f64::INFINITY, f64::min), finite().fold(0.0, f64::max));
     let grey = |depth: &f64| match 1.0 / depth {
@@ -198,18 +198,19 @@ fn cost(costs: &[u64], [width, height]: [usize; 2]) -> Layer {
     }
 }
 
-/// How far off a pixel is.
+/// The errors of a pixel.
 #[derive(Clone, Copy, Default)]
-struct Off {
-    /// The root of the mean square of its channels' errors.
+struct PixelError {
+    /// The root of the mean square of the channels' errors, where 1 is white.
     colour: f64,
-    /// The error of the distance that its middle sees.
+    /// The error of the distance along the ray through the pixel's centre, in world units; 0 where another object is
+    /// hit.
     distance: f64,
-    /// Whether its middle sees another object.
+    /// Whether the ray through the pixel's centre hits another object.
     is_other: bool,
 }
 
-impl Off {
+impl PixelError {
     fn of(plan: &Plan, truth: &Plan, x: usize, y: usize) -> Self {
         let colours = [plan, truth].map(|plan| shown(trace::pixel(plan, x, y)));
         let [found, right] = [plan, truth].map(|plan| trace::first_hit(plan, &middle(plan, x, y)));
@@ -223,15 +224,17 @@ impl Off {
     }
 }
 
-fn error(errors: &[Off], [width, height]: [usize; 2]) -> Layer {
-    let worst = errors.iter().map(|off| off.colour).fold(0.0, f64::max);
-    let place = errors.iter().position(|off| off.colour == worst).unwrap_or(0);
-    let shade = |off: &Off| match off {
-        Off { is_other: true, .. } => DVec3::X,
+fn error(errors: &[PixelError], [width, height]: [usize; 2]) -> Layer {
+    let worst = errors.iter().map(|pixel| pixel.colour).fold(0.0, f64::max);
+    let place = errors.iter().position(|pixel| pixel.colour == worst).unwrap_or(0);
+    let shade = |pixel: &PixelError| match pixel {
+        PixelError { is_other: true, .. } => DVec3::X,
         _ if worst == 0.0 => DVec3::ZERO,
-        Off { colour, .. } => DVec3::splat(colour / worst),
+        PixelError { colour, .. } => DVec3::splat(colour / worst),
     };
-    let numbers = |off: &Off| [off.colour, off.distance, f64::from(off.is_other)].map(|number| number as f32);
+    let numbers = |pixel: &PixelError| {
+        [pixel.colour, pixel.distance, f64::from(pixel.is_other)].map(|number| number as f32)
+    };
     Layer {
         bytes: shown_all(errors.iter().map(shade)),
         exact: Some(errors.iter().flat_map(numbers).collect()),
@@ -240,7 +243,8 @@ fn error(errors: &[Off], [width, height]: [usize; 2]) -> Layer {
     }
 }
 
-/// A colour for the object of this index: hues a golden section apart, so that any first few differ well.
+/// Returns a colour for the object of this index. Hues advance by the golden ratio, so that the first few differ well
+/// however many there are.
 fn colour_of(index: usize) -> DVec3 {
     let hue = (index as f64 * 0.618_033_988_749_895).fract();
     let channel = |shift: f64| ((6.0 * (hue + shift).fract() - 3.0).abs() - 1.0).clamp(0.0, 1.0);

@@ -1,7 +1,7 @@
-//! Checkpoints: what is rendered of a picture, in a file from which the rest can be rendered.
+//! Checkpoints: the finished part of an image, in a file from which a later render continues.
 //!
-//! A checkpoint is a PNG whose pixels are opaque where they are rendered and transparent where not. A text in it says
-//! what the picture depends on.
+//! A checkpoint is a PNG whose pixels are opaque where they are rendered and transparent elsewhere. A text chunk says
+//! what the image depends on.
 
 use crate::output::picture::{AS_SHOWN, Rows};
 use crate::render::tiles::{Band, Strip, TILE, Tiles};
@@ -23,40 +23,40 @@ use std::iter;
 use std::ops::Range;
 use std::path::Path;
 
-/// The name of the text in the file.
+/// The keyword of the text chunk.
 const KEYWORD: &str = "tabray checkpoint";
 
-/// What the pixels of a picture depend on: the text in the file is its JSON. A field that another version did not write
-/// is empty.
+/// All that the pixels of an image depend on; the text chunk is its JSON. A field that another version did not write is
+/// empty.
 #[derive(Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Identity {
     /// The name of the accuracy.
     accuracy: String,
-    /// Column and row of the part that is made, from 0 at the lower left, its width and height; null where that is all
-    /// of the picture.
+    /// The part of the image that is rendered: column and row, from 0 at the lower left, and width and height, all in
+    /// pixels; null where the whole image is rendered.
     crop: Option<[usize; 4]>,
-    /// The hash of the program's file, which changes with each build, as plugins are part of it.
+    /// The hash of the program's file. It changes with each build, because plugins are part of the program.
     program: String,
     /// The name of the sampler.
     sampler: String,
-    /// How many samples each pixel has.
+    /// The number of samples per pixel.
     samples: u32,
     /// The hash of the hashes of the scene's dump, of some entities each.
     scene: String,
-    /// The width and the height of the picture.
+    /// The width and the height of the image in pixels.
     size: [usize; 2],
-    /// The hashes of the textures' pictures, by the names of the textures.
+    /// The hashes of the textures' images, by the names of the textures.
     textures: BTreeMap<String, String>,
     /// The version of tabray.
     version: String,
 }
 
 impl Identity {
-    /// That of a part of a model's picture, made by this program. `columns` count from the left, `rows` from the top.
+    /// Describes a part of a model's image, made by this program. `columns` count from the left, `rows` from the top.
     ///
     /// # Errors
-    /// Where the program cannot read its own file.
+    /// If the program cannot read its own file.
     pub fn of(model: &Model, columns: &Range<usize>, rows: &Range<usize>) -> io::Result<Self> {
         let camera = &model.camera.value;
         let [width, height] = camera.pixels;
@@ -79,11 +79,11 @@ impl Identity {
         })
     }
 
-    /// How it differs from what it was, in words; empty where it does not.
+    /// Lists the differences from an older identity, in words; empty where there are none.
     pub fn differences(&self, old: &Self) -> Vec<String> {
         let mut differences = Vec::new();
         if self.version != old.version {
-            // Another version is another program.
+            // Another version is another program, so the program's hash need not be compared.
             differences.push(format!("the version of tabray was {} and is {}", old.version, self.version));
         } else if self.program != old.program {
             differences.push("the program was rebuilt".to_owned());
@@ -109,7 +109,7 @@ impl Identity {
     }
 }
 
-/// The hash of the file that this program runs from, also where another one has taken its place since.
+/// Returns the hash of the file that this program was started from, even if another file has replaced it since.
 fn program() -> io::Result<String> {
     let running = Path::new("/proc/self/exe");
     let mut file = File::open(running).or_else(|_| env::current_exe().and_then(File::open))?;
@@ -185,9 +185,9 @@ pub fn write(
     Ok(writer.finish()?)
 }
 
-/// A checkpoint to go on from, which is read band by band.
+/// A checkpoint to continue from, which is read band by band.
 pub struct Checkpoint {
-    /// What its picture depended on.
+    /// What the checkpoint's image depends on.
     pub identity: Identity,
     png: png::Reader<BufReader<File>>,
     row: Vec<[u8; 4]>,
@@ -196,10 +196,10 @@ pub struct Checkpoint {
 }
 
 impl Checkpoint {
-    /// Opens one.
+    /// Opens a checkpoint.
     ///
     /// # Errors
-    /// Those of the file; of kind `InvalidData` where it is no checkpoint.
+    /// Those of the file; of kind `InvalidData` if it is not a checkpoint.
     pub fn open(file: File) -> io::Result<Self> {
         let png = png::Decoder::new(BufReader::with_capacity(1 << 16, file)).read_info().map_err(invalid)?;
         let info = png.info();
@@ -250,7 +250,7 @@ impl Checkpoint {
     }
 }
 
-/// A file that ends too soon is broken, too.
+/// Makes an error of kind `InvalidData`, also for a file that ends too soon.
 fn invalid(error: png::DecodingError) -> io::Error {
     match error {
         png::DecodingError::IoError(error) if error.kind() != io::ErrorKind::UnexpectedEof => error,

@@ -1,41 +1,41 @@
-//! How two pictures differ, in numbers.
+//! The difference of two images, in numbers.
 
 use crate::words;
 use image::RgbImage;
 use std::fmt;
 
-/// How a picture differs from another of the same size. Differences are in levels of a channel, from 0 to 255.
+/// The difference of two images of the same size. Differences are in levels of a channel, from 0 to 255.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
-    /// Width and height in pixels.
+    /// The width and the height in pixels.
     pub size: [u32; 2],
-    /// What counts as the same: pixels of which no channel differs by more.
+    /// The tolerance in levels: pixels count as equal if no channel differs by more.
     pub tolerance: u8,
-    /// How many pixels differ.
+    /// The number of pixels that differ by more than the tolerance.
     pub differing: usize,
     /// The largest difference of any channel, within the tolerance or not.
     pub largest: u8,
-    /// The root of the mean of all channels' squared differences.
+    /// The root mean square of the differences of all channels.
     pub rms: f64,
-    /// The first pixel that differs, row by row from the top, each from the left.
+    /// The first pixel that differs by more than the tolerance, row by row from the top, each row from the left.
     pub first: Option<Pixel>,
 }
 
-/// One pixel in both pictures.
+/// One pixel in both images.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pixel {
-    /// Its column, from 0 at the left.
+    /// The column, from 0 at the left.
     pub x: u32,
-    /// Its row, from 0 at the bottom.
+    /// The row, from 0 at the bottom.
     pub y: u32,
-    /// Its bytes in the old picture.
+    /// The bytes in the old image.
     pub old: [u8; 3],
-    /// Its bytes in the new one.
+    /// The bytes in the new image.
     pub new: [u8; 3],
 }
 
 impl Comparison {
-    /// Compares two pictures; nothing where their sizes differ.
+    /// Compares two images; returns `None` if their sizes differ.
     pub fn new(old: &RgbImage, new: &RgbImage, tolerance: u8) -> Option<Self> {
         if old.dimensions() != new.dimensions() {
             return None;
@@ -43,10 +43,10 @@ impl Comparison {
         let (mut differing, mut largest, mut squares, mut first) = (0, 0, 0, None);
         for ((x, from_top, a), b) in old.enumerate_pixels().zip(new.pixels()) {
             let apart = [0, 1, 2].map(|channel| a[channel].abs_diff(b[channel]));
-            let most = apart.into_iter().max().unwrap_or(0);
-            largest = largest.max(most);
+            let max = apart.into_iter().max().unwrap_or(0);
+            largest = largest.max(max);
             squares += apart.map(|levels| u64::from(levels).pow(2)).iter().sum::<u64>();
-            if most > tolerance {
+            if max > tolerance {
                 differing += 1;
                 first.get_or_insert(Pixel { x, y: old.height() - 1 - from_top, old: a.0, new: b.0 });
             }
@@ -56,13 +56,13 @@ impl Comparison {
         Some(Self { size: old.dimensions().into(), tolerance, differing, largest, rms, first })
     }
 
-    /// How many pixels there are.
+    /// Returns the number of pixels.
     pub fn pixels(&self) -> usize {
         self.size.iter().map(|side| *side as usize).product()
     }
 }
 
-/// A sentence for people, without a line end.
+/// Writes a sentence for people, without a line end.
 impl fmt::Display for Comparison {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let pixels = words::count(self.pixels(), "pixel");

@@ -1,4 +1,4 @@
-//! Pictures and other files that are made of what is rendered.
+//! Images and other files made from what is rendered.
 
 pub(crate) mod aov;
 pub(crate) mod checkpoint;

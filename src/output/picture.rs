@@ -1,4 +1,4 @@
-//! Bytes to picture files, and back.
+//! Writes image files from bytes, and reads them back.
 
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
@@ -23,7 +23,7 @@ pub enum Compression {
     High,
 }
 
-/// A picture's file format.
+/// A file format of images.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// Binary portable pixmap, `P6`.
@@ -32,7 +32,7 @@ pub enum Format {
     Png(Compression),
 }
 
-/// By the extensions of its files. A PNG is then as large as it comes soonest.
+/// Parsed from the extension of the format's files. A PNG is then compressed for speed.
 impl ValueEnum for Format {
     fn value_variants<'a>() -> &'a [Self] {
         &[Self::Ppm, Self::Png(Compression::Fast)]
@@ -47,16 +47,16 @@ impl ValueEnum for Format {
 }
 
 impl Format {
-    /// The format that a file's extension names, whatever its case.
+    /// Returns the format that a file's extension names, in upper or lower case.
     pub fn of(path: &Path) -> Option<Self> {
         Self::from_str(path.extension()?.to_str()?, true).ok()
     }
 
-    /// Writes a whole picture: `rows` hands out its bytes, some rows at a time from the top: red, green and blue of each
-    /// pixel from the left.
+    /// Writes a whole image: `rows` yields its bytes, some rows at a time from the top, with red, green and blue of
+    /// each pixel from the left.
     ///
     /// # Errors
-    /// Those of `out`, of `rows`, and a size that the format cannot hold.
+    /// Those of `out` and of `rows`, and an error where the format cannot hold the size.
     pub fn write(
         self,
         out: impl Write,
@@ -93,19 +93,19 @@ impl Format {
     }
 }
 
-/// The rows of a picture's file, from the top.
+/// The rows of an image file, from the top.
 pub enum Rows {
-    /// From after the header.
+    /// The file, positioned after the header.
     Ppm(BufReader<File>),
-    /// From the decoder.
+    /// The decoder.
     Png(Box<png::Reader<BufReader<File>>>),
 }
 
 impl Rows {
-    /// The next row: red, green and blue of each pixel.
+    /// Reads the next row: red, green and blue of each pixel.
     ///
     /// # Errors
-    /// Those of the file, and where it has no other row of this length.
+    /// Those of the file, and an error where it has no further row of this length.
     pub fn next(&mut self, row: &mut [u8]) -> io::Result<()> {
         match self {
             Self::Ppm(file) => file.read_exact(row),
@@ -131,13 +131,14 @@ fn write_ppm(
     out.flush()
 }
 
-/// What a PNG says of its bytes: that they are shown as sRGB has it, as those of a PPM are and those of the notes'
-/// pictures.
+/// The colour space that a PNG declares: its bytes are to be shown as sRGB, like those of a PPM and those of the notes'
+/// images.
 ///
-/// No transfer function is applied: the byte of a channel is 255 times what the notes' formulas give, cut. So the formulas
-/// work in the values that a screen is given, and not in light, of which half as much would be byte 188. That is how scenes
-/// were made and looked at: their numbers were chosen for a screen that takes the bytes as they are. `gAMA` 1 would say
-/// that bytes are in proportion to light, and whoever heeds it would show the same scene far brighter than its PPM.
+/// No transfer function is applied: the byte of a channel is 255 times what the notes' formulas give, truncated. So the
+/// formulas work in encoded display values, not in linear light, of which half would be byte 188. That is how scenes
+/// were made and viewed: their numbers were chosen for a display that takes the bytes as they are. `gAMA` 1 would
+/// declare the bytes proportional to light, and a viewer that honours it would show the same scene far brighter than
+/// its PPM.
 pub(crate) const AS_SHOWN: png::SrgbRenderingIntent = png::SrgbRenderingIntent::RelativeColorimetric;
 
 /// A picture of up to so many bytes is encoded at once.
@@ -164,7 +165,7 @@ fn write_png(
     let mut rows = rows.into_iter();
     let first = rows.next().transpose()?.unwrap_or_default();
     if first.len() == 3 * width * height && first.len() <= AT_ONCE {
-        // Without the stream it takes two thirds of the time, and room for all that is encoded.
+        // Without the stream it takes two thirds of the time, but memory for the whole encoded image.
         writer.write_image_data(&first)?;
     } else {
         let mut stream = writer.stream_writer()?;

@@ -1,54 +1,55 @@
-//! Things of which an attribute names one, by name or by number: procedural shaders and profiles.
+//! Sets of alternatives from which an attribute chooses one, by name or by number: procedural shaders, profiles,
+//! accuracies.
 //!
-//! Each sort of them is a registry of its own; a plugin file adds one.
+//! Procedural shaders and profiles are collected in a registry of their own; a plugin file adds one.
 
 use crate::words;
 use crate::world::accuracy::Accuracy;
 use std::panic::Location;
 
-/// One of several things of a sort.
+/// A type whose values are the alternatives that an attribute can choose from.
 pub trait Choice: Copy + Send + Sync + 'static {
-    /// What they are, in the singular: "profile".
+    /// The noun for one alternative, in the singular: "profile".
     const WHAT: &'static str;
-    /// All of them, in no order.
+    /// Returns all alternatives, in no particular order.
     fn all() -> Vec<Self>;
-    /// How a scene names this one.
+    /// Returns how a scene names this alternative.
     fn option(&self) -> ChoiceName;
 }
 
-/// How a scene names one of several things.
+/// How a scene names one alternative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChoiceName {
-    /// Its name.
+    /// The name.
     pub name: &'static str,
-    /// The number that the notes give it.
+    /// The number that the notes give the alternative, if any.
     pub number: Option<i64>,
-    /// What it is, in a few words.
+    /// The meaning, in a few words.
     pub meaning: &'static str,
-    /// Where it is registered.
+    /// The source position that registers the alternative.
     pub place: &'static Location<'static>,
 }
 
-/// A sort of things to choose from.
+/// The alternatives of one type, with the type erased.
 #[derive(Clone, Copy, Debug)]
 pub struct Choices {
-    /// What they are, in the singular.
+    /// The noun for one alternative, in the singular.
     pub what: &'static str,
     all: fn() -> Vec<ChoiceName>,
 }
 
 impl Choices {
-    /// All things of a sort.
+    /// Describes the alternatives of type `T`.
     pub const fn of<T: Choice>() -> Self {
         Self { what: T::WHAT, all: sorted::<T> }
     }
 
-    /// Their names, those with numbers first, in the order of their numbers.
+    /// Returns all alternatives: first those with numbers, in numerical order, then the others, by name.
     pub fn all(&self) -> Vec<ChoiceName> {
         (self.all)()
     }
 
-    /// All of them, by number and name, as messages list them.
+    /// Lists all alternatives with number and name, for messages.
     pub fn listed(&self) -> String {
         let shown = |choice: ChoiceName| match choice.number {
             Some(number) => format!("{number} (`{}`)", choice.name),
@@ -57,12 +58,12 @@ impl Choices {
         self.all().into_iter().map(shown).collect::<Vec<_>>().join(", ")
     }
 
-    /// The one of this name.
+    /// Finds the alternative of this name.
     pub fn named(&self, name: &str) -> Option<ChoiceName> {
         self.all().into_iter().find(|choice| choice.name == name)
     }
 
-    /// The one of this number.
+    /// Finds the alternative of this number.
     pub fn numbered(&self, number: i64) -> Option<ChoiceName> {
         self.all().into_iter().find(|choice| choice.number == Some(number))
     }
@@ -74,7 +75,7 @@ fn sorted<T: Choice>() -> Vec<ChoiceName> {
     all
 }
 
-/// What is contradictory among things of a sort: a name or a number taken twice, with both places.
+/// Returns an error message for each name or number that two plugins register, with both source positions.
 pub(crate) fn contradictions<T: Choice>() -> Vec<String> {
     let all = sorted::<T>();
     let mut faults = Vec::new();

@@ -1,4 +1,4 @@
-//! A model as text: as the notes' program dumps it, or as a scene that loads again.
+//! Writes a model as text: as the notes' program dumps it, or as a scene that loads again.
 
 use crate::scene::entity::Args;
 use crate::scene::kind::Kind;
@@ -8,7 +8,7 @@ use crate::scene::syntax::Syntax;
 use crate::scene::value::Datum;
 use std::collections::HashMap;
 
-/// The notes' dump: camera, materials, objects and lights, numbers to one decimal. Textures are not in it.
+/// Returns the notes' dump: camera, materials, objects and lights, with numbers to one decimal. Textures are not in it.
 pub fn notes(model: &Model) -> String {
     let kinds = [Kind::Camera, Kind::Material, Kind::Object, Kind::Light];
     kinds.into_iter().flat_map(|kind| model.entities(kind)).map(notes_block).collect()
@@ -24,8 +24,8 @@ fn notes_block(args: &Args) -> String {
     format!("{before}{:<12} {}{after_name}\n{lines}{after}", args.entity.dump_name, args.name)
 }
 
-/// A scene that loads again to the identical model, in either spelling: every number to its last bit, the
-/// entities in their order, and of their attributes those that were given.
+/// Returns a scene, in either syntax, that loads to the identical model: every number to its last bit, the entities in
+/// their order, and only the attributes that were given.
 pub fn scene(model: &Model, syntax: Syntax) -> String {
     let entities = in_order(model);
     // TOML needs an array of tables where two entities have one title.

@@ -1,4 +1,4 @@
-//! Entity types: what a plugin registers, and what its constructor is given.
+//! Entity types: what a plugin registers, and what its constructor receives.
 
 use crate::scene::kind::Kind;
 use crate::scene::pparm::{Attribute, Attributes, Given, Pparm, Row, Table};
@@ -18,15 +18,15 @@ use std::{fmt, iter};
 ///
 /// A plugin registers one with `inventory::submit!`.
 pub struct Entity {
-    /// Its name in the scene language.
+    /// The name in the scene language.
     pub name: &'static str,
-    /// What it is, in a few words.
+    /// The meaning, in a few words.
     pub meaning: &'static str,
-    /// Other names that a scene may use for it.
+    /// Other names that a scene may use.
     pub aliases: &'static [&'static str],
     /// Makes the entity from its checked values.
     pub construct: Construct,
-    /// The name that the notes' dump gives it.
+    /// The name that the notes' dump prints.
     pub dump_name: &'static str,
     tables: &'static [Table],
     place: &'static Location<'static>,
@@ -55,14 +55,14 @@ pub enum Construct {
     Light(fn(&Args) -> Result<AnyLight, Refusal>),
 }
 
-/// What every object has beside its own attributes.
+/// The attribute that every object has beside its own.
 pub static MATERIAL: Pparm<Arc<Material>> =
     Pparm::required("material", "the material, defined earlier in the scene");
 
 const OBJECT: Table = &[&MATERIAL];
 
 impl Entity {
-    /// A camera's type.
+    /// Describes a camera type.
     #[track_caller]
     pub const fn camera(
         name: &'static str,
@@ -73,7 +73,7 @@ impl Entity {
         Self::new(name, meaning, tables, Construct::Camera(construct))
     }
 
-    /// A material's type.
+    /// Describes a material type.
     #[track_caller]
     pub const fn material(
         name: &'static str,
@@ -84,7 +84,7 @@ impl Entity {
         Self::new(name, meaning, tables, Construct::Material(construct))
     }
 
-    /// A texture's type.
+    /// Describes a texture type.
     #[track_caller]
     pub const fn texture(
         name: &'static str,
@@ -95,7 +95,7 @@ impl Entity {
         Self::new(name, meaning, tables, Construct::Texture(construct))
     }
 
-    /// A shape. Its table gets the attribute `material` of its own accord.
+    /// Describes a shape. The attribute `material` is added to its table.
     #[track_caller]
     pub const fn shape(
         name: &'static str,
@@ -106,7 +106,7 @@ impl Entity {
         Self::new(name, meaning, tables, Construct::Object(construct))
     }
 
-    /// A light's type.
+    /// Describes a light type.
     #[track_caller]
     pub const fn light(
         name: &'static str,
@@ -127,19 +127,19 @@ impl Entity {
         Self { name, meaning, aliases: &[], construct, dump_name: name, tables, place: Location::caller() }
     }
 
-    /// Other names that a scene may use for it.
+    /// Sets other names that a scene may use.
     pub const fn alias(mut self, aliases: &'static [&'static str]) -> Self {
         self.aliases = aliases;
         self
     }
 
-    /// The name that the notes' dump gives it, where that is not its own.
+    /// Sets the name that the notes' dump prints, where it differs from the type's own.
     pub const fn dumped_as(mut self, name: &'static str) -> Self {
         self.dump_name = name;
         self
     }
 
-    /// The kind of thing that it is.
+    /// Returns the kind of entity that the constructor makes.
     pub fn kind(&self) -> Kind {
         match self.construct {
             Construct::Camera(_) => Kind::Camera,
@@ -150,65 +150,67 @@ impl Entity {
         }
     }
 
-    /// The rows of its table, in the order of the dump.
+    /// Returns the rows of the type's table, in the order of the dump.
     pub fn rows(&self) -> impl Iterator<Item = &'static dyn Row> + use<> {
         let common = if self.kind() == Kind::Object { OBJECT } else { &[] };
         iter::once(common).chain(self.tables.iter().copied()).flatten().copied()
     }
 
-    /// Its attributes, in the order of its table.
+    /// Returns the type's attributes, in the order of its table.
     pub fn attributes(&self) -> impl Iterator<Item = &'static dyn Attribute> + use<> {
         self.rows().filter_map(|row| row.attribute())
     }
 
-    /// The file and line that registers it.
+    /// Returns the file and line that register the type.
     pub fn place(&self) -> String {
         words::place(self.place)
     }
 }
 
-/// What a constructor may know of the scene beside its own values.
+/// What a constructor may know of the scene beside the entity's own values.
 #[derive(Clone, Debug, Default)]
 pub struct Setting {
-    /// The scene's camera; objects and lights alone are constructed after it.
+    /// The scene's camera. Only objects and lights are certain to be constructed after it; other entities may see a
+    /// default camera.
     pub camera: Camera,
-    /// The folder that the scene's file names start from.
+    /// The folder to which the scene's file names are relative.
     pub folder: PathBuf,
 }
 
 /// An entity of a scene as a constructor sees it: its type, its name and its checked values.
 #[derive(Clone)]
 pub struct Args {
-    /// Its type.
+    /// The entity's type.
     pub entity: &'static Entity,
-    /// Its name.
+    /// The entity's name.
     pub name: String,
-    /// Its place among the scene's entities, from 0.
+    /// The entity's index among the scene's entities, in the order of the text, from 0.
     pub order: usize,
-    /// The scene around it.
+    /// The scene around the entity.
     pub setting: Arc<Setting>,
     attributes: Attributes,
 }
 
 impl Args {
-    /// `values` holds those of each of the entity type's attributes, in their order.
+    /// Makes the arguments of an entity. `values` holds one value for each attribute of the entity type, in table
+    /// order.
     pub(crate) fn new(entity: &'static Entity, name: String, order: usize, values: Vec<Given>) -> Self {
         let attributes = Attributes::new((entity.name, entity.place), entity.attributes(), values);
         Self { entity, name, order, setting: Arc::default(), attributes }
     }
 
-    /// How exactly the scene is traced.
+    /// Returns the accuracy with which the scene is traced.
     pub fn accuracy(&self) -> Accuracy {
         self.setting.camera.accuracy
     }
 
-    /// Whether the attribute that a refusal marks, if it marks one, is in the type's table.
+    /// Tells whether the attribute that a refusal marks is in the type's table. It is if the refusal marks none.
     pub(crate) fn has_what_is_refused(&self, refusal: &Refusal) -> bool {
         refusal.attribute.is_none_or(|attribute| self.find(attribute).is_some())
     }
 }
 
-/// Its attributes, as if they were its own.
+/// Gives direct access to the entity's attributes.
 impl Deref for Args {
     type Target = Attributes;
 
@@ -217,12 +219,12 @@ impl Deref for Args {
     }
 }
 
-/// Why a constructor refuses values that are sound one by one.
+/// The reason why a constructor refuses values that are valid one by one.
 #[derive(Debug)]
 pub struct Refusal {
-    /// The attribute to mark; the entity's name where there is none.
+    /// The attribute to mark; if `None`, the entity's name is marked.
     pub attribute: Option<&'static str>,
-    /// What is wrong, to follow the entity's name: "has an `xdir` parallel to its `normal`".
+    /// What is wrong, phrased to follow the entity's name: "has an `xdir` parallel to its `normal`".
     pub message: String,
     /// What would be right.
     pub help: &'static str,

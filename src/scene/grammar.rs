@@ -1,4 +1,4 @@
-//! A TextMate grammar of the notes' spelling, written from the tables: what editors colour scenes with.
+//! A TextMate grammar of the notes' syntax, generated from the tables: editors colour scenes with it.
 
 use crate::scene::entity::Entity;
 use crate::scene::pparm::Attribute;
@@ -8,11 +8,11 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::iter;
 
-/// What follows a word.
+/// Matches the position at which a word ends.
 const END: &str = r"(?=[\s{}]|$)";
-/// A word in quotes.
+/// Matches a word in quotes.
 const QUOTED: &str = r#""(?:[^"\\]|\\.)*"?"#;
-/// A word without quotes, which no comment and no quote begins.
+/// Matches a word without quotes, which does not begin a comment or a quoted word.
 const BARE: &str = r#"[^\s{}#"][^\s{}]*"#;
 const NUMBER: &str = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?";
 
@@ -25,60 +25,60 @@ const REFERENCE: &str = "variable.other.tabray";
 const IN_QUOTES: &str = "string.quoted.double.tabray";
 const WORD: &str = "string.unquoted.tabray";
 
-/// A grammar: what editors read from a `.tmLanguage.json`.
+/// A grammar, as editors read it from a `.tmLanguage.json`.
 ///
-/// It is a list of rules for each entity type. Wherever a word can begin, some rule takes the whole word, so that
-/// none is ever found in the middle of another one.
+/// It is a list of rules for each entity type. Wherever a word can begin, some rule takes the whole word, so that no
+/// rule matches in the middle of a word.
 #[derive(Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Grammar {
-    /// The endings of the files that it is for.
+    /// The extensions of the files that the grammar is for.
     pub file_types: [&'static str; 1],
-    /// What editors call the language.
+    /// The name of the language in editors.
     pub name: &'static str,
-    /// The rules for what stands outside of entities.
+    /// The rules for text outside entities.
     pub patterns: Vec<Rule>,
     /// The rules that others include, by name.
     pub repository: BTreeMap<&'static str, Rule>,
-    /// What themes call the language.
+    /// The scope of the language, which themes refer to.
     pub scope_name: &'static str,
 }
 
-/// A rule: what it matches and the scope which that gets, by which a theme gives it a colour. What a rule does not need
-/// is left out.
+/// A rule: a pattern, and the scope that the matched text gets, by which a theme colours it. Fields that a rule does
+/// not need are left out.
 #[derive(Default, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Rule {
-    /// Where what it matches begins; it ends at `end`, and `patterns` are for what is between.
+    /// The pattern at which the match begins; it ends at `end`, and `patterns` apply to the text between.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub begin: Option<String>,
-    /// The scopes of the groups of `begin`, by number.
+    /// The scopes of the capture groups of `begin`, by number.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub begin_captures: BTreeMap<&'static str, Scope>,
-    /// Where it ends.
+    /// The pattern at which the match ends.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub end: Option<String>,
-    /// The scopes of the groups of `end`, by number.
+    /// The scopes of the capture groups of `end`, by number.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub end_captures: BTreeMap<&'static str, Scope>,
-    /// The name of the rule, behind a `#`, that stands in this one's place.
+    /// The name of the rule, behind a `#`, that is used in place of this one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub include: Option<String>,
-    /// What it matches, within a line.
+    /// The pattern to match, within a line.
     #[serde(rename = "match", skip_serializing_if = "Option::is_none")]
     pub pattern: Option<String>,
-    /// The scope of what it matches.
+    /// The scope of the matched text.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub name: Option<&'static str>,
-    /// The rules for what is between `begin` and `end`.
+    /// The rules for the text between `begin` and `end`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub patterns: Vec<Rule>,
 }
 
-/// What a theme gives a colour by.
+/// A scope, by which a theme chooses a colour.
 #[derive(Serialize)]
 pub struct Scope {
-    /// Its name.
+    /// The scope's name.
     pub name: &'static str,
 }
 
@@ -87,13 +87,13 @@ impl Rule {
         Self { pattern: Some(pattern.into()), name, ..Self::default() }
     }
 
-    /// The rule of this name in the repository.
+    /// Refers to the rule of this name in the repository.
     fn include(rule: &str) -> Self {
         Self { include: Some(format!("#{rule}")), ..Self::default() }
     }
 }
 
-/// The grammar of these entity types.
+/// Returns the grammar of these entity types.
 pub fn of(registry: &Registry) -> Grammar {
     let mut repository: BTreeMap<_, _> =
         registry.iter().map(|entity| (entity.name, entity_rule(entity))).collect();
@@ -103,7 +103,7 @@ pub fn of(registry: &Registry) -> Grammar {
         ("any-number", Rule::matching(number, Some(NUMERIC))),
         ("quoted-word", Rule::matching(QUOTED, Some(IN_QUOTES))),
         ("bare-word", Rule::matching(BARE, None)),
-        // A plugin may have come since.
+        // The program that reads the scene may have more plugins than the one that wrote the grammar.
         ("other-entity", within(BARE, None, iter::empty())),
     ]);
     let known = registry.iter().map(|entity| entity.name);
@@ -120,13 +120,13 @@ pub fn of(registry: &Registry) -> Grammar {
     }
 }
 
-/// An entity from its type to its closing brace.
+/// Matches an entity from its type to its closing brace.
 fn entity_rule(entity: &'static Entity) -> Rule {
     let names = iter::once(entity.name).chain(entity.aliases.iter().copied());
     within(&one_of(names), Some(TYPE), entity.attributes().map(attribute_rule))
 }
 
-/// An entity whose type matches `begin`, with these rules between its braces, and those for any other word.
+/// Matches an entity whose type matches `begin`; between its braces, applies these rules and those for any other word.
 fn within(begin: &str, scope: Option<&'static str>, attributes: impl Iterator<Item = Rule>) -> Rule {
     let comment = || iter::once(Rule::include("comment-line"));
     let rest = ["any-number", "quoted-word", "bare-word"].map(Rule::include);
@@ -140,14 +140,15 @@ fn within(begin: &str, scope: Option<&'static str>, attributes: impl Iterator<It
     Rule {
         begin: Some(format!("({begin}){END}")),
         begin_captures: captures(scope.as_slice()),
-        // Right after the body.
+        // The position right after the closing brace.
         end: Some(r"(?<=\})".to_owned()),
         patterns: comment().chain([name, body]).collect(),
         ..Rule::default()
     }
 }
 
-/// An attribute. Numbers are known by themselves; any other value may look like anything, even like an attribute.
+/// Matches an attribute. Numbers are recognised on their own; any other value may look like anything, even like an
+/// attribute.
 fn attribute_rule(attribute: &'static dyn Attribute) -> Rule {
     let names = iter::once(attribute.name()).chain(attribute.aliases().iter().copied());
     let begin = format!("({}){END}", one_of(names));
@@ -171,12 +172,12 @@ fn attribute_rule(attribute: &'static dyn Attribute) -> Rule {
     }
 }
 
-/// The scopes of groups, from the first one on.
+/// Assigns these scopes to the capture groups, from group 1 on.
 fn captures(scopes: &[&'static str]) -> BTreeMap<&'static str, Scope> {
     iter::zip(["1", "2", "3", "4"], scopes.iter().map(|name| Scope { name })).collect()
 }
 
-/// A pattern of these names, which are letters, digits and `_`.
+/// Returns a pattern that matches any of these names, which consist of letters, digits and `_`.
 fn one_of<'n>(names: impl Iterator<Item = &'n str>) -> String {
     names.collect::<Vec<_>>().join("|")
 }

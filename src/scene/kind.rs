@@ -7,15 +7,15 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
-    /// The viewer and the screen; a scene has one.
+    /// The viewer and the image plane; a scene has one.
     Camera,
-    /// How a surface answers light.
+    /// How a surface reflects light.
     Material,
-    /// A picture that colours surfaces or light.
+    /// An image that colours surfaces or light.
     Texture,
-    /// A shape made of a material.
+    /// A shape and its material.
     Object,
-    /// A source of light, itself not visible.
+    /// A source of light, which is itself not visible.
     Light,
 }
 

@@ -1,10 +1,11 @@
-//! From a scene's text to a model, and back: the tables of entity types, and what is written from them.
+//! From a scene's text to a model, and back: the tables of entity types, and the documents generated from them.
 
 pub(crate) mod choice;
 pub mod dump;
 pub(crate) mod entity;
 pub mod grammar;
 pub(crate) mod kind;
+pub(crate) mod tables;
 pub(crate) mod model;
 pub(crate) mod pparm;
 pub(crate) mod procedural;
@@ -14,7 +15,6 @@ pub mod reference;
 pub(crate) mod registry;
 pub mod schema;
 pub(crate) mod syntax;
-pub(crate) mod tables;
 pub(crate) mod value;
 
 pub use choice::Choice;
@@ -23,7 +23,7 @@ pub use kind::Kind;
 pub use model::Model;
 pub use pparm::{Attribute, Derived, Pparm, Row, Table};
 pub use profile::Profile;
-pub use reader::{Fault, Loaded, Place, Report, Severity, Written, build, read};
+pub use reader::{Fault, Loaded, Parsed, Place, Report, Severity, build, read};
 pub use registry::Registry;
 pub use syntax::Syntax;
 pub use value::{Datum, Type};

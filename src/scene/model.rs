@@ -1,4 +1,4 @@
-//! A scene ready to be traced. It does not change while a picture is made.
+//! A scene ready to be traced. It does not change during a render.
 
 use crate::scene::entity::Args;
 use crate::scene::kind::Kind;
@@ -10,9 +10,9 @@ use crate::world::texture::Texture;
 use glam::DVec3;
 use std::sync::Arc;
 
-/// All that a picture is made from.
+/// All that an image depends on.
 pub struct Model {
-    /// The viewer and the screen.
+    /// The viewer and the image plane.
     pub camera: Item<Camera>,
     /// The materials, in the order of the scene.
     pub materials: Vec<Item<Arc<Material>>>,
@@ -25,7 +25,7 @@ pub struct Model {
 }
 
 impl Model {
-    /// The entities of a kind as they were given, in the order of the scene.
+    /// Returns the entities of a kind as they were given, in the order of the scene.
     pub fn entities(&self, kind: Kind) -> Vec<&Args> {
         match kind {
             Kind::Camera => vec![&self.camera.args],
@@ -37,29 +37,29 @@ impl Model {
     }
 }
 
-/// An entity of a scene: its attributes as given, and what its constructor made of them.
+/// An entity of a scene: its attributes as given, and what the constructor made of them.
 pub struct Item<T> {
-    /// Type, name and values.
+    /// The entity's type, name and values.
     pub args: Args,
-    /// The thing itself.
+    /// What the constructor made.
     pub value: T,
 }
 
 /// A visible object.
 pub struct Object {
-    /// Type, name and values.
+    /// The object's type, name and values.
     pub args: Args,
-    /// What it is made of.
+    /// The object's material.
     pub material: Arc<Material>,
-    /// Where it is.
+    /// The object's geometry.
     pub shape: AnyShape,
-    /// What it looks like.
+    /// The object's look.
     pub shader: AnyShader,
 }
 
 impl Object {
-    /// How much it tints light of each channel that passes through: transparency times the diffuse colour,
-    /// its strongest channel being 1. Glass without a diffuse colour is grey.
+    /// Returns the fraction, from 0 to 1, of light that passes through at this point, for each channel: transparency
+    /// times the diffuse colour, scaled so that the strongest channel is 1. Glass without a diffuse colour is grey.
     pub fn tint(&self, at: DVec3) -> Rgb {
         let diffuse = self.shader.diffuse(&self.material, at);
         let strongest = diffuse.max_element();

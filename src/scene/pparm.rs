@@ -1,7 +1,7 @@
-//! The rows of an entity's table: `pparm` descriptors, and lines of the dump that follow from them.
+//! The rows of an entity's table: `pparm` descriptors, and lines of the dump that are derived from them.
 //!
-//! A descriptor is a typed key. Name, type, default and rule are written once; reading, messages, dump,
-//! `tabray list` and the constructor all use that one place (the notes' "general attribute parser").
+//! A descriptor is a typed key. Name, type, default and rule are written once; the reader, messages, the dump, `tabray
+//! list` and the constructor all use that one place (the notes' "general attribute parser").
 
 use crate::scene::value::{Datum, Type, Value};
 use crate::words;
@@ -9,47 +9,50 @@ use std::panic::Location;
 
 /// A row of an entity's table.
 pub trait Row: Sync {
-    /// The attribute that this row describes; nothing where the row is only a line of the dump.
+    /// Returns the attribute that this row describes, or `None` where the row is only a line of the dump.
     fn attribute(&self) -> Option<&dyn Attribute>;
-    /// What the notes' dump prints for this row, its line ends included.
+    /// Returns what the notes' dump prints for this row, line ends included.
     fn dump(&self, attributes: &Attributes) -> String;
 }
 
-/// Rows that belong together, so that tables compose: a finite plane's are the plane's and its own.
+/// Rows that belong together, so that tables can be composed: a finite plane's are the plane's and its own.
 pub type Table = &'static [&'static dyn Row];
 
-/// The least length in world units whose square does not vanish.
+/// The least length in world units other than 0. Its square, 1e-304, is above the least normal number (2.2e-308), so it
+/// keeps its full precision.
 pub const LEAST_LENGTH: f64 = 1e-152;
 
-/// The greatest length or coordinate in world units of whose squares a few can be added without an overflow.
+/// The greatest length or coordinate in world units. Its square is 1e304, so thousands of squares can be added without
+/// an overflow (at 1.8e308).
 pub const MOST_LENGTH: f64 = 1e152;
 
-/// An attribute, whatever the Rust type of its values.
+/// An attribute, independent of the Rust type of its values.
 pub trait Attribute: Sync {
-    /// Its name in the scene language.
+    /// Returns the name in the scene language.
     fn name(&self) -> &'static str;
-    /// Other names for it.
+    /// Returns the other names.
     fn aliases(&self) -> &'static [&'static str];
-    /// What it means, in a few words.
+    /// Returns the meaning, in a few words.
     fn meaning(&self) -> &'static str;
-    /// The unit of its values, empty where they have none.
+    /// Returns the unit of the values, or an empty string where they have none.
     fn unit(&self) -> &'static str;
-    /// The type of its values.
+    /// Returns the type of the values.
     fn value_type(&self) -> Type;
-    /// How many values it may take.
+    /// Returns the numbers of values that the attribute may take.
     fn arity(&self) -> &'static [usize];
-    /// Its values where a scene gives none; nothing where a scene must give them.
+    /// Returns the values where a scene gives none, or `None` where a scene must give them.
     fn default(&self) -> Option<Datum>;
-    /// What its values must be, such as "positive"; empty where anything will do.
+    /// Returns what the values must be, such as "positive", or an empty string where every value is allowed.
     fn rule(&self) -> &'static str;
-    /// Whether values of the right type and number keep the rule.
+    /// Tells whether values of the right type and number satisfy the rule.
     fn allows(&self, datum: &Datum) -> bool;
 
-    /// The first of its values, by its index, that is a length or a coordinate which cannot be squared, and why.
+    /// Finds the first value that is a length or a coordinate whose square would overflow or underflow; returns its
+    /// index and the reason.
     fn beyond_squares(&self, datum: &Datum) -> Option<(usize, &'static str)> {
         let Datum::Numbers(numbers) = datum else { return None };
         let is_length = self.unit() == "world units";
-        // The sides of a rectangle or a screen, which come in twos, are not squared.
+        // The sides of a rectangle or of the image plane, which come in pairs, are not squared.
         let is_alone = is_length && numbers.len() == 1;
         let why = |number: f64| match number.abs() {
             size if size > MOST_LENGTH && (is_length || self.unit() == "world coordinates") => {
@@ -63,7 +66,7 @@ pub trait Attribute: Sync {
         numbers.iter().enumerate().find_map(|(index, number)| Some((index, why(*number)?)))
     }
 
-    /// How many values of which type it takes: "1 or 3 numbers".
+    /// Says how many values of which type the attribute takes: "1 or 3 numbers".
     fn takes(&self) -> String {
         let counts: Vec<_> = self.arity().iter().map(usize::to_string).collect();
         let counts = counts.join(" or ");
@@ -84,7 +87,7 @@ pub trait Attribute: Sync {
 
 /// An attribute's name, meaning, unit, default and rule, and the key to its value.
 ///
-/// Type and number of its values are those of `T`.
+/// Type and number of the values are those of `T`.
 pub struct Pparm<T: Value> {
     name: &'static str,
     aliases: &'static [&'static str],
@@ -93,19 +96,19 @@ pub struct Pparm<T: Value> {
     default: Option<T>,
     rule: &'static str,
     keeps: fn(&T) -> bool,
-    /// What starts its line in the notes' dump; nothing where the dump leaves it out.
+    /// The beginning of the attribute's line in the notes' dump; `None` where the dump leaves it out.
     label: Option<&'static str>,
     ending: &'static str,
     shown: Option<fn(T) -> T>,
 }
 
 impl<T: Value> Pparm<T> {
-    /// An attribute that every scene must give.
+    /// Describes an attribute that every scene must give.
     pub const fn required(name: &'static str, meaning: &'static str) -> Self {
         Self::new(name, meaning, None)
     }
 
-    /// An attribute with a default.
+    /// Describes an attribute with a default.
     pub const fn or(name: &'static str, meaning: &'static str, default: T) -> Self {
         Self::new(name, meaning, Some(default))
     }
@@ -125,39 +128,39 @@ impl<T: Value> Pparm<T> {
         }
     }
 
-    /// Other names that a scene may use for it.
+    /// Sets other names that a scene may use.
     pub const fn alias(mut self, aliases: &'static [&'static str]) -> Self {
         self.aliases = aliases;
         self
     }
 
-    /// The unit of its values.
+    /// Sets the unit of the values.
     pub const fn unit(mut self, unit: &'static str) -> Self {
         self.unit = unit;
         self
     }
 
-    /// A rule: the words that end the sentence "it must be ...", and the test.
+    /// Sets the rule: the words that end the sentence "it must be ...", and the test.
     pub const fn must(mut self, rule: &'static str, keeps: fn(&T) -> bool) -> Self {
         self.rule = rule;
         self.keeps = keeps;
         self
     }
 
-    /// The label and line end of its line in the notes' dump, where they are not its name and `" \n"`.
+    /// Sets the label and the end of the attribute's line in the notes' dump, where they are not its name and `" \n"`.
     pub const fn dumped(mut self, label: &'static str, ending: &'static str) -> Self {
         self.label = Some(label);
         self.ending = ending;
         self
     }
 
-    /// What the notes' dump shows in place of the value as it was read.
+    /// Sets what the notes' dump shows in place of the value that was read.
     pub const fn shown(mut self, shown: fn(T) -> T) -> Self {
         self.shown = Some(shown);
         self
     }
 
-    /// Leaves it out of the notes' dump.
+    /// Leaves the attribute out of the notes' dump.
     pub const fn not_dumped(mut self) -> Self {
         self.label = None;
         self
@@ -217,7 +220,7 @@ impl<T: Value> Row for Pparm<T> {
     }
 }
 
-/// A line of the notes' dump that follows from the attributes above it, such as a rotation matrix.
+/// A line of the notes' dump that is derived from the attributes above it, such as a rotation matrix.
 pub struct Derived(pub fn(&Attributes) -> String);
 
 impl Row for Derived {
@@ -230,20 +233,20 @@ impl Row for Derived {
     }
 }
 
-/// The values of an attribute, and whether the scene gives them: if not, they are the default.
+/// The values of an attribute, and whether the scene gives them; if not, they are the default.
 pub(crate) type Given = (Datum, bool);
 
 /// The attributes of an entity of a scene, each with its checked value.
 #[derive(Clone)]
 pub struct Attributes {
-    /// The name of the entity's type, and where that is registered.
+    /// The name of the entity's type, and the source position that registers it.
     plugin: (&'static str, &'static Location<'static>),
     /// All attributes of the type, in the order of its table.
     values: Vec<(&'static dyn Attribute, Given)>,
 }
 
 impl Attributes {
-    /// `values` holds those of each attribute, in their order.
+    /// Makes the attributes of an entity. `values` holds one value for each attribute, in table order.
     pub(crate) fn new(
         plugin: (&'static str, &'static Location<'static>),
         attributes: impl Iterator<Item = &'static dyn Attribute>,
@@ -255,47 +258,47 @@ impl Attributes {
         Self { plugin, values }
     }
 
-    /// The value of the attribute that `key` describes.
+    /// Returns the value of the attribute that `key` describes.
     ///
     /// # Panics
-    /// Where the plugin asks for an attribute that is not in the table it registered.
+    /// If the plugin asks for an attribute that is not in the table it registered.
     #[track_caller]
     pub fn get<T: Value>(&self, key: &Pparm<T>) -> T {
         match self.find(key.name()).and_then(T::from_datum) {
             Some(value) => value,
-            // No closure: the message is to name the plugin's line.
+            // No closure, so that the panic message names the plugin's line.
             None => self.not_in_table(key.name()),
         }
     }
 
-    /// The value of the attribute that `key` describes, if the scene gives it.
+    /// Returns the value of the attribute that `key` describes, if the scene gives it.
     ///
     /// # Panics
-    /// As [`get`](Self::get) does.
+    /// If the plugin asks for an attribute that is not in the table it registered.
     #[track_caller]
     pub fn get_given<T: Value>(&self, key: &Pparm<T>) -> Option<T> {
         let value = self.get(key);
         self.given().any(|(attribute, _)| attribute.name() == key.name()).then_some(value)
     }
 
-    /// The value of an attribute as it was checked.
+    /// Returns the checked value of an attribute.
     #[track_caller]
     pub(crate) fn datum(&self, attribute: &str) -> &Datum {
         self.find(attribute).unwrap_or_else(|| self.not_in_table(attribute))
     }
 
-    /// Every attribute with its value, in the order of the table.
+    /// Returns every attribute with its value, in the order of the table.
     pub fn values(&self) -> impl Iterator<Item = (&'static dyn Attribute, &Datum)> {
         self.values.iter().map(|(attribute, (datum, _))| (*attribute, datum))
     }
 
-    /// The attributes that the scene gives, with their values.
+    /// Returns the attributes that the scene gives, with their values.
     pub fn given(&self) -> impl Iterator<Item = (&'static dyn Attribute, &Datum)> {
         let given = self.values.iter().filter(|(_, (_, given))| *given);
         given.map(|(attribute, (datum, _))| (*attribute, datum))
     }
 
-    /// The names of the textures that it refers to.
+    /// Returns the names of the textures that the entity refers to.
     pub fn textures(&self) -> impl Iterator<Item = &str> {
         self.values().filter_map(|(_, datum)| match datum {
             Datum::Texture { name, .. } => Some(&**name),
@@ -303,7 +306,7 @@ impl Attributes {
         })
     }
 
-    /// The value of the attribute of this name, if there is one.
+    /// Finds the value of the attribute of this name.
     pub(crate) fn find(&self, attribute: &str) -> Option<&Datum> {
         self.values().find(|(known, _)| known.name() == attribute).map(|(_, datum)| datum)
     }

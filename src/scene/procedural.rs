@@ -1,4 +1,4 @@
-//! Procedural shaders: looks of surfaces that change from place to place by a rule (the notes' `pplane`).
+//! Procedural shaders: surface looks that vary from point to point by a rule (the notes' `pplane`).
 
 use crate::scene::choice::{Choice, ChoiceName};
 use crate::world::any_shape::AnyShape;
@@ -20,29 +20,29 @@ pub struct ProceduralShader {
 
 inventory::collect!(ProceduralShader);
 
-/// What a procedural shader measures from.
+/// The origin and the unit of length of a procedural shader's pattern.
 #[derive(Clone, Copy, Debug)]
 pub struct Anchor {
-    /// The point of the plane or the centre of the sphere.
+    /// The point of the plane or the centre of the sphere, in world units.
     pub origin: DVec3,
-    /// The length that counts as 1: 1 on a plane, the diameter of a sphere.
+    /// The length that counts as 1, in world units: 1 on a plane, the diameter of a sphere.
     pub unit: f64,
 }
 
 impl ProceduralShader {
-    /// A shader with a name and no number.
+    /// Describes a procedural shader that has a name and no number.
     #[track_caller]
     pub const fn new(name: &'static str, meaning: &'static str, make: fn(Anchor) -> AnyShader) -> Self {
         Self { name, meaning, on_plane: None, on_sphere: None, make, place: Location::caller() }
     }
 
-    /// With the number that the notes give it on planes.
+    /// Sets the number that the notes give the shader on planes.
     pub const fn on_plane(mut self, number: i64) -> Self {
         self.on_plane = Some(number);
         self
     }
 
-    /// With the number that the notes give it on spheres.
+    /// Sets the number that the notes give the shader on spheres.
     pub const fn on_sphere(mut self, number: i64) -> Self {
         self.on_sphere = Some(number);
         self
@@ -54,17 +54,17 @@ impl ProceduralShader {
 }
 
 impl Body {
-    /// An object that looks as a procedural shader has it.
+    /// Makes an object with the look of a procedural shader.
     pub fn procedural(shape: impl Into<AnyShape>, shader: &ProceduralShader, anchor: Anchor) -> Self {
         Self { shape: shape.into(), shader: (shader.make)(anchor) }
     }
 }
 
-/// A procedural shader by its name or by its number on planes.
+/// A procedural shader, chosen by its name or by its number on planes.
 #[derive(Clone, Copy)]
 pub struct OnPlane(pub &'static ProceduralShader);
 
-/// A procedural shader by its name or by its number on spheres.
+/// A procedural shader, chosen by its name or by its number on spheres.
 #[derive(Clone, Copy)]
 pub struct OnSphere(pub &'static ProceduralShader);
 

@@ -1,4 +1,4 @@
-//! Profiles: the lines that surfaces of revolution are turned from.
+//! Profiles: the curves that surfaces of revolution are turned from.
 
 use crate::numeric::dual::Dual;
 use crate::numeric::formula::Formula;
@@ -6,8 +6,7 @@ use crate::scene::choice::{Choice, ChoiceName};
 use crate::words;
 use std::panic::Location;
 
-/// A line x = g(y), which a scene chooses by name or by number. A plugin registers one with
-/// `inventory::submit!`.
+/// A curve x = g(y), which a scene chooses by name or by number. A plugin registers one with `inventory::submit!`.
 pub struct Profile {
     name: &'static str,
     meaning: &'static str,
@@ -20,34 +19,34 @@ pub struct Profile {
 inventory::collect!(Profile);
 
 impl Profile {
-    /// A profile with a name and no number: the distance from the axis as a formula in the height y.
+    /// Describes a profile that has a name and no number; the formula gives the distance from the axis at height y.
     #[track_caller]
     pub const fn new(name: &'static str, meaning: &'static str, formula: &'static str) -> Self {
         Self { name, meaning, number: None, formula, slope: None, place: Location::caller() }
     }
 
-    /// With the number that the notes give it.
+    /// Sets the number that the notes give the profile.
     pub const fn number(mut self, number: i64) -> Self {
         self.number = Some(number);
         self
     }
 
-    /// With a slope that is not the formula's own, for the normals of the classic method.
+    /// Sets a slope that differs from the formula's derivative, for the normals of the classic method.
     pub const fn slope(mut self, formula: &'static str) -> Self {
         self.slope = Some(formula);
         self
     }
 
-    /// The line.
+    /// Returns the profile's curve.
     ///
     /// # Panics
-    /// Where the plugin's text is no formula; the registry refuses such plugins before.
+    /// If the plugin's text is not a formula. The registry refuses such plugins before a scene is read.
     pub fn line(&self) -> ProfileLine {
         let parse = |text| Formula::parse(text).expect("the registry refuses what is no formula");
         ProfileLine { radius: parse(self.formula), slope: self.slope.map(parse) }
     }
 
-    /// What is wrong with its formulas, if anything is.
+    /// Returns what is wrong with the formulas, if anything is.
     pub(crate) fn fault(&self) -> Option<String> {
         let fault = |text| Formula::parse(text).err().map(|fault| (text, fault));
         let (text, fault) = fault(self.formula).or_else(|| self.slope.and_then(fault))?;
@@ -59,17 +58,17 @@ impl Profile {
     }
 }
 
-/// A line x = g(y), ready to be turned around an axis.
+/// A curve x = g(y), ready to be turned about an axis.
 #[derive(Clone, Debug)]
 pub struct ProfileLine {
-    /// The distance from the axis at a height.
+    /// The distance from the axis as a function of the height.
     pub radius: Formula,
-    /// How fast that grows, where that is not what the formula says.
+    /// The derivative of the radius, where the classic method uses another one than the formula's.
     pub slope: Option<Formula>,
 }
 
 impl ProfileLine {
-    /// How fast the radius grows at a height.
+    /// Returns the derivative of the radius at height `y`.
     pub fn slope_at(&self, y: f64) -> f64 {
         match &self.slope {
             Some(slope) => slope.at(y),

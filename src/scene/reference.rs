@@ -1,4 +1,4 @@
-//! The reference of the scene language: what its words mean, written from the tables.
+//! The reference of the scene language: the meaning of its words, generated from the tables.
 
 use crate::scene::choice::{Choice, ChoiceName};
 use crate::scene::entity::Entity;
@@ -11,10 +11,10 @@ use crate::scene::value::Datum;
 use crate::words;
 use std::iter;
 
-/// What is to be said of the language whatever its words are.
+/// The part of the reference that is the same whatever entity types there are.
 const LANGUAGE: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/language.md"));
 
-/// All of the reference as one text of Markdown.
+/// Returns the whole reference as one Markdown text.
 pub fn markdown(registry: &Registry) -> String {
     let mut text = LANGUAGE.to_owned();
     let mut add = |title: &str, words: &mut dyn Iterator<Item = Word>| {
@@ -37,8 +37,8 @@ pub fn markdown(registry: &Registry) -> String {
     text
 }
 
-/// A page for each word of the language, with its name: each entity type, procedural shader and profile. They stand in
-/// `snapshots/reference`, from where they show the pictures beside it.
+/// Returns a page, with its name, for each word of the language: each entity type, procedural shader and profile. The
+/// pages lie in `snapshots/reference` and refer to the images beside that folder.
 pub fn pages(registry: &Registry) -> impl Iterator<Item = (&'static str, String)> {
     let entities = registry.iter().map(|entity| {
         let (name, kind) = (entity.name, words::capital(&entity.kind().to_string()));
@@ -60,9 +60,9 @@ pub fn pages(registry: &Registry) -> impl Iterator<Item = (&'static str, String)
 struct Word {
     name: &'static str,
     meaning: &'static str,
-    /// The file and line that registers it.
+    /// The file and line that register the word.
     place: String,
-    /// What there is to tell beside that: lines of Markdown, the first of them empty.
+    /// Further details: lines of Markdown, of which the first is empty.
     details: String,
 }
 
@@ -78,7 +78,7 @@ impl Word {
         Self { name: entity.name, meaning: entity.meaning, place: entity.place(), details }
     }
 
-    /// One that has a number in some places.
+    /// Describes an alternative that has a number in some places.
     fn choice(choice: ChoiceName, numbers: &[(Option<i64>, &str)]) -> Self {
         let told = numbers.iter().filter_map(|(number, place)| Some(format!("{}{place}", (*number)?)));
         let told = told.collect::<Vec<_>>().join(" and ");
@@ -98,7 +98,7 @@ fn profiles() -> impl Iterator<Item = Word> {
     by_name::<&'static Profile>().map(|profile| Word::choice(profile, &[(profile.number, "")]))
 }
 
-/// All things of a sort, sorted by name.
+/// Returns all alternatives of a type, sorted by name.
 pub(super) fn by_name<T: Choice>() -> impl Iterator<Item = ChoiceName> {
     let mut all: Vec<_> = T::all().iter().map(T::option).collect();
     all.sort_by_key(|choice| choice.name);

@@ -18,11 +18,11 @@ pub struct Registry {
 }
 
 impl Registry {
-    /// The entity types that the plugins registered, sorted by name.
+    /// Returns the entity types that the plugins registered, sorted by name.
     ///
     /// # Errors
-    /// Names given twice, each with both places, and profiles that are no formulas, each on a line: the plugins
-    /// contradict each other.
+    /// If plugins contradict each other: one line for each name that is registered twice, with both source positions,
+    /// and for each profile that is not a formula.
     pub fn get() -> Result<&'static Registry, &'static str> {
         static REGISTRY: LazyLock<Result<Registry, String>> = LazyLock::new(|| {
             let choices = [
@@ -32,7 +32,7 @@ impl Registry {
                 profiles(),
             ];
             let mut faults = choices.concat();
-            // A shader's name is taken on planes and on spheres.
+            // A shader's name is registered on planes and on spheres, so its faults come twice.
             faults.sort();
             faults.dedup();
             let registry = Registry::of(inventory::iter::<Entity>());
@@ -42,12 +42,12 @@ impl Registry {
         REGISTRY.as_ref().map_err(String::as_str)
     }
 
-    /// A registry of these entity types.
+    /// Makes a registry of these entity types.
     ///
     /// # Errors
-    /// As [`Registry::get`].
+    /// If entity types contradict each other: one line for each name that is given twice, with both source positions.
     pub fn of(entities: impl IntoIterator<Item = &'static Entity>) -> Result<Registry, String> {
-        // The order of `inventory` is the linker's.
+        // `inventory` returns the entity types in the linker's order.
         let mut sorted: Vec<_> = entities.into_iter().collect();
         sorted.sort_by_key(|entity| (entity.name, entity.place()));
 
@@ -82,36 +82,37 @@ impl Registry {
         if faults.is_empty() { Ok(Registry { entities: by_name, aliases }) } else { Err(faults.join("\n")) }
     }
 
-    /// The entity type of this name or alias.
+    /// Finds the entity type of this name or alias.
     pub fn find(&self, name: &str) -> Option<&'static Entity> {
         self.entities.get(name).or_else(|| self.aliases.get(name)).copied()
     }
 
-    /// The name of the entity type that a misspelt word was most likely meant to be.
+    /// Returns the name of the entity type that a misspelt word was most likely meant to be.
     pub fn nearest(&self, word: &str) -> Option<&'static str> {
         nearest(word, self.entities.keys().copied())
     }
 
-    /// How a scene writes an entity of this kind: the type that is called as the kind is, whatever others come before it.
+    /// Shows how a scene writes an entity of this kind. Where a type has the kind's own name, that type is the example,
+    /// whatever other types come before it.
     pub(crate) fn example(&self, kind: Kind, name: &str, syntax: Syntax) -> String {
         let mut of_kind = self.iter().filter(|entity| entity.kind() == kind);
         let entity = self.find(&kind.to_string()).or_else(|| of_kind.next());
         entity.map(|entity| syntax.entity_usage(entity, name)).unwrap_or_default()
     }
 
-    /// What a scene looks like, for those who have none.
+    /// Shows what a scene looks like, for users who have none yet.
     pub(crate) fn first_steps(&self, syntax: Syntax) -> String {
         let camera = self.example(Kind::Camera, "NAME", syntax);
         format!("a scene begins with a camera, {camera}; materials, objects and lights follow")
     }
 
-    /// All entity types, sorted by name.
+    /// Returns all entity types, sorted by name.
     pub fn iter(&self) -> impl Iterator<Item = &'static Entity> {
         self.entities.values().copied()
     }
 }
 
-/// Profiles that are no formulas.
+/// Returns an error message for each profile that is not a formula.
 fn profiles() -> Vec<String> {
     let mut faults: Vec<_> = inventory::iter::<Profile>().filter_map(Profile::fault).collect();
     faults.sort();

@@ -1,4 +1,4 @@
-//! The JSON Schema of scenes in TOML, written from the tables: what editors check and complete with.
+//! The JSON Schema of scenes in TOML, generated from the tables: editors check and complete with it.
 
 use crate::scene::entity::Entity;
 use crate::scene::kind::Kind;
@@ -9,91 +9,91 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::iter;
 
-/// A schema (draft 2020-12), or a part of one: the words of that language that scenes need, those that are not given
-/// left out, in the order in which they are written.
+/// A schema (draft 2020-12), or a part of one. It has only the keywords that scenes need, in the order in which they
+/// are written; keywords without a value are left out.
 #[derive(Clone, Default, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Schema {
-    /// The language of the schema, which the whole one names.
+    /// The schema dialect, given only at the top level.
     #[serde(rename = "$schema", skip_serializing_if = "Option::is_none")]
     pub language: Option<&'static str>,
-    /// What fields beside `properties` hold.
+    /// What fields that are not in `properties` may hold.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub additional_properties: Option<Others>,
-    /// Schemas of which all fit.
+    /// Schemas that must all match.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub all_of: Vec<Schema>,
-    /// Schemas of which one or more fit.
+    /// Schemas of which at least one must match.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub any_of: Vec<Schema>,
-    /// What counts where nothing is given.
+    /// The value if none is given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub default: Option<Constant>,
-    /// What editors tell of it.
+    /// The description that editors show.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
-    /// All that it may be.
+    /// All allowed values.
     #[serde(rename = "enum", skip_serializing_if = "Option::is_none")]
     pub choices: Option<Vec<Constant>>,
-    /// What each value of an array is.
+    /// The schema of each value of an array.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub items: Option<Box<Schema>>,
-    /// How many values an array has at most.
+    /// The maximum number of values of an array.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max_items: Option<usize>,
-    /// How many fields an object has at most.
+    /// The maximum number of fields of an object.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max_properties: Option<usize>,
-    /// How many values an array has at least.
+    /// The minimum number of values of an array.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub min_items: Option<usize>,
-    /// How many fields an object has at least.
+    /// The minimum number of fields of an object.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub min_properties: Option<usize>,
-    /// Schemas of which exactly one fits.
+    /// Schemas of which exactly one must match.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub one_of: Vec<Schema>,
-    /// What an object's fields hold.
+    /// The schemas of an object's fields.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub properties: Option<BTreeMap<&'static str, Schema>>,
     /// The fields that an object must have.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub required: Option<Vec<&'static str>>,
-    /// What editors call it.
+    /// The title that editors show.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub title: Option<&'static str>,
-    /// The sort of value: `object`, `array`, `string`, `number` or `integer`.
+    /// The type of the value: `object`, `array`, `string`, `number` or `integer`.
     #[serde(rename = "type", skip_serializing_if = "Option::is_none")]
     pub sort: Option<&'static str>,
 }
 
-/// What fields hold whose names a schema does not have.
+/// What fields may hold that a schema does not name.
 #[derive(Clone, Serialize)]
 #[serde(untagged)]
 pub enum Others {
-    /// Anything (true), or there are none (false).
+    /// Anything (true), or no such fields are allowed (false).
     Any(bool),
-    /// What this schema says.
+    /// Values that match this schema.
     Each(Box<Schema>),
 }
 
-/// The values of an attribute.
+/// The default values of an attribute, or one of its allowed values.
 #[derive(Clone, Serialize)]
 #[serde(untagged)]
 pub enum Constant {
     /// A whole number.
     Whole(i64),
-    /// Several of them.
+    /// Several whole numbers.
     Wholes(Vec<i64>),
     /// A number.
     Number(f64),
-    /// Several of them.
+    /// Several numbers.
     Numbers(Vec<f64>),
     /// A word, a name or a formula.
     Text(String),
 }
 
-/// The schema of scenes. Rules that the language states in words are in the descriptions alone.
+/// Returns the schema of scenes. Rules that the language states in words appear only in the descriptions.
 pub fn of(registry: &Registry) -> Schema {
     let names = |entity: &'static Entity| iter::once(entity.name).chain(entity.aliases.iter().copied());
     let cameras = registry.iter().filter(|entity| entity.kind() == Kind::Camera).flat_map(names);
@@ -113,7 +113,7 @@ impl Schema {
         Self { sort: Some(name), ..Self::default() }
     }
 
-    /// An array of such values.
+    /// Returns the schema of an array of values that match this schema, with `min` to `max` values.
     fn array(self, min: usize, max: Option<usize>) -> Self {
         let items = Some(Box::new(self));
         Self { items, min_items: Some(min), max_items: max, ..Self::sort("array") }
@@ -124,14 +124,14 @@ fn requiring(name: &'static str) -> Schema {
     Schema { required: Some(vec![name]), ..Schema::default() }
 }
 
-/// All entities of one type, by name.
+/// Returns the schema of all entities of one type, by name.
 fn kind(entity: &'static Entity) -> Schema {
     let is_single = matches!(entity.kind(), Kind::Camera | Kind::Material | Kind::Texture);
     let one = body(entity);
     let named = if is_single {
         one
     } else {
-        // Objects and lights may share a name.
+        // Objects may share a name, and so may lights.
         Schema { any_of: vec![one.clone(), one.array(1, None)], ..Schema::default() }
     };
     Schema {
@@ -143,7 +143,7 @@ fn kind(entity: &'static Entity) -> Schema {
     }
 }
 
-/// The attributes of one entity.
+/// Returns the schema of the attributes of one entity.
 fn body(entity: &'static Entity) -> Schema {
     let mut properties = BTreeMap::new();
     let (mut required, mut all_of) = (Vec::new(), Vec::new());
@@ -167,7 +167,7 @@ fn body(entity: &'static Entity) -> Schema {
     }
 }
 
-/// The values of one attribute.
+/// Returns the schema of the values of one attribute.
 fn value(attribute: &'static dyn Attribute) -> Schema {
     let one = match attribute.value_type() {
         Type::Whole => Schema::sort("integer"),
@@ -200,7 +200,7 @@ fn description(attribute: &dyn Attribute) -> String {
 }
 
 impl Constant {
-    /// The values of an attribute, if it has any.
+    /// Returns the values of an attribute, or `None` where it has none.
     pub(crate) fn of(datum: &Datum) -> Option<Self> {
         Some(match datum {
             Datum::Whole(numbers) => match numbers[..] {

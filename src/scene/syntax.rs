@@ -1,4 +1,4 @@
-//! The two spellings of a scene: how each writes what.
+//! The two syntaxes of a scene: how each writes names, attributes and values.
 
 use crate::scene::entity::Entity;
 use crate::scene::pparm::Attribute;
@@ -7,7 +7,7 @@ use clap::ValueEnum;
 use std::fmt;
 use std::path::Path;
 
-/// A spelling of the scene language.
+/// A syntax of the scene language.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Syntax {
     /// The syntax of the course notes.
@@ -23,13 +23,13 @@ pub enum Syntax {
 }
 
 impl Syntax {
-    /// The spelling of a file, by the extension of its name.
+    /// Returns the syntax of a file, by its extension.
     pub fn of_name(name: impl AsRef<Path>) -> Option<Self> {
         let extension = name.as_ref().extension()?;
         Some(if extension.eq_ignore_ascii_case("toml") { Self::Toml } else { Self::Notes })
     }
 
-    /// The spelling of a text that has no name: in TOML alone it begins with a bracket or with `TYPE.NAME =`.
+    /// Guesses the syntax of a text that has no file name: only TOML begins with a bracket or with `TYPE.NAME =`.
     pub fn of_text(text: &str) -> Self {
         let mut lines = text.lines().map(str::trim);
         let first = lines.find(|line| !line.is_empty() && !line.starts_with('#')).unwrap_or_default();
@@ -38,7 +38,7 @@ impl Syntax {
         if first.starts_with('[') || is_key { Self::Toml } else { Self::Notes }
     }
 
-    /// How a scene writes an attribute, in short: `center N N N`.
+    /// Shows how a scene writes an attribute, in short: `center N N N`.
     pub fn usage(self, attribute: &dyn Attribute) -> String {
         let (value, count) = match attribute.value_type() {
             Type::Whole | Type::Number => ("N", attribute.arity().first().copied().unwrap_or(1)),
@@ -52,7 +52,7 @@ impl Syntax {
         self.pair(attribute.name(), &values)
     }
 
-    /// How a scene writes an entity of a type, with the attributes it must have.
+    /// Shows how a scene writes an entity of a type, with the attributes that it must have.
     pub fn entity_usage(self, entity: &Entity, name: &str) -> String {
         let required = entity.attributes().filter(|attribute| attribute.default().is_none());
         let mut body: Vec<_> = required.map(|attribute| self.usage(attribute)).collect();
@@ -70,7 +70,7 @@ impl Syntax {
         }
     }
 
-    /// An attribute and its values.
+    /// Writes an attribute and its values.
     pub fn pair(self, attribute: &str, values: &[String]) -> String {
         match (self, values) {
             (Self::Notes, values) => format!("{attribute} {}", values.join(" ")),
@@ -79,7 +79,7 @@ impl Syntax {
         }
     }
 
-    /// The values of an attribute, each as it is written. Every number reads back to its last bit.
+    /// Returns the values of an attribute as this syntax writes them. Every number reads back to its last bit.
     pub fn values(self, datum: &Datum) -> Vec<String> {
         match datum {
             Datum::Whole(numbers) => numbers.iter().map(i64::to_string).collect(),
@@ -94,7 +94,7 @@ impl Syntax {
         }
     }
 
-    /// The name of an entity where it is defined.
+    /// Writes the name of an entity where it is defined.
     pub fn key(self, name: &str) -> String {
         let is_bare =
             |name: &str| name.bytes().all(|byte| byte.is_ascii_alphanumeric() || b"_-".contains(&byte));
@@ -105,7 +105,7 @@ impl Syntax {
         }
     }
 
-    /// A word that is a value. The notes' spelling needs quotes only where something else would be read.
+    /// Writes a word that is a value. The notes' syntax needs quotes only where something else would be read.
     fn word(self, word: &str) -> String {
         let splits = |c: char| c.is_whitespace() || c == '{' || c == '}';
         let bare = !word.is_empty() && !word.starts_with(['#', '"']) && !word.contains(splits);
@@ -113,19 +113,19 @@ impl Syntax {
     }
 }
 
-/// The values as the notes' spelling of a scene writes them: every number reads back to its last bit.
+/// Writes the values in the notes' syntax; every number reads back to its last bit.
 impl fmt::Display for Datum {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&Syntax::Notes.values(self).join(" "))
     }
 }
 
-/// A word in quotes, as both spellings read it.
+/// Writes a word in quotes, as both syntaxes read it.
 fn quoted(word: &str) -> String {
     format!("\"{}\"", word.replace('\\', "\\\\").replace('"', "\\\""))
 }
 
-/// The shortest decimal that reads back as the same number.
+/// Returns the shortest decimal that reads back as the same number.
 fn shortest(number: f64) -> String {
     let text = format!("{number:?}");
     text.strip_suffix(".0").unwrap_or(&text).to_owned()

@@ -1,6 +1,6 @@
-//! The tables for programs, as JSON: all that the scene language has. `docs/tools.md` tells the same of each field.
+//! The tables for other programs, as JSON: the whole scene language. `docs/tools.md` describes the same fields.
 //!
-//! Fields stand in the order in which they are written.
+//! Fields are declared in the order in which they are written.
 
 use crate::scene::choice::ChoiceName;
 use crate::scene::entity;
@@ -15,10 +15,10 @@ use crate::scene::value::Type;
 use serde::Serialize;
 use std::iter;
 
-/// Grows when a field is taken away or comes to mean something else, and not when one is added.
+/// The format's version: it grows when a field is removed or changes its meaning, and not when one is added.
 const VERSION: u32 = 1;
 
-/// All that the language has.
+/// The whole scene language.
 #[derive(Serialize)]
 pub struct Tables {
     /// The entity types, sorted by name.
@@ -27,7 +27,7 @@ pub struct Tables {
     pub profiles: Vec<Named>,
     /// The procedural shaders, sorted by name.
     pub shaders: Vec<Shader>,
-    /// Grows when a field is taken away or comes to mean something else, and not when one is added.
+    /// The format's version: it grows when a field is removed or changes its meaning, and not when one is added.
     pub version: u32,
 }
 
@@ -36,13 +36,13 @@ pub struct Tables {
 pub struct Entity {
     /// Other names that scenes may use.
     pub aliases: &'static [&'static str],
-    /// Its attributes, in the order of the dump.
+    /// The type's attributes, in the order of the dump.
     pub attributes: Vec<Attribute>,
     /// `camera`, `material`, `texture`, `object` or `light`.
     pub kind: Kind,
-    /// What it is, in a few words.
+    /// The meaning, in a few words.
     pub meaning: &'static str,
-    /// What scenes call it.
+    /// The name in scenes.
     pub name: &'static str,
 }
 
@@ -51,55 +51,55 @@ pub struct Entity {
 pub struct Attribute {
     /// Other names that scenes may use.
     pub aliases: &'static [&'static str],
-    /// For a choice, all that it may be; else null.
+    /// All allowed values of a choice; null for other types.
     pub choices: Option<Vec<Named>>,
-    /// How many values it takes: `[1, 3]` for one or three.
+    /// The numbers of values that the attribute may take: `[1, 3]` for one or three.
     pub counts: &'static [usize],
-    /// Its values where a scene gives none: one value, or several in an array; null where there is nothing then.
+    /// The values where a scene gives none: one value, or several in an array; null where there is no default.
     pub default: Option<Constant>,
-    /// What it is, in a few words.
+    /// The meaning, in a few words.
     pub meaning: &'static str,
-    /// The rule for its values, in words that end "it must be ...", or null.
+    /// The rule for the values, in words that end "it must be ...", or null.
     pub must_be: Option<&'static str>,
-    /// What scenes call it.
+    /// The name in scenes.
     pub name: &'static str,
-    /// For a name, the kind of entity that it is the name of; else null.
+    /// The kind of entity that a name refers to; null for other types.
     pub refers_to: Option<Kind>,
     /// Whether a scene must give it.
     pub required: bool,
     /// `number`, `whole number`, `word`, `name`, `choice` or `formula`.
     #[serde(rename = "type")]
     pub value_type: &'static str,
-    /// The unit of its values, or null.
+    /// The unit of the values, or null.
     pub unit: Option<&'static str>,
 }
 
-/// One of several things to choose from.
+/// One of several alternatives.
 #[derive(Serialize)]
 pub struct Named {
-    /// What it is, in a few words.
+    /// The meaning, in a few words.
     pub meaning: &'static str,
-    /// What scenes call it.
+    /// The name in scenes.
     pub name: &'static str,
-    /// The number by which scenes may choose it, or null.
+    /// The number by which scenes may choose the alternative, or null.
     pub number: Option<i64>,
 }
 
 /// A procedural shader.
 #[derive(Serialize)]
 pub struct Shader {
-    /// What it is, in a few words.
+    /// The meaning, in a few words.
     pub meaning: &'static str,
-    /// What scenes call it.
+    /// The name in scenes.
     pub name: &'static str,
-    /// The number by which scenes may choose it on planes, or null.
+    /// The number by which scenes may choose the shader on planes, or null.
     pub number_on_planes: Option<i64>,
-    /// The number by which scenes may choose it on spheres, or null.
+    /// The number by which scenes may choose the shader on spheres, or null.
     pub number_on_spheres: Option<i64>,
 }
 
 impl Tables {
-    /// The language of these entity types.
+    /// Describes the language of these entity types.
     pub fn of(registry: &Registry) -> Self {
         Self {
             entities: registry.iter().map(Entity::of).collect(),

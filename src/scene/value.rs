@@ -1,4 +1,4 @@
-//! What an attribute's values are: the types that the scene language knows.
+//! The types of attribute values that the scene language has.
 
 use crate::numeric::formula::Formula;
 use crate::scene::choice::{Choice, ChoiceName, Choices};
@@ -15,11 +15,11 @@ pub enum Type {
     Whole,
     /// Finite real numbers.
     Number,
-    /// One word. It stands in quotes where it has blanks or braces.
+    /// One word, which needs quotes where it contains white space or braces.
     Word,
-    /// The name of an entity of this kind, defined before it is used.
+    /// The name of an entity of this kind, which must be defined before it is used.
     Name(Kind),
-    /// The name or the number of one of several things.
+    /// The name or the number of one of several alternatives.
     Choice(Choices),
     /// A formula.
     Formula,
@@ -34,30 +34,30 @@ pub enum Datum {
     Numbers(Vec<f64>),
     /// One word.
     Word(String),
-    /// A material, by its name.
+    /// A material and its name.
     Material {
         /// The name that the scene gives it.
         name: Arc<str>,
-        /// What the name stands for.
+        /// The material of this name.
         material: Arc<Material>,
     },
-    /// A texture, by its name.
+    /// A texture and its name.
     Texture {
         /// The name that the scene gives it.
         name: Arc<str>,
-        /// What the name stands for.
+        /// The texture of this name.
         texture: Arc<Texture>,
     },
-    /// One of several things.
+    /// One of several alternatives.
     Choice(ChoiceName),
     /// A formula.
     Formula(Arc<Formula>),
-    /// Nothing, where an attribute may be left out.
+    /// No value, where an attribute may be left out.
     Absent,
 }
 
 impl Datum {
-    /// Its line in the notes' dump: a label, the values and what ends the line.
+    /// Writes the value's line in the notes' dump: a label, the values and the end of the line.
     pub fn line(&self, label: &str, ending: &str) -> String {
         let values = match self {
             Self::Whole(numbers) => numbers.iter().map(|number| format!(" {number:5}")).collect(),
@@ -76,13 +76,13 @@ impl Datum {
 
 /// A Rust type that a [`Pparm`](crate::scene::pparm::Pparm) can be a key for.
 pub trait Value: Clone + Send + Sync + 'static {
-    /// The type of the values that it is read from.
+    /// The type of the values in a scene.
     const TYPE: Type;
-    /// How many values it may be read from.
+    /// The numbers of values from which a Rust value can be read.
     const ARITY: &'static [usize];
-    /// The datum of a default.
+    /// Converts a default to a datum.
     fn to_datum(&self) -> Datum;
-    /// The value of a datum, or nothing where type or number are others.
+    /// Converts a datum to a value, or returns `None` where the datum's type or its number of values does not fit.
     fn from_datum(datum: &Datum) -> Option<Self>;
 }
 
@@ -125,7 +125,7 @@ impl Value for DVec3 {
     }
 }
 
-/// A number for each of red, green and blue, written as three numbers, or as one where they are alike.
+/// A number for each of red, green and blue, written as three numbers, or as one number where the three are equal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PerChannel(pub Rgb);
 
@@ -220,7 +220,7 @@ impl Value for Arc<Formula> {
     }
 }
 
-/// What may be left out.
+/// An attribute that may be left out.
 impl<T: Value> Value for Option<T> {
     const TYPE: Type = T::TYPE;
     const ARITY: &'static [usize] = T::ARITY;
@@ -237,7 +237,7 @@ impl<T: Value> Value for Option<T> {
     }
 }
 
-/// The name of a texture; the key gives the texture itself.
+/// A texture, which a scene refers to by its name.
 impl Value for Arc<Texture> {
     const TYPE: Type = Type::Name(Kind::Texture);
     const ARITY: &'static [usize] = &[1];
@@ -254,7 +254,7 @@ impl Value for Arc<Texture> {
     }
 }
 
-/// The name of a material; the key gives the material itself.
+/// A material, which a scene refers to by its name.
 impl Value for Arc<Material> {
     const TYPE: Type = Type::Name(Kind::Material);
     const ARITY: &'static [usize] = &[1];
@@ -271,7 +271,7 @@ impl Value for Arc<Material> {
     }
 }
 
-/// The name or the number of one of several things.
+/// One of several alternatives, which a scene chooses by name or number.
 impl<T: Choice> Value for T {
     const TYPE: Type = Type::Choice(Choices::of::<T>());
     const ARITY: &'static [usize] = &[1];

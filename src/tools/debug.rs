@@ -1,4 +1,4 @@
-//! The notes' debug lines (`DBG_PIX` and so on): what they print, in their order and their format.
+//! The notes' debug lines (`DBG_PIX` and so on), in their order and their format.
 
 use crate::geometry::ray::{Ray, RayRange};
 use crate::render::bytes::to_byte;
@@ -33,7 +33,7 @@ pub enum LogLine {
     Find,
 }
 
-/// Traces one pixel and prints these lines about it, in the order in which the notes' program comes to them.
+/// Traces one pixel and prints these lines about it, in the order in which the notes' program prints them.
 ///
 /// # Errors
 /// Those of `out`.
@@ -45,7 +45,7 @@ pub fn pixel(plan: &Plan, x: usize, y: usize, lines: &[LogLine], out: &mut impl 
     let colour = trace::observe_pixel(plan, x, y, &mut printer);
     printer.outcome?;
     if lines.contains(&LogLine::Irgb) {
-        // What the file gets, so a channel of 127.6 is told as 127.
+        // Printed as the file gets it, so a channel of 127.6 is printed as 127.
         let [r, g, b] = colour.to_array().map(to_byte);
         write!(out, " IRGB:({r:>5}, {g:>5}, {b:>5})")?;
     }
@@ -60,7 +60,7 @@ struct Printer<'p, W> {
     model: &'p Model,
     lines: &'p [LogLine],
     out: &'p mut W,
-    /// The present ray, and whether it goes toward a light.
+    /// The current ray, and whether it is a shadow ray.
     ray: Option<Ray>,
     shadow: bool,
     outcome: io::Result<()>,
@@ -73,7 +73,7 @@ impl<W: Write> Printer<'_, W> {
         }
     }
 
-    /// The notes ask each object for its distance along the whole ray, whatever was found before.
+    /// The notes' program asks each object for its distance along the whole ray, whatever was found before.
     fn find(&mut self, index: usize) {
         let Some(ray) = &self.ray else { return };
         let object = &self.model.objects[index];

@@ -1,4 +1,4 @@
-//! Programs about a model beside its picture: charts, measurements, contracts, proofs.
+//! Tools that work on a model beside rendering it: charts, benchmarks, contracts, proofs.
 
 pub mod bench;
 pub mod chart;

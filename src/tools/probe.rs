@@ -1,4 +1,4 @@
-//! One pixel explained: its rays as an indented tree, with all that was tested, met and added up on the way.
+//! Explains one pixel: its rays as an indented tree, with all that was tested, hit and added up on the way.
 
 use crate::geometry::ray::{MISS, Ray, RayRange};
 use crate::render::bytes::to_byte;
@@ -11,11 +11,12 @@ use crate::world::material::Rgb;
 use glam::DVec3;
 use std::io::{self, Write};
 
-/// Deeper rays are indented no farther: mirrors that touch would fill any page with blanks.
-const DEEPEST: usize = 20;
+/// The greatest depth of a ray that is still indented farther: between parallel mirrors the indentation would otherwise
+/// fill the line.
+const MAX_INDENT: usize = 20;
 
-/// Explains a pixel: `x` counts from the left and `y` from the bottom. Of several samples it explains the ray
-/// through the pixel's middle, and then gives the colour of all.
+/// Explains a pixel: `x` counts from the left and `y` from the bottom. Of several samples it explains the ray through
+/// the centre of the pixel, and then gives the colour of all.
 ///
 /// # Errors
 /// Those of `out`.
@@ -46,7 +47,7 @@ pub fn pixel(plan: &Plan, x: usize, y: usize, out: &mut impl Write) -> io::Resul
     Ok(())
 }
 
-/// What becomes of a colour in the picture.
+/// Writes how a colour becomes bytes of the image.
 fn conclude(colour: Rgb, out: &mut impl Write) -> io::Result<()> {
     let [r, g, b] = colour.to_array().map(to_byte);
     writeln!(out, "before clamping  {}", triple(colour))?;
@@ -58,19 +59,19 @@ struct Probe<'p, W> {
     model: &'p Model,
     out: &'p mut W,
     outcome: io::Result<()>,
-    /// How many rays the present one comes from.
+    /// The number of rays that led to the current one.
     depth: usize,
     search: Option<Search>,
-    /// How far the light is, while shadow rays go there.
+    /// The distance to the light, in world units, while shadow rays are traced.
     light: Option<f64>,
-    /// Lines about shadow rays, until their light's outcome is known and printed before them.
+    /// Lines about shadow rays, kept until the outcome for their light is known and printed before them.
     held: String,
 }
 
-/// A ray on its way to its first hit.
+/// A ray and the tests for its first hit.
 struct Search {
     ray: Ray,
-    /// The objects so far, and what each gave.
+    /// The objects tested so far, by index, and the distance that each returned.
     tests: Vec<(usize, Option<f64>)>,
 }
 
@@ -116,7 +117,7 @@ impl<W: Write> TraceObserver for Probe<'_, W> {
 }
 
 impl<W: Write> Probe<'_, W> {
-    /// The heading of a ray. What follows is indented below it.
+    /// Writes the heading of a ray; later lines are indented below it.
     fn begin(&mut self, purpose: Purpose) {
         match purpose {
             Purpose::Primary => self.heading("primary ray"),
@@ -171,7 +172,7 @@ impl<W: Write> Probe<'_, W> {
         self.line("hit", &met);
     }
 
-    /// The distance of a tested object, if it has one, and why it is the hit or is not.
+    /// Returns the distance of a tested object, if it has one, and why that is the first hit or not.
     fn verdict(
         &self,
         search: &Search,
@@ -180,7 +181,7 @@ impl<W: Write> Probe<'_, W> {
         given: Option<f64>,
     ) -> (String, String) {
         let Some(given) = given else { return (String::new(), "skipped: the ray leaves it".to_owned()) };
-        // The tracer asks for hits nearer than the nearest so far. What lies behind is of interest here.
+        // The tracer asks only for hits nearer than the nearest so far; here a hit farther away is of interest too.
         let whole = || self.model.objects[index].shape.distance(&search.ray, &RayRange::ALL);
         let distance = if given == MISS { whole() } else { given };
         if distance == MISS {
@@ -210,7 +211,7 @@ impl<W: Write> Probe<'_, W> {
         }
     }
 
-    /// A line about the present ray, or about a shadow ray of it.
+    /// Writes a line about the current ray, or about one of its shadow rays.
     fn line(&mut self, label: &str, text: &str) {
         if self.light.is_some() {
             self.held += &format!("{}{label:<9}{text}\n", indent(self.depth + 1));
@@ -236,14 +237,14 @@ fn dropped(reason: Reason) -> String {
 }
 
 fn indent(depth: usize) -> String {
-    "    ".repeat(depth.min(DEEPEST))
+    "    ".repeat(depth.min(MAX_INDENT))
 }
 
 fn triple(v: DVec3) -> String {
     format!("({}, {}, {})", number(v.x), number(v.y), number(v.z))
 }
 
-/// A number to seven digits, without zeros that say nothing.
+/// Writes a number with about seven significant digits, without trailing zeros.
 fn number(value: f64) -> String {
     let scientific = format!("{value:.6e}");
     let Some((digits, exponent)) = scientific.split_once('e') else { return scientific };

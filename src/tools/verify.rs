@@ -1,4 +1,4 @@
-//! Which object a pixel's ray meets first, proven, and compared with what the tracer finds.
+//! Proves which object a pixel's ray hits first, and compares it with what the tracer finds.
 
 use crate::geometry::sight::Sight;
 use crate::numeric::interval::{Float, Wide};
@@ -11,29 +11,29 @@ use f256::f256;
 use std::io;
 use std::ops::ControlFlow;
 
-/// What is proven of a pixel, of the real ray through its middle.
+/// What is proven of a pixel, for the exact ray through its centre.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Verdict {
-    /// The tracer finds the object that is certainly met first, or nothing where nothing is.
+    /// The tracer finds the object that is certainly hit first, or nothing where nothing is hit.
     Proven,
-    /// 237 bits do not tell which of several objects is met first, or whether one is touched: a tie, as where two lie in
-    /// one place. The tracer finds one of those.
+    /// 237 bits do not decide which of several objects is hit first, or whether an object is touched: a tie, as where
+    /// two surfaces coincide. The tracer finds one of the objects in question.
     #[default]
     Tie,
-    /// The tracer finds another one.
+    /// The tracer finds another object.
     Contradicted,
 }
 
-/// What may be met first.
+/// What may be hit first.
 #[derive(Debug, PartialEq)]
 enum First {
-    /// This object, by its index, or none: for certain.
+    /// This object, by its index, or nothing: for certain.
     Certain(Option<usize>),
-    /// One of these.
+    /// One of these objects, by index, or nothing.
     OneOf(Vec<Option<usize>>),
 }
 
-/// The verdict on a pixel, counted from the left and from the bottom.
+/// Returns the verdict on a pixel: `x` counts from the left, `y` from the bottom.
 pub fn pixel(plan: &Plan, x: usize, y: usize) -> Verdict {
     let sight = plan.camera.sight(x as f64, y as f64);
     let found = trace::first_hit(plan, &sight).map(|hit| hit.index);
@@ -57,9 +57,9 @@ fn first_of(model: &Model, sight: &Sight) -> First {
     }
 }
 
-/// What is met first of some objects.
+/// Returns which of the objects may be hit first, given an enclosure of each object's distance.
 fn first(enclosures: &[(usize, Enclosure)]) -> First {
-    // No farther than this something is met for certain.
+    // Some object is certainly hit at this distance or nearer.
     let end = enclosures.iter().filter_map(|(_, enclosure)| match enclosure {
         Enclosure::Hits(at) => Some(at.high),
         _ => None,
@@ -83,10 +83,10 @@ fn first(enclosures: &[(usize, Enclosure)]) -> First {
     }
 }
 
-/// The verdicts on all pixels, from the top and from the left. `done` is told of each row, and may break off.
+/// Returns the verdicts on all pixels, row by row from the top. `done` is called after each row, and may break off.
 ///
 /// # Errors
-/// `Interrupted` where `done` broke off.
+/// `Interrupted` if `done` broke off.
 pub fn picture(
     renderer: &Renderer,
     plan: &Plan,

@@ -1,7 +1,7 @@
 //! A model built in Rust is the model that a text gives (the notes' `modelstat.c`).
 
 use crate::common::{model, registry, render};
-use tabray::scene::{self, Syntax, Written, dump};
+use tabray::scene::{self, Parsed, Syntax, dump};
 
 const TEXT: &str = "
 camera cam1 { pixeldim 80 60 worlddim 8 6 viewpoint 4 3 6 }
@@ -14,26 +14,26 @@ plane floor     { material gray   normal 0 1 0  point 0 0 0 }
 light lamp      { location 4 5.5 -1 emissivity 6 6 6.5 }
 ";
 
-fn modelstat() -> Vec<Written<'static>> {
+fn modelstat() -> Vec<Parsed<'static>> {
     let plane = |name, material: &'static str, normal: [f64; 3], point: [f64; 3]| {
-        Written::new("plane", name).set("material", material).set("normal", normal).set("point", point)
+        Parsed::new("plane", name).set("material", material).set("normal", normal).set("point", point)
     };
     vec![
-        Written::new("camera", "cam1")
+        Parsed::new("camera", "cam1")
             .set("pixeldim", [80, 60])
             .set("worlddim", [8.0, 6.0])
             .set("viewpoint", [4.0, 3.0, 6.0]),
-        Written::new("material", "green").set("ambient", [0.0, 5.0, 0.0]),
-        Written::new("material", "yellow")
+        Parsed::new("material", "green").set("ambient", [0.0, 5.0, 0.0]),
+        Parsed::new("material", "yellow")
             .set("ambient", [6.0, 5.0, 0.0])
             .set("diffuse", [3.0, 3.0, 0.0])
             .set("specular", 0.25)
             .set("shininess", 20.0),
-        Written::new("material", "gray").set("ambient", [4.0; 3]).set("diffuse", [2.0; 3]),
+        Parsed::new("material", "gray").set("ambient", [4.0; 3]).set("diffuse", [2.0; 3]),
         plane("leftwall", "green", [3.0, 0.0, 1.0], [0.0; 3]),
         plane("rightwall", "yellow", [-3.0, 0.0, 1.0], [8.0, 0.0, 0.0]),
         plane("floor", "gray", [0.0, 1.0, 0.0], [0.0; 3]),
-        Written::new("light", "lamp").set("location", [4.0, 5.5, -1.0]).set("emissivity", [6.0, 6.0, 6.5]),
+        Parsed::new("light", "lamp").set("location", [4.0, 5.5, -1.0]).set("emissivity", [6.0, 6.0, 6.5]),
     ]
 }
 
@@ -50,9 +50,9 @@ fn a_built_model_gives_the_same_picture_and_dump_as_its_text() {
 #[test]
 fn a_built_model_is_checked_as_a_text_is() {
     let mut entities = modelstat();
-    entities[1] = Written::new("material", "green").set("ambient", [0.0, 5.0]);
+    entities[1] = Parsed::new("material", "green").set("ambient", [0.0, 5.0]);
     entities.push(
-        Written::new("sphere", "a\nball").set("material", "gray").set("center", [0.0; 3]).set("radius", -1.0),
+        Parsed::new("sphere", "a\nball").set("material", "gray").set("center", [0.0; 3]).set("radius", -1.0),
     );
     let Err(report) = scene::build(registry(), entities) else { panic!("faults") };
     let messages: Vec<_> = report.faults().iter().map(|fault| fault.message.as_str()).collect();

@@ -9,7 +9,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 use tabray::render::Plan;
-use tabray::scene::{self, Written};
+use tabray::scene::{self, Parsed};
 use tabray::simd::Cpu;
 use tabray::tools::bench::{Speed, scenes};
 
@@ -43,7 +43,7 @@ fn render(scene: &Path, args: &[&str]) -> [Duration; 2] {
 #[test]
 #[ignore = "it measures"]
 fn many_objects() {
-    type Scene = fn(usize) -> Vec<Written<'static>>;
+    type Scene = fn(usize) -> Vec<Parsed<'static>>;
     println!("\n| objects | frame, ms | times the row above | tests per ray | to build, s |");
     println!("|---|---:|---:|---:|---:|");
     for (name, scene) in [("spheres", scenes::spheres as Scene), ("triangles", scenes::triangles)] {

@@ -1,4 +1,4 @@
-//! `tabray new`: something to start from.
+//! `tabray new`: templates to start from.
 
 mod plugin;
 mod scene;

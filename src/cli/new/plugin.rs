@@ -1,4 +1,4 @@
-//! `tabray new plugin`: a plugin that works, and its scenes.
+//! `tabray new plugin`: a working plugin, and its scenes.
 
 use crate::cli::failure::Failure;
 use crate::cli::{messages, output};
@@ -35,11 +35,12 @@ enum Kind {
     Profile,
 }
 
-/// A file to write: its path, in which `NAME` is the plugin's name, and the text that it starts from.
+/// A file to write: its path, in which `NAME` stands for the plugin's name, and the text that it starts with.
 type Template = (&'static str, &'static str);
 
 impl Kind {
-    /// The plugin first. In the texts, `template` and `Template` stand for its name.
+    /// Returns the files of a new plugin, the plugin itself first. In the texts, `template` and `Template` stand for
+    /// its name.
     fn templates(self) -> &'static [Template] {
         match self {
             Self::Shape => &[
@@ -64,7 +65,7 @@ impl Kind {
     }
 }
 
-/// The words of Rust that no module can have for a name. It can have the others, as raw ones.
+/// The keywords of Rust that cannot be raw identifiers, so that no module can have their names.
 const KEYWORDS: [&str; 3] = ["crate", "self", "super"];
 
 pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
@@ -88,21 +89,21 @@ pub fn run(registry: &Registry, args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What a `Cargo.toml` says, as far as it is of interest here.
+/// The part of a `Cargo.toml` that is read here.
 #[derive(Deserialize)]
 struct Manifest {
-    /// The package that it is of.
+    /// The package.
     package: Package,
 }
 
-/// What it says of its package.
+/// The part of the package's description that is read here.
 #[derive(Deserialize)]
 struct Package {
-    /// The name.
+    /// The name of the package.
     name: String,
 }
 
-/// Whether the working directory is where plugins are compiled from.
+/// Checks that the working directory is a checkout of the program, from which plugins are compiled.
 fn is_checkout() -> Result<(), Failure> {
     let manifest = fs::read_to_string("Cargo.toml").unwrap_or_default();
     let is_ours = toml::from_str(&manifest).is_ok_and(|Manifest { package }| package.name == "tabray");
@@ -118,7 +119,7 @@ fn is_checkout() -> Result<(), Failure> {
     ))
 }
 
-/// Whether a plugin can have this name.
+/// Checks that a plugin can have this name.
 fn is_free(registry: &Registry, name: &str, template: &str) -> Result<(), Failure> {
     let no_name = |what: String| {
         let help = "a plugin's name must be a Rust module name, such as `tiled_plane`";
@@ -145,12 +146,12 @@ fn is_free(registry: &Registry, name: &str, template: &str) -> Result<(), Failur
     Err(Failure::Usage(what, Some("give the plugin another name".to_owned())))
 }
 
-/// A text in which the plugin has its name.
+/// Replaces the template's name by the plugin's.
 fn named(text: &str, name: &str) -> String {
     text.replace("Template", &camel_case(name)).replace("template", name)
 }
 
-/// A module's name as a type's: `TiledPlane` for `tiled_plane`.
+/// Turns a module's name into a type's: `TiledPlane` for `tiled_plane`.
 fn camel_case(name: &str) -> String {
     let capital = |part: &str| part[..1].to_ascii_uppercase() + &part[1..];
     name.split('_').filter(|part| !part.is_empty()).map(capital).collect()

@@ -1,4 +1,4 @@
-//! `tabray new scene`: a scene that explains itself.
+//! `tabray new scene`: a commented scene.
 
 use crate::cli::failure::Failure;
 use crate::cli::{messages, output, program};

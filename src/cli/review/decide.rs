@@ -1,4 +1,4 @@
-//! `tabray review --serve`: the page that accepts and rejects.
+//! `tabray review --serve`: the page on which snapshots are accepted and rejected.
 
 use super::items::items;
 use super::pending::{self, Pending};
@@ -13,7 +13,7 @@ use serde::Deserialize;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-/// Shows the page and does what is decided there.
+/// Serves the page and does what the user decides there.
 pub fn serve(
     registry: &'static Registry,
     folder: PathBuf,
@@ -22,7 +22,7 @@ pub fn serve(
 ) -> Result<(), Failure> {
     let server = Server::open(port)?;
     messages::note(&format!("review at {} (Ctrl-C quits)", server.url()));
-    // A page is not made while a snapshot is moved.
+    // One job at a time, so that no page is made while a snapshot is moved.
     let work = Work::new(1);
     let run = server.run(async move |request: Request<Bytes>| {
         let path = (request.method().as_str(), request.uri().path());
@@ -63,16 +63,16 @@ fn page(registry: &Registry, folder: &Path, before: Option<&Path>) -> Response<s
     }
 }
 
-/// What the page sends to have a snapshot accepted or rejected.
+/// The request of the page to accept or reject a snapshot.
 #[derive(Deserialize)]
 struct Seen {
     /// The path of the snapshot.
     snapshot: String,
-    /// The version that the page showed.
+    /// The version of the snapshot that the page showed.
     version: String,
 }
 
-/// Does what was decided on the page, if the snapshot is still the one that it showed.
+/// Accepts or rejects a snapshot, if it is still the version that the page showed.
 fn decide(
     folder: &Path,
     body: &[u8],

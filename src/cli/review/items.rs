@@ -1,4 +1,4 @@
-//! What is pending, as a page shows it.
+//! The pending snapshots, as the page shows them.
 
 use super::pending::{self, Content, Pending};
 use crate::cli::explain::Place;
@@ -12,7 +12,7 @@ use std::ffi::OsStr;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-/// What is pending below a folder, and whether all of it could be read; what could not has been told.
+/// Returns the pending snapshots below a folder, and whether all of them could be read; faults were printed.
 pub fn items(
     registry: &Registry,
     folder: &Path,
@@ -32,7 +32,7 @@ pub fn items(
     Ok((items, is_whole))
 }
 
-/// A pending snapshot on the page.
+/// Describes a pending snapshot for the page.
 fn item(registry: &Registry, snapshot: &Pending, before: Option<&Path>) -> Result<Item, Failure> {
     let path = &snapshot.path;
     let change = change(snapshot)?;
@@ -58,7 +58,7 @@ fn item(registry: &Registry, snapshot: &Pending, before: Option<&Path>) -> Resul
     Ok(Item { name: path.display().to_string(), change, explanations, decision: Some(decision) })
 }
 
-/// What is old and new of it.
+/// Returns the old and the new content of a snapshot.
 fn change(snapshot: &Pending) -> Result<Change, Failure> {
     let unreadable = |reason: String| {
         Failure::Usage(format!("cannot show the snapshot `{}`: {reason}", snapshot.path.display()), None)
@@ -70,13 +70,14 @@ fn change(snapshot: &Pending) -> Result<Change, Failure> {
     }
     let decode = |content: &Content| picture::decode(Cursor::new(content.bytes()));
     let new = decode(new).map_err(unreadable)?;
-    // An old picture that is none is a reason to have a new one.
+    // An old file that is not an image is a reason to accept a new one.
     let old = old.and_then(|old| decode(old).ok());
     let comparison = old.as_ref().and_then(|old| Comparison::new(old, &new, 0));
     Ok(Change::Picture { old, new, names: ["old".to_owned(), "new".to_owned()], comparison })
 }
 
-/// The scene of a picture's snapshot, if there is one: `snapshots/sphere/ball.snap` is of `scenes/sphere/ball.ray`.
+/// Returns the scene of an image's snapshot, if there is one: `snapshots/sphere/ball.snap` belongs to
+/// `scenes/sphere/ball.ray`.
 fn scene(snapshot: &Path) -> Option<PathBuf> {
     let mut parts: Vec<_> = snapshot.components().map(|part| part.as_os_str()).collect();
     let folder = parts.iter().rposition(|part| *part == "snapshots")?;
@@ -85,7 +86,7 @@ fn scene(snapshot: &Path) -> Option<PathBuf> {
     ["ray", "toml"].iter().map(|extension| scene.with_extension(extension)).find(|scene| scene.is_file())
 }
 
-/// A word of a command, as a shell takes it.
+/// Quotes a word of a command for a shell.
 fn quoted(word: &OsStr) -> String {
     let word = word.to_string_lossy();
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "_-./:=+,@%".contains(c);

@@ -1,4 +1,4 @@
-//! `tabray review`: the snapshots that wait for a decision, on a page.
+//! `tabray review`: a page with the snapshots that wait for a decision.
 
 mod decide;
 mod items;
@@ -65,7 +65,7 @@ pub fn run(registry: &'static Registry, args: &Args) -> Result<(), Failure> {
     if is_whole { Ok(()) } else { Err(Failure::Told) }
 }
 
-/// Decides about the snapshots at these paths.
+/// Accepts or rejects the snapshots at these paths.
 fn each(
     paths: &[PathBuf],
     verdict: &str,

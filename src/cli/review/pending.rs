@@ -1,8 +1,8 @@
-//! Pending snapshots: what a failing test leaves beside the snapshot that was accepted, by insta's conventions.
+//! Pending snapshots: what a failing test leaves beside the accepted snapshot, by insta's conventions.
 //!
-//! Beside `ball.snap` comes `ball.snap.new`: a header between two lines of dashes, then a text. Where the header says
-//! that the snapshot is binary, it is in a file of its own, `ball.snap.png` beside `ball.snap` and `ball.snap.new.png`
-//! beside `ball.snap.new`.
+//! `ball.snap.new` comes beside `ball.snap`: a header between two lines of dashes, then a text. If the header says that
+//! the snapshot is binary, its content is in a separate file, `ball.snap.png` for `ball.snap` and `ball.snap.new.png`
+//! for `ball.snap.new`.
 
 use crate::cli::failure::Failure;
 use crate::cli::output;
@@ -15,27 +15,27 @@ use std::path::{Path, PathBuf};
 
 /// A snapshot that waits for a decision.
 pub struct Pending {
-    /// The accepted snapshot's file, whether there is one or not.
+    /// The file of the accepted snapshot, whether it exists or not.
     pub path: PathBuf,
-    /// What was accepted, if anything was.
+    /// The accepted content, if there is any.
     pub old: Option<Content>,
-    /// What a test came to now.
+    /// The content from the last test run.
     pub new: Content,
-    /// The whole pending file.
+    /// The whole text of the pending file.
     file: String,
 }
 
-/// What a snapshot is of.
+/// The content of a snapshot.
 #[derive(PartialEq, Eq, Hash)]
 pub enum Content {
     /// A text.
     Text(String),
-    /// The bytes of a file, and its name's extension.
+    /// The bytes of a file, and the extension of its name.
     Binary(Vec<u8>, String),
 }
 
 impl Content {
-    /// The text that it is, if it is one: a page of Markdown is, in a file of its own.
+    /// Returns the content as text, if it is text; a Markdown page in a separate file is.
     pub fn text(&self) -> Option<&str> {
         match self {
             Self::Binary(bytes, extension) if extension == "md" => str::from_utf8(bytes).ok(),
@@ -44,7 +44,7 @@ impl Content {
         }
     }
 
-    /// Its bytes.
+    /// Returns the content's bytes.
     pub fn bytes(&self) -> &[u8] {
         match self {
             Self::Text(text) => text.as_bytes(),
@@ -53,7 +53,7 @@ impl Content {
     }
 }
 
-/// The files of pending snapshots at a path: below a folder, sorted, or the one of a snapshot.
+/// Finds the files of pending snapshots at a path: all below a folder, sorted, or that of one snapshot.
 pub fn find(path: &Path) -> Result<Vec<PathBuf>, Failure> {
     if !path.is_dir() {
         let snapshot = if path.extension() == Some("new".as_ref()) { &path.with_extension("") } else { path };
@@ -88,7 +88,7 @@ pub fn find(path: &Path) -> Result<Vec<PathBuf>, Failure> {
 }
 
 impl Pending {
-    /// Reads a pending snapshot's file and what is beside it.
+    /// Reads a pending snapshot and the accepted one.
     pub fn read(new: &Path) -> Result<Self, Failure> {
         let path = new.with_extension("");
         let cannot = |file: &Path, reason: &str| {
@@ -107,19 +107,19 @@ impl Pending {
         Ok(Self { path, old, new: is, file })
     }
 
-    /// Tells this content from any other that the snapshot had or will have.
+    /// Returns a hash that tells this content from other contents of the snapshot.
     pub fn version(&self) -> String {
         let mut hasher = DefaultHasher::new();
         (&self.old, &self.new, &self.file).hash(&mut hasher);
         format!("{:016x}", hasher.finish())
     }
 
-    /// Puts what is new in the place of what is old.
+    /// Replaces the accepted snapshot by the pending one.
     pub fn accept(&self) -> Result<(), Failure> {
         if let Content::Binary(bytes, extension) = &self.new {
             output::replace(&output::ended(&self.path, format!(".{extension}")), bytes)?;
         }
-        // The line of the test's source is for reviewing alone: it changes too often to be kept.
+        // The line number of the test's source is for reviewing only: it changes too often to be kept.
         let kept = |line: &&str| !line.starts_with("assertion_line:");
         let (header, text) = parts(&self.file).unwrap_or_default();
         let header: String = header.split_inclusive('\n').filter(kept).collect();
@@ -127,7 +127,7 @@ impl Pending {
         self.reject()
     }
 
-    /// Removes what is new.
+    /// Removes the pending snapshot.
     pub fn reject(&self) -> Result<(), Failure> {
         let new = output::ended(&self.path, ".new");
         let binary = match &self.new {
@@ -142,7 +142,7 @@ impl Pending {
     }
 }
 
-/// What a snapshot's file holds, or the file beside it; nothing where that is missing.
+/// Returns the content of a snapshot's file or of the separate file beside it; `None` where that is missing.
 fn content(path: &Path, file: &str) -> Result<Option<Content>, String> {
     let (header, text) = parts(file).ok_or("it has no header between `---` lines")?;
     let field = |name: &str| {
@@ -166,7 +166,7 @@ fn bytes(path: &Path) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The header's lines and what comes after them.
+/// Splits a snapshot's file into the lines of its header and the text after them.
 fn parts(file: &str) -> Option<(&str, &str)> {
     let header = file.strip_prefix("---\r\n").or_else(|| file.strip_prefix("---\n"))?;
     let mut end = 0;

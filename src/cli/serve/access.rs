@@ -1,12 +1,12 @@
-//! Who is let in: a page on this machine that was opened from the address that the program printed.
+//! Access control: only a page on this machine that was opened from the printed address is let in.
 //!
-//! The address carries a token. Every user of a machine can connect to its loopback address, but only who has seen the
-//! address knows the token. It is not kept in a cookie: a browser sends those to every port of a host, so to servers of
-//! other users, too.
+//! The address contains a token. Every user of a machine can connect to its loopback address, but only someone who has
+//! seen the address knows the token. The token is not kept in a cookie: a browser sends cookies to every port of a
+//! host, and so to servers of other users too.
 //!
-//! A page from elsewhere, which a browser on this machine may show as well, does not know the token. It is also kept out
-//! by what it cannot forge: the `Host` header, where a foreign name was made to lead here, and the `Origin` and
-//! `Sec-Fetch-Site` headers. What is sent to change something must have an origin.
+//! A page from elsewhere, which a browser on this machine may also show, does not know the token. It is also kept out
+//! by headers that it cannot forge: `Host`, in case a foreign name resolves to this machine, and `Origin` and
+//! `Sec-Fetch-Site`. A request that changes something must have an origin.
 
 use hyper::header::{self, HeaderName, HeaderValue};
 use hyper::{Method, Request};
@@ -15,13 +15,13 @@ use sha2::{Digest, Sha256};
 const SITE: HeaderName = HeaderName::from_static("sec-fetch-site");
 const DESTINATION: HeaderName = HeaderName::from_static("sec-fetch-dest");
 
-/// The query of an address up to its token.
+/// The query of an address, up to the token.
 const QUERY: &str = "token=";
 
-/// Tells the requests that are let in at a port from all others.
+/// Decides which requests at a port are let in.
 pub struct Access {
     port: u16,
-    /// 128 random bits, in hexadecimal digits.
+    /// 128 random bits, as hexadecimal digits.
     token: String,
 }
 
@@ -29,19 +29,19 @@ impl Access {
     /// Makes a new token for a port.
     ///
     /// # Errors
-    /// Where the system has no random numbers.
+    /// If the system provides no random numbers.
     pub fn new(port: u16) -> Result<Self, getrandom::Error> {
         let mut bytes = [0; 16];
         getrandom::fill(&mut bytes)?;
         Ok(Self { port, token: format!("{:032x}", u128::from_ne_bytes(bytes)) })
     }
 
-    /// The address of the page, with the token.
+    /// Returns the address of the page, with the token.
     pub fn url(&self) -> String {
         format!("http://127.0.0.1:{}/?{QUERY}{}", self.port, self.token)
     }
 
-    /// Refuses a request that comes from elsewhere or does not have the token, by its head alone.
+    /// Refuses a request that comes from elsewhere or lacks the token, judging by its head alone.
     pub fn admit<B>(&self, request: &Request<B>) -> Result<(), &'static str> {
         let values = |name: HeaderName| request.headers().get_all(name).iter().map(HeaderValue::as_bytes);
         let ours = [format!("127.0.0.1:{}", self.port), format!("localhost:{}", self.port)];
@@ -52,7 +52,7 @@ impl Access {
         if request.method() != Method::GET && !request.headers().contains_key(header::ORIGIN) {
             return Err("a request that changes something must name its origin");
         }
-        // Whoever has the address may follow it from anywhere, such as from a terminal that is a page itself.
+        // A user may follow the address from anywhere, for example from a terminal that is itself a web page.
         let is_visit = request.method() == Method::GET
             && request.uri().path() == "/"
             && values(DESTINATION).eq([b"document".as_slice()]);
@@ -69,7 +69,7 @@ impl Access {
         Ok(())
     }
 
-    /// Compares hashes: how long that takes tells nothing about the token.
+    /// Compares hashes, so that the time of the comparison reveals nothing about the token.
     fn is_token(&self, given: &str) -> bool {
         Sha256::digest(given) == Sha256::digest(&self.token)
     }

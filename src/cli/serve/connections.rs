@@ -1,8 +1,8 @@
-//! Connections: how many there may be, how long they may take, and what becomes of the request of each.
+//! Connections: how many are allowed, how long they may take, and what happens to the request of each.
 //!
-//! Whoever can connect can do so a thousand times and send nothing. A connection is idle until it has sent the head of a
-//! request that is let in; where there are too many idle ones, the oldest is closed. So who sends a request at once is
-//! answered, however many others send nothing.
+//! Any client can open a thousand connections and send nothing. A connection is idle until it has sent the head of a
+//! request that is let in; where there are too many idle connections, the oldest is closed. So a client that sends its
+//! request at once is answered, however many others send nothing.
 
 use super::access::Access;
 use super::response::{Body, guard, text};
@@ -31,38 +31,38 @@ use tokio::task::{AbortHandle, spawn_local, yield_now};
 use tokio::time::{sleep, timeout};
 use tokio_io_timeout::TimeoutStream;
 
-/// The most bytes of a request's head that are read.
-const LARGEST_HEAD: usize = 1 << 14;
+/// The maximum size of a request's head, in bytes.
+const MAX_HEAD: usize = 1 << 14;
 
-/// The most bytes of a request's body that are read.
-const LARGEST: usize = 1 << 16;
+/// The maximum size of a request's body, in bytes.
+const MAX_BODY: usize = 1 << 16;
 
-/// How long nobody is accepted after the system refused to.
+/// The pause before the next connection is accepted, after the system refused one.
 const PAUSE: Duration = Duration::from_millis(50);
 
-/// The fewest idle connections that are kept, even where the system allows hardly any open files. What one of them has
-/// sent is read before so many others are accepted.
-const FEWEST: usize = 4;
+/// The minimum number of idle connections that are kept, even where the system allows hardly any open files. What a
+/// connection has sent is read before this many others are accepted.
+const MIN_IDLE: usize = 4;
 
-/// An answer, after which there may be more or not.
+/// An answer; `Break` if it is the last one.
 pub type Answer = ControlFlow<Response<Body>, Response<Body>>;
 
-/// How much is allowed at once, and how long.
+/// Limits on numbers and times.
 #[derive(Clone, Copy)]
 pub struct Limits {
-    /// The most idle connections: those that have sent no request yet that is let in.
+    /// The maximum number of idle connections: those that have not yet sent a request that is let in.
     pub idle: usize,
-    /// The most requests that are being answered. A page keeps one of them open.
+    /// The maximum number of requests that are answered at the same time. Each page keeps one of them open.
     pub requests: usize,
-    /// The time that a request's head may take, and its body.
+    /// The maximum time for the head of a request, and for its body.
     pub request_time: Duration,
-    /// The time that an answer may wait for its reader without getting on. It is long: a page that takes in a large
-    /// picture, or stands still in a debugger, reads nothing meanwhile.
+    /// The maximum time that an answer may wait for its reader without progress. It is long, because a page that
+    /// decodes a large image, or is paused in a debugger, reads nothing in the meantime.
     pub write_time: Duration,
 }
 
 impl Limits {
-    /// Those of a server for one person: a small part of the files that a process may have open.
+    /// The limits of a server for one person: a small part of the files that a process may have open.
     pub const USUAL: Self = Self {
         idle: 32,
         requests: 64,
@@ -78,7 +78,7 @@ pub struct Connections<A> {
     answer: A,
     /// The tasks of idle connections, oldest first.
     idle: RefCell<BTreeMap<u64, AbortHandle>>,
-    /// A slot for each request that may be answered now.
+    /// A permit for each request that may be answered at the same time.
     slots: Semaphore,
     end: Notify,
 }
@@ -92,7 +92,7 @@ where
         Self { access, limits, answer, idle: RefCell::default(), slots, end: Notify::new() }
     }
 
-    /// Accepts connections and answers their requests, until an answer breaks off: it is the last one.
+    /// Accepts connections and answers their requests, until an answer breaks.
     pub async fn run(self, listener: TcpListener) {
         let connections = Rc::new(self);
         spawn_local(connections.clone().accept(listener));
@@ -100,45 +100,45 @@ where
     }
 
     async fn accept(self: Rc<Self>, listener: TcpListener) {
-        let mut most = self.limits.idle;
+        let mut max_idle = self.limits.idle;
         let mut is_told = false;
         for number in 0.. {
             match listener.accept().await {
                 Ok((stream, _)) => {
                     let task = spawn_local(self.clone().serve(stream, number));
                     self.idle.borrow_mut().insert(number, task.abort_handle());
-                    self.close_oldest(most);
+                    self.close_oldest(max_idle);
                     // What has been sent meanwhile is read before more connections are accepted.
                     yield_now().await;
                 }
-                // A connection that failed on its way here concerns nobody.
+                // A connection that was aborted before it was accepted is no failure.
                 Err(error) if error.kind() == io::ErrorKind::ConnectionAborted => {}
-                // Mostly there are too many open files. Answering needs some, too.
+                // Usually too many files are open. Answering requests needs some too.
                 Err(error) => {
                     if !is_told {
                         let reason = words::reason(&error);
                         messages::warning(&format!("cannot accept every connection: {reason}"), None);
                     }
                     is_told = true;
-                    most = FEWEST.max(self.idle.borrow().len().min(most) / 2);
-                    self.close_oldest(most);
+                    max_idle = MIN_IDLE.max(self.idle.borrow().len().min(max_idle) / 2);
+                    self.close_oldest(max_idle);
                     sleep(PAUSE).await;
                 }
             }
         }
     }
 
-    /// Closes the oldest idle connections, until there are no more than so many.
-    fn close_oldest(&self, most: usize) {
+    /// Closes the oldest idle connections until at most `max_idle` are left.
+    fn close_oldest(&self, max_idle: usize) {
         let mut idle = self.idle.borrow_mut();
-        while idle.len() > most
+        while idle.len() > max_idle
             && let Some((_, task)) = idle.pop_first()
         {
             task.abort();
         }
     }
 
-    /// Takes one request from a connection and answers it.
+    /// Reads one request from a connection and answers it.
     async fn serve(self: Rc<Self>, stream: TcpStream, number: u64) {
         let (slot, is_last) = (Cell::new(None), Cell::new(false));
         let service = service_fn(async |request: Request<Incoming>| {
@@ -159,11 +159,11 @@ where
         });
         let mut stream = TimeoutStream::new(stream);
         stream.set_write_timeout(Some(self.limits.write_time));
-        // Who does not listen to the end has gone.
+        // A client that does not read to the end has gone.
         let _ = http1::Builder::new()
             .timer(TokioTimer::new())
             .header_read_timeout(self.limits.request_time)
-            .max_buf_size(LARGEST_HEAD)
+            .max_buf_size(MAX_HEAD)
             .keep_alive(false)
             .serve_connection(TokioIo::new(Box::pin(stream)), service)
             .await;
@@ -173,17 +173,17 @@ where
         }
     }
 
-    /// The answer to a request that is let in.
+    /// Returns the answer to a request that was let in.
     async fn respond(&self, request: Request<Incoming>) -> Answer {
         let (head, body) = request.into_parts();
         let refusal = |status, reason| ControlFlow::Continue(text(status, reason));
-        let body = match timeout(self.limits.request_time, Limited::new(body, LARGEST).collect()).await {
+        let body = match timeout(self.limits.request_time, Limited::new(body, MAX_BODY).collect()).await {
             Ok(Ok(body)) => body.to_bytes(),
             Ok(Err(_)) => return refusal(StatusCode::PAYLOAD_TOO_LARGE, "the request is too large"),
             Err(_) => return refusal(StatusCode::REQUEST_TIMEOUT, "the request did not arrive in time"),
         };
         let mut answer = pin!((self.answer)(Request::from_parts(head, body)));
-        // A panic ends this answer, and no other.
+        // A panic ends this answer only.
         poll_fn(|context| {
             let polled = catch_unwind(AssertUnwindSafe(|| answer.as_mut().poll(context)));
             polled

@@ -1,4 +1,4 @@
-//! Answers, and what every one of them says to browsers.
+//! Responses, and the headers that all of them have.
 
 use http_body_util::combinators::BoxBody;
 use http_body_util::{BodyExt, Full};
@@ -7,7 +7,8 @@ use hyper::header::{self, HeaderName, HeaderValue};
 use hyper::{Response, StatusCode};
 use std::convert::Infallible;
 
-/// What every answer says: it is for this page alone, which asks nobody else and tells nobody its address, and for now.
+/// The headers of every response: it is for this page only, which loads nothing from other hosts and reveals its
+/// address to none, and it is not to be stored.
 const HEADERS: [(HeaderName, &str); 6] = [
     (header::CACHE_CONTROL, "no-store"),
     (header::REFERRER_POLICY, "no-referrer"),
@@ -21,30 +22,30 @@ const HEADERS: [(HeaderName, &str); 6] = [
     ),
 ];
 
-/// What an answer holds: all at once, or as it comes about.
+/// The body of a response: complete, or a stream.
 pub type Body = BoxBody<Bytes, Infallible>;
 
-/// An answer that is a text.
+/// Makes a response with a text.
 pub fn text(status: StatusCode, text: &str) -> Response<Body> {
     content(status, "text/plain; charset=utf-8", text.to_owned())
 }
 
-/// An answer of this type, as in its `Content-Type` header.
+/// Makes a response with this `Content-Type` header.
 pub fn content(status: StatusCode, kind: &'static str, bytes: impl Into<Bytes>) -> Response<Body> {
     let mut response = stream(kind, Full::new(bytes.into()).boxed());
     *response.status_mut() = status;
     response
 }
 
-/// An answer of this type, whatever its body is.
+/// Makes a response with this `Content-Type` header and any body.
 pub fn stream(kind: &'static str, body: Body) -> Response<Body> {
     let mut response = Response::new(body);
     response.headers_mut().insert(header::CONTENT_TYPE, HeaderValue::from_static(kind));
     response
 }
 
-/// Keeps browsers from storing an answer, from telling its address, from taking it for something else and from showing
-/// it within other pages.
+/// Adds the headers that keep browsers from storing a response, revealing its address, guessing its type and showing it
+/// within other pages.
 pub fn guard(response: &mut Response<Body>) {
     for (name, value) in HEADERS {
         response.headers_mut().insert(name, HeaderValue::from_static(value));

@@ -12,19 +12,19 @@ use std::sync::mpsc;
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// Long enough for any machine.
+/// Longer than any machine needs.
 const PATIENCE: Duration = Duration::from_secs(100);
 
 const LIMITS: Limits = Limits { idle: 8, requests: 4, request_time: PATIENCE, write_time: PATIENCE };
 
-/// What happened in answers.
+/// Counts of events in answers.
 #[derive(Default)]
 struct Counts {
     /// Endless answers that were given up.
     given_up: AtomicUsize,
-    /// Jobs that were begun.
+    /// Jobs that were started.
     begun: AtomicUsize,
-    /// Jobs that learned that nobody waits for them.
+    /// Jobs that learned that no client waits for them.
     left: AtomicUsize,
 }
 
@@ -32,7 +32,7 @@ struct Counts {
 struct Served {
     host: String,
     token: String,
-    /// Says when it has ended.
+    /// Receives a message when the server has ended.
     ended: mpsc::Receiver<()>,
     counts: Arc<Counts>,
 }
@@ -57,7 +57,7 @@ impl Served {
         Self { host, token, ended, counts }
     }
 
-    /// A connection on which this was sent, with `TOKEN` and `HOST` filled in.
+    /// Opens a connection and sends this text, with `TOKEN` and `HOST` filled in.
     fn send(&self, text: &str) -> TcpStream {
         let mut stream = TcpStream::connect(&self.host).expect("it listens");
         stream.set_read_timeout(Some(PATIENCE)).expect("a time");
@@ -66,28 +66,28 @@ impl Served {
         stream
     }
 
-    /// The status of the answer to a request for a path.
+    /// Returns the status of the answer to a request for a path.
     fn get(&self, path: &str) -> u16 {
         status(self.send(&format!("GET /{path}TOKEN HTTP/1.1\nHost: HOST\n\n")))
     }
 
-    /// Ends it by its last answer.
+    /// Ends the server by its last answer.
     fn end(self) {
         assert_eq!(self.get("end"), 200);
         self.ended.recv_timeout(PATIENCE).expect("the last answer ends it");
     }
 }
 
-/// The status of an answer, or 0 where the connection ends without one.
+/// Returns the status of an answer, or 0 if the connection ends without one.
 fn status(mut stream: TcpStream) -> u16 {
     let mut answer = Vec::new();
-    // What was refused before it was read may be cut off.
+    // The answer to a request that was refused before it was read may be cut off.
     let _ = stream.read_to_end(&mut answer);
     let answer = String::from_utf8_lossy(&answer).into_owned();
     answer.split(' ').nth(1).and_then(|status| status.parse().ok()).unwrap_or(0)
 }
 
-/// Waits until something is so.
+/// Waits until a condition holds.
 fn wait(so: impl Fn() -> bool) {
     let start = Instant::now();
     while !so() {
@@ -172,7 +172,7 @@ fn a_reader_that_does_not_read_is_given_up() {
     let served = Served::new(Limits { write_time: Duration::from_millis(200), ..LIMITS });
     let endless = "GET /endlessTOKEN HTTP/1.1\nHost: HOST\n\n";
     let silent = [served.send(endless), served.send(endless)];
-    // One that reads in small steps gets on.
+    // A client that reads in small steps makes progress.
     let mut slow = served.send(endless);
     let mut bytes = [0; 1 << 16];
     while served.counts.given_up.load(Ordering::Relaxed) < 2 {
@@ -200,7 +200,7 @@ fn the_oldest_idle_connection_is_closed_where_there_are_too_many() {
     let served = Served::new(LIMITS);
     let silent: Vec<_> = (0..100).map(|_| served.send("GET")).collect();
     assert_eq!(served.get("fine"), 200);
-    // The last few may stay, and have all the time of the world.
+    // The last few may stay: the limits on time are longer than the test.
     for stream in silent.into_iter().take(100 - LIMITS.idle) {
         assert_eq!(status(stream), 0);
     }
@@ -211,7 +211,7 @@ fn the_oldest_idle_connection_is_closed_where_there_are_too_many() {
 fn a_job_learns_that_nobody_waits_and_the_next_gets_its_turn() {
     let served = Served::new(LIMITS);
     let job = "GET /jobTOKEN HTTP/1.1\nHost: HOST\n\n";
-    // Two at once are worked at, and the third is never begun.
+    // Two jobs run at the same time, and the third is never started.
     let waiting: Vec<_> = (0..3).map(|_| served.send(job)).collect();
     wait(|| served.counts.begun.load(Ordering::Relaxed) == 2);
     drop(waiting);

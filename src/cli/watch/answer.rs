@@ -1,4 +1,4 @@
-//! What the page asks for: itself, its events, and more about the picture that it shows.
+//! Answers the requests of the page: for itself, for its events, and for details of the image that it shows.
 
 use super::board::Board;
 use super::frame::Frame;
@@ -24,16 +24,17 @@ use tokio::time::timeout;
 
 const PAGE: &str = include_str!("page.html");
 
-/// How many pixels and layers are worked at at once, for all pages.
+/// The maximum number of pixels and layers that are computed at the same time, for all pages.
 pub const JOBS: usize = 4;
 
-/// A page is told something that often, if only that there is no news: so one that has gone is noticed.
+/// The longest time without an event for a page. An event is sent then even if there is no news, so that a closed page
+/// is noticed.
 const QUIET: Duration = Duration::from_secs(60);
 
-/// The most bytes of a pixel's explanation that a page gets.
-const LONGEST: usize = 1 << 22;
+/// The maximum length of a pixel's explanation, in bytes.
+const MAX_EXPLANATION: usize = 1 << 22;
 
-/// The answer to a request.
+/// Answers a request.
 pub async fn answer(request: &Request<Bytes>, board: &Board, work: &Work) -> Response<Body> {
     if request.method() != Method::GET {
         return serve::text(StatusCode::METHOD_NOT_ALLOWED, "this server is read-only\n");
@@ -52,7 +53,7 @@ fn events(board: &Board) -> Body {
     let (mut sender, body) = Channel::new(1);
     let mut reader = board.reader();
     tokio::spawn(async move {
-        // When the program ends, a page is to look for the next one soon.
+        // When the program ends, the page should soon look for the next one.
         let mut event = Some(Bytes::from("retry: 500\n\n"));
         while let Some(bytes) = event {
             if sender.send_data(bytes).await.is_err() {
@@ -65,7 +66,7 @@ fn events(board: &Board) -> Body {
     body.boxed()
 }
 
-/// An answer about the present picture, which may take a while; none about one that is not there any more.
+/// Answers a request about the current image, which may take a while; fails if the image has been replaced.
 async fn about(
     board: &Board,
     work: &Work,
@@ -93,16 +94,16 @@ async fn about(
     }
 }
 
-/// Work that ends with the type of its result and the result.
+/// A job that returns the type of its result and the result.
 type Job = Box<dyn FnOnce(&Client) -> io::Result<(&'static str, Vec<u8>)> + Send>;
 
-/// Breaks where a picture, or who asked for something about it, is gone.
+/// Breaks if the image is stale or the client has gone.
 fn check(frame: &Frame, client: &Client) -> ControlFlow<()> {
     frame.check()?;
     client.check()
 }
 
-/// The explanation of a pixel, and the lines of the object that it shows.
+/// Explains a pixel, and finds the lines of the object that it shows.
 fn pixel(frame: Arc<Frame>, x: &str, y: &str) -> Option<Job> {
     let [width, height] = frame.model.camera.value.pixels;
     let x = x.parse().ok().filter(|x| *x < width)?;
@@ -124,16 +125,16 @@ fn pixel(frame: Arc<Frame>, x: &str, y: &str) -> Option<Job> {
     }))
 }
 
-/// How a pixel came about.
+/// The explanation of a pixel.
 #[derive(Serialize)]
 struct Explained<'e> {
-    /// The first and the last line of the object that it shows, counted from 1; null where it shows none.
+    /// The first and the last line of the object that the pixel shows, from 1; null where it shows none.
     lines: Option<[usize; 2]>,
-    /// What `tabray probe` prints, or the beginning of it.
+    /// The output of `tabray probe`, or the beginning of it.
     text: &'e str,
 }
 
-/// A pixel's explanation while somebody wants it and it is not too long.
+/// Collects a pixel's explanation while a client waits for it and it is not too long.
 struct Bounded<C> {
     text: Vec<u8>,
     check: C,
@@ -142,10 +143,10 @@ struct Bounded<C> {
 impl<C: Fn() -> ControlFlow<()>> Write for Bounded<C> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         if (self.check)().is_break() {
-            // What is interrupted would be tried again.
+            // An operation that fails with `Interrupted` would be tried again.
             return Err(io::ErrorKind::BrokenPipe.into());
         }
-        if self.text.len() + bytes.len() > LONGEST {
+        if self.text.len() + bytes.len() > MAX_EXPLANATION {
             return Err(io::ErrorKind::StorageFull.into());
         }
         self.text.write(bytes)
@@ -156,9 +157,9 @@ impl<C: Fn() -> ControlFlow<()>> Write for Bounded<C> {
     }
 }
 
-/// A picture beside the main one: red, green and blue of each pixel.
+/// Renders an image beside the main one: red, green and blue of each pixel.
 fn layer(frame: Arc<Frame>, name: &str) -> Option<Job> {
-    // An error is seen against the truth, which there is none of here.
+    // The error needs a reference image, which is not available here.
     let aov = Aov::from_str(name, false).ok().filter(|aov| *aov != Aov::Error)?;
     Some(Box::new(move |client| {
         let plan = Plan::new(&frame.model);
@@ -174,9 +175,9 @@ mod tests {
     #[test]
     fn an_explanation_ends_where_it_is_too_long_or_nobody_wants_it() {
         let mut told = Bounded { text: Vec::new(), check: || ControlFlow::Continue(()) };
-        told.write_all(&vec![b'a'; LONGEST]).expect("it is not too long");
+        told.write_all(&vec![b'a'; MAX_EXPLANATION]).expect("it is not too long");
         let full = told.write_all(b"a").expect_err("now it is");
-        assert_eq!((full.kind(), told.text.len()), (io::ErrorKind::StorageFull, LONGEST));
+        assert_eq!((full.kind(), told.text.len()), (io::ErrorKind::StorageFull, MAX_EXPLANATION));
         let mut told = Bounded { text: Vec::new(), check: || ControlFlow::Break(()) };
         assert_eq!(told.write_all(b"a").expect_err("nobody").kind(), io::ErrorKind::BrokenPipe);
     }

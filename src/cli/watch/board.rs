@@ -1,4 +1,4 @@
-//! What pages are to know, from the last sound scene on, and those who wait for more of it.
+//! The state that pages show, from the last valid scene on, and the pages that wait for changes.
 
 use super::events;
 use super::frame::Frame;
@@ -7,20 +7,20 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use tokio::sync::watch::{self, Receiver, Sender};
 
-/// What every page is told, however late it comes.
+/// The state that every page is told, however late it connects.
 pub struct Board {
     state: Sender<State>,
 }
 
 #[derive(Default)]
 struct State {
-    /// The last sound scene.
+    /// The last valid scene.
     frame: Option<Arc<Frame>>,
-    /// What there is to tell of it so far.
+    /// The events about this scene so far.
     events: Vec<Bytes>,
-    /// What is wrong with the text since.
+    /// The error in the text since then.
     fault: Option<Bytes>,
-    /// How many faults there were, to tell one from the next.
+    /// The number of errors so far, which tells one error from the next.
     faults: u64,
 }
 
@@ -31,12 +31,12 @@ impl State {
 }
 
 impl Board {
-    /// An empty one.
+    /// Makes an empty board.
     pub fn new() -> Self {
         Self { state: watch::channel(State::default()).0 }
     }
 
-    /// Puts a sound scene in the place of the one before, whose picture nobody wants any more.
+    /// Replaces the last valid scene; the image of the scene before is no longer needed.
     pub fn show(&self, frame: &Arc<Frame>) {
         self.state.send_modify(|state| {
             if let Some(last) = state.frame.replace(frame.clone()) {
@@ -47,7 +47,7 @@ impl Board {
         });
     }
 
-    /// Adds what there is to tell of a scene, unless that is the present one no more.
+    /// Adds an event about a scene, unless the scene has been replaced.
     pub fn add(&self, frame: &Frame, event: Bytes) {
         self.state.send_if_modified(|state| {
             let is_present = state.version() == frame.version;
@@ -58,7 +58,7 @@ impl Board {
         });
     }
 
-    /// Tells what is wrong with the text now. The last sound scene stays.
+    /// Sets the error in the current text. The last valid scene stays.
     pub fn fault(&self, event: Bytes) {
         self.state.send_modify(|state| {
             state.fault = Some(event);
@@ -66,29 +66,29 @@ impl Board {
         });
     }
 
-    /// The last sound scene, if it has this version.
+    /// Returns the last valid scene, if it has this version.
     pub fn frame(&self, version: u64) -> Option<Arc<Frame>> {
         self.state.borrow().frame.clone().filter(|frame| frame.version == version)
     }
 
-    /// Someone who has been told nothing yet.
+    /// Makes a reader that has received no event yet.
     pub fn reader(&self) -> Reader {
         Reader { state: self.state.subscribe(), version: 0, events: 0, faults: 0 }
     }
 }
 
-/// A page that is told one event after another.
+/// A page that receives one event after another.
 pub struct Reader {
     state: Receiver<State>,
-    /// The scene that it knows, and how many events of that.
+    /// The version of the scene that the reader knows, and the number of its events that were received.
     version: u64,
     events: usize,
-    /// How many faults there were when it was told of the last one.
+    /// The number of errors when the last one was received.
     faults: u64,
 }
 
 impl Reader {
-    /// The next event, once there is one; nothing when there will be no more.
+    /// Returns the next event when there is one, or `None` when there will be no more.
     pub async fn next(&mut self) -> Option<Bytes> {
         loop {
             if let Some(event) = self.known() {

@@ -1,15 +1,15 @@
-//! The page in the browser of whoever runs the program.
+//! Opens the page in the user's browser.
 
 use std::env;
 use std::io::{self, Write};
 use tempfile::{Builder, TempPath};
 
-/// Opens an address in the browser, by way of a file that goes when it is dropped.
+/// Opens an address in the browser, through a file that is removed when it is dropped.
 ///
-/// Every user of a machine can read the command lines of all processes, so the browser's must not hold the address. The
-/// file's permissions are such that no other user can read it.
+/// Every user of a machine can read the command lines of all processes, so that of the browser must not contain the
+/// address. The file's permissions keep other users from reading it.
 pub fn open(url: &str) -> io::Result<TempPath> {
-    // A browser that is kept in a sandbox sees no folder for temporary files.
+    // A browser in a sandbox does not see the system's folder for temporary files.
     let folder = env::home_dir().filter(|home| home.is_dir()).unwrap_or_else(env::temp_dir);
     let mut file = Builder::new().prefix("tabray-").suffix(".html").tempfile_in(folder)?;
     write!(

@@ -1,4 +1,4 @@
-//! What the program tells a page: server-sent events, each a name and data in one line.
+//! The events that the program sends to a page: server-sent events, each a name and data on one line.
 
 use super::frame::Frame;
 use crate::render::bytes::to_byte;
@@ -11,7 +11,7 @@ use hyper::body::Bytes;
 use serde::Serialize;
 use std::time::Duration;
 
-/// A sound scene, whose picture follows in parts.
+/// Announces a valid scene, whose image follows in parts.
 pub fn scene(frame: &Frame) -> Bytes {
     let data = Scene {
         name: &frame.name,
@@ -23,22 +23,22 @@ pub fn scene(frame: &Frame) -> Bytes {
     event("scene", &data)
 }
 
-/// A scene as the page has it.
+/// A scene, as the page receives it.
 #[derive(Serialize)]
 struct Scene<'s> {
-    /// What messages call it.
+    /// The name of the scene in messages.
     name: &'s str,
-    /// The width and the height of its picture.
+    /// The width and the height of the image in pixels.
     size: [usize; 2],
-    /// What it was read from.
+    /// The text of the scene.
     text: &'s str,
-    /// Which one it is, counted from 1.
+    /// The version of the scene, from 1.
     version: u64,
-    /// What may not mean what was intended, as people read it; empty where there is nothing.
+    /// The warnings, as people read them; empty where there are none.
     warnings: &'s str,
 }
 
-/// A part of a scene's picture: the area and its colours, red, green and blue of each block.
+/// Sends a part of a scene's image: the area and its colours, red, green and blue of each block.
 pub fn part(frame: &Frame, area: &Area, colours: &[Rgb]) -> Bytes {
     let Area { corner: [left, top], size: [width, height], block } = area;
     let bytes: Vec<u8> = colours
@@ -50,35 +50,35 @@ pub fn part(frame: &Frame, area: &Area, colours: &[Rgb]) -> Bytes {
     format!("event: part\ndata: {} {left} {top} {width} {height} {block} {base64}\n\n", frame.version).into()
 }
 
-/// All parts of a scene's picture were told.
+/// Announces that all parts of a scene's image have been sent.
 pub fn done(frame: &Frame, took: Duration) -> Bytes {
     event("done", &Done { seconds: took.as_secs_f64(), version: frame.version })
 }
 
-/// The end of a picture.
+/// The end of an image.
 #[derive(Serialize)]
 struct Done {
-    /// How long the picture took.
+    /// The time for the image, in seconds.
     seconds: f64,
-    /// Which scene it is of.
+    /// The version of the scene.
     version: u64,
 }
 
-/// What is wrong with the scene as it is now.
+/// Announces an error in the current scene.
 pub fn fault(fault: &Fault) -> Bytes {
     event("fault", fault)
 }
 
-/// What is wrong with a scene.
+/// The error in a scene.
 #[derive(Serialize)]
 pub struct Fault<'f> {
-    /// The lines of the text that are marked, counted from 1.
+    /// The marked lines of the text, from 1.
     pub lines: &'f [usize],
-    /// What messages call it.
+    /// The name of the scene in messages.
     pub name: &'f str,
-    /// What is wrong, as people read it.
+    /// The error, as people read it.
     pub report: &'f str,
-    /// Its text, or null where there is none.
+    /// The text of the scene, or null where there is none.
     pub text: Option<&'f str>,
 }
 
@@ -86,7 +86,7 @@ fn event(name: &str, data: &impl Serialize) -> Bytes {
     format!("event: {name}\ndata: {}\n\n", json(data)).into()
 }
 
-/// A channel in half the bits, such that its byte in the picture stays the same.
+/// Converts a channel to single precision, rounded such that its byte in the image stays the same.
 fn single(channel: f64) -> f32 {
     let nearest = channel as f32;
     if to_byte(nearest.into()) == to_byte(channel) {

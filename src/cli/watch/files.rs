@@ -1,4 +1,4 @@
-//! The files that a scene is read from, and who wants to know when one of them changes.
+//! Watches the files that a scene is read from.
 
 use super::super::failure::Failure;
 use crate::words;
@@ -9,7 +9,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Watches files by their folders: many editors put a new file in the place of the old one.
+/// Watches files by their folders, because many editors replace a file by a new one.
 pub struct Files {
     watcher: RecommendedWatcher,
     files: Arc<Mutex<BTreeSet<PathBuf>>>,
@@ -17,10 +17,10 @@ pub struct Files {
 }
 
 impl Files {
-    /// Watches nothing yet. `changed` is called, on another thread, whenever a file may have changed.
+    /// Makes a watcher without files. `changed` is called, on another thread, whenever a file may have changed.
     ///
     /// # Errors
-    /// Where the system does not watch files.
+    /// If the system cannot watch files.
     pub fn new(changed: impl Fn() + Send + 'static) -> Result<Self, Failure> {
         let files = Arc::<Mutex<BTreeSet<PathBuf>>>::default();
         let wanted = files.clone();
@@ -29,7 +29,7 @@ impl Files {
                 let wanted = wanted.lock().unwrap_or_else(PoisonError::into_inner);
                 is_change(event.kind) && event.paths.iter().any(|path| wanted.contains(path))
             };
-            // Events that were lost may have been about any file.
+            // If events were lost, they may have been about any file.
             if event.is_ok_and(|event| event.need_rescan() || concerns(&event)) {
                 changed();
             }
@@ -39,10 +39,10 @@ impl Files {
         Ok(Self { watcher, files, folders: BTreeSet::new() })
     }
 
-    /// Watches these files, whether they are there or not, and no others.
+    /// Watches these files, whether they exist or not, and no others.
     ///
     /// # Errors
-    /// Where the system does not watch one of their folders.
+    /// If the system cannot watch one of their folders.
     pub fn watch<'f>(&mut self, files: impl IntoIterator<Item = &'f PathBuf>) -> Result<(), Failure> {
         let files: BTreeSet<_> = files.into_iter().flat_map(|file| places(file)).collect();
         let folders: BTreeSet<_> =
@@ -54,7 +54,7 @@ impl Files {
             })?;
         }
         for folder in self.folders.difference(&folders) {
-            // A folder that is gone is not watched any more.
+            // A folder that has been removed is no longer watched.
             let _ = self.watcher.unwatch(folder);
         }
         self.folders = folders;
@@ -62,7 +62,7 @@ impl Files {
     }
 }
 
-/// Why the system does not watch a file.
+/// Returns why the system cannot watch a file.
 fn reason(error: &notify::Error) -> String {
     match &error.kind {
         ErrorKind::Io(error) => words::reason(error),
@@ -71,8 +71,8 @@ fn reason(error: &notify::Error) -> String {
     }
 }
 
-/// Where a file stands and, if it is a link, where that leads, as the system names them. A folder that is not
-/// there cannot be watched.
+/// Returns the path of a file and, if it is a link, that of its target, as the system names them. A folder that does
+/// not exist cannot be watched.
 fn places(file: &Path) -> impl Iterator<Item = PathBuf> {
     let folder = match file.parent() {
         Some(folder) if folder != Path::new("") => folder,
@@ -82,7 +82,7 @@ fn places(file: &Path) -> impl Iterator<Item = PathBuf> {
     itself.into_iter().chain(file.canonicalize())
 }
 
-/// Whether a file may have other contents than before. Reading one is an event, too.
+/// Tells whether a file may have changed its contents. Reading a file is an event too.
 fn is_change(kind: EventKind) -> bool {
     match kind {
         EventKind::Access(access) => access == AccessKind::Close(AccessMode::Write),

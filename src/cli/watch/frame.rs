@@ -1,4 +1,4 @@
-//! A scene as it was when it was last sound.
+//! A valid scene, as it was when it was read.
 
 use crate::render::plan::Plan;
 use crate::render::trace;
@@ -7,31 +7,31 @@ use crate::scene::reader::Place;
 use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// A sound scene, its text and what became of it.
+/// A valid scene, its text and the state of its image.
 pub struct Frame {
-    /// Which one it is, counted from 1.
+    /// The version of the scene, from 1.
     pub version: u64,
-    /// What messages call it.
+    /// The name of the scene in messages.
     pub name: String,
-    /// What it was read from.
+    /// The text of the scene.
     pub text: String,
-    /// What may not mean what was intended.
+    /// The warnings about the scene.
     pub warnings: String,
-    /// The scene itself.
+    /// The model of the scene.
     pub model: Model,
-    /// Where each entity stands in the text.
+    /// The place of each entity in the text.
     pub places: Vec<Place>,
-    /// Whether a newer one has taken its place.
+    /// Whether a newer scene has replaced this one.
     pub stale: AtomicBool,
 }
 
 impl Frame {
-    /// Breaks where nobody wants it any more.
+    /// Breaks if the scene has been replaced.
     pub fn check(&self) -> ControlFlow<()> {
         if self.stale.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
-    /// The first and the last line of the object that the middle of a pixel shows, counted from 1.
+    /// Returns the first and the last line of the object that the centre of a pixel shows, from 1.
     pub fn lines_of(&self, [x, y]: [usize; 2]) -> Option<[usize; 2]> {
         let hit =
             trace::first_hit(&Plan::new(&self.model), &self.model.camera.value.sight(x as f64, y as f64))?;
@@ -39,7 +39,7 @@ impl Frame {
     }
 }
 
-/// The first and the last line of a place in a text, counted from 1.
+/// Returns the first and the last line of a place in a text, from 1.
 pub fn lines(text: &str, place: &Range<usize>) -> Option<[usize; 2]> {
     let line = |at: usize| Some(1 + text.get(..at)?.matches('\n').count());
     Some([line(place.start)?, line(place.end)?])

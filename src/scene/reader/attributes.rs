@@ -1,39 +1,39 @@
-//! One entity as written, checked against the table of its type.
+//! Checks one parsed entity against the table of its type.
 
 use super::fault::{Fault, Place};
 use super::guesses::{find_attribute, near_attribute};
 use super::names::Names;
+use super::parsed::{Form, MAX_VALUES, Parsed, Word};
 use super::report::Report;
 use super::values;
-use super::written::{Form, MOST_VALUES, Word, Written};
 use crate::scene::entity::Entity;
 use crate::scene::pparm::{Attribute, Given, LEAST_LENGTH, MOST_LENGTH};
 use crate::scene::value::{Datum, Type};
 use crate::words::{self, list};
 
-/// Checks an entity against the table of its type and reports what is wrong with it.
+/// Checks an entity against the table of its type and reports its faults.
 pub struct Against<'c> {
     /// The entity's type.
     pub entity: &'static Entity,
-    /// What its attributes may refer to.
+    /// The names that the entity's attributes may refer to.
     pub names: &'c mut Names,
-    /// Where faults go.
+    /// The report that faults are added to.
     pub report: &'c mut Report,
 }
 
 impl Against<'_> {
-    /// A datum for each attribute of the type, or nothing where a fault was reported.
-    pub fn values(&mut self, written: &Written<'_>) -> Option<Vec<Given>> {
+    /// Returns a datum for each attribute of the type, or `None` if a fault was reported.
+    pub fn values(&mut self, parsed: &Parsed<'_>) -> Option<Vec<Given>> {
         let entity = self.entity;
-        let title = match written.name.text.as_ref() {
+        let title = match parsed.name.text.as_ref() {
             "" => format!("this {}", entity.name),
             name => format!("{} `{}`", entity.name, words::abridged(name)),
         };
         let attributes: Vec<_> = entity.attributes().collect();
         let mut given: Vec<Option<&(Word<'_>, Vec<Word<'_>>)>> = vec![None; attributes.len()];
-        let mut sound = !written.is_damaged;
+        let mut sound = !parsed.is_damaged;
         let mut meant = Vec::new();
-        for pair in &written.attributes {
+        for pair in &parsed.attributes {
             let (word, _) = pair;
             let known = find_attribute(entity, &word.text);
             match known.and_then(|known| attributes.iter().position(|a| a.name() == known.name())) {
@@ -59,8 +59,8 @@ impl Against<'_> {
             let datum = match given {
                 Some((word, words)) => self.datum(*attribute, &title, word, words),
                 None => {
-                    // One that is misspelt or could not be made out is not missing as well.
-                    let may_be_there = meant.contains(&attribute.name()) || written.is_damaged;
+                    // An attribute that may be present, misspelt or unreadable, is not reported as missing.
+                    let may_be_there = meant.contains(&attribute.name()) || parsed.is_damaged;
                     if attribute.default().is_none() && !may_be_there {
                         missing.push(*attribute);
                     }
@@ -75,21 +75,21 @@ impl Against<'_> {
                 missing.iter().map(|attribute| self.report.syntax().usage(*attribute)).collect();
             let fault = format!("{title} lacks {}", list(missing.iter().map(|attribute| attribute.name())));
             self.report.add(
-                Fault::error(written.name.place.clone(), fault)
+                Fault::error(parsed.name.place.clone(), fault)
                     .help(format!("add `{}`", wanted.join("` and `"))),
             );
-        } else if written.attributes.is_empty() && !attributes.is_empty() && !written.is_damaged {
+        } else if parsed.attributes.is_empty() && !attributes.is_empty() && !parsed.is_damaged {
             sound = false;
             let names = list(attributes.iter().map(|attribute| attribute.name()));
             self.report.add(
-                Fault::error(written.name.place.clone(), format!("{title} has no attributes"))
+                Fault::error(parsed.name.place.clone(), format!("{title} has no attributes"))
                     .help(format!("add at least one of {names}")),
             );
         }
         sound.then_some(values)
     }
 
-    /// Reports an attribute that the type does not have, and returns the one that was meant perhaps.
+    /// Reports an attribute that the type does not have, and returns the one that was probably meant, if any.
     fn unknown_attribute(&mut self, title: &str, word: &Word<'_>) -> Option<&'static str> {
         let entity = self.entity;
         let near = near_attribute(entity, &word.text, self.report.guesses()).map(|near| near.name());
@@ -102,7 +102,7 @@ impl Against<'_> {
         near
     }
 
-    /// The values of one attribute, checked for type, number and rule.
+    /// Checks the values of one attribute for type, number and rule.
     fn datum(
         &mut self,
         attribute: &'static dyn Attribute,
@@ -112,7 +112,7 @@ impl Against<'_> {
     ) -> Option<Datum> {
         if !attribute.arity().contains(&words.len()) {
             let takes = attribute.takes();
-            let more = if words.len() < MOST_VALUES { "" } else { " or more" };
+            let more = if words.len() < MAX_VALUES { "" } else { " or more" };
             let message = format!("`{}` of {title} takes {takes}, not {}{more}", word.text, words.len());
             self.report.add(Fault::error(whole(word, words), message).help(format!(
                 "`{}`: {}",
@@ -129,7 +129,7 @@ impl Against<'_> {
                     for fault in faults {
                         let takes = format!("`{}` of {title} takes {}", word.text, attribute.takes());
                         self.report.add(match (&fault.place, fault.label.is_empty()) {
-                            // Without a text there is nothing to mark.
+                            // An entity built in Rust has no text to mark.
                             (None, _) => Fault { message: format!("{}: {takes}", fault.message), ..fault },
                             (Some(_), true) => fault.label(takes),
                             (Some(_), false) => fault,
@@ -162,7 +162,7 @@ impl Against<'_> {
     }
 }
 
-/// From an attribute's name, or its first value, to its last value.
+/// Returns the place from an attribute's name, or its first value, to its last value.
 pub fn whole(first: &Word<'_>, words: &[Word<'_>]) -> Place {
     let last = words.last().unwrap_or(first);
     Some(first.place.as_ref()?.start..last.place.as_ref()?.end)

@@ -1,11 +1,11 @@
-//! Entities as written, checked and made into a [`Model`].
+//! Checks parsed entities and makes a [`Model`] of them.
 
 use super::attributes::{Against, whole};
 use super::fault::{Fault, Place, Severity};
 use super::guesses::find_attribute;
 use super::names::{Names, stand_in, suggestion};
+use super::parsed::{Parsed, Word};
 use super::report::Report;
-use super::written::{Word, Written};
 use crate::scene::entity::{Args, Construct, Entity, MATERIAL, Refusal, Setting};
 use crate::scene::kind::Kind;
 use crate::scene::model::{Item, Model, Object};
@@ -22,16 +22,16 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Makes a model of entities as written and reports all their faults. Without faults there is a model. File
-/// names start from `folder`.
+/// Makes a model of parsed entities and reports all their faults. Returns a model only if there are no faults. File
+/// names are relative to `folder`.
 pub fn model(
     registry: &Registry,
     folder: &Path,
     accuracy: Chosen,
-    written: Vec<Written<'_>>,
+    parsed: Vec<Parsed<'_>>,
     report: &mut Report,
 ) -> Option<Model> {
-    let names = Names::of(registry, &written);
+    let names = Names::of(registry, &parsed);
     let camera = Camera { accuracy: accuracy.by_default, ..Camera::default() };
     let setting = Setting { camera, folder: folder.to_owned() };
     let mut check = Check {
@@ -46,70 +46,71 @@ pub fn model(
         materials: Vec::new(),
         textures: Vec::new(),
         files: HashMap::new(),
-        room: accuracy.textures.unwrap_or(TEXTURES),
+        texture_memory: accuracy.textures.unwrap_or(TEXTURE_MEMORY),
         objects: Vec::new(),
         lights: Vec::new(),
     };
-    // Objects and lights may ask for the camera, wherever it stands.
+    // Objects and lights may ask for the camera, wherever it stands in the text, so they are constructed last.
     let waiting: Vec<_> =
-        written.iter().enumerate().filter_map(|(order, entity)| check.table(order, entity)).collect();
-    for (written, args) in waiting {
-        check.construct(written, args);
+        parsed.iter().enumerate().filter_map(|(order, entity)| check.table(order, entity)).collect();
+    for (parsed, args) in waiting {
+        check.construct(parsed, args);
     }
-    check.textures_can_be_read(&written);
-    check.finish(&written)
+    check.textures_can_be_read(&parsed);
+    check.finish(&parsed)
 }
 
-/// How many bytes the images of all textures of a scene may take, unless something else is asked for: far more than
-/// scenes have, and far less than a small file can claim to hold.
-const TEXTURES: u64 = 1 << 30;
+/// The default limit on the memory of all textures of a scene, in bytes: far more than scenes need, and far less than a
+/// small file can claim to hold.
+const TEXTURE_MEMORY: u64 = 1 << 30;
 
-/// How exactly a scene is traced and how much memory its textures may take, as far as others than itself have a say.
+/// The accuracy of a scene and the memory limit of its textures, as far as the caller chooses them.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Chosen {
-    /// What counts in place of the scene's own.
+    /// The accuracy that overrides the scene's own.
     pub above_all: Option<Accuracy>,
-    /// What counts where the scene says nothing.
+    /// The accuracy where the scene chooses none.
     pub by_default: Accuracy,
-    /// How many bytes its textures may take, in place of a gibibyte.
+    /// The limit on the memory of the scene's textures, in bytes; by default 1 GiB.
     pub textures: Option<u64>,
 }
 
-/// An entity's checked values, and how it was written.
-type Checked<'w> = (&'w Written<'w>, Args);
+/// An entity's checked values, with its parsed text.
+type Checked<'w> = (&'w Parsed<'w>, Args);
 
 struct Check<'r> {
     registry: &'r Registry,
     report: &'r mut Report,
     names: Names,
-    /// Entity types that are not there, each with all its places.
+    /// Unknown entity types, each with all its places.
     unknown: BTreeMap<String, Vec<Place>>,
-    /// Where the first camera is named.
+    /// The place of the first camera's name.
     first_camera: Option<Place>,
     setting: Arc<Setting>,
-    /// What counts in place of the scene's own.
+    /// The accuracy that overrides the scene's own.
     accuracy: Option<Accuracy>,
     camera: Option<Item<Camera>>,
     materials: Vec<Item<Arc<Material>>>,
     textures: Vec<Item<Arc<Texture>>>,
-    /// The textures by their files.
+    /// The textures by the paths of their files.
     files: HashMap<PathBuf, Arc<Texture>>,
-    /// How many bytes the images of textures may still take.
-    room: u64,
+    /// How many more bytes the images of textures may take.
+    texture_memory: u64,
     objects: Vec<Object>,
     lights: Vec<Item<AnyLight>>,
 }
 
 impl Check<'_> {
-    /// Checks an entity against its table. What others refer to is made at once, the rest is handed back.
-    fn table<'w>(&mut self, order: usize, written: &'w Written<'w>) -> Option<Checked<'w>> {
-        let Some(entity) = self.registry.find(&written.kind.text) else {
-            let kind = written.kind.text.to_string();
-            self.unknown.entry(kind).or_default().push(written.kind.place.clone());
+    /// Checks an entity against its table. An entity that others can refer to is constructed at once; the others are
+    /// returned.
+    fn table<'w>(&mut self, order: usize, parsed: &'w Parsed<'w>) -> Option<Checked<'w>> {
+        let Some(entity) = self.registry.find(&parsed.kind.text) else {
+            let kind = parsed.kind.text.to_string();
+            self.unknown.entry(kind).or_default().push(parsed.kind.place.clone());
             return None;
         };
-        let Word { text, place, .. } = &written.name;
-        let counts = self.names.claim(entity, &written.name, self.report);
+        let Word { text, place, .. } = &parsed.name;
+        let counts = self.names.claim(entity, &parsed.name, self.report);
         if entity.kind() == Kind::Camera
             && let Some(first) = self.first_camera.replace(place.clone())
         {
@@ -119,31 +120,31 @@ impl Check<'_> {
                     .help("a scene has exactly one camera"),
             );
         }
-        let values = Against { entity, names: &mut self.names, report: self.report }.values(written);
+        let values = Against { entity, names: &mut self.names, report: self.report }.values(parsed);
         let args = values.map(|values| Args::new(entity, text.to_string(), order, values));
         if !counts {
             return None;
         }
         if matches!(entity.kind(), Kind::Object | Kind::Light) {
-            return args.map(|args| (written, args));
+            return args.map(|args| (parsed, args));
         }
         if let Some(args) = args {
-            self.construct(written, args);
+            self.construct(parsed, args);
         }
-        // Where it is faulty, something stands in, so that its users are checked too.
+        // If the entity is faulty, a stand-in takes its place, so that the entities that refer to it are checked too.
         if matches!(entity.kind(), Kind::Material | Kind::Texture) {
             self.names.define(entity.kind(), text, stand_in(entity.kind(), text));
         }
         None
     }
 
-    /// Makes an entity of its checked values.
-    fn construct(&mut self, written: &Written<'_>, mut args: Args) {
+    /// Constructs an entity from its checked values.
+    fn construct(&mut self, parsed: &Parsed<'_>, mut args: Args) {
         args.setting = self.setting.clone();
         let (kind, name) = (args.entity.kind(), args.name.clone());
         match args.entity.construct {
             Construct::Camera(construct) => {
-                if let Some(mut camera) = self.made(written, args, construct) {
+                if let Some(mut camera) = self.made(parsed, args, construct) {
                     camera.value.accuracy = self.accuracy.unwrap_or(camera.value.accuracy);
                     let folder = self.setting.folder.clone();
                     self.setting = Arc::new(Setting { camera: camera.value.clone(), folder });
@@ -151,7 +152,7 @@ impl Check<'_> {
                 }
             }
             Construct::Material(construct) => {
-                if let Some(Item { args, value }) = self.made(written, args, construct) {
+                if let Some(Item { args, value }) = self.made(parsed, args, construct) {
                     let material = Arc::new(value);
                     let shown =
                         Datum::Material { name: Arc::from(name.as_str()), material: material.clone() };
@@ -160,9 +161,9 @@ impl Check<'_> {
                 }
             }
             Construct::Texture(construct) => {
-                if let Some(Item { args, value }) = self.made(written, args, construct) {
+                if let Some(Item { args, value }) = self.made(parsed, args, construct) {
                     self.report.add_file(value.path().to_owned());
-                    // Two that have one file are one, so that it is read once.
+                    // Textures with the same file share one image, so that the file is read once.
                     let texture = match self.files.entry(value.path().to_owned()) {
                         Entry::Occupied(known) => known.get().clone(),
                         Entry::Vacant(free) => free.insert(Arc::new(value)).clone(),
@@ -173,24 +174,23 @@ impl Check<'_> {
                 }
             }
             Construct::Object(construct) => {
-                if let Some(Item { args, value: Body { shape, shader } }) =
-                    self.made(written, args, construct)
+                if let Some(Item { args, value: Body { shape, shader } }) = self.made(parsed, args, construct)
                 {
                     let material = args.get(&MATERIAL);
                     self.objects.push(Object { args, material, shape, shader });
                 }
             }
             Construct::Light(construct) => {
-                let light = self.made(written, args, construct);
+                let light = self.made(parsed, args, construct);
                 self.lights.extend(light);
             }
         }
     }
 
-    /// What a constructor makes of checked values.
+    /// Calls a constructor with checked values and reports a refusal.
     fn made<T>(
         &mut self,
-        written: &Written<'_>,
+        parsed: &Parsed<'_>,
         args: Args,
         construct: fn(&Args) -> Result<T, Refusal>,
     ) -> Option<Item<T>> {
@@ -204,7 +204,7 @@ impl Check<'_> {
                     refusal.attribute.unwrap_or_default(),
                     args.entity.place()
                 );
-                let place = place_of(args.entity, written, refusal.attribute);
+                let place = place_of(args.entity, parsed, refusal.attribute);
                 let message = format!("{} `{}` {}", args.entity.name, args.name, refusal.message);
                 self.report.add(Fault::error(place, message).help(refusal.help));
                 None
@@ -212,8 +212,8 @@ impl Check<'_> {
         }
     }
 
-    /// Reads the textures that something refers to, and no others.
-    fn textures_can_be_read(&mut self, written: &[Written<'_>]) {
+    /// Reads the textures that some entity refers to, and no others.
+    fn textures_can_be_read(&mut self, parsed: &[Parsed<'_>]) {
         let users =
             self.objects.iter().map(|object| &object.args).chain(self.lights.iter().map(|light| &light.args));
         let used: BTreeSet<_> = users.flat_map(|args| args.textures()).collect();
@@ -221,17 +221,17 @@ impl Check<'_> {
             if !used.contains(args.name.as_str()) {
                 continue;
             }
-            let read = value.load_within(self.room);
-            self.room -= value.bytes().min(self.room);
+            let read = value.load_within(self.texture_memory);
+            self.texture_memory -= value.bytes().min(self.texture_memory);
             if let Err(reason) = read {
-                let is_told = self.report.tells(Severity::Error, &written[args.order].place);
+                let is_told = self.report.tells(Severity::Error, &parsed[args.order].place);
                 let near = if is_told { value.near() } else { None };
                 let reason =
                     near.map_or(reason.to_owned(), |near| format!("it does not exist, but `{near}` does"));
                 let message = format!("the file of texture `{}` cannot be read: {reason}", args.name);
                 let mut files = args.values().filter(|(_, datum)| matches!(datum, Datum::Word(_)));
                 let place =
-                    place_of(args.entity, &written[args.order], files.next().map(|(file, _)| file.name()));
+                    place_of(args.entity, &parsed[args.order], files.next().map(|(file, _)| file.name()));
                 self.report.add(
                     Fault::error(place, message).help(
                         "a texture is a PPM or PNG file, and its name is relative to the scene's folder",
@@ -241,8 +241,8 @@ impl Check<'_> {
         }
     }
 
-    /// The model, or the faults that show only when all is read.
-    fn finish(mut self, written: &[Written<'_>]) -> Option<Model> {
+    /// Returns the model, after reporting the faults that show only when the whole scene has been read.
+    fn finish(mut self, parsed: &[Parsed<'_>]) -> Option<Model> {
         let mut camera_misspelt = false;
         let mut unknown: Vec<_> = std::mem::take(&mut self.unknown).into_iter().collect();
         unknown.sort_by_key(|(_, places)| places[0].as_ref().map(|place| place.start));
@@ -258,7 +258,7 @@ impl Check<'_> {
         }
         self.names.report_unresolved(self.registry, self.report);
         self.names.report_repeated(self.report);
-        if let Some(first) = written.first()
+        if let Some(first) = parsed.first()
             && self.first_camera.is_none()
             && !camera_misspelt
         {
@@ -276,10 +276,10 @@ impl Check<'_> {
     }
 }
 
-/// Where an attribute of an entity stands with its values; the entity's name where it does not stand.
-fn place_of(entity: &'static Entity, written: &Written<'_>, attribute: Option<&str>) -> Place {
+/// Returns the place of an attribute with its values, or of the entity's name where the attribute is not given.
+fn place_of(entity: &'static Entity, parsed: &Parsed<'_>, attribute: Option<&str>) -> Place {
     let known = |word: &Word<'_>| find_attribute(entity, &word.text).map(|known| known.name());
     let given = attribute
-        .and_then(|attribute| written.attributes.iter().rfind(|(word, _)| known(word) == Some(attribute)));
-    given.map_or(written.name.place.clone(), |(word, values)| whole(word, values))
+        .and_then(|attribute| parsed.attributes.iter().rfind(|(word, _)| known(word) == Some(attribute)));
+    given.map_or(parsed.name.place.clone(), |(word, values)| whole(word, values))
 }

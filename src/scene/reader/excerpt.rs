@@ -1,19 +1,19 @@
-//! Faults as text: a message, and the lines of the scene that it is about, as much of them as can be read.
+//! Renders faults as text: a message, and the lines of the scene that it concerns, shortened to what can be read.
 
 use super::fault::{Fault, Place, Severity};
 use crate::words::{self, boundary};
 use annotate_snippets::{AnnotationKind, Element, Level, Origin, Renderer, Snippet};
 use std::ops::Range;
 
-/// The longest part of a text that is shown as it is, in bytes, from the first line that is marked to the last one. Of a
-/// longer one each marked place is shown by itself.
+/// The longest excerpt that is shown in full, in bytes, from the first marked line to the last. In a longer one, each
+/// marked place is shown separately.
 const WHOLE: usize = 4096;
 
-/// What is shown of a longer line before and after a mark, and the longest mark in it, in bytes.
+/// How many bytes of an overlong line are shown before and after a mark, and the greatest length of the mark itself.
 const AROUND: usize = 48;
 const MARK: usize = 64;
 
-/// The fault as text. `newlines` are the places of the text's line ends.
+/// Renders a fault as text. `newlines` are the positions of the text's line ends, in bytes.
 pub fn rendered(
     fault: &Fault,
     (name, text): (&str, &str),
@@ -33,7 +33,7 @@ pub fn rendered(
     };
     let also = fault.also.iter().filter_map(|(place, label)| Some((place.as_ref()?, label.as_str())));
     let marks: Vec<_> = [(place, fault.label.as_str())].into_iter().chain(also).collect();
-    // Only the lines that are marked: a long scene with many faults must not be read over and over.
+    // Only the marked lines are passed on: a long scene with many faults must not be scanned over and over.
     let first = marks.iter().map(|(place, _)| place.start).min().unwrap_or(0);
     let last = marks.iter().map(|(place, _)| place.end).max().unwrap_or(0);
     let lines = lines(text, first..last, newlines);
@@ -61,7 +61,7 @@ pub fn rendered(
         elements.push(snippet.annotation(mark).into());
     }
     let rendered = renderer.render(&[title.elements(elements).elements(notes)]);
-    // The renderer knows the columns of what it is given alone.
+    // The renderer only knows the columns of the shortened line, so the true ones are put in.
     pieces.iter().fold(rendered, |rendered, (piece, _)| {
         let [shown, column] =
             [piece.shown, piece.column].map(|column| format!("{name}:{}:{column}", piece.line));
@@ -69,7 +69,7 @@ pub fn rendered(
     })
 }
 
-/// What is said of the faults that one stands for.
+/// Says how many similar faults this fault stands for.
 fn alike(fault: &Fault, newlines: &[usize]) -> Option<String> {
     let (count, places) = &fault.alike;
     let mut lines: Vec<_> = places.iter().flatten().map(|place| line(place.start, newlines)).collect();
@@ -79,12 +79,12 @@ fn alike(fault: &Fault, newlines: &[usize]) -> Option<String> {
     (*count > 0).then(|| format!("the same in {}{first}", words::count(*count, "more place")))
 }
 
-/// The line of a byte, from 1.
+/// Returns the line of a byte, from 1.
 fn line(at: usize, newlines: &[usize]) -> usize {
     1 + newlines.partition_point(|newline| *newline < at)
 }
 
-/// The lines in which a place lies, without the last one's end.
+/// Returns the range of the lines in which a place lies, without the last line end.
 fn lines(text: &str, place: Range<usize>, newlines: &[usize]) -> Range<usize> {
     let start = newlines.partition_point(|newline| *newline < place.start);
     let start = start.checked_sub(1).map_or(0, |line| newlines[line] + 1);
@@ -94,15 +94,15 @@ fn lines(text: &str, place: Range<usize>, newlines: &[usize]) -> Range<usize> {
     start..end
 }
 
-/// The line of a marked place, cut around it where it is long.
+/// The line of a marked place, shortened around it where it is long.
 struct Piece {
     text: String,
-    /// The place in it.
+    /// The marked range within the shortened text, in bytes.
     mark: Range<usize>,
-    /// The line and the column, in characters, at which the place begins, both from 1.
+    /// The line of the scene at which the place begins, from 1, and the column there, in characters, from 1.
     line: usize,
     column: usize,
-    /// The column in the text that is shown.
+    /// The column at which the place begins in the shortened text.
     shown: usize,
 }
 
@@ -132,7 +132,7 @@ impl Piece {
     }
 }
 
-/// The places of a fault beside its own: those that help to understand it, and the first of those that it stands for.
+/// Returns the further places of a fault: those that help to understand it, and the first few of similar faults.
 pub fn others(fault: &Fault) -> impl Iterator<Item = (&Place, &str)> {
     let also = fault.also.iter().map(|(place, label)| (place, label.as_str()));
     also.chain(fault.alike.1.iter().map(|place| (place, "and here")))

@@ -3,42 +3,43 @@
 use crate::words;
 use std::ops::Range;
 
-/// The most places of other faults that one of them names.
+/// The maximum number of places of similar faults that one fault lists.
 const PLACES: usize = 3;
 
-/// Where something stands in a scene's text, in bytes; nothing for what was built without a text.
+/// A range of a scene's text, in bytes; `None` for an entity that was built without a text.
 pub type Place = Option<Range<usize>>;
 
 /// How bad a fault is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
-    /// The scene has no meaning.
+    /// The scene cannot be rendered.
     Error,
-    /// The scene has a meaning, perhaps not the one intended.
+    /// The scene can be rendered, but perhaps not as intended.
     Warning,
 }
 
 /// One thing that is wrong with a scene.
 #[derive(Clone, Debug)]
 pub struct Fault {
-    /// How bad it is.
+    /// How bad the fault is.
     pub severity: Severity,
     /// What is wrong: lower case, no full stop, names in backticks.
     pub message: String,
-    /// The words to mark.
+    /// The range of the text to mark.
     pub place: Place,
-    /// What to write beside the mark; may be empty.
+    /// A note to print beside the mark; may be empty.
     pub label: String,
-    /// Other places that help to understand, with a few words each.
+    /// Further places that help to understand the fault, with a few words each.
     pub also: Vec<(Place, String)>,
     /// What would be right.
     pub help: Option<String>,
-    /// How many other faults it stands for that differ in their places alone, and the first of those places.
+    /// The number of other faults that differ only in their places and are not listed separately, and the first of
+    /// those places.
     pub alike: (usize, Vec<Place>),
 }
 
 impl Fault {
-    /// A fault that leaves the scene without a meaning.
+    /// Makes an error: the scene cannot be rendered.
     pub fn error(place: Place, message: impl Into<String>) -> Self {
         Self {
             severity: Severity::Error,
@@ -51,24 +52,24 @@ impl Fault {
         }
     }
 
-    /// A fault that leaves the scene a meaning.
+    /// Makes a warning: the scene can be rendered all the same.
     pub fn warning(place: Place, message: impl Into<String>) -> Self {
         Self { severity: Severity::Warning, ..Self::error(place, message) }
     }
 
-    /// With a few words beside the mark.
+    /// Adds a note beside the mark.
     pub fn label(mut self, label: impl Into<String>) -> Self {
         self.label = label.into();
         self
     }
 
-    /// With another place that helps to understand.
+    /// Adds a further place that helps to understand the fault.
     pub fn also(mut self, place: Place, label: impl Into<String>) -> Self {
         self.also.push((place, label.into()));
         self
     }
 
-    /// With what would be right.
+    /// Adds what would be right.
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
@@ -78,13 +79,13 @@ impl Fault {
         self.place.as_ref().map_or(0, |place| place.start)
     }
 
-    /// How many it stands for, in brackets; empty where that is itself alone.
+    /// Returns the number of similar faults, in brackets, or an empty string where there are none.
     pub(super) fn more(&self) -> String {
         let (count, _) = self.alike;
         if count == 0 { String::new() } else { format!(" (and in {})", words::count(count, "more place")) }
     }
 
-    /// Counts another fault that is like it, and keeps its place if that is one of the first.
+    /// Counts a similar fault, and keeps its place if it is one of the first.
     pub(super) fn stand_for(&mut self, place: Place) {
         let (count, places) = &mut self.alike;
         *count += 1;
@@ -97,8 +98,9 @@ impl Fault {
         self.severity == other.severity && self.message == other.message
     }
 
-    /// Cuts what is too long to be read, and what might look like a message of its own: a name with a line end. Its
-    /// places then lie in this text, and none begins after it ends.
+    /// Shortens texts that are too long to be read, and replaces control characters in the message: a name with a line
+    /// end could look like a message of its own. Afterwards the fault's places lie within `text`, and none begins after
+    /// it ends.
     pub(super) fn tidy(&mut self, text: &str) {
         let also = self.also.iter_mut().map(|(place, label)| (place, label));
         for (place, label) in also.chain([(&mut self.place, &mut self.label)]) {

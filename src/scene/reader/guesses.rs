@@ -1,4 +1,4 @@
-//! Attributes by their names, and those that misspelt words were meant to be.
+//! Finds attributes by their names, and guesses which attribute a misspelt word was meant to be.
 
 use crate::scene::entity::Entity;
 use crate::scene::pparm::Attribute;
@@ -6,24 +6,25 @@ use crate::words::{self, nearest};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
-/// The attribute of this name or alias.
+/// Finds the attribute of this name or alias.
 pub fn find_attribute(entity: &'static Entity, name: &str) -> Option<&'static dyn Attribute> {
     entity.attributes().find(|attribute| attribute.name() == name || attribute.aliases().contains(&name))
 }
 
-/// The attributes that misspelt words of entity types were meant to be, so that none is looked for twice.
+/// The guesses made so far, by entity type and misspelt word, so that no word is looked up twice.
 pub type Guesses = HashMap<(&'static str, String), Option<&'static str>>;
 
-/// The most words of a scene that are guessed at. So many are no misspellings.
-const GUESSES: usize = 10_000;
+/// The maximum number of different words of a scene for which a guess is made. A scene with more has other faults than
+/// misspellings.
+const MAX_GUESSES: usize = 10_000;
 
-/// The attribute that a misspelt word was meant to be.
+/// Returns the attribute that a misspelt word was probably meant to be.
 pub fn near_attribute(
     entity: &'static Entity,
     word: &str,
     guesses: &mut Guesses,
 ) -> Option<&'static dyn Attribute> {
-    let is_full = guesses.len() >= GUESSES;
+    let is_full = guesses.len() >= MAX_GUESSES;
     let near = match guesses.entry((entity.name, words::abridged(word).into_owned())) {
         Entry::Occupied(known) => *known.get(),
         Entry::Vacant(_) if is_full => None,

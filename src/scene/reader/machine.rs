@@ -1,4 +1,4 @@
-//! Reports for programs: a line for each fault, as editors read them, or an object of JSON.
+//! Reports for other programs: one line per fault, as editors read them, or one JSON object per fault.
 
 use super::excerpt;
 use super::fault::{Fault, Severity};
@@ -19,7 +19,8 @@ impl fmt::Display for Severity {
 }
 
 impl Report {
-    /// A line for each fault, `FILE:LINE:COLUMN: error: MESSAGE`. Lines count from 1, and so do columns, in characters.
+    /// Writes one line per fault, `FILE:LINE:COLUMN: error: MESSAGE`. Lines and columns count from 1, columns in
+    /// characters.
     pub fn short(&self) -> String {
         let lines = Lines::of(&self.text);
         let line = |fault: &Fault| {
@@ -33,7 +34,7 @@ impl Report {
         self.faults.iter().map(line).chain(rest).collect()
     }
 
-    /// an object of JSON for each fault, a `Message`, each on a line of its own.
+    /// Writes one JSON object per fault, a `Message`, each on a line of its own.
     pub fn json(&self) -> String {
         let lines = Lines::of(&self.text);
         let line = |fault: &Fault| {
@@ -56,7 +57,7 @@ impl Report {
     }
 }
 
-/// A message for programs: an object of JSON, its fields named after those of rustc.
+/// A message for other programs: a JSON object, with fields named after those of rustc.
 #[derive(Serialize)]
 pub struct Message<'m> {
     /// What would be right, or null.
@@ -67,44 +68,45 @@ pub struct Message<'m> {
     pub message: &'m str,
     /// The message as people read it, without colours.
     pub rendered: &'m str,
-    /// The places in the scene, none where the message is about no scene.
+    /// The places in the scene; empty where the message is not about a scene.
     pub spans: Vec<Span<'m>>,
 }
 
 impl Message<'_> {
-    /// Its JSON, on a line of its own.
+    /// Returns the message as JSON, on a line of its own.
     pub fn line(&self) -> String {
         words::json(self) + "\n"
     }
 }
 
-/// A place in a scene. Bytes count from 0, after a byte order mark; lines and columns from 1, columns in characters.
+/// A place in a scene. Bytes count from 0, after a byte order mark; lines and columns count from 1, columns in
+/// characters.
 #[derive(Serialize)]
 pub struct Span<'m> {
-    /// The byte behind its last one.
+    /// The first byte after the place.
     pub byte_end: usize,
-    /// Its first byte.
+    /// The first byte of the place.
     pub byte_start: usize,
-    /// The column behind its last one.
+    /// The first column after the place, on its last line.
     pub column_end: usize,
-    /// Its first column.
+    /// The first column of the place.
     pub column_start: usize,
     /// The scene as the command line names it, `<stdin>` for standard input.
     pub file_name: &'m str,
-    /// Whether it is what the message is about; others help to understand.
+    /// Whether the message is about this place; other places help to understand it.
     pub is_primary: bool,
     /// A few words about the place, or null.
     pub label: Option<&'m str>,
-    /// Its last line.
+    /// The last line of the place.
     pub line_end: usize,
-    /// Its first line.
+    /// The first line of the place.
     pub line_start: usize,
 }
 
-/// A text's lines.
+/// The lines of a text.
 struct Lines<'t> {
     text: &'t str,
-    /// Where each line ends, but for the last one.
+    /// The positions of the line ends, in bytes, without that of the last line.
     ends: Vec<usize>,
 }
 
@@ -113,7 +115,7 @@ impl<'t> Lines<'t> {
         Self { text, ends: text.match_indices('\n').map(|(at, _)| at).collect() }
     }
 
-    /// The line and the column of a byte, both from 1.
+    /// Returns the line and the column of a byte, both from 1.
     fn at(&self, byte: usize) -> (usize, usize) {
         let before = self.ends.partition_point(|end| *end < byte);
         let start = before.checked_sub(1).map_or(0, |line| self.ends[line] + 1);

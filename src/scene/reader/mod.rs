@@ -1,4 +1,4 @@
-//! From a scene's text to a [`Model`], or to all that is wrong with it.
+//! From a scene's text to a [`Model`], or to a report of all its faults.
 
 mod attributes;
 mod check;
@@ -8,16 +8,16 @@ mod guesses;
 mod machine;
 mod names;
 mod notes;
+mod parsed;
 mod report;
 mod toml;
 mod values;
-mod written;
 
 pub use check::Chosen;
 pub use fault::{Fault, Place, Severity};
 pub use machine::Message;
+pub use parsed::Parsed;
 pub use report::Report;
-pub use written::Written;
 
 use crate::scene::model::Model;
 use crate::scene::registry::Registry;
@@ -26,22 +26,22 @@ use crate::world::accuracy::Accuracy;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// A model, and the warnings that its scene gave rise to.
+/// A model, and the warnings about its scene.
 pub struct Loaded {
     /// The scene, ready to be traced.
     pub model: Model,
-    /// What may not mean what was intended.
+    /// The warnings: places that may not mean what was intended.
     pub warnings: Report,
-    /// How long it took to check the entities and to make the model of them, textures and all; reading the text is
-    /// not in it.
+    /// The time taken to check the entities and to construct the model, textures included, but without parsing the
+    /// text.
     pub building: Duration,
-    /// Where each entity stands, from its type to its end, by its [order](crate::scene::entity::Args::order).
+    /// The place of each entity, from its type to its end, indexed by its [order](crate::scene::entity::Args::order).
     pub places: Vec<Place>,
 }
 
-/// Reads a scene, in TOML if its name ends in `.toml` or its text begins as TOML does, and in the notes'
-/// spelling if not. `name` is what messages call it, and its own file names start from `folder`. An accuracy that is
-/// given here counts in place of the scene's own.
+/// Reads a scene: in TOML if its name ends in `.toml` or its text begins as TOML does, otherwise in the notes' syntax.
+/// `name` is what messages call the scene, and the file names in it are relative to `folder`. An accuracy given here
+/// overrides the scene's own.
 ///
 /// # Errors
 /// Every fault of the scene, warnings among them, in the order of the text.
@@ -55,7 +55,7 @@ pub fn read(
     read_by(registry, name, folder, bytes, Chosen { above_all: accuracy, ..Chosen::default() })
 }
 
-/// As [`read`], with more to say about the accuracy.
+/// Reads a scene as [`read`] does, but with the choices of [`Chosen`].
 ///
 /// # Errors
 /// Every fault of the scene, warnings among them, in the order of the text.
@@ -76,29 +76,29 @@ pub fn read_by(
         Syntax::Notes => notes::parse,
         Syntax::Toml => toml::parse,
     };
-    let written = parse(registry, text, &mut report);
+    let parsed = parse(registry, text, &mut report);
     if report.has_enough() {
         return Err(report);
     }
-    if written.is_empty() && !report.is_fatal() {
+    if parsed.is_empty() && !report.is_fatal() {
         report.add(Fault::error(Some(0..0), "the scene is empty").help(registry.first_steps(syntax)));
     }
-    finish(registry, folder, accuracy, written, report)
+    finish(registry, folder, accuracy, parsed, report)
 }
 
-/// Makes a model without any text (the notes' `modelstat.c`). The entities are checked as a text's are;
-/// file names start from the working directory.
+/// Makes a model without any text (the notes' `modelstat.c`). The entities are checked like those of a text; file names
+/// are relative to the working directory.
 ///
 /// ```
-/// use tabray::scene::{self, Registry, Written};
+/// use tabray::scene::{self, Parsed, Registry};
 ///
 /// let built = scene::build(Registry::get()?, [
-///     Written::new("camera", "cam1")
+///     Parsed::new("camera", "cam1")
 ///         .set("pixeldim", [640, 480])
 ///         .set("worlddim", [8.0, 6.0])
 ///         .set("viewpoint", [4.0, 3.0, 6.0]),
-///     Written::new("material", "green").set("ambient", [0.0, 5.0, 0.0]),
-///     Written::new("plane", "leftwall")
+///     Parsed::new("material", "green").set("ambient", [0.0, 5.0, 0.0]),
+///     Parsed::new("plane", "leftwall")
 ///         .set("material", "green")
 ///         .set("normal", [3.0, 0.0, 1.0])
 ///         .set("point", [0.0, 0.0, 0.0]),
@@ -108,25 +108,25 @@ pub fn read_by(
 /// ```
 ///
 /// # Errors
-/// Every fault of the scene; it has no places.
+/// Every fault of the scene, without places.
 pub fn build(
     registry: &Registry,
-    written: impl IntoIterator<Item = Written<'static>>,
+    parsed: impl IntoIterator<Item = Parsed<'static>>,
 ) -> Result<Loaded, Report> {
     let report = Report::new("model", "", Syntax::Notes);
-    finish(registry, Path::new(""), Chosen::default(), written.into_iter().collect(), report)
+    finish(registry, Path::new(""), Chosen::default(), parsed.into_iter().collect(), report)
 }
 
 fn finish(
     registry: &Registry,
     folder: &Path,
     accuracy: Chosen,
-    written: Vec<Written<'_>>,
+    parsed: Vec<Parsed<'_>>,
     mut report: Report,
 ) -> Result<Loaded, Report> {
-    let places = written.iter().map(|entity| entity.place.clone()).collect();
+    let places = parsed.iter().map(|entity| entity.place.clone()).collect();
     let start = Instant::now();
-    match check::model(registry, folder, accuracy, written, &mut report) {
+    match check::model(registry, folder, accuracy, parsed, &mut report) {
         Some(model) if !report.is_fatal() => {
             Ok(Loaded { model, warnings: report, building: start.elapsed(), places })
         }
@@ -134,10 +134,10 @@ fn finish(
     }
 }
 
-/// The text of a file.
+/// Decodes a file's bytes as UTF-8 text.
 ///
 /// # Errors
-/// The first place where it is none.
+/// The first place that is not UTF-8 text.
 fn decode<'b>(name: &str, bytes: &'b [u8]) -> Result<&'b str, Report> {
     let nul = bytes.iter().position(|byte| *byte == 0);
     let not_utf8 = std::str::from_utf8(bytes).err().map(|error| error.valid_up_to());
@@ -149,7 +149,7 @@ fn decode<'b>(name: &str, bytes: &'b [u8]) -> Result<&'b str, Report> {
             return Ok(text.strip_prefix('\u{feff}').unwrap_or(text));
         }
     };
-    // Up to the fault the lossy text has the same bytes.
+    // Up to the fault, the lossy text has the same bytes.
     let mut report = Report::new(name, String::from_utf8_lossy(bytes), Syntax::default());
     let help = "a scene is plain text, a sequence of entities `TYPE NAME { ATTRIBUTES }`";
     report.add(Fault::error(Some(place), message).help(help));

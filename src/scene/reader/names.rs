@@ -1,8 +1,8 @@
-//! The names of a scene: who has them, and what those that refer to them mean.
+//! The names of a scene: which entities have them, and what references to them mean.
 
 use super::fault::{Fault, Place, Severity};
+use super::parsed::{Form, Parsed, Word};
 use super::report::Report;
-use super::written::{Form, Word, Written};
 use crate::scene::entity::Entity;
 use crate::scene::kind::Kind;
 use crate::scene::registry::Registry;
@@ -12,42 +12,43 @@ use std::collections::hash_map::Entry;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 
-/// A name of a kind: the same name may stand for a material and for an object.
+/// A name and the kind of the entity: a material and an object may have the same name.
 type Name = (Kind, String);
 
-/// What only the first of several entities of one name is: an object of its type, or a thing of its kind.
+/// The scope in which a name must be unique: the entity type for an object, and an empty string, the whole kind, for
+/// the others.
 type Title = &'static str;
 
-/// Where a name was claimed, and for what: first, and again.
+/// The entities that claimed a name: the first one, and those that claimed it again.
 struct Claims {
     first: (Title, Place),
-    /// What else it was claimed for.
+    /// The other scopes in which the name was claimed.
     titles: Vec<Title>,
     again: Vec<(Title, Place)>,
 }
 
-/// How many faults of one sort are told one by one.
-const FEW: usize = 8;
+/// The maximum number of faults of one sort that are listed separately.
+const MAX_LISTED: usize = 8;
 
-/// The names of a scene, as far as it has been read.
+/// The names of a scene, as far as the scene has been checked.
 pub struct Names {
-    /// Where each name stands first, before or after its uses.
+    /// The place where each name is first defined, before or after its uses.
     places: HashMap<Name, Place>,
-    /// Names of entities of no known type: they may be what a reference means.
+    /// Names of entities of unknown types, which a reference may mean.
     doubtful: HashSet<String>,
-    /// The names that were claimed so far.
+    /// The names claimed so far.
     claimed: HashMap<Name, Claims>,
-    /// What can be referred to so far.
+    /// The entities that can be referred to so far.
     defined: HashMap<Name, Datum>,
-    /// References to what is not there (yet), each with all its places.
+    /// References to entities not (yet) defined, each with all its places.
     unresolved: BTreeMap<Name, Vec<Place>>,
 }
 
 impl Names {
-    /// All names of a scene, none of them claimed yet.
-    pub fn of(registry: &Registry, written: &[Written<'_>]) -> Self {
+    /// Collects all names of a scene; none is claimed yet.
+    pub fn of(registry: &Registry, parsed: &[Parsed<'_>]) -> Self {
         let (mut places, mut doubtful) = (HashMap::new(), HashSet::new());
-        for Written { kind, name, .. } in written {
+        for Parsed { kind, name, .. } in parsed {
             let text = name.text.to_string();
             match registry.find(&kind.text) {
                 Some(entity) => {
@@ -67,8 +68,8 @@ impl Names {
         }
     }
 
-    /// Gives an entity its name, and reports a word that is none. Tells whether the entity counts: of several
-    /// materials, textures or objects of one type that have one name, it is the first.
+    /// Gives an entity its name, and reports an invalid name. Returns whether the entity counts: of several materials,
+    /// textures or objects of one type with the same name, only the first does.
     pub fn claim(&mut self, entity: &'static Entity, word: &Word<'_>, report: &mut Report) -> bool {
         let Word { text, form, place } = word;
         let kind = entity.kind();
@@ -87,7 +88,7 @@ impl Names {
         if text.is_empty() || kind == Kind::Camera {
             return true;
         }
-        // The course's own pictures show a sphere `left` and an fplane `left` in one scene.
+        // The course's own images show a sphere `left` and an fplane `left` in one scene.
         let title = if kind == Kind::Object { entity.name } else { "" };
         match self.claimed.entry((kind, text.to_string())) {
             Entry::Vacant(free) => {
@@ -106,7 +107,7 @@ impl Names {
         }
     }
 
-    /// Warns of names that several entities have: once for each name, and once for all of them where they are many.
+    /// Warns of names that several entities have: once for each name, or once for all of them where they are many.
     pub fn report_repeated(&self, report: &mut Report) {
         let (mut left_out, mut shared) = (Vec::new(), Vec::new());
         for ((kind, text), Claims { first, again, .. }) in
@@ -164,13 +165,13 @@ impl Names {
         }
     }
 
-    /// Lets what follows refer to a name.
+    /// Defines a name, so that later entities can refer to it.
     pub fn define(&mut self, kind: Kind, name: &str, datum: Datum) {
         self.defined.entry((kind, name.to_owned())).or_insert(datum);
     }
 
-    /// What a word refers to. If that is not there, it is remembered, and something stands in for it, so that
-    /// whatever refers to it can be checked.
+    /// Returns the entity that a word refers to. If it is not defined, the reference is remembered and a stand-in is
+    /// returned, so that the entity that refers to it can be checked.
     pub fn resolve(&mut self, kind: Kind, word: &Word<'_>) -> Datum {
         let name = (kind, word.text.to_string());
         if let Some(datum) = self.defined.get(&name) {
@@ -182,14 +183,14 @@ impl Names {
         stand_in(kind, &word.text)
     }
 
-    /// Reports the references to what was not there, one fault for each name.
+    /// Reports the references to undefined names, one fault for each name.
     pub fn report_unresolved(&self, registry: &Registry, report: &mut Report) {
         let mut known: BTreeMap<Kind, Vec<&str>> = BTreeMap::new();
         for (kind, text) in self.places.keys() {
             known.entry(*kind).or_default().push(text);
         }
         known.values_mut().for_each(|known| known.sort_unstable());
-        // In the order of the text, so that no more is looked for than is told.
+        // In the order of the text, so that guesses are made only for references that are listed.
         let mut unresolved: Vec<_> = self.unresolved.iter().collect();
         unresolved.sort_by_key(|(_, places)| places[0].as_ref().map(|place| place.start));
         for ((kind, text), places) in unresolved {
@@ -216,26 +217,27 @@ impl Names {
     }
 }
 
-/// Entities of one name.
+/// Entities that share a name.
 struct Repeated<'n> {
     what: String,
     text: &'n str,
     places: Vec<&'n Place>,
 }
 
-/// Those that are repeated, each with the names and the places that are not told of it; of many only the first one.
+/// Keeps the names that are repeated, each with the number of further names and further places that it stands for. Of
+/// more than [`MAX_LISTED`] names, keeps only the first.
 fn few(mut all: Vec<Repeated<'_>>) -> Vec<(Repeated<'_>, usize, usize)> {
     all.retain(|repeated| repeated.places.len() > 1);
     all.sort_by_key(|repeated| (repeated.places[1].as_ref().map(|place| place.start), repeated.text));
     let (names, later) = (all.len(), all.iter().map(|repeated| repeated.places.len() - 1).sum::<usize>());
-    if names > FEW {
+    if names > MAX_LISTED {
         return all.into_iter().take(1).map(|first| (first, names - 1, later - 1)).collect();
     }
     let more: Vec<_> = all.iter().map(|repeated| repeated.places.len() - 2).collect();
     all.into_iter().zip(more).map(|(repeated, more)| (repeated, 0, more)).collect()
 }
 
-/// What is referred to where the thing itself is faulty or missing.
+/// Returns a default entity, in place of one that is faulty or missing.
 pub fn stand_in(kind: Kind, name: &str) -> Datum {
     let name = Arc::from(name);
     match kind {
@@ -244,7 +246,7 @@ pub fn stand_in(kind: Kind, name: &str) -> Datum {
     }
 }
 
-/// The label of a fault that may stand in several places.
+/// Returns the label of a fault that may stand for several places.
 pub fn suggestion(near: Option<&str>, places: &[Place]) -> String {
     let more = words::count(places.len() - 1, "more place");
     match (near, places.len()) {

@@ -2,8 +2,8 @@
 
 use super::fault::Fault;
 use super::guesses::{Guesses, find_attribute, near_attribute};
+use super::parsed::{Form, MAX_VALUES, Parsed, Word};
 use super::report::Report;
-use super::written::{Form, MOST_VALUES, Word, Written};
 use crate::scene::entity::Entity;
 use crate::scene::pparm::Attribute;
 use crate::scene::registry::Registry;
@@ -12,9 +12,9 @@ use crate::scene::value::Type;
 use std::borrow::Cow;
 use std::ops::Range;
 
-/// Reads the entities of a text and reports what does not have their form. What can be made out beyond a
-/// fault is read all the same, so that one run finds the faults that follow.
-pub fn parse<'a>(registry: &Registry, text: &'a str, report: &mut Report) -> Vec<Written<'a>> {
+/// Parses the entities of a text and reports syntax errors. Parsing goes on after an error, so that one run finds the
+/// faults that follow.
+pub fn parse<'a>(registry: &Registry, text: &'a str, report: &mut Report) -> Vec<Parsed<'a>> {
     let first = Tokens::of(text, &mut Report::new("", "", Syntax::Notes)).ahead[0].clone();
     if let Some(first) = first
         && !looks_like_a_scene(registry, text)
@@ -34,7 +34,7 @@ pub fn parse<'a>(registry: &Registry, text: &'a str, report: &mut Report) -> Vec
     Parser { registry, tokens, end: text.len(), report, before: 0..0, last: None }.scene()
 }
 
-/// Whether anything of a text is an entity.
+/// Tells whether any part of a text is an entity.
 fn looks_like_a_scene(registry: &Registry, text: &str) -> bool {
     let mut nowhere = Report::new("", "", Syntax::Notes);
     let tokens = Tokens::of(text, &mut nowhere);
@@ -52,7 +52,7 @@ fn looks_like_a_scene(registry: &Registry, text: &str) -> bool {
     false
 }
 
-/// A word or a brace, and where it stands.
+/// A word or a brace, and its place.
 #[derive(Clone)]
 struct Token<'a> {
     text: Cow<'a, str>,
@@ -74,7 +74,7 @@ impl<'a> Token<'a> {
     }
 }
 
-/// A text's words and braces, one after another: the next ones, as far as an entity's beginning can be told by them.
+/// The tokens of a text, with enough lookahead to recognise the beginning of an entity.
 struct Tokens<'a> {
     text: &'a str,
     at: usize,
@@ -88,14 +88,15 @@ impl<'a> Tokens<'a> {
         tokens
     }
 
-    /// Goes on by one token, which is returned.
+    /// Advances by one token and returns it.
     fn step(&mut self, report: &mut Report) -> Option<Token<'a>> {
         self.ahead.rotate_left(1);
         let next = self.read(report);
         std::mem::replace(&mut self.ahead[2], next)
     }
 
-    /// Reads the token after those. A `#` that begins a word begins a comment, and a `"` a word with blanks.
+    /// Reads the token after the lookahead. A `#` at the beginning of a word begins a comment, and a `"` a word in
+    /// quotes.
     fn read(&mut self, report: &mut Report) -> Option<Token<'a>> {
         loop {
             let (at, rest) = (self.at, &self.text[self.at..]);
@@ -121,8 +122,8 @@ impl<'a> Tokens<'a> {
     }
 }
 
-/// What stands in the quotes that a text begins with, and how long it is with them. `\\` and `\"` stand for a
-/// backslash and for a quote.
+/// Reads the quoted word that a text begins with; returns the word and its length in bytes, quotes included. `\\` and
+/// `\"` stand for a backslash and for a quote.
 fn quoted<'a>(text: &'a str, at: usize, report: &mut Report) -> (Cow<'a, str>, usize) {
     let mut word = String::new();
     let mut letters = text.char_indices().skip(1);
@@ -146,7 +147,7 @@ fn quoted<'a>(text: &'a str, at: usize, report: &mut Report) -> (Cow<'a, str>, u
         Fault::error(Some(at..at + 1), "missing closing quote")
             .help("a quoted word must end on the line on which it begins"),
     );
-    // The first word was meant perhaps.
+    // The closing quote is missing: probably only the first word was meant.
     let end = text.find(|c: char| c.is_whitespace() || c == '{' || c == '}').unwrap_or(text.len());
     (Cow::Borrowed(&text[1..end]), end)
 }
@@ -156,23 +157,23 @@ struct Parser<'a, 'r> {
     tokens: Tokens<'a>,
     end: usize,
     report: &'r mut Report,
-    /// The token read last.
+    /// The place of the token read last.
     before: Range<usize>,
-    /// The entity read last: its first word and where it ended.
+    /// The entity read last: the place of its first word, and that of its end.
     last: Option<(Range<usize>, Range<usize>)>,
 }
 
 impl<'a> Parser<'a, '_> {
-    fn scene(&mut self) -> Vec<Written<'a>> {
-        let mut written = Vec::new();
+    fn scene(&mut self) -> Vec<Parsed<'a>> {
+        let mut parsed = Vec::new();
         while self.token().is_some() && !self.report.has_enough() {
             if self.begins_entity() {
-                written.extend(self.entity());
+                parsed.extend(self.entity());
             } else {
                 self.stray();
             }
         }
-        written
+        parsed
     }
 
     fn token(&self) -> Option<&Token<'a>> {
@@ -199,7 +200,7 @@ impl<'a> Parser<'a, '_> {
         self.token().is_some_and(|token| self.registry.find(&token.text).is_some())
     }
 
-    /// Whether a word, a name and an opening brace stand here.
+    /// Tells whether a word, a name and an opening brace follow.
     fn has_form(&self) -> bool {
         self.is_word(0)
             && self.is_word(1)
@@ -207,12 +208,12 @@ impl<'a> Parser<'a, '_> {
             && self.token().is_some_and(|token| !looks_like_number(&token.text))
     }
 
-    /// Whether an entity begins here, its name or its brace forgotten perhaps.
+    /// Tells whether an entity begins here, even if its name or its brace is missing.
     fn begins_entity(&self) -> bool {
         self.has_form() || (self.is_word(0) && self.is(1, "{")) || (self.is_entity_type() && self.is_word(1))
     }
 
-    /// Reads past words that belong to no entity.
+    /// Skips words that belong to no entity.
     fn stray(&mut self) {
         let Some(first) = self.step() else { return };
         let (mut last, mut count) = (first.clone(), 1);
@@ -237,7 +238,7 @@ impl<'a> Parser<'a, '_> {
             .add(fault.help("every word of a scene must be part of an entity, `TYPE NAME { ATTRIBUTES }`"));
     }
 
-    fn entity(&mut self) -> Option<Written<'a>> {
+    fn entity(&mut self) -> Option<Parsed<'a>> {
         let kind = self.step()?;
         let name = match self.token() {
             Some(name) if !name.is_brace() => {
@@ -264,7 +265,7 @@ impl<'a> Parser<'a, '_> {
             );
         }
         let mut entity =
-            Written { kind: kind.word(), name, attributes: Vec::new(), place: None, is_damaged: false };
+            Parsed { kind: kind.word(), name, attributes: Vec::new(), place: None, is_damaged: false };
         let known = self.registry.find(&kind.text);
         while !self.report.has_enough() && self.body_goes_on(&entity) {
             if self.is(0, "{") {
@@ -284,8 +285,8 @@ impl<'a> Parser<'a, '_> {
         Some(entity)
     }
 
-    /// Whether another attribute of the entity follows; reads past its closing brace if not.
-    fn body_goes_on(&mut self, entity: &Written<'a>) -> bool {
+    /// Tells whether another attribute of the entity follows; if not, skips the closing brace.
+    fn body_goes_on(&mut self, entity: &Parsed<'a>) -> bool {
         if self.is(0, "}") {
             self.step();
             return false;
@@ -309,7 +310,7 @@ impl<'a> Parser<'a, '_> {
         false
     }
 
-    /// Reads an attribute and the values that are meant for it, however many and of whatever form.
+    /// Reads an attribute and its values, however many there are and whatever their form.
     fn attribute(&mut self, entity: Option<&'static Entity>) -> Option<(Word<'a>, Vec<Word<'a>>)> {
         let name = self.step()?;
         let described = entity.and_then(|entity| {
@@ -323,7 +324,7 @@ impl<'a> Parser<'a, '_> {
             && (token.form == Form::Text
                 || is_value(entity, described, count, &token.text, self.report.guesses()))
         {
-            if count < MOST_VALUES {
+            if count < MAX_VALUES {
                 values.push(token.word());
             }
             count += 1;
@@ -333,7 +334,7 @@ impl<'a> Parser<'a, '_> {
     }
 }
 
-/// Whether a word stands where a value belongs, rather than being the next attribute.
+/// Tells whether a word is a value, rather than the next attribute.
 fn is_value(
     entity: Option<&'static Entity>,
     attribute: Option<&'static dyn Attribute>,
@@ -341,14 +342,14 @@ fn is_value(
     word: &str,
     guesses: &mut Guesses,
 ) -> bool {
-    let most = attribute.map_or(1, |attribute| attribute.arity().iter().copied().max().unwrap_or(0));
+    let max = attribute.map_or(1, |attribute| attribute.arity().iter().copied().max().unwrap_or(0));
     match attribute.map(|attribute| attribute.value_type()) {
         // A name may look like anything, even like a number or an attribute: `material material`.
-        Some(Type::Word | Type::Name(_) | Type::Choice(_) | Type::Formula) => already < most,
+        Some(Type::Word | Type::Name(_) | Type::Choice(_) | Type::Formula) => already < max,
         _ if looks_like_number(word) => true,
         _ => {
-            let Some(entity) = entity else { return already < most };
-            already < most
+            let Some(entity) = entity else { return already < max };
+            already < max
                 && find_attribute(entity, word).is_none()
                 && near_attribute(entity, word, guesses).is_none()
         }

@@ -1,4 +1,4 @@
-//! All faults of a scene: the first of them are told, and the rest is counted.
+//! All faults of a scene: the first ones are listed, and the others are counted.
 
 use super::excerpt;
 use super::fault::{Fault, Place, Severity};
@@ -9,17 +9,18 @@ use annotate_snippets::Renderer;
 use std::fmt;
 use std::path::PathBuf;
 
-/// The most errors of one scene that are told, and likewise the most warnings. The rest is counted.
-const TOLD: usize = 100;
+/// The maximum number of errors of one scene that are listed, and the maximum number of warnings. The others are
+/// counted.
+const MAX_LISTED: usize = 100;
 
-/// The most faults that differ in their places alone and are told one by one. Of more only the first is told, with
-/// their number.
-const ALIKE: usize = 8;
+/// The maximum number of faults differing only in their places that are listed separately. Of more, only the first is
+/// listed, with their number.
+const MAX_ALIKE: usize = 8;
 
-/// After so many errors in its form a scene is read no farther.
-const ENOUGH: usize = 100_000;
+/// The number of syntax errors after which the rest of a scene is not read.
+const MAX_ERRORS: usize = 100_000;
 
-/// The faults of one scene, in the order of its text: all of a few, the first of many, and how many there are.
+/// The faults of one scene, in the order of its text: all of them, or the first ones and the number of all.
 #[derive(Clone, Debug, Default)]
 pub struct Report {
     pub(super) name: String,
@@ -30,29 +31,29 @@ pub struct Report {
     files: Vec<PathBuf>,
 }
 
-/// What a report knows beside the faults themselves. It is kept elsewhere, so that a report is small to hand on.
+/// What a report knows beside the faults themselves. It is boxed, so that a report is cheap to move.
 #[derive(Clone, Debug, Default)]
 struct Notes {
-    /// How many errors and warnings there are, told or not.
+    /// The number of errors and of warnings, listed or not.
     counts: [usize; 2],
-    /// How many of them are told each on its own.
+    /// The number of errors and of warnings that are listed separately.
     told: [usize; 2],
     is_cut_short: bool,
     guesses: Guesses,
 }
 
 impl Report {
-    /// A report without faults on a scene's text; `name` is what messages call it.
+    /// Makes an empty report on a scene's text; `name` is what messages call the scene.
     pub fn new(name: impl Into<String>, text: impl Into<String>, syntax: Syntax) -> Self {
         Self { name: name.into(), text: text.into(), syntax, ..Self::default() }
     }
 
-    /// The spelling in which messages tell what would be right.
+    /// Returns the syntax in which messages show what would be right.
     pub fn syntax(&self) -> Syntax {
         self.syntax
     }
 
-    /// Adds a fault at its place in the order, or counts it where it comes after enough others.
+    /// Adds a fault at its position in the text's order, or counts it where enough others come before it.
     pub fn add(&mut self, mut fault: Fault) {
         self.notes.counts[fault.severity as usize] += 1;
         fault.tidy(&self.text);
@@ -66,17 +67,17 @@ impl Report {
 
     fn insert(&mut self, fault: Fault) {
         let severity = fault.severity as usize;
-        if self.faults.iter().filter(|told| told.is_like(&fault)).count() == ALIKE {
+        if self.faults.iter().filter(|told| told.is_like(&fault)).count() == MAX_ALIKE {
             let mut like: Vec<_> = self.faults.extract_if(.., |told| told.is_like(&fault)).collect();
             let mut first = like.remove(0);
             like.into_iter().chain([fault]).for_each(|fault| first.stand_for(fault.place));
-            self.notes.told[severity] -= ALIKE;
+            self.notes.told[severity] -= MAX_ALIKE;
             return self.insert(first);
         }
         let at = self.faults.partition_point(|earlier| earlier.start() <= fault.start());
         self.faults.insert(at, fault);
         self.notes.told[severity] += 1;
-        if self.notes.told[severity] > TOLD
+        if self.notes.told[severity] > MAX_LISTED
             && let Some(last) = self.faults.iter().rposition(|told| told.severity as usize == severity)
         {
             self.faults.remove(last);
@@ -84,19 +85,19 @@ impl Report {
         }
     }
 
-    /// Whether a fault there would be told. If not, there is no need to look for what would be right.
+    /// Tells whether a fault there would be listed. If not, there is no need to find out what would be right.
     pub(super) fn tells(&self, severity: Severity, place: &Place) -> bool {
         let is_after = |told: &Fault| place.as_ref().map_or(0, |place| place.start) >= told.start();
         let last = self.faults.iter().rfind(|told| told.severity == severity);
-        self.notes.told[severity as usize] < TOLD || !last.is_some_and(is_after)
+        self.notes.told[severity as usize] < MAX_LISTED || !last.is_some_and(is_after)
     }
 
-    /// The faults that are told, in the order of the text.
+    /// Returns the listed faults, in the order of the text.
     pub fn faults(&self) -> &[Fault] {
         &self.faults
     }
 
-    /// The files that the scene names, whether they are there or not.
+    /// Returns the files that the scene names, whether they exist or not.
     pub fn files(&self) -> &[PathBuf] {
         &self.files
     }
@@ -106,28 +107,29 @@ impl Report {
         self.files.push(file);
     }
 
-    /// Whether any fault leaves the scene without a meaning.
+    /// Tells whether any fault is an error.
     pub fn is_fatal(&self) -> bool {
         self.count(Severity::Error) > 0
     }
 
-    /// Whether there are so many errors that reading on is of no use. Then nothing is said of what follows.
+    /// Tells whether there are so many errors that reading on is of no use. From then on the report is marked as cut
+    /// short.
     pub(super) fn has_enough(&mut self) -> bool {
-        self.notes.is_cut_short |= self.count(Severity::Error) >= ENOUGH;
+        self.notes.is_cut_short |= self.count(Severity::Error) >= MAX_ERRORS;
         self.notes.is_cut_short
     }
 
-    /// What misspelt attributes were taken for.
+    /// Returns the guesses of misspelt attributes.
     pub(super) fn guesses(&mut self) -> &mut Guesses {
         &mut self.notes.guesses
     }
 
-    /// How many faults of this severity there are, whether they are told or not.
+    /// Returns the number of faults of this severity, listed or not.
     pub fn count(&self, severity: Severity) -> usize {
         self.notes.counts[severity as usize]
     }
 
-    /// How many faults there are beside those that are told, in words.
+    /// Says how many faults there are beside the listed ones.
     pub(super) fn rest(&self) -> Option<String> {
         let told = |severity| {
             let told = self.faults.iter().filter(|fault| fault.severity == severity);
@@ -143,7 +145,7 @@ impl Report {
         (!rest.is_empty()).then(|| format!("and {}{cut}", rest.join(" and ")))
     }
 
-    /// The faults as text for a terminal that knows colours.
+    /// Renders the faults as text with terminal colours.
     pub fn styled(&self) -> String {
         self.render(&Renderer::styled())
     }
@@ -173,7 +175,7 @@ impl Report {
     }
 }
 
-/// Plain text, free of colour.
+/// Renders the faults as plain text, without colours.
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.render(&Renderer::plain()))

@@ -1,8 +1,8 @@
-//! Scenes in TOML: `[entity-type.name]` tables of the same attributes.
+//! Parses scenes in TOML: `[entity-type.name]` tables of the same attributes.
 
 use super::fault::Fault;
+use super::parsed::{Form, MAX_VALUES, Parsed, Word};
 use super::report::Report;
-use super::written::{Form, MOST_VALUES, Word, Written};
 use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
 use std::borrow::Cow;
@@ -11,21 +11,22 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Error};
 
-/// The longest line, and the longest part of a text that is parsed at a time before all of it is known to be sound, in
-/// bytes. What the parser keeps of each token and each error is many times as long as they are.
+/// The maximum length of a line, and of the part of a text that is parsed at once before the whole text is known to be
+/// free of syntax errors, in bytes. For each token and each error, the parser keeps many times as much memory as it
+/// takes in the text.
 const LINE: usize = 1 << 16;
 const PART: usize = 1 << 17;
 
-/// Reads the entities of a text, in their order, and reports what does not have their form. What can be made
-/// out beyond a fault is read all the same, so that one run finds the faults that follow.
-pub fn parse<'a>(registry: &Registry, text: &'a str, report: &mut Report) -> Vec<Written<'a>> {
+/// Parses the entities of a text, in their order, and reports syntax errors. Parsing goes on after an error, so that
+/// one run finds the faults that follow.
+pub fn parse<'a>(registry: &Registry, text: &'a str, report: &mut Report) -> Vec<Parsed<'a>> {
     if let Some(place) = long_line(text) {
         let message = format!("this line is {} bytes long", place.len());
         let help = format!("a line of a scene in TOML is at most {LINE} bytes long");
         report.add(Fault::error(Some(place), message).help(help));
         return Vec::new();
     }
-    let mut written = Vec::new();
+    let mut parsed = Vec::new();
     if is_sound(text) {
         let (document, errors) = DeTable::parse_recoverable(text);
         if document.get_ref().is_empty()
@@ -36,12 +37,12 @@ pub fn parse<'a>(registry: &Registry, text: &'a str, report: &mut Report) -> Vec
             return Vec::new();
         }
         if errors.iter().all(is_duplicate) {
-            Parser::new((text, 0), &errors, report, &mut written).read(document);
-            written.sort_by_key(|entity| entity.name.place.as_ref().map(|place| place.start));
-            return written;
+            Parser::new((text, 0), &errors, report, &mut parsed).read(document);
+            parsed.sort_by_key(|entity| entity.name.place.as_ref().map(|place| place.start));
+            return parsed;
         }
     }
-    // A bracket that is never closed makes nonsense of all that follows. The next title is a new start.
+    // After a bracket that is never closed, nothing can be parsed. Parsing starts again at the next title.
     for piece in pieces(text) {
         if report.has_enough() {
             break;
@@ -49,13 +50,13 @@ pub fn parse<'a>(registry: &Registry, text: &'a str, report: &mut Report) -> Vec
         let at = piece.start;
         let text = &text[piece];
         let (document, errors) = DeTable::parse_recoverable(text);
-        Parser::new((text, at), &errors, report, &mut written).read(document);
+        Parser::new((text, at), &errors, report, &mut parsed).read(document);
     }
-    written.sort_by_key(|entity| entity.name.place.as_ref().map(|place| place.start));
-    written
+    parsed.sort_by_key(|entity| entity.name.place.as_ref().map(|place| place.start));
+    parsed
 }
 
-/// The first line that is too long.
+/// Finds the first line that is too long.
 fn long_line(text: &str) -> Option<Range<usize>> {
     let mut at = 0;
     let mut lines = text.split('\n').map(|line| {
@@ -65,10 +66,10 @@ fn long_line(text: &str) -> Option<Range<usize>> {
     lines.find(|line| line.len() > LINE)
 }
 
-/// Whether a text can be parsed at once: it is short, or has no syntax errors, as far as its parts tell.
+/// Tells whether a text can be parsed at once: it is short, or its parts have no syntax errors.
 fn is_sound(text: &str) -> bool {
     let mut parts = pieces(text);
-    // A part is as many pieces as fit.
+    // Each part joins as many pieces as fit.
     parts.dedup_by(|next, part| {
         let fits = next.end - part.start <= PART;
         if fits {
@@ -83,7 +84,7 @@ fn is_sound(text: &str) -> bool {
     text.len() <= PART || !parts.into_iter().any(has_errors)
 }
 
-/// A syntax error: its place and what it is.
+/// A syntax error: its place and its message.
 type SyntaxError = (Range<usize>, String);
 
 fn is_duplicate(error: &Error) -> bool {
@@ -92,7 +93,7 @@ fn is_duplicate(error: &Error) -> bool {
 
 const DUPLICATE: &str = "duplicate key";
 
-/// Where a text can be parted: before each line that is a title, and before any other where there is none for long.
+/// Splits a text: before each line that is a title, and before other lines where no title comes for a long time.
 fn pieces(text: &str) -> Vec<Range<usize>> {
     let is_title = |line: &str| {
         let line = line.split('#').next().unwrap_or_default().trim();
@@ -112,16 +113,16 @@ fn pieces(text: &str) -> Vec<Range<usize>> {
     starts.iter().copied().zip(ends).map(|(start, end)| start..end).collect()
 }
 
-/// The ends of the lines that are followed by a line that begins with a bracket.
+/// Returns the ends of the lines that are followed by a line beginning with a bracket.
 fn before_titles(text: &str) -> Vec<usize> {
     text.match_indices("\n[").map(|(at, _)| at).collect()
 }
 
-/// The first syntax error of each line, in their order: what follows one on its line mostly follows from it.
+/// Returns the first syntax error of each line, in order: later errors on a line mostly follow from the first.
 fn places(errors: &[Error], text: &str, titles: &[usize]) -> Vec<SyntaxError> {
     let place = |error: &Error| {
         let place = error.span().unwrap_or(text.len()..text.len());
-        // What is missing between two tokens may end before it begins.
+        // The range of a token missing between two others may end before it begins.
         place.start.min(place.end)..place.start.max(place.end)
     };
     let mut places: Vec<_> = errors.iter().map(|error| (place(error), error.message().to_owned())).collect();
@@ -129,7 +130,7 @@ fn places(errors: &[Error], text: &str, titles: &[usize]) -> Vec<SyntaxError> {
     let mut end = 0;
     let mut second_title = 0..0;
     places.retain(|(place, message)| {
-        // What a second title repeats of the first one is no fault of its own.
+        // Duplicates below a repeated title follow from the title, so they are not reported.
         if message == DUPLICATE {
             let line = text[..place.start].rfind('\n').map_or(0, |end| end + 1);
             if text[line..].starts_with('[') {
@@ -148,12 +149,12 @@ fn places(errors: &[Error], text: &str, titles: &[usize]) -> Vec<SyntaxError> {
     places
 }
 
-/// The first of some places in their order that is not before this one.
+/// Returns the first of these sorted positions that is not before `from`.
 fn next(places: &[usize], from: usize) -> Option<usize> {
     places.get(places.partition_point(|place| *place < from)).copied()
 }
 
-/// A syntax error as the fault that it is.
+/// Makes a fault of a syntax error.
 fn fault_of(place: Range<usize>, message: &str, text: &str) -> Fault {
     let before = &text[..place.start];
     let begins_line = before.rfind('\n').is_some_and(|end| before[end..].trim().is_empty());
@@ -181,19 +182,19 @@ fn fault_of(place: Range<usize>, message: &str, text: &str) -> Fault {
 }
 
 struct Parser<'a, 'r> {
-    /// A text, or a piece of one.
+    /// The text, or a piece of it.
     text: &'a str,
-    /// Where it begins.
+    /// The position at which the piece begins, in bytes.
     at: usize,
-    /// Where it has its errors, and which of them go without saying.
+    /// The syntax errors of the piece, and which of them need not be reported any more.
     errors: Vec<SyntaxError>,
     is_told: Vec<bool>,
     titles: Vec<usize>,
     report: &'r mut Report,
-    written: &'r mut Vec<Written<'a>>,
+    parsed: &'r mut Vec<Parsed<'a>>,
 }
 
-/// A key, and a value.
+/// A key with its place, and a value with its place.
 type Key<'a> = Spanned<toml::de::DeString<'a>>;
 type Value<'a> = Spanned<DeValue<'a>>;
 
@@ -202,11 +203,11 @@ impl<'a, 'r> Parser<'a, 'r> {
         (text, at): (&'a str, usize),
         errors: &[Error],
         report: &'r mut Report,
-        written: &'r mut Vec<Written<'a>>,
+        parsed: &'r mut Vec<Parsed<'a>>,
     ) -> Self {
         let titles = before_titles(text);
         let errors = places(errors, text, &titles);
-        Self { text, at, is_told: vec![true; errors.len()], errors, titles, report, written }
+        Self { text, at, is_told: vec![true; errors.len()], errors, titles, report, parsed }
     }
 
     fn read(&mut self, document: Spanned<DeTable<'a>>) {
@@ -220,7 +221,7 @@ impl<'a, 'r> Parser<'a, 'r> {
         }
     }
 
-    /// Reports a fault whose place is one in this piece.
+    /// Reports a fault whose place is relative to this piece.
     fn fault(&mut self, mut fault: Fault) {
         fault.place = fault.place.map(|place| self.placed(place));
         self.report.add(fault);
@@ -273,18 +274,18 @@ impl<'a, 'r> Parser<'a, 'r> {
         self.fault(Fault::error(Some(at.span()), what).help(help));
     }
 
-    /// Reads an entity; `span` is its title, or all of it where it stands in one line.
+    /// Reads an entity; `span` is its title, or all of it where it stands on one line.
     fn entity(&mut self, kind: &Key<'a>, name: &Key<'a>, span: Range<usize>, attributes: DeTable<'a>) {
         let title = if self.text[span.clone()].starts_with('[') { span.clone() } else { 0..0 };
         let place_of = |key: &Key<'a>| {
-            // A key knows only the first of the titles that it stands in.
+            // A key knows only the first title in which it stands.
             let source = self.text.get(key.span()).unwrap_or_default();
             let found = self.text[title.clone()].rfind(source).map(|at| title.start + at);
             found.map_or(key.span(), |start| start..start + source.len())
         };
         let (kind_at, name_at) = (place_of(kind), place_of(name));
         let start = kind_at.start;
-        let mut entity = Written {
+        let mut entity = Parsed {
             kind: self.word(kind.get_ref().clone(), Form::Text, kind_at),
             name: self.word(name.get_ref().clone(), Form::Text, name_at.clone()),
             attributes: Vec::new(),
@@ -296,7 +297,7 @@ impl<'a, 'r> Parser<'a, 'r> {
         let mut end = name_at.end.max(span.end);
         for (key, value) in attributes {
             end = end.max(value.span().end);
-            // What stands in for a value that is missing has a place before its key, and the error is behind that.
+            // The stand-in for a missing value has a place before its key; the error comes after the key.
             let is_before = value.span().start < key.span().end;
             let value_end = if is_before { self.line_end(key.span().end) } else { value.span().end };
             if self.is_faulty(key.span().start..value_end) {
@@ -313,14 +314,14 @@ impl<'a, 'r> Parser<'a, 'r> {
             }
         }
         entity.place = Some(self.placed(start..end));
-        // What could not be made out at all stands after the last attribute, and before the next title.
+        // What could not be parsed at all stands between the last attribute and the next title.
         let next = next(&self.titles, end).unwrap_or(self.text.len());
         entity.is_damaged |= self.is_faulty(name_at.start..next);
         entity.attributes.shrink_to_fit();
-        self.written.push(entity);
+        self.parsed.push(entity);
     }
 
-    /// The errors that begin in a span, its end included.
+    /// Returns the errors that begin in a span, its end included.
     fn errors_in(&self, span: Range<usize>) -> Range<usize> {
         let first = self.errors.partition_point(|(place, _)| place.start < span.start);
         first..self.errors.partition_point(|(place, _)| place.start <= span.end).max(first)
@@ -334,7 +335,7 @@ impl<'a, 'r> Parser<'a, 'r> {
         self.errors_in(span).any(|error| self.is_told[error])
     }
 
-    /// Where a value is broken, what follows inside it follows from that.
+    /// Drops all but the first error of a broken value: the others follow from it.
     fn only_the_first_error_of(&mut self, span: Range<usize>) {
         let mut is_first = true;
         for error in self.errors_in(span) {
@@ -344,7 +345,7 @@ impl<'a, 'r> Parser<'a, 'r> {
         }
     }
 
-    /// Reads the values of an attribute; whether they have the form of values.
+    /// Reads the values of an attribute; returns whether they have the form of values.
     fn values(&mut self, value: &Value<'a>, words: &mut Vec<Word<'a>>) -> bool {
         let place = value.span();
         match value.get_ref() {
@@ -360,7 +361,7 @@ impl<'a, 'r> Parser<'a, 'r> {
             }
             DeValue::Array(values) if values.iter().all(|value| !value.get_ref().is_array()) => {
                 let mut sound = true;
-                for value in values.iter().take(MOST_VALUES) {
+                for value in values.iter().take(MAX_VALUES) {
                     sound &= self.values(value, words);
                 }
                 return sound;

@@ -1,7 +1,7 @@
-//! Words read as the values of an attribute.
+//! Reads words as the values of an attribute.
 
 use super::fault::Fault;
-use super::written::{Form, Word};
+use super::parsed::{Form, Word};
 use crate::numeric::formula::Formula;
 use crate::scene::choice::Choices;
 use crate::scene::value::{Datum, Type};
@@ -12,7 +12,7 @@ use std::sync::Arc;
 /// Reads words as values of a type.
 ///
 /// # Errors
-/// A fault for each word that is none.
+/// A fault for each word that is not a value of the type.
 pub fn read(value_type: Type, words: &[Word<'_>]) -> Result<Datum, Vec<Fault>> {
     match value_type {
         Type::Whole => all(words, whole).map(Datum::Whole),
@@ -41,7 +41,7 @@ fn text(word: &Word<'_>) -> Result<Datum, Vec<Fault>> {
 
 fn formula(word: &Word<'_>) -> Result<Datum, Vec<Fault>> {
     Formula::parse(&word.text).map(|formula| Datum::Formula(Arc::new(formula))).map_err(|fault| {
-        // The place inside of the quotes, where the text stands there as it is.
+        // The place within the quotes, if the text contains the formula exactly as written, without escapes.
         let quotes = usize::from(word.form == Form::Text);
         let is_as_it_is = |place: &Range<usize>| place.len() == word.text.len() + 2 * quotes;
         let inside = |place: &Range<usize>| {
@@ -55,7 +55,7 @@ fn formula(word: &Word<'_>) -> Result<Datum, Vec<Fault>> {
 }
 
 fn choice(choices: Choices, word: &Word<'_>) -> Result<Datum, Vec<Fault>> {
-    // In quotes it is no number.
+    // A word in quotes is not a number.
     let number = word.text.parse().ok().filter(|_| word.form != Form::Text);
     let chosen = number.and_then(|number| choices.numbered(number)).or_else(|| choices.named(&word.text));
     chosen.map(Datum::Choice).ok_or_else(|| {
@@ -69,7 +69,7 @@ fn choice(choices: Choices, word: &Word<'_>) -> Result<Datum, Vec<Fault>> {
     })
 }
 
-/// What a word is in place of a value, and what would be right if that can be said.
+/// What is wrong with a word, and what would be right where that can be said.
 type Complaint = (&'static str, Option<&'static str>);
 
 fn all<T>(words: &[Word<'_>], read: fn(&str) -> Result<T, Complaint>) -> Result<Vec<T>, Vec<Fault>> {

@@ -1,5 +1,5 @@
-//! What the arithmetic alone of a test costs: the formulas of textbooks in loops over arrays, without bounds, brackets,
-//! shading or any care for rounding. No tracer that tests packets of rays one by one is faster.
+//! The cost of the bare arithmetic of a test: textbook formulas in loops over arrays, without range checks, error
+//! bounds, shading or any care for rounding. No tracer that makes the same tests, packet by packet, is faster.
 
 use crate::geometry::ray_packet::{PACKET_SIZE, RayPacket};
 use crate::simd::cpu::{Cpu, kernels};
@@ -7,10 +7,10 @@ use crate::simd::soa::Vectors;
 use glam::DVec3;
 use std::hint::black_box;
 
-/// The shapes that a round looks at, so that nothing about them is computed once for all.
+/// The number of shapes in a round, so that the compiler cannot hoist their constants out of the loop.
 const SHAPES: usize = 8;
 
-/// A test of a textbook.
+/// A textbook intersection test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bare {
     /// A ray and a plane.
@@ -22,7 +22,7 @@ pub enum Bare {
 }
 
 impl Bare {
-    /// The one that an entity of this type needs, if it is one of these.
+    /// Returns the test that an entity of this type needs, if there is one for it.
     pub fn of(entity: &str) -> Option<Self> {
         match entity {
             "plane" | "tiled_plane" | "pplane" | "texplane" => Some(Self::Plane),
@@ -32,7 +32,7 @@ impl Bare {
         }
     }
 
-    /// Makes at least so many tests.
+    /// Performs at least this many tests.
     pub fn run(self, cpu: Cpu, tests: u64) {
         let (mut origin, mut dir) = (Vectors::<PACKET_SIZE>::ZERO, Vectors::<PACKET_SIZE>::ZERO);
         for lane in 0..PACKET_SIZE {
@@ -60,24 +60,24 @@ impl Bare {
 }
 
 kernels! {
-    /// Planes, as a point and a normal.
+    /// Tests planes, each a point and a normal.
     fn planes(rays: RayPacket, shapes: &[[DVec3; 3]], near: &mut [f64], met: &mut [u64]) {
         each(rays, shapes, near, met, |[point, normal, _], origin, dir| {
             (*point - origin).dot(*normal) / dir.dot(*normal)
         });
     }
 
-    /// Spheres of radius 2, as their centres.
+    /// Tests spheres of radius 2, given by their centres.
     fn spheres(rays: RayPacket, shapes: &[[DVec3; 3]], near: &mut [f64], met: &mut [u64]) {
         each(rays, shapes, near, met, |[center, ..], origin, dir| {
             let from = origin - *center;
             let (b, c) = (from.dot(dir), from.dot(from) - 4.0);
-            // NaN, which is no distance, where it misses.
+            // NaN, which fails all comparisons, where the ray misses.
             -b - (b * b - c).sqrt()
         });
     }
 
-    /// Triangles, as a corner and two edges.
+    /// Tests triangles, each a corner and two edges.
     fn triangles(rays: RayPacket, shapes: &[[DVec3; 3]], near: &mut [f64], met: &mut [u64]) {
         each(rays, shapes, near, met, |[corner, one, other], origin, dir| {
             let (across, from) = (dir.cross(*other), origin - *corner);

@@ -1,11 +1,12 @@
-//! How long work takes, as the thread that does it has it on its core: what else the machine does hardly counts.
+//! The duration of work in CPU time of the thread that does it, so that other work of the machine hardly counts.
 
 use std::time::Duration;
 
-/// Shorter work is repeated until it takes so long, so that looking at the clock does not count.
-const SHORTEST: Duration = Duration::from_micros(200);
+/// The shortest duration that is measured. Shorter work is repeated, so that the cost of reading the clock does not
+/// count.
+const MIN_DURATION: Duration = Duration::from_micros(200);
 
-/// The core's time that this thread has had so far.
+/// Returns the CPU time that this thread has used so far.
 #[cfg(target_os = "linux")]
 pub fn now() -> Duration {
     use nix::time::{ClockId, clock_gettime};
@@ -13,7 +14,7 @@ pub fn now() -> Duration {
     clock_gettime(ClockId::CLOCK_THREAD_CPUTIME_ID).map_or(Duration::ZERO, Duration::from)
 }
 
-/// The time on the wall, where no clock counts a thread's own.
+/// Returns the wall-clock time, on systems without a clock for each thread.
 #[cfg(not(target_os = "linux"))]
 pub fn now() -> Duration {
     use std::sync::OnceLock;
@@ -22,11 +23,11 @@ pub fn now() -> Duration {
     START.get_or_init(Instant::now).elapsed()
 }
 
-/// The least time that each of several works takes, in seconds. They take turns for about as long as `patience`, three
-/// times at least, so that a machine that grows slower meets them all.
+/// Returns the least time of each of several pieces of work, in seconds. They take turns for about as long as
+/// `patience`, and three times at least, so that a machine that becomes slower slows down all of them.
 pub fn least<const N: usize>(patience: Duration, works: [&mut dyn FnMut(); N]) -> [f64; N] {
     let mut works = works.map(|work| {
-        let repeats = SHORTEST.as_nanos().div_ceil(time(work, 1).as_nanos().max(1));
+        let repeats = MIN_DURATION.as_nanos().div_ceil(time(work, 1).as_nanos().max(1));
         (work, repeats.max(1) as u32, Duration::MAX)
     });
     let (start, mut rounds) = (now(), 0);

@@ -1,6 +1,6 @@
-//! How fast a scene is traced on one core, and what the arithmetic alone would take there.
+//! Measures how fast a scene is traced on one core, and how fast the bare arithmetic alone would be.
 //!
-//! Times are the core's own for the thread that traces (`clock`), the least of several rounds.
+//! Times are CPU times of the thread that traces (`clock`), the minimum of several rounds.
 
 mod ceiling;
 pub(crate) mod clock;
@@ -25,69 +25,69 @@ use std::io;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-/// How fast a scene is traced.
+/// The speed at which a scene is traced.
 #[derive(Clone, Debug)]
 pub struct Speed {
-    /// The rays from the viewer, and what they cost in the scene without lights, mirrors and glass.
+    /// The primary rays, and their cost in the scene without lights, mirrors and glass.
     pub primary: Cost,
-    /// The rays to lights, and what lights add to that, shading included.
+    /// The shadow rays of primary hits, and what lights add to the cost, shading included.
     pub shadow: Cost,
-    /// The rays mirrored and through glass, with those from there to lights, and what they add to that.
+    /// The reflected and transmitted rays, with the shadow rays from their hits, and what they add to the cost.
     pub onward: Cost,
-    /// All rays, and what the whole frame costs, without a file being written.
+    /// All rays, and the cost of the whole frame, without writing a file.
     pub frame: Cost,
-    /// The tests by the type of the entity, sorted.
+    /// The tests by entity type, sorted.
     pub tests: Vec<TestTimes>,
-    /// What the frame's tests take as bare arithmetic, in seconds, if each has a formula of textbooks
-    /// (`ceiling`).
+    /// The time that the frame's tests take as bare arithmetic (`ceiling`), in seconds, if there is a textbook formula
+    /// for each.
     pub bare: Option<f64>,
 }
 
-/// What some rays cost.
+/// The number and the cost of rays of one sort.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Cost {
-    /// How many there are in a frame.
+    /// The number of rays in a frame.
     pub rays: u64,
-    /// How long they take, in seconds.
+    /// The time for all of them, in seconds.
     pub seconds: f64,
 }
 
 impl Cost {
-    /// Rays for each second; nothing where there are none, or too few to be told from what they are added to.
+    /// Returns the rays per second, or `None` where there are none or their share of the time is too small to measure.
     pub fn rate(&self) -> Option<f64> {
         (self.rays > 0 && self.seconds > 0.0).then(|| self.rays as f64 / self.seconds)
     }
 
-    /// What this is more than another.
+    /// Returns the difference of this cost and another.
     fn beyond(&self, other: &Self) -> Self {
         Self { rays: self.rays.saturating_sub(other.rays), seconds: self.seconds - other.seconds }
     }
 }
 
-/// The tests of rays against the objects of a type.
+/// The tests of rays against objects of one type.
 #[derive(Clone, Debug)]
 pub struct TestTimes {
-    /// The type.
+    /// The entity type.
     pub entity: &'static str,
-    /// How many a frame makes, one for each ray and object.
+    /// The number of tests in a frame, one for each ray and object.
     pub number: u64,
-    /// What they cost on the scene's own rays.
+    /// The cost of a test on the scene's own rays.
     pub times: Times,
-    /// What the formula of textbooks costs, in nanoseconds for each ray.
+    /// The cost of the textbook formula, in nanoseconds per ray.
     pub bare: Option<f64>,
 }
 
 impl Speed {
-    /// The part of the frame's time that its tests take as bare arithmetic.
+    /// Returns the fraction of the frame's time, from 0 to 1, that its tests take as bare arithmetic.
     pub fn share(&self) -> Option<f64> {
         self.bare.map(|bare| bare / self.frame.seconds)
     }
 
-    /// Measures a model with these instructions. Each of a handful of numbers is measured for about as long as
-    /// `patience`, or three times where that takes longer.
+    /// Measures a model at this level of CPU instructions. Each of a handful of numbers is measured for about as long
+    /// as `patience`, or three times where that takes longer.
     ///
     /// # Errors
-    /// Where the system does not give a thread.
+    /// If the system cannot start a thread.
     pub fn measure(model: Model, cpu: Cpu, patience: Duration) -> io::Result<Self> {
         let renderer = Renderer::new(1)?.on(cpu);
         Ok(renderer.run(|| Self::measure_with(&renderer, model, cpu, patience)))
@@ -130,7 +130,7 @@ impl Speed {
     }
 }
 
-/// Makes a frame, in a room that is kept: what the system does to give memory is not measured.
+/// Renders a frame into a buffer that is reused, so that the allocation of memory is not measured.
 fn render(renderer: &Renderer, plan: &Plan, room: &mut Option<Band>) {
     let [width, height] = plan.camera.pixels;
     for rows in Band::split(&(0..width), &(0..height), BAND) {
@@ -145,7 +145,7 @@ fn render(renderer: &Renderer, plan: &Plan, room: &mut Option<Band>) {
     }
 }
 
-/// What a frame takes.
+/// Counts the rays and tests of a frame.
 fn counted(renderer: &Renderer, plan: &Plan) -> RayStats {
     let [width, height] = plan.camera.pixels;
     let sum = Mutex::new(RayStats::default());
@@ -155,7 +155,7 @@ fn counted(renderer: &Renderer, plan: &Plan) -> RayStats {
 }
 
 fn tests(plan: &Plan, tally: &RayStats, cpu: Cpu, patience: Duration) -> Vec<TestTimes> {
-    /// Textbooks' tests in a round.
+    /// The number of textbook tests in a round.
     const ROUND: u64 = 1 << 16;
     let (packets, model) = (packets::of(plan, cpu), plan.model);
     let tests = tally.tests(model).into_iter().filter(|(_, tests)| tests.tested > 0);
@@ -173,11 +173,11 @@ fn tests(plan: &Plan, tally: &RayStats, cpu: Cpu, patience: Duration) -> Vec<Tes
     tests.collect()
 }
 
-/// A model without mirrors and glass.
+/// Removes mirrors and glass from a model.
 fn matt(model: Model) -> Model {
     let matt = |object: Object| {
         let material = Material { specular: Rgb::ZERO, transparency: 0.0, ..(*object.material).clone() };
-        // Nearly all shaders mirror what the material does, and are as fast as they were.
+        // Nearly all shaders use the material's reflectivity, and keep their speed.
         let is_matt = object.shader.brightest(&material).is_some_and(|look| look.specular == Rgb::ZERO);
         let shader = if is_matt { object.shader } else { Box::new(Matt(object.shader)) };
         Object { material: Arc::new(material), shader, ..object }
@@ -186,7 +186,7 @@ fn matt(model: Model) -> Model {
     Model { objects, ..model }
 }
 
-/// A shader that mirrors nothing.
+/// Wraps a shader and removes its reflections.
 struct Matt(AnyShader);
 
 impl Shader for Matt {

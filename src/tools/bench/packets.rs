@@ -1,4 +1,4 @@
-//! A scene's own packets, to time the functions of its shapes with.
+//! Packets of a scene's own rays, to time the functions of its shapes with.
 
 use super::clock;
 use crate::geometry::ray::{MISS, Side};
@@ -13,23 +13,24 @@ use crate::simd::soa::Vectors;
 use std::hint::black_box;
 use std::time::Duration;
 
-/// So many tiles are enough, from all over the picture.
+/// The maximum number of tiles that are used, spread over the image.
 const TILES: usize = 256;
 
-/// The rays of a tile, and what they are tested against.
+/// The primary rays of a tile, and the objects they are tested against.
 pub(super) struct Packet {
     view: Bundle,
     tested: Tested,
-    /// Where the most of them meet one object.
+    /// The object that most of the rays hit, and their hits on it.
     met: Option<Met>,
 }
 
-/// Where rays meet an object, and from there to a light.
+/// The hits of rays on an object, and the shadow rays from there to a light.
 struct Met {
     object: usize,
-    /// The rays that meet it.
+    /// The rays that hit the object.
     view: Bundle,
-    /// Those to the light, on which sides they leave the object, and how far it is; 0 where it is behind.
+    /// The shadow rays, the side of the object on which each starts, and the distance of the light in world units; 0
+    /// where the light is behind the surface.
     toward: Bundle,
     sides: [Side; PACKET_SIZE],
     t_max: [f64; PACKET_SIZE],
@@ -50,18 +51,18 @@ impl Bundle {
     }
 }
 
-/// Nanoseconds that a test of one ray takes.
+/// The time of a test, in nanoseconds per ray.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Times {
-    /// To find what rays from the viewer meet first.
+    /// The closest-hit test of primary rays.
     pub meet: Option<f64>,
-    /// To find whether it blocks rays to a light.
+    /// The occlusion test of shadow rays.
     pub block: Option<f64>,
-    /// To find exactly where it is met.
+    /// The refinement of the hit's distance.
     pub settle: Option<f64>,
 }
 
-/// The packets of a model.
+/// Collects packets of a model's rays.
 pub(super) fn of(plan: &Plan, cpu: Cpu) -> Vec<Packet> {
     let tiles: Vec<_> = split(plan.camera.pixels).collect();
     let step = tiles.len().div_ceil(TILES);
@@ -109,7 +110,7 @@ impl Packet {
     }
 }
 
-/// The times of those objects that `is_wanted`, by their indices.
+/// Returns the times of the objects for which `is_wanted` is true, by their indices.
 pub(super) fn times(
     packets: &[Packet],
     model: &Model,
@@ -190,7 +191,7 @@ pub(super) fn times(
     }
 }
 
-/// The pixels of a frame, tile by tile as the renderer takes them: from the left and from the bottom.
+/// Returns the pixels of a frame, tile by tile in the renderer's order: column from the left and row from the bottom.
 fn split([width, height]: [usize; 2]) -> impl Iterator<Item = Vec<[usize; 2]>> {
     (0..height).step_by(TILE).flat_map(move |top| {
         (0..width).step_by(TILE).map(move |left| {
@@ -205,7 +206,7 @@ fn split([width, height]: [usize; 2]) -> impl Iterator<Item = Vec<[usize; 2]>> {
     })
 }
 
-/// The objects that the rays from the viewer and the first rays to lights are tested against.
+/// The objects that the primary rays and the first shadow rays are tested against.
 #[derive(Default)]
 struct Tested {
     primary: Vec<usize>,
@@ -227,7 +228,7 @@ impl TraceObserver for Tested {
 }
 
 impl Tested {
-    /// Those of a tile, each once.
+    /// Collects the objects of a tile, each once.
     fn of(plan: &Plan, cpu: Cpu, tile: &[[usize; 2]]) -> Self {
         let mut tested = Self::default();
         Tracer::new(plan, cpu, &mut Scratch::default(), &mut tested).pixels(tile);

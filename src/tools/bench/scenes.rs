@@ -1,11 +1,11 @@
-//! Scenes to measure with, where none is given.
+//! Built-in scenes to measure when no scene is given.
 
-use crate::scene::reader::Written;
+use crate::scene::reader::Parsed;
 use glam::{DVec3, dvec3};
 use std::f64::consts::TAU;
 
-/// The scenes and what they are.
-pub fn all() -> [(&'static str, Vec<Written<'static>>); 4] {
+/// Returns the built-in scenes with their names.
+pub fn all() -> [(&'static str, Vec<Parsed<'static>>); 4] {
     [
         ("3 planes and 2 spheres", planes_and_spheres()),
         ("a vase", vase()),
@@ -14,10 +14,10 @@ pub fn all() -> [(&'static str, Vec<Written<'static>>); 4] {
     ]
 }
 
-/// Two balls in the corner of a room, with two lights.
-pub fn planes_and_spheres() -> Vec<Written<'static>> {
+/// Two spheres in the corner of a room, with two lights.
+pub fn planes_and_spheres() -> Vec<Parsed<'static>> {
     let plane = |name, normal: [f64; 3]| {
-        Written::new("plane", name)
+        Parsed::new("plane", name)
             .set("material", "white")
             .set("normal", normal)
             .set("point", [0.0, 0.0, -8.0])
@@ -33,11 +33,11 @@ pub fn planes_and_spheres() -> Vec<Written<'static>> {
     scene
 }
 
-/// The course notes' vase, as exactly as it can be.
-pub fn vase() -> Vec<Written<'static>> {
+/// The course notes' vase, with its profile as a formula.
+pub fn vase() -> Vec<Parsed<'static>> {
     let mut scene = setting(dvec3(4.0, 3.0, 7.0));
     scene.push(
-        Written::new("revsurf", "vase")
+        Parsed::new("revsurf", "vase")
             .set("material", "white")
             .set("profile", "2 + sin(y)")
             .set("direction", [0.0, 1.0, 0.0])
@@ -47,16 +47,17 @@ pub fn vase() -> Vec<Written<'static>> {
     scene
 }
 
-/// So many spheres in a box behind the screen, which together cover about as much of it however many they are.
-pub fn spheres(count: usize) -> Vec<Written<'static>> {
+/// This many spheres in a box behind the image plane. Together they cover about the same area of it, however many there
+/// are.
+pub fn spheres(count: usize) -> Vec<Parsed<'static>> {
     let radius = 1.5 / (count as f64).sqrt();
     let mut scene = setting(dvec3(4.0, 3.0, 7.0));
     scene.extend((0..count).map(|index| sphere(&format!("s{index}"), scattered(index), radius)));
     scene
 }
 
-/// So many triangles or one less: the notes' vase, in rings of facets.
-pub fn triangles(count: usize) -> Vec<Written<'static>> {
+/// This many triangles or one less: the notes' vase, in rings of facets.
+pub fn triangles(count: usize) -> Vec<Parsed<'static>> {
     let rings = ((count / 2) as f64).sqrt() as usize;
     let around = count / 2 / rings.max(1);
     let at = |ring: usize, step: usize| {
@@ -76,36 +77,36 @@ pub fn triangles(count: usize) -> Vec<Written<'static>> {
     scene
 }
 
-fn setting(viewpoint: DVec3) -> Vec<Written<'static>> {
+fn setting(viewpoint: DVec3) -> Vec<Parsed<'static>> {
     let light = |name, location: [f64; 3]| {
-        Written::new("light", name).set("location", location).set("emissivity", [3.0, 3.0, 3.0])
+        Parsed::new("light", name).set("location", location).set("emissivity", [3.0, 3.0, 3.0])
     };
     vec![
-        Written::new("camera", "eye")
+        Parsed::new("camera", "eye")
             .set("pixeldim", [640, 480])
             .set("worlddim", [8.0, 6.0])
             .set("viewpoint", viewpoint),
-        Written::new("material", "white").set("ambient", [1.0; 3]).set("diffuse", [4.0; 3]),
+        Parsed::new("material", "white").set("ambient", [1.0; 3]).set("diffuse", [4.0; 3]),
         light("left", [2.0, 4.0, 0.0]),
         light("right", [6.0, 4.0, 0.0]),
     ]
 }
 
-fn sphere(name: &str, center: DVec3, radius: f64) -> Written<'static> {
-    Written::new("sphere", name).set("material", "white").set("center", center).set("radius", radius)
+fn sphere(name: &str, center: DVec3, radius: f64) -> Parsed<'static> {
+    Parsed::new("sphere", name).set("material", "white").set("center", center).set("radius", radius)
 }
 
-fn triangle(name: &str, corners: [DVec3; 3]) -> Written<'static> {
+fn triangle(name: &str, corners: [DVec3; 3]) -> Parsed<'static> {
     let [a, b, c] = corners;
-    Written::new("triangle", name)
+    Parsed::new("triangle", name)
         .set("material", "white")
         .set("vertex1", a)
         .set("vertex2", b)
         .set("vertex3", c)
 }
 
-/// A place in the box, spread evenly: multiples of powers of the plastic ratio (Roberts, "The Unreasonable
-/// Effectiveness of Quasirandom Sequences", 2018).
+/// Returns a point in the box. The points are spread evenly: multiples of powers of the plastic ratio (Roberts, "The
+/// Unreasonable Effectiveness of Quasirandom Sequences", 2018).
 fn scattered(index: usize) -> DVec3 {
     const STEP: DVec3 = dvec3(0.819_172_513_396_164_5, 0.671_043_606_703_789_3, 0.549_700_477_901_970_2);
     let part = ((index + 1) as f64 * STEP).fract();

@@ -1,16 +1,17 @@
-//! Logarithmic axes: from numbers to places, and the numbers to write beside them.
+//! Logarithmic axes: maps numbers to positions, and chooses the numbers to write beside them.
 
 /// A logarithmic axis.
 pub struct Axis {
     low: f64,
     high: f64,
-    /// Where its ends are, in pixels.
+    /// The positions of the axis's ends, in pixels.
     from: f64,
     to: f64,
 }
 
 impl Axis {
-    /// An axis for some numbers above 0, with room beyond the least and the greatest: these parts of the axis.
+    /// Makes an axis for numbers above 0. `before` and `behind` are the fractions of the axis that stay free below the
+    /// least and above the greatest number; `from` and `to` are the positions of its ends, in pixels.
     pub fn new(
         numbers: impl Iterator<Item = f64>,
         (before, behind): (f64, f64),
@@ -27,12 +28,12 @@ impl Axis {
         Self { low: low - before * decades, high: high + behind * decades, from, to }
     }
 
-    /// Where a number is.
+    /// Returns the position of a number, in pixels.
     pub fn at(&self, number: f64) -> f64 {
         self.from + (libm::log10(number) - self.low) / (self.high - self.low) * (self.to - self.from)
     }
 
-    /// The numbers to mark, and what to write there.
+    /// Returns the positions of the tick marks, in pixels, and their labels.
     pub fn ticks(&self) -> Vec<(f64, String)> {
         const MOST: f64 = 9.0;
         let decades = self.high - self.low;
@@ -48,7 +49,7 @@ impl Axis {
     }
 }
 
-/// A number of one digit, times a power of ten.
+/// Writes a number of one digit times a power of ten.
 fn written(digit: f64, exponent: i32) -> String {
     if (-3..=4).contains(&exponent) {
         let decimals = (-exponent).max(0) as usize;

@@ -1,4 +1,4 @@
-//! The ways in which a scene's hits can be found, each as a model of the scene.
+//! The methods by which a scene's hits can be found, each as a model of the scene.
 
 use super::data::Family;
 use crate::geometry::aabb::Aabb;
@@ -17,10 +17,10 @@ use crate::world::shape::{ByDistance, Shape};
 use glam::DVec3;
 use std::io;
 
-/// Loads the scene anew, in an accuracy or in its own.
+/// Loads the scene again, with the given accuracy or with its own.
 pub type Load<'l> = &'l dyn Fn(Option<Accuracy>) -> io::Result<Model>;
 
-/// A scene, and a way to find its hits.
+/// A scene, and a method of finding its hits.
 pub struct Candidate {
     pub name: String,
     pub family: Family,
@@ -28,12 +28,13 @@ pub struct Candidate {
     /// The accuracy, where a scene can choose it.
     pub accuracy: Option<Accuracy>,
     pub is_default: bool,
-    /// What the error of a hit that it finds is at most, but for what a graze makes of rounding.
+    /// An upper bound on the error of a hit's distance, in world units, except where a grazing ray magnifies rounding
+    /// errors.
     pub promise: f64,
 }
 
-/// All of them: the accuracies that a scene can choose, and where a shape is the roots of a function along a ray,
-/// other methods.
+/// Returns all candidates: the accuracies that a scene can choose, and, where a shape's hits are roots of a function
+/// along a ray, other root finders.
 pub fn all(load: Load) -> io::Result<Vec<Candidate>> {
     let default = load(None)?.camera.value.accuracy;
     let mut candidates = Vec::new();
@@ -82,19 +83,19 @@ pub fn all(load: Load) -> io::Result<Vec<Candidate>> {
     Ok(candidates)
 }
 
-/// Whether a shape's hits are the roots of a function along a ray.
+/// Tells whether a shape's hits are roots of a function along a ray.
 pub fn is_searched(shape: &AnyShape) -> bool {
     let any = Ray { origin: DVec3::ZERO, dir: DVec3::Z };
     shape.packets().distance_by(Method::Steps, &any, &RayRange::ALL).is_some()
 }
 
-/// A shape that is found by another method.
+/// A shape whose hits are found by another method.
 struct By {
     shape: AnyShape,
     method: Method,
 }
 
-/// Proven as the shape is that it stands for.
+/// Takes the proofs of its hits from the original shape.
 struct ByItsOwn;
 
 impl Hittable for By {

@@ -1,4 +1,4 @@
-//! Lines, markers and words, drawn into whatever `plotters` writes: the same for SVG and PNG.
+//! Draws lines, markers and text with `plotters`, in the same way for SVG and PNG.
 
 use super::labels::PlotArea;
 use plotters::coord::Shift;
@@ -12,7 +12,8 @@ use std::fmt::Display;
 use std::io;
 use std::sync::LazyLock;
 
-/// The colours of M. Okabe and K. Ito, "Color universal design" (2008), which all readers can tell apart.
+/// Colours of M. Okabe and K. Ito, "Color universal design" (2008), which people with colour vision deficiencies can
+/// tell apart too.
 pub const VERMILION: RGBColor = RGBColor(0xd5, 0x5e, 0x00);
 pub const ORANGE: RGBColor = RGBColor(0xe6, 0x9f, 0x00);
 pub const PURPLE: RGBColor = RGBColor(0xcc, 0x79, 0xa7);
@@ -21,7 +22,7 @@ pub const GREEN: RGBColor = RGBColor(0x00, 0x9e, 0x73);
 pub const GREY: RGBColor = RGBColor(0x60, 0x60, 0x60);
 pub const LIGHT: RGBColor = RGBColor(0xdd, 0xdd, 0xdd);
 
-/// The form of a marker.
+/// The shape of a marker.
 #[derive(Clone, Copy)]
 pub enum Marker {
     Disc,
@@ -32,7 +33,7 @@ pub enum Marker {
     Star,
 }
 
-/// Where a text has its point.
+/// Which point of a text lies at its position.
 #[derive(Clone, Copy)]
 pub enum Align {
     Left,
@@ -40,7 +41,7 @@ pub enum Align {
     Right,
 }
 
-/// How a text looks.
+/// The appearance of a text.
 #[derive(Clone, Copy)]
 pub struct Letters {
     pub size: f64,
@@ -49,33 +50,33 @@ pub struct Letters {
 }
 
 impl Letters {
-    /// Plain black ones.
+    /// Black letters of normal weight, `size` pixels high.
     pub const fn new(size: f64) -> Self {
         Self { size, colour: BLACK, is_bold: false }
     }
 
-    /// About how wide a text is.
+    /// Estimates the width of a text.
     pub fn width(&self, text: &str) -> f64 {
         text.chars().count() as f64 * self.size * if self.is_bold { 0.62 } else { 0.55 }
     }
 }
 
-/// Why something was not drawn; the writers' own errors are not known to live long enough.
+/// Makes an error of a failed drawing operation; the errors of `plotters` may not live long enough to be kept.
 fn failed(error: impl Display) -> io::Error {
     io::Error::other(error.to_string())
 }
 
-/// What is drawn on.
+/// A drawing area.
 pub struct Canvas<D: DrawingBackend> {
     area: DrawingArea<D, Shift>,
-    /// Its pixels in each unit.
+    /// Pixels per unit of the drawing.
     scale: f64,
 }
 
 impl<D: DrawingBackend> Canvas<D> {
-    /// A white one.
+    /// Makes a white canvas.
     pub fn new(area: DrawingArea<D, Shift>, scale: f64) -> io::Result<Self> {
-        // The letters of pictures; where letters are kept as text, whoever shows them has their own.
+        // The font of the PNG files. An SVG keeps text as text, which the viewer draws in a font of its own.
         static FONT: LazyLock<bool> = LazyLock::new(|| {
             register_font("sans-serif", FontStyle::Normal, dejavu::sans::regular()).is_ok()
                 && register_font("sans-serif", FontStyle::Bold, dejavu::sans::bold()).is_ok()
@@ -87,7 +88,7 @@ impl<D: DrawingBackend> Canvas<D> {
         Ok(Self { area, scale })
     }
 
-    /// Ends the drawing.
+    /// Finishes the drawing.
     pub fn finish(self) -> io::Result<()> {
         self.area.present().map_err(failed)
     }
@@ -96,20 +97,20 @@ impl<D: DrawingBackend> Canvas<D> {
         ((x * self.scale).round() as i32, (y * self.scale).round() as i32)
     }
 
-    /// A line through points.
+    /// Draws a line through points.
     pub fn line(&self, points: &[(f64, f64)], colour: RGBColor, width: f64) -> io::Result<()> {
         let points: Vec<_> = points.iter().map(|point| self.pixel(*point)).collect();
         let style = colour.stroke_width((width * self.scale).round().max(1.0) as u32);
         self.area.draw(&PathElement::new(points, style)).map_err(failed)
     }
 
-    /// The edges of a rectangle.
+    /// Draws the outline of a rectangle.
     pub fn frame(&self, area: PlotArea, colour: RGBColor) -> io::Result<()> {
         let PlotArea { left, top, right, bottom } = area;
         self.line(&[(left, top), (right, top), (right, bottom), (left, bottom), (left, top)], colour, 1.0)
     }
 
-    /// A marker, filled or hollow.
+    /// Draws a marker, filled or hollow.
     pub fn marker(
         &self,
         (x, y): (f64, f64),
@@ -139,12 +140,12 @@ impl<D: DrawingBackend> Canvas<D> {
         self.line(&outline, colour, 1.5)
     }
 
-    /// A line of text; its point is halfway up.
+    /// Draws a line of text, vertically centred on its position.
     pub fn text(&self, text: &str, at: (f64, f64), align: Align, letters: Letters) -> io::Result<()> {
         self.write(text, at, align, letters, FontTransform::None)
     }
 
-    /// A line of text that runs upward.
+    /// Draws a line of text that runs upward.
     pub fn upward(&self, text: &str, at: (f64, f64), letters: Letters) -> io::Result<()> {
         self.write(text, at, Align::Middle, letters, FontTransform::Rotate270)
     }

@@ -1,52 +1,52 @@
-//! Times that can be compared: the same work of each choice by turns, so that whatever else the machine does meets all
-//! of them, in CPU time of the thread, the least of many rounds.
+//! Measures times that can be compared: the choices take turns, so that other work of the machine slows all of them;
+//! times are CPU times of the thread, the minimum of many rounds.
 
 use super::progress::Progress;
 use crate::tools::bench::clock;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
-/// The rounds that are run at most.
-const MOST: usize = 15;
+/// The maximum number of rounds.
+const MAX_ROUNDS: usize = 15;
 
-/// The rounds that are run at least, however long they take.
-const LEAST: usize = 3;
+/// The minimum number of rounds, however long they take.
+const MIN_ROUNDS: usize = 3;
 
-/// What one choice may take in all of its rounds.
-const ENOUGH: Duration = Duration::from_millis(200);
+/// The time that one choice may take in all its rounds.
+const CHOICE_TIME: Duration = Duration::from_millis(200);
 
-/// Work that takes less is repeated within a round.
-const SHORTEST: Duration = Duration::from_millis(2);
+/// The shortest duration that is measured; shorter work is repeated within a round.
+const MIN_DURATION: Duration = Duration::from_millis(2);
 
-/// What a choice's work is taken for before it is known, in units of [`Progress`].
+/// The estimate of the work for one choice before it is known, in units of [`Progress`].
 const UNITS: usize = 100_000;
 
-/// What a piece of work took, in seconds.
+/// The times of a piece of work, in seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Times {
-    /// In the shortest round.
+    /// The time of the shortest round.
     pub least: f64,
-    /// In the middle one.
+    /// The median time of the rounds.
     pub median: f64,
-    /// How many rounds there were.
+    /// The number of rounds.
     pub rounds: usize,
-    /// How long they waited for other work of the machine, as a part of what they took.
+    /// The time that the rounds waited for other work of the machine, as a fraction of the time that they took.
     pub waited: f64,
 }
 
 impl Times {
-    /// How much longer the middle round was than the shortest, as a part of that.
+    /// Returns the relative excess of the median round over the shortest.
     pub fn spread(&self) -> f64 {
         self.median / self.least - 1.0
     }
 }
 
-/// What timing so many choices adds to the work.
+/// Returns the work of timing this many choices, in units of [`Progress`].
 pub fn work(choices: usize) -> usize {
     choices * UNITS
 }
 
-/// Times the work of choices by their index; each does `count` equal things, and the times are those of one.
+/// Times the work of choices, by index. The work of each consists of `count` equal items; the times are for one item.
 pub fn rounds(
     choices: usize,
     count: usize,
@@ -56,21 +56,21 @@ pub fn rounds(
     let mut repeats = vec![1_u32; choices];
     let mut all = vec![Vec::new(); choices];
     let mut waits = vec![Duration::ZERO; choices];
-    // To warm up, and to see how long it takes.
+    // The first round warms up the caches and tells how long the work takes.
     for (choice, repeats) in repeats.iter_mut().enumerate() {
         let (took, _) = time(|| work(choice));
-        *repeats = (SHORTEST.as_nanos() / took.as_nanos().max(1)).clamp(1, 1000) as u32;
-        progress.done(UNITS / (MOST + 1))?;
+        *repeats = (MIN_DURATION.as_nanos() / took.as_nanos().max(1)).clamp(1, 1000) as u32;
+        progress.done(UNITS / (MAX_ROUNDS + 1))?;
     }
-    'rounds: for round in 0..MOST {
+    'rounds: for round in 0..MAX_ROUNDS {
         for choice in 0..choices {
             let spent: Duration = all[choice].iter().sum::<Duration>() * repeats[choice];
-            if round < LEAST || spent < ENOUGH {
+            if round < MIN_ROUNDS || spent < CHOICE_TIME {
                 let (took, waited) = time(|| (0..repeats[choice]).for_each(|_| work(choice)));
                 all[choice].push(took / repeats[choice]);
                 waits[choice] += waited / repeats[choice];
             }
-            let is_broken_off = progress.done(UNITS / (MOST + 1)).is_break();
+            let is_broken_off = progress.done(UNITS / (MAX_ROUNDS + 1)).is_break();
             if is_broken_off && round == 0 {
                 return ControlFlow::Break(());
             } else if is_broken_off {
@@ -95,7 +95,7 @@ pub fn rounds(
     )
 }
 
-/// The CPU time of this thread that some work takes, and how much longer the clock on the wall runs.
+/// Returns the CPU time that some work takes on this thread, and how much longer it takes on the wall clock.
 fn time(work: impl FnOnce()) -> (Duration, Duration) {
     let (start, wall) = (clock::now(), Instant::now());
     work();

@@ -1,24 +1,24 @@
-//! How far apart colours are: as light, and as they look.
+//! Differences of colours: in their values, and as the eye sees them.
 
 use crate::render::bytes::{shown, to_byte};
 use crate::world::material::Rgb;
 use glam::DVec3;
 
-/// How far some colours are from the right ones.
+/// The difference of colours from the true ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Difference {
-    /// The root of the mean square over all channels.
+    /// The root of the mean square difference over all channels, where 1 is white.
     pub rmse: f64,
-    /// The greatest difference of a channel.
+    /// The greatest difference of a channel, where 1 is white.
     pub worst: f64,
-    /// What all but one in a hundred of the distances in Oklab are below, in hundredths of that from black to white:
-    /// what the eye takes for equal is about 2 apart.
+    /// The 99th percentile of the distances in Oklab, in hundredths of the distance from black to white. Colours about
+    /// 2 apart can just be told apart.
     pub visible: f64,
-    /// How many have other bytes in a picture.
+    /// The number of colours whose bytes in an image differ.
     pub changed: usize,
 }
 
-/// How far colours are from the right ones, pair by pair.
+/// Compares colours with the true ones, pair by pair.
 pub fn difference(colours: &[Rgb], right: &[Rgb]) -> Difference {
     let (mut squares, mut worst, mut changed) = (0.0, 0.0_f64, 0);
     let mut visible = Vec::new();
@@ -42,7 +42,7 @@ pub fn difference(colours: &[Rgb], right: &[Rgb]) -> Difference {
     }
 }
 
-/// A colour of a picture, which is shown as sRGB, in Oklab (B. Ottosson, "A perceptual color space for image
+/// Converts a colour of an image, which is shown as sRGB, to Oklab (B. Ottosson, "A perceptual color space for image
 /// processing", 2020): lightness from 0 to 1, and two axes of colour.
 fn oklab(colour: Rgb) -> DVec3 {
     let light = |channel: f64| {
@@ -69,7 +69,7 @@ mod tests {
     #[test]
     fn white_is_light_and_has_no_colour() {
         assert!((oklab(DVec3::ONE) - DVec3::X).length() < 1e-6);
-        // Ottosson's own example, of sRGB red.
+        // Ottosson's own example, for sRGB red.
         let red = oklab(DVec3::X);
         assert!((red - DVec3::new(0.627_96, 0.224_86, 0.125_85)).length() < 1e-4, "{red}");
     }

@@ -1,110 +1,110 @@
-//! What is charted: panels of points, one for each choice.
+//! The data of a chart: panels of points, one point for each choice.
 
 use super::clock::Times;
 use super::machine::Machine;
 
 /// All that is charted of a scene.
 pub struct Chart {
-    /// What the scene is called.
+    /// The name of the scene.
     pub scene: String,
-    /// Where and when it was measured.
+    /// Where and when the times were measured.
     pub machine: Machine,
-    /// One picture for each question.
+    /// One panel for each question.
     pub panels: Vec<Panel>,
-    /// Whether all was measured that was to be.
+    /// Whether the measurement was completed.
     pub is_whole: bool,
 }
 
 /// Choices that answer one question, compared.
 pub struct Panel {
-    /// What is compared.
+    /// The title.
     pub title: String,
-    /// On what.
+    /// A note on the rays or pixels that are compared.
     pub note: String,
-    /// What the errors are of.
+    /// What the errors are errors of.
     pub subject: Subject,
     /// The choices.
     pub points: Vec<Point>,
 }
 
-/// What errors are of.
+/// What errors are errors of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Subject {
-    /// Distances of hits, in world units; the times are those of a ray and an object.
+    /// Distances of hits, in world units. Times are for one ray and one object.
     Distances,
-    /// Colours of pixels, one ray through each; the times are those of a pixel.
+    /// Colours of pixels, with one ray through each. Times are for one pixel.
     Methods,
-    /// Colours of pixels, by samples; the times are those of a pixel.
+    /// Colours of pixels, by the number of samples. Times are for one pixel.
     Samples,
 }
 
 /// One choice.
 pub struct Point {
-    /// What it is called.
+    /// The choice's name.
     pub name: String,
-    /// What it is akin to.
+    /// The group of choices that it is drawn with.
     pub family: Family,
-    /// Whether the scene is traced so.
+    /// Whether the scene is traced so without a choice.
     pub is_default: bool,
-    /// The seconds that it takes for one ray or one pixel.
+    /// The times for one ray or one pixel, in seconds.
     pub times: Times,
-    /// How wrong it is: of distances the 99th percentile of their errors, in world units; of colours the root of the
-    /// mean square of theirs, 1 being as bright as a picture can show. Not a number where no hit is right.
+    /// The error: for distances the 99th percentile of their errors, in world units; for colours the root mean square
+    /// of theirs, where 1 is white. NaN if no hit is right.
     pub error: f64,
-    /// The greatest error.
+    /// The greatest error, in the same unit.
     pub worst: f64,
-    /// Hits that are not the right ones.
+    /// The numbers of wrong hits.
     pub wrong: Wrong,
-    /// Of colours, how different all but one in a hundred look at most: distances in Oklab, in hundredths of that from
-    /// black to white.
+    /// For colours, the 99th percentile of the visible differences: distances in Oklab, in hundredths of the distance
+    /// from black to white.
     pub visible: Option<f64>,
-    /// Of colours, how many of the pixels that were looked at have other bytes in the picture.
+    /// For colours, how many pixels have other bytes in the image, and how many were compared.
     pub changed: Option<[usize; 2]>,
-    /// The samples that it has for each pixel.
+    /// The number of samples per pixel.
     pub samples: u32,
 }
 
-/// Hits that are not the right ones.
+/// The numbers of wrong hits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Wrong {
-    /// The rays that were looked at and whose truth is known.
+    /// The number of rays that were compared and whose true hit is known.
     pub of: usize,
     /// Hits that were not found.
     pub missed: usize,
     /// Hits that were found where there are none.
     pub invented: usize,
-    /// Hits found at another crossing than the first.
+    /// Hits found at a later crossing than the first.
     pub later: usize,
 }
 
 impl Wrong {
-    /// All together.
+    /// Returns the number of all wrong hits.
     pub fn count(&self) -> usize {
         self.missed + self.invented + self.later
     }
 }
 
-/// Choices of a kind, which are drawn alike.
+/// A group of choices that are drawn alike.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Family {
-    /// The program's own method, by its accuracy.
+    /// The program's own method, by accuracy.
     Own,
     /// The course notes' methods.
     Notes,
-    /// Samples along the ray.
+    /// Root finders that sample the function along the ray.
     Sampling,
     /// Sphere tracing.
     Tracing,
     /// Methods that prove what they find.
     Bounds,
-    /// Samples of pixels, spread evenly.
+    /// Samples within pixels from a Sobol sequence.
     Sobol,
-    /// Samples of pixels, anywhere.
+    /// Samples within pixels at random positions.
     Random,
 }
 
 impl Panel {
-    /// What errors are, as a table calls them.
+    /// Returns what the errors are, as a table calls them.
     pub fn measure(&self) -> &'static str {
         match self.subject {
             Subject::Distances => "error of the distance, 99th percentile (world units)",
@@ -112,7 +112,7 @@ impl Panel {
         }
     }
 
-    /// What its points take their times for, and how many of these units are a second.
+    /// Returns what the times are for, with their unit, and the number of these units in a second.
     pub fn unit(&self) -> (&'static str, f64) {
         match self.subject {
             Subject::Distances => ("CPU time per ray and object (ns)", 1e9),
@@ -120,7 +120,7 @@ impl Panel {
         }
     }
 
-    /// Errors that make no difference: of a colour, far less than a step of what a picture can show.
+    /// Returns the error below which errors do not matter: for a colour, far less than one level of a channel.
     pub fn negligible(&self) -> f64 {
         match self.subject {
             Subject::Distances => 0.0,
@@ -129,28 +129,29 @@ impl Panel {
     }
 }
 
-/// What noise and waiting may be at most.
-const MOST: f64 = 0.15;
+/// The greatest noise and the greatest waiting time, as fractions, for times that can be trusted.
+const MAX_NOISE: f64 = 0.15;
 
 impl Chart {
-    /// How far apart rounds of the same work were, as a part of their time: that of the choice in the middle.
+    /// Returns the relative excess of the median round over the shortest: the median over all choices.
     pub fn noise(&self) -> f64 {
         self.middle(Times::spread)
     }
 
-    /// How long rounds waited for other work of the machine, likewise.
+    /// Returns the time that rounds waited for other work of the machine, as a fraction of the time that they took: the
+    /// median over all choices.
     pub fn waited(&self) -> f64 {
         self.middle(|times| times.waited)
     }
 
-    /// Whether its times cannot be trusted.
+    /// Tells whether the times are too noisy to be trusted.
     pub fn is_noisy(&self) -> bool {
-        self.noise() > MOST
+        self.noise() > MAX_NOISE
     }
 
-    /// Whether the machine had other work, which slows all choices alike.
+    /// Tells whether the machine had other work, which slows all choices alike.
     pub fn is_busy(&self) -> bool {
-        self.waited() > MOST
+        self.waited() > MAX_NOISE
     }
 
     fn middle(&self, of: impl Fn(&Times) -> f64) -> f64 {

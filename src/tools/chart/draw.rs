@@ -1,4 +1,4 @@
-//! A chart as a drawing: a panel for each question, time to the right, errors upward, both logarithmic.
+//! Draws a chart: a panel for each question, with time to the right and errors upward, both logarithmic.
 
 use super::axis::Axis;
 use super::canvas::{Align, BLUE, Canvas, GREEN, GREY, LIGHT, Letters, Marker, ORANGE, PURPLE, VERMILION};
@@ -14,13 +14,13 @@ const PANEL: (f64, f64) = (720.0, 500.0);
 const HEAD: f64 = 78.0;
 const FOOT: f64 = 86.0;
 
-/// Of an axis with errors that make no difference, what is left below for them.
+/// The height of the strip below an error axis for errors that do not matter, in pixels.
 const NOTHING: f64 = 34.0;
 
-/// As an SVG file.
+/// Draws the chart as an SVG file.
 ///
 /// # Errors
-/// Where it cannot be drawn.
+/// If the chart cannot be drawn.
 pub fn svg(chart: &Chart) -> io::Result<String> {
     let (width, height) = size(chart);
     let mut text = String::new();
@@ -28,12 +28,12 @@ pub fn svg(chart: &Chart) -> io::Result<String> {
     Ok(text)
 }
 
-/// As a PNG file.
+/// Draws the chart as a PNG file.
 ///
 /// # Errors
-/// Where it cannot be drawn.
+/// If the chart cannot be drawn.
 pub fn png(chart: &Chart) -> io::Result<Vec<u8>> {
-    // Each pixel is the mean of four, which smooths its lines.
+    // Each pixel is the mean of four, for antialiasing.
     let (width, height) = size(chart);
     let (width, height) = (width as usize, height as usize);
     let mut fine = vec![0; 4 * 3 * width * height];
@@ -94,7 +94,7 @@ fn draw<D: DrawingBackend>(chart: &Chart, backend: D, scale: f64) -> io::Result<
     canvas.finish()
 }
 
-/// What the markers mean, of those that there are.
+/// Draws the legend of the markers that the chart contains.
 fn legend<D: DrawingBackend>(canvas: &Canvas<D>, chart: &Chart, y: f64) -> io::Result<()> {
     let letters = Letters::new(12.5);
     let mut x = 26.0;
@@ -132,7 +132,7 @@ fn legend<D: DrawingBackend>(canvas: &Canvas<D>, chart: &Chart, y: f64) -> io::R
     canvas.text(&text, (26.0, second + 22.0), Align::Left, Letters { colour: GREY, ..letters })
 }
 
-/// How the points of a family are drawn.
+/// Returns the marker and the colour of a family.
 fn look(family: Family) -> (Marker, RGBColor) {
     match family {
         Family::Own => (Marker::Disc, BLACK),
@@ -158,7 +158,7 @@ fn draw_panel<D: DrawingBackend>(canvas: &Canvas<D>, panel: &Panel, corner: (f64
     canvas.text(&panel.note, (middle, corner.1 + 39.0), Align::Middle, note)?;
 
     let (unit, scale) = panel.unit();
-    // Errors that make no difference have a place of their own below the axis.
+    // Errors that do not matter are drawn in a strip below the axis.
     let nothing = panel.negligible();
     let has_nothing = panel.points.iter().any(|point| point.error <= nothing);
     let floor = plot.bottom - if has_nothing { NOTHING } else { 0.0 };
@@ -212,7 +212,7 @@ fn draw_panel<D: DrawingBackend>(canvas: &Canvas<D>, panel: &Panel, corner: (f64
     if front.len() > 1 {
         canvas.line(&front, GREY, 2.0)?;
     }
-    // What labels keep clear of.
+    // The lines that labels keep clear of.
     let mut lines: Vec<_> = front.windows(2).map(|ends| (ends[0], ends[1])).collect();
     if has_nothing {
         lines.push(((plot.left, floor), (plot.right, floor)));
@@ -225,7 +225,7 @@ fn draw_panel<D: DrawingBackend>(canvas: &Canvas<D>, panel: &Panel, corner: (f64
     let places: Vec<_> = points.iter().map(|point| place(point)).collect();
     let letters = |point: &Point| Letters { is_bold: point.is_default, ..Letters::new(12.0) };
     let names: Vec<String> = points.iter().map(|point| name(panel, point)).collect();
-    // With a gap between neighbours, lest two numbers look like one.
+    // With a gap between neighbours, so that two numbers do not look like one.
     let size = |(name, point): (&String, &&Point)| (letters(point).width(name) + 6.0, 15.0);
     let sizes: Vec<_> = names.iter().zip(&points).map(size).collect();
     let labels = labels::place(&places, &sizes, &lines, plot);
@@ -249,7 +249,7 @@ fn draw_panel<D: DrawingBackend>(canvas: &Canvas<D>, panel: &Panel, corner: (f64
     Ok(())
 }
 
-/// What is written beside a point.
+/// Returns the label of a point.
 fn name(panel: &Panel, point: &Point) -> String {
     if panel.subject == Subject::Samples {
         return point.samples.to_string();

@@ -1,4 +1,4 @@
-//! A quick measurement of what accuracy and samples make of a scene, to choose from.
+//! A quick measurement of the effects of accuracy and samples on a scene, to choose from.
 
 use super::candidate::Load;
 use super::colours::difference;
@@ -15,31 +15,31 @@ use crate::world::sample::Sampler;
 use std::io;
 use std::ops::ControlFlow;
 
-/// The samples that there are to choose from.
+/// The numbers of samples to choose from.
 const SAMPLES: [u32; 9] = [1, 2, 4, 8, 16, 32, 64, 128, 256];
 
-/// How often each choice is timed; the least counts.
+/// The number of times that each choice is timed; the minimum counts.
 const ROUNDS: usize = 3;
 
-/// What measuring one choice adds to the work.
+/// The work of measuring one choice, in units of [`Progress`].
 const UNITS: usize = 100_000;
 
-/// What a choice of accuracy and samples costs, and how wrong it is, all errors taken together.
+/// The cost and the error of an accuracy and a number of samples, with all sources of error together.
 pub struct Estimate {
     /// The accuracy.
     pub accuracy: Accuracy,
-    /// The samples for each pixel, spread evenly.
+    /// The number of samples per pixel, from a Sobol sequence.
     pub samples: u32,
-    /// The CPU time of one thread for all of the picture, in seconds.
+    /// The CPU time of one thread for the whole image, in seconds.
     pub seconds: f64,
-    /// The root of the mean square of the colours' errors, 1 being white.
+    /// The root of the mean square error of the colours, where 1 is white.
     pub rmse: f64,
 }
 
-/// What the accuracies and some numbers of samples make of a scene.
+/// Measures the accuracies, each with several numbers of samples, on a scene.
 ///
 /// # Errors
-/// Those of `load`, and of threads that are not to be had; `Interrupted` where `progress` breaks off.
+/// Those of `load`, and those of starting threads; `Interrupted` if `progress` breaks off.
 pub fn estimates(load: Load, progress: &mut dyn Progress) -> io::Result<Vec<Estimate>> {
     let (threads, thread) = (Renderer::new(0)?, Renderer::new(1)?);
     let accuracies = Accuracy::all();
@@ -48,8 +48,8 @@ pub fn estimates(load: Load, progress: &mut dyn Progress) -> io::Result<Vec<Esti
     let exact = Plan::new(&exact);
     let tests = tests(&exact, &threads);
     let size = exact.camera.pixels;
-    let most = (TRUE_TESTS as f64 / 2.0 / (f64::from(TRUE_SAMPLES) * tests)) as usize;
-    let pixels = spread(size, most.clamp(256, 4096));
+    let max_pixels = (TRUE_TESTS as f64 / 2.0 / (f64::from(TRUE_SAMPLES) * tests)) as usize;
+    let pixels = spread(size, max_pixels.clamp(256, 4096));
     let timed = timed(size, tests);
     let scale = (size[0] * size[1]) as f64 / count(&timed) as f64;
     let right = whole(pictures::truth(&exact, &threads, &pixels, Seen::Picture, progress))?;
@@ -78,7 +78,7 @@ fn whole<T>(flow: ControlFlow<(), T>) -> io::Result<T> {
     }
 }
 
-/// The CPU time that tiles take on one thread, in seconds.
+/// Returns the CPU time that tiles take on one thread, in seconds.
 fn time(thread: &Renderer, plan: &Plan, tiles: &[Pixels]) -> f64 {
     thread.run(|| {
         let start = clock::now();

@@ -1,10 +1,10 @@
-//! The numbers of a chart, for other programs.
+//! Writes the numbers of a chart, for other programs.
 
 use super::data::{Chart, Panel, Point, Subject};
 use crate::words;
 use serde::Serialize;
 
-/// One line for each choice, below one with the names of the columns. Times are in seconds.
+/// Writes a header with the names of the columns, and one line for each choice. Times are in seconds.
 pub fn csv(chart: &Chart) -> String {
     let mut text =
         "panel,choice,default,front,samples,seconds,seconds_median,rounds,error,worst,known,missed,\
@@ -42,7 +42,7 @@ pub fn csv(chart: &Chart) -> String {
     text
 }
 
-/// All of it, as JSON.
+/// Writes the whole chart as JSON.
 pub fn json(chart: &Chart) -> String {
     words::json_in_lines(&Document {
         build: &chart.machine.build,
@@ -56,74 +56,74 @@ pub fn json(chart: &Chart) -> String {
     })
 }
 
-/// A chart, for programs. Its fields stand in the order in which they are written.
+/// A chart, for other programs. Fields are declared in the order in which they are written.
 #[derive(Serialize)]
 struct Document<'c> {
-    /// The program's version, and how it was built.
+    /// The program's version and its build settings.
     build: &'c str,
-    /// When it was measured, in UTC, such as `2026-11-21 09:30`.
+    /// The time of the measurement in UTC, such as `2026-11-21 09:30`.
     date: &'c str,
-    /// How far apart rounds of the same work were, as a part of their time: that of the choice in the middle.
+    /// The relative excess of the median round over the shortest: the median over all choices.
     noise: f64,
-    /// One for each question.
+    /// One panel for each question.
     panels: Vec<Compared<'c>>,
-    /// The processor, those of its instructions that are used, and how many threads it runs.
+    /// The processor, the level of CPU instructions that is used, and the number of its threads.
     processor: &'c str,
-    /// What the scene is called.
+    /// The name of the scene.
     scene: &'c str,
-    /// How long rounds waited for other work of the machine, likewise.
+    /// The time that rounds waited for other work of the machine, as a fraction of the time that they took: the median
+    /// over all choices.
     waited: f64,
-    /// Whether all was measured that was to be.
+    /// Whether the measurement was completed.
     whole: bool,
 }
 
 /// Choices that answer one question.
 #[derive(Serialize)]
 struct Compared<'c> {
-    /// What `error` and `worst` of its points are, and in which unit.
+    /// What `error` and `worst` of the points are, and their unit.
     error: &'static str,
-    /// On what they are compared.
+    /// A note on the rays or pixels that are compared.
     note: &'c str,
     /// The choices.
     points: Vec<Measured<'c>>,
-    /// What is compared.
+    /// The title.
     title: &'c str,
 }
 
-/// One choice. What rays are counted is 0 where colours are compared, and null what only colours have.
+/// One choice. Counts of rays are 0 where colours are compared; fields that only colours have are null elsewhere.
 #[derive(Serialize)]
 struct Measured<'c> {
-    /// How many of `pixels` have other bytes in the picture.
+    /// The number of pixels, out of `pixels`, with other bytes in the image.
     changed: Option<usize>,
-    /// What it is called.
+    /// The choice's name.
     choice: &'c str,
     /// Whether the scene is traced so.
     default: bool,
-    /// How wrong it is: of distances the 99th percentile of their errors, of colours the root of the mean square of
-    /// theirs.
+    /// The error: for distances the 99th percentile of their errors, for colours the root of the mean square of theirs.
     error: f64,
-    /// Whether it is one of the best: no choice without wrong hits is faster and more exact.
+    /// Whether it is on the Pareto front: no choice without wrong hits is faster and more accurate.
     front: bool,
-    /// How many hits were found where there are none.
+    /// The number of hits that were found where there are none.
     invented: usize,
-    /// How many rays were looked at and have a known truth.
+    /// The number of rays that were compared and whose true hit is known.
     known: usize,
-    /// How many hits were found at another crossing than the first.
+    /// The number of hits found at a later crossing than the first.
     later: usize,
-    /// How many hits were not found.
+    /// The number of hits that were not found.
     missed: usize,
-    /// How many pixels were looked at.
+    /// The number of pixels that were compared.
     pixels: Option<usize>,
-    /// How many rounds were run.
+    /// The number of rounds.
     rounds: usize,
-    /// How many samples it has for each pixel.
+    /// The number of samples per pixel.
     samples: u32,
-    /// What it takes for one ray or one pixel, in the shortest round.
+    /// The time for one ray or one pixel in the shortest round, in seconds.
     seconds: f64,
-    /// Likewise, in the middle round.
+    /// The median time for one ray or one pixel, in seconds.
     seconds_median: f64,
-    /// How different all but one in a hundred pixels look at most: distances in Oklab, in hundredths of that from black
-    /// to white.
+    /// The 99th percentile of the visible differences: distances in Oklab, in hundredths of the distance from black to
+    /// white.
     visible: Option<f64>,
     /// The greatest error.
     worst: f64,
@@ -165,7 +165,7 @@ impl<'c> Measured<'c> {
     }
 }
 
-/// A cell of text: with quotes, and those in it doubled.
+/// Writes a cell of text: in quotes, with quotes inside it doubled.
 fn quoted(text: &str) -> String {
     format!("\"{}\"", text.replace('"', "\"\""))
 }

@@ -1,20 +1,20 @@
-//! The Pareto front: the choices that none beats.
+//! The Pareto front: the choices that no other choice beats.
 
 use super::data::{Panel, Point};
 
-/// Times that differ by less are equal.
+/// The ratio up to which times count as equal.
 pub const SAME_TIME: f64 = 1.1;
 
-/// Errors that differ by less are equal.
+/// The ratio up to which errors count as equal.
 const SAME_ERROR: f64 = 1.5;
 
-/// Which of these have no wrong hits and are beaten by none. Errors up to a negligible one are equal.
+/// Marks the points that have no wrong hits and are beaten by none. Errors up to `negligible` count as equal.
 pub fn of(points: &[Point], negligible: f64) -> Vec<bool> {
     let is_best = |point: &Point| point.wrong.count() == 0 && beaten_by(points, point, negligible).is_none();
     points.iter().map(is_best).collect()
 }
 
-/// The fastest choice that beats one, if any does.
+/// Returns the fastest choice that beats `beaten`, if any does.
 pub fn beaten_by<'p>(points: &'p [Point], beaten: &Point, negligible: f64) -> Option<&'p Point> {
     points
         .iter()
@@ -22,7 +22,7 @@ pub fn beaten_by<'p>(points: &'p [Point], beaten: &Point, negligible: f64) -> Op
         .min_by(|a, b| a.times.least.total_cmp(&b.times.least))
 }
 
-/// Whether one is as fast and as right as the other, and clearly faster or clearly more right.
+/// Tells whether `one` is as fast and as accurate as `other`, and clearly faster or clearly more accurate.
 fn beats(one: &Point, other: &Point, negligible: f64) -> bool {
     let time = one.times.least / other.times.least;
     let [error, than] = [one, other].map(|point| point.error.max(negligible));
@@ -30,7 +30,7 @@ fn beats(one: &Point, other: &Point, negligible: f64) -> bool {
 }
 
 impl Panel {
-    /// Whether each of its points is one of the best.
+    /// Marks the points that are on the Pareto front.
     pub fn front(&self) -> Vec<bool> {
         of(&self.points, self.negligible())
     }

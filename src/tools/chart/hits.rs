@@ -1,5 +1,5 @@
-//! Which hits each choice finds, at which distances, and how long it takes: of rays through the picture, and of rays
-//! that graze silhouettes.
+//! Which hits each choice finds, at which distances, and in what time: for rays through the image, and for rays that
+//! graze silhouettes.
 
 use super::candidate::{Candidate, is_searched};
 use super::clock;
@@ -20,35 +20,35 @@ use crate::world::certify::{self, Enclosure, Precision};
 use std::hint::black_box;
 use std::ops::ControlFlow;
 
-/// The pairs of a ray and an object in each set, about.
+/// The approximate numbers of pairs of a ray and an object in a set.
 const CAMERA: usize = 20_000;
 const GRAZING: usize = 4_000;
 
-/// Of which so many are timed, about.
+/// The approximate number of pairs that are timed.
 const TIMED: usize = 2_000;
 
-/// What finding the truth about one pair takes, in units of [`Progress`].
+/// The work of finding the true hit of one pair, in units of [`Progress`].
 const TRUTH: usize = 30;
 
-/// Rays, with the objects that they are asked about.
+/// Rays, with the objects that they are tested against.
 pub struct Set {
     title: String,
     note: String,
     packets: Vec<Packet>,
-    /// Whether the objects are the roots of a function along a ray.
+    /// Whether the objects' hits are roots of a function along a ray.
     is_searched: bool,
 }
 
-/// What is true about a pair.
+/// The true hit of a pair of a ray and an object.
 enum Truth {
-    /// The ray meets the object there, on this side of its surface.
+    /// The ray hits the object at this distance, on this side of its surface.
     Hit(DoubleDouble, Side),
     Miss,
-    /// The proof did not tell.
+    /// The proof did not decide.
     Undecided,
 }
 
-/// All sets that a scene has.
+/// Returns all sets of a scene.
 pub fn sets(model: &Model) -> Vec<Set> {
     let mut sets = Vec::new();
     for is_of_roots in [true, false] {
@@ -76,12 +76,12 @@ pub fn sets(model: &Model) -> Vec<Set> {
     sets
 }
 
-/// How many rays they have.
+/// Returns the number of rays in packets.
 fn count(packets: &[Packet]) -> usize {
     packets.iter().map(Packet::len).sum()
 }
 
-/// What measuring a set adds to the work.
+/// Returns the work of measuring a set, in units of [`Progress`].
 pub fn work(set: &Set, candidates: usize) -> usize {
     count(&set.packets) * (TRUTH + candidates) + clock::work(candidates)
 }
@@ -150,7 +150,7 @@ pub fn panel(study: &Study, set: &Set, progress: &mut dyn Progress) -> ControlFl
     }))
 }
 
-/// Something of each, on all threads of the pool that this runs in.
+/// Maps items on all threads of the current pool.
 fn each<T: Sync, U: Send>(of: &[T], work: impl Fn(&T) -> U + Sync + Send) -> Vec<U> {
     use rayon::prelude::*;
     of.par_iter().map(work).collect()
@@ -169,12 +169,12 @@ fn truths_of(model: &Model, packet: &Packet) -> Vec<Truth> {
     packet.sights().map(truth).collect()
 }
 
-/// The side of its surface on which a ray meets a shape.
+/// Returns the side of its surface on which a ray hits a shape.
 fn side(shape: &AnyShape, ray: &Ray, distance: f64) -> Side {
     Side::seen_along(ray.dir, shape.normal(ray.at(distance)))
 }
 
-/// The errors of the right hits, sorted, and how many others there are.
+/// Returns the errors of the right hits, sorted, and the numbers of the wrong ones.
 fn tally(candidate: &Candidate, set: &Set, truths: &[Truth], screen: f64) -> (Vec<f64>, Wrong) {
     let (mut errors, mut wrong) = (Vec::new(), Wrong::default());
     let cpu = Cpu::best();
@@ -190,8 +190,8 @@ fn tally(candidate: &Candidate, set: &Set, truths: &[Truth], screen: f64) -> (Ve
             Truth::Hit(..) if found == MISS => wrong.missed += 1,
             Truth::Hit(right, on) => {
                 let error = (DoubleDouble::from(found) - *right).high.abs();
-                // A hit on the other side of the surface is another crossing, unless it is off by no more than it
-                // may be; one far off is in any case.
+                // A hit on the other side of the surface is another crossing, unless its error is within ten times the
+                // bound; a hit with a large error is another crossing on either side.
                 let is_off = error > 10.0 * candidate.promise && side(shape, &ray, found) != *on;
                 if is_off || error > 0.01 * screen {
                     wrong.later += 1;
@@ -206,7 +206,7 @@ fn tally(candidate: &Candidate, set: &Set, truths: &[Truth], screen: f64) -> (Ve
     (errors, wrong)
 }
 
-/// Whether anything is certain about rays that meet a shape.
+/// Tells whether hits of a shape can be proven.
 fn is_provable(model: &Model, shape: &AnyShape) -> bool {
     const LOOKS: usize = 64;
     let camera = &model.camera.value;
@@ -218,7 +218,7 @@ fn is_provable(model: &Model, shape: &AnyShape) -> bool {
     places.any(is_certain)
 }
 
-/// Rays through the middles of pixels, in the packets in which a render has them.
+/// Returns rays through the centres of pixels, in the packets in which a render traces them.
 fn camera(model: &Model, group: &[usize]) -> Vec<Packet> {
     let camera = &model.camera.value;
     let count = CAMERA.div_ceil(group.len() * PACKET_SIZE);
@@ -230,7 +230,7 @@ fn camera(model: &Model, group: &[usize]) -> Vec<Packet> {
     packets
 }
 
-/// Rays beside the edges of objects, from a pixel's width to 10^-10 of one away from them.
+/// Returns rays beside the silhouettes of objects, at distances from one pixel width down to 10^-10 of it.
 fn grazing(model: &Model, group: &[usize]) -> Vec<Packet> {
     const DIGITS: i32 = 10;
     let camera = &model.camera.value;
@@ -267,12 +267,12 @@ fn grazing(model: &Model, group: &[usize]) -> Vec<Packet> {
     group.iter().flat_map(packets).collect()
 }
 
-/// Names, each once, in words.
+/// Lists names, each once, for a sentence.
 fn list(mut names: Vec<&str>) -> String {
-    const MOST: usize = 4;
+    const MAX_NAMES: usize = 4;
     names.sort_unstable();
     names.dedup();
-    let more = names.len() > MOST;
-    names.truncate(MOST);
+    let more = names.len() > MAX_NAMES;
+    names.truncate(MAX_NAMES);
     names.join(", ") + if more { ", ..." } else { "" }
 }

@@ -1,6 +1,6 @@
-//! Where the names of points go, so that none covers another.
+//! Places the labels of points so that they do not overlap.
 
-/// A rectangle: left, top, right and bottom.
+/// A rectangle: left, top, right and bottom, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlotArea {
     pub left: f64,
@@ -10,7 +10,7 @@ pub struct PlotArea {
 }
 
 impl PlotArea {
-    /// Around a point.
+    /// Makes a square around a point; `half` is half its side, in pixels.
     pub fn around((x, y): (f64, f64), half: f64) -> Self {
         Self { left: x - half, top: y - half, right: x + half, bottom: y + half }
     }
@@ -37,7 +37,7 @@ impl PlotArea {
         (self.left..=self.right).contains(&x) && (self.top..=self.bottom).contains(&y)
     }
 
-    /// Whether a line runs through it, seen at so many places that it cannot hide between them.
+    /// Tells whether a line crosses the rectangle, by testing points so close together that none is missed.
     fn is_crossed(&self, ((x, y), (to_x, to_y)): Segment) -> bool {
         const STEP: f64 = 4.0;
         let steps = ((to_x - x).hypot(to_y - y) / STEP).ceil().max(1.0);
@@ -48,23 +48,23 @@ impl PlotArea {
     }
 }
 
-/// From a point to another one.
+/// A line from one point to another.
 pub type Segment = ((f64, f64), (f64, f64));
 
-/// Where a label went.
+/// The place of a label.
 #[derive(Clone, Copy, Debug)]
 pub struct LabelPlace {
-    /// What it covers.
+    /// The rectangle that the label covers.
     pub area: PlotArea,
-    /// Where a line from its point to it ends, if it is not right beside that.
+    /// The end of a leader line from the point to the label, if the label is not right beside its point.
     pub leader: Option<(f64, f64)>,
 }
 
-/// Places labels of these sizes beside their points, the first ones best, and clear of lines; nothing for one that has
-/// no room.
+/// Places labels of these sizes beside their points, the first ones best, and clear of lines; a label for which there
+/// is no room gets `None`.
 ///
-/// They are placed one after the other. Then one that is badly placed is, again and again, taken away with some of its
-/// neighbours and chooses before them, and what is better stays.
+/// Labels are placed one after the other. Then a badly placed label is removed, again and again, with some of its
+/// neighbours, and is placed before them; improvements are kept.
 pub fn place(
     points: &[(f64, f64)],
     sizes: &[(f64, f64)],
@@ -72,8 +72,8 @@ pub fn place(
     room: PlotArea,
 ) -> Vec<Option<LabelPlace>> {
     const ROUNDS: usize = 100;
-    /// The most labels that are placed anew at one time.
-    const MOST: usize = 8;
+    /// The maximum number of labels that are placed anew at one time.
+    const MAX_MOVED: usize = 8;
     let crowd = Crowd { points, sizes, lines, room };
     let mut best = vec![None; points.len()];
     let mut costs = vec![0.0; points.len()];
@@ -91,8 +91,8 @@ pub fn place(
         };
         let mut near: Vec<usize> = (0..points.len()).filter(|index| *index != first).collect();
         near.sort_by(|a, b| far(a).total_cmp(&far(b)));
-        near.truncate(1 + round % MOST);
-        let turn = (round / MOST) % near.len().max(1);
+        near.truncate(1 + round % MAX_MOVED);
+        let turn = (round / MAX_MOVED) % near.len().max(1);
         near.rotate_left(turn);
         let (mut places, mut sums) = (best.clone(), costs.clone());
         near.iter().chain([&first]).for_each(|index| places[*index] = None);
@@ -104,23 +104,23 @@ pub fn place(
     best
 }
 
-/// How far two points are apart.
+/// Returns the distance of two points, in pixels.
 fn distance(from: (f64, f64), to: (f64, f64)) -> f64 {
     (to.0 - from.0).hypot(to.1 - from.1)
 }
 
-/// As far from its point a label needs no line to it.
-const NEAR: f64 = 13.0;
+/// The greatest distance of a label from its point without a leader line, in pixels.
+const MAX_WITHOUT_LEADER: f64 = 13.0;
 
-/// How far a label may be from its point.
-const FAR: u32 = 250;
+/// The greatest distance of a label from its point, in pixels.
+const MAX_DISTANCE: u32 = 250;
 
-/// What is bad about a label, in the length of lines: that its line crosses a marker or another line, or that it has no
-/// place.
+/// The cost of a leader line that crosses a marker or another line, and that of a label without a place, in the same
+/// unit as the cost of a leader line: pixels of its length.
 const CROSSING: f64 = 300.0;
 const MISSING: f64 = 3000.0;
 
-/// Points, the sizes of their labels, and what those keep clear of and inside.
+/// Points, the sizes of their labels, the lines that labels keep clear of, and the area within which they stay.
 struct Crowd<'c> {
     points: &'c [(f64, f64)],
     sizes: &'c [(f64, f64)],
@@ -129,7 +129,7 @@ struct Crowd<'c> {
 }
 
 impl Crowd<'_> {
-    /// Places some beside those that are placed, one after the other, and tells what is bad about each.
+    /// Places labels beside those already placed, one after the other, and sets the cost of each.
     fn place(
         &self,
         order: impl Iterator<Item = usize>,
@@ -155,7 +155,7 @@ impl Crowd<'_> {
             };
             let cost = |place: &LabelPlace| {
                 let Some(end) = place.leader else { return 0.0 };
-                // The markers that it starts below are there in any case.
+                // The markers at which the leader line starts do not count.
                 let others = markers.iter().filter(|marker| !marker.holds(point));
                 let crossed = others.filter(|marker| marker.is_crossed((point, end))).count()
                     + leaders().filter(|leader| do_cross(*leader, (point, end))).count();
@@ -169,32 +169,33 @@ impl Crowd<'_> {
     }
 }
 
-/// The places for a label of this size around its point, the best first.
+/// Returns the places for a label of this size around its point, the best first.
 fn around(point: (f64, f64), (width, height): (f64, f64)) -> impl Iterator<Item = LabelPlace> {
     const STEP: u32 = 10;
     const TURNS: u32 = 24;
-    // Right, left, up and down first.
+    // Right, left, below and above come first.
     let mut turns: Vec<u32> = (0..TURNS).collect();
     turns.sort_by_key(|turn| (turn % (TURNS / 4) != 0, turn % (TURNS / 2) != 0));
-    (0..FAR / STEP).map(|step| NEAR + f64::from(step * STEP)).flat_map(move |radius| {
+    (0..MAX_DISTANCE / STEP).map(|step| MAX_WITHOUT_LEADER + f64::from(step * STEP)).flat_map(move |radius| {
         turns.clone().into_iter().flat_map(move |turn| {
             let (down, right) = libm::sincos(std::f64::consts::TAU * f64::from(turn) / f64::from(TURNS));
             let natural = if right.abs() < 0.1 { 0.5 } else { f64::from(right < 0.0) };
-            // Beside a steep line it can be on either side.
-            let others = if right.abs() < 0.8 && radius > NEAR { [0.0, 1.0].as_slice() } else { &[] };
+            // At a steep leader line the label can be on either side.
+            let others =
+                if right.abs() < 0.8 && radius > MAX_WITHOUT_LEADER { [0.0, 1.0].as_slice() } else { &[] };
             let end = (point.0 + radius * right, point.1 + radius * down);
             let top = end.1 + 0.5 * height * (down - 1.0);
-            // It begins, ends or has its middle there.
+            // The label begins, ends or has its middle at the end of the line.
             [natural].into_iter().chain(others.iter().copied()).map(move |begins| {
                 let left = end.0 - begins * width;
                 let area = PlotArea { left, top, right: left + width, bottom: top + height };
-                LabelPlace { area, leader: (radius > NEAR).then_some(end) }
+                LabelPlace { area, leader: (radius > MAX_WITHOUT_LEADER).then_some(end) }
             })
         })
     })
 }
 
-/// Whether two lines cross each other.
+/// Tells whether two lines cross.
 fn do_cross((a, b): Segment, (c, d): Segment) -> bool {
     let turn = |a: (f64, f64), b: (f64, f64), c: (f64, f64)| {
         ((b.0 - a.0) * (c.1 - a.1) - (b.1 - a.1) * (c.0 - a.0)).total_cmp(&0.0)

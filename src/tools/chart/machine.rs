@@ -7,16 +7,17 @@ use std::time::SystemTime;
 
 /// A machine, a build of the program, and a time.
 pub struct Machine {
-    /// The processor, as the system calls it, those of its instructions that are used, and how many threads it runs.
+    /// The processor's name according to the system, the level of CPU instructions that is used, and the number of its
+    /// threads.
     pub processor: String,
-    /// The program's version, and how it was built.
+    /// The program's version and its build settings.
     pub build: String,
-    /// When, in UTC, such as `2026-11-21 09:30`.
+    /// The time in UTC, such as `2026-11-21 09:30`.
     pub date: String,
 }
 
 impl Machine {
-    /// This one, now.
+    /// Describes this machine, this build and the current time.
     pub fn here() -> Self {
         let threads = thread::available_parallelism().map_or(1, usize::from);
         let target = format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS);
@@ -35,7 +36,7 @@ impl Machine {
     }
 }
 
-/// What Linux calls the processor.
+/// Returns the processor's name according to Linux.
 fn name() -> Option<String> {
     let text = fs::read_to_string("/proc/cpuinfo").ok()?;
     let line = text.lines().find(|line| line.starts_with("model name"))?;

@@ -1,8 +1,8 @@
-//! What each choice costs in a scene and how wrong it is: speed charted against accuracy.
+//! Measures the cost and the error of each choice in a scene: speed charted against accuracy.
 //!
-//! The choices are those that a scene has: ways to find the hits of its shapes, and samples for each pixel. Their
-//! errors are counted against the truth (proven hits, distances to 30 digits; pictures of a thousand samples), and
-//! depend on the scene alone. Their times are taken by turns, in CPU time of the one thread that does the work.
+//! The choices are those that a scene has: methods of finding the hits of its shapes, and numbers of samples per pixel.
+//! Errors are measured against the truth (proven hits, with distances to 30 digits; images of a thousand samples), and
+//! depend on the scene alone. The choices are timed by turns, in CPU time of the one thread that does the work.
 
 mod axis;
 mod candidate;
@@ -38,11 +38,11 @@ use std::io;
 use std::ops::ControlFlow;
 use study::Study;
 
-/// Measures what a scene's choices cost and how wrong they are. Where `progress` breaks off, what is measured by then
-/// is kept.
+/// Measures the cost and the error of a scene's choices. If `progress` breaks off, what has been measured so far is
+/// kept.
 ///
 /// # Errors
-/// Those of `load`, and of threads that are not to be had.
+/// Those of `load`, and those of starting threads.
 pub fn measure(scene: &str, load: Load, progress: &mut dyn Progress) -> io::Result<Chart> {
     let study = Study::new(load)?;
     let mut chart =

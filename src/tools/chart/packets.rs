@@ -1,4 +1,4 @@
-//! Packets of rays, and where they first meet an object: found as a render finds it.
+//! Packets of rays, and their first hits on an object, found as a render finds them.
 
 use crate::geometry::ray::{MISS, Ray, RayRange};
 use crate::geometry::ray_packet::{Nearest, PACKET_SIZE, RayPacket};
@@ -8,9 +8,9 @@ use crate::simd::soa::{LANES, Vectors};
 use crate::world::any_shape::AnyShape;
 use crate::world::camera::Camera;
 
-/// Rays that are asked about an object.
+/// Rays that are tested against one object.
 pub struct Packet {
-    /// Its index.
+    /// The object's index.
     pub object: usize,
     len: usize,
     origin: Vectors<PACKET_SIZE>,
@@ -19,7 +19,8 @@ pub struct Packet {
 }
 
 impl Packet {
-    /// As many packets as the rays through these places of a picture need, in pixels from the left and from the bottom.
+    /// Makes as many packets as needed for the rays through these points of an image, in pixels from the left and from
+    /// the bottom.
     pub fn of(object: usize, camera: &Camera, places: &[[f64; 2]]) -> impl Iterator<Item = Self> {
         places.chunks(PACKET_SIZE).map(move |places| {
             let (origin, dir) = (Vectors::ZERO, Vectors::ZERO);
@@ -35,28 +36,28 @@ impl Packet {
         })
     }
 
-    /// How many rays it has.
+    /// Returns the number of rays.
     pub fn len(&self) -> usize {
         self.len
     }
 
-    /// Its rays.
+    /// Returns the rays.
     pub fn rays(&self) -> impl Iterator<Item = Ray> {
         (0..self.len).map(|lane| self.all().get(lane))
     }
 
-    /// Its rays, and what they are before anything is rounded.
+    /// Returns the rays, each with its exact form before rounding.
     pub fn sights(&self) -> impl Iterator<Item = (Ray, &Sight)> {
         self.rays().zip(&self.sights)
     }
 
-    /// With the copies that fill it up.
+    /// Returns all lanes, with the copies of rays that fill up the packet.
     fn all(&self) -> RayPacket<'_> {
         let count = self.len.next_multiple_of(LANES);
         RayPacket { origin: self.origin.view(count), dir: self.dir.view(count), origin_error: 0.0 }
     }
 
-    /// The distances at which its rays first meet the object; [`MISS`] where they do not.
+    /// Returns the distances at which the rays first hit the object, in world units; [`MISS`] where they do not.
     pub fn hits(&self, shape: &AnyShape, cpu: Cpu) -> [f64; PACKET_SIZE] {
         let (rays, len) = (self.all(), self.len);
         let exactly = |lane: usize| shape.distance(&rays.get(lane), &RayRange::ALL);

@@ -1,7 +1,7 @@
-//! What each choice makes of the picture: its colours against the right ones, and how long they take.
+//! The effect of each choice on the image: its colours against the true ones, and its time.
 //!
-//! Errors are of some of the picture's own pixels, spread evenly; times are of some of its tiles, each traced on one
-//! thread as a render traces it.
+//! Errors are those of some of the image's own pixels, spread evenly; times are those of some of its tiles, each traced
+//! on one thread as in a render.
 
 use super::clock::{self, Times};
 use super::colours::{Difference, difference};
@@ -22,32 +22,33 @@ use glam::DVec2;
 use std::hint::black_box;
 use std::ops::ControlFlow;
 
-/// The samples of a picture that counts as true: of no use against more than a quarter of them.
+/// The number of samples per pixel of an image that counts as true. It serves as a reference for up to a quarter as
+/// many samples.
 pub(super) const TRUE_SAMPLES: u32 = 1024;
 
-/// The samples that are compared, and the scene's own.
+/// The numbers of samples that are compared, beside the scene's own.
 const SAMPLES: [u32; 8] = [1, 2, 4, 8, 16, 24, 32, 64];
 
-/// The tests of an object that one panel of samples may take for its truth: about as many tenths of a microsecond.
+/// The maximum number of object tests for the true colours of one panel of samples: about 0.1 µs each, so 5 s.
 pub(super) const TRUE_TESTS: usize = 50_000_000;
 
-/// The tests that what is timed takes with one sample for each pixel, about, and the tiles that are timed at least.
+/// The approximate number of tests in a timed piece of work with one sample per pixel, and the minimum number of tiles.
 const TIMED_TESTS: usize = 25_000;
 const TIMED_TILES: usize = 16;
 
-/// The tests that pictures by another method may take.
+/// The maximum number of tests for an image by another method.
 const METHOD_TESTS: usize = 500_000;
 
-/// What samples of a picture are for.
+/// What the samples of an image smooth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Seen {
-    /// Edges, and shadows where these are soft.
+    /// Edges, and shadows where they are soft.
     Picture,
-    /// Soft shadows alone: each pixel is looked at in its middle.
+    /// Soft shadows alone: all samples of a pixel go through its centre.
     Shadows,
 }
 
-/// What all pictures add to the work, about.
+/// Returns the approximate work of measuring all images, in units of [`Progress`].
 pub fn work(study: &Study) -> usize {
     let kinds = 1 + usize::from(has_size(&study.candidates[study.default].model));
     let methods = study.candidates.len() * METHOD_TESTS / 10 + clock::work(study.candidates.len());
@@ -58,14 +59,14 @@ fn has_size(model: &Model) -> bool {
     model.lights.iter().any(|light| light.value.size() > 0.0)
 }
 
-/// The plan for a picture of one ray through the middle of each pixel.
+/// Plans an image with one ray through the centre of each pixel.
 fn one_ray(model: &Model) -> Plan<'_> {
     let mut plan = Plan::new(model);
     plan.camera.samples = 1;
     plan
 }
 
-/// The picture, one ray through the middle of each pixel, by each way to find hits.
+/// Compares the methods of finding hits on an image with one ray through the centre of each pixel.
 pub fn methods(study: &Study, progress: &mut dyn Progress) -> ControlFlow<(), Panel> {
     let tests = tests(&Plan::new(&study.candidates[study.default].model), &study.threads);
     let own = study.candidates[study.default].model.camera.value.pixels;
@@ -94,16 +95,16 @@ pub fn methods(study: &Study, progress: &mut dyn Progress) -> ControlFlow<(), Pa
     })
 }
 
-/// The picture by samples, against one of so many that they make no difference any more; nothing where one sample is
-/// right.
+/// Compares numbers of samples against so many samples that more make no difference; returns `None` where one sample is
+/// already right.
 pub fn samples(study: &Study, seen: Seen, progress: &mut dyn Progress) -> ControlFlow<(), Option<Panel>> {
     let Study { candidates, default, threads, thread, .. } = study;
     let model = &candidates[*default].model;
     let own = &model.camera.value;
     let mut plan = Plan::new(model);
     let tests = tests(&plan, threads);
-    let most = (TRUE_TESTS as f64 / (f64::from(TRUE_SAMPLES) * tests)) as usize;
-    let pixels = spread(own.pixels, most.clamp(1024, 8192));
+    let max_pixels = (TRUE_TESTS as f64 / (f64::from(TRUE_SAMPLES) * tests)) as usize;
+    let pixels = spread(own.pixels, max_pixels.clamp(1024, 8192));
     let right = truth(&plan, threads, &pixels, seen, progress)?;
     let choices: Vec<_> = choices(own.samples, own.sampler);
     let mut differences = Vec::new();
@@ -176,7 +177,7 @@ fn name(sampler: Sampler) -> &'static str {
     }
 }
 
-/// The samples and samplers that are compared, one sample only once.
+/// Returns the numbers of samples and the samplers that are compared; a single sample is compared only once.
 fn choices(own: u32, own_sampler: Sampler) -> Vec<(u32, Sampler)> {
     let mut counts = SAMPLES.to_vec();
     if !counts.contains(&own) && own <= TRUE_SAMPLES / 4 {
@@ -185,7 +186,7 @@ fn choices(own: u32, own_sampler: Sampler) -> Vec<(u32, Sampler)> {
     }
     let mut choices = Vec::new();
     for sampler in [Sampler::Sobol, Sampler::Random] {
-        // One sample lies in the middle, whatever the sampler.
+        // A single sample lies at the centre, whatever the sampler.
         choices.extend(
             counts
                 .iter()
@@ -196,12 +197,12 @@ fn choices(own: u32, own_sampler: Sampler) -> Vec<(u32, Sampler)> {
     choices
 }
 
-/// What is timed of a picture whose pixels take so many tests each.
+/// Returns the tiles to time in an image with `tests` object tests per pixel.
 pub(super) fn timed(size: [usize; 2], tests: f64) -> Vec<Pixels> {
     tiles(size, ((TIMED_TESTS as f64 / tests) as usize).div_ceil(PACKET_SIZE).max(TIMED_TILES))
 }
 
-/// How many pixels tiles have.
+/// Returns the number of pixels of the tiles.
 pub(super) fn count(tiles: &[Pixels]) -> usize {
     tiles.iter().map(Vec::len).sum()
 }
@@ -214,7 +215,8 @@ pub(super) fn render(plan: &Plan, tiles: &[Pixels]) {
     }
 }
 
-/// The right colours: so many samples that they make no difference any more, other ones than those that are compared.
+/// Returns the true colours: with so many samples that more make no difference, and other ones than those that are
+/// compared.
 pub(super) fn truth(
     plan: &Plan,
     threads: &Renderer,
@@ -237,7 +239,7 @@ pub(super) fn truth(
     ControlFlow::Continue(colours)
 }
 
-/// A pixel's colour with the camera's samples.
+/// Returns a pixel's colour with the camera's samples.
 fn colour(plan: &Plan, [x, y]: [usize; 2], seen: Seen) -> Rgb {
     if seen == Seen::Picture {
         return trace::pixel(plan, x, y);
@@ -252,7 +254,7 @@ fn colour(plan: &Plan, [x, y]: [usize; 2], seen: Seen) -> Rgb {
     colours.sum::<Rgb>() / f64::from(camera.samples)
 }
 
-/// What one sample of a pixel sees.
+/// Returns the colour of one sample of a pixel.
 fn colour_of(plan: &Plan, [x, y]: [usize; 2], sample: Sample, seen: Seen) -> Rgb {
     let jitter = match seen {
         Seen::Picture => sample.jitter(),
@@ -262,7 +264,7 @@ fn colour_of(plan: &Plan, [x, y]: [usize; 2], sample: Sample, seen: Seen) -> Rgb
     trace::colour(plan, &sight, Some(sample))
 }
 
-/// Something of each of these pixels, on all threads of a renderer.
+/// Maps these pixels on all threads of a renderer.
 pub(super) fn each<T: Send>(
     threads: &Renderer,
     pixels: &[[usize; 2]],
@@ -272,7 +274,7 @@ pub(super) fn each<T: Send>(
     threads.run(|| pixels.par_iter().map(|[x, y]| work(*x, *y)).collect())
 }
 
-/// How many objects one ray through a pixel and all that follow from it test, in the mean.
+/// Returns the mean number of object tests for one ray through a pixel and all rays that follow from it.
 pub(super) fn tests(plan: &Plan, threads: &Renderer) -> f64 {
     struct Tests(usize);
     impl TraceObserver for Tests {

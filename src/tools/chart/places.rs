@@ -1,12 +1,12 @@
-//! The pixels that are looked at, spread evenly over a picture.
+//! The pixels that are measured, spread evenly over an image.
 
 use crate::render::tiles::{self, TILE};
 use glam::DVec2;
 
-/// Pixels, from the left and from the bottom.
+/// Pixels: columns from the left and rows from the bottom.
 pub type Pixels = Vec<[usize; 2]>;
 
-/// So many pixels of a picture; all of a smaller one.
+/// Returns `count` pixels of an image, or all pixels of a smaller image.
 pub fn spread([width, height]: [usize; 2], count: usize) -> Pixels {
     let all = width * height;
     if count >= all {
@@ -17,7 +17,7 @@ pub fn spread([width, height]: [usize; 2], count: usize) -> Pixels {
     (0..count).map(place).collect()
 }
 
-/// So many of the tiles that a picture is made of, each the pixels of a packet of rays; all of a smaller one.
+/// Returns `count` of the tiles of an image, each the pixels of one packet of rays, or all tiles of a smaller image.
 pub fn tiles([width, height]: [usize; 2], count: usize) -> Vec<Pixels> {
     let tile = |[column, row]: [usize; 2]| {
         let (left, low) = (column * TILE, row * TILE);
@@ -28,8 +28,8 @@ pub fn tiles([width, height]: [usize; 2], count: usize) -> Vec<Pixels> {
     spread([width, height].map(|side| side.div_ceil(TILE)), count).into_iter().map(tile).collect()
 }
 
-/// From each place to the next, in parts of a picture: the R2 sequence (M. Roberts, "The unreasonable effectiveness of
-/// quasirandom sequences", 2018).
+/// The step from each point to the next, as a fraction of the image's width and height: the R2 sequence (M. Roberts,
+/// "The unreasonable effectiveness of quasirandom sequences", 2018).
 const STEP: DVec2 = DVec2::new(0.754_877_666_246_692_7, 0.569_840_290_998_053_2);
 
 #[cfg(test)]

@@ -5,21 +5,21 @@ use crate::render::renderer::Renderer;
 use crate::world::accuracy::Accuracy;
 use std::io;
 
-/// What measuring needs.
+/// What a measurement needs.
 pub(super) struct Study {
     pub candidates: Vec<Candidate>,
-    /// The one in the scene's own accuracy.
+    /// The index of the candidate with the scene's own accuracy.
     pub default: usize,
-    /// The one whose pictures count as true.
+    /// The index of the candidate whose images count as true.
     pub strict: usize,
-    /// All cores, for what is not timed.
+    /// A renderer on all cores, for work that is not timed.
     pub threads: Renderer,
-    /// One thread, for what is.
+    /// A renderer on one thread, for work that is timed.
     pub thread: Renderer,
 }
 
 impl Study {
-    /// The choices of a scene, each loaded.
+    /// Loads all choices of a scene.
     pub fn new(load: Load) -> io::Result<Self> {
         let candidates = candidate::all(load)?;
         let position = |wanted: &dyn Fn(&Candidate) -> bool| candidates.iter().position(wanted).unwrap_or(0);

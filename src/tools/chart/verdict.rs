@@ -1,13 +1,13 @@
-//! What a chart says, in words.
+//! Says in words what a chart shows.
 
 use super::data::{Chart, Family, Panel, Point, Subject};
 use super::front::{self, SAME_TIME};
 use std::fmt::Write;
 
-/// How far apart in Oklab, in hundredths, the eye begins to tell colours.
+/// The distance in Oklab from which the eye can tell colours apart, in hundredths of that from black to white.
 const VISIBLE: f64 = 2.0;
 
-/// The verdict on each panel: the front, where the default stands, and what to choose.
+/// Returns the verdict on each panel: the front, the position of the default, and what to choose.
 pub fn words(chart: &Chart) -> String {
     let mut text = String::new();
     for panel in &chart.panels {
@@ -56,7 +56,7 @@ fn distances(panel: &Panel) -> Vec<String> {
     for limit in [1e-2, 1e-4, 1e-8, 1e-12] {
         let fit = || right.iter().filter(|point| point.error <= limit);
         let Some(fastest) = fit().min_by(|a, b| a.times.least.total_cmp(&b.times.least)) else { continue };
-        // What is as fast as the default is no reason to leave it.
+        // A choice no faster than the default is no reason to leave the default.
         let as_fast =
             |point: &&&Point| point.is_default && point.times.least <= SAME_TIME * fastest.times.least;
         let best = fit().find(as_fast).unwrap_or(fastest);
@@ -127,7 +127,7 @@ fn samples(panel: &Panel) -> Vec<String> {
     lines
 }
 
-/// The best choices, the fastest first.
+/// Names the choices on the front, the fastest first.
 fn front(panel: &Panel) -> String {
     let mut best: Vec<&Point> = panel
         .points
@@ -141,7 +141,7 @@ fn front(panel: &Panel) -> String {
     format!("Pareto front: {}", best.iter().map(each).collect::<Vec<_>>().join("; "))
 }
 
-/// Where the default stands.
+/// Says where the default stands.
 fn standing(panel: &Panel) -> Option<String> {
     let default = panel.points.iter().find(|point| point.is_default)?;
     let name = &default.name;
@@ -157,7 +157,8 @@ fn standing(panel: &Panel) -> Option<String> {
     })
 }
 
-/// The power of the samples with which errors fall: the slope of the line through their logarithms, by least squares.
+/// Returns the exponent with which errors fall in the number of samples: the slope of the line through their
+/// logarithms, by least squares.
 fn slope(points: &[&Point]) -> Option<f64> {
     let logs: Vec<(f64, f64)> = points
         .iter()
@@ -172,7 +173,7 @@ fn slope(points: &[&Point]) -> Option<f64> {
     (logs.len() > 2 && across > 0.0).then(|| up / across)
 }
 
-/// The least samples that were measured and reach an error.
+/// Returns the smallest measured number of samples that reaches an error.
 fn needed(points: &[&Point], error: f64) -> Option<u32> {
     points.iter().find(|point| point.error <= error).map(|point| point.samples)
 }
@@ -181,7 +182,7 @@ fn time(panel: &Panel, point: &Point) -> String {
     let (_, scale) = panel.unit();
     let unit = if panel.subject == Subject::Distances { "ns" } else { "µs" };
     let time = point.times.least * scale;
-    // Two digits, as times are not the same twice.
+    // Two digits, as times vary from run to run.
     let digits = (1 - time.abs().log10().floor() as i32).clamp(0, 6) as usize;
     format!("{time:.digits$} {unit}")
 }

@@ -1,4 +1,4 @@
-//! Values for attributes, drawn by their types and rules; the same at every run.
+//! Draws values for attributes by their types and rules, the same in every run.
 
 use crate::scene::entity::Entity;
 use crate::scene::kind::Kind;
@@ -13,23 +13,23 @@ use rand_pcg::rand_core::Rng;
 use std::path::Path;
 use tempfile::TempDir;
 
-/// How often values are drawn until they keep their rule.
+/// The maximum number of draws for a value that satisfies its rule.
 const TRIES: usize = 1000;
 
-/// A picture for what takes one, in the folder of the scenes.
+/// An image for attributes that name one, in the folder of the drawn scenes.
 const PICTURE: &str = "picture.png";
 
 const FORMULAS: [&str; 4] = ["2 + sin(y)", "1", "0.5 * y", "sqrt(abs(4 - y^2))"];
 
-/// The folder that the drawn scenes' file names start from.
-pub struct Room(TempDir);
+/// The folder to which the drawn scenes' file names are relative.
+pub struct SceneFolder(TempDir);
 
-impl Room {
+impl SceneFolder {
     pub fn new() -> Self {
-        let room = Self(TempDir::new().expect("room for a temporary folder"));
+        let scenes = Self(TempDir::new().expect("room for a temporary folder"));
         let colours = RgbImage::from_fn(5, 4, |x, y| [50 * x as u8, 60 * y as u8, 255].into());
-        colours.save(room.folder().join(PICTURE)).expect("room for a picture");
-        room
+        colours.save(scenes.folder().join(PICTURE)).expect("room for a picture");
+        scenes
     }
 
     pub fn folder(&self) -> &Path {
@@ -37,22 +37,23 @@ impl Room {
     }
 }
 
-/// Draws numbers, and what is made of them.
+/// Draws pseudorandom numbers, and values made of them.
 pub struct Draw(Pcg32);
 
 impl Draw {
-    /// What is drawn for a plugin depends on its name, and not on which others there are.
+    /// Seeds the generator with a plugin's name, so that what is drawn for a plugin does not depend on the other
+    /// plugins.
     pub fn new(name: &str) -> Self {
         let seed = name.bytes().fold(0, |seed: u64, byte| seed.wrapping_mul(257).wrapping_add(byte.into()));
         Self(Pcg32::new(seed, 0))
     }
 
-    /// From 0 to 1.
+    /// Draws a number from 0 to 1.
     pub fn part(&mut self) -> f64 {
         f64::from(self.0.next_u32()) / f64::from(u32::MAX)
     }
 
-    /// A number below this one.
+    /// Draws an integer from 0 to `count - 1`.
     fn below(&mut self, count: usize) -> usize {
         self.0.next_u32() as usize % count
     }
@@ -61,7 +62,7 @@ impl Draw {
         of[self.below(of.len())]
     }
 
-    /// A unit vector.
+    /// Draws a unit vector.
     pub fn direction(&mut self) -> DVec3 {
         loop {
             let vector = DVec3::new(self.part(), self.part(), self.part()) * 2.0 - 1.0;
@@ -73,7 +74,7 @@ impl Draw {
         }
     }
 
-    /// A number as scenes have them: round ones and small ones.
+    /// Draws a number as scenes have them: round ones and small ones.
     fn number(&mut self) -> f64 {
         match self.below(5) {
             0 => self.below(9) as f64 - 4.0,
@@ -83,7 +84,7 @@ impl Draw {
         }
     }
 
-    /// A scene with an entity of this type, and with what that may refer to.
+    /// Draws a scene with an entity of this type, and with the entities that it may refer to.
     pub fn scene(&mut self, registry: &Registry, entity: &'static Entity) -> String {
         let mut text = String::new();
         for kind in [Kind::Camera, Kind::Material, Kind::Texture] {
@@ -111,7 +112,7 @@ impl Draw {
         format!("{} {name}\n{{\n{lines}}}\n", entity.name)
     }
 
-    /// Values that an attribute allows, as a scene writes them; nothing where the default is taken.
+    /// Draws values that an attribute allows, in a scene's syntax; `None` leaves the default.
     fn values(&mut self, attribute: &dyn Attribute, positive: bool) -> Option<Vec<String>> {
         if attribute.default().is_some() && self.below(2) == 0 {
             return None;
@@ -146,13 +147,13 @@ impl Draw {
     }
 }
 
-/// Whether an attribute is the name of an entity of this kind.
+/// Tells whether an attribute of the type refers to an entity of this kind.
 fn refers_to(entity: &Entity, kind: Kind) -> bool {
     let mut types = entity.attributes().map(|attribute| attribute.value_type());
     types.any(|its| matches!(its, Type::Name(named) if named == kind))
 }
 
-/// What the entity of a kind is called that others refer to.
+/// Returns the name of the entity of this kind that others refer to.
 fn name(kind: Kind) -> &'static str {
     match kind {
         Kind::Camera => "eye",

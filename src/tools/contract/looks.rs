@@ -1,4 +1,4 @@
-//! The contracts of all that is no shape: shaders, lights, cameras, materials, profiles and dumps.
+//! The contracts of everything that is not a shape: shaders, lights, cameras, materials, profiles and dumps.
 
 use super::draw::Draw;
 use super::promise::{Fault, Promise};
@@ -20,10 +20,10 @@ use crate::world::packets::shader::PacketShader;
 use glam::DVec3;
 use std::path::Path;
 
-/// The places at which lights and procedural shaders are asked.
+/// The number of points at which lights and procedural shaders are evaluated.
 const PLACES: usize = 100;
 
-/// A dumped scene loads again, in either spelling.
+/// Checks that a dumped scene loads again, in either syntax.
 pub fn dump(registry: &Registry, folder: &Path, model: &Model) -> Result<(), Fault> {
     for (syntax, name) in [(Syntax::Notes, "dump.ray"), (Syntax::Toml, "dump.toml")] {
         let text = dump::scene(model, syntax);
@@ -37,7 +37,7 @@ pub fn dump(registry: &Registry, folder: &Path, model: &Model) -> Result<(), Fau
     Ok(())
 }
 
-/// A shader's reflectivities at a point, and in packets.
+/// Checks a shader's reflectivities at a point, for single rays and in packets.
 pub fn shader(shader: &dyn PacketShader, at: DVec3) -> Result<(), Fault> {
     let material = Material {
         ambient: Rgb::new(0.1, 0.5, 3.0),
@@ -61,10 +61,10 @@ pub fn shader(shader: &dyn PacketShader, at: DVec3) -> Result<(), Fault> {
         );
     }
     if let Some(Look { ambient, diffuse, specular }) = shader.brightest(&material)
-        && let most = [ambient, diffuse, specular]
-        && one.iter().zip(most).any(|(colour, most)| !colour.abs().cmple(most.abs()).all())
+        && let limit = [ambient, diffuse, specular]
+        && one.iter().zip(limit).any(|(colour, limit)| !colour.abs().cmple(limit.abs()).all())
     {
-        let found = format!("`brightest` is {most:?}, and it returns {one:?} at {at}");
+        let found = format!("`brightest` is {limit:?}, and it returns {one:?} at {at}");
         return Err(Promise::ReflectivityIsSound.fault(found));
     }
     let points = Vectors::<LANES> { x: [at.x; LANES], y: [at.y; LANES], z: [at.z; LANES] };
@@ -87,12 +87,12 @@ pub fn shader(shader: &dyn PacketShader, at: DVec3) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Whether two vectors are the same to the last bit.
+/// Tells whether two vectors are equal to the last bit.
 pub fn same_bits(a: DVec3, b: DVec3) -> bool {
     a.to_array().map(f64::to_bits) == b.to_array().map(f64::to_bits)
 }
 
-/// A procedural shader around its anchor, and where it measures from.
+/// Checks a procedural shader around its anchor, and at the anchor's origin.
 pub fn procedural(shader_type: &ProceduralShader, draw: &mut Draw) -> Result<(), Fault> {
     for unit in [1.0, 0.3, 7.0] {
         let anchor = Anchor { origin: DVec3::new(4.0, 3.0, -2.5), unit };
@@ -104,7 +104,7 @@ pub fn procedural(shader_type: &ProceduralShader, draw: &mut Draw) -> Result<(),
     Ok(())
 }
 
-/// A light, toward points around it and where it is.
+/// Checks a light, seen from points around it and from its own position.
 pub fn light(light: &dyn PacketLight, draw: &mut Draw) -> Result<(), Fault> {
     let (location, size) = (light.location(), light.size());
     if !location.is_finite() || !size.is_finite() || size < 0.0 {
@@ -121,14 +121,14 @@ pub fn light(light: &dyn PacketLight, draw: &mut Draw) -> Result<(), Fault> {
             let found = format!("`uniform` is {even}, and toward {toward} it emits {one:?}");
             return Err(Promise::PacketsAgree.fault(found));
         }
-        if let (Some(most), Some(one)) = (light.brightest(), one)
-            && !one.abs().cmple(most.abs()).all()
+        if let (Some(limit), Some(one)) = (light.brightest(), one)
+            && !one.abs().cmple(limit.abs()).all()
         {
-            let found = format!("`brightest` is {most}, and toward {toward} it emits {one}");
+            let found = format!("`brightest` is {limit}, and toward {toward} it emits {one}");
             return Err(Promise::LightIsFinite.fault(found));
         }
         let all = |of: DVec3| Vectors::<LANES> { x: [of.x; LANES], y: [of.y; LANES], z: [of.z; LANES] };
-        // The light is in front of each place, but for the one that it is on.
+        // The light is in front of each point, except for the point at its own position.
         let (points, normals) = (all(toward), all((location - toward).normalize_or_zero()));
         let (points, normals) = (points.view(LANES), normals.view(LANES));
         for cpu in Cpu::all() {
@@ -153,7 +153,7 @@ pub fn light(light: &dyn PacketLight, draw: &mut Draw) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Points around one, it and some beside it among them.
+/// Draws points around a point, the point itself among them.
 fn places(middle: DVec3, draw: &mut Draw) -> impl Iterator<Item = DVec3> {
     let axes = DVec3::AXES.into_iter().flat_map(move |axis| [middle + axis, middle - axis]);
     [middle]
@@ -162,7 +162,7 @@ fn places(middle: DVec3, draw: &mut Draw) -> impl Iterator<Item = DVec3> {
         .chain((0..PLACES).map(move |_| middle + draw.direction() * 10.0 * draw.part()))
 }
 
-/// The rays of a camera, in its corners and in its middle.
+/// Checks the rays of a camera through the corners and the centre of its image.
 pub fn camera(camera: &Camera) -> Result<(), Fault> {
     let Camera { pixels: [width, height], samples, .. } = *camera;
     if width == 0 || height == 0 || samples == 0 {
@@ -179,7 +179,7 @@ pub fn camera(camera: &Camera) -> Result<(), Fault> {
     Ok(())
 }
 
-/// A material made of finite numbers.
+/// Checks that a material consists of finite numbers.
 pub fn material(material: &Material) -> Result<(), Fault> {
     let Material { ambient, diffuse, specular, shininess, transparency } = material;
     let is_finite = [ambient, diffuse, specular].iter().all(|colour| colour.is_finite());
@@ -189,7 +189,7 @@ pub fn material(material: &Material) -> Result<(), Fault> {
     Ok(())
 }
 
-/// A profile, turned into a surface 4 high.
+/// Checks a profile, turned into a surface of revolution of height 4.
 pub fn profile(profile: &Profile) -> Result<(), Fault> {
     let line = profile.line();
     let fault = |found: String| Promise::ProfileIsFinite.fault(found);

@@ -1,8 +1,8 @@
-//! The contracts of the traits that plugins implement, and whether plugins keep them.
+//! Checks that plugins keep the contracts of the traits that they implement.
 //!
-//! The compiler sees that a plugin has the right functions; what these must give, it does not see. Here every plugin
-//! that is linked in is tried, with values that its table allows and with rays at what it makes of them. A crate with
-//! plugins needs one line in a test for that: [`assert_kept`].
+//! The compiler checks that a plugin has the right functions, but not what they return. Here every plugin that is
+//! linked in is tried, with values that its table allows and with rays at what its constructor makes of them. A crate
+//! with plugins needs one line in a test for that: [`assert_kept`].
 
 mod draw;
 mod looks;
@@ -24,28 +24,28 @@ use crate::scene::reader;
 use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
 use crate::world::accuracy::Accuracy;
-use draw::{Draw, Room};
+use draw::{Draw, SceneFolder};
 use promise::Fault;
 use std::fmt;
 
-/// The scenes that are drawn for an entity type.
+/// The number of scenes that are drawn for an entity type.
 const SCENES: usize = 40;
 
-/// The rays that are sent at each object of a drawn scene.
+/// The number of rays that are traced at each object of a drawn scene.
 const RAYS: usize = 30;
 
-/// A promise that a plugin does not keep.
+/// A promise that a plugin breaks.
 #[derive(Clone, Debug)]
 pub struct Breach {
-    /// What it is: "the object `sphere`".
+    /// The plugin: "the object `sphere`".
     pub plugin: String,
-    /// The file and line that registers it.
+    /// The file and line that register the plugin.
     pub place: String,
-    /// What it should do.
+    /// What the plugin should do.
     pub promise: Promise,
-    /// What it does.
+    /// What the plugin does instead.
     pub found: String,
-    /// The scene that shows it; empty where it takes none.
+    /// A scene that shows the breach; empty where none is needed.
     pub scene: String,
 }
 
@@ -63,10 +63,11 @@ impl fmt::Display for Breach {
     }
 }
 
-/// Panics where a plugin that is linked into this program breaks a contract. For tests.
+/// Panics if a plugin that is linked into this program breaks a contract. For tests.
 ///
 /// # Panics
-/// With a message for each such plugin: its file, the promise, what was found, the cure and the scene that shows it.
+/// With a message for each such plugin: its file, the promise, what was found, how to fix it, and a scene that shows
+/// it.
 #[track_caller]
 pub fn assert_kept() {
     let registry = Registry::get().unwrap_or_else(|faults| panic!("{faults}"));
@@ -74,17 +75,18 @@ pub fn assert_kept() {
     assert!(told.is_empty(), "\n\n{}", told.join("\n"));
 }
 
-/// What the entity types of a registry, the procedural shaders and the profiles break: of each the gravest breach.
+/// Returns the gravest breach of each entity type of a registry, and of each procedural shader and profile.
 pub fn breaches(registry: &Registry) -> Vec<Breach> {
-    let room = Room::new();
-    let mut found: Vec<_> = registry.iter().filter_map(|entity| of_entity(registry, entity, &room)).collect();
+    let scenes = SceneFolder::new();
+    let mut found: Vec<_> =
+        registry.iter().filter_map(|entity| of_entity(registry, entity, &scenes)).collect();
     found.extend(inventory::iter::<ProceduralShader>().filter_map(of_procedural_shader));
     found.extend(inventory::iter::<Profile>().filter_map(of_profile));
     found.sort_by(|a, b| (&a.place, &a.plugin).cmp(&(&b.place, &b.plugin)));
     found
 }
 
-/// What the objects, the lights and the camera of a scene break: of each the gravest breach.
+/// Returns the gravest breach of each object and light of a scene, and of its camera.
 pub fn breaches_in(model: &Model) -> Vec<Breach> {
     let mut draw = Draw::new("scene");
     let mut found = Vec::new();
@@ -114,15 +116,15 @@ fn breach(entity: &Entity, Fault { promise, found }: Fault, scene: String) -> Br
     }
 }
 
-/// The gravest breach of an entity type in the scenes that are drawn for it.
-fn of_entity(registry: &Registry, entity: &'static Entity, room: &Room) -> Option<Breach> {
+/// Returns the gravest breach of an entity type in the scenes that are drawn for it.
+fn of_entity(registry: &Registry, entity: &'static Entity, scenes: &SceneFolder) -> Option<Breach> {
     let mut draw = Draw::new(entity.name);
     let (mut gravest, mut refused, mut models, mut hits): (Option<Breach>, _, _, _) = (None, None, 0, 0);
     let mut seen = String::new();
     for index in 0..SCENES {
         let text = draw.scene(registry, entity);
         let accuracy = if index % 4 == 3 { Accuracy::Strict } else { Accuracy::Exact };
-        let model = match reader::read(registry, "scene", room.folder(), text.as_bytes(), Some(accuracy)) {
+        let model = match reader::read(registry, "scene", scenes.folder(), text.as_bytes(), Some(accuracy)) {
             Ok(loaded) => loaded.model,
             Err(report) => {
                 refused.get_or_insert_with(|| (report.to_string(), text));
@@ -141,7 +143,7 @@ fn of_entity(registry: &Registry, entity: &'static Entity, room: &Room) -> Optio
                 outcome.gravest.map_or(Ok(()), Err)
             }),
         };
-        let fault = looks::dump(registry, room.folder(), &model).and(tried).err();
+        let fault = looks::dump(registry, scenes.folder(), &model).and(tried).err();
         if let Some(fault) = fault
             && gravest.as_ref().is_none_or(|breach| fault.promise < breach.promise)
         {

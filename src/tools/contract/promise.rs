@@ -1,54 +1,54 @@
-//! What plugins promise, and how to keep it.
+//! The promises of plugins, and how to keep them.
 
 use std::fmt;
 
-/// What a plugin promises. Those that come first are the gravest: where they are broken, others break too.
+/// A promise of a plugin. The gravest come first: where one of them is broken, later ones break too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Promise {
-    /// A constructor makes something of values that its table allows.
+    /// The constructor accepts all values that its table allows.
     TakesWhatItsTableAllows,
     /// A scene's dump is a scene.
     DumpLoadsAgain,
-    /// A distance is one of the span, or a miss.
+    /// A distance lies within the range of the ray, or is a miss.
     DistanceIsInItsSpan,
-    /// Shapes do not change.
+    /// A distance is the same when it is computed again.
     DistanceIsTheSameAgain,
     /// Single rays and packets agree.
     PacketsAgree,
     /// A normal is a unit vector.
     NormalIsUnit,
-    /// A hit is on the surface, from wherever it is looked for.
+    /// A hit is on the surface, for rays from any side.
     HitIsOnTheSurface,
-    /// What is certain about a first hit is so.
+    /// The first hit agrees with the proof.
     AgreesWithItsProof,
-    /// Bounds hold all of a shape.
+    /// The bounds contain the whole shape.
     BoundsHoldHits,
-    /// A normal stands upright on the surface.
+    /// A normal is perpendicular to the surface.
     NormalIsUpright,
-    /// The normals of one side of a surface point to one side.
+    /// Normals of neighbouring points point to the same side of the surface.
     NormalsAgree,
     /// The normals of a convex shape point out of it.
     NormalsPointOut,
-    /// A shape does not meet its own rays on a side where it says so.
+    /// A ray that leaves a shape does not hit it again on a side where the shape says so.
     IsNotMetAgain,
-    /// A ray does not meet the surface where it leaves it.
+    /// A ray does not hit the surface at its own origin.
     StartIsNoHit,
-    /// A shape knows what lies on it.
+    /// A shape recognises points that lie on it.
     HitIsTouched,
-    /// There is something to see.
+    /// Some ray hits the shape.
     IsMet,
     /// Reflectivities are finite and not below 0.
     ReflectivityIsSound,
-    /// Light is finite.
+    /// A light's location, size and emission are finite.
     LightIsFinite,
-    /// A camera looks along unit vectors.
+    /// A camera's directions are unit vectors.
     CameraLooks,
-    /// A profile is finite, and somewhere above 0.
+    /// A profile's radius is finite, and somewhere above 0.
     ProfileIsFinite,
 }
 
 impl Promise {
-    /// All of them, the gravest first.
+    /// All promises, the gravest first.
     pub const ALL: [Self; 20] = [
         Self::TakesWhatItsTableAllows,
         Self::DumpLoadsAgain,
@@ -72,7 +72,7 @@ impl Promise {
         Self::ProfileIsFinite,
     ];
 
-    /// How to keep it.
+    /// Returns how to keep the promise.
     pub fn cure(self) -> &'static str {
         match self {
             Self::TakesWhatItsTableAllows => {
@@ -156,7 +156,7 @@ impl fmt::Display for Promise {
     }
 }
 
-/// A promise that is not kept, and what was found instead.
+/// A promise that is broken, and what was found instead.
 #[derive(Debug)]
 pub(super) struct Fault {
     pub promise: Promise,

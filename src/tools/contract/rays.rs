@@ -1,4 +1,4 @@
-//! An object, tried with rays: where they are sent, and in which order what they show is looked at.
+//! Tries an object with rays: how they are aimed, and the order in which promises are checked.
 
 use super::draw::Draw;
 use super::looks::shader;
@@ -9,21 +9,22 @@ use crate::scene::model::Object;
 use crate::scene::value::Datum;
 use glam::DVec3;
 
-/// The first rays, which go exactly to what may be a corner or a middle.
+/// The number of first rays that are aimed exactly at a point, which may be a corner or the centre of an object.
 const EXACT: usize = 3;
 
-/// What lies farther away than this is not aimed at: there is nothing but limits.
+/// The greatest distance from the origin of a point that rays are aimed at, in world units: numbers beyond are limits,
+/// not positions.
 const FAR: f64 = 1e4;
 
-/// What comes of trying a shape.
+/// The result of trying a shape.
 pub struct Outcome {
-    /// How many rays met it.
+    /// The number of rays that hit the shape.
     pub hits: usize,
-    /// The gravest fault.
+    /// The gravest fault that was found.
     pub gravest: Option<Fault>,
 }
 
-/// Sends rays at an object.
+/// Traces rays at an object.
 pub fn try_object(object: &Object, draw: &mut Draw, rays: usize) -> Outcome {
     let mut aims = aims(object);
     let mut outcome = Outcome { hits: 0, gravest: None };
@@ -35,7 +36,7 @@ pub fn try_object(object: &Object, draw: &mut Draw, rays: usize) -> Outcome {
             None => Ok(None),
         });
         match tried {
-            // What is met once is aimed at again: it may be small.
+            // Each hit becomes a new aim, as the object may be small.
             Ok(Some(at)) => {
                 outcome.hits += 1;
                 aims.push(at);
@@ -51,7 +52,7 @@ pub fn try_object(object: &Object, draw: &mut Draw, rays: usize) -> Outcome {
     outcome
 }
 
-/// Where an object may be: every three of the numbers that it is made of may be a point.
+/// Returns points where the object may be: any three numbers of an attribute may be a point.
 fn aims(object: &Object) -> Vec<DVec3> {
     let mut aims = vec![DVec3::ZERO];
     for (_, datum) in object.args.values() {
@@ -64,20 +65,20 @@ fn aims(object: &Object) -> Vec<DVec3> {
     aims
 }
 
-/// A ray toward a place near one of these; at first along the axes, and exactly at them.
+/// Makes a ray toward a point near one of the aims; the first rays are parallel to the axes and aimed exactly.
 fn ray(aims: &[DVec3], draw: &mut Draw, index: usize) -> Ray {
     let aim = aims[(draw.part() * aims.len() as f64) as usize % aims.len()];
     if index < EXACT {
         return Ray { origin: aim - 10.0 * DVec3::AXES[index], dir: DVec3::AXES[index] };
     }
-    // From far to close by, evenly over the powers of 10.
+    // The offset is from 0.01 to 10 world units, evenly distributed over its logarithm.
     let off = draw.direction() * libm::exp10(draw.part() * 3.0 - 2.0);
     let from = draw.direction() * (0.5 + 20.0 * draw.part());
     let dir = (off - from).normalize();
     Ray { origin: aim + from, dir }
 }
 
-/// Tries a shape with a ray; where it is met, if it is.
+/// Checks a shape with one ray; returns the point of the hit, if there is one.
 fn try_ray(tried: &Tried, draw: &mut Draw) -> Result<Option<DVec3>, Fault> {
     let distance = tried.in_span(&tried.ray, &RayRange::ALL)?;
     tried.repeats(distance)?;

@@ -13,32 +13,36 @@ use crate::world::certify::{Enclosure, Precision};
 use crate::world::interaction::SurfaceInteraction;
 use glam::DVec3;
 
-/// How far aside rounding may move a ray, as a part of the numbers that its distance is computed from: generously, for
-/// methods that lose a third of the digits. How far off its distance may be follows from that.
+/// How far rounding may shift a ray sideways, as a fraction of the numbers from which its distance is computed. It is
+/// above 2^-52 to the power of 2/3, about 4e-11, for methods that lose a third of the digits. The tolerance of a
+/// distance is derived from it.
 const ASIDE: f64 = 1e-10;
 
-/// A step beyond what rounding does to a hit that is not grazed, likewise.
+/// A step, as a fraction of the same numbers, that is longer than the rounding error of a hit that does not graze:
+/// `ASIDE / GRAZING` is 2e-9.
 pub const SLACK: f64 = 1e-7;
 
-/// Rays that meet a surface at a smaller cosine graze it: rounding tells how they fare.
+/// The least absolute cosine between a ray and the normal. Below it the ray grazes the surface, and rounding decides
+/// what it hits.
 pub const GRAZING: f64 = 0.05;
 
-/// A shape and a ray that it is tried with.
+/// A shape and the ray with which it is tried.
 pub struct Tried<'s> {
     pub shape: &'s AnyShape,
     pub ray: Ray,
-    /// Whether it may meet an edge or a corner, where rounding tells what is met from elsewhere.
+    /// Whether the ray may hit an edge or a corner, where rounding decides what a ray from elsewhere hits.
     pub is_exact: bool,
 }
 
 impl Tried<'_> {
-    /// How exact distances are where the ray is.
+    /// Returns the size of the numbers from which the ray's distance is computed, in world units.
     pub fn size(&self, distance: f64) -> f64 {
         1.0 + self.ray.origin.abs().max_element() + distance
     }
 
-    /// How far off the distance of a ray may be where rounding moves it aside a little: as far as its neighbours' are
-    /// from it, and anything where one of them meets what others miss.
+    /// Returns how far off the distance of a ray may be if rounding shifts the ray a little sideways, in world units:
+    /// twice the greatest difference from the distances of four neighbouring rays, plus the shift; anything if one of
+    /// the neighbours hits what the ray misses, or misses what it hits.
     pub fn tolerance(&self, ray: &Ray, range: &RayRange, distance: f64) -> f64 {
         let step = ASIDE * self.size(if distance == MISS { 0.0 } else { distance });
         let (across, up) = ray.dir.any_orthonormal_pair();
@@ -47,11 +51,12 @@ impl Tried<'_> {
             let its = self.shape.distance(&neighbour, range);
             if its == distance { 0.0 } else { (its - distance).abs() }
         });
-        // The direction in which it moves most is half a right angle from one of these at most.
+        // The direction of the greatest change is at most 45 degrees from one of the four, so a factor of sqrt 2 would
+        // do for a plane.
         step + 2.0 * apart.into_iter().fold(0.0, f64::max)
     }
 
-    /// The distance along a ray, which is a sound one.
+    /// Returns the distance along a ray, after checking that it lies within the range or is a miss.
     pub fn in_span(&self, ray: &Ray, range: &RayRange) -> Result<f64, Fault> {
         let distance = self.shape.distance(ray, range);
         if distance == MISS || (range.near < distance && distance < range.far) {
@@ -95,7 +100,7 @@ impl Tried<'_> {
             if doubt[0] == 0 && !(low <= distance && distance <= high) {
                 return fault(format!("`distance` gives {distance}, and packets {low} to {high} ({cpu})"));
             }
-            // As the tracer has it: what is known exactly is not asked for again.
+            // As in the tracer, which does not refine a distance that is known exactly.
             if doubt[0] == 0 && low < high {
                 let mut many = near;
                 shape.packets().refine(cpu, rays, None, (&near, &far), &mut many);
@@ -137,7 +142,8 @@ impl Tried<'_> {
         Ok(())
     }
 
-    /// What lies outside of a span is no hit.
+    /// Checks that no distance outside a range is returned, and that the end of the range does not change the hits
+    /// before it.
     pub fn keeps_to_spans(&self, distance: f64) -> Result<(), Fault> {
         let slack = SLACK * self.size(if distance == MISS { 0.0 } else { distance });
         let middle = if distance == MISS { 5.0 } else { distance };
@@ -148,7 +154,7 @@ impl Tried<'_> {
         ] {
             self.in_span(&self.ray, &range)?;
         }
-        // Where the span ends has no part in what is met before.
+        // The end of the range does not change the hits before it.
         let t_max =
             if distance == MISS { [middle, 2.0 * middle] } else { [distance.next_up(), distance + slack] };
         for far in t_max {
@@ -180,7 +186,7 @@ impl Tried<'_> {
     }
 }
 
-/// A ray, in words.
+/// Describes a ray in words.
 pub fn told(Ray { origin, dir }: &Ray) -> String {
     format!("from {origin} along {dir}")
 }

@@ -1,4 +1,4 @@
-//! The contract of [`Hittable`](crate::world::hittable::Hittable) where a ray has met it.
+//! The contract of [`Hittable`](crate::world::hittable::Hittable) at the point where a ray has hit it.
 
 use super::draw::Draw;
 use super::promise::{Fault, Promise};
@@ -8,10 +8,11 @@ use crate::geometry::ray::{MISS, Ray, RayRange, Side};
 use crate::world::coincidence;
 use glam::DVec3;
 
-/// A step that is far longer than what rounding makes, and far shorter than what is to be seen.
+/// A step that is far longer than rounding errors, and far shorter than visible details: in world units around a hit,
+/// else as a fraction of [`Tried::size`].
 const STRIDE: f64 = 1e-4;
 
-/// A hit that rounding does not blur.
+/// A hit that is not blurred by rounding.
 pub struct Met {
     pub distance: f64,
     pub at: DVec3,
@@ -19,7 +20,7 @@ pub struct Met {
 }
 
 impl Tried<'_> {
-    /// The hit at a distance, whose normal is a unit vector.
+    /// Returns the hit at a distance, after checking that the normal is a unit vector.
     pub fn met(&self, distance: f64) -> Result<Met, Fault> {
         let at = self.ray.at(distance);
         let normal = self.shape.normal(at);
@@ -46,7 +47,7 @@ impl Tried<'_> {
         }
     }
 
-    /// The point of a hit is one for rays from nearer, from behind and from any side.
+    /// Checks that rays from nearer, from behind and from other directions hit the surface at the point too.
     pub fn is_met_from_elsewhere(&self, met: &Met, draw: &mut Draw) -> Result<(), Fault> {
         let (Ray { dir, .. }, stride) = (self.ray, STRIDE * self.size(met.distance));
         let mut origins = vec![self.ray.at(0.75 * met.distance), met.at + stride * dir];
@@ -74,7 +75,8 @@ impl Tried<'_> {
         Ok(())
     }
 
-    /// Where the surface is smooth its normal is upright on it, and points to the side that those beside it point to.
+    /// Checks, where the surface is smooth, that the normal is perpendicular to it and points to the same side as those
+    /// nearby.
     pub fn stands_upright(&self, met: &Met) -> Result<(), Fault> {
         let (across, up) = self.ray.dir.any_orthonormal_pair();
         let stride = STRIDE * self.size(met.distance).min(10.0);
@@ -86,7 +88,7 @@ impl Tried<'_> {
             };
             let (Some(one), Some(other)) = (beside(aside), beside(-aside)) else { continue };
             let between = other - one;
-            // A bend, an edge or another part of the shape.
+            // The surface bends or has an edge here, or one of the points is on another part of the shape.
             if (one + other - 2.0 * met.at).length() > 1e-3 * between.length() {
                 continue;
             }
@@ -107,7 +109,7 @@ impl Tried<'_> {
         Ok(())
     }
 
-    /// A shape whose outside no ray meets again is convex: a ray that goes through it comes in from outside.
+    /// Checks that a shape whose outside no ray hits again is convex: a ray that goes through it enters from outside.
     pub fn is_convex(&self, met: &Met) -> Result<(), Fault> {
         let (Ray { dir, .. }, stride) = (self.ray, STRIDE * self.size(met.distance));
         let beyond = Ray { origin: met.at + stride * dir, dir };
@@ -118,7 +120,7 @@ impl Tried<'_> {
             let sides = [(met.at, met.normal), (at, self.shape.normal(at))];
             let ends = self.in_span(&behind, &RayRange::ALL)? == MISS;
             match sides.map(|(_, normal)| Side::seen_along(dir, normal)) {
-                // Too thin to be told from a touch.
+                // Too thin to be distinguished from a single touch.
                 _ if through <= 10.0 * stride => {}
                 [Side::Outside, Side::Inside] if ends => {}
                 [Side::Inside, Side::Outside] if ends => {
@@ -137,8 +139,8 @@ impl Tried<'_> {
         Ok(())
     }
 
-    /// The point of a hit lies on the shape but for its error; and a ray that starts there, for all that its origin
-    /// tells, is bracketed as one that leaves it.
+    /// Checks that the point of a hit touches the shape within its error, and that the bounds of a ray from there,
+    /// given only that error, contain the distance of the ray that leaves the surface.
     pub fn is_touched(&self, met: &Met, draw: &mut Draw) -> Result<(), Fault> {
         let Self { shape, ray, .. } = self;
         let origin_error = coincidence::error(ray, met.distance, met.normal, shape.reach());
@@ -164,8 +166,8 @@ impl Tried<'_> {
         Ok(())
     }
 
-    /// A ray that leaves the surface meets what it meets from a little farther, and that is nothing where the shape says
-    /// so.
+    /// Checks that a ray that leaves the surface hits what it hits from a little farther, or nothing where the shape
+    /// says so.
     pub fn leaves(&self, met: &Met, draw: &mut Draw) -> Result<(), Fault> {
         let stride = STRIDE * self.size(met.distance);
         for _ in 0..4 {
@@ -193,7 +195,7 @@ impl Tried<'_> {
             if leaving <= SLACK * self.size(met.distance) {
                 return found(format!("on leaving its {side:?} `distance` gives {leaving}"));
             }
-            // What lies closer by than the step is left alone.
+            // Hits within three steps of the surface are not compared.
             let is_near = |distance: f64| distance < 3.0 * stride;
             let apart = if leaving == from_ahead { 0.0 } else { (leaving - from_ahead).abs() };
             let is_told = !is_near(leaving) && !is_near(from_ahead);

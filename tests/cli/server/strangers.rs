@@ -168,7 +168,7 @@ fn a_link_to_the_page_may_be_followed_from_anywhere() {
             };
             assert_eq!(visit(""), 200, "{site}");
             let is_own = ["none", "same-origin"].contains(&site);
-            assert_eq!(visit("layer/1/nothing"), if is_own { 404 } else { 403 }, "{site}");
+            assert_eq!(visit("nothing"), if is_own { 404 } else { 403 }, "{site}");
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Entities as they are written: kind, name, attributes and values, each with its place, none of it checked.
+//! Parsed entities: kind, name, attributes and values, each with its place and not yet checked.
 
 use super::fault::{Fault, Place};
 use super::report::Report;
@@ -14,14 +14,14 @@ pub(super) struct Word<'a> {
     pub place: Place,
 }
 
-/// What a word's spelling says of its meaning.
+/// What the syntax says about a word's type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Form {
-    /// Nothing: a word of the notes' spelling may be a number or a name.
+    /// Unknown: a word of the notes' syntax may be a number or a name.
     Any,
-    /// It is a number, as TOML writes them.
+    /// A number, as TOML writes it.
     Number,
-    /// It is not: it stands in quotes.
+    /// Text, because the word stands in quotes.
     Text,
 }
 
@@ -35,34 +35,34 @@ impl<'a> Word<'a> {
     }
 }
 
-/// The most values of an attribute that are kept. No attribute takes as many.
-pub(super) const MOST_VALUES: usize = 1000;
+/// The maximum number of values that are kept for an attribute. No attribute takes as many.
+pub(super) const MAX_VALUES: usize = 1000;
 
-/// The most attributes of an entity that are kept. No type has as many.
-pub(super) const MOST_ATTRIBUTES: usize = 1000;
+/// The maximum number of attributes that are kept for an entity. No type has as many.
+pub(super) const MAX_ATTRIBUTES: usize = 1000;
 
-/// An entity as it is written.
+/// An entity as parsed, not yet checked.
 #[derive(Clone, Debug)]
-pub struct Written<'a> {
+pub struct Parsed<'a> {
     pub(super) kind: Word<'a>,
     pub(super) name: Word<'a>,
     pub(super) attributes: Vec<(Word<'a>, Vec<Word<'a>>)>,
-    /// From its type to its end.
+    /// The range from the entity's type to its end.
     pub(super) place: Place,
-    /// Whether its text could not all be made out: then what it lacks is no fault of its own.
+    /// Whether some of the entity's text could not be parsed. Then missing attributes are not reported.
     pub(super) is_damaged: bool,
 }
 
-impl<'a> Written<'a> {
-    /// Adds an attribute, but no more than can be of use.
+impl<'a> Parsed<'a> {
+    /// Adds an attribute; beyond [`MAX_ATTRIBUTES`] reports it instead.
     pub(super) fn add(&mut self, name: Word<'a>, mut values: Vec<Word<'a>>, report: &mut Report) {
         match self.attributes.len() {
-            MOST_ATTRIBUTES if !self.is_damaged => {
+            MAX_ATTRIBUTES if !self.is_damaged => {
                 self.is_damaged = true;
-                let message = format!("this {} has more than {MOST_ATTRIBUTES} attributes", self.kind.text);
+                let message = format!("this {} has more than {MAX_ATTRIBUTES} attributes", self.kind.text);
                 report.add(Fault::error(name.place, message).label("the first that is too many"));
             }
-            MOST_ATTRIBUTES.. => {}
+            MAX_ATTRIBUTES.. => {}
             _ => {
                 values.shrink_to_fit();
                 self.attributes.push((name, values));
@@ -71,8 +71,8 @@ impl<'a> Written<'a> {
     }
 }
 
-impl Written<'static> {
-    /// An entity written in Rust: its type and its name.
+impl Parsed<'static> {
+    /// Starts an entity built in Rust, with its type and its name.
     pub fn new(kind: &str, name: &str) -> Self {
         Self {
             kind: Word::unplaced(kind),
@@ -83,7 +83,7 @@ impl Written<'static> {
         }
     }
 
-    /// Gives it an attribute.
+    /// Adds an attribute and its values.
     pub fn set(mut self, attribute: &str, values: impl Values) -> Self {
         let values = values.words().into_iter().map(Word::unplaced).collect();
         self.attributes.push((Word::unplaced(attribute), values));
@@ -91,9 +91,9 @@ impl Written<'static> {
     }
 }
 
-/// What can be given as an attribute's values in Rust. Numbers keep every bit.
+/// Values that can be given to an attribute in Rust. Numbers keep every bit.
 pub trait Values {
-    /// The words that stand for the values in a scene.
+    /// Returns the words that stand for the values in a scene.
     fn words(self) -> Vec<String>;
 }
 
