@@ -5,7 +5,6 @@ pub mod dump;
 pub(crate) mod entity;
 pub mod grammar;
 pub(crate) mod kind;
-pub(crate) mod tables;
 pub(crate) mod model;
 pub(crate) mod pparm;
 pub(crate) mod procedural;
@@ -15,6 +14,7 @@ pub mod reference;
 pub(crate) mod registry;
 pub mod schema;
 pub(crate) mod syntax;
+pub(crate) mod tables;
 pub(crate) mod value;
 
 pub use choice::Choice;

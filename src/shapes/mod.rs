@@ -1,5 +1,6 @@
 //! Arithmetic that several shapes share.
 
+mod finite_plane;
 pub(crate) mod implicit;
 pub mod plane;
 pub(crate) mod quadratic;

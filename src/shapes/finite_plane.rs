@@ -1,0 +1,121 @@
+//! A rectangle as a shape: what rays, packets and proofs ask of it.
+
+use super::plane::{CLASSIC_METHOD, Flat, Plane};
+use super::rectangle::FinitePlane;
+use crate::geometry::aabb::Aabb;
+use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
+use crate::numeric::double_double::DoubleDouble;
+use crate::numeric::scalar::Scalar;
+use crate::world::accuracy::{Bounded, Classic};
+use crate::world::certify::Equation;
+use crate::world::hittable::{Bracketed, Certified, Hittable};
+use glam::DVec3;
+
+impl Hittable for FinitePlane<Classic> {
+    #[inline(always)]
+    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
+        let distance = self.plane.distance(ray, range);
+        if self.has_crossing(ray, distance) { distance } else { MISS }
+    }
+
+    fn normal(&self, _at: DVec3) -> DVec3 {
+        self.plane.normal
+    }
+
+    fn bounds(&self) -> Option<Aabb> {
+        Some(self.rectangle.around())
+    }
+
+    fn can_hit_itself(&self, _leaving: Side) -> bool {
+        false
+    }
+
+    fn plane(&self) -> Option<[DVec3; 2]> {
+        Some([self.plane.point, self.plane.normal])
+    }
+
+    fn method(&self) -> String {
+        CLASSIC_METHOD.to_owned()
+    }
+}
+
+impl<A: Bounded> Hittable for FinitePlane<A> {
+    #[inline(always)]
+    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
+        let distance = self.plane.distance(ray, range);
+        if self.has_crossing(ray, distance) { distance } else { MISS }
+    }
+
+    fn normal(&self, _at: DVec3) -> DVec3 {
+        self.plane.normal
+    }
+
+    fn bounds(&self) -> Option<Aabb> {
+        Some(self.rectangle.around())
+    }
+
+    fn can_hit_itself(&self, _leaving: Side) -> bool {
+        false
+    }
+
+    fn is_clear_of(&self, region: &Aabb) -> bool {
+        self.plane.is_clear_of(region) || !self.rectangle.around().overlaps(region)
+    }
+
+    fn plane(&self) -> Option<[DVec3; 2]> {
+        Some([self.plane.point, self.plane.normal])
+    }
+
+    fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    fn method(&self) -> String {
+        self.plane.method().to_owned()
+    }
+}
+
+impl<A: Bounded> Bracketed for FinitePlane<A> {
+    #[inline(always)]
+    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+        FinitePlane::t_bounds(self, ray, range)
+    }
+
+    #[inline(always)]
+    fn refine(&self, ray: &Ray, _origin_side: Option<Side>) -> f64 {
+        // A certain hit lies inside the rectangle.
+        self.plane.quick_crossing(ray)
+    }
+}
+
+impl<A: Bounded> Flat for FinitePlane<A> {
+    type Accuracy = A;
+
+    #[inline(always)]
+    fn flat(&self) -> &Plane<A> {
+        &self.plane
+    }
+}
+
+impl<A: Bounded> Certified for FinitePlane<A> {
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        // A ray that starts on the plane beside the rectangle does not hit the rectangle either.
+        self.plane.touches(at, error)
+    }
+
+    fn fine_distance(&self, ray: &Ray, _distance: f64) -> Option<DoubleDouble> {
+        Some(self.plane.exact_crossing(ray))
+    }
+}
+
+impl<A> Equation for FinitePlane<A> {
+    const IS_QUADRATIC: bool = true;
+
+    fn value<N: Scalar>(&self, at: [N; 3]) -> N {
+        self.plane.value(at)
+    }
+
+    fn kept<N: Scalar>(&self, at: [N; 3]) -> N {
+        self.plane.kept(at).min(self.inside_of(at))
+    }
+}
