@@ -3,10 +3,10 @@
 use super::failure::{Failure, print};
 use super::program;
 use crate::scene::entity::Entity;
+use crate::scene::list_json::Tables;
 use crate::scene::pparm::Attribute;
 use crate::scene::reference;
 use crate::scene::registry::Registry;
-use crate::scene::tables::Tables;
 use crate::scene::value::Datum;
 use crate::words;
 
