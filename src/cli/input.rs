@@ -6,7 +6,7 @@ use crate::files;
 use crate::scene::model::Model;
 use crate::scene::reader::{self, Chosen, Loaded, Report};
 use crate::scene::registry::Registry;
-use crate::words;
+use crate::text;
 use crate::world::accuracy::Accuracy;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -76,9 +76,9 @@ pub fn read(path: &Path) -> Result<(String, Vec<u8>), Failure> {
         }
         Ok(bytes) => Ok((name, bytes)),
         Err(error) => {
-            let near = words::nearest_file(path).filter(|_| error.kind() == io::ErrorKind::NotFound);
+            let near = text::nearest_file(path).filter(|_| error.kind() == io::ErrorKind::NotFound);
             Err(Failure::Usage(
-                format!("cannot read `{name}`: {}", words::reason(&error)),
+                format!("cannot read `{name}`: {}", text::reason(&error)),
                 near.map(|near| format!("did you mean `{}`?", path.with_file_name(near).display())),
             ))
         }

@@ -14,7 +14,7 @@ use crate::render::plan::Plan;
 use crate::render::ray_stats::{Cuts, RayStats};
 use crate::render::renderer::{Overseer, Renderer};
 use crate::render::tiles::{Band, Tiles};
-use crate::words::{count, short};
+use crate::text::{count, short};
 use std::io::{self, BufWriter};
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};

@@ -4,7 +4,7 @@ use super::failure::Failure;
 use super::messages;
 use super::temporary::Temporary;
 use crate::output::picture::Format;
-use crate::words;
+use crate::text;
 use std::ffi::OsStr;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, IsTerminal, Seek, Write};
@@ -75,7 +75,7 @@ pub fn folder(path: &Path) -> Result<(), Failure> {
     fs::create_dir_all(path).map_err(|error| {
         let reason = match error.kind() {
             io::ErrorKind::AlreadyExists => "a file of this name exists".to_owned(),
-            _ => words::reason(&error),
+            _ => text::reason(&error),
         };
         Failure::Failed(format!("cannot create the folder `{}`: {reason}", path.display()))
     })

@@ -9,7 +9,7 @@ use crate::output::checkpoint::{self, Checkpoint, Identity};
 use crate::output::picture::Format;
 use crate::render::tiles::{Band, Tiles};
 use crate::scene::model::Model;
-use crate::words;
+use crate::text;
 use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -84,7 +84,7 @@ impl Begun {
     /// Removes the checkpoint after its image is finished.
     pub fn remove(self) -> Result<(), Failure> {
         fs::remove_file(&self.path).map_err(|error| {
-            let (path, reason) = (self.path.display(), words::reason(&error));
+            let (path, reason) = (self.path.display(), text::reason(&error));
             Failure::Failed(format!(
                 "cannot remove `{path}`: {reason}; the image is finished, so remove the file by hand"
             ))
@@ -97,7 +97,7 @@ const BEGIN_ANEW: &str = "leave out `--resume` to start from the beginning";
 fn cannot_read(path: &Path, error: &io::Error) -> Failure {
     let reason = match error.kind() {
         io::ErrorKind::InvalidData => "it is not a checkpoint, or it is corrupt".to_owned(),
-        _ => words::reason(error),
+        _ => text::reason(error),
     };
     Failure::Usage(format!("cannot read `{}`: {reason}", path.display()), Some(BEGIN_ANEW.to_owned()))
 }
@@ -143,7 +143,7 @@ pub fn leave(
 
 fn identity(model: &Model, part: &Part) -> Result<Identity, Failure> {
     Identity::of(model, &part.columns, &part.rows).map_err(|error| {
-        let reason = words::reason(&error);
+        let reason = text::reason(&error);
         Failure::Failed(format!(
             "cannot read the program's own file, whose hash a checkpoint contains: {reason}"
         ))

@@ -3,7 +3,7 @@
 use super::failure::Failure;
 use super::{interrupt, memory, messages};
 use crate::render::tiles::{BAND, TILE};
-use crate::words;
+use crate::text;
 use bytesize::ByteSize;
 use std::fmt;
 use std::sync::{Arc, OnceLock};
@@ -108,7 +108,7 @@ impl Args {
         };
         let started = thread::Builder::new().name("limits".to_owned()).spawn(watch);
         started.map(|_| stop).map_err(|error| {
-            Failure::Failed(format!("cannot start a thread to watch the limits: {}", words::reason(&error)))
+            Failure::Failed(format!("cannot start a thread to watch the limits: {}", text::reason(&error)))
         })
     }
 

@@ -9,7 +9,7 @@ use crate::scene::choice::Choice;
 use crate::scene::dump;
 use crate::scene::model::Model;
 use crate::scene::syntax::Syntax;
-use crate::words;
+use crate::text;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -67,7 +67,7 @@ impl Identity {
             accuracy: camera.accuracy.option().name.to_owned(),
             crop: (!is_whole).then(|| [columns.start, height - rows.end, columns.len(), rows.len()]),
             program: program()?,
-            sampler: words::name(&camera.sampler),
+            sampler: text::name(&camera.sampler),
             samples: camera.samples,
             scene: hash(dump::scene(model, Syntax::Notes).as_bytes()),
             size: camera.pixels,
@@ -144,7 +144,7 @@ pub fn write(
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::Fast);
     encoder.set_source_srgb(AS_SHOWN);
-    encoder.add_itxt_chunk(KEYWORD.to_owned(), words::json(identity))?;
+    encoder.add_itxt_chunk(KEYWORD.to_owned(), text::json(identity))?;
     let mut writer = encoder.write_header()?;
     let mut stream = writer.stream_writer()?;
     let (mut colours, mut pixels) = (vec![[0; 3]; width], vec![[0; 4]; width]);
