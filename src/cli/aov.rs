@@ -1,9 +1,9 @@
 //! `tabray render --aov`: auxiliary images beside the main one, and exact numbers.
 
 use super::failure::Failure;
+use super::messages;
 use super::output::{self, Output};
 use super::progress::Progress;
-use super::{interrupt, messages};
 use crate::output::aov::Aov;
 use crate::output::picture::Format;
 use crate::render::plan::Plan;
@@ -14,6 +14,7 @@ use crate::world::sample::Sampler;
 use std::ffi::OsStr;
 use std::io::Write;
 use std::iter;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 /// The maximum number of pixels of an image with auxiliary images: unlike the main image, they are held in memory as a
@@ -37,7 +38,12 @@ pub struct Files {
 }
 
 /// Opens all files that are asked for, named after the main picture's.
-pub fn open(model: &Model, args: &Args, main: &Path, output: &Output) -> Result<Vec<Files>, Failure> {
+pub fn open(
+    (scene, model): (&Path, &Model),
+    args: &Args,
+    main: &Path,
+    output: &Output,
+) -> Result<Vec<Files>, Failure> {
     if args.aov.is_empty() {
         return Ok(Vec::new());
     }
@@ -60,7 +66,10 @@ pub fn open(model: &Model, args: &Args, main: &Path, output: &Output) -> Result<
             aovs.push(*aov);
         }
     }
-    let opened = |path: PathBuf| Output::open(&path).map(|output| (path, output));
+    let opened = |path: PathBuf| {
+        output::is_no_source(&path, scene, model)?;
+        Output::open(&path).map(|output| (path, output))
+    };
     aovs.into_iter()
         .map(|aov| {
             let mut stem = main.file_stem().unwrap_or_default().to_owned();
@@ -86,9 +95,6 @@ pub fn write(
     format: Format,
     files: Vec<Files>,
 ) -> Result<(), Failure> {
-    if files.is_empty() {
-        return Ok(());
-    }
     let (exact_model, own);
     let truth = if files.iter().any(|file| file.aov == Aov::Error) {
         exact_model = exact()?;
@@ -106,7 +112,7 @@ pub fn write(
         let progress = Progress::new(size[1]);
         let layer = aov.render(&renderer, plan, truth, &|| {
             progress.step();
-            interrupt::check()
+            ControlFlow::Continue(())
         });
         progress.end();
         let layer = layer.map_err(|_| Failure::Interrupted("the image was not finished"))?;

@@ -2,7 +2,7 @@
 
 use super::failure::{Failure, print};
 use super::input::{self, Source};
-use super::interrupt;
+use super::interrupt::{self, Manner};
 use super::output::{self, Output};
 use super::progress::Progress;
 use crate::scene::choice::Choice;
@@ -42,9 +42,10 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         let path = folder.join(format!("{name}.{extension}"));
         Output::open(&path).map(|output| (path, output))
     });
-    interrupt::catch()?;
+    interrupt::catch(Manner::NotesFirst("nothing has been measured yet"))?;
     let mut work = Work::new();
     let chart = chart::measure(&name, &load, &mut work);
+    interrupt::from_here(Manner::Notes);
     work.end();
     let chart = chart?;
     if chart.panels.is_empty() {
@@ -108,5 +109,11 @@ impl chart::Progress for Work {
     fn done(&mut self, units: usize) -> ControlFlow<()> {
         self.0.advance(units);
         interrupt::check()
+    }
+
+    fn kept(&mut self) {
+        interrupt::from_here(Manner::NotesFirst(
+            "the measurement under way takes too long, and there is no chart",
+        ));
     }
 }

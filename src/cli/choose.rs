@@ -3,7 +3,8 @@
 use super::chart::{Work, all_accuracies};
 use super::failure::{Failure, print};
 use super::input::{self, Source};
-use super::{interrupt, program};
+use super::interrupt::{self, Manner};
+use super::program;
 use crate::scene::choice::Choice;
 use crate::scene::registry::Registry;
 use crate::tools::chart::{self, Estimate};
@@ -46,7 +47,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let source = Source::read(&args.scene)?;
     input::told(source.load(registry, None))?;
     let load = all_accuracies(registry, &source)?;
-    interrupt::catch()?;
+    interrupt::catch(Manner::Ends("nothing has been chosen"))?;
     let mut work = Work::new();
     let estimates = chart::estimates(&load, &mut work);
     work.end();

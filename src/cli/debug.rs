@@ -1,7 +1,7 @@
 //! `tabray render --debug`: the notes' debug lines, for some pixels or for all.
 
 use super::failure::Failure;
-use super::{interrupt, probe};
+use super::probe;
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::scene::model::Model;
@@ -32,28 +32,20 @@ pub fn print(model: &Model, args: &Args) -> Result<(), Failure> {
         None => [[0, 0], [width - 1, height - 1]],
     };
     let plan = Plan::new(model);
-    let printed = Renderer::new(1)?.run(|| {
+    // Where standard error is closed there is nobody to tell.
+    let _: io::Result<()> = Renderer::new(1)?.run(|| {
         let mut out = BufWriter::new(io::stderr());
         // The notes' order of pixels.
         for y in a[1].min(b[1])..=a[1].max(b[1]) {
             for x in a[0].min(b[0])..=a[0].max(b[0]) {
                 debug::pixel(&plan, x, y, &args.debug, &mut out)?;
-                if interrupt::check().is_break() {
-                    return Err(io::ErrorKind::Interrupted.into());
-                }
             }
         }
         // The notes' lines begin with a line end and have none at their end, so later output needs one here.
         writeln!(out)?;
         out.flush()
     });
-    match printed {
-        Err(error) if error.kind() == io::ErrorKind::Interrupted => {
-            Err(Failure::Interrupted("the image was not finished"))
-        }
-        // Where standard error is closed there is nobody to tell.
-        _ => Ok(()),
-    }
+    Ok(())
 }
 
 /// Parses one pixel or two corners.

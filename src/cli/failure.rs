@@ -1,11 +1,11 @@
 //! The end of a command: its output, or a failure.
 
-use super::messages;
+use super::{messages, progress, temporary};
 use crate::scene::reader::Report;
 use crate::text;
 use std::io::{self, Write};
 use std::path::Path;
-use std::process::ExitCode;
+use std::process::{self, ExitCode};
 
 /// The reason why a command did not do what it was asked to do.
 pub enum Failure {
@@ -48,6 +48,20 @@ impl Failure {
 
 /// Prints why a command failed, and returns the exit status.
 pub fn tell(failure: &Failure) -> ExitCode {
+    told(failure).into()
+}
+
+/// Says why a command failed, and ends the program, whatever its other threads are at.
+pub fn end(failure: &Failure) -> ! {
+    progress::clear();
+    // Nobody else says anything from here on.
+    let _held = io::stderr().lock();
+    let status = told(failure);
+    temporary::remove_all();
+    process::exit(status.into())
+}
+
+fn told(failure: &Failure) -> u8 {
     match failure {
         Failure::Scene(report) => messages::report(report),
         Failure::Usage(message, help) => messages::error(message, help.as_deref()),
@@ -55,11 +69,11 @@ pub fn tell(failure: &Failure) -> ExitCode {
         Failure::Interrupted(what) => messages::note(&format!("interrupted: {what}")),
         Failure::Stopped | Failure::Told => {}
     }
-    ExitCode::from(match failure {
+    match failure {
         Failure::Failed(_) => 1,
         Failure::Scene(_) | Failure::Usage(..) | Failure::Told => 2,
         Failure::Interrupted(_) | Failure::Stopped => 130,
-    })
+    }
 }
 
 /// Prints to standard output. A reader that closes the pipe is no failure.

@@ -1,7 +1,7 @@
 //! Reads scenes from files and from standard input.
 
 use super::failure::Failure;
-use super::{crash, messages};
+use super::{crash, memory, messages};
 use crate::files;
 use crate::scene::model::Model;
 use crate::scene::reader::{self, Chosen, Loaded, Report};
@@ -13,6 +13,9 @@ use std::path::{Path, PathBuf};
 
 /// The maximum size of a scene, in bytes: far more than written scenes have, and far less than memory holds.
 const LARGEST: u64 = 1 << 30;
+
+/// What a model of many objects takes while it is made, for each byte of its text.
+const MODEL: usize = 16;
 
 /// Whether this path stands for standard input.
 pub fn is_standard(path: &Path) -> bool {
@@ -47,6 +50,7 @@ impl Source {
     /// Reads the text of a scene.
     pub fn read(path: &Path) -> Result<Self, Failure> {
         let (name, bytes) = read(path)?;
+        memory::room(MODEL * bytes.len(), &format!("the model of `{name}`"))?;
         Ok(Self { name, folder: path.parent().unwrap_or(path).to_owned(), bytes })
     }
 

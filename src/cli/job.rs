@@ -1,14 +1,14 @@
 //! Renders an image and writes it, or stops and leaves what a later render can continue from.
 
-use super::failure::Failure;
-use super::messages;
+use super::failure::{self, Failure};
 use super::output::{Output, finished};
 use super::progress::Progress;
 use super::resume::{self, Begun};
 use super::size::Part;
 use super::stats::Stats;
 use super::stop::Stop;
-use crate::output::picture::Format;
+use super::{memory, messages};
+use crate::output::picture::{AT_ONCE, Format};
 use crate::render::limits::MAX_RAYS;
 use crate::render::plan::Plan;
 use crate::render::ray_stats::{Cuts, RayStats};
@@ -16,8 +16,14 @@ use crate::render::renderer::{Overseer, Renderer};
 use crate::render::tiles::{Band, Tiles};
 use crate::text::{count, short};
 use std::io::{self, BufWriter};
+use std::mem::{replace, take};
+use std::ops::Range;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
+use std::time::Instant;
+
+/// Pixels that are written where nothing is rendered, at most. An image that lacks more ends where it lacks all.
+const MOST_BLANK: usize = 1 << 24;
 
 /// A part of a plan's image, and how it is rendered.
 pub struct Job<'a> {
@@ -28,69 +34,114 @@ pub struct Job<'a> {
     /// The path of the image.
     pub path: &'a Path,
     /// How many pixels may be in memory at one time.
-    pub band: usize,
+    pub at_once: usize,
     pub stop: &'a Stop,
     /// The statistics to fill in, if they are wanted.
     pub stats: Option<&'a Stats>,
 }
 
 impl Job<'_> {
-    /// Renders what a checkpoint does not have, and puts the picture where it belongs.
-    pub fn run(&self, output: Output, mut begun: Option<Begun>) -> Result<(), Failure> {
-        let Part { columns, rows } = self.part;
-        let progress = Progress::new(rows.len());
-        let mut tiles = Tiles::none(self.part.size());
+    /// Renders what a checkpoint does not have, and puts the picture where it belongs. Where that is stopped, the program
+    /// ends with what is left: threads may still be at work.
+    pub fn run(&self, output: Output, begun: Option<Begun>) -> Result<(), Failure> {
+        let progress = Progress::new(self.part.rows.len());
         let cuts = Mutex::new(Cuts::default());
-        let (mut broken, mut told) = (None, false);
+        let cut = |part| cuts.lock().unwrap_or_else(PoisonError::into_inner).add(part);
+        let sum = self.stats.map(|stats| &stats.tally);
+        let add = |tally: RayStats| {
+            cut(tally.cuts);
+            sum.iter().for_each(|sum| sum.add(&tally));
+        };
+        let overseer = Overseer { stops: &|| self.stop.is_due(), row: &|| progress.step() };
+        let (plan, plain, counted) = (self.plan, &cut, &add);
+        self.stop.begin();
+        self.renderer.unfinished(|renders| {
+            let fill = |band: &mut Band| match self.stats {
+                None => renders.fill(plan, band, overseer, plain),
+                Some(stats) => stats.timed(|| renders.fill(plan, band, overseer, counted)),
+            };
+            let outcome = self.write(output, begun, &progress, fill);
+            progress.end();
+            warn_of(take(&mut cuts.lock().unwrap_or_else(PoisonError::into_inner)));
+            match outcome {
+                Err(failure) if self.stop.is_due() => failure::end(&failure),
+                outcome => outcome,
+            }
+        })
+    }
+
+    fn write(
+        &self,
+        output: Output,
+        mut begun: Option<Begun>,
+        progress: &Progress,
+        fill: impl Fn(&mut Band),
+    ) -> Result<(), Failure> {
+        let Part { columns, rows } = self.part;
+        let mut tiles = Tiles::none(self.part.size());
+        let (mut broken, mut told, mut is_cut) = (None, false, false);
         let mut out = BufWriter::with_capacity(1 << 16, output);
-        let bands = Band::split(columns, rows, self.band).map(|rows| {
-            let mut band = Band::blank(columns.clone(), rows);
-            if let Some(begun) = &mut begun
-                && let Err(failure) = begun.fill(&mut band)
-            {
-                broken = Some(failure);
-                return Err(io::ErrorKind::InvalidData.into());
+        let mut writing = None;
+        let bands = Band::split(columns, rows, self.at_once).flat_map(|band| {
+            if let Some(since) = writing.take() {
+                self.stop.wrote(Instant::elapsed(&since));
             }
-            self.fill(&mut band, &progress, &cuts);
+            let is_blank = self.stop.is_due() && begun.as_ref().is_none_or(Begun::is_over);
+            if is_blank && (rows.end - band.start) * columns.len() > MOST_BLANK {
+                is_cut = true;
+                self.tell_once(&mut told, progress);
+                // A row more, for what is before it to come out of the compressor.
+                return vec![Ok(vec![0; 3 * columns.len()]), Err(io::ErrorKind::Other.into())];
+            }
+            let mut band = match self.band(band, begun.as_mut()) {
+                Ok(band) => band,
+                Err(failure) => {
+                    broken = Some(failure);
+                    return vec![Err(io::ErrorKind::InvalidData.into())];
+                }
+            };
+            fill(&mut band);
             tiles.add(&band);
-            if !band.is_whole() && !told {
-                told = true;
-                progress.end();
-                self.stop.tell();
+            if !band.is_whole() {
+                self.tell_once(&mut told, progress);
             }
-            Ok(band.pixels.into_flattened())
+            writing = Some(Instant::now());
+            band.bytes(AT_ONCE).into_iter().map(Ok).collect()
         });
         let written = self.format.write(&mut out, self.part.size(), bands);
-        progress.end();
-        warn_of(cuts.into_inner().unwrap_or_else(PoisonError::into_inner));
-        match broken {
-            Some(failure) => Err(failure),
-            None if written.is_ok() && !tiles.is_whole() => self.leave(out, &tiles),
-            None => {
+        match (broken, written) {
+            (Some(failure), _) => Err(failure),
+            (None, Err(error)) if is_cut && error.kind() == io::ErrorKind::Other => {
+                self.leave(out, &tiles, tiles.begun())
+            }
+            (None, Ok(())) if !tiles.is_whole() => self.leave(out, &tiles, rows.len()),
+            (None, written) => {
                 finished(self.path, written, out)?;
                 begun.map_or(Ok(()), Begun::remove)
             }
         }
     }
 
-    fn fill(&self, band: &mut Band, progress: &Progress, cuts: &Mutex<Cuts>) {
-        let cut = |part| cuts.lock().unwrap_or_else(PoisonError::into_inner).add(part);
-        let overseer = Overseer { stops: &|| self.stop.is_due(), row: &|| progress.step() };
-        match self.stats {
-            None => self.renderer.fill(self.plan, band, overseer, &cut),
-            Some(stats) => {
-                let sum = &stats.tally;
-                let add = |tally: RayStats| {
-                    cut(tally.cuts);
-                    sum.add(&tally);
-                };
-                stats.timed(|| self.renderer.fill(self.plan, band, overseer, &add));
-            }
+    /// Says why the picture is stopped, once.
+    fn tell_once(&self, told: &mut bool, progress: &Progress) {
+        if !replace(told, true) {
+            progress.end();
+            self.stop.tell();
         }
     }
 
-    /// Puts a part of the picture where it belongs, and says what is there. `out` has it, and black for the rest.
-    fn leave(&self, out: BufWriter<Output>, tiles: &Tiles) -> Result<(), Failure> {
+    /// A band with what a checkpoint has of it.
+    fn band(&self, rows: Range<usize>, begun: Option<&mut Begun>) -> Result<Band, Failure> {
+        let columns = self.part.columns.clone();
+        memory::room(3 * rows.len() * columns.len(), "the image")?;
+        let band = Band::blank(columns, rows);
+        begun.map_or(Ok(()), |begun| begun.fill(&band))?;
+        Ok(band)
+    }
+
+    /// Puts a part of the picture where it belongs, and says what is there. `out` has so many rows of it, black where
+    /// nothing is rendered.
+    fn leave(&self, out: BufWriter<Output>, tiles: &Tiles, rows: usize) -> Result<(), Failure> {
         let output =
             out.into_inner().map_err(|error| Failure::cannot_write(self.path, &error.into_error()))?;
         let [width, height] = self.part.size();
@@ -101,16 +152,22 @@ impl Job<'_> {
                 "nothing has been rendered yet, and nothing is written".to_owned()
             }
             Output::File(..) => {
-                let checkpoint =
-                    resume::leave(self.plan.model, self.part, (self.path, self.format), output, tiles)?;
+                let checkpoint = resume::leave(
+                    self.plan.model,
+                    self.part,
+                    (self.path, self.format),
+                    output,
+                    (tiles, rows),
+                )?;
                 let [picture, checkpoint] = [self.path, &checkpoint].map(Path::display);
                 format!(
                     "wrote {share:.1} % of {picture}, and {checkpoint}, from which `--resume` renders the rest"
                 )
             }
             Output::Standard | Output::Special(_) => {
+                let rest = if rows < height { "missing" } else { "black" };
                 format!(
-                    "{share:.1} % of the image is rendered, and the rest is black; only files can be resumed"
+                    "{share:.1} % of the image is rendered, and the rest is {rest}; only files can be resumed"
                 )
             }
         });

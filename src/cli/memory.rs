@@ -1,6 +1,17 @@
 //! The memory use of the program, on systems that report it: Linux.
 
+use super::failure::Failure;
+use bytesize::ByteSize;
 use std::fs;
+
+/// Refuses what takes about so many bytes where the system would not give them: allocations further down end the program
+/// with a signal.
+pub fn room(bytes: usize, what: &str) -> Result<(), Failure> {
+    let refused = |_| {
+        Failure::Failed(format!("not enough memory for {what}: it takes about {}", ByteSize(bytes as u64)))
+    };
+    Vec::<u8>::new().try_reserve_exact(bytes).map_err(refused)
+}
 
 /// The memory that it has now, in bytes.
 pub fn now() -> Option<u64> {

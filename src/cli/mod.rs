@@ -47,6 +47,8 @@ mod watch;
 use crate::scene::registry::Registry;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use failure::{Failure, tell};
+#[cfg(target_os = "linux")]
+use nix::sys::signal::{SigSet, Signal};
 use std::io::{self, IsTerminal, Write};
 use std::process::ExitCode;
 
@@ -103,6 +105,10 @@ fn command() -> clap::Command {
 /// Runs the command that the program's arguments name, with every plugin that is linked in. Messages go to standard
 /// error, and the exit status tells how the command ended.
 pub fn run() -> ExitCode {
+    // A file that becomes larger than one may be is then an error like that of a full disk, and no end without a word.
+    // Where the signal cannot be blocked, it ends the program as before.
+    #[cfg(target_os = "linux")]
+    let _ = SigSet::from(Signal::SIGXFSZ).thread_block();
     crash::keep();
     crash::catch(chosen).unwrap_or_else(|failure| tell(&failure))
 }

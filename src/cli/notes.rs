@@ -2,7 +2,7 @@
 
 use super::failure::Failure;
 use super::input::{self, Source};
-use super::interrupt;
+use super::interrupt::{self, Manner};
 use super::job::Job;
 use super::output::Output;
 use super::size::Part;
@@ -24,7 +24,7 @@ pub fn run(registry: &Registry) -> Result<(), Failure> {
     // The course's own image, unless the camera asks for another method.
     let accuracy = Chosen { by_default: Accuracy::Classic, ..Chosen::default() };
     let model = input::told(Source::read(standard)?.load_by(registry, accuracy))?.model;
-    interrupt::catch()?;
+    interrupt::catch(Manner::Ends("the image was not finished"))?;
     let _ = write!(std::io::stderr(), "{}", dump::notes(&model));
     let job = Job {
         plan: &Plan::new(&model),
@@ -32,7 +32,7 @@ pub fn run(registry: &Registry) -> Result<(), Failure> {
         renderer: &Renderer::new(0)?,
         format: Format::Ppm,
         path: standard,
-        band: BAND,
+        at_once: BAND,
         stop: &Stop::default(),
         stats: None,
     };

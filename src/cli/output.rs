@@ -1,14 +1,18 @@
 //! Writes images beside their targets first and then replaces the targets, so that a target never holds half an image.
 
 use super::failure::Failure;
-use super::messages;
 use super::temporary::Temporary;
+use super::{input, messages};
 use crate::output::picture::Format;
+use crate::scene::model::{Item, Model};
 use crate::text;
+use crate::world::texture::Texture;
+use same_file::{Handle, is_same_file};
 use std::ffi::OsStr;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, IsTerminal, Seek, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// A place to write to, which is opened before any work is done.
 pub enum Output {
@@ -55,10 +59,10 @@ pub fn put(
     Ok(())
 }
 
-/// Puts a picture in its place, if it was written without an error.
+/// Puts a picture in its place, if it was written without an error. A reader who is gone has lost it.
 pub fn finished(path: &Path, written: io::Result<()>, out: BufWriter<Output>) -> Result<(), Failure> {
     match written.and_then(|()| out.into_inner().map_err(|error| error.into_error())?.finish()) {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::cannot_write(path, &error)),
+        Err(error) => Err(Failure::cannot_write(path, &error)),
         _ => Ok(()),
     }
 }
@@ -93,6 +97,41 @@ fn is_there(path: &Path) -> Failure {
     )
 }
 
+/// The file that is written under this name: where it is a link, what that leads to, whether that is there or not.
+fn target(path: &Path) -> io::Result<PathBuf> {
+    match path.canonicalize() {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => match fs::read_link(path) {
+            Ok(next) => target(&path.with_file_name(next)),
+            Err(_) => Ok(path.to_owned()),
+        },
+        Err(_) if !path.is_symlink() => Ok(path.to_owned()),
+        target => target,
+    }
+}
+
+/// Refuses a file that a model was read from, whatever it is called here.
+pub fn is_no_source(path: &Path, scene: &Path, model: &Model) -> Result<(), Failure> {
+    let is_scene = || {
+        if input::is_standard(scene) {
+            Handle::from_path(path).and_then(|target| Ok(Handle::stdin()? == target)).unwrap_or(false)
+        } else {
+            is_same_file(scene, path).unwrap_or(false)
+        }
+    };
+    let is_source = |texture: &Item<Arc<Texture>>| is_same_file(texture.value.path(), path).unwrap_or(false);
+    let what = if is_scene() {
+        "the scene".to_owned()
+    } else if let Some(texture) = model.textures.iter().find(|texture| is_source(texture)) {
+        format!("the image of texture `{}`", texture.args.name)
+    } else {
+        return Ok(());
+    };
+    Err(Failure::Usage(
+        format!("`{}` is {what}, which the image would replace", path.display()),
+        Some("name another file with `-o FILE`".to_owned()),
+    ))
+}
+
 impl Output {
     /// Opens `path`, or standard output for `-`. An existing file stays as it is until [`finish`](Self::finish).
     pub fn open(path: &Path) -> Result<Self, Failure> {
@@ -107,7 +146,7 @@ impl Output {
         }
         let cannot = |error: io::Error| Failure::cannot_write(path, &error);
         // A link stays a link; the file that it leads to is the one replaced.
-        let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        let target = target(path).map_err(cannot)?;
         let folder = match target.parent() {
             Some(folder) if folder != Path::new("") => folder,
             _ => Path::new("."),
@@ -134,6 +173,14 @@ impl Output {
         let mut file = file.file().try_clone()?;
         file.rewind()?;
         Ok(file)
+    }
+
+    /// Makes a file so long, with zeros at its end.
+    pub fn lengthen(&self, len: u64) -> io::Result<()> {
+        match self {
+            Self::File(file, _) => file.file().set_len(len),
+            Self::Standard | Self::Special(_) => Err(io::ErrorKind::Unsupported.into()),
+        }
     }
 
     /// Puts what was written in its place.

@@ -6,7 +6,7 @@ use super::job::Job;
 use super::output::{Output, named};
 use super::resume::Begun;
 use super::stats::{self, Stats};
-use super::{aov, cpu, debug, input, interrupt, messages, method, size, stop};
+use super::{aov, cpu, debug, input, messages, method, output, size, stop};
 use crate::output::picture::{Compression, Format};
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
@@ -73,9 +73,9 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     camera.samples = args.samples.unwrap_or(camera.samples);
     camera.sampler = args.sampler;
     let part = args.size.apply(camera)?;
-    interrupt::catch()?;
+    output::is_no_source(&path, &args.scene, &model)?;
     let output = Output::open(&path)?;
-    let beside = aov::open(&model, &args.aov, &path, &output)?;
+    let beside = aov::open((&args.scene, &model), &args.aov, &path, &output)?;
     let begun = Begun::open(args.stop.resume, &model, &part, &path, &output)?;
     debug::print(&model, &args.debug)?;
     let threads = args.threads.unwrap_or(0).into();
@@ -90,7 +90,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         renderer: &renderer,
         format,
         path: &path,
-        band: args.stop.band(part.columns.len())?,
+        at_once: args.stop.band(part.columns.len())?,
         stop: &stop,
         stats: args.stats.wants_any().then_some(&stats),
     };
@@ -106,6 +106,10 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         Ok(loaded) => Ok(loaded.model),
         Err(report) => Err(Failure::Scene(report)),
     };
+    if beside.is_empty() {
+        return Ok(());
+    }
+    stop.ends_from_here()?;
     aov::write(&plan, exact, threads, format, beside)
 }
 

@@ -70,14 +70,19 @@ impl Begun {
                 Some(BEGIN_ANEW.to_owned()),
             ));
         }
-        if checkpoint.size() != part.size() {
+        if !checkpoint.fits(part.size()) {
             return Err(cannot_read(&path, &io::ErrorKind::InvalidData.into()));
         }
         Ok(Some(Self { path, checkpoint }))
     }
 
+    /// Whether bands were filled with all of it.
+    pub fn is_over(&self) -> bool {
+        self.checkpoint.rows_left() == 0
+    }
+
     /// Fills a band with what is rendered of it. Bands come from the top.
-    pub fn fill(&mut self, band: &mut Band) -> Result<(), Failure> {
+    pub fn fill(&mut self, band: &Band) -> Result<(), Failure> {
         self.checkpoint.fill(band).map_err(|error| cannot_read(&self.path, &error))
     }
 
@@ -103,7 +108,7 @@ fn cannot_read(path: &Path, error: &io::Error) -> Failure {
 }
 
 /// Leaves a part of a picture at its place, and a checkpoint beside it, whose path is returned. `written` is the picture,
-/// black where nothing is rendered.
+/// or so many rows of it, black where nothing is rendered.
 ///
 /// Both files are complete before either is moved to its path.
 pub fn leave(
@@ -111,8 +116,9 @@ pub fn leave(
     part: &Part,
     (picture, format): (&Path, Format),
     written: Output,
-    tiles: &Tiles,
+    (tiles, rows): (&Tiles, usize),
 ) -> Result<PathBuf, Failure> {
+    let [width, height] = part.size();
     let path = beside(picture);
     let cannot_write = |error: io::Error| Failure::cannot_write(&path, &error);
     let mut checkpoint = Output::open(&path)?;
@@ -120,14 +126,19 @@ pub fn leave(
     written
         .read()
         .and_then(|file| format.read(file))
-        .and_then(|rows| {
+        .and_then(|picture| {
             let mut out = BufWriter::with_capacity(1 << 16, &mut checkpoint);
-            checkpoint::write(&mut out, part.size(), &identity, tiles, rows)?;
+            checkpoint::write(&mut out, [width, rows], &identity, tiles, picture)?;
             out.flush()
         })
         .map_err(cannot_write)?;
     let partial = match format {
-        Format::Ppm => written,
+        Format::Ppm => {
+            // What is not written is a hole in the file, which is black.
+            let len = format.len([width, height]).unwrap_or_default();
+            written.lengthen(len).map_err(|error| Failure::cannot_write(picture, &error))?;
+            written
+        }
         // The checkpoint shows what is wanted.
         Format::Png(_) => {
             let mut shown = checkpoint.read().map_err(cannot_write)?;

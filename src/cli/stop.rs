@@ -1,16 +1,22 @@
 //! Stops a render before its image is finished: at an interruption, or at a limit of time or memory.
 
 use super::failure::Failure;
-use super::{interrupt, memory, messages};
+use super::interrupt::{self, Manner};
+use super::{memory, messages};
 use crate::render::tiles::{BAND, TILE};
 use crate::text;
 use bytesize::ByteSize;
 use std::fmt;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// How often memory is looked at.
+/// A part of an image is left in so many times the time in which it was written: it is read, and written with what is
+/// transparent. The limit of time includes that, up to a quarter of the limit.
+const LEAVING: u32 = 3;
+
+/// How often time and memory are looked at.
 const LOOK: Duration = Duration::from_millis(20);
 
 /// The memory for a pixel of a band, in bytes: three for its colour, the rest for its share of the tiles' state.
@@ -22,6 +28,12 @@ const ROW: u64 = 64;
 /// The minimum memory of a render beside the image, in bytes.
 const ASIDE: u64 = 2 << 20;
 
+/// What is said where no picture is left.
+const NOT_BEGUN: &str = "nothing has been rendered yet, and nothing is written";
+
+/// What is said where a picture beside the main one is not there.
+const NOT_FINISHED: &str = "the image was not finished";
+
 #[derive(clap::Args)]
 #[group(id = "when to stop")]
 pub struct Args {
@@ -30,7 +42,7 @@ pub struct Args {
     #[arg(long)]
     pub resume: bool,
     /// Stop after this time, such as 90s, 5m or 1.5h, as Ctrl-C does: write what is done, and beside it a checkpoint
-    /// for --resume; the images of --aov come after the main image, and are not limited
+    /// for --resume; the time includes reading the scene and writing the image
     #[arg(long, value_name = "TIME", value_parser = time)]
     time_limit: Option<Duration>,
     /// Hold less of the image at a time to stay within this memory, such as 200MiB; where that is not enough, stop as
@@ -46,6 +58,12 @@ enum Limit {
     Memory(ByteSize),
 }
 
+impl Limit {
+    fn tell(&self) {
+        messages::note(&format!("the {self} has been reached"));
+    }
+}
+
 impl fmt::Display for Limit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -59,6 +77,10 @@ impl fmt::Display for Limit {
 #[derive(Default)]
 pub struct Stop {
     reached: Arc<OnceLock<Limit>>,
+    /// Whether rendering has begun.
+    begun: Arc<OnceLock<()>>,
+    /// How long the image was written so far, in microseconds.
+    written: Arc<AtomicU64>,
 }
 
 impl Stop {
@@ -69,41 +91,73 @@ impl Stop {
 
     /// Reports why the render stops.
     pub fn tell(&self) {
-        messages::note(&match self.reached.get() {
-            Some(limit) => format!("the {limit} has been reached"),
-            None => "interrupted; press Ctrl-C again to quit at once".to_owned(),
-        });
+        match self.reached.get() {
+            Some(limit) => limit.tell(),
+            None => messages::note("interrupted; press Ctrl-C again to quit at once"),
+        }
+    }
+
+    /// So much longer the image was written.
+    pub fn wrote(&self, time: Duration) {
+        self.written.fetch_add(time.as_micros() as u64, Ordering::Relaxed);
+    }
+
+    /// From here on interruptions and limits are noted, as there is something to keep.
+    pub fn begin(&self) {
+        interrupt::from_here(Manner::Notes);
+        let _ = self.begun.set(());
+    }
+
+    /// From here on interruptions and limits end the program, and the picture is not there, or those beside it are not.
+    pub fn ends_from_here(&self) -> Result<(), Failure> {
+        interrupt::from_here(Manner::Ends(NOT_FINISHED));
+        match self.reached.get() {
+            Some(limit) if matches!(limit, Limit::Time(_)) => {
+                limit.tell();
+                messages::note(NOT_FINISHED);
+                Err(Failure::Stopped)
+            }
+            _ if interrupt::check().is_break() => Err(Failure::Interrupted(NOT_FINISHED)),
+            _ => Ok(()),
+        }
     }
 }
 
 impl Args {
-    /// From here on, somebody watches the limits.
+    /// From here on, somebody watches the limits, and interruptions are caught. Both end the program, until rendering
+    /// begins.
     pub fn watch(&self) -> Result<Stop, Failure> {
+        interrupt::catch(Manner::Ends(NOT_FINISHED))?;
         let stop = Stop::default();
         let &Self { time_limit, max_memory, .. } = self;
         if time_limit.is_none() && max_memory.is_none() {
             return Ok(stop);
         }
-        let (start, reached) = (Instant::now(), stop.reached.clone());
-        let left = move || time_limit.map(|limit| limit.saturating_sub(start.elapsed()));
-        let look = move || {
-            let time = time_limit.filter(|_| left() == Some(Duration::ZERO));
-            let over = max_memory.filter(|limit| memory::now().is_some_and(|now| now > limit.as_u64()));
-            time.map(Limit::Time).or(over.map(Limit::Memory))
+        let (start, reached, begun) = (Instant::now(), stop.reached.clone(), stop.begun.clone());
+        let written = stop.written.clone();
+        let left = move || {
+            let leaving = LEAVING * Duration::from_micros(written.load(Ordering::Relaxed));
+            time_limit.map(|limit| limit.saturating_sub(start.elapsed() + leaving.min(limit / 4)))
         };
-        // A limit may be reached before anything is begun, and then nothing is.
-        if let Some(limit) = look() {
-            let _ = reached.set(limit);
-            return Ok(stop);
-        }
         let watch = move || {
+            let look = || {
+                let time = time_limit.filter(|_| left() == Some(Duration::ZERO));
+                let over = max_memory.filter(|limit| memory::now().is_some_and(|now| now > limit.as_u64()));
+                time.map(Limit::Time).or(over.map(Limit::Memory))
+            };
             loop {
-                let next = if max_memory.is_some() { LOOK } else { Duration::MAX };
-                thread::sleep(next.min(left().unwrap_or(Duration::MAX)));
                 if let Some(limit) = look() {
                     let _ = reached.set(limit);
+                    // Where nothing is rendered yet, there is nothing to keep.
+                    if matches!(limit, Limit::Time(_)) {
+                        interrupt::end_if_it_would(|| {
+                            limit.tell();
+                            messages::note(if begun.get().is_some() { NOT_FINISHED } else { NOT_BEGUN });
+                        });
+                    }
                     return;
                 }
+                thread::sleep(LOOK.min(left().unwrap_or(LOOK)));
             }
         };
         let started = thread::Builder::new().name("limits".to_owned()).spawn(watch);

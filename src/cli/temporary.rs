@@ -1,9 +1,21 @@
 //! Files that get their names only when they are complete.
 
-use std::fs::{File, OpenOptions};
+use std::collections::BTreeSet;
+use std::fs::{self, File, OpenOptions};
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 use tempfile::NamedTempFile;
+
+/// The files that have hidden names, or had.
+static HIDDEN: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+
+/// Removes all files that have hidden names, as the program ends before what made them does.
+pub fn remove_all() {
+    for path in std::mem::take(&mut *HIDDEN.lock().unwrap_or_else(PoisonError::into_inner)) {
+        let _ = fs::remove_file(path);
+    }
+}
 
 /// A file in a folder, written before anybody sees it.
 pub enum Temporary {
@@ -37,7 +49,15 @@ impl Temporary {
     /// Gives the file this name in its folder, replacing an existing file.
     ///
     /// There is no single step to this for a file without a name: for a moment the file, which is whole, has a hidden one.
+    ///
+    /// What it contains is on the disk before it has the name, and the name is when this returns.
     pub fn persist(self, target: &Path) -> io::Result<()> {
+        self.file().sync_all()?;
+        self.name(target)?;
+        sync_folder(target)
+    }
+
+    fn name(self, target: &Path) -> io::Result<()> {
         match self {
             #[cfg(target_os = "linux")]
             Self::Unnamed(file) => match unnamed::link(&file, target) {
@@ -53,17 +73,31 @@ impl Temporary {
 
     /// Gives the file a name as [`persist`](Self::persist) does, but fails if a file has that name already.
     pub fn persist_new(self, target: &Path) -> io::Result<()> {
+        self.file().sync_all()?;
         match self {
             #[cfg(target_os = "linux")]
-            Self::Unnamed(file) => unnamed::link(&file, target),
-            Self::Named(file) => Ok(file.persist_noclobber(target).map(drop)?),
+            Self::Unnamed(file) => unnamed::link(&file, target)?,
+            Self::Named(file) => drop(file.persist_noclobber(target)?),
         }
+        sync_folder(target)
     }
 }
 
 /// Returns what `make` makes under a hidden, unused name in a folder.
 fn hidden<T>(folder: &Path, make: impl FnMut(&Path) -> io::Result<T>) -> io::Result<NamedTempFile<T>> {
-    tempfile::Builder::new().prefix(".tabray-").make_in(folder, make)
+    let file = tempfile::Builder::new().prefix(".tabray-").make_in(folder, make)?;
+    HIDDEN.lock().unwrap_or_else(PoisonError::into_inner).insert(file.path().to_owned());
+    Ok(file)
+}
+
+/// Has the names in the folder of a file written to the disk, where the system can be asked to: some file systems cannot.
+fn sync_folder(target: &Path) -> io::Result<()> {
+    let folder = target.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    let cannot = [io::ErrorKind::InvalidInput, io::ErrorKind::PermissionDenied, io::ErrorKind::Unsupported];
+    match File::open(folder).and_then(|folder| folder.sync_all()) {
+        Err(error) if !cannot.contains(&error.kind()) => Err(error),
+        _ => Ok(()),
+    }
 }
 
 #[cfg(target_os = "linux")]

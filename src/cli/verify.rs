@@ -1,15 +1,17 @@
 //! `tabray verify`: proves, pixel by pixel, which object is seen.
 
 use super::failure::{Failure, print};
+use super::interrupt::{self, Manner};
 use super::output::{self, Output, named};
 use super::progress::Progress;
-use super::{input, interrupt, method};
+use super::{input, method};
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::scene::registry::Registry;
 use crate::text;
 use crate::tools::verify::{self, Verdict};
 use std::iter;
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 /// Prove for each pixel which object is seen
@@ -35,7 +37,7 @@ pub struct Args {
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let model = input::load(registry, &args.scene, args.method.accuracy()?)?;
-    interrupt::catch()?;
+    interrupt::catch(Manner::Ends("the image was not finished"))?;
     let picture = match &args.output {
         Some(path) => Some((path, named(path, "end it in .png or .ppm")?, Output::open(path)?)),
         None => None,
@@ -46,7 +48,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let plan = Plan::new(&model);
     let verdicts = verify::picture(&renderer, &plan, &|| {
         progress.step();
-        interrupt::check()
+        ControlFlow::Continue(())
     });
     progress.end();
     let verdicts = verdicts.map_err(|_| Failure::Interrupted("the image was not finished"))?;

@@ -4,12 +4,15 @@
 //! what the image depends on.
 
 use crate::output::picture::{AS_SHOWN, Rows};
-use crate::render::tiles::{Band, TILE, Tiles};
+use crate::render::tiles::{Band, Strip, TILE, Tiles};
 use crate::scene::choice::Choice;
 use crate::scene::dump;
+use crate::scene::entity::Args;
 use crate::scene::model::Model;
 use crate::scene::syntax::Syntax;
 use crate::text;
+use rayon::ThreadPoolBuilder;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -39,7 +42,7 @@ pub struct Identity {
     sampler: String,
     /// The number of samples per pixel.
     samples: u32,
-    /// The hash of the scene's dump.
+    /// The hash of the hashes of the scene's dump, of some entities each.
     scene: String,
     /// The width and the height of the image in pixels.
     size: [usize; 2],
@@ -69,7 +72,7 @@ impl Identity {
             program: program()?,
             sampler: text::name(&camera.sampler),
             samples: camera.samples,
-            scene: hash(dump::scene(model, Syntax::Notes).as_bytes()),
+            scene: scene(model),
             size: camera.pixels,
             textures: textures.collect(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -119,6 +122,28 @@ fn program() -> io::Result<String> {
     }
 }
 
+/// How many entities are dumped and hashed together.
+const TOGETHER: usize = 1 << 12;
+
+/// The hash of a scene. A million entities take seconds, and are shared out: somebody waits who has interrupted a render.
+fn scene(model: &Model) -> String {
+    let entities = dump::in_order(model);
+    let hash = |entities: &[&Args]| {
+        let mut hasher = Sha256::new();
+        for args in entities {
+            hasher.update(dump::block(args, Syntax::Notes, false));
+        }
+        hasher.finalize()
+    };
+    let chunks = entities.chunks(TOGETHER);
+    let pool = (chunks.len() > 1).then(|| ThreadPoolBuilder::new().build().ok()).flatten();
+    let hashes: Vec<_> = match pool {
+        Some(pool) => pool.install(|| entities.par_chunks(TOGETHER).map(hash).collect()),
+        None => chunks.map(hash).collect(),
+    };
+    shown(hashes.iter().fold(Sha256::new(), |all, hash| all.chain_update(hash)))
+}
+
 fn hash(bytes: &[u8]) -> String {
     shown(Sha256::new_with_prefix(bytes))
 }
@@ -127,16 +152,17 @@ fn shown(hasher: Sha256) -> String {
     hasher.finalize().iter().fold("sha256:".to_owned(), |text, byte| format!("{text}{byte:02x}"))
 }
 
-/// Writes a checkpoint of a picture of this size. `rows` has all of the picture's rows, whether they are rendered or not.
+/// Writes a checkpoint of so many columns and rows of a picture, from its top. `picture` has these rows, whether they are
+/// rendered or not.
 ///
 /// # Errors
-/// Those of `out` and `rows`, and a size that a PNG cannot have.
+/// Those of `out` and `picture`, and a size that a PNG cannot have.
 pub fn write(
     out: impl Write,
     [width, height]: [usize; 2],
     identity: &Identity,
     tiles: &Tiles,
-    mut rows: Rows,
+    mut picture: Rows,
 ) -> io::Result<()> {
     let side = |pixels: usize| u32::try_from(pixels).map_err(io::Error::other);
     let mut encoder = png::Encoder::new(out, side(width)?, side(height)?);
@@ -149,7 +175,7 @@ pub fn write(
     let mut stream = writer.stream_writer()?;
     let (mut colours, mut pixels) = (vec![[0; 3]; width], vec![[0; 4]; width]);
     for row in 0..height {
-        rows.next(colours.as_flattened_mut())?;
+        picture.next(colours.as_flattened_mut())?;
         for ((pixel, [red, green, blue]), is_done) in iter::zip(&mut pixels, &colours).zip(tiles.row(row)) {
             *pixel = if is_done { [*red, *green, *blue, u8::MAX] } else { [0; 4] };
         }
@@ -165,6 +191,8 @@ pub struct Checkpoint {
     pub identity: Identity,
     png: png::Reader<BufReader<File>>,
     row: Vec<[u8; 4]>,
+    /// How many rows are left.
+    rows: usize,
 }
 
 impl Checkpoint {
@@ -180,33 +208,45 @@ impl Checkpoint {
         let is_plain =
             png.output_color_type() == (png::ColorType::Rgba, png::BitDepth::Eight) && !info.interlaced;
         let identity = identity.filter(|_| is_plain).ok_or(io::ErrorKind::InvalidData)?;
-        let row = vec![[0; 4]; info.width as usize];
-        Ok(Self { identity, png, row })
+        let (row, rows) = (vec![[0; 4]; info.width as usize], info.height as usize);
+        Ok(Self { identity, png, row, rows })
     }
 
-    /// The width and height of its picture.
-    pub fn size(&self) -> [usize; 2] {
-        [self.png.info().width, self.png.info().height].map(|side| side as usize)
+    /// Whether it can be one of a picture of this size: as wide, and as tall or cut off between two rows of tiles.
+    pub fn fits(&self, [width, height]: [usize; 2]) -> bool {
+        self.row.len() == width
+            && (self.rows == height || self.rows < height && self.rows.is_multiple_of(TILE))
     }
 
-    /// Fills a band with what is rendered of it. Bands come from the top.
+    /// Fills a band with what is rendered of it, nothing beyond its end. Bands come from the top.
     ///
     /// # Errors
-    /// Those of the file; of kind `InvalidData` where it is broken, or ends before the band does.
-    pub fn fill(&mut self, band: &mut Band) -> io::Result<()> {
-        let across = self.row.len().div_ceil(TILE);
-        band.tiles.fill(true);
-        for (row, pixels) in band.pixels.chunks_mut(self.row.len()).enumerate() {
-            let read = self.png.read_row(self.row.as_flattened_mut()).map_err(invalid)?;
-            read.ok_or(io::ErrorKind::InvalidData)?;
-            for (column, (pixel, [red, green, blue, alpha])) in iter::zip(pixels, &self.row).enumerate() {
-                *pixel = [*red, *green, *blue];
-                if *alpha != u8::MAX {
-                    band.tiles[row / TILE * across + column / TILE] = false;
+    /// Those of the file; of kind `InvalidData` where it is broken.
+    pub fn fill(&mut self, band: &Band) -> io::Result<()> {
+        for index in 0..band.strips.len() {
+            let Strip { pixels, tiles } = &mut *band.strip(index);
+            if self.rows == 0 {
+                return Ok(());
+            }
+            tiles.fill(true);
+            for pixels in pixels.chunks_mut(self.row.len()) {
+                let read = self.png.read_row(self.row.as_flattened_mut()).map_err(invalid)?;
+                read.ok_or(io::ErrorKind::InvalidData)?;
+                self.rows -= 1;
+                for (column, (pixel, [red, green, blue, alpha])) in iter::zip(pixels, &self.row).enumerate() {
+                    *pixel = [*red, *green, *blue];
+                    if *alpha != u8::MAX {
+                        tiles[column / TILE] = false;
+                    }
                 }
             }
         }
         Ok(())
+    }
+
+    /// How many of its rows no band was filled with yet.
+    pub fn rows_left(&self) -> usize {
+        self.rows
     }
 }
 

@@ -69,6 +69,14 @@ impl Format {
         }
     }
 
+    /// How many bytes its file has, where that does not depend on the picture.
+    pub fn len(self, [width, height]: [usize; 2]) -> Option<u64> {
+        match self {
+            Self::Ppm => Some((ppm_header(width, height).len() + 3 * width * height) as u64),
+            Self::Png(_) => None,
+        }
+    }
+
     /// Reads a file that [`write`](Self::write) wrote, from its beginning.
     ///
     /// # Errors
@@ -106,13 +114,17 @@ impl Rows {
     }
 }
 
+fn ppm_header(width: usize, height: usize) -> String {
+    format!("P6 {width} {height} 255\n")
+}
+
 fn write_ppm(
     mut out: impl Write,
     width: usize,
     height: usize,
     rows: impl IntoIterator<Item = io::Result<Vec<u8>>>,
 ) -> io::Result<()> {
-    writeln!(out, "P6 {width} {height} 255")?;
+    out.write_all(ppm_header(width, height).as_bytes())?;
     for bytes in rows {
         out.write_all(&bytes?)?;
     }
@@ -130,7 +142,7 @@ fn write_ppm(
 pub(crate) const AS_SHOWN: png::SrgbRenderingIntent = png::SrgbRenderingIntent::RelativeColorimetric;
 
 /// A picture of up to so many bytes is encoded at once.
-const AT_ONCE: usize = 1 << 20;
+pub(crate) const AT_ONCE: usize = 1 << 20;
 
 fn write_png(
     out: impl Write,

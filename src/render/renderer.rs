@@ -3,13 +3,17 @@
 use crate::render::bytes::to_bytes;
 use crate::render::observer::TraceObserver;
 use crate::render::plan::Plan;
-use crate::render::tiles::{self, BAND, Band, TILE};
+use crate::render::tiles::{self, BAND, Band, Strip, TILE, locked};
 use crate::render::trace::{Scratch, Tracer};
 use crate::simd::cpu::Cpu;
 use crate::text;
 use rayon::prelude::*;
 use std::io;
 use std::ops::{ControlFlow, Range};
+use std::panic;
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
 
 /// The stack size of a thread in bytes, enough for the deepest chain of reflections that the ray budget allows. The
 /// system commits only what is used.
@@ -64,8 +68,8 @@ impl Renderer {
         watched: &'r (dyn Fn(W) + Sync),
     ) -> impl Iterator<Item = Band> + 'r {
         Band::split(&columns, &rows, BAND).map(move |rows| {
-            let mut band = Band::blank(columns.clone(), rows);
-            self.fill(plan, &mut band, Overseer { stops: &|| false, row: &|| () }, watched);
+            let band = Band::blank(columns.clone(), rows);
+            self.fill(plan, &band, Overseer { stops: &|| false, row: &|| () }, watched);
             band
         })
     }
@@ -73,9 +77,9 @@ impl Renderer {
     /// Renders the whole image: red, green and blue of each pixel, in rows from the top, each from the left.
     pub fn picture(&self, plan: &Plan) -> Vec<u8> {
         let [width, height] = plan.camera.pixels;
-        let mut band = Band::blank(0..width, 0..height);
-        self.fill(plan, &mut band, Overseer { stops: &|| false, row: &|| () }, &|()| {});
-        band.pixels.into_flattened()
+        let band = Band::blank(0..width, 0..height);
+        self.fill(plan, &band, Overseer { stops: &|| false, row: &|| () }, &|()| {});
+        band.bytes(usize::MAX).concat()
     }
 
     /// Renders the tiles of a band that are not rendered yet, until the overseer stops it. Observers are passed to
@@ -83,47 +87,63 @@ impl Renderer {
     pub fn fill<W: TraceObserver + Default>(
         &self,
         plan: &Plan,
-        band: &mut Band,
+        band: &Band,
         overseer: Overseer,
         watched: &(dyn Fn(W) + Sync),
     ) {
-        let [_, height] = plan.camera.pixels;
-        let Band { columns, rows, pixels, tiles } = band;
-        let width = columns.len();
-        let strips = pixels.chunks_mut(TILE * width).zip(tiles.chunks_mut(width.div_ceil(TILE)));
-        let strips = strips.zip(rows.clone().step_by(TILE));
         self.pool.install(|| {
             // Each thread takes the next strip when it is free: with strips assigned beforehand, threads would wait for
             // the slowest one.
-            strips.par_bridge().for_each_init(Scratch::default, |scratch, ((strip, tiles), from_top)| {
-                let (tall, mut observer) = (strip.len() / width, W::default());
-                let top = height - 1 - from_top;
-                let mut tracer = Tracer::new(plan, self.cpu, scratch, &mut observer);
-                let (mut tile, mut bytes) = (Vec::new(), [[0; 3]; TILE * TILE]);
-                for (left, is_done) in columns.clone().step_by(TILE).zip(tiles) {
-                    if *is_done {
-                        continue;
-                    }
-                    if (overseer.stops)() {
-                        break;
-                    }
-                    let (wide, rows) = (left..columns.end.min(left + TILE), top + 1 - tall..top + 1);
-                    tiles::list(wide.clone(), rows.clone(), &mut tile);
-                    let colours = tracer.pixels(&tile);
-                    to_bytes(self.cpu, colours, &mut bytes[..tile.len()]);
-                    let mut rest = &bytes[..];
-                    for (run, y) in tiles::runs(wide, rows) {
-                        let (bytes, others) = rest.split_at(run.len());
-                        strip[(top - y) * width + run.start - columns.start..][..run.len()]
-                            .copy_from_slice(bytes);
-                        rest = others;
-                    }
-                    *is_done = true;
-                }
+            let strips = band.strips.iter().zip(band.rows.clone().step_by(TILE)).par_bridge();
+            strips.for_each_init(Scratch::default, |scratch, (strip, from_top)| {
+                let mut observer = W::default();
+                let tall = TILE.min(band.rows.end - from_top);
+                let rows = from_top..from_top + tall;
+                let tracer = Tracer::new(plan, self.cpu, scratch, &mut observer);
+                self.strip(tracer, strip, [&band.columns, &rows], overseer);
                 watched(observer);
                 (0..tall).for_each(|_| (overseer.row)());
             });
         });
+    }
+
+    /// Renders the tiles of one strip. `rows` count from the top.
+    fn strip<W: TraceObserver>(
+        &self,
+        mut tracer: Tracer<W>,
+        strip: &Mutex<Strip>,
+        [columns, rows]: [&Range<usize>; 2],
+        overseer: Overseer,
+    ) {
+        let (width, height) = (columns.len(), tracer.height());
+        let (top, below) = (height - 1 - rows.start, height - rows.end);
+        let (mut tile, mut bytes) = (Vec::new(), [[0; 3]; TILE * TILE]);
+        for (index, left) in columns.clone().step_by(TILE).enumerate() {
+            if locked(strip).tiles[index] {
+                continue;
+            }
+            if (overseer.stops)() {
+                break;
+            }
+            let (wide, rows) = (left..columns.end.min(left + TILE), below..top + 1);
+            tiles::list(wide.clone(), rows.clone(), &mut tile);
+            let colours = tracer.pixels(&tile);
+            to_bytes(self.cpu, colours, &mut bytes[..tile.len()]);
+            let mut rest = &bytes[..];
+            let mut strip = locked(strip);
+            for (run, y) in tiles::runs(wide, rows) {
+                let (bytes, others) = rest.split_at(run.len());
+                strip.pixels[(top - y) * width + run.start - columns.start..][..run.len()]
+                    .copy_from_slice(bytes);
+                rest = others;
+            }
+            strip.tiles[index] = true;
+        }
+    }
+
+    /// Lets `work` render bands with [`Unfinished::fill`], which may leave threads at work.
+    pub fn unfinished<'s, T>(&'s self, work: impl FnOnce(&Unfinished<'_, 's>) -> T) -> T {
+        self.pool.in_place_scope(|scope| work(&Unfinished { renderer: self, scope }))
     }
 
     /// Computes a value for each pixel, in rows counted from the top, each from the left. Returns `None` if `done`,
@@ -152,5 +172,54 @@ impl Renderer {
     /// Runs other work on one of the threads, whose stacks are large enough for deep reflections.
     pub fn run<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
         self.pool.install(work)
+    }
+}
+
+/// How often somebody asks whether rendering is to stop, where no tile is finished that would.
+const ASK: Duration = Duration::from_millis(20);
+
+/// How long tiles that are under way when rendering stops may take to be finished.
+const GRACE: Duration = Duration::from_millis(100);
+
+/// Renders that do not wait for the last tile when they stop: one packet of rays may take minutes.
+pub struct Unfinished<'a, 's> {
+    renderer: &'s Renderer,
+    scope: &'a rayon::Scope<'s>,
+}
+
+impl<'s> Unfinished<'_, 's> {
+    /// Renders as [`Renderer::fill`] does, until the overseer has stopped it for a moment: then threads may be left that
+    /// are at work on tiles, which the band does not get any more. [`Renderer::unfinished`] returns when they are done, so
+    /// that whoever does not want to wait ends the program before.
+    pub fn fill<W: TraceObserver + Default>(
+        &self,
+        plan: &'s Plan,
+        band: &mut Band,
+        overseer: Overseer<'s>,
+        watched: &'s (dyn Fn(W) + Sync),
+    ) {
+        if (overseer.stops)() {
+            return;
+        }
+        let (renderer, (done, is_done)) = (self.renderer, mpsc::channel());
+        let theirs =
+            Band { columns: band.columns.clone(), rows: band.rows.clone(), strips: Arc::clone(&band.strips) };
+        self.scope.spawn(move |_| {
+            renderer.fill(plan, &theirs, overseer, watched);
+            let _ = done.send(());
+        });
+        let mut stopped = None;
+        loop {
+            match is_done.recv_timeout(ASK) {
+                Err(RecvTimeoutError::Timeout) => {}
+                Ok(()) => return,
+                // A thread panicked, and has said so.
+                Err(RecvTimeoutError::Disconnected) => panic::resume_unwind(Box::new(())),
+            }
+            if (overseer.stops)() && stopped.get_or_insert_with(Instant::now).elapsed() >= GRACE {
+                *band = band.copied();
+                return;
+            }
+        }
     }
 }

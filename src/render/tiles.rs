@@ -1,7 +1,9 @@
 //! The tiles of an image, and which of them are rendered.
 
 use std::iter;
+use std::mem::take;
 use std::ops::Range;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// The width and height of a tile in pixels, whose rays are traced together. Tiles at the right and lower edges may be
 /// smaller.
@@ -31,29 +33,67 @@ pub(crate) fn list(columns: Range<usize>, rows: Range<usize>, pixels: &mut Vec<[
 /// The maximum number of pixels that are in memory at one time, unless one row of tiles has more.
 pub const BAND: usize = 1 << 22;
 
+/// A row of tiles of an image.
+pub struct Strip {
+    /// Red, green and blue of each pixel, in rows from the top, each from the left; black where nothing is rendered.
+    pub pixels: Vec<[u8; 3]>,
+    /// Whether each tile is rendered, from the left.
+    pub tiles: Vec<bool>,
+}
+
 /// Some rows of an image, or of a part of one.
 pub struct Band {
     /// The columns, counted from the left of the whole image.
     pub columns: Range<usize>,
     /// The rows, counted from the top of the whole image.
     pub rows: Range<usize>,
-    /// Red, green and blue of each pixel, in rows from the top, each from the left; black where nothing is rendered.
-    pub pixels: Vec<[u8; 3]>,
-    /// Whether each tile is rendered, in rows from the top, each from the left.
-    pub tiles: Vec<bool>,
+    /// The rows of tiles, from the top. A thread that renders locks one only while it adds a tile.
+    pub strips: Arc<[Mutex<Strip>]>,
 }
 
 impl Band {
     /// Makes a band of which nothing is rendered.
     pub fn blank(columns: Range<usize>, rows: Range<usize>) -> Self {
-        let (width, height) = (columns.len(), rows.len());
-        let tiles = vec![false; width.div_ceil(TILE) * height.div_ceil(TILE)];
-        Self { columns, rows, pixels: vec![[0; 3]; width * height], tiles }
+        let width = columns.len();
+        let strip = |from: usize| {
+            let pixels = vec![[0; 3]; width * TILE.min(rows.end - from)];
+            Mutex::new(Strip { pixels, tiles: vec![false; width.div_ceil(TILE)] })
+        };
+        let strips = rows.clone().step_by(TILE).map(strip).collect();
+        Self { columns, rows, strips }
+    }
+
+    /// Locks a row of tiles, by its index from the top.
+    pub fn strip(&self, index: usize) -> MutexGuard<'_, Strip> {
+        locked(&self.strips[index])
     }
 
     /// Tells whether all tiles are rendered.
     pub fn is_whole(&self) -> bool {
-        self.tiles.iter().all(|is_done| *is_done)
+        self.strips.iter().all(|strip| locked(strip).tiles.iter().all(|is_done| *is_done))
+    }
+
+    /// Copies what is rendered of the band. Threads that are still at work on the band add nothing to the copy.
+    pub fn copied(&self) -> Self {
+        let copy = |strip: &Mutex<Strip>| {
+            let Strip { pixels, tiles } = &*locked(strip);
+            Mutex::new(Strip { pixels: pixels.clone(), tiles: tiles.clone() })
+        };
+        let (columns, rows) = (self.columns.clone(), self.rows.clone());
+        Self { columns, rows, strips: self.strips.iter().map(copy).collect() }
+    }
+
+    /// Takes the bytes of the pixels, in rows from the top: in one piece of up to `at_once` bytes, or in one for each row
+    /// of tiles.
+    pub fn bytes(&self, at_once: usize) -> Vec<Vec<u8>> {
+        let taken = self.strips.iter().map(|strip| take(&mut locked(strip).pixels));
+        if 3 * self.columns.len() * self.rows.len() <= at_once {
+            let mut all = Vec::with_capacity(3 * self.columns.len() * self.rows.len());
+            taken.for_each(|pixels| all.extend_from_slice(pixels.as_flattened()));
+            vec![all]
+        } else {
+            taken.map(Vec::into_flattened).collect()
+        }
     }
 
     /// Splits an image into bands and returns the rows of each, from the top. A band is at least one row of tiles high,
@@ -69,16 +109,21 @@ impl Band {
     }
 }
 
+/// Locks a strip. A thread that panicked has added a whole tile or none.
+pub(crate) fn locked(strip: &Mutex<Strip>) -> MutexGuard<'_, Strip> {
+    strip.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 /// Records which tiles of an image are rendered, band by band.
 pub struct Tiles {
     width: usize,
     height: usize,
-    strips: Vec<Strip>,
+    strips: Vec<Done>,
 }
 
-/// One row of tiles. An image has few strips that are partly rendered, so this takes little memory even for large
+/// What is rendered of a row of tiles. An image has few strips that are partly rendered, so this takes little memory even for large
 /// images.
-enum Strip {
+enum Done {
     Nothing,
     Whole,
     Part(Vec<bool>),
@@ -92,21 +137,20 @@ impl Tiles {
 
     /// Adds the tiles of the next band.
     pub fn add(&mut self, band: &Band) {
-        let strips = band.tiles.chunks(self.width.div_ceil(TILE));
-        self.strips.extend(strips.map(|tiles| match tiles {
-            _ if tiles.iter().all(|is_done| *is_done) => Strip::Whole,
-            _ if tiles.iter().any(|is_done| *is_done) => Strip::Part(tiles.to_vec()),
-            _ => Strip::Nothing,
+        self.strips.extend(band.strips.iter().map(|strip| match &locked(strip).tiles {
+            tiles if tiles.iter().all(|is_done| *is_done) => Done::Whole,
+            tiles if tiles.iter().any(|is_done| *is_done) => Done::Part(tiles.clone()),
+            _ => Done::Nothing,
         }));
     }
 
     /// Tells for each pixel of a row, counted from the top, whether it is rendered.
     pub fn row(&self, row: usize) -> impl Iterator<Item = bool> + '_ {
-        let strip = self.strips.get(row / TILE).unwrap_or(&Strip::Nothing);
+        let strip = self.strips.get(row / TILE).unwrap_or(&Done::Nothing);
         (0..self.width).map(move |column| match strip {
-            Strip::Nothing => false,
-            Strip::Whole => true,
-            Strip::Part(tiles) => tiles[column / TILE],
+            Done::Nothing => false,
+            Done::Whole => true,
+            Done::Part(tiles) => tiles[column / TILE],
         })
     }
 
@@ -116,15 +160,21 @@ impl Tiles {
         let strips = iter::zip(&self.strips, lengths(self.height));
         strips
             .map(|(strip, tall)| match strip {
-                Strip::Nothing => 0,
-                Strip::Whole => tall * self.width,
-                Strip::Part(tiles) => {
+                Done::Nothing => 0,
+                Done::Whole => tall * self.width,
+                Done::Part(tiles) => {
                     tall * iter::zip(tiles, lengths(self.width))
                         .map(|(done, wide)| usize::from(*done) * wide)
                         .sum::<usize>()
                 }
             })
             .sum()
+    }
+
+    /// Returns the number of rows to the end of the last row of tiles of which anything is rendered.
+    pub fn begun(&self) -> usize {
+        let strips = self.strips.iter().rposition(|strip| !matches!(strip, Done::Nothing));
+        strips.map_or(0, |last| self.height.min((last + 1) * TILE))
     }
 
     /// Tells whether the whole image is rendered.

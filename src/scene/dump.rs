@@ -6,6 +6,7 @@ use crate::scene::model::Model;
 use crate::scene::pparm::Attribute;
 use crate::scene::syntax::Syntax;
 use crate::scene::value::Datum;
+use std::collections::HashMap;
 
 /// Returns the notes' dump: camera, materials, objects and lights, with numbers to one decimal. Textures are not in it.
 pub fn notes(model: &Model) -> String {
@@ -27,17 +28,19 @@ fn notes_block(args: &Args) -> String {
 /// their order, and only the attributes that were given.
 pub fn scene(model: &Model, syntax: Syntax) -> String {
     let entities = in_order(model);
-    let count = |args: &Args| entities.iter().filter(|other| same_title(other, args)).count();
-    let blocks: Vec<_> = entities.iter().map(|args| scene_block(args, syntax, count(args) > 1)).collect();
+    // TOML needs an array of tables where two entities have one title.
+    let mut counts: HashMap<_, usize> = HashMap::new();
+    let title = |args: &'_ Args| (args.entity.name, args.name.clone());
+    if syntax == Syntax::Toml {
+        entities.iter().for_each(|args| *counts.entry(title(args)).or_default() += 1);
+    }
+    let is_repeated = |args: &Args| counts.get(&title(args)).is_some_and(|count| *count > 1);
+    let blocks: Vec<_> = entities.iter().map(|args| block(args, syntax, is_repeated(args))).collect();
     blocks.join("\n")
 }
 
-/// Whether TOML needs an array of tables, as two entities have one title.
-fn same_title(a: &Args, b: &Args) -> bool {
-    (a.entity.name, &a.name) == (b.entity.name, &b.name)
-}
-
-fn scene_block(args: &Args, syntax: Syntax, repeated: bool) -> String {
+/// An entity of such a scene. `repeated` if another one of its type has its name.
+pub(crate) fn block(args: &Args, syntax: Syntax, repeated: bool) -> String {
     let (kind, name) = (args.entity.name, syntax.key(&args.name));
     let width = args.given().map(|(attribute, _)| attribute.name().len()).max().unwrap_or(0);
     let line = |(attribute, datum): (&dyn Attribute, &Datum)| {
@@ -59,7 +62,7 @@ fn scene_block(args: &Args, syntax: Syntax, repeated: bool) -> String {
 }
 
 /// All entities of a model in the order of its scene.
-fn in_order(model: &Model) -> Vec<&Args> {
+pub(crate) fn in_order(model: &Model) -> Vec<&Args> {
     let kinds = [Kind::Camera, Kind::Material, Kind::Texture, Kind::Object, Kind::Light];
     let mut all: Vec<_> = kinds.into_iter().flat_map(|kind| model.entities(kind)).collect();
     all.sort_by_key(|args| args.order);

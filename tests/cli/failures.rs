@@ -6,7 +6,7 @@ use assert_cmd::cargo::cargo_bin;
 use std::collections::BTreeSet;
 use std::fs;
 use std::io::{BufRead, BufReader};
-use std::os::unix::fs::{MetadataExt, PermissionsExt};
+use std::os::unix::fs::{MetadataExt, PermissionsExt, symlink};
 use std::os::unix::process::CommandExt;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
@@ -57,6 +57,96 @@ fn a_full_disk_leaves_the_old_picture() {
     let said = "error: cannot write `ball.png`: file too large\n".to_owned();
     assert_eq!(outcome(&mut after(limit, &folder, &args)), (1, said));
     assert_eq!(fs::read(folder.path().join("ball.png")).expect("still there"), b"precious");
+}
+
+#[test]
+fn a_file_that_may_not_be_so_large_is_told_and_not_a_signal() {
+    let folder = workplace();
+    fs::write(folder.path().join("ball.png"), "precious").expect("a file");
+    for args in [&["render", "ball.ray", "--size", "600"][..], &["convert", "ball.ray", "ball.toml"]] {
+        let limit = if args[0] == "convert" { "ulimit -f 0" } else { "ulimit -f 1" };
+        let name = if args[0] == "convert" { "ball.toml" } else { "ball.png" };
+        let said = format!("error: cannot write `{name}`: file too large\n");
+        assert_eq!(outcome(&mut after(limit, &folder, args)), (1, said));
+    }
+    assert_eq!(fs::read(folder.path().join("ball.png")).expect("still there"), b"precious");
+}
+
+#[test]
+fn an_image_whose_reader_is_gone_is_a_failure() {
+    let folder = workplace();
+    let mut command = after("", &folder, &["render", "ball.ray", "-o", "-", "--size", "600"]);
+    let mut render = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it runs");
+    drop(render.stdout.take());
+    let output = render.wait_with_output().expect("it ends");
+    let said = "error: cannot write to standard output: broken pipe\n";
+    assert_eq!((output.status.code(), String::from_utf8_lossy(&output.stderr).as_ref()), (Some(1), said));
+}
+
+#[test]
+fn an_image_does_not_replace_what_it_is_made_from() {
+    let folder = workplace();
+    let at = |name: &str| folder.path().join(name);
+    let textured = "camera eye { pixeldim 4 3 worlddim 8 6 viewpoint 4 3 6 }
+        material white { ambient 2 2 2 }
+        texture bricks { filename bricks.png }
+        texplane wall { material white normal 0 0 1 point 0 0 -8 xdir 1 0 0 dimensions 8 6 texname bricks mode 0 }";
+    fs::write(at("wall.ray"), textured).expect("a file");
+    fs::copy(scene("textures/bricks.png"), at("bricks.png")).expect("a copy");
+    fs::hard_link(at("bricks.png"), at("other.png")).expect("a name");
+    symlink("wall.ray", at("link.png")).expect("a link");
+    symlink("bricks.png", at("wall-depth.png")).expect("a link");
+    let before = |name: &str| fs::read(at(name)).expect("it is there");
+    let (wall, bricks) = (before("wall.ray"), before("bricks.png"));
+    for (output, more, what) in [
+        ("wall.ray", &[][..], "`wall.ray` is the scene"),
+        ("./link.png", &[], "`./link.png` is the scene"),
+        ("bricks.png", &[], "`bricks.png` is the image of texture `bricks`"),
+        ("other.png", &[], "`other.png` is the image of texture `bricks`"),
+        ("wall.png", &["--aov", "depth"], "`wall-depth.png` is the image of texture `bricks`"),
+    ] {
+        let args = [&["render", "wall.ray", "--format", "png", "-o", output], more].concat();
+        let said = format!(
+            "error: {what}, which the image would replace\n |\n = help: name another file with `-o FILE`\n"
+        );
+        assert_eq!(outcome(&mut after("", &folder, &args)), (2, said), "{output}");
+    }
+    let said = "error: `wall.ray` is the scene, which the image would replace\n |\n = help: name another file with `-o FILE`\n";
+    let args = ["render", "-", "--format", "ppm", "-o", "wall.ray"];
+    assert_eq!(outcome(&mut after("exec < wall.ray", &folder, &args)), (2, said.to_owned()));
+    assert!(before("wall.ray") == wall && before("bricks.png") == bricks);
+}
+
+#[test]
+fn a_link_to_nothing_yet_stays_a_link() {
+    let folder = workplace();
+    fs::create_dir(folder.path().join("images")).expect("a folder");
+    symlink("images/one.png", folder.path().join("two.png")).expect("a link");
+    symlink("two.png", folder.path().join("ball.png")).expect("a link");
+    let (status, err) = outcome(&mut after("", &folder, &["render", "ball.ray"]));
+    assert_eq!(status, 0, "{err}");
+    let is_link = |name: &str| folder.path().join(name).symlink_metadata().expect("there").is_symlink();
+    assert!(is_link("ball.png") && is_link("two.png") && !is_link("images/one.png"));
+    symlink("round.png", folder.path().join("round.png")).expect("a link");
+    let (status, err) = outcome(&mut after("", &folder, &["render", "ball.ray", "-o", "round.png"]));
+    assert_eq!(status, 1, "{err}");
+    assert!(err.starts_with("error: cannot write `round.png`: too many levels of symbolic links"), "{err}");
+}
+
+#[test]
+fn what_is_written_is_on_the_disk_before_it_has_its_name() {
+    let folder = workplace();
+    let mut traced = Command::new("strace");
+    traced.args(["-f", "-e", "trace=fsync,linkat,rename,renameat,renameat2", "-o", "calls"]);
+    traced.arg(cargo_bin!("tabray")).args(["render", "ball.ray"]).current_dir(folder.path());
+    if !traced.output().is_ok_and(|output| output.status.success()) {
+        eprintln!("SKIPPED: there is no `strace` here, or it may not be used");
+        return;
+    }
+    let calls = fs::read_to_string(folder.path().join("calls")).expect("text");
+    let calls: Vec<_> =
+        calls.lines().filter_map(|line| Some(line.split_once(' ')?.1.trim().split_once('(')?.0)).collect();
+    assert_eq!(calls, ["fsync", "linkat", "fsync"]);
 }
 
 #[test]

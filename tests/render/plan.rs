@@ -33,8 +33,8 @@ fn count(model: &Model, threads: usize) -> RayStats {
     let plan = Plan::new(model);
     let [width, height] = plan.camera.pixels;
     let bands = renderer.bands(&plan, 0..width, 0..height, &add);
-    let pixels: Vec<_> = bands.flat_map(|band| band.pixels).collect();
-    assert_eq!(pixels.into_flattened(), renderer.picture(&plan), "watching changes nothing");
+    let pixels: Vec<u8> = bands.flat_map(|band| band.bytes(usize::MAX).concat()).collect();
+    assert_eq!(pixels, renderer.picture(&plan), "watching changes nothing");
     sum.into_inner().expect("no thread panics")
 }
 

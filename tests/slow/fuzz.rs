@@ -2,7 +2,7 @@
 
 use crate::common::{root, scenes};
 use rand_pcg::Pcg32;
-use rand_pcg::rand_core::{RngCore, SeedableRng};
+use rand_pcg::rand_core::{Rng, SeedableRng};
 use std::fs;
 use target::{formula, notes, render, texture, toml};
 

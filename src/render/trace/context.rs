@@ -34,6 +34,11 @@ impl<'m, 'w, W: TraceObserver> Tracer<'m, 'w, W> {
         Self { model: plan.model, plan, cpu, viewer: 0.0, depth: 0, scratch, observer }
     }
 
+    /// Returns the height of the image in pixels.
+    pub(crate) fn height(&self) -> usize {
+        self.plan.camera.pixels[1]
+    }
+
     /// Tells whether the scene is traced by the notes' own methods.
     pub(super) fn is_classic(&self) -> bool {
         self.plan.camera.accuracy == Accuracy::Classic

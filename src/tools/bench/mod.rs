@@ -139,8 +139,8 @@ fn render(renderer: &Renderer, plan: &Plan, room: &mut Option<Band>) {
             _ => Band::blank(0..width, rows.clone()),
         };
         band.rows = rows;
-        band.tiles.fill(false);
-        renderer.fill(plan, &mut band, Overseer { stops: &|| false, row: &|| () }, &|()| {});
+        (0..band.strips.len()).for_each(|index| band.strip(index).tiles.fill(false));
+        renderer.fill(plan, &band, Overseer { stops: &|| false, row: &|| () }, &|()| {});
         *room = Some(band);
     }
 }

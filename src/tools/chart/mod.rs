@@ -59,8 +59,10 @@ impl Study {
         progress.more(works + pictures::work(self));
         for set in &sets {
             panels.extend(hits::panel(self, set, progress)?);
+            progress.kept();
         }
         panels.push(pictures::methods(self, progress)?);
+        progress.kept();
         panels.extend(pictures::samples(self, pictures::Seen::Picture, progress)?);
         if self.candidates[self.default].model.lights.iter().any(|light| light.value.size() > 0.0) {
             panels.extend(pictures::samples(self, pictures::Seen::Shadows, progress)?);

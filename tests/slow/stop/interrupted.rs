@@ -58,7 +58,7 @@ fn a_second_interruption_ends_the_writing_too() {
     // Where nobody reads, it would go on for ever.
     let folder = workplace();
     let mut running = Running::render(&folder, &["hall.ray", "--size", "3000", "-o", "-"]);
-    running.until_it_catches();
+    running.until_it_renders();
     running.send(Signal::SIGINT);
     let mut err = BufReader::new(running.0.stderr.take().expect("it is piped"));
     let mut line = String::new();
@@ -70,7 +70,7 @@ fn a_second_interruption_ends_the_writing_too() {
     assert_eq!((running.0.wait().expect("it ends").code(), rest.as_str()), (Some(130), ""));
 
     fs::write(folder.path().join("a.png"), "precious").expect("a file");
-    let large = ["hall.ray", "--size", "30000x10000", "-o", "a.png"];
+    let large = ["hall.ray", "--size", "16000x1000", "-o", "a.png"];
     let mut running = Running::render(&folder, &large);
     running.until_it_renders();
     running.send(Signal::SIGINT);

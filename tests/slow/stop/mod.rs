@@ -3,11 +3,13 @@
 #![cfg(target_os = "linux")]
 
 mod damage;
+mod held;
 mod interrupted;
 mod limits;
 mod others;
 mod refused;
 mod resumed;
+mod tables;
 
 use crate::common::program::{folder, outcome, scene, tabray};
 use image::{RgbImage, RgbaImage};
