@@ -37,7 +37,7 @@ pub struct Files {
     exact: Option<(PathBuf, Output)>,
 }
 
-/// Opens all files that are asked for, named after the main picture's.
+/// Opens all files that are asked for; their names are derived from the main image's.
 pub fn open(
     (scene, model): (&Path, &Model),
     args: &Args,

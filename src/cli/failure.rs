@@ -51,10 +51,10 @@ pub fn tell(failure: &Failure) -> ExitCode {
     told(failure).into()
 }
 
-/// Says why a command failed, and ends the program, whatever its other threads are at.
+/// Prints why a command failed, and ends the program, whatever its other threads are doing.
 pub fn end(failure: &Failure) -> ! {
     progress::clear();
-    // Nobody else says anything from here on.
+    // From here on no other thread prints anything.
     let _held = io::stderr().lock();
     let status = told(failure);
     temporary::remove_all();

@@ -14,10 +14,10 @@ use std::path::{Path, PathBuf};
 /// The maximum size of a scene, in bytes: far more than written scenes have, and far less than memory holds.
 const LARGEST: u64 = 1 << 30;
 
-/// What a model of many objects takes while it is made, for each byte of its text.
+/// The memory for making a model of many objects, in bytes per byte of its text.
 const MODEL: usize = 16;
 
-/// Whether this path stands for standard input.
+/// Tells whether this path stands for standard input.
 pub fn is_standard(path: &Path) -> bool {
     path == Path::new("-")
 }

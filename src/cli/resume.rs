@@ -76,12 +76,12 @@ impl Begun {
         Ok(Some(Self { path, checkpoint }))
     }
 
-    /// Whether bands were filled with all of it.
+    /// Tells whether bands have been filled with the whole checkpoint.
     pub fn is_over(&self) -> bool {
         self.checkpoint.rows_left() == 0
     }
 
-    /// Fills a band with what is rendered of it. Bands come from the top.
+    /// Fills a band with the pixels that are already rendered. Bands must be passed in order, from the top.
     pub fn fill(&mut self, band: &Band) -> Result<(), Failure> {
         self.checkpoint.fill(band).map_err(|error| cannot_read(&self.path, &error))
     }
@@ -107,8 +107,8 @@ fn cannot_read(path: &Path, error: &io::Error) -> Failure {
     Failure::Usage(format!("cannot read `{}`: {reason}", path.display()), Some(BEGIN_ANEW.to_owned()))
 }
 
-/// Leaves a part of a picture at its place, and a checkpoint beside it, whose path is returned. `written` is the picture,
-/// or so many rows of it, black where nothing is rendered.
+/// Writes an unfinished image to its path, and a checkpoint beside it, whose path is returned. `written` contains
+/// `rows` rows of the image, black where nothing is rendered.
 ///
 /// Both files are complete before either is moved to its path.
 pub fn leave(
@@ -134,12 +134,12 @@ pub fn leave(
         .map_err(cannot_write)?;
     let partial = match format {
         Format::Ppm => {
-            // What is not written is a hole in the file, which is black.
+            // The missing end of the file becomes a hole, which reads as black.
             let len = format.len([width, height]).unwrap_or_default();
             written.lengthen(len).map_err(|error| Failure::cannot_write(picture, &error))?;
             written
         }
-        // The checkpoint shows what is wanted.
+        // The checkpoint's transparency shows which pixels are missing.
         Format::Png(_) => {
             let mut shown = checkpoint.read().map_err(cannot_write)?;
             let mut partial = Output::open(picture)?;
