@@ -22,8 +22,8 @@ pub mod render;
 pub mod scene;
 pub mod shapes;
 pub mod simd;
+mod text;
 pub mod tools;
-mod words;
 pub mod world;
 
 include!(concat!(env!("OUT_DIR"), "/plugins.rs"));

@@ -1,4 +1,4 @@
-//! The course's own scenes: their pictures, pixel by pixel, and their dumps, byte by byte.
+//! The course's own scenes: their images, pixel by pixel, and their dumps, byte by byte.
 //!
 //! They are not part of this project. Where `../shared/conformance` is absent these tests say so and pass.
 
@@ -15,9 +15,9 @@ use tabray::render::{Event, Plan, TraceObserver, trace};
 use tabray::scene::{Model, Profile};
 use tabray::world::certify::{Enclosure, Precision};
 
-/// A scene, and the percentage of its pixels that must be right to 1 of 255 in every channel. What is short
-/// of 100 is the instructor's program's: hit points overwritten by shadow rays, 80-bit arithmetic at edges,
-/// an older shadow, and a cone's slope twice too steep.
+/// A scene, and the percentage of its pixels that must be right to 1 of 255 levels in every channel. Below 100, the
+/// difference is due to the instructor's program: hit points overwritten by shadow rays, 80-bit arithmetic at edges, an
+/// older shadow, and a cone's slope that is twice too steep.
 const SCENES: [(&str, f64); 19] = [
     ("fplane/fplane1", 100.0),
     ("fplane/fplane3", 100.0),
@@ -40,15 +40,15 @@ const SCENES: [(&str, f64); 19] = [
     ("trans/translucent5", 100.0),
 ];
 
-/// The scenes that were rendered with 16 random samples to a pixel.
+/// The scenes that were rendered with 16 random samples per pixel.
 const SMOOTHED: [&str; 2] = ["aa/aademo", "aa/aademo2"];
 
-// The instructor's cone: its slope is twice what it should be, which shades its flank too dark.
+// The instructor's cone: its slope is twice the right one, which makes the flank too dark.
 inventory::submit! {
     Profile::new("doubled_cone", "the course's cone, mistake and all", "-4/6 * (y - 6)").slope("-8/6")
 }
 
-/// The course's folder of this name, if it is there.
+/// Returns the course's folder of this name, if it exists.
 fn course() -> Option<PathBuf> {
     let folder = root().join("../shared/conformance");
     if folder.is_dir() {
@@ -59,24 +59,24 @@ fn course() -> Option<PathBuf> {
     None
 }
 
-/// The picture that the program makes of a scene.
+/// Renders a scene with the program.
 fn rendered(scene: &Path, options: &[&str]) -> RgbImage {
     let run =
         cargo_bin_cmd!("tabray").arg("render").arg(scene).args(["-o", "-"]).args(options).assert().success();
     image::load_from_memory(&run.get_output().stdout).expect("a PPM").into_rgb8()
 }
 
-/// The course's own picture of a scene.
+/// Returns the course's own image of a scene.
 fn expected(scene: &Path) -> RgbImage {
     image::open(scene.with_extension("png")).expect("the course's picture").into_rgb8()
 }
 
-/// How far apart two pixels are in the channel where they differ most.
+/// Returns the greatest difference of a channel of two pixels, in levels.
 fn difference(a: &Rgb<u8>, b: &Rgb<u8>) -> u8 {
     (0..3).map(|channel| a[channel].abs_diff(b[channel])).max().unwrap_or(0)
 }
 
-/// The percentage of pixels that are right to 1 of 255 in every channel.
+/// Returns the percentage of pixels that are right to 1 of 255 levels in every channel.
 fn percent_near(actual: &RgbImage, expected: &RgbImage) -> f64 {
     assert_eq!(actual.dimensions(), expected.dimensions());
     let near = actual.pixels().zip(expected.pixels()).filter(|(a, b)| difference(a, b) <= 1).count();
@@ -110,10 +110,10 @@ fn the_courses_cone_is_all_explained_by_its_wrong_slope() {
     assert_eq!(percent_near(&actual, &expected(&path)), 100.0);
 }
 
-/// An object that a ray was tested with, and its distance.
+/// An object that a ray was tested against, and its distance.
 type Test = (usize, Option<f64>);
 
-/// The searches of a pixel: where each ray goes, and its tests.
+/// The searches of a pixel: each ray with its tests.
 #[derive(Default)]
 struct Searches(Vec<(Ray, Vec<Test>)>);
 
@@ -135,8 +135,8 @@ fn searches(model: &Model, x: usize, y: usize) -> Searches {
     searches
 }
 
-/// Whether two methods' ways part at a surface of revolution, at an edge that rounding hides, or where a ray leaves a
-/// surface: it meets the far wall of a ball that it goes into, and leaves whatever lies through the point where it starts.
+/// Tells whether two methods differ at a surface of revolution, at an edge that rounding hides, or where a ray leaves a
+/// surface: there it hits the far wall of a sphere that it enters, and leaves what lies at its origin.
 fn is_explained(classic: &Model, exact: &Model, x: usize, y: usize) -> bool {
     let (a, b) = (searches(classic, x, y), searches(exact, x, y));
     for ((ray, old), (_, new)) in a.0.iter().zip(&b.0) {
@@ -177,7 +177,7 @@ fn the_exact_method_differs_only_where_it_should() {
             }
         }
         eprintln!("{scene:20} {differing} pixels differ from the notes' method, all of them explained");
-        // A glass ball has two walls.
+        // A glass sphere has two walls.
         let may_differ = scene.contains("revsurf") || scene == "trans/translucent";
         assert!(differing == 0 || may_differ || differing < 100, "{scene}: {differing}");
     }

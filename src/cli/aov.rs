@@ -9,7 +9,7 @@ use crate::output::picture::Format;
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::scene::model::Model;
-use crate::words;
+use crate::text;
 use crate::world::sample::Sampler;
 use std::ffi::OsStr;
 use std::io::Write;
@@ -37,7 +37,7 @@ pub struct Files {
     exact: Option<(PathBuf, Output)>,
 }
 
-/// Opens all files that are asked for, named after the main picture's.
+/// Opens all files that are asked for; their names are derived from the main image's.
 pub fn open(
     (scene, model): (&Path, &Model),
     args: &Args,
@@ -73,7 +73,7 @@ pub fn open(
     aovs.into_iter()
         .map(|aov| {
             let mut stem = main.file_stem().unwrap_or_default().to_owned();
-            stem.push(format!("-{}", words::name(&aov)));
+            stem.push(format!("-{}", text::name(&aov)));
             let picture = main.with_file_name(stem);
             let with = |extension: &OsStr| output::ended(&output::ended(&picture, "."), extension);
             let exact = aov.is_exact().then(|| opened(with("exr".as_ref()))).transpose()?;

@@ -6,8 +6,8 @@ use crate::scene::model::Model;
 use crate::scene::reader;
 use crate::scene::registry::Registry;
 use crate::simd::cpu::Cpu;
+use crate::text;
 use crate::tools::bench::{Cost, Speed, TestTimes, scenes};
-use crate::words;
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -64,7 +64,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         }
     }
     if args.json {
-        print(&words::json_in_lines(&measured))?;
+        print(&text::json_in_lines(&measured))?;
     }
     Ok(())
 }
@@ -88,8 +88,8 @@ impl About {
         let Self { name, size: [width, height], objects, lights, cpu } = self;
         let mut text = format!(
             "{name}: {width} x {height} pixels, {}, {}, {cpu}, one core\n\n",
-            words::count(*objects, "object"),
-            words::count(*lights, "light"),
+            text::count(*objects, "object"),
+            text::count(*lights, "light"),
         );
         let mut line = |cells: [&str; 6]| {
             let [first, cells @ ..] = cells;

@@ -2,7 +2,7 @@
 
 use super::failure::Failure;
 use crate::simd::cpu::{Cpu, Level};
-use crate::words;
+use crate::text;
 
 #[derive(clap::Args)]
 #[group(id = "instructions")]
@@ -20,7 +20,7 @@ impl Args {
         Cpu::of(level).ok_or_else(|| {
             let here: Vec<_> = Cpu::all().map(|cpu| format!("`--cpu {cpu}`")).collect();
             Failure::Usage(
-                format!("this machine does not have the instructions of `{}`", words::name(&level)),
+                format!("this machine does not have the instructions of `{}`", text::name(&level)),
                 Some(format!("it has {}", here.join(", "))),
             )
         })

@@ -32,7 +32,7 @@ pub fn print(model: &Model, args: &Args) -> Result<(), Failure> {
         None => [[0, 0], [width - 1, height - 1]],
     };
     let plan = Plan::new(model);
-    // Where standard error is closed there is nobody to tell.
+    // If standard error is closed, no one can be told.
     let _: io::Result<()> = Renderer::new(1)?.run(|| {
         let mut out = BufWriter::new(io::stderr());
         // The notes' order of pixels.

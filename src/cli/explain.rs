@@ -4,8 +4,8 @@ use crate::output::compare::Pixel;
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::scene::model::Model;
+use crate::text;
 use crate::tools::probe;
-use crate::words;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
@@ -49,7 +49,7 @@ impl Place<'_> {
         let mut out = Vec::new();
         Renderer::new(1)
             .and_then(|renderer| renderer.run(|| probe::pixel(&plan, x, y, &mut out)))
-            .map_err(|error| words::reason(&error))?;
+            .map_err(|error| text::reason(&error))?;
         Ok(String::from_utf8_lossy(&out).into_owned())
     }
 
@@ -63,7 +63,7 @@ impl Place<'_> {
             .args([self.pixel.x.to_string(), self.pixel.y.to_string()])
             .stdin(Stdio::null())
             .output()
-            .map_err(|error| format!("cannot start `{}`: {}", program.display(), words::reason(&error)))?;
+            .map_err(|error| format!("cannot start `{}`: {}", program.display(), text::reason(&error)))?;
         if !output.status.success() {
             return Err(format!(
                 "the program says\n\n{}",

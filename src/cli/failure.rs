@@ -2,7 +2,7 @@
 
 use super::{messages, progress, temporary};
 use crate::scene::reader::Report;
-use crate::words;
+use crate::text;
 use std::io::{self, Write};
 use std::path::Path;
 use std::process::{self, ExitCode};
@@ -25,7 +25,7 @@ pub enum Failure {
 
 impl From<io::Error> for Failure {
     fn from(error: io::Error) -> Self {
-        Self::Failed(words::reason(&error))
+        Self::Failed(text::reason(&error))
     }
 }
 
@@ -33,14 +33,14 @@ impl Failure {
     /// Makes a failure of a path that could not be written, with the reason.
     pub fn cannot_write(path: &Path, error: &io::Error) -> Self {
         if path == Path::new("-") {
-            return Self::Failed(format!("cannot write to standard output: {}", words::reason(error)));
+            return Self::Failed(format!("cannot write to standard output: {}", text::reason(error)));
         }
         let folder = path.parent().filter(|folder| *folder != Path::new("") && !folder.exists());
         let reason = match folder {
             Some(folder) if error.kind() == io::ErrorKind::NotFound => {
                 format!("there is no folder `{}`", folder.display())
             }
-            _ => words::reason(error),
+            _ => text::reason(error),
         };
         Self::Failed(format!("cannot write `{}`: {reason}", path.display()))
     }
@@ -51,10 +51,10 @@ pub fn tell(failure: &Failure) -> ExitCode {
     told(failure).into()
 }
 
-/// Says why a command failed, and ends the program, whatever its other threads are at.
+/// Prints why a command failed, and ends the program, whatever its other threads are doing.
 pub fn end(failure: &Failure) -> ! {
     progress::clear();
-    // Nobody else says anything from here on.
+    // From here on no other thread prints anything.
     let _held = io::stderr().lock();
     let status = told(failure);
     temporary::remove_all();

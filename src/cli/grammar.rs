@@ -3,12 +3,12 @@
 use super::failure::{Failure, print};
 use crate::scene::grammar;
 use crate::scene::registry::Registry;
-use crate::words;
+use crate::text;
 
 /// Print a TextMate grammar of scenes, for editors
 #[derive(clap::Args)]
 pub struct Args {}
 
 pub fn run(registry: &Registry) -> Result<(), Failure> {
-    print(&words::json_in_lines(&grammar::of(registry)))
+    print(&text::json_in_lines(&grammar::of(registry)))
 }

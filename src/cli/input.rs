@@ -6,7 +6,7 @@ use crate::files;
 use crate::scene::model::Model;
 use crate::scene::reader::{self, Chosen, Loaded, Report};
 use crate::scene::registry::Registry;
-use crate::words;
+use crate::text;
 use crate::world::accuracy::Accuracy;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -14,10 +14,10 @@ use std::path::{Path, PathBuf};
 /// The maximum size of a scene, in bytes: far more than written scenes have, and far less than memory holds.
 const LARGEST: u64 = 1 << 30;
 
-/// What a model of many objects takes while it is made, for each byte of its text.
+/// The memory for making a model of many objects, in bytes per byte of its text.
 const MODEL: usize = 16;
 
-/// Whether this path stands for standard input.
+/// Tells whether this path stands for standard input.
 pub fn is_standard(path: &Path) -> bool {
     path == Path::new("-")
 }
@@ -80,9 +80,9 @@ pub fn read(path: &Path) -> Result<(String, Vec<u8>), Failure> {
         }
         Ok(bytes) => Ok((name, bytes)),
         Err(error) => {
-            let near = words::nearest_file(path).filter(|_| error.kind() == io::ErrorKind::NotFound);
+            let near = text::nearest_file(path).filter(|_| error.kind() == io::ErrorKind::NotFound);
             Err(Failure::Usage(
-                format!("cannot read `{name}`: {}", words::reason(&error)),
+                format!("cannot read `{name}`: {}", text::reason(&error)),
                 near.map(|near| format!("did you mean `{}`?", path.with_file_name(near).display())),
             ))
         }

@@ -1,5 +1,5 @@
-//! Ctrl-C: a command that keeps nothing ends at once; one that keeps what is done notes it, and stops soon. A second one
-//! always ends the program at once.
+//! Ctrl-C: a command that keeps nothing ends at once; a command that keeps what is done notes the interruption and
+//! stops soon. A second interruption ends the program at once.
 
 use super::failure::{self, Failure};
 use super::temporary;
@@ -14,17 +14,18 @@ static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
 static MANNER: Mutex<Manner> = Mutex::new(Manner::Notes);
 
-/// How long a command may take to stop that would rather keep what is done.
+/// The time that a command with [`Manner::NotesFirst`] has to stop by itself.
 const PATIENCE: Duration = Duration::from_millis(800);
 
-/// What comes of the first interruption.
+/// The effect of the first interruption.
 #[derive(Clone, Copy)]
 pub enum Manner {
-    /// The program ends, and says this.
+    /// The program ends with this message.
     Ends(&'static str),
-    /// [`check`] knows of it.
+    /// The interruption is noted, and [`check`] reports it.
     Notes,
-    /// [`check`] knows of it, and if this is still so a moment later, the program ends and says this.
+    /// The interruption is noted, and [`check`] reports it. If this is still the manner after [`PATIENCE`], the program
+    /// ends with this message.
     NotesFirst(&'static str),
 }
 
@@ -32,16 +33,16 @@ fn manner() -> MutexGuard<'static, Manner> {
     MANNER.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// From here on the first interruption comes to this.
+/// Sets the effect that the first interruption has from here on.
 pub fn from_here(next: Manner) {
     *manner() = next;
 }
 
-/// From here on interruptions are caught.
+/// Catches interruptions from here on; `first` is the effect of the first one.
 pub fn catch(first: Manner) -> Result<(), Failure> {
     from_here(first);
     handle(|| {
-        // Held while the program ends, so that no other manner begins meanwhile.
+        // The lock is held while the program ends, so that the manner does not change meanwhile.
         match *manner() {
             Manner::Ends(said) => failure::end(&Failure::Interrupted(said)),
             Manner::Notes => {}
@@ -55,7 +56,7 @@ pub fn catch(first: Manner) -> Result<(), Failure> {
     })
 }
 
-/// From here on the first interruption is noted and calls `then`, on a thread of its own.
+/// Notes interruptions from here on; the first one calls `then`, on a thread of its own.
 pub fn catch_and(then: impl FnMut() + Send + 'static) -> Result<(), Failure> {
     handle(then)
 }
@@ -71,7 +72,7 @@ fn handle(mut then: impl FnMut() + Send + 'static) -> Result<(), Failure> {
     .map_err(|error| Failure::Failed(format!("cannot catch interruptions: {error}")))
 }
 
-/// Ends the program if an interruption would, after `tell` has said why.
+/// If an interruption would end the program, calls `tell` and ends it.
 pub fn end_if_it_would(tell: impl FnOnce()) {
     if let Manner::Ends(_) = *manner() {
         tell();
@@ -79,7 +80,7 @@ pub fn end_if_it_would(tell: impl FnOnce()) {
     }
 }
 
-/// Breaks if the user wants to stop.
+/// Breaks if the user has interrupted the program.
 pub fn check() -> ControlFlow<()> {
     if INTERRUPTED.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 }

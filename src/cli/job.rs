@@ -14,7 +14,7 @@ use crate::render::plan::Plan;
 use crate::render::ray_stats::{Cuts, RayStats};
 use crate::render::renderer::{Overseer, Renderer};
 use crate::render::tiles::{Band, Tiles};
-use crate::words::{count, short};
+use crate::text::{count, short};
 use std::io::{self, BufWriter};
 use std::mem::{replace, take};
 use std::ops::Range;
@@ -22,7 +22,8 @@ use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-/// Pixels that are written where nothing is rendered, at most. An image that lacks more ends where it lacks all.
+/// The maximum number of blank pixels that are written in place of missing ones. If more are missing, the file ends at
+/// the first row of which nothing is rendered.
 const MOST_BLANK: usize = 1 << 24;
 
 /// A part of a plan's image, and how it is rendered.
@@ -33,7 +34,7 @@ pub struct Job<'a> {
     pub format: Format,
     /// The path of the image.
     pub path: &'a Path,
-    /// How many pixels may be in memory at one time.
+    /// The maximum number of pixels in memory at one time.
     pub at_once: usize,
     pub stop: &'a Stop,
     /// The statistics to fill in, if they are wanted.
@@ -41,8 +42,8 @@ pub struct Job<'a> {
 }
 
 impl Job<'_> {
-    /// Renders what a checkpoint does not have, and puts the picture where it belongs. Where that is stopped, the program
-    /// ends with what is left: threads may still be at work.
+    /// Renders what a checkpoint does not have, and writes the image to its path. If the render is stopped, the program
+    /// ends with what is done, because threads may still be at work.
     pub fn run(&self, output: Output, begun: Option<Begun>) -> Result<(), Failure> {
         let progress = Progress::new(self.part.rows.len());
         let cuts = Mutex::new(Cuts::default());
@@ -90,7 +91,7 @@ impl Job<'_> {
             if is_blank && (rows.end - band.start) * columns.len() > MOST_BLANK {
                 is_cut = true;
                 self.tell_once(&mut told, progress);
-                // A row more, for what is before it to come out of the compressor.
+                // One row more, so that the compressor writes the rows before it.
                 return vec![Ok(vec![0; 3 * columns.len()]), Err(io::ErrorKind::Other.into())];
             }
             let mut band = match self.band(band, begun.as_mut()) {
@@ -122,7 +123,7 @@ impl Job<'_> {
         }
     }
 
-    /// Says why the picture is stopped, once.
+    /// Reports why the render stops, once.
     fn tell_once(&self, told: &mut bool, progress: &Progress) {
         if !replace(told, true) {
             progress.end();
@@ -130,7 +131,7 @@ impl Job<'_> {
         }
     }
 
-    /// A band with what a checkpoint has of it.
+    /// Makes a band, filled with the pixels of a checkpoint.
     fn band(&self, rows: Range<usize>, begun: Option<&mut Begun>) -> Result<Band, Failure> {
         let columns = self.part.columns.clone();
         memory::room(3 * rows.len() * columns.len(), "the image")?;
@@ -139,8 +140,8 @@ impl Job<'_> {
         Ok(band)
     }
 
-    /// Puts a part of the picture where it belongs, and says what is there. `out` has so many rows of it, black where
-    /// nothing is rendered.
+    /// Writes an unfinished image to its path, and reports it. `out` contains `rows` rows of it, black where nothing is
+    /// rendered.
     fn leave(&self, out: BufWriter<Output>, tiles: &Tiles, rows: usize) -> Result<(), Failure> {
         let output =
             out.into_inner().map_err(|error| Failure::cannot_write(self.path, &error.into_error()))?;

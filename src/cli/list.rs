@@ -3,12 +3,12 @@
 use super::failure::{Failure, print};
 use super::program;
 use crate::scene::entity::Entity;
+use crate::scene::list_json::Tables;
 use crate::scene::pparm::Attribute;
 use crate::scene::reference;
 use crate::scene::registry::Registry;
-use crate::scene::tables::Tables;
 use crate::scene::value::Datum;
-use crate::words;
+use crate::text;
 
 /// List the entity types, or the attributes of one
 #[derive(clap::Args)]
@@ -28,7 +28,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         return print(&reference::markdown(registry));
     }
     if args.json {
-        return print(&words::json_in_lines(&Tables::of(registry)));
+        return print(&text::json_in_lines(&Tables::of(registry)));
     }
     let Some(name) = args.entity else {
         return print(&columns(

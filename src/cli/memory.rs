@@ -4,8 +4,8 @@ use super::failure::Failure;
 use bytesize::ByteSize;
 use std::fs;
 
-/// Refuses what takes about so many bytes where the system would not give them: allocations further down end the program
-/// with a signal.
+/// Returns an error if the system would not provide about `bytes` bytes: an allocation that fails later ends the
+/// program with a signal.
 pub fn room(bytes: usize, what: &str) -> Result<(), Failure> {
     let refused = |_| {
         Failure::Failed(format!("not enough memory for {what}: it takes about {}", ByteSize(bytes as u64)))
@@ -13,7 +13,7 @@ pub fn room(bytes: usize, what: &str) -> Result<(), Failure> {
     Vec::<u8>::new().try_reserve_exact(bytes).map_err(refused)
 }
 
-/// The memory that it has now, in bytes.
+/// Returns the memory that the program uses now, in bytes.
 pub fn now() -> Option<u64> {
     status("VmRSS:")
 }

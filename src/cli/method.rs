@@ -2,7 +2,7 @@
 
 use super::failure::Failure;
 use crate::scene::choice::{Choice, ChoiceName};
-use crate::words;
+use crate::text;
 use crate::world::accuracy::Accuracy;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
@@ -19,7 +19,7 @@ pub struct Args {
 
 /// Makes a parser of an option that takes some accuracies, by the names that scenes use.
 fn among<const N: usize>(some: [Accuracy; N]) -> impl TypedValueParser<Value = Accuracy> {
-    let value = |ChoiceName { name, meaning, .. }| PossibleValue::new(name).help(words::capital(meaning));
+    let value = |ChoiceName { name, meaning, .. }| PossibleValue::new(name).help(text::capital(meaning));
     let values = PossibleValuesParser::new(some.map(|one| value(one.option())));
     values.map(move |name| some.into_iter().find(|one| one.option().name == name).unwrap_or_default())
 }

@@ -105,8 +105,8 @@ fn command() -> clap::Command {
 /// Runs the command that the program's arguments name, with every plugin that is linked in. Messages go to standard
 /// error, and the exit status tells how the command ended.
 pub fn run() -> ExitCode {
-    // A file that becomes larger than one may be is then an error like that of a full disk, and no end without a word.
-    // Where the signal cannot be blocked, it ends the program as before.
+    // A file that exceeds the limit on file sizes then causes an error, like a full disk, and does not end the program
+    // without a message. If the signal cannot be blocked, it ends the program as before.
     #[cfg(target_os = "linux")]
     let _ = SigSet::from(Signal::SIGXFSZ).thread_block();
     crash::keep();

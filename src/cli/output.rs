@@ -5,7 +5,7 @@ use super::temporary::Temporary;
 use super::{input, messages};
 use crate::output::picture::Format;
 use crate::scene::model::{Item, Model};
-use crate::words;
+use crate::text;
 use crate::world::texture::Texture;
 use same_file::{Handle, is_same_file};
 use std::ffi::OsStr;
@@ -59,7 +59,8 @@ pub fn put(
     Ok(())
 }
 
-/// Puts a picture in its place, if it was written without an error. A reader who is gone has lost it.
+/// Moves an image to its path, if it was written without an error. If the reader of a pipe has closed it, nothing is
+/// reported.
 pub fn finished(path: &Path, written: io::Result<()>, out: BufWriter<Output>) -> Result<(), Failure> {
     match written.and_then(|()| out.into_inner().map_err(|error| error.into_error())?.finish()) {
         Err(error) => Err(Failure::cannot_write(path, &error)),
@@ -79,7 +80,7 @@ pub fn folder(path: &Path) -> Result<(), Failure> {
     fs::create_dir_all(path).map_err(|error| {
         let reason = match error.kind() {
             io::ErrorKind::AlreadyExists => "a file of this name exists".to_owned(),
-            _ => words::reason(&error),
+            _ => text::reason(&error),
         };
         Failure::Failed(format!("cannot create the folder `{}`: {reason}", path.display()))
     })
@@ -97,7 +98,7 @@ fn is_there(path: &Path) -> Failure {
     )
 }
 
-/// The file that is written under this name: where it is a link, what that leads to, whether that is there or not.
+/// Returns the file that is written under this name: for a link its target, whether that exists or not.
 fn target(path: &Path) -> io::Result<PathBuf> {
     match path.canonicalize() {
         Err(error) if error.kind() == io::ErrorKind::NotFound => match fs::read_link(path) {
@@ -109,7 +110,7 @@ fn target(path: &Path) -> io::Result<PathBuf> {
     }
 }
 
-/// Refuses a file that a model was read from, whatever it is called here.
+/// Refuses to write to a file that the model was read from, whatever its name here.
 pub fn is_no_source(path: &Path, scene: &Path, model: &Model) -> Result<(), Failure> {
     let is_scene = || {
         if input::is_standard(scene) {
@@ -145,7 +146,7 @@ impl Output {
             return Ok(Self::Standard);
         }
         let cannot = |error: io::Error| Failure::cannot_write(path, &error);
-        // A link stays a link; the file that it leads to is the one replaced.
+        // A link stays a link: its target is replaced.
         let target = target(path).map_err(cannot)?;
         let folder = match target.parent() {
             Some(folder) if folder != Path::new("") => folder,
@@ -175,7 +176,7 @@ impl Output {
         Ok(file)
     }
 
-    /// Makes a file so long, with zeros at its end.
+    /// Sets the length of the file in bytes; a longer file is filled with zeros.
     pub fn lengthen(&self, len: u64) -> io::Result<()> {
         match self {
             Self::File(file, _) => file.file().set_len(len),
@@ -183,7 +184,7 @@ impl Output {
         }
     }
 
-    /// Puts what was written in its place.
+    /// Moves what was written to its path.
     pub fn finish(self) -> io::Result<()> {
         match self {
             Self::Standard | Self::Special(_) => Ok(()),

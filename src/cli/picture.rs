@@ -2,7 +2,7 @@
 
 use super::failure::Failure;
 use crate::files;
-use crate::words;
+use crate::text;
 use image::{DynamicImage, ImageReader, RgbImage};
 use std::io::{BufRead, BufReader, Seek};
 use std::path::Path;
@@ -10,14 +10,14 @@ use std::path::Path;
 /// Reads the image in a file.
 pub fn read(path: &Path) -> Result<RgbImage, Failure> {
     let cannot = |reason: String| Failure::Usage(format!("cannot read `{}`: {reason}", path.display()), None);
-    let file = files::open(path).map_err(|error| cannot(words::reason(&error)))?;
+    let file = files::open(path).map_err(|error| cannot(text::reason(&error)))?;
     decode(BufReader::new(file)).map_err(cannot)
 }
 
 /// Decodes an image. Content that 8-bit red, green and blue cannot represent is an error, and is not dropped.
 pub fn decode(bytes: impl BufRead + Seek) -> Result<RgbImage, String> {
-    let reader = ImageReader::new(bytes).with_guessed_format().map_err(|error| words::reason(&error))?;
-    let picture = reader.decode().map_err(|error| words::picture_reason(&error))?;
+    let reader = ImageReader::new(bytes).with_guessed_format().map_err(|error| text::reason(&error))?;
+    let picture = reader.decode().map_err(|error| text::picture_reason(&error))?;
     let is_plain = match &picture {
         DynamicImage::ImageLuma8(_) | DynamicImage::ImageRgb8(_) => true,
         DynamicImage::ImageLumaA8(picture) => picture.pixels().all(|pixel| pixel[1] == u8::MAX),

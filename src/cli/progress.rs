@@ -4,17 +4,17 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// The bar that is shown, if one is.
+/// The bar that is shown, if there is one.
 static SHOWN: Mutex<Option<ProgressBar>> = Mutex::new(None);
 
-/// Removes the bar from the terminal, as the program ends.
+/// Removes the bar from the terminal, when the program ends.
 pub fn clear() {
     if let Some(bar) = SHOWN.lock().unwrap_or_else(PoisonError::into_inner).take() {
         bar.finish_and_clear();
     }
 }
 
-/// A bar on a terminal, once work takes long enough to ask how long it will take.
+/// A progress bar on a terminal, shown once the work takes noticeable time.
 pub struct Progress {
     bar: ProgressBar,
     start: Instant,

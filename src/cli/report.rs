@@ -5,7 +5,7 @@ use super::failure::Failure;
 use super::messages;
 use super::output::Output;
 use crate::output::compare::Comparison;
-use crate::words;
+use crate::text;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use image::{ImageFormat, RgbImage};
@@ -105,7 +105,7 @@ impl Page {
 /// Returns the page as HTML. A page that is `served` can accept and reject.
 pub fn html(title: &str, items: &[Item], served: bool) -> io::Result<String> {
     let items = items.iter().map(Shown::of).collect::<io::Result<_>>()?;
-    let data = words::json(&Data { items, served, title });
+    let data = text::json(&Data { items, served, title });
     // Nothing in the data may end the element; in JSON a `<` can be escaped.
     Ok(PAGE.replacen(DATA, &data.replace('<', "\\u003c"), 1))
 }

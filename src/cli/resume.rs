@@ -9,7 +9,7 @@ use crate::output::checkpoint::{self, Checkpoint, Identity};
 use crate::output::picture::Format;
 use crate::render::tiles::{Band, Tiles};
 use crate::scene::model::Model;
-use crate::words;
+use crate::text;
 use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -76,12 +76,12 @@ impl Begun {
         Ok(Some(Self { path, checkpoint }))
     }
 
-    /// Whether bands were filled with all of it.
+    /// Tells whether bands have been filled with the whole checkpoint.
     pub fn is_over(&self) -> bool {
         self.checkpoint.rows_left() == 0
     }
 
-    /// Fills a band with what is rendered of it. Bands come from the top.
+    /// Fills a band with the pixels that are already rendered. Bands must be passed in order, from the top.
     pub fn fill(&mut self, band: &Band) -> Result<(), Failure> {
         self.checkpoint.fill(band).map_err(|error| cannot_read(&self.path, &error))
     }
@@ -89,7 +89,7 @@ impl Begun {
     /// Removes the checkpoint after its image is finished.
     pub fn remove(self) -> Result<(), Failure> {
         fs::remove_file(&self.path).map_err(|error| {
-            let (path, reason) = (self.path.display(), words::reason(&error));
+            let (path, reason) = (self.path.display(), text::reason(&error));
             Failure::Failed(format!(
                 "cannot remove `{path}`: {reason}; the image is finished, so remove the file by hand"
             ))
@@ -102,13 +102,13 @@ const BEGIN_ANEW: &str = "leave out `--resume` to start from the beginning";
 fn cannot_read(path: &Path, error: &io::Error) -> Failure {
     let reason = match error.kind() {
         io::ErrorKind::InvalidData => "it is not a checkpoint, or it is corrupt".to_owned(),
-        _ => words::reason(error),
+        _ => text::reason(error),
     };
     Failure::Usage(format!("cannot read `{}`: {reason}", path.display()), Some(BEGIN_ANEW.to_owned()))
 }
 
-/// Leaves a part of a picture at its place, and a checkpoint beside it, whose path is returned. `written` is the picture,
-/// or so many rows of it, black where nothing is rendered.
+/// Writes an unfinished image to its path, and a checkpoint beside it, whose path is returned. `written` contains
+/// `rows` rows of the image, black where nothing is rendered.
 ///
 /// Both files are complete before either is moved to its path.
 pub fn leave(
@@ -134,12 +134,12 @@ pub fn leave(
         .map_err(cannot_write)?;
     let partial = match format {
         Format::Ppm => {
-            // What is not written is a hole in the file, which is black.
+            // The missing end of the file becomes a hole, which reads as black.
             let len = format.len([width, height]).unwrap_or_default();
             written.lengthen(len).map_err(|error| Failure::cannot_write(picture, &error))?;
             written
         }
-        // The checkpoint shows what is wanted.
+        // The checkpoint's transparency shows which pixels are missing.
         Format::Png(_) => {
             let mut shown = checkpoint.read().map_err(cannot_write)?;
             let mut partial = Output::open(picture)?;
@@ -154,7 +154,7 @@ pub fn leave(
 
 fn identity(model: &Model, part: &Part) -> Result<Identity, Failure> {
     Identity::of(model, &part.columns, &part.rows).map_err(|error| {
-        let reason = words::reason(&error);
+        let reason = text::reason(&error);
         Failure::Failed(format!(
             "cannot read the program's own file, whose hash a checkpoint contains: {reason}"
         ))

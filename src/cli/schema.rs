@@ -3,12 +3,12 @@
 use super::failure::{Failure, print};
 use crate::scene::registry::Registry;
 use crate::scene::schema;
-use crate::words;
+use crate::text;
 
 /// Print a JSON Schema of scenes in TOML, for editors
 #[derive(clap::Args)]
 pub struct Args {}
 
 pub fn run(registry: &Registry) -> Result<(), Failure> {
-    print(&words::json_in_lines(&schema::of(registry)))
+    print(&text::json_in_lines(&schema::of(registry)))
 }

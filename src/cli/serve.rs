@@ -10,7 +10,7 @@ pub use response::{Body, content, stream, text};
 pub use work::{Client, Work};
 
 use super::failure::Failure;
-use crate::words;
+use crate::text;
 use access::Access;
 use connections::{Connections, Limits};
 use hyper::Request;
@@ -49,7 +49,7 @@ impl Server {
             io::ErrorKind::AddrInUse => Failure::Failed(format!(
                 "port {port} is in use; give another with `--port`, or leave it out for the first free one"
             )),
-            _ => Failure::Failed(format!("cannot listen on port {port}: {}", words::reason(&error))),
+            _ => Failure::Failed(format!("cannot listen on port {port}: {}", text::reason(&error))),
         })?;
         let access = Access::new(port)
             .map_err(|error| Failure::Failed(format!("the system has no random numbers: {error}")))?;

@@ -4,7 +4,7 @@ use super::memory;
 use crate::render::observer::RayKind;
 use crate::render::ray_stats::{Cuts, RayStats, TestCounts};
 use crate::scene::model::Model;
-use crate::words::{json, short};
+use crate::text::{json, short};
 use serde::Serialize;
 use std::cell::Cell;
 use std::collections::BTreeMap;

@@ -4,7 +4,7 @@ use super::failure::Failure;
 use super::interrupt::{self, Manner};
 use super::{memory, messages};
 use crate::render::tiles::{BAND, TILE};
-use crate::words;
+use crate::text;
 use bytesize::ByteSize;
 use std::fmt;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -12,11 +12,11 @@ use std::sync::{Arc, OnceLock};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// A part of an image is left in so many times the time in which it was written: it is read, and written with what is
-/// transparent. The limit of time includes that, up to a quarter of the limit.
+/// The time to leave an unfinished image, as a multiple of the time in which it was written: it is read and written
+/// again with transparency. The time limit includes that, up to a quarter of the limit.
 const LEAVING: u32 = 3;
 
-/// How often time and memory are looked at.
+/// The interval at which time and memory are checked.
 const LOOK: Duration = Duration::from_millis(20);
 
 /// The memory for a pixel of a band, in bytes: three for its colour, the rest for its share of the tiles' state.
@@ -28,10 +28,10 @@ const ROW: u64 = 64;
 /// The minimum memory of a render beside the image, in bytes.
 const ASIDE: u64 = 2 << 20;
 
-/// What is said where no picture is left.
+/// The message if no image was written.
 const NOT_BEGUN: &str = "nothing has been rendered yet, and nothing is written";
 
-/// What is said where a picture beside the main one is not there.
+/// The message if the program ends while an image is not finished.
 const NOT_FINISHED: &str = "the image was not finished";
 
 #[derive(clap::Args)]
@@ -79,7 +79,7 @@ pub struct Stop {
     reached: Arc<OnceLock<Limit>>,
     /// Whether rendering has begun.
     begun: Arc<OnceLock<()>>,
-    /// How long the image was written so far, in microseconds.
+    /// The time spent on writing the image so far, in microseconds.
     written: Arc<AtomicU64>,
 }
 
@@ -97,18 +97,18 @@ impl Stop {
         }
     }
 
-    /// So much longer the image was written.
+    /// Adds time that was spent on writing the image.
     pub fn wrote(&self, time: Duration) {
         self.written.fetch_add(time.as_micros() as u64, Ordering::Relaxed);
     }
 
-    /// From here on interruptions and limits are noted, as there is something to keep.
+    /// From here on interruptions and limits are only noted, because there is something to keep.
     pub fn begin(&self) {
         interrupt::from_here(Manner::Notes);
         let _ = self.begun.set(());
     }
 
-    /// From here on interruptions and limits end the program, and the picture is not there, or those beside it are not.
+    /// From here on interruptions and limits end the program, and the images not yet written are lost.
     pub fn ends_from_here(&self) -> Result<(), Failure> {
         interrupt::from_here(Manner::Ends(NOT_FINISHED));
         match self.reached.get() {
@@ -124,8 +124,7 @@ impl Stop {
 }
 
 impl Args {
-    /// From here on, somebody watches the limits, and interruptions are caught. Both end the program, until rendering
-    /// begins.
+    /// Starts watching the limits, and catches interruptions. Both end the program until rendering begins.
     pub fn watch(&self) -> Result<Stop, Failure> {
         interrupt::catch(Manner::Ends(NOT_FINISHED))?;
         let stop = Stop::default();
@@ -148,7 +147,7 @@ impl Args {
             loop {
                 if let Some(limit) = look() {
                     let _ = reached.set(limit);
-                    // Where nothing is rendered yet, there is nothing to keep.
+                    // If nothing is rendered yet, there is nothing to keep.
                     if matches!(limit, Limit::Time(_)) {
                         interrupt::end_if_it_would(|| {
                             limit.tell();
@@ -162,7 +161,7 @@ impl Args {
         };
         let started = thread::Builder::new().name("limits".to_owned()).spawn(watch);
         started.map(|_| stop).map_err(|error| {
-            Failure::Failed(format!("cannot start a thread to watch the limits: {}", words::reason(&error)))
+            Failure::Failed(format!("cannot start a thread to watch the limits: {}", text::reason(&error)))
         })
     }
 

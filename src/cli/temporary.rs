@@ -7,17 +7,17 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use tempfile::NamedTempFile;
 
-/// The files that have hidden names, or had.
+/// The paths of all files with hidden names, including files that no longer exist.
 static HIDDEN: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
-/// Removes all files that have hidden names, as the program ends before what made them does.
+/// Removes all files with hidden names, because the program ends without dropping their owners.
 pub fn remove_all() {
     for path in std::mem::take(&mut *HIDDEN.lock().unwrap_or_else(PoisonError::into_inner)) {
         let _ = fs::remove_file(path);
     }
 }
 
-/// A file in a folder, written before anybody sees it.
+/// A file in a folder that is not visible under its final name before it is complete.
 pub enum Temporary {
     /// A file without a name, which disappears with the program, however that ends.
     #[cfg(target_os = "linux")]
@@ -48,9 +48,9 @@ impl Temporary {
 
     /// Gives the file this name in its folder, replacing an existing file.
     ///
-    /// There is no single step to this for a file without a name: for a moment the file, which is whole, has a hidden one.
+    /// A file without a name cannot replace another in a single step: for a moment the complete file has a hidden name.
     ///
-    /// What it contains is on the disk before it has the name, and the name is when this returns.
+    /// The contents are on the disk before the file gets its name, and the name is on the disk when this returns.
     pub fn persist(self, target: &Path) -> io::Result<()> {
         self.file().sync_all()?;
         self.name(target)?;
@@ -90,7 +90,7 @@ fn hidden<T>(folder: &Path, make: impl FnMut(&Path) -> io::Result<T>) -> io::Res
     Ok(file)
 }
 
-/// Has the names in the folder of a file written to the disk, where the system can be asked to: some file systems cannot.
+/// Writes a folder's entry for a file to the disk, where the system supports that: some file systems do not.
 fn sync_folder(target: &Path) -> io::Result<()> {
     let folder = target.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
     let cannot = [io::ErrorKind::InvalidInput, io::ErrorKind::PermissionDenied, io::ErrorKind::Unsupported];

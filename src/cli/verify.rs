@@ -8,8 +8,8 @@ use super::{input, method};
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::scene::registry::Registry;
+use crate::text;
 use crate::tools::verify::{self, Verdict};
-use crate::words;
 use std::iter;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -59,7 +59,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     print(&format!(
         "{proven} of {} pixels proven ({percent:.4} %), {}, {contradicted} contradicted\n",
         verdicts.len(),
-        words::count(ties, "tie"),
+        text::count(ties, "tie"),
     ))?;
     if let Some((path, format, output)) = picture {
         let colour = |verdict: &Verdict| match verdict {

@@ -16,7 +16,7 @@ use crate::render::renderer::Renderer;
 use crate::scene::model::Model;
 use crate::scene::reader::{self, Loaded};
 use crate::scene::registry::Registry;
-use crate::words;
+use crate::text;
 use crate::world::accuracy::Accuracy;
 use board::Board;
 use events::Fault;
@@ -91,7 +91,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
                 ControlFlow::Continue(answer::answer(&request, &board, &work).await)
             });
             if let Err(error) = run {
-                let reason = words::reason(&error);
+                let reason = text::reason(&error);
                 let _ = sender.send(News::ServerFailed(format!("the server stopped: {reason}")));
             }
         }
@@ -100,7 +100,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     // Keeps the file that leads the browser to the page.
     let opened = args.open.then(|| browser::open(&url));
     if let Some(Err(error)) = &opened {
-        let reason = words::reason(error);
+        let reason = text::reason(error);
         messages::note(&format!("cannot open a browser: {reason}; open the address yourself"));
     }
     let mut watched =

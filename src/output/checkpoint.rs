@@ -10,7 +10,7 @@ use crate::scene::dump;
 use crate::scene::entity::Args;
 use crate::scene::model::Model;
 use crate::scene::syntax::Syntax;
-use crate::words;
+use crate::text;
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -42,7 +42,7 @@ pub struct Identity {
     sampler: String,
     /// The number of samples per pixel.
     samples: u32,
-    /// The hash of the hashes of the scene's dump, of some entities each.
+    /// The hash of the scene's dump, or rather of the hashes of its parts.
     scene: String,
     /// The width and the height of the image in pixels.
     size: [usize; 2],
@@ -70,7 +70,7 @@ impl Identity {
             accuracy: camera.accuracy.option().name.to_owned(),
             crop: (!is_whole).then(|| [columns.start, height - rows.end, columns.len(), rows.len()]),
             program: program()?,
-            sampler: words::name(&camera.sampler),
+            sampler: text::name(&camera.sampler),
             samples: camera.samples,
             scene: scene(model),
             size: camera.pixels,
@@ -122,10 +122,11 @@ fn program() -> io::Result<String> {
     }
 }
 
-/// How many entities are dumped and hashed together.
+/// The number of entities that are dumped and hashed together.
 const TOGETHER: usize = 1 << 12;
 
-/// The hash of a scene. A million entities take seconds, and are shared out: somebody waits who has interrupted a render.
+/// Returns the hash of a scene. For a million entities this takes seconds, so it runs on all threads: a user may be
+/// waiting for an interrupted render to end.
 fn scene(model: &Model) -> String {
     let entities = dump::in_order(model);
     let hash = |entities: &[&Args]| {
@@ -152,11 +153,11 @@ fn shown(hasher: Sha256) -> String {
     hasher.finalize().iter().fold("sha256:".to_owned(), |text, byte| format!("{text}{byte:02x}"))
 }
 
-/// Writes a checkpoint of so many columns and rows of a picture, from its top. `picture` has these rows, whether they are
-/// rendered or not.
+/// Writes a checkpoint of the top of an image, with this number of columns and rows. `picture` has these rows, whether
+/// they are rendered or not.
 ///
 /// # Errors
-/// Those of `out` and `picture`, and a size that a PNG cannot have.
+/// Those of `out` and `picture`, and an error where a PNG cannot have the size.
 pub fn write(
     out: impl Write,
     [width, height]: [usize; 2],
@@ -170,7 +171,7 @@ pub fn write(
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::Fast);
     encoder.set_source_srgb(AS_SHOWN);
-    encoder.add_itxt_chunk(KEYWORD.to_owned(), words::json(identity))?;
+    encoder.add_itxt_chunk(KEYWORD.to_owned(), text::json(identity))?;
     let mut writer = encoder.write_header()?;
     let mut stream = writer.stream_writer()?;
     let (mut colours, mut pixels) = (vec![[0; 3]; width], vec![[0; 4]; width]);
@@ -191,7 +192,7 @@ pub struct Checkpoint {
     pub identity: Identity,
     png: png::Reader<BufReader<File>>,
     row: Vec<[u8; 4]>,
-    /// How many rows are left.
+    /// The number of rows that are still to be read.
     rows: usize,
 }
 
@@ -212,16 +213,18 @@ impl Checkpoint {
         Ok(Self { identity, png, row, rows })
     }
 
-    /// Whether it can be one of a picture of this size: as wide, and as tall or cut off between two rows of tiles.
+    /// Tells whether this can be the checkpoint of an image of this size: of the same width, and of the same height or
+    /// cut off between two rows of tiles.
     pub fn fits(&self, [width, height]: [usize; 2]) -> bool {
         self.row.len() == width
             && (self.rows == height || self.rows < height && self.rows.is_multiple_of(TILE))
     }
 
-    /// Fills a band with what is rendered of it, nothing beyond its end. Bands come from the top.
+    /// Fills a band with the pixels that are already rendered, and leaves the rest. Bands must be passed in order, from
+    /// the top.
     ///
     /// # Errors
-    /// Those of the file; of kind `InvalidData` where it is broken.
+    /// Those of the file; of kind `InvalidData` if it is corrupt.
     pub fn fill(&mut self, band: &Band) -> io::Result<()> {
         for index in 0..band.strips.len() {
             let Strip { pixels, tiles } = &mut *band.strip(index);
@@ -244,7 +247,7 @@ impl Checkpoint {
         Ok(())
     }
 
-    /// How many of its rows no band was filled with yet.
+    /// Returns the number of rows that are still to be read.
     pub fn rows_left(&self) -> usize {
         self.rows
     }

@@ -1,6 +1,6 @@
 //! The difference of two images, in numbers.
 
-use crate::words;
+use crate::text;
 use image::RgbImage;
 use std::fmt;
 
@@ -65,10 +65,10 @@ impl Comparison {
 /// Writes a sentence for people, without a line end.
 impl fmt::Display for Comparison {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let pixels = words::count(self.pixels(), "pixel");
+        let pixels = text::count(self.pixels(), "pixel");
         let beyond = match self.tolerance {
             0 => String::new(),
-            tolerance => format!(" by more than {}", words::count(tolerance.into(), "level")),
+            tolerance => format!(" by more than {}", text::count(tolerance.into(), "level")),
         };
         match self.differing {
             0 => write!(f, "none of {pixels} differs{beyond}")?,
@@ -79,7 +79,7 @@ impl fmt::Display for Comparison {
             }
         }
         if self.largest > 0 {
-            let largest = words::count(self.largest.into(), "level");
+            let largest = text::count(self.largest.into(), "level");
             write!(f, "; largest difference {largest}, RMS {:.4}", self.rms)?;
         }
         Ok(())

@@ -7,7 +7,7 @@ use std::io::{self, BufRead, BufReader, Read, Write};
 use std::iter;
 use std::path::Path;
 
-/// How hard a file is compressed. The picture is the same.
+/// The effort of the compression. The decoded image does not depend on it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Compression {
     /// Fastest.
@@ -69,7 +69,7 @@ impl Format {
         }
     }
 
-    /// How many bytes its file has, where that does not depend on the picture.
+    /// Returns the length of the file in bytes, where it does not depend on the image's content.
     pub fn len(self, [width, height]: [usize; 2]) -> Option<u64> {
         match self {
             Self::Ppm => Some((ppm_header(width, height).len() + 3 * width * height) as u64),
@@ -77,7 +77,7 @@ impl Format {
         }
     }
 
-    /// Reads a file that [`write`](Self::write) wrote, from its beginning.
+    /// Opens a file that [`write`](Self::write) wrote, to read it from its first row.
     ///
     /// # Errors
     /// Those of the file.
@@ -141,7 +141,7 @@ fn write_ppm(
 /// its PPM.
 pub(crate) const AS_SHOWN: png::SrgbRenderingIntent = png::SrgbRenderingIntent::RelativeColorimetric;
 
-/// A picture of up to so many bytes is encoded at once.
+/// The largest image that is encoded in one piece, in bytes.
 pub(crate) const AT_ONCE: usize = 1 << 20;
 
 fn write_png(

@@ -5,7 +5,7 @@ use crate::render::limits::{MAX_DIST, MAX_RAYS};
 use crate::render::plan::depth::Depth;
 use crate::render::plan::{Plan, TREE};
 use crate::scene::model::{Item, Model, Object};
-use crate::words::{count, list, short};
+use crate::text::{count, list, short};
 use crate::world::accuracy::Accuracy;
 use crate::world::camera::Camera;
 use crate::world::material::Rgb;

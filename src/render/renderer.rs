@@ -6,7 +6,7 @@ use crate::render::plan::Plan;
 use crate::render::tiles::{self, BAND, Band, Strip, TILE, locked};
 use crate::render::trace::{Scratch, Tracer};
 use crate::simd::cpu::Cpu;
-use crate::words;
+use crate::text;
 use rayon::prelude::*;
 use std::io;
 use std::ops::{ControlFlow, Range};
@@ -43,7 +43,7 @@ impl Renderer {
     pub fn new(threads: usize) -> io::Result<Self> {
         let builder = rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK);
         let cannot = |error| {
-            let reason = words::reason(&io::Error::other(error));
+            let reason = text::reason(&io::Error::other(error));
             io::Error::other(format!("cannot start threads to render with: {reason}"))
         };
         Ok(Self { pool: builder.build().map_err(cannot)?, cpu: Cpu::best() })

@@ -3,7 +3,7 @@
 //!
 //! Procedural shaders and profiles are collected in a registry of their own; a plugin file adds one.
 
-use crate::words;
+use crate::text;
 use crate::world::accuracy::Accuracy;
 use std::panic::Location;
 
@@ -86,8 +86,8 @@ pub(crate) fn contradictions<T: Choice>() -> Vec<String> {
                     "two plugins register the {} `{}` or its number, at {} and at {}: rename or renumber one of them",
                     T::WHAT,
                     second.name,
-                    words::place(first.place),
-                    words::place(second.place)
+                    text::place(first.place),
+                    text::place(second.place)
                 ));
             }
         }

@@ -28,7 +28,7 @@ fn notes_block(args: &Args) -> String {
 /// their order, and only the attributes that were given.
 pub fn scene(model: &Model, syntax: Syntax) -> String {
     let entities = in_order(model);
-    // TOML needs an array of tables where two entities have one title.
+    // TOML needs an array of tables where two entities have the same title.
     let mut counts: HashMap<_, usize> = HashMap::new();
     let title = |args: &'_ Args| (args.entity.name, args.name.clone());
     if syntax == Syntax::Toml {
@@ -39,7 +39,7 @@ pub fn scene(model: &Model, syntax: Syntax) -> String {
     blocks.join("\n")
 }
 
-/// An entity of such a scene. `repeated` if another one of its type has its name.
+/// Returns an entity of such a scene. `repeated` is true if another entity of its type has the same name.
 pub(crate) fn block(args: &Args, syntax: Syntax, repeated: bool) -> String {
     let (kind, name) = (args.entity.name, syntax.key(&args.name));
     let width = args.given().map(|(attribute, _)| attribute.name().len()).max().unwrap_or(0);
@@ -61,7 +61,7 @@ pub(crate) fn block(args: &Args, syntax: Syntax, repeated: bool) -> String {
     }
 }
 
-/// All entities of a model in the order of its scene.
+/// Returns all entities of a model in the order of its scene.
 pub(crate) fn in_order(model: &Model) -> Vec<&Args> {
     let kinds = [Kind::Camera, Kind::Material, Kind::Texture, Kind::Object, Kind::Light];
     let mut all: Vec<_> = kinds.into_iter().flat_map(|kind| model.entities(kind)).collect();

@@ -2,7 +2,7 @@
 
 use crate::scene::kind::Kind;
 use crate::scene::pparm::{Attribute, Attributes, Given, Pparm, Row, Table};
-use crate::words;
+use crate::text;
 use crate::world::accuracy::Accuracy;
 use crate::world::body::{AnyLight, Body};
 use crate::world::camera::Camera;
@@ -163,7 +163,7 @@ impl Entity {
 
     /// Returns the file and line that register the type.
     pub fn place(&self) -> String {
-        words::place(self.place)
+        text::place(self.place)
     }
 }
 

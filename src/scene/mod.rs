@@ -5,6 +5,7 @@ pub mod dump;
 pub(crate) mod entity;
 pub mod grammar;
 pub(crate) mod kind;
+pub(crate) mod list_json;
 pub(crate) mod model;
 pub(crate) mod pparm;
 pub(crate) mod procedural;

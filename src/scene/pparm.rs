@@ -4,7 +4,7 @@
 //! list` and the constructor all use that one place (the notes' "general attribute parser").
 
 use crate::scene::value::{Datum, Type, Value};
-use crate::words;
+use crate::text;
 use std::panic::Location;
 
 /// A row of an entity's table.
@@ -313,7 +313,7 @@ impl Attributes {
 
     #[track_caller]
     fn not_in_table(&self, attribute: &str) -> ! {
-        let (name, place) = (self.plugin.0, words::place(self.plugin.1));
+        let (name, place) = (self.plugin.0, text::place(self.plugin.1));
         match self.find(attribute) {
             Some(_) => panic!(
                 "the plugin `{name}` asks for `{attribute}` with another type than in the table it registers at {place}: give both the same type"

@@ -3,7 +3,7 @@
 use crate::numeric::dual::Dual;
 use crate::numeric::formula::Formula;
 use crate::scene::choice::{Choice, ChoiceName};
-use crate::words;
+use crate::text;
 use std::panic::Location;
 
 /// A curve x = g(y), which a scene chooses by name or by number. A plugin registers one with `inventory::submit!`.
@@ -50,7 +50,7 @@ impl Profile {
     pub(crate) fn fault(&self) -> Option<String> {
         let fault = |text| Formula::parse(text).err().map(|fault| (text, fault));
         let (text, fault) = fault(self.formula).or_else(|| self.slope.and_then(fault))?;
-        let place = words::place(self.place);
+        let place = text::place(self.place);
         Some(format!(
             "the profile `{}` at {place} is not a formula: {} in `{text}`",
             self.name, fault.message

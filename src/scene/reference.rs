@@ -8,7 +8,7 @@ use crate::scene::procedural::{OnPlane, OnSphere};
 use crate::scene::profile::Profile;
 use crate::scene::registry::Registry;
 use crate::scene::value::Datum;
-use crate::words;
+use crate::text;
 use std::iter;
 
 /// The part of the reference that is the same whatever entity types there are.
@@ -20,7 +20,7 @@ pub fn markdown(registry: &Registry) -> String {
     let mut add = |title: &str, words: &mut dyn Iterator<Item = Word>| {
         text += &format!("\n## {title}\n");
         text.extend(words.map(|word| {
-            format!("\n### {}\n\n{}.\n{}", word.name, words::capital(word.meaning), word.details)
+            format!("\n### {}\n\n{}.\n{}", word.name, text::capital(word.meaning), word.details)
         }));
     };
     for (kind, title) in [
@@ -41,7 +41,7 @@ pub fn markdown(registry: &Registry) -> String {
 /// pages lie in `snapshots/reference` and refer to the images beside that folder.
 pub fn pages(registry: &Registry) -> impl Iterator<Item = (&'static str, String)> {
     let entities = registry.iter().map(|entity| {
-        let (name, kind) = (entity.name, words::capital(&entity.kind().to_string()));
+        let (name, kind) = (entity.name, text::capital(&entity.kind().to_string()));
         let scene = format!(
             "\n[This scene](../../scenes/entities/{name}.ray):\n\n![{name}](../entities/{name}.snap.png)\n"
         );
@@ -70,7 +70,7 @@ impl Word {
     fn entity(entity: &'static Entity) -> Self {
         let also = match entity.aliases {
             [] => String::new(),
-            aliases => format!("\nAlso written {}.\n", words::list(aliases.iter().copied())),
+            aliases => format!("\nAlso written {}.\n", text::list(aliases.iter().copied())),
         };
         let rows: String = entity.attributes().map(attribute_row).collect();
         let details =
@@ -83,7 +83,7 @@ impl Word {
         let told = numbers.iter().filter_map(|(number, place)| Some(format!("{}{place}", (*number)?)));
         let told = told.collect::<Vec<_>>().join(" and ");
         let details = if told.is_empty() { told } else { format!("\nIts number is {told}.\n") };
-        Self { name: choice.name, meaning: choice.meaning, place: words::place(choice.place), details }
+        Self { name: choice.name, meaning: choice.meaning, place: text::place(choice.place), details }
     }
 }
 

@@ -6,7 +6,7 @@ use crate::scene::kind::Kind;
 use crate::scene::procedural::{OnPlane, OnSphere};
 use crate::scene::profile::Profile;
 use crate::scene::syntax::Syntax;
-use crate::words::nearest;
+use crate::text::nearest;
 use std::collections::{BTreeMap, BTreeSet};
 use std::iter;
 use std::sync::LazyLock;

@@ -1,7 +1,7 @@
 //! Textures: images that colour surfaces and light.
 
 use crate::files;
-use crate::words;
+use crate::text;
 use crate::world::material::Rgb;
 use bytesize::ByteSize;
 use image::{ColorType, DynamicImage, ImageDecoder, ImageError, ImageReader, Limits, RgbImage};
@@ -55,15 +55,15 @@ impl Texture {
     }
 
     fn read(&self, most: u64) -> Result<RgbImage, String> {
-        let file = files::open(&self.path).map_err(|error| words::reason(&error))?;
+        let file = files::open(&self.path).map_err(|error| text::reason(&error))?;
         let mut limits = Limits::no_limits();
         limits.max_alloc = Some(most.saturating_add(ASIDE));
         let cannot = |error: ImageError| match error {
             ImageError::Limits(_) => format!("it takes more than {} of memory", ByteSize(most)),
-            _ => words::picture_reason(&error),
+            _ => text::picture_reason(&error),
         };
         let reader = ImageReader::new(BufReader::new(file)).with_guessed_format();
-        let mut reader = reader.map_err(|error| words::reason(&error))?;
+        let mut reader = reader.map_err(|error| text::reason(&error))?;
         reader.limits(limits);
         let decoder = reader.into_decoder().map_err(cannot)?;
         let (width, height) = decoder.dimensions();
@@ -90,7 +90,7 @@ impl Texture {
     /// A file whose name is like that of this one, if this one does not exist.
     pub fn near(&self) -> Option<String> {
         let is_missing = fs::metadata(&self.path).is_err_and(|error| error.kind() == io::ErrorKind::NotFound);
-        if is_missing { words::nearest_file(&self.path) } else { None }
+        if is_missing { text::nearest_file(&self.path) } else { None }
     }
 
     /// Returns the width and height in texels; 0 and 0 where the image cannot be read.

@@ -1,4 +1,4 @@
-//! `tabray bench`: what it counts. How long things take is for people to judge.
+//! `tabray bench`: the numbers that it counts. Times are not tested.
 
 use crate::common;
 use crate::common::root;
@@ -8,7 +8,7 @@ use tabray::scene;
 use tabray::simd::Cpu;
 use tabray::tools::bench::scenes;
 
-/// What the program prints in JSON.
+/// Returns what the program prints in JSON.
 fn measured(args: &[&str]) -> Vec<Value> {
     let run = cargo_bin_cmd!("tabray")
         .args(["bench", "--json", "--seconds", "0"])
@@ -19,7 +19,7 @@ fn measured(args: &[&str]) -> Vec<Value> {
     serde_json::from_slice(&run.get_output().stdout).expect("a list of scenes")
 }
 
-/// How many rays of a kind a frame casts.
+/// Returns how many rays of a kind a frame traces.
 fn rays(scene: &Value, kind: &str) -> u64 {
     scene["rays"][kind]["rays"].as_u64().expect("a number of rays")
 }

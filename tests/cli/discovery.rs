@@ -1,4 +1,4 @@
-//! What the program tells of itself and of its language: the tables as JSON, completions, manual pages.
+//! What the program reports about itself and its language: the tables as JSON, completions, manual pages.
 
 use crate::common::program::{folder, names_in, outcome, scene, tabray};
 use crate::common::{assert_tells_fields, registry, root};

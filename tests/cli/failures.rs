@@ -1,4 +1,4 @@
-//! What the program says where the system does not give it what it needs.
+//! Messages where the system refuses what the program needs.
 #![cfg(target_os = "linux")]
 
 use crate::common::program::{folder, scene};
@@ -12,14 +12,14 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use tempfile::TempDir;
 
-/// A working directory with a sound scene, `ball.ray`.
+/// Makes a working directory with a valid scene, `ball.ray`.
 fn workplace() -> TempDir {
     let folder = folder();
     fs::copy(scene("sphere/in-front.ray"), folder.path().join("ball.ray")).expect("a copy");
     folder
 }
 
-/// The program after some lines of a shell's.
+/// Returns a command that runs the program after some lines of shell code.
 fn after(lines: &str, folder: &TempDir, args: &[&str]) -> Command {
     let mut command = Command::new("sh");
     command.args(["-c", &format!("{lines}\nexec \"$0\" \"$@\"")]).arg(cargo_bin!("tabray")).args(args);
@@ -27,7 +27,7 @@ fn after(lines: &str, folder: &TempDir, args: &[&str]) -> Command {
     command
 }
 
-/// The exit status and what was said.
+/// Runs a command; returns its exit status and its messages.
 fn outcome(command: &mut Command) -> (i32, String) {
     let Output { status, stderr, .. } = command.output().expect("it runs");
     (status.code().unwrap_or(-1), String::from_utf8_lossy(&stderr).into_owned())
@@ -49,7 +49,7 @@ fn standard_output_that_is_full_is_a_failure() {
 
 #[test]
 fn a_full_disk_leaves_the_old_picture() {
-    // What is larger than a file may be is refused as by a full disk, with another reason.
+    // Exceeding the limit on file sizes fails like a full disk, with another reason.
     let folder = workplace();
     fs::write(folder.path().join("ball.png"), "precious").expect("a file");
     let limit = "trap '' XFSZ; ulimit -f 1";
@@ -172,7 +172,7 @@ fn too_few_open_files_are_a_failure_of_whatever_needs_one() {
         stderr.read_line(&mut line).expect("text");
         let starts = line.starts_with("watching ball.ray at http://127.0.0.1:");
         if starts {
-            // It may end before anybody looks at its page.
+            // The program may end before its page is opened.
             let _ = watch.kill();
         }
         let status = watch.wait().expect("it ends").code();
@@ -180,7 +180,7 @@ fn too_few_open_files_are_a_failure_of_whatever_needs_one() {
             break;
         }
         assert!(matches!(status, Some(1 | 2 | 127)), "{line}");
-        // With fewer still it is not even started.
+        // With even fewer, the program is not even started.
         if status != Some(127) {
             told.insert(line);
         }
@@ -189,7 +189,7 @@ fn too_few_open_files_are_a_failure_of_whatever_needs_one() {
     assert_eq!(Vec::from_iter(told), said.map(|said| format!("error: {said}: too many open files\n")));
 }
 
-/// Somebody who may read this folder and what is in it, and change nothing.
+/// Another user, who may read this folder and its contents, and change nothing.
 struct Guest {
     folder: TempDir,
 }
@@ -197,8 +197,8 @@ struct Guest {
 impl Guest {
     fn new() -> Self {
         let folder = workplace();
-        // By another process: a program that another test begins meanwhile would hold the copy open for writing, too, and
-        // what is open for writing cannot be run.
+        // The copy is made by another process: a program that another test starts meanwhile would inherit the copy's
+        // open file, and a file that is open for writing cannot be run.
         let copied = Command::new("cp").arg(cargo_bin!("tabray")).arg(folder.path().join("tabray")).status();
         assert!(copied.expect("cp runs").success());
         Self { folder }
@@ -212,7 +212,7 @@ impl Guest {
         fs::set_permissions(self.path(name), fs::Permissions::from_mode(mode)).expect("permissions");
     }
 
-    /// Who may do everything lets another user run the program.
+    /// Runs the program; root runs it as an unprivileged user.
     fn outcome(&self, args: &[&str]) -> (i32, String) {
         let mut command = Command::new(self.path("tabray"));
         command.args(args).current_dir(self.folder.path());
@@ -276,7 +276,7 @@ fn a_program_that_cannot_read_itself_says_so_where_a_checkpoint_must_know_it() {
     assert_eq!(guest.outcome(&["render", "ball.ray", "--resume"]), (1, said.to_owned()));
 }
 
-/// A file that says of itself that it is a checkpoint.
+/// Makes a file that claims to be a checkpoint.
 fn checkpoint() -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, 1, 1);

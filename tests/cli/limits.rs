@@ -1,4 +1,4 @@
-//! What is read stays within limits: no picture that only claims to be large, and nothing that never ends.
+//! Limits on what is read: images that only claim to be large, and files without an end.
 #![cfg(target_os = "linux")]
 
 use crate::common::program::{folder, outcome, scene, tabray};
@@ -16,7 +16,7 @@ texture t { filename picture }
 texplane p { material m normal 0 0 1 point 0 0 -1 dimensions 3 3 texname t xdir 1 0 0 mode 0 }
 ";
 
-/// A working directory with a scene, `textured.ray`, whose texture is the file `picture`.
+/// Makes a working directory with a scene, `textured.ray`, whose texture is the file `picture`.
 fn textured() -> TempDir {
     let folder = folder();
     fs::write(folder.path().join("textured.ray"), TEXTURED).expect("a scene");

@@ -1,4 +1,4 @@
-//! The program as people run it, command by command.
+//! The program as users run it, command by command.
 
 #[path = "../common/mod.rs"]
 mod common;

@@ -8,7 +8,7 @@ fn objects(err: &str) -> Vec<Value> {
     err.lines().map(|line| serde_json::from_str(line).unwrap_or_else(|_| panic!("{line} is JSON"))).collect()
 }
 
-/// What a command says of a faulty scene in each form.
+/// Returns the messages of a command about a faulty scene, in a form.
 fn told(form: &str, text: &str) -> (i32, String) {
     let (status, _, err) =
         outcome(tabray(&folder()).args(["check", "-", "--message-format", form]).write_stdin(text));
@@ -111,7 +111,7 @@ fn an_error_without_a_place_is_a_line_too() {
     assert_eq!((status, err.as_str()), (2, "error: there is no entity type `spere`\n"));
 }
 
-/// Each write to a socket of datagrams is one to be received.
+/// Each write to a datagram socket is received separately.
 #[cfg(unix)]
 #[test]
 fn a_message_is_one_write() {

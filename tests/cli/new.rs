@@ -1,4 +1,4 @@
-//! `tabray new`: what it writes works at once, and nothing is written in the place of something else.
+//! `tabray new`: what it writes works at once, and no existing file is overwritten.
 
 use crate::common::program::{folder, names_in, outcome, tabray};
 use crate::common::{load, render};
@@ -54,7 +54,7 @@ fn no_scene_is_written_in_the_place_of_another_file() {
     assert_eq!(names_in(folder.path()), ["a.ray"]);
 }
 
-/// A folder that is a checkout as far as the command can see.
+/// Makes a folder that looks like a checkout to the command.
 fn checkout() -> TempDir {
     let folder = folder();
     for path in ["plugins", "scenes/entities", "scenes/wrong"] {

@@ -1,4 +1,4 @@
-//! What the program says where it does not do what it was asked to, apart from the faults of scenes.
+//! Messages where the program refuses a request, apart from the faults of scenes.
 
 use crate::common::program::{folder, outcome, scene, tabray};
 use crate::common::root;
@@ -7,7 +7,7 @@ use insta::Settings;
 use std::fs;
 use tempfile::TempDir;
 
-/// A working directory with a sound scene, a scene with a texture, and something in the way of a picture.
+/// Makes a working directory with the scenes, images and folders that the refusals need.
 fn workplace() -> TempDir {
     let folder = folder();
     let at = |name: &str| folder.path().join(name);
@@ -34,7 +34,7 @@ fn workplace() -> TempDir {
     folder
 }
 
-/// A PNG that says it has 70000 x 70000 pixels.
+/// Makes a PNG that claims to have 70000 x 70000 pixels.
 fn vast() -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, 70_000, 70_000);
@@ -45,7 +45,7 @@ fn vast() -> Vec<u8> {
     bytes
 }
 
-/// Files that are named as pending snapshots and are none.
+/// Files that are named like pending snapshots and are not valid ones.
 const ODD: [(&str, &str); 5] = [
     ("broken.snap.new", "---\nextension: png\nsnapshot_kind: binary\n---\n"),
     ("broken.snap.new.png", "no picture"),
@@ -59,7 +59,7 @@ material white { ambient 2 2 2 }
 texture bricks { filename bricks.png }
 texplane wall { material white  normal 0 0 1  point 0 0 -8  xdir 1 0 0  dimensions 8 6  texname bricks  mode 0 }";
 
-/// Runs a command line that is refused, and compares what it says with the snapshot of this name.
+/// Runs a command line that is refused, and compares the messages with the snapshot of this name.
 fn is_explained_as_before(name: &str, line: &str) {
     let mut settings = Settings::clone_current();
     settings.set_snapshot_path(root().join("snapshots/refusals"));
@@ -74,7 +74,7 @@ fn is_explained_as_before(name: &str, line: &str) {
     settings.bind(|| insta::assert_snapshot!(name.replace('_', "-"), told));
 }
 
-/// A test for each refusal, and the command line that it answers.
+/// Defines a test for each refusal, with the command line that causes it.
 macro_rules! refusals {
     ($($name:ident: $line:literal,)*) => {
         const REFUSALS: &[&str] = &[$(stringify!($name)),*];
@@ -148,7 +148,7 @@ refusals! {
 fn every_snapshot_is_of_a_refusal() {
     for entry in fs::read_dir(root().join("snapshots/refusals")).expect("the snapshots") {
         let path = entry.expect("an entry").path();
-        // What is pending is of another test's concern.
+        // Pending snapshots concern another test.
         if path.extension() != Some("snap".as_ref()) {
             continue;
         }

@@ -1,9 +1,9 @@
-//! `render --size`, `--quick` and `--crop`: how large the picture is, and which part of it is made.
+//! `render --size`, `--quick` and `--crop`: the size of the image, and the part of it that is rendered.
 
 use crate::common::program::{folder, names_in, outcome, scene, tabray};
 use image::{RgbImage, imageops};
 
-/// The picture that these options give of a scene.
+/// Renders a scene with these options.
 fn picture(name: &str, options: &[&str]) -> RgbImage {
     let (status, out, err) =
         outcome(tabray(&folder()).arg("render").arg(scene(name)).args(options).args(["-o", "-"]));

@@ -1,4 +1,4 @@
-//! What several tests need: the registry, scenes and decoded pictures.
+//! Helpers for several tests: the registry, scenes and decoded images.
 #![allow(dead_code, reason = "each test program uses a part of it")]
 
 pub mod program;
@@ -12,22 +12,22 @@ use tabray::render::{Plan, Renderer};
 use tabray::scene::{self, Model, Registry};
 use tabray::world::Accuracy;
 
-/// The entity types of the program.
+/// Returns the entity types of the program.
 pub fn registry() -> &'static Registry {
     Registry::get().expect("no two plugins claim one name")
 }
 
-/// The folder of the package.
+/// Returns the folder of the package.
 pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// The model of a scene's text, which has no faults.
+/// Returns the model of a scene's text, which must have no faults.
 pub fn model(text: &str) -> Model {
     model_in(Path::new(""), text)
 }
 
-/// The model of a scene's text, whose file names start from `folder`.
+/// Returns the model of a scene's text; its file names are relative to `folder`.
 pub fn model_in(folder: &Path, text: &str) -> Model {
     match scene::read(registry(), "scene", folder, text.as_bytes(), None) {
         Ok(loaded) => loaded.model,
@@ -35,12 +35,12 @@ pub fn model_in(folder: &Path, text: &str) -> Model {
     }
 }
 
-/// The model of a scene's file, which has no faults.
+/// Returns the model of a scene's file, which must have no faults.
 pub fn load(path: &Path) -> Model {
     model_in(path.parent().expect("a folder"), &fs::read_to_string(path).expect("a scene that is text"))
 }
 
-/// A scene of few pixels and samples.
+/// Loads a scene with few pixels and samples.
 pub fn small(path: &Path, accuracy: Option<Accuracy>) -> Model {
     let bytes = fs::read(path).expect("a scene");
     let name = path.display().to_string();
@@ -49,20 +49,20 @@ pub fn small(path: &Path, accuracy: Option<Accuracy>) -> Model {
         Err(report) => panic!("{report}"),
     };
     let camera = &mut model.camera.value;
-    // Mirrors that touch cost 20000 rays a pixel. Neither side is a whole number of tiles.
+    // Mirrors that touch cost 20,000 rays per pixel. Neither width nor height is a multiple of the tile size.
     camera.pixels = if path.ends_with("touching-mirrors.ray") { [9, 5] } else { [36, 27] };
     camera.samples = camera.samples.min(3);
     model
 }
 
-/// The first block of code with a text in a page of the docs.
+/// Returns the first block of code that contains a text in a page of the docs.
 pub fn block_with(page: &str, text: &str) -> String {
     let block = page.split("```").skip(1).step_by(2).find(|block| block.contains(text));
     let block = block.unwrap_or_else(|| panic!("the page has a block with {text}"));
     block.split_once('\n').expect("a first line, which names the language").1.to_owned()
 }
 
-/// The names of all fields of a JSON value, however deep, but for those that are names of entity types.
+/// Returns the names of all fields of a JSON value, at any depth, except those that are names of entity types.
 pub fn fields(value: &Value) -> BTreeSet<&str> {
     match value {
         Value::Object(object) => {
@@ -75,7 +75,7 @@ pub fn fields(value: &Value) -> BTreeSet<&str> {
     }
 }
 
-/// Holds a page of the docs to what it tells of: it names each field of a JSON value.
+/// Asserts that a page of the docs names each field of a JSON value.
 pub fn assert_tells_fields(page: &str, value: &Value) {
     let docs = fs::read_to_string(root().join("docs").join(page)).expect("the docs");
     for field in fields(value) {
@@ -83,14 +83,14 @@ pub fn assert_tells_fields(page: &str, value: &Value) {
     }
 }
 
-/// The picture of a model.
+/// Renders the image of a model.
 pub fn render(model: &Model) -> RgbImage {
     let [width, height] = model.camera.value.pixels.map(|side| side as u32);
     let bytes = Renderer::new(0).expect("threads").picture(&Plan::new(model));
     RgbImage::from_raw(width, height, bytes).expect("three bytes for each pixel")
 }
 
-/// Every scene of `scenes/` that has a picture, sorted.
+/// Returns every scene of `scenes/` that has an image, sorted.
 pub fn scenes() -> Vec<PathBuf> {
     fn collect(folder: &Path, found: &mut Vec<PathBuf>) {
         for entry in fs::read_dir(folder).expect("a folder of scenes") {

@@ -1,4 +1,4 @@
-//! The truth that tests compare the program with: first hits in twice the precision of `f64`, and rays to ask for.
+//! The truth that tests compare the program with: first hits in twice the precision of `f64`, and rays to test.
 #![allow(dead_code, reason = "each test program uses a part of it")]
 
 pub mod hard;
@@ -9,29 +9,29 @@ pub mod tally;
 
 use tabray::numeric::double_double::DoubleDouble;
 
-/// Where a ray first meets a surface.
+/// The first hit of a ray on a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Truth {
-    /// There.
+    /// The ray hits the surface.
     Hit(Hit),
-    /// Nowhere.
+    /// The ray misses the surface.
     Miss,
-    /// So close to the edge between the two that the numbers of the scene do not say.
+    /// So close to the boundary between a hit and a miss that the numbers of the scene do not decide.
     Undecided,
 }
 
 /// A hit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// How far along the ray, in lengths of its direction.
+    /// The distance along the ray, in lengths of its direction.
     pub t: DoubleDouble,
-    /// How fast the surface's function grows along the ray there: negative where the ray enters. At a ledge, where
-    /// that has no bound, 1 or -1.
+    /// The derivative of the surface's function along the ray: negative where the ray enters. At a ledge, where the
+    /// derivative is unbounded, it is 1 or -1.
     pub slope: f64,
 }
 
 impl Truth {
-    /// The hit, if it is one.
+    /// Returns the hit, if there is one.
     pub fn hit(self) -> Option<Hit> {
         match self {
             Self::Hit(hit) => Some(hit),
@@ -43,16 +43,16 @@ impl Truth {
 /// Which crossings of a surface count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Crossings {
-    /// All.
+    /// All crossings.
     All,
-    /// Those from outside to inside: what a ray that leaves the outside can meet.
+    /// Crossings from outside to inside: the ones that a ray leaving the outside can meet.
     Entries,
-    /// Those from inside to outside.
+    /// Crossings from inside to outside.
     Exits,
 }
 
 impl Crossings {
-    /// Whether a crossing counts at which the surface's function has this slope.
+    /// Tells whether a crossing counts at which the surface's function has this slope.
     pub fn count(self, slope: f64) -> bool {
         match self {
             Self::All => true,

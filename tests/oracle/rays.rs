@@ -1,4 +1,4 @@
-//! Rays to ask shapes for: the same ones on every run.
+//! Rays to test shapes with, the same in every run.
 
 use super::revolution::Revolution;
 use glam::DVec3;
@@ -7,53 +7,53 @@ use rand_pcg::rand_core::Rng;
 use std::f64::consts::TAU;
 use tabray::geometry::Ray;
 
-/// Where the notes' scene has the viewer.
+/// The viewpoint of the notes' scene.
 pub const VIEWPOINT: DVec3 = DVec3::new(4.0, 3.0, 7.0);
 
-/// Where the notes' scene has the base of its surface of revolution.
+/// The base of the surface of revolution in the notes' scene.
 pub const BASE: DVec3 = DVec3::new(4.0, 0.0, -4.0);
 
-/// Random numbers.
+/// A generator of random numbers.
 pub struct Random(Pcg32);
 
 impl Random {
-    /// A sequence of its own for each number.
+    /// Starts the sequence of this number.
     pub fn new(sequence: u64) -> Self {
         Self(Pcg32::new(0, sequence))
     }
 
-    /// One of all numbers between two.
+    /// Returns a number between two, uniformly distributed.
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
         let part = (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
         low + (high - low) * part
     }
 
-    /// One of this many, from 0.
+    /// Returns an integer from 0 to `count - 1`.
     pub fn below(&mut self, count: u32) -> u32 {
         ((u64::from(self.0.next_u32()) * u64::from(count)) >> 32) as u32
     }
 
-    /// A direction, none more likely than another.
+    /// Returns a unit vector, uniformly distributed.
     pub fn direction(&mut self) -> DVec3 {
         let (z, angle) = (self.between(-1.0, 1.0), self.between(0.0, TAU));
         let across = (1.0 - z * z).sqrt();
         DVec3::new(across * angle.cos(), across * angle.sin(), z).normalize()
     }
 
-    /// A point of a ball.
+    /// Returns a point of a solid sphere.
     pub fn in_ball(&mut self, center: DVec3, radius: f64) -> DVec3 {
         let part = self.between(0.0, 1.0).cbrt();
         center + part * radius * self.direction()
     }
 }
 
-/// A ray from one point to another.
+/// Returns the ray from one point toward another.
 pub fn toward(origin: DVec3, target: DVec3) -> Ray {
     Ray { origin, dir: (target - origin).normalize() }
 }
 
-/// Rays from the notes' viewer through the screen [0,8] x [0,6] in the plane z = 0, like those of a picture. A scene
-/// that is larger or smaller has them, too.
+/// Returns rays from the notes' viewpoint through the image plane [0,8] x [0,6] at z = 0, like those of an image.
+/// `scale` makes the scene larger or smaller.
 pub fn camera(count: usize, scale: f64) -> impl Iterator<Item = Ray> {
     let mut random = Random::new(1);
     (0..count).map(move |_| {
@@ -63,7 +63,7 @@ pub fn camera(count: usize, scale: f64) -> impl Iterator<Item = Ray> {
     })
 }
 
-/// Rays from a distance to points of a ball.
+/// Returns rays from a distance to points of a solid sphere.
 pub fn aimed(count: usize, center: DVec3, radius: f64, distance: f64) -> impl Iterator<Item = Ray> {
     let mut random = Random::new(2);
     (0..count).map(move |_| {
@@ -72,14 +72,14 @@ pub fn aimed(count: usize, center: DVec3, radius: f64, distance: f64) -> impl It
     })
 }
 
-/// Rays that start in a ball.
+/// Returns rays that start in a solid sphere.
 pub fn inside(count: usize, center: DVec3, radius: f64) -> impl Iterator<Item = Ray> {
     let mut random = Random::new(3);
     (0..count).map(move |_| Ray { origin: random.in_ball(center, radius), dir: random.direction() })
 }
 
-/// Rays that touch a surface at random points of it, each with its normal, but for 10^-2 to 10^-12 of `scale`
-/// outward or inward.
+/// Returns rays that are tangent to a surface at random points, each given with its normal, but shifted by 10^-2 to
+/// 10^-12 of `scale` outward or inward.
 pub fn grazing(
     count: usize,
     scale: f64,
@@ -98,7 +98,7 @@ pub fn grazing(
     })
 }
 
-/// A random point of a surface of revolution with its normal. Where it has no width there is none.
+/// Returns a random point of a surface of revolution with its normal. Where the radius is 0 there is none.
 pub fn place_on(surface: &Revolution, random: &mut Random) -> (DVec3, DVec3) {
     loop {
         let (y, angle) = (random.between(0.02, 0.98) * surface.height(), random.between(0.0, TAU));

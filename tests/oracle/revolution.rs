@@ -1,50 +1,50 @@
-//! Where a ray first meets a line turned around the y axis: the first root of x^2 + z^2 - g(y)^2.
+//! The first hit of a ray on a curve turned about the y axis: the first root of x^2 + z^2 - g(y)^2.
 //!
-//! All roots are isolated. A piece of the ray is cut in two until bounds that certainly hold say that it has no
-//! root, or that the function only grows or only falls on it, so that the signs at its ends decide. The bounds come
-//! from intervals, and on short pieces, where these are too coarse, from [`DoubleDouble`].
+//! All roots are isolated. A piece of the ray is bisected until bounds prove that it has no root, or that the function
+//! is monotone on it, so that the signs at its ends decide. The bounds come from intervals, and on short pieces, where
+//! these are too coarse, from [`DoubleDouble`].
 
 use super::{Crossings, Hit, Truth};
 use glam::DVec3;
 use tabray::geometry::Ray;
 use tabray::numeric::{Dual, Formula, Interval, Scalar, double_double::DoubleDouble};
 
-/// A line x = g(y) turned around the y axis through a base. Where g is below 0 there is nothing.
+/// A curve x = g(y) turned about the y axis through a base. Where g is below 0 there is no surface.
 pub struct Revolution {
     formula: Formula,
     base: DVec3,
     height: f64,
-    /// What the line's distance from the axis certainly does not exceed.
+    /// An upper bound of the radius.
     radius: f64,
 }
 
-/// A ray as the solver sees it: counted from the base of the surface, and from a point near it.
+/// A ray in the coordinates of the solver: relative to the base of the surface, and to a point of the ray near it.
 #[derive(Clone, Copy)]
 struct Local {
-    /// How far along the ray that point is.
+    /// The distance of that point along the ray.
     start: f64,
-    /// That point.
+    /// The point.
     at: [DoubleDouble; 3],
     dir: [f64; 3],
-    /// The part of the ray, counted from that point, outside of which the surface is not.
+    /// The ends of the part of the ray that can meet the surface, as distances from that point.
     from: f64,
     to: f64,
 }
 
-/// What the surface's function certainly is somewhere, or all over a piece, with its first derivative.
+/// Bounds of the surface's function and of its first derivative, at a point or on a whole piece.
 struct Bounds {
     value: Interval,
     slope: Interval,
 }
 
-/// What [`DoubleDouble`]'s errors certainly do not exceed, for numbers of magnitude 1.
+/// An upper bound of the error of [`DoubleDouble`] arithmetic, for numbers of magnitude 1.
 const ERROR: f64 = 1e-28;
 
-/// The pieces that one ray may cost.
+/// The maximum number of pieces for one ray.
 const MOST_PIECES: usize = 100_000;
 
 impl Revolution {
-    /// A formula's line, turned around the axis from a base to a height above it.
+    /// Makes the surface of a formula's curve, from a base to a height above it.
     pub fn new(formula: &str, base: DVec3, height: f64) -> Self {
         const PIECES: i32 = 1024;
         let formula = Formula::parse(formula).expect("a formula");
@@ -57,27 +57,27 @@ impl Revolution {
         Self { formula, base, height, radius }
     }
 
-    /// How far from the axis it is at a height, and how fast that grows.
+    /// Returns the radius at a height, and its derivative.
     pub fn line(&self, y: f64) -> Dual {
         self.formula.at(Dual::variable(y))
     }
 
-    /// The point of its axis where the height is 0.
+    /// Returns the point of the axis at height 0.
     pub fn base(&self) -> DVec3 {
         self.base
     }
 
-    /// How far along its axis it goes.
+    /// Returns the length of the surface along its axis.
     pub fn height(&self) -> f64 {
         self.height
     }
 
-    /// What the line's distance from the axis certainly does not exceed.
+    /// Returns an upper bound of the radius.
     pub fn radius(&self) -> f64 {
         self.radius
     }
 
-    /// The first hit of a ray farther than `near`.
+    /// Returns the first hit of a ray beyond `near`.
     pub fn first_hit(&self, ray: &Ray, near: f64, crossings: Crossings) -> Truth {
         match self.clip(ray, near) {
             Some(local) => Search { surface: self, ray: local, near, crossings }.run(),
@@ -85,7 +85,7 @@ impl Revolution {
         }
     }
 
-    /// How far from the surface the point at a distance along a ray is, to first order.
+    /// Returns the distance from the surface of the point at a distance along a ray, to first order.
     pub fn off_surface(&self, ray: &Ray, distance: f64) -> f64 {
         let local =
             Local { start: distance, at: self.place_along(ray, distance), dir: [0.0; 3], from: 0.0, to: 0.0 };
@@ -96,12 +96,12 @@ impl Revolution {
         (value / gradient).abs()
     }
 
-    /// How high above the base the point at a distance along a ray is.
+    /// Returns the height above the base of the point at a distance along a ray.
     pub fn height_at(&self, ray: &Ray, distance: f64) -> f64 {
         self.place_along(ray, distance)[1].high
     }
 
-    /// The point at a distance along a ray, counted from the base.
+    /// Returns the point at a distance along a ray, relative to the base.
     fn place_along(&self, ray: &Ray, distance: f64) -> [DoubleDouble; 3] {
         let (origin, base, dir) = (ray.origin.to_array(), self.base.to_array(), ray.dir.to_array());
         std::array::from_fn(|axis| {
@@ -110,8 +110,8 @@ impl Revolution {
         })
     }
 
-    /// The part of a ray beyond `near` that is between the surface's two ends and in a cylinder around it, or a
-    /// little more.
+    /// Returns the part of a ray beyond `near` that lies between the surface's two ends and in a cylinder around it, or
+    /// slightly more.
     fn clip(&self, ray: &Ray, near: f64) -> Option<Local> {
         let [x, y, z] = self.place_along(ray, 0.0);
         let [dx, dy, dz] = ray.dir.to_array().map(DoubleDouble::from);
@@ -144,7 +144,7 @@ impl Revolution {
         Some(Local { start, at, dir: ray.dir.to_array(), from: from - slack, to: to + slack })
     }
 
-    /// The surface's function along a ray, with its derivative: positive outside.
+    /// Returns the surface's function along a ray, with its derivative: positive outside.
     fn function(&self, ray: &Local, t: DoubleDouble) -> Dual<DoubleDouble> {
         let t = Dual::variable(t);
         let [x, y, z] = [0, 1, 2].map(|axis| {
@@ -154,7 +154,7 @@ impl Revolution {
         x * x + z * z - self.formula.at(y).powi(2)
     }
 
-    /// The surface's function on a piece of a ray, with its first and second derivatives: certain bounds.
+    /// Returns certain bounds of the surface's function on a piece of a ray, and of its first and second derivatives.
     fn bounds(&self, ray: &Local, piece: Interval) -> Dual<Dual<Interval>> {
         let t = Dual::variable_twice(piece);
         let [x, y, z] = [0, 1, 2].map(|axis| {
@@ -180,16 +180,16 @@ enum Piece {
     Empty,
     /// At most one root, and one if the signs at its ends differ.
     Monotone,
-    /// Anything.
+    /// Nothing is known.
     Open,
 }
 
 /// What a ray crosses where the function changes its sign.
 #[derive(PartialEq)]
 enum Kind {
-    /// A place where it is 0.
+    /// A point where the function is 0.
     Root,
-    /// One where it jumps, such as a stair's step, or where its slope does.
+    /// A point where the function jumps, as at a stair's step, or where its slope does.
     Ledge,
 }
 
@@ -234,7 +234,7 @@ impl Search<'_> {
         let middle = from + (to - from) / 2.0;
         let half = (to - middle).max(middle - from).next_up();
         let Bounds { value, slope } = self.at(middle, half);
-        // Outward rounding makes up for the one of these products and sums.
+        // Outward rounding covers the rounding errors of these products and sums.
         let reach = Interval { low: -half, high: half };
         let bend = whole.second();
         let value = value + slope * reach + Interval::constant(0.5) * bend * reach.powi(2);
@@ -248,7 +248,7 @@ impl Search<'_> {
         }
     }
 
-    /// The function and its slope at one place in the middle of a piece, as exactly as the piece is short.
+    /// Returns the function and its slope at the centre of a piece, with a precision that fits the length of the piece.
     fn at(&self, t: f64, half: f64) -> Bounds {
         let reach = self.ray.to - self.ray.from;
         if half > 1e-4 * reach {
@@ -268,8 +268,8 @@ impl Search<'_> {
         }
     }
 
-    /// Whether the ray may touch the surface on a piece of a few units in the last place that ends on one side of it.
-    /// Next to a ledge bounds do not say, but the function is far from 0.
+    /// Tells whether the ray may touch the surface on a piece of a few ulps whose ends are on one side. Beside a ledge
+    /// the bounds do not decide, but the function is far from 0.
     fn may_touch(&self, from: f64, to: f64) -> bool {
         let size = self.surface.radius + self.ray.to - self.ray.from;
         let is_near = |t: f64| {
@@ -283,7 +283,7 @@ impl Search<'_> {
         self.surface.function(&self.ray, t.into()).value.is_negative()
     }
 
-    /// The one root of a piece, if there is one and it counts.
+    /// Returns the only root of a piece, if there is one and it counts.
     fn crossing(&self, from: f64, to: f64, kind: Kind) -> Option<Hit> {
         let inside_at_first = self.is_inside(from);
         if inside_at_first == self.is_inside(to) {
@@ -292,7 +292,7 @@ impl Search<'_> {
         let (mut low, mut high) = (DoubleDouble::from(from), DoubleDouble::from(to));
         let mut t = DoubleDouble::from(self.guess(from, to, inside_at_first));
         let half = DoubleDouble::from(0.5);
-        // Newton's steps, and halves of the bracket where these leave it.
+        // Newton steps, and bisection where these leave the bracket.
         for _ in 0..120 {
             let Dual { value, slope } = self.surface.function(&self.ray, t);
             if value.is_negative() == inside_at_first {
@@ -311,7 +311,7 @@ impl Search<'_> {
         let distance = t + self.ray.start.into();
         let is_surface = match kind {
             Kind::Root => self.is_surface(t),
-            // It has two sides.
+            // A ledge has two sides.
             Kind::Ledge => self.is_surface(low) && self.is_surface(high),
         };
         let sign = if inside_at_first { 1.0 } else { -1.0 };
@@ -323,13 +323,13 @@ impl Search<'_> {
         counts.then_some(Hit { t: distance, slope })
     }
 
-    /// Whether there is a surface as high as the ray is there.
+    /// Tells whether there is a surface at the height of this point of the ray.
     fn is_surface(&self, t: DoubleDouble) -> bool {
         let y = self.ray.at[1] + t * self.ray.dir[1].into();
         !y.is_negative() && y <= self.surface.height.into() && !self.surface.formula.at(y).is_negative()
     }
 
-    /// The root of a piece to about the precision of `f64`.
+    /// Returns the root of a piece to about the precision of `f64`.
     fn guess(&self, from: f64, to: f64, inside_at_first: bool) -> f64 {
         let [at, dir] = [self.ray.at.map(|number| number.high), self.ray.dir];
         let function = |t: f64| {

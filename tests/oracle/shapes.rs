@@ -1,7 +1,8 @@
-//! Where a ray first meets the shapes that have a formula for it, in numbers of 300 bits.
+//! The first hit of a ray on shapes with a formula for it, in numbers of 300 bits.
 //!
-//! All comes from the numbers of a scene's text, which are taken as they are, and from a ray: of the program, its numbers
-//! taken as they are, too, or the real one through a place of the screen. Nothing that the program has derived is used.
+//! Everything is computed from the numbers of a scene's text, taken as exact, and from a ray: one of the program, whose
+//! numbers are also taken as exact, or the exact ray through a point of the image plane. No intermediate result of the
+//! program is used.
 
 use super::{Hit, Truth};
 use dashu_float::FBig;
@@ -15,15 +16,15 @@ pub type Big = FBig<HalfEven, 2>;
 
 type Vector = [Big; 3];
 
-/// How near to touching, or to an edge, it cannot be told on which side something is, against the size of the numbers
-/// that it was computed from: 2^-230, far above what some fifty operations of 300 bits make.
+/// The relative distance from a tangency or an edge below which the side is undecided, relative to the numbers from
+/// which it was computed: 2^-230, far above the rounding errors of some fifty operations of 300 bits.
 const EDGE: f64 = 5.8e-70;
 
-/// The half line that a truth is about.
+/// The ray that a truth is about.
 #[derive(Clone)]
 pub struct Line {
     origin: Vector,
-    /// Distances are counted in its length.
+    /// The direction; distances are in units of its length.
     dir: Vector,
 }
 
@@ -34,7 +35,7 @@ impl From<&Ray> for Line {
 }
 
 impl Line {
-    /// The real ray from a viewer through a pixel of a screen, both as a scene's camera has them.
+    /// Makes the exact ray from a viewpoint through a pixel of the image plane, both as a scene's camera has them.
     pub fn of_pixel(viewpoint: DVec3, world: DVec2, pixels: [u32; 2], pixel: [u32; 2]) -> Self {
         let place =
             |axis: usize| big(f64::from(pixel[axis])) / big(f64::from(pixels[axis] - 1)) * big(world[axis]);
@@ -48,22 +49,22 @@ impl Line {
     }
 }
 
-/// A plane, or what a part of one is cut out of.
+/// A plane, or the plane of a planar shape.
 #[derive(Clone, Copy)]
 pub struct Plane {
-    /// A vector that stands upright on it, of any length.
+    /// A normal of any length.
     pub normal: DVec3,
-    /// A point of it.
+    /// A point of the plane.
     pub point: DVec3,
 }
 
 impl Plane {
-    /// The plane through a point with a normal of any length.
+    /// Makes the plane through a point with a normal of any length.
     pub fn new(normal: DVec3, point: DVec3) -> Self {
         Self { normal, point }
     }
 
-    /// Where a ray crosses it. On the viewer's side of the screen there are no planes (the notes).
+    /// Returns the first hit of a ray. In front of the image plane there are no planes (the notes).
     pub fn first_hit(&self, line: &Line) -> Truth {
         self.crossing(line, &vector(self.normal)).truth()
     }
@@ -91,7 +92,7 @@ impl Plane {
         let onward = &t * &line.dir[2];
         let beyond = &line.origin[2] + &onward - big(SCREEN);
         let size = magnitude(&line.origin[2]) + magnitude(&onward);
-        // What lies on the screen is there.
+        // A hit on the image plane itself counts.
         if is_tiny(&beyond, &size) {
             return Crossing::Decided(Truth::Undecided);
         }
@@ -102,7 +103,7 @@ impl Plane {
         Crossing::At(t, slope)
     }
 
-    /// As [`first_hit`](Self::first_hit), for the part of it on which none of these numbers of a point is below 0.
+    /// Returns the first hit on the part of the plane on which `depths` of a point are not below 0.
     fn part_hit(&self, line: &Line, normal: &Vector, depths: impl Fn(&Vector) -> Vec<(Big, Big)>) -> Truth {
         let crossing = self.crossing(line, normal);
         let Crossing::At(t, _) = &crossing else { return crossing.truth() };
@@ -117,7 +118,7 @@ impl Plane {
     }
 }
 
-/// What is known of a line and a plane.
+/// What is known of the crossing of a line and a plane.
 enum Crossing {
     Decided(Truth),
     /// The distance, and the slope.
@@ -133,7 +134,7 @@ impl Crossing {
     }
 }
 
-/// A rectangle of these dimensions.
+/// Returns the first hit on a rectangle of these dimensions.
 pub fn rectangle(plane: &Plane, xdir: DVec3, dimensions: DVec2, line: &Line) -> Truth {
     let normal = vector(plane.normal);
     let y = cross(&normal, &vector(xdir));
@@ -148,7 +149,7 @@ pub fn rectangle(plane: &Plane, xdir: DVec3, dimensions: DVec2, line: &Line) -> 
     })
 }
 
-/// A triangle.
+/// Returns the first hit on a triangle.
 pub fn triangle(corners: [DVec3; 3], line: &Line) -> Truth {
     let plane = Plane::new(DVec3::ZERO, corners[0]);
     let corners = corners.map(vector);
@@ -165,7 +166,7 @@ pub fn triangle(corners: [DVec3; 3], line: &Line) -> Truth {
     })
 }
 
-/// A sphere stretched along the axes, as far as it is farther than `near`: rays that start inside meet its far wall.
+/// Returns the first hit beyond `near` on a sphere stretched along the axes. Rays that start inside hit the far wall.
 pub fn ellipsoid(center: DVec3, radius: f64, scale: DVec3, line: &Line, near: f64) -> Truth {
     let scale = vector(scale);
     let squeezed = |of: &Vector| -> Vector { std::array::from_fn(|axis| &of[axis] / &scale[axis]) };
@@ -185,23 +186,23 @@ pub fn ellipsoid(center: DVec3, radius: f64, scale: DVec3, line: &Line, near: f6
     Truth::Miss
 }
 
-/// A sphere, likewise.
+/// Returns the first hit beyond `near` on a sphere.
 pub fn sphere(center: DVec3, radius: f64, line: &Line, near: f64) -> Truth {
     ellipsoid(center, radius, DVec3::ONE, line, near)
 }
 
-/// The part in a box of what solves Axx + Byy + Czz + Dxy + Exz + Fyz + Gx + Hy + Iz = J, counted from a center.
+/// The part in a box of the quadric Axx + Byy + Czz + Dxy + Exz + Fyz + Gx + Hy + Iz = J, relative to a center.
 pub struct Quadric {
     /// A to J.
     pub coefficients: [f64; 10],
-    /// Where x, y and z are 0.
+    /// The origin of x, y and z.
     pub center: DVec3,
     /// The corners of the box.
     pub corners: [DVec3; 2],
 }
 
 impl Quadric {
-    /// The first hit of a ray farther than `near`.
+    /// Returns the first hit of a ray beyond `near`.
     pub fn first_hit(&self, line: &Line, near: f64) -> Truth {
         let [a, b, c, d, e, f, g, h, i, j] = self.coefficients.map(big);
         // Twice the symmetric matrix of the second degree times a vector.
@@ -268,11 +269,11 @@ impl Quadric {
 /// The real roots of a quadratic equation.
 enum Roots {
     None,
-    /// The lesser first, or nothing where it cannot be told whether they are there.
+    /// The lesser root first; `None` if their existence is undecided.
     Two(Option<[Big; 2]>),
 }
 
-/// The roots of `a t^2 + 2 b t + c`, the parts of whose `c` are of this size.
+/// Returns the roots of `a t^2 + 2 b t + c`; `size` is the magnitude of the terms of `c`.
 fn roots(a: &Big, b: &Big, c: &Big, size: &Big) -> Roots {
     let (square, product) = (b * b, a * c);
     let discriminant = &square - &product;
@@ -283,7 +284,7 @@ fn roots(a: &Big, b: &Big, c: &Big, size: &Big) -> Roots {
         return Roots::None;
     }
     let root = discriminant.sqrt();
-    // 300 bits have digits to spare for what cancels here, at distances below 1e15.
+    // 300 bits are enough for the cancellation here, at distances below 1e15.
     let [one, other] = [(-b - &root) / a, (root - b) / a];
     Roots::Two(Some(if one < other { [one, other] } else { [other, one] }))
 }
@@ -294,7 +295,7 @@ fn hit(t: &Big, slope: f64) -> Truth {
     Truth::Hit(Hit { t: DoubleDouble { high, low }, slope })
 }
 
-/// A number as it is, with room for 300 bits.
+/// Converts a number to 300 bits, exactly.
 pub fn big(number: f64) -> Big {
     Big::try_from(number).expect("a finite number").with_precision(300).value()
 }
@@ -323,7 +324,7 @@ fn dot(a: &Vector, b: &Vector) -> Big {
     &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
 }
 
-/// The sum of the magnitudes of a product's parts.
+/// Returns the sum of the magnitudes of a product's terms.
 fn sizes(a: &Vector, b: &Vector) -> Big {
     magnitude(&(&a[0] * &b[0])) + magnitude(&(&a[1] * &b[1])) + magnitude(&(&a[2] * &b[2]))
 }

@@ -1,52 +1,52 @@
-//! What a method gets wrong, counted.
+//! Counts what a method gets wrong.
 
 use super::{Hit, Truth};
 use std::fmt;
 use tabray::geometry::MISS;
 use tabray::numeric::double_double::DoubleDouble;
 
-/// The distance from one number to the next.
+/// Returns the size of an ulp: the distance from a number to the next.
 pub fn ulp(number: f64) -> f64 {
     number.abs().next_up() - number.abs()
 }
 
-/// How a set of rays went.
+/// The outcome of a set of rays.
 #[derive(Clone, Debug, Default)]
 pub struct Tally {
-    /// The rays.
+    /// The number of rays.
     pub rays: usize,
-    /// The hits that there are.
+    /// The number of true hits.
     pub hits: usize,
-    /// The rays whose truth is not known.
+    /// The number of rays whose truth is not known.
     pub undecided: usize,
-    /// The hits that were not found.
+    /// The number of hits that were not found.
     pub missed: usize,
-    /// The hits that were found where there is none.
+    /// The number of hits that were found where there are none.
     pub invented: usize,
-    /// The hits that were found at another crossing than the first.
+    /// The number of hits that were found at a later crossing than the first.
     pub later: usize,
-    /// The distances' errors of all other hits, sorted once [`finish`](Self::finish)ed.
+    /// The errors of the distances of all other hits, sorted after [`finish`](Self::finish).
     pub errors: Vec<f64>,
-    /// The greatest of them in units in the last place of the distance.
+    /// The greatest of these errors, in ulps of the distance.
     pub ulps: f64,
-    /// How far off the surface the worst of these hits is.
+    /// The greatest distance of these hits from the surface.
     pub off_surface: f64,
-    /// The first ray that went wrong, by its index, what is true and what was found.
+    /// The first wrong ray: its index, its truth and the distance that was found.
     pub first_wrong: Option<(usize, Truth, f64)>,
 }
 
 /// A method's tolerance.
 #[derive(Clone, Copy, Debug)]
 pub struct Tolerance {
-    /// An error that is certainly none in the choice of a crossing.
+    /// An error up to which a hit certainly belongs to the first crossing.
     pub sure: f64,
-    /// An error that is one in any case.
+    /// An error from which a hit belongs to another crossing in any case.
     pub most: f64,
 }
 
 impl Tally {
-    /// Counts a ray. `next` is the truth farther along the ray than a distance, and `off_surface` how far a distance
-    /// is off the surface.
+    /// Counts a ray. `next` returns the truth beyond a distance along the ray, and `off_surface` the distance from the
+    /// surface of a point of the ray.
     pub fn count(
         &mut self,
         truth: Truth,
@@ -78,7 +78,8 @@ impl Tally {
                     let error = distance(hit.t, found);
                     self.errors.push(error);
                     self.ulps = self.ulps.max(error / ulp(hit.t.high));
-                    // On a ledge the surface's function does not say, but the ray cannot be farther off than along it.
+                    // On a ledge the surface's function does not tell, but the point is no farther off than along the
+                    // ray.
                     self.off_surface = self.off_surface.max(off_surface(found).min(error));
                     true
                 }
@@ -95,17 +96,17 @@ impl Tally {
         self
     }
 
-    /// How many rays went wrong.
+    /// Returns the number of wrong rays.
     pub fn wrong(&self) -> usize {
         self.missed + self.invented + self.later
     }
 
-    /// The error that half of the hits do not exceed.
+    /// Returns the median error.
     pub fn median(&self) -> f64 {
         self.errors.get(self.errors.len() / 2).copied().unwrap_or(f64::NAN)
     }
 
-    /// The greatest error.
+    /// Returns the greatest error.
     pub fn worst(&self) -> f64 {
         self.errors.last().copied().unwrap_or(f64::NAN)
     }
@@ -126,12 +127,12 @@ impl fmt::Display for Tally {
     }
 }
 
-/// How far a distance is from the true one.
+/// Returns the error of a distance.
 fn distance(right: DoubleDouble, found: f64) -> f64 {
     (DoubleDouble::from(found) - right).high.abs()
 }
 
-/// Whether what was found is another crossing than this hit.
+/// Tells whether the distance that was found belongs to another crossing than this hit.
 fn is_another(hit: Hit, found: f64, tolerance: Tolerance, next: impl FnOnce(f64) -> Truth) -> bool {
     let error = distance(hit.t, found);
     if error.is_nan() || error > tolerance.most {

@@ -1,4 +1,4 @@
-//! `docs/differences.md`: each difference has a scene that loads, and what the page says of it is so.
+//! `docs/differences.md`: each difference has a scene that loads, and what the page says of it is true.
 
 use crate::common::program::{folder, outcome, tabray};
 use crate::common::{registry, render, root};
@@ -31,30 +31,30 @@ impl Scene {
         render(&self.model(accuracy))
     }
 
-    /// The colour of the only pixel, before it becomes bytes.
+    /// Returns the colour of the only pixel, before it becomes bytes.
     fn colour(&self, accuracy: Accuracy) -> DVec3 {
         trace::pixel(&Plan::new(&self.model(accuracy)), 0, 0)
     }
 
-    /// The distance of what the first pixel shows.
+    /// Returns the distance of the first pixel's first hit.
     fn distance(&self, accuracy: Accuracy) -> f64 {
         let model = self.model(accuracy);
         let hit = trace::first_hit(&Plan::new(&model), &model.camera.value.sight(0.0, 0.0));
         hit.map_or(MISS, |hit| hit.distance)
     }
 
-    /// How many pixels are not black.
+    /// Returns the number of pixels that are not black.
     fn lit(&self, accuracy: Accuracy) -> usize {
         self.picture(accuracy).pixels().filter(|pixel| is_lit(pixel)).count()
     }
 
-    /// With something else in place of a part of it.
+    /// Replaces a part of the scene.
     fn with(&self, old: &str, new: &str) -> Self {
         assert!(self.0.contains(old), "{old} is not in {}", self.0);
         Self(self.0.replace(old, new))
     }
 
-    /// Without the line of an entity.
+    /// Removes the line of an entity.
     fn without(&self, entity: &str) -> Self {
         let lines: Vec<_> = self.0.lines().filter(|line| !line.starts_with(entity)).collect();
         assert_eq!(lines.len() + 1, self.0.lines().count(), "{entity}");
@@ -72,7 +72,7 @@ fn is_lit(pixel: &Rgb<u8>) -> bool {
     pixel.0 != [0; 3]
 }
 
-/// A difference's heading, what is said of it, and its scene.
+/// Returns the heading, the text and the scene of each difference.
 fn differences() -> Vec<(String, String, Scene)> {
     let page = fs::read_to_string(root().join("docs/differences.md")).expect("the page");
     let sections = page.split("\n### ").skip(1);
@@ -88,7 +88,7 @@ fn differences() -> Vec<(String, String, Scene)> {
 
 type Check = (&'static str, fn(Scene));
 
-/// Tries all, so that one that fails does not hide the others.
+/// Runs all checks, so that one failure does not hide others.
 fn hold(checks: &[Check]) {
     let mut wrong = Vec::new();
     for (heading, _, scene) in differences() {
@@ -154,7 +154,7 @@ const CHECKS: &[Check] = &[
         assert_eq!(above(Exact), 0);
     }),
     ("Distant spheres", |scene| {
-        // A disc of radius 2 on a screen of 8 by 6, which is as far away.
+        // A disc of radius 2 on an image plane of 8 by 6 at the same distance.
         let disc = 40.0 * 30.0 * 4.0 * PI / 48.0;
         assert!((scene.lit(Exact) as f64 - disc).abs() < 0.05 * disc);
         assert!((scene.lit(Classic) as f64 - disc).abs() > 0.5 * disc);
@@ -183,7 +183,7 @@ const CHECKS: &[Check] = &[
         assert!(far.without("sphere").colour(Exact).abs_diff_eq(DVec3::splat(1.0 / 100.0), 1e-14));
     }),
     ("Highlights in mirrors", |scene| {
-        // Lamps and ball stand so that the picture is its own mirror image but for the ball's place.
+        // Lamps and sphere are placed so that the image is its own mirror image, except for the sphere's position.
         assert_eq!(scene.picture(Classic), scene.picture(Exact));
         let mirrored = scene.with("center 3", "center 5").picture(Exact);
         assert!(same(&image::imageops::flip_horizontal(&mirrored), &scene.picture(Exact)));
@@ -205,7 +205,7 @@ const CHECKS: &[Check] = &[
     }),
     ("Shadows behind glass", |scene| {
         for accuracy in [Classic, Exact] {
-            // The way from what this pixel shows to the lamp goes on to the board.
+            // The shadow ray from what this pixel shows to the lamp would, beyond the lamp, hit the board.
             let seen = |scene: &Scene| trace::pixel(&Plan::new(&scene.model(accuracy)), 11, 15);
             assert_eq!(seen(&scene), seen(&scene.without("fplane")));
             assert!(seen(&scene).x > 0.0);
@@ -223,7 +223,7 @@ const CHECKS: &[Check] = &[
             let object = &model.objects[object];
             object.shader.ambient(&object.material, at)
         };
-        // Both are tile 0 where numbers are cut toward 0.
+        // Both points are in tile 0 if numbers are truncated toward 0.
         for (object, left, right) in [(0, -500.25, -499.75), (1, -100_001.0, -99_999.0)] {
             assert_ne!(ambient(object, left * DVec3::X), ambient(object, right * DVec3::X));
         }
@@ -362,7 +362,7 @@ const CHECKS: &[Check] = &[
     }),
 ];
 
-/// Of rays that leave a surface, and of what light does from there on.
+/// Differences of rays that leave a surface, and of what light does from there on.
 const RAYS_THAT_GO_ON: &[Check] = &[
     ("Glass spheres", |scene| {
         let tint = 0.8 * dvec3(1.0, 0.5, 0.25);
@@ -387,7 +387,7 @@ const RAYS_THAT_GO_ON: &[Check] = &[
     }),
     ("A mirror from inside", |scene| {
         assert_eq!(scene.colour(Classic), DVec3::ZERO);
-        // Through the centre each way is 4 long but for the first one; the last one begins at 18.
+        // Through the centre, every segment but the first has length 4; the last one begins at 18.
         let seen: f64 = (0..6).map(|bounce| 0.5_f64.powi(bounce) / (2.0 + 4.0 * f64::from(bounce))).sum();
         let exact = scene.colour(Exact);
         assert!(exact.abs_diff_eq(DVec3::splat(seen), 1e-14), "{exact} is not {seen}");
@@ -419,14 +419,15 @@ const RAYS_THAT_GO_ON: &[Check] = &[
         }
     }),
     ("The depth of reflections and transmissions", |scene| {
-        // Summed over all ways between the panes up to 20 units, of which many share a pane, a direction and a length.
+        // Summed over all paths between the panes up to 20 units long, many of which share a pane, a direction and a
+        // length.
         let all = 0.063_216_952_753;
         let seen = trace::pixel(&Plan::new(&scene.model(Exact)), 1, 1).x;
         assert!((seen - all).abs() < 5e-5, "{seen}");
     }),
 ];
 
-/// Whether two pictures are the same but for one level.
+/// Tells whether two images differ by one level at most.
 fn same(a: &RgbImage, b: &RgbImage) -> bool {
     a.as_raw().iter().zip(b.as_raw()).all(|(a, b)| a.abs_diff(*b) <= 1)
 }

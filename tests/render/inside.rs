@@ -1,4 +1,4 @@
-//! Looking inside a pixel: `probe`, the notes' debug lines, and the pictures beside the main one.
+//! Inside a pixel: `probe`, the notes' debug lines, and the auxiliary images.
 
 use crate::common::{load, model, render, root, scenes};
 use assert_cmd::cargo::cargo_bin_cmd;
@@ -108,7 +108,7 @@ fn watching_changes_no_colour() {
     }
 }
 
-/// Renders a scene with some of `--aov`; its folder, and what was said.
+/// Renders a scene with some of `--aov`; returns the folder and the messages.
 fn with_aov(scene: &Path, names: &str) -> (TempDir, String) {
     let folder = TempDir::new().expect("a folder");
     let output = cargo_bin_cmd!("tabray")

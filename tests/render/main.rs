@@ -1,4 +1,4 @@
-//! Pictures: of every scene, whoever makes them, and what is told of their pixels.
+//! Images of every scene, however they are rendered, and the reports about their pixels.
 
 #[path = "../common/mod.rs"]
 mod common;

@@ -1,4 +1,4 @@
-//! No more than a scene needs: the plan says so, and the counts prove it.
+//! Nothing more than a scene needs: the plan says so, and the counts show it.
 
 use crate::common;
 use crate::common::{model, model_in, registry, root, scenes, small};
@@ -15,7 +15,7 @@ use tabray::simd::Cpu;
 use tabray::world::Accuracy;
 use tempfile::TempDir;
 
-/// What a scene's picture of 40 x 30 pixels takes.
+/// Counts the rays and tests for a scene's image of 40 x 30 pixels.
 fn counted(entities: &str) -> (Model, RayStats) {
     let camera = "camera eye { pixeldim 40 30 worlddim 8 6 viewpoint 4 3 7 }
         material matt { ambient 1 1 1 diffuse 2 2 2 }
@@ -42,7 +42,7 @@ fn text(model: &Model) -> String {
     decisions::of(&Plan::new(model)).iter().map(|decision| format!("{decision}\n")).collect()
 }
 
-/// The line of a plan about a subject.
+/// Returns the line of a plan about a subject.
 fn line(model: &Model, subject: &str) -> String {
     let text = text(model);
     let line = text.lines().find(|line| line.split_whitespace().next() == Some(subject));
@@ -148,7 +148,7 @@ fn three_planes_are_a_list_and_rays_that_lead_away_from_one_are_not_tested_with_
     assert!(line(&model, "search").contains("a list of 3 objects: none has bounds"));
     let TestCounts { objects, tested, culled } = tally.tests(&model)["plane"];
     assert_eq!((objects, tested + culled), (3, 3 * PIXELS), "a ray is tested or it is not");
-    // All rays lead to the back, half of them down and half of them to the left, but for the squares that both are in.
+    // All rays lead to the back, half of them down and half of them to the left, with a quarter in both halves.
     assert!((2 * PIXELS..5 * PIXELS / 2).contains(&tested), "{tested}");
 }
 
@@ -271,7 +271,7 @@ fn a_texture_is_read_once_before_the_first_ray_and_never_if_nothing_uses_it() {
     assert!(text(&model).contains("`missing` is not read: nothing uses it"), "{}", text(&model));
 }
 
-/// What the program does in a new folder: its status, standard output and standard error.
+/// Runs the program in a new folder; returns its status, standard output and standard error.
 fn outcome(args: &[&str]) -> (i32, String, String) {
     let folder = TempDir::new().expect("a folder");
     let output = cargo_bin_cmd!("tabray").current_dir(folder.path()).args(args).output().expect("it runs");
@@ -317,7 +317,7 @@ fn statistics_go_to_standard_error_and_change_nothing_else() {
         assert!(stats["seconds"][stage].as_f64() >= Some(0.0), "{stage}: {err}");
     }
     if cfg!(target_os = "linux") {
-        // No less than the picture itself, and less than a machine has.
+        // At least the image itself, and less than a machine has.
         assert!((160 * 120 * 3..1 << 34).contains(&stats["peak_memory"].as_u64().expect("bytes")), "{err}");
     }
 
@@ -330,7 +330,8 @@ fn statistics_go_to_standard_error_and_change_nothing_else() {
     }
 }
 
-/// Three panes half a unit apart that mirror so much of their light, in a new folder: what `render` says of them.
+/// Renders three panes half a unit apart that reflect this fraction of the light, in a new folder; returns the output
+/// of `render`.
 fn panes(specular: &str, method: &str) -> (Value, String) {
     let folder = TempDir::new().expect("a folder");
     let path = folder.path().join("pane.ray");
@@ -355,13 +356,13 @@ fn pixels_that_are_cut_off_are_counted_and_told_of_with_what_they_lack() {
     assert_eq!((stats["cut"]["pixels"].as_u64(), said.as_str()), (Some(0), ""));
     let rays = stats["rays"]["reflected"].as_u64();
     assert!(rays < Some(2000), "{rays:?}");
-    // The notes leave nothing out.
+    // The notes' method leaves out nothing.
     let (stats, said) = panes("0.4", "classic");
     let levels = stats["cut"]["levels"].as_f64().expect("a bound");
     assert!(stats["cut"]["pixels"].as_u64() > Some(0) && levels > 0.1 && levels < 255.0, "{stats}");
     assert!(said.starts_with("warning: ") && said.contains("cut off at 20000 rays"), "{said}");
     assert!(said.contains("off by at most ") && said.contains("of 255 levels"), "{said}");
-    // More is given on than there was.
+    // More light is reflected than arrives.
     let (stats, said) = panes("1", "exact");
     assert!(stats["cut"]["pixels"].as_u64() > Some(0) && stats["cut"]["levels"].is_null(), "{stats}");
     assert!(said.contains("nothing bounds"), "{said}");
@@ -425,7 +426,7 @@ fn whoever_looks_on_sees_the_colours_of_the_picture() {
         model.camera.value.pixels = model.camera.value.pixels.map(|side| side.min(18));
         check(&path.display().to_string(), &model);
     }
-    // Mirrors that scatter nothing cost as many rays as they may, and do so whether shadows are looked for or not.
+    // Mirrors that scatter no light cost as many rays as allowed, whether shadow rays are traced or not.
     let runaway = model(&format!(
         "camera eye {{ pixeldim 4 3 worlddim 8 6 viewpoint 4 3 7 }}
          material mirror {{ ambient 1 1 1 specular 0.999 }} material pane {{ specular 1 transparency 0.5 diffuse 1 1 1 }}

@@ -1,4 +1,4 @@
-//! What the README and the docs show: the scene loads, the pictures are fresh, links lead somewhere.
+//! The README and the docs: the scene loads, the images are up to date, and links lead somewhere.
 
 use crate::common;
 use crate::common::program::{folder, outcome, tabray};
@@ -52,7 +52,7 @@ fn the_reference_has_every_word_and_what_it_means() {
         let section = section.split("\n### ").next().expect("a section");
         let meaning = page.split(": ").nth(1).and_then(|rest| rest.split(". Its").next()).expect("a meaning");
         let rows = page.lines().filter(|line| line.starts_with("| ") || line.starts_with("Its number"));
-        // It begins with a capital in one of them.
+        // In one of them the text begins with a capital letter.
         let meaning: String = meaning.chars().skip(1).collect();
         for told in rows.chain([&*meaning]) {
             assert!(section.contains(told), "{name} has no {told}");
@@ -60,7 +60,7 @@ fn the_reference_has_every_word_and_what_it_means() {
     }
 }
 
-/// The files that a page of Markdown links to, or shows.
+/// Returns the files that a Markdown page links to or shows.
 fn links(page: &Path) -> Vec<PathBuf> {
     let text = fs::read_to_string(page).expect("a page");
     let links = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
@@ -74,7 +74,7 @@ fn links_lead_to_files_that_are_there() {
     for folder in ["docs", "snapshots/reference"] {
         let entries = fs::read_dir(root().join(folder)).expect("a folder");
         let files = entries.map(|entry| entry.expect("an entry").path());
-        // Nothing stands beside a page that is not accepted yet.
+        // A page that is not yet accepted has no files beside it.
         pages.extend(files.filter(|path| {
             let name = path.to_string_lossy();
             name.ends_with(".md") && !name.ends_with(".snap.new.md")
@@ -87,7 +87,7 @@ fn links_lead_to_files_that_are_there() {
     }
 }
 
-/// The texts in a folder, or that a file is.
+/// Returns the text files in a folder, or the text of a single file.
 fn texts(path: &Path) -> Vec<(PathBuf, String)> {
     if !path.is_dir() {
         return fs::read_to_string(path).map(|text| (path.to_owned(), text)).into_iter().collect();
@@ -98,7 +98,7 @@ fn texts(path: &Path) -> Vec<(PathBuf, String)> {
 
 #[test]
 fn no_file_lists_the_plugins() {
-    // Such a list would have to be edited for each new one.
+    // Such a list would have to be edited for each new plugin.
     let parts = ["README.md", "Cargo.toml", ".ci", "docs", "scenes", "snapshots", "src", "tests"];
     for (path, text) in parts.iter().flat_map(|part| texts(&root().join(part))) {
         let words: BTreeSet<_> = text.split(|c: char| !c.is_alphanumeric() && c != '_').collect();

@@ -1,7 +1,7 @@
-//! The dump and the picture of every scene, and the messages of every mistake, against those accepted before.
+//! The dump and the image of every scene, and the messages about every faulty scene, against the accepted ones.
 //!
-//! A scene is added by adding its file. Look at what it gives with `cargo run --release -- review --serve`, and accept
-//! it there.
+//! A scene is added by adding its file. Look at the results with `cargo run --release -- review --serve`, and accept
+//! them there.
 
 use crate::common::{load, registry, render, root};
 use image::RgbImage;
@@ -29,7 +29,7 @@ fn every_scene_looks_as_before() {
         if let Some(mut settings) = settings(path) {
             let mut model = load(path);
             if path.starts_with(root().join("scenes/gallery")) {
-                // A thumbnail tells as much, and keeps the repository small.
+                // A thumbnail shows as much, and keeps the repository small.
                 model.camera.value.pixels = [128, 96];
             }
             let mut png = Vec::new();
@@ -62,7 +62,7 @@ fn every_mistake_is_explained_as_before() {
     });
 }
 
-/// A message without what plugins add to it: lists of all that they register.
+/// Returns a message without the lists of everything that plugins register.
 fn without_lists(message: String) -> String {
     let names: Vec<_> = registry().iter().map(|entity| format!("`{}`", entity.name)).collect();
     let types = (names.join(", "), "[all types]".to_owned());
@@ -83,7 +83,7 @@ fn every_word_has_its_page() {
     }
 }
 
-/// Where the snapshots of a scene are, by its folder; nothing for scenes that have no picture.
+/// Returns the snapshot settings for a scene, by its folder; `None` for scenes that have no image.
 fn settings(path: &Path) -> Option<Settings> {
     let subject = path.strip_prefix(root().join("scenes")).ok()?.parent()?.to_str()?;
     (subject != "wrong").then(|| folder(subject))
@@ -94,7 +94,7 @@ fn folder(subject: &str) -> Settings {
     settings.set_snapshot_path(root().join("snapshots").join(subject));
     settings.set_prepend_module_to_snapshot(false);
     settings.set_omit_expression(true);
-    // `glob!` makes one up that depends on which other files exist.
+    // `glob!` would make up a suffix that depends on which other files exist.
     settings.remove_snapshot_suffix();
     settings.remove_input_file();
     settings
@@ -104,7 +104,7 @@ fn stem(path: &Path) -> &str {
     path.file_stem().and_then(|stem| stem.to_str()).expect("a name in UTF-8")
 }
 
-/// Compares pictures by their pixels; on failure says how far apart they are.
+/// Compares images by their pixels; on failure says how they differ.
 #[derive(Clone)]
 struct SamePixels {
     scene: String,
@@ -144,7 +144,7 @@ fn no_snapshot_is_left_of_a_scene_that_is_gone() {
         for entry in fs::read_dir(folder).expect("a folder of snapshots") {
             let path = entry.expect("an entry").path();
             if path.is_dir() {
-                // Explanations of pixels, plans and refusals are named after what they show.
+                // Explanations of pixels, plans and refusals have other names.
                 if !["probe", "plan", "refusals"].iter().any(|folder| path.ends_with(folder)) {
                     folders.push(path);
                 }

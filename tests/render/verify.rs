@@ -1,4 +1,4 @@
-//! What the tracer finds first is what is proven to be first, in every scene.
+//! The tracer's first hit is the one that is proven, in every scene.
 
 use crate::common::{load, model, root, scenes};
 use assert_cmd::cargo::cargo_bin_cmd;
@@ -7,7 +7,7 @@ use tabray::tools::verify::{self, Verdict};
 use tabray::world::certify::{Enclosure, Precision};
 use tempfile::TempDir;
 
-/// Scenes in which many pixels look at an edge on purpose, or at two surfaces in one place.
+/// Scenes in which many pixels look at an edge on purpose, or at two coinciding surfaces.
 const AT_EDGES: [&str; 10] = [
     "camera/edges-of-the-screen.ray", // two rectangles in one plane
     "plane/equal-distance.ray",       // two planes in one place
@@ -21,7 +21,7 @@ const AT_EDGES: [&str; 10] = [
     "triangle/seam.ray",
 ];
 
-/// Counts of proven, undecided and contradicted pixels: of every `step`-th, both ways.
+/// Counts the proven, undecided and contradicted pixels: every `step`-th in both directions.
 fn counts(model: &tabray::scene::Model, step: usize) -> [usize; 3] {
     let [width, height] = model.camera.value.pixels;
     let plan = Plan::new(model);
@@ -38,7 +38,7 @@ fn counts(model: &tabray::scene::Model, step: usize) -> [usize; 3] {
     counts
 }
 
-/// Whether a scene has an object without an equation, of which nothing is proven: at the corners of the image it says so.
+/// Tells whether a scene has an object without an equation, so that nothing can be proven: the corner pixels show it.
 fn has_unproven(model: &tabray::scene::Model) -> bool {
     let [right, top] = model.camera.value.pixels.map(|side| side as f64 - 1.0);
     let corners = [[0.0, 0.0], [right, 0.0], [0.0, top], [right, top]];
@@ -118,7 +118,7 @@ fn a_contradiction_is_a_failure_that_counts_it() {
     assert_eq!(err, format!("error: the tracer finds another object at {count} pixels\n"));
 }
 
-/// The wrong proof that rounding the normals and edges of a sliver gave: 156 of 606 such pixels.
+/// A bug of the proof: rounding the normals and edges of a sliver gave a wrong result for 156 of 606 such pixels.
 #[test]
 fn a_sliver_before_another_triangle_is_proven_from_its_corners() {
     let model = model(
@@ -137,7 +137,7 @@ fn a_sliver_before_another_triangle_is_proven_from_its_corners() {
     assert_eq!(met, 0, "rational arithmetic says that the sliver is nearer, by 6e-10");
 }
 
-/// Numbers whose squares nearly overflow or vanish are no reason for a doubt, in any kind of shape.
+/// Squares that nearly overflow or underflow are no reason for doubt, in any kind of shape.
 #[test]
 fn scenes_of_any_scale_are_proven() {
     for scale in ["e-150", "", "e150"] {
@@ -165,7 +165,7 @@ fn scenes_of_any_scale_are_proven() {
     }
 }
 
-/// Two surfaces in one place are told from two that are apart, however little.
+/// Two coinciding surfaces are told from two surfaces that are apart, however little.
 #[test]
 fn a_tie_is_a_tie_and_nothing_near_it() {
     let verdicts = |apart: &str| {

@@ -1,14 +1,14 @@
-//! What each file of a crate imports, read from its tokens: `use`, and paths in any body, macros included.
+//! The imports of each file of a crate, read from its tokens: `use`, and paths in any body, macros included.
 
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// A module's way from the root of the crate: `["world", "light"]`.
+/// The path of a module from the root of the crate: `["world", "light"]`.
 type Module = Vec<String>;
 
-/// A file that takes something from another one.
+/// An import of one file from another.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 pub struct Import {
     pub from: Module,
@@ -23,30 +23,30 @@ impl fmt::Display for Import {
     }
 }
 
-/// The files of a crate, and what they take from each other.
+/// The files of a crate, and their imports.
 pub struct Tree {
     pub imports: Vec<Import>,
     files: BTreeMap<Module, File>,
 }
 
-/// What one file says.
+/// The relevant content of a file.
 #[derive(Default)]
 struct File {
     path: PathBuf,
-    /// Paths to something in this crate from its root, and their lines.
+    /// Paths to items of this crate from its root, with their lines.
     paths: Vec<(usize, Module)>,
-    /// What it hands on as its own, and whether others than the crate see it.
+    /// The re-exported items, and whether they are visible outside the crate.
     exports: BTreeMap<String, (Module, bool)>,
-    /// Modules that others than the crate see.
+    /// Modules that are visible outside the crate.
     public: BTreeSet<String>,
     types: BTreeSet<String>,
     /// Methods, with the types that they belong to.
     methods: BTreeSet<(String, String)>,
-    /// Names of methods that are called, and a line of each.
+    /// Names of methods that are called, with one line for each.
     calls: BTreeMap<String, usize>,
 }
 
-/// The module that a file is: `src/world/light.rs` and `src/world/light/mod.rs` are `world::light`.
+/// Returns the module of a file: `src/world/light.rs` and `src/world/light/mod.rs` are `world::light`.
 fn module_of(path: &Path) -> Module {
     let parts = path.with_extension("");
     let mut module: Module = parts.iter().skip(1).map(|part| part.to_string_lossy().into_owned()).collect();
@@ -60,10 +60,10 @@ fn tokens(text: &str) -> Vec<TokenTree> {
     text.parse::<TokenStream>().expect("tokens of Rust").into_iter().collect()
 }
 
-/// The paths of a text from the root of its crate, and their lines.
+/// Returns the paths in a text from the root of its crate, with their lines.
 pub fn crate_paths(text: &str) -> Vec<(usize, Module)> {
     let (mut file, children) = (File::default(), BTreeSet::new());
-    // As in a module of which nothing is a child.
+    // The text is read as a module without submodules.
     Reader { file: &mut file, scope: vec!["plugins".to_owned(), "this".to_owned()], children: &children }
         .read(&tokens(text));
     file.paths.retain(|(_, path)| path[0] != "plugins");
@@ -81,25 +81,25 @@ impl Tree {
             Reader { file: &mut file, scope: module.clone(), children: &modules }.read(&tokens(&text));
             read.insert(module, file);
         }
-        // Files that are tests as a whole.
+        // Removes files that contain only tests.
         read.retain(|module, _| module.last().is_none_or(|last| last != "tests"));
         let mut tree = Self { imports: Vec::new(), files: read };
         tree.imports = tree.all_imports();
         tree
     }
 
-    /// The modules at the root.
+    /// Returns the modules at the root.
     pub fn rooms(&self) -> Vec<String> {
         self.files.keys().filter(|module| module.len() == 1).map(|module| module[0].clone()).collect()
     }
 
-    /// Whether others than the crate see what a path leads to.
+    /// Tells whether an item is visible outside the crate.
     pub fn is_public(&self, path: &[String]) -> bool {
         (1..path.len()).all(|end| match self.files.get(&path[..end]) {
             Some(file) => {
                 let name = &path[end];
                 let is_module = self.files.contains_key(&path[..=end]);
-                // What a module says itself says whether it is seen; a private name would not compile.
+                // The module itself says whether the item is visible; a private name would not compile.
                 !is_module && !file.exports.contains_key(name)
                     || file.public.contains(name)
                     || file.exports.get(name).is_some_and(|(_, is_seen)| *is_seen)
@@ -132,21 +132,21 @@ impl Tree {
         .collect()
     }
 
-    /// The file that a path leads into, by way of what others hand on.
+    /// Returns the file to which a path leads, through re-exports.
     fn resolve(&self, path: &[String], depth: usize) -> Module {
         let end = (0..=path.len()).rev().find(|end| self.files.contains_key(&path[..*end])).unwrap_or(0);
         let (module, rest) = path.split_at(end);
         let handed_on = rest.first().and_then(|name| self.files.get(module)?.exports.get(name));
         match handed_on {
-            // What is taken by way of the prelude is taken from the prelude.
+            // An item imported through the prelude is imported from the prelude.
             Some(_) if module == ["prelude"] => module.to_vec(),
             Some((target, _)) if depth < 10 => self.resolve(&[target, &rest[1..]].concat(), depth + 1),
             _ => module.to_vec(),
         }
     }
 
-    /// The file of the same folder, if it is another one, that alone in the crate has a method of this name, of a type
-    /// that is not its own.
+    /// Finds another file of the same folder that is the only one in the crate with a method of this name, of a type
+    /// from another file.
     fn written_elsewhere(&self, caller: &Module, name: &str) -> Option<&Module> {
         let has = |file: &File| file.methods.iter().any(|(_, method)| method == name);
         let mut having = self.files.iter().filter(|(_, file)| has(file));
@@ -158,7 +158,7 @@ impl Tree {
     }
 }
 
-/// Reads tokens of a module.
+/// Reads the tokens of a module.
 struct Reader<'r> {
     file: &'r mut File,
     scope: Module,
@@ -245,7 +245,7 @@ impl Reader<'_> {
         }
     }
 
-    /// The tree behind `use`.
+    /// Reads the tree after `use`.
     fn read_use(&mut self, before: &[String], tokens: &[TokenTree], visible: Option<bool>) {
         let is_comma = |token: &TokenTree| matches!(token, TokenTree::Punct(punct) if punct.as_char() == ',');
         for part in tokens.split(is_comma) {
@@ -276,7 +276,7 @@ impl Reader<'_> {
         }
     }
 
-    /// The methods of a type, where these are no trait's.
+    /// Reads the methods of a type, except those of traits.
     fn read_impl(&mut self, tokens: &[TokenTree]) {
         let body = tokens.iter().position(
             |token| matches!(token, TokenTree::Group(group) if group.delimiter() == Delimiter::Brace),
@@ -288,7 +288,7 @@ impl Reader<'_> {
                 TokenTree::Ident(ident) if ident == "for" => return,
                 TokenTree::Ident(ident) if depth == 0 && owner.is_none() => owner = Some(ident.to_string()),
                 TokenTree::Punct(punct) if punct.as_char() == '<' => depth += 1,
-                // Not the end of an arrow.
+                // This is not the end of an arrow.
                 TokenTree::Punct(punct) if punct.as_char() == '>' => {
                     let arrow = index > 0
                         && matches!(&tokens[index - 1], TokenTree::Punct(dash) if dash.as_char() == '-');
@@ -308,7 +308,7 @@ impl Reader<'_> {
         }
     }
 
-    /// A path in this crate, from its root.
+    /// Returns a path in this crate, from its root.
     fn rooted(&self, path: &[String]) -> Option<Module> {
         let up = path.iter().take_while(|word| *word == "super").count();
         match path.first()?.as_str() {
@@ -329,14 +329,14 @@ impl Reader<'_> {
     }
 }
 
-/// Whether an attribute says that what follows is there for tests alone.
+/// Tells whether an attribute restricts what follows to tests.
 fn is_test(attribute: &[TokenTree]) -> bool {
     let [TokenTree::Ident(name), TokenTree::Group(group)] = attribute else { return false };
     let first = group.stream().into_iter().next();
     name == "cfg" && matches!(first, Some(TokenTree::Ident(ident)) if ident == "test")
 }
 
-/// Behind an item: behind its body, or its semicolon.
+/// Returns the index after an item: after its body, or its semicolon.
 fn end_of_item(tokens: &[TokenTree], from: usize) -> usize {
     let is_end = |token: &TokenTree| match token {
         TokenTree::Group(group) => group.delimiter() == Delimiter::Brace,

@@ -1,7 +1,7 @@
-//! Who may import whom: each room of `src/` from rooms below it alone, and no file from one that takes from it.
+//! The rules of imports: each folder of `src/` imports only from folders below it, and no two files import each other.
 //!
-//! `docs/architecture.md` lists the rooms, from the top floor down, and is held to the tree here, too, as
-//! `docs/dependencies.md` is to `Cargo.toml`. What tests of a module import is left out.
+//! `docs/architecture.md` lists the folders, from the top layer down; it is compared with the tree here, as
+//! `docs/dependencies.md` is with `Cargo.toml`. Imports of a module's tests are left out.
 
 mod imports;
 
@@ -14,7 +14,7 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// All `.rs` files below a folder, from the package's own.
+/// Returns all `.rs` files below a folder, with paths from the package's folder.
 fn sources(folder: &str) -> Vec<PathBuf> {
     let mut found = Vec::new();
     let mut folders = vec![root().join(folder)];
@@ -31,7 +31,7 @@ fn sources(folder: &str) -> Vec<PathBuf> {
     found
 }
 
-/// The modules of the crate. Programs of their own, and what `tabray new` writes, are none.
+/// Returns the modules of the crate, without separate programs and the templates of `tabray new`.
 fn tree() -> Tree {
     let is_module = |path: &PathBuf| {
         let programs = ["src/main.rs", "src/build.rs", "src/cli/new/templates"];
@@ -45,20 +45,20 @@ fn architecture() -> String {
     fs::read_to_string(root().join("docs/architecture.md")).expect("the page")
 }
 
-/// The rooms of the page's table, from the top floor down.
+/// Returns the folders of the page's table, from the top layer down.
 fn rooms(page: &str) -> Vec<&str> {
     let table = page.split("\n## ").find(|part| part.starts_with("Folders\n")).expect("a table of folders");
     let rows = table.lines().filter_map(|line| line.strip_prefix("| [`"));
     rows.filter_map(|row| row.split('`').next()).collect()
 }
 
-/// Imports from a room that is not below.
+/// Returns the imports from folders that are not below.
 fn from_above(tree: &Tree, rooms: &[&str]) -> Vec<String> {
     let floor =
         |module: &[String]| rooms.iter().position(|room| Some(*room) == module.first().map(String::as_str));
     let is_wrong = |import: &&Import| {
         let (from, to) = (floor(&import.from), floor(&import.to));
-        // The prelude is for plugins.
+        // The prelude is for plugins only.
         from > to || import.from[0] != import.to[0] && import.to[0] == "prelude"
     };
     let told =
@@ -66,7 +66,7 @@ fn from_above(tree: &Tree, rooms: &[&str]) -> Vec<String> {
     tree.imports.iter().filter(is_wrong).map(told).collect()
 }
 
-/// A circle of imports, if there is one.
+/// Returns a cycle of imports, if there is one.
 fn circle(tree: &Tree) -> Option<Vec<String>> {
     let mut onward: BTreeMap<&[String], Vec<&Import>> = BTreeMap::new();
     for import in &tree.imports {
@@ -74,7 +74,7 @@ fn circle(tree: &Tree) -> Option<Vec<String>> {
     }
     let mut done = BTreeSet::new();
     for start in onward.keys() {
-        // The way to where we are, and what remains to be looked at of each station.
+        // The path to the current module, and for each module on it what is still to be visited.
         let mut way: Vec<&Import> = Vec::new();
         let mut waiting = vec![(*start, 0)];
         while let Some((module, next)) = waiting.last_mut() {
@@ -143,7 +143,7 @@ fn the_page_links_to_what_is_there() {
     for link in links {
         assert!(root().join("docs").join(link).exists(), "{link} leads nowhere");
     }
-    // What the drawing names lies in `src/`.
+    // The names in the drawing must exist in `src/`.
     let drawing = page.split("```").nth(1).expect("a drawing");
     let words = drawing.split([' ', ',', '\n']).filter(|word| word.contains('/') && word.len() > 3);
     for word in words.filter(|word| !word.starts_with("plugins/")) {
@@ -151,7 +151,7 @@ fn the_page_links_to_what_is_there() {
     }
 }
 
-/// The crates that a table of `Cargo.toml` names, and those of the same name for one system.
+/// Returns the crates that a table of `Cargo.toml` names, including those of the same name for one system.
 fn crates(manifest: &toml::Table, table: &str) -> BTreeSet<String> {
     let targets = manifest["target"].as_table().expect("targets").values().filter_map(toml::Value::as_table);
     let tables = targets.chain([manifest]).filter_map(|target| target.get(table)?.as_table());
@@ -221,7 +221,7 @@ fn circles_are_found() {
     let by_the_folder =
         [("r/mod.rs", "mod a; fn f() { a::g() } pub const N: u8 = 1;"), ("r/a.rs", "use super::N;")];
     assert_eq!(wrong(&by_the_folder).map(|circle| circle.len()), Some(2));
-    // A method that is written elsewhere than its type is taken from there.
+    // A method in another file than its type is imported from there.
     let by_a_method = [
         ("r/mod.rs", "mod a; mod b;"),
         ("r/a.rs", "pub struct A; impl A { fn f(&self) { self.g() } }"),

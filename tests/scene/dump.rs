@@ -1,4 +1,4 @@
-//! A dump as a scene, in either spelling, loads again to the identical model.
+//! A dump as a scene, in either syntax, loads again to the identical model.
 
 use crate::common;
 use crate::common::{load, model, model_in, registry, root, scenes};
@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use std::path::Path;
 use tabray::scene::{self, Attribute, Datum, Entity, Fault, Kind, Model, Syntax, Type, dump};
 
-/// Every value of a model, to its last bit.
+/// Returns every value of a model, to its last bit.
 fn values(model: &Model) -> Vec<String> {
     let items = [&model.camera.args]
         .into_iter()
@@ -57,20 +57,20 @@ fn a_dumped_scene_gives_the_same_picture() {
 }
 
 proptest! {
-    // Values are drawn until they keep their rules.
+    // Values are drawn until they satisfy their rules.
     #![proptest_config(ProptestConfig { failure_persistence: None, max_local_rejects: 1 << 22, ..ProptestConfig::default() })]
 
     #[test]
     fn any_scene_survives_its_dump(text in any_scene()) {
         match scene::read(registry(), "any", Path::new(""), text.as_bytes(), None) {
             Ok(loaded) => assert_loads_again(&loaded.model),
-            // Only what no single attribute shows may be wrong.
+            // Only faults that no single attribute shows are allowed.
             Err(report) => prop_assert!(report.faults().iter().all(of_a_constructor), "{report}"),
         }
     }
 }
 
-/// Whether a fault is one that only a constructor finds, or the warning that may stand beside it.
+/// Tells whether a fault is one that only a constructor finds, or the warning that may accompany it.
 fn of_a_constructor(fault: &Fault) -> bool {
     let found = [
         "parallel",
@@ -85,7 +85,7 @@ fn of_a_constructor(fault: &Fault) -> bool {
     found.iter().any(|words| fault.message.contains(words))
 }
 
-/// A scene with any names and any values that the tables allow.
+/// Generates scenes with any names and any values that the tables allow.
 fn any_scene() -> impl Strategy<Value = String> {
     let some = |kind, least| {
         let entities: Vec<_> = registry().iter().filter(|entity| entity.kind() == kind).collect();
@@ -94,7 +94,7 @@ fn any_scene() -> impl Strategy<Value = String> {
     let (camera, materials) = (some(Kind::Camera, 1), some(Kind::Material, 1));
     (camera, materials, some(Kind::Object, 0), some(Kind::Light, 0)).prop_map(
         |(cameras, materials, objects, lights)| {
-            // `m0` and `t0` are always there to be referred to.
+            // `m0` and `t0` always exist, so that other entities can refer to them.
             let materials =
                 materials.iter().enumerate().map(|(i, text)| text.replace("NAME", &format!("m{i}")));
             let texture = format!("texture t0 {{ filename {} }}\n", root().join(TEXTURE).display());

@@ -1,17 +1,17 @@
-//! Numbers as large and as small as there are, in place of each number of a scene, are refused or drawn at once.
+//! The largest and the smallest numbers, in place of each number of a scene, are refused or rendered at once.
 
 use crate::common::{registry, render, root};
 use std::fs;
 use std::time::{Duration, Instant};
 use tabray::scene;
 
-/// Zeros, numbers whose squares and cubes are none, and numbers at the limits of lengths.
+/// Zeros, numbers whose squares and cubes overflow or underflow, and numbers at the limits of lengths.
 const NUMBERS: [&str; 16] = [
     "0", "-0", "1e-320", "1e-160", "1e-152", "1e-9", "-1e-9", "1e9", "-1e9", "1e16", "1e77", "1e152",
     "1e154", "1e166", "1e300", "-1e300",
 ];
 
-/// How long a picture of 48 pixels may take on a machine with other things to do.
+/// The maximum time for an image of 48 pixels on a busy machine.
 const LONG: Duration = Duration::from_secs(20);
 
 #[test]
@@ -24,7 +24,7 @@ fn extreme_numbers_are_refused_or_drawn_at_once() {
     let mut drawn = 0;
     for (first, file) in files.iter().enumerate() {
         let text = fs::read_to_string(file).expect("a scene");
-        // What stands in quotes or in a comment is no number of an attribute.
+        // Text in quotes or in a comment is not a number of an attribute.
         let parts: Vec<&str> = text.split_inclusive(char::is_whitespace).collect();
         let is_number = |part: &&str| part.trim().parse::<f64>().is_ok();
         let places: Vec<_> = (0..parts.len()).filter(|at| is_number(&parts[*at])).collect();

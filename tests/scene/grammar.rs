@@ -1,4 +1,4 @@
-//! The TextMate grammar: what it takes each word of a scene for is what the reader takes it for.
+//! The TextMate grammar: it classifies each word of a scene as the reader does.
 
 use crate::common::{registry, root, scenes};
 use fancy_regex::Regex;
@@ -8,13 +8,13 @@ use std::fs;
 use std::path::Path;
 use tabray::scene::{self, Syntax, dump, grammar};
 
-/// A grammar that is applied as editors apply one: line by line, and at each place the rule that matches first.
+/// Applies a grammar as editors do: line by line, with the rule that matches first at each position.
 struct Highlighter {
     grammar: Value,
     patterns: HashMap<String, Regex>,
 }
 
-/// A piece of text, and the scope that a rule gives it.
+/// A piece of text, and its scope.
 type Scoped = (String, String);
 
 impl Highlighter {
@@ -25,7 +25,7 @@ impl Highlighter {
         highlighter
     }
 
-    /// Every pattern of the grammar is one.
+    /// Compiles every pattern of the grammar.
     fn compile(&mut self, value: &Value) {
         match value {
             Value::Object(fields) => {
@@ -44,7 +44,7 @@ impl Highlighter {
         }
     }
 
-    /// The rules of a list, those that it includes in their places.
+    /// Returns the rules of a list, with included rules in their places.
     fn rules<'g>(&'g self, rule: &'g Value) -> Vec<&'g Value> {
         let patterns = rule["patterns"].as_array().map(Vec::as_slice).unwrap_or_default();
         let included = |rule: &'g Value| match rule["include"].as_str() {
@@ -73,7 +73,7 @@ impl Highlighter {
                         self.patterns[pattern].captures_from_pos(line, at).expect("a pattern that ends")?;
                     Some((captures.get(0)?.range(), captures, rule, ends))
                 });
-                // The first of several that match at one place.
+                // The first of several rules that match at the same position.
                 let Some((whole, captures, rule, ends)) = matches.min_by_key(|(whole, ..)| whole.start)
                 else {
                     break;
@@ -102,7 +102,7 @@ impl Highlighter {
     }
 }
 
-/// The scene that the scopes make of a text, in the other spelling: it says of each word what it is.
+/// Makes a scene in the other syntax from the scopes of a text, which shows how each word was classified.
 fn scene_of(scoped: &[Scoped]) -> String {
     let mut text = String::new();
     let mut values: Vec<String> = Vec::new();
@@ -140,7 +140,7 @@ fn scene_of(scoped: &[Scoped]) -> String {
     text
 }
 
-/// A scene written again, as its reader understands it.
+/// Returns a scene as its reader understands it, written again.
 fn read(path: &Path, name: &str, text: &str) -> String {
     let folder = path.parent().expect("a folder");
     match scene::read(registry(), name, folder, text.as_bytes(), None) {

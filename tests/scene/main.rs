@@ -1,4 +1,4 @@
-//! What a scene's text means: it is read, refused, built, dumped and spelled otherwise.
+//! Scenes as text: they are read, refused, built in Rust, dumped and converted.
 
 #[path = "../common/mod.rs"]
 mod common;

@@ -9,7 +9,7 @@ const CAMERA: &str = "camera eye { pixeldim 41 31 worlddim 8 6 viewpoint 4 3 6 }
 const RED: &str = "material red { ambient 9 1 1 }\n";
 const BALL: &str = "sphere ball { material red center 4 3 -3 radius 1 }\n";
 
-/// The warnings of a scene that has no errors.
+/// Returns the warnings of a scene that has no errors.
 fn warnings(text: &str) -> Report {
     match scene::read(registry(), "scene", Path::new(""), text.as_bytes(), None) {
         Ok(loaded) => loaded.warnings,
@@ -17,7 +17,7 @@ fn warnings(text: &str) -> Report {
     }
 }
 
-/// The one warning of a scene, which marks the later place and the first one.
+/// Returns the only warning of a scene, which marks the later place and the first one.
 fn warning(text: &str, first: &str, later: &str) -> String {
     let report = warnings(text);
     let [fault] = report.faults() else { panic!("{report}") };

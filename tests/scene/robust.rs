@@ -1,4 +1,4 @@
-//! Bad input of any kind ends in messages: no panic, no endless run.
+//! Bad input of any kind ends in messages: no panic, and no endless run.
 
 use crate::common;
 use crate::common::{model, registry};
@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use std::path::Path;
 use tabray::scene::{self, Report, Severity};
 
-/// Reads bytes as a scene; either there is a model, or there is an error that can be printed.
+/// Reads bytes as a scene; either there is a model, or an error that can be printed.
 fn read(bytes: &[u8]) {
     if let Err(report) = scene::read(registry(), "any", Path::new(""), bytes, None) {
         assert!(report.faults().iter().any(|fault| fault.severity == Severity::Error));
@@ -90,7 +90,7 @@ fn a_scene_with_a_fault_in_each_of_ten_thousand_entities_counts_them_all() {
     assert!(report.to_string().ends_with("\n\nand 19900 more errors\n\nmany: 20000 errors\n"));
 }
 
-/// What a scene is refused with.
+/// Returns the report of a scene that is refused.
 fn refused(name: &str, text: &str) -> Report {
     match scene::read(registry(), name, Path::new(""), text.as_bytes(), None) {
         Ok(_) => panic!("it is read"),
@@ -137,7 +137,7 @@ fn messages_stay_short_however_long_a_line_is() {
     }
 }
 
-/// What is said is no longer than somebody reads, in any form.
+/// Asserts that a report is no longer than people read, in any form.
 fn short(report: &Report, of: &str) {
     for said in [report.to_string(), report.short(), report.json()] {
         assert!(said.len() < 200_000, "{} bytes are said of {of:?}", said.len());
@@ -237,7 +237,7 @@ fn a_long_scene_in_toml_is_read_as_a_short_one_is() {
 
 #[test]
 fn mirrors_that_touch_end_and_stay_within_the_stack() {
-    // Two mirrors at a distance that rounding loses: only the limit on rays ends their reflections.
+    // Two mirrors at a distance that is lost to rounding: only the limit on rays ends their reflections.
     let model = model(
         "camera eye { pixeldim 4 3 worlddim 8 6 viewpoint 4 3 6 }
          material glass  { ambient 0.001 0.001 0.001 transparency 0.5 specular 1 }

@@ -1,4 +1,4 @@
-//! Scenes in TOML: the same language in another spelling, and its JSON Schema.
+//! Scenes in TOML: the same language in another syntax, and its JSON Schema.
 
 use crate::common::{load, model, registry, render, root, scenes};
 use assert_cmd::cargo::cargo_bin_cmd;
@@ -93,12 +93,12 @@ fn the_schema_refuses_what_is_wrong_by_its_form() {
     for path in wrong() {
         let name = path.file_stem().and_then(|stem| stem.to_str()).expect("a name").to_owned();
         let text = fs::read_to_string(&path).expect("a scene");
-        // What is no TOML at all does not get as far as its schema.
+        // A text that is not TOML does not reach the schema.
         let Some(scene) = in_json(&text) else {
             assert!(["toml-syntax", "toml-twice", "toml-not-toml"].contains(&name.as_str()), "{name}");
             continue;
         };
-        // What a name refers to, a schema cannot tell, and of its letters it says nothing.
+        // A schema cannot tell what a name refers to, and does not restrict its characters.
         let is_beyond = ["toml-late-material", "toml-control-characters"].contains(&name.as_str());
         assert_eq!(schema.is_valid(&scene), is_beyond, "{name}");
         refused.push(name);
@@ -106,7 +106,7 @@ fn the_schema_refuses_what_is_wrong_by_its_form() {
     assert!(refused.len() > 5, "{refused:?}");
 }
 
-/// The mistakes in TOML.
+/// Returns the faulty scenes in TOML.
 fn wrong() -> Vec<PathBuf> {
     let entries = fs::read_dir(root().join("scenes/wrong")).expect("the mistakes");
     let paths = entries.map(|entry| entry.expect("an entry").path());
@@ -130,7 +130,7 @@ fn every_attribute_of_a_scene_is_in_the_schema_with_its_meaning() {
     }
 }
 
-/// Runs `tabray convert` in a folder; its exit status and what it says.
+/// Runs `tabray convert` in a folder; returns its exit status and its messages.
 fn convert(folder: &Path, args: &[&str]) -> (Option<i32>, String) {
     let output = cargo_bin_cmd!("tabray").current_dir(folder).arg("convert").args(args).output();
     let output = output.expect("the program runs");
@@ -139,7 +139,7 @@ fn convert(folder: &Path, args: &[&str]) -> (Option<i32>, String) {
 
 #[test]
 fn converting_there_and_back_gives_the_same_scene() {
-    // File names start from the scene's folder, so the textures come along.
+    // File names are relative to the scene's folder, so the textures are copied too.
     let root_of_copies = TempDir::new().expect("a folder");
     let (folder, textures) = (root_of_copies.path().join("copies"), root_of_copies.path().join("textures"));
     fs::create_dir(&folder).expect("a folder");

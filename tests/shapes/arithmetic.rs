@@ -1,5 +1,5 @@
-//! The hits of random shapes against true ones that start from the numbers of the scene's text, of rays that are hard for
-//! them; and that the packets' brackets hold those, and the hits of a camera's real rays.
+//! The hits of random shapes against true ones computed from the numbers of the scene's text, for rays that are hard
+//! for them. Also checks that the bounds of packets contain the true hits, including those of a camera's exact rays.
 
 use crate::common;
 use crate::oracle::Truth;
@@ -12,7 +12,7 @@ use tabray::geometry::{Bracket, MISS, Ray, RayRange};
 use tabray::scene::Model;
 use tabray::world::{AnyShape, Hittable};
 
-/// The shapes of each kind, and the rays for each set and shape.
+/// The number of shapes of each kind, and the number of rays for each set and shape.
 const SHAPES: usize = 200;
 const RAYS: usize = 40;
 
@@ -24,17 +24,17 @@ fn scene(accuracy: &str, object: &str) -> Model {
     ))
 }
 
-/// The exact shape of an entity's text.
+/// Returns the shape of an entity's text, with the exact accuracy.
 fn shape(object: &str) -> AnyShape {
     scene("exact", object).objects.remove(0).shape
 }
 
-/// The distance of the first hit.
+/// Returns the distance of the first hit.
 fn distance(shape: &dyn Hittable, origin: DVec3, dir: DVec3) -> f64 {
     shape.distance(&Ray { origin, dir }, &RayRange::ALL)
 }
 
-/// A bracket says nothing of a truth that is not so.
+/// Tells whether a bracket contains the truth. Any bracket is right if the truth is undecided.
 fn holds(Bracket { near, far }: Bracket, truth: Truth) -> bool {
     match truth {
         Truth::Undecided => true,
@@ -43,7 +43,7 @@ fn holds(Bracket { near, far }: Bracket, truth: Truth) -> bool {
     }
 }
 
-/// Every ray of every set finds what is true, to a few units in the last place, in each way in which the program computes it.
+/// Asserts that every ray of every set finds the true hit to a few ulps, by each way in which the program computes it.
 #[track_caller]
 fn finds(kind: &str, ulps: f64) {
     let mut random = Random::new(14);
@@ -117,13 +117,13 @@ fn rectangles_are_found() {
     finds("fplane", 8.0);
 }
 
-/// A vector as scenes spell it.
+/// Writes a vector as scenes do.
 fn spelt(vector: DVec3) -> String {
     format!("{:?} {:?} {:?}", vector.x, vector.y, vector.z)
 }
 
-/// The brackets hold for the real ray through a pixel, of which the program's has a rounded direction: of shapes whose brink
-/// that ray passes by a few units in the last place.
+/// The bounds contain the hit of the exact ray through a pixel, although the program's ray has a rounded direction, for
+/// shapes whose boundary that ray passes at a distance of a few ulps.
 #[test]
 fn brackets_hold_the_hits_of_the_real_rays_of_a_camera() {
     let camera = scene("exact", "plane p { material m normal 0 1 0 point 0 0 0 }").camera.value;
@@ -147,7 +147,8 @@ fn brackets_hold_the_hits_of_the_real_rays_of_a_camera() {
             }
             1 => {
                 let scale = DVec3::from([0; 3].map(|_| 10_f64.powf(random.between(-3.0, 3.0))));
-                // Where the silhouette leans, it is off the ray: this is the one with the point on it.
+                // Where the silhouette is inclined, its nearest point is not on the ray: this is the shape whose
+                // silhouette contains the point.
                 let half = radius * (side / scale).normalize() * scale;
                 let center = at + half;
                 let (place, stretch) = (spelt(center), spelt(scale));
@@ -201,7 +202,7 @@ fn brackets_hold_the_hits_of_the_real_rays_of_a_camera() {
     assert!(certain > 1_000, "{certain} of 4000 are certain");
 }
 
-/// A ray almost along a floor: the floor is 12 away, and both are one digit lower than the number before.
+/// A ray almost parallel to a floor that it hits 12 away, from a height that differs from the floor's in its last digits.
 #[test]
 fn a_ray_almost_along_a_plane_hits_it_where_it_is() {
     let floor = shape("plane f { material m normal 0 1 0 point 0 3.9999999999999991 0 }");
@@ -212,7 +213,7 @@ fn a_ray_almost_along_a_plane_hits_it_where_it_is() {
     assert_eq!(distance(&*floor, origin, DVec3::NEG_Z), MISS, "along it");
 }
 
-/// A plane on the screen itself is there; one that is farther in front by the last digit is not.
+/// A plane in the image plane is visible; a plane nearer to the viewer by one ulp is not.
 #[test]
 fn a_plane_is_there_up_to_the_screen() {
     let mut random = Random::new(16);
@@ -226,7 +227,7 @@ fn a_plane_is_there_up_to_the_screen() {
     }
 }
 
-/// The sides of a rectangle belong to it, to the last digit.
+/// The sides of a rectangle belong to it, to the last bit.
 #[test]
 fn the_sides_of_a_rectangle_belong_to_it() {
     let pane = shape("fplane f { material m normal 0 0 1 point 0.1 0.2 -9 xdir 1 0 0 dimensions 0.5 0.25 }");
@@ -236,7 +237,7 @@ fn the_sides_of_a_rectangle_belong_to_it() {
     }
 }
 
-/// A ball cut by the box that just holds it shows its front.
+/// A sphere clipped by its own bounding box shows its front.
 #[test]
 fn a_ball_in_the_box_around_it_is_whole() {
     let ball = |radius: f64| {
@@ -248,7 +249,7 @@ fn a_ball_in_the_box_around_it_is_whole() {
     };
     for step in 1..=60 {
         let radius = 0.05 * f64::from(step);
-        // Its real radius is the root of a rounded square: where that is more than the box has, both poles are cut off.
+        // The exact radius is the root of a rounded square: where it exceeds the box, both poles are cut off.
         let is_wider = tabray::numeric::double_double::two_product(radius, radius).1 < 0.0;
         let found = distance(&*ball(radius), dvec3(4.0, 3.0, 6.0), DVec3::NEG_Z);
         let is_right = if is_wider { found == MISS } else { (found - (10.13 - radius)).abs() < 1e-14 };
@@ -256,7 +257,7 @@ fn a_ball_in_the_box_around_it_is_whole() {
     }
 }
 
-/// Two planes that are almost one have the normal of both, not noise.
+/// Two planes that nearly coincide have the normal of both, not noise.
 #[test]
 fn a_double_plane_has_a_normal() {
     for apart in ["0", "1e-15", "1e-30"] {

@@ -25,7 +25,7 @@ fn what_is_in_the_entities_own_scenes_keeps_its_contract() {
     }
 }
 
-/// What `tabray new plugin` starts a shape from: its sides are flat in their middle to the fourth order.
+/// The template of a shape from `tabray new plugin`: its sides are flat at their centres to the fourth order.
 struct RoundCube(f64);
 
 impl Implicit for RoundCube {
@@ -75,7 +75,7 @@ static RADIUS: Pparm<f64> =
     Pparm::required("radius", "the distance to its surface").must("positive", |radius| *radius > 0.0);
 const TABLE: Table = &[&CENTER as &dyn Row, &RADIUS];
 
-/// What is wrong with a ball.
+/// What is wrong with a sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Flaw {
     None,
@@ -110,7 +110,7 @@ struct Ball {
 }
 
 impl Ball {
-    /// The distances at which a ray meets a ball of this radius around the center.
+    /// Returns the distances at which a ray meets a sphere of this radius around the center.
     fn roots(&self, ray: &Ray, radius: f64) -> [f64; 2] {
         let from = ray.origin - self.center;
         let middle = -from.dot(ray.dir);
@@ -119,7 +119,7 @@ impl Ball {
         [middle - half, middle + half]
     }
 
-    /// Whether a point is on the ball or on its shell, within an error.
+    /// Tells whether a point is on the sphere or on its shell, within an error.
     fn is_near(&self, at: DVec3, error: f64) -> bool {
         let off = at.distance(self.center) - self.radius;
         off.abs().min((off - self.radius).abs()) <= error + 1e-12
@@ -128,7 +128,7 @@ impl Ball {
     fn hit(&self, ray: &Ray, range: &RayRange) -> f64 {
         let mut roots = self.roots(ray, self.radius).to_vec();
         if range.origin_side == Some(Side::Inside) {
-            // The near root is where it starts.
+            // The ray starts at the near root.
             roots.remove(0);
         }
         if matches!(self.flaw, Flaw::Shell | Flaw::MeetsNothingAgain) {
@@ -246,7 +246,7 @@ fn refuse<T>(_args: &Args) -> Result<T, Refusal> {
     Err(Refusal { attribute: None, message: "will not be".to_owned(), help: "nothing helps" })
 }
 
-/// What a light sends where it is, and elsewhere.
+/// The light's colour at its own position, and elsewhere.
 struct Lamp;
 
 impl Light for Lamp {
@@ -310,7 +310,7 @@ static BROKEN: [(Promise, Entity); 27] = [
     ),
 ];
 
-/// The breaches of one entity type, in the company of the program's own of other kinds.
+/// Returns the breaches of one entity type, in a registry with the program's own types of other kinds.
 fn breaches(entity: &'static Entity) -> Vec<Breach> {
     let others =
         registry().iter().filter(|other| other.kind() != entity.kind() && other.kind() < Kind::Object);

@@ -1,4 +1,4 @@
-//! The numbers of the truth, against correctly rounded ones of 160 bits.
+//! The number types of the truth, against correctly rounded numbers of 160 bits.
 
 use crate::oracle::rays::Random;
 use dashu_float::FBig;
@@ -9,7 +9,7 @@ use tabray::numeric::{Interval, Scalar, Wide, double_double::DoubleDouble};
 
 type Big = FBig<HalfEven, 2>;
 
-/// Random arguments of each function.
+/// The number of random arguments of each function.
 const ARGUMENTS: usize = 2_000;
 
 const BITS: usize = 160;
@@ -20,13 +20,13 @@ fn big(number: DoubleDouble) -> Big {
     high + low
 }
 
-/// How far a number is from the right one, against that one.
+/// Returns the relative error of a number.
 fn error(number: DoubleDouble, right: &Big) -> f64 {
     let apart = (big(number) - right).to_f64().value().abs();
     apart / right.to_f64().value().abs()
 }
 
-/// A random number of twice the usual length.
+/// Draws a random double-double number.
 fn long(random: &mut Random, low: f64, high: f64) -> DoubleDouble {
     let number = DoubleDouble::from(random.between(low, high));
     number + number * random.between(-1e-17, 1e-17).into()
@@ -80,7 +80,7 @@ fn waves_agree() {
         agrees(range, Scalar::cos, Big::cos);
         agrees(range, Scalar::tan, Big::tan);
     }
-    // Next to where the wave is 0, most digits of the argument are lost.
+    // Near the zeros of the sine, most digits of the argument are lost.
     for quarters in 1..200 {
         let near = DoubleDouble::from(f64::from(quarters) * std::f64::consts::FRAC_PI_2);
         assert!(error(near.sin(), &big(near).sin()) < 1e-28, "{near:?}");
@@ -125,7 +125,7 @@ fn the_least_greatest_and_whole_numbers_are_exact() {
 type Bounds = fn(Interval) -> Interval;
 type Exact = fn(DoubleDouble) -> DoubleDouble;
 
-/// The bounds that the truth is proven with hold.
+/// The bounds used by proofs contain the true results.
 #[test]
 fn intervals_hold_the_true_results() {
     let functions: [(&str, (f64, f64), Bounds, Exact); 9] = [
@@ -155,7 +155,7 @@ fn intervals_hold_the_true_results() {
     }
 }
 
-/// A number of 237 bits, exactly.
+/// Converts a number of 237 bits, exactly.
 fn widest(of: f256) -> Bits {
     let (sign, exponent, (high, low)) = of.as_sign_exp_signif();
     let whole = (UBig::from(high) << 128) + UBig::from(low);
@@ -165,7 +165,7 @@ fn widest(of: f256) -> Bits {
 
 type Bits = FBig<HalfEven, 2>;
 
-/// That an interval of 237 bits holds a number of 400, and is no wider than so many units in the last place.
+/// Asserts that an interval of 237 bits contains a number of 400 bits, and is no wider than this many ulps.
 #[track_caller]
 fn holds(interval: Wide, right: &Bits, units: f64, what: &str) {
     let (low, high) = (widest(interval.low), widest(interval.high));
@@ -180,7 +180,7 @@ fn wide_intervals_hold_the_right_results() {
     let mut random = Random::new(9);
     let exactly = |of: f256| widest(of).with_precision(BITS).value();
     for _ in 0..300 {
-        // All digits of an argument are drawn.
+        // All digits of an argument are random.
         let mut number = |low: f64, high: f64| {
             let part = f256::from(random.between(1.0, 2.0)) / f256::from(random.between(1.0, 2.0));
             f256::from(random.between(low, high)) * part
@@ -188,7 +188,7 @@ fn wide_intervals_hold_the_right_results() {
         let (a, b) = (number(-9.0, 9.0), number(-9.0, 9.0));
         let (x, y) = (Wide::point(a), Wide::point(b));
         let (big_a, big_b) = (exactly(a), exactly(b));
-        // A sum that cancels is exact, and any other one is within a unit of it.
+        // A sum with cancellation is exact, and any other sum is within one ulp.
         let (low, high) = (widest((x + y).low), widest((x + y).high));
         assert!(low <= &big_a + &big_b && &big_a + &big_b <= high, "{a} + {b}");
         holds(x * y, &(&big_a * &big_b), 4.0, "product");
@@ -197,14 +197,14 @@ fn wide_intervals_hold_the_right_results() {
         let (p, q) = (number(1e-3, 90.0), number(0.1, 3.0));
         let (wide, big) = (Wide::point(p), exactly(p));
         holds(wide.sqrt(), &big.sqrt(), 4.0, "square root");
-        // Where a logarithm is near 0, or a sine, its units are small.
+        // Where a logarithm or a sine is near 0, its ulps are small.
         holds(wide.exp(), &big.exp(), 40.0, "exp");
         holds(wide.ln(), &big.ln(), 40.0, "ln");
         holds(wide.sin(), &big.sin(), 40.0, "sin");
         holds(wide.cos(), &big.cos(), 40.0, "cos");
         holds(wide.tan(), &big.tan(), 40.0, "tan");
         let power = (exactly(q) * big.ln()).exp();
-        // The error of the logarithm counts as often as the exponent is large.
+        // The error of the logarithm is multiplied by the exponent.
         holds(wide.pow(Wide::point(q)), &power, 1000.0, "power");
     }
 }

@@ -1,4 +1,4 @@
-//! Shapes that are one formula: what is hit is what the formula says, and nothing is lost or made up.
+//! Shapes given by one formula: hits are where the formula says, and none is lost or invented.
 
 use crate::common::{model, render};
 use dashu_float::FBig;
@@ -18,7 +18,7 @@ const AXIS: DVec3 = DVec3::new(0.4, 1.0, -0.3);
 const RADIUS: f64 = 1.5;
 const TUBE: f64 = 0.5;
 
-/// A mirror in the shape of the torus that the quartic below describes, and what it mirrors.
+/// A mirror in the shape of the torus that the quartic below describes, and an object that it reflects.
 fn torus() -> Model {
     model(&format!(
         "camera eye {{ pixeldim 160 120 worlddim 8 6 viewpoint 4 3 5 }}
@@ -48,7 +48,7 @@ impl Dice {
         DVec3::new(sin, cos, 0.0) * (1.0 - height * height).sqrt() + DVec3::Z * height
     }
 
-    /// A point of the torus and its normal, by the angles.
+    /// Returns a point of the torus and its normal, at random angles.
     fn on_torus(&mut self) -> (DVec3, DVec3) {
         let axis = AXIS.normalize();
         let (across, away) = axis.any_orthonormal_pair();
@@ -59,14 +59,14 @@ impl Dice {
         (CENTER + outward * RADIUS + normal * TUBE, normal)
     }
 
-    /// A ray from `far` away that meets the torus's ball somewhere.
+    /// Returns a ray from a distance of `far` to a point in the torus's bounding sphere.
     fn aimed(&mut self, far: f64) -> Ray {
         let target = CENTER + self.direction() * self.range(0.0..1.0).cbrt() * (RADIUS + TUBE);
         let origin = CENTER + self.direction() * far;
         Ray { origin, dir: (target - origin).normalize() }
     }
 
-    /// A ray from `far` away that passes the torus at `off` from touching it.
+    /// Returns a ray from a distance of `far` that passes the torus at a distance of `off` from tangency.
     fn grazing(&mut self, far: f64, off: f64) -> Ray {
         let (at, normal) = self.on_torus();
         let dir = self.direction().cross(normal).normalize();
@@ -74,10 +74,10 @@ impl Dice {
     }
 }
 
-/// The quartic of the torus along a ray, from a point of the ray that is close to the torus: solved between its
-/// turning points, which are the roots of its derivative.
+/// The quartic of the torus along a ray, relative to a point of the ray close to the torus. It is solved between its
+/// extrema, which are the roots of its derivative.
 struct Quartic {
-    /// How far the point is along the ray.
+    /// The distance of the point along the ray.
     start: f64,
     coefficients: Vec<f64>,
 }
@@ -85,7 +85,7 @@ struct Quartic {
 impl Quartic {
     fn new(ray: &Ray) -> Self {
         let start = (CENTER - ray.origin).dot(ray.dir);
-        // Rounded as one operation is.
+        // Rounded once, like a single operation.
         let along = |axis: usize| {
             let way = start * ray.dir[axis];
             let way_error = start.mul_add(ray.dir[axis], -way);
@@ -112,8 +112,8 @@ impl Quartic {
         value(&self.coefficients, distance - self.start)
     }
 
-    /// The distances of all roots in order, each with whether the ray comes in there; nothing where the ray touches
-    /// the torus so closely that rounding decides.
+    /// Returns the distances of all roots in order, each with whether the ray enters there; `None` if the ray is so
+    /// nearly tangent to the torus that rounding decides.
     fn crossings(&self) -> Option<Vec<(f64, bool)>> {
         let turns = roots(&derivative(&self.coefficients));
         if turns.iter().any(|turn| value(&self.coefficients, *turn).abs() < 2e-13) {
@@ -122,13 +122,13 @@ impl Quartic {
         Some(self.roots())
     }
 
-    /// As [`crossings`](Self::crossings), however close.
+    /// Returns all roots like [`crossings`](Self::crossings), however close to a tangency.
     fn roots(&self) -> Vec<(f64, bool)> {
         let roots = roots(&self.coefficients);
         roots.iter().enumerate().map(|(index, root)| (self.start + root, index % 2 == 0)).collect()
     }
 
-    /// The first root ahead, of those that a ray meets which leaves a side.
+    /// Returns the first root ahead; for a ray that leaves a side, the first of those that it can meet.
     fn first(&self, leaves: Option<Side>) -> Option<f64> {
         Some(first(self.crossings()?, leaves))
     }
@@ -141,7 +141,7 @@ fn first(roots: Vec<(f64, bool)>, leaves: Option<Side>) -> f64 {
     roots.into_iter().find(wanted).map_or(MISS, |(distance, _)| distance)
 }
 
-/// The torus by its quartic, and its normal by its geometry.
+/// The torus with its quartic as the equation, and its normal from its geometry.
 struct Quartics;
 
 impl Hittable for Quartics {
@@ -177,7 +177,7 @@ fn derivative(coefficients: &[f64]) -> Vec<f64> {
     coefficients.iter().enumerate().skip(1).map(|(power, coefficient)| power as f64 * coefficient).collect()
 }
 
-/// The real roots between -10 and 10 in order, by bisection between those of the derivative.
+/// Returns the real roots between -10 and 10 in order, by bisection between the roots of the derivative.
 fn roots(coefficients: &[f64]) -> Vec<f64> {
     if coefficients.len() < 2 {
         return Vec::new();
@@ -206,7 +206,7 @@ fn roots(coefficients: &[f64]) -> Vec<f64> {
     ends.windows(2).filter_map(bracket).collect()
 }
 
-/// Asserts that the torus is hit where the quartic says; whether the quartic is sure.
+/// Asserts that the torus is hit where the quartic says; returns whether the quartic decides.
 fn agrees(shape: &dyn Hittable, ray: &Ray, leaves: Option<Side>) -> bool {
     let quartic = Quartic::new(ray);
     let Some(expected) = quartic.first(leaves) else { return false };
@@ -215,7 +215,7 @@ fn agrees(shape: &dyn Hittable, ray: &Ray, leaves: Option<Side>) -> bool {
         return true;
     }
     assert!(found.is_finite() && expected.is_finite(), "{found:e}, not {expected:e}: {ray:?} {leaves:?}");
-    // Where a ray grazes, a root moves more than its value does.
+    // For a grazing ray, the error of a root is larger than that of the value.
     let apart = (found - expected).abs();
     let rounding = 2.0 * f64::EPSILON * found.abs();
     assert!(
@@ -284,7 +284,7 @@ fn what_leaves_a_torus_meets_it_again_where_it_is_and_not_where_it_starts() {
         }
         let origin = there.at(distance);
         let normal = shape.normal(origin);
-        // Also very shallow.
+        // Very shallow rays too.
         let steep = [1.0, 1e-2, 1e-4][turn / 3 % 3];
         let shallow = dice.direction().cross(normal).normalize();
         let dir = (shallow + steep * dice.range(0.3..2.0) * normal).normalize();
@@ -292,7 +292,8 @@ fn what_leaves_a_torus_meets_it_again_where_it_is_and_not_where_it_starts() {
             let ray = Ray { origin, dir };
             assert!(agrees(shape, &ray, Some(leaves)));
             let found = shape.distance(&ray, &RayRange { origin_side: Some(leaves), ..RayRange::ALL });
-            // A ball as large as the tube, that touches the torus there from either side, meets it nowhere else.
+            // A sphere with the radius of the tube, tangent to the torus there on either side, meets the torus nowhere
+            // else.
             assert!(found > 1.5 * TUBE * dir.dot(normal).abs(), "{found:e} {leaves:?} {ray:?}");
             again[usize::from(leaves == Side::Inside)] += usize::from(found < MISS);
         }
@@ -327,7 +328,7 @@ struct By<F> {
     bounds: [DVec3; 2],
 }
 
-/// A formula for each number type.
+/// A formula, for each number type.
 trait Formula: Send + Sync + 'static {
     fn value<N: Scalar>(&self, at: [N; 3]) -> N;
 }
@@ -371,7 +372,7 @@ fn the_box_cuts_and_shows_the_inside() {
     assert!((hit(DVec3::new(-3.0, 0.0, 0.0), DVec3::X, None) - 2.0).abs() < 1e-15);
 }
 
-/// What `tabray new plugin` starts from.
+/// The template of a shape from `tabray new plugin`.
 struct RoundCube;
 
 impl Formula for RoundCube {
@@ -380,7 +381,7 @@ impl Formula for RoundCube {
     }
 }
 
-/// The function along such a ray is x^4 and a constant, which is computed in 300 bits: all of 1e-2 to 1e-18 is tried.
+/// The function along such a ray is x^4 and a constant. It is computed in 300 bits for constants from 1e-2 to 1e-18.
 #[test]
 fn a_tangency_of_the_fourth_order_is_told_from_a_miss() {
     let real = |value: f64| FBig::<HalfEven>::try_from(value).expect("finite").with_precision(300).value();
@@ -397,7 +398,7 @@ fn a_tangency_of_the_fourth_order_is_told_from_a_miss() {
         assert_eq!(found < MISS, below >= 0.0, "{y:?} {z:?}: {found}, {below:e}");
         if found < MISS {
             let half = below.sqrt().sqrt();
-            // As far as the function's rounding moves its root, where that is told in f64.
+            // As far as the rounding error of the function moves its root, where that is resolved in f64.
             let slack = 1e-14 + 8.0 * f64::EPSILON / (4.0 * half.powi(3));
             assert!((found - (10.0 - half)).abs() <= slack.min(1e-3), "{y:?} {z:?}: {found}, {half:e}");
             hits += 1;
@@ -431,7 +432,7 @@ fn a_tip_has_a_normal() {
     assert_eq!(cone.distance(&ray, &RayRange::ALL), 3.0);
 }
 
-/// A wall of the gyroid, cut to a ball: it has edges, and rays meet it often.
+/// A wall of the gyroid, clipped to a sphere: it has edges, and rays meet it often.
 struct Gyroid;
 
 impl Formula for Gyroid {
@@ -453,7 +454,7 @@ fn thin_walls_and_edges_are_found_as_by_small_steps() {
         let value = |distance: f64| Gyroid.value(ray.at(distance).to_array());
         let found = gyroid.distance(&ray, &RayRange::ALL);
         let stepped = (0..8000).map(|step| f64::from(step) * 1e-3).find(|distance| value(*distance) < 0.0);
-        // A step can pass over a hit, and never finds one too early.
+        // A step can pass over a hit, but cannot find one too early.
         match stepped {
             Some(stepped) => {
                 assert!(found <= stepped, "{found} {stepped}");

@@ -1,4 +1,4 @@
-//! What rays hit: against the notes' numbers, against true ones, and against what each plugin promises.
+//! The hits of rays: against the notes' numbers, against true ones, and against the promises of each plugin.
 
 #[path = "../common/mod.rs"]
 mod common;

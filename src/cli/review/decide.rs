@@ -6,7 +6,7 @@ use crate::cli::failure::{Failure, tell};
 use crate::cli::serve::{self, Server, Work};
 use crate::cli::{messages, report};
 use crate::scene::registry::Registry;
-use crate::words;
+use crate::text;
 use hyper::body::Bytes;
 use hyper::{Request, Response, StatusCode};
 use serde::Deserialize;
@@ -48,7 +48,7 @@ pub fn serve(
             Err((status, reason)) => ControlFlow::Continue(serve::text(status, &reason)),
         }
     });
-    run.map_err(|error| Failure::Failed(format!("the server stopped: {}", words::reason(&error))))
+    run.map_err(|error| Failure::Failed(format!("the server stopped: {}", text::reason(&error))))
 }
 
 fn page(registry: &Registry, folder: &Path, before: Option<&Path>) -> Response<serve::Body> {

@@ -7,7 +7,7 @@
 use crate::cli::failure::Failure;
 use crate::cli::output;
 use crate::files;
-use crate::words;
+use crate::text;
 use std::fs;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::{self, Read};
@@ -72,7 +72,7 @@ pub fn find(path: &Path) -> Result<Vec<PathBuf>, Failure> {
     let mut folders = vec![path.to_owned()];
     while let Some(folder) = folders.pop() {
         let cannot = |error: io::Error| {
-            Failure::Usage(format!("cannot read `{}`: {}", folder.display(), words::reason(&error)), None)
+            Failure::Usage(format!("cannot read `{}`: {}", folder.display(), text::reason(&error)), None)
         };
         for entry in fs::read_dir(&folder).map_err(cannot)? {
             let entry = entry.map_err(cannot)?;
@@ -96,13 +96,13 @@ impl Pending {
         };
         let file = files::open(new)
             .and_then(io::read_to_string)
-            .map_err(|error| cannot(new, &words::reason(&error)))?;
+            .map_err(|error| cannot(new, &text::reason(&error)))?;
         let is = content(new, &file).map_err(|reason| cannot(new, &reason))?;
         let is = is.ok_or_else(|| cannot(new, "the file beside it is missing"))?;
         let old = match files::open(&path).and_then(io::read_to_string) {
             Ok(old) => content(&path, &old).map_err(|reason| cannot(&path, &reason))?,
             Err(error) if error.kind() == io::ErrorKind::NotFound => None,
-            Err(error) => return Err(cannot(&path, &words::reason(&error))),
+            Err(error) => return Err(cannot(&path, &text::reason(&error))),
         };
         Ok(Self { path, old, new: is, file })
     }
@@ -136,7 +136,7 @@ impl Pending {
         };
         [Some(new), binary].into_iter().flatten().try_for_each(|file| {
             fs::remove_file(&file).map_err(|error| {
-                Failure::Failed(format!("cannot remove `{}`: {}", file.display(), words::reason(&error)))
+                Failure::Failed(format!("cannot remove `{}`: {}", file.display(), text::reason(&error)))
             })
         })
     }
@@ -156,7 +156,7 @@ fn content(path: &Path, file: &str) -> Result<Option<Content>, String> {
     match bytes(&output::ended(path, format!(".{extension}"))) {
         Ok(bytes) => Ok(Some(Content::Binary(bytes, extension.to_owned()))),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
-        Err(error) => Err(format!("its .{extension} file: {}", words::reason(&error))),
+        Err(error) => Err(format!("its .{extension} file: {}", text::reason(&error))),
     }
 }
 

@@ -7,7 +7,7 @@
 use super::access::Access;
 use super::response::{Body, guard, text};
 use crate::cli::messages;
-use crate::words;
+use crate::text;
 use http_body_util::{BodyExt, Limited};
 use hyper::body::{Bytes, Incoming};
 use hyper::server::conn::http1;
@@ -116,7 +116,7 @@ where
                 // Usually too many files are open. Answering requests needs some too.
                 Err(error) => {
                     if !is_told {
-                        let reason = words::reason(&error);
+                        let reason = text::reason(&error);
                         messages::warning(&format!("cannot accept every connection: {reason}"), None);
                     }
                     is_told = true;

@@ -8,8 +8,8 @@ use crate::cli::serve::{self, Body, Client, Work};
 use crate::output::aov::Aov;
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
+use crate::text;
 use crate::tools::probe;
-use crate::words;
 use clap::ValueEnum;
 use http_body_util::BodyExt;
 use http_body_util::channel::Channel;
@@ -120,7 +120,7 @@ fn pixel(frame: Arc<Frame>, x: &str, y: &str) -> Option<Job> {
             }
             let explained =
                 Explained { lines: frame.lines_of([x, y]), text: &String::from_utf8_lossy(&told.text) };
-            Ok(("application/json", words::json(&explained).into_bytes()))
+            Ok(("application/json", text::json(&explained).into_bytes()))
         })
     }))
 }

@@ -3,7 +3,7 @@
 use super::frame::Frame;
 use crate::render::bytes::to_byte;
 use crate::render::progressive::Area;
-use crate::words::json;
+use crate::text::json;
 use crate::world::material::Rgb;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;

@@ -1,7 +1,7 @@
 //! Watches the files that a scene is read from.
 
 use super::super::failure::Failure;
-use crate::words;
+use crate::text;
 use notify::event::{AccessKind, AccessMode, EventKind, ModifyKind};
 use notify::{ErrorKind, Event, RecommendedWatcher, RecursiveMode, Watcher};
 use std::collections::BTreeSet;
@@ -65,9 +65,9 @@ impl Files {
 /// Returns why the system cannot watch a file.
 fn reason(error: &notify::Error) -> String {
     match &error.kind {
-        ErrorKind::Io(error) => words::reason(error),
+        ErrorKind::Io(error) => text::reason(error),
         ErrorKind::MaxFilesWatch => "the system already watches as many files as it may".to_owned(),
-        _ => words::reason(&io::Error::other(error.to_string())),
+        _ => text::reason(&io::Error::other(error.to_string())),
     }
 }
 

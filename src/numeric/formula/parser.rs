@@ -1,7 +1,7 @@
 //! The parser: from the text of a formula to its operations in postfix order.
 
 use super::step::{Function, MAX_DEPTH, Step};
-use crate::words;
+use crate::text;
 use std::f64::consts::PI;
 use std::ops::Range;
 
@@ -211,7 +211,7 @@ impl<'t> Parser<'t> {
             self.depth -= 1;
         }
         if self.peek() == Some(',') {
-            let takes = words::count(count, "value");
+            let takes = text::count(count, "value");
             return Err(self.fault(place, format!("`{name}` takes only {takes}")));
         }
         self.close(open)

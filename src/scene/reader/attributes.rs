@@ -9,7 +9,7 @@ use super::values;
 use crate::scene::entity::Entity;
 use crate::scene::pparm::{Attribute, Given, LEAST_LENGTH, MOST_LENGTH};
 use crate::scene::value::{Datum, Type};
-use crate::words::{self, list};
+use crate::text::{self, list};
 
 /// Checks an entity against the table of its type and reports its faults.
 pub struct Against<'c> {
@@ -27,7 +27,7 @@ impl Against<'_> {
         let entity = self.entity;
         let title = match parsed.name.text.as_ref() {
             "" => format!("this {}", entity.name),
-            name => format!("{} `{}`", entity.name, words::abridged(name)),
+            name => format!("{} `{}`", entity.name, text::abridged(name)),
         };
         let attributes: Vec<_> = entity.attributes().collect();
         let mut given: Vec<Option<&(Word<'_>, Vec<Word<'_>>)>> = vec![None; attributes.len()];

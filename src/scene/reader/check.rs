@@ -11,7 +11,7 @@ use crate::scene::kind::Kind;
 use crate::scene::model::{Item, Model, Object};
 use crate::scene::registry::Registry;
 use crate::scene::value::Datum;
-use crate::words::list;
+use crate::text::list;
 use crate::world::accuracy::Accuracy;
 use crate::world::body::{AnyLight, Body};
 use crate::world::camera::Camera;

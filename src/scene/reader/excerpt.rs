@@ -1,7 +1,7 @@
 //! Renders faults as text: a message, and the lines of the scene that it concerns, shortened to what can be read.
 
 use super::fault::{Fault, Place, Severity};
-use crate::words::{self, boundary};
+use crate::text::{self, boundary};
 use annotate_snippets::{AnnotationKind, Element, Level, Origin, Renderer, Snippet};
 use std::ops::Range;
 
@@ -76,7 +76,7 @@ fn alike(fault: &Fault, newlines: &[usize]) -> Option<String> {
     lines.dedup();
     let lines = lines.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");
     let first = if lines.is_empty() { String::new() } else { format!(", first in line {lines}") };
-    (*count > 0).then(|| format!("the same in {}{first}", words::count(*count, "more place")))
+    (*count > 0).then(|| format!("the same in {}{first}", text::count(*count, "more place")))
 }
 
 /// Returns the line of a byte, from 1.

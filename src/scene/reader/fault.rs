@@ -1,6 +1,6 @@
 //! Faults: what is wrong with a scene, where, and what would be right.
 
-use crate::words;
+use crate::text;
 use std::ops::Range;
 
 /// The maximum number of places of similar faults that one fault lists.
@@ -82,7 +82,7 @@ impl Fault {
     /// Returns the number of similar faults, in brackets, or an empty string where there are none.
     pub(super) fn more(&self) -> String {
         let (count, _) = self.alike;
-        if count == 0 { String::new() } else { format!(" (and in {})", words::count(count, "more place")) }
+        if count == 0 { String::new() } else { format!(" (and in {})", text::count(count, "more place")) }
     }
 
     /// Counts a similar fault, and keeps its place if it is one of the first.
@@ -104,13 +104,13 @@ impl Fault {
     pub(super) fn tidy(&mut self, text: &str) {
         let also = self.also.iter_mut().map(|(place, label)| (place, label));
         for (place, label) in also.chain([(&mut self.place, &mut self.label)]) {
-            *label = words::abridged(label).into_owned();
+            *label = text::abridged(label).into_owned();
             if let Some(place) = place {
-                let (one, other) = (words::boundary(text, place.start), words::boundary(text, place.end));
+                let (one, other) = (text::boundary(text, place.start), text::boundary(text, place.end));
                 *place = one.min(other)..one.max(other);
             }
         }
-        self.help = self.help.as_deref().map(|help| words::abridged(help).into_owned());
-        self.message = words::abridged(&self.message).replace(char::is_control, "\u{fffd}");
+        self.help = self.help.as_deref().map(|help| text::abridged(help).into_owned());
+        self.message = text::abridged(&self.message).replace(char::is_control, "\u{fffd}");
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::scene::entity::Entity;
 use crate::scene::pparm::Attribute;
-use crate::words::{self, nearest};
+use crate::text::{self, nearest};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
@@ -25,7 +25,7 @@ pub fn near_attribute(
     guesses: &mut Guesses,
 ) -> Option<&'static dyn Attribute> {
     let is_full = guesses.len() >= MAX_GUESSES;
-    let near = match guesses.entry((entity.name, words::abridged(word).into_owned())) {
+    let near = match guesses.entry((entity.name, text::abridged(word).into_owned())) {
         Entry::Occupied(known) => *known.get(),
         Entry::Vacant(_) if is_full => None,
         Entry::Vacant(free) => {

@@ -3,7 +3,7 @@
 use super::excerpt;
 use super::fault::{Fault, Severity};
 use super::report::Report;
-use crate::words;
+use crate::text;
 use annotate_snippets::Renderer;
 use serde::Serialize;
 use std::fmt;
@@ -75,7 +75,7 @@ pub struct Message<'m> {
 impl Message<'_> {
     /// Returns the message as JSON, on a line of its own.
     pub fn line(&self) -> String {
-        words::json(self) + "\n"
+        text::json(self) + "\n"
     }
 }
 

@@ -7,7 +7,7 @@ use crate::scene::entity::Entity;
 use crate::scene::kind::Kind;
 use crate::scene::registry::Registry;
 use crate::scene::value::Datum;
-use crate::words::{self, nearest};
+use crate::text::{self, nearest};
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
@@ -135,7 +135,7 @@ impl Names {
                 (0, 2) => format!("{what} `{text}` is defined twice"),
                 (0, count) => format!("{what} `{text}` is defined {count} times"),
                 _ => {
-                    format!("{what} `{text}` and {} are defined more than once", words::count(names, "other"))
+                    format!("{what} `{text}` and {} are defined more than once", text::count(names, "other"))
                 }
             };
             let label = if more == 0 { "ignored".to_owned() } else { format!("ignored, as are {more} more") };
@@ -152,7 +152,7 @@ impl Names {
                 (0, count) => format!("{count} {what}s have the name `{text}`"),
                 _ => format!(
                     "several entities have the name `{text}`, and {} too",
-                    words::count(names, "other name")
+                    text::count(names, "other name")
                 ),
             };
             let label = if more == 0 { String::new() } else { format!("and {more} more") };
@@ -248,7 +248,7 @@ pub fn stand_in(kind: Kind, name: &str) -> Datum {
 
 /// Returns the label of a fault that may stand for several places.
 pub fn suggestion(near: Option<&str>, places: &[Place]) -> String {
-    let more = words::count(places.len() - 1, "more place");
+    let more = text::count(places.len() - 1, "more place");
     match (near, places.len()) {
         (None, 1) => String::new(),
         (None, _) => format!("here and in {more}"),

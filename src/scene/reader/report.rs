@@ -4,7 +4,7 @@ use super::excerpt;
 use super::fault::{Fault, Place, Severity};
 use super::guesses::Guesses;
 use crate::scene::syntax::Syntax;
-use crate::words;
+use crate::text;
 use annotate_snippets::Renderer;
 use std::fmt;
 use std::path::PathBuf;
@@ -138,7 +138,7 @@ impl Report {
         let rest =
             [(Severity::Error, "more error"), (Severity::Warning, "more warning")].map(|(severity, noun)| {
                 let rest = self.count(severity) - told(severity);
-                (rest > 0).then(|| words::count(rest, noun))
+                (rest > 0).then(|| text::count(rest, noun))
             });
         let rest: Vec<_> = rest.into_iter().flatten().collect();
         let cut = if self.notes.is_cut_short { "; the rest of the scene was not read" } else { "" };
@@ -161,9 +161,9 @@ impl Report {
             text += &format!("{rest}\n\n");
         }
         if self.is_fatal() {
-            let mut counts = words::count(self.count(Severity::Error), "error");
+            let mut counts = text::count(self.count(Severity::Error), "error");
             if self.count(Severity::Warning) > 0 {
-                counts = format!("{counts}, {}", words::count(self.count(Severity::Warning), "warning"));
+                counts = format!("{counts}, {}", text::count(self.count(Severity::Warning), "warning"));
             }
             text += &format!("{}: {counts}\n", self.name);
         }

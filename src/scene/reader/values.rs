@@ -5,7 +5,7 @@ use super::parsed::{Form, Word};
 use crate::numeric::formula::Formula;
 use crate::scene::choice::Choices;
 use crate::scene::value::{Datum, Type};
-use crate::words::nearest;
+use crate::text::nearest;
 use std::ops::Range;
 use std::sync::Arc;
 

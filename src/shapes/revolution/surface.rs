@@ -6,7 +6,7 @@ use crate::geometry::aabb::Aabb;
 use crate::numeric::formula::Formula;
 use crate::numeric::interval::Interval;
 use crate::numeric::scalar::Scalar;
-use crate::words;
+use crate::text;
 use crate::world::certify::Equation;
 use glam::DVec3;
 use std::fmt;
@@ -61,7 +61,7 @@ impl Revolution {
 impl fmt::Display for Revolution {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let error = self.slabs.coarsest();
-        let count = words::count(self.slabs.count(), "slab");
+        let count = text::count(self.slabs.count(), "slab");
         let finish = match self.finish {
             Finish::Bracket => "left at the midpoints of their brackets",
             Finish::Root => "finished by Newton's method",

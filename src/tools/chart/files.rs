@@ -1,7 +1,7 @@
 //! Writes the numbers of a chart, for other programs.
 
 use super::data::{Chart, Panel, Point, Subject};
-use crate::words;
+use crate::text;
 use serde::Serialize;
 
 /// Writes a header with the names of the columns, and one line for each choice. Times are in seconds.
@@ -44,7 +44,7 @@ pub fn csv(chart: &Chart) -> String {
 
 /// Writes the whole chart as JSON.
 pub fn json(chart: &Chart) -> String {
-    words::json_in_lines(&Document {
+    text::json_in_lines(&Document {
         build: &chart.machine.build,
         date: &chart.machine.date,
         noise: chart.noise(),

@@ -8,6 +8,6 @@ pub trait Progress: Send {
     fn more(&mut self, units: usize);
     /// Counts work as done, in the same units; breaks if no more is to be done.
     fn done(&mut self, units: usize) -> ControlFlow<()>;
-    /// Something is measured that is kept when the rest is broken off.
+    /// Says that there are measurements that are kept if the rest is broken off.
     fn kept(&mut self) {}
 }

@@ -175,7 +175,7 @@ fn of_profile(profile: &'static Profile) -> Option<Breach> {
 
 fn of_choice(what: &str, choice: ChoiceName, outcome: Result<(), Fault>) -> Option<Breach> {
     let Fault { promise, found } = outcome.err()?;
-    let (plugin, place) = (format!("the {what} `{}`", choice.name), crate::words::place(choice.place));
+    let (plugin, place) = (format!("the {what} `{}`", choice.name), crate::text::place(choice.place));
     Some(Breach { plugin, place, promise, found, scene: String::new() })
 }
 

@@ -1,4 +1,4 @@
-//! The numbers, and the statuses.
+//! The numbers and the exit statuses.
 
 use crate::review::{pictures, tabray, with_pictures};
 use image::{DynamicImage, RgbImage};

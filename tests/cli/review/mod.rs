@@ -1,4 +1,4 @@
-//! `tabray diff` and `tabray review`: what they count, what their pages hold, and what accepting and rejecting does.
+//! `tabray diff` and `tabray review`: what they count, what their pages contain, and what accepting and rejecting does.
 
 mod diff;
 mod page;
@@ -13,7 +13,7 @@ use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
 
-/// The exit status, standard output and standard error of the program in a folder.
+/// Runs the program in a folder; returns its exit status, standard output and standard error.
 fn tabray(folder: &Path, args: &[&str]) -> (i32, String, String) {
     let output = cargo_bin_cmd!("tabray").current_dir(folder).args(args).output().expect("the program runs");
     let text = |bytes| String::from_utf8(bytes).expect("text");
@@ -24,7 +24,7 @@ fn folder() -> TempDir {
     TempDir::new().expect("a folder")
 }
 
-/// A picture of 4 x 3 pixels, and one whose second pixel of the top row has more blue.
+/// Makes an image of 4 x 3 pixels, and one in which the second pixel of the top row has more blue.
 fn pictures() -> [RgbImage; 2] {
     let old = RgbImage::from_pixel(4, 3, Rgb([10, 20, 30]));
     let mut new = old.clone();
@@ -32,7 +32,7 @@ fn pictures() -> [RgbImage; 2] {
     [old, new]
 }
 
-/// A folder with both of them, one in each format.
+/// Makes a folder with both images, one in each format.
 fn with_pictures() -> TempDir {
     let folder = folder();
     for (picture, name) in pictures().into_iter().zip(["old.png", "new.ppm"]) {
@@ -41,14 +41,14 @@ fn with_pictures() -> TempDir {
     folder
 }
 
-/// What a page was given to show.
+/// Returns the data of a page.
 fn data(html: &str) -> Value {
     let (_, data) = html.split_once("id=\"data\">").expect("a page has its data");
     let (data, _) = data.split_once("</script>").expect("the data end");
     serde_json::from_str(data).expect("JSON")
 }
 
-/// A folder with the snapshots of tests that failed: a picture and a text that changed, and a text that is new.
+/// Makes a folder with the snapshots of failed tests: a changed image, a changed text and a new text.
 fn with_pending() -> TempDir {
     let folder = folder();
     let write = |name: &str, bytes: &[u8]| {
@@ -75,7 +75,7 @@ fn with_pending() -> TempDir {
     folder
 }
 
-/// The files below a folder of pending snapshots, and what is in them.
+/// Returns the files below a folder of pending snapshots, with their contents.
 fn files(folder: &TempDir) -> BTreeMap<String, Vec<u8>> {
     fs::read_dir(folder.path().join("snapshots/it's <b>"))
         .expect("the snapshots")

@@ -1,4 +1,4 @@
-//! What is gathered, and the commands that decide about it.
+//! The collection of pending snapshots, and the commands that accept or reject them.
 
 use crate::review::{data, files, folder, tabray, with_pending};
 use image::RgbImage;

@@ -1,4 +1,4 @@
-//! The page that accepts and rejects, and who may ask it to.
+//! The page that accepts and rejects, and the requests that it may send.
 
 use crate::review::{data, files, tabray, with_pending};
 use assert_cmd::cargo::cargo_bin;
@@ -9,7 +9,7 @@ use std::net::TcpStream;
 use std::process::{Child, Command, Stdio};
 use tempfile::TempDir;
 
-/// A review that is served, and ended when it goes.
+/// A review that is served until it is dropped.
 struct Served {
     program: Child,
     host: String,
@@ -37,12 +37,12 @@ impl Served {
             .and_then(|address| address.split_once("/?token="))
             .unwrap_or_else(|| panic!("an address: {line}"));
         let (host, token) = (host.to_owned(), token.to_owned());
-        // What else it says must not stop it.
+        // Further output must not block the program.
         std::thread::spawn(move || std::io::copy(&mut told, &mut std::io::sink()));
         Self { program, host, token }
     }
 
-    /// The status and the body of the answer to a request with the token and with these headers.
+    /// Sends a request with the token and these headers; returns the status and the body of the answer.
     fn ask(&self, line: &str, headers: &[(&str, &str)], body: &str) -> (u16, String) {
         let mut stream = TcpStream::connect(&self.host).expect("it listens");
         let headers: String = headers.iter().map(|(name, value)| format!("{name}: {value}\r\n")).collect();
@@ -55,7 +55,7 @@ impl Served {
         (head.split(' ').nth(1).and_then(|status| status.parse().ok()).expect("a status"), body.to_owned())
     }
 
-    /// The answer to what the page itself asks.
+    /// Sends a request as the page does; returns the answer.
     fn decide(&self, verb: &str, name: &str, version: &Value) -> (u16, String) {
         let origin = format!("http://{}", self.host);
         let body =

@@ -1,4 +1,4 @@
-//! Many connections, and slow ones: whoever asks something is answered soon, whatever others do.
+//! Many connections, and slow ones: a request is answered soon, whatever other clients do.
 
 use super::{REVIEW, Running, WATCH, answer, folder};
 use crate::watch::program::ball;
@@ -6,13 +6,13 @@ use nix::sys::resource::{Resource, getrlimit, setrlimit};
 use std::net::TcpStream;
 use std::time::{Duration, Instant};
 
-/// Soon, on a machine that does much else.
+/// The time for an answer, on a machine that is busy.
 const SOON: Duration = Duration::from_secs(9);
 
-/// How many connections an unkind user has.
+/// The number of connections that a hostile user opens.
 const CROWD: usize = 1200;
 
-/// Asks for the page, and for more that takes something to compute.
+/// Asserts that the page, and answers that take some computing, come soon.
 fn is_prompt(server: &Running, when: &str) {
     let start = Instant::now();
     assert_eq!(server.page(), 200, "{when}: {}", server.said());
@@ -21,7 +21,7 @@ fn is_prompt(server: &Running, when: &str) {
     assert!(start.elapsed() < SOON, "{when}: {:?}", start.elapsed());
 }
 
-/// Lets this process have as many open files as these tests need.
+/// Allows this process as many open files as these tests need.
 fn more_files() {
     let (soft, hard) = getrlimit(Resource::RLIMIT_NOFILE).expect("a limit");
     let wanted = 8 * CROWD as u64;
@@ -30,12 +30,12 @@ fn more_files() {
     }
 }
 
-/// Both servers, with no more open files than so many.
+/// Starts both servers, each allowed this many open files.
 fn both(files: u32) -> [Running; 2] {
     [WATCH, REVIEW].map(|args| {
         let limit = format!("ulimit -n {files}");
         let server = Running::start_after(&limit, &[args, &["--port", "0"]].concat(), folder(&ball("9 0 0")));
-        // The scene has been read by the time that there is something to probe.
+        // The scene has been read once there is a pixel to explain.
         let start = Instant::now();
         while args == WATCH && server.ask("GET /probe/1/0/0?token=TOKEN HTTP/1.1\nHost: HOST\n\n").0 != 200 {
             assert!(start.elapsed() < SOON);
@@ -94,12 +94,12 @@ fn requests_that_are_let_in_and_do_not_go_on_hold_nobody_up() {
 
 #[test]
 fn a_page_that_reads_no_events_holds_nobody_up() {
-    // What is told of it is more than the system keeps for a reader.
+    // The events take more memory than the system buffers for a reader.
     let scene = ball("9 0 0").replace("80 60", "1600 1200");
     let server = Running::start(WATCH, folder(&scene));
     let events = "GET /events?token=TOKEN HTTP/1.1\nHost: HOST\n\n";
     let silent: Vec<TcpStream> = (0..20).map(|_| server.send(events)).collect();
-    // The picture is whole for one who reads.
+    // A client that reads receives the whole image.
     let mut reader = std::io::BufReader::new(server.send(events));
     let mut line = String::new();
     while !line.starts_with("event: done") {

@@ -1,4 +1,4 @@
-//! The servers of `tabray watch` and `tabray review --serve` on a machine that others use, too.
+//! The servers of `tabray watch` and `tabray review --serve` on a machine with other users.
 #![cfg(unix)]
 
 #[cfg(target_os = "linux")]
@@ -20,29 +20,29 @@ use tempfile::TempDir;
 const WATCH: &[&str] = &["watch", "scene.ray"];
 const REVIEW: &[&str] = &["review", "--serve"];
 
-/// One of the servers, ended when it is dropped.
+/// A running server, which is ended when it is dropped.
 struct Running {
     program: Child,
     folder: TempDir,
-    /// The address and the port that it listens at.
+    /// The address and the port on which it listens.
     host: String,
     token: String,
-    /// What it said since, on standard error.
+    /// The later output on standard error.
     said: Arc<Mutex<String>>,
 }
 
 impl Running {
-    /// Both servers, each in a folder of its own.
+    /// Starts both servers, each in a folder of its own.
     fn both() -> [Self; 2] {
         [WATCH, REVIEW].map(|args| Self::start(args, folder(&ball("9 0 0"))))
     }
 
-    /// A server in a folder, on any free port.
+    /// Starts a server in a folder, on any free port.
     fn start(args: &[&str], folder: TempDir) -> Self {
         Self::start_after("", &[args, &["--port", "0"]].concat(), folder)
     }
 
-    /// A server after a line of a shell's.
+    /// Starts a server after a line of shell code.
     fn start_after(line: &str, args: &[&str], folder: TempDir) -> Self {
         let mut program = Command::new("sh")
             .args(["-c", &format!("{line}\nexec \"$0\" \"$@\"")])
@@ -71,7 +71,7 @@ impl Running {
         Self { program, folder, host, token, said }
     }
 
-    /// Ends it. The folder stays.
+    /// Ends the server. The folder stays.
     fn end(mut self) -> TempDir {
         self.kill();
         std::mem::replace(&mut self.folder, TempDir::new().expect("a folder"))
@@ -86,27 +86,27 @@ impl Running {
         format!("http://{}/?token={}", self.host, self.token)
     }
 
-    /// A connection on which this was sent, with `HOST` and `TOKEN` filled in.
+    /// Opens a connection and sends this text, with `HOST` and `TOKEN` filled in.
     fn send(&self, text: &str) -> TcpStream {
         let mut stream = TcpStream::connect(&self.host).expect("it listens");
         stream.set_read_timeout(Some(PATIENCE)).expect("a time");
         let text = text.replace("TOKEN", &self.token).replace("HOST", &self.host).replace('\n', "\r\n");
-        // Who is turned away may be so before all is sent.
+        // A client that is refused may be so before it has sent everything.
         let _ = stream.write_all(text.as_bytes());
         stream
     }
 
-    /// The status and the text of the answer to a request as it is written here.
+    /// Sends a request exactly as given; returns the status and the text of the answer.
     fn ask(&self, request: &str) -> (u16, String) {
         answer(self.send(request))
     }
 
-    /// The status of the page.
+    /// Returns the status of the page.
     fn page(&self) -> u16 {
         self.ask("GET /?token=TOKEN HTTP/1.1\nHost: HOST\n\n").0
     }
 
-    /// All files of its folder, and what is in them.
+    /// Returns all files of the folder, with their contents.
     fn files(&self) -> BTreeMap<String, Vec<u8>> {
         ["", "snapshots"]
             .iter()
@@ -128,7 +128,7 @@ impl Drop for Running {
     }
 }
 
-/// The status and the text of an answer; 0 where the connection ends without one.
+/// Returns the status and the text of an answer; the status is 0 if the connection ends without one.
 fn answer(mut stream: TcpStream) -> (u16, String) {
     let mut answer = Vec::new();
     let _ = stream.read_to_end(&mut answer);
@@ -138,7 +138,7 @@ fn answer(mut stream: TcpStream) -> (u16, String) {
     (status.unwrap_or(0), text.to_owned())
 }
 
-/// A folder with a scene of this text and a pending snapshot.
+/// Makes a folder with a scene of this text and a pending snapshot.
 fn folder(scene: &str) -> TempDir {
     let folder = TempDir::new().expect("a folder");
     fs::write(folder.path().join("scene.ray"), scene).expect("a file");

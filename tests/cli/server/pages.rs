@@ -1,4 +1,4 @@
-//! The pages of the servers in a browser: what they may do, and what they say when they may not any more. Skipped where
+//! The pages of the servers in a browser: what they may do, and their messages when they no longer may. Skipped where
 //! there is no Chromium.
 
 use super::{REVIEW, Running, WATCH, folder};
@@ -8,7 +8,7 @@ use std::io::{Read, Write};
 use std::net::{Ipv4Addr, TcpListener};
 use std::thread;
 
-/// Starts a server again on the port that it had.
+/// Starts a server again on its old port.
 fn again(server: Running, args: &[&str]) -> Running {
     let (_, port) = server.host.split_once(':').expect("a port");
     let port = port.to_owned();
@@ -66,7 +66,7 @@ fn a_page_of_another_port_gets_nothing_even_with_the_address() {
     for server in servers {
         let files = server.files();
         let at = |path: &str| server.url().replace("/?", &format!("/{path}?"));
-        // What each attempt comes to is in `got`, by its number.
+        // The outcome of each attempt is in `got`, by its number.
         browser.run(&format!(
             "const page = '{}', accept = '{}', events = '{}'
              window.got = []

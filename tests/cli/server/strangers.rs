@@ -1,5 +1,5 @@
-//! Who is not let in: other users of the machine, who do not have the address, and other pages in the browser, even if
-//! they had it.
+//! Clients that are not let in: other users of the machine, who do not have the address, and other pages in the
+//! browser, even with the address.
 
 use super::{REVIEW, Running, WATCH, folder};
 use crate::watch::program::ball;
@@ -13,7 +13,7 @@ const OTHER_HOST: &str = "the request is for another host";
 const OTHER_PAGE: &str = "the request comes from another page";
 const NO_ORIGIN: &str = "a request that changes something must name its origin";
 
-/// All that the servers answer, and what they do not.
+/// All paths that the servers answer, and some that they do not.
 const PATHS: [&str; 9] = [
     "GET /",
     "GET /events",
@@ -134,7 +134,7 @@ fn another_page_in_the_browser_gets_nothing_even_with_the_token() {
         ] {
             let host = if headers.starts_with("Host") { "" } else { "Host: HOST\n" };
             for path in PATHS {
-                // A request that changes something and has no origin is refused for that.
+                // A request that changes something and has no origin is refused for that reason.
                 let is_bare = !path.starts_with("GET") && !headers.contains("Origin");
                 let said = if is_bare && said == OTHER_PAGE { NO_ORIGIN } else { said };
                 let asked = server.ask(&format!("{path}?token=TOKEN HTTP/1.1\n{host}{headers}\n"));
@@ -181,7 +181,7 @@ fn who_is_not_let_in_is_told_before_anything_is_read_or_computed() {
     for server in &servers {
         let start = Instant::now();
         assert_eq!(server.ask("GET /layer/1/cost HTTP/1.1\nHost: HOST\n\n").0, 403);
-        // The body never comes.
+        // The body is never sent.
         let head = "HTTP/1.1\nHost: HOST\nOrigin: http://HOST\nContent-Length: 60000\n\n";
         assert_eq!(server.ask(&format!("POST /accept {head}")).0, 403);
         assert!(start.elapsed() < Duration::from_secs(8), "{:?}", start.elapsed());
@@ -210,7 +210,8 @@ fn each_run_has_another_token_and_no_answer_tells_it() {
 #[test]
 fn a_browser_is_not_given_the_address_where_others_can_read_it() {
     let folder = folder(&ball("9 0 0"));
-    // In the place of what opens browsers: it tells its command line, and what the file has that is named there.
+    // A replacement for the program that opens browsers: it records its command line and the contents of the file named
+    // there.
     let opener = folder.path().join("xdg-open");
     let script = "#!/bin/sh\nprintf '%s\\n' \"$@\" > arguments\ncp -p \"$1\" opened.html\n";
     fs::write(&opener, script).expect("a file");

@@ -9,14 +9,14 @@ use std::process::{Child, Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// A browser with one page. It ends when it is dropped.
+/// A browser with one page, which is closed when it is dropped.
 pub struct Browser {
     driver: Child,
     session: String,
 }
 
 impl Browser {
-    /// Shows this page, if there is a browser.
+    /// Opens this page, if there is a browser.
     pub fn open(url: &str) -> Option<Self> {
         let there = |program: &str| {
             let ran =
@@ -56,7 +56,7 @@ impl Browser {
         Some(browser)
     }
 
-    /// Shows another page.
+    /// Opens another page.
     pub fn go(&self, url: &str) {
         self.post("/url", json!({ "url": url }));
     }
@@ -65,7 +65,7 @@ impl Browser {
         value(client().post(format!("{}{path}", self.session)).send_json(body))
     }
 
-    /// The value of some JavaScript.
+    /// Runs JavaScript and returns its value.
     pub fn run(&self, script: &str) -> Value {
         self.post("/execute/sync", json!({ "script": script, "args": [] }))
     }
@@ -74,7 +74,7 @@ impl Browser {
         self.run(script).as_str().unwrap_or_default().to_owned()
     }
 
-    /// Waits until some JavaScript is true.
+    /// Waits until a JavaScript expression is true.
     pub fn wait(&self, condition: &str) {
         let start = Instant::now();
         while self.run(&format!("return !!({condition})")) != true {
@@ -87,7 +87,7 @@ impl Browser {
         }
     }
 
-    /// Clicks at a place of the window.
+    /// Clicks at a position in the window.
     pub fn click(&self, [x, y]: [i64; 2]) {
         let actions = json!([
             { "type": "pointerMove", "x": x, "y": y },
@@ -105,7 +105,7 @@ impl Browser {
         self.post("/actions", json!({ "actions": [{ "type": "key", "id": "keys", "actions": actions }] }));
     }
 
-    /// What the window shows, a PNG.
+    /// Returns a screenshot of the window, as a PNG.
     pub fn screenshot(&self) -> Vec<u8> {
         let answer = value(client().get(format!("{}/screenshot", self.session)).call());
         STANDARD.decode(answer.as_str().expect("text")).expect("base64")

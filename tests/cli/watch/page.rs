@@ -10,7 +10,7 @@ use tabray::render::Plan;
 use tabray::tools::probe;
 use tempfile::TempDir;
 
-/// The page of a scene in a browser, once its picture is whole.
+/// Opens the page of a scene in a browser, and waits for the whole image.
 fn opened(text: &str) -> Option<(Watching, Browser)> {
     let watching = Watching::text(text);
     let browser = Browser::open(&watching.url(""))?;
@@ -18,12 +18,12 @@ fn opened(text: &str) -> Option<(Watching, Browser)> {
     Some((watching, browser))
 }
 
-/// Waits for the whole picture of a version.
+/// Waits for the whole image of a version.
 fn shown(browser: &Browser, version: u64) {
     browser.wait(&format!("document.documentElement.dataset.shown === '{version}'"));
 }
 
-/// The pixels on the page.
+/// Returns the pixels of the page's image.
 fn canvas(browser: &Browser) -> RgbImage {
     let pixels = browser.run(
         "const c = document.querySelector('canvas');
@@ -36,7 +36,7 @@ fn canvas(browser: &Browser) -> RgbImage {
     RgbImage::from_raw(width, height, bytes).expect("all pixels")
 }
 
-/// Clicks on the middle of a pixel, counted from the left and from the bottom.
+/// Clicks on the centre of a pixel: column from the left, row from the bottom.
 fn click(browser: &Browser, [x, y]: [u32; 2]) {
     let place = browser.run(&format!(
         "const c = document.querySelector('canvas'), box = c.getBoundingClientRect();
@@ -121,7 +121,7 @@ fn exposure_shows_what_is_dark_and_keys_switch_layers() {
         browser.press(']');
     }
     let bright = canvas(&browser);
-    // Ten stops. Light of 0.01 has travelled some 7 units.
+    // Ten stops. Light of 0.01 has travelled about 7 units.
     let middle = |picture: &RgbImage| picture.get_pixel(40, 30).0;
     assert_eq!(middle(&dark), [0, 0, 1]);
     let [red, green, blue] = render(&model(&ball("10.24 20.48 30.72"))).get_pixel(40, 30).0;

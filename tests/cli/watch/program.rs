@@ -1,4 +1,4 @@
-//! The program as it watches a scene, and what it tells.
+//! The program while it watches a scene, and the events that it sends.
 
 use assert_cmd::cargo::cargo_bin;
 use base64::Engine;
@@ -12,10 +12,10 @@ use std::thread;
 use std::time::Duration;
 use tempfile::TempDir;
 
-/// Long enough for any machine; only what is broken takes so long.
+/// Longer than any machine needs; only a faulty program takes as long.
 pub const PATIENCE: Duration = Duration::from_secs(180);
 
-/// A scene that is rendered at once: a ball of this colour, on lines 3 to 7.
+/// Returns a scene that is rendered at once: a sphere of this colour, on lines 3 to 7.
 pub fn ball(ambient: &str) -> String {
     format!(
         "camera eye {{ pixeldim 80 60 worlddim 8 6 viewpoint 4 3 6 }}\n\
@@ -24,17 +24,17 @@ pub fn ball(ambient: &str) -> String {
     )
 }
 
-/// A running `tabray watch`, and a folder for its scene. It ends when it is dropped.
+/// A running `tabray watch`, and a folder for its scene. It is ended when it is dropped.
 pub struct Watching {
     pub child: Child,
     pub folder: TempDir,
     pub port: u16,
-    /// What lets a page in.
+    /// The token that lets a page in.
     pub token: String,
 }
 
 impl Watching {
-    /// Watches a scene of this text, on any free port.
+    /// Watches a scene with this text, on any free port.
     pub fn text(text: &str) -> Self {
         let folder = TempDir::new().expect("a folder");
         fs::write(folder.path().join("scene.ray"), text).expect("a file");
@@ -59,7 +59,7 @@ impl Watching {
             .and_then(|address| address.split_once("/?token="))
             .unwrap_or_else(|| panic!("an address: {line}"));
         let (port, token) = (port.parse().expect("a port"), token.to_owned());
-        // What comes later must have somewhere to go.
+        // Later output is read, so that the program does not block.
         thread::spawn(move || stderr.read_to_end(&mut Vec::new()));
         Self { child, folder, port, token }
     }
@@ -68,7 +68,7 @@ impl Watching {
         self.folder.path().join("scene.ray")
     }
 
-    /// Puts a new scene in the place of the old one, whole.
+    /// Replaces the scene in one step.
     pub fn save(&self, text: &str) {
         let beside = self.folder.path().join("scene.ray~");
         fs::write(&beside, text).expect("a file");
@@ -79,13 +79,13 @@ impl Watching {
         format!("http://127.0.0.1:{}/{path}?token={}", self.port, self.token)
     }
 
-    /// What the page gets from an address: the status and the bytes.
+    /// Requests a path; returns the status and the bytes.
     pub fn get(&self, path: &str) -> (u16, Vec<u8>) {
         let mut answer = client().get(self.url(path)).call().expect("an answer");
         (answer.status().as_u16(), answer.body_mut().read_to_vec().expect("its bytes"))
     }
 
-    /// What a new page is told.
+    /// Returns the events of a new page.
     pub fn events(&self) -> Events {
         let answer = client().get(self.url("events")).call().expect("an answer");
         let lines = BufReader::new(answer.into_body().into_reader()).lines();
@@ -113,7 +113,7 @@ pub fn client() -> ureq::Agent {
         .into()
 }
 
-/// Events, one after another.
+/// The events of a page, one after another.
 pub struct Events {
     lines: Box<Lines<BufReader<ureq::BodyReader<'static>>>>,
 }
@@ -123,10 +123,10 @@ impl Events {
         self.lines.next().expect("more events").expect("text")
     }
 
-    /// The name and the data of the next one.
+    /// Returns the name and the data of the next event.
     pub fn next(&mut self) -> (String, String) {
         let mut line = self.line();
-        // After a minute without news that is told.
+        // After a minute without an event, a line says so.
         while line == ":" {
             assert_eq!(self.line(), "");
             line = self.line();
@@ -137,7 +137,7 @@ impl Events {
         (name, data)
     }
 
-    /// The data of the next one of this name.
+    /// Returns the data of the next event of this name.
     pub fn until(&mut self, name: &str) -> Value {
         loop {
             let (found, data) = self.next();
@@ -147,7 +147,7 @@ impl Events {
         }
     }
 
-    /// The parts until the picture is whole.
+    /// Returns the parts up to the end of the image.
     pub fn parts(&mut self) -> Vec<Part> {
         let mut parts = Vec::new();
         loop {
@@ -162,7 +162,7 @@ impl Events {
     }
 }
 
-/// A part of a picture.
+/// A part of an image.
 pub struct Part {
     pub left: usize,
     pub top: usize,

@@ -1,4 +1,4 @@
-//! What the program tells a page, whom it talks to, and how it ends.
+//! What the program sends to a page, which clients it answers, and how it ends.
 
 use crate::common::{load, model, render, root};
 use crate::watch::program::{Watching, ball};
@@ -16,7 +16,7 @@ use tabray::render::{Plan, Renderer, to_byte};
 use tabray::tools::probe;
 use tempfile::TempDir;
 
-/// The whole answer to a request as it is written here.
+/// Sends a request exactly as given; returns the whole answer.
 fn raw(port: u16, request: &str) -> String {
     let mut stream = TcpStream::connect((Ipv4Addr::LOCALHOST, port)).expect("a connection");
     stream.write_all(request.replace('\n', "\r\n").as_bytes()).expect("it takes the request");

@@ -1,8 +1,8 @@
-//! Where the formulas of the course notes fail, and ours must not.
+//! Cases where the formulas of the course notes fail and the program's must not.
 //!
 //! Each test is a row of the measured list of failures, F01 to F24, or a lesson of the prototype. It first shows that
-//! the naive form fails on the numbers of the row, and then that our shapes do not. Distances are compared in units
-//! in the last place (ulps) of the true one, which is a literal computed with 50 digits.
+//! the naive form fails on the numbers of the row, and then that the program's shapes do not. Distances are compared in
+//! ulps of the true distance, which is a literal computed with 50 digits.
 
 #![allow(clippy::approx_constant, reason = "6.28 is the height of the rows' surfaces, and no turn")]
 #![allow(
@@ -29,7 +29,7 @@ use tabray::world::{AnyShape, Hittable};
 
 const DOWN_Z: DVec3 = DVec3::NEG_Z;
 
-/// A scene in which one object is all there is to see; `camera` holds attributes of the camera, such as its accuracy.
+/// Returns a scene with a single object; `camera` contains attributes of the camera, such as its accuracy.
 fn text(camera: &str, object: &str) -> String {
     format!(
         "camera c {{ pixeldim 8 6 worlddim 8 6 viewpoint 4 3 6 {camera} }}
@@ -38,12 +38,12 @@ fn text(camera: &str, object: &str) -> String {
     )
 }
 
-/// The shape of the last object, of the exact accuracy.
+/// Returns the shape of the last object, with the exact accuracy.
 fn shape(object: &str) -> AnyShape {
     shape_of("", object)
 }
 
-/// The shape of the last object, of the accuracy that the camera is given.
+/// Returns the shape of the last object, with the accuracy given to the camera.
 fn shape_of(camera: &str, object: &str) -> AnyShape {
     last(model(&text(camera, object)))
 }
@@ -52,7 +52,7 @@ fn last(mut model: Model) -> AnyShape {
     model.objects.pop().expect("a scene with an object").shape
 }
 
-/// What the loader says of an object that it refuses.
+/// Returns the loader's message about an object that it refuses.
 fn refusal(object: &str) -> String {
     match scene::read(registry(), "scene", Path::new(""), text("", object).as_bytes(), None) {
         Ok(_) => panic!("nothing is wrong with {object}"),
@@ -60,28 +60,28 @@ fn refusal(object: &str) -> String {
     }
 }
 
-/// The distance to the first hit of a ray whose direction is a unit vector as the row gives it.
+/// Returns the distance of a ray's first hit; the row gives its direction as a unit vector.
 fn distance(shape: &dyn Hittable, origin: DVec3, dir: DVec3) -> f64 {
     shape.distance(&Ray { origin, dir }, &RayRange::ALL)
 }
 
-/// A vector as a scene's text has it, to the last bit.
+/// Writes a vector as a scene's text, to the last bit.
 fn words(v: DVec3) -> String {
     format!("{} {} {}", v.x, v.y, v.z)
 }
 
-/// How many units in the last place of the true value lie between it and another.
+/// Returns the difference from the true value, in ulps of that value.
 fn ulps(actual: f64, truth: f64) -> f64 {
     (actual - truth).abs() / (truth.abs().next_up() - truth.abs())
 }
 
-/// That a value is the true one but for a few units in its last place.
+/// Asserts that a value differs from the true one by at most a few ulps.
 #[track_caller]
 fn holds(actual: f64, truth: f64, few: f64) {
     assert!(ulps(actual, truth) <= few, "{actual:?} is not {truth:?}: {:.1e} ulps off", ulps(actual, truth));
 }
 
-/// Random numbers that are the same everywhere (SplitMix64).
+/// A generator of random numbers that are the same everywhere (SplitMix64).
 struct Random(u64);
 
 impl Random {
@@ -96,12 +96,12 @@ impl Random {
         low + (high - low) * ((self.bits() >> 11) as f64 / (1_u64 << 53) as f64)
     }
 
-    /// A whole number from `low` to `high`.
+    /// Returns an integer from `low` to `high`.
     fn whole(&mut self, low: i64, high: i64) -> i64 {
         low + (self.bits() % (high - low + 1) as u64) as i64
     }
 
-    /// A direction on the side of a unit vector that it points to, with this cosine to it.
+    /// Returns a direction with this cosine to a unit vector.
     fn around(&mut self, axis: DVec3, cosine: f64) -> DVec3 {
         let (across, up) = axis.any_orthonormal_pair();
         let turn = self.between(0.0, std::f64::consts::TAU);

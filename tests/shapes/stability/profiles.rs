@@ -1,4 +1,4 @@
-//! The profiles of the rows, as formulas in a scene and as functions, and references that are right by construction.
+//! The profiles of the rows, as formulas in a scene and as functions, and references that are correct by construction.
 
 use super::{Random, shape_of, words};
 use glam::{DVec3, dvec3};
@@ -10,7 +10,7 @@ pub struct Line {
     pub height: f64,
     pub radius: fn(f64) -> f64,
     pub slope: fn(f64) -> f64,
-    /// No less than any radius.
+    /// An upper bound of the radius.
     pub widest: f64,
 }
 
@@ -50,35 +50,35 @@ pub const STAIR: Line = Line {
 };
 
 impl Line {
-    /// The surface around the y axis, from the origin upward.
+    /// Returns the surface about the y axis, from the origin upward.
     pub fn shape(&self) -> AnyShape {
         self.shape_of("")
     }
 
-    /// As [`shape`](Self::shape), with attributes of the camera.
+    /// Returns the same surface, with attributes of the camera.
     pub fn shape_of(&self, camera: &str) -> AnyShape {
         revsurf(camera, &format!("profile \"{}\"", self.formula), self.height)
     }
 
-    /// `x^2 - g(y)^2 + z^2`: positive outside.
+    /// Returns `x^2 - g(y)^2 + z^2`: positive outside.
     pub fn outside(&self, at: DVec3) -> f64 {
         let radius = (self.radius)(at.y);
         at.x * at.x - radius * radius + at.z * at.z
     }
 
-    /// The unit normal at a point of the surface, outward.
+    /// Returns the outward unit normal at a point of the surface.
     pub fn normal(&self, at: DVec3) -> DVec3 {
         let radius = (self.radius)(at.y);
         dvec3(at.x, -radius * (self.slope)(at.y), at.z).normalize()
     }
 
-    /// The distance of a point from the surface, to the first order.
+    /// Returns the distance of a point from the surface, to first order.
     pub fn off(&self, at: DVec3) -> f64 {
         let (radius, slope) = ((self.radius)(at.y), (self.slope)(at.y));
         (self.outside(at) / (2.0 * radius * (1.0 + slope * slope).sqrt())).abs()
     }
 
-    /// Where a ray is between the ends and no farther from the axis than the widest radius.
+    /// Returns the part of a ray that lies between the ends and within the greatest radius of the axis.
     pub fn bounds(&self, origin: DVec3, dir: DVec3) -> Option<[f64; 2]> {
         let (low, high) = (-origin.y / dir.y, (self.height - origin.y) / dir.y);
         let (mut near, mut far) = (low.min(high), low.max(high));
@@ -94,7 +94,8 @@ impl Line {
         (left >= 0.0 && near.max(0.0) < far).then_some([near.max(0.0), far])
     }
 
-    /// The usual way: so many samples within the bounds, and bisection where two of them differ in sign.
+    /// Finds a root in the usual way: this many samples within the bounds, and bisection where two of them differ in
+    /// sign.
     pub fn scan(&self, origin: DVec3, dir: DVec3, samples: usize) -> Option<f64> {
         let [near, far] = self.bounds(origin, dir)?;
         let at = |sample: usize| near + (far - near) * sample as f64 / samples as f64;
@@ -108,8 +109,8 @@ impl Line {
         Some(high)
     }
 
-    /// A ray that enters the surface at a random point, `distance` from its origin and at this angle to the surface.
-    /// It may have met the surface before.
+    /// Returns a ray that enters the surface at a random point, `distance` from its origin and at this angle to the
+    /// surface. The ray may have hit the surface before.
     pub fn entry(&self, random: &mut Random, distance: f64, angle: f64) -> [DVec3; 2] {
         let y = random.between(0.02, 0.98) * self.height;
         let turn = random.between(0.0, std::f64::consts::TAU);
@@ -120,7 +121,7 @@ impl Line {
     }
 }
 
-/// A surface of revolution around the y axis, from the origin upward.
+/// Returns a surface of revolution about the y axis, from the origin upward.
 pub fn revsurf(camera: &str, line: &str, height: f64) -> AnyShape {
     let (base, up) = (words(DVec3::ZERO), words(DVec3::Y));
     shape_of(camera, &format!("revsurf r {{ material m {line} base {base} direction {up} height {height} }}"))
