@@ -41,7 +41,7 @@ build() {
         ! cmp -s "$1" "$sources/$1" || { echo "nothing is cut from $1" >&2; exit 1; }
     fi
     cargo build --profile dist --locked --quiet --manifest-path "$sources/Cargo.toml" --target-dir "$target" 2>/dev/null
-    awk -v all="$(count "$target/dist/tabray" 320)" -v none="$(count "$target/release/tabray" 1x1)" \
+    awk -v all="$(count "$target/dist/tabray" 320)" -v none="$(count "$target/dist/tabray" 1x1)" \
         'BEGIN { print (all - none) / (320 * 240) }'
 }
 
@@ -51,5 +51,5 @@ echo "| build | instructions per ray | ratio of the whole program to it |"
 echo "|---|---:|---:|"
 row "whole" "$whole"
 row "without lights" "$(build src/render/trace/shade.rs 's/self\.illuminate\(.*?\);//')"
-row "without mirrors" "$(build src/render/trace/shade.rs 's/self\.look_in_the_mirror\(.*?\);//')"
+row "without mirrors" "$(build src/render/trace/shade.rs 's/self\.add_reflected\(.*?\);//')"
 row "without additional samples" "$(build src/render/trace/mod.rs 's/if camera\.samples == 1 \{/if true {/')"

@@ -141,7 +141,7 @@ impl Renderer {
         }
     }
 
-    /// Lets `work` render bands with [`Unfinished::fill`], which may leave threads at work.
+    /// Lets `work` render bands with `Unfinished::fill`, which may leave threads at work.
     pub fn unfinished<'s, T>(&'s self, work: impl FnOnce(&Unfinished<'_, 's>) -> T) -> T {
         self.pool.in_place_scope(|scope| work(&Unfinished { renderer: self, scope }))
     }

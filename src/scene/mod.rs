@@ -15,7 +15,6 @@ pub mod reference;
 pub(crate) mod registry;
 pub mod schema;
 pub(crate) mod syntax;
-pub(crate) mod tables;
 pub(crate) mod value;
 
 pub use choice::Choice;
