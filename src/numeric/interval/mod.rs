@@ -373,7 +373,12 @@ impl<F: Float> Scalar for Interval<F> {
             let base = if exponent % 2 == 0 { self.abs() } else { self };
             let mut power = base;
             for _ in 1..exponent {
-                power = power * base;
+                let next = power * base;
+                // As after an underflow, whose numbers are also slow.
+                if next.low == power.low && next.high == power.high {
+                    break;
+                }
+                power = next;
             }
             if exponent % 2 == 0 { Self { low: power.low.max(zero), high: power.high } } else { power }
         })

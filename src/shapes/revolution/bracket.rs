@@ -19,6 +19,9 @@ use crate::simd::cpu::{Cpu, kernels};
 /// A unit direction whose component along the axis, or perpendicular to it, is below this is traced alone.
 const MIN_COMPONENT: f64 = 1e-9;
 
+/// The margin of a slab's largest square, as a multiple of a ray's rounding error.
+const MARGIN: f64 = 4.0;
+
 /// The largest number of rays that are bracketed together: few enough for their data to stay in the cache, and for
 /// slabs that none of them reaches to be skipped.
 pub(super) const MAX_RAYS: usize = 64;
@@ -39,9 +42,15 @@ impl Revolution {
         let reach = self.slabs.reach();
         if let Some((low, high)) = enter(cpu, lanes, frame, rays, self.size(), reach, ends) {
             let (first, last) = (self.slabs.index(low), self.slabs.index(high));
-            for step in 0..=last - first {
+            let mut step = 0;
+            while step <= last - first {
                 let index = if lanes.dy[0] > 0.0 { first + step } else { last - step };
-                cross(cpu, lanes, &self.slab(index), self.size(), rays.origin_error, rays.len());
+                let may_meet = |run: &Slab| may_meet_any(cpu, lanes, run, rays.len());
+                let skipped = self.slabs.skipped(index, lanes.dy[0] > 0.0, first..last + 1, may_meet);
+                if skipped == 0 {
+                    cross(cpu, lanes, &self.slab(index), self.size(), rays.origin_error, rays.len());
+                }
+                step += skipped.max(1);
             }
         }
         leave(cpu, lanes, rays.len());
@@ -54,12 +63,7 @@ impl Revolution {
 
     /// Returns a slab. The lowest and the highest are extended to infinity, for what rounding cuts off.
     pub(super) fn slab(&self, index: usize) -> Slab {
-        let slab = self.slabs.get(index);
-        Slab {
-            from: if index == 0 { f64::NEG_INFINITY } else { slab.from },
-            to: if index + 1 == self.slabs.count() { f64::INFINITY } else { slab.to },
-            ..*slab
-        }
+        self.slabs.extended(self.slabs.get(index), index..index + 1)
     }
 }
 
@@ -113,6 +117,17 @@ kernels! {
         (low <= high).then(|| (from_order(low), from_order(high)))
     }
 
+    /// Returns whether any ray may meet the surface in a run of slabs before its hit so far, with twice the margin that
+    /// the slabs have, as a ray's squared distance from the axis rounds differently at another place.
+    fn may_meet_any<const N>(lanes: &Lanes<N>, run: &Slab, count: usize) -> bool {
+        let count = count.min(N);
+        let mut any = 0;
+        for lane in 0..count {
+            any |= u64::from(lanes.may_meet(lane, run, lanes.part(run, lane), 2.0 * MARGIN));
+        }
+        any != 0
+    }
+
     /// Merges the hits in a slab into the brackets, for a surface of this size.
     pub(super) fn cross<const N>(
         lanes: &mut Lanes<N>, slab: &Slab, size: [f64; 2], origin_error: f64, count: usize
@@ -121,7 +136,7 @@ kernels! {
         let mut is_close = [0; N];
         let mut any = 0;
         for lane in 0..count {
-            is_close[lane] = u64::from(lanes.may_meet(lane, slab, lanes.part(slab, lane)));
+            is_close[lane] = u64::from(lanes.may_meet(lane, slab, lanes.part(slab, lane), MARGIN));
             any |= is_close[lane];
         }
         if any == 0 {

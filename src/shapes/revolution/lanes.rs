@@ -126,11 +126,12 @@ impl<const N: usize> Lanes<N> {
         Quadratic { a: self.a[lane], b: self.b[lane], c: self.c[lane] }
     }
 
-    /// Returns whether a ray may hit a slab's surface before its hit so far, on its part from `from` to `to`.
+    /// Returns whether a ray may hit a slab's surface before its hit so far, on its part from `from` to `to`. The
+    /// square is taken to be larger by `margin` times the rounding error.
     #[inline(always)]
-    pub fn may_meet(&self, lane: usize, slab: &Slab, (from, to): (f64, f64)) -> bool {
+    pub fn may_meet(&self, lane: usize, slab: &Slab, (from, to): (f64, f64), margin: f64) -> bool {
         let closest = smaller(larger(self.middle[lane], from), to);
-        let is_near = self.around(lane).at(closest) <= slab.max_square + 4.0 * self.rounding[lane];
+        let is_near = self.around(lane).at(closest) <= slab.max_square + margin * self.rounding[lane];
         (from < to) & (self.near[lane] > from) & (is_near | (self.side[lane] < 0.0))
     }
 

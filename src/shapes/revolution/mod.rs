@@ -24,6 +24,7 @@ mod pieces;
 mod quadratic;
 mod ranges;
 mod root;
+mod runs;
 mod shape;
 mod surface;
 #[cfg(test)]

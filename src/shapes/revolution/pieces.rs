@@ -3,12 +3,14 @@
 use super::budget::Budget;
 use super::no_surface::NoSurface;
 use super::ranges::Ranges;
+use super::runs::Runs;
 use crate::numeric::dual::Dual;
 use crate::numeric::formula::Formula;
 use crate::numeric::interval::Interval;
 use crate::numeric::scalar::Scalar;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
+use std::ops::Range;
 
 /// The error that slabs are cut for, in square world units. Between 1/100 and 1/10000 it makes no difference to the
 /// time per ray; a smaller error costs memory and time.
@@ -56,6 +58,7 @@ impl Slab {
 /// The slabs of a profile, from the bottom up.
 pub struct Slabs {
     slabs: Vec<Slab>,
+    runs: Runs,
     /// The index of the slab at the bottom of each of equal parts of the height.
     table: Vec<u32>,
     parts_per_unit: f64,
@@ -89,6 +92,7 @@ impl Slabs {
         let is_smooth = slabs.iter().all(|slab| slab.slope_error.is_finite());
         Ok(Self {
             is_smooth,
+            runs: Runs::new(&slabs),
             table,
             parts_per_unit,
             widest: max_square.sqrt().next_up(),
@@ -132,6 +136,34 @@ impl Slabs {
     #[inline(always)]
     pub fn count(&self) -> usize {
         self.slabs.len()
+    }
+
+    /// Returns a range of heights that consists of these slabs, extended to infinity at the surface's ends, for what
+    /// rounding cuts off.
+    #[inline(always)]
+    pub fn extended(&self, slab: &Slab, slabs: Range<usize>) -> Slab {
+        Slab {
+            from: if slabs.start == 0 { f64::NEG_INFINITY } else { slab.from },
+            to: if slabs.end == self.count() { f64::INFINITY } else { slab.to },
+            ..*slab
+        }
+    }
+
+    /// Returns the number of slabs, from one on, upward or downward, that lie in a range and that no ray may meet
+    /// according to `may_meet`; 0 if that is not known of more than one.
+    #[inline(always)]
+    pub fn skipped(
+        &self,
+        index: usize,
+        is_upward: bool,
+        within: Range<usize>,
+        mut may_meet: impl FnMut(&Slab) -> bool,
+    ) -> usize {
+        let runs = self.runs.starting(index, is_upward, within);
+        runs.take_while(|(slabs, run)| !may_meet(&self.extended(run, slabs.clone())))
+            .map(|(slabs, _)| slabs.len())
+            .last()
+            .unwrap_or(0)
     }
 
     /// Returns the index of the slab at a height.
@@ -234,7 +266,8 @@ fn cut(
 }
 
 impl Slab {
-    fn void(from: f64, to: f64) -> Self {
+    /// Returns a range of heights without a surface.
+    pub fn void(from: f64, to: f64) -> Self {
         let middle = 0.5 * (from + to);
         Self {
             from,

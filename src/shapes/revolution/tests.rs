@@ -146,3 +146,35 @@ fn what_cannot_be_told_is_refused_with_the_reason() {
         assert!(fault.told().0.starts_with(told), "{profile}: {}", fault.told().0);
     }
 }
+
+#[test]
+fn runs_contain_their_slabs() {
+    let surface = surface("cos(sin(y) + 1e-8 - exp(y))", 7.88).expect("a surface");
+    let slabs = &surface.slabs;
+    let all = 0..slabs.count();
+    let mut longest = 0;
+    for is_upward in [true, false] {
+        for index in all.clone() {
+            let mut runs = Vec::new();
+            let length = slabs.skipped(index, is_upward, all.clone(), |run| {
+                runs.push(*run);
+                false
+            });
+            longest = longest.max(length);
+            let first = if is_upward { index } else { index + 1 - length.max(1) };
+            let Some(run) = runs.last() else {
+                assert_eq!(length, 0);
+                continue;
+            };
+            for slab in (first..first + length).map(|index| surface.slab(index)) {
+                let contains = run.from <= slab.from && slab.to <= run.to;
+                assert!(contains && slab.max_square <= run.max_square, "{slab:?} in {run:?}");
+            }
+        }
+    }
+    assert_eq!(longest, 4096);
+    // A run that reaches beyond the slabs of interest is not skipped.
+    assert_eq!(slabs.skipped(0, true, 0..20, |_| false), 16);
+    assert_eq!(slabs.skipped(0, true, 0..15, |_| false), 0);
+    assert_eq!(slabs.skipped(0, true, all, |run| run.to > slabs.get(255).to), 256);
+}
