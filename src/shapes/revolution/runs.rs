@@ -28,10 +28,10 @@ impl Runs {
     ) -> impl Iterator<Item = (Range<usize>, &Slab)> {
         let levels = LENGTHS.into_iter().zip(&self.0);
         levels.map_while(move |(length, runs)| {
-            let begins = if is_upward { index % length == 0 } else { (index + 1) % length == 0 };
+            let boundary = if is_upward { index } else { index + 1 };
             let start = index - index % length;
             let slabs = start..start + length;
-            let is_within = begins && within.start <= slabs.start && slabs.end <= within.end;
+            let is_within = boundary.is_multiple_of(length) && within.start <= slabs.start && slabs.end <= within.end;
             is_within.then(|| runs.get(index / length).map(|run| (slabs, run))).flatten()
         })
     }
