@@ -31,7 +31,8 @@ impl Runs {
             let boundary = if is_upward { index } else { index + 1 };
             let start = index - index % length;
             let slabs = start..start + length;
-            let is_within = boundary.is_multiple_of(length) && within.start <= slabs.start && slabs.end <= within.end;
+            let is_within =
+                boundary.is_multiple_of(length) && within.start <= slabs.start && slabs.end <= within.end;
             is_within.then(|| runs.get(index / length).map(|run| (slabs, run))).flatten()
         })
     }
