@@ -7,8 +7,8 @@
 //! begins, and the ray is traced alone (`walk`), through the same slabs.
 
 use super::lanes::{Crossing, Lanes};
-use super::pieces::Slab;
 use super::quadratic::Quadratic;
+use super::slab::Slab;
 use super::surface::Revolution;
 use crate::geometry::aabb::{from_order, larger, order, smaller};
 use crate::geometry::frame::Frame;

@@ -1,7 +1,7 @@
 //! The state of rays that are intersected with a surface, slab by slab: any number of lanes, including one.
 
-use super::pieces::Slab;
 use super::quadratic::Quadratic;
+use super::slab::Slab;
 use crate::geometry::aabb::{larger, smaller};
 use crate::geometry::ray::{MISS, Ray, Side};
 

@@ -26,6 +26,7 @@ mod ranges;
 mod root;
 mod runs;
 mod shape;
+mod slab;
 mod surface;
 #[cfg(test)]
 mod tests;

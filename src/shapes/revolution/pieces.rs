@@ -4,10 +4,8 @@ use super::budget::Budget;
 use super::no_surface::NoSurface;
 use super::ranges::Ranges;
 use super::runs::Runs;
-use crate::numeric::dual::Dual;
+use super::slab::Slab;
 use crate::numeric::formula::Formula;
-use crate::numeric::interval::Interval;
-use crate::numeric::scalar::Scalar;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::ops::Range;
@@ -27,33 +25,6 @@ const COARSEST: f64 = 1.0 / 1_048_576.0;
 
 /// A bound of the profile where rounding hides its sign, as a fraction of the largest radius.
 const HIDDEN: f64 = 1.0 / 4_294_967_296.0;
-
-/// A range of heights, in world units.
-#[derive(Clone, Copy, Debug)]
-pub struct Slab {
-    pub from: f64,
-    pub to: f64,
-    pub middle: f64,
-    /// In the slab, the square of the profile is `c0 + c1 v + c2 v^2` to within `error`, with `v` measured from the
-    /// middle; its slope is the parabola's to within `slope_error`.
-    pub c0: f64,
-    pub c1: f64,
-    pub c2: f64,
-    pub error: f64,
-    pub slope_error: f64,
-    /// An upper bound of the square, in square world units.
-    pub max_square: f64,
-    /// Whether the profile is negative, so that there is no surface.
-    pub is_void: bool,
-}
-
-impl Slab {
-    /// Returns the value of the parabola at `v` from the middle.
-    #[inline(always)]
-    pub fn parabola(&self, v: f64) -> f64 {
-        self.c0 + v * (self.c1 + v * self.c2)
-    }
-}
 
 /// The slabs of a profile, from the bottom up.
 pub struct Slabs {
@@ -263,86 +234,4 @@ fn cut(
     }
     slabs.extend(coarse.into_iter().map(|part| part.slab));
     Ok(slabs)
-}
-
-impl Slab {
-    /// Returns a range of heights without a surface.
-    pub fn void(from: f64, to: f64) -> Self {
-        let middle = 0.5 * (from + to);
-        Self {
-            from,
-            to,
-            middle,
-            c0: 0.0,
-            c1: 0.0,
-            c2: 0.0,
-            error: 0.0,
-            slope_error: 0.0,
-            max_square: 0.0,
-            is_void: true,
-        }
-    }
-
-    /// Fits the parabola through three Chebyshev nodes, and proves its error; `None` if the budget does not suffice.
-    fn fit(square: &Formula, from: f64, to: f64, budget: &mut Budget) -> Option<Self> {
-        let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-        let node = 0.75_f64.sqrt();
-        let [below, at, above] = [-node, 0.0, node].map(|x| square.at(middle + x * half));
-        let c1 = (above - below) / (2.0 * node * half);
-        let c2 = (above - 2.0 * at + below) / (2.0 * node * node * half * half);
-        let mut slab = Self { c0: at, c1, c2, is_void: false, ..Self::void(from, to) };
-        slab.certify(square, budget)?;
-        // Where the square has no bounded slope, a constant is as good as any parabola.
-        if !slab.error.is_finite() {
-            slab = Self { c0: 0.5 * slab.max_square, c1: 0.0, c2: 0.0, ..slab };
-            slab.certify(square, budget)?;
-        }
-        Some(slab)
-    }
-
-    /// Proves bounds of the difference between the square and the parabola, on eight parts of the slab; `None` if the
-    /// budget does not suffice.
-    fn certify(&mut self, square: &Formula, budget: &mut Budget) -> Option<()> {
-        const PARTS: usize = 8;
-        // Two evaluations in each part, with bounds of two derivatives: about nine times the cost of the value alone.
-        if !budget.charge(square, 2 * PARTS as u64 * 9) {
-            return None;
-        }
-        let parabola = |y: Dual<Dual<Interval>>| {
-            let v = y - Dual::constant(self.middle);
-            Dual::constant(self.c0) + v * Dual::constant(self.c1) + v.powi(2) * Dual::constant(self.c2)
-        };
-        let (mut error, mut slope_error, mut max_square) = (0.0_f64, 0.0_f64, 0.0_f64);
-        let end = |part: usize| self.from + (self.to - self.from) * part as f64 / PARTS as f64;
-        for part in 0..PARTS {
-            let (low, high) = (end(part), if part + 1 == PARTS { self.to } else { end(part + 1) });
-            let middle = 0.5 * (low + high);
-            let reach = (high - middle).max(middle - low);
-            let at = |y: Interval| {
-                let y = Dual::variable_twice(y);
-                let value = square.at(y);
-                (value, value - parabola(y))
-            };
-            let (_, thin) = at(Interval::constant(middle));
-            let (value, wide) = at(Interval { low, high });
-            let thin_value = thin.value.value.magnitude();
-            // Taylor's theorem of second and of first order, and the values themselves: the tightest bound counts.
-            let second = thin_value
-                + thin.first().magnitude() * reach
-                + 0.5 * wide.second().magnitude() * reach * reach;
-            let first = thin_value + wide.first().magnitude() * reach;
-            let plain = wide.value.value.magnitude();
-            error = larger_or_infinite(error, second.min(first).min(plain));
-            let slope = thin.first().magnitude() + wide.second().magnitude() * reach;
-            slope_error = larger_or_infinite(slope_error, slope.min(wide.first().magnitude()));
-            max_square = larger_or_infinite(max_square, value.value.value.high);
-        }
-        (self.error, self.slope_error, self.max_square) = (error, slope_error, max_square);
-        Some(())
-    }
-}
-
-/// Returns the larger of two numbers; infinity if the second is NaN.
-fn larger_or_infinite(a: f64, b: f64) -> f64 {
-    if b.is_nan() { f64::INFINITY } else { a.max(b) }
 }

@@ -2,7 +2,7 @@
 //!
 //! A profile with thousands of waves has tens of thousands of slabs, and each ray would be tested against all of them.
 
-use super::pieces::Slab;
+use super::slab::Slab;
 use std::ops::Range;
 
 /// The number of slabs in the runs of each level.
