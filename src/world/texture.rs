@@ -46,7 +46,7 @@ impl Texture {
         self.load_within(u64::MAX)
     }
 
-    /// As [`load`](Self::load), if it takes no more memory than so many bytes.
+    /// The image, read from its file at the first call, if it takes no more memory than so many bytes.
     ///
     /// # Errors
     /// The reason why it cannot be read.

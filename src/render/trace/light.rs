@@ -41,18 +41,18 @@ pub(super) struct Lit<'l> {
 /// The reflectivities of points of a surface.
 #[derive(Clone, Copy)]
 pub(super) enum Reflectivities<'l> {
-    /// The same at all points.
+    /// One set of reflectivities for all points.
     Uniform(Look),
-    /// One for each point.
+    /// Reflectivities for each point.
     Each { diffuse: View<'l>, specular: View<'l> },
 }
 
 /// Colours at points of a surface.
 #[derive(Clone, Copy)]
 pub(super) enum Colours<'c> {
-    /// The same at all points.
+    /// One colour for all points.
     Uniform(Rgb),
-    /// One for each point.
+    /// A colour for each point.
     Each(View<'c>),
 }
 

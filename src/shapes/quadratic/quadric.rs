@@ -25,7 +25,7 @@ pub struct Quadric<A> {
     pub low: DVec3,
     /// The high corner of the box, relative to the center.
     pub high: DVec3,
-    /// The same quadric, scaled for the solver.
+    /// The quadric's coefficients, scaled for the solver.
     own: Quadratic,
     accuracy: PhantomData<A>,
 }
