@@ -1,0 +1,289 @@
+//! The hierarchy, and searches along one ray.
+
+use crate::geometry::aabb::{Aabb, SLACK};
+use crate::geometry::bvh::beam::Beam;
+use crate::geometry::bvh::build;
+use crate::geometry::bvh::node::Node;
+use crate::geometry::ray::Ray;
+use crate::simd::cpu::{Cpu, kernels};
+
+/// A hierarchy of bounding boxes, with up to eight children in each node.
+///
+/// Searches visit each object whose box a ray enters before its end, roughly from near to far. Boxes need no slack for
+/// rounding: it is added here, and covers the rounding of the ray as well.
+pub struct Bvh {
+    pub(super) nodes: Vec<Node>,
+    /// The objects' indices, node by node.
+    pub(super) objects: Vec<u32>,
+}
+
+/// A child of a node that is still to be visited.
+#[derive(Clone, Copy)]
+pub(super) struct Ahead {
+    /// The distance at which the ray enters the child's box, in world units.
+    pub enters: f64,
+    /// The index of a node, or with [`OBJECT`] the position of an object.
+    pub child: u32,
+}
+
+/// The bit that tells an object from a node.
+pub(super) const OBJECT: u32 = 1 << 31;
+
+/// The scratch space of searches, which is reused from one search to the next.
+#[derive(Default)]
+pub struct Stack(pub(super) Vec<Ahead>);
+
+impl Bvh {
+    /// Builds the hierarchy of objects, given by their boxes, on all threads.
+    ///
+    /// The result does not depend on the number of threads.
+    ///
+    /// # Panics
+    ///
+    /// If there are 2^31 boxes or more.
+    pub fn new(boxes: &[Aabb]) -> Self {
+        assert!(boxes.len() < OBJECT as usize, "{} boxes are too many", boxes.len());
+        let build::Parts { mut nodes, mut objects } = build::build(boxes);
+        nodes.shrink_to_fit();
+        objects.shrink_to_fit();
+        Self { nodes, objects }
+    }
+
+    /// Replaces each object's index, initially its position in the list of boxes.
+    pub fn rename(&mut self, name: impl Fn(u32) -> u32) {
+        self.objects.iter_mut().for_each(|object| *object = name(*object));
+    }
+
+    /// Returns the number of nodes.
+    pub fn size(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Visits the objects whose boxes a ray enters before `t_max`, in world units, nearest boxes first. `visit` is given
+    /// an object's index and the current `t_max`, and returns the new one, which may be less. Objects whose boxes the
+    /// ray enters at `t_max` itself are visited, so that the caller can decide between equal distances.
+    pub fn closest(
+        &self,
+        cpu: Cpu,
+        stack: &mut Stack,
+        ray: &Ray,
+        t_max: f64,
+        mut visit: impl FnMut(usize, f64) -> f64,
+    ) {
+        search(cpu, self, stack, ray, t_max, &mut visit);
+    }
+
+    /// Tells whether `visit` returns true for any object whose box a ray enters before `t_max`, in world units.
+    pub fn any(
+        &self,
+        cpu: Cpu,
+        stack: &mut Stack,
+        ray: &Ray,
+        t_max: f64,
+        mut visit: impl FnMut(usize) -> bool,
+    ) -> bool {
+        let mut found = false;
+        self.closest(cpu, stack, ray, t_max, |object, t_max| {
+            found = visit(object);
+            if found { -1.0 } else { t_max }
+        });
+        found
+    }
+}
+
+kernels! {
+    /// Visits objects along a ray, as [`Bvh::closest`] does.
+    fn search[V: FnMut(usize, f64) -> f64](tree: &Bvh, stack: &mut Stack, ray: &Ray, t_max: f64, visit: &mut V) {
+        if tree.nodes.is_empty() {
+            return;
+        }
+        let stack = &mut stack.0;
+        let start = stack.len();
+        descend(tree, stack, &Beam::of(ray), 0, t_max, visit);
+        stack.truncate(start);
+    }
+}
+
+/// Visits objects of the subtree of a node along one ray. Returns the last `t_max`.
+#[inline(always)]
+pub(super) fn descend(
+    tree: &Bvh,
+    stack: &mut Vec<Ahead>,
+    beam: &Beam,
+    root: u32,
+    mut t_max: f64,
+    visit: &mut impl FnMut(usize, f64) -> f64,
+) -> f64 {
+    let start = stack.len();
+    let mut node = &tree.nodes[root as usize];
+    loop {
+        push(stack, node, node.entered(beam, t_max));
+        node = loop {
+            if stack.len() == start {
+                return t_max;
+            }
+            let Some(Ahead { enters, child }) = stack.pop() else { return t_max };
+            if enters > t_max * (1.0 + SLACK) {
+                continue;
+            }
+            if child & OBJECT == 0 {
+                break &tree.nodes[child as usize];
+            }
+            t_max = visit(tree.objects[(child ^ OBJECT) as usize] as usize, t_max);
+        };
+    }
+}
+
+/// Pushes the children that are entered, the nearest one last.
+#[inline(always)]
+pub(super) fn push(stack: &mut Vec<Ahead>, node: &Node, (enters, mut bits): ([f64; 8], u32)) {
+    let start = stack.len();
+    while bits != 0 {
+        let child = bits.trailing_zeros();
+        bits &= bits - 1;
+        let before = (1_u32 << child) - 1;
+        let nodes = u32::from(node.nodes);
+        let next = if nodes >> child & 1 != 0 {
+            node.first_node + (nodes & before).count_ones()
+        } else {
+            let objects = u32::from(node.children) & !nodes;
+            (node.first_object + (objects & before).count_ones()) | OBJECT
+        };
+        let next = Ahead { enters: enters[child as usize & 7], child: next };
+        // Few children are entered, and sorting them by insertion is quickest.
+        let mut place = stack.len();
+        stack.push(next);
+        while place > start && stack[place - 1].enters < next.enters {
+            stack[place] = stack[place - 1];
+            place -= 1;
+        }
+        stack[place] = next;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::aabb::any_meets;
+    use crate::geometry::ray_packet::RayPacket;
+    use crate::simd::soa::Vectors;
+    use glam::DVec3;
+    use proptest::prelude::*;
+
+    /// Generates coordinates like those of scenes, 0 among them.
+    fn number() -> impl Strategy<Value = f64> {
+        prop_oneof![4 => Just(0.0), 1 => Just(-0.0), 8 => -10.0..10.0, 4 => -1e6..1e6]
+    }
+
+    fn point() -> impl Strategy<Value = DVec3> {
+        (number(), number(), number()).prop_map(|(x, y, z)| DVec3::new(x, y, z))
+    }
+
+    /// Generates a range of coordinates, some of them without ends.
+    fn extent() -> impl Strategy<Value = (f64, f64)> {
+        let size = prop_oneof![Just(0.0), 0.0..1.0, 0.0..1e3];
+        let some = (number(), size).prop_map(|(low, size)| (low, low + size));
+        let endless = || number().prop_map(|low| (low, f64::INFINITY));
+        prop_oneof![
+            20 => some, 1 => endless(), 1 => endless().prop_map(|(low, high)| (-high, low)),
+            1 => Just((f64::NEG_INFINITY, f64::INFINITY)), 1 => Just((-1e300, 1e200)),
+        ]
+    }
+
+    fn bounds() -> impl Strategy<Value = Aabb> {
+        (extent(), extent(), extent())
+            .prop_map(|(x, y, z)| Aabb { low: DVec3::new(x.0, y.0, z.0), high: DVec3::new(x.1, y.1, z.1) })
+    }
+
+    /// The objects that a search visits, in order.
+    fn visited(tree: &Bvh, cpu: Cpu, ray: &Ray, t_max: f64) -> Vec<usize> {
+        let mut visited = Vec::new();
+        tree.closest(cpu, &mut Stack::default(), ray, t_max, |object, t_max| {
+            visited.push(object);
+            t_max
+        });
+        visited
+    }
+
+    proptest! {
+        #[test]
+        fn an_object_is_visited_once_where_a_ray_enters_its_box(
+            boxes in prop::collection::vec(bounds(), 0..200),
+            (from, to) in (point(), point()),
+            t_max in prop_oneof![Just(f64::INFINITY), 0.0..100.0],
+        ) {
+            prop_assume!((to - from).try_normalize().is_some());
+            let (ray, tree) = (Ray { origin: from, dir: (to - from).normalize() }, Bvh::new(&boxes));
+            let (mut origin, mut dir, mut inverse) = (Vectors::<8>::ZERO, Vectors::<8>::ZERO, Vectors::<8>::ZERO);
+            for lane in 0..8 {
+                origin.set(lane, ray.origin);
+                dir.set(lane, ray.dir);
+                inverse.set(lane, ray.dir.recip());
+            }
+            let rays = RayPacket { origin: origin.view(8), dir: dir.view(8), origin_error: 0.0 };
+            for cpu in Cpu::all() {
+                let visited = visited(&tree, cpu, &ray, t_max);
+                for (index, bounds) in boxes.iter().enumerate() {
+                    let times = visited.iter().filter(|visited| **visited == index).count();
+                    let is_entered = any_meets(cpu, rays, inverse.view(8), &[t_max; 8], bounds);
+                    prop_assert!(times == 1 || times == 0 && !is_entered, "{index}: {times} times");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn nearer_boxes_are_visited_first_until_the_end_is_nearer() {
+        let at = |x: f64| Aabb { low: DVec3::new(x, -1.0, -1.0), high: DVec3::new(x + 0.5, 1.0, 1.0) };
+        let boxes: Vec<_> = (0..1000).map(|index| at(f64::from(index * 7919 % 1000))).collect();
+        let (tree, ray) = (Bvh::new(&boxes), Ray { origin: DVec3::NEG_X, dir: DVec3::X });
+        for cpu in Cpu::all() {
+            let inside: Vec<_> =
+                visited(&tree, cpu, &ray, 11.25).into_iter().map(|index| boxes[index].low.x).collect();
+            assert_eq!(inside, (0..=10).map(f64::from).collect::<Vec<_>>());
+            let mut number = 0;
+            let found = tree.any(cpu, &mut Stack::default(), &ray, 1e9, |index| {
+                number += 1;
+                boxes[index].low.x == 3.0
+            });
+            assert!(found && number == 4, "{number}");
+            assert!(!tree.any(cpu, &mut Stack::default(), &ray, 3.5, |index| boxes[index].low.x == 3.0));
+        }
+    }
+
+    #[test]
+    fn a_tree_does_not_depend_on_the_number_of_threads() {
+        let boxes: Vec<_> = (0..30_000_u32)
+            .map(|index| {
+                let part = |step: f64| (f64::from(index) * step).fract();
+                let low = DVec3::new(part(0.819), part(0.671), part(0.5497));
+                Aabb { low, high: low + 0.01 * part(0.3) }
+            })
+            .collect();
+        let built = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+            pool.install(|| Bvh::new(&boxes))
+        };
+        let (one, three) = (built(1), built(3));
+        assert_eq!(one.objects, three.objects);
+        assert!(one.nodes == three.nodes);
+        assert!(one.size() < boxes.len() / 4, "{} nodes", one.size());
+    }
+
+    #[test]
+    fn coincident_boxes_make_no_deep_tree() {
+        let boxes = vec![Aabb { low: DVec3::ONE, high: DVec3::ONE }; 10_000];
+        assert_eq!(
+            visited(&Bvh::new(&boxes), Cpu::best(), &Ray { origin: DVec3::ONE, dir: DVec3::X }, 1.0).len(),
+            10_000
+        );
+        // Each box is far smaller and nearer to 0 than the one before.
+        let nested: Vec<_> = (0..2000)
+            .map(|index| {
+                let at = DVec3::splat(0.5_f64.powf(0.5 * f64::from(index)));
+                Aabb { low: at, high: 1.01 * at }
+            })
+            .collect();
+        assert!(Bvh::new(&nested).size() > 200);
+    }
+}
