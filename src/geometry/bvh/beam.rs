@@ -1,7 +1,9 @@
 //! A ray, or a bundle of rays, prepared for tests against boxes.
 
-use crate::geometry::aabb::{SLACK, larger};
+use crate::geometry::aabb::{SLACK, larger, smaller};
 use crate::geometry::ray::Ray;
+use crate::geometry::ray_packet::RayPacket;
+use crate::simd::soa::LANES;
 use glam::DVec3;
 
 /// The index of the low plane of a box along an axis.
@@ -33,6 +35,12 @@ pub struct Beam {
     /// Whether some rays rise along the axis and others fall. They enter a box through either plane, and may never leave
     /// it.
     pub is_mixed: [bool; 3],
+    /// The slack of the origins, in world units.
+    pub slack: f64,
+    /// The largest extent of the origins along any axis, in world units.
+    width: f64,
+    /// The largest difference between any component of the directions.
+    spread: f64,
 }
 
 impl Beam {
@@ -40,6 +48,31 @@ impl Beam {
     #[inline(always)]
     pub fn of(ray: &Ray) -> Self {
         Self::between([ray.origin; 2], [ray.dir; 2])
+    }
+
+    /// Bounds the rays of a packet that end beyond 0, given the distances in world units at which its rays end. Returns
+    /// `None` if there are none.
+    #[inline(always)]
+    pub fn around(rays: RayPacket, t_max: &[f64]) -> Option<Self> {
+        let lane = t_max.iter().position(|t_max| *t_max > 0.0)?;
+        let ray = rays.get(lane);
+        let (origin, dir) = (rays.origin, rays.dir);
+        let [from_x, from_y, from_z] = [
+            limits(origin.x, t_max, ray.origin.x),
+            limits(origin.y, t_max, ray.origin.y),
+            limits(origin.z, t_max, ray.origin.z),
+        ];
+        let [x, y, z] = [
+            limits(dir.x, t_max, ray.dir.x),
+            limits(dir.y, t_max, ray.dir.y),
+            limits(dir.z, t_max, ray.dir.z),
+        ];
+        let corner =
+            |x: [f64; 2], y: [f64; 2], z: [f64; 2], side: usize| DVec3::new(x[side], y[side], z[side]);
+        Some(Self::between(
+            [corner(from_x, from_y, from_z, LOW), corner(from_x, from_y, from_z, HIGH)],
+            [corner(x, y, z, LOW), corner(x, y, z, HIGH)],
+        ))
     }
 
     /// Bounds rays by the least and the greatest coordinates of their origins, and components of their directions.
@@ -61,6 +94,29 @@ impl Beam {
             inverse: [inverse(greatest), inverse(least)],
             near,
             is_mixed,
+            slack,
+            width: (high - low).max_element(),
+            spread: (greatest - least).max_element(),
         }
     }
+
+    /// Returns how far apart the rays are at a distance, in world units along the axis where that is most.
+    #[inline(always)]
+    pub fn width(&self, distance: f64) -> f64 {
+        self.width + distance * self.spread
+    }
+}
+
+/// Returns the smallest and the largest of the numbers whose rays end beyond 0, of which `some` is one.
+#[inline(always)]
+fn limits(of: &[f64], t_max: &[f64], some: f64) -> [f64; 2] {
+    let (mut low, mut high) = ([some; LANES], [some; LANES]);
+    for (of, t_max) in of.chunks_exact(LANES).zip(t_max.chunks_exact(LANES)) {
+        for lane in 0..LANES {
+            let number = if t_max[lane] > 0.0 { of[lane] } else { some };
+            low[lane] = smaller(number, low[lane]);
+            high[lane] = larger(number, high[lane]);
+        }
+    }
+    [low.into_iter().fold(some, smaller), high.into_iter().fold(some, larger)]
 }

@@ -5,11 +5,11 @@
 //! a node each. The result depends on the boxes and their order alone, not on the number of threads: minima, maxima and
 //! counts have no order, and each part is sorted by one thread.
 
-use crate::geometry::aabb::Aabb;
+use crate::geometry::aabb::{Aabb, smaller};
 use crate::geometry::bvh::node::{Node, WIDTH, finite};
 use glam::DVec3;
 use rayon::prelude::*;
-use std::mem::take;
+use std::array;
 
 /// The number of bins along an axis; a set of objects is split between two bins.
 const BINS: usize = 16;
@@ -20,16 +20,49 @@ const LARGE: usize = 4096;
 /// The number of levels from which on parts are halved by number, so that no scene makes the tree too deep.
 const DEEP: usize = 40;
 
-/// An object: its box, and its index.
+/// The low corner of a box, and the high corner's negative, so that one minimum joins two boxes.
+type Limits = [f64; 6];
+
+/// The limits of nothing.
+const NOTHING: Limits = [f64::INFINITY; 6];
+
+/// Returns the limits of two boxes together.
+#[inline(always)]
+fn join(one: &Limits, other: &Limits) -> Limits {
+    array::from_fn(|side| smaller(one[side], other[side]))
+}
+
+/// Returns half the surface area of a box, in square world units; infinite where it is not a finite number.
+#[inline(always)]
+fn half_area([a, b, c, d, e, f]: Limits) -> f64 {
+    let (x, y, z) = (-d - a, -e - b, -f - c);
+    let area = x * y + y * z + z * x;
+    if area.is_nan() { f64::INFINITY } else { area }
+}
+
+/// An object: the limits of its box, and its index.
 struct Item {
-    bounds: Aabb,
+    limits: Limits,
     index: u32,
 }
 
 impl Item {
-    /// Returns twice the center of the box.
-    fn center(&self) -> DVec3 {
-        self.bounds.low + self.bounds.high
+    fn new(index: usize, bounds: &Aabb) -> Self {
+        let Aabb { low, high } = finite(bounds);
+        Self { limits: [low.x, low.y, low.z, -high.x, -high.y, -high.z], index: index as u32 }
+    }
+
+    /// Returns twice the center of the box along an axis.
+    #[inline(always)]
+    fn center(&self, axis: usize) -> f64 {
+        self.limits[axis] - self.limits[axis + 3]
+    }
+
+    /// Returns twice the center of the box as limits.
+    #[inline(always)]
+    fn centers(&self) -> Limits {
+        let [x, y, z] = [0, 1, 2].map(|axis| self.center(axis));
+        [x, y, z, -x, -y, -z]
     }
 }
 
@@ -42,7 +75,7 @@ pub struct Parts {
 
 /// Builds the nodes of a hierarchy of objects with these boxes.
 pub fn build(boxes: &[Aabb]) -> Parts {
-    let item = |(index, bounds)| Item { bounds: finite(bounds), index: index as u32 };
+    let item = |(index, bounds)| Item::new(index, bounds);
     let mut items: Vec<_> = if boxes.len() < LARGE {
         boxes.iter().enumerate().map(item).collect()
     } else {
@@ -51,52 +84,66 @@ pub fn build(boxes: &[Aabb]) -> Parts {
     let mut parts = Parts::default();
     if !items.is_empty() {
         parts.nodes.push(Node::EMPTY);
-        let bounds = around(&items);
-        parts.add(&mut items, bounds, 0, 0);
+        parts.add(Part::new(&mut items), 0, 0);
     }
     parts
 }
 
-/// Returns the bounding box of some items.
-fn around(items: &[Item]) -> Aabb {
-    let fold = |items: &[Item]| items.iter().fold(Aabb::EMPTY, |all, item| all.and(&item.bounds));
-    if items.len() < LARGE {
-        fold(items)
-    } else {
-        items.par_chunks(LARGE).map(fold).reduce(|| Aabb::EMPTY, |one, other| one.and(&other))
-    }
-}
-
-/// Some items, and their bounding box.
+/// Some items, their limits, and those of twice their centers.
 struct Part<'i> {
     items: &'i mut [Item],
-    bounds: Aabb,
+    limits: Limits,
+    centers: Limits,
+}
+
+impl<'i> Part<'i> {
+    fn new(items: &'i mut [Item]) -> Self {
+        let fold = |items: &[Item]| {
+            items.iter().fold((NOTHING, NOTHING), |(limits, centers), item| {
+                (join(&limits, &item.limits), join(&centers, &item.centers()))
+            })
+        };
+        let both =
+            |one: (Limits, Limits), other: (Limits, Limits)| (join(&one.0, &other.0), join(&one.1, &other.1));
+        let (limits, centers) = if items.len() < LARGE {
+            fold(items)
+        } else {
+            items.par_chunks(LARGE).map(fold).reduce(|| (NOTHING, NOTHING), both)
+        };
+        Self { items, limits, centers }
+    }
+
+    /// Splits the items in the middle of their order.
+    fn halves(self) -> [Self; 2] {
+        let (one, other) = self.items.split_at_mut(self.items.len() / 2);
+        [Self::new(one), Self::new(other)]
+    }
 }
 
 impl Parts {
     /// Makes the node of this index the root of the tree of some items.
-    fn add(&mut self, items: &mut [Item], bounds: Aabb, index: usize, depth: usize) {
-        let parts = divide(Part { items, bounds }, depth);
-        let boxes: Vec<_> = parts.iter().map(|part| part.bounds).collect();
-        let mut node = Node::new(&boxes);
-        node.first_node = self.nodes.len() as u32;
-        node.first_object = self.objects.len() as u32;
-        let mut inner = Vec::with_capacity(parts.len());
-        for (child, part) in parts.into_iter().enumerate() {
-            if let [item] = part.items {
-                self.objects.push(item.index);
-            } else {
-                node.nodes |= 1 << child;
-                self.nodes.push(Node::EMPTY);
-                inner.push(part);
-            }
+    fn add(&mut self, part: Part, index: usize, depth: usize) {
+        let mut inner = divide(part, depth);
+        inner.sort_by_key(|part| part.items.len() == 1);
+        let mut boxes = [Aabb::EMPTY; WIDTH];
+        for (bounds, part) in boxes.iter_mut().zip(&inner) {
+            let [a, b, c, d, e, f] = part.limits;
+            *bounds = Aabb { low: DVec3::new(a, b, c), high: DVec3::new(-d, -e, -f) };
         }
-        let first = node.first_node as usize;
+        let mut node = Node::new(&boxes[..inner.len()]);
+        let first = self.nodes.len();
+        (node.first_node, node.first_object) = (first as u32, self.objects.len() as u32);
+        let single = inner.partition_point(|part| part.items.len() > 1);
+        node.nodes = single as u8;
+        for part in inner.drain(single..) {
+            self.objects.push(part.items[0].index);
+        }
+        self.nodes.resize_with(first + single, || Node::EMPTY);
         self.nodes[index] = node;
         if inner.iter().filter(|part| part.items.len() >= LARGE).count() > 1 {
             let built = inner.into_par_iter().map(|part| {
                 let mut parts = Self { nodes: vec![Node::EMPTY], objects: Vec::new() };
-                parts.add(part.items, part.bounds, 0, depth + 1);
+                parts.add(part, 0, depth + 1);
                 parts
             });
             for (child, part) in built.collect::<Vec<_>>().into_iter().enumerate() {
@@ -104,7 +151,7 @@ impl Parts {
             }
         } else {
             for (child, part) in inner.into_iter().enumerate() {
-                self.add(part.items, part.bounds, first + child, depth + 1);
+                self.add(part, first + child, depth + 1);
             }
         }
     }
@@ -135,33 +182,29 @@ fn divide(whole: Part, depth: usize) -> Vec<Part> {
         let size = |part: &Part| match part.items.len() {
             len if len <= WIDTH => -1.0,
             len if depth >= DEEP => len as f64,
-            _ => area(part),
+            _ => half_area(part.limits),
         };
         let Some(largest) = largest(&parts, size) else { break };
-        let part = &mut parts[largest];
-        let (one, other) = split(take(&mut part.items), &part.bounds, depth);
-        *part = one;
-        parts.insert(largest + 1, other);
+        let [one, other] = split(parts.remove(largest), depth);
+        parts.splice(largest..largest, [one, other]);
     }
     // Where there is room for all items of a part, each is a child.
     loop {
         let room = WIDTH - parts.len();
         let size = |part: &Part| match part.items.len() {
-            len if len > 1 && len - 1 <= room => area(part),
+            len if len > 1 && len - 1 <= room => half_area(part.limits),
             _ => -1.0,
         };
         let Some(largest) = largest(&parts, size) else { break };
         let part = parts.remove(largest);
-        let single = part.items.chunks_exact_mut(1).map(|items| Part { bounds: items[0].bounds, items });
-        parts.splice(largest..largest, single.collect::<Vec<_>>());
+        let single = part.items.chunks_exact_mut(1);
+        parts.extend(single.map(|items| Part {
+            limits: items[0].limits,
+            centers: items[0].centers(),
+            items,
+        }));
     }
     parts
-}
-
-/// Returns half the surface area of a part, infinite where it has no finite number.
-fn area(part: &Part) -> f64 {
-    let area = part.bounds.half_area();
-    if area.is_nan() { f64::INFINITY } else { area }
 }
 
 /// Returns the index of the largest part, the first of equal ones. Parts of negative size are left out.
@@ -171,66 +214,51 @@ fn largest(parts: &[Part], size: impl Fn(&Part) -> f64) -> Option<usize> {
     largest.map(|(index, _)| index)
 }
 
-/// The items whose centers lie in a bin: their number and bounding box.
-type Bin = (u32, Aabb);
+/// The items whose centers lie in a bin: their number and limits.
+type Bin = (u32, Limits);
 
-/// Splits items in two parts.
-fn split<'i>(items: &'i mut [Item], bounds: &Aabb, depth: usize) -> (Part<'i>, Part<'i>) {
-    let is_large = items.len() >= LARGE;
-    let centers = |items: &[Item]| {
-        let mut all = Aabb::EMPTY;
-        for item in items {
-            let center = item.center();
-            all = all.and(&Aabb { low: center, high: center });
-        }
-        all
-    };
-    let centers = if is_large {
-        items.par_chunks(LARGE).map(centers).reduce(|| Aabb::EMPTY, |one, other| one.and(&other))
-    } else {
-        centers(items)
-    };
-    let size = centers.high - centers.low;
-    let axis = size.max_position();
-    let halves = |items: &'i mut [Item]| {
-        let (one, other) = items.split_at_mut(items.len() / 2);
-        let bounds = [around(one), around(other)];
-        (Part { items: one, bounds: bounds[0] }, Part { items: other, bounds: bounds[1] })
-    };
-    if depth >= DEEP || !(size[axis] > 0.0) || !bounds.half_area().is_finite() {
-        // No split is better than another.
-        return halves(items);
+/// Returns the items of two bins.
+#[inline(always)]
+fn both(one: &Bin, other: &Bin) -> Bin {
+    (one.0 + other.0, join(&one.1, &other.1))
+}
+
+/// Splits the items of a part in two.
+fn split(part: Part, depth: usize) -> [Part; 2] {
+    let size = [0, 1, 2].map(|axis| -part.centers[axis + 3] - part.centers[axis]);
+    let axis = if size[0] >= size[1] && size[0] >= size[2] { 0 } else { 1 + usize::from(size[2] > size[1]) };
+    let (low, scale) = (part.centers[axis], BINS as f64 * (1.0 - 1e-9) / size[axis]);
+    if depth >= DEEP || !(size[axis] > 0.0 && scale < f64::INFINITY && half_area(part.limits) < f64::INFINITY)
+    {
+        // No split is known to be better than another.
+        return part.halves();
     }
-    let (low, scale) = (centers.low[axis], BINS as f64 * (1.0 - 1e-9) / size[axis]);
-    let bin = |item: &Item| ((item.center()[axis] - low) * scale) as usize;
+    let bin = |item: &Item| (((item.center(axis) - low) * scale) as usize).min(BINS - 1);
+    let none = || [(0, NOTHING); BINS];
     let count = |items: &[Item]| {
-        let mut bins = [(0, Aabb::EMPTY); BINS];
+        let mut bins = none();
         for item in items {
-            let bin = &mut bins[bin(item).min(BINS - 1)];
-            *bin = (bin.0 + 1, bin.1.and(&item.bounds));
+            let bin = &mut bins[bin(item)];
+            *bin = (bin.0 + 1, join(&bin.1, &item.limits));
         }
         bins
     };
-    let join = |one: &Bin, other: &Bin| (one.0 + other.0, one.1.and(&other.1));
-    let bins: [Bin; BINS] = if is_large {
-        let none = || [(0, Aabb::EMPTY); BINS];
-        let join =
-            |one: [Bin; BINS], other: [Bin; BINS]| std::array::from_fn(|bin| join(&one[bin], &other[bin]));
-        items.par_chunks(LARGE).map(count).reduce(none, join)
+    let bins: [Bin; BINS] = if part.items.len() < LARGE {
+        count(part.items)
     } else {
-        count(items)
+        let add = |one: [Bin; BINS], other: [Bin; BINS]| array::from_fn(|bin| both(&one[bin], &other[bin]));
+        part.items.par_chunks(LARGE).map(count).reduce(none, add)
     };
-    // The parts above each cut, from the last cut to the first.
-    let mut above = [(0, Aabb::EMPTY); BINS];
-    above[BINS - 1] = bins[BINS - 1];
+    // What lies above each cut, from the last cut to the first.
+    let mut above = bins;
     for cut in (1..BINS - 1).rev() {
-        above[cut] = join(&bins[cut], &above[cut + 1]);
+        above[cut] = both(&bins[cut], &above[cut + 1]);
     }
     // The probability that a ray enters a box is proportional to its surface area.
-    let cost = |part: &Bin| f64::from(part.0) * part.1.half_area();
-    let (mut below, mut best) = ((0, Aabb::EMPTY), (f64::INFINITY, 0, Aabb::EMPTY));
+    let cost = |bin: &Bin| f64::from(bin.0) * half_area(bin.1);
+    let (mut below, mut best) = ((0, NOTHING), (f64::INFINITY, 0, NOTHING));
     for cut in 1..BINS {
-        below = join(&below, &bins[cut - 1]);
+        below = both(&below, &bins[cut - 1]);
         if below.0 > 0 && above[cut].0 > 0 {
             let cost = cost(&below) + cost(&above[cut]);
             if cost < best.0 {
@@ -240,25 +268,32 @@ fn split<'i>(items: &'i mut [Item], bounds: &Aabb, depth: usize) -> (Part<'i>, P
     }
     let (least, cut, below) = best;
     if least == f64::INFINITY {
-        return halves(items);
+        return part.halves();
     }
-    let middle = partition(items, |item| bin(item) < cut);
-    let (one, other) = items.split_at_mut(middle);
-    (Part { items: one, bounds: below }, Part { items: other, bounds: above[cut].1 })
+    let (middle, [one, other]) = partition(part.items, |item| bin(item) < cut);
+    let (near, far) = part.items.split_at_mut(middle);
+    [
+        Part { items: near, limits: below, centers: one },
+        Part { items: far, limits: above[cut].1, centers: other },
+    ]
 }
 
-/// Moves the items that satisfy a condition before the others, and returns their number.
-fn partition(items: &mut [Item], is_first: impl Fn(&Item) -> bool) -> usize {
+/// Moves the items that satisfy a condition before the others. Returns their number, and the limits of twice the
+/// centers of both.
+fn partition(items: &mut [Item], is_first: impl Fn(&Item) -> bool) -> (usize, [Limits; 2]) {
     let (mut start, mut end) = (0, items.len());
+    let [mut first, mut second] = [NOTHING; 2];
     loop {
         while start < end && is_first(&items[start]) {
+            first = join(&first, &items[start].centers());
             start += 1;
         }
         while start < end && !is_first(&items[end - 1]) {
+            second = join(&second, &items[end - 1].centers());
             end -= 1;
         }
         if start == end {
-            return start;
+            return (start, [first, second]);
         }
         items.swap(start, end - 1);
     }

@@ -3,6 +3,8 @@
 mod beam;
 mod build;
 mod node;
+mod packet;
 mod tree;
 
+pub use packet::{PacketVisitor, visit};
 pub use tree::{Bvh, Stack};

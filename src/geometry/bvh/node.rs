@@ -28,18 +28,35 @@ pub struct Node {
     planes: [[[u8; WIDTH]; 2]; 3],
     /// The binary logarithms of the steps, in world units.
     exponents: [i16; 3],
-    /// A bit for each child that is a node.
+    /// The number of children that are nodes, which come before the others.
     pub nodes: u8,
-    /// A bit for each child.
-    pub children: u8,
+    /// The number of children.
+    children: u8,
 }
 
-/// The distances at which a beam enters the boxes of a node's children, in world units, and a bit for each child whose
-/// box it enters.
-pub type Entered = ([f64; WIDTH], u32);
+/// The distances at which a beam enters the boxes of a node's children, in world units, and a byte for each child, the
+/// lowest one for the first: 1 where it enters the box, and else 0.
+pub type Entered = ([f64; WIDTH], u64);
+
+/// Planes on a grid, as a beam meets them.
+struct Planes<'n> {
+    numbers: &'n [u8; WIDTH],
+    /// The distance to plane 0, in world units along the beam.
+    start: f64,
+    /// The distance from one plane to the next.
+    pace: f64,
+}
+
+impl Planes<'_> {
+    /// Returns the distance to the plane of a child, in world units along the beam; NaN where nothing is known of it.
+    #[inline(always)]
+    fn distance(&self, child: usize) -> f64 {
+        self.start + f64::from(self.numbers[child]) * self.pace
+    }
+}
 
 impl Node {
-    /// A node without children.
+    /// A node that is yet to be made.
     pub const EMPTY: Self = Self {
         corner: DVec3::ZERO,
         first_node: 0,
@@ -47,10 +64,10 @@ impl Node {
         planes: [[[0; WIDTH]; 2]; 3],
         exponents: [0; 3],
         nodes: 0,
-        children: 0,
+        children: 1,
     };
 
-    /// Makes a node of up to eight children with these boxes.
+    /// Makes a node of one to eight children with these boxes.
     ///
     /// Each box grows by [`SLACK`] times the largest coordinate of all of them, which is more than the rounding of the
     /// planes and of the distances to them, and of the coordinates of hits.
@@ -82,49 +99,98 @@ impl Node {
                 (node.planes[axis][LOW][child], node.planes[axis][HIGH][child]) = (below as u8, above as u8);
             }
         }
-        node.children = ((1_u32 << boxes.len()) - 1) as u8;
+        node.children = boxes.len() as u8;
         node
     }
 
-    /// Tests the children's boxes against a beam that ends at `t_max`, in world units. Where a bit is 0, no ray of the
-    /// beam enters the box before that.
+    /// Tests the children's boxes against a beam that ends at `t_max`, in world units. Where a child is left out, no ray
+    /// of the beam enters its box before that.
     #[inline(always)]
     pub fn entered(&self, beam: &Beam, t_max: f64) -> Entered {
-        let (mut enters, mut leaves) = ([0.0; WIDTH], [t_max; WIDTH]);
-        for axis in 0..3 {
-            let near = beam.near[axis];
-            let far = near ^ 1;
-            let step = exp2(self.exponents[axis]);
-            // Where a product is NaN, the plane is left out, which is always correct.
-            let (start, pace) = self.to_planes(beam, axis, near, step);
-            let planes = &self.planes[axis][near];
-            for child in 0..WIDTH {
-                enters[child] = larger(start + f64::from(planes[child]) * pace, enters[child]);
-            }
-            let (start, pace) = self.to_planes(beam, axis, far, step);
-            let planes = &self.planes[axis][far];
-            if beam.is_mixed[axis] {
-                for child in 0..WIDTH {
-                    enters[child] = larger(start + f64::from(planes[child]) * pace, enters[child]);
-                }
-            } else {
-                for child in 0..WIDTH {
-                    leaves[child] = smaller(start + f64::from(planes[child]) * pace, leaves[child]);
-                }
-            }
+        if beam.is_mixed != [false; 3] {
+            return self.entered_by_mixed(beam, t_max);
         }
-        let mut bits = 0;
+        let near = [0, 1, 2].map(|axis: usize| self.planes(beam, axis, beam.near[axis]));
+        let far = [0, 1, 2].map(|axis: usize| self.planes(beam, axis, beam.near[axis] ^ 1));
+        let (mut enters, mut is_entered) = ([0.0; WIDTH], [0; WIDTH]);
+        // One loop over all planes of a child, which the compiler takes eight children at a time.
         for child in 0..WIDTH {
-            bits |= u32::from(enters[child] <= leaves[child] * (1.0 + SLACK)) << child;
+            let mut enter = larger(near[0].distance(child), 0.0);
+            enter = larger(near[1].distance(child), enter);
+            enter = larger(near[2].distance(child), enter);
+            let mut leave = smaller(far[0].distance(child), t_max);
+            leave = smaller(far[1].distance(child), leave);
+            leave = smaller(far[2].distance(child), leave);
+            enters[child] = enter;
+            is_entered[child] = u8::from(enter <= leave * (1.0 + SLACK));
         }
-        (enters, bits & u32::from(self.children))
+        self.listed(enters, is_entered)
     }
 
-    /// Returns the distance to plane 0 on a side, and the distance between planes, in world units along the beam.
+    /// Tests the children's boxes against a beam some of whose rays rise along an axis where others fall.
     #[inline(always)]
-    fn to_planes(&self, beam: &Beam, axis: usize, side: usize, step: f64) -> (f64, f64) {
+    fn entered_by_mixed(&self, beam: &Beam, t_max: f64) -> Entered {
+        let (mut enters, mut leaves, mut is_entered) = ([0.0; WIDTH], [t_max; WIDTH], [0; WIDTH]);
+        for axis in 0..3 {
+            let near = self.planes(beam, axis, beam.near[axis]);
+            let far = self.planes(beam, axis, beam.near[axis] ^ 1);
+            let is_mixed = beam.is_mixed[axis];
+            for child in 0..WIDTH {
+                let distance = far.distance(child);
+                enters[child] = larger(near.distance(child), enters[child]);
+                enters[child] = larger(if is_mixed { distance } else { 0.0 }, enters[child]);
+                leaves[child] = smaller(if is_mixed { t_max } else { distance }, leaves[child]);
+            }
+        }
+        for child in 0..WIDTH {
+            is_entered[child] = u8::from(enters[child] <= leaves[child] * (1.0 + SLACK));
+        }
+        self.listed(enters, is_entered)
+    }
+
+    /// Lists the children that are entered.
+    #[inline(always)]
+    fn listed(&self, enters: [f64; WIDTH], is_entered: [u8; WIDTH]) -> Entered {
+        (enters, u64::from_le_bytes(is_entered) & (u64::MAX >> (u64::BITS - 8 * u32::from(self.children))))
+    }
+
+    /// Returns the planes of all children on one side, as a beam meets them.
+    #[inline(always)]
+    fn planes(&self, beam: &Beam, axis: usize, side: usize) -> Planes<'_> {
         let inverse = beam.inverse[side][axis];
-        ((self.corner[axis] - beam.from[side][axis]) * inverse, step * inverse)
+        Planes {
+            numbers: &self.planes[axis][side],
+            start: (self.corner[axis] - beam.from[side][axis]) * inverse,
+            pace: exp2(self.exponents[axis]) * inverse,
+        }
+    }
+
+    /// Returns whether a child is a node, and its place among all nodes or among all objects.
+    #[inline(always)]
+    pub fn child(&self, child: u32) -> (bool, u32) {
+        let nodes = u32::from(self.nodes);
+        if child < nodes {
+            (true, self.first_node + child)
+        } else {
+            (false, self.first_object + child - nodes)
+        }
+    }
+
+    /// Returns the box of a child.
+    #[inline(always)]
+    pub fn bounds(&self, child: usize) -> Aabb {
+        let at = |side: usize| {
+            let offset = |axis: usize| f64::from(self.planes[axis][side][child]) * exp2(self.exponents[axis]);
+            self.corner + DVec3::new(offset(0), offset(1), offset(2))
+        };
+        Aabb { low: at(LOW), high: at(HIGH) }
+    }
+
+    /// Returns the largest size of the node along any axis, in world units, to a factor of 2.
+    #[inline(always)]
+    pub fn size(&self) -> f64 {
+        let [x, y, z] = self.exponents;
+        STEPS * exp2(x.max(y).max(z))
     }
 }
 

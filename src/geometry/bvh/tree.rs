@@ -3,7 +3,7 @@
 use crate::geometry::aabb::{Aabb, SLACK};
 use crate::geometry::bvh::beam::Beam;
 use crate::geometry::bvh::build;
-use crate::geometry::bvh::node::Node;
+use crate::geometry::bvh::node::{Entered, Node, WIDTH};
 use crate::geometry::ray::Ray;
 use crate::simd::cpu::{Cpu, kernels};
 
@@ -24,14 +24,24 @@ pub(super) struct Ahead {
     pub enters: f64,
     /// The index of a node, or with [`OBJECT`] the position of an object.
     pub child: u32,
+    /// The index of the parent and the child's place in it, for objects: eight times the one, plus the other.
+    pub place: u32,
 }
 
 /// The bit that tells an object from a node.
 pub(super) const OBJECT: u32 = 1 << 31;
 
+/// The number of objects for which [`Ahead::place`] has room.
+const MOST: usize = 1 << 29;
+
 /// The scratch space of searches, which is reused from one search to the next.
 #[derive(Default)]
-pub struct Stack(pub(super) Vec<Ahead>);
+pub struct Stack {
+    /// What is still to be visited, the next one last.
+    pub(super) ahead: Vec<Ahead>,
+    /// The reciprocals of the directions of the current rays.
+    pub(super) inverse: [Vec<f64>; 3],
+}
 
 impl Bvh {
     /// Builds the hierarchy of objects, given by their boxes, on all threads.
@@ -40,9 +50,9 @@ impl Bvh {
     ///
     /// # Panics
     ///
-    /// If there are 2^31 boxes or more.
+    /// If there are 2^29 boxes or more.
     pub fn new(boxes: &[Aabb]) -> Self {
-        assert!(boxes.len() < OBJECT as usize, "{} boxes are too many", boxes.len());
+        assert!(boxes.len() < MOST, "{} boxes are too many", boxes.len());
         let build::Parts { mut nodes, mut objects } = build::build(boxes);
         nodes.shrink_to_fit();
         objects.shrink_to_fit();
@@ -97,7 +107,7 @@ kernels! {
         if tree.nodes.is_empty() {
             return;
         }
-        let stack = &mut stack.0;
+        let stack = &mut stack.ahead;
         let start = stack.len();
         descend(tree, stack, &Beam::of(ray), 0, t_max, visit);
         stack.truncate(start);
@@ -117,12 +127,12 @@ pub(super) fn descend(
     let start = stack.len();
     let mut node = &tree.nodes[root as usize];
     loop {
-        push(stack, node, node.entered(beam, t_max));
+        push(stack, node, 0, node.entered(beam, t_max));
         node = loop {
             if stack.len() == start {
                 return t_max;
             }
-            let Some(Ahead { enters, child }) = stack.pop() else { return t_max };
+            let Some(Ahead { enters, child, .. }) = stack.pop() else { return t_max };
             if enters > t_max * (1.0 + SLACK) {
                 continue;
             }
@@ -134,22 +144,19 @@ pub(super) fn descend(
     }
 }
 
-/// Pushes the children that are entered, the nearest one last.
+/// Pushes the children that are entered of a node of this index, the nearest one last.
 #[inline(always)]
-pub(super) fn push(stack: &mut Vec<Ahead>, node: &Node, (enters, mut bits): ([f64; 8], u32)) {
+pub(super) fn push(stack: &mut Vec<Ahead>, node: &Node, index: u32, (enters, mut bits): Entered) {
     let start = stack.len();
     while bits != 0 {
-        let child = bits.trailing_zeros();
+        let child = bits.trailing_zeros() / u8::BITS;
         bits &= bits - 1;
-        let before = (1_u32 << child) - 1;
-        let nodes = u32::from(node.nodes);
-        let next = if nodes >> child & 1 != 0 {
-            node.first_node + (nodes & before).count_ones()
-        } else {
-            let objects = u32::from(node.children) & !nodes;
-            (node.first_object + (objects & before).count_ones()) | OBJECT
+        let (is_node, place) = node.child(child);
+        let next = Ahead {
+            enters: enters[child as usize % WIDTH],
+            child: if is_node { place } else { place | OBJECT },
+            place: WIDTH as u32 * index + child,
         };
-        let next = Ahead { enters: enters[child as usize & 7], child: next };
         // Few children are entered, and sorting them by insertion is quickest.
         let mut place = stack.len();
         stack.push(next);
@@ -164,11 +171,12 @@ pub(super) fn push(stack: &mut Vec<Ahead>, node: &Node, (enters, mut bits): ([f6
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::aabb::any_meets;
-    use crate::geometry::ray_packet::RayPacket;
-    use crate::simd::soa::Vectors;
+    use crate::geometry::bvh::packet::{PacketVisitor, visit};
+    use crate::geometry::ray_packet::{PACKET_SIZE, RayPacket};
+    use crate::simd::soa::{LANES, Vectors};
     use glam::DVec3;
     use proptest::prelude::*;
+    use std::ops::Range;
 
     /// Generates coordinates like those of scenes, 0 among them.
     fn number() -> impl Strategy<Value = f64> {
@@ -205,6 +213,44 @@ mod tests {
         visited
     }
 
+    /// Tells whether a ray enters a box before `t_max` by more than rounding.
+    fn enters(ray: &Ray, t_max: f64, bounds: &Aabb) -> bool {
+        let inverse = ray.dir.recip();
+        let (mut enter, mut leave) = (0.0_f64, t_max);
+        for axis in 0..3 {
+            let [low, high] =
+                [bounds.low, bounds.high].map(|at| (at[axis] - ray.origin[axis]) * inverse[axis]);
+            if ray.dir[axis] == 0.0 {
+                let from = ray.origin[axis];
+                leave = if bounds.low[axis] <= from && from <= bounds.high[axis] { leave } else { -1.0 };
+            } else {
+                (enter, leave) = (enter.max(low.min(high)), leave.min(low.max(high)));
+            }
+        }
+        enter <= leave
+    }
+
+    /// Counts how often each ray is tested against each object.
+    struct Counter<'c> {
+        t_max: &'c [f64],
+        tests: Vec<Vec<u32>>,
+    }
+
+    impl PacketVisitor for Counter<'_> {
+        fn t_max(&self) -> &[f64] {
+            self.t_max
+        }
+
+        fn test(&mut self, object: usize, lanes: Range<usize>) {
+            assert_eq!((lanes.start % LANES, lanes.end % LANES), (0, 0));
+            lanes.for_each(|lane| self.test_one(object, lane));
+        }
+
+        fn test_one(&mut self, object: usize, lane: usize) {
+            self.tests[object][lane] += 1;
+        }
+    }
+
     proptest! {
         #[test]
         fn an_object_is_visited_once_where_a_ray_enters_its_box(
@@ -214,19 +260,43 @@ mod tests {
         ) {
             prop_assume!((to - from).try_normalize().is_some());
             let (ray, tree) = (Ray { origin: from, dir: (to - from).normalize() }, Bvh::new(&boxes));
-            let (mut origin, mut dir, mut inverse) = (Vectors::<8>::ZERO, Vectors::<8>::ZERO, Vectors::<8>::ZERO);
-            for lane in 0..8 {
-                origin.set(lane, ray.origin);
-                dir.set(lane, ray.dir);
-                inverse.set(lane, ray.dir.recip());
-            }
-            let rays = RayPacket { origin: origin.view(8), dir: dir.view(8), origin_error: 0.0 };
             for cpu in Cpu::all() {
                 let visited = visited(&tree, cpu, &ray, t_max);
                 for (index, bounds) in boxes.iter().enumerate() {
                     let times = visited.iter().filter(|visited| **visited == index).count();
-                    let is_entered = any_meets(cpu, rays, inverse.view(8), &[t_max; 8], bounds);
-                    prop_assert!(times == 1 || times == 0 && !is_entered, "{index}: {times} times");
+                    prop_assert!(times == 1 || times == 0 && !enters(&ray, t_max, bounds), "{index}: {times} times");
+                }
+            }
+        }
+
+        #[test]
+        fn a_packet_visits_what_its_rays_visit(
+            boxes in prop::collection::vec(bounds(), 1..200),
+            (from, to, spread) in (point(), point(), prop_oneof![Just(0.0), 0.0..0.1, 0.0..1e3]),
+            ways in prop::collection::vec((point(), point(), any::<bool>()), 1..PACKET_SIZE),
+        ) {
+            let count = ways.len().next_multiple_of(LANES);
+            let (mut origin, mut dir) = (Vectors::<PACKET_SIZE>::ZERO, Vectors::<PACKET_SIZE>::ZERO);
+            let mut t_max = vec![0.0; count];
+            for lane in 0..count {
+                let (one, other, ends) = ways[lane.min(ways.len() - 1)];
+                // Rays near one another, or anywhere.
+                let (from, to) = (from + spread * 1e-6 * one, to + spread * 1e-6 * other);
+                origin.set(lane, from);
+                dir.set(lane, (to - from).try_normalize().unwrap_or(DVec3::X));
+                t_max[lane] = if ends { 0.0 } else { (to - from).length() };
+            }
+            let rays = RayPacket { origin: origin.view(count), dir: dir.view(count), origin_error: 0.0 };
+            let tree = Bvh::new(&boxes);
+            for cpu in Cpu::all() {
+                let mut counter = Counter { t_max: &t_max, tests: vec![vec![0; count]; boxes.len()] };
+                visit(cpu, &tree, &mut Stack::default(), rays, &mut counter);
+                for (index, bounds) in boxes.iter().enumerate() {
+                    for lane in 0..count {
+                        let times = counter.tests[index][lane];
+                        let is_entered = t_max[lane] > 0.0 && enters(&rays.get(lane), t_max[lane], bounds);
+                        prop_assert!(times == 1 || times == 0 && !is_entered, "{index}, {lane}: {times} times");
+                    }
                 }
             }
         }
