@@ -8,12 +8,13 @@ use super::scratch::LightScratch;
 use super::shadow_rays::LightPaths;
 use super::surface::Surface;
 use crate::geometry::aabb::{self, Aabb};
+use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::render::observer::{Event, Outcome, TraceObserver};
 use crate::scene::model::Object;
 use crate::world::light_samples::{LightSamples, ShadingPoints};
 use crate::world::material::Rgb;
 use crate::world::packets::light::PacketLight;
-use glam::DVec2;
+use crate::world::sample;
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
     /// Adds the contributions of all lights.
@@ -154,13 +155,17 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     ) {
         let (middle, size) = (light.location(), light.size());
         lights.fill(group.padded(), middle);
-        for lane in 0..group.padded() {
-            let camera = group.camera.get(lane).map(|camera| usize::from(*camera));
-            let Some(sample) = camera.and_then(|camera| self.scratch.samples.get(camera)) else { continue };
+        let Some(first) = self.scratch.samples.first() else { return };
+        let (mut samples, [mut x, mut y]) = ([*first; PACKET_SIZE], [[0.0; PACKET_SIZE]; 2]);
+        let count = group.camera.len().min(group.padded());
+        for (sample, camera) in samples.iter_mut().zip(&group.camera[..count]) {
+            *sample = self.scratch.samples[usize::from(*camera)];
+        }
+        sample::on_lights(self.cpu, &samples[..count], index, &mut x[..count], &mut y[..count]);
+        for lane in 0..count {
             let Some(axis) = (middle - surface.points.get(lane)).try_normalize() else { continue };
             let (across, up) = axis.any_orthonormal_pair();
-            let DVec2 { x, y } = sample.on_light(index);
-            let (radius, angle) = (size * x.sqrt(), std::f64::consts::TAU * y);
+            let (radius, angle) = (size * x[lane].sqrt(), std::f64::consts::TAU * y[lane]);
             lights.set(lane, middle + radius * (libm::cos(angle) * across + libm::sin(angle) * up));
         }
     }
