@@ -1,4 +1,4 @@
-//! The number types of the truth, against correctly rounded numbers of 160 bits.
+//! The number types of the truth, compared with correctly rounded numbers of 160 bits.
 
 use crate::oracle::rays::Random;
 use dashu_float::FBig;
