@@ -79,7 +79,11 @@ fn a_plane_is_hit_once_and_not_from_along_it_or_behind_the_eye() {
     assert_eq!(distance(&*floor, eye, dvec3(0.0, -1.0, 0.0)), 4.0);
     assert_eq!(distance(&*floor, eye, dvec3(3.0, 0.0, -4.0)), MISS, "parallel");
     assert_eq!(distance(&*floor, eye, dvec3(0.0, 1.0, 0.0)), MISS, "behind the eye");
-    assert_eq!(distance(&*floor, dvec3(4.0, 3.0, 6.0), dvec3(0.0, -1.0, 0.0)), MISS, "before the screen");
+    assert_eq!(
+        distance(&*floor, dvec3(4.0, 3.0, 6.0), dvec3(0.0, -1.0, 0.0)),
+        MISS,
+        "in front of the image plane"
+    );
     assert_eq!(floor.normal(DVec3::ZERO), DVec3::Y);
 }
 

@@ -99,7 +99,7 @@ fn naive_tile(x: f64) -> i32 {
 #[test]
 fn tiles_are_as_wide_at_negative_far_coordinates() {
     assert_eq!((naive_tile(-500.49), naive_tile(-499.51)), (0, 0), "a tile of twice the width");
-    assert_eq!(naive_tile(1.1e9), naive_tile(2e9), "one tile to the end of the world");
+    assert_eq!(naive_tile(1.1e9), naive_tile(2e9), "one tile for all larger coordinates");
     assert_eq!(naive_tile(2e9).checked_add(naive_tile(2e9)), None);
     let floor = model(&text("", "pplane p { material m normal 0 1 0 point 0 0 0 shader 0 }"));
     let is_cyan = |x: f64, z: f64| look(&floor, dvec3(x, 0.0, z)).x == 0.0;

@@ -33,7 +33,7 @@ fn a_ray_that_grazes_the_vase_hits() {
         let steps = (far / 0.1).ceil();
         let outside = |step: f64| VASE.outside(eye + far * step / steps * DOWN_Z) > 0.0;
         let seen = (0..=steps as i64).any(|step| !outside(step as f64));
-        assert_eq!(seen, depth > 1e-3, "by steps at a depth of {depth:e}");
+        assert_eq!(seen, depth > 1e-3, "found by steps at a depth of {depth:e}");
         let hit = distance(&*vase, eye, DOWN_Z);
         assert!((hit - truth).abs() < range, "{hit} is not {truth} at a depth of {depth:e}");
     }
@@ -220,7 +220,7 @@ fn a_profile_with_a_pole_is_refused() {
         let message = refusal(&format!("{object} \"{formula}\" }}"));
         assert!(message.contains("profile"), "{message}");
         let without_source: String = message.lines().filter(|line| !line.contains(formula)).collect();
-        assert!(without_source.contains(names), "no word of y = {names} in {message}");
+        assert!(without_source.contains(names), "y = {names} is not mentioned in {message}");
     }
 }
 
