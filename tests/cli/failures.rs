@@ -180,7 +180,7 @@ fn too_few_open_files_are_a_failure_of_whatever_needs_one() {
             break;
         }
         assert!(matches!(status, Some(1 | 2 | 127)), "{line}");
-        // With even fewer, the program is not even started.
+        // With even fewer files, the shell cannot start the program.
         if status != Some(127) {
             told.insert(line);
         }

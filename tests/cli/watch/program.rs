@@ -126,7 +126,7 @@ impl Events {
     /// Returns the name and the data of the next event.
     pub fn next(&mut self) -> (String, String) {
         let mut line = self.line();
-        // After a minute without an event, a line says so.
+        // After a minute without events, the program sends a line with a colon.
         while line == ":" {
             assert_eq!(self.line(), "");
             line = self.line();
