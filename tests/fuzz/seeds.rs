@@ -1,11 +1,12 @@
-//! Writes what fuzzing starts from: the project's scenes as corpora, and the words of its tables as a dictionary.
+//! Writes the inputs that fuzzing starts from: the project's scenes as corpora, and the words of its tables as a
+//! dictionary.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 use tabray::scene::Registry;
 
-/// The files below a folder, in the order of their names.
+/// Returns the files below a folder, sorted by path.
 fn files(folder: &Path) -> io::Result<Vec<PathBuf>> {
     let mut paths = fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<io::Result<Vec<_>>>()?;
     paths.sort();

@@ -1,4 +1,5 @@
-//! What is done with the bytes that a fuzzer makes up. Each function is a target; it panics where a promise is broken.
+//! The fuzzing targets. Each target is a function of the bytes that a fuzzer generates, and panics if a promise is
+//! broken.
 #![allow(dead_code, reason = "each program uses one of these functions")]
 
 use std::fs;
@@ -14,15 +15,15 @@ use tempfile::NamedTempFile;
 
 const SYNTAXES: [Syntax; 2] = [Syntax::Notes, Syntax::Toml];
 
-/// The longest list of messages that may come of one scene, in bytes.
+/// The maximum length of the messages about one scene, in bytes.
 const LONGEST_REPORT: usize = 1 << 20;
 
-/// A scene in the notes' syntax: it is refused with messages, or its dump is a scene with the same dump.
+/// Reads a scene in the notes' syntax: it is refused with messages, or its dump is a scene with the same dump.
 pub fn notes(bytes: &[u8]) {
     load_and_dump("scene.ray", bytes);
 }
 
-/// As [`notes`], for a scene in TOML.
+/// Reads a scene in TOML, which must satisfy the same as [`notes`].
 pub fn toml(bytes: &[u8]) {
     load_and_dump("scene.toml", bytes);
 }
@@ -39,7 +40,7 @@ fn load_and_dump(name: &str, bytes: &[u8]) {
     }
 }
 
-/// The model of a scene, or nothing where it is refused. File names start from the folder of the project's scenes.
+/// Returns the model of a scene, or nothing if it is refused. File names are relative to the project's folder `scenes`.
 fn load(name: &str, bytes: &[u8], accuracy: Option<Accuracy>) -> Option<Loaded> {
     static REGISTRY: LazyLock<&Registry> =
         LazyLock::new(|| Registry::get().expect("no two plugins claim one name"));
@@ -57,7 +58,7 @@ fn load(name: &str, bytes: &[u8], accuracy: Option<Accuracy>) -> Option<Loaded> 
     }
 }
 
-/// A formula, evaluated with every type of number.
+/// Evaluates a formula with every number type.
 pub fn formula(bytes: &[u8]) {
     let Ok(formula) = str::from_utf8(bytes).map_err(drop).and_then(|text| Formula::parse(text).map_err(drop))
     else {
@@ -84,12 +85,12 @@ pub fn formula(bytes: &[u8]) {
     }
 }
 
-/// Whether something is an interval: its ends are in their order.
+/// Asserts that the ends of an interval are in order.
 fn holds(Interval { low, high }: Interval<f64>) {
     assert!(low <= high, "{low} to {high}");
 }
 
-/// The file of a texture, which is read or refused with a reason.
+/// Reads the file of a texture, which is accepted or refused with a reason.
 pub fn texture(bytes: &[u8]) {
     let file = NamedTempFile::new_in("/dev/shm").or_else(|_| NamedTempFile::new()).expect("a temporary file");
     fs::write(&file, bytes).expect("it is written");
@@ -102,11 +103,12 @@ pub fn texture(bytes: &[u8]) {
     load("scene.ray", scene.as_bytes(), None);
 }
 
-/// A renderer for each kind of processor that this one can be.
+/// A renderer for each instruction set of this machine.
 static RENDERERS: LazyLock<Vec<Renderer>> =
     LazyLock::new(|| Cpu::all().map(|cpu| Renderer::new(1).expect("a thread").on(cpu)).collect());
 
-/// A scene, rendered small: packets of rays on every kind of processor, pixels alone, and nothing that is no number.
+/// Renders a small image of a scene: packets of rays, with every instruction set, give the same bytes as single rays,
+/// and no colour is NaN.
 pub fn render(bytes: &[u8]) {
     let [kind, text @ ..] = bytes else { return };
     let accuracy = Accuracy::ALL[usize::from(kind % 4)];
@@ -125,7 +127,7 @@ pub fn render(bytes: &[u8]) {
         assert!(!colour.is_nan(), "pixel {x} {y} has the colour {colour}");
         colour.to_array().map(to_byte)
     };
-    // On a renderer's thread, whose stack is as large as deep reflections need.
+    // The pixels are computed on a renderer's thread, whose stack has room for deep reflections.
     let alone = RENDERERS[0].run(|| {
         let pixels = (0..height).rev().flat_map(|y| (0..width).map(move |x| (x, y)));
         pixels.flat_map(|(x, y)| pixel(x, y)).collect::<Vec<u8>>()
