@@ -189,7 +189,7 @@ fn too_few_open_files_are_a_failure_of_whatever_needs_one() {
     assert_eq!(Vec::from_iter(told), said.map(|said| format!("error: {said}: too many open files\n")));
 }
 
-/// Another user, who may read this folder and its contents, and change nothing.
+/// Another user, who may read this folder and its contents but change nothing.
 struct Guest {
     folder: TempDir,
 }

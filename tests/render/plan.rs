@@ -310,7 +310,7 @@ fn statistics_go_to_standard_error_and_change_nothing_else() {
         assert!(stats["seconds"][stage].as_f64() >= Some(0.0), "{stage}: {err}");
     }
     if cfg!(target_os = "linux") {
-        // At least the image itself, and less than a machine has.
+        // The peak is at least the image itself, and less than a machine has.
         assert!((160 * 120 * 3..1 << 34).contains(&stats["peak_memory"].as_u64().expect("bytes")), "{err}");
     }
 

@@ -25,7 +25,7 @@ fn what_is_in_the_entities_own_scenes_keeps_its_contract() {
     }
 }
 
-/// The template of a shape from `tabray new plugin`: its sides are flat at their centres to the fourth order.
+/// The shape of the template that `tabray new plugin` writes: its sides are flat to the fourth order at their centres.
 struct RoundCube(f64);
 
 impl Implicit for RoundCube {

@@ -112,7 +112,7 @@ impl Quartic {
         value(&self.coefficients, distance - self.start)
     }
 
-    /// Returns the distances of all roots in order, each with whether the ray enters there; `None` if the ray is so
+    /// Returns the distances of all roots in order, and for each whether the ray enters there; `None` if the ray is so
     /// nearly tangent to the torus that rounding decides.
     fn crossings(&self) -> Option<Vec<(f64, bool)>> {
         let turns = roots(&derivative(&self.coefficients));
@@ -372,7 +372,7 @@ fn the_box_cuts_and_shows_the_inside() {
     assert!((hit(DVec3::new(-3.0, 0.0, 0.0), DVec3::X, None) - 2.0).abs() < 1e-15);
 }
 
-/// The template of a shape from `tabray new plugin`.
+/// The shape of the template that `tabray new plugin` writes.
 struct RoundCube;
 
 impl Formula for RoundCube {
@@ -381,7 +381,7 @@ impl Formula for RoundCube {
     }
 }
 
-/// The function along such a ray is x^4 and a constant. It is computed in 300 bits for constants from 1e-2 to 1e-18.
+/// The function along such a ray is x^4 plus a constant. The constant, from 1e-2 to 1e-18, is computed in 300 bits.
 #[test]
 fn a_tangency_of_the_fourth_order_is_told_from_a_miss() {
     let real = |value: f64| FBig::<HalfEven>::try_from(value).expect("finite").with_precision(300).value();

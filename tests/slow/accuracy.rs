@@ -179,7 +179,7 @@ fn revolution_table(set: &str, text: &mut String) {
             if !formula.contains("floor") {
                 return off;
             }
-            // It may have hit a step, and so be near to a whole height.
+            // The ray may have hit a step, so that the point is close to an integer height.
             let height = surface.height_at(ray, distance);
             off.min((height - height.round()).abs())
         };

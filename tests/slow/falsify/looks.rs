@@ -125,7 +125,7 @@ fn leak(random: &mut Random, renderer: &Renderer) -> Looks {
     );
     let mut looks = alike(&before, center, radius, renderer);
     if away > radius {
-        // No light comes in.
+        // No light enters the sphere.
         let text = format!("{before}{}\n", balls(center, radius)[0]);
         let lit = picture(&text, renderer).iter().filter(|seen| **seen != [0; 3]).count();
         if lit > 0 {

@@ -115,7 +115,7 @@ pub fn ellipsoids(random: &mut Random) -> Question {
     if random.once_in(4) { aim.picture(&objects) } else { aim.many(random, &objects) }
 }
 
-/// Touched by the ray but for an offset.
+/// Returns a scene of an ellipsoid that the ray is tangent to up to an offset.
 pub fn ellipsoid_tangents(random: &mut Random) -> Question {
     let aim = Aim::new(random, 9.0);
     let (scale, radius) = (stretch(random), size(random, &aim));
@@ -192,7 +192,7 @@ pub fn quadrics(random: &mut Random) -> Question {
     if random.once_in(4) { aim.picture(&objects) } else { aim.many(random, &objects) }
 }
 
-/// Touched by the ray but for an offset.
+/// Returns a scene of a quadric that the ray is tangent to up to an offset.
 pub fn quadric_tangents(random: &mut Random) -> Question {
     let aim = Aim::new(random, 6.0);
     let mut k = coefficients(random);
