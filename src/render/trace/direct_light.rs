@@ -145,9 +145,6 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
 
     /// Samples the point of a light that each point of a surface sees: on the disc around the light's centre that faces
     /// the point, where the primary ray's sample chooses.
-    ///
-    /// Not inline: the numbers of a packet are on the stack, which the callers recurse on.
-    #[inline(never)]
     fn sample_light(
         &self,
         light: &dyn PacketLight,
