@@ -96,8 +96,10 @@ const PORT: u16 = 3000;
 pub struct Server {
     /// The address of the page, with the token.
     pub url: String,
-    respond: Box<dyn Fn(&[u8]) -> Served>,
+    respond: Respond,
 }
+
+type Respond = Box<dyn Fn(&[u8]) -> Served>;
 
 /// What came of a connection.
 pub struct Served {
