@@ -204,3 +204,36 @@ impl<S: Equation, F: Float> Search<'_, S, F> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use f256::f256;
+    use glam::DVec3;
+    use std::cell::Cell;
+
+    /// A profile's step at x = 0.3, and the number of times that it was evaluated.
+    struct Step(Cell<usize>);
+
+    impl Equation for Step {
+        fn value<N: Scalar>(&self, [x, _, _]: [N; 3]) -> N {
+            self.0.set(self.0.get() + 1);
+            (x - N::constant(0.3)).floor() + N::constant(0.5)
+        }
+
+        fn extent(&self) -> [DVec3; 2] {
+            [DVec3::NEG_ONE, DVec3::ONE]
+        }
+    }
+
+    #[test]
+    fn a_jump_is_left_in_doubt_after_a_few_pieces() {
+        let step = Step(Cell::new(0));
+        let [origin, dir] = [[-2.0, 0.0, 0.0], [1.0, 0.0, 0.0]].map(|of| of.map(Interval::<f256>::constant));
+        let Found::Doubtful(from) = first_hit(&step, &Line { origin, dir }) else {
+            panic!("a jump is no root")
+        };
+        assert!((from.to_f64() - 2.3).abs() < 1e-15, "{from:?}");
+        assert!(step.0.get() < 200, "{} evaluations", step.0.get());
+    }
+}
