@@ -93,6 +93,8 @@ pub(crate) fn on_lights(cpu: Cpu, samples: &[Sample], light: usize, x: &mut [f64
 }
 
 /// Writes the numbers that [`Sample::draw`] returns for each sample. All samples have the sampler of the first.
+// Its arrays stay off the stacks of deep reflections.
+#[inline(never)]
 fn draw(cpu: Cpu, samples: &[Sample], purpose: u32, x: &mut [f64], y: &mut [f64]) {
     const CHUNK: usize = 64;
     let (mut index, mut seed) = ([0; CHUNK], [0; CHUNK]);

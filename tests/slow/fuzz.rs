@@ -4,7 +4,7 @@ use crate::common::{root, scenes};
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use std::fs;
-use target::{formula, notes, render, texture, toml};
+use target::{TO_REVIEW, TO_WATCH, checkpoint, formula, notes, render, review, texture, toml, watch};
 
 #[path = "../fuzz/target.rs"]
 mod target;
@@ -88,4 +88,28 @@ fn scenes_are_refused_or_rendered_alike_by_packets_and_by_single_rays() {
         })
         .collect();
     run(render, &seeds, 300);
+}
+
+#[test]
+fn checkpoints_are_refused_or_continued_from() {
+    let changes = [0u8, 1, 2].map(|kind| {
+        let mut random = Pcg32::seed_from_u64(u64::from(kind));
+        let changes = (0..8).flat_map(|_| random.next_u32().to_le_bytes());
+        [kind].into_iter().chain(changes).collect()
+    });
+    run(checkpoint, &changes, 20_000);
+}
+
+fn seeds(requests: &[&str]) -> Vec<Vec<u8>> {
+    requests.iter().map(|request| request.as_bytes().to_vec()).collect()
+}
+
+#[test]
+fn requests_to_watch_are_refused_or_answered() {
+    run(watch, &seeds(&TO_WATCH), 4000);
+}
+
+#[test]
+fn requests_to_review_are_refused_or_answered() {
+    run(review, &seeds(&TO_REVIEW), 4000);
 }

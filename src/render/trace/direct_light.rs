@@ -4,11 +4,10 @@ use super::arrays::{VectorList, resized};
 use super::context::Tracer;
 use super::light::{self, Colours, Lit, Reflectivities};
 use super::ray_group::RayGroup;
-use super::scratch::LightScratch;
+use super::scratch::{LightDraws, LightScratch};
 use super::shadow_rays::LightPaths;
 use super::surface::Surface;
 use crate::geometry::aabb::{self, Aabb};
-use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::render::observer::{Event, Outcome, TraceObserver};
 use crate::scene::model::Object;
 use crate::world::light_samples::{LightSamples, ShadingPoints};
@@ -65,6 +64,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let LightScratch {
             diffuse,
             lights,
+            draws,
             toward,
             cos_over_distance,
             t_max,
@@ -78,7 +78,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let source = if is_point {
             Aabb { low: light.location(), high: light.location() }
         } else {
-            self.sample_light(light, index, group, surface, lights);
+            self.sample_light(light, index, group, surface, (lights, draws));
             aabb::around(cpu, lights.view(count))
         };
         let lights = (!is_point).then(|| lights.view(count));
@@ -145,26 +145,25 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
 
     /// Samples the point of a light that each point of a surface sees: on the disc around the light's centre that faces
     /// the point, where the primary ray's sample chooses.
-    ///
-    /// Not inline: the numbers of a packet are on the stack, which the callers recurse on.
-    #[inline(never)]
     fn sample_light(
         &self,
         light: &dyn PacketLight,
         index: usize,
         group: &RayGroup,
         surface: &Surface,
-        lights: &mut VectorList,
+        (lights, draws): (&mut VectorList, &mut LightDraws),
     ) {
         let (middle, size) = (light.location(), light.size());
         lights.fill(group.padded(), middle);
-        let Some(first) = self.scratch.samples.first() else { return };
-        let (mut samples, [mut x, mut y]) = ([*first; PACKET_SIZE], [[0.0; PACKET_SIZE]; 2]);
-        let count = group.camera.len().min(group.padded());
-        for (sample, camera) in samples.iter_mut().zip(&group.camera[..count]) {
-            *sample = self.scratch.samples[usize::from(*camera)];
+        if self.scratch.samples.is_empty() {
+            return;
         }
-        sample::on_lights(self.cpu, &samples[..count], index, &mut x[..count], &mut y[..count]);
+        let count = group.camera.len().min(group.padded());
+        let LightDraws { samples, places: [x, y] } = draws;
+        samples.clear();
+        samples.extend(group.camera[..count].iter().map(|camera| self.scratch.samples[usize::from(*camera)]));
+        let (x, y) = (resized(x, count), resized(y, count));
+        sample::on_lights(self.cpu, samples, index, x, y);
         for lane in 0..count {
             let Some(axis) = (middle - surface.points.get(lane)).try_normalize() else { continue };
             let (across, up) = axis.any_orthonormal_pair();
