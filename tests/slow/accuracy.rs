@@ -264,7 +264,7 @@ fn hard_table(text: &mut String) {
     }
 }
 
-/// Writes a number with one decimal place, from 100 on as a power of ten.
+/// Writes a number with one decimal place, in scientific notation from 100 on.
 fn short(number: f64) -> String {
     if number < 100.0 { format!("{number:.1}") } else { format!("{number:.1e}") }
 }

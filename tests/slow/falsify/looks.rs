@@ -252,8 +252,8 @@ fn seam(random: &mut Random, renderer: &Renderer) -> Looks {
         numbers(on_wall),
         numbers(lamp),
     );
-    // Planes are not hit in front of the image plane. Through that part of the floor one sees shadows of the part
-    // behind it.
+    // Planes are not hit in front of the image plane. Through the unseen part of the floor, one sees the shadow of the
+    // rest of the floor.
     dots(text, renderer)
 }
 
