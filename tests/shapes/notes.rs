@@ -55,8 +55,8 @@ fn a_ray_goes_from_the_viewpoint_through_its_pixel() {
 }
 
 // The sections from "The cross product of two vectors" to "Constructing rotation matrices" are glam's, too; its
-// matrices consist of columns, and those of the notes of rows. The notes print (1, 0, -1) for the cross product of (1,
-// 1, 1) and (0, -1, 0), which is right.
+// matrices consist of columns, and those of the notes of rows. The notes print (1, 0, -1), which is right, for the
+// cross product of (1, 1, 1) and (0, -1, 0).
 
 // "Determining if a ray hits a plane", "Determining if a ray hits a sphere"
 

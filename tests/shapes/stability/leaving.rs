@@ -72,7 +72,7 @@ fn leaves_without_meeting_itself(line: &Line, away: f64, rounding: f64) {
         judged_inside += u32::from(line.outside(start.point) < 0.0);
         let hit = next(&*shape, start);
         let told = format!("{hit} from {:?} along {:?}", start.point.to_array(), start.dir.to_array());
-        // A true hit comes from outside: half way to it, the ray is outside the surface by more than rounding.
+        // A true hit comes from outside: halfway to it, the ray is outside the surface by more than rounding.
         let half_way = line.outside(start.point + 0.5 * hit * start.dir);
         if hit < MISS && (hit <= 0.0 || half_way <= -rounding || (hit < 1e-3 && half_way <= rounding)) {
             met_itself.push(told.clone());

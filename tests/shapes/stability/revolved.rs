@@ -174,7 +174,8 @@ fn the_apex_of_a_cone_has_a_normal() {
     assert!(cone.normal(near).abs_diff_eq(expected, 1e-15), "{}", cone.normal(near));
 }
 
-/// F21: an open vase shows its inner wall from above, where the normal is turned toward the viewer.
+/// F21: an open vase shows its inner wall from above. The outward normal points away from the viewer there, so the
+/// surface is two-sided.
 #[test]
 fn the_inner_wall_of_a_vase_is_seen_from_above() {
     let vase = VASE.shape();
@@ -203,8 +204,8 @@ fn a_ray_parallel_to_the_axis_hits() {
     assert!(!closest.is_finite());
     holds(distance(&*VASE.shape(), eye, dir), 5.0 + FRAC_PI_6, 2.0);
     assert_eq!(distance(&*VASE.shape(), dvec3(0.0, -5.0, 0.0), dir), MISS, "on the axis");
-    // From above, the ray meets the vase where it has this radius for the second time: at a height of pi - pi/6, 9 -
-    // 2.618 below the eye.
+    // From above, the ray meets the vase where it has this radius for the second time: the height there is pi - pi/6,
+    // which is 2.618, so the distance is 9 - 2.618.
     let from_above = distance(&*VASE.shape(), dvec3(2.5, 9.0, 0.0), DVec3::NEG_Y);
     assert!((from_above - (9.0 - 5.0 * FRAC_PI_6)).abs() < 1e-14, "{from_above}");
 }
@@ -329,7 +330,7 @@ fn no_ray_that_enters_is_missed() {
     }
 }
 
-/// The draft accuracy saves digits, but no hits.
+/// The draft accuracy gives up digits, but no hits.
 #[test]
 fn a_draft_hits_what_is_there() {
     let mut random = Random(8);
@@ -385,7 +386,7 @@ fn pieces(line: &Line, origin: DVec3, dir: DVec3) -> f64 {
     first
 }
 
-/// F23: 10 000 rays at surfaces with kinks and jumps, for which no derivative is right but a list of their pieces is.
+/// F23: 10 000 rays at surfaces with kinks and jumps. The true hits come from a list of the surfaces' pieces.
 #[test]
 fn kinks_and_jumps_are_hit_where_their_pieces_are() {
     let mut random = Random(23);
