@@ -14,7 +14,7 @@ pub use equation::Equation;
 use crate::geometry::sight::Sight;
 use crate::numeric::double_double::DoubleDouble;
 use crate::numeric::interval::{Float, Interval, Wide};
-use equation::Found;
+use equation::{Found, Values};
 use f256::f256;
 
 /// What is certain about a ray's first hit of a shape. Distances are multiples of the length of the sight's direction.
@@ -101,13 +101,9 @@ pub fn first_hit(shape: &impl Equation, sight: &Sight, precision: Precision) -> 
     }
 }
 
-fn solve<F: Float>(shape: &impl Equation, sight: &Sight) -> Found<F> {
+fn solve<F: Float>(shape: &dyn Values<F>, sight: &Sight) -> Found<F> {
     let line = shape.own(sight.line());
-    if is_quadratic(shape) { closed::first_hit(shape, &line) } else { search::first_hit(shape, &line) }
-}
-
-fn is_quadratic<E: Equation>(_: &E) -> bool {
-    E::IS_QUADRATIC
+    if shape.is_quadratic() { closed::first_hit(shape, &line) } else { search::first_hit(shape, &line) }
 }
 
 #[cfg(test)]

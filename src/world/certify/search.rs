@@ -1,6 +1,6 @@
 //! First hits of any surface, by splitting a line until each piece certainly has no root, or exactly one.
 
-use super::equation::{Equation, Found, is_kept};
+use super::equation::{Found, Values, is_kept};
 use crate::geometry::sight::Line;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::{Float, Interval};
@@ -15,7 +15,7 @@ const PIECES: usize = 2000;
 const JUMP: f64 = f64::EPSILON / 16.0;
 
 /// Finds the first hit with t > 0.
-pub fn first_hit<F: Float>(shape: &impl Equation, line: &Line<Interval<F>>) -> Found<F> {
+pub fn first_hit<F: Float>(shape: &dyn Values<F>, line: &Line<Interval<F>>) -> Found<F> {
     let zero = F::of(0.0);
     let Some((from, to)) = clip(shape, line) else { return Found::Misses };
     if !to.is_finite() {
@@ -70,7 +70,7 @@ fn cut<F: Float>(low: F, high: F) -> [(F, F); 2] {
 }
 
 /// Clips a line, from t = 0 on, to the shape's extent. Returns `None` where the line misses the extent.
-fn clip<F: Float>(shape: &impl Equation, line: &Line<Interval<F>>) -> Option<(F, F)> {
+fn clip<F: Float>(shape: &dyn Values<F>, line: &Line<Interval<F>>) -> Option<(F, F)> {
     let [low, high] = shape.extent();
     let (mut from, mut to) = (F::of(0.0), F::INFINITY);
     for axis in 0..3 {
@@ -90,8 +90,8 @@ fn clip<F: Float>(shape: &impl Equation, line: &Line<Interval<F>>) -> Option<(F,
 }
 
 /// The search for roots of an equation along a line.
-struct Search<'s, S, F> {
-    shape: &'s S,
+struct Search<'s, F> {
+    shape: &'s dyn Values<F>,
     line: &'s Line<Interval<F>>,
 }
 
@@ -107,14 +107,14 @@ enum Judgement<F> {
     Jump,
 }
 
-impl<S: Equation, F: Float> Search<'_, S, F> {
+impl<F: Float> Search<'_, F> {
     fn value(&self, t: Interval<F>) -> Interval<F> {
         self.shape.value(self.line.at(t))
     }
 
     /// Encloses the value and its first derivative.
     fn slope(&self, t: Interval<F>) -> Dual<Interval<F>> {
-        self.shape.value(self.line.along(Dual::variable(t)))
+        self.shape.slope(self.line.along(Dual::variable(t)))
     }
 
     /// Encloses the second derivative.
@@ -122,7 +122,7 @@ impl<S: Equation, F: Float> Search<'_, S, F> {
         let t = Dual::variable_twice(t);
         let Line { origin, dir } = self.line;
         let at = [0, 1, 2].map(|axis| Dual::fixed_twice(origin[axis]) + t * Dual::fixed_twice(dir[axis]));
-        self.shape.value(at).second()
+        self.shape.bend(at).second()
     }
 
     /// Judges a piece by the mean value theorem of first and then of second order.
