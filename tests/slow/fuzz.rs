@@ -1,4 +1,4 @@
-//! The targets of `tests/fuzz/`, on a fixed sequence of mutated inputs: the same ones on every machine and in every run.
+//! The targets of `tests/fuzz/`, run on a fixed sequence of mutated inputs that is the same on every machine.
 
 use crate::common::{root, scenes};
 use rand_pcg::Pcg32;
@@ -9,13 +9,14 @@ use target::{TO_REVIEW, TO_WATCH, checkpoint, formula, notes, render, review, te
 #[path = "../fuzz/target.rs"]
 mod target;
 
-/// Words that mutations insert: what readers treat specially.
+/// Text that readers treat specially. Mutations insert it.
 const WORDS: [&str; 20] = [
     "{", "}", "[", "]", "\"", "=", "==", "#", "\n", "\0", "é", "1e300", "1e-320", "-0", "nan", "0", "sphere",
     "material", "^", "(",
 ];
 
-/// Changes some bytes: up to eight times a part is removed, repeated, overwritten, or taken from another seed.
+/// Returns a random seed with one to eight changes: each removes, repeats or overwrites a part, or replaces it with one
+/// of [`WORDS`] or with a part of another seed.
 fn mutated(seeds: &[Vec<u8>], random: &mut Pcg32) -> Vec<u8> {
     let below = |random: &mut Pcg32, end: usize| random.next_u32() as usize % end.max(1);
     let mut bytes = seeds[below(random, seeds.len())].clone();
@@ -38,7 +39,7 @@ fn mutated(seeds: &[Vec<u8>], random: &mut Pcg32) -> Vec<u8> {
     bytes
 }
 
-/// Runs a target on so many inputs.
+/// Runs a target on `count` mutated inputs.
 fn run(target: impl Fn(&[u8]), seeds: &[Vec<u8>], count: usize) {
     let mut random = Pcg32::seed_from_u64(1);
     for _ in 0..count {
@@ -46,7 +47,7 @@ fn run(target: impl Fn(&[u8]), seeds: &[Vec<u8>], count: usize) {
     }
 }
 
-/// The project's scenes whose file names end so.
+/// Returns the bytes of the project's scenes whose file names have this extension.
 fn scenes_in(extension: &str) -> Vec<Vec<u8>> {
     let paths = scenes().into_iter().filter(|path| path.extension().is_some_and(|is| is == extension));
     paths.map(|path| fs::read(path).expect("a scene")).collect()
