@@ -1,4 +1,5 @@
-//! A picture is the same whoever makes it: on any instructions, with any number of threads, and pixel by pixel.
+//! An image does not depend on the instruction set, on the number of threads, or on whether its pixels are rendered one
+//! by one.
 
 use crate::common::program::{folder, outcome, scene, tabray};
 use crate::common::{scenes, small};
