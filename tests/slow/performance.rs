@@ -57,7 +57,7 @@ fn embree(name: &str, exponent: u32) -> Option<[f64; 3]> {
     Some([(); 3].map(|()| numbers.next().expect("three numbers")))
 }
 
-/// What many objects cost, beside Embree.
+/// Prints the cost of scenes with many objects, beside Embree.
 #[test]
 #[ignore = "it measures"]
 fn many_objects() {

@@ -271,7 +271,7 @@ mod tests {
 
         #[test]
         fn a_packet_visits_what_its_rays_visit(
-            boxes in prop::collection::vec(bounds(), 1..200),
+            boxes in prop::collection::vec(bounds(), 1..60),
             (from, to, spread) in (point(), point(), prop_oneof![Just(0.0), 0.0..0.1, 0.0..1e3]),
             ways in prop::collection::vec((point(), point(), any::<bool>()), 1..PACKET_SIZE),
         ) {
