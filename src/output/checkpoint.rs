@@ -131,8 +131,9 @@ fn scene(model: &Model) -> String {
     let entities = dump::in_order(model);
     let hash = |entities: &[&Record]| {
         let mut hasher = Sha256::new();
+        let mut memory = None;
         for record in entities {
-            hasher.update(dump::block(&record.args(), Syntax::Notes, false));
+            hasher.update(dump::block(record.args_in(&mut memory), Syntax::Notes, false));
         }
         hasher.finalize()
     };

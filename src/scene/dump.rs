@@ -12,11 +12,9 @@ use std::collections::HashMap;
 /// Returns the notes' dump: camera, materials, objects and lights, with numbers to one decimal. Textures are not in it.
 pub fn notes(model: &Model) -> String {
     let kinds = [Kind::Camera, Kind::Material, Kind::Object, Kind::Light];
-    kinds
-        .into_iter()
-        .flat_map(|kind| model.entities(kind))
-        .map(|record| notes_block(&record.args()))
-        .collect()
+    let mut memory = None;
+    let entities = kinds.into_iter().flat_map(|kind| model.entities(kind));
+    entities.map(|record| notes_block(record.args_in(&mut memory))).collect()
 }
 
 fn notes_block(args: &Args) -> String {
@@ -35,15 +33,21 @@ pub fn scene(model: &Model, syntax: Syntax) -> String {
     let entities = in_order(model);
     // TOML needs an array of tables where two entities have the same title.
     let mut counts: HashMap<_, usize> = HashMap::new();
-    let title = |record: &'_ Record| (record.entity().name, record.name().to_owned());
     if syntax == Syntax::Toml {
-        entities.iter().for_each(|record| *counts.entry(title(record)).or_default() += 1);
+        entities
+            .iter()
+            .for_each(|record| *counts.entry((record.entity().name, record.name())).or_default() += 1);
     }
-    let is_repeated =
-        |record: &Record| !counts.is_empty() && counts.get(&title(record)).is_some_and(|count| *count > 1);
-    let blocks: Vec<_> =
-        entities.iter().map(|record| block(&record.args(), syntax, is_repeated(record))).collect();
-    blocks.join("\n")
+    let (mut text, mut memory) = (String::new(), None);
+    for record in entities {
+        if !text.is_empty() {
+            text += "\n";
+        }
+        let args = record.args_in(&mut memory);
+        let count = counts.get(&(args.entity.name, record.name()));
+        text += &block(args, syntax, count.is_some_and(|count| *count > 1));
+    }
+    text
 }
 
 /// Returns an entity of such a scene. `repeated` is true if another entity of its type has the same name.

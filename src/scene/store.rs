@@ -12,17 +12,14 @@ use std::sync::Arc;
 /// The number of entities that are packed into one piece of memory. The pieces are as long as what is in them.
 const TOGETHER: usize = 1 << 10;
 
-/// How the value of an attribute is packed: as it is by default, as numbers, or as the index of a datum.
-const DEFAULT: u8 = 0;
-const NUMBERS: u8 = 1;
-const WHOLE: u8 = 2;
-const DATUM: u8 = 3;
-
-/// The bit of an entity's type that marks an entity with values.
-const HAS_VALUES: u16 = 1 << 15;
-
-/// The length of a name from which on it is written in four more bytes.
-const LONG: usize = u8::MAX as usize;
+/// What is packed of an attribute: that it has its default, how many numbers follow, or the index of a datum.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Tag {
+    Default,
+    Numbers(u32),
+    Whole(u32),
+    Datum(u32),
+}
 
 /// The entities of a scene, each with its type, its name and the values that the scene gives, by their order in the
 /// text.
@@ -137,19 +134,17 @@ impl Store {
         let mut packed = self.packed(order);
         packed.kind();
         packed.name();
-        while let Some(tag) = packed.byte() {
-            match tag {
-                DATUM => return Some(self.datum(packed.word())),
-                DEFAULT => {}
-                _ => {
-                    let count = packed.word();
+        loop {
+            match packed.tag()? {
+                Tag::Datum(index) => return Some(self.datum(index)),
+                Tag::Default => {}
+                Tag::Numbers(count) | Tag::Whole(count) => {
                     for _ in 0..count {
-                        packed.long();
+                        packed.number();
                     }
                 }
             }
         }
-        None
     }
 
     /// Returns an entity with its values, or with defaults where those are faulty.
@@ -163,8 +158,19 @@ impl Store {
         args
     }
 
+    /// Returns an entity with its values as [`args`](Self::args) does, in the memory of another one if there is one.
+    pub fn args_in<'m>(&self, order: usize, memory: &'m mut Option<Args>) -> &'m Args {
+        match memory {
+            Some(args) => {
+                self.read(order, args);
+                args
+            }
+            None => memory.insert(self.args(order)),
+        }
+    }
+
     /// Makes `args` those of another entity. What both have in common stays where it is in memory.
-    pub fn read(&self, order: usize, args: &mut Args) {
+    fn read(&self, order: usize, args: &mut Args) {
         let mut packed = self.packed(order);
         let Some((number, _)) = packed.kind() else { return };
         let entity = self.types[number];
@@ -175,10 +181,10 @@ impl Store {
         args.name.clear();
         args.name.push_str(packed.name());
         for (attribute, datum, is_given) in args.values_mut() {
-            let tag = packed.byte().unwrap_or(DEFAULT);
+            let tag = packed.tag().unwrap_or(Tag::Default);
             match tag {
-                NUMBERS => {
-                    let numbers = (0..packed.word()).map(|_| f64::from_bits(packed.long()));
+                Tag::Numbers(count) => {
+                    let numbers = (0..count).map(|_| f64::from_le_bytes(packed.number()));
                     match datum {
                         Datum::Numbers(old) => {
                             old.clear();
@@ -187,17 +193,20 @@ impl Store {
                         other => *other = Datum::Numbers(numbers.collect()),
                     }
                 }
-                WHOLE => *datum = Datum::Whole((0..packed.word()).map(|_| packed.long() as i64).collect()),
-                DATUM => {
-                    let new = self.datum(packed.word());
+                Tag::Whole(count) => {
+                    let numbers = (0..count).map(|_| i64::from_le_bytes(packed.number()));
+                    *datum = Datum::Whole(numbers.collect());
+                }
+                Tag::Datum(index) => {
+                    let new = self.datum(index);
                     if !datum.is_same(new) {
                         *datum = new.clone();
                     }
                 }
-                _ if *is_given => *datum = attribute.default().unwrap_or(Datum::Absent),
-                _ => {}
+                Tag::Default if *is_given => *datum = attribute.default().unwrap_or(Datum::Absent),
+                Tag::Default => {}
             }
-            *is_given = tag != DEFAULT;
+            *is_given = tag != Tag::Default;
         }
     }
 
@@ -212,39 +221,33 @@ impl Store {
     }
 }
 
-/// An entity that is being packed: first its values in the order of its table, then nothing more.
+/// An entity that is being packed: its type, its name, and its values in the order of its table.
 pub struct Packed<'b>(&'b mut Vec<u8>);
 
 impl<'b> Packed<'b> {
     /// Begins an entity of the type of this [number](Store::number), after what was packed before.
     pub fn begin(bytes: &'b mut Vec<u8>, number: usize, name: &str, has_values: bool) -> Self {
-        let kind = number as u16 | if has_values { HAS_VALUES } else { 0 };
-        bytes.extend(kind.to_le_bytes());
-        match name.len() {
-            short @ 0..LONG => bytes.push(short as u8),
-            long => {
-                bytes.push(LONG as u8);
-                bytes.extend((long as u32).to_le_bytes());
-            }
-        }
-        bytes.extend_from_slice(name.as_bytes());
-        Self(bytes)
+        let mut packed = Self(bytes);
+        packed.count(2 * number + usize::from(has_values));
+        packed.count(name.len());
+        packed.0.extend_from_slice(name.as_bytes());
+        packed
     }
 
     /// Adds an attribute that the scene does not give.
     pub fn default(&mut self) {
-        self.0.push(DEFAULT);
+        self.tag(Tag::Default);
     }
 
     /// Adds an attribute of numbers.
     pub fn numbers(&mut self, numbers: &Datum) {
         match numbers {
             Datum::Numbers(numbers) => {
-                self.count(NUMBERS, numbers.len());
-                numbers.iter().for_each(|number| self.0.extend_from_slice(&number.to_bits().to_le_bytes()));
+                self.tag(Tag::Numbers(numbers.len() as u32));
+                numbers.iter().for_each(|number| self.0.extend_from_slice(&number.to_le_bytes()));
             }
             Datum::Whole(numbers) => {
-                self.count(WHOLE, numbers.len());
+                self.tag(Tag::Whole(numbers.len() as u32));
                 numbers.iter().for_each(|number| self.0.extend_from_slice(&number.to_le_bytes()));
             }
             _ => {}
@@ -253,12 +256,27 @@ impl<'b> Packed<'b> {
 
     /// Adds an attribute of another type, by the index of its datum.
     pub fn datum(&mut self, index: u32) {
-        self.count(DATUM, index as usize);
+        self.tag(Tag::Datum(index));
     }
 
-    fn count(&mut self, tag: u8, count: usize) {
-        self.0.push(tag);
-        self.0.extend_from_slice(&(count as u32).to_le_bytes());
+    fn tag(&mut self, tag: Tag) {
+        let (kind, count) = match tag {
+            Tag::Default => (0, 0),
+            Tag::Numbers(count) => (1, count),
+            Tag::Whole(count) => (2, count),
+            Tag::Datum(index) => (3, index),
+        };
+        self.count(4 * count as usize + kind);
+    }
+
+    /// Adds a whole number in as few bytes as it takes: seven bits in each, from the lowest on, and a bit that tells
+    /// whether more follow (LEB128).
+    fn count(&mut self, mut count: usize) {
+        while count >= 0x80 {
+            self.0.push(count as u8 | 0x80);
+            count >>= 7;
+        }
+        self.0.push(count as u8);
     }
 }
 
@@ -268,36 +286,40 @@ struct Unpacker<'s>(&'s [u8]);
 impl<'s> Unpacker<'s> {
     /// Returns the number of the entity's type, and whether the entity has values; `None` if its type is unknown.
     fn kind(&mut self) -> Option<(usize, bool)> {
-        let kind = self.part().map(u16::from_le_bytes)?;
-        Some(((kind & !HAS_VALUES).into(), kind & HAS_VALUES != 0))
+        let kind = self.count()?;
+        Some((kind / 2, kind % 2 == 1))
     }
 
     fn name(&mut self) -> &'s str {
-        let length = match self.byte() {
-            Some(u8::MAX) => self.word() as usize,
-            length => length.unwrap_or(0).into(),
-        };
-        let (name, rest) = self.0.split_at(length);
+        let (name, rest) =
+            self.count().and_then(|length| self.0.split_at_checked(length)).unwrap_or_default();
         self.0 = rest;
         std::str::from_utf8(name).unwrap_or_default()
     }
 
-    fn byte(&mut self) -> Option<u8> {
-        self.part().map(|[byte]| byte)
+    fn tag(&mut self) -> Option<Tag> {
+        let tag = self.count()?;
+        let count = (tag / 4) as u32;
+        Some([Tag::Default, Tag::Numbers(count), Tag::Whole(count), Tag::Datum(count)][tag % 4])
     }
 
-    fn word(&mut self) -> u32 {
-        self.part().map_or(0, u32::from_le_bytes)
+    fn count(&mut self) -> Option<usize> {
+        let (mut count, mut shift) = (0, 0);
+        loop {
+            let (byte, rest) = self.0.split_first()?;
+            self.0 = rest;
+            count |= usize::from(byte & 0x7f) << shift;
+            shift += 7;
+            if byte & 0x80 == 0 {
+                return Some(count);
+            }
+        }
     }
 
-    fn long(&mut self) -> u64 {
-        self.part().map_or(0, u64::from_le_bytes)
-    }
-
-    fn part<const N: usize>(&mut self) -> Option<[u8; N]> {
-        let (part, rest) = self.0.split_first_chunk()?;
+    fn number(&mut self) -> [u8; 8] {
+        let (number, rest) = self.0.split_first_chunk().unwrap_or((&[0; 8], &[]));
         self.0 = rest;
-        Some(*part)
+        *number
     }
 }
 
@@ -340,5 +362,10 @@ impl Record {
     /// Returns the entity with all its values.
     pub fn args(&self) -> Args {
         self.store.args(self.order())
+    }
+
+    /// Returns the entity with all its values, in the memory of another one of the same model.
+    pub(crate) fn args_in<'m>(&self, memory: &'m mut Option<Args>) -> &'m Args {
+        self.store.args_in(self.order(), memory)
     }
 }

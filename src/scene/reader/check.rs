@@ -3,7 +3,7 @@
 use super::attributes::{Against, whole};
 use super::fault::{Fault, Place, Places, Severity};
 use super::guesses::find_attribute;
-use super::names::{Names, stand_in, suggestion};
+use super::names::{Missing, Names, stand_in, suggestion};
 use super::notes;
 use super::parsed::{Parsed, Word};
 use super::quick::Quick;
@@ -23,13 +23,12 @@ use crate::world::texture::Texture;
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::borrow::Cow;
-use std::cell::OnceCell;
 use std::collections::hash_map::Entry;
-use std::collections::{BTreeMap, BTreeSet, HashMap};
-use std::mem::{replace, take};
+use std::collections::{BTreeSet, HashMap};
+use std::mem::{replace, swap, take};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 /// The entities of a scene: parsed while they are checked, or all of them parsed before.
@@ -68,11 +67,12 @@ pub fn model(
 ) -> Checked {
     let camera = Camera { accuracy: accuracy.by_default, ..Camera::default() };
     let setting = Setting { camera, folder: folder.to_owned() };
+    let threads = Threads::default();
     let mut check = Check {
         registry,
         report,
         names: Names::default(),
-        unknown: BTreeMap::new(),
+        unknown: Missing::default(),
         first_camera: None,
         setting: Arc::new(setting),
         accuracy: accuracy.above_all,
@@ -86,7 +86,7 @@ pub fn model(
         objects: Vec::new(),
         lights: Vec::new(),
         quick: Quick::new(registry),
-        threads: Threads::default(),
+        threads: &threads,
     };
     let mut time = Duration::ZERO;
     match source {
@@ -96,16 +96,18 @@ pub fn model(
             time += start.elapsed();
         }
         Source::Text(_, parser) => {
-            let mut memory = Vec::new();
-            memory.resize_with(TOGETHER, || None);
-            loop {
-                let count = parser.entities(&mut memory);
-                if count == 0 {
-                    break;
-                }
-                let start = Instant::now();
-                check.entities(&memory[..count].iter().flatten().collect::<Vec<_>>());
-                time += start.elapsed();
+            // While some are checked, the next ones are parsed.
+            let [mut memory, mut other] = [vec![None; TOGETHER], vec![None; TOGETHER]];
+            let mut count = parser.entities(&mut memory);
+            while count > 0 {
+                let entities: Vec<_> = memory[..count].iter().flatten().collect();
+                let work = || {
+                    let start = Instant::now();
+                    check.entities(&entities);
+                    time += start.elapsed();
+                };
+                (_, count) = threads.join(count == TOGETHER, work, || parser.entities(&mut other));
+                swap(&mut memory, &mut other);
             }
         }
     }
@@ -136,8 +138,8 @@ struct Check<'r, 't> {
     registry: &'r Registry,
     report: &'r mut Report<'t>,
     names: Names,
-    /// Unknown entity types, each with its first place and the number of its places.
-    unknown: BTreeMap<String, (Place, usize)>,
+    /// Unknown entity types.
+    unknown: Missing<()>,
     /// The place of the first camera's name.
     first_camera: Option<Place>,
     setting: Arc<Setting>,
@@ -157,7 +159,7 @@ struct Check<'r, 't> {
     objects: Vec<Object>,
     lights: Vec<Item<AnyLight>>,
     quick: Quick<'r>,
-    threads: Threads,
+    threads: &'r Threads,
 }
 
 impl Check<'_, '_> {
@@ -214,9 +216,7 @@ impl Check<'_, '_> {
         let order = self.store.len();
         self.places.add(&parsed.place);
         let Some(entity) = self.registry.find(&parsed.kind.text) else {
-            let first = || (parsed.kind.place.clone(), 0);
-            let (_, count) = self.unknown.entry(parsed.kind.text.to_string()).or_insert_with(first);
-            *count += 1;
+            self.unknown.add((), &parsed.kind, self.names.hash_of(&parsed.kind.text));
             self.names.doubt(&parsed.name.text);
             self.store.skip();
             return;
@@ -348,9 +348,9 @@ impl Check<'_, '_> {
         }
         let users =
             self.objects.iter().map(|object| &object.args).chain(self.lights.iter().map(|light| &light.args));
-        let mut used = BTreeSet::new();
+        let (mut used, mut memory) = (BTreeSet::new(), None);
         for user in users {
-            used.extend(user.args().textures().map(str::to_owned));
+            used.extend(user.args_in(&mut memory).textures().map(str::to_owned));
         }
         for (order, texture) in &self.textures {
             let args = store.args(*order);
@@ -382,9 +382,10 @@ impl Check<'_, '_> {
     /// Returns the model, after reporting the faults that show only when the whole scene has been read.
     fn finish(mut self, store: &Arc<Store>, source: &Source<'_, '_>) -> (Option<Model>, Places) {
         let mut camera_misspelt = false;
-        let mut unknown: Vec<_> = take(&mut self.unknown).into_iter().collect();
+        self.report.count_more(Severity::Error, self.unknown.others().count());
+        let mut unknown: Vec<_> = take(&mut self.unknown.names).into_iter().collect();
         unknown.sort_by_key(|(_, (place, _))| place.as_ref().map(|place| place.start));
-        for (name, (place, count)) in unknown {
+        for ((_, name), (place, count)) in unknown {
             let is_told = self.report.tells(Severity::Error, &place);
             let near = if is_told { self.registry.nearest(&name) } else { None };
             camera_misspelt |=
@@ -432,7 +433,7 @@ enum Made {
 /// Constructs the objects and lights among some entities.
 fn made(store: &Store, orders: Range<usize>) -> Vec<(usize, Result<Made, Refusal>)> {
     let mut made = Vec::new();
-    let mut last: Option<Args> = None;
+    let mut memory = None;
     for order in orders {
         let construct: &dyn Fn(&Args) -> Result<Made, Refusal> =
             match store.sound(order).map(|entity| entity.construct) {
@@ -440,11 +441,7 @@ fn made(store: &Store, orders: Range<usize>) -> Vec<(usize, Result<Made, Refusal
                 Some(Construct::Light(construct)) => &move |args| construct(args).map(Made::Light),
                 _ => continue,
             };
-        match &mut last {
-            Some(args) => store.read(order, args),
-            None => last = Some(store.args(order)),
-        }
-        made.extend(last.as_ref().map(|args| (order, construct(args))));
+        made.push((order, construct(store.args_in(order, &mut memory))));
     }
     made
 }
@@ -462,16 +459,31 @@ fn object(record: Record, Body { shape, shader }: Body) -> Option<Object> {
 /// The threads that the entities of large scenes are checked and constructed by: one on each core. They are started when
 /// they are first needed.
 #[derive(Default)]
-struct Threads(OnceCell<Option<ThreadPool>>);
+struct Threads(OnceLock<Option<ThreadPool>>);
 
 impl Threads {
+    fn pool(&self) -> Option<&ThreadPool> {
+        self.0.get_or_init(|| ThreadPoolBuilder::new().build().ok()).as_ref()
+    }
+
     /// Does pieces of work, and returns the results in the order of the pieces.
     fn map<T: Send>(&self, pieces: usize, work: impl Fn(usize) -> T + Send + Sync) -> Vec<T> {
-        let pool =
-            if pieces > 1 { self.0.get_or_init(|| ThreadPoolBuilder::new().build().ok()) } else { &None };
-        match pool {
+        match if pieces > 1 { self.pool() } else { None } {
             Some(pool) => pool.install(|| (0..pieces).into_par_iter().map(work).collect()),
             None => (0..pieces).map(work).collect(),
+        }
+    }
+
+    /// Does two pieces of work, at the same time if both are large.
+    fn join<A: Send, B: Send>(
+        &self,
+        are_large: bool,
+        one: impl FnOnce() -> A + Send,
+        other: impl FnOnce() -> B + Send,
+    ) -> (A, B) {
+        match if are_large { self.pool() } else { None } {
+            Some(pool) => pool.join(one, other),
+            None => (one(), other()),
         }
     }
 }

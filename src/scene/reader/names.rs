@@ -11,8 +11,8 @@ use crate::scene::value::Datum;
 use crate::text::{self, nearest};
 use hashbrown::hash_table::Entry;
 use hashbrown::{DefaultHashBuilder, HashMap, HashSet, HashTable};
-use std::collections::BTreeMap;
-use std::hash::BuildHasher;
+use std::collections::{BTreeMap, btree_map};
+use std::hash::{BuildHasher, Hash};
 use std::sync::{Arc, LazyLock};
 
 /// The scope in which a name must be unique: the entity type for an object, and an empty string, the whole kind, for
@@ -38,18 +38,66 @@ pub struct Names {
     firsts: HashTable<(u32, u32)>,
     /// The entities that claimed a name again, by the order of the first one.
     again: BTreeMap<usize, Claims>,
-    /// Names of entities of unknown types, which a reference may mean.
-    doubtful: HashSet<String>,
+    /// The hashes of the names of entities of unknown types, which a reference may mean.
+    doubtful: HashSet<u64>,
     /// The materials that can be referred to so far, and the textures, by the indices of their data.
     defined: [HashMap<String, u32>; 2],
-    /// References to entities not (yet) defined, each with its first place and the number of its places.
-    unresolved: BTreeMap<(Kind, String), (Place, usize)>,
+    /// References to entities not (yet) defined.
+    unresolved: Missing<Kind>,
+}
+
+/// The maximum number of different missing names of one sort that are kept. Of more, only the number is known.
+const MAX_MISSING: usize = 10_000;
+
+/// Names of which a scene has no entity or no type, so many that a scene of nothing else takes little memory.
+pub struct Missing<K> {
+    /// The first names, each with its first place and the number of its places.
+    pub names: BTreeMap<(K, String), (Place, usize)>,
+    /// The hashes of the others.
+    others: HashSet<(K, u64)>,
+}
+
+impl<K> Default for Missing<K> {
+    fn default() -> Self {
+        Self { names: BTreeMap::new(), others: HashSet::new() }
+    }
+}
+
+impl<K: Copy + Ord + Hash> Missing<K> {
+    /// Notes that a name of this sort is missing at a place.
+    pub fn add(&mut self, sort: K, Word { text, place, .. }: &Word<'_>, hash: u64) {
+        let is_full = self.names.len() >= MAX_MISSING;
+        match self.names.entry((sort, text.to_string())) {
+            btree_map::Entry::Occupied(mut known) => known.get_mut().1 += 1,
+            btree_map::Entry::Vacant(free) if !is_full => {
+                free.insert((place.clone(), 1));
+            }
+            btree_map::Entry::Vacant(_) => {
+                self.others.insert((sort, hash));
+            }
+        }
+    }
+
+    /// Returns the hashes of the names that are not kept, all different.
+    pub fn others(&self) -> impl Iterator<Item = u64> {
+        self.others.iter().map(|(_, hash)| *hash)
+    }
+
+    fn is_empty(&self) -> bool {
+        self.names.is_empty()
+    }
 }
 
 impl Names {
+    /// Returns the hash of a word.
+    pub fn hash_of(&self, word: &str) -> u64 {
+        self.hasher.hash_one(word)
+    }
+
     /// Notes the name of an entity of an unknown type.
     pub fn doubt(&mut self, name: &str) {
-        self.doubtful.insert(name.to_owned());
+        let hash = self.hash_of(name);
+        self.doubtful.insert(hash);
     }
 
     /// Gives an entity its name, and reports an invalid name. Returns whether the entity counts: of several materials,
@@ -129,7 +177,7 @@ impl Names {
                 orders.push(*order);
                 firsts.extend((orders.len() == 1).then_some(*order));
             }
-            for (title, orders) in titles {
+            for (title, orders) in titles.into_iter().filter(|(_, orders)| orders.len() > 1) {
                 let what = if title.is_empty() { kind.to_string() } else { title.to_owned() };
                 if kind == Kind::Light { &mut shared } else { &mut left_out }.push(Repeated {
                     what,
@@ -137,7 +185,9 @@ impl Names {
                     orders,
                 });
             }
-            shared.push(Repeated { what: kind.to_string(), text, orders: firsts });
+            if firsts.len() > 1 {
+                shared.push(Repeated { what: kind.to_string(), text, orders: firsts });
+            }
         }
         let is_placed = place(0).is_some();
         for (Repeated { what, text, orders }, names, more) in few(left_out, is_placed) {
@@ -191,9 +241,8 @@ impl Names {
         if let Some(index) = self.defined(kind, &word.text) {
             return store.datum(index).clone();
         }
-        let (_, count) =
-            self.unresolved.entry((kind, word.text.to_string())).or_insert_with(|| (word.place.clone(), 0));
-        *count += 1;
+        let hash = self.hash_of(&word.text);
+        self.unresolved.add(kind, word, hash);
         stand_in(kind)
     }
 
@@ -207,8 +256,12 @@ impl Names {
         report: &mut Report<'_>,
     ) {
         // In the order of the text, so that guesses are made only for references that are listed.
+        let is_doubtful = |hash| self.doubtful.contains(&hash);
+        let unresolved = self.unresolved.names.iter();
         let mut unresolved: Vec<_> =
-            self.unresolved.iter().filter(|((_, text), _)| !self.doubtful.contains(text)).collect();
+            unresolved.filter(|((_, text), _)| !is_doubtful(self.hash_of(text))).collect();
+        let others = self.unresolved.others().filter(|hash| !is_doubtful(*hash)).count();
+        report.count_more(Severity::Error, others);
         unresolved.sort_by_key(|(_, (place, _))| place.as_ref().map(|place| place.start));
         let mut known: BTreeMap<Kind, Vec<&str>> = BTreeMap::new();
         let orders = if unresolved.is_empty() { 0..0 } else { 0..store.len() };
@@ -270,10 +323,9 @@ struct Repeated<'n> {
     orders: Vec<usize>,
 }
 
-/// Keeps the names that are repeated, each with the number of further names and further places that it stands for. Of
-/// more than [`MAX_LISTED`] names, keeps only the first.
+/// Returns names that are repeated, each with the number of further names and further places that it stands for. Of
+/// more than [`MAX_LISTED`] names, returns only the first.
 fn few(mut all: Vec<Repeated<'_>>, is_placed: bool) -> Vec<(Repeated<'_>, usize, usize)> {
-    all.retain(|repeated| repeated.orders.len() > 1);
     // Entities without places come in the order of their names.
     all.sort_by_key(|repeated| (is_placed.then_some(repeated.orders[1]), repeated.text));
     let (names, later) = (all.len(), all.iter().map(|repeated| repeated.orders.len() - 1).sum::<usize>());

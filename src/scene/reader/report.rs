@@ -73,6 +73,11 @@ impl<'t> Report<'t> {
         }
     }
 
+    /// Counts faults that come after so many others that none would be listed.
+    pub(super) fn count_more(&mut self, severity: Severity, count: usize) {
+        self.notes.counts[severity as usize] += count;
+    }
+
     fn insert(&mut self, fault: Fault) {
         let severity = fault.severity as usize;
         if self.faults.iter().filter(|told| told.is_like(&fault)).count() == MAX_ALIKE {
