@@ -432,8 +432,8 @@ enum Made {
 
 /// Constructs the objects and lights among some entities.
 fn made(store: &Store, orders: Range<usize>) -> Vec<(usize, Result<Made, Refusal>)> {
-    let mut made = Vec::new();
-    let mut memory = None;
+    // Where it has to grow, it leaves holes in memory between the shapes.
+    let (mut made, mut memory) = (Vec::with_capacity(orders.len()), None);
     for order in orders {
         let construct: &dyn Fn(&Args) -> Result<Made, Refusal> =
             match store.sound(order).map(|entity| entity.construct) {
