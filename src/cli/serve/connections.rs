@@ -25,7 +25,8 @@ use std::pin::pin;
 use std::rc::Rc;
 use std::task::Poll;
 use std::time::Duration;
-use tokio::net::{TcpListener, TcpStream};
+use tokio::io::{AsyncRead, AsyncWrite};
+use tokio::net::TcpListener;
 use tokio::sync::{Notify, Semaphore};
 use tokio::task::{AbortHandle, spawn_local, yield_now};
 use tokio::time::{sleep, timeout};
@@ -39,6 +40,10 @@ const MAX_BODY: usize = 1 << 16;
 
 /// The pause before the next connection is accepted, after the system refused one.
 const PAUSE: Duration = Duration::from_millis(50);
+
+/// The number of files that must be free before another connection is accepted: answering a request opens some too.
+#[cfg(unix)]
+const SPARE_FILES: usize = 8;
 
 /// The minimum number of idle connections that are kept, even where the system allows hardly any open files. What a
 /// connection has sent is read before this many others are accepted.
@@ -103,7 +108,11 @@ where
         let mut max_idle = self.limits.idle;
         let mut is_told = false;
         for number in 0.. {
-            match listener.accept().await {
+            let accepted = match spare_files(&listener) {
+                Err(error) if self.idle.borrow().len() > MIN_IDLE => Err(error),
+                _ => listener.accept().await,
+            };
+            match accepted {
                 Ok((stream, _)) => {
                     let task = spawn_local(self.clone().serve(stream, number));
                     self.idle.borrow_mut().insert(number, task.abort_handle());
@@ -113,7 +122,7 @@ where
                 }
                 // A connection that was aborted before it was accepted is no failure.
                 Err(error) if error.kind() == io::ErrorKind::ConnectionAborted => {}
-                // Usually too many files are open. Answering requests needs some too.
+                // Usually too many files are open.
                 Err(error) => {
                     if !is_told {
                         let reason = text::reason(&error);
@@ -139,7 +148,7 @@ where
     }
 
     /// Reads one request from a connection and answers it.
-    async fn serve(self: Rc<Self>, stream: TcpStream, number: u64) {
+    pub async fn serve(self: Rc<Self>, stream: impl AsyncRead + AsyncWrite, number: u64) {
         let (slot, is_last) = (Cell::new(None), Cell::new(false));
         let service = service_fn(async |request: Request<Incoming>| {
             let mut response = if let Err(reason) = self.access.admit(&request) {
@@ -191,4 +200,18 @@ where
         })
         .await
     }
+}
+
+/// Returns an error if the system does not let this process open [`SPARE_FILES`] more files.
+#[cfg(unix)]
+fn spare_files(listener: &TcpListener) -> io::Result<()> {
+    use std::os::fd::AsFd;
+    let copy = || listener.as_fd().try_clone_to_owned();
+    (0..SPARE_FILES).map(|_| copy()).collect::<io::Result<Vec<_>>>().map(drop)
+}
+
+/// Elsewhere, accepting a connection is what fails.
+#[cfg(not(unix))]
+fn spare_files(_: &TcpListener) -> io::Result<()> {
+    Ok(())
 }
