@@ -5,11 +5,13 @@
 
 use crate::common;
 use nix::sys::resource::{UsageWho, getrusage};
+use std::env;
+use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 use tabray::render::Plan;
-use tabray::scene::{self, Parsed};
+use tabray::scene::{self, Parsed, Syntax, dump};
 use tabray::simd::Cpu;
 use tabray::tools::bench::{Speed, scenes};
 
@@ -63,6 +65,51 @@ fn many_objects() {
             println!("| 10^{exponent} {name} | {milliseconds:.1} | {times} | {tests:.1} | {building:.2} |");
             above = Some(milliseconds);
         }
+    }
+}
+
+/// Prints the cost of reading many objects, for `check` of scenes that are written first. `TABRAY` may name another
+/// program to measure.
+#[test]
+#[ignore = "it measures"]
+fn reading() {
+    let program = env::var_os("TABRAY").unwrap_or_else(|| env!("CARGO_BIN_EXE_tabray").into());
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("many.ray");
+    let check = || {
+        let before = of_children().0;
+        let status = Command::new(&program).arg("check").arg(&path).stderr(Stdio::null()).status();
+        assert!(status.expect("the program runs").success());
+        (of_children().0 - before).as_secs_f64()
+    };
+    let write = |scene| {
+        let built = scene::build(common::registry(), scene);
+        let model = built.map(|built| built.model).unwrap_or_else(|report| panic!("{report}"));
+        let text = dump::scene(&model, Syntax::Notes);
+        fs::write(&path, &text).expect("a file");
+        (text.len(), model.objects.len())
+    };
+    write(scenes::spheres(1));
+    check();
+    let empty = of_children().1;
+    println!("\n| objects | text, MB | CPU, s | MB/s | most memory, MiB | bytes per object | of them text |");
+    println!("|---|---:|---:|---:|---:|---:|---:|");
+    // In the order of the memory that they take: the system tells only the most that any program has had.
+    for (name, scene) in [
+        ("10^5 spheres", scenes::spheres(100_000)),
+        ("10^5 triangles", scenes::triangles(100_000)),
+        ("10^6 spheres", scenes::spheres(1_000_000)),
+        ("10^6 triangles", scenes::triangles(1_000_000)),
+    ] {
+        let (bytes, count) = write(scene);
+        let seconds = (0..5).map(|_| check()).fold(f64::INFINITY, f64::min);
+        let (megabytes, memory) = (1e-6 * bytes as f64, of_children().1);
+        let [each, text] = [1024.0 * (memory - empty) as f64, bytes as f64].map(|all| all / count as f64);
+        println!(
+            "| {name} | {megabytes:.1} | {seconds:.2} | {:.0} | {:.0} | {each:.0} | {text:.0} |",
+            megabytes / seconds,
+            memory as f64 / 1024.0
+        );
     }
 }
 
