@@ -22,6 +22,11 @@ pub trait Equation {
     /// Returns the equation's value at a point: 0 on the surface, with opposite signs on the two sides.
     fn value<N: Scalar>(&self, at: [N; 3]) -> N;
 
+    /// Returns the estimated number of arithmetic operations of [`value`](Self::value), if that is a formula of the scene.
+    fn cost(&self) -> usize {
+        1
+    }
+
     /// Returns a positive number where the surface is kept, and a negative number where it is cut off.
     fn kept<N: Scalar>(&self, _at: [N; 3]) -> N {
         N::constant(1.0)

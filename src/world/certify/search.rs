@@ -6,16 +6,13 @@ use crate::numeric::dual::Dual;
 use crate::numeric::interval::{Float, Interval};
 use crate::numeric::scalar::Scalar;
 
-/// The maximum number of pieces of a line that are examined before the search is given up.
-const PIECES: usize = 2000;
-
 /// The length below which a piece is not cut where the value jumps, as a fraction of the whole line: a fraction of
 /// an ulp of `f64`. A ray that passes through a jump stays undecided however short the piece is, and 237 bits of exponential
 /// functions take a long time.
 const JUMP: f64 = f64::EPSILON / 16.0;
 
-/// Finds the first hit with t > 0.
-pub fn first_hit<F: Float>(shape: &dyn Values<F>, line: &Line<Interval<F>>) -> Found<F> {
+/// Finds the first hit with t > 0. The search is given up after `pieces` pieces of the line.
+pub fn first_hit<F: Float>(shape: &dyn Values<F>, line: &Line<Interval<F>>, pieces: usize) -> Found<F> {
     let zero = F::of(0.0);
     let Some((from, to)) = clip(shape, line) else { return Found::Misses };
     if !to.is_finite() {
@@ -30,7 +27,7 @@ pub fn first_hit<F: Float>(shape: &dyn Values<F>, line: &Line<Interval<F>>) -> F
     let shortest_jump = shortest.max(F::of(JUMP) * (to - from));
     let search = Search { shape, line: &near };
     let mut pending = vec![(from, to)];
-    for _ in 0..PIECES {
+    for _ in 0..pieces {
         let Some((low, high)) = pending.pop() else { return Found::Misses };
         let piece = Interval { low, high };
         let start = || (base + Interval::point(low)).low.max(zero);
@@ -208,6 +205,7 @@ impl<F: Float> Search<'_, F> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::world::certify::equation::Equation;
     use f256::f256;
     use glam::DVec3;
     use std::cell::Cell;
@@ -230,7 +228,7 @@ mod tests {
     fn a_jump_is_left_in_doubt_after_a_few_pieces() {
         let step = Step(Cell::new(0));
         let [origin, dir] = [[-2.0, 0.0, 0.0], [1.0, 0.0, 0.0]].map(|of| of.map(Interval::<f256>::constant));
-        let Found::Doubtful(from) = first_hit(&step, &Line { origin, dir }) else {
+        let Found::Doubtful(from) = first_hit(&step, &Line { origin, dir }, 2000) else {
             panic!("a jump is no root")
         };
         assert!((from.to_f64() - 2.3).abs() < 1e-15, "{from:?}");
