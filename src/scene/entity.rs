@@ -2,6 +2,7 @@
 
 use crate::scene::kind::Kind;
 use crate::scene::pparm::{Attribute, Attributes, Given, Pparm, Row, Table};
+use crate::scene::value::Datum;
 use crate::text;
 use crate::world::accuracy::Accuracy;
 use crate::world::body::{AnyLight, Body};
@@ -197,6 +198,20 @@ impl Args {
     pub(crate) fn new(entity: &'static Entity, name: String, order: usize, values: Vec<Given>) -> Self {
         let attributes = Attributes::new((entity.name, entity.place), entity.attributes(), values);
         Self { entity, name, order, setting: Arc::default(), attributes }
+    }
+
+    /// Makes the arguments of an entity whose attributes all have their defaults, as far as they have any.
+    pub(crate) fn blank(entity: &'static Entity, setting: Arc<Setting>) -> Self {
+        let values =
+            entity.attributes().map(|attribute| (attribute.default().unwrap_or(Datum::Absent), false));
+        Self { setting, ..Self::new(entity, String::new(), 0, values.collect()) }
+    }
+
+    /// Returns every attribute with its value and whether the scene gives it, in the order of the table.
+    pub(crate) fn values_mut(
+        &mut self,
+    ) -> impl Iterator<Item = (&'static dyn Attribute, &mut Datum, &mut bool)> {
+        self.attributes.values_mut()
     }
 
     /// Returns the accuracy with which the scene is traced.

@@ -1,7 +1,7 @@
 //! A scene ready to be traced. It does not change during a render.
 
-use crate::scene::entity::Args;
 use crate::scene::kind::Kind;
+use crate::scene::store::Record;
 use crate::world::any_shape::AnyShape;
 use crate::world::body::{AnyLight, AnyShader};
 use crate::world::camera::Camera;
@@ -26,7 +26,7 @@ pub struct Model {
 
 impl Model {
     /// Returns the entities of a kind as they were given, in the order of the scene.
-    pub fn entities(&self, kind: Kind) -> Vec<&Args> {
+    pub fn entities(&self, kind: Kind) -> Vec<&Record> {
         match kind {
             Kind::Camera => vec![&self.camera.args],
             Kind::Material => self.materials.iter().map(|item| &item.args).collect(),
@@ -37,10 +37,10 @@ impl Model {
     }
 }
 
-/// An entity of a scene: its attributes as given, and what the constructor made of them.
+/// An entity of a scene: as it was given, and what the constructor made of them.
 pub struct Item<T> {
     /// The entity's type, name and values.
-    pub args: Args,
+    pub args: Record,
     /// What the constructor made.
     pub value: T,
 }
@@ -48,7 +48,7 @@ pub struct Item<T> {
 /// A visible object.
 pub struct Object {
     /// The object's type, name and values.
-    pub args: Args,
+    pub args: Record,
     /// The object's material.
     pub material: Arc<Material>,
     /// The object's geometry.

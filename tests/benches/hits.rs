@@ -23,7 +23,7 @@ fn shapes() -> impl Iterator<Item = String> {
     let mut names: Vec<_> = fs::read_dir(folder)
         .expect("the scenes of the entities")
         .filter_map(|entry| stem(entry.expect("an entry")))
-        .filter(|name| load(name).objects.iter().any(|object| object.args.entity.name == name))
+        .filter(|name| load(name).objects.iter().any(|object| object.args.entity().name == name))
         .collect();
     names.sort();
     names.into_iter()
@@ -43,7 +43,7 @@ fn load(name: &str) -> Model {
 /// Returns the model, the index of the entity's object in it, and rays.
 fn setting(name: &str) -> (Model, usize, Vec<Ray>) {
     let model = load(name);
-    let object = model.objects.iter().position(|object| object.args.entity.name == name);
+    let object = model.objects.iter().position(|object| object.args.entity().name == name);
     let camera = &model.camera.value;
     let [width, height] = camera.pixels;
     let rays = (0..height).step_by(10).flat_map(|y| (0..width).step_by(10).map(move |x| (x, y)));

@@ -179,7 +179,7 @@ fn every_entity_has_its_scene_and_a_mistake() {
             "{entity:?} has no scene of its own: add scenes/entities/{name}.ray, which shows it"
         );
         let scene = load(&path);
-        let shown = scene.entities(entity.kind()).iter().any(|args| args.entity.name == name);
+        let shown = scene.entities(entity.kind()).iter().any(|given| given.entity().name == name);
         assert!(shown, "scenes/entities/{name}.ray shows no {name}");
         for snapshot in [format!("{name}.dump.snap"), format!("{name}.snap.png")] {
             let path = root().join("snapshots/entities").join(&snapshot);

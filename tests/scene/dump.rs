@@ -15,14 +15,15 @@ fn values(model: &Model) -> Vec<String> {
         .chain(model.objects.iter().map(|object| &object.args))
         .chain(model.lights.iter().map(|item| &item.args));
     items
-        .flat_map(|args| {
-            args.values().map(|(attribute, datum)| match datum {
+        .flat_map(|record| {
+            let value = |(attribute, datum): (&dyn Attribute, &Datum)| match datum {
                 Datum::Numbers(numbers) => {
                     let bits: Vec<_> = numbers.iter().map(|number| number.to_bits()).collect();
-                    format!("{} {} {bits:x?}", args.name, attribute.name())
+                    format!("{} {} {bits:x?}", record.name(), attribute.name())
                 }
-                other => format!("{} {} {other:?}", args.name, attribute.name()),
-            })
+                other => format!("{} {} {other:?}", record.name(), attribute.name()),
+            };
+            record.args().values().map(value).collect::<Vec<_>>()
         })
         .collect()
 }
@@ -30,7 +31,7 @@ fn values(model: &Model) -> Vec<String> {
 fn assert_loads_again(first: &Model) {
     for syntax in [Syntax::Notes, Syntax::Toml] {
         let text = dump::scene(first, syntax);
-        let again = model_in(&first.camera.args.setting.folder, &text);
+        let again = model_in(&first.camera.args.args().setting.folder, &text);
         assert_eq!(values(first), values(&again), "{text}");
         assert_eq!(text, dump::scene(&again, syntax));
         assert_eq!(dump::notes(first), dump::notes(&again), "{text}");

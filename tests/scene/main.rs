@@ -6,6 +6,7 @@ mod common;
 mod dump;
 mod extremes;
 mod grammar;
+mod many;
 mod model;
 mod names;
 mod robust;

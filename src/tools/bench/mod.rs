@@ -163,7 +163,7 @@ fn tests(plan: &Plan, tally: &RayStats, cpu: Cpu, patience: Duration) -> Vec<Tes
         entity,
         number: tests.tested,
         times: packets::times(&packets, model, cpu, patience, |object| {
-            model.objects[object].args.entity.name == entity
+            model.objects[object].args.entity().name == entity
         }),
         bare: Bare::of(entity).map(|bare| {
             let [seconds] = clock::least(patience, [&mut || bare.run(cpu, ROUND)]);
