@@ -1,6 +1,7 @@
 //! Rays, bounding boxes and frames: space without shapes.
 
 pub(crate) mod aabb;
+pub(crate) mod bvh;
 pub(crate) mod frame;
 pub(crate) mod ray;
 pub(crate) mod ray_packet;
@@ -8,6 +9,7 @@ pub(crate) mod roots;
 pub(crate) mod sight;
 
 pub use aabb::{Aabb, clearance};
+pub use bvh::{Bvh, Stack};
 pub use frame::Frame;
 pub use ray::{Bracket, MISS, Ray, RayRange, Side};
 pub use ray_packet::{Nearest, RayPacket};
