@@ -2,6 +2,7 @@
 
 pub(crate) mod aabb;
 pub(crate) mod frame;
+pub(crate) mod placement;
 pub(crate) mod ray;
 pub(crate) mod ray_packet;
 pub(crate) mod roots;
@@ -9,6 +10,7 @@ pub(crate) mod sight;
 
 pub use aabb::{Aabb, clearance};
 pub use frame::Frame;
+pub use placement::Placement;
 pub use ray::{Bracket, MISS, Ray, RayRange, Side};
 pub use ray_packet::{Nearest, RayPacket};
 pub use sight::Sight;

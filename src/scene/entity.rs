@@ -2,6 +2,7 @@
 
 use crate::scene::kind::Kind;
 use crate::scene::pparm::{Attribute, Attributes, Given, Pparm, Row, Table};
+use crate::scene::value::Datum;
 use crate::text;
 use crate::world::accuracy::Accuracy;
 use crate::world::body::{AnyLight, Body};
@@ -202,6 +203,20 @@ impl Args {
     /// Returns the accuracy with which the scene is traced.
     pub fn accuracy(&self) -> Accuracy {
         self.setting.camera.accuracy
+    }
+
+    /// Returns the material of an object.
+    ///
+    /// # Panics
+    /// If the entity is not an object.
+    #[track_caller]
+    pub fn material(&self) -> Arc<Material> {
+        self.get(&MATERIAL)
+    }
+
+    /// Tells whether the entity refers to an object that could not be made.
+    pub(crate) fn refers_to_nothing(&self) -> bool {
+        self.values().any(|(_, datum)| matches!(datum, Datum::Object { body, .. } if body.get().is_none()))
     }
 
     /// Tells whether the attribute that a refusal marks is in the type's table. It is if the refusal marks none.

@@ -3,6 +3,7 @@
 use crate::numeric::formula::Formula;
 use crate::scene::choice::{Choice, ChoiceName, Choices};
 use crate::scene::kind::Kind;
+use crate::world::body::{Body, NamedBody};
 use crate::world::material::{Material, Rgb};
 use crate::world::texture::Texture;
 use glam::{DVec2, DVec3};
@@ -48,6 +49,13 @@ pub enum Datum {
         /// The texture of this name.
         texture: Arc<Texture>,
     },
+    /// An object and its name.
+    Object {
+        /// The name that the scene gives it.
+        name: Arc<str>,
+        /// The body of the object of this name.
+        body: NamedBody,
+    },
     /// One of several alternatives.
     Choice(ChoiceName),
     /// A formula.
@@ -67,7 +75,7 @@ impl Datum {
             Self::Absent => return String::new(),
             Self::Formula(formula) => format!(" {formula}"),
             Self::Word(word) => format!(" {word}"),
-            Self::Material { name, .. } => format!(" {name}"),
+            Self::Material { name, .. } | Self::Object { name, .. } => format!(" {name}"),
             Self::Choice(choice) => format!(" {}", choice.name),
         };
         format!("{label:<12}{values}{ending}")
@@ -266,6 +274,23 @@ impl Value for Arc<Material> {
     fn from_datum(datum: &Datum) -> Option<Self> {
         match datum {
             Datum::Material { material, .. } => Some(material.clone()),
+            _ => None,
+        }
+    }
+}
+
+/// An object, which a scene refers to by its name. It is seen only where entities that refer to it put it.
+impl Value for Arc<Body> {
+    const TYPE: Type = Type::Name(Kind::Object);
+    const ARITY: &'static [usize] = &[1];
+
+    fn to_datum(&self) -> Datum {
+        Datum::Object { name: Arc::from(""), body: NamedBody::default() }
+    }
+
+    fn from_datum(datum: &Datum) -> Option<Self> {
+        match datum {
+            Datum::Object { body, .. } => body.get().cloned(),
             _ => None,
         }
     }

@@ -48,6 +48,7 @@ pub fn model(
         files: HashMap::new(),
         texture_memory: accuracy.textures.unwrap_or(TEXTURE_MEMORY),
         objects: Vec::new(),
+        patterns: Vec::new(),
         lights: Vec::new(),
     };
     // Objects and lights may ask for the camera, wherever it stands in the text, so they are constructed last.
@@ -97,6 +98,8 @@ struct Check<'r> {
     /// How many more bytes the images of textures may take.
     texture_memory: u64,
     objects: Vec<Object>,
+    /// The objects that other entities refer to.
+    patterns: Vec<Args>,
     lights: Vec<Item<AnyLight>>,
 }
 
@@ -124,6 +127,9 @@ impl Check<'_> {
         let args = values.map(|values| Args::new(entity, text.to_string(), order, values));
         if !counts {
             return None;
+        }
+        if entity.kind() == Kind::Object {
+            self.names.define_object(text, order);
         }
         if matches!(entity.kind(), Kind::Object | Kind::Light) {
             return args.map(|args| (parsed, args));
@@ -173,9 +179,15 @@ impl Check<'_> {
                     self.textures.push(Item { args, value: texture });
                 }
             }
+            // What it refers to is faulty, and reported.
+            Construct::Object(_) if args.refers_to_nothing() => {}
             Construct::Object(construct) => {
-                if let Some(Item { args, value: Body { shape, shader } }) = self.made(parsed, args, construct)
-                {
+                let Some(Item { args, value }) = self.made(parsed, args, construct) else { return };
+                if let Some(body) = self.names.body(&name, args.order) {
+                    body.set(value);
+                    self.patterns.push(args);
+                } else {
+                    let Body { shape, shader } = value;
                     let material = args.get(&MATERIAL);
                     self.objects.push(Object { args, material, shape, shader });
                 }
@@ -216,6 +228,7 @@ impl Check<'_> {
     fn textures_can_be_read(&mut self, parsed: &[Parsed<'_>]) {
         let users =
             self.objects.iter().map(|object| &object.args).chain(self.lights.iter().map(|light| &light.args));
+        let users = users.chain(&self.patterns);
         let used: BTreeSet<_> = users.flat_map(|args| args.textures()).collect();
         for Item { args, value } in &self.textures {
             if !used.contains(args.name.as_str()) {
@@ -271,8 +284,8 @@ impl Check<'_> {
                     )),
             );
         }
-        let Self { camera, materials, textures, objects, lights, .. } = self;
-        Some(Model { camera: camera?, materials, textures, objects, lights })
+        let Self { camera, materials, textures, objects, patterns, lights, .. } = self;
+        Some(Model { camera: camera?, materials, textures, objects, patterns, lights })
     }
 }
 

@@ -1,13 +1,16 @@
 //! The names of a scene: which entities have them, and what references to them mean.
 
 use super::fault::{Fault, Place, Severity};
+use super::guesses::find_attribute;
 use super::parsed::{Form, Parsed, Word};
 use super::report::Report;
 use crate::scene::entity::Entity;
 use crate::scene::kind::Kind;
+use crate::scene::pparm::Attribute;
 use crate::scene::registry::Registry;
-use crate::scene::value::Datum;
+use crate::scene::value::{Datum, Type};
 use crate::text::{self, nearest};
+use crate::world::body::NamedBody;
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
@@ -40,6 +43,9 @@ pub struct Names {
     claimed: HashMap<Name, Claims>,
     /// The entities that can be referred to so far.
     defined: HashMap<Name, Datum>,
+    /// The names of objects that other entities refer to.
+    /// For each, the order of the object that has it first, once that is defined, and its body.
+    patterns: HashMap<String, (Option<usize>, NamedBody)>,
     /// References to entities not (yet) defined, each with all its places.
     unresolved: BTreeMap<Name, Vec<Place>>,
 }
@@ -47,11 +53,26 @@ pub struct Names {
 impl Names {
     /// Collects all names of a scene; none is claimed yet.
     pub fn of(registry: &Registry, parsed: &[Parsed<'_>]) -> Self {
-        let (mut places, mut doubtful) = (HashMap::new(), HashSet::new());
-        for Parsed { kind, name, .. } in parsed {
+        let (mut places, mut doubtful, mut patterns) = (HashMap::new(), HashSet::new(), HashMap::new());
+        for Parsed { kind, name, attributes, .. } in parsed {
             let text = name.text.to_string();
             match registry.find(&kind.text) {
                 Some(entity) => {
+                    let refers = |attribute: &&'static dyn Attribute| {
+                        matches!(attribute.value_type(), Type::Name(Kind::Object))
+                    };
+                    for attribute in entity.attributes().filter(refers) {
+                        let is_it = |word: &Word<'_>| {
+                            find_attribute(entity, &word.text).map(|known| known.name())
+                                == Some(attribute.name())
+                        };
+                        let given = attributes.iter().filter(|(word, _)| is_it(word));
+                        patterns.extend(
+                            given
+                                .flat_map(|(_, values)| values)
+                                .map(|value| (value.text.to_string(), Default::default())),
+                        );
+                    }
                     places.entry((entity.kind(), text)).or_insert_with(|| name.place.clone());
                 }
                 None => {
@@ -62,6 +83,7 @@ impl Names {
         Self {
             places,
             doubtful,
+            patterns,
             claimed: HashMap::new(),
             defined: HashMap::new(),
             unresolved: BTreeMap::new(),
@@ -165,9 +187,23 @@ impl Names {
         }
     }
 
+    /// Returns the body that an object of this name and order is to fill, if other entities refer to it.
+    pub fn body(&self, name: &str, order: usize) -> Option<NamedBody> {
+        let (first, body) = self.patterns.get(name)?;
+        (*first == Some(order)).then(|| body.clone())
+    }
+
     /// Defines a name, so that later entities can refer to it.
     pub fn define(&mut self, kind: Kind, name: &str, datum: Datum) {
         self.defined.entry((kind, name.to_owned())).or_insert(datum);
+    }
+
+    /// Defines an object, if other entities refer to one of its name and it is the first.
+    pub fn define_object(&mut self, name: &str, order: usize) {
+        let Some((first @ None, body)) = self.patterns.get_mut(name) else { return };
+        *first = Some(order);
+        let datum = Datum::Object { name: Arc::from(name), body: body.clone() };
+        self.define(Kind::Object, name, datum);
     }
 
     /// Returns the entity that a word refers to. If it is not defined, the reference is remembered and a stand-in is
@@ -242,6 +278,7 @@ pub fn stand_in(kind: Kind, name: &str) -> Datum {
     let name = Arc::from(name);
     match kind {
         Kind::Texture => Datum::Texture { name, texture: Arc::default() },
+        Kind::Object => Datum::Object { name, body: NamedBody::default() },
         _ => Datum::Material { name, material: Arc::default() },
     }
 }
