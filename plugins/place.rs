@@ -3,9 +3,8 @@
 use crate::geometry::Placement;
 use crate::prelude::*;
 use crate::shapes::Placed;
-use std::sync::Arc;
 
-static OBJECT: Pparm<Arc<Body>> = Pparm::required(
+static OBJECT: Pparm<NamedBody> = Pparm::required(
     "object",
     "the object to be placed, defined earlier in the scene; it is seen only where it is placed",
 );
@@ -30,6 +29,11 @@ inventory::submit! {
             rotation: args.get(&ROTATION),
             translation: args.get(&TRANSLATION),
         };
-        Ok(Placed::body(args.get(&OBJECT), placement, &args.material()))
+        let object = args.get(&OBJECT).get().cloned().ok_or(Refusal {
+            attribute: Some("object"),
+            message: "refers to an object that has not been made".to_owned(),
+            help: "the object is to be defined before it is placed",
+        })?;
+        Ok(Placed::body(object, placement, &args.material()))
     })
 }

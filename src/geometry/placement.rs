@@ -70,7 +70,7 @@ fn turned_back<N: Scalar>(degrees: f64, x: N, y: N) -> (N, N) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numeric::interval::{Interval, Wide};
+    use crate::numeric::interval::{Float, Interval, Wide};
 
     #[test]
     fn half_a_turn_is_enclosed() {
@@ -84,7 +84,7 @@ mod tests {
 
     #[test]
     fn right_angles_are_exact() {
-        for turns in -9..=9 {
+        for turns in -9..=9_i32 {
             let placement = Placement {
                 scale: DVec3::new(1.0, 2.0, 4.0),
                 rotation: DVec3::new(0.0, 90.0 * f64::from(turns), 0.0),

@@ -3,7 +3,7 @@
 use crate::numeric::formula::Formula;
 use crate::scene::choice::{Choice, ChoiceName, Choices};
 use crate::scene::kind::Kind;
-use crate::world::body::{Body, NamedBody};
+use crate::world::body::NamedBody;
 use crate::world::material::{Material, Rgb};
 use crate::world::texture::Texture;
 use glam::{DVec2, DVec3};
@@ -280,17 +280,17 @@ impl Value for Arc<Material> {
 }
 
 /// An object, which a scene refers to by its name. It is seen only where entities that refer to it put it.
-impl Value for Arc<Body> {
+impl Value for NamedBody {
     const TYPE: Type = Type::Name(Kind::Object);
     const ARITY: &'static [usize] = &[1];
 
     fn to_datum(&self) -> Datum {
-        Datum::Object { name: Arc::from(""), body: NamedBody::default() }
+        Datum::Object { name: Arc::from(""), body: self.clone() }
     }
 
     fn from_datum(datum: &Datum) -> Option<Self> {
         match datum {
-            Datum::Object { body, .. } => body.get().cloned(),
+            Datum::Object { body, .. } => Some(body.clone()),
             _ => None,
         }
     }
