@@ -14,7 +14,7 @@ const BEFORE: &str = "camera eye { pixeldim 160 120 worlddim 8 6 viewpoint 4 3 8
 /// Asserts that two scenes look the same but for the rounding of single pixels' bytes.
 fn look_the_same(one: &str, other: &str) {
     let [one_bytes, other_bytes] = [one, other].map(|scene| render(&model(&format!("{BEFORE}{scene}"))));
-    let differences = || one_bytes.iter().zip(&other_bytes).map(|(one, other)| one.abs_diff(*other));
+    let differences = || one_bytes.iter().zip(other_bytes.iter()).map(|(one, other)| one.abs_diff(*other));
     assert!(differences().all(|difference| difference <= 1), "{one}");
     let different = differences().filter(|difference| *difference > 0).count();
     assert!(different * 1000 <= one_bytes.len(), "{one}: {different}");

@@ -236,7 +236,7 @@ impl Names {
                     Fault::error(places[0].clone(), format!("{kind} `{text}` is used before it is defined"))
                         .label(suggestion(None, places))
                         .also(defined.clone(), "defined here")
-                        .help(format!("a {kind} must be defined before it is used"))
+                        .help(format!("{} must be defined before it is used", kind.with_article()))
                 }
                 None => {
                     let known = known.get(kind).filter(|_| is_told).into_iter().flatten().copied();
