@@ -145,14 +145,14 @@ fn is_explained(classic: &Model, exact: &Model, x: usize, y: usize) -> bool {
             let is_same = match (old, new) {
                 (Some(MISS), None) | (None, Some(MISS)) => true,
                 (Some(_), None) => return true,
-                (None, Some(_)) if object.args.entity.name == "sphere" => return true,
+                (None, Some(_)) if object.args.entity().name == "sphere" => return true,
                 (Some(old), Some(new)) => old == new || (old - new).abs() <= 1e-12 * old.abs().min(new.abs()),
                 (old, new) => old == new,
             };
             if !is_same {
                 let proven = object.shape.certify(&Sight::along(ray), Precision::Double);
                 let is_doubtful = matches!(proven, Enclosure::Edge(_) | Enclosure::Doubtful(_));
-                return object.args.entity.name == "revsurf" || is_doubtful;
+                return object.args.entity().name == "revsurf" || is_doubtful;
             }
         }
     }

@@ -6,6 +6,7 @@ use crate::files;
 use crate::scene::model::Model;
 use crate::scene::reader::{self, Chosen, Loaded, Report};
 use crate::scene::registry::Registry;
+use crate::scene::syntax::Syntax;
 use crate::text;
 use crate::world::accuracy::Accuracy;
 use std::io::{self, Read};
@@ -14,8 +15,10 @@ use std::path::{Path, PathBuf};
 /// The maximum size of a scene, in bytes: far more than written scenes have, and far less than memory holds.
 const LARGEST: u64 = 1 << 30;
 
-/// The memory for making a model of many objects, in bytes per byte of its text.
-const MODEL: usize = 16;
+/// The memory for making a model of many objects of few words, in bytes per byte of a text in the notes' syntax. In TOML
+/// it is more: all of the text is parsed before any of it is checked.
+const MODEL: usize = 8;
+const MODEL_IN_TOML: usize = 48;
 
 /// Tells whether this path stands for standard input.
 pub fn is_standard(path: &Path) -> bool {
@@ -50,7 +53,10 @@ impl Source {
     /// Reads the text of a scene.
     pub fn read(path: &Path) -> Result<Self, Failure> {
         let (name, bytes) = read(path)?;
-        memory::room(MODEL * bytes.len(), &format!("the model of `{name}`"))?;
+        let syntax = Syntax::of_name(path);
+        let syntax = syntax.or_else(|| Some(Syntax::of_text(std::str::from_utf8(&bytes).ok()?)));
+        let model = if syntax == Some(Syntax::Toml) { MODEL_IN_TOML } else { MODEL };
+        memory::room(model.saturating_mul(bytes.len()), &format!("the model of `{name}`"))?;
         Ok(Self { name, folder: path.parent().unwrap_or(path).to_owned(), bytes })
     }
 

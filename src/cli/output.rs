@@ -123,7 +123,7 @@ pub fn is_no_source(path: &Path, scene: &Path, model: &Model) -> Result<(), Fail
     let what = if is_scene() {
         "the scene".to_owned()
     } else if let Some(texture) = model.textures.iter().find(|texture| is_source(texture)) {
-        format!("the image of texture `{}`", texture.args.name)
+        format!("the image of texture `{}`", texture.args.name())
     } else {
         return Ok(());
     };

@@ -77,6 +77,8 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     output::is_no_source(&path, &args.scene, &model)?;
     let output = Output::open(&path)?;
     let beside = aov::open((&args.scene, &model), &args.aov, &path, &output)?;
+    // The text of a large scene takes as much memory as its model.
+    let source = (!beside.is_empty()).then_some(source);
     let begun = Begun::open(args.stop.resume, &model, &part, &path, &output)?;
     debug::print(&model, &args.debug)?;
     let threads = args.threads.unwrap_or(0).into();
@@ -103,13 +105,11 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         messages::note(&format!("wrote {} ({width} x {height} pixels, {seconds:.2} s)", path.display()));
     }
     args.stats.print(&stats, &model);
+    let Some(source) = source else { return Ok(()) };
     let exact = || match source.load_by(registry, chosen(Some(Accuracy::Exact))) {
         Ok(loaded) => Ok(loaded.model),
         Err(report) => Err(Failure::Scene(report)),
     };
-    if beside.is_empty() {
-        return Ok(());
-    }
     stop.ends_from_here()?;
     aov::write(&plan, exact, threads, format, beside)
 }

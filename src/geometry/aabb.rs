@@ -1,6 +1,5 @@
 //! Axis-aligned bounding boxes.
 
-use crate::geometry::ray_packet::RayPacket;
 use crate::simd::cpu::kernels;
 use crate::simd::soa::View;
 use glam::DVec3;
@@ -131,23 +130,5 @@ kernels! {
     pub fn around(points: View) -> Aabb {
         let (x, y, z) = (range(points.x), range(points.y), range(points.z));
         Aabb { low: DVec3::new(x.0, y.0, z.0), high: DVec3::new(x.1, y.1, z.1) }
-    }
-
-    /// Returns whether any ray may enter a box before its end; `false` is certain. `inverse` holds the reciprocals of
-    /// the rays' directions, `ends` the distances in world units at which the rays end.
-    pub fn any_meets(rays: RayPacket, inverse: View, ends: &[f64], bounds: &Aabb) -> bool {
-        let count = ends.len();
-        let (origin, inverse) = (rays.origin.first(count), inverse.first(count));
-        let (low, high) = (bounds.low, bounds.high);
-        let mut any = 0;
-        for lane in 0..count {
-            let (from, inverse) = (origin.get(lane), inverse.get(lane));
-            let (a, b) = ((low - from) * inverse, (high - from) * inverse);
-            let (near, far) = (a.min(b), a.max(b));
-            let enters = near.x.max(near.y).max(near.z).max(0.0);
-            let leaves = far.x.min(far.y).min(far.z).min(ends[lane]);
-            any |= u64::from(enters <= leaves * (1.0 + SLACK));
-        }
-        any != 0
     }
 }

@@ -1,6 +1,7 @@
 //! Rays, bounding boxes and frames: space without shapes.
 
 pub(crate) mod aabb;
+pub(crate) mod bvh;
 pub(crate) mod frame;
 pub(crate) mod placement;
 pub(crate) mod ray;
@@ -9,6 +10,7 @@ pub(crate) mod roots;
 pub(crate) mod sight;
 
 pub use aabb::{Aabb, clearance};
+pub use bvh::{Bvh, Stack};
 pub use frame::Frame;
 pub use placement::Placement;
 pub use ray::{Bracket, MISS, Ray, RayRange, Side};

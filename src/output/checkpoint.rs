@@ -7,8 +7,8 @@ use crate::output::picture::{AS_SHOWN, Rows};
 use crate::render::tiles::{Band, Strip, TILE, Tiles};
 use crate::scene::choice::Choice;
 use crate::scene::dump;
-use crate::scene::entity::Args;
 use crate::scene::model::Model;
+use crate::scene::store::Record;
 use crate::scene::syntax::Syntax;
 use crate::text;
 use rayon::ThreadPoolBuilder;
@@ -64,7 +64,7 @@ impl Identity {
         let textures = model.textures.iter().map(|texture| {
             let [width, height] = texture.value.size();
             let texels = texture.value.load().map_or(&[][..], |picture| picture.as_raw());
-            (texture.args.name.clone(), format!("{} ({width} x {height})", hash(texels)))
+            (texture.args.name().to_owned(), format!("{} ({width} x {height})", hash(texels)))
         });
         Ok(Self {
             accuracy: camera.accuracy.option().name.to_owned(),
@@ -129,10 +129,11 @@ const TOGETHER: usize = 1 << 12;
 /// waiting for an interrupted render to end.
 fn scene(model: &Model) -> String {
     let entities = dump::in_order(model);
-    let hash = |entities: &[&Args]| {
+    let hash = |entities: &[&Record]| {
         let mut hasher = Sha256::new();
-        for args in entities {
-            hasher.update(dump::block(args, Syntax::Notes, false));
+        let mut memory = None;
+        for record in entities {
+            hasher.update(dump::block(record.args_in(&mut memory), Syntax::Notes, false));
         }
         hasher.finalize()
     };

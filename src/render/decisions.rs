@@ -5,6 +5,7 @@ use crate::render::limits::{MAX_DIST, MAX_RAYS};
 use crate::render::plan::depth::Depth;
 use crate::render::plan::{Plan, TREE};
 use crate::scene::model::{Item, Model, Object};
+use crate::scene::store::Record;
 use crate::text::{count, list, short};
 use crate::world::accuracy::Accuracy;
 use crate::world::camera::Camera;
@@ -71,7 +72,7 @@ fn picture(camera: &Camera) -> String {
 }
 
 fn lights(model: &Model) -> String {
-    let names = some(model.lights.iter().map(|light| light.args.name.as_str()));
+    let names = some(model.lights.iter().map(|light| light.args.name()));
     match model.lights.len() {
         0 => "none: surfaces show their ambient colour, and no shadow rays are cast".to_owned(),
         1 => format!("{names}: a shadow ray from each point that faces it and reflects its light"),
@@ -118,7 +119,7 @@ fn depth(model: &Model, depth: &Depth) -> String {
         (_, false) => {
             let bright = model.objects.iter().zip(&depth.objects).find(|(_, onward)| !onward.own.is_finite());
             let reason = match bright {
-                Some((object, _)) => format!("`{}` may have any brightness", object.args.name),
+                Some((object, _)) => format!("`{}` may have any brightness", object.args.name()),
                 None => "mirrors and glass pass on as much light as they receive".to_owned(),
             };
             format!("branches end {ends}: {reason}, and nothing bounds what they add")
@@ -128,14 +129,18 @@ fn depth(model: &Model, depth: &Depth) -> String {
 
 /// Lists the names of the objects that satisfy a condition.
 fn of_material(objects: &[Object], is_wanted: impl Fn(&Object) -> bool) -> String {
-    some(objects.iter().filter(|object| is_wanted(object)).map(|object| object.args.name.as_str()))
+    some(objects.iter().filter(|object| is_wanted(object)).map(|object| object.args.name()))
 }
 
 fn textures(model: &Model) -> Vec<String> {
+    if model.textures.is_empty() {
+        return Vec::new();
+    }
     let objects = model.objects.iter().map(|object| &object.args);
-    let users: Vec<_> = objects.chain(model.lights.iter().map(|light| &light.args)).collect();
+    let users: Vec<_> =
+        objects.chain(model.lights.iter().map(|light| &light.args)).map(Record::args).collect();
     let text = |item: &Item<Arc<Texture>>| {
-        let name = &item.args.name;
+        let name = item.args.name();
         let its = users.iter().filter(|args| args.textures().any(|used| used == name));
         let its: Vec<_> = its.map(|args| args.name.as_str()).collect();
         if its.is_empty() {
@@ -180,10 +185,10 @@ fn objects(model: &Model, plan: &Plan) -> Vec<Decision> {
             (None, Some(_)) => "with bounds",
             (_, None) => "without bounds",
         };
-        let (kind, text) = (object.args.entity.name, format!("{place}: {}", object.shape.method()));
+        let (kind, text) = (object.args.entity().name, format!("{place}: {}", object.shape.method()));
         match alike.last_mut() {
-            Some((last, same, names)) if *last == kind && *same == text => names.push(&object.args.name),
-            _ => alike.push((kind, text, vec![&object.args.name])),
+            Some((last, same, names)) if *last == kind && *same == text => names.push(object.args.name()),
+            _ => alike.push((kind, text, vec![object.args.name()])),
         }
     }
     let line = |(subject, text, names): (_, String, Vec<&str>)| Decision {

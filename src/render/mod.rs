@@ -1,6 +1,5 @@
 //! From a model to colours: the plan, the BVH, the tracer, and its observers.
 
-pub(crate) mod bvh;
 pub(crate) mod bytes;
 mod culling;
 pub mod decisions;

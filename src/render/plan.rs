@@ -5,13 +5,17 @@ pub(crate) mod depth;
 use depth::{Depth, Onward};
 
 use crate::geometry::aabb::Aabb;
-use crate::render::bvh::Bvh;
+use crate::geometry::bvh::Bvh;
 use crate::render::culling;
 use crate::scene::model::Model;
 use crate::world::camera::Camera;
+use rayon::prelude::*;
 
 /// The number of bounded objects from which on a BVH is faster than a list.
 pub(crate) const TREE: usize = 24;
+
+/// The number of objects from which on their bounds are computed on all threads.
+const MANY: usize = 1 << 14;
 
 /// A model, with the decisions that depend on its objects and lights. Rays are traced through a plan.
 pub struct Plan<'m> {
@@ -37,15 +41,22 @@ impl<'m> Plan<'m> {
     pub fn new(model: &'m Model) -> Self {
         let objects = &model.objects;
         let (mut unbounded, mut bounded) = (Vec::new(), Vec::new());
-        for (index, object) in objects.iter().enumerate() {
-            match culling::bounds(object) {
+        let bounds: Vec<_> = if objects.len() < MANY {
+            objects.iter().map(culling::bounds).collect()
+        } else {
+            objects.par_iter().map(culling::bounds).collect()
+        };
+        for (index, bounds) in bounds.into_iter().enumerate() {
+            match bounds {
                 Some(bounds) => bounded.push((index, bounds)),
                 None => unbounded.push(index),
             }
         }
         let tree = (bounded.len() >= TREE).then(|| {
-            let boxes = bounded.drain(..);
-            Bvh::new(boxes.map(|(index, bounds)| (index as u32, bounds.with_slack(0.0))).collect())
+            let (objects, boxes): (Vec<_>, Vec<_>) = bounded.drain(..).unzip();
+            let mut tree = Bvh::new(&boxes);
+            tree.rename(|object| objects[object as usize] as u32);
+            tree
         });
         let has_glass = objects.iter().any(|object| object.material.transparency != 0.0);
         let (camera, depth) = (model.camera.value.clone(), Depth::new(model));

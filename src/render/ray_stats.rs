@@ -106,7 +106,7 @@ impl RayStats {
         let mut tests: BTreeMap<_, TestCounts> = BTreeMap::new();
         for (index, object) in model.objects.iter().enumerate() {
             let part = self.tests.get(index).copied().unwrap_or_default();
-            let sum = tests.entry(object.args.entity.name).or_default();
+            let sum = tests.entry(object.args.entity().name).or_default();
             sum.objects += 1;
             sum.tested += part.tested;
             sum.culled += part.culled;

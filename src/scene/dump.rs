@@ -4,6 +4,7 @@ use crate::scene::entity::Args;
 use crate::scene::kind::Kind;
 use crate::scene::model::Model;
 use crate::scene::pparm::Attribute;
+use crate::scene::store::Record;
 use crate::scene::syntax::Syntax;
 use crate::scene::value::Datum;
 use std::collections::HashMap;
@@ -11,7 +12,9 @@ use std::collections::HashMap;
 /// Returns the notes' dump: camera, materials, objects and lights, with numbers to one decimal. Textures are not in it.
 pub fn notes(model: &Model) -> String {
     let kinds = [Kind::Camera, Kind::Material, Kind::Object, Kind::Light];
-    kinds.into_iter().flat_map(|kind| model.entities(kind)).map(notes_block).collect()
+    let mut memory = None;
+    let entities = kinds.into_iter().flat_map(|kind| model.entities(kind));
+    entities.map(|record| notes_block(record.args_in(&mut memory))).collect()
 }
 
 fn notes_block(args: &Args) -> String {
@@ -30,13 +33,21 @@ pub fn scene(model: &Model, syntax: Syntax) -> String {
     let entities = in_order(model);
     // TOML needs an array of tables where two entities have the same title.
     let mut counts: HashMap<_, usize> = HashMap::new();
-    let title = |args: &'_ Args| (args.entity.name, args.name.clone());
     if syntax == Syntax::Toml {
-        entities.iter().for_each(|args| *counts.entry(title(args)).or_default() += 1);
+        entities
+            .iter()
+            .for_each(|record| *counts.entry((record.entity().name, record.name())).or_default() += 1);
     }
-    let is_repeated = |args: &Args| counts.get(&title(args)).is_some_and(|count| *count > 1);
-    let blocks: Vec<_> = entities.iter().map(|args| block(args, syntax, is_repeated(args))).collect();
-    blocks.join("\n")
+    let (mut text, mut memory) = (String::new(), None);
+    for record in entities {
+        if !text.is_empty() {
+            text += "\n";
+        }
+        let args = record.args_in(&mut memory);
+        let count = counts.get(&(args.entity.name, record.name()));
+        text += &block(args, syntax, count.is_some_and(|count| *count > 1));
+    }
+    text
 }
 
 /// Returns an entity of such a scene. `repeated` is true if another entity of its type has the same name.
@@ -62,9 +73,9 @@ pub(crate) fn block(args: &Args, syntax: Syntax, repeated: bool) -> String {
 }
 
 /// Returns all entities of a model in the order of its scene.
-pub(crate) fn in_order(model: &Model) -> Vec<&Args> {
+pub(crate) fn in_order(model: &Model) -> Vec<&Record> {
     let kinds = [Kind::Camera, Kind::Material, Kind::Texture, Kind::Object, Kind::Light];
     let mut all: Vec<_> = kinds.into_iter().flat_map(|kind| model.entities(kind)).collect();
-    all.sort_by_key(|args| args.order);
+    all.sort_by_key(|record| record.order());
     all
 }

@@ -200,6 +200,20 @@ impl Args {
         Self { entity, name, order, setting: Arc::default(), attributes }
     }
 
+    /// Makes the arguments of an entity whose attributes all have their defaults, as far as they have any.
+    pub(crate) fn blank(entity: &'static Entity, setting: Arc<Setting>) -> Self {
+        let values =
+            entity.attributes().map(|attribute| (attribute.default().unwrap_or(Datum::Absent), false));
+        Self { setting, ..Self::new(entity, String::new(), 0, values.collect()) }
+    }
+
+    /// Returns every attribute with its value and whether the scene gives it, in the order of the table.
+    pub(crate) fn values_mut(
+        &mut self,
+    ) -> impl Iterator<Item = (&'static dyn Attribute, &mut Datum, &mut bool)> {
+        self.attributes.values_mut()
+    }
+
     /// Returns the accuracy with which the scene is traced.
     pub fn accuracy(&self) -> Accuracy {
         self.setting.camera.accuracy

@@ -14,6 +14,7 @@ pub(crate) mod reader;
 pub mod reference;
 pub(crate) mod registry;
 pub mod schema;
+pub(crate) mod store;
 pub(crate) mod syntax;
 pub(crate) mod value;
 
@@ -25,5 +26,6 @@ pub use pparm::{Attribute, Derived, Pparm, Row, Table};
 pub use profile::Profile;
 pub use reader::{Fault, Loaded, Parsed, Place, Report, Severity, build, read};
 pub use registry::Registry;
+pub use store::Record;
 pub use syntax::Syntax;
 pub use value::{Datum, Type};

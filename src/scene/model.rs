@@ -1,7 +1,7 @@
 //! A scene ready to be traced. It does not change during a render.
 
-use crate::scene::entity::Args;
 use crate::scene::kind::Kind;
+use crate::scene::store::Record;
 use crate::world::any_shape::AnyShape;
 use crate::world::body::{AnyLight, AnyShader};
 use crate::world::camera::Camera;
@@ -21,14 +21,14 @@ pub struct Model {
     /// The visible objects, in the order of the scene.
     pub objects: Vec<Object>,
     /// The objects that other entities refer to, in the order of the scene: they are seen only where these put them.
-    pub patterns: Vec<Args>,
+    pub patterns: Vec<Record>,
     /// The lights, in the order of the scene.
     pub lights: Vec<Item<AnyLight>>,
 }
 
 impl Model {
     /// Returns the entities of a kind as they were given, in the order of the scene.
-    pub fn entities(&self, kind: Kind) -> Vec<&Args> {
+    pub fn entities(&self, kind: Kind) -> Vec<&Record> {
         match kind {
             Kind::Camera => vec![&self.camera.args],
             Kind::Material => self.materials.iter().map(|item| &item.args).collect(),
@@ -36,7 +36,7 @@ impl Model {
             Kind::Object => {
                 let shown = self.objects.iter().map(|object| &object.args);
                 let mut all: Vec<_> = shown.chain(&self.patterns).collect();
-                all.sort_by_key(|args| args.order);
+                all.sort_by_key(|record| record.order());
                 all
             }
             Kind::Light => self.lights.iter().map(|item| &item.args).collect(),
@@ -44,10 +44,10 @@ impl Model {
     }
 }
 
-/// An entity of a scene: its attributes as given, and what the constructor made of them.
+/// An entity of a scene: as it was given, and what the constructor made of them.
 pub struct Item<T> {
     /// The entity's type, name and values.
-    pub args: Args,
+    pub args: Record,
     /// What the constructor made.
     pub value: T,
 }
@@ -55,7 +55,7 @@ pub struct Item<T> {
 /// A visible object.
 pub struct Object {
     /// The object's type, name and values.
-    pub args: Args,
+    pub args: Record,
     /// The object's material.
     pub material: Arc<Material>,
     /// The object's geometry.

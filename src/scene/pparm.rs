@@ -6,6 +6,7 @@
 use crate::scene::value::{Datum, Type, Value};
 use crate::text;
 use std::panic::Location;
+use std::ptr;
 
 /// A row of an entity's table.
 pub trait Row: Sync {
@@ -264,7 +265,7 @@ impl Attributes {
     /// If the plugin asks for an attribute that is not in the table it registered.
     #[track_caller]
     pub fn get<T: Value>(&self, key: &Pparm<T>) -> T {
-        match self.find(key.name()).and_then(T::from_datum) {
+        match self.found(key).and_then(T::from_datum) {
             Some(value) => value,
             // No closure, so that the panic message names the plugin's line.
             None => self.not_in_table(key.name()),
@@ -304,6 +305,20 @@ impl Attributes {
             Datum::Texture { name, .. } => Some(&**name),
             _ => None,
         })
+    }
+
+    /// Returns every attribute with its value and whether the scene gives it, in the order of the table.
+    pub(crate) fn values_mut(
+        &mut self,
+    ) -> impl Iterator<Item = (&'static dyn Attribute, &mut Datum, &mut bool)> {
+        self.values.iter_mut().map(|(attribute, (datum, is_given))| (*attribute, datum, is_given))
+    }
+
+    /// Finds the value of the attribute that `key` describes: most keys are themselves in the table, and need not be
+    /// compared by name.
+    fn found<T: Value>(&self, key: &Pparm<T>) -> Option<&Datum> {
+        let itself = self.values.iter().find(|(attribute, _)| ptr::addr_eq(*attribute, key));
+        itself.map(|(_, (datum, _))| datum).or_else(|| self.find(key.name()))
     }
 
     /// Finds the value of the attribute of this name.

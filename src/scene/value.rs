@@ -65,6 +65,21 @@ pub enum Datum {
 }
 
 impl Datum {
+    /// Tells whether both are the same entity or alternative. `false` says nothing.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Material { name, material }, Self::Material { name: name2, material: material2 }) => {
+                Arc::ptr_eq(name, name2) && Arc::ptr_eq(material, material2)
+            }
+            (Self::Texture { name, texture }, Self::Texture { name: name2, texture: texture2 }) => {
+                Arc::ptr_eq(name, name2) && Arc::ptr_eq(texture, texture2)
+            }
+            (Self::Object { name, .. }, Self::Object { name: name2, .. }) => Arc::ptr_eq(name, name2),
+            (Self::Choice(one), Self::Choice(other)) => one == other,
+            _ => false,
+        }
+    }
+
     /// Writes the value's line in the notes' dump: a label, the values and the end of the line.
     pub fn line(&self, label: &str, ending: &str) -> String {
         let values = match self {

@@ -21,6 +21,12 @@ impl<const N: usize> Vectors<N> {
     /// Vectors that are all 0.
     pub const ZERO: Self = Self { x: [0.0; N], y: [0.0; N], z: [0.0; N] };
 
+    /// Makes copies of one vector.
+    #[inline(always)]
+    pub fn of(vector: DVec3) -> Self {
+        Self { x: [vector.x; N], y: [vector.y; N], z: [vector.z; N] }
+    }
+
     /// Returns the vector at an index.
     #[inline(always)]
     pub fn get(&self, index: usize) -> DVec3 {

@@ -79,7 +79,7 @@ impl<W: Write> Printer<'_, W> {
         let object = &self.model.objects[index];
         let distance = object.shape.distance(ray, &RayRange::ALL);
         if distance < f64::INFINITY {
-            self.print(LogLine::Find, format_args!("FND {:>12}: {distance:5.1} - \n ", object.args.name));
+            self.print(LogLine::Find, format_args!("FND {:>12}: {distance:5.1} - \n ", object.args.name()));
         }
     }
 }
@@ -93,12 +93,12 @@ impl<W: Write> TraceObserver for Printer<'_, W> {
             Event::Search(ray) => self.ray = Some(*ray),
             Event::Tested(index, Some(_)) => self.find(index),
             Event::Met(Some(hit)) if !self.shadow => {
-                let (name, at) = (&hit.object.args.name, hit.point);
+                let (name, at) = (&hit.object.args.name(), hit.point);
                 let text = format_args!("{name:<12} HIT:({:5.1}, {:5.1}, {:5.1})", at.x, at.y, at.z);
                 self.print(LogLine::Hit, text);
             }
             Event::Shaded { hit, colour, .. } => {
-                let (name, c) = (&hit.object.args.name, colour);
+                let (name, c) = (&hit.object.args.name(), colour);
                 let text = format_args!("{name:<12} DRGB:({:5.2}, {:5.2}, {:5.2})", c.x, c.y, c.z);
                 self.print(LogLine::Drgb, text);
             }

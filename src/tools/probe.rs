@@ -99,7 +99,7 @@ impl<W: Write> TraceObserver for Probe<'_, W> {
             }
             Event::Light(index, outcome) => {
                 self.light = None;
-                let name = &self.model.lights[index].args.name;
+                let name = self.model.lights[index].args.name();
                 self.line("light", &format!("`{name}` {}", self.outcome_of(outcome)));
                 let held = std::mem::take(&mut self.held);
                 self.write(&held);
@@ -149,7 +149,7 @@ impl<W: Write> Probe<'_, W> {
         self.line("along", &triple(search.ray.dir));
         let label = |index: usize| {
             let args = &self.model.objects[index].args;
-            format!("{} `{}`", args.entity.name, args.name)
+            format!("{} `{}`", args.entity().name, args.name())
         };
         let rows: Vec<_> = search
             .tests
@@ -167,7 +167,7 @@ impl<W: Write> Probe<'_, W> {
             self.line(if row == 0 { "tested" } else { "" }, &text);
         }
         let met = hit.map_or("nothing".to_owned(), |hit| {
-            format!("`{}` at {}, {} away", hit.object.args.name, triple(hit.point), number(hit.distance))
+            format!("`{}` at {}, {} away", hit.object.args.name(), triple(hit.point), number(hit.distance))
         });
         self.line("hit", &met);
     }
@@ -191,9 +191,9 @@ impl<W: Write> Probe<'_, W> {
             (Some(hit), _) if hit.index == index => "the nearest".to_owned(),
             (_, Some(light)) if distance >= light => "beyond the light".to_owned(),
             (Some(hit), _) if distance == hit.distance => {
-                format!("as near as `{}`, but later in the scene", hit.object.args.name)
+                format!("as near as `{}`, but later in the scene", hit.object.args.name())
             }
-            (Some(hit), _) => format!("behind `{}`", hit.object.args.name),
+            (Some(hit), _) => format!("behind `{}`", hit.object.args.name()),
             (None, _) => String::new(),
         };
         (format!("{distance:.6}"), verdict)
@@ -203,7 +203,7 @@ impl<W: Write> Probe<'_, W> {
         match outcome {
             Outcome::Behind => "is behind the surface".to_owned(),
             Outcome::Aside => "does not shine there".to_owned(),
-            Outcome::Blocked(index) => format!("is blocked by `{}`", self.model.objects[index].args.name),
+            Outcome::Blocked(index) => format!("is blocked by `{}`", self.model.objects[index].args.name()),
             Outcome::Shines { passed: DVec3::ONE, colour } => format!("adds {}", triple(colour)),
             Outcome::Shines { passed, colour } => {
                 format!("arrives tinted {}, adds {}", triple(passed), triple(colour))

@@ -1,4 +1,5 @@
-//! Writes what fuzzing starts from: the project's scenes as corpora, and the words of its tables as a dictionary.
+//! Writes the inputs that fuzzing starts from: the project's scenes as corpora, and the words of its tables as a
+//! dictionary.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -8,7 +9,7 @@ use tabray::scene::Registry;
 #[path = "target.rs"]
 mod target;
 
-/// The files below a folder, in the order of their names.
+/// Returns the files below a folder, sorted by path.
 fn files(folder: &Path) -> io::Result<Vec<PathBuf>> {
     let mut paths = fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<io::Result<Vec<_>>>()?;
     paths.sort();
@@ -34,7 +35,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             Some(kind @ ("ray" | "toml")) => {
                 let is_toml = kind == "toml";
                 let text = String::from_utf8_lossy(&bytes);
-                // Loading a profile takes longer than all the rest. `render` begins with those, too.
+                // Loading a profile takes longer than everything else. `render` starts from such scenes, too.
                 if bytes.len() <= 1024 && !text.contains("profile") {
                     write(if is_toml { "toml" } else { "notes" }, index, &bytes)?;
                 }

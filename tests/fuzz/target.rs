@@ -1,4 +1,5 @@
-//! What is done with the bytes that a fuzzer makes up. Each function is a target; it panics where a promise is broken.
+//! The fuzzing targets. Each target is a function of the bytes that a fuzzer generates, and panics if a promise is
+//! broken.
 #![allow(dead_code, reason = "each program uses one of these functions")]
 
 use std::fs::{self, File};
@@ -16,15 +17,15 @@ use tempfile::{NamedTempFile, TempDir, tempfile_in};
 
 const SYNTAXES: [Syntax; 2] = [Syntax::Notes, Syntax::Toml];
 
-/// The longest list of messages that may come of one scene, in bytes.
+/// The maximum length of the messages about one scene, in bytes.
 const LONGEST_REPORT: usize = 1 << 20;
 
-/// A scene in the notes' syntax: it is refused with messages, or its dump is a scene with the same dump.
+/// Reads a scene in the notes' syntax: it is refused with messages, or its dump is a scene with the same dump.
 pub fn notes(bytes: &[u8]) {
     load_and_dump("scene.ray", bytes);
 }
 
-/// As [`notes`], for a scene in TOML.
+/// Reads a scene in TOML, which must satisfy the same as [`notes`].
 pub fn toml(bytes: &[u8]) {
     load_and_dump("scene.toml", bytes);
 }
@@ -44,7 +45,7 @@ fn load_and_dump(name: &str, bytes: &[u8]) {
 static REGISTRY: LazyLock<&Registry> =
     LazyLock::new(|| Registry::get().expect("no two plugins claim one name"));
 
-/// The model of a scene, or nothing where it is refused. File names start from the folder of the project's scenes.
+/// Returns the model of a scene, or nothing if it is refused. File names are relative to the project's folder `scenes`.
 fn load(name: &str, bytes: &[u8], accuracy: Option<Accuracy>) -> Option<Loaded> {
     let folder =
         Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().find(|folder| folder.join("scenes").is_dir());
@@ -60,7 +61,7 @@ fn load(name: &str, bytes: &[u8], accuracy: Option<Accuracy>) -> Option<Loaded> 
     }
 }
 
-/// A formula, evaluated with every type of number.
+/// Evaluates a formula with every number type.
 pub fn formula(bytes: &[u8]) {
     let Ok(formula) = str::from_utf8(bytes).map_err(drop).and_then(|text| Formula::parse(text).map_err(drop))
     else {
@@ -87,12 +88,13 @@ pub fn formula(bytes: &[u8]) {
     }
 }
 
-/// Whether something is an interval: its ends are in their order.
+/// Asserts that the ends of an interval are in order.
 fn holds(Interval { low, high }: Interval<f64>) {
     assert!(low <= high, "{low} to {high}");
 }
 
-/// The file of a texture, which is read or refused with a reason. The checksums of a PNG are right, as a fuzzer hits none.
+/// Reads the file of a texture, which is accepted or refused with a reason. The checksums of a PNG are repaired first,
+/// since a fuzzer does not find right ones.
 pub fn texture(bytes: &[u8]) {
     let file = NamedTempFile::new_in(memory()).expect("a temporary file");
     fs::write(&file, with_checksums(bytes)).expect("it is written");
@@ -105,11 +107,12 @@ pub fn texture(bytes: &[u8]) {
     load("scene.ray", scene.as_bytes(), None);
 }
 
-/// A renderer for each kind of processor that this one can be.
+/// A renderer for each instruction set of this machine.
 static RENDERERS: LazyLock<Vec<Renderer>> =
     LazyLock::new(|| Cpu::all().map(|cpu| Renderer::new(1).expect("a thread").on(cpu)).collect());
 
-/// A scene, rendered small: packets of rays on every kind of processor, pixels alone, and nothing that is no number.
+/// Renders a small image of a scene: packets of rays, with every instruction set, give the same bytes as single rays,
+/// and no colour is NaN.
 pub fn render(bytes: &[u8]) {
     let [kind, text @ ..] = bytes else { return };
     let accuracy = Accuracy::ALL[usize::from(kind % 4)];
@@ -128,7 +131,7 @@ pub fn render(bytes: &[u8]) {
         assert!(!colour.is_nan(), "pixel {x} {y} has the colour {colour}");
         colour.to_array().map(to_byte)
     };
-    // On a renderer's thread, whose stack is as large as deep reflections need.
+    // The pixels are computed on a renderer's thread, whose stack has room for deep reflections.
     let alone = RENDERERS[0].run(|| {
         let pixels = (0..height).rev().flat_map(|y| (0..width).map(move |x| (x, y)));
         pixels.flat_map(|(x, y)| pixel(x, y)).collect::<Vec<u8>>()
@@ -138,12 +141,12 @@ pub fn render(bytes: &[u8]) {
     }
 }
 
-/// A folder in memory, where there is one.
+/// Returns a folder in memory, if there is one, or else the folder of temporary files.
 fn memory() -> PathBuf {
     Some(PathBuf::from("/dev/shm")).filter(|folder| folder.is_dir()).unwrap_or_else(std::env::temp_dir)
 }
 
-/// A scene of a few pixels, with an object before a light.
+/// Returns a scene of a few pixels, with an object and a light.
 fn small(width: usize, height: usize) -> Loaded {
     let scene = format!(
         "camera eye {{ pixeldim {width} {height} worlddim 8 6 viewpoint 4 3 6 }} material grey {{ diffuse 6 6 6 }} \
@@ -156,7 +159,7 @@ fn small(width: usize, height: usize) -> Loaded {
 /// The width and the height of an image with a checkpoint, in pixels, and in tiles of 16 x 16 pixels.
 const UNFINISHED: [[usize; 2]; 2] = [[40, 36], [3, 3]];
 
-/// An image, its pixels, and two of its checkpoints with the tiles that are rendered there.
+/// An image, its pixels, and two of its checkpoints, each with the tiles that are rendered in it.
 struct Unfinished {
     image: Image,
     pixels: Vec<[u8; 3]>,
@@ -178,8 +181,8 @@ thread_local! {
     };
 }
 
-/// The file of a checkpoint: arbitrary, or a genuine one with some changes, whose checksums may be repaired. Nothing wrong
-/// is taken from it.
+/// Reads the file of a checkpoint: arbitrary bytes, or a genuine file with some changes, whose checksums may be
+/// repaired. Nothing wrong is taken from it unless the checksums are repaired.
 pub fn checkpoint(bytes: &[u8]) {
     let [kind, changes @ ..] = bytes else { return };
     UNFINISHED_IMAGE.with(|Unfinished { image, pixels, checkpoints: [one, other] }| {
@@ -194,7 +197,7 @@ pub fn checkpoint(bytes: &[u8]) {
             0 => return assert!(resume(changes).is_none(), "something is not a checkpoint of this program"),
             1 => resume(&changed(&one.1, &other.1, changes)),
             _ => {
-                // Checksums are no protection against a person, only against a damaged file.
+                // Checksums protect against damaged files, not against a person.
                 resume(&with_checksums(&changed(&one.1, &other.1, changes)));
                 return;
             }
@@ -211,7 +214,7 @@ pub fn checkpoint(bytes: &[u8]) {
     });
 }
 
-/// Changes a file: four bytes are what to do, a position and a length or value.
+/// Changes a file. Each change has four bytes: its kind, a position of two bytes, and a length or a value.
 fn changed(file: &[u8], other: &[u8], changes: &[u8]) -> Vec<u8> {
     let mut file = file.to_vec();
     for change in changes.chunks_exact(4) {
@@ -231,7 +234,7 @@ fn changed(file: &[u8], other: &[u8], changes: &[u8]) -> Vec<u8> {
     file
 }
 
-/// Replaces the checksums of the chunks of a PNG by right ones. Other files stay as they are.
+/// Replaces the checksums of a PNG's chunks with the right ones. Other files stay as they are.
 fn with_checksums(file: &[u8]) -> Vec<u8> {
     let (signature, mut rest) = file.split_at(file.len().min(8));
     if signature != b"\x89PNG\r\n\x1a\n" {
@@ -251,7 +254,7 @@ fn with_checksums(file: &[u8]) -> Vec<u8> {
     right
 }
 
-/// The checksum of a PNG's chunk, CRC-32.
+/// Returns the checksum of a PNG's chunk, a CRC-32.
 fn checksum(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(!0, |sum, byte| {
         let step = |sum: u32, _| if sum & 1 == 1 { sum >> 1 ^ 0xedb8_8320 } else { sum >> 1 };
@@ -259,10 +262,10 @@ fn checksum(bytes: &[u8]) -> u32 {
     })
 }
 
-/// The host that servers believe to be.
+/// The host that the servers believe to be.
 const HOST: &str = "127.0.0.1:3000";
 
-/// Sends bytes to a server, with `TOKEN` and other words replaced, and returns whether a request was let in.
+/// Sends bytes to a server, with `TOKEN` and other words replaced. Returns whether a request was let in.
 fn request(server: &Server, bytes: &[u8], words: &[(&str, &str)]) -> bool {
     let token = server.url.split_once("token=").expect("a token").1;
     let words: Vec<_> = words.iter().copied().chain([("TOKEN", token), ("HOST", HOST)]).collect();
@@ -283,7 +286,7 @@ fn request(server: &Server, bytes: &[u8], words: &[(&str, &str)]) -> bool {
     true
 }
 
-/// Replaces words, in the order of their places.
+/// Replaces words, from left to right.
 fn replaced(bytes: &[u8], words: &[(&str, &str)]) -> Vec<u8> {
     let (mut all, mut rest) = (Vec::new(), bytes);
     while let [first, after @ ..] = rest {
@@ -301,7 +304,8 @@ fn replaced(bytes: &[u8], words: &[(&str, &str)]) -> Vec<u8> {
     all
 }
 
-/// Whether the head of a request has what only the printed page sends: the token, the host, and no other origin.
+/// Tells whether the head of a request has everything that only the printed page sends: the token, the host, and no
+/// foreign origin.
 fn may_enter(bytes: &[u8], token: &str) -> bool {
     let text = String::from_utf8_lossy(bytes);
     let mut lines = text.trim_start_matches(['\r', '\n']).lines();
@@ -328,7 +332,7 @@ fn may_enter(bytes: &[u8], token: &str) -> bool {
         && (is_visit || all("sec-fetch-site").iter().all(|site| ["same-origin", "none"].contains(site)))
 }
 
-/// Requests of the page of `tabray watch`, and of others.
+/// Requests to `tabray watch`, from its page and from others.
 pub const TO_WATCH: [&str; 7] = [
     "GET /?token=TOKEN HTTP/1.1\r\nHost: HOST\r\nSec-Fetch-Dest: document\r\nSec-Fetch-Site: cross-site\r\n\r\n",
     "GET /events?token=TOKEN HTTP/1.1\r\nHost: HOST\r\nSec-Fetch-Site: same-origin\r\n\r\n",
@@ -339,7 +343,7 @@ pub const TO_WATCH: [&str; 7] = [
     "GET / HTTP/1.1\r\nHost: example.com\r\nOrigin: http://example.com\r\nCookie: token=TOKEN\r\n\r\n",
 ];
 
-/// Requests of the page of `tabray review`, and of others.
+/// Requests to `tabray review`, from its page and from others.
 pub const TO_REVIEW: [&str; 5] = [
     "GET /?token=TOKEN HTTP/1.1\r\nHost: HOST\r\nSec-Fetch-Site: none\r\n\r\n",
     "POST /reject?token=TOKEN HTTP/1.1\r\nHost: HOST\r\nOrigin: http://HOST\r\nTransfer-Encoding: chunked\r\n\r\n\
@@ -351,7 +355,7 @@ pub const TO_REVIEW: [&str; 5] = [
     "POST /accept HTTP/1.1\r\nHost: HOST\r\nOrigin: http://HOST\r\nContent-Length: 2\r\n\r\n{}",
 ];
 
-/// A connection to the server of `tabray watch`: nothing is answered without the token.
+/// Connects to the server of `tabray watch`, which answers nothing without the token.
 pub fn watch(bytes: &[u8]) {
     thread_local! {
         static SERVER: Server = Server::watch(small(8, 6)).expect("a server");
@@ -359,7 +363,7 @@ pub fn watch(bytes: &[u8]) {
     SERVER.with(|server| request(server, bytes, &[]));
 }
 
-/// A folder with two snapshots that wait for a decision, and the server that shows them.
+/// A folder with two snapshots that await a decision, and the server that shows them.
 struct Waiting {
     folder: TempDir,
     server: Server,
@@ -385,15 +389,15 @@ impl Waiting {
         }
     }
 
-    /// Whether all is as it was.
+    /// Tells whether all files are as they were.
     fn is_untouched(&self) -> bool {
         fs::read_dir(self.folder.path()).is_ok_and(|entries| entries.count() == self.files.len())
             && self.files.iter().all(|(path, content)| fs::read(path).is_ok_and(|is| is == *content))
     }
 }
 
-/// A connection to the server of `tabray review`: snapshots change only as a request says that is let in and names a
-/// snapshot as its page shows it, here as `SNAPSHOT` and `VERSION`.
+/// Connects to the server of `tabray review`. Snapshots change only if the request is let in and names a snapshot as
+/// the page shows it, here as `SNAPSHOT` and `VERSION`.
 pub fn review(bytes: &[u8]) {
     thread_local! {
         static WAITING: (Waiting, String) = {

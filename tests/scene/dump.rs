@@ -15,14 +15,15 @@ fn values(model: &Model) -> Vec<String> {
         .chain(model.objects.iter().map(|object| &object.args))
         .chain(model.lights.iter().map(|item| &item.args));
     items
-        .flat_map(|args| {
-            args.values().map(|(attribute, datum)| match datum {
+        .flat_map(|record| {
+            let value = |(attribute, datum): (&dyn Attribute, &Datum)| match datum {
                 Datum::Numbers(numbers) => {
                     let bits: Vec<_> = numbers.iter().map(|number| number.to_bits()).collect();
-                    format!("{} {} {bits:x?}", args.name, attribute.name())
+                    format!("{} {} {bits:x?}", record.name(), attribute.name())
                 }
-                other => format!("{} {} {other:?}", args.name, attribute.name()),
-            })
+                other => format!("{} {} {other:?}", record.name(), attribute.name()),
+            };
+            record.args().values().map(value).collect::<Vec<_>>()
         })
         .collect()
 }
@@ -30,7 +31,7 @@ fn values(model: &Model) -> Vec<String> {
 fn assert_loads_again(first: &Model) {
     for syntax in [Syntax::Notes, Syntax::Toml] {
         let text = dump::scene(first, syntax);
-        let again = model_in(&first.camera.args.setting.folder, &text);
+        let again = model_in(&first.camera.args.args().setting.folder, &text);
         assert_eq!(values(first), values(&again), "{text}");
         assert_eq!(text, dump::scene(&again, syntax));
         assert_eq!(dump::notes(first), dump::notes(&again), "{text}");
@@ -57,7 +58,7 @@ fn a_dumped_scene_gives_the_same_picture() {
 }
 
 proptest! {
-    // Values are drawn until they satisfy their rules.
+    // Values are generated until they satisfy their rules.
     #![proptest_config(ProptestConfig { failure_persistence: None, max_local_rejects: 1 << 22, ..ProptestConfig::default() })]
 
     #[test]
@@ -136,7 +137,7 @@ fn any_values(attribute: &'static dyn Attribute) -> BoxedStrategy<String> {
         Type::Name(Kind::Texture) => return Just(format!("{} t0\n", attribute.name())).boxed(),
         Type::Name(Kind::Object) => return Just(format!("{} o0\n", attribute.name())).boxed(),
         Type::Word | Type::Name(_) => return Just(format!("{} m0\n", attribute.name())).boxed(),
-        // A revsurf takes a surfer or a formula; the scenes have those.
+        // A revsurf takes either a surfer or a formula; formulas are covered by the project's scenes.
         Type::Formula => return Just(String::new()).boxed(),
         Type::Choice(choices) => prop::sample::select(choices.all()).prop_map(Datum::Choice).boxed(),
     };

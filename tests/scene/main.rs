@@ -1,4 +1,4 @@
-//! Scenes as text: they are read, refused, built in Rust, dumped and converted.
+//! Scenes as text: how they are read, refused, built in Rust, dumped and converted.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -6,6 +6,7 @@ mod common;
 mod dump;
 mod extremes;
 mod grammar;
+mod many;
 mod model;
 mod names;
 mod robust;

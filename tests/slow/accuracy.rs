@@ -179,7 +179,7 @@ fn revolution_table(set: &str, text: &mut String) {
             if !formula.contains("floor") {
                 return off;
             }
-            // It may have hit a step, and so be near to a whole height.
+            // The ray may have hit a step, so that the point is close to an integer height.
             let height = surface.height_at(ray, distance);
             off.min((height - height.round()).abs())
         };
@@ -264,7 +264,7 @@ fn hard_table(text: &mut String) {
     }
 }
 
-/// Writes a number with one decimal place, from 100 on as a power of ten.
+/// Writes a number with one decimal place, in scientific notation from 100 on.
 fn short(number: f64) -> String {
     if number < 100.0 { format!("{number:.1}") } else { format!("{number:.1e}") }
 }

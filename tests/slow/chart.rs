@@ -28,7 +28,7 @@ const EDGE: &str = "camera eye { pixeldim 40 30 worlddim 8 6 viewpoint 4 3 6 }
     plane wall { material white normal 0 0 1 point 0 0 -2 }
     sphere ball { material red center 4.3 3.1 -1 radius 1.7 }";
 
-/// A progress report that stops the measurement after this many units of work.
+/// A [`Progress`] that stops the measurement after this many units of work.
 struct Patience(usize);
 
 impl Progress for Patience {

@@ -5,24 +5,31 @@
 
 use crate::common;
 use nix::sys::resource::{UsageWho, getrusage};
+use std::env;
+use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
-use tabray::render::Plan;
-use tabray::scene::{self, Parsed};
+use tabray::render::{Plan, Renderer};
+use tabray::scene::{self, Parsed, Syntax, dump};
 use tabray::simd::Cpu;
 use tabray::tools::bench::{Speed, scenes};
 
 /// The number of times that each of two compared commands is run. The commands alternate.
 const ROUNDS: usize = 15;
 
-/// Returns the CPU time of all child processes that have ended, and the largest amount of memory that any of them had,
-/// in KiB.
-fn of_children() -> (Duration, i64) {
-    let usage = getrusage(UsageWho::RUSAGE_CHILDREN).expect("the system keeps accounts");
+/// Returns the CPU time of this thread, or of all child processes that have ended, and the largest amount of memory that
+/// any of them had, in KiB.
+fn of(who: UsageWho) -> (Duration, i64) {
+    let usage = getrusage(who).expect("the system keeps accounts");
     let [user, system] = [usage.user_time(), usage.system_time()]
         .map(|time| Duration::new(time.tv_sec() as u64, 1000 * time.tv_usec() as u32));
     (user + system, usage.max_rss())
+}
+
+/// Returns the same of all child processes that have ended.
+fn of_children() -> (Duration, i64) {
+    of(UsageWho::RUSAGE_CHILDREN)
 }
 
 /// Renders a scene and discards the image. Returns the wall-clock time and the CPU time.
@@ -40,29 +47,106 @@ fn render(scene: &Path, args: &[&str]) -> [Duration; 2] {
     [start.elapsed(), of_children().0 - before]
 }
 
-/// Prints the cost of scenes with many objects.
+/// Returns the milliseconds that Embree takes for a frame of a scene of many objects, for building its hierarchy on one
+/// thread and for building it on all, if the variable `EMBREE` names the compiled `docs/embree.cpp`.
+fn embree(name: &str, exponent: u32) -> Option<[f64; 3]> {
+    let program = std::env::var_os("EMBREE")?;
+    let output =
+        Command::new(program).args([name, &exponent.to_string()]).output().expect("the program runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let told = String::from_utf8(output.stdout).expect("numbers");
+    let mut numbers = told.split_whitespace().map(|number| number.parse().expect("a number"));
+    Some([(); 3].map(|()| numbers.next().expect("three numbers")))
+}
+
+/// Prints the cost of scenes with many objects, beside Embree.
 #[test]
 #[ignore = "it measures"]
 fn many_objects() {
     type Scene = fn(usize) -> Vec<Parsed<'static>>;
-    println!("\n| objects | frame, ms | times the row above | tests per ray | to build, s |");
-    println!("|---|---:|---:|---:|---:|");
+    println!(
+        "\n| objects | frame, ms | Embree, ms | ratio | tests per ray | plan on one thread, ms | Embree builds, ms | plan on all, ms | Embree builds, ms |"
+    );
+    println!("|---|---:|---:|---:|---:|---:|---:|---:|---:|");
     for (name, scene) in [("spheres", scenes::spheres as Scene), ("triangles", scenes::triangles)] {
-        let mut above = None;
-        for exponent in 1..=6 {
-            let start = Instant::now();
+        for exponent in 3..=6 {
             let built = scene::build(common::registry(), scene(10_usize.pow(exponent)));
             let model = built.map(|built| built.model).unwrap_or_else(|report| panic!("{report}"));
-            drop(Plan::new(&model));
-            let building = start.elapsed().as_secs_f64();
+            let planned = [1, 0].map(|threads| {
+                // The CPU time of one thread, and what all take on the wall.
+                let begin = Instant::now();
+                let now = || match threads {
+                    1 => of(UsageWho::RUSAGE_THREAD).0.as_secs_f64(),
+                    _ => begin.elapsed().as_secs_f64(),
+                };
+                let plan = || {
+                    let start = now();
+                    drop(Plan::new(&model));
+                    1e3 * (now() - start)
+                };
+                let renderer = Renderer::new(threads).expect("threads");
+                (0..5).map(|_| renderer.run(plan)).fold(f64::INFINITY, f64::min)
+            });
+            let rival = embree(name, exponent);
             let speed = Speed::measure(model, Cpu::best(), Duration::from_millis(200)).expect("a thread");
             let milliseconds = 1e3 * speed.frame.seconds;
-            let times = above.map_or_else(String::new, |above: f64| format!("{:.2}", milliseconds / above));
             let tests: u64 = speed.tests.iter().map(|tests| tests.number).sum();
             let tests = tests as f64 / speed.frame.rays as f64;
-            println!("| 10^{exponent} {name} | {milliseconds:.1} | {times} | {tests:.1} | {building:.2} |");
-            above = Some(milliseconds);
+            let [frame, one, all] = match rival {
+                Some(rival) => rival.map(|number| format!("{number:.1}")),
+                None => [(); 3].map(|()| String::new()),
+            };
+            let ratio = rival.map_or_else(String::new, |rival| format!("{:.2}", rival[0] / milliseconds));
+            let [plan, plan_on_all] = planned;
+            println!(
+                "| 10^{exponent} {name} | {milliseconds:.1} | {frame} | {ratio} | {tests:.1} | {plan:.1} | {one} | {plan_on_all:.1} | {all} |"
+            );
         }
+    }
+}
+
+/// Prints the cost of reading many objects, for `check` of scenes that are written first. `TABRAY` may name another
+/// program to measure.
+#[test]
+#[ignore = "it measures"]
+fn reading() {
+    let program = env::var_os("TABRAY").unwrap_or_else(|| env!("CARGO_BIN_EXE_tabray").into());
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("many.ray");
+    let check = || {
+        let before = of_children().0;
+        let status = Command::new(&program).arg("check").arg(&path).stderr(Stdio::null()).status();
+        assert!(status.expect("the program runs").success());
+        (of_children().0 - before).as_secs_f64()
+    };
+    let write = |scene| {
+        let built = scene::build(common::registry(), scene);
+        let model = built.map(|built| built.model).unwrap_or_else(|report| panic!("{report}"));
+        let text = dump::scene(&model, Syntax::Notes);
+        fs::write(&path, &text).expect("a file");
+        (text.len(), model.objects.len())
+    };
+    write(scenes::spheres(1));
+    check();
+    let empty = of_children().1;
+    println!("\n| objects | text, MB | CPU, s | MB/s | most memory, MiB | bytes per object | of them text |");
+    println!("|---|---:|---:|---:|---:|---:|---:|");
+    // In the order of the memory that they take: the system tells only the most that any program has had.
+    for (name, scene) in [
+        ("10^5 spheres", scenes::spheres(100_000)),
+        ("10^5 triangles", scenes::triangles(100_000)),
+        ("10^6 spheres", scenes::spheres(1_000_000)),
+        ("10^6 triangles", scenes::triangles(1_000_000)),
+    ] {
+        let (bytes, count) = write(scene);
+        let seconds = (0..5).map(|_| check()).fold(f64::INFINITY, f64::min);
+        let (megabytes, memory) = (1e-6 * bytes as f64, of_children().1);
+        let [each, text] = [1024.0 * (memory - empty) as f64, bytes as f64].map(|all| all / count as f64);
+        println!(
+            "| {name} | {megabytes:.1} | {seconds:.2} | {:.0} | {:.0} | {each:.0} | {text:.0} |",
+            megabytes / seconds,
+            memory as f64 / 1024.0
+        );
     }
 }
 

@@ -217,7 +217,7 @@ fn a_constructor_that_asks_for_what_is_not_in_its_table_is_told() {
 fn a_constructor_that_asks_for_another_type_is_told() {
     let scene = A_BOX.replace("box b", "slab b").replace("center 1 1 1", "center 1 1 1 size 1 1 1");
     let said = BUILT.says(&["check", "-"], &scene);
-    // Two lines were added above.
+    // In this plugin, there are two more lines above the registration.
     let line = line(&brick()) + 2;
     let message = format!(
         "the plugin `slab` asks for `size` with another type than in the table it registers at plugins/slab.rs:{line}: give both the same type"
@@ -287,7 +287,7 @@ fn a_new_plugins_mistake_is_one() {
     assert_eq!(mistakes, 2, "of a shape and of a light");
 }
 
-// A crate of its own
+// A separate crate
 
 #[test]
 fn a_plugin_in_a_crate_of_its_own_is_in_that_program() {

@@ -57,5 +57,5 @@ fn a_picture_depends_neither_on_instructions_nor_on_threads_nor_on_tiles() {
             }
         }
     }
-    assert!(faults.is_empty(), "not as each pixel alone:\n{}", faults.join("\n"));
+    assert!(faults.is_empty(), "these differ from pixels rendered one by one:\n{}", faults.join("\n"));
 }

@@ -3,7 +3,7 @@
 use crate::render::plan::Plan;
 use crate::render::trace;
 use crate::scene::model::Model;
-use crate::scene::reader::Place;
+use crate::scene::reader::Places;
 use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -20,7 +20,7 @@ pub struct Frame {
     /// The model of the scene.
     pub model: Model,
     /// The place of each entity in the text.
-    pub places: Vec<Place>,
+    pub places: Places,
     /// Whether a newer scene has replaced this one.
     pub stale: AtomicBool,
 }
@@ -35,7 +35,7 @@ impl Frame {
     pub fn lines_of(&self, [x, y]: [usize; 2]) -> Option<[usize; 2]> {
         let hit =
             trace::first_hit(&Plan::new(&self.model), &self.model.camera.value.sight(x as f64, y as f64))?;
-        lines(&self.text, self.places.get(hit.object.args.order)?.as_ref()?)
+        lines(&self.text, self.places.get(hit.object.args.order()).as_ref()?)
     }
 }
 

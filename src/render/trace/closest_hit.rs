@@ -1,20 +1,20 @@
 //! The closest hits of a packet's rays.
 
-use super::arrays::{VectorList, resized};
+use super::arrays::resized;
 use super::context::Tracer;
 use super::hit_record::HitRecord;
 use super::order;
 use super::ray_group::RayGroup;
-use crate::geometry::aabb::{self, Aabb};
+use crate::geometry::bvh::{self, PacketVisitor, Stack};
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
-use crate::geometry::ray_packet::{RayPacket, split};
+use crate::geometry::ray_packet::{Nearest, RayPacket};
 use crate::geometry::sight::Sight;
 use crate::numeric::interval::{Interval, Wide};
-use crate::render::bvh::Visitor;
 use crate::render::culling;
 use crate::render::frusta::{self, PART};
 use crate::render::observer::{Count, Event, Hit, Reason, TraceObserver};
 use crate::simd::cpu::kernels;
+use crate::simd::soa::{LANES, Vectors};
 use crate::world::any_shape::AnyShape;
 use crate::world::certify::{self, Enclosure, Precision};
 use crate::world::coincidence::CLOSE;
@@ -37,10 +37,10 @@ impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
             self.closest_seen(group, hits);
             return;
         }
-        let (mut ahead, mut inverse) = (take(&mut self.scratch.ahead), take(&mut self.scratch.inverse));
+        let mut stack = take(&mut self.scratch.stack);
         let part = 0..group.padded();
-        Closest { tracer: self, group, hits, part, inverse: &mut inverse }.run(&mut ahead);
-        (self.scratch.ahead, self.scratch.inverse) = (ahead, inverse);
+        Closest { tracer: self, group, hits, part, single: None }.run(&mut stack);
+        self.scratch.stack = stack;
     }
 
     /// Finds one ray's closest hit and reports each step to the observer.
@@ -232,14 +232,6 @@ kernels! {
     }
 }
 
-/// Computes the reciprocals of rays' directions, by component.
-pub(super) fn invert(rays: RayPacket, inverse: &mut VectorList) {
-    let mut inverse = inverse.resized(rays.len());
-    for lane in 0..rays.len() {
-        inverse.set(lane, rays.dir.get(lane).recip());
-    }
-}
-
 /// The search for the closest hits of a packet.
 struct Closest<'s, 'm, 'w, W> {
     tracer: &'s mut Tracer<'m, 'w, W>,
@@ -247,22 +239,25 @@ struct Closest<'s, 'm, 'w, W> {
     hits: &'s mut HitRecord,
     /// The lanes of the current sub-packets.
     part: Range<usize>,
-    /// The reciprocals of the rays' directions, for the BVH.
-    inverse: &'s mut VectorList,
+    /// The ray that was last tested alone.
+    single: Option<Single>,
+}
+
+/// Copies of one ray, which fill the lanes that shapes take at a time.
+struct Single {
+    lane: usize,
+    origin: Vectors<LANES>,
+    dir: Vectors<LANES>,
 }
 
 impl<W: TraceObserver> Closest<'_, '_, '_, W> {
-    fn run(mut self, ahead: &mut Vec<usize>) {
+    fn run(mut self, stack: &mut Stack) {
         let plan = self.tracer.plan;
         if !plan.unbounded.is_empty() || !plan.bounded.is_empty() {
             self.listed();
         }
-        let Some(tree) = &plan.tree else { return };
-        for part in split(self.group.padded(), PART) {
-            let rays = self.group.rays().part(part.clone());
-            self.part = part;
-            invert(rays, self.inverse);
-            tree.visit(rays.dir.get(0), ahead, &mut self);
+        if let Some(tree) = &plan.tree {
+            bvh::visit(self.tracer.cpu, tree, stack, self.group.rays(), &mut self);
         }
     }
 
@@ -298,7 +293,7 @@ impl<W: TraceObserver> Closest<'_, '_, '_, W> {
             parts >>= parts.trailing_ones();
             self.part = start..end.min(self.group.padded());
             tested += self.len();
-            self.test(index);
+            self.test_part(index);
             start = end;
         }
         if tested < self.group.len {
@@ -344,7 +339,7 @@ impl<W: TraceObserver> Closest<'_, '_, '_, W> {
     }
 
     /// Tests an object against the current sub-packets.
-    fn test(&mut self, index: usize) {
+    fn test_part(&mut self, index: usize) {
         let shape = &self.tracer.model.objects[index].shape;
         let sides = self.group.sides_of(index).map(|sides| &sides[self.part.clone()]);
         self.tracer.observer.count(Count::Tested(index, self.len()));
@@ -365,16 +360,55 @@ impl<W: TraceObserver> Closest<'_, '_, '_, W> {
     }
 }
 
-impl<W: TraceObserver> Visitor for Closest<'_, '_, '_, W> {
-    fn enters(&mut self, bounds: &Aabb) -> bool {
-        let rays = self.group.rays().part(self.part.clone());
-        let t_max = &self.hits.far[self.part.clone()];
-        aabb::any_meets(self.tracer.cpu, rays, self.inverse.view(rays.len()), t_max, bounds)
+impl<W: TraceObserver> PacketVisitor for Closest<'_, '_, '_, W> {
+    #[inline(always)]
+    fn t_max(&self) -> &[f64] {
+        &self.hits.far[..self.group.padded()]
     }
 
-    fn object(&mut self, index: usize) {
+    fn test(&mut self, index: usize, lanes: Range<usize>) {
         if self.tracer.may_meet(self.group.left(), index) {
-            self.test(index);
+            self.part = lanes;
+            self.test_part(index);
         }
+    }
+
+    fn test_one(&mut self, index: usize, lane: usize) {
+        if !self.tracer.may_meet(self.group.left(), index) {
+            return;
+        }
+        let (group, id) = (self.group, index as u64 + 1);
+        let single = match &mut self.single {
+            Some(single) if single.lane == lane => single,
+            single => single.insert(Single::new(group, lane)),
+        };
+        let shape = &self.tracer.model.objects[index].shape;
+        let side = group.sides_of(index).map(|sides| sides[lane]);
+        self.tracer.observer.count(Count::Tested(index, 1));
+        let hits = &mut *self.hits;
+        let (mut near, mut far) = ([hits.near[lane]; LANES], [hits.far[lane]; LANES]);
+        let (mut met, mut doubt) = ([hits.met[lane]; LANES], [0; LANES]);
+        let nearest = Nearest { near: &mut near, far: &mut far, met: &mut met, doubt: &mut doubt };
+        let sides = side.map(|side| [side; LANES]);
+        let sides = sides.as_ref().map(|sides| &sides[..]);
+        let is_open = shape.closest_hits(self.tracer.cpu, single.rays(group), sides, id, nearest);
+        (hits.near[lane], hits.far[lane], hits.met[lane]) = (near[0], far[0], met[0]);
+        if is_open && doubt[0] != 0 {
+            self.decide(lane, index, side);
+        }
+    }
+}
+
+impl Single {
+    /// Copies the ray in a lane of a group.
+    fn new(group: &RayGroup, lane: usize) -> Self {
+        let Ray { origin, dir } = group.rays().get(lane);
+        Self { lane, origin: Vectors::of(origin), dir: Vectors::of(dir) }
+    }
+
+    /// Returns the copies as a packet.
+    fn rays(&self, group: &RayGroup) -> RayPacket<'_> {
+        let origin_error = group.errors.most;
+        RayPacket { origin: self.origin.view(LANES), dir: self.dir.view(LANES), origin_error }
     }
 }

@@ -1,16 +1,16 @@
 //! Occlusion: which rays of a packet any object blocks.
 
-use super::arrays::{VectorList, resized};
-use super::closest_hit::{Start, exact, invert};
+use super::arrays::resized;
+use super::closest_hit::{Start, exact};
 use super::context::Tracer;
 use super::surface::Surface;
-use crate::geometry::aabb::{self, Aabb};
+use crate::geometry::aabb::Aabb;
+use crate::geometry::bvh::{self, PacketVisitor, Stack};
 use crate::geometry::ray::Side;
-use crate::geometry::ray_packet::{RayPacket, split};
-use crate::render::bvh::Visitor;
+use crate::geometry::ray_packet::RayPacket;
 use crate::render::culling;
-use crate::render::frusta::PART;
 use crate::render::observer::{Count, TraceObserver};
+use crate::simd::soa::LANES;
 use std::mem::take;
 use std::ops::Range;
 
@@ -49,22 +49,16 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     /// Marks the rays that any object blocks before their ends. The rays go from points in the box `from` to points in
     /// the box `to`.
     pub(super) fn occlude(&mut self, shadow_rays: &ShadowRays, from: &Aabb, to: &Aabb, blocked: &mut [u64]) {
-        let (mut ahead, mut inverse) = (take(&mut self.scratch.ahead), take(&mut self.scratch.inverse));
-        let mut doubt = take(&mut self.scratch.doubt);
-        let (part, doubted) = (0..shadow_rays.t_max.len(), resized(&mut doubt, shadow_rays.t_max.len()));
-        let (len, region) = (shadow_rays.going, from.and(to).with_slack(0.0));
-        Occlusion {
-            tracer: self,
-            shadow_rays,
-            part,
-            len,
-            region,
-            inverse: &mut inverse,
-            blocked,
-            doubt: doubted,
-        }
-        .run(to, &mut ahead);
-        (self.scratch.ahead, self.scratch.inverse, self.scratch.doubt) = (ahead, inverse, doubt);
+        let mut stack = take(&mut self.scratch.stack);
+        let (mut doubt, mut ends) = (take(&mut self.scratch.doubt), take(&mut self.scratch.ends));
+        let part = 0..shadow_rays.t_max.len();
+        let doubted = resized(&mut doubt, part.len());
+        ends.clear();
+        ends.extend_from_slice(shadow_rays.t_max);
+        let region = from.and(to).with_slack(0.0);
+        Occlusion { tracer: self, shadow_rays, part, region, ends: &mut ends, blocked, doubt: doubted }
+            .run(&mut stack);
+        (self.scratch.stack, self.scratch.doubt, self.scratch.ends) = (stack, doubt, ends);
     }
 }
 
@@ -74,18 +68,16 @@ struct Occlusion<'s, 'm, 'w, W> {
     shadow_rays: &'s ShadowRays<'s>,
     /// The lanes of the current sub-packet.
     part: Range<usize>,
-    /// The number of rays of the current sub-packet that are cast.
-    len: usize,
-    /// A box that contains the rays of the current sub-packet.
+    /// A box that contains the rays.
     region: Aabb,
-    /// The reciprocals of the rays' directions, for the BVH.
-    inverse: &'s mut VectorList,
+    /// The distances at which the rays end, in world units; 0 for a ray that is not cast or is blocked.
+    ends: &'s mut [f64],
     blocked: &'s mut [u64],
     doubt: &'s mut [u64],
 }
 
 impl<W: TraceObserver> Occlusion<'_, '_, '_, W> {
-    fn run(mut self, to: &Aabb, ahead: &mut Vec<usize>) {
+    fn run(mut self, stack: &mut Stack) {
         let plan = self.tracer.plan;
         let unbounded = plan.unbounded.iter().map(|index| (index, None));
         for (index, bounds) in
@@ -98,22 +90,16 @@ impl<W: TraceObserver> Occlusion<'_, '_, '_, W> {
             if bounds.is_some_and(|bounds| !bounds.overlaps(&self.region))
                 || culling::is_clear_of(object, &self.region)
             {
-                self.tracer.observer.count(Count::Culled(*index, self.len));
+                self.tracer.observer.count(Count::Culled(*index, self.shadow_rays.going));
                 continue;
             }
-            self.test(*index);
+            self.test_part(*index);
             if self.blocked.iter().all(|blocked| *blocked != 0) {
                 return;
             }
         }
-        let Some(tree) = &plan.tree else { return };
-        for part in split(self.shadow_rays.t_max.len(), PART) {
-            let rays = self.shadow_rays.rays.part(part.clone());
-            self.len = self.shadow_rays.count(&part);
-            self.part = part;
-            self.region = aabb::around(self.tracer.cpu, rays.origin).and(to).with_slack(0.0);
-            invert(rays, self.inverse);
-            tree.visit(rays.dir.get(0), ahead, &mut self);
+        if let Some(tree) = &plan.tree {
+            bvh::visit(self.tracer.cpu, tree, stack, self.shadow_rays.rays, &mut self);
         }
     }
 
@@ -123,12 +109,12 @@ impl<W: TraceObserver> Occlusion<'_, '_, '_, W> {
     }
 
     /// Tests the current sub-packet against an object.
-    fn test(&mut self, index: usize) {
+    fn test_part(&mut self, index: usize) {
         let ShadowRays { rays, t_max, surface, sides, .. } = *self.shadow_rays;
         let (rays, t_max) = (rays.part(self.part.clone()), &t_max[self.part.clone()]);
         let shape = &self.tracer.model.objects[index].shape;
         let sides = (index == surface.index).then(|| &sides[self.part.clone()]);
-        self.tracer.observer.count(Count::Tested(index, self.len));
+        self.tracer.observer.count(Count::Tested(index, self.shadow_rays.count(&self.part)));
         let (blocked, doubt) = (&mut self.blocked[self.part.clone()], &mut self.doubt[self.part.clone()]);
         if shape.packets().occluded(self.tracer.cpu, rays, sides, t_max, blocked, doubt) {
             for lane in 0..t_max.len() {
@@ -145,20 +131,28 @@ impl<W: TraceObserver> Occlusion<'_, '_, '_, W> {
                 }
             }
         }
+        for (end, blocked) in self.ends[self.part.clone()].iter_mut().zip(blocked) {
+            *end = if *blocked == 0 { *end } else { 0.0 };
+        }
     }
 }
 
-impl<W: TraceObserver> Visitor for Occlusion<'_, '_, '_, W> {
-    fn enters(&mut self, bounds: &Aabb) -> bool {
-        let (rays, t_max) =
-            (self.shadow_rays.rays.part(self.part.clone()), &self.shadow_rays.t_max[self.part.clone()]);
-        bounds.overlaps(&self.region)
-            && aabb::any_meets(self.tracer.cpu, rays, self.inverse.view(t_max.len()), t_max, bounds)
+impl<W: TraceObserver> PacketVisitor for Occlusion<'_, '_, '_, W> {
+    #[inline(always)]
+    fn t_max(&self) -> &[f64] {
+        self.ends
     }
 
-    fn object(&mut self, index: usize) {
+    fn test(&mut self, index: usize, lanes: Range<usize>) {
         if self.tracer.may_meet(self.left(), index) {
-            self.test(index);
+            self.part = lanes;
+            self.test_part(index);
         }
+    }
+
+    fn test_one(&mut self, index: usize, lane: usize) {
+        // Eight rays take no longer than one, and none is blocked by what it is tested against twice.
+        let first = lane / LANES * LANES;
+        self.test(index, first..first + LANES);
     }
 }

@@ -233,6 +233,9 @@ impl RayGroup {
     }
 }
 
+/// The number of runs from which on they are sorted by objects.
+const SOME: usize = 16;
+
 /// Groups a packet's rays by the object that they hit.
 #[derive(Default)]
 pub(super) struct HitGroups {
@@ -254,6 +257,10 @@ impl HitGroups {
             self.runs.push((run[0], start..start + run.len()));
             start += run.len();
         }
+        if self.runs.len() > SOME {
+            // Runs of the same object become neighbours, in the order of their lanes.
+            self.runs.sort_unstable_by_key(|(id, run)| (*id, run.start));
+        }
         // Lanes are written eight at a time, beyond the end of a run.
         resized(&mut self.lanes, met.len() + LANES);
         self.next = 0;
@@ -265,7 +272,11 @@ impl HitGroups {
             self.next += 1;
         }
         let (id, mut count) = (self.runs[self.next].0, 0);
+        let is_sorted = self.runs.len() > SOME;
         for (other, run) in &mut self.runs[self.next..] {
+            if is_sorted && *other != id {
+                break;
+            }
             if *other == id {
                 for first in run.clone().step_by(LANES) {
                     let eight: [u8; LANES] = array::from_fn(|lane| (first + lane) as u8);

@@ -4,6 +4,7 @@ use super::arrays::VectorList;
 use super::hit_record::HitRecord;
 use super::ray_group::{HitGroups, RayGroup};
 use super::surface::Surface;
+use crate::geometry::bvh::Stack;
 use crate::geometry::ray::Side;
 use crate::world::sample::Sample;
 
@@ -28,9 +29,9 @@ pub(crate) struct Scratch {
     /// For each object of the list with bounds, a bit for each sub-packet that may hit the object.
     pub(super) parts: Vec<u32>,
     /// The stack for the traversal of the BVH.
-    pub(super) ahead: Vec<usize>,
-    /// The reciprocals of the rays' directions, for the BVH.
-    pub(super) inverse: VectorList,
+    pub(super) stack: Stack,
+    /// The distances at which shadow rays end that nothing has blocked so far, in world units; 0 for the others.
+    pub(super) ends: Vec<f64>,
     /// For each current primary ray, a bound on the light that it lacks because its ray budget is used up. Valid only
     /// if `any_missing` is set.
     pub(super) missing: Vec<f64>,

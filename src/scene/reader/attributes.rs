@@ -8,20 +8,23 @@ use super::report::Report;
 use super::values;
 use crate::scene::entity::Entity;
 use crate::scene::pparm::{Attribute, Given, LEAST_LENGTH, MOST_LENGTH};
+use crate::scene::store::Store;
 use crate::scene::value::{Datum, Type};
 use crate::text::{self, list};
 
 /// Checks an entity against the table of its type and reports its faults.
-pub struct Against<'c> {
+pub struct Against<'c, 't> {
     /// The entity's type.
     pub entity: &'static Entity,
     /// The names that the entity's attributes may refer to.
     pub names: &'c mut Names,
+    /// The entities and values so far.
+    pub store: &'c Store,
     /// The report that faults are added to.
-    pub report: &'c mut Report,
+    pub report: &'c mut Report<'t>,
 }
 
-impl Against<'_> {
+impl Against<'_, '_> {
     /// Returns a datum for each attribute of the type, or `None` if a fault was reported.
     pub fn values(&mut self, parsed: &Parsed<'_>) -> Option<Vec<Given>> {
         let entity = self.entity;
@@ -30,10 +33,10 @@ impl Against<'_> {
             name => format!("{} `{}`", entity.name, text::abridged(name)),
         };
         let attributes: Vec<_> = entity.attributes().collect();
-        let mut given: Vec<Option<&(Word<'_>, Vec<Word<'_>>)>> = vec![None; attributes.len()];
+        let mut given = vec![None; attributes.len()];
         let mut sound = !parsed.is_damaged;
         let mut meant = Vec::new();
-        for pair in &parsed.attributes {
+        for pair in parsed.attributes() {
             let (word, _) = pair;
             let known = find_attribute(entity, &word.text);
             match known.and_then(|known| attributes.iter().position(|a| a.name() == known.name())) {
@@ -42,7 +45,8 @@ impl Against<'_> {
                     meant.extend(self.unknown_attribute(&title, word));
                 }
                 Some(at) => {
-                    if let Some((first, _)) = given[at].replace(pair) {
+                    let before: Option<(&Word<'_>, _)> = given[at].replace(pair);
+                    if let Some((first, _)) = before {
                         self.report.add(
                             Fault::warning(word.place.clone(), format!("{title} has `{}` twice", word.text))
                                 .label("this one is used")
@@ -78,7 +82,7 @@ impl Against<'_> {
                 Fault::error(parsed.name.place.clone(), fault)
                     .help(format!("add `{}`", wanted.join("` and `"))),
             );
-        } else if parsed.attributes.is_empty() && !attributes.is_empty() && !parsed.is_damaged {
+        } else if parsed.is_empty() && !attributes.is_empty() && !parsed.is_damaged {
             sound = false;
             let names = list(attributes.iter().map(|attribute| attribute.name()));
             self.report.add(
@@ -122,7 +126,9 @@ impl Against<'_> {
             return None;
         }
         let datum = match (attribute.value_type(), words) {
-            (Type::Name(kind), [name]) if name.form != Form::Number => self.names.resolve(kind, name),
+            (Type::Name(kind), [name]) if name.form != Form::Number => {
+                self.names.resolve(self.store, kind, name)
+            }
             (value_type, _) => match values::read(value_type, words) {
                 Ok(datum) => datum,
                 Err(faults) => {

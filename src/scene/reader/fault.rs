@@ -9,6 +9,29 @@ const PLACES: usize = 3;
 /// A range of a scene's text, in bytes; `None` for an entity that was built without a text.
 pub type Place = Option<Range<usize>>;
 
+/// The places of a scene's entities, from the type of each to its end, by their order.
+#[derive(Clone, Debug, Default)]
+pub struct Places(Vec<[u32; 2]>);
+
+impl Places {
+    /// Adds the place of the next entity.
+    pub(super) fn add(&mut self, place: &Place) {
+        let place = place.as_ref().map(|place| [place.start as u32, place.end as u32]);
+        self.0.push(place.unwrap_or([u32::MAX; 2]));
+    }
+
+    /// Tells whether there are no entities.
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Returns the place of the entity of this [order](crate::scene::Record::order).
+    pub fn get(&self, order: usize) -> Place {
+        let [start, end] = self.0.get(order).filter(|place| **place != [u32::MAX; 2])?;
+        Some(*start as usize..*end as usize)
+    }
+}
+
 /// How bad a fault is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {

@@ -2,13 +2,88 @@
 
 use crate::scene::entity::Entity;
 use crate::scene::pparm::Attribute;
+use crate::scene::value::Type;
 use crate::text::{self, nearest};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+use std::ops::{Deref, Index};
+use std::ptr;
 
 /// Finds the attribute of this name or alias.
 pub fn find_attribute(entity: &'static Entity, name: &str) -> Option<&'static dyn Attribute> {
     entity.attributes().find(|attribute| attribute.name() == name || attribute.aliases().contains(&name))
+}
+
+/// The attributes of an entity type, so that they are found quickly.
+pub struct Table {
+    entity: &'static Entity,
+    attributes: Vec<Known>,
+}
+
+/// An attribute of an entity type.
+pub struct Known {
+    pub attribute: &'static dyn Attribute,
+    pub value_type: Type,
+    /// The largest number of values that it takes.
+    pub max: usize,
+    pub is_required: bool,
+    name: &'static str,
+}
+
+impl Table {
+    fn new(entity: &'static Entity) -> Self {
+        let known = |attribute: &'static dyn Attribute| Known {
+            attribute,
+            value_type: attribute.value_type(),
+            max: attribute.arity().iter().copied().max().unwrap_or(0),
+            is_required: attribute.default().is_none(),
+            name: attribute.name(),
+        };
+        Self { entity, attributes: entity.attributes().map(known).collect() }
+    }
+
+    /// Finds the index of the attribute of this name or alias.
+    pub fn find(&self, name: &str) -> Option<usize> {
+        let known = self.attributes.iter().position(|known| known.name == name);
+        known.or_else(|| self.attributes.iter().position(|known| known.attribute.aliases().contains(&name)))
+    }
+
+    /// Returns the index of the attribute that a misspelt word was probably meant to be.
+    pub fn near(&self, word: &str, guesses: &mut Guesses) -> Option<usize> {
+        near_attribute(self.entity, word, guesses).and_then(|near| self.find(near.name()))
+    }
+}
+
+/// Gives direct access to the attributes, in the order of the table.
+impl Deref for Table {
+    type Target = [Known];
+
+    fn deref(&self) -> &[Known] {
+        &self.attributes
+    }
+}
+
+/// The tables of the entity types that have been met.
+#[derive(Default)]
+pub struct Tables(Vec<Table>);
+
+impl Tables {
+    /// Returns the index of the table of an entity type.
+    pub fn of(&mut self, entity: &'static Entity) -> usize {
+        let known = self.0.iter().position(|table| ptr::eq(table.entity, entity));
+        known.unwrap_or_else(|| {
+            self.0.push(Table::new(entity));
+            self.0.len() - 1
+        })
+    }
+}
+
+impl Index<usize> for Tables {
+    type Output = Table;
+
+    fn index(&self, table: usize) -> &Table {
+        &self.0[table]
+    }
 }
 
 /// The guesses made so far, by entity type and misspelt word, so that no word is looked up twice.

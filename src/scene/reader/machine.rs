@@ -18,7 +18,7 @@ impl fmt::Display for Severity {
     }
 }
 
-impl Report {
+impl Report<'_> {
     /// Writes one line per fault, `FILE:LINE:COLUMN: error: MESSAGE`. Lines and columns count from 1, columns in
     /// characters.
     pub fn short(&self) -> String {

@@ -9,22 +9,26 @@ mod machine;
 mod names;
 mod notes;
 mod parsed;
+mod quick;
 mod report;
 mod toml;
 mod values;
 
 pub use check::Chosen;
-pub use fault::{Fault, Place, Severity};
+pub use fault::{Fault, Place, Places, Severity};
 pub use machine::Message;
 pub use parsed::Parsed;
-pub use report::Report;
 
 use crate::scene::model::Model;
 use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
 use crate::world::accuracy::Accuracy;
+use check::{Checked, Source};
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+
+/// The faults of one scene.
+pub type Report = report::Report<'static>;
 
 /// A model, and the warnings about its scene.
 pub struct Loaded {
@@ -35,8 +39,8 @@ pub struct Loaded {
     /// The time taken to check the entities and to construct the model, textures included, but without parsing the
     /// text.
     pub building: Duration,
-    /// The place of each entity, from its type to its end, indexed by its [order](crate::scene::entity::Args::order).
-    pub places: Vec<Place>,
+    /// The place of each entity.
+    pub places: Places,
 }
 
 /// Reads a scene: in TOML if its name ends in `.toml` or its text begins as TOML does, otherwise in the notes' syntax.
@@ -71,19 +75,33 @@ pub fn read_by(
         Some(Syntax::Toml) => Syntax::Toml,
         _ => Syntax::of_text(text),
     };
-    let mut report = Report::new(name, text, syntax);
-    let parse = match syntax {
-        Syntax::Notes => notes::parse,
-        Syntax::Toml => toml::parse,
+    let checked = |report: &mut report::Report<'_>, mut source: Source<'_, '_>| {
+        check::model(registry, folder, accuracy, &mut source, report)
     };
-    let parsed = parse(registry, text, &mut report);
+    let mut report = report::Report::new(name, text, syntax);
+    if syntax == Syntax::Toml {
+        let parsed = toml::parse(registry, text, &mut report);
+        return match report.has_enough() {
+            true => Err(report.into_owned()),
+            false => finish(checked(&mut report, Source::List(&parsed)), registry, report),
+        };
+    }
+    // A sound text is parsed and checked at one go.
+    let mut errors = report.clone();
+    let Some(parser) = notes::parser(registry, text, &mut errors) else { return Err(errors.into_owned()) };
+    let all = checked(&mut report, Source::Text(text, parser));
+    if !errors.is_fatal() {
+        return finish(all, registry, report);
+    }
+    drop(all);
+    // All syntax errors are reported before all other faults. After too many, nothing else is.
+    let (mut report, mut nowhere) = (report::Report::new(name, text, syntax), report::Report::default());
+    notes::parse(registry, text, &mut report);
     if report.has_enough() {
-        return Err(report);
+        return Err(report.into_owned());
     }
-    if parsed.is_empty() && !report.is_fatal() {
-        report.add(Fault::error(Some(0..0), "the scene is empty").help(registry.first_steps(syntax)));
-    }
-    finish(registry, folder, accuracy, parsed, report)
+    let Some(parser) = notes::parser(registry, text, &mut nowhere) else { return Err(report.into_owned()) };
+    finish(checked(&mut report, Source::Text(text, parser.reading_on())), registry, report)
 }
 
 /// Makes a model without any text (the notes' `modelstat.c`). The entities are checked like those of a text; file names
@@ -113,24 +131,28 @@ pub fn build(
     registry: &Registry,
     parsed: impl IntoIterator<Item = Parsed<'static>>,
 ) -> Result<Loaded, Report> {
-    let report = Report::new("model", "", Syntax::Notes);
-    finish(registry, Path::new(""), Chosen::default(), parsed.into_iter().collect(), report)
+    let mut report = Report::new("model", "", Syntax::Notes);
+    let parsed: Vec<_> = parsed.into_iter().collect();
+    let mut source = Source::List(&parsed);
+    let checked = check::model(registry, Path::new(""), Chosen::default(), &mut source, &mut report);
+    finish(checked, registry, report)
 }
 
+/// Returns a scene that was checked, if there is nothing wrong with it.
 fn finish(
+    (model, places, building): Checked,
     registry: &Registry,
-    folder: &Path,
-    accuracy: Chosen,
-    parsed: Vec<Parsed<'_>>,
-    mut report: Report,
+    mut report: report::Report<'_>,
 ) -> Result<Loaded, Report> {
-    let places = parsed.iter().map(|entity| entity.place.clone()).collect();
-    let start = Instant::now();
-    match check::model(registry, folder, accuracy, parsed, &mut report) {
+    if places.is_empty() && !report.is_fatal() {
+        report
+            .add(Fault::error(Some(0..0), "the scene is empty").help(registry.first_steps(report.syntax())));
+    }
+    match model {
         Some(model) if !report.is_fatal() => {
-            Ok(Loaded { model, warnings: report, building: start.elapsed(), places })
+            Ok(Loaded { model, warnings: report.into_owned(), building, places })
         }
-        _ => Err(report),
+        _ => Err(report.into_owned()),
     }
 }
 
@@ -139,7 +161,7 @@ fn finish(
 /// # Errors
 /// The first place that is not UTF-8 text.
 fn decode<'b>(name: &str, bytes: &'b [u8]) -> Result<&'b str, Report> {
-    let nul = bytes.iter().position(|byte| *byte == 0);
+    let nul = if bytes.contains(&0) { bytes.iter().position(|byte| *byte == 0) } else { None };
     let not_utf8 = std::str::from_utf8(bytes).err().map(|error| error.valid_up_to());
     let (place, message) = match (nul, not_utf8) {
         (Some(nul), bad) if bad.is_none_or(|bad| nul < bad) => (nul..nul + 1, "unexpected NUL byte"),
@@ -150,7 +172,7 @@ fn decode<'b>(name: &str, bytes: &'b [u8]) -> Result<&'b str, Report> {
         }
     };
     // Up to the fault, the lossy text has the same bytes.
-    let mut report = Report::new(name, String::from_utf8_lossy(bytes), Syntax::default());
+    let mut report = Report::new(name, String::from_utf8_lossy(bytes).into_owned(), Syntax::default());
     let help = "a scene is plain text, a sequence of entities `TYPE NAME { ATTRIBUTES }`";
     report.add(Fault::error(Some(place), message).help(help));
     Err(report)

@@ -1,98 +1,118 @@
 //! The names of a scene: which entities have them, and what references to them mean.
 
 use super::fault::{Fault, Place, Severity};
-use super::guesses::find_attribute;
-use super::parsed::{Form, Parsed, Word};
+use super::parsed::{Form, Word};
 use super::report::Report;
 use crate::scene::entity::Entity;
 use crate::scene::kind::Kind;
-use crate::scene::pparm::Attribute;
 use crate::scene::registry::Registry;
-use crate::scene::value::{Datum, Type};
+use crate::scene::store::Store;
+use crate::scene::value::Datum;
 use crate::text::{self, nearest};
 use crate::world::body::NamedBody;
-use std::collections::hash_map::Entry;
-use std::collections::{BTreeMap, HashMap, HashSet};
-use std::sync::Arc;
-
-/// A name and the kind of the entity: a material and an object may have the same name.
-type Name = (Kind, String);
+use hashbrown::hash_table::Entry;
+use hashbrown::{DefaultHashBuilder, HashMap, HashSet, HashTable};
+use std::collections::{BTreeMap, btree_map};
+use std::hash::{BuildHasher, Hash};
+use std::mem::take;
+use std::sync::{Arc, LazyLock};
 
 /// The scope in which a name must be unique: the entity type for an object, and an empty string, the whole kind, for
 /// the others.
 type Title = &'static str;
 
-/// The entities that claimed a name: the first one, and those that claimed it again.
+/// The entities that claimed a name after the first one, by their order.
+#[derive(Default)]
 struct Claims {
-    first: (Title, Place),
     /// The other scopes in which the name was claimed.
     titles: Vec<Title>,
-    again: Vec<(Title, Place)>,
+    again: Vec<(Title, usize)>,
 }
 
 /// The maximum number of faults of one sort that are listed separately.
 const MAX_LISTED: usize = 8;
 
-/// The names of a scene, as far as the scene has been checked.
+/// The names of a scene, as far as the scene has been checked. Their letters are in the [`Store`].
+#[derive(Default)]
 pub struct Names {
-    /// The place where each name is first defined, before or after its uses.
-    places: HashMap<Name, Place>,
-    /// Names of entities of unknown types, which a reference may mean.
-    doubtful: HashSet<String>,
-    /// The names claimed so far.
-    claimed: HashMap<Name, Claims>,
-    /// The entities that can be referred to so far.
-    defined: HashMap<Name, Datum>,
-    /// The names of objects that other entities refer to.
-    /// For each, the order of the object that has it first, once that is defined, and its body.
-    patterns: HashMap<String, (Option<usize>, NamedBody)>,
-    /// References to entities not (yet) defined, each with all its places.
-    unresolved: BTreeMap<Name, Vec<Place>>,
+    hasher: DefaultHashBuilder,
+    /// The first entity of each kind and name: half its hash, and its order.
+    firsts: HashTable<(u32, u32)>,
+    /// The entities that claimed a name again, by the order of the first one.
+    again: BTreeMap<usize, Claims>,
+    /// The hashes of the names of entities of unknown types, which a reference may mean.
+    doubtful: HashSet<u64>,
+    /// The materials that can be referred to so far, and the textures, by the indices of their data.
+    defined: [HashMap<String, u32>; 2],
+    /// The objects that other entities refer to, by their orders: a datum each.
+    patterns: BTreeMap<usize, Datum>,
+    /// References to entities not (yet) defined.
+    unresolved: Missing<Kind>,
+}
+
+/// The maximum number of different missing names of one sort that are kept. Of more, only the number is known.
+const MAX_MISSING: usize = 10_000;
+
+/// Names of which a scene has no entity or no type, so many that a scene of nothing else takes little memory.
+pub struct Missing<K> {
+    /// The first names, each with its first place and the number of its places.
+    pub names: BTreeMap<(K, String), (Place, usize)>,
+    /// The hashes of the others.
+    others: HashSet<(K, u64)>,
+}
+
+impl<K> Default for Missing<K> {
+    fn default() -> Self {
+        Self { names: BTreeMap::new(), others: HashSet::new() }
+    }
+}
+
+impl<K: Copy + Ord + Hash> Missing<K> {
+    /// Notes that a name of this sort is missing at a place.
+    pub fn add(&mut self, sort: K, Word { text, place, .. }: &Word<'_>, hash: u64) {
+        let is_full = self.names.len() >= MAX_MISSING;
+        match self.names.entry((sort, text.to_string())) {
+            btree_map::Entry::Occupied(mut known) => known.get_mut().1 += 1,
+            btree_map::Entry::Vacant(free) if !is_full => {
+                free.insert((place.clone(), 1));
+            }
+            btree_map::Entry::Vacant(_) => {
+                self.others.insert((sort, hash));
+            }
+        }
+    }
+
+    /// Returns the hashes of the names that are not kept, all different.
+    pub fn others(&self) -> impl Iterator<Item = u64> {
+        self.others.iter().map(|(_, hash)| *hash)
+    }
+
+    fn is_empty(&self) -> bool {
+        self.names.is_empty()
+    }
 }
 
 impl Names {
-    /// Collects all names of a scene; none is claimed yet.
-    pub fn of(registry: &Registry, parsed: &[Parsed<'_>]) -> Self {
-        let (mut places, mut doubtful, mut patterns) = (HashMap::new(), HashSet::new(), HashMap::new());
-        for Parsed { kind, name, attributes, .. } in parsed {
-            let text = name.text.to_string();
-            match registry.find(&kind.text) {
-                Some(entity) => {
-                    let refers = |attribute: &&'static dyn Attribute| {
-                        matches!(attribute.value_type(), Type::Name(Kind::Object))
-                    };
-                    for attribute in entity.attributes().filter(refers) {
-                        let is_it = |word: &Word<'_>| {
-                            find_attribute(entity, &word.text).map(|known| known.name())
-                                == Some(attribute.name())
-                        };
-                        let given = attributes.iter().filter(|(word, _)| is_it(word));
-                        patterns.extend(
-                            given
-                                .flat_map(|(_, values)| values)
-                                .map(|value| (value.text.to_string(), Default::default())),
-                        );
-                    }
-                    places.entry((entity.kind(), text)).or_insert_with(|| name.place.clone());
-                }
-                None => {
-                    doubtful.insert(text);
-                }
-            }
-        }
-        Self {
-            places,
-            doubtful,
-            patterns,
-            claimed: HashMap::new(),
-            defined: HashMap::new(),
-            unresolved: BTreeMap::new(),
-        }
+    /// Returns the hash of a word.
+    pub fn hash_of(&self, word: &str) -> u64 {
+        self.hasher.hash_one(word)
+    }
+
+    /// Notes the name of an entity of an unknown type.
+    pub fn doubt(&mut self, name: &str) {
+        let hash = self.hash_of(name);
+        self.doubtful.insert(hash);
     }
 
     /// Gives an entity its name, and reports an invalid name. Returns whether the entity counts: of several materials,
     /// textures or objects of one type with the same name, only the first does.
-    pub fn claim(&mut self, entity: &'static Entity, word: &Word<'_>, report: &mut Report) -> bool {
+    pub fn claim(
+        &mut self,
+        store: &Store,
+        entity: &'static Entity,
+        word: &Word<'_>,
+        report: &mut Report<'_>,
+    ) -> bool {
         let Word { text, form, place } = word;
         let kind = entity.kind();
         if text.is_empty() && *form == Form::Text {
@@ -107,53 +127,75 @@ impl Names {
                     .help("a name must not contain newlines or other control characters"),
             );
         }
+        let (order, hash) = (store.len(), self.hash(kind, text));
+        let is_same = |first: &(u32, u32)| is_of(store, *first, hash, kind, text);
+        let first = match self.firsts.entry(spread(hash), is_same, |(hash, _)| spread(*hash)) {
+            Entry::Occupied(first) => first.get().1 as usize,
+            Entry::Vacant(free) => {
+                free.insert((hash, order as u32));
+                return true;
+            }
+        };
         if text.is_empty() || kind == Kind::Camera {
             return true;
         }
-        // The course's own images show a sphere `left` and an fplane `left` in one scene.
-        let title = if kind == Kind::Object { entity.name } else { "" };
-        match self.claimed.entry((kind, text.to_string())) {
-            Entry::Vacant(free) => {
-                free.insert(Claims { first: (title, place.clone()), titles: Vec::new(), again: Vec::new() });
-                true
-            }
-            Entry::Occupied(mut taken) => {
-                let Claims { first, titles, again } = taken.get_mut();
-                let is_first = first.0 != title && !titles.contains(&title);
-                if is_first {
-                    titles.push(title);
-                }
-                again.push((title, place.clone()));
-                is_first || kind == Kind::Light
-            }
+        let (title, first_title) = (title(entity), store.entity(first).map_or("", title));
+        let Claims { titles, again } = self.again.entry(first).or_default();
+        let is_first = first_title != title && !titles.contains(&title);
+        if is_first {
+            titles.push(title);
+        }
+        again.push((title, order));
+        is_first || kind == Kind::Light
+    }
+
+    /// Forgets what can no longer be asked for, once all names are claimed.
+    pub fn forget(&mut self) {
+        if self.unresolved.is_empty() {
+            self.firsts = HashTable::new();
         }
     }
 
+    /// Finds the first entity of a kind and name.
+    fn first(&self, store: &Store, kind: Kind, name: &str) -> Option<usize> {
+        let hash = self.hash(kind, name);
+        let first = self.firsts.find(spread(hash), |first| is_of(store, *first, hash, kind, name));
+        first.map(|(_, order)| *order as usize)
+    }
+
+    fn hash(&self, kind: Kind, name: &str) -> u32 {
+        (self.hasher.hash_one((kind, name)) >> 32) as u32
+    }
+
     /// Warns of names that several entities have: once for each name, or once for all of them where they are many.
-    pub fn report_repeated(&self, report: &mut Report) {
+    /// `place` returns the place of the name of the entity of an order.
+    pub fn report_repeated(&self, store: &Store, place: impl Fn(usize) -> Place, report: &mut Report<'_>) {
         let (mut left_out, mut shared) = (Vec::new(), Vec::new());
-        for ((kind, text), Claims { first, again, .. }) in
-            self.claimed.iter().filter(|(_, all)| !all.again.is_empty())
-        {
-            let mut titles: BTreeMap<Title, Vec<&Place>> = BTreeMap::new();
+        for (first, Claims { again, .. }) in &self.again {
+            let (text, Some(entity)) = (store.name(*first), store.entity(*first)) else { continue };
+            let kind = entity.kind();
+            let mut titles: BTreeMap<Title, Vec<usize>> = BTreeMap::new();
             let mut firsts = Vec::new();
-            for (title, place) in [first].into_iter().chain(again) {
-                let places = titles.entry(title).or_default();
-                places.push(place);
-                firsts.extend((places.len() == 1).then_some(place));
+            for (title, order) in [(title(entity), *first)].iter().chain(again) {
+                let orders = titles.entry(*title).or_default();
+                orders.push(*order);
+                firsts.extend((orders.len() == 1).then_some(*order));
             }
-            for (title, places) in titles {
+            for (title, orders) in titles.into_iter().filter(|(_, orders)| orders.len() > 1) {
                 let what = if title.is_empty() { kind.to_string() } else { title.to_owned() };
-                if *kind == Kind::Light { &mut shared } else { &mut left_out }.push(Repeated {
+                if kind == Kind::Light { &mut shared } else { &mut left_out }.push(Repeated {
                     what,
                     text,
-                    places,
+                    orders,
                 });
             }
-            shared.push(Repeated { what: kind.to_string(), text, places: firsts });
+            if firsts.len() > 1 {
+                shared.push(Repeated { what: kind.to_string(), text, orders: firsts });
+            }
         }
-        for (Repeated { what, text, places }, names, more) in few(left_out) {
-            let message = match (names, places.len()) {
+        let is_placed = place(0).is_some();
+        for (Repeated { what, text, orders }, names, more) in few(left_out, is_placed) {
+            let message = match (names, orders.len()) {
                 (0, 2) => format!("{what} `{text}` is defined twice"),
                 (0, count) => format!("{what} `{text}` is defined {count} times"),
                 _ => {
@@ -162,14 +204,14 @@ impl Names {
             };
             let label = if more == 0 { "ignored".to_owned() } else { format!("ignored, as are {more} more") };
             report.add(
-                Fault::warning(places[1].clone(), message)
+                Fault::warning(place(orders[1]), message)
                     .label(label)
-                    .also(places[0].clone(), "this one is used")
+                    .also(place(orders[0]), "this one is used")
                     .help("only the first definition of a name is used: rename the others"),
             );
         }
-        for (Repeated { what, text, places }, names, more) in few(shared) {
-            let message = match (names, places.len()) {
+        for (Repeated { what, text, orders }, names, more) in few(shared, is_placed) {
+            let message = match (names, orders.len()) {
                 (0, 2) => format!("two {what}s have the name `{text}`"),
                 (0, count) => format!("{count} {what}s have the name `{text}`"),
                 _ => format!(
@@ -179,69 +221,89 @@ impl Names {
             };
             let label = if more == 0 { String::new() } else { format!("and {more} more") };
             report.add(
-                Fault::warning(places[1].clone(), message)
+                Fault::warning(place(orders[1]), message)
                     .label(label)
-                    .also(places[0].clone(), "the first one")
+                    .also(place(orders[0]), "the first one")
                     .help("all of them are used, but messages and dumps cannot tell them apart"),
             );
         }
     }
 
-    /// Returns the body that an object of this name and order is to fill, if other entities refer to it.
-    pub fn body(&self, name: &str, order: usize) -> Option<NamedBody> {
-        let (first, body) = self.patterns.get(name)?;
-        (*first == Some(order)).then(|| body.clone())
-    }
-
     /// Defines a name, so that later entities can refer to it.
-    pub fn define(&mut self, kind: Kind, name: &str, datum: Datum) {
-        self.defined.entry((kind, name.to_owned())).or_insert(datum);
+    pub fn define(&mut self, kind: Kind, name: &str, index: u32) {
+        self.defined[usize::from(kind == Kind::Texture)].insert(name.to_owned(), index);
     }
 
-    /// Defines an object, if other entities refer to one of its name and it is the first.
-    pub fn define_object(&mut self, name: &str, order: usize) {
-        let Some((first @ None, body)) = self.patterns.get_mut(name) else { return };
-        *first = Some(order);
-        let datum = Datum::Object { name: Arc::from(name), body: body.clone() };
-        self.define(Kind::Object, name, datum);
+    /// Returns the index of the datum of an entity that is defined.
+    pub fn defined(&self, kind: Kind, name: &str) -> Option<u32> {
+        if kind == Kind::Object {
+            return None;
+        }
+        self.defined[usize::from(kind == Kind::Texture)].get(name).copied()
+    }
+
+    /// Takes the objects that other entities refer to, by their orders: a datum each.
+    pub fn patterns(&mut self) -> BTreeMap<usize, Datum> {
+        take(&mut self.patterns)
     }
 
     /// Returns the entity that a word refers to. If it is not defined, the reference is remembered and a stand-in is
     /// returned, so that the entity that refers to it can be checked.
-    pub fn resolve(&mut self, kind: Kind, word: &Word<'_>) -> Datum {
-        let name = (kind, word.text.to_string());
-        if let Some(datum) = self.defined.get(&name) {
-            return datum.clone();
+    pub fn resolve(&mut self, store: &Store, kind: Kind, word: &Word<'_>) -> Datum {
+        if let Some(index) = self.defined(kind, &word.text) {
+            return store.datum(index).clone();
         }
-        if !self.doubtful.contains(&name.1) {
-            self.unresolved.entry(name).or_default().push(word.place.clone());
+        // The entity that refers to it comes next in the store.
+        if kind == Kind::Object
+            && let Some(order) = self.first(store, kind, &word.text).filter(|order| *order < store.len())
+        {
+            let new = || Datum::Object { name: Arc::from(&*word.text), body: NamedBody::default() };
+            return self.patterns.entry(order).or_insert_with(new).clone();
         }
-        stand_in(kind, &word.text)
+        let hash = self.hash_of(&word.text);
+        self.unresolved.add(kind, word, hash);
+        stand_in(kind)
     }
 
-    /// Reports the references to undefined names, one fault for each name.
-    pub fn report_unresolved(&self, registry: &Registry, report: &mut Report) {
-        let mut known: BTreeMap<Kind, Vec<&str>> = BTreeMap::new();
-        for (kind, text) in self.places.keys() {
-            known.entry(*kind).or_default().push(text);
-        }
-        known.values_mut().for_each(|known| known.sort_unstable());
+    /// Reports the references to undefined names, one fault for each name. `place` returns the place of the name of the
+    /// entity of an order.
+    pub fn report_unresolved(
+        &self,
+        registry: &Registry,
+        store: &Store,
+        place: impl Fn(usize) -> Place,
+        report: &mut Report<'_>,
+    ) {
         // In the order of the text, so that guesses are made only for references that are listed.
-        let mut unresolved: Vec<_> = self.unresolved.iter().collect();
-        unresolved.sort_by_key(|(_, places)| places[0].as_ref().map(|place| place.start));
-        for ((kind, text), places) in unresolved {
-            let is_told = report.tells(Severity::Error, &places[0]);
-            let fault = match self.places.get(&(*kind, text.clone())) {
+        let is_doubtful = |hash| self.doubtful.contains(&hash);
+        let unresolved = self.unresolved.names.iter();
+        let mut unresolved: Vec<_> =
+            unresolved.filter(|((_, text), _)| !is_doubtful(self.hash_of(text))).collect();
+        let others = self.unresolved.others().filter(|hash| !is_doubtful(*hash)).count();
+        report.count_more(Severity::Error, others);
+        unresolved.sort_by_key(|(_, (place, _))| place.as_ref().map(|place| place.start));
+        let mut known: BTreeMap<Kind, Vec<&str>> = BTreeMap::new();
+        let orders = if unresolved.is_empty() { 0..0 } else { 0..store.len() };
+        for (entity, order) in orders.filter_map(|order| Some((store.entity(order)?, order))) {
+            known.entry(entity.kind()).or_default().push(store.name(order));
+        }
+        known.values_mut().for_each(|known| {
+            known.sort_unstable();
+            known.dedup();
+        });
+        for ((kind, text), (first, count)) in unresolved {
+            let is_told = report.tells(Severity::Error, first);
+            let fault = match self.first(store, *kind, text) {
                 Some(defined) => {
-                    Fault::error(places[0].clone(), format!("{kind} `{text}` is used before it is defined"))
-                        .label(suggestion(None, places))
-                        .also(defined.clone(), "defined here")
+                    Fault::error(first.clone(), format!("{kind} `{text}` is used before it is defined"))
+                        .label(suggestion(None, *count))
+                        .also(place(defined), "defined here")
                         .help(format!("{} must be defined before it is used", kind.with_article()))
                 }
                 None => {
                     let known = known.get(kind).filter(|_| is_told).into_iter().flatten().copied();
-                    Fault::error(places[0].clone(), format!("there is no {kind} `{text}`"))
-                        .label(suggestion(nearest(text, known), places))
+                    Fault::error(first.clone(), format!("there is no {kind} `{text}`"))
+                        .label(suggestion(nearest(text, known), *count))
                         .help(format!(
                             "define it before this: {}",
                             registry.example(*kind, text, report.syntax())
@@ -253,40 +315,64 @@ impl Names {
     }
 }
 
+/// Returns the scope in which the name of an entity must be unique. The course's own images show a sphere `left` and an
+/// fplane `left` in one scene.
+fn title(entity: &'static Entity) -> Title {
+    if entity.kind() == Kind::Object { entity.name } else { "" }
+}
+
+/// Returns a hash whose upper bits and lower bits all depend on the lower bits of half a hash.
+fn spread(hash: u32) -> u64 {
+    // 2^64 divided by the golden ratio (Knuth's multiplicative hashing).
+    u64::from(hash).wrapping_mul(0x9E37_79B9_7F4A_7C15)
+}
+
+/// Tells whether an entity, given by its hash and its order, is of this kind and name.
+fn is_of(store: &Store, first: (u32, u32), hash: u32, kind: Kind, name: &str) -> bool {
+    let order = first.1 as usize;
+    first.0 == hash
+        && store.entity(order).is_some_and(|entity| entity.kind() == kind)
+        && store.name(order) == name
+}
+
 /// Entities that share a name.
 struct Repeated<'n> {
     what: String,
     text: &'n str,
-    places: Vec<&'n Place>,
+    orders: Vec<usize>,
 }
 
-/// Keeps the names that are repeated, each with the number of further names and further places that it stands for. Of
-/// more than [`MAX_LISTED`] names, keeps only the first.
-fn few(mut all: Vec<Repeated<'_>>) -> Vec<(Repeated<'_>, usize, usize)> {
-    all.retain(|repeated| repeated.places.len() > 1);
-    all.sort_by_key(|repeated| (repeated.places[1].as_ref().map(|place| place.start), repeated.text));
-    let (names, later) = (all.len(), all.iter().map(|repeated| repeated.places.len() - 1).sum::<usize>());
+/// Returns names that are repeated, each with the number of further names and further places that it stands for. Of
+/// more than [`MAX_LISTED`] names, returns only the first.
+fn few(mut all: Vec<Repeated<'_>>, is_placed: bool) -> Vec<(Repeated<'_>, usize, usize)> {
+    // Entities without places come in the order of their names.
+    all.sort_by_key(|repeated| (is_placed.then_some(repeated.orders[1]), repeated.text));
+    let (names, later) = (all.len(), all.iter().map(|repeated| repeated.orders.len() - 1).sum::<usize>());
     if names > MAX_LISTED {
         return all.into_iter().take(1).map(|first| (first, names - 1, later - 1)).collect();
     }
-    let more: Vec<_> = all.iter().map(|repeated| repeated.places.len() - 2).collect();
+    let more: Vec<_> = all.iter().map(|repeated| repeated.orders.len() - 2).collect();
     all.into_iter().zip(more).map(|(repeated, more)| (repeated, 0, more)).collect()
 }
 
-/// Returns a default entity, in place of one that is faulty or missing.
-pub fn stand_in(kind: Kind, name: &str) -> Datum {
-    let name = Arc::from(name);
-    match kind {
-        Kind::Texture => Datum::Texture { name, texture: Arc::default() },
-        Kind::Object => Datum::Object { name, body: NamedBody::default() },
-        _ => Datum::Material { name, material: Arc::default() },
+/// Returns a default entity, in place of one that is faulty or missing. All of a kind are the same.
+pub fn stand_in(kind: Kind) -> Datum {
+    if kind == Kind::Object {
+        return Datum::Object { name: Arc::from(""), body: NamedBody::default() };
     }
+    static STAND_INS: LazyLock<[Datum; 2]> = LazyLock::new(|| {
+        [
+            Datum::Material { name: Arc::from(""), material: Arc::default() },
+            Datum::Texture { name: Arc::from(""), texture: Arc::default() },
+        ]
+    });
+    STAND_INS[usize::from(kind == Kind::Texture)].clone()
 }
 
 /// Returns the label of a fault that may stand for several places.
-pub fn suggestion(near: Option<&str>, places: &[Place]) -> String {
-    let more = text::count(places.len() - 1, "more place");
-    match (near, places.len()) {
+pub fn suggestion(near: Option<&str>, places: usize) -> String {
+    let more = text::count(places - 1, "more place");
+    match (near, places) {
         (None, 1) => String::new(),
         (None, _) => format!("here and in {more}"),
         (Some(near), 1) => format!("did you mean `{near}`?"),

@@ -1,21 +1,22 @@
 //! The notes' scene language: `entity-type name { attribute values ... }`, one word after another.
 
 use super::fault::Fault;
-use super::guesses::{Guesses, find_attribute, near_attribute};
-use super::parsed::{Form, MAX_VALUES, Parsed, Word};
+use super::guesses::{Guesses, Known, Table, Tables};
+use super::parsed::{Form, Parsed, Word};
 use super::report::Report;
-use crate::scene::entity::Entity;
-use crate::scene::pparm::Attribute;
 use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
 use crate::scene::value::Type;
 use std::borrow::Cow;
 use std::ops::Range;
 
-/// Parses the entities of a text and reports syntax errors. Parsing goes on after an error, so that one run finds the
-/// faults that follow.
-pub fn parse<'a>(registry: &Registry, text: &'a str, report: &mut Report) -> Vec<Parsed<'a>> {
-    let first = Tokens::of(text, &mut Report::new("", "", Syntax::Notes)).ahead[0].clone();
+/// Begins to parse the entities of a text. Returns `None`, and reports why, if no part of it is an entity.
+pub fn parser<'a, 'r>(
+    registry: &'r Registry,
+    text: &'a str,
+    report: &'r mut Report<'a>,
+) -> Option<Parser<'a, 'r>> {
+    let first = Tokens::of(text, &mut Report::default()).ahead[0];
     if let Some(first) = first
         && !looks_like_a_scene(registry, text)
     {
@@ -24,22 +25,35 @@ pub fn parse<'a>(registry: &Registry, text: &'a str, report: &mut Report) -> Vec
             tokens.step(report);
         }
         report.add(
-            Fault::error(Some(first.at), "this is not a scene")
+            Fault::error(Some(first.place()), "this is not a scene")
                 .label("expected an entity type")
                 .help(registry.first_steps(Syntax::Notes)),
         );
-        return Vec::new();
+        return None;
     }
-    let tokens = Tokens::of(text, report);
-    Parser { registry, tokens, end: text.len(), report, before: 0..0, last: None }.scene()
+    Some(Parser::new(registry, text, 0, report))
+}
+
+/// Reports the syntax errors of a text.
+pub fn parse<'a>(registry: &Registry, text: &'a str, report: &mut Report<'a>) {
+    let mut memory = vec![None; 1];
+    if let Some(mut parser) = parser(registry, text, report).map(Parser::reading_on) {
+        while parser.entities(&mut memory) > 0 {}
+    }
+}
+
+/// Parses the entity that begins at a byte of a text once more; what is wrong with it is reported already.
+pub fn again<'a>(registry: &Registry, text: &'a str, at: usize) -> Option<Parsed<'a>> {
+    let mut nowhere = Report::default();
+    let mut entity = None;
+    Parser::new(registry, text, at, &mut nowhere).entity(&mut entity);
+    entity
 }
 
 /// Tells whether any part of a text is an entity.
 fn looks_like_a_scene(registry: &Registry, text: &str) -> bool {
-    let mut nowhere = Report::new("", "", Syntax::Notes);
-    let tokens = Tokens::of(text, &mut nowhere);
-    let mut parser =
-        Parser { registry, tokens, end: text.len(), report: &mut nowhere, before: 0..0, last: None };
+    let mut nowhere = Report::default();
+    let mut parser = Parser::new(registry, text, 0, &mut nowhere);
     if parser.begins_entity() {
         return true;
     }
@@ -53,85 +67,170 @@ fn looks_like_a_scene(registry: &Registry, text: &str) -> bool {
 }
 
 /// A word or a brace, and its place.
-#[derive(Clone)]
-struct Token<'a> {
-    text: Cow<'a, str>,
-    form: Form,
-    at: Range<usize>,
+#[derive(Clone, Copy)]
+struct Token {
+    form: TokenForm,
+    start: usize,
+    end: usize,
 }
 
-impl<'a> Token<'a> {
-    fn is(&self, brace: &str) -> bool {
-        self.form == Form::Any && self.text == brace
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum TokenForm {
+    Word,
+    /// A word in quotes.
+    Quoted,
+    /// A word after a quote that is never closed.
+    Unclosed,
+    Open,
+    Close,
+}
+
+impl Token {
+    fn is_brace(self) -> bool {
+        matches!(self.form, TokenForm::Open | TokenForm::Close)
     }
 
-    fn is_brace(&self) -> bool {
-        self.is("{") || self.is("}")
+    fn form(self) -> Form {
+        if matches!(self.form, TokenForm::Quoted | TokenForm::Unclosed) { Form::Text } else { Form::Any }
     }
 
-    fn word(&self) -> Word<'a> {
-        Word::at(self.text.clone(), self.form, self.at.clone())
+    fn place(self) -> Range<usize> {
+        self.start..self.end
     }
+}
+
+/// What a byte is, or may be the beginning of.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Class {
+    Letter,
+    Space,
+    Brace,
+    /// Part of a character of several bytes, which may be white space.
+    Wide,
+}
+
+/// The classes of all bytes.
+const CLASSES: [Class; 256] = {
+    let mut classes = [Class::Letter; 256];
+    let mut byte = 0;
+    while byte < 256 {
+        classes[byte] = match byte as u8 {
+            b'{' | b'}' => Class::Brace,
+            128.. => Class::Wide,
+            byte if (byte as char).is_whitespace() => Class::Space,
+            _ => Class::Letter,
+        };
+        byte += 1;
+    }
+    classes
+};
+
+/// Returns the end of the word that begins at a byte of a text: the beginning of white space or a brace.
+fn word_end(text: &str, mut at: usize) -> usize {
+    let bytes = text.as_bytes();
+    while let Some(byte) = bytes.get(at) {
+        match CLASSES[usize::from(*byte)] {
+            Class::Letter => at += 1,
+            Class::Wide => match text[at..].chars().next() {
+                Some(letter) if !letter.is_whitespace() => at += letter.len_utf8(),
+                _ => break,
+            },
+            Class::Space | Class::Brace => break,
+        }
+    }
+    at
 }
 
 /// The tokens of a text, with enough lookahead to recognise the beginning of an entity.
 struct Tokens<'a> {
     text: &'a str,
     at: usize,
-    ahead: [Option<Token<'a>>; 3],
+    ahead: [Option<Token>; 3],
 }
 
 impl<'a> Tokens<'a> {
-    fn of(text: &'a str, report: &mut Report) -> Self {
-        let mut tokens = Self { text, at: 0, ahead: [const { None }; 3] };
-        (0..3).for_each(|_| drop(tokens.step(report)));
+    fn of(text: &'a str, report: &mut Report<'_>) -> Self {
+        Self::from(text, 0, report)
+    }
+
+    fn from(text: &'a str, at: usize, report: &mut Report<'_>) -> Self {
+        let mut tokens = Self { text, at, ahead: [None; 3] };
+        for _ in 0..3 {
+            tokens.step(report);
+        }
         tokens
     }
 
     /// Advances by one token and returns it.
-    fn step(&mut self, report: &mut Report) -> Option<Token<'a>> {
-        self.ahead.rotate_left(1);
+    fn step(&mut self, report: &mut Report<'_>) -> Option<Token> {
         let next = self.read(report);
-        std::mem::replace(&mut self.ahead[2], next)
+        let [first, second, third] = self.ahead;
+        self.ahead = [second, third, next];
+        first
     }
 
     /// Reads the token after the lookahead. A `#` at the beginning of a word begins a comment, and a `"` a word in
     /// quotes.
-    fn read(&mut self, report: &mut Report) -> Option<Token<'a>> {
+    fn read(&mut self, report: &mut Report<'_>) -> Option<Token> {
+        let bytes = self.text.as_bytes();
         loop {
-            let (at, rest) = (self.at, &self.text[self.at..]);
-            let (length, text, form) = match rest.chars().next()? {
-                '#' => (rest.find('\n').unwrap_or(rest.len()), None, Form::Any),
-                '"' => {
-                    let (text, length) = quoted(rest, at, report);
-                    (length, Some(text), Form::Text)
+            let start = self.at;
+            let (form, end) = match *bytes.get(start)? {
+                b'#' => {
+                    self.at = self.text[start..].find('\n').map_or(bytes.len(), |length| start + length);
+                    continue;
                 }
-                c @ ('{' | '}') => (1, Some(Cow::Borrowed(if c == '{' { "{" } else { "}" })), Form::Any),
-                c if c.is_whitespace() => (c.len_utf8(), None, Form::Any),
-                _ => {
-                    let end = |c: char| c.is_whitespace() || c == '{' || c == '}';
-                    let length = rest.find(end).unwrap_or(rest.len());
-                    (length, Some(Cow::Borrowed(&rest[..length])), Form::Any)
+                b'"' => {
+                    let (is_closed, length) = quoted(&self.text[start..], start, report);
+                    (if is_closed { TokenForm::Quoted } else { TokenForm::Unclosed }, start + length)
                 }
+                b'{' => (TokenForm::Open, start + 1),
+                b'}' => (TokenForm::Close, start + 1),
+                byte => match CLASSES[usize::from(byte)] {
+                    Class::Space => {
+                        self.at += 1;
+                        continue;
+                    }
+                    Class::Wide if self.text[start..].starts_with(char::is_whitespace) => {
+                        self.at += self.text[start..].chars().next().map_or(1, char::len_utf8);
+                        continue;
+                    }
+                    _ => (TokenForm::Word, word_end(self.text, start)),
+                },
             };
-            self.at += length;
-            if let Some(text) = text {
-                return Some(Token { text, form, at: at..at + length });
-            }
+            self.at = end;
+            return Some(Token { form, start, end });
         }
+    }
+
+    /// Returns the word that a token stands for.
+    fn text(&self, token: Token) -> Cow<'a, str> {
+        match token.form {
+            TokenForm::Quoted => unescaped(&self.text[token.start + 1..token.end - 1]),
+            TokenForm::Unclosed => Cow::Borrowed(&self.text[token.start + 1..token.end]),
+            _ => Cow::Borrowed(self.raw(token)),
+        }
+    }
+
+    /// Returns the text of a token, with its quotes if it has any.
+    fn raw(&self, token: Token) -> &'a str {
+        &self.text[token.start..token.end]
+    }
+
+    fn word(&self, token: Token) -> Word<'a> {
+        Word::at(self.text(token), token.form(), token.place())
     }
 }
 
-/// Reads the quoted word that a text begins with; returns the word and its length in bytes, quotes included. `\\` and
-/// `\"` stand for a backslash and for a quote.
-fn quoted<'a>(text: &'a str, at: usize, report: &mut Report) -> (Cow<'a, str>, usize) {
-    let mut word = String::new();
+/// Finds the end of the quoted word that a text begins with; returns whether it has one, and the length of the word in
+/// bytes, quotes included.
+fn quoted(text: &str, at: usize, report: &mut Report<'_>) -> (bool, usize) {
     let mut letters = text.char_indices().skip(1);
     while let Some((index, letter)) = letters.next().filter(|(_, letter)| *letter != '\n') {
         match letter {
-            '"' => return (word.into(), index + 1),
+            '"' => return (true, index + 1),
             '\\' => match letters.next() {
-                Some((_, letter @ ('"' | '\\'))) => word.push(letter),
+                Some((_, '"' | '\\')) => {}
                 other => {
                     let end = index + 1 + other.map_or(0, |(_, letter)| letter.len_utf8());
                     report.add(
@@ -140,7 +239,7 @@ fn quoted<'a>(text: &'a str, at: usize, report: &mut Report) -> (Cow<'a, str>, u
                     );
                 }
             },
-            letter => word.push(letter),
+            _ => {}
         }
     }
     report.add(
@@ -148,87 +247,128 @@ fn quoted<'a>(text: &'a str, at: usize, report: &mut Report) -> (Cow<'a, str>, u
             .help("a quoted word must end on the line on which it begins"),
     );
     // The closing quote is missing: probably only the first word was meant.
-    let end = text.find(|c: char| c.is_whitespace() || c == '{' || c == '}').unwrap_or(text.len());
-    (Cow::Borrowed(&text[1..end]), end)
+    (false, word_end(text, 1))
 }
 
-struct Parser<'a, 'r> {
+/// Returns what is written between quotes: `\\` and `\"` stand for a backslash and for a quote, and other escape sequences
+/// for nothing.
+fn unescaped(text: &str) -> Cow<'_, str> {
+    if !text.contains('\\') {
+        return Cow::Borrowed(text);
+    }
+    let mut word = String::new();
+    let mut letters = text.chars();
+    while let Some(letter) = letters.next() {
+        match letter {
+            '\\' => word.extend(letters.next().filter(|letter| matches!(letter, '"' | '\\'))),
+            letter => word.push(letter),
+        }
+    }
+    Cow::Owned(word)
+}
+
+/// The parser of a scene in the notes' syntax.
+pub struct Parser<'a, 'r> {
     registry: &'r Registry,
     tokens: Tokens<'a>,
-    end: usize,
-    report: &'r mut Report,
+    report: &'r mut Report<'a>,
+    tables: Tables,
+    /// Whether a syntax error is a reason to stop.
+    stops: bool,
     /// The place of the token read last.
     before: Range<usize>,
     /// The entity read last: the place of its first word, and that of its end.
     last: Option<(Range<usize>, Range<usize>)>,
 }
 
-impl<'a> Parser<'a, '_> {
-    fn scene(&mut self) -> Vec<Parsed<'a>> {
-        let mut parsed = Vec::new();
-        while self.token().is_some() && !self.report.has_enough() {
-            if self.begins_entity() {
-                parsed.extend(self.entity());
-            } else {
+impl<'a, 'r> Parser<'a, 'r> {
+    fn new(registry: &'r Registry, text: &'a str, at: usize, report: &'r mut Report<'a>) -> Self {
+        let tokens = Tokens::from(text, at, report);
+        Self { registry, tokens, report, tables: Tables::default(), stops: true, before: 0..0, last: None }
+    }
+
+    /// Goes on after a syntax error.
+    pub fn reading_on(mut self) -> Self {
+        self.stops = false;
+        self
+    }
+
+    /// Parses the next entities, in the memory of others, until there are as many as asked for or no more. After a syntax
+    /// error there are no more, except where parsing goes on so that one run finds the faults that follow.
+    pub fn entities(&mut self, parsed: &mut [Option<Parsed<'a>>]) -> usize {
+        let mut count = 0;
+        while count < parsed.len() && self.token().is_some() && !self.report.has_enough() {
+            if self.stops && self.report.is_fatal() {
+                return 0;
+            }
+            if !self.begins_entity() {
                 self.stray();
+            } else if self.entity(&mut parsed[count]).is_some() {
+                count += 1;
             }
         }
-        parsed
+        count
     }
 
-    fn token(&self) -> Option<&Token<'a>> {
-        self.tokens.ahead[0].as_ref()
+    fn token(&self) -> Option<Token> {
+        self.tokens.ahead[0]
     }
 
-    fn step(&mut self) -> Option<Token<'a>> {
+    fn step(&mut self) -> Option<Token> {
         let token = self.tokens.step(self.report);
         if let Some(token) = &token {
-            self.before = token.at.clone();
+            self.before = token.place();
         }
         token
     }
 
-    fn is(&self, ahead: usize, brace: &str) -> bool {
-        self.tokens.ahead[ahead].as_ref().is_some_and(|token| token.is(brace))
+    fn text(&self, token: Token) -> Cow<'a, str> {
+        self.tokens.text(token)
+    }
+
+    fn is(&self, ahead: usize, form: TokenForm) -> bool {
+        self.tokens.ahead[ahead].is_some_and(|token| token.form == form)
     }
 
     fn is_word(&self, ahead: usize) -> bool {
-        self.tokens.ahead[ahead].as_ref().is_some_and(|token| !token.is_brace())
+        self.tokens.ahead[ahead].is_some_and(|token| !token.is_brace())
     }
 
     fn is_entity_type(&self) -> bool {
-        self.token().is_some_and(|token| self.registry.find(&token.text).is_some())
+        self.token().is_some_and(|token| self.registry.find(&self.text(token)).is_some())
     }
 
     /// Tells whether a word, a name and an opening brace follow.
     fn has_form(&self) -> bool {
         self.is_word(0)
             && self.is_word(1)
-            && self.is(2, "{")
-            && self.token().is_some_and(|token| !looks_like_number(&token.text))
+            && self.is(2, TokenForm::Open)
+            && self.token().is_some_and(|token| !looks_like_number(&self.text(token)))
     }
 
     /// Tells whether an entity begins here, even if its name or its brace is missing.
     fn begins_entity(&self) -> bool {
-        self.has_form() || (self.is_word(0) && self.is(1, "{")) || (self.is_entity_type() && self.is_word(1))
+        self.has_form()
+            || (self.is_word(0) && self.is(1, TokenForm::Open))
+            || (self.is_entity_type() && self.is_word(1))
     }
 
     /// Skips words that belong to no entity.
     fn stray(&mut self) {
         let Some(first) = self.step() else { return };
-        let (mut last, mut count) = (first.clone(), 1);
-        while !last.is("}")
+        let (mut last, mut count) = (first, 1);
+        while last.form != TokenForm::Close
             && !self.begins_entity()
             && let Some(next) = self.step()
         {
             (last, count) = (next, count + 1);
         }
         let what = match (count, first.is_brace()) {
-            (1, true) => format!("stray `{}`", first.text),
-            (1, false) => format!("stray word `{}`", first.text),
-            _ => format!("stray words from `{}` to `{}`", first.text, last.text),
+            (1, true) => format!("stray `{}`", self.text(first)),
+            (1, false) => format!("stray word `{}`", self.text(first)),
+            _ => format!("stray words from `{}` to `{}`", self.text(first), self.text(last)),
         };
-        let mut fault = Fault::error(Some(first.at.start..last.at.end), what).label("not part of any entity");
+        let mut fault = Fault::error(Some(first.start..last.end), what).label("not part of any entity");
         if let Some((opened, closed)) = &self.last {
             fault = fault
                 .also(Some(opened.clone()), "the previous entity begins here")
@@ -238,23 +378,25 @@ impl<'a> Parser<'a, '_> {
             .add(fault.help("every word of a scene must be part of an entity, `TYPE NAME { ATTRIBUTES }`"));
     }
 
-    fn entity(&mut self) -> Option<Parsed<'a>> {
-        let kind = self.step()?;
+    /// Parses an entity, in the memory of another one if there is one.
+    fn entity(&mut self, memory: &mut Option<Parsed<'a>>) -> Option<()> {
+        let first = self.step()?;
+        let (kind, kind_at) = (self.tokens.word(first), first.place());
         let name = match self.token() {
             Some(name) if !name.is_brace() => {
-                let name = name.word();
+                let name = self.tokens.word(name);
                 self.step();
                 name
             }
             _ => {
                 self.report.add(
-                    Fault::error(Some(kind.at.clone()), format!("this `{}` has no name", kind.text))
+                    Fault::error(Some(kind_at.clone()), format!("this `{}` has no name", kind.text))
                         .help(format!("write a name after the type: `{} NAME {{`", kind.text)),
                 );
-                Word::at("", Form::Any, kind.at.end..kind.at.end)
+                Word::at("", Form::Any, first.end..first.end)
             }
         };
-        if self.is(0, "{") {
+        if self.is(0, TokenForm::Open) {
             self.step();
         } else {
             let after = name.place.clone().unwrap_or_default();
@@ -264,39 +406,44 @@ impl<'a> Parser<'a, '_> {
                     .help(format!("attributes go in braces: `{} {} {{ ... }}`", kind.text, name.text)),
             );
         }
-        let mut entity =
-            Parsed { kind: kind.word(), name, attributes: Vec::new(), place: None, is_damaged: false };
-        let known = self.registry.find(&kind.text);
-        while !self.report.has_enough() && self.body_goes_on(&entity) {
-            if self.is(0, "{") {
-                let brace = self.step().map(|brace| brace.at);
+        let known = self.registry.find(&kind.text).map(|entity| self.tables.of(entity));
+        let entity = match memory {
+            Some(entity) => {
+                entity.begin_again(kind, name);
+                entity
+            }
+            None => memory.insert(Parsed::begin(kind, name)),
+        };
+        while !self.report.has_enough() && self.body_goes_on(entity) {
+            if self.is(0, TokenForm::Open) {
+                let brace = self.step().map(Token::place);
                 self.report.add(
                     Fault::error(brace, "stray `{`")
                         .label("braces cannot be nested")
-                        .also(Some(kind.at.clone()), "inside this entity"),
+                        .also(Some(kind_at.clone()), "inside this entity"),
                 );
-            } else if let Some((name, values)) = self.attribute(known) {
-                entity.add(name, values, self.report);
+            } else {
+                self.attribute(known, entity);
             }
         }
-        entity.attributes.shrink_to_fit();
-        entity.place = Some(kind.at.start..self.before.end);
-        self.last = Some((kind.at, self.before.clone()));
-        Some(entity)
+        entity.place = Some(first.start..self.before.end);
+        self.last = Some((kind_at, self.before.clone()));
+        Some(())
     }
 
     /// Tells whether another attribute of the entity follows; if not, skips the closing brace.
     fn body_goes_on(&mut self, entity: &Parsed<'a>) -> bool {
-        if self.is(0, "}") {
+        if self.is(0, TokenForm::Close) {
             self.step();
             return false;
         }
         if self.token().is_some() && !self.has_form() {
             return true;
         }
-        let place = self.token().map_or(self.end..self.end, |token| token.at.clone());
+        let end = self.tokens.text.len();
+        let place = self.token().map_or(end..end, Token::place);
         let label = match self.token() {
-            Some(next) => format!("expected `}}` before this `{}`", next.text),
+            Some(next) => format!("expected `}}` before this `{}`", self.text(next)),
             None => "the text ends here".to_owned(),
         };
         self.report.add(
@@ -311,47 +458,46 @@ impl<'a> Parser<'a, '_> {
     }
 
     /// Reads an attribute and its values, however many there are and whatever their form.
-    fn attribute(&mut self, entity: Option<&'static Entity>) -> Option<(Word<'a>, Vec<Word<'a>>)> {
-        let name = self.step()?;
-        let described = entity.and_then(|entity| {
-            let known = find_attribute(entity, &name.text);
-            known.or_else(|| near_attribute(entity, &name.text, self.report.guesses()))
+    fn attribute(&mut self, table: Option<usize>, entity: &mut Parsed<'a>) {
+        let Some(name) = self.step().map(|name| self.tokens.word(name)) else { return };
+        let known = table.and_then(|table| {
+            let table = &self.tables[table];
+            table.find(&name.text).or_else(|| table.near(&name.text, self.report.guesses()))
         });
-        let (mut values, mut count) = (Vec::new(), 0);
-        while let Some(token) = &self.tokens.ahead[0]
+        let mut count = 0;
+        while let Some(token) = self.token()
             && !token.is_brace()
             && !self.has_form()
-            && (token.form == Form::Text
-                || is_value(entity, described, count, &token.text, self.report.guesses()))
+            && (token.form() == Form::Text || {
+                let (table, word) = (table.map(|table| &self.tables[table]), self.tokens.raw(token));
+                let known = table.zip(known).map(|(table, known)| &table[known]);
+                is_value(table, known, count, word, self.report.guesses())
+            })
         {
-            if count < MAX_VALUES {
-                values.push(token.word());
-            }
+            entity.value(self.tokens.word(token));
             count += 1;
             self.step();
         }
-        Some((name.word(), values))
+        entity.add(name, self.report);
     }
 }
 
 /// Tells whether a word is a value, rather than the next attribute.
 fn is_value(
-    entity: Option<&'static Entity>,
-    attribute: Option<&'static dyn Attribute>,
+    table: Option<&Table>,
+    attribute: Option<&Known>,
     already: usize,
     word: &str,
     guesses: &mut Guesses,
 ) -> bool {
-    let max = attribute.map_or(1, |attribute| attribute.arity().iter().copied().max().unwrap_or(0));
-    match attribute.map(|attribute| attribute.value_type()) {
+    let max = attribute.map_or(1, |attribute| attribute.max);
+    match attribute.map(|attribute| attribute.value_type) {
         // A name may look like anything, even like a number or an attribute: `material material`.
         Some(Type::Word | Type::Name(_) | Type::Choice(_) | Type::Formula) => already < max,
         _ if looks_like_number(word) => true,
         _ => {
-            let Some(entity) = entity else { return already < max };
-            already < max
-                && find_attribute(entity, word).is_none()
-                && near_attribute(entity, word, guesses).is_none()
+            let Some(table) = table else { return already < max };
+            already < max && table.find(word).is_none() && table.near(word, guesses).is_none()
         }
     }
 }
@@ -359,5 +505,5 @@ fn is_value(
 fn looks_like_number(word: &str) -> bool {
     let unsigned = word.trim_start_matches(['+', '-']);
     unsigned.starts_with(|c: char| c.is_ascii_digit() || c == '.')
-        || ["nan", "inf", "infinity"].contains(&unsigned.to_ascii_lowercase().as_str())
+        || ["nan", "inf", "infinity"].iter().any(|number| unsigned.eq_ignore_ascii_case(number))
 }

@@ -4,6 +4,7 @@ use super::fault::{Fault, Place};
 use super::report::Report;
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
+use std::mem::{replace, take};
 use std::ops::Range;
 
 /// A word of a scene and its place.
@@ -46,7 +47,10 @@ pub(super) const MAX_ATTRIBUTES: usize = 1000;
 pub struct Parsed<'a> {
     pub(super) kind: Word<'a>,
     pub(super) name: Word<'a>,
-    pub(super) attributes: Vec<(Word<'a>, Vec<Word<'a>>)>,
+    /// The names of the attributes, each with the number of all values up to its own last one.
+    attributes: Vec<(Word<'a>, usize)>,
+    /// The values of all attributes.
+    values: Vec<Word<'a>>,
     /// The range from the entity's type to its end.
     pub(super) place: Place,
     /// Whether some of the entity's text could not be parsed. Then missing attributes are not reported.
@@ -54,39 +58,81 @@ pub struct Parsed<'a> {
 }
 
 impl<'a> Parsed<'a> {
-    /// Adds an attribute; beyond [`MAX_ATTRIBUTES`] reports it instead.
-    pub(super) fn add(&mut self, name: Word<'a>, mut values: Vec<Word<'a>>, report: &mut Report) {
-        match self.attributes.len() {
-            MAX_ATTRIBUTES if !self.is_damaged => {
-                self.is_damaged = true;
-                let message = format!("this {} has more than {MAX_ATTRIBUTES} attributes", self.kind.text);
-                report.add(Fault::error(name.place, message).label("the first that is too many"));
-            }
-            MAX_ATTRIBUTES.. => {}
-            _ => {
-                values.shrink_to_fit();
-                self.attributes.push((name, values));
-            }
+    /// Begins an entity without attributes.
+    pub(super) fn begin(kind: Word<'a>, name: Word<'a>) -> Self {
+        let (attributes, values) = (Vec::new(), Vec::new());
+        Self { kind, name, attributes, values, place: None, is_damaged: false }
+    }
+
+    /// Begins another entity in the same memory.
+    pub(super) fn begin_again(&mut self, kind: Word<'a>, name: Word<'a>) {
+        self.attributes.clear();
+        self.values.clear();
+        let (attributes, values) = (take(&mut self.attributes), take(&mut self.values));
+        *self = Self { attributes, values, ..Self::begin(kind, name) };
+    }
+
+    /// Adds a value of the attribute that [`add`](Self::add) adds next. Beyond [`MAX_VALUES`] it is not kept.
+    pub(super) fn value(&mut self, value: Word<'a>) {
+        if self.values.len() - self.attributes.last().map_or(0, |(_, end)| *end) < MAX_VALUES {
+            self.values.push(value);
         }
+    }
+
+    /// Adds an attribute with the values added since the one before; beyond [`MAX_ATTRIBUTES`] reports it instead.
+    pub(super) fn add(&mut self, name: Word<'a>, report: &mut Report<'_>) {
+        match self.attributes.len() {
+            MAX_ATTRIBUTES.. => {
+                self.drop_values();
+                if !replace(&mut self.is_damaged, true) {
+                    let message =
+                        format!("this {} has more than {MAX_ATTRIBUTES} attributes", self.kind.text);
+                    report.add(Fault::error(name.place, message).label("the first that is too many"));
+                }
+            }
+            _ => self.attributes.push((name, self.values.len())),
+        }
+    }
+
+    /// Drops the values added since the last attribute.
+    pub(super) fn drop_values(&mut self) {
+        self.values.truncate(self.attributes.last().map_or(0, |(_, end)| *end));
+    }
+
+    /// Gives back memory that the entity does not need.
+    pub(super) fn shrink(&mut self) {
+        self.attributes.shrink_to_fit();
+        self.values.shrink_to_fit();
+    }
+
+    /// Returns the attributes, each with its values.
+    pub(super) fn attributes(&self) -> impl DoubleEndedIterator<Item = (&Word<'a>, &[Word<'a>])> {
+        let indexed = self.attributes.iter().enumerate();
+        indexed.map(|(index, (name, _))| (name, self.values_of(index)))
+    }
+
+    /// Returns the values of the attribute of this index.
+    pub(super) fn values_of(&self, index: usize) -> &[Word<'a>] {
+        let start = index.checked_sub(1).map_or(0, |before| self.attributes[before].1);
+        &self.values[start..self.attributes[index].1]
+    }
+
+    /// Tells whether the entity has no attributes.
+    pub(super) fn is_empty(&self) -> bool {
+        self.attributes.is_empty()
     }
 }
 
 impl Parsed<'static> {
     /// Starts an entity built in Rust, with its type and its name.
     pub fn new(kind: &str, name: &str) -> Self {
-        Self {
-            kind: Word::unplaced(kind),
-            name: Word::unplaced(name),
-            attributes: Vec::new(),
-            place: None,
-            is_damaged: false,
-        }
+        Self::begin(Word::unplaced(kind), Word::unplaced(name))
     }
 
     /// Adds an attribute and its values.
     pub fn set(mut self, attribute: &str, values: impl Values) -> Self {
-        let values = values.words().into_iter().map(Word::unplaced).collect();
-        self.attributes.push((Word::unplaced(attribute), values));
+        self.values.extend(values.words().into_iter().map(Word::unplaced));
+        self.attributes.push((Word::unplaced(attribute), self.values.len()));
         self
     }
 }

@@ -6,6 +6,7 @@ use super::guesses::Guesses;
 use crate::scene::syntax::Syntax;
 use crate::text;
 use annotate_snippets::Renderer;
+use std::borrow::Cow;
 use std::fmt;
 use std::path::PathBuf;
 
@@ -22,9 +23,9 @@ const MAX_ERRORS: usize = 100_000;
 
 /// The faults of one scene, in the order of its text: all of them, or the first ones and the number of all.
 #[derive(Clone, Debug, Default)]
-pub struct Report {
+pub struct Report<'t> {
     pub(super) name: String,
-    pub(super) text: String,
+    pub(super) text: Cow<'t, str>,
     syntax: Syntax,
     pub(super) faults: Vec<Fault>,
     notes: Box<Notes>,
@@ -42,10 +43,17 @@ struct Notes {
     guesses: Guesses,
 }
 
-impl Report {
+impl<'t> Report<'t> {
     /// Makes an empty report on a scene's text; `name` is what messages call the scene.
-    pub fn new(name: impl Into<String>, text: impl Into<String>, syntax: Syntax) -> Self {
+    pub fn new(name: impl Into<String>, text: impl Into<Cow<'t, str>>, syntax: Syntax) -> Self {
         Self { name: name.into(), text: text.into(), syntax, ..Self::default() }
+    }
+
+    /// Returns the report with a text of its own, if there is anything to show in the text.
+    pub(super) fn into_owned(self) -> Report<'static> {
+        let text = if self.faults.is_empty() { String::new() } else { self.text.into_owned() };
+        let Self { name, syntax, faults, notes, files, .. } = self;
+        Report { name, text: text.into(), syntax, faults, notes, files }
     }
 
     /// Returns the syntax in which messages show what would be right.
@@ -63,6 +71,11 @@ impl Report {
         } else if self.tells(fault.severity, &fault.place) {
             self.insert(fault);
         }
+    }
+
+    /// Counts faults that come after so many others that none would be listed.
+    pub(super) fn count_more(&mut self, severity: Severity, count: usize) {
+        self.notes.counts[severity as usize] += count;
     }
 
     fn insert(&mut self, fault: Fault) {
@@ -176,10 +189,10 @@ impl Report {
 }
 
 /// Renders the faults as plain text, without colours.
-impl fmt::Display for Report {
+impl fmt::Display for Report<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.render(&Renderer::plain()))
     }
 }
 
-impl std::error::Error for Report {}
+impl std::error::Error for Report<'_> {}

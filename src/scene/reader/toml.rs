@@ -19,7 +19,7 @@ const PART: usize = 1 << 17;
 
 /// Parses the entities of a text, in their order, and reports syntax errors. Parsing goes on after an error, so that
 /// one run finds the faults that follow.
-pub fn parse<'a>(registry: &Registry, text: &'a str, report: &mut Report) -> Vec<Parsed<'a>> {
+pub fn parse<'a>(registry: &Registry, text: &'a str, report: &mut Report<'_>) -> Vec<Parsed<'a>> {
     if let Some(place) = long_line(text) {
         let message = format!("this line is {} bytes long", place.len());
         let help = format!("a line of a scene in TOML is at most {LINE} bytes long");
@@ -181,7 +181,7 @@ fn fault_of(place: Range<usize>, message: &str, text: &str) -> Fault {
     Fault::error(Some(place), message).help(help)
 }
 
-struct Parser<'a, 'r> {
+struct Parser<'a, 'r, 't> {
     /// The text, or a piece of it.
     text: &'a str,
     /// The position at which the piece begins, in bytes.
@@ -190,7 +190,7 @@ struct Parser<'a, 'r> {
     errors: Vec<SyntaxError>,
     is_told: Vec<bool>,
     titles: Vec<usize>,
-    report: &'r mut Report,
+    report: &'r mut Report<'t>,
     parsed: &'r mut Vec<Parsed<'a>>,
 }
 
@@ -198,11 +198,11 @@ struct Parser<'a, 'r> {
 type Key<'a> = Spanned<toml::de::DeString<'a>>;
 type Value<'a> = Spanned<DeValue<'a>>;
 
-impl<'a, 'r> Parser<'a, 'r> {
+impl<'a, 'r, 't> Parser<'a, 'r, 't> {
     fn new(
         (text, at): (&'a str, usize),
         errors: &[Error],
-        report: &'r mut Report,
+        report: &'r mut Report<'t>,
         parsed: &'r mut Vec<Parsed<'a>>,
     ) -> Self {
         let titles = before_titles(text);
@@ -285,13 +285,10 @@ impl<'a, 'r> Parser<'a, 'r> {
         };
         let (kind_at, name_at) = (place_of(kind), place_of(name));
         let start = kind_at.start;
-        let mut entity = Parsed {
-            kind: self.word(kind.get_ref().clone(), Form::Text, kind_at),
-            name: self.word(name.get_ref().clone(), Form::Text, name_at.clone()),
-            attributes: Vec::new(),
-            place: None,
-            is_damaged: false,
-        };
+        let mut entity = Parsed::begin(
+            self.word(kind.get_ref().clone(), Form::Text, kind_at),
+            self.word(name.get_ref().clone(), Form::Text, name_at.clone()),
+        );
         let mut attributes: Vec<_> = attributes.into_iter().collect();
         attributes.sort_by_key(|(key, _)| key.span().start);
         let mut end = name_at.end.max(span.end);
@@ -305,11 +302,11 @@ impl<'a, 'r> Parser<'a, 'r> {
                 entity.is_damaged = true;
                 continue;
             }
-            let mut values = Vec::new();
-            if self.values(&value, &mut values) {
+            if self.values(&value, &mut entity) {
                 let key = self.word(key.get_ref().clone(), Form::Text, key.span());
-                entity.add(key, values, self.report);
+                entity.add(key, self.report);
             } else {
+                entity.drop_values();
                 entity.is_damaged = true;
             }
         }
@@ -317,7 +314,7 @@ impl<'a, 'r> Parser<'a, 'r> {
         // What could not be parsed at all stands between the last attribute and the next title.
         let next = next(&self.titles, end).unwrap_or(self.text.len());
         entity.is_damaged |= self.is_faulty(name_at.start..next);
-        entity.attributes.shrink_to_fit();
+        entity.shrink();
         self.parsed.push(entity);
     }
 
@@ -346,23 +343,25 @@ impl<'a, 'r> Parser<'a, 'r> {
     }
 
     /// Reads the values of an attribute; returns whether they have the form of values.
-    fn values(&mut self, value: &Value<'a>, words: &mut Vec<Word<'a>>) -> bool {
+    fn values(&mut self, value: &Value<'a>, entity: &mut Parsed<'a>) -> bool {
         let place = value.span();
         match value.get_ref() {
-            DeValue::String(text) => words.push(self.word(text.clone(), Form::Text, place)),
-            DeValue::Float(number) => words.push(self.word(number.as_str().to_owned(), Form::Number, place)),
+            DeValue::String(text) => entity.value(self.word(text.clone(), Form::Text, place)),
+            DeValue::Float(number) => {
+                entity.value(self.word(number.as_str().to_owned(), Form::Number, place))
+            }
             DeValue::Integer(number) => {
                 let digits = match number.radix() {
                     10 => number.as_str().to_owned(),
                     radix => i64::from_str_radix(number.as_str(), radix)
                         .map_or_else(|_| self.text[place.clone()].to_owned(), |number| number.to_string()),
                 };
-                words.push(self.word(digits, Form::Number, place));
+                entity.value(self.word(digits, Form::Number, place));
             }
             DeValue::Array(values) if values.iter().all(|value| !value.get_ref().is_array()) => {
                 let mut sound = true;
                 for value in values.iter().take(MAX_VALUES) {
-                    sound &= self.values(value, words);
+                    sound &= self.values(value, entity);
                 }
                 return sound;
             }

@@ -70,7 +70,7 @@ fn choice(choices: Choices, word: &Word<'_>) -> Result<Datum, Vec<Fault>> {
 }
 
 /// What is wrong with a word, and what would be right where that can be said.
-type Complaint = (&'static str, Option<&'static str>);
+pub type Complaint = (&'static str, Option<&'static str>);
 
 fn all<T>(words: &[Word<'_>], read: fn(&str) -> Result<T, Complaint>) -> Result<Vec<T>, Vec<Fault>> {
     let mut values = Vec::with_capacity(words.len());
@@ -91,7 +91,8 @@ fn all<T>(words: &[Word<'_>], read: fn(&str) -> Result<T, Complaint>) -> Result<
     if faults.is_empty() { Ok(values) } else { Err(faults) }
 }
 
-fn whole(word: &str) -> Result<i64, Complaint> {
+/// Reads a whole number.
+pub fn whole(word: &str) -> Result<i64, Complaint> {
     word.parse().map_err(|_| {
         let digits = word.trim_start_matches(['+', '-']);
         let too_large = !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit());
@@ -99,7 +100,8 @@ fn whole(word: &str) -> Result<i64, Complaint> {
     })
 }
 
-fn number(word: &str) -> Result<f64, Complaint> {
+/// Reads a finite number.
+pub fn number(word: &str) -> Result<f64, Complaint> {
     match word.parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(number),
         Ok(_) if word.contains(|c: char| c.is_ascii_digit()) => Err(("too large", None)),

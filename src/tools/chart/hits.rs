@@ -61,7 +61,7 @@ pub fn sets(model: &Model) -> Vec<Set> {
         if group.is_empty() {
             continue;
         }
-        let names: Vec<_> = group.iter().map(|index| model.objects[*index].args.name.as_str()).collect();
+        let names: Vec<_> = group.iter().map(|index| model.objects[*index].args.name()).collect();
         let what = list(names);
         let mut add = |kind: &str, packets: Vec<Packet>| {
             if !packets.is_empty() {

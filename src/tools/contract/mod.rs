@@ -92,14 +92,14 @@ pub fn breaches_in(model: &Model) -> Vec<Breach> {
     let mut found = Vec::new();
     for object in &model.objects {
         found.extend(
-            rays::try_object(object, &mut draw, RAYS).gravest.map(|fault| (object.args.entity, fault)),
+            rays::try_object(object, &mut draw, RAYS).gravest.map(|fault| (object.args.entity(), fault)),
         );
     }
     for light in &model.lights {
-        found.extend(looks::light(&*light.value, &mut draw).err().map(|fault| (light.args.entity, fault)));
+        found.extend(looks::light(&*light.value, &mut draw).err().map(|fault| (light.args.entity(), fault)));
     }
     let camera = &model.camera;
-    found.extend(looks::camera(&camera.value).err().map(|fault| (camera.args.entity, fault)));
+    found.extend(looks::camera(&camera.value).err().map(|fault| (camera.args.entity(), fault)));
     found
         .into_iter()
         .map(|(entity, fault)| breach(entity, fault, dump::scene(model, Syntax::Notes)))

@@ -55,7 +55,7 @@ pub fn try_object(object: &Object, draw: &mut Draw, rays: usize) -> Outcome {
 /// Returns points where the object may be: any three numbers of an attribute may be a point.
 fn aims(object: &Object) -> Vec<DVec3> {
     let mut aims = vec![DVec3::ZERO];
-    for (_, datum) in object.args.values() {
+    for (_, datum) in object.args.args().values() {
         if let Datum::Numbers(numbers) = datum {
             aims.extend(numbers.as_chunks::<3>().0.iter().map(|point| DVec3::from(*point)));
         }

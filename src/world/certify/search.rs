@@ -1,21 +1,18 @@
 //! First hits of any surface, by splitting a line until each piece certainly has no root, or exactly one.
 
-use super::equation::{Equation, Found, is_kept};
+use super::equation::{Found, Values, is_kept};
 use crate::geometry::sight::Line;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::{Float, Interval};
 use crate::numeric::scalar::Scalar;
-
-/// The maximum number of pieces of a line that are examined before the search is given up.
-const PIECES: usize = 2000;
 
 /// The length below which a piece is not cut where the value jumps, as a fraction of the whole line: a fraction of
 /// an ulp of `f64`. A ray that passes through a jump stays undecided however short the piece is, and 237 bits of exponential
 /// functions take a long time.
 const JUMP: f64 = f64::EPSILON / 16.0;
 
-/// Finds the first hit with t > 0.
-pub fn first_hit<F: Float>(shape: &impl Equation, line: &Line<Interval<F>>) -> Found<F> {
+/// Finds the first hit with t > 0. The search is given up after `pieces` pieces of the line.
+pub fn first_hit<F: Float>(shape: &dyn Values<F>, line: &Line<Interval<F>>, pieces: usize) -> Found<F> {
     let zero = F::of(0.0);
     let Some((from, to)) = clip(shape, line) else { return Found::Misses };
     if !to.is_finite() {
@@ -30,7 +27,7 @@ pub fn first_hit<F: Float>(shape: &impl Equation, line: &Line<Interval<F>>) -> F
     let shortest_jump = shortest.max(F::of(JUMP) * (to - from));
     let search = Search { shape, line: &near };
     let mut pending = vec![(from, to)];
-    for _ in 0..PIECES {
+    for _ in 0..pieces {
         let Some((low, high)) = pending.pop() else { return Found::Misses };
         let piece = Interval { low, high };
         let start = || (base + Interval::point(low)).low.max(zero);
@@ -70,7 +67,7 @@ fn cut<F: Float>(low: F, high: F) -> [(F, F); 2] {
 }
 
 /// Clips a line, from t = 0 on, to the shape's extent. Returns `None` where the line misses the extent.
-fn clip<F: Float>(shape: &impl Equation, line: &Line<Interval<F>>) -> Option<(F, F)> {
+fn clip<F: Float>(shape: &dyn Values<F>, line: &Line<Interval<F>>) -> Option<(F, F)> {
     let [low, high] = shape.extent();
     let (mut from, mut to) = (F::of(0.0), F::INFINITY);
     for axis in 0..3 {
@@ -90,8 +87,8 @@ fn clip<F: Float>(shape: &impl Equation, line: &Line<Interval<F>>) -> Option<(F,
 }
 
 /// The search for roots of an equation along a line.
-struct Search<'s, S, F> {
-    shape: &'s S,
+struct Search<'s, F> {
+    shape: &'s dyn Values<F>,
     line: &'s Line<Interval<F>>,
 }
 
@@ -107,14 +104,14 @@ enum Judgement<F> {
     Jump,
 }
 
-impl<S: Equation, F: Float> Search<'_, S, F> {
+impl<F: Float> Search<'_, F> {
     fn value(&self, t: Interval<F>) -> Interval<F> {
         self.shape.value(self.line.at(t))
     }
 
     /// Encloses the value and its first derivative.
     fn slope(&self, t: Interval<F>) -> Dual<Interval<F>> {
-        self.shape.value(self.line.along(Dual::variable(t)))
+        self.shape.slope(self.line.along(Dual::variable(t)))
     }
 
     /// Encloses the second derivative.
@@ -122,7 +119,7 @@ impl<S: Equation, F: Float> Search<'_, S, F> {
         let t = Dual::variable_twice(t);
         let Line { origin, dir } = self.line;
         let at = [0, 1, 2].map(|axis| Dual::fixed_twice(origin[axis]) + t * Dual::fixed_twice(dir[axis]));
-        self.shape.value(at).second()
+        self.shape.bend(at).second()
     }
 
     /// Judges a piece by the mean value theorem of first and then of second order.
@@ -208,6 +205,7 @@ impl<S: Equation, F: Float> Search<'_, S, F> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::world::certify::equation::Equation;
     use f256::f256;
     use glam::DVec3;
     use std::cell::Cell;
@@ -230,7 +228,7 @@ mod tests {
     fn a_jump_is_left_in_doubt_after_a_few_pieces() {
         let step = Step(Cell::new(0));
         let [origin, dir] = [[-2.0, 0.0, 0.0], [1.0, 0.0, 0.0]].map(|of| of.map(Interval::<f256>::constant));
-        let Found::Doubtful(from) = first_hit(&step, &Line { origin, dir }) else {
+        let Found::Doubtful(from) = first_hit(&step, &Line { origin, dir }, 2000) else {
             panic!("a jump is no root")
         };
         assert!((from.to_f64() - 2.3).abs() < 1e-15, "{from:?}");

@@ -88,8 +88,8 @@ fn narrowed<T: Number>(along: &impl Along, known: &Known<T>, mut piece: T) -> T 
     }
 }
 
-/// A ray whose places are relative to one of its points near a shape, in steps of about a world unit: `s = start +
-/// 2^power * place`.
+/// A ray as `s = start + 2^power * place`: places are relative to one of its points near a shape, in steps of about a
+/// world unit.
 struct Local {
     start: Dyadic,
     power: i64,

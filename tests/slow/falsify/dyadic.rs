@@ -172,8 +172,8 @@ impl Dyadic {
         }
     }
 
-    /// Returns an `f64` next to the number: not below it if `up`, and not above it otherwise. Numbers of magnitude
-    /// below 2^-1001 become 0 or the smallest normal number.
+    /// Returns an `f64` near the number: not below it if `up`, and not above it otherwise. Numbers of magnitude below
+    /// 2^-1001 become 0 or that.
     pub fn to_f64(&self, up: bool) -> f64 {
         let size = self.size();
         if self.is_zero() {
@@ -188,10 +188,11 @@ impl Dyadic {
             };
         }
         if size < -1000 {
+            let tiny = 2_f64.powi(-1001);
             return match (self.sign(), up) {
                 (Ordering::Less, true) => 0.0,
-                (Ordering::Less, false) => -f64::MIN_POSITIVE,
-                (_, true) => f64::MIN_POSITIVE,
+                (Ordering::Less, false) => -tiny,
+                (_, true) => tiny,
                 (_, false) => 0.0,
             };
         }

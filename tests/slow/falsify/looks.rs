@@ -125,7 +125,7 @@ fn leak(random: &mut Random, renderer: &Renderer) -> Looks {
     );
     let mut looks = alike(&before, center, radius, renderer);
     if away > radius {
-        // No light comes in.
+        // No light enters the sphere.
         let text = format!("{before}{}\n", balls(center, radius)[0]);
         let lit = picture(&text, renderer).iter().filter(|seen| **seen != [0; 3]).count();
         if lit > 0 {
@@ -252,8 +252,8 @@ fn seam(random: &mut Random, renderer: &Renderer) -> Looks {
         numbers(on_wall),
         numbers(lamp),
     );
-    // Planes are not hit in front of the image plane. Through that part of the floor one sees shadows of the part
-    // behind it.
+    // Planes are not hit in front of the image plane. Through the unseen part of the floor, one sees the shadow of the
+    // rest of the floor.
     dots(text, renderer)
 }
 

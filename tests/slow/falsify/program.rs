@@ -1,4 +1,4 @@
-//! The program under test: the only file here through which scenes are put to it.
+//! The program under test. All questions to it go through this file.
 
 use crate::common::registry;
 use std::path::Path;

@@ -13,7 +13,7 @@ const BITS: i64 = 320;
 /// The number of bits after the binary point in the sums of series.
 const FIXED: i64 = 440;
 
-/// The exponent of the bound on the error of a series' sum, 2^-400: far more than the few hundred rounding errors of
+/// The exponent of a bound on the error of a series' sum: 2^-400 is far more than the few hundred rounding errors of
 /// 2^-440, each made up to 2^16 times as large by doubling.
 const SLACK: i64 = -400;
 

@@ -25,11 +25,13 @@ struct Template {
 }
 
 impl Light for Template {
+    #[inline]
     fn location(&self) -> DVec3 {
         self.bulb.location
     }
 
     /// Returns the light that it emits toward a point, or nothing where it does not shine.
+    #[inline]
     fn emissivity(&self, toward: DVec3) -> Option<Rgb> {
         let down = (self.bulb.location - toward).normalize_or_zero().y;
         (down > 0.0).then(|| self.bulb.emissivity * down.powf(self.narrow))

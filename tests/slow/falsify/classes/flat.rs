@@ -32,8 +32,8 @@ pub fn planes(random: &mut Random) -> Question {
     if random.once_in(4) { aim.picture(&objects) } else { aim.many(random, &objects) }
 }
 
-/// Returns a scene of a plane that is parallel to the ray up to an offset, so that it is hit near, far away or not at
-/// all.
+/// Returns a scene of a plane that is parallel to the ray up to a small offset, so that it is hit near, far away or not
+/// at all.
 pub fn parallel(random: &mut Random) -> Question {
     let aim = Aim::new(random, 6.0);
     let side = turned(aim.u, aim.angle(random));
@@ -63,7 +63,7 @@ fn rectangle(n: Point, xdir: Point, corner: Point, size: [f64; 2]) -> String {
     )
 }
 
-/// Returns a scene of a rectangle, often with an edge or a corner that the ray meets up to an offset.
+/// Returns a scene of a rectangle, often with an edge or a corner that the ray meets up to a small offset.
 pub fn rectangles(random: &mut Random) -> Question {
     let aim = if random.once_in(2) { Aim::new(random, 9.0) } else { Aim::plain(random, 9.0) };
     let n = normal(random);

@@ -89,13 +89,13 @@ pub fn surfers(random: &mut Random) -> Question {
     seen(random, profile, 9.0)
 }
 
-/// Returns a scene of a profile with a formula: thin discs, waves, kinks, ends on the axis.
+/// Returns a scene of a surface whose profile is a formula: thin discs, waves, kinks, ends on the axis.
 pub fn formulas(random: &mut Random) -> Question {
     let profile = formula(random);
     seen(random, profile, 6.0)
 }
 
-/// Returns a scene of a surface that the ray is tangent to up to an offset, or that it meets at the rim.
+/// Returns a scene of a surface that the ray is tangent to up to a small offset, or that it meets at the rim.
 pub fn tangents(random: &mut Random) -> Question {
     let aim = Aim::new(random, 8.0);
     let (text, profile, height) = if random.once_in(2) { surfer(random) } else { formula(random) };
@@ -126,7 +126,7 @@ pub fn tangents(random: &mut Random) -> Question {
     aim.question(&[revolved(&text, axis, base, height)])
 }
 
-/// Returns a scene of a torus, which the ray is tangent to up to an offset in half of the scenes.
+/// Returns a scene of a torus. In half of the scenes the ray is tangent to it up to a small offset.
 pub fn tori(random: &mut Random) -> Question {
     let is_aimed = random.once_in(2);
     let aim = if is_aimed || random.once_in(3) { Aim::new(random, 8.0) } else { Aim::plain(random, 8.0) };

@@ -29,7 +29,8 @@ pub fn spheres(random: &mut Random) -> Question {
     if random.once_in(4) { aim.picture(&objects) } else { aim.many(random, &objects) }
 }
 
-/// Returns a scene of a sphere that the ray is tangent to up to an offset, sometimes with another sphere behind it.
+/// Returns a scene of a sphere that the ray is tangent to up to a small offset, sometimes with another sphere behind
+/// it.
 pub fn sphere_tangents(random: &mut Random) -> Question {
     let aim = Aim::new(random, 9.0);
     let radius = size(random, &aim);
@@ -115,7 +116,7 @@ pub fn ellipsoids(random: &mut Random) -> Question {
     if random.once_in(4) { aim.picture(&objects) } else { aim.many(random, &objects) }
 }
 
-/// Touched by the ray but for an offset.
+/// Returns a scene of an ellipsoid that the ray is tangent to up to a small offset.
 pub fn ellipsoid_tangents(random: &mut Random) -> Question {
     let aim = Aim::new(random, 9.0);
     let (scale, radius) = (stretch(random), size(random, &aim));
@@ -192,7 +193,7 @@ pub fn quadrics(random: &mut Random) -> Question {
     if random.once_in(4) { aim.picture(&objects) } else { aim.many(random, &objects) }
 }
 
-/// Touched by the ray but for an offset.
+/// Returns a scene of a quadric that the ray is tangent to up to a small offset.
 pub fn quadric_tangents(random: &mut Random) -> Question {
     let aim = Aim::new(random, 6.0);
     let mut k = coefficients(random);
@@ -298,7 +299,7 @@ pub fn quadric_cones(random: &mut Random) -> Question {
     if random.once_in(2) { aim.question(&[object]) } else { aim.many(random, &[object]) }
 }
 
-/// Returns a scene of shapes that meet the ray at the same point, up to an offset.
+/// Returns a scene of shapes that meet the ray at the same point, up to a small offset.
 pub fn meeting(random: &mut Random) -> Question {
     let aim = Aim::new(random, 6.0);
     let mut objects: Vec<String> = (0..2)

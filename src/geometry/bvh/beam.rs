@@ -1,0 +1,122 @@
+//! A ray, or a bundle of rays, prepared for tests against boxes.
+
+use crate::geometry::aabb::{SLACK, larger, smaller};
+use crate::geometry::ray::Ray;
+use crate::geometry::ray_packet::RayPacket;
+use crate::simd::soa::LANES;
+use glam::DVec3;
+
+/// The index of the low plane of a box along an axis.
+pub const LOW: usize = 0;
+/// The index of the high plane.
+pub const HIGH: usize = 1;
+
+/// The largest reciprocal of a direction's component.
+///
+/// It stands for that of 0. Within any distance that matters, such a ray moves less along the axis than the slack.
+const STEEPEST: f64 = 1e150;
+
+/// The slack of rays whose coordinates are all 0, in world units: not 0, so that a product with [`STEEPEST`] is large.
+const LEAST_SLACK: f64 = 1e-100;
+
+/// Rays that are tested together: bounds of their origins and of their directions.
+///
+/// The origins' bounds have a slack of [`SLACK`] times their largest coordinate. It is more than the rounding of the
+/// distances to planes, and than the distance by which rounding moves a ray of that size. So where a beam misses a box,
+/// so do the rays before anything was rounded.
+pub struct Beam {
+    /// The bounds of the origins: the high one is measured from to low planes, and the low one to high planes.
+    pub from: [DVec3; 2],
+    /// The reciprocals of the components of the directions: the largest component's for low planes, and the smallest
+    /// one's for high planes.
+    pub inverse: [DVec3; 2],
+    /// The side of a box that the rays reach first along each axis, [`LOW`] or [`HIGH`].
+    pub near: [usize; 3],
+    /// Whether some rays rise along the axis and others fall. They enter a box through either plane, and may never leave
+    /// it.
+    pub is_mixed: [bool; 3],
+    /// The slack of the origins, in world units.
+    pub slack: f64,
+    /// The largest extent of the origins along any axis, in world units.
+    width: f64,
+    /// The largest difference between any component of the directions.
+    spread: f64,
+}
+
+impl Beam {
+    /// Prepares one ray.
+    #[inline(always)]
+    pub fn of(ray: &Ray) -> Self {
+        Self::between([ray.origin; 2], [ray.dir; 2])
+    }
+
+    /// Bounds the rays of a packet that end beyond 0, given the distances in world units at which its rays end. Returns
+    /// `None` if there are none.
+    #[inline(always)]
+    pub fn around(rays: RayPacket, t_max: &[f64]) -> Option<Self> {
+        let lane = t_max.iter().position(|t_max| *t_max > 0.0)?;
+        let ray = rays.get(lane);
+        let (origin, dir) = (rays.origin, rays.dir);
+        let [from_x, from_y, from_z] = [
+            limits(origin.x, t_max, ray.origin.x),
+            limits(origin.y, t_max, ray.origin.y),
+            limits(origin.z, t_max, ray.origin.z),
+        ];
+        let [x, y, z] = [
+            limits(dir.x, t_max, ray.dir.x),
+            limits(dir.y, t_max, ray.dir.y),
+            limits(dir.z, t_max, ray.dir.z),
+        ];
+        let corner =
+            |x: [f64; 2], y: [f64; 2], z: [f64; 2], side: usize| DVec3::new(x[side], y[side], z[side]);
+        Some(Self::between(
+            [corner(from_x, from_y, from_z, LOW), corner(from_x, from_y, from_z, HIGH)],
+            [corner(x, y, z, LOW), corner(x, y, z, HIGH)],
+        ))
+    }
+
+    /// Bounds rays by the least and the greatest coordinates of their origins, and components of their directions.
+    #[inline(always)]
+    fn between([low, high]: [DVec3; 2], [least, greatest]: [DVec3; 2]) -> Self {
+        let slack = SLACK * larger(low.abs().max_element(), high.abs().max_element()) + LEAST_SLACK;
+        let (mut near, mut is_mixed) = ([LOW; 3], [false; 3]);
+        for axis in 0..3 {
+            // Signs, not comparisons, as -0 has a negative reciprocal.
+            let falls = [least[axis], greatest[axis]].map(f64::is_sign_negative);
+            near[axis] = usize::from(falls == [true, true]);
+            is_mixed[axis] = falls == [true, false];
+        }
+        let steepest =
+            |inverse: f64| if inverse.abs() > STEEPEST { STEEPEST.copysign(inverse) } else { inverse };
+        let inverse = |dir: DVec3| dir.recip().map(steepest);
+        Self {
+            from: [high + slack, low - slack],
+            inverse: [inverse(greatest), inverse(least)],
+            near,
+            is_mixed,
+            slack,
+            width: (high - low).max_element(),
+            spread: (greatest - least).max_element(),
+        }
+    }
+
+    /// Returns how far apart the rays are at a distance, in world units along the axis where that is most.
+    #[inline(always)]
+    pub fn width(&self, distance: f64) -> f64 {
+        self.width + distance * self.spread
+    }
+}
+
+/// Returns the smallest and the largest of the numbers whose rays end beyond 0, of which `some` is one.
+#[inline(always)]
+fn limits(of: &[f64], t_max: &[f64], some: f64) -> [f64; 2] {
+    let (mut low, mut high) = ([some; LANES], [some; LANES]);
+    for (of, t_max) in of.chunks_exact(LANES).zip(t_max.chunks_exact(LANES)) {
+        for lane in 0..LANES {
+            let number = if t_max[lane] > 0.0 { of[lane] } else { some };
+            low[lane] = smaller(number, low[lane]);
+            high[lane] = larger(number, high[lane]);
+        }
+    }
+    [low.into_iter().fold(some, smaller), high.into_iter().fold(some, larger)]
+}

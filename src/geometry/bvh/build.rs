@@ -1,0 +1,300 @@
+//! Building a hierarchy, top down by the surface area heuristic over bins (Wald, "On fast Construction of SAH-based
+//! Bounding Volume Hierarchies", 2007), on all threads.
+//!
+//! A node's objects are split in two, then the largest part is split, until there are eight parts or all parts fit into
+//! a node each. The result depends on the boxes and their order alone, not on the number of threads: minima, maxima and
+//! counts have no order, and each part is sorted by one thread.
+
+use crate::geometry::aabb::{Aabb, smaller};
+use crate::geometry::bvh::node::{Node, WIDTH, finite};
+use glam::DVec3;
+use rayon::prelude::*;
+use std::array;
+
+/// The number of bins along an axis; a set of objects is split between two bins.
+const BINS: usize = 16;
+
+/// The number of objects from which on a part is built by a thread of its own.
+const LARGE: usize = 4096;
+
+/// The number of levels from which on parts are halved by number, so that no scene makes the tree too deep.
+const DEEP: usize = 40;
+
+/// The low corner of a box, and the high corner's negative, so that one minimum joins two boxes.
+type Limits = [f64; 6];
+
+/// The limits of nothing.
+const NOTHING: Limits = [f64::INFINITY; 6];
+
+/// Returns the limits of two boxes together.
+#[inline(always)]
+fn join(one: &Limits, other: &Limits) -> Limits {
+    array::from_fn(|side| smaller(one[side], other[side]))
+}
+
+/// Returns half the surface area of a box, in square world units; infinite where it is not a finite number.
+#[inline(always)]
+fn half_area([a, b, c, d, e, f]: Limits) -> f64 {
+    let (x, y, z) = (-d - a, -e - b, -f - c);
+    let area = x * y + y * z + z * x;
+    if area.is_nan() { f64::INFINITY } else { area }
+}
+
+/// An object: the limits of its box, and its index.
+struct Item {
+    limits: Limits,
+    index: u32,
+}
+
+impl Item {
+    fn new(index: usize, bounds: &Aabb) -> Self {
+        let Aabb { low, high } = finite(bounds);
+        Self { limits: [low.x, low.y, low.z, -high.x, -high.y, -high.z], index: index as u32 }
+    }
+
+    /// Returns twice the center of the box along an axis.
+    #[inline(always)]
+    fn center(&self, axis: usize) -> f64 {
+        self.limits[axis] - self.limits[axis + 3]
+    }
+
+    /// Returns twice the center of the box as limits.
+    #[inline(always)]
+    fn centers(&self) -> Limits {
+        let [x, y, z] = [0, 1, 2].map(|axis| self.center(axis));
+        [x, y, z, -x, -y, -z]
+    }
+}
+
+/// Nodes and objects, each node's children in a row. Node 0 is the root.
+#[derive(Default)]
+pub struct Parts {
+    pub nodes: Vec<Node>,
+    pub objects: Vec<u32>,
+}
+
+/// Builds the nodes of a hierarchy of objects with these boxes.
+pub fn build(boxes: &[Aabb]) -> Parts {
+    let item = |(index, bounds)| Item::new(index, bounds);
+    let mut items: Vec<_> = if boxes.len() < LARGE {
+        boxes.iter().enumerate().map(item).collect()
+    } else {
+        boxes.par_iter().enumerate().map(item).collect()
+    };
+    let mut parts = Parts::default();
+    if !items.is_empty() {
+        parts.nodes.push(Node::EMPTY);
+        parts.add(Part::new(&mut items), 0, 0);
+    }
+    parts
+}
+
+/// Some items, their limits, and those of twice their centers.
+struct Part<'i> {
+    items: &'i mut [Item],
+    limits: Limits,
+    centers: Limits,
+}
+
+impl<'i> Part<'i> {
+    fn new(items: &'i mut [Item]) -> Self {
+        let fold = |items: &[Item]| {
+            items.iter().fold((NOTHING, NOTHING), |(limits, centers), item| {
+                (join(&limits, &item.limits), join(&centers, &item.centers()))
+            })
+        };
+        let both =
+            |one: (Limits, Limits), other: (Limits, Limits)| (join(&one.0, &other.0), join(&one.1, &other.1));
+        let (limits, centers) = if items.len() < LARGE {
+            fold(items)
+        } else {
+            items.par_chunks(LARGE).map(fold).reduce(|| (NOTHING, NOTHING), both)
+        };
+        Self { items, limits, centers }
+    }
+
+    /// Splits the items in the middle of their order.
+    fn halves(self) -> [Self; 2] {
+        let (one, other) = self.items.split_at_mut(self.items.len() / 2);
+        [Self::new(one), Self::new(other)]
+    }
+}
+
+impl Parts {
+    /// Makes the node of this index the root of the tree of some items.
+    fn add(&mut self, part: Part, index: usize, depth: usize) {
+        let mut inner = divide(part, depth);
+        inner.sort_by_key(|part| part.items.len() == 1);
+        let mut boxes = [Aabb::EMPTY; WIDTH];
+        for (bounds, part) in boxes.iter_mut().zip(&inner) {
+            let [a, b, c, d, e, f] = part.limits;
+            *bounds = Aabb { low: DVec3::new(a, b, c), high: DVec3::new(-d, -e, -f) };
+        }
+        let mut node = Node::new(&boxes[..inner.len()]);
+        let first = self.nodes.len();
+        (node.first_node, node.first_object) = (first as u32, self.objects.len() as u32);
+        let single = inner.partition_point(|part| part.items.len() > 1);
+        node.nodes = single as u8;
+        for part in inner.drain(single..) {
+            self.objects.push(part.items[0].index);
+        }
+        self.nodes.resize_with(first + single, || Node::EMPTY);
+        self.nodes[index] = node;
+        if inner.iter().filter(|part| part.items.len() >= LARGE).count() > 1 {
+            let built = inner.into_par_iter().map(|part| {
+                let mut parts = Self { nodes: vec![Node::EMPTY], objects: Vec::new() };
+                parts.add(part, 0, depth + 1);
+                parts
+            });
+            for (child, part) in built.collect::<Vec<_>>().into_iter().enumerate() {
+                self.append(part, first + child);
+            }
+        } else {
+            for (child, part) in inner.into_iter().enumerate() {
+                self.add(part, first + child, depth + 1);
+            }
+        }
+    }
+
+    /// Appends a tree, with its root as the node of this index.
+    fn append(&mut self, mut part: Self, root: usize) {
+        // The root moves to its place, and the others follow the nodes that there are.
+        let (nodes, objects) = (self.nodes.len() as u32 - 1, self.objects.len() as u32);
+        for node in &mut part.nodes {
+            node.first_node += nodes;
+            node.first_object += objects;
+        }
+        let mut others = part.nodes.drain(..);
+        if let Some(node) = others.next() {
+            self.nodes[root] = node;
+        }
+        self.nodes.extend(others);
+        self.objects.append(&mut part.objects);
+    }
+}
+
+/// Divides items into at most eight parts, one for each child of a node.
+fn divide(whole: Part, depth: usize) -> Vec<Part> {
+    let mut parts = Vec::with_capacity(WIDTH);
+    parts.push(whole);
+    // While there is room, the largest part is split that does not fit into a node.
+    while parts.len() < WIDTH {
+        let size = |part: &Part| match part.items.len() {
+            len if len <= WIDTH => -1.0,
+            len if depth >= DEEP => len as f64,
+            _ => half_area(part.limits),
+        };
+        let Some(largest) = largest(&parts, size) else { break };
+        let [one, other] = split(parts.remove(largest), depth);
+        parts.splice(largest..largest, [one, other]);
+    }
+    // Where there is room for all items of a part, each is a child.
+    loop {
+        let room = WIDTH - parts.len();
+        let size = |part: &Part| match part.items.len() {
+            len if len > 1 && len - 1 <= room => half_area(part.limits),
+            _ => -1.0,
+        };
+        let Some(largest) = largest(&parts, size) else { break };
+        let part = parts.remove(largest);
+        let single = part.items.chunks_exact_mut(1);
+        parts.extend(single.map(|items| Part {
+            limits: items[0].limits,
+            centers: items[0].centers(),
+            items,
+        }));
+    }
+    parts
+}
+
+/// Returns the index of the largest part, the first of equal ones. Parts of negative size are left out.
+fn largest(parts: &[Part], size: impl Fn(&Part) -> f64) -> Option<usize> {
+    let sizes = parts.iter().map(size).enumerate().filter(|(_, size)| *size >= 0.0);
+    let largest = sizes.reduce(|one, other| if other.1 > one.1 { other } else { one });
+    largest.map(|(index, _)| index)
+}
+
+/// The items whose centers lie in a bin: their number and limits.
+type Bin = (u32, Limits);
+
+/// Returns the items of two bins.
+#[inline(always)]
+fn both(one: &Bin, other: &Bin) -> Bin {
+    (one.0 + other.0, join(&one.1, &other.1))
+}
+
+/// Splits the items of a part in two.
+fn split(part: Part, depth: usize) -> [Part; 2] {
+    let size = [0, 1, 2].map(|axis| -part.centers[axis + 3] - part.centers[axis]);
+    let axis = if size[0] >= size[1] && size[0] >= size[2] { 0 } else { 1 + usize::from(size[2] > size[1]) };
+    let (low, scale) = (part.centers[axis], BINS as f64 * (1.0 - 1e-9) / size[axis]);
+    if depth >= DEEP || !(size[axis] > 0.0 && scale < f64::INFINITY && half_area(part.limits) < f64::INFINITY)
+    {
+        // No split is known to be better than another.
+        return part.halves();
+    }
+    let bin = |item: &Item| (((item.center(axis) - low) * scale) as usize).min(BINS - 1);
+    let none = || [(0, NOTHING); BINS];
+    let count = |items: &[Item]| {
+        let mut bins = none();
+        for item in items {
+            let bin = &mut bins[bin(item)];
+            *bin = (bin.0 + 1, join(&bin.1, &item.limits));
+        }
+        bins
+    };
+    let bins: [Bin; BINS] = if part.items.len() < LARGE {
+        count(part.items)
+    } else {
+        let add = |one: [Bin; BINS], other: [Bin; BINS]| array::from_fn(|bin| both(&one[bin], &other[bin]));
+        part.items.par_chunks(LARGE).map(count).reduce(none, add)
+    };
+    // What lies above each cut, from the last cut to the first.
+    let mut above = bins;
+    for cut in (1..BINS - 1).rev() {
+        above[cut] = both(&bins[cut], &above[cut + 1]);
+    }
+    // The probability that a ray enters a box is proportional to its surface area.
+    let cost = |bin: &Bin| f64::from(bin.0) * half_area(bin.1);
+    let (mut below, mut best) = ((0, NOTHING), (f64::INFINITY, 0, NOTHING));
+    for cut in 1..BINS {
+        below = both(&below, &bins[cut - 1]);
+        if below.0 > 0 && above[cut].0 > 0 {
+            let cost = cost(&below) + cost(&above[cut]);
+            if cost < best.0 {
+                best = (cost, cut, below.1);
+            }
+        }
+    }
+    let (least, cut, below) = best;
+    if least == f64::INFINITY {
+        return part.halves();
+    }
+    let (middle, [one, other]) = partition(part.items, |item| bin(item) < cut);
+    let (near, far) = part.items.split_at_mut(middle);
+    [
+        Part { items: near, limits: below, centers: one },
+        Part { items: far, limits: above[cut].1, centers: other },
+    ]
+}
+
+/// Moves the items that satisfy a condition before the others. Returns their number, and the limits of twice the
+/// centers of both.
+fn partition(items: &mut [Item], is_first: impl Fn(&Item) -> bool) -> (usize, [Limits; 2]) {
+    let (mut start, mut end) = (0, items.len());
+    let [mut first, mut second] = [NOTHING; 2];
+    loop {
+        while start < end && is_first(&items[start]) {
+            first = join(&first, &items[start].centers());
+            start += 1;
+        }
+        while start < end && !is_first(&items[end - 1]) {
+            second = join(&second, &items[end - 1].centers());
+            end -= 1;
+        }
+        if start == end {
+            return (start, [first, second]);
+        }
+        items.swap(start, end - 1);
+    }
+}

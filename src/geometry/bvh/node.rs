@@ -1,0 +1,214 @@
+//! The nodes of a hierarchy: eight boxes in 88 bytes, tested at a time.
+
+use crate::geometry::aabb::{Aabb, SLACK, larger, smaller};
+use crate::geometry::bvh::beam::{Beam, HIGH, LOW};
+use glam::DVec3;
+
+/// The maximum number of children of a node.
+pub const WIDTH: usize = 8;
+
+/// The number of steps of the grid on which the planes of a node's boxes lie, along each axis.
+const STEPS: f64 = 255.0;
+
+/// The largest magnitude of a coordinate; infinite boxes end there. Differences and sums of such numbers are finite.
+const FARTHEST: f64 = 1e300;
+
+/// Up to eight children, each a node or an object, with their boxes.
+///
+/// A box is given by the numbers of its planes on a grid that begins at `corner` and whose steps are powers of two, so
+/// that a plane's coordinate is exact but for the last sum. The planes are those next to the box on its outer sides.
+#[derive(PartialEq)]
+pub struct Node {
+    corner: DVec3,
+    /// The index of the first child that is a node. The others follow it.
+    pub first_node: u32,
+    /// The position of the first child that is an object, among the hierarchy's objects. The others follow it.
+    pub first_object: u32,
+    /// The numbers of the low and of the high planes, for each axis.
+    planes: [[[u8; WIDTH]; 2]; 3],
+    /// The binary logarithms of the steps, in world units.
+    exponents: [i16; 3],
+    /// The number of children that are nodes, which come before the others.
+    pub nodes: u8,
+    /// The number of children.
+    children: u8,
+}
+
+/// The distances at which a beam enters the boxes of a node's children, in world units, and a byte for each child, the
+/// lowest one for the first: 1 where it enters the box, and else 0.
+pub type Entered = ([f64; WIDTH], u64);
+
+/// Planes on a grid, as a beam meets them.
+struct Planes<'n> {
+    numbers: &'n [u8; WIDTH],
+    /// The distance to plane 0, in world units along the beam.
+    start: f64,
+    /// The distance from one plane to the next.
+    pace: f64,
+}
+
+impl Planes<'_> {
+    /// Returns the distance to the plane of a child, in world units along the beam; NaN where nothing is known of it.
+    #[inline(always)]
+    fn distance(&self, child: usize) -> f64 {
+        self.start + f64::from(self.numbers[child]) * self.pace
+    }
+}
+
+impl Node {
+    /// A node that is yet to be made.
+    pub const EMPTY: Self = Self {
+        corner: DVec3::ZERO,
+        first_node: 0,
+        first_object: 0,
+        planes: [[[0; WIDTH]; 2]; 3],
+        exponents: [0; 3],
+        nodes: 0,
+        children: 1,
+    };
+
+    /// Makes a node of one to eight children with these boxes.
+    ///
+    /// Each box grows by [`SLACK`] times the largest coordinate of all of them, which is more than the rounding of the
+    /// planes and of the distances to them, and of the coordinates of hits.
+    pub fn new(boxes: &[Aabb]) -> Self {
+        let whole = boxes.iter().fold(Aabb::EMPTY, |all, one| all.and(one));
+        let slack = SLACK * larger(whole.low.abs().max_element(), whole.high.abs().max_element());
+        let mut node = Self { corner: whole.low - slack, ..Self::EMPTY };
+        for axis in 0..3 {
+            let corner = node.corner[axis];
+            let size = whole.high[axis] + slack - corner;
+            // The least power of two of which `STEPS` are at least the size; one more where rounding of the last plane
+            // needs it.
+            let mut exponent = (exponent(size / STEPS) + 1).clamp(-1022, 1015);
+            while corner + STEPS * exp2(exponent) < whole.high[axis] + slack {
+                exponent += 1;
+            }
+            node.exponents[axis] = exponent;
+            let step = exp2(exponent);
+            for (child, bounds) in boxes.iter().enumerate() {
+                let (low, high) = (bounds.low[axis] - slack, bounds.high[axis] + slack);
+                let mut below = ((low - corner) / step).floor().clamp(0.0, STEPS);
+                while below > 0.0 && corner + below * step > low {
+                    below -= 1.0;
+                }
+                let mut above = ((high - corner) / step).ceil().clamp(0.0, STEPS);
+                while above < STEPS && corner + above * step < high {
+                    above += 1.0;
+                }
+                (node.planes[axis][LOW][child], node.planes[axis][HIGH][child]) = (below as u8, above as u8);
+            }
+        }
+        node.children = boxes.len() as u8;
+        node
+    }
+
+    /// Tests the children's boxes against a beam that ends at `t_max`, in world units. Where a child is left out, no ray
+    /// of the beam enters its box before that.
+    #[inline(always)]
+    pub fn entered(&self, beam: &Beam, t_max: f64) -> Entered {
+        if beam.is_mixed != [false; 3] {
+            return self.entered_by_mixed(beam, t_max);
+        }
+        let near = [0, 1, 2].map(|axis: usize| self.planes(beam, axis, beam.near[axis]));
+        let far = [0, 1, 2].map(|axis: usize| self.planes(beam, axis, beam.near[axis] ^ 1));
+        let (mut enters, mut is_entered) = ([0.0; WIDTH], [0; WIDTH]);
+        // One loop over all planes of a child, which the compiler takes eight children at a time.
+        for child in 0..WIDTH {
+            let mut enter = larger(near[0].distance(child), 0.0);
+            enter = larger(near[1].distance(child), enter);
+            enter = larger(near[2].distance(child), enter);
+            let mut leave = smaller(far[0].distance(child), t_max);
+            leave = smaller(far[1].distance(child), leave);
+            leave = smaller(far[2].distance(child), leave);
+            enters[child] = enter;
+            is_entered[child] = u8::from(enter <= leave * (1.0 + SLACK));
+        }
+        self.listed(enters, is_entered)
+    }
+
+    /// Tests the children's boxes against a beam some of whose rays rise along an axis where others fall.
+    #[inline(always)]
+    fn entered_by_mixed(&self, beam: &Beam, t_max: f64) -> Entered {
+        let (mut enters, mut leaves, mut is_entered) = ([0.0; WIDTH], [t_max; WIDTH], [0; WIDTH]);
+        for axis in 0..3 {
+            let near = self.planes(beam, axis, beam.near[axis]);
+            let far = self.planes(beam, axis, beam.near[axis] ^ 1);
+            let is_mixed = beam.is_mixed[axis];
+            for child in 0..WIDTH {
+                let distance = far.distance(child);
+                enters[child] = larger(near.distance(child), enters[child]);
+                enters[child] = larger(if is_mixed { distance } else { 0.0 }, enters[child]);
+                leaves[child] = smaller(if is_mixed { t_max } else { distance }, leaves[child]);
+            }
+        }
+        for child in 0..WIDTH {
+            is_entered[child] = u8::from(enters[child] <= leaves[child] * (1.0 + SLACK));
+        }
+        self.listed(enters, is_entered)
+    }
+
+    /// Lists the children that are entered.
+    #[inline(always)]
+    fn listed(&self, enters: [f64; WIDTH], is_entered: [u8; WIDTH]) -> Entered {
+        (enters, u64::from_le_bytes(is_entered) & (u64::MAX >> (u64::BITS - 8 * u32::from(self.children))))
+    }
+
+    /// Returns the planes of all children on one side, as a beam meets them.
+    #[inline(always)]
+    fn planes(&self, beam: &Beam, axis: usize, side: usize) -> Planes<'_> {
+        let inverse = beam.inverse[side][axis];
+        Planes {
+            numbers: &self.planes[axis][side],
+            start: (self.corner[axis] - beam.from[side][axis]) * inverse,
+            pace: exp2(self.exponents[axis]) * inverse,
+        }
+    }
+
+    /// Returns whether a child is a node, and its place among all nodes or among all objects.
+    #[inline(always)]
+    pub fn child(&self, child: u32) -> (bool, u32) {
+        let nodes = u32::from(self.nodes);
+        if child < nodes {
+            (true, self.first_node + child)
+        } else {
+            (false, self.first_object + child - nodes)
+        }
+    }
+
+    /// Returns the box of a child.
+    #[inline(always)]
+    pub fn bounds(&self, child: usize) -> Aabb {
+        let at = |side: usize| {
+            let offset = |axis: usize| f64::from(self.planes[axis][side][child]) * exp2(self.exponents[axis]);
+            self.corner + DVec3::new(offset(0), offset(1), offset(2))
+        };
+        Aabb { low: at(LOW), high: at(HIGH) }
+    }
+
+    /// Returns the largest size of the node along any axis, in world units, to a factor of 2.
+    #[inline(always)]
+    pub fn size(&self) -> f64 {
+        let [x, y, z] = self.exponents;
+        STEPS * exp2(x.max(y).max(z))
+    }
+}
+
+/// Returns a box whose coordinates are finite and in order, so that it has planes on a grid.
+pub fn finite(bounds: &Aabb) -> Aabb {
+    // A coordinate that is not a number may lie anywhere.
+    let low = bounds.low.map(|low| if low > -FARTHEST { low.min(FARTHEST) } else { -FARTHEST });
+    let high = bounds.high.map(|high| if high < FARTHEST { high.max(-FARTHEST) } else { FARTHEST });
+    Aabb { low: low.min(high), high: low.max(high) }
+}
+
+/// Returns the binary logarithm of a number that is not negative, rounded down; -1023 for 0.
+fn exponent(number: f64) -> i16 {
+    (number.to_bits() >> 52) as i16 - 1023
+}
+
+/// Returns 2 to the power of an integer from -1022 to 1023.
+#[inline(always)]
+fn exp2(exponent: i16) -> f64 {
+    f64::from_bits(((i64::from(exponent) + 1023) as u64) << 52)
+}
