@@ -253,9 +253,8 @@ impl Names {
         if let Some(index) = self.defined(kind, &word.text) {
             return store.datum(index).clone();
         }
-        // The entity that refers to it comes next in the store.
         if kind == Kind::Object
-            && let Some(order) = self.first(store, kind, &word.text).filter(|order| *order < store.len())
+            && let Some(order) = self.first(store, kind, &word.text)
         {
             let new = || Datum::Object { name: Arc::from(&*word.text), body: NamedBody::default() };
             return self.patterns.entry(order).or_insert_with(new).clone();
@@ -330,7 +329,9 @@ fn spread(hash: u32) -> u64 {
 /// Tells whether an entity, given by its hash and its order, is of this kind and name.
 fn is_of(store: &Store, first: (u32, u32), hash: u32, kind: Kind, name: &str) -> bool {
     let order = first.1 as usize;
+    // An entity that is being checked has its name, and is not in the store yet.
     first.0 == hash
+        && order < store.len()
         && store.entity(order).is_some_and(|entity| entity.kind() == kind)
         && store.name(order) == name
 }
