@@ -83,6 +83,7 @@ pub fn model(
         files: HashMap::new(),
         texture_memory: accuracy.textures.unwrap_or(TEXTURE_MEMORY),
         objects: Vec::new(),
+        patterns: Vec::new(),
         lights: Vec::new(),
         quick: Quick::new(registry),
         threads: &threads,
@@ -156,6 +157,8 @@ struct Check<'r, 't> {
     /// How many more bytes the images of textures may take.
     texture_memory: u64,
     objects: Vec<Object>,
+    /// The objects that other entities refer to.
+    patterns: Vec<Record>,
     lights: Vec<Item<AnyLight>>,
     quick: Quick<'r>,
     threads: &'r Threads,
@@ -294,12 +297,30 @@ impl Check<'_, '_> {
     fn construct_waiting(&mut self, source: &Source<'_, '_>) -> Arc<Store> {
         self.store.setting = self.setting.clone();
         let store = Arc::new(take(&mut self.store));
+        let patterns = self.names.patterns();
         self.names.forget();
+        // One after the other, as one may refer to another before it.
+        for (order, datum) in &patterns {
+            let (args, record) = (store.args(*order), Record::new(&store, *order));
+            if let (Some(Construct::Object(construct)), Datum::Object { body, .. }) =
+                (store.sound(*order).map(|entity| entity.construct), datum)
+                && !args.refers_to_nothing()
+            {
+                match construct(&args) {
+                    Ok(made) => body.set(made),
+                    Err(refusal) => {
+                        let parsed = source.entity(self.registry, *order, &self.places.get(*order));
+                        self.refuse(parsed.as_deref(), &args, refusal);
+                    }
+                }
+            }
+            self.patterns.push(record);
+        }
         for start in (0..store.len()).step_by(8 * TOGETHER) {
             let orders = start..store.len().min(start + 8 * TOGETHER);
             let made = self.threads.map(orders.len().div_ceil(PIECE), |piece| {
                 let start = start + piece * PIECE;
-                made(&store, start..orders.end.min(start + PIECE))
+                made(&store, start..orders.end.min(start + PIECE), &patterns)
             });
             for (order, made) in made.into_iter().flatten() {
                 let record = Record::new(&store, order);
@@ -347,6 +368,7 @@ impl Check<'_, '_> {
         }
         let users =
             self.objects.iter().map(|object| &object.args).chain(self.lights.iter().map(|light| &light.args));
+        let users = users.chain(&self.patterns);
         let (mut used, mut memory) = (BTreeSet::new(), None);
         for user in users {
             used.extend(user.args_in(&mut memory).textures().map(str::to_owned));
@@ -411,12 +433,13 @@ impl Check<'_, '_> {
                     )),
             );
         }
-        let Self { camera, materials, textures, objects, lights, places, .. } = self;
+        let Self { camera, materials, textures, objects, patterns, lights, places, .. } = self;
         let model = camera.map(|camera| Model {
             camera: item(store, camera),
             materials: materials.into_iter().map(|material| item(store, material)).collect(),
             textures: textures.into_iter().map(|texture| item(store, texture)).collect(),
             objects,
+            patterns,
             lights,
         });
         (model, places)

@@ -2,7 +2,9 @@
 
 use crate::scene::entity::{Args, Construct, Refusal};
 use crate::scene::store::Store;
+use crate::scene::value::Datum;
 use crate::world::body::{AnyLight, Body};
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// What the constructor of an object or a light makes.
@@ -11,8 +13,13 @@ pub enum Made {
     Light(AnyLight),
 }
 
-/// Constructs the objects and lights among some entities.
-pub fn made(store: &Store, orders: Range<usize>) -> Vec<(usize, Result<Made, Refusal>)> {
+/// Constructs the objects and lights among some entities, except for `patterns`, the objects that others refer to, and
+/// for those that refer to faulty ones.
+pub fn made(
+    store: &Store,
+    orders: Range<usize>,
+    patterns: &BTreeMap<usize, Datum>,
+) -> Vec<(usize, Result<Made, Refusal>)> {
     // Where it has to grow, it leaves holes in memory between the shapes.
     let (mut made, mut memory) = (Vec::with_capacity(orders.len()), None);
     for order in orders {
@@ -22,7 +29,10 @@ pub fn made(store: &Store, orders: Range<usize>) -> Vec<(usize, Result<Made, Ref
                 Some(Construct::Light(construct)) => &move |args| construct(args).map(Made::Light),
                 _ => continue,
             };
-        made.push((order, construct(store.args_in(order, &mut memory))));
+        let args = store.args_in(order, &mut memory);
+        if !patterns.contains_key(&order) && !args.refers_to_nothing() {
+            made.push((order, construct(args)));
+        }
     }
     made
 }
