@@ -8,6 +8,7 @@ use crate::world::body::{AnyLight, Body};
 use crate::world::camera::Camera;
 use crate::world::material::Material;
 use crate::world::texture::Texture;
+use std::collections::BTreeMap;
 use std::ops::Deref;
 use std::panic::Location;
 use std::path::PathBuf;
@@ -175,6 +176,10 @@ pub struct Setting {
     pub camera: Camera,
     /// The folder to which the scene's file names are relative.
     pub folder: PathBuf,
+    /// The scene's materials by their names; only objects and lights are certain to see all of them.
+    pub materials: Arc<BTreeMap<String, Arc<Material>>>,
+    /// How many bytes of memory an object may take beside the scene.
+    pub memory: u64,
 }
 
 /// An entity of a scene as a constructor sees it: its type, its name and its checked values.

@@ -75,6 +75,7 @@ pub trait Attribute: Sync {
             Type::Whole => format!("{counts} whole number{plural}"),
             Type::Number => format!("{counts} number{plural}"),
             Type::Word => "a word".to_owned(),
+            Type::File => "the name of a file".to_owned(),
             Type::Name(kind) => format!("the name of a {kind}"),
             Type::Choice(choices) if choices.all().iter().any(|choice| choice.number.is_some()) => {
                 format!("the name or number of a {}", choices.what)
@@ -302,6 +303,14 @@ impl Attributes {
     pub fn textures(&self) -> impl Iterator<Item = &str> {
         self.values().filter_map(|(_, datum)| match datum {
             Datum::Texture { name, .. } => Some(&**name),
+            _ => None,
+        })
+    }
+
+    /// Returns the names of the files that the entity is read from, as the scene gives them.
+    pub fn files(&self) -> impl Iterator<Item = &str> {
+        self.values().filter_map(|(attribute, datum)| match (attribute.value_type(), datum) {
+            (Type::File, Datum::Word(file)) => Some(file.as_str()),
             _ => None,
         })
     }

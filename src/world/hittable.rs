@@ -46,6 +46,12 @@ pub trait Hittable: Send + Sync {
         "its own distance".to_owned()
     }
 
+    /// Names the part of the shape that a ray hits at a distance in world units, for explanations: `face 7` of a mesh.
+    /// `None` for a shape of one part.
+    fn part(&self, _ray: &Ray, _distance: f64) -> Option<String> {
+        None
+    }
+
     /// Tells whether no part of the shape lies in a region, which may be unbounded. An unbounded shape may know more
     /// than the default does; `false` is always correct.
     fn is_clear_of(&self, region: &Aabb) -> bool {

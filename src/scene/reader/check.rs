@@ -13,7 +13,7 @@ use crate::scene::registry::Registry;
 use crate::scene::value::Datum;
 use crate::text::list;
 use crate::world::accuracy::Accuracy;
-use crate::world::body::{AnyLight, Body};
+use crate::world::body::{AnyLight, Body, Warning};
 use crate::world::camera::Camera;
 use crate::world::material::Material;
 use crate::world::texture::Texture;
@@ -33,7 +33,8 @@ pub fn model(
 ) -> Option<Model> {
     let names = Names::of(registry, &parsed);
     let camera = Camera { accuracy: accuracy.by_default, ..Camera::default() };
-    let setting = Setting { camera, folder: folder.to_owned() };
+    let memory = accuracy.memory.unwrap_or(u64::MAX);
+    let setting = Setting { camera, folder: folder.to_owned(), materials: Arc::default(), memory };
     let mut check = Check {
         registry,
         report,
@@ -46,13 +47,15 @@ pub fn model(
         materials: Vec::new(),
         textures: Vec::new(),
         files: HashMap::new(),
-        texture_memory: accuracy.textures.unwrap_or(TEXTURE_MEMORY),
+        texture_memory: accuracy.memory.unwrap_or(TEXTURE_MEMORY),
         objects: Vec::new(),
         lights: Vec::new(),
     };
     // Objects and lights may ask for the camera, wherever it stands in the text, so they are constructed last.
     let waiting: Vec<_> =
         parsed.iter().enumerate().filter_map(|(order, entity)| check.table(order, entity)).collect();
+    let materials = check.materials.iter().map(|item| (item.args.name.clone(), item.value.clone())).collect();
+    Arc::make_mut(&mut check.setting).materials = Arc::new(materials);
     for (parsed, args) in waiting {
         check.construct(parsed, args);
     }
@@ -64,15 +67,16 @@ pub fn model(
 /// small file can claim to hold.
 const TEXTURE_MEMORY: u64 = 1 << 30;
 
-/// The accuracy of a scene and the memory limit of its textures, as far as the caller chooses them.
+/// The accuracy of a scene and its memory limit, as far as the caller chooses them.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Chosen {
     /// The accuracy that overrides the scene's own.
     pub above_all: Option<Accuracy>,
     /// The accuracy where the scene chooses none.
     pub by_default: Accuracy,
-    /// The limit on the memory of the scene's textures, in bytes; by default 1 GiB.
-    pub textures: Option<u64>,
+    /// The limit on the memory of the scene's textures and of its objects' files, in bytes; by default 1 GiB for the
+    /// textures, and none for the objects, which take little more than their files do.
+    pub memory: Option<u64>,
 }
 
 /// An entity's checked values, with its parsed text.
@@ -146,8 +150,7 @@ impl Check<'_> {
             Construct::Camera(construct) => {
                 if let Some(mut camera) = self.made(parsed, args, construct) {
                     camera.value.accuracy = self.accuracy.unwrap_or(camera.value.accuracy);
-                    let folder = self.setting.folder.clone();
-                    self.setting = Arc::new(Setting { camera: camera.value.clone(), folder });
+                    Arc::make_mut(&mut self.setting).camera = camera.value.clone();
                     self.camera = Some(camera);
                 }
             }
@@ -174,8 +177,21 @@ impl Check<'_> {
                 }
             }
             Construct::Object(construct) => {
-                if let Some(Item { args, value: Body { shape, shader } }) = self.made(parsed, args, construct)
-                {
+                for file in args.files() {
+                    self.report.add_file(self.setting.folder.join(file));
+                }
+                if let Some(Item { args, value }) = self.made(parsed, args, construct) {
+                    let Body { shape, shader, warnings, bytes } = value;
+                    for Warning { attribute, message, help } in warnings {
+                        let place = place_of(args.entity, parsed, Some(attribute));
+                        let message = format!("{} `{}` {message}", args.entity.name, args.name);
+                        self.report.add(Fault::warning(place, message).help(help));
+                    }
+                    if bytes > 0 {
+                        let setting = Arc::make_mut(&mut self.setting);
+                        setting.memory = setting.memory.saturating_sub(bytes);
+                        self.texture_memory = self.texture_memory.min(setting.memory);
+                    }
                     let material = args.get(&MATERIAL);
                     self.objects.push(Object { args, material, shape, shader });
                 }

@@ -1,0 +1,357 @@
+//! First hits of rays with a mesh: brackets in plain arithmetic, distances, and proofs.
+
+use super::face::{Face, Leaving, nearest_point, t_bounds};
+use super::surface::Surface;
+use super::traversal::Faces;
+use crate::geometry::aabb::Aabb;
+use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
+use crate::geometry::sight::{Line, Sight};
+use crate::numeric::double_double::DoubleDouble;
+use crate::numeric::interval::{Float, Interval, Wide};
+use crate::numeric::scalar::Scalar;
+use crate::shapes::triangle::Triangle;
+use crate::world::accuracy::Bounded;
+use crate::world::certify::{self, Enclosure, Precision};
+use crate::world::coincidence::{CLOSE, LEAST_COSINE, SAME};
+use f256::f256;
+use glam::DVec3;
+use std::ops::Range;
+
+/// The search for a bracket of a ray's first hit.
+struct Nearest<'s> {
+    surface: &'s Surface,
+    ray: &'s Ray,
+    range: &'s RayRange,
+    leaving: Leaving,
+    /// Whether any certain hit ends the search.
+    is_any: bool,
+    /// The smallest upper bound of a certain hit's distance so far.
+    far: f64,
+    /// The smallest lower bound of a hit's distance, and its face; and the second smallest.
+    near: (f64, usize),
+    second: f64,
+    /// The smallest lower bound of an uncertain hit's distance.
+    doubtful: f64,
+}
+
+impl Faces for Nearest<'_> {
+    #[inline(always)]
+    fn visit(&mut self, faces: Range<usize>) -> f64 {
+        for face in faces {
+            let Bracket { near, far } = t_bounds(self.surface.corners(face), self.ray, self.range, self.leaving);
+            if near == MISS {
+                continue;
+            }
+            if near < self.near.0 {
+                self.second = self.near.0;
+                self.near = (near, face);
+            } else if near < self.second {
+                self.second = near;
+            }
+            if far == MISS {
+                self.doubtful = self.doubtful.min(near);
+            } else if far < self.far {
+                self.far = far;
+                if self.is_any {
+                    return -1.0;
+                }
+            }
+        }
+        self.far
+    }
+}
+
+/// What is known of a ray's first hit.
+pub(super) enum Known {
+    /// A bracket of the distance.
+    Bracket(Bracket),
+    /// The ray certainly hits this face first.
+    Face(usize, Bracket),
+}
+
+impl Surface {
+    /// Finds a bracket of a ray's first hit in a range. If `is_any`, any certain hit in the range will do.
+    #[inline(always)]
+    pub(super) fn first(&self, ray: &Ray, range: &RayRange, leaving: Leaving, is_any: bool) -> Known {
+        let mut nearest = Nearest {
+            surface: self,
+            ray,
+            range,
+            leaving,
+            is_any,
+            far: MISS,
+            near: (MISS, 0),
+            second: MISS,
+            doubtful: MISS,
+        };
+        self.tree.along(ray, range.far, &mut nearest);
+        let Nearest { far, near: (near, face), second, doubtful, .. } = nearest;
+        if doubtful < far {
+            // A certain hit behind an uncertain one does not make the nearer one certain.
+            return Known::Bracket(Bracket { near, far: if is_any && far < MISS { far } else { MISS } });
+        }
+        let bracket = Bracket { near, far };
+        if far < MISS && far < second && !is_any { Known::Face(face, bracket) } else { Known::Bracket(bracket) }
+    }
+
+    /// Returns the bracket of a ray's first hit in a range: of width 0, where plain arithmetic finds the distance.
+    #[inline(always)]
+    pub(super) fn bracket<A: Bounded>(&self, ray: &Ray, range: &RayRange, leaving: Leaving) -> Bracket {
+        let (distance, bracket) = match self.first(ray, range, leaving, false) {
+            Known::Face(face, bracket) => (self.triangle::<A>(face).plane.quick_crossing(ray), bracket),
+            Known::Bracket(bracket) if bracket.far < MISS => (self.refined::<A>(ray, range, leaving, bracket), bracket),
+            Known::Bracket(bracket) => return bracket,
+        };
+        if distance.is_nan() {
+            return bracket;
+        }
+        let distance = distance.clamp(bracket.near, bracket.far);
+        let close = if range.far < MISS { CLOSE * range.far } else { 0.0 };
+        // At the distance of another surface, the bracket is widened, so that more digits decide which comes first.
+        if (distance - range.far).abs() <= close {
+            return Bracket { near: distance - close, far: distance + close };
+        }
+        Bracket::exactly(distance)
+    }
+
+    /// Returns the distance of a certain hit with a bracket, or NaN where it takes more than plain arithmetic.
+    #[inline(never)]
+    pub(super) fn refined<A: Bounded>(&self, ray: &Ray, range: &RayRange, leaving: Leaving, bracket: Bracket) -> f64 {
+        let mut first = MISS;
+        let far = bracket.far.next_up();
+        self.each(ray, &RayRange { far, ..*range }, leaving, |face, _| {
+            let distance = self.triangle::<A>(face).plane.quick_crossing(ray);
+            first = if distance < first || distance.is_nan() { distance } else { first };
+            far
+        });
+        first
+    }
+
+    /// Calls a function with each face that a ray may hit in a range, and with the bracket of its distance. The
+    /// function returns the distance beyond which no more faces matter.
+    fn each(&self, ray: &Ray, range: &RayRange, leaving: Leaving, call: impl FnMut(usize, Bracket) -> f64) {
+        struct Each<'s, F> {
+            surface: &'s Surface,
+            ray: &'s Ray,
+            range: &'s RayRange,
+            leaving: Leaving,
+            call: F,
+            far: f64,
+        }
+        impl<F: FnMut(usize, Bracket) -> f64> Faces for Each<'_, F> {
+            #[inline(always)]
+            fn visit(&mut self, faces: Range<usize>) -> f64 {
+                for face in faces {
+                    let bracket = t_bounds(self.surface.corners(face), self.ray, self.range, self.leaving);
+                    if bracket.near < MISS {
+                        self.far = (self.call)(face, bracket);
+                    }
+                }
+                self.far
+            }
+        }
+        let far = range.far;
+        self.tree.along(ray, far, &mut Each { surface: self, ray, range, leaving, call, far });
+    }
+
+    /// Returns the distance of a ray's first hit in a range, decided for the ray as it is rounded; [`MISS`] for none.
+    /// The ray leaves the faces within `leaves` world units of its origin; negative where it leaves none.
+    pub(super) fn distance<A: Bounded>(&self, ray: &Ray, range: &RayRange, leaves: f64) -> f64 {
+        let mut first = MISS;
+        self.each(ray, range, NOTHING, |face, _| {
+            let triangle = self.triangle::<A>(face);
+            if leaves < 0.0 || !touches(&triangle, ray.origin, leaves) {
+                let distance = range.keep(triangle.plane.crossing(ray));
+                if distance < first && triangle.is_passed_by(ray) {
+                    first = distance;
+                }
+            }
+            // Brackets are bounds of rounded distances too, but for the last bits.
+            if first < MISS { first * (1.0 + CLOSE) } else { range.far }
+        });
+        first
+    }
+
+    /// Returns the face that a ray hits at a distance: of several, the first in the file. Where the ray passes an edge
+    /// to within rounding, the faces on both sides count.
+    #[inline(always)]
+    pub(super) fn face_along<A: Bounded>(&self, ray: &Ray, distance: f64) -> usize {
+        let close = CLOSE * (distance + ray.origin.abs().max_element());
+        let (mut only, mut others) = (None, Vec::new());
+        let range = RayRange { far: distance + close, ..RayRange::ALL };
+        self.each(ray, &range, NOTHING, |face, bracket| {
+            if bracket.far >= distance - close {
+                match only {
+                    None => only = Some(face),
+                    Some(_) => others.push(face),
+                }
+            }
+            range.far
+        });
+        match only {
+            None => self.face_at(ray.at(distance)),
+            Some(face) if others.is_empty() => face,
+            Some(face) => {
+                others.push(face);
+                self.earliest::<A>(ray, distance, others)
+            }
+        }
+    }
+
+    /// Returns the face that a ray hits first of several near one distance; of those whose order is uncertain, the
+    /// first in the file.
+    #[inline(never)]
+    fn earliest<A: Bounded>(&self, ray: &Ray, distance: f64, mut faces: Vec<usize>) -> usize {
+        faces.sort_unstable_by_key(|face| self.order[*face]);
+        let size = distance + ray.origin.abs().max_element() + self.reach();
+        let met = faces.iter().map(|face| {
+            let plane = self.triangle::<A>(*face).plane;
+            let cosine = plane.normal.dot(ray.dir);
+            (*face, plane.exact_crossing(ray), plane.normal, cosine)
+        });
+        let met: Vec<_> = met.collect();
+        let apart = |at: &DoubleDouble| (at.high - distance).abs();
+        let least = met.iter().map(|(_, at, ..)| apart(at)).fold(MISS, f64::min);
+        let mut candidates = met.iter().filter(|(_, at, ..)| apart(at) <= least + 256.0 * f64::EPSILON * size);
+        let Some(mut best) = candidates.next() else { return faces[0] };
+        for other in candidates {
+            // As for two objects: `render/trace/order.rs`.
+            let divergence = (best.2 / best.3 - other.2 / other.3).length();
+            let least_cosine = best.3.abs().min(other.3.abs()).max(LEAST_COSINE);
+            let same = 4.0 * f64::EPSILON * distance * divergence + SAME * size / least_cosine;
+            if (other.1 - best.1).high < -same {
+                best = other;
+            }
+        }
+        best.0
+    }
+
+    /// Returns the face that is nearest to a point; of several, the first in the file.
+    pub(super) fn face_at(&self, at: DVec3) -> usize {
+        self.nearest(at).1
+    }
+
+    /// Returns the distance of the nearest face to a point in world units, and the face.
+    pub(super) fn nearest(&self, at: DVec3) -> (f64, usize) {
+        struct NearestTo<'s> {
+            surface: &'s Surface,
+            at: DVec3,
+            best: (f64, usize),
+        }
+        impl Faces for NearestTo<'_> {
+            fn visit(&mut self, faces: Range<usize>) -> f64 {
+                for face in faces {
+                    let distance = nearest_point(self.surface.corners(face), self.at).distance(self.at);
+                    let is_earlier = || self.surface.order[face] < self.surface.order[self.best.1];
+                    if distance < self.best.0 || distance == self.best.0 && is_earlier() {
+                        self.best = (distance, face);
+                    }
+                }
+                self.best.0
+            }
+        }
+        let mut nearest = NearestTo { surface: self, at, best: (MISS, 0) };
+        self.tree.around(at, MISS, &mut nearest);
+        nearest.best
+    }
+
+    /// Tells whether a point is on a face, up to an error in world units and to rounding.
+    pub(super) fn touches<A: Bounded>(&self, at: DVec3, error: f64) -> bool {
+        struct Touched<'s, F> {
+            surface: &'s Surface,
+            touches: F,
+            within: f64,
+            any: bool,
+        }
+        impl<F: Fn([DVec3; 3]) -> bool> Faces for Touched<'_, F> {
+            fn visit(&mut self, mut faces: Range<usize>) -> f64 {
+                self.any |= faces.any(|face| (self.touches)(self.surface.corners(face)));
+                if self.any { -1.0 } else { self.within }
+            }
+        }
+        let error_there = error + 8.0 * f64::EPSILON * at.abs().max_element();
+        let touches = |corners: [DVec3; 3]| {
+            Triangle::<A>::new(corners).is_some_and(|triangle| touches(&triangle, at, error))
+        };
+        let mut touched = Touched { surface: self, touches, within: error_there, any: false };
+        self.tree.around(at, error_there, &mut touched);
+        touched.any
+    }
+
+    /// Returns what is certain about a ray's first hit.
+    pub(super) fn certify<A: Bounded>(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        let line = sight.line::<Interval>();
+        let end = std::cell::Cell::new(f256::INFINITY);
+        let mut met = Vec::new();
+        self.tree.within(
+            |bounds| entry(&line, bounds).is_some_and(|entry| f256::from(entry) <= end.get()),
+            |faces| {
+                for face in faces {
+                    let enclosure = certify::first_hit(&Face(self.triangle::<A>(face)), sight, precision);
+                    let low = match enclosure {
+                        Enclosure::Misses => continue,
+                        Enclosure::Hits(at) => {
+                            end.set(Float::min(end.get(), at.high));
+                            at.low
+                        }
+                        Enclosure::Edge(at) => at.low,
+                        Enclosure::Doubtful(low) => low,
+                    };
+                    met.push((low, enclosure));
+                }
+            },
+        );
+        let end = end.get();
+        met.retain(|(low, _)| *low <= end);
+        let first = met.iter().copied().reduce(|one, other| if other.0 < one.0 { other } else { one });
+        match first {
+            None => Enclosure::Misses,
+            // It is hit there, or a certain hit overlaps it: then the first hit is in both together.
+            Some((low, Enclosure::Edge(at) | Enclosure::Hits(at))) if end <= at.high => {
+                Enclosure::Hits(Wide { low, high: end })
+            }
+            Some((_, first)) => first,
+        }
+    }
+
+    /// Returns the exact triangle of a face.
+    #[inline(always)]
+    pub(super) fn triangle<A: Bounded>(&self, face: usize) -> Triangle<A> {
+        let corners = self.corners(face);
+        Triangle::new(corners).expect("faces without an area are left out")
+    }
+
+    /// Returns the largest magnitude of a coordinate, in world units.
+    pub(super) fn reach(&self) -> f64 {
+        self.bounds.low.abs().max(self.bounds.high.abs()).max_element()
+    }
+}
+
+/// What a ray leaves that starts on no face.
+pub(super) const NOTHING: Leaving = Leaving { least: -1.0, most: -1.0 };
+
+/// Tells whether a point is on a face, up to an error in world units and to rounding.
+fn touches<A: Bounded>(triangle: &Triangle<A>, at: DVec3, error: f64) -> bool {
+    let Aabb { low, high } = Aabb::around(&triangle.corners);
+    let beside = error + 4.0 * f64::EPSILON * at.abs().max_element();
+    (low - beside).cmple(at).all() && at.cmple(high + beside).all() && triangle.plane.touches(at, error)
+}
+
+/// Returns a lower bound of the distance at which a line enters a box, from 0 on; `None` where it misses the box.
+fn entry(line: &Line<Interval>, bounds: &Aabb) -> Option<f64> {
+    let (mut from, mut to) = (0.0_f64, f64::INFINITY);
+    for axis in 0..3 {
+        let (origin, dir) = (line.origin[axis], line.dir[axis]);
+        let (low, high) = (Interval::constant(bounds.low[axis]), Interval::constant(bounds.high[axis]));
+        if dir.has_zero() {
+            if dir.is_zero() && (origin.high < low.low || origin.low > high.high) {
+                return None;
+            }
+            continue;
+        }
+        let (one, other) = ((low - origin) / dir, (high - origin) / dir);
+        from = from.max(one.low.min(other.low));
+        to = to.min(one.high.max(other.high));
+    }
+    (from <= to).then_some(from)
+}
