@@ -9,7 +9,9 @@ use std::sync::Arc;
 static FILE: Pparm<PathBuf> =
     Pparm::required("file", "an OBJ, PLY or STL file, relative to the scene's folder");
 static SCALE: Pparm<DVec3> = Pparm::or("scale", "the scale factors along the file's x, y and z", DVec3::ONE)
-    .must("other than 0 in each dimension", |scale: &DVec3| scale.to_array().iter().all(|factor| *factor != 0.0));
+    .must("other than 0 in each dimension", |scale: &DVec3| {
+        scale.to_array().iter().all(|factor| *factor != 0.0)
+    });
 static ROTATION: Pparm<DVec3> = Pparm::or(
     "rotation",
     "the angles by which the scaled mesh is rotated around x, then y, then z, counterclockwise",
@@ -66,7 +68,9 @@ fn surface(args: &Args) -> Result<Surface, Refusal> {
             "the coordinates in the world must not exceed 1e152",
         ),
         Unfit::TooMany => refusal("has more than 2^28 faces".to_owned(), "split it into several meshes"),
-        Unfit::NoArea => refusal("has no face with an area".to_owned(), "the corners of a face must not lie on one line"),
+        Unfit::NoArea => {
+            refusal("has no face with an area".to_owned(), "the corners of a face must not lie on one line")
+        }
     })
 }
 
@@ -82,14 +86,20 @@ fn degenerate(surface: &Surface) -> Option<Warning> {
 /// Warns of materials that the scene does not have.
 fn unknown(args: &Args, painted: &Painted) -> Option<Warning> {
     let known = &args.setting.materials;
-    let unknown: Vec<_> = painted.surface.materials.iter().filter(|name| !known.contains_key(*name)).collect();
+    let unknown: Vec<_> =
+        painted.surface.materials.iter().filter(|name| !known.contains_key(*name)).collect();
     let first = unknown.first()?;
     let near = text::nearest(first, known.keys().map(String::as_str));
     let guess = near.map_or(String::new(), |near| format!(" (did you mean `{near}`?)"));
     Some(Warning {
         attribute: "file",
-        message: format!("names {} that the scene does not have: {}{guess}", text::count(unknown.len(), "material"), some(&unknown)),
-        help: "define a material of each name; until then these faces have the material of the mesh".to_owned(),
+        message: format!(
+            "names {} that the scene does not have: {}{guess}",
+            text::count(unknown.len(), "material"),
+            some(&unknown)
+        ),
+        help: "define a material of each name; until then these faces have the material of the mesh"
+            .to_owned(),
     })
 }
 
@@ -99,18 +109,32 @@ fn unlike(own: &Material, painted: &Painted) -> Option<Warning> {
         material.shininess != own.shininess || material.transparency != own.transparency
     };
     let named = painted.surface.materials.iter().zip(&painted.materials);
-    let unlike = named.filter(|(_, material)| material.as_deref().is_some_and(is_unlike)).map(|(name, _)| name);
+    let unlike =
+        named.filter(|(_, material)| material.as_deref().is_some_and(is_unlike)).map(|(name, _)| name);
     let unlike: Vec<_> = unlike.collect();
     (!unlike.is_empty()).then(|| Warning {
         attribute: "material",
-        message: format!("has faces whose material is as shiny and transparent as that of the mesh: {}", some(&unlike)),
-        help: "only the ambient, diffuse and specular colours differ from face to face: make a mesh of its own".to_owned(),
+        message: format!(
+            "has faces whose material is as shiny and transparent as that of the mesh: {}",
+            some(&unlike)
+        ),
+        help:
+            "only the ambient, diffuse and specular colours differ from face to face: make a mesh of its own"
+                .to_owned(),
     })
 }
 
 /// Lists the first few names.
 fn some(names: &[&String]) -> String {
     const FEW: usize = 5;
-    let listed = text::list(names.iter().take(FEW).map(|name| text::abridged(name)).collect::<Vec<_>>().iter().map(|name| &**name));
+    let listed = text::list(
+        names
+            .iter()
+            .take(FEW)
+            .map(|name| text::abridged(name))
+            .collect::<Vec<_>>()
+            .iter()
+            .map(|name| &**name),
+    );
     if names.len() > FEW { format!("{listed} and {} more", names.len() - FEW) } else { listed }
 }

@@ -4,6 +4,7 @@ use super::failure::Failure;
 use super::temporary::Temporary;
 use super::{input, messages};
 use crate::output::picture::Format;
+use crate::scene::entity::Args;
 use crate::scene::model::{Item, Model};
 use crate::text;
 use crate::world::texture::Texture;
@@ -120,10 +121,15 @@ pub fn is_no_source(path: &Path, scene: &Path, model: &Model) -> Result<(), Fail
         }
     };
     let is_source = |texture: &Item<Arc<Texture>>| is_same_file(texture.value.path(), path).unwrap_or(false);
+    let is_read = |args: &Args| {
+        args.files().any(|file| is_same_file(args.setting.folder.join(file), path).unwrap_or(false))
+    };
     let what = if is_scene() {
         "the scene".to_owned()
     } else if let Some(texture) = model.textures.iter().find(|texture| is_source(texture)) {
         format!("the image of texture `{}`", texture.args.name)
+    } else if let Some(args) = model.objects.iter().map(|object| &object.args).find(|args| is_read(args)) {
+        format!("the file of {} `{}`", args.entity.name, args.name)
     } else {
         return Ok(());
     };

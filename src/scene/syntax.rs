@@ -48,7 +48,8 @@ impl Syntax {
             Type::Choice(_) => ("N", 1),
             Type::Formula => ("2 + sin(y)", 1),
         };
-        let is_text = matches!(attribute.value_type(), Type::Word | Type::File | Type::Name(_) | Type::Formula);
+        let is_text =
+            matches!(attribute.value_type(), Type::Word | Type::File | Type::Name(_) | Type::Formula);
         let values = vec![if is_text { self.word(value) } else { value.to_owned() }; count];
         self.pair(attribute.name(), &values)
     }

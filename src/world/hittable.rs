@@ -52,6 +52,10 @@ pub trait Hittable: Send + Sync {
         None
     }
 
+    /// Passes on what the shape has read from files beside the scene, as bytes: a finished part of an image fits only
+    /// the same bytes.
+    fn read_from_files(&self, _each: &mut dyn FnMut(&[u8])) {}
+
     /// Tells whether no part of the shape lies in a region, which may be unbounded. An unbounded shape may know more
     /// than the default does; `false` is always correct.
     fn is_clear_of(&self, region: &Aabb) -> bool {

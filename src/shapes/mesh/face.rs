@@ -4,6 +4,7 @@ use crate::geometry::aabb::{Aabb, larger};
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
 use crate::numeric::scalar::{Scalar, dot};
 use crate::shapes::triangle::Triangle;
+use crate::world::accuracy::Exact;
 use crate::world::certify::Equation;
 use glam::DVec3;
 
@@ -54,14 +55,16 @@ pub(super) fn t_bounds(corners: [DVec3; 3], ray: &Ray, range: &RayRange, leaving
         if away.abs() + away_error <= offset(leaving.least) && holds(leaving.least) {
             return Bracket::MISS;
         }
-        let farthest = (leaving.most + 4.0 * f64::EPSILON * 3.0 * between.abs().max_element()) * (size + toward_error);
+        let farthest =
+            (leaving.most + 4.0 * f64::EPSILON * 3.0 * between.abs().max_element()) * (size + toward_error);
         if away.abs() - away_error <= farthest && holds(leaving.most) {
             return Bracket { near: range.near, far: MISS };
         }
     }
     let distance = away / toward;
     let least = toward.abs() - toward_error;
-    let error = (away_error + distance.abs() * toward_error + larger(leaving.most, 0.0) * normal.length()) / least
+    let error = (away_error + distance.abs() * toward_error + larger(leaving.most, 0.0) * normal.length())
+        / least
         + 2.0 * f64::EPSILON * distance.abs();
     // All comparisons are false where the distance is NaN, as that of a ray in the plane.
     let is_known = least > toward_error && error < MISS;
@@ -95,6 +98,16 @@ fn passed(corners: [DVec3; 3], ray: &Ray) -> Option<bool> {
     let is_inside = (plus[0] & plus[1] & plus[2]) | (minus[0] & minus[1] & minus[2]);
     let is_outside = (plus[0] | plus[1] | plus[2]) & (minus[0] | minus[1] | minus[2]);
     if is_inside | is_outside { Some(is_inside) } else { None }
+}
+
+/// Tells whether the corners of a face do not lie on one line.
+pub(super) fn has_area(corners: [DVec3; 3]) -> bool {
+    let [a, b, c] = corners;
+    let (one, other) = (b - a, c - a);
+    let edges = one.abs().max_element() * other.abs().max_element();
+    // Ten times the error of a component. The product may underflow, but not where this holds.
+    one.cross(other).abs().max_element() > 100.0 * f64::EPSILON * edges + f64::MIN_POSITIVE
+        || Triangle::<Exact>::new(corners).is_some()
 }
 
 /// A face as the solution of an equation, for proofs. Unlike a [`Triangle`] of its own, it is not cut off in front of

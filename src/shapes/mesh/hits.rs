@@ -38,7 +38,8 @@ impl Faces for Nearest<'_> {
     #[inline(always)]
     fn visit(&mut self, faces: Range<usize>) -> f64 {
         for face in faces {
-            let Bracket { near, far } = t_bounds(self.surface.corners(face), self.ray, self.range, self.leaving);
+            let Bracket { near, far } =
+                t_bounds(self.surface.corners(face), self.ray, self.range, self.leaving);
             if near == MISS {
                 continue;
             }
@@ -91,7 +92,11 @@ impl Surface {
             return Known::Bracket(Bracket { near, far: if is_any && far < MISS { far } else { MISS } });
         }
         let bracket = Bracket { near, far };
-        if far < MISS && far < second && !is_any { Known::Face(face, bracket) } else { Known::Bracket(bracket) }
+        if far < MISS && far < second && !is_any {
+            Known::Face(face, bracket)
+        } else {
+            Known::Bracket(bracket)
+        }
     }
 
     /// Returns the bracket of a ray's first hit in a range: of width 0, where plain arithmetic finds the distance.
@@ -99,7 +104,9 @@ impl Surface {
     pub(super) fn bracket<A: Bounded>(&self, ray: &Ray, range: &RayRange, leaving: Leaving) -> Bracket {
         let (distance, bracket) = match self.first(ray, range, leaving, false) {
             Known::Face(face, bracket) => (self.triangle::<A>(face).plane.quick_crossing(ray), bracket),
-            Known::Bracket(bracket) if bracket.far < MISS => (self.refined::<A>(ray, range, leaving, bracket), bracket),
+            Known::Bracket(bracket) if bracket.far < MISS => {
+                (self.refined::<A>(ray, range, leaving, bracket), bracket)
+            }
             Known::Bracket(bracket) => return bracket,
         };
         if distance.is_nan() {
@@ -116,7 +123,13 @@ impl Surface {
 
     /// Returns the distance of a certain hit with a bracket, or NaN where it takes more than plain arithmetic.
     #[inline(never)]
-    pub(super) fn refined<A: Bounded>(&self, ray: &Ray, range: &RayRange, leaving: Leaving, bracket: Bracket) -> f64 {
+    pub(super) fn refined<A: Bounded>(
+        &self,
+        ray: &Ray,
+        range: &RayRange,
+        leaving: Leaving,
+        bracket: Bracket,
+    ) -> f64 {
         let mut first = MISS;
         let far = bracket.far.next_up();
         self.each(ray, &RayRange { far, ..*range }, leaving, |face, _| {
@@ -212,7 +225,8 @@ impl Surface {
         let met: Vec<_> = met.collect();
         let apart = |at: &DoubleDouble| (at.high - distance).abs();
         let least = met.iter().map(|(_, at, ..)| apart(at)).fold(MISS, f64::min);
-        let mut candidates = met.iter().filter(|(_, at, ..)| apart(at) <= least + 256.0 * f64::EPSILON * size);
+        let mut candidates =
+            met.iter().filter(|(_, at, ..)| apart(at) <= least + 256.0 * f64::EPSILON * size);
         let Some(mut best) = candidates.next() else { return faces[0] };
         for other in candidates {
             // As for two objects: `render/trace/order.rs`.
@@ -242,16 +256,22 @@ impl Surface {
             fn visit(&mut self, faces: Range<usize>) -> f64 {
                 for face in faces {
                     let distance = nearest_point(self.surface.corners(face), self.at).distance(self.at);
-                    let is_earlier = || self.surface.order[face] < self.surface.order[self.best.1];
-                    if distance < self.best.0 || distance == self.best.0 && is_earlier() {
+                    let order = |face: usize| self.surface.order.get(face).copied().unwrap_or(u32::MAX);
+                    if distance < self.best.0 || distance == self.best.0 && order(face) < order(self.best.1) {
                         self.best = (distance, face);
                     }
                 }
                 self.best.0
             }
         }
-        let mut nearest = NearestTo { surface: self, at, best: (MISS, 0) };
-        self.tree.around(at, MISS, &mut nearest);
+        // Most points are on the surface: few boxes are so near.
+        let beside = CLOSE * (at.abs().max_element() + self.reach());
+        let mut nearest = NearestTo { surface: self, at, best: (beside, usize::MAX) };
+        self.tree.around(at, beside, &mut nearest);
+        if nearest.best.1 == usize::MAX {
+            nearest.best = (MISS, usize::MAX);
+            self.tree.around(at, MISS, &mut nearest);
+        }
         nearest.best
     }
 

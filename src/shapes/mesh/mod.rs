@@ -14,6 +14,8 @@ pub mod read;
 mod shape;
 mod smooth;
 mod surface;
+#[cfg(test)]
+mod tests;
 mod traversal;
 mod tree;
 

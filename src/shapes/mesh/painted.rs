@@ -40,7 +40,8 @@ impl Shader for Painted {
     /// The largest of all materials, if none has a negative diffuse colour.
     fn brightest(&self, material: &Material) -> Option<Look> {
         let all = || self.materials.iter().flatten().map(|material| &**material).chain([material]);
-        let most = |of: fn(&Material) -> Rgb| all().fold(Rgb::ZERO, |most, material| most.max(of(material).abs()));
+        let most =
+            |of: fn(&Material) -> Rgb| all().fold(Rgb::ZERO, |most, material| most.max(of(material).abs()));
         let is_plain = all().all(|material| material.diffuse.min_element() >= 0.0);
         is_plain.then(|| Look {
             ambient: most(|material| material.ambient),

@@ -114,6 +114,10 @@ impl<A: Bounded> Hittable for Mesh<A> {
         let face = self.surface.face_along::<A>(ray, distance);
         Some(format!("face {}", self.surface.order[face] + 1))
     }
+
+    fn read_from_files(&self, each: &mut dyn FnMut(&[u8])) {
+        self.surface.bytes_of(each);
+    }
 }
 
 impl<A: Bounded> Proofs for Shape<Mesh<A>, ByPackets, ByFaces> {
@@ -137,7 +141,14 @@ impl<A: Bounded> Proofs for Shape<Mesh<A>, ByPackets, ByFaces> {
 }
 
 impl<A: Bounded> Packets for Shape<Mesh<A>, ByPackets, ByFaces> {
-    fn closest_hits(&self, cpu: Cpu, rays: RayPacket, sides: Option<&[Side]>, id: u64, nearest: Nearest) -> bool {
+    fn closest_hits(
+        &self,
+        cpu: Cpu,
+        rays: RayPacket,
+        sides: Option<&[Side]>,
+        id: u64,
+        nearest: Nearest,
+    ) -> bool {
         let (mut near, mut far) = ([MISS; PACKET_SIZE], [MISS; PACKET_SIZE]);
         let count = rays.len();
         brackets(cpu, &self.shape, rays, sides, nearest.far, &mut near[..count], &mut far[..count]);

@@ -1,5 +1,6 @@
 //! The surface of a mesh: its vertices, its faces, and the tree in which rays find them.
 
+use super::face;
 use super::placement::Placement;
 use super::read::Model;
 use super::tree::{MAX_FACES, Tree};
@@ -64,10 +65,8 @@ impl Surface {
             return Err(Unfit::TooLarge);
         }
         let mut order: Vec<u32> = (0..faces.len() as u32).collect();
-        let has_area = |face: &u32| {
-            let corners = faces[*face as usize].map(|corner| vertices[corner as usize]);
-            Triangle::<Exact>::new(corners).is_some()
-        };
+        let has_area =
+            |face: &u32| face::has_area(faces[*face as usize].map(|corner| vertices[corner as usize]));
         let total = order.len();
         order = order.into_par_iter().filter(has_area).collect();
         let degenerate = total - order.len();
@@ -81,7 +80,8 @@ impl Surface {
         let (tree, sorted) = Tree::new(&vertices, &kept);
         let faces = sorted.iter().map(|face| kept[*face as usize]).collect();
         let order: Vec<_> = sorted.iter().map(|face| order[*face as usize]).collect();
-        let slots = if slots.is_empty() { slots } else { order.iter().map(|face| slots[*face as usize]).collect() };
+        let slots =
+            if slots.is_empty() { slots } else { order.iter().map(|face| slots[*face as usize]).collect() };
         let bounds = Aabb::around(&vertices);
         Ok(Self { vertices, faces, order, slots, normals, tree, bounds, open_edges, degenerate, materials })
     }
@@ -102,6 +102,16 @@ impl Surface {
             size_of_val(&normals[..]),
         ];
         (arrays.iter().sum::<usize>() + tree.bytes()) as u64
+    }
+
+    /// Passes on all that the surface was made of, as bytes.
+    pub(super) fn bytes_of(&self, each: &mut dyn FnMut(&[u8])) {
+        let Self { vertices, faces, order, slots, normals, materials, .. } = self;
+        vertices.iter().flat_map(|at| at.to_array()).for_each(|part| each(&part.to_le_bytes()));
+        faces.iter().flatten().chain(order).for_each(|index| each(&index.to_le_bytes()));
+        slots.iter().for_each(|slot| each(&slot.to_le_bytes()));
+        normals.iter().flatten().for_each(|part| each(&part.to_le_bytes()));
+        materials.iter().for_each(|name| each(name.as_bytes()));
     }
 
     /// Returns the corners of a face in world coordinates.
@@ -147,7 +157,8 @@ fn open_edges(faces: &[[u32; 3]]) -> usize {
     let edge = |from: u32, to: u32| {
         (u64::from(from.min(to)) << 32) | (u64::from(from.max(to)) << 1) | u64::from(from > to)
     };
-    let mut edges: Vec<_> = faces.par_iter().flat_map_iter(|[a, b, c]| [edge(*a, *b), edge(*b, *c), edge(*c, *a)]).collect();
+    let mut edges: Vec<_> =
+        faces.par_iter().flat_map_iter(|[a, b, c]| [edge(*a, *b), edge(*b, *c), edge(*c, *a)]).collect();
     edges.par_sort_unstable();
     edges
         .chunk_by(|one, other| one >> 1 == other >> 1)
@@ -162,7 +173,8 @@ fn smooth(vertices: &[DVec3], faces: &[[u32; 3]]) -> Vec<[f32; 3]> {
         let corners = face.map(|corner| vertices[corner as usize]);
         let Some(triangle) = Triangle::<Exact>::new(corners) else { continue };
         for (side, corner) in face.iter().enumerate() {
-            let (to, from) = (corners[(side + 1) % 3] - corners[side], corners[(side + 2) % 3] - corners[side]);
+            let (to, from) =
+                (corners[(side + 1) % 3] - corners[side], corners[(side + 2) % 3] - corners[side]);
             let angle = libm::atan2(to.cross(from).length(), to.dot(from));
             normals[*corner as usize] += angle * triangle.plane.normal;
         }

@@ -153,7 +153,8 @@ impl Tree {
                     for index in 0..WIDTH {
                         let mut square = 0.0;
                         for axis in 0..3 {
-                            let (low, high) = (f64::from(node.low[axis][index]), f64::from(node.high[axis][index]));
+                            let (low, high) =
+                                (f64::from(node.low[axis][index]), f64::from(node.high[axis][index]));
                             let outside = (low - own[axis]).max(own[axis] - high).max(0.0);
                             square += outside * outside;
                         }
@@ -177,7 +178,8 @@ impl Tree {
                 Child::Node(index) => {
                     let node = &self.nodes[index];
                     let is_there = |index: &usize| node.low[0][*index] < f32::INFINITY;
-                    let entered = (0..WIDTH).filter(is_there).filter(|index| enters(&self.space.bounds(node, *index)));
+                    let entered =
+                        (0..WIDTH).filter(is_there).filter(|index| enters(&self.space.bounds(node, *index)));
                     stack.extend(entered.map(|index| node.children[index]));
                 }
             }

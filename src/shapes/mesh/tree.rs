@@ -91,7 +91,8 @@ impl Space {
     fn around(bounds: &Aabb) -> Self {
         let (center, half) = (bounds.middle(), bounds.half_size().max_element());
         // Never subnormal, as coordinates are at most 1e152 and different ones differ by at least 5e-324.
-        let scale = if half > 0.0 { 2.0_f64.powi(-(half.log2().floor() as i32 + 1).clamp(-600, 600)) } else { 1.0 };
+        let scale =
+            if half > 0.0 { 2.0_f64.powi(-(half.log2().floor() as i32 + 1).clamp(-600, 600)) } else { 1.0 };
         Self { center, scale }
     }
 
@@ -159,22 +160,18 @@ fn build(items: &mut [Item], start: usize, depth: usize) -> Vec<Node> {
     // The ranges of the node's boxes; the one that costs most is split until there are eight.
     let mut parts = vec![(0..items.len(), Box3::around(items))];
     while parts.len() < WIDTH {
-        let cost = |(range, bounds): &(Range<usize>, Box3)| {
-            match range.len() {
-                ..=LEAF => -1.0,
-                count if depth < MAX_DEPTH => bounds.half_area() * count as f32,
-                count => count as f32,
-            }
+        let cost = |(range, bounds): &(Range<usize>, Box3)| match range.len() {
+            ..=LEAF => -1.0,
+            count if depth < MAX_DEPTH => bounds.half_area() * count as f32,
+            count => count as f32,
         };
         let worst = (0..parts.len()).max_by(|one, other| cost(&parts[*one]).total_cmp(&cost(&parts[*other])));
         let Some(worst) = worst.filter(|worst| parts[*worst].0.len() > LEAF) else { break };
         let (range, _) = parts.remove(worst);
-        let own = &mut items[range.clone()];
-        let middle = split(own, depth >= MAX_DEPTH);
-        let (near, far) = own.split_at(middle);
+        let (middle, [near, far]) = split(&mut items[range.clone()], depth >= MAX_DEPTH);
         let cut = range.start + middle;
-        parts.insert(worst, (cut..range.end, Box3::around(far)));
-        parts.insert(worst, (range.start..cut, Box3::around(near)));
+        parts.insert(worst, (cut..range.end, far));
+        parts.insert(worst, (range.start..cut, near));
     }
     let mut node = Node::EMPTY;
     let mut rest = items;
@@ -231,8 +228,8 @@ impl Box3 {
 
     fn and(&self, other: &Self) -> Self {
         Self {
-            low: [0, 1, 2].map(|axis| self.low[axis].min(other.low[axis])),
-            high: [0, 1, 2].map(|axis| self.high[axis].max(other.high[axis])),
+            low: [0, 1, 2].map(|axis| smaller(self.low[axis], other.low[axis])),
+            high: [0, 1, 2].map(|axis| larger(self.high[axis], other.high[axis])),
         }
     }
 
@@ -242,20 +239,24 @@ impl Box3 {
     }
 }
 
+fn smaller(one: f32, other: f32) -> f32 {
+    if one < other { one } else { other }
+}
+
+fn larger(one: f32, other: f32) -> f32 {
+    if one > other { one } else { other }
+}
+
 /// Partitions faces at the returned index, which is neither 0 nor their number: where rays meet fewest boxes, or into
-/// halves.
-fn split(items: &mut [Item], into_halves: bool) -> usize {
-    let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
-    for item in items.iter() {
-        for axis in 0..3 {
-            low[axis] = low[axis].min(item.middle(axis));
-            high[axis] = high[axis].max(item.middle(axis));
-        }
-    }
+/// halves. Returns the boxes of both parts, too.
+fn split(items: &mut [Item], into_halves: bool) -> (usize, [Box3; 2]) {
+    let middles = |item: &Item| [0, 1, 2].map(|axis| item.middle(axis));
+    let Box3 { low, high } = items
+        .iter()
+        .fold(Box3::EMPTY, |all, item| all.and(&Box3 { low: middles(item), high: middles(item) }));
     let scale = [0, 1, 2].map(|axis| BINS as f32 / (high[axis] - low[axis]));
-    let bin = |item: &Item, axis: usize| {
-        (((item.middle(axis) - low[axis]) * scale[axis]) as usize).min(BINS - 1)
-    };
+    let bin =
+        |item: &Item, axis: usize| (((item.middle(axis) - low[axis]) * scale[axis]) as usize).min(BINS - 1);
     let mut bins = [[(0_u32, Box3::EMPTY); BINS]; 3];
     for item in items.iter() {
         let bounds = Box3 { low: item.low, high: item.high };
@@ -285,7 +286,9 @@ fn split(items: &mut [Item], into_halves: bool) -> usize {
     let (cost, axis, cut) = best;
     if into_halves || cost == f32::INFINITY {
         // All centers are one point, or the tree is deep enough.
-        return items.len() / 2;
+        let middle = items.len() / 2;
+        let (near, far) = items.split_at(middle);
+        return (middle, [near, far].map(Box3::around));
     }
     let mut middle = 0;
     for index in 0..items.len() {
@@ -294,5 +297,6 @@ fn split(items: &mut [Item], into_halves: bool) -> usize {
             middle += 1;
         }
     }
-    middle
+    let around = |bins: &[(u32, Box3)]| bins.iter().fold(Box3::EMPTY, |all, (_, bounds)| all.and(bounds));
+    (middle, [around(&bins[axis][..cut]), around(&bins[axis][cut..])])
 }

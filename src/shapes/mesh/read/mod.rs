@@ -3,6 +3,8 @@
 mod obj;
 mod ply;
 mod stl;
+#[cfg(test)]
+mod tests;
 
 use crate::files;
 use crate::text;
@@ -80,7 +82,8 @@ pub fn read(path: &Path, memory: u64) -> Result<Model, Broken> {
     let cannot = |error: io::Error| {
         let is_missing = error.kind() == io::ErrorKind::NotFound;
         let near = if is_missing { text::nearest_file(path) } else { None };
-        let reason = near.map_or(text::reason(&error), |near| format!("it does not exist, but `{near}` does"));
+        let reason =
+            near.map_or(text::reason(&error), |near| format!("it does not exist, but `{near}` does"));
         Broken::file(reason)
     };
     let mut file = files::open(path).map_err(cannot)?;

@@ -19,7 +19,8 @@ pub fn read(bytes: &[u8]) -> Result<Model, Broken> {
             Some("v") => {
                 let mut at = [0.0; 3];
                 for part in &mut at {
-                    let word = words.next().ok_or_else(|| fault("a vertex needs three coordinates".to_owned()))?;
+                    let word =
+                        words.next().ok_or_else(|| fault("a vertex needs three coordinates".to_owned()))?;
                     *part = coordinate(word).map_err(fault)?;
                 }
                 if model.vertices.len() == MAX_VERTICES {
@@ -71,7 +72,8 @@ pub fn read(bytes: &[u8]) -> Result<Model, Broken> {
 /// Reads a corner of a face, `vertex/texture/normal`: its vertex counts from 1, or backward from -1.
 fn corner(word: &str, count: usize) -> Result<u32, String> {
     let vertex = word.split('/').next().unwrap_or_default();
-    let index: i64 = vertex.parse().map_err(|_| format!("`{}` is not a vertex's number", text::abridged(word)))?;
+    let index: i64 =
+        vertex.parse().map_err(|_| format!("`{}` is not a vertex's number", text::abridged(word)))?;
     let found = match index {
         1.. => usize::try_from(index - 1).ok(),
         0 => return Err("vertices count from 1, and there is none of number 0".to_owned()),

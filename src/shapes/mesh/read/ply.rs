@@ -1,6 +1,6 @@
 //! PLY, in text and in bytes of either order.
 
-use super::{Broken, MAX_VERTICES, Model};
+use super::{Broken, MAX_VERTICES, Model, coordinate, lines};
 use crate::text::abridged;
 use glam::DVec3;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
@@ -67,7 +67,7 @@ fn integers(property: Property) -> Option<Vec<i64>> {
 pub fn read(bytes: &[u8]) -> Result<Model, Broken> {
     let parser = Parser::<Element>::new();
     let mut reader = Reader::new(bytes);
-    let header = parser.read_header(&mut reader).map_err(|error| fault(&error, true, bytes.len()))?;
+    let header = parser.read_header(&mut reader).map_err(|error| fault(&error, true, bytes))?;
     let is_text = header.encoding == Encoding::Ascii;
     may_fit(&header, bytes.len())?;
     let mut model = Model::default();
@@ -78,7 +78,7 @@ pub fn read(bytes: &[u8]) -> Result<Model, Broken> {
             if is_text { Broken::line(line + index, message) } else { Broken::byte(byte, message) }
         };
         let elements = parser.read_payload_for_element(&mut reader, definition, &header);
-        let elements = elements.map_err(|error| fault(&error, is_text, bytes.len()))?;
+        let elements = elements.map_err(|error| fault(&error, is_text, bytes))?;
         match name.as_str() {
             "vertex" => {
                 for (index, Element { at, .. }) in elements.into_iter().enumerate() {
@@ -97,7 +97,8 @@ pub fn read(bytes: &[u8]) -> Result<Model, Broken> {
                         return Err(broken(face, message));
                     }
                     if let Some(corner) = corners.iter().find(|corner| !(0..count as i64).contains(corner)) {
-                        let message = format!("face {face} refers to vertex {corner}, and there are {count}, from 0");
+                        let message =
+                            format!("face {face} refers to vertex {corner}, and there are {count}, from 0");
                         return Err(broken(face, message));
                     }
                     for pair in corners[1..].windows(2) {
@@ -117,7 +118,8 @@ fn may_fit(header: &Header, size: usize) -> Result<(), Broken> {
     for (name, element) in &header.elements {
         let has = |names: &[&str]| names.iter().any(|name| element.properties.contains_key(*name));
         if element.count > left {
-            let message = format!("the header promises {} of `{name}`, and the file ends before", element.count);
+            let message =
+                format!("the header promises {} of `{name}`, and the file ends before", element.count);
             return Err(Broken::file(message));
         }
         if element.properties.is_empty() && element.count > 0 {
@@ -138,23 +140,25 @@ fn may_fit(header: &Header, size: usize) -> Result<(), Broken> {
 }
 
 /// Says what the parser says, in a line and without the text that it repeats.
-fn fault(error: &ParseError, is_text: bool, size: usize) -> Broken {
-    let text = error.to_string();
-    let after = |label: &str| text.lines().find_map(|line| line.trim_start().strip_prefix(label));
-    let message = match (after("Value: "), after("Error: ")) {
-        _ if error.kind() == ErrorKind::UnexpectedEof => "the file ends before all of its elements".to_owned(),
-        (Some(value), _) => format!("`{}` is not a number of its type", abridged(value.trim_matches('\''))),
-        (None, Some(reason)) if is_text && error.line().is_some_and(|line| line > 1) => reason.to_owned(),
-        _ => text.lines().next().unwrap_or_default().to_owned(),
+fn fault(error: &ParseError, is_text: bool, bytes: &[u8]) -> Broken {
+    let at = error.line().filter(|_| is_text).and_then(|line| lines(bytes).nth(line.saturating_sub(1)));
+    if error.kind() == ErrorKind::UnexpectedEof {
+        let message = "the file ends before all of its elements";
+        return if is_text { Broken::file(message) } else { Broken::byte(bytes.len(), message) };
+    }
+    let Some((number, line)) = at else {
+        let text = error.to_string();
+        let message = text.lines().next().unwrap_or_default().trim_end_matches('.').to_lowercase();
+        return if is_text { Broken::file(message) } else { Broken::byte(bytes.len(), message) };
     };
-    let message = message.split_once(": ").filter(|(line, _)| line.starts_with("Line ")).map_or(&*message, |(_, rest)| rest);
-    let mut message = message.trim_end_matches(['.', ',', ' ']).to_owned();
-    if let Some(start) = message.get_mut(..1) {
-        start.make_ascii_lowercase();
-    }
-    match error.line() {
-        Some(line) if is_text => Broken::line(line, message),
-        None if is_text => Broken::file(message),
-        _ => Broken::byte(size, message),
-    }
+    let is_header = line.split_ascii_whitespace().next().is_none_or(|word| HEADER.contains(&word));
+    let wrong = line.split_ascii_whitespace().find_map(|word| coordinate(word).err());
+    let message = match wrong.filter(|_| !is_header) {
+        Some(wrong) => wrong,
+        None => format!("`{}` is not what the header makes expect here", abridged(line.trim())),
+    };
+    Broken::line(number, message)
 }
+
+/// The words with which lines of a header begin.
+const HEADER: [&str; 7] = ["ply", "format", "comment", "obj_info", "element", "property", "end_header"];

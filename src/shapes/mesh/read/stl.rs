@@ -22,13 +22,15 @@ pub fn read(bytes: &[u8]) -> Result<Model, Broken> {
         return Err(Broken::byte(bytes.len(), "the file ends before its number of triangles"));
     };
     if (bytes.len() - HEADER) / TRIANGLE < count {
-        let message = format!("the file ends after {} of {count} triangles", (bytes.len() - HEADER) / TRIANGLE);
+        let message =
+            format!("the file ends after {} of {count} triangles", (bytes.len() - HEADER) / TRIANGLE);
         return Err(Broken::byte(bytes.len(), message));
     }
     let mut model = Model::default();
     for (index, triangle) in bytes[HEADER..].chunks_exact(TRIANGLE).take(count).enumerate() {
         for corner in 0..3 {
-            let part = |axis: usize| f64::from(f32::from_bits(word(&triangle[12 + 12 * corner + 4 * axis..][..4])));
+            let part =
+                |axis: usize| f64::from(f32::from_bits(word(&triangle[12 + 12 * corner + 4 * axis..][..4])));
             let at = DVec3::new(part(0), part(1), part(2));
             if !at.is_finite() {
                 let byte = HEADER + TRIANGLE * index + 12 + 12 * corner;
@@ -57,7 +59,8 @@ fn in_text(bytes: &[u8]) -> Result<Model, Broken> {
             Some("vertex") => {
                 let mut at = [0.0; 3];
                 for part in &mut at {
-                    let word = words.next().ok_or_else(|| fault("a vertex needs three coordinates".to_owned()))?;
+                    let word =
+                        words.next().ok_or_else(|| fault("a vertex needs three coordinates".to_owned()))?;
                     *part = coordinate(word).map_err(fault)?;
                 }
                 model.vertices.push(DVec3::from(at));
@@ -85,6 +88,7 @@ fn finish(mut model: Model) -> Result<Model, Broken> {
     if model.vertices.len() > MAX_VERTICES {
         return Err(Broken::file("it has more than 2^31 corners"));
     }
-    model.faces = (0..model.vertices.len() as u32 / 3).map(|index| [3 * index, 3 * index + 1, 3 * index + 2]).collect();
+    model.faces =
+        (0..model.vertices.len() as u32 / 3).map(|index| [3 * index, 3 * index + 1, 3 * index + 2]).collect();
     Ok(model)
 }
