@@ -120,7 +120,7 @@ fn a_broken_text_is_told_with_its_line() {
         assert_eq!(broken, Broken { at: Some(At::Line(4)), message: message.to_owned() });
     }
     for (wrong, right, line, message) in [
-        ("0.25 1 0 255", "0.25 inf 0 255", 14, "vertex 2 is not finite"),
+        ("0.25 1 0 255", "0.25 inf 0 255", 14, "`inf` is not a finite number"),
         ("0.25 1 0 255", "0.25 x 0 255", 14, "`x` is not a number"),
         ("3 1 2 3", "3 1 2 4", 18, "face 2 refers to vertex 4, and there are 4, from 0"),
         ("3 1 2 3", "3 1 2 -1", 18, "face 2 refers to vertex -1, and there are 4, from 0"),
