@@ -8,12 +8,13 @@ use super::size::Part;
 use super::stats::Stats;
 use super::stop::Stop;
 use super::{memory, messages};
-use crate::output::picture::{AT_ONCE, Format};
+use crate::output::packing::PIECE;
+use crate::output::picture::Format;
 use crate::render::limits::MAX_RAYS;
 use crate::render::plan::Plan;
 use crate::render::ray_stats::{Cuts, RayStats};
 use crate::render::renderer::{Overseer, Renderer};
-use crate::render::tiles::{Band, Tiles};
+use crate::render::tiles::{BAND, Band, Tiles};
 use crate::text::{count, short};
 use std::io::{self, BufWriter};
 use std::mem::{replace, take};
@@ -107,9 +108,11 @@ impl Job<'_> {
                 self.tell_once(&mut told, progress);
             }
             writing = Some(Instant::now());
-            band.bytes(AT_ONCE).into_iter().map(Ok).collect()
+            band.bytes(PIECE).into_iter().map(Ok).collect()
         });
-        let written = self.format.write(&mut out, self.part.size(), bands);
+        // Pieces that are compressed together are in memory together.
+        let renderer = (self.at_once == BAND).then_some(self.renderer);
+        let written = self.format.write_on(renderer, &mut out, self.part.size(), bands);
         match (broken, written) {
             (Some(failure), _) => Err(failure),
             (None, Err(error)) if is_cut && error.kind() == io::ErrorKind::Other => {

@@ -3,8 +3,12 @@
 pub(crate) mod aov;
 pub(crate) mod checkpoint;
 pub(crate) mod compare;
+pub(crate) mod deflate;
+mod filter;
+pub(crate) mod packing;
 pub(crate) mod picture;
 
 pub use aov::Aov;
 pub use compare::Comparison;
-pub use picture::{Compression, Format};
+pub use deflate::Compression;
+pub use picture::Format;

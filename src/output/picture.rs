@@ -1,27 +1,13 @@
 //! Writes image files from bytes, and reads them back.
 
+use crate::output::deflate::Compression;
+use crate::output::packing::Packing;
+use crate::render::renderer::Renderer;
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Write};
-use std::iter;
 use std::path::Path;
-
-/// The effort of the compression. The decoded image does not depend on it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum Compression {
-    /// Fastest.
-    #[default]
-    Fast,
-    /// Smaller files.
-    ///
-    /// About half as large, which takes longer than most pictures take to render.
-    #[value(name = "default")]
-    Balanced,
-    /// Smallest files.
-    #[value(name = "best")]
-    High,
-}
 
 /// A file format of images.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,12 +46,27 @@ impl Format {
     pub fn write(
         self,
         out: impl Write,
+        size: [usize; 2],
+        rows: impl IntoIterator<Item = io::Result<Vec<u8>>>,
+    ) -> io::Result<()> {
+        self.write_on(None, out, size, rows)
+    }
+
+    /// Writes a whole image as [`write`](Self::write) does, and compresses it on a renderer's threads, if there is one.
+    /// The bytes do not depend on it.
+    ///
+    /// # Errors
+    /// Those of [`write`](Self::write).
+    pub fn write_on(
+        self,
+        renderer: Option<&Renderer>,
+        out: impl Write,
         [width, height]: [usize; 2],
         rows: impl IntoIterator<Item = io::Result<Vec<u8>>>,
     ) -> io::Result<()> {
         match self {
             Self::Ppm => write_ppm(out, width, height, rows),
-            Self::Png(compression) => write_png(out, width, height, compression, rows),
+            Self::Png(compression) => write_png(out, width, height, (compression, renderer), rows),
         }
     }
 
@@ -141,14 +142,11 @@ fn write_ppm(
 /// its PPM.
 pub(crate) const AS_SHOWN: png::SrgbRenderingIntent = png::SrgbRenderingIntent::RelativeColorimetric;
 
-/// The largest image that is encoded in one piece, in bytes.
-pub(crate) const AT_ONCE: usize = 1 << 20;
-
 fn write_png(
     out: impl Write,
     width: usize,
     height: usize,
-    compression: Compression,
+    (compression, renderer): (Compression, Option<&Renderer>),
     rows: impl IntoIterator<Item = io::Result<Vec<u8>>>,
 ) -> io::Result<()> {
     let size = |pixels: usize| u32::try_from(pixels).map_err(io::Error::other);
@@ -156,30 +154,16 @@ fn write_png(
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_source_srgb(AS_SHOWN);
-    encoder.set_compression(match compression {
-        Compression::Fast => png::Compression::Fastest,
-        Compression::Balanced => png::Compression::Balanced,
-        Compression::High => png::Compression::High,
-    });
     let mut writer = encoder.write_header()?;
-    let mut rows = rows.into_iter();
-    let first = rows.next().transpose()?.unwrap_or_default();
-    if first.len() == 3 * width * height && first.len() <= AT_ONCE {
-        // Without the stream it takes two thirds of the time, but memory for the whole encoded image.
-        writer.write_image_data(&first)?;
-    } else {
-        let mut stream = writer.stream_writer()?;
-        for bytes in iter::once(Ok(first)).chain(rows) {
-            stream.write_all(&bytes?)?;
-        }
-        stream.finish()?;
-    }
+    let put = |bytes: &[u8]| writer.write_chunk(png::chunk::IDAT, bytes).map_err(io::Error::from);
+    Packing::new([width, height], compression, renderer).run(rows, put)?;
     Ok(writer.finish()?)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::output::packing::PIECE;
 
     #[test]
     fn a_png_is_the_same_picture_at_once_and_in_bands() {
@@ -204,7 +188,7 @@ mod tests {
 
     #[test]
     fn a_png_says_how_its_bytes_are_shown() {
-        for bytes in [12, AT_ONCE + 3] {
+        for bytes in [12, PIECE + 3] {
             let mut png = Vec::new();
             let rows = [Ok(vec![7; 3 * (bytes / 3)])];
             Format::Png(Compression::Fast).write(&mut png, [bytes / 3, 1], rows).expect("memory takes it");

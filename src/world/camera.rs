@@ -2,10 +2,11 @@
 
 use crate::geometry::ray::Ray;
 use crate::geometry::sight::{self, Sight};
-use crate::simd::cpu::kernels;
+use crate::simd::cpu::{Cpu, kernels};
 use crate::world::accuracy::Accuracy;
-use crate::world::sample::{Sample, Sampler};
+use crate::world::sample::{self, Sample, Sampler};
 use glam::{DVec2, DVec3};
+use std::ops::Range;
 
 /// The viewer, and an image plane at z = 0 whose lower left corner is the world's origin.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -37,6 +38,35 @@ impl Camera {
             let sample = Sample { sampler, index, pixel };
             (middle + sample.jitter(), Some(sample))
         })
+    }
+
+    /// Lists the samples of pixels, given by column and row, and writes the image positions of their rays as
+    /// [`places`](Self::places) returns them. `range` counts the samples from the first one of the first pixel.
+    pub(crate) fn scatter(
+        &self,
+        cpu: Cpu,
+        pixels: &[[usize; 2]],
+        range: Range<usize>,
+        list: &mut Vec<Sample>,
+        [x, y]: [&mut [f64]; 2],
+    ) {
+        let (sampler, samples) = (self.sampler, self.samples as usize);
+        // Each pixel of the range, with its part of the range.
+        let runs = (range.start / samples..range.end.div_ceil(samples)).map(|pixel| {
+            let all = pixel * samples..(pixel + 1) * samples;
+            (pixels[pixel], range.start.max(all.start)..range.end.min(all.end), all.start)
+        });
+        list.clear();
+        for ([column, row], run, first) in runs.clone() {
+            let pixel = (row * self.pixels[0] + column) as u32;
+            list.extend(run.map(|at| Sample { sampler, index: (at - first) as u32, pixel }));
+        }
+        sample::jitters(cpu, list, x, y);
+        for ([column, row], run, _) in runs {
+            let run = run.start - range.start..run.end - range.start;
+            x[run.clone()].iter_mut().for_each(|x| *x += column as f64);
+            y[run].iter_mut().for_each(|y| *y += row as f64);
+        }
     }
 
     /// Returns the ray from the viewpoint through an image position. `x` counts pixels from the left and `y` from the

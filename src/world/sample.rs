@@ -1,9 +1,13 @@
 //! The random numbers of a pixel's samples: the same for any number of threads.
 
+use crate::simd::cpu::{Cpu, kernels};
 use clap::ValueEnum;
 use glam::DVec2;
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
+use sobol_burley::parts;
+use std::array;
+use std::sync::LazyLock;
 
 /// How a pixel's samples are distributed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -38,12 +42,12 @@ pub struct Sample {
 impl Sample {
     /// Returns the sample's offset from the pixel's centre, in pixels from -0.5 to 0.5 along each axis.
     pub fn jitter(&self) -> DVec2 {
-        self.draw(0) - 0.5
+        self.draw(JITTER) - 0.5
     }
 
     /// Returns two random numbers from 0 to 1 that choose a point on the light of this index.
     pub fn on_light(&self, light: usize) -> DVec2 {
-        self.draw(1 + light as u32)
+        self.draw(on_light(light))
     }
 
     /// Returns two numbers from 0 to 1, different for each purpose.
@@ -56,11 +60,116 @@ impl Sample {
                 DVec2::new(draw(), draw())
             }
             Sampler::Sobol => {
-                // Purposes differ in their scrambling, not in their dimension, so that any number of lights has a
-                // sequence.
-                let seed = self.pixel ^ purpose.wrapping_mul(0x9e37_79b9);
-                let draw = |dimension| sobol_burley::sample(self.index, dimension, seed).into();
+                let draw = |dimension| sobol_burley::sample(self.index, dimension, self.seed(purpose)).into();
                 DVec2::new(draw(0), draw(1))
+            }
+        }
+    }
+
+    /// Returns what the pixel's sequence is scrambled with. Purposes differ in their scrambling, not in their dimension,
+    /// so that any number of lights has a sequence.
+    fn seed(&self, purpose: u32) -> u32 {
+        self.pixel ^ purpose.wrapping_mul(0x9e37_79b9)
+    }
+}
+
+/// The purpose of the numbers that choose a place in the pixel.
+const JITTER: u32 = 0;
+
+/// Returns the purpose of the numbers that choose a point on the light of this index.
+fn on_light(light: usize) -> u32 {
+    1 + light as u32
+}
+
+/// Writes the [`jitter`](Sample::jitter) of each sample, in pixels, to `x` and `y`.
+pub(crate) fn jitters(cpu: Cpu, samples: &[Sample], x: &mut [f64], y: &mut [f64]) {
+    draw(cpu, samples, JITTER, x, y);
+    [x, y].into_iter().flatten().for_each(|offset| *offset -= 0.5);
+}
+
+/// Writes what [`on_light`](Sample::on_light) returns for each sample to `x` and `y`.
+pub(crate) fn on_lights(cpu: Cpu, samples: &[Sample], light: usize, x: &mut [f64], y: &mut [f64]) {
+    draw(cpu, samples, on_light(light), x, y);
+}
+
+/// Writes the numbers that [`Sample::draw`] returns for each sample. All samples have the sampler of the first.
+// Its arrays stay off the stacks of deep reflections.
+#[inline(never)]
+fn draw(cpu: Cpu, samples: &[Sample], purpose: u32, x: &mut [f64], y: &mut [f64]) {
+    const CHUNK: usize = 64;
+    let (mut index, mut seed) = ([0; CHUNK], [0; CHUNK]);
+    for ((samples, x), y) in samples.chunks(CHUNK).zip(x.chunks_mut(CHUNK)).zip(y.chunks_mut(CHUNK)) {
+        if samples[0].sampler != Sampler::Sobol {
+            for ((sample, x), y) in samples.iter().zip(x).zip(y) {
+                DVec2 { x: *x, y: *y } = sample.draw(purpose);
+            }
+            continue;
+        }
+        for ((sample, index), seed) in samples.iter().zip(&mut index).zip(&mut seed) {
+            (*index, *seed) = (sample.index, sample.seed(purpose));
+        }
+        let count = samples.len();
+        sobol(cpu, &DIRECTIONS, &index[..count], &seed[..count], x, y);
+    }
+}
+
+/// The direction numbers of dimension 1, with reversed bits, for the bits of an index from the highest of 16 down; those
+/// of dimension 0 are the powers of 2.
+static DIRECTIONS: LazyLock<[u32; 16]> =
+    LazyLock::new(|| array::from_fn(|bit| parts::sobol_rev(1 << (31 - bit), 1)));
+
+kernels! {
+    /// Computes dimensions 0 and 1 of `sobol_burley::sample` with the same operations, in lanes.
+    fn sobol(directions: &[u32; 16], index: &[u32], seed: &[u32], x: &mut [f64], y: &mut [f64]) {
+        let count = index.len();
+        let (seed, x, y) = (&seed[..count], &mut x[..count], &mut y[..count]);
+        for lane in 0..count {
+            let shuffled =
+                parts::owen_scramble_rev(index[lane].reverse_bits(), parts::hash(seed[lane] ^ 0x79c6_8e4a));
+            let mut second = 0;
+            for (bit, direction) in directions.iter().enumerate() {
+                second ^= direction & 0_u32.wrapping_sub(shuffled >> (31 - bit) & 1);
+            }
+            let first = (shuffled & 0xffff_0000).reverse_bits();
+            let scramble = seed[lane].wrapping_mul(0x9c8f_2d3b);
+            let number = |sobol, salt: u32| {
+                let scrambled = parts::owen_scramble_rev(sobol, parts::hash(scramble ^ salt));
+                f64::from(parts::u32_to_f32_norm(scrambled.reverse_bits()))
+            };
+            (x[lane], y[lane]) = (number(first, 0x912f_69ba), number(second, 0x174f_18ab));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_of_many_lanes_are_those_of_single_ones() {
+        let pixels = [0, 1, 639, 307_199, 0x7fff_ffff, u32::MAX];
+        for sampler in [Sampler::Sobol, Sampler::Random] {
+            let samples: Vec<_> = (0..Sampler::MOST)
+                .map(|index| Sample {
+                    sampler,
+                    index,
+                    pixel: pixels[index as usize / 7 % pixels.len()] ^ index >> 9,
+                })
+                .collect();
+            let single = |draw: &dyn Fn(&Sample) -> DVec2| samples.iter().map(draw).collect::<Vec<_>>();
+            let (places, light) = (single(&Sample::jitter), single(&|sample| sample.on_light(3)));
+            for cpu in Cpu::all() {
+                // Other counts than whole chunks, too.
+                for count in [samples.len(), 1, 67] {
+                    let [mut x, mut y] = [vec![2.0; count], vec![2.0; count]];
+                    let pairs = |x: &[f64], y: &[f64]| -> Vec<_> {
+                        x.iter().zip(y).map(|(x, y)| DVec2::new(*x, *y)).collect()
+                    };
+                    jitters(cpu, &samples[..count], &mut x, &mut y);
+                    assert!(pairs(&x, &y) == places[..count], "{sampler:?}, {cpu}");
+                    on_lights(cpu, &samples[..count], 3, &mut x, &mut y);
+                    assert!(pairs(&x, &y) == light[..count], "{sampler:?}, {cpu}");
+                }
             }
         }
     }

@@ -40,6 +40,10 @@ const MAX_BODY: usize = 1 << 16;
 /// The pause before the next connection is accepted, after the system refused one.
 const PAUSE: Duration = Duration::from_millis(50);
 
+/// The number of files that must be free before another connection is accepted: answering a request opens some too.
+#[cfg(unix)]
+const SPARE_FILES: usize = 8;
+
 /// The minimum number of idle connections that are kept, even where the system allows hardly any open files. What a
 /// connection has sent is read before this many others are accepted.
 const MIN_IDLE: usize = 4;
@@ -103,7 +107,11 @@ where
         let mut max_idle = self.limits.idle;
         let mut is_told = false;
         for number in 0.. {
-            match listener.accept().await {
+            let accepted = match spare_files(&listener) {
+                Err(error) if self.idle.borrow().len() > MIN_IDLE => Err(error),
+                _ => listener.accept().await,
+            };
+            match accepted {
                 Ok((stream, _)) => {
                     let task = spawn_local(self.clone().serve(stream, number));
                     self.idle.borrow_mut().insert(number, task.abort_handle());
@@ -113,7 +121,7 @@ where
                 }
                 // A connection that was aborted before it was accepted is no failure.
                 Err(error) if error.kind() == io::ErrorKind::ConnectionAborted => {}
-                // Usually too many files are open. Answering requests needs some too.
+                // Usually too many files are open.
                 Err(error) => {
                     if !is_told {
                         let reason = text::reason(&error);
@@ -191,4 +199,18 @@ where
         })
         .await
     }
+}
+
+/// Returns an error if the system does not let this process open [`SPARE_FILES`] more files.
+#[cfg(unix)]
+fn spare_files(listener: &TcpListener) -> io::Result<()> {
+    use std::os::fd::AsFd;
+    let copy = || listener.as_fd().try_clone_to_owned();
+    (0..SPARE_FILES).map(|_| copy()).collect::<io::Result<Vec<_>>>().map(drop)
+}
+
+/// Elsewhere, accepting a connection is what fails.
+#[cfg(not(unix))]
+fn spare_files(_: &TcpListener) -> io::Result<()> {
+    Ok(())
 }

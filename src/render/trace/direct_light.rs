@@ -4,7 +4,7 @@ use super::arrays::{VectorList, resized};
 use super::context::Tracer;
 use super::light::{self, Colours, Lit, Reflectivities};
 use super::ray_group::RayGroup;
-use super::scratch::LightScratch;
+use super::scratch::{LightDraws, LightScratch};
 use super::shadow_rays::LightPaths;
 use super::surface::Surface;
 use crate::geometry::aabb::{self, Aabb};
@@ -13,7 +13,7 @@ use crate::scene::model::Object;
 use crate::world::light_samples::{LightSamples, ShadingPoints};
 use crate::world::material::Rgb;
 use crate::world::packets::light::PacketLight;
-use glam::DVec2;
+use crate::world::sample;
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
     /// Adds the contributions of all lights.
@@ -64,6 +64,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let LightScratch {
             diffuse,
             lights,
+            draws,
             toward,
             cos_over_distance,
             t_max,
@@ -77,7 +78,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let source = if is_point {
             Aabb { low: light.location(), high: light.location() }
         } else {
-            self.sample_light(light, index, group, surface, lights);
+            self.sample_light(light, index, group, surface, (lights, draws));
             aabb::around(cpu, lights.view(count))
         };
         let lights = (!is_point).then(|| lights.view(count));
@@ -150,17 +151,23 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         index: usize,
         group: &RayGroup,
         surface: &Surface,
-        lights: &mut VectorList,
+        (lights, draws): (&mut VectorList, &mut LightDraws),
     ) {
         let (middle, size) = (light.location(), light.size());
         lights.fill(group.padded(), middle);
-        for lane in 0..group.padded() {
-            let camera = group.camera.get(lane).map(|camera| usize::from(*camera));
-            let Some(sample) = camera.and_then(|camera| self.scratch.samples.get(camera)) else { continue };
+        if self.scratch.samples.is_empty() {
+            return;
+        }
+        let count = group.camera.len().min(group.padded());
+        let LightDraws { samples, places: [x, y] } = draws;
+        samples.clear();
+        samples.extend(group.camera[..count].iter().map(|camera| self.scratch.samples[usize::from(*camera)]));
+        let (x, y) = (resized(x, count), resized(y, count));
+        sample::on_lights(self.cpu, samples, index, x, y);
+        for lane in 0..count {
             let Some(axis) = (middle - surface.points.get(lane)).try_normalize() else { continue };
             let (across, up) = axis.any_orthonormal_pair();
-            let DVec2 { x, y } = sample.on_light(index);
-            let (radius, angle) = (size * x.sqrt(), std::f64::consts::TAU * y);
+            let (radius, angle) = (size * x[lane].sqrt(), std::f64::consts::TAU * y[lane]);
             lights.set(lane, middle + radius * (libm::cos(angle) * across + libm::sin(angle) * up));
         }
     }

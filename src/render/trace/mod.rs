@@ -111,17 +111,11 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             }
         } else {
             let samples = camera.samples as usize;
-            let mut rays = pixels.iter().flat_map(|&[x, y]| camera.places(x, y));
             let (mut sum, mut missing, mut count) = (Rgb::ZERO, 0.0, 0);
             while count < samples * pixels.len() {
-                let mut len = 0;
-                self.scratch.samples.clear();
-                for (place, sample) in rays.by_ref().take(PACKET_SIZE) {
-                    let [x, y] = &mut self.scratch.places;
-                    (x[len], y[len]) = (place.x, place.y);
-                    self.scratch.samples.extend(sample);
-                    len += 1;
-                }
+                let len = PACKET_SIZE.min(samples * pixels.len() - count);
+                let Scratch { places: [x, y], samples: drawn, .. } = &mut *self.scratch;
+                camera.scatter(self.cpu, pixels, count..count + len, drawn, [&mut x[..len], &mut y[..len]]);
                 group.look(self.cpu, camera, depth, &mut self.scratch.places, len);
                 self.colours(group, seen);
                 for lane in 0..len {

@@ -91,6 +91,7 @@ pub(super) struct LightScratch {
     pub diffuse: VectorList,
     /// The point of the light that each shading point sees, if the light has a size.
     pub lights: VectorList,
+    pub draws: LightDraws,
     /// The unit vectors toward the light.
     pub toward: VectorList,
     /// The cosines of the angles between `toward` and the normals, divided by the distances to the light in world
@@ -105,6 +106,15 @@ pub(super) struct LightScratch {
     /// 1 where the light is blocked.
     pub blocked: Vec<u64>,
     pub shadows: ShadowScratch,
+}
+
+/// The random numbers that choose the points of a light that shading points see.
+#[derive(Default)]
+pub(super) struct LightDraws {
+    /// The sample of each point's primary ray.
+    pub samples: Vec<Sample>,
+    /// Its two numbers from 0 to 1.
+    pub places: [Vec<f64>; 2],
 }
 
 /// The scratch space of the shadow rays of a packet.

@@ -5,7 +5,8 @@ use super::canvas::{Align, BLUE, Canvas, GREEN, GREY, LIGHT, Letters, Marker, OR
 use super::data::{Chart, Family, Panel, Point, Subject};
 use super::labels::{self, PlotArea};
 use crate::geometry::ray_packet::PACKET_SIZE;
-use crate::output::picture::{Compression, Format};
+use crate::output::deflate::Compression;
+use crate::output::picture::Format;
 use plotters::prelude::{BLACK, BitMapBackend, DrawingBackend, IntoDrawingArea, RGBColor, SVGBackend};
 use std::io;
 use std::iter;

@@ -68,6 +68,18 @@ fn connections_that_say_nothing_or_half_of_it_hold_nobody_up() {
 }
 
 #[test]
+fn files_are_left_for_answers_wherever_the_limit_lies() {
+    more_files();
+    for server in (36..46).flat_map(both) {
+        let mut crowd = Vec::new();
+        for _ in 0..60 {
+            crowd.extend((0..30).map(|_| server.send("")));
+            assert_eq!(server.page(), 200, "{}", server.said());
+        }
+    }
+}
+
+#[test]
 fn too_few_open_files_are_told_once_and_hold_nobody_up() {
     for server in both(24) {
         let crowd: Vec<_> = (0..100).map(|_| server.send("")).collect();

@@ -1,0 +1,225 @@
+//! Compresses the rows of a PNG in pieces that do not depend on each other, so that each can be compressed on a thread of
+//! its own. Their bytes, one after the other, are one zlib stream.
+
+use crate::output::filter::Filter;
+use clap::ValueEnum;
+use flate2::write::DeflateEncoder;
+use simd_adler32::Adler32;
+use std::io::{self, Write};
+use std::mem::take;
+
+/// The effort of the compression. The decoded image does not depend on it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Compression {
+    /// Fastest.
+    #[default]
+    Fast,
+    /// Smaller files.
+    ///
+    /// About half as large, which takes longer than most pictures take to render.
+    #[value(name = "default")]
+    Balanced,
+    /// Smallest files.
+    #[value(name = "best")]
+    High,
+}
+
+/// The first two bytes of a zlib stream: deflate with a window of 32 KiB.
+const HEADER: [u8; 2] = [0x78, 0x01];
+
+/// The length of the checksum at the end of a zlib stream, in bytes.
+const TRAILER: usize = 4;
+
+/// Some rows of a PNG, with 3 bytes for each pixel.
+pub(super) struct Piece {
+    /// The row above, from which the first row is predicted; empty at the top of the image.
+    pub above: Vec<u8>,
+    /// The rows.
+    pub rows: Vec<u8>,
+    /// The length of a row in bytes.
+    pub row: usize,
+    /// Whether the image ends with these rows.
+    pub is_last: bool,
+}
+
+/// A compressed piece.
+pub(super) struct Packed {
+    /// Its bytes in the zlib stream. The last piece lacks the stream's checksum.
+    pub bytes: Vec<u8>,
+    /// The checksum of what was compressed.
+    pub checksum: Checksum,
+}
+
+impl Piece {
+    /// Compresses the rows.
+    ///
+    /// # Errors
+    /// None is known: memory takes all that is written.
+    pub fn pack(&self, compression: Compression) -> io::Result<Packed> {
+        match compression {
+            Compression::Fast => self.pack_fast(),
+            Compression::Balanced => self.pack_at(flate2::Compression::default(), Filter::Adaptive),
+            Compression::High => self.pack_at(flate2::Compression::best(), Filter::Adaptive),
+        }
+    }
+
+    /// Compresses the rows with the one Huffman code of `fdeflate`, which was made for PNGs.
+    fn pack_fast(&self) -> io::Result<Packed> {
+        let mut compressor = fdeflate::Compressor::new(Vec::with_capacity(self.rows.len() / 4))?;
+        self.filtered(Filter::Up, |row| compressor.write_data(row))?;
+        let (mut bytes, len) = (compressor.finish()?, self.filtered_len());
+        if bytes.len() > len {
+            // Noise is shorter as it is.
+            return self.pack_at(flate2::Compression::none(), Filter::None);
+        }
+        let checksum = bytes.split_off(bytes.len() - TRAILER);
+        let checksum = checksum.try_into().map_or(0, u32::from_be_bytes);
+        if !self.is_last {
+            continues(&mut bytes);
+        }
+        if !self.above.is_empty() {
+            bytes.drain(..HEADER.len());
+        }
+        Ok(Packed { bytes, checksum: Checksum::new(checksum, len) })
+    }
+
+    /// Compresses the rows at a level of zlib.
+    fn pack_at(&self, level: flate2::Compression, filter: Filter) -> io::Result<Packed> {
+        let bytes = if self.above.is_empty() { HEADER.to_vec() } else { Vec::new() };
+        let (mut encoder, mut adler) = (DeflateEncoder::new(bytes, level), Adler32::new());
+        self.filtered(filter, |row| {
+            adler.write(row);
+            encoder.write_all(row)
+        })?;
+        let bytes = if self.is_last {
+            encoder.finish()?
+        } else {
+            // Ends the block, and then at a whole byte.
+            encoder.flush()?;
+            take(encoder.get_mut())
+        };
+        Ok(Packed { bytes, checksum: Checksum::new(adler.finish(), self.filtered_len()) })
+    }
+
+    /// Passes each filtered row to `put`.
+    fn filtered(&self, filter: Filter, mut put: impl FnMut(&[u8]) -> io::Result<()>) -> io::Result<()> {
+        let black = vec![0; self.row];
+        let mut above = if self.above.is_empty() { &black } else { &self.above[..] };
+        let mut filtered = vec![0; 1 + self.row];
+        for row in self.rows.chunks_exact(self.row) {
+            filter.apply(above, row, &mut filtered);
+            put(&filtered)?;
+            above = row;
+        }
+        Ok(())
+    }
+
+    /// Returns the length of the filtered rows in bytes: each has one more, which says how it is filtered.
+    fn filtered_len(&self) -> usize {
+        self.rows.len() / self.row * (self.row + 1)
+    }
+}
+
+/// Turns the one block that `fdeflate` writes, which is its stream's last, into one that others follow.
+fn continues(stream: &mut Vec<u8>) {
+    stream[HEADER.len()] &= !1;
+    // The code that ends the block ends with a 1, after which the last byte is filled up with zeros. Three of them begin
+    // a block of bytes that are stored as they are, which goes on at a whole byte with its length: there are none.
+    let filled = stream.last().map_or(0, |last| last.leading_zeros());
+    if filled < 3 {
+        stream.push(0);
+    }
+    stream.extend([0, 0, 0xff, 0xff]);
+}
+
+/// The checksum of a zlib stream, Adler-32.
+pub(super) struct Checksum {
+    /// 1 and the sum of the bytes, modulo [`MODULUS`](Self::MODULUS) as all sums are.
+    sum: u32,
+    /// The sum of the values that `sum` has after each byte.
+    sums: u32,
+    /// The number of bytes.
+    len: u32,
+}
+
+impl Checksum {
+    const MODULUS: u64 = 65521;
+
+    /// Returns the checksum of no bytes.
+    pub fn none() -> Self {
+        Self::new(1, 0)
+    }
+
+    fn new(adler: u32, len: usize) -> Self {
+        Self { sum: adler & 0xffff, sums: adler >> 16, len: (len as u64 % Self::MODULUS) as u32 }
+    }
+
+    /// Returns the checksum of these bytes and others after them.
+    pub fn and(&self, next: &Self) -> Self {
+        let [sum, sums, len] = [self.sum, self.sums, self.len].map(u64::from);
+        let [next_sum, next_sums, next_len] = [next.sum, next.sums, next.len].map(u64::from);
+        // Each of the later sums is larger by those bytes.
+        let bytes = sum + Self::MODULUS - 1;
+        let [sum, sums, len] = [bytes + next_sum, sums + next_sums + next_len * bytes, len + next_len]
+            .map(|value| (value % Self::MODULUS) as u32);
+        Self { sum, sums, len }
+    }
+
+    /// Returns the last bytes of the stream.
+    pub fn trailer(&self) -> [u8; TRAILER] {
+        (self.sums << 16 | self.sum).to_be_bytes()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Bytes with runs, repetitions and noise, different for each seed.
+    fn bytes(len: usize, seed: usize) -> Vec<u8> {
+        let noise = |byte: usize| byte.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40;
+        (0..len)
+            .map(|byte| if byte / 97 % 3 == 0 { 0 } else { noise(byte / (1 + seed % 5) + seed) as u8 })
+            .collect()
+    }
+
+    #[test]
+    fn pieces_are_one_stream() {
+        for compression in [Compression::Fast, Compression::Balanced, Compression::High] {
+            // A piece may end at any bit of a byte.
+            for seed in 0..64 {
+                let (row, heights) = (3 * (1 + 5 * seed), [1 + seed % 3, 4, 40]);
+                let pixels = bytes(row * heights.iter().sum::<usize>(), seed);
+                let (mut rest, mut above, mut checksum) = (&pixels[..], Vec::new(), Checksum::none());
+                let mut file = Vec::new();
+                let (width, height) = (row as u32 / 3, (pixels.len() / row) as u32);
+                let mut encoder = png::Encoder::new(&mut file, width, height);
+                encoder.set_color(png::ColorType::Rgb);
+                let mut writer = encoder.write_header().expect("memory takes it");
+                for height in heights {
+                    let (rows, others) = rest.split_at(height * row);
+                    let piece = Piece { above, rows: rows.to_vec(), row, is_last: others.is_empty() };
+                    let mut packed = piece.pack(compression).expect("memory takes it");
+                    checksum = checksum.and(&packed.checksum);
+                    if piece.is_last {
+                        packed.bytes.extend(checksum.trailer());
+                    }
+                    writer.write_chunk(png::chunk::IDAT, &packed.bytes).expect("memory takes it");
+                    (rest, above) = (others, rows[rows.len() - row..].to_vec());
+                }
+                writer.finish().expect("memory takes it");
+                let read = image::load_from_memory(&file).expect("a PNG").into_rgb8();
+                assert!(read.into_raw() == pixels, "{compression:?}, {seed}");
+            }
+        }
+    }
+
+    #[test]
+    fn noise_is_stored() {
+        let rows: Vec<u8> =
+            (0..3 << 16).map(|byte: u64| (byte.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40) as u8).collect();
+        let packed = Piece { above: Vec::new(), row: 3 << 8, is_last: true, rows }.pack(Compression::Fast);
+        let len = packed.expect("memory takes it").bytes.len();
+        assert!(len < (3 << 16) + 400, "{len}");
+    }
+}

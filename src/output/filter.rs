@@ -1,0 +1,98 @@
+//! The filters of a PNG's rows, which leave small numbers where a pixel is like those around it.
+
+use std::iter;
+
+/// The number of bytes of a pixel.
+const PIXEL: usize = 3;
+
+/// How rows are filtered.
+#[derive(Clone, Copy)]
+pub(super) enum Filter {
+    /// Not at all.
+    None,
+    /// Each byte is predicted by the one above.
+    Up,
+    /// Each row by whichever predictor leaves the smallest numbers.
+    Adaptive,
+}
+
+impl Filter {
+    /// Writes what a row differs by from its prediction, after a byte that says how it was predicted.
+    pub fn apply(self, above: &[u8], row: &[u8], filtered: &mut [u8]) {
+        match self {
+            Self::None => {
+                filtered[0] = 0;
+                filtered[1..].copy_from_slice(row);
+            }
+            Self::Up => predict(Predictor::Up, above, row, filtered),
+            Self::Adaptive => {
+                const ALL: [Predictor; 4] =
+                    [Predictor::Up, Predictor::Left, Predictor::Mean, Predictor::Paeth];
+                let mut best = (u64::MAX, Predictor::Up);
+                for predictor in ALL {
+                    predict(predictor, above, row, filtered);
+                    let size = filtered[1..].iter().map(|byte| u64::from((*byte as i8).unsigned_abs())).sum();
+                    if size <= best.0 {
+                        best = (size, predictor);
+                    }
+                    if size == 0 {
+                        break;
+                    }
+                }
+                if filtered[0] != best.1 as u8 {
+                    predict(best.1, above, row, filtered);
+                }
+            }
+        }
+    }
+}
+
+/// The predictors of a byte, as numbered in a PNG.
+#[derive(Clone, Copy)]
+enum Predictor {
+    Left = 1,
+    Up = 2,
+    Mean = 3,
+    Paeth = 4,
+}
+
+/// Writes what a row differs by from what a predictor says, after the predictor's number. To the left of a row and above
+/// the image everything is 0.
+fn predict(predictor: Predictor, above: &[u8], row: &[u8], filtered: &mut [u8]) {
+    let (number, filtered) = filtered.split_at_mut(1);
+    number[0] = predictor as u8;
+    match predictor {
+        Predictor::Left => each(above, row, filtered, |left, _, _| left),
+        Predictor::Up => each(above, row, filtered, |_, up, _| up),
+        Predictor::Mean => each(above, row, filtered, |left, up, _| (left & up) + ((left ^ up) >> 1)),
+        Predictor::Paeth => each(above, row, filtered, paeth),
+    }
+}
+
+/// Writes what the bytes of a row differ by from what `prediction` says of the bytes to the left, above, and above that
+/// to the left.
+#[inline(always)]
+fn each(above: &[u8], row: &[u8], filtered: &mut [u8], prediction: impl Fn(u8, u8, u8) -> u8) {
+    for at in 0..PIXEL.min(row.len()) {
+        filtered[at] = row[at].wrapping_sub(prediction(0, above[at], 0));
+    }
+    let left = iter::zip(row, above);
+    let here = iter::zip(&row[PIXEL..], &above[PIXEL..]);
+    for ((out, (byte, up)), (left, corner)) in iter::zip(&mut filtered[PIXEL..], here).zip(left) {
+        *out = byte.wrapping_sub(prediction(*left, *up, *corner));
+    }
+}
+
+/// Returns which of three bytes is nearest to `left + up - corner`, the first of them where two are.
+#[inline(always)]
+fn paeth(left: u8, up: u8, corner: u8) -> u8 {
+    let [a, b, c] = [left, up, corner].map(i16::from);
+    let (from_left, from_up, from_corner) = ((b - c).abs(), (a - c).abs(), (a + b - 2 * c).abs());
+    if from_left <= from_up && from_left <= from_corner {
+        left
+    } else if from_up <= from_corner {
+        up
+    } else {
+        corner
+    }
+}

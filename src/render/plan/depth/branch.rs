@@ -1,0 +1,43 @@
+//! How rays continue from an object, and when they are cut.
+
+/// The most that cuts may take from a channel of a primary ray's colour: 1/1024 of a level of 1/255.
+pub(crate) const FAINT: f64 = 1.0 / (1024.0 * 255.0);
+
+/// The number of rays that a primary ray may cost before branches are cut one by one, each without regard to the
+/// others.
+pub(crate) const MANY: u32 = 4000;
+
+/// Bounds on what can be returned from where rays hit an object.
+#[derive(Clone, Copy)]
+pub(crate) struct Onward {
+    /// A bound on the light of the object's own surface, times the path length to the surface.
+    pub own: f64,
+    /// A bound on what rays that leave the object return, times the path length to the object.
+    pub beyond: f64,
+    /// How transmitted rays continue.
+    pub through: Branch,
+    /// How reflected rays continue.
+    pub mirrored: Branch,
+}
+
+/// How rays continue in one way.
+#[derive(Clone, Copy)]
+pub(crate) struct Branch {
+    /// The largest factor by which the rays' light is multiplied.
+    pub weight: f64,
+    /// The fraction of the allowance for cuts that the rays get.
+    pub share: f64,
+    /// The rays are cut where the path's weight times this number is less than its share times its length.
+    pub faint: f64,
+    /// After [`MANY`] rays, the rays are also cut where the path's weight times this number is less than its length.
+    pub faint_alone: f64,
+}
+
+impl Onward {
+    /// The value of an object from which no rays continue.
+    pub const NONE: Self = Self { own: 0.0, beyond: 0.0, through: Branch::NONE, mirrored: Branch::NONE };
+}
+
+impl Branch {
+    const NONE: Self = Self { weight: 0.0, share: 1.0, faint: 0.0, faint_alone: 0.0 };
+}

@@ -1,0 +1,96 @@
+//! How deep rays are followed into mirrors and glass: an upper bound on what a branch can still add to a pixel.
+//!
+//! **What a ray returns.** A ray that hits object `j` at a path length `d` from the viewer returns
+//!
+//! ```text
+//! kept_j * S / d  +  tint_j * transmitted light  +  specular_j * reflected light
+//! ```
+//!
+//! where `S` is the ambient colour plus the contribution of the lights, and the transmitted and the reflected ray
+//! return the same sum for the object that they hit, farther away. So rays that leave object `i` on one side, at a path
+//! length `d`, return at most `beyond / d`, where for each object `j` and side of it that they may hit
+//!
+//! ```text
+//! beyond(i, side) >= kept_j * S_j + T_j * beyond(j, other side) + s_j * beyond(j, same side)
+//! ```
+//!
+//! Each letter is the largest magnitude of any channel at any point: `T` of the tint, `s` of the specular colour, and
+//! `S` of ambient plus, for each light, emissivity times (diffuse divided by the least distance of the object from the
+//! light, plus specular if there are highlights). Cosines, their powers, and the fraction of a light that passes
+//! through glass are at most 1. Rays do not hit what lies behind the plane that they leave, nor the object that they
+//! leave if it cannot be hit again.
+//!
+//! Any solution of these inequalities is at least the least one, which is at least every sum of finitely many branches.
+//! A solution is searched for by iteration from below, and accepted when it satisfies the inequalities as it stands.
+//! Where mirrors and glass pass on as much light as they receive, there is none: then no branch is cut, and
+//! [`MAX_RAYS`](crate::render::limits::MAX_RAYS) ends what the path length does not.
+//!
+//! **What is cut.** A primary ray may lose [`FAINT`] in all, 1/1024 of a level. This allowance is shared among the
+//! branches. Let `P(i, side)` solve the inequalities with 1 for each `kept_j * S_j`. A ray whose share is `u * P` where
+//! it leaves one object gives its transmitted ray `u * (T_j + 1/2 / P) * P`, with the `P` of the object that this ray
+//! leaves and its side, and its reflected ray `u * (s_j + 1/2 / P) * P`: together `u * (T_j P + s_j P + 1)`, no more
+//! than its own. Where only one of the two rays continues, it gets the other half as well. A branch is cut where
+//! `weight * beyond / d < share * FAINT`, where `weight` is the product of all `T` and `s` on the path. With each step
+//! a branch's weight falls by more than its share does, so each branch ends; and the cuts in a ray's colour add up to
+//! less than [`FAINT`].
+//!
+//! Where glass and mirrors pass on nearly all that they receive, that takes very many rays. From the [`MANY`]th ray on,
+//! a branch is also cut where `weight * beyond / d < FAINT` by itself.
+
+mod branch;
+mod sides;
+mod solve;
+mod surface;
+
+#[cfg(test)]
+pub(crate) use branch::FAINT;
+pub(crate) use branch::{Branch, MANY, Onward};
+
+use crate::scene::model::Model;
+use crate::world::accuracy::Accuracy;
+use crate::world::material::Rgb;
+use solve::Scene;
+use surface::Surface;
+
+/// Bounds on what the branches of a scene with mirrors or glass can return.
+pub(crate) struct Depth {
+    /// A bound on any channel of what a primary ray returns, times the path length; infinite where there is none.
+    pub most: f64,
+    /// The bounds for each object, by the object's index.
+    pub objects: Vec<Onward>,
+}
+
+impl Depth {
+    /// Computes the bounds of a scene; `None` where no object reflects or transmits rays.
+    pub fn new(model: &Model) -> Option<Self> {
+        let looks: Vec<_> =
+            model.objects.iter().map(|object| object.shader.brightest(&object.material)).collect();
+        let shiny = model.objects.iter().zip(&looks).any(|(object, look)| {
+            object.material.transparency != 0.0 || look.is_none_or(|look| look.specular != Rgb::ZERO)
+        });
+        if !shiny {
+            return None;
+        }
+        let surfaces = Surface::all(model, &looks);
+        let cuts = model.camera.value.accuracy != Accuracy::Classic;
+        let (most, objects) = Scene::new(model, surfaces).bounds(cuts);
+        Some(Self { most, objects })
+    }
+
+    /// Returns a bound on what rays that leave the object of this index return, times the path length; for `None`, of
+    /// what primary rays return.
+    pub fn beyond(&self, leaves: Option<usize>) -> f64 {
+        leaves.map_or(self.most, |index| self.objects[index].beyond)
+    }
+
+    /// Disables all cuts.
+    #[cfg(test)]
+    pub fn uncut(mut self) -> Self {
+        for object in &mut self.objects {
+            for branch in [&mut object.through, &mut object.mirrored] {
+                (branch.faint, branch.faint_alone) = (f64::INFINITY, f64::INFINITY);
+            }
+        }
+        self
+    }
+}
