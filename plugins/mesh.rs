@@ -38,11 +38,10 @@ inventory::submit! {
         let body = if surface.materials.is_empty() {
             Body::plain(shape)
         } else {
-            let named = args.get(&crate::scene::entity::MATERIAL);
             let materials = surface.materials.iter().map(|name| args.setting.materials.get(name).cloned()).collect();
             let painted = Painted { surface: surface.clone(), materials };
             warnings.extend(unknown(args, &painted));
-            warnings.extend(unlike(&named, &painted));
+            warnings.extend(unlike(args, &painted));
             Body::shaded(shape, painted)
         };
         Ok(Body { warnings, bytes: surface.bytes(), ..body })
@@ -104,7 +103,11 @@ fn unknown(args: &Args, painted: &Painted) -> Option<Warning> {
 }
 
 /// Warns of materials whose shininess or transparency differs from that of the mesh, which are those of all its faces.
-fn unlike(own: &Material, painted: &Painted) -> Option<Warning> {
+fn unlike(args: &Args, painted: &Painted) -> Option<Warning> {
+    let own = args.values().find_map(|(_, datum)| match datum {
+        Datum::Material { material, .. } => Some(material),
+        _ => None,
+    })?;
     let is_unlike = |material: &Material| {
         material.shininess != own.shininess || material.transparency != own.transparency
     };

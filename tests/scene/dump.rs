@@ -132,7 +132,7 @@ fn any_values(attribute: &'static dyn Attribute) -> BoxedStrategy<String> {
             .prop_map(Datum::Numbers)
             .boxed(),
         Type::Name(Kind::Texture) => return Just(format!("{} t0\n", attribute.name())).boxed(),
-        Type::File => return Just(format!("{} ../scenes/entities/mesh.obj\n", attribute.name())).boxed(),
+        Type::File => return Just(format!("{} scenes/models/bowl.stl\n", attribute.name())).boxed(),
         Type::Word | Type::Name(_) => return Just(format!("{} m0\n", attribute.name())).boxed(),
         // A revsurf takes a surfer or a formula; the scenes have those.
         Type::Formula => return Just(String::new()).boxed(),

@@ -62,6 +62,26 @@ impl Faces for Nearest<'_> {
     }
 }
 
+/// The triangle of the face that the last ray hit: neighbouring rays often hit the same, and its normal takes many
+/// digits.
+pub(super) struct Last<A>(Option<(usize, Triangle<A>)>);
+
+impl<A: Bounded> Last<A> {
+    pub(super) fn none() -> Self {
+        Self(None)
+    }
+
+    /// Returns the triangle of a face.
+    #[inline(always)]
+    pub(super) fn triangle(&mut self, surface: &Surface, face: usize) -> &Triangle<A> {
+        if self.0.as_ref().is_none_or(|(last, _)| *last != face) {
+            self.0 = Some((face, surface.triangle(face)));
+        }
+        let (_, triangle) = self.0.as_ref().expect("a triangle");
+        triangle
+    }
+}
+
 /// What is known of a ray's first hit.
 pub(super) enum Known {
     /// A bracket of the distance.
@@ -101,9 +121,15 @@ impl Surface {
 
     /// Returns the bracket of a ray's first hit in a range: of width 0, where plain arithmetic finds the distance.
     #[inline(always)]
-    pub(super) fn bracket<A: Bounded>(&self, ray: &Ray, range: &RayRange, leaving: Leaving) -> Bracket {
+    pub(super) fn bracket<A: Bounded>(
+        &self,
+        ray: &Ray,
+        range: &RayRange,
+        leaving: Leaving,
+        last: &mut Last<A>,
+    ) -> Bracket {
         let (distance, bracket) = match self.first(ray, range, leaving, false) {
-            Known::Face(face, bracket) => (self.triangle::<A>(face).plane.quick_crossing(ray), bracket),
+            Known::Face(face, bracket) => (last.triangle(self, face).plane.quick_crossing(ray), bracket),
             Known::Bracket(bracket) if bracket.far < MISS => {
                 (self.refined::<A>(ray, range, leaving, bracket), bracket)
             }

@@ -1,7 +1,7 @@
 //! Meshes as shapes.
 
 use super::face::Leaving;
-use super::hits::{Known, NOTHING};
+use super::hits::{Known, Last, NOTHING};
 use super::surface::Surface;
 use crate::geometry::aabb::{Aabb, SLACK};
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
@@ -55,11 +55,11 @@ impl<A: Bounded> Mesh<A> {
     }
 
     #[inline(always)]
-    fn bracket(&self, ray: &Ray, range: &RayRange) -> Bracket {
+    fn bracket(&self, ray: &Ray, range: &RayRange, last: &mut Last<A>) -> Bracket {
         if range.origin_side.is_some() && !self.can_hit_itself {
             return Bracket::MISS;
         }
-        self.surface.bracket::<A>(ray, range, self.leaving(range.origin_side, range.origin_error))
+        self.surface.bracket(ray, range, self.leaving(range.origin_side, range.origin_error), last)
     }
 }
 
@@ -77,9 +77,10 @@ impl<A: Bounded> Hittable for Mesh<A> {
         self.surface.distance::<A>(ray, range, leaves)
     }
 
-    /// The normal of the nearest face, not smoothed.
+    /// The normal at the nearest face.
     fn normal(&self, at: DVec3) -> DVec3 {
-        self.surface.triangle::<A>(self.surface.face_at(at)).plane.normal
+        let face = self.surface.face_at(at);
+        self.surface.smoothed(face, at, self.surface.triangle::<A>(face).plane.normal)
     }
 
     fn bounds(&self) -> Option<Aabb> {
@@ -195,7 +196,7 @@ impl<A: Bounded> Packets for Shape<Mesh<A>, ByPackets, ByFaces> {
     }
 
     fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
-        self.shape.bracket(ray, range)
+        self.shape.bracket(ray, range, &mut Last::none())
     }
 
     fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
@@ -221,13 +222,14 @@ kernels! {
     fn brackets[A: Bounded](
         mesh: &Mesh<A>, rays: RayPacket, sides: Option<&[Side]>, ends: &[f64], near: &mut [f64], far: &mut [f64]
     ) {
+        let mut last = Last::none();
         for lane in 0..near.len() {
             let origin_side = sides.map(|sides| sides[lane]);
             let range = RayRange { far: ends[lane], origin_side, origin_error: rays.origin_error, ..RayRange::ALL };
             if is_copy(&rays, lane) && ends[lane] == ends[lane - 1] {
                 (near[lane], far[lane]) = (near[lane - 1], far[lane - 1]);
             } else {
-                Bracket { near: near[lane], far: far[lane] } = mesh.bracket(&rays.get(lane), &range);
+                Bracket { near: near[lane], far: far[lane] } = mesh.bracket(&rays.get(lane), &range, &mut last);
             }
         }
     }
@@ -259,7 +261,7 @@ kernels! {
         mesh: &Mesh<A>, rays: RayPacket, distances: &[f64], sides: &mut [Side], cosines: &mut [f64],
         travelled: &mut [f64]
     ) => points, normals {
-        let is_two_sided = mesh.is_two_sided();
+        let (is_two_sided, mut last) = (mesh.is_two_sided(), Last::<A>::none());
         for lane in 0..travelled.len() {
             let ray = rays.get(lane);
             if is_copy(&rays, lane) && distances[lane] == distances[lane - 1] {
@@ -269,7 +271,7 @@ kernels! {
             } else {
                 let point = ray.at(distances[lane]);
                 let face = mesh.surface.face_along::<A>(&ray, distances[lane]);
-                let flat = mesh.surface.triangle::<A>(face).plane.normal;
+                let flat = last.triangle(&mesh.surface, face).plane.normal;
                 let turn;
                 (sides[lane], cosines[lane], turn) = turned(ray.dir, flat, is_two_sided);
                 points.set(lane, point);

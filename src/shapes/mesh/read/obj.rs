@@ -1,6 +1,6 @@
 //! Wavefront OBJ: vertices, faces, and the names of their materials. All else is ignored.
 
-use super::{Broken, MAX_VERTICES, Model, coordinate, lines};
+use super::model::{Broken, MAX_VERTICES, Model, coordinate, lines};
 use crate::text;
 use glam::DVec3;
 use std::collections::HashMap;

@@ -1,6 +1,6 @@
 //! PLY, in text and in bytes of either order.
 
-use super::{Broken, MAX_VERTICES, Model, coordinate, lines};
+use super::model::{Broken, MAX_VERTICES, Model, coordinate, lines};
 use crate::text::abridged;
 use glam::DVec3;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};

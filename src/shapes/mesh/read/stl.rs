@@ -1,6 +1,6 @@
 //! STL, in text and in bytes.
 
-use super::{Broken, MAX_VERTICES, Model, coordinate, lines};
+use super::model::{Broken, MAX_VERTICES, Model, coordinate, lines};
 use crate::text;
 use glam::DVec3;
 
