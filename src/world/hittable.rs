@@ -23,6 +23,12 @@ pub trait Hittable: Send + Sync {
     /// Returns the unit normal at a point of the surface.
     fn normal(&self, at: DVec3) -> DVec3;
 
+    /// Returns the unit normal with which a point of the surface is shaded, where it is not that of the surface: that
+    /// of a mesh which looks smooth. `normal` is that of the surface, flipped to face the ray where both sides are lit.
+    fn shading_normal(&self, _at: DVec3, normal: DVec3) -> DVec3 {
+        normal
+    }
+
     /// Returns a bounding box of the shape, or `None` for an unbounded shape.
     fn bounds(&self) -> Option<Aabb> {
         None

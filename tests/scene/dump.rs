@@ -81,6 +81,9 @@ fn of_a_constructor(fault: &Fault) -> bool {
         "is defined",
         "squared",
         "has a profile",
+        "squares overflow",
+        "has no face with an area",
+        "without an area",
     ];
     found.iter().any(|words| fault.message.contains(words))
 }

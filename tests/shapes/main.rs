@@ -9,5 +9,6 @@ mod arithmetic;
 mod contract;
 mod double_double;
 mod implicit;
+mod mesh;
 mod notes;
 mod stability;

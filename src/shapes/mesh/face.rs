@@ -20,6 +20,9 @@ const AWAY_ERROR: f64 = 32.0 * f64::EPSILON;
 /// direction is off by 3, and components of a direction add up to at most 1.74: 1.74 * (10 + 2 * 6) = 39, less than 48.
 const TOWARD_ERROR: f64 = 24.0 * f64::EPSILON;
 
+/// Far more than what products lose that are too small for all digits: the sum of a few of 5e-324, times 1e152.
+const UNDERFLOW: f64 = 1e-170;
+
 /// What a ray may leave: bounds on the distance of its origin from the point that it stands for, in world units. The
 /// ray leaves the faces within that distance.
 #[derive(Clone, Copy)]
@@ -42,7 +45,8 @@ pub(super) fn t_bounds(corners: [DVec3; 3], ray: &Ray, range: &RayRange, leaving
     let normal = one.cross(other);
     let edges = one.abs().max_element() * other.abs().max_element();
     let (away, toward) = (normal.dot(between), normal.dot(ray.dir));
-    let (away_error, toward_error) = (AWAY_ERROR * edges * between.abs().max_element(), TOWARD_ERROR * edges);
+    let (away_error, toward_error) =
+        (AWAY_ERROR * edges * between.abs().max_element() + UNDERFLOW, TOWARD_ERROR * edges + UNDERFLOW);
     if leaving.most >= 0.0 {
         let size = normal.length();
         // The length is off by less than an error of a direction.
@@ -90,7 +94,11 @@ fn passed(corners: [DVec3; 3], ray: &Ray) -> Option<bool> {
     let one = a.cross(b).dot(ray.dir);
     let two = b.cross(c).dot(ray.dir);
     let three = c.cross(a).dot(ray.dir);
-    let errors = [size[0] * largest[1], size[1] * largest[2], size[2] * largest[0]];
+    let errors = [
+        size[0] * largest[1] + UNDERFLOW,
+        size[1] * largest[2] + UNDERFLOW,
+        size[2] * largest[0] + UNDERFLOW,
+    ];
     let (plus, minus) = (
         [one > errors[0], two > errors[1], three > errors[2]],
         [one < -errors[0], two < -errors[1], three < -errors[2]],

@@ -77,10 +77,13 @@ impl<A: Bounded> Hittable for Mesh<A> {
         self.surface.distance::<A>(ray, range, leaves)
     }
 
-    /// The normal at the nearest face.
+    /// The normal of the nearest face.
     fn normal(&self, at: DVec3) -> DVec3 {
-        let face = self.surface.face_at(at);
-        self.surface.smoothed(face, at, self.surface.triangle::<A>(face).plane.normal)
+        self.surface.triangle::<A>(self.surface.face_at(at)).plane.normal
+    }
+
+    fn shading_normal(&self, at: DVec3, normal: DVec3) -> DVec3 {
+        self.surface.smoothed(self.surface.face_at(at), at, normal)
     }
 
     fn bounds(&self) -> Option<Aabb> {

@@ -159,7 +159,8 @@ impl Tree {
                             square += outside * outside;
                         }
                         let distance = square.sqrt();
-                        if distance <= limit {
+                        // Boxes that do not exist are infinitely far away.
+                        if distance <= limit && distance < f64::INFINITY {
                             stack.push((distance, node.children[index]));
                         }
                     }

@@ -80,7 +80,8 @@ fn corner(word: &str, count: usize) -> Result<u32, String> {
         _ => usize::try_from(index.unsigned_abs()).ok().and_then(|back| count.checked_sub(back)),
     };
     found.filter(|index| *index < count).map(|index| index as u32).ok_or_else(|| {
-        let vertices = if count == 1 { "1 vertex".to_owned() } else { format!("{count} vertices") };
-        format!("there is no vertex {index}: {vertices} precede this face")
+        let before =
+            if count == 1 { "1 vertex precedes".to_owned() } else { format!("{count} vertices precede") };
+        format!("there is no vertex {index}: {before} this face")
     })
 }
