@@ -12,6 +12,7 @@ struct Angular(Anchor);
 impl Shader for Angular {
     /// Returns the same colours above and below the centre: the notes' test for the lower half, `coord.y < 3.0`, is
     /// always true.
+    #[inline]
     fn ambient(&self, _material: &Material, at: DVec3) -> Rgb {
         let DVec3 { x, y, .. } = at - self.0.origin;
         rainbow::colour(DVec2::new(x, -y.abs()))

@@ -86,6 +86,7 @@ impl Hittable for Ellipsoid<Classic> {
         range.keep(sphere::classic(from, dir, self.radius))
     }
 
+    #[inline]
     fn normal(&self, at: DVec3) -> DVec3 {
         self.normal_at(at)
     }
@@ -94,6 +95,7 @@ impl Hittable for Ellipsoid<Classic> {
         Some(self.around())
     }
 
+    #[inline]
     fn can_hit_itself(&self, _leaving: Side) -> bool {
         false
     }
@@ -109,6 +111,7 @@ impl<A: Bounded> Hittable for Ellipsoid<A> {
         range.keep(sphere::distance::<A>(&self.line(ray), self.radius, range.origin_side))
     }
 
+    #[inline]
     fn normal(&self, at: DVec3) -> DVec3 {
         self.normal_at(at)
     }
@@ -117,6 +120,7 @@ impl<A: Bounded> Hittable for Ellipsoid<A> {
         Some(self.around())
     }
 
+    #[inline]
     fn can_hit_itself(&self, leaving: Side) -> bool {
         leaving == Side::Inside
     }

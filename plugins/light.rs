@@ -36,10 +36,12 @@ impl PointLight {
 }
 
 impl Light for PointLight {
+    #[inline]
     fn location(&self) -> DVec3 {
         self.location
     }
 
+    #[inline]
     fn emissivity(&self, _toward: DVec3) -> Option<Rgb> {
         Some(self.emissivity)
     }

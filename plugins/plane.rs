@@ -37,10 +37,12 @@ impl Hittable for Plane<Classic> {
         self.keep(self.crossing(ray), ray, range)
     }
 
+    #[inline]
     fn normal(&self, _at: DVec3) -> DVec3 {
         self.normal
     }
 
+    #[inline]
     fn can_hit_itself(&self, _leaving: Side) -> bool {
         false
     }
@@ -69,10 +71,12 @@ impl<A: Bounded> Hittable for Plane<A> {
         self.keep(self.crossing(ray), ray, range)
     }
 
+    #[inline]
     fn normal(&self, _at: DVec3) -> DVec3 {
         self.normal
     }
 
+    #[inline]
     fn can_hit_itself(&self, _leaving: Side) -> bool {
         false
     }

@@ -43,12 +43,14 @@ impl<A: Send + Sync> Light for Projector<A>
 where
     FinitePlane<A>: Window,
 {
+    #[inline]
     fn location(&self) -> DVec3 {
         self.light.location
     }
 
     /// Light reaches a point only if the path from the light passes through the rectangle, and takes on the image's
     /// colour there.
+    #[inline]
     fn emissivity(&self, toward: DVec3) -> Option<Rgb> {
         let ray = Ray { origin: toward, dir: (self.light.location - toward).normalize() };
         let distance = self.window.crossing(&ray)?;

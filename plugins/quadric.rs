@@ -59,6 +59,7 @@ impl Hittable for Quadric<Classic> {
         self.classic_distance(ray, range)
     }
 
+    #[inline]
     fn normal(&self, at: DVec3) -> DVec3 {
         self.upright(at)
     }
@@ -67,6 +68,7 @@ impl Hittable for Quadric<Classic> {
         Some(self.around())
     }
 
+    #[inline]
     fn can_hit_itself(&self, _leaving: Side) -> bool {
         false
     }
@@ -88,6 +90,7 @@ impl<A: Bounded> Hittable for Quadric<A> {
         if quick.is_nan() { range.keep(self.exact_hit(ray, range.near)) } else { quick }
     }
 
+    #[inline]
     fn normal(&self, at: DVec3) -> DVec3 {
         self.upright(at)
     }

@@ -9,6 +9,7 @@ inventory::submit! {
 struct Rainbow(Anchor);
 
 impl Shader for Rainbow {
+    #[inline]
     fn ambient(&self, _material: &Material, at: DVec3) -> Rgb {
         6.0 * around(&self.0, at)
     }
@@ -20,6 +21,7 @@ impl Shader for Rainbow {
 
 /// Returns red, green and blue from 0 to 2 for a direction of the angle t: `1 + cos(2 t + k/3)` for channel k, with k/3
 /// in turns. The angle itself is not computed, which avoids the rounding of `acos` and arguments outside of its domain.
+#[inline]
 pub fn colour(toward: DVec2) -> Rgb {
     // At the point itself there is no direction, and all channels are equal.
     let DVec2 { x, y } = (toward / toward.abs().max_element()).try_normalize().unwrap_or(DVec2::ZERO);
@@ -38,6 +40,7 @@ pub fn brightest(times: f64, material: &Material) -> Option<Look> {
 }
 
 /// Returns the colour at a point, by its direction from an anchor in x and y.
+#[inline]
 pub fn around(anchor: &Anchor, at: DVec3) -> Rgb {
     colour((at - anchor.origin).truncate())
 }

@@ -10,6 +10,7 @@ inventory::submit! {
 struct RainbowTiles(Anchor);
 
 impl Shader for RainbowTiles {
+    #[inline]
     fn ambient(&self, material: &Material, at: DVec3) -> Rgb {
         if tiles::is_odd(at) { material.ambient } else { 6.0 * rainbow::around(&self.0, at) }
     }

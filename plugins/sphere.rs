@@ -68,6 +68,7 @@ impl Hittable for Sphere<Classic> {
         range.keep(sphere::classic(ray.origin - self.center, ray.dir, self.radius))
     }
 
+    #[inline]
     fn normal(&self, at: DVec3) -> DVec3 {
         (at - self.center).normalize()
     }
@@ -80,6 +81,7 @@ impl Hittable for Sphere<Classic> {
         Some(self.away(from))
     }
 
+    #[inline]
     fn can_hit_itself(&self, _leaving: Side) -> bool {
         false
     }
@@ -95,6 +97,7 @@ impl<A: Bounded> Hittable for Sphere<A> {
         range.keep(sphere::distance::<A>(&self.line(ray), self.radius, range.origin_side))
     }
 
+    #[inline]
     fn normal(&self, at: DVec3) -> DVec3 {
         (at - self.center).normalize()
     }
@@ -107,6 +110,7 @@ impl<A: Bounded> Hittable for Sphere<A> {
         Some(self.away(from))
     }
 
+    #[inline]
     fn can_hit_itself(&self, leaving: Side) -> bool {
         leaving == Side::Inside
     }

@@ -40,10 +40,12 @@ struct Spotlight {
 }
 
 impl Light for Spotlight {
+    #[inline]
     fn location(&self) -> DVec3 {
         self.light.location
     }
 
+    #[inline]
     fn emissivity(&self, toward: DVec3) -> Option<Rgb> {
         let cos = (toward - self.light.location).normalize().dot(self.axis);
         (cos > self.cos_edge).then_some(self.light.emissivity)

@@ -46,6 +46,7 @@ impl Picture {
     }
 
     /// Returns the texel at a point of the rectangle, each channel from 0 to 1.
+    #[inline]
     pub fn colour(&self, at: DVec3) -> Rgb {
         let across = self.rectangle.coordinates(at);
         let size = self.texture.size();
@@ -60,10 +61,12 @@ impl Picture {
 struct Textured(Picture);
 
 impl Shader for Textured {
+    #[inline]
     fn ambient(&self, material: &Material, at: DVec3) -> Rgb {
         material.ambient * self.0.colour(at)
     }
 
+    #[inline]
     fn diffuse(&self, material: &Material, at: DVec3) -> Rgb {
         material.diffuse * self.0.colour(at)
     }

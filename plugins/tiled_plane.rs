@@ -32,6 +32,7 @@ struct Tiles {
 impl Tiles {
     /// Returns the material of the tile at a point. Tiles are counted from the world's origin, not from the plane's
     /// point. The notes add the offset because a cast to an integer would make the tile at 0 twice as wide.
+    #[inline]
     fn material<'m>(&'m self, own: &'m Material, at: DVec3) -> &'m Material {
         let tile = |side: usize| ((self.sides[side].dot(at) + 100_000.0) / self.dimensions[side]).floor();
         if (tile(0) + tile(1)).rem_euclid(2.0) == 0.0 { &self.other } else { own }
@@ -39,10 +40,12 @@ impl Tiles {
 }
 
 impl Shader for Tiles {
+    #[inline]
     fn ambient(&self, material: &Material, at: DVec3) -> Rgb {
         self.material(material, at).ambient
     }
 
+    #[inline]
     fn diffuse(&self, material: &Material, at: DVec3) -> Rgb {
         self.material(material, at).diffuse
     }

@@ -9,6 +9,7 @@ inventory::submit! {
 struct Tiles;
 
 impl Shader for Tiles {
+    #[inline]
     fn ambient(&self, material: &Material, at: DVec3) -> Rgb {
         let Rgb { x: red, y: green, z: blue } = material.ambient;
         if is_odd(at) { Rgb::new(0.0, green, blue) } else { Rgb::new(red, green, 0.0) }
@@ -22,6 +23,7 @@ impl Shader for Tiles {
 
 /// Tells whether a point lies on an odd tile. The notes add the offset because a cast to an integer makes the tile at 0
 /// twice as wide; with `floor` in place of the cast, tiles are equally wide at any distance.
+#[inline]
 pub fn is_odd(at: DVec3) -> bool {
     let tile = |coordinate: f64| (2.0 * coordinate + 1000.0).floor();
     (tile(at.x) + tile(at.z)).rem_euclid(2.0) != 0.0

@@ -45,6 +45,7 @@ impl Hittable for Triangle<Classic> {
         if self.contains(ray.at(distance)) { distance } else { MISS }
     }
 
+    #[inline]
     fn normal(&self, _at: DVec3) -> DVec3 {
         self.plane.normal
     }
@@ -53,6 +54,7 @@ impl Hittable for Triangle<Classic> {
         Some(Aabb::around(&self.corners))
     }
 
+    #[inline]
     fn can_hit_itself(&self, _leaving: Side) -> bool {
         false
     }
@@ -73,6 +75,7 @@ impl<A: Bounded> Hittable for Triangle<A> {
         if self.is_passed_by(ray) { distance } else { MISS }
     }
 
+    #[inline]
     fn normal(&self, _at: DVec3) -> DVec3 {
         self.plane.normal
     }
@@ -81,6 +84,7 @@ impl<A: Bounded> Hittable for Triangle<A> {
         Some(Aabb::around(&self.corners))
     }
 
+    #[inline]
     fn can_hit_itself(&self, _leaving: Side) -> bool {
         false
     }

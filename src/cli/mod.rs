@@ -14,6 +14,8 @@ mod diff;
 mod dump;
 mod explain;
 mod failure;
+#[doc(hidden)]
+pub mod fuzz;
 mod grammar;
 mod input;
 mod interrupt;

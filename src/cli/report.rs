@@ -10,7 +10,8 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use image::{ImageFormat, RgbImage};
 use serde::Serialize;
-use similar::{ChangeTag, TextDiff};
+use similar::algorithms::{Capture, Compact, Replace, myers};
+use similar::{Change as LineChange, ChangeTag, DiffableStr};
 use std::io::{self, Cursor, Write};
 use std::path::{Path, PathBuf};
 
@@ -50,9 +51,9 @@ impl Change {
             }
             Self::Text { old: None, .. } => "new".to_owned(),
             Self::Text { old: Some(old), new } => {
-                let diff = TextDiff::from_lines(old, new);
-                let count = |tag| diff.iter_all_changes().filter(|line| line.tag() == tag).count();
-                format!("lines: {} removed, {} added", count(ChangeTag::Delete), count(ChangeTag::Insert))
+                let lines = diff(old, new);
+                let count = |sign| lines.iter().filter(|line| line.0 == sign).count();
+                format!("lines: {} removed, {} added", count('-'), count('+'))
             }
         }
     }
@@ -190,10 +191,7 @@ impl<'d> Shown<'d> {
                     tolerance: comparison.as_ref().map(|comparison| comparison.tolerance),
                 }
             }
-            Change::Text { old, new } => {
-                let diff = TextDiff::from_lines(old.as_deref().unwrap_or_default(), new);
-                Sides::Text { lines: diff.iter_all_changes().map(|line| line_of(&line)).collect() }
-            }
+            Change::Text { old, new } => Sides::Text { lines: diff(old.as_deref().unwrap_or_default(), new) },
         };
         let explanation = |Explanation { title, text }: &'d Explanation| (title.as_str(), text.as_str());
         Ok(Self {
@@ -213,7 +211,17 @@ fn data_uri(picture: &RgbImage) -> io::Result<String> {
     Ok(format!("data:image/png;base64,{}", STANDARD.encode(png.into_inner())))
 }
 
-fn line_of(line: &similar::Change<&str>) -> Line {
+/// Compares two texts line by line.
+fn diff(old: &str, new: &str) -> Vec<Line> {
+    let (old, new) = (old.tokenize_lines(), new.tokenize_lines());
+    // As `TextDiff` does it, which is made to be compiled with each of its algorithms for several types.
+    let mut found = Compact::new(Replace::new(Capture::new()), &old, &new);
+    let Ok(()) = myers::diff(&mut found, &old, 0..old.len(), &new, 0..new.len());
+    let found = found.into_inner().into_inner();
+    found.ops().iter().flat_map(|op| op.iter_changes(&old, &new)).map(|line| line_of(&line)).collect()
+}
+
+fn line_of(line: &LineChange<&str>) -> Line {
     let sign = match line.tag() {
         ChangeTag::Equal => ' ',
         ChangeTag::Delete => '-',

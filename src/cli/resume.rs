@@ -10,7 +10,7 @@ use crate::output::picture::Format;
 use crate::render::tiles::{Band, Tiles};
 use crate::scene::model::Model;
 use crate::text;
-use std::fs;
+use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
@@ -61,19 +61,32 @@ impl Begun {
             }
             file => file,
         };
-        let checkpoint = file.and_then(Checkpoint::open).map_err(|error| cannot_read(&path, &error))?;
-        let identity = identity(model, part)?;
-        let differences = identity.differences(&checkpoint.identity);
+        let begun = Self::read(path, file)?;
+        begun.belongs_to(&identity(model, part)?, part.size())?;
+        Ok(Some(begun))
+    }
+
+    /// Reads the beginning of a checkpoint.
+    pub fn read(path: PathBuf, file: io::Result<File>) -> Result<Self, Failure> {
+        match file.and_then(Checkpoint::open) {
+            Ok(checkpoint) => Ok(Self { path, checkpoint }),
+            Err(error) => Err(cannot_read(&path, &error)),
+        }
+    }
+
+    /// Refuses the checkpoint of another image than this one.
+    pub fn belongs_to(&self, identity: &Identity, size: [usize; 2]) -> Result<(), Failure> {
+        let differences = identity.differences(&self.checkpoint.identity);
         if !differences.is_empty() {
             return Err(Failure::Usage(
-                format!("`{shown}` belongs to another image: {}", differences.join(", ")),
+                format!("`{}` belongs to another image: {}", self.path.display(), differences.join(", ")),
                 Some(BEGIN_ANEW.to_owned()),
             ));
         }
-        if !checkpoint.fits(part.size()) {
-            return Err(cannot_read(&path, &io::ErrorKind::InvalidData.into()));
+        if !self.checkpoint.fits(size) {
+            return Err(cannot_read(&self.path, &io::ErrorKind::InvalidData.into()));
         }
-        Ok(Some(Self { path, checkpoint }))
+        Ok(())
     }
 
     /// Tells whether bands have been filled with the whole checkpoint.
@@ -152,7 +165,8 @@ pub fn leave(
     Ok(path)
 }
 
-fn identity(model: &Model, part: &Part) -> Result<Identity, Failure> {
+/// Describes what a part of a model's image depends on.
+pub fn identity(model: &Model, part: &Part) -> Result<Identity, Failure> {
     Identity::of(model, &part.columns, &part.rows).map_err(|error| {
         let reason = text::reason(&error);
         Failure::Failed(format!(

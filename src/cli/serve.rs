@@ -1,7 +1,7 @@
 //! A server for a page on this machine. It listens on the loopback address only.
 
-mod access;
-mod connections;
+pub(super) mod access;
+pub(super) mod connections;
 mod response;
 mod work;
 

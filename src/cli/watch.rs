@@ -1,11 +1,11 @@
 //! `tabray watch`: a page that shows the image while its scene is edited.
 
-mod answer;
-mod board;
+pub(super) mod answer;
+pub(super) mod board;
 mod browser;
 mod events;
 mod files;
-mod frame;
+pub(super) mod frame;
 
 use super::failure::{Failure, tell};
 use super::serve::{Server, Work};

@@ -207,7 +207,8 @@ pub struct Checkpoint {
     /// What the checkpoint's image depends on.
     pub identity: Identity,
     png: png::Reader<BufReader<File>>,
-    row: Vec<[u8; 4]>,
+    /// The number of columns, which may be wrong until [`fits`](Self::fits) is asked.
+    width: usize,
     /// The number of rows that are still to be read.
     rows: usize,
 }
@@ -218,46 +219,54 @@ impl Checkpoint {
     /// # Errors
     /// Those of the file; of kind `InvalidData` if it is not a checkpoint.
     pub fn open(file: File) -> io::Result<Self> {
-        let png = png::Decoder::new(BufReader::with_capacity(1 << 16, file)).read_info().map_err(invalid)?;
+        let mut png = png::Decoder::new(BufReader::with_capacity(1 << 16, file));
+        png.ignore_checksums(false);
+        let png = png.read_info().map_err(invalid)?;
         let info = png.info();
-        let text = info.utf8_text.iter().find(|text| text.keyword == KEYWORD);
+        // A compressed text might be a thousand times longer than the file.
+        let text = info.utf8_text.iter().find(|text| text.keyword == KEYWORD && !text.compressed);
         let identity = text.and_then(|text| serde_json::from_str::<Identity>(&text.get_text().ok()?).ok());
         let is_plain =
             png.output_color_type() == (png::ColorType::Rgba, png::BitDepth::Eight) && !info.interlaced;
         let identity = identity.filter(|_| is_plain).ok_or(io::ErrorKind::InvalidData)?;
-        let (row, rows) = (vec![[0; 4]; info.width as usize], info.height as usize);
-        Ok(Self { identity, png, row, rows })
+        let (width, rows) = (info.width as usize, info.height as usize);
+        Ok(Self { identity, png, width, rows })
     }
 
     /// Tells whether this can be the checkpoint of an image of this size: of the same width, and of the same height or
     /// cut off between two rows of tiles.
     pub fn fits(&self, [width, height]: [usize; 2]) -> bool {
-        self.row.len() == width
-            && (self.rows == height || self.rows < height && self.rows.is_multiple_of(TILE))
+        self.width == width && (self.rows == height || self.rows < height && self.rows.is_multiple_of(TILE))
     }
 
     /// Fills a band with the pixels that are already rendered, and leaves the rest. Bands must be passed in order, from
     /// the top.
     ///
     /// # Errors
-    /// Those of the file; of kind `InvalidData` if it is corrupt.
+    /// Those of the file; of kind `InvalidData` if it is corrupt. Some corruption is noticed only at the end of the file,
+    /// after earlier bands were filled.
     pub fn fill(&mut self, band: &Band) -> io::Result<()> {
+        let mut row = vec![[0; 4]; self.width];
         for index in 0..band.strips.len() {
             let Strip { pixels, tiles } = &mut *band.strip(index);
             if self.rows == 0 {
                 return Ok(());
             }
             tiles.fill(true);
-            for pixels in pixels.chunks_mut(self.row.len()) {
-                let read = self.png.read_row(self.row.as_flattened_mut()).map_err(invalid)?;
+            for pixels in pixels.chunks_mut(self.width) {
+                let read = self.png.read_row(row.as_flattened_mut()).map_err(invalid)?;
                 read.ok_or(io::ErrorKind::InvalidData)?;
                 self.rows -= 1;
-                for (column, (pixel, [red, green, blue, alpha])) in iter::zip(pixels, &self.row).enumerate() {
+                for (column, (pixel, [red, green, blue, alpha])) in iter::zip(pixels, &row).enumerate() {
                     *pixel = [*red, *green, *blue];
                     if *alpha != u8::MAX {
                         tiles[column / TILE] = false;
                     }
                 }
+            }
+            if self.rows == 0 {
+                // The checksums come after the pixels.
+                self.png.finish().map_err(invalid)?;
             }
         }
         Ok(())
@@ -274,5 +283,65 @@ fn invalid(error: png::DecodingError) -> io::Error {
     match error {
         png::DecodingError::IoError(error) if error.kind() != io::ErrorKind::UnexpectedEof => error,
         _ => io::ErrorKind::InvalidData.into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::output::picture::Format;
+    use std::io::Seek;
+
+    const SIZE: [usize; 2] = [20, 18];
+
+    /// Makes a file with these bytes.
+    fn file(bytes: &[u8]) -> File {
+        let mut file = tempfile::tempfile().expect("a temporary file");
+        file.write_all(bytes).and_then(|()| file.rewind()).expect("it is written");
+        file
+    }
+
+    fn blank() -> Band {
+        Band::blank(0..SIZE[0], 0..SIZE[1])
+    }
+
+    /// Returns all bytes and tiles of an image, as a checkpoint fills them.
+    fn filled(bytes: &[u8]) -> io::Result<(Vec<u8>, Vec<bool>)> {
+        let mut checkpoint = Checkpoint::open(file(bytes))?;
+        if !checkpoint.fits(SIZE) {
+            return Err(io::ErrorKind::InvalidData.into());
+        }
+        let band = blank();
+        checkpoint.fill(&band)?;
+        let tiles = (0..band.strips.len()).flat_map(|index| band.strip(index).tiles.clone()).collect();
+        Ok((band.bytes(usize::MAX).concat(), tiles))
+    }
+
+    #[test]
+    fn a_damaged_byte_anywhere_is_noticed_or_harmless() {
+        let pixels: Vec<u8> = (0..3 * SIZE[0] * SIZE[1]).map(|byte| (byte * byte / 97) as u8).collect();
+        let mut picture = file(b"");
+        Format::Ppm.write(&mut picture, SIZE, [Ok(pixels.clone())]).expect("a file takes it");
+        picture.rewind().expect("a file");
+        let band = blank();
+        (0..2).for_each(|index| band.strip(index).tiles.fill(true));
+        let mut tiles = Tiles::none(SIZE);
+        tiles.add(&band);
+        let picture = Format::Ppm.read(picture).expect("a picture");
+        let mut bytes = Vec::new();
+        write(&mut bytes, SIZE, &Identity::default(), &tiles, picture).expect("memory takes it");
+        let whole = (pixels, vec![true; 4]);
+        assert!(filled(&bytes).expect("nothing is damaged") == whole);
+        for at in 0..bytes.len() {
+            for mask in [1, 0x80, 0xff] {
+                let mut damaged = bytes.clone();
+                damaged[at] ^= mask;
+                assert!(
+                    filled(&damaged).is_ok_and(|filled| filled == whole) || filled(&damaged).is_err(),
+                    "{at}"
+                );
+            }
+            assert!(filled(&bytes[..at]).is_err(), "cut off at {at}");
+        }
     }
 }

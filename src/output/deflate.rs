@@ -27,6 +27,9 @@ pub enum Compression {
 /// The first two bytes of a zlib stream: deflate with a window of 32 KiB.
 const HEADER: [u8; 2] = [0x78, 0x01];
 
+/// The last block of a stream, without bytes.
+pub(super) const EMPTY_END: [u8; 5] = [1, 0, 0, 0xff, 0xff];
+
 /// The length of the checksum at the end of a zlib stream, in bytes.
 const TRAILER: usize = 4;
 

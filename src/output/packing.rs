@@ -1,6 +1,6 @@
 //! Divides the rows of a PNG into pieces of the same height, which are compressed on all threads.
 
-use crate::output::deflate::{Checksum, Compression, Packed, Piece};
+use crate::output::deflate::{Checksum, Compression, EMPTY_END, Packed, Piece};
 use crate::render::renderer::Renderer;
 use rayon::prelude::*;
 use std::io;
@@ -71,6 +71,10 @@ impl<'r> Packing<'r> {
                 Err(error) => {
                     self.end_piece();
                     self.pack(&mut put)?;
+                    if !self.above.is_empty() {
+                        // Decoders give out the last rows only of a stream that has an end.
+                        put(&[&EMPTY_END[..], &self.checksum.trailer()].concat())?;
+                    }
                     return Err(error);
                 }
             }

@@ -164,24 +164,46 @@ fn write_png(
 mod tests {
     use super::*;
     use crate::output::packing::PIECE;
+    use std::io::Seek;
 
     #[test]
-    fn a_png_is_the_same_picture_at_once_and_in_bands() {
-        for (width, height) in [(37, 29), (640, 640)] {
+    fn a_png_is_the_same_file_however_its_rows_come_and_on_any_threads() {
+        let renderers =
+            [None, Some(1), Some(3)].map(|threads| threads.map(|n| Renderer::new(n).expect("threads")));
+        for (width, height) in [(37, 29), (640, 640), (700, 2100)] {
             let pixels: Vec<u8> = (0..3 * width * height).map(|byte| (byte * byte / 977) as u8).collect();
             for compression in [Compression::Fast, Compression::Balanced, Compression::High] {
-                for rows in [height, height - 1, 7] {
+                let (mut files, format) = (Vec::new(), Format::Png(compression));
+                for (rows, renderer) in [height, height - 1, 7].into_iter().zip(&renderers) {
                     let (mut png, bands) =
                         (Vec::new(), pixels.chunks(3 * width * rows).map(|band| Ok(band.to_vec())));
-                    Format::Png(compression)
-                        .write(&mut png, [width, height], bands)
-                        .expect("memory takes it");
-                    let read = image::load_from_memory(&png).expect("a PNG").into_rgb8();
-                    assert!(
-                        read.into_raw() == pixels,
-                        "{width} x {height}, {rows} rows at a time, {compression:?}"
-                    );
+                    let written = format.write_on(renderer.as_ref(), &mut png, [width, height], bands);
+                    written.expect("memory takes it");
+                    files.push(png);
                 }
+                let read = image::load_from_memory(&files[0]).expect("a PNG").into_rgb8();
+                assert!(read.into_raw() == pixels, "{width} x {height}, {compression:?}");
+                assert!(files.iter().all(|file| *file == files[0]), "{width} x {height}, {compression:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_png_that_breaks_off_has_the_rows_before() {
+        let [width, height] = [700, 2100];
+        let pixels: Vec<u8> = (0..3 * width * height).map(|byte| (byte * byte / 977) as u8).collect();
+        for compression in [Compression::Fast, Compression::Balanced] {
+            let rows = pixels[..3 * width * 901].chunks(3 * width * 17).map(|rows| Ok(rows.to_vec()));
+            let mut file = tempfile::tempfile().expect("a file");
+            let broken = rows.chain([Err(io::ErrorKind::Other.into())]);
+            let written = Format::Png(compression).write(&mut file, [width, height], broken);
+            assert_eq!(written.expect_err("an error").kind(), io::ErrorKind::Other);
+            file.rewind().expect("a file");
+            let mut read = Format::Png(compression).read(file).expect("a PNG");
+            let mut row = vec![0; 3 * width];
+            for (index, expected) in pixels.chunks(3 * width).take(900).enumerate() {
+                read.next(&mut row).expect("a row");
+                assert!(row == expected, "{compression:?}, row {index}");
             }
         }
     }

@@ -24,6 +24,40 @@ impl TraceObserver for () {
     const SEES: bool = false;
 }
 
+/// An observer behind `dyn`: the tracer is compiled once for all that see events, and once for all that do not.
+pub(crate) struct DynObserver<'o, const SEES: bool>(pub &'o mut dyn Receiver);
+
+/// What a [`TraceObserver`] receives, for use behind `dyn`.
+pub(crate) trait Receiver {
+    /// Receives an event.
+    fn see(&mut self, event: Event);
+
+    /// Receives a count of work done or saved.
+    fn count(&mut self, count: Count);
+}
+
+impl<W: TraceObserver> Receiver for W {
+    fn see(&mut self, event: Event) {
+        TraceObserver::see(self, event);
+    }
+
+    fn count(&mut self, count: Count) {
+        TraceObserver::count(self, count);
+    }
+}
+
+impl<const SEES: bool> TraceObserver for DynObserver<'_, SEES> {
+    const SEES: bool = SEES;
+
+    fn see(&mut self, event: Event) {
+        Receiver::see(self.0, event);
+    }
+
+    fn count(&mut self, count: Count) {
+        Receiver::count(self.0, count);
+    }
+}
+
 /// Work that was done or saved. Counts are of single rays, not of packets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Count {

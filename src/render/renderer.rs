@@ -3,6 +3,7 @@
 use crate::render::bytes::to_bytes;
 use crate::render::observer::TraceObserver;
 use crate::render::plan::Plan;
+use crate::render::ray_stats::Cuts;
 use crate::render::tiles::{self, BAND, Band, Strip, TILE, locked};
 use crate::render::trace::{Scratch, Tracer};
 use crate::simd::cpu::Cpu;
@@ -78,7 +79,7 @@ impl Renderer {
     pub fn picture(&self, plan: &Plan) -> Vec<u8> {
         let [width, height] = plan.camera.pixels;
         let band = Band::blank(0..width, 0..height);
-        self.fill(plan, &band, Overseer { stops: &|| false, row: &|| () }, &|()| {});
+        self.fill(plan, &band, Overseer { stops: &|| false, row: &|| () }, &|_: Cuts| {});
         band.bytes(usize::MAX).concat()
     }
 

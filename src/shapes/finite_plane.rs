@@ -18,6 +18,7 @@ impl Hittable for FinitePlane<Classic> {
         if self.has_crossing(ray, distance) { distance } else { MISS }
     }
 
+    #[inline]
     fn normal(&self, _at: DVec3) -> DVec3 {
         self.plane.normal
     }
@@ -26,6 +27,7 @@ impl Hittable for FinitePlane<Classic> {
         Some(self.rectangle.around())
     }
 
+    #[inline]
     fn can_hit_itself(&self, _leaving: Side) -> bool {
         false
     }
@@ -46,6 +48,7 @@ impl<A: Bounded> Hittable for FinitePlane<A> {
         if self.has_crossing(ray, distance) { distance } else { MISS }
     }
 
+    #[inline]
     fn normal(&self, _at: DVec3) -> DVec3 {
         self.plane.normal
     }
@@ -54,6 +57,7 @@ impl<A: Bounded> Hittable for FinitePlane<A> {
         Some(self.rectangle.around())
     }
 
+    #[inline]
     fn can_hit_itself(&self, _leaving: Side) -> bool {
         false
     }

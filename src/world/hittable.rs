@@ -37,6 +37,7 @@ pub trait Hittable: Send + Sync {
     /// Tells whether a ray that leaves the shape on this side may hit it again. Where it may not, the ray is not tested
     /// against the shape. A plane is not hit again, a sphere only from inside. `true` is correct for every shape whose
     /// [`distance`](Self::distance) respects `range.origin_side`.
+    #[inline]
     fn can_hit_itself(&self, _leaving: Side) -> bool {
         true
     }

@@ -8,16 +8,19 @@ use glam::DVec3;
 /// The defaults are the material's, as in the notes' `material_getamb`, `material_getdiff` and `material_getspec`.
 pub trait Shader: Send + Sync {
     /// Returns the reflectivity for ambient light at a point, in world coordinates.
+    #[inline]
     fn ambient(&self, material: &Material, _at: DVec3) -> Rgb {
         material.ambient
     }
 
     /// Returns the diffuse reflectivity for light from the scene's lights at a point, in world coordinates.
+    #[inline]
     fn diffuse(&self, material: &Material, _at: DVec3) -> Rgb {
         material.diffuse
     }
 
     /// Returns the mirror reflectivity at a point, in world coordinates.
+    #[inline]
     fn specular(&self, material: &Material, _at: DVec3) -> Rgb {
         material.specular
     }

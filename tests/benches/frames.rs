@@ -1,4 +1,5 @@
-//! `cargo bench --bench frames`: whole frames without files being written, on one core and on two, and what a file adds.
+//! `cargo bench --bench frames`: the time of whole frames without writing a file, on one core and on two, and that of
+//! encoding a file.
 
 use divan::{Bencher, black_box, counter::ItemsCount};
 use tabray::output::{Compression, Format};
@@ -22,7 +23,7 @@ fn model(name: &str) -> Model {
     }
 }
 
-/// The items are the rays from the viewer.
+/// Measures frames; the items are the primary rays.
 #[divan::bench(args = SCENES, consts = [1, 2])]
 fn frame<const THREADS: usize>(bencher: Bencher, name: &str) {
     let (renderer, model) = (Renderer::new(THREADS).expect("threads"), model(name));
@@ -31,7 +32,7 @@ fn frame<const THREADS: usize>(bencher: Bencher, name: &str) {
     bencher.counter(ItemsCount::new(width * height)).bench_local(|| renderer.picture(&plan));
 }
 
-/// A PNG or a PPM of the first scene, in memory.
+/// Measures the encoding of the first scene as a PNG or a PPM, in memory.
 #[divan::bench(args = ["ppm", "png fast", "png default", "png best"])]
 fn encode(bencher: Bencher, format: &str) {
     let model = model(SCENES[0]);

@@ -1,6 +1,6 @@
-//! `cargo bench --bench hits`: what one ray's hit costs, by entity, and what it costs in packets.
+//! `cargo bench --bench hits`: the cost of a ray's hit for each entity, one ray at a time and in packets.
 //!
-//! The rays are those of the entity's own scene in `scenes/entities`, through every tenth pixel each way.
+//! The rays are those of the entity's own scene in `scenes/entities`, through every tenth pixel in both directions.
 
 use divan::{Bencher, black_box, counter::ItemsCount};
 use std::fs;
@@ -9,14 +9,14 @@ use tabray::geometry::{MISS, Nearest, Ray, RayPacket, RayRange};
 use tabray::scene::{self, Model, Registry};
 use tabray::simd::{Cpu, Vectors};
 
-/// The rays of a packet.
+/// The number of rays of a packet.
 const WIDE: usize = 64;
 
 fn main() {
     divan::main();
 }
 
-/// The entities that rays hit, by the names of their scenes.
+/// Returns the entities that rays hit, by the names of their scenes.
 fn shapes() -> impl Iterator<Item = String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/entities");
     let stem = |entry: fs::DirEntry| Some(entry.path().file_stem()?.to_str()?.to_owned());
@@ -40,7 +40,7 @@ fn load(name: &str) -> Model {
     }
 }
 
-/// The model, the entity's object in it, and rays.
+/// Returns the model, the index of the entity's object in it, and rays.
 fn setting(name: &str) -> (Model, usize, Vec<Ray>) {
     let model = load(name);
     let object = model.objects.iter().position(|object| object.args.entity.name == name);
@@ -51,7 +51,7 @@ fn setting(name: &str) -> (Model, usize, Vec<Ray>) {
     (model, object.expect("a shape of this type"), rays)
 }
 
-/// One ray after the other, as exactly as it gets.
+/// Measures one ray after another, with the exact distance.
 #[divan::bench(args = shapes())]
 fn distance(bencher: Bencher, name: &str) {
     let (model, object, rays) = setting(name);
@@ -63,7 +63,7 @@ fn distance(bencher: Bencher, name: &str) {
     });
 }
 
-/// Packets, with the best instructions of the machine.
+/// Measures packets, with the best instructions of the machine.
 #[divan::bench(args = shapes())]
 fn meet(bencher: Bencher, name: &str) {
     let (model, object, rays) = setting(name);

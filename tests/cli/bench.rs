@@ -8,7 +8,7 @@ use tabray::scene;
 use tabray::simd::Cpu;
 use tabray::tools::bench::scenes;
 
-/// Returns what the program prints in JSON.
+/// Runs `tabray bench`, and returns the values that it prints in JSON.
 fn measured(args: &[&str]) -> Vec<Value> {
     let run = cargo_bin_cmd!("tabray")
         .args(["bench", "--json", "--seconds", "0"])
@@ -19,7 +19,7 @@ fn measured(args: &[&str]) -> Vec<Value> {
     serde_json::from_slice(&run.get_output().stdout).expect("a list of scenes")
 }
 
-/// Returns how many rays of a kind a frame traces.
+/// Returns the number of rays of a kind that a frame traces.
 fn rays(scene: &Value, kind: &str) -> u64 {
     scene["rays"][kind]["rays"].as_u64().expect("a number of rays")
 }

@@ -264,7 +264,7 @@ fn a_scene_larger_than_any_scene_is_refused_in_bounded_memory() {
     let path = folder.path().join("huge.ray");
     let mut file = fs::File::create(&path).expect("a file");
     file.write_all(b"# a comment that goes on for ever").expect("room");
-    // The reader finds no NUL byte where it looks first, and a length for which no memory should be allocated.
+    // The reader finds no NUL byte where it looks first, and no memory should be allocated for such a length.
     file.set_len(1 << 36).expect("a file with a hole");
     let (status, _, err) = outcome(tabray(&folder).arg("check").arg(&path));
     assert_eq!(status, 2);

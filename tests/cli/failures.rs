@@ -180,7 +180,7 @@ fn too_few_open_files_are_a_failure_of_whatever_needs_one() {
             break;
         }
         assert!(matches!(status, Some(1 | 2 | 127)), "{line}");
-        // With even fewer, the program is not even started.
+        // With even fewer files, the shell cannot start the program.
         if status != Some(127) {
             told.insert(line);
         }
@@ -189,7 +189,7 @@ fn too_few_open_files_are_a_failure_of_whatever_needs_one() {
     assert_eq!(Vec::from_iter(told), said.map(|said| format!("error: {said}: too many open files\n")));
 }
 
-/// Another user, who may read this folder and its contents, and change nothing.
+/// Another user, who may read this folder and its contents but change nothing.
 struct Guest {
     folder: TempDir,
 }

@@ -8,14 +8,14 @@ fn objects(err: &str) -> Vec<Value> {
     err.lines().map(|line| serde_json::from_str(line).unwrap_or_else(|_| panic!("{line} is JSON"))).collect()
 }
 
-/// Returns the messages of a command about a faulty scene, in a form.
+/// Returns the exit status of `check` for a faulty scene, and its messages in this format.
 fn told(form: &str, text: &str) -> (i32, String) {
     let (status, _, err) =
         outcome(tabray(&folder()).args(["check", "-", "--message-format", form]).write_stdin(text));
     (status, err)
 }
 
-/// A Greek letter is two bytes and one column.
+/// A scene with several faults. Its Greek letter is two bytes and one column.
 const FAULTY: &str = "camera eye { pixeldim 8 6 worlddim 8 6 viewpoint 4 3 6 }\n\
                       sphere \u{3b2} { materail 5 center 1 2\n radius 1 radius 0 }\n";
 

@@ -1,11 +1,15 @@
-//! Writes what fuzzing starts from: the project's scenes as corpora, and the words of its tables as a dictionary.
+//! Writes the inputs that fuzzing starts from: the project's scenes as corpora, and the words of its tables as a
+//! dictionary.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 use tabray::scene::Registry;
 
-/// The files below a folder, in the order of their names.
+#[path = "target.rs"]
+mod target;
+
+/// Returns the files below a folder, sorted by path.
 fn files(folder: &Path) -> io::Result<Vec<PathBuf>> {
     let mut paths = fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<io::Result<Vec<_>>>()?;
     paths.sort();
@@ -30,12 +34,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         match path.extension().and_then(|extension| extension.to_str()) {
             Some(kind @ ("ray" | "toml")) => {
                 let is_toml = kind == "toml";
-                write(if is_toml { "toml" } else { "notes" }, index, &bytes)?;
+                let text = String::from_utf8_lossy(&bytes);
+                // Loading a profile takes longer than everything else. `render` starts from such scenes, too.
+                if bytes.len() <= 1024 && !text.contains("profile") {
+                    write(if is_toml { "toml" } else { "notes" }, index, &bytes)?;
+                }
                 for accuracy in 0..4 {
                     let first = accuracy + if is_toml { 4 } else { 0 };
                     write("render", 8 * index + usize::from(first), &[&[first], &*bytes].concat())?;
                 }
-                let text = String::from_utf8_lossy(&bytes);
                 formulas.extend(text.split('"').skip(1).step_by(2).map(str::to_owned));
             }
             Some("png" | "ppm" | "pgm" | "pbm") if bytes.len() < 1 << 14 => write("texture", index, &bytes)?,
@@ -45,6 +52,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for (index, formula) in formulas.iter().enumerate() {
         write("formula", index, formula.as_bytes())?;
     }
+    for (target, requests) in [("watch", &target::TO_WATCH[..]), ("review", &target::TO_REVIEW)] {
+        for (index, request) in requests.iter().enumerate() {
+            write(target, index, request.as_bytes())?;
+        }
+    }
+    for kind in 0..3 {
+        write("checkpoint", usize::from(kind), &[kind, 5, 0, 99, 1])?;
+    }
     let mut words = BTreeSet::new();
     for entity in Registry::get()?.iter() {
         words.insert(entity.name.to_owned());
@@ -52,7 +67,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     let functions = "sin cos tan exp ln sqrt abs floor min max 1e300 1e-320 -0 nan inf".split(' ');
     words.extend(functions.map(str::to_owned));
-    let lines: String = words.iter().map(|word| format!("\"{word}\"\n")).collect();
-    fs::write(out.join("words.dict"), lines)?;
+    let names = "GET POST HEAD HTTP/1.0 HTTP/1.1 Host: Origin: Sec-Fetch-Site: Sec-Fetch-Dest: Content-Length: \
+                 Transfer-Encoding: Connection: Expect: chunked close same-origin none cross-site document http:// \
+                 localhost:3000 ?token= TOKEN HOST SNAPSHOT VERSION /events /probe/1/ /layer/1/ /accept /reject \
+                 100-continue";
+    let requests = names.split_whitespace().chain(["\r\n", "\r\n\r\n"]).map(str::to_owned).collect();
+    for (name, words) in [("words.dict", words), ("requests.dict", requests)] {
+        let line = |word: &String| format!("\"{}\"\n", word.replace('\r', "\\x0d").replace('\n', "\\x0a"));
+        fs::write(out.join(name), words.iter().map(line).collect::<String>())?;
+    }
     Ok(())
 }

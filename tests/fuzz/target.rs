@@ -1,28 +1,31 @@
-//! What is done with the bytes that a fuzzer makes up. Each function is a target; it panics where a promise is broken.
+//! The fuzzing targets. Each target is a function of the bytes that a fuzzer generates, and panics if a promise is
+//! broken.
 #![allow(dead_code, reason = "each program uses one of these functions")]
 
-use std::fs;
-use std::path::Path;
+use std::fs::{self, File};
+use std::io::{Seek, Write};
+use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
+use tabray::cli::fuzz::{Image, Server};
 use tabray::numeric::double_double::DoubleDouble;
 use tabray::numeric::{Dual, Formula, Interval, Scalar, Wide};
 use tabray::render::{Plan, Renderer, to_byte, trace};
 use tabray::scene::{self, Loaded, Registry, Syntax, dump};
 use tabray::simd::Cpu;
 use tabray::world::{Accuracy, Material};
-use tempfile::NamedTempFile;
+use tempfile::{NamedTempFile, TempDir, tempfile_in};
 
 const SYNTAXES: [Syntax; 2] = [Syntax::Notes, Syntax::Toml];
 
-/// The longest list of messages that may come of one scene, in bytes.
+/// The maximum length of the messages about one scene, in bytes.
 const LONGEST_REPORT: usize = 1 << 20;
 
-/// A scene in the notes' syntax: it is refused with messages, or its dump is a scene with the same dump.
+/// Reads a scene in the notes' syntax: it is refused with messages, or its dump is a scene with the same dump.
 pub fn notes(bytes: &[u8]) {
     load_and_dump("scene.ray", bytes);
 }
 
-/// As [`notes`], for a scene in TOML.
+/// Reads a scene in TOML, which must satisfy the same as [`notes`].
 pub fn toml(bytes: &[u8]) {
     load_and_dump("scene.toml", bytes);
 }
@@ -30,19 +33,20 @@ pub fn toml(bytes: &[u8]) {
 fn load_and_dump(name: &str, bytes: &[u8]) {
     let Some(loaded) = load(name, bytes, None) else { return };
     let dumps = SYNTAXES.map(|syntax| dump::scene(&loaded.model, syntax));
-    for (syntax, text) in SYNTAXES.iter().zip(&dumps) {
-        let name = if *syntax == Syntax::Toml { "dump.toml" } else { "dump.ray" };
-        let again =
-            load(name, text.as_bytes(), None).unwrap_or_else(|| panic!("its own dump is refused:\n{text}"));
-        let again = SYNTAXES.map(|syntax| dump::scene(&again.model, syntax));
-        assert_eq!(dumps, again, "the dump of a dump differs");
-    }
+    // Making the surfaces of a scene takes most of the time, so only one of the dumps is read.
+    let chosen = bytes.len() % 2;
+    let (name, text) = (["dump.ray", "dump.toml"][chosen], &dumps[chosen]);
+    let again =
+        load(name, text.as_bytes(), None).unwrap_or_else(|| panic!("its own dump is refused:\n{text}"));
+    let again = SYNTAXES.map(|syntax| dump::scene(&again.model, syntax));
+    assert_eq!(dumps, again, "the dump of a dump differs");
 }
 
-/// The model of a scene, or nothing where it is refused. File names start from the folder of the project's scenes.
+static REGISTRY: LazyLock<&Registry> =
+    LazyLock::new(|| Registry::get().expect("no two plugins claim one name"));
+
+/// Returns the model of a scene, or nothing if it is refused. File names are relative to the project's folder `scenes`.
 fn load(name: &str, bytes: &[u8], accuracy: Option<Accuracy>) -> Option<Loaded> {
-    static REGISTRY: LazyLock<&Registry> =
-        LazyLock::new(|| Registry::get().expect("no two plugins claim one name"));
     let folder =
         Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().find(|folder| folder.join("scenes").is_dir());
     let folder = folder.expect("the project's folder").join("scenes");
@@ -57,7 +61,7 @@ fn load(name: &str, bytes: &[u8], accuracy: Option<Accuracy>) -> Option<Loaded> 
     }
 }
 
-/// A formula, evaluated with every type of number.
+/// Evaluates a formula with every number type.
 pub fn formula(bytes: &[u8]) {
     let Ok(formula) = str::from_utf8(bytes).map_err(drop).and_then(|text| Formula::parse(text).map_err(drop))
     else {
@@ -84,15 +88,16 @@ pub fn formula(bytes: &[u8]) {
     }
 }
 
-/// Whether something is an interval: its ends are in their order.
+/// Asserts that the ends of an interval are in order.
 fn holds(Interval { low, high }: Interval<f64>) {
     assert!(low <= high, "{low} to {high}");
 }
 
-/// The file of a texture, which is read or refused with a reason.
+/// Reads the file of a texture, which is accepted or refused with a reason. The checksums of a PNG are repaired first,
+/// since a fuzzer does not find right ones.
 pub fn texture(bytes: &[u8]) {
-    let file = NamedTempFile::new_in("/dev/shm").or_else(|_| NamedTempFile::new()).expect("a temporary file");
-    fs::write(&file, bytes).expect("it is written");
+    let file = NamedTempFile::new_in(memory()).expect("a temporary file");
+    fs::write(&file, with_checksums(bytes)).expect("it is written");
     let path = file.path().display();
     let scene = format!(
         "camera eye {{ pixeldim 2 2 worlddim 2 2 viewpoint 0 0 1 }} material plain {{ ambient 1 1 1 }} \
@@ -102,11 +107,12 @@ pub fn texture(bytes: &[u8]) {
     load("scene.ray", scene.as_bytes(), None);
 }
 
-/// A renderer for each kind of processor that this one can be.
+/// A renderer for each instruction set of this machine.
 static RENDERERS: LazyLock<Vec<Renderer>> =
     LazyLock::new(|| Cpu::all().map(|cpu| Renderer::new(1).expect("a thread").on(cpu)).collect());
 
-/// A scene, rendered small: packets of rays on every kind of processor, pixels alone, and nothing that is no number.
+/// Renders a small image of a scene: packets of rays, with every instruction set, give the same bytes as single rays,
+/// and no colour is NaN.
 pub fn render(bytes: &[u8]) {
     let [kind, text @ ..] = bytes else { return };
     let accuracy = Accuracy::ALL[usize::from(kind % 4)];
@@ -125,7 +131,7 @@ pub fn render(bytes: &[u8]) {
         assert!(!colour.is_nan(), "pixel {x} {y} has the colour {colour}");
         colour.to_array().map(to_byte)
     };
-    // On a renderer's thread, whose stack is as large as deep reflections need.
+    // The pixels are computed on a renderer's thread, whose stack has room for deep reflections.
     let alone = RENDERERS[0].run(|| {
         let pixels = (0..height).rev().flat_map(|y| (0..width).map(move |x| (x, y)));
         pixels.flat_map(|(x, y)| pixel(x, y)).collect::<Vec<u8>>()
@@ -133,4 +139,288 @@ pub fn render(bytes: &[u8]) {
     for renderer in &*RENDERERS {
         assert_eq!(renderer.picture(&plan), alone, "packets and single rays differ");
     }
+}
+
+/// Returns a folder in memory, if there is one, or else the folder of temporary files.
+fn memory() -> PathBuf {
+    Some(PathBuf::from("/dev/shm")).filter(|folder| folder.is_dir()).unwrap_or_else(std::env::temp_dir)
+}
+
+/// Returns a scene of a few pixels, with an object and a light.
+fn small(width: usize, height: usize) -> Loaded {
+    let scene = format!(
+        "camera eye {{ pixeldim {width} {height} worlddim 8 6 viewpoint 4 3 6 }} material grey {{ diffuse 6 6 6 }} \
+         sphere ball {{ material grey center 4 3 -4 radius 2 }} \
+         light lamp {{ location 4 8 2 emissivity 9 9 9 }}"
+    );
+    load("scene.ray", scene.as_bytes(), None).expect("a scene")
+}
+
+/// The width and the height of an image with a checkpoint, in pixels, and in tiles of 16 x 16 pixels.
+const UNFINISHED: [[usize; 2]; 2] = [[40, 36], [3, 3]];
+
+/// An image, its pixels, and two of its checkpoints, each with the tiles that are rendered in it.
+struct Unfinished {
+    image: Image,
+    pixels: Vec<[u8; 3]>,
+    checkpoints: [(Vec<bool>, Vec<u8>); 2],
+}
+
+// An image and a server are not shared between threads.
+thread_local! {
+    static UNFINISHED_IMAGE: Unfinished = {
+        let [[width, height], tiles] = UNFINISHED;
+        let image = Image::new(&small(width, height).model).expect("the program's own file");
+        let pixels: Vec<_> = (0..width * height).map(|at| [at, at / width, 37 * at].map(|byte| byte as u8)).collect();
+        let checkpoints = [[0, 1, 2, 3, 5], [0, 1, 2, 3, 4]].map(|done| {
+            let rendered: Vec<_> = (0..tiles[0] * tiles[1]).map(|tile| done.contains(&tile)).collect();
+            let file = image.checkpoint(&pixels, &rendered).expect("a temporary file");
+            (rendered, file)
+        });
+        Unfinished { image, pixels, checkpoints }
+    };
+}
+
+/// Reads the file of a checkpoint: arbitrary bytes, or a genuine file with some changes, whose checksums may be
+/// repaired. Nothing wrong is taken from it unless the checksums are repaired.
+pub fn checkpoint(bytes: &[u8]) {
+    let [kind, changes @ ..] = bytes else { return };
+    UNFINISHED_IMAGE.with(|Unfinished { image, pixels, checkpoints: [one, other] }| {
+        let mut file = tempfile_in(memory()).expect("a temporary file");
+        let mut resume = |bytes: &[u8]| {
+            file.rewind().and_then(|()| file.write_all(bytes)).expect("it is written");
+            file.set_len(bytes.len() as u64).and_then(|()| file.rewind()).expect("it is written");
+            image.resume(File::try_clone(&file).expect("a file"))
+        };
+        let filled = match kind % 3 {
+            // Nobody can guess the hash of this program.
+            0 => return assert!(resume(changes).is_none(), "something is not a checkpoint of this program"),
+            1 => resume(&changed(&one.1, &other.1, changes)),
+            _ => {
+                // Checksums protect against damaged files, not against a person.
+                resume(&with_checksums(&changed(&one.1, &other.1, changes)));
+                return;
+            }
+        };
+        let Some((filled, tiles)) = filled else { return };
+        let [[width, _], [wide, _]] = UNFINISHED;
+        for (at, (pixel, rendered)) in filled.iter().zip(pixels).enumerate() {
+            let tile = at / width / 16 * wide + at % width / 16;
+            assert!(!tiles[tile] || pixel == rendered, "pixel {at} was never rendered so");
+        }
+        for (tile, is_done) in tiles.iter().enumerate() {
+            assert!(!is_done || one.0[tile] || other.0[tile], "tile {tile} was never rendered");
+        }
+    });
+}
+
+/// Changes a file. Each change has four bytes: its kind, a position of two bytes, and a length or a value.
+fn changed(file: &[u8], other: &[u8], changes: &[u8]) -> Vec<u8> {
+    let mut file = file.to_vec();
+    for change in changes.chunks_exact(4) {
+        let &[what, high, low, value] = change else { continue };
+        let start = usize::from(u16::from_be_bytes([high, low])) % (file.len() + 1);
+        let end = file.len().min(start + usize::from(value));
+        match what % 7 {
+            0 => file.truncate(start),
+            1 => file.insert(start, value),
+            2 => drop(file.drain(start..end)),
+            3 => drop(file.splice(end..end, file[start..end].to_vec())),
+            4 => drop(file.splice(start..end, other[start.min(other.len())..end.min(other.len())].to_vec())),
+            5 => file.iter_mut().skip(start).take(1).for_each(|byte| *byte ^= value),
+            _ => file.iter_mut().skip(start).take(1).for_each(|byte| *byte = value),
+        }
+    }
+    file
+}
+
+/// Replaces the checksums of a PNG's chunks with the right ones. Other files stay as they are.
+fn with_checksums(file: &[u8]) -> Vec<u8> {
+    let (signature, mut rest) = file.split_at(file.len().min(8));
+    if signature != b"\x89PNG\r\n\x1a\n" {
+        return file.to_vec();
+    }
+    let mut right = signature.to_vec();
+    while let Some((length, after)) = rest.split_first_chunk() {
+        let length = 4 + u32::from_be_bytes(*length) as usize;
+        if after.len() < length + 4 {
+            break;
+        }
+        right.extend_from_slice(&rest[..4 + length]);
+        right.extend_from_slice(&checksum(&after[..length]).to_be_bytes());
+        rest = &after[length + 4..];
+    }
+    right.extend_from_slice(rest);
+    right
+}
+
+/// Returns the checksum of a PNG's chunk, a CRC-32.
+fn checksum(bytes: &[u8]) -> u32 {
+    !bytes.iter().fold(!0, |sum, byte| {
+        let step = |sum: u32, _| if sum & 1 == 1 { sum >> 1 ^ 0xedb8_8320 } else { sum >> 1 };
+        (0..8).fold(sum ^ u32::from(*byte), step)
+    })
+}
+
+/// The host that the servers believe to be.
+const HOST: &str = "127.0.0.1:3000";
+
+/// Sends bytes to a server, with `TOKEN` and other words replaced. Returns whether a request was let in.
+fn request(server: &Server, bytes: &[u8], words: &[(&str, &str)]) -> bool {
+    let token = server.url.split_once("token=").expect("a token").1;
+    let words: Vec<_> = words.iter().copied().chain([("TOKEN", token), ("HOST", HOST)]).collect();
+    let bytes = replaced(bytes, &words);
+    let served = server.serve(&bytes);
+    let sent = String::from_utf8_lossy(&served.sent);
+    let (head, _) = sent.split_once("\r\n\r\n").unwrap_or((&sent, ""));
+    let status = head.get(9..12).unwrap_or_default();
+    assert!(head.is_empty() || head.starts_with("HTTP/1."), "{head}");
+    assert!(!sent.contains(token), "the token is told: {sent}");
+    if !served.is_let_in {
+        assert!(["", "400", "403", "408", "413", "414", "431", "505"].contains(&status), "{head}");
+        return false;
+    }
+    assert!(may_enter(&bytes, token), "this was let in:\n{}", String::from_utf8_lossy(&bytes));
+    assert!(["200", "400", "404", "405", "409", "410"].contains(&status), "{head}");
+    assert!(head.contains("\r\ncache-control: no-store\r\n"), "{head}");
+    true
+}
+
+/// Replaces words, from left to right.
+fn replaced(bytes: &[u8], words: &[(&str, &str)]) -> Vec<u8> {
+    let (mut all, mut rest) = (Vec::new(), bytes);
+    while let [first, after @ ..] = rest {
+        match words.iter().find(|(word, _)| rest.starts_with(word.as_bytes())) {
+            Some((word, by)) => {
+                all.extend_from_slice(by.as_bytes());
+                rest = &rest[word.len()..];
+            }
+            None => {
+                all.push(*first);
+                rest = after;
+            }
+        }
+    }
+    all
+}
+
+/// Tells whether the head of a request has everything that only the printed page sends: the token, the host, and no
+/// foreign origin.
+fn may_enter(bytes: &[u8], token: &str) -> bool {
+    let text = String::from_utf8_lossy(bytes);
+    let mut lines = text.trim_start_matches(['\r', '\n']).lines();
+    let mut words = lines.next().unwrap_or_default().split(' ');
+    let (method, target) = (words.next().unwrap_or_default(), words.next().unwrap_or_default());
+    let query = target.split('#').next().and_then(|target| target.split_once('?')).map(|(_, query)| query);
+    let path = target.split(['?', '#']).next().unwrap_or_default();
+    let headers: Vec<_> = lines
+        .take_while(|line| !line.is_empty())
+        .filter_map(|line| line.split_once(':'))
+        .map(|(name, value)| {
+            (name.to_ascii_lowercase(), value.trim_matches([' ', '\t']).to_ascii_lowercase())
+        })
+        .collect();
+    let all = |wanted: &str| {
+        headers.iter().filter(|(name, _)| name == wanted).map(|(_, value)| value.as_str()).collect::<Vec<_>>()
+    };
+    let origins = [format!("http://{HOST}"), "http://localhost:3000".to_owned()];
+    let is_visit = method == "GET" && path.ends_with('/') && all("sec-fetch-dest") == ["document"];
+    query == Some(&format!("token={token}"))
+        && [&[HOST][..], &["localhost:3000"]].contains(&&all("host")[..])
+        && all("origin").iter().all(|origin| origins.iter().any(|ours| ours == origin))
+        && (method == "GET" || !all("origin").is_empty())
+        && (is_visit || all("sec-fetch-site").iter().all(|site| ["same-origin", "none"].contains(site)))
+}
+
+/// Requests to `tabray watch`, from its page and from others.
+pub const TO_WATCH: [&str; 7] = [
+    "GET /?token=TOKEN HTTP/1.1\r\nHost: HOST\r\nSec-Fetch-Dest: document\r\nSec-Fetch-Site: cross-site\r\n\r\n",
+    "GET /events?token=TOKEN HTTP/1.1\r\nHost: HOST\r\nSec-Fetch-Site: same-origin\r\n\r\n",
+    "GET /probe/1/4/3?token=TOKEN HTTP/1.1\r\nHost: HOST\r\nOrigin: http://HOST\r\n\r\n",
+    "GET /layer/1/depth?token=TOKEN HTTP/1.1\r\nHost: HOST\r\nConnection: close\r\n\r\n",
+    "GET /probe/2/9/9?token=TOKEN HTTP/1.0\nHost: localhost:3000\n\n",
+    "GET /events?token=0123456789abcdef0123456789abcdef HTTP/1.1\r\nHost: HOST\r\n\r\n",
+    "GET / HTTP/1.1\r\nHost: example.com\r\nOrigin: http://example.com\r\nCookie: token=TOKEN\r\n\r\n",
+];
+
+/// Requests to `tabray review`, from its page and from others.
+pub const TO_REVIEW: [&str; 5] = [
+    "GET /?token=TOKEN HTTP/1.1\r\nHost: HOST\r\nSec-Fetch-Site: none\r\n\r\n",
+    "POST /reject?token=TOKEN HTTP/1.1\r\nHost: HOST\r\nOrigin: http://HOST\r\nTransfer-Encoding: chunked\r\n\r\n\
+     2\r\n{}\r\n0\r\n\r\n",
+    "POST /accept?token=TOKEN HTTP/1.1\r\nHost: HOST\r\nOrigin: http://HOST\r\nContent-Length: 200\r\n\r\n\
+     {\"snapshot\": \"SNAPSHOT\", \"version\": \"VERSION\"}                                                        \
+                                                                                                                  ",
+    "POST /accept?token=TOKEN HTTP/1.1\r\nHost: HOST\r\nContent-Length: 2\r\n\r\n{}",
+    "POST /accept HTTP/1.1\r\nHost: HOST\r\nOrigin: http://HOST\r\nContent-Length: 2\r\n\r\n{}",
+];
+
+/// Connects to the server of `tabray watch`, which answers nothing without the token.
+pub fn watch(bytes: &[u8]) {
+    thread_local! {
+        static SERVER: Server = Server::watch(small(8, 6)).expect("a server");
+    }
+    SERVER.with(|server| request(server, bytes, &[]));
+}
+
+/// A folder with two snapshots that await a decision, and the server that shows them.
+struct Waiting {
+    folder: TempDir,
+    server: Server,
+    /// The path and the content of each file.
+    files: Vec<(PathBuf, Vec<u8>)>,
+}
+
+impl Waiting {
+    fn new() -> Self {
+        let folder = TempDir::new_in(memory()).expect("a folder");
+        let header = "---\nsource: a.rs\n---\n";
+        let files = ["one.snap", "one.snap.new", "two.snap", "two.snap.new"]
+            .map(|name| (folder.path().join(name), format!("{header}{name}\n").into_bytes()));
+        let server = Server::review(&REGISTRY, folder.path()).expect("a server");
+        let waiting = Self { folder, server, files: files.into() };
+        waiting.restore();
+        waiting
+    }
+
+    fn restore(&self) {
+        for (path, content) in &self.files {
+            fs::write(path, content).expect("it is written");
+        }
+    }
+
+    /// Tells whether all files are as they were.
+    fn is_untouched(&self) -> bool {
+        fs::read_dir(self.folder.path()).is_ok_and(|entries| entries.count() == self.files.len())
+            && self.files.iter().all(|(path, content)| fs::read(path).is_ok_and(|is| is == *content))
+    }
+}
+
+/// Connects to the server of `tabray review`. Snapshots change only if the request is let in and names a snapshot as
+/// the page shows it, here as `SNAPSHOT` and `VERSION`.
+pub fn review(bytes: &[u8]) {
+    thread_local! {
+        static WAITING: (Waiting, String) = {
+            let waiting = Waiting::new();
+            let token = waiting.server.url.split_once("token=").expect("a token").1;
+            let request = format!("GET /?token={token} HTTP/1.1\r\nHost: {HOST}\r\n\r\n");
+            let page = waiting.server.serve(request.as_bytes()).sent;
+            let page = String::from_utf8_lossy(&page).into_owned();
+            let (_, version) = page.split_once(r#""version":""#).expect("a version");
+            let version = version.split('"').next().expect("a version").to_owned();
+            (waiting, version)
+        };
+    }
+    WAITING.with(|(waiting, version)| {
+        let snapshot = waiting.files[0].0.display().to_string();
+        let is_let_in = request(&waiting.server, bytes, &[("SNAPSHOT", &snapshot), ("VERSION", version)]);
+        if !waiting.is_untouched() {
+            let says = |word: &str| bytes.windows(word.len()).any(|window| window == word.as_bytes());
+            let is_said = ["POST", "TOKEN", "SNAPSHOT", "VERSION"].into_iter().all(says);
+            assert!(is_let_in && is_said, "this changed the snapshots:\n{}", String::from_utf8_lossy(bytes));
+            let other = &waiting.files[2..];
+            assert!(other.iter().all(|(path, content)| fs::read(path).is_ok_and(|is| is == *content)));
+            waiting.restore();
+        }
+    });
 }

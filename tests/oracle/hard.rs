@@ -1,5 +1,5 @@
-//! Random shapes with a formula for their hits, and rays that are hard for them: from afar, along their edges, past their
-//! silhouettes, almost in their planes.
+//! Random shapes with a formula for their hits, and rays that are hard for them: from afar, along edges, past
+//! silhouettes, and almost within planes.
 
 use super::Truth;
 use super::rays::{Random, toward};
@@ -9,32 +9,32 @@ use glam::{DMat3, DVec2, DVec3};
 use tabray::geometry::{Ray, RayRange};
 use tabray::world::Hittable;
 
-/// The first hit of a line beyond a distance.
+/// A function that returns the first hit of a line beyond a distance.
 type FirstHit = Box<dyn Fn(&Line, f64) -> Truth>;
 
-/// A random point of a surface with its normal, where there is one.
+/// A function that returns a random point of a surface and its normal, if it finds one.
 type RandomPlace = dyn Fn(&mut Random) -> Option<(DVec3, DVec3)>;
 
-/// A shape as a scene spells it, and its truth.
+/// A shape, as a scene's text and as its truth.
 pub struct Subject {
-    /// The entity, of a material `m`.
+    /// The text of the entity, with a material `m`.
     pub text: String,
-    /// The first hit of a ray that is farther than a distance.
+    /// The function that returns the first hit of a ray beyond a distance.
     truth: FirstHit,
-    /// A ball that holds what there is to aim at.
+    /// The middle of a sphere that contains what rays are aimed at; `reach` is its radius in world units.
     middle: DVec3,
     reach: f64,
-    /// What a ray that is hard for it comes near.
+    /// The boundary that hard rays come close to.
     brink: Brink,
 }
 
-/// What decides between a hit and a miss.
+/// The boundary between a hit and a miss.
 enum Brink {
-    /// The silhouette: rays touch it.
+    /// The silhouette, to which rays are tangent.
     Round(Box<RandomPlace>),
-    /// The edges of a part of a plane: from, to, and inward.
+    /// The edges of a part of a plane, each with its ends and its inward direction.
     Edges(Vec<(DVec3, DVec3, DVec3)>),
-    /// The directions in a plane with this unit normal.
+    /// The directions in an unbounded plane with this unit normal.
     Endless(DVec3),
 }
 
@@ -52,17 +52,17 @@ fn vector(random: &mut Random, most: f64) -> DVec3 {
     DVec3::from([0; 3].map(|_| random.between(-most, most)))
 }
 
-/// 10 to a random power.
+/// Returns 10 to a random power.
 fn magnitude(random: &mut Random, from: f64, to: f64) -> f64 {
     10_f64.powf(random.between(from, to))
 }
 
-/// A random place, mostly behind the screen.
+/// Returns a random point, mostly behind the image plane.
 fn place(random: &mut Random) -> DVec3 {
     vector(random, 8.0) - DVec3::new(0.0, 0.0, 12.0)
 }
 
-/// A random shape of a kind.
+/// Returns a random shape of a kind.
 pub fn subject(kind: &str, random: &mut Random) -> Subject {
     match kind {
         "sphere" => ellipsoid(random, true),
@@ -77,7 +77,7 @@ pub fn subject(kind: &str, random: &mut Random) -> Subject {
 
 fn ellipsoid(random: &mut Random, is_sphere: bool) -> Subject {
     let center = place(random);
-    // Half axes of 1e9 : 1 at most.
+    // The ratio of the half axes is at most 1e9 : 1.
     let (radius, scale, text) = if is_sphere {
         let radius = magnitude(random, -3.0, 2.0);
         (radius, DVec3::ONE, format!("sphere s {{ material m center {} radius {radius:?} }}", spelt(center)))
@@ -105,7 +105,7 @@ fn ellipsoid(random: &mut Random, is_sphere: bool) -> Subject {
     }
 }
 
-/// The coefficients of `(p - m)·S(p - m) = j`.
+/// Returns the coefficients of `(p - m)·S(p - m) = j`.
 fn moved(square: DMat3, middle: DVec3, j: f64) -> [f64; 10] {
     let linear = -2.0 * (square * middle);
     let [a, b, c] = [square.x_axis.x, square.y_axis.y, square.z_axis.z];
@@ -117,25 +117,25 @@ fn quadric(random: &mut Random) -> Subject {
     let mut coefficients: [f64; 10];
     let (mut middle, mut reach, mut boxed) = (DVec3::ZERO, 3.0, 1e9);
     match random.below(5) {
-        // A ball or what is stretched and leans, its middle up to 1e4 away from its center.
+        // A sphere or a tilted ellipsoid, whose middle is up to 1e4 away from its `center`.
         0 => {
             middle = magnitude(random, 0.0, 4.0) * random.direction();
             let axes = DMat3::from_cols(random.direction(), random.direction(), random.direction());
             let square = if random.below(2) == 0 { DMat3::IDENTITY } else { axes * axes.transpose() };
             coefficients = moved(square, middle, magnitude(random, -1.0, 1.0));
         }
-        // Whole numbers: bowls, saddles, cones, cylinders, planes, cut by a box.
+        // Integer coefficients: bowls, saddles, cones, cylinders and planes, clipped to a box.
         1 => {
             coefficients = [0; 10].map(|_| f64::from(random.below(7)) - 3.0);
             boxed = 4.0;
         }
-        // A ball that touches its box.
+        // A sphere that touches its box.
         2 => {
             let radius = random.between(0.1, 2.0);
             coefficients = [1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, radius * radius];
             boxed = radius;
         }
-        // Two planes, next to each other.
+        // Two planes close to each other.
         3 => {
             let normal = DVec3::from([0; 3].map(|_| f64::from(random.below(5)) - 2.0));
             let normal = if normal == DVec3::ZERO { DVec3::ONE } else { normal };
@@ -143,7 +143,7 @@ fn quadric(random: &mut Random) -> Subject {
             coefficients = moved(square, DVec3::ZERO, magnitude(random, -16.0, 0.0));
             boxed = 50.0;
         }
-        // Any.
+        // Any coefficients.
         _ => {
             coefficients = [0; 10].map(|_| random.between(-1.0, 1.0));
             boxed = 6.0;
@@ -189,7 +189,7 @@ fn quadric(random: &mut Random) -> Subject {
 fn triangle(random: &mut Random) -> Subject {
     let a = place(random);
     let b = a + magnitude(random, -2.0, 2.0) * random.direction();
-    // As thin as 1e-12 of its length.
+    // The triangle is as thin as 1e-12 of its length.
     let width = magnitude(random, -12.0, 0.0) * (b - a).length();
     let c = a + random.between(-0.5, 1.5) * (b - a) + width * random.direction();
     let text =
@@ -205,7 +205,7 @@ fn triangle(random: &mut Random) -> Subject {
     }
 }
 
-/// A vector that no axis is along, or one that is.
+/// Returns a random normal, not of unit length in general: in any direction, of small integers, or along an axis.
 fn normal(random: &mut Random) -> DVec3 {
     match random.below(3) {
         0 => random.direction() * magnitude(random, -3.0, 3.0),
@@ -266,7 +266,7 @@ fn rectangle(random: &mut Random) -> Subject {
     }
 }
 
-/// The truth of what is met at most once.
+/// Returns the truth, beyond a distance, of a shape that is met at most once.
 fn beyond(truth: impl Fn(&Line) -> Truth + 'static) -> FirstHit {
     Box::new(move |line, near| match truth(line) {
         Truth::Hit(hit) if hit.t <= near.into() => Truth::Miss,
@@ -275,12 +275,12 @@ fn beyond(truth: impl Fn(&Line) -> Truth + 'static) -> FirstHit {
 }
 
 impl Subject {
-    /// The first hit of a ray that is farther than a distance.
+    /// Returns the first hit of a ray beyond a distance.
     pub fn truth(&self, line: &Line, near: f64) -> Truth {
         (self.truth)(line, near)
     }
 
-    /// A random ray of a set.
+    /// Returns a random ray of a set.
     pub fn ray(&self, set: &str, random: &mut Random) -> Ray {
         match set {
             "camera" => {
@@ -295,7 +295,7 @@ impl Subject {
         }
     }
 
-    /// A point of it or around it.
+    /// Returns a point of the shape or close to it.
     fn target(&self, random: &mut Random) -> DVec3 {
         match &self.brink {
             Brink::Edges(edges) if random.below(4) != 0 => {
@@ -307,7 +307,7 @@ impl Subject {
         }
     }
 
-    /// A ray that passes what decides by 1e-2 to 1e-15, from next to it to far away.
+    /// Returns a ray that passes the boundary at 1e-2 to 1e-15, from close to it or from far away.
     fn grazing(&self, random: &mut Random) -> Ray {
         let apart = magnitude(random, -15.0, -2.0) * if random.below(2) == 0 { 1.0 } else { -1.0 };
         let farthest = if random.below(4) == 0 { 9.0 } else { 1.3 };
@@ -335,11 +335,11 @@ impl Subject {
         }
     }
 
-    /// Counts a ray's hit by the program, against its truth.
+    /// Counts the program's hit of a ray, compared with its truth.
     pub fn count(&self, tally: &mut Tally, shape: &dyn Hittable, ray: &Ray, truth: Truth) {
         let found = shape.distance(ray, &RayRange::ALL);
         let hit = truth.hit();
-        // What is nearer to another hit is that one, but for what rounding makes of two that are almost one.
+        // A distance closer to another hit belongs to that hit, unless rounding makes the two hits nearly one.
         let sure = hit.map_or(0.0, |hit| 64.0 * ulp(hit.t.high));
         let slant = hit.map_or(1.0, |hit| shape.normal(ray.at(hit.t.high)).dot(ray.dir).abs());
         let off_surface = |found: f64| hit.map_or(0.0, |hit| (hit.t - found.into()).high.abs() * slant);

@@ -16,7 +16,7 @@ pub enum Truth {
     Hit(Hit),
     /// The ray misses the surface.
     Miss,
-    /// So close to the boundary between a hit and a miss that the numbers of the scene do not decide.
+    /// The ray is so close to the boundary between a hit and a miss that the numbers of the scene do not decide.
     Undecided,
 }
 
@@ -40,7 +40,7 @@ impl Truth {
     }
 }
 
-/// Which crossings of a surface count.
+/// The crossings of a surface that count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Crossings {
     /// All crossings.

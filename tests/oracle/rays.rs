@@ -22,7 +22,7 @@ impl Random {
         Self(Pcg32::new(0, sequence))
     }
 
-    /// Returns a number between two, uniformly distributed.
+    /// Returns a number between two others, uniformly distributed.
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
         let part = (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
         low + (high - low) * part

@@ -176,9 +176,9 @@ struct Search<'s> {
 
 /// What is known of a piece of a ray.
 enum Piece {
-    /// No root.
+    /// The piece has no root.
     Empty,
-    /// At most one root, and one if the signs at its ends differ.
+    /// The piece has at most one root, and has one if the signs at its ends differ.
     Monotone,
     /// Nothing is known.
     Open,

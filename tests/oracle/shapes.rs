@@ -193,7 +193,7 @@ pub fn sphere(center: DVec3, radius: f64, line: &Line, near: f64) -> Truth {
 
 /// The part in a box of the quadric Axx + Byy + Czz + Dxy + Exz + Fyz + Gx + Hy + Iz = J, relative to a center.
 pub struct Quadric {
-    /// A to J.
+    /// The coefficients A to J.
     pub coefficients: [f64; 10],
     /// The origin of x, y and z.
     pub center: DVec3,
@@ -205,7 +205,7 @@ impl Quadric {
     /// Returns the first hit of a ray beyond `near`.
     pub fn first_hit(&self, line: &Line, near: f64) -> Truth {
         let [a, b, c, d, e, f, g, h, i, j] = self.coefficients.map(big);
-        // Twice the symmetric matrix of the second degree times a vector.
+        // Returns a vector multiplied by twice the symmetric matrix of the quadratic terms.
         let two = big(2.0);
         let turned = |[x, y, z]: &Vector| -> Vector {
             [

@@ -1,4 +1,4 @@
-//! `docs/differences.md`: each difference has a scene that loads, and what the page says of it is true.
+//! Checks of `docs/differences.md`: each difference has a scene that loads, and what the page says about it is true.
 
 use crate::common::program::{folder, outcome, tabray};
 use crate::common::{registry, render, root};
@@ -154,7 +154,7 @@ const CHECKS: &[Check] = &[
         assert_eq!(above(Exact), 0);
     }),
     ("Distant spheres", |scene| {
-        // A disc of radius 2 on an image plane of 8 by 6 at the same distance.
+        // The sphere is seen as a disc of radius 2 on an image plane of 8 by 6 units at the same distance.
         let disc = 40.0 * 30.0 * 4.0 * PI / 48.0;
         assert!((scene.lit(Exact) as f64 - disc).abs() < 0.05 * disc);
         assert!((scene.lit(Classic) as f64 - disc).abs() > 0.5 * disc);
@@ -183,14 +183,15 @@ const CHECKS: &[Check] = &[
         assert!(far.without("sphere").colour(Exact).abs_diff_eq(DVec3::splat(1.0 / 100.0), 1e-14));
     }),
     ("Highlights in mirrors", |scene| {
-        // Lamps and sphere are placed so that the image is its own mirror image, except for the sphere's position.
+        // The lamps and the sphere are placed so that the image is its own mirror image, except for the sphere's
+        // position.
         assert_eq!(scene.picture(Classic), scene.picture(Exact));
         let mirrored = scene.with("center 3", "center 5").picture(Exact);
         assert!(same(&image::imageops::flip_horizontal(&mirrored), &scene.picture(Exact)));
     }),
     ("The slope of the cone", |scene| {
         for accuracy in [Classic, Exact] {
-            // 2x, -2 g g', 2z at x = 0, y = 3 and z = 2 from the axis, where g = 2 and g' = -4/6.
+            // The normal is (2x, -2 g g', 2z) at x = 0, y = 3 and z = 2 from the axis, where g = 2 and g' = -4/6.
             let normal = scene.model(accuracy).objects[0].shape.normal(dvec3(4.0, 3.0, -2.0));
             assert!(normal.abs_diff_eq(dvec3(0.0, 8.0 / 3.0, 4.0).normalize(), 1e-15), "{normal}");
         }
@@ -205,7 +206,7 @@ const CHECKS: &[Check] = &[
     }),
     ("Shadows behind glass", |scene| {
         for accuracy in [Classic, Exact] {
-            // The shadow ray from what this pixel shows to the lamp would, beyond the lamp, hit the board.
+            // The shadow ray from the point that this pixel shows would hit the board beyond the lamp.
             let seen = |scene: &Scene| trace::pixel(&Plan::new(&scene.model(accuracy)), 11, 15);
             assert_eq!(seen(&scene), seen(&scene.without("fplane")));
             assert!(seen(&scene).x > 0.0);
@@ -362,7 +363,7 @@ const CHECKS: &[Check] = &[
     }),
 ];
 
-/// Differences of rays that leave a surface, and of what light does from there on.
+/// Differences that concern rays that leave a surface, and the light along them.
 const RAYS_THAT_GO_ON: &[Check] = &[
     ("Glass spheres", |scene| {
         let tint = 0.8 * dvec3(1.0, 0.5, 0.25);
@@ -387,7 +388,8 @@ const RAYS_THAT_GO_ON: &[Check] = &[
     }),
     ("A mirror from inside", |scene| {
         assert_eq!(scene.colour(Classic), DVec3::ZERO);
-        // Through the centre, every segment but the first has length 4; the last one begins at 18.
+        // The ray passes through the centre, so every segment but the first has a length of 4; the last one begins at
+        // 18.
         let seen: f64 = (0..6).map(|bounce| 0.5_f64.powi(bounce) / (2.0 + 4.0 * f64::from(bounce))).sum();
         let exact = scene.colour(Exact);
         assert!(exact.abs_diff_eq(DVec3::splat(seen), 1e-14), "{exact} is not {seen}");
@@ -419,7 +421,7 @@ const RAYS_THAT_GO_ON: &[Check] = &[
         }
     }),
     ("The depth of reflections and transmissions", |scene| {
-        // Summed over all paths between the panes up to 20 units long, many of which share a pane, a direction and a
+        // The sum over all paths between the panes of up to 20 units, many of which share a pane, a direction and a
         // length.
         let all = 0.063_216_952_753;
         let seen = trace::pixel(&Plan::new(&scene.model(Exact)), 1, 1).x;

@@ -108,7 +108,7 @@ fn watching_changes_no_colour() {
     }
 }
 
-/// Renders a scene with some of `--aov`; returns the folder and the messages.
+/// Renders a scene with these images of `--aov`; returns the folder and the messages.
 fn with_aov(scene: &Path, names: &str) -> (TempDir, String) {
     let folder = TempDir::new().expect("a folder");
     let output = cargo_bin_cmd!("tabray")
@@ -208,7 +208,7 @@ fn errors_are_where_edges_are_and_red_where_another_object_is_seen() {
     assert!(picture.pixels().all(|pixel| pixel.0[0] == pixel.0[1]), "no other object is seen");
     assert!(exact.pixels().all(|pixel| pixel.0[1] == 0.0 && pixel.0[2] == 0.0), "every distance is right");
     let wrong = exact.pixels().filter(|pixel| pixel.0[0] > 0.02).count();
-    assert!((200..6000).contains(&wrong), "edges alone: {wrong}");
+    assert!((200..6000).contains(&wrong), "only at edges: {wrong}");
     let (picture, exact) = render("classic.png", "classic");
     let red = picture.pixels().filter(|pixel| pixel.0 == [255, 0, 0]).count();
     assert_eq!(red, exact.pixels().filter(|pixel| pixel.0[2] == 1.0).count());

@@ -1,4 +1,4 @@
-//! Images of every scene, however they are rendered, and the reports about their pixels.
+//! Images of every scene, by each way to render them, and the reports about their pixels.
 
 #[path = "../common/mod.rs"]
 mod common;

@@ -1,4 +1,4 @@
-//! Nothing more than a scene needs: the plan says so, and the counts show it.
+//! No more work than a scene needs: the plan says so, and the counts of rays and tests show it.
 
 use crate::common;
 use crate::common::{model, model_in, registry, root, scenes, small};
@@ -15,7 +15,7 @@ use tabray::simd::Cpu;
 use tabray::world::Accuracy;
 use tempfile::TempDir;
 
-/// Counts the rays and tests for a scene's image of 40 x 30 pixels.
+/// Counts the rays and tests of a scene's image of 40 x 30 pixels.
 fn counted(entities: &str) -> (Model, RayStats) {
     let camera = "camera eye { pixeldim 40 30 worlddim 8 6 viewpoint 4 3 7 }
         material matt { ambient 1 1 1 diffuse 2 2 2 }
@@ -42,7 +42,7 @@ fn text(model: &Model) -> String {
     decisions::of(&Plan::new(model)).iter().map(|decision| format!("{decision}\n")).collect()
 }
 
-/// Returns the line of a plan about a subject.
+/// Returns the line of a scene's plan about a subject.
 fn line(model: &Model, subject: &str) -> String {
     let text = text(model);
     let line = text.lines().find(|line| line.split_whitespace().next() == Some(subject));
@@ -63,16 +63,12 @@ fn no_shadow_rays_are_cast_without_lights() {
     let hits = (0..30).flat_map(|y| (0..40).map(move |x| (x, y)));
     let hits = hits.filter(|(x, y)| trace::pixel(&plan, *x, *y).max_element() > 0.0).count() as u64;
     assert!(hits > PIXELS / 3);
-    assert_eq!(
-        tally.rays(Shadow),
-        hits,
-        "a light above a floor: a shadow ray from each place of it that is seen"
-    );
+    assert_eq!(tally.rays(Shadow), hits, "one shadow ray starts from each visible point of the floor");
     assert!(line(&lit, "lights").contains("`lamp`"));
     let (_, tally) = counted(&format!("{FLOOR} {LAMP} light other {{ location 7 7 2 emissivity 5 5 5 }}"));
     assert_eq!(tally.rays(Shadow), 2 * hits);
     let (_, tally) = counted(&format!("{FLOOR} light below {{ location 1 -7 2 emissivity 5 5 5 }}"));
-    assert_eq!(tally.rays(Shadow), 0, "no place faces it");
+    assert_eq!(tally.rays(Shadow), 0, "no point of the floor faces the light");
 }
 
 #[test]
@@ -84,14 +80,10 @@ fn no_rays_are_reflected_without_mirrors() {
     let wall = "plane wall { material mirror normal 0 0 1 point 0 0 -4 }";
     let behind = "sphere behind { material matt center 4 3 20 radius 1 }";
     let (mirror, tally) = counted(&format!("{wall} {behind}"));
-    assert_eq!(
-        tally.rays(Reflected),
-        PIXELS,
-        "every ray meets the wall, and nearly all that it mirrors is empty"
-    );
+    assert_eq!(tally.rays(Reflected), PIXELS, "the wall reflects every ray, nearly always into empty space");
     assert!(line(&mirror, "mirrors").contains("`wall`"));
     let (_, tally) = counted(wall);
-    assert_eq!(tally.rays(Reflected), 0, "there is nothing that it could mirror");
+    assert_eq!(tally.rays(Reflected), 0, "there is nothing for the wall to reflect");
 }
 
 #[test]
@@ -147,8 +139,9 @@ fn three_planes_are_a_list_and_rays_that_lead_away_from_one_are_not_tested_with_
     ));
     assert!(line(&model, "search").contains("a list of 3 objects: none has bounds"));
     let TestCounts { objects, tested, culled } = tally.tests(&model)["plane"];
-    assert_eq!((objects, tested + culled), (3, 3 * PIXELS), "a ray is tested or it is not");
-    // All rays lead to the back, half of them down and half of them to the left, with a quarter in both halves.
+    assert_eq!((objects, tested + culled), (3, 3 * PIXELS), "each ray is either tested or culled");
+    // All rays lead toward the back wall, half of them downward and half of them to the left, with a quarter in both
+    // halves.
     assert!((2 * PIXELS..5 * PIXELS / 2).contains(&tested), "{tested}");
 }
 
@@ -157,10 +150,10 @@ fn a_sphere_in_a_corner_is_hardly_ever_tested() {
     let (model, tally) =
         counted(&format!("{FLOOR} sphere ball {{ material matt center 0.5 0.5 -1 radius 0.4 }}"));
     let TestCounts { tested, culled, .. } = tally.tests(&model)["sphere"];
-    assert_eq!(tested + culled, PIXELS, "a ray is tested or it is not");
+    assert_eq!(tested + culled, PIXELS, "each ray is either tested or culled");
     assert!(tested > 0 && tested < PIXELS / 10, "{tested}");
     let TestCounts { tested, culled, .. } = tally.tests(&model)["plane"];
-    assert!(tested + culled == PIXELS && tested < 3 * PIXELS / 4, "{tested} look down");
+    assert!(tested + culled == PIXELS && tested < 3 * PIXELS / 4, "{tested} lead down");
     assert!(line(&model, "search").contains("a list of 2 objects, 1 with bounds"));
 }
 
@@ -317,7 +310,7 @@ fn statistics_go_to_standard_error_and_change_nothing_else() {
         assert!(stats["seconds"][stage].as_f64() >= Some(0.0), "{stage}: {err}");
     }
     if cfg!(target_os = "linux") {
-        // At least the image itself, and less than a machine has.
+        // The peak is at least the image itself, and less than a machine has.
         assert!((160 * 120 * 3..1 << 34).contains(&stats["peak_memory"].as_u64().expect("bytes")), "{err}");
     }
 
@@ -330,8 +323,8 @@ fn statistics_go_to_standard_error_and_change_nothing_else() {
     }
 }
 
-/// Renders three panes half a unit apart that reflect this fraction of the light, in a new folder; returns the output
-/// of `render`.
+/// Renders three panes half a unit apart, which reflect this fraction of the light, in a new folder. Returns the
+/// statistics and the other messages.
 fn panes(specular: &str, method: &str) -> (Value, String) {
     let folder = TempDir::new().expect("a folder");
     let path = folder.path().join("pane.ray");
@@ -426,7 +419,7 @@ fn whoever_looks_on_sees_the_colours_of_the_picture() {
         model.camera.value.pixels = model.camera.value.pixels.map(|side| side.min(18));
         check(&path.display().to_string(), &model);
     }
-    // Mirrors that scatter no light cost as many rays as allowed, whether shadow rays are traced or not.
+    // Mirrors that scatter no light cost as many rays as allowed, whether or not shadow rays are traced.
     let runaway = model(&format!(
         "camera eye {{ pixeldim 4 3 worlddim 8 6 viewpoint 4 3 7 }}
          material mirror {{ ambient 1 1 1 specular 0.999 }} material pane {{ specular 1 transparency 0.5 diffuse 1 1 1 }}

@@ -1,4 +1,4 @@
-//! The README and the docs: the scene loads, the images are up to date, and links lead somewhere.
+//! The README and the docs: their scene loads, their images are up to date, and their links lead to files.
 
 use crate::common;
 use crate::common::program::{folder, outcome, tabray};
@@ -52,7 +52,7 @@ fn the_reference_has_every_word_and_what_it_means() {
         let section = section.split("\n### ").next().expect("a section");
         let meaning = page.split(": ").nth(1).and_then(|rest| rest.split(". Its").next()).expect("a meaning");
         let rows = page.lines().filter(|line| line.starts_with("| ") || line.starts_with("Its number"));
-        // In one of them the text begins with a capital letter.
+        // In one of the two, the text begins with a capital letter.
         let meaning: String = meaning.chars().skip(1).collect();
         for told in rows.chain([&*meaning]) {
             assert!(section.contains(told), "{name} has no {told}");

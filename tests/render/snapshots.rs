@@ -1,7 +1,7 @@
-//! The dump and the image of every scene, and the messages about every faulty scene, against the accepted ones.
+//! The dump and the image of every scene, and the messages about every faulty scene, compared with the accepted ones.
 //!
-//! A scene is added by adding its file. Look at the results with `cargo run --release -- review --serve`, and accept
-//! them there.
+//! A new scene needs only its file. Look at the results with `cargo run --release -- review --serve`, and accept them
+//! there.
 
 use crate::common::{load, registry, render, root};
 use image::RgbImage;
@@ -29,7 +29,7 @@ fn every_scene_looks_as_before() {
         if let Some(mut settings) = settings(path) {
             let mut model = load(path);
             if path.starts_with(root().join("scenes/gallery")) {
-                // A thumbnail shows as much, and keeps the repository small.
+                // A thumbnail shows enough, and keeps the repository small.
                 model.camera.value.pixels = [128, 96];
             }
             let mut png = Vec::new();
@@ -104,7 +104,7 @@ fn stem(path: &Path) -> &str {
     path.file_stem().and_then(|stem| stem.to_str()).expect("a name in UTF-8")
 }
 
-/// Compares images by their pixels; on failure says how they differ.
+/// Compares images by their pixels, and reports how they differ.
 #[derive(Clone)]
 struct SamePixels {
     scene: String,
@@ -144,7 +144,7 @@ fn no_snapshot_is_left_of_a_scene_that_is_gone() {
         for entry in fs::read_dir(folder).expect("a folder of snapshots") {
             let path = entry.expect("an entry").path();
             if path.is_dir() {
-                // Explanations of pixels, plans and refusals have other names.
+                // The snapshots of explanations, plans and refusals have names other than those of scenes.
                 if !["probe", "plan", "refusals"].iter().any(|folder| path.ends_with(folder)) {
                     folders.push(path);
                 }

@@ -1,4 +1,4 @@
-//! The tracer's first hit is the one that is proven, in every scene.
+//! The tracer's first hit is the proven one, in every scene.
 
 use crate::common::{load, model, root, scenes};
 use assert_cmd::cargo::cargo_bin_cmd;
@@ -22,7 +22,7 @@ const AT_EDGES: [&str; 11] = [
     "triangle/seam.ray",
 ];
 
-/// Counts the proven, undecided and contradicted pixels: every `step`-th in both directions.
+/// Counts the proven, undecided and contradicted pixels among every `step`-th pixel in both directions.
 fn counts(model: &tabray::scene::Model, step: usize) -> [usize; 3] {
     let [width, height] = model.camera.value.pixels;
     let plan = Plan::new(model);
@@ -119,7 +119,8 @@ fn a_contradiction_is_a_failure_that_counts_it() {
     assert_eq!(err, format!("error: the tracer finds another object at {count} pixels\n"));
 }
 
-/// A bug of the proof: rounding the normals and edges of a sliver gave a wrong result for 156 of 606 such pixels.
+/// A former bug of the proof: with rounded normals and edges of a sliver, the result was wrong for 156 of 606 such
+/// pixels.
 #[test]
 fn a_sliver_before_another_triangle_is_proven_from_its_corners() {
     let model = model(
@@ -138,7 +139,7 @@ fn a_sliver_before_another_triangle_is_proven_from_its_corners() {
     assert_eq!(met, 0, "rational arithmetic says that the sliver is nearer, by 6e-10");
 }
 
-/// Squares that nearly overflow or underflow are no reason for doubt, in any kind of shape.
+/// Squares that nearly overflow or underflow leave no pixel undecided, for shapes of any kind.
 #[test]
 fn scenes_of_any_scale_are_proven() {
     for scale in ["e-150", "", "e150"] {
@@ -166,7 +167,7 @@ fn scenes_of_any_scale_are_proven() {
     }
 }
 
-/// Two coinciding surfaces are told from two surfaces that are apart, however little.
+/// Two coinciding surfaces are distinguished from two surfaces that are any distance apart.
 #[test]
 fn a_tie_is_a_tie_and_nothing_near_it() {
     let verdicts = |apart: &str| {

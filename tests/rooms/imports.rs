@@ -37,12 +37,12 @@ struct File {
     paths: Vec<(usize, Module)>,
     /// The re-exported items, and whether they are visible outside the crate.
     exports: BTreeMap<String, (Module, bool)>,
-    /// Modules that are visible outside the crate.
+    /// The modules that are visible outside the crate.
     public: BTreeSet<String>,
     types: BTreeSet<String>,
     /// Methods, with the types that they belong to.
     methods: BTreeSet<(String, String)>,
-    /// Names of methods that are called, with one line for each.
+    /// The names of called methods, each with the line of one call.
     calls: BTreeMap<String, usize>,
 }
 
@@ -288,7 +288,7 @@ impl Reader<'_> {
                 TokenTree::Ident(ident) if ident == "for" => return,
                 TokenTree::Ident(ident) if depth == 0 && owner.is_none() => owner = Some(ident.to_string()),
                 TokenTree::Punct(punct) if punct.as_char() == '<' => depth += 1,
-                // This is not the end of an arrow.
+                // The `>` of an arrow closes nothing.
                 TokenTree::Punct(punct) if punct.as_char() == '>' => {
                     let arrow = index > 0
                         && matches!(&tokens[index - 1], TokenTree::Punct(dash) if dash.as_char() == '-');

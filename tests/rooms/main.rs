@@ -52,7 +52,7 @@ fn rooms(page: &str) -> Vec<&str> {
     rows.filter_map(|row| row.split('`').next()).collect()
 }
 
-/// Returns the imports from folders that are not below.
+/// Describes the imports from folders that do not lie below.
 fn from_above(tree: &Tree, rooms: &[&str]) -> Vec<String> {
     let floor =
         |module: &[String]| rooms.iter().position(|room| Some(*room) == module.first().map(String::as_str));
@@ -74,7 +74,7 @@ fn circle(tree: &Tree) -> Option<Vec<String>> {
     }
     let mut done = BTreeSet::new();
     for start in onward.keys() {
-        // The path to the current module, and for each module on it what is still to be visited.
+        // The path to the current module, and for each module on it the index of the next import to follow.
         let mut way: Vec<&Import> = Vec::new();
         let mut waiting = vec![(*start, 0)];
         while let Some((module, next)) = waiting.last_mut() {
@@ -151,7 +151,7 @@ fn the_page_links_to_what_is_there() {
     }
 }
 
-/// Returns the crates that a table of `Cargo.toml` names, including those of the same name for one system.
+/// Returns the crates in a table of `Cargo.toml` and in the tables of the same name for single systems.
 fn crates(manifest: &toml::Table, table: &str) -> BTreeSet<String> {
     let targets = manifest["target"].as_table().expect("targets").values().filter_map(toml::Value::as_table);
     let tables = targets.chain([manifest]).filter_map(|target| target.get(table)?.as_table());
@@ -221,7 +221,7 @@ fn circles_are_found() {
     let by_the_folder =
         [("r/mod.rs", "mod a; fn f() { a::g() } pub const N: u8 = 1;"), ("r/a.rs", "use super::N;")];
     assert_eq!(wrong(&by_the_folder).map(|circle| circle.len()), Some(2));
-    // A method in another file than its type is imported from there.
+    // A method in a file other than its type's is imported from that file.
     let by_a_method = [
         ("r/mod.rs", "mod a; mod b;"),
         ("r/a.rs", "pub struct A; impl A { fn f(&self) { self.g() } }"),

@@ -57,7 +57,7 @@ fn a_dumped_scene_gives_the_same_picture() {
 }
 
 proptest! {
-    // Values are drawn until they satisfy their rules.
+    // Values are generated until they satisfy their rules.
     #![proptest_config(ProptestConfig { failure_persistence: None, max_local_rejects: 1 << 22, ..ProptestConfig::default() })]
 
     #[test]
@@ -137,7 +137,7 @@ fn any_values(attribute: &'static dyn Attribute) -> BoxedStrategy<String> {
         Type::Name(Kind::Texture) => return Just(format!("{} t0\n", attribute.name())).boxed(),
         Type::File => return Just(format!("{} scenes/models/bowl.stl\n", attribute.name())).boxed(),
         Type::Word | Type::Name(_) => return Just(format!("{} m0\n", attribute.name())).boxed(),
-        // A revsurf takes a surfer or a formula; the scenes have those.
+        // A revsurf takes either a surfer or a formula; formulas are covered by the project's scenes.
         Type::Formula => return Just(String::new()).boxed(),
         Type::Choice(choices) => prop::sample::select(choices.all()).prop_map(Datum::Choice).boxed(),
     };

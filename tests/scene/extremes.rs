@@ -1,4 +1,4 @@
-//! The largest and the smallest numbers, in place of each number of a scene, are refused or rendered at once.
+//! Extreme numbers in place of each number of a scene: the scene is refused or rendered at once.
 
 use crate::common::{registry, render, root};
 use std::fs;
@@ -24,7 +24,7 @@ fn extreme_numbers_are_refused_or_drawn_at_once() {
     let mut drawn = 0;
     for (first, file) in files.iter().enumerate() {
         let text = fs::read_to_string(file).expect("a scene");
-        // Text in quotes or in a comment is not a number of an attribute.
+        // Only words that are numbers as a whole are replaced.
         let parts: Vec<&str> = text.split_inclusive(char::is_whitespace).collect();
         let is_number = |part: &&str| part.trim().parse::<f64>().is_ok();
         let places: Vec<_> = (0..parts.len()).filter(|at| is_number(&parts[*at])).collect();

@@ -73,7 +73,7 @@ impl Highlighter {
                         self.patterns[pattern].captures_from_pos(line, at).expect("a pattern that ends")?;
                     Some((captures.get(0)?.range(), captures, rule, ends))
                 });
-                // The first of several rules that match at the same position.
+                // Of several rules that match at the same position, the first counts.
                 let Some((whole, captures, rule, ends)) = matches.min_by_key(|(whole, ..)| whole.start)
                 else {
                     break;
@@ -102,7 +102,7 @@ impl Highlighter {
     }
 }
 
-/// Makes a scene in the other syntax from the scopes of a text, which shows how each word was classified.
+/// Returns a scene in the other syntax, made from the scopes of a text; it shows how each word was classified.
 fn scene_of(scoped: &[Scoped]) -> String {
     let mut text = String::new();
     let mut values: Vec<String> = Vec::new();
@@ -140,7 +140,7 @@ fn scene_of(scoped: &[Scoped]) -> String {
     text
 }
 
-/// Returns a scene as its reader understands it, written again.
+/// Returns a scene, written again from what the reader understood.
 fn read(path: &Path, name: &str, text: &str) -> String {
     let folder = path.parent().expect("a folder");
     match scene::read(registry(), name, folder, text.as_bytes(), None) {

@@ -1,4 +1,4 @@
-//! Scenes as text: they are read, refused, built in Rust, dumped and converted.
+//! Scenes as text: how they are read, refused, built in Rust, dumped and converted.
 
 #[path = "../common/mod.rs"]
 mod common;

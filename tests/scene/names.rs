@@ -1,4 +1,4 @@
-//! Names that several entities have.
+//! Names that several entities share.
 
 use crate::common::program::{folder, outcome, tabray};
 use crate::common::{model, registry, render};
@@ -60,7 +60,7 @@ fn the_first_object_of_a_type_and_a_name_counts() {
     assert_eq!(told, "sphere `ball` is defined twice: ignored");
 }
 
-/// The course's own spec1 to spec8 have a sphere `left` and an fplane `left`, and show both.
+/// The course's own spec1 to spec8 have both a sphere `left` and an fplane `left`, and show both.
 #[test]
 fn objects_of_different_types_may_share_a_name() {
     let pane = "fplane ball { material red normal 0 0 1 point 5 3 -3 xdir 1 0 0 dimensions 1 1 }\n";

@@ -1,4 +1,4 @@
-//! Bad input of any kind ends in messages: no panic, and no endless run.
+//! Bad input of any kind ends in messages, without a panic and without an endless run.
 
 use crate::common;
 use crate::common::{model, registry};
@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use std::path::Path;
 use tabray::scene::{self, Report, Severity};
 
-/// Reads bytes as a scene; either there is a model, or an error that can be printed.
+/// Reads bytes as a scene. There must be either a model or an error that can be printed.
 fn read(bytes: &[u8]) {
     if let Err(report) = scene::read(registry(), "any", Path::new(""), bytes, None) {
         assert!(report.faults().iter().any(|fault| fault.severity == Severity::Error));
@@ -137,7 +137,7 @@ fn messages_stay_short_however_long_a_line_is() {
     }
 }
 
-/// Asserts that a report is no longer than people read, in any form.
+/// Asserts that a report is not too long to read, in any form.
 fn short(report: &Report, of: &str) {
     for said in [report.to_string(), report.short(), report.json()] {
         assert!(said.len() < 200_000, "{} bytes are said of {of:?}", said.len());

@@ -1,5 +1,6 @@
-//! The hits of random shapes against true ones computed from the numbers of the scene's text, for rays that are hard
-//! for them. Also checks that the bounds of packets contain the true hits, including those of a camera's exact rays.
+//! The hits of random shapes, compared with true ones computed from the numbers of the scene's text, for rays that are
+//! hard for them. Also checks that the bounds of packets contain the true hits, including those of a camera's exact
+//! rays.
 
 use crate::common;
 use crate::oracle::Truth;
@@ -202,7 +203,8 @@ fn brackets_hold_the_hits_of_the_real_rays_of_a_camera() {
     assert!(certain > 1_000, "{certain} of 4000 are certain");
 }
 
-/// A ray almost parallel to a floor that it hits 12 away, from a height that differs from the floor's in its last digits.
+/// A ray is almost parallel to a floor that it hits 12 units away. Its height differs from the floor's in the last
+/// digits.
 #[test]
 fn a_ray_almost_along_a_plane_hits_it_where_it_is() {
     let floor = shape("plane f { material m normal 0 1 0 point 0 3.9999999999999991 0 }");

@@ -1,4 +1,4 @@
-//! Every plugin keeps the contract of its trait, and each way to break it is found.
+//! The contract of each trait: every plugin keeps it, and each way to break it is found.
 
 use crate::common::{block_with, load, registry, root};
 use glam::DVec3;
@@ -25,7 +25,7 @@ fn what_is_in_the_entities_own_scenes_keeps_its_contract() {
     }
 }
 
-/// The template of a shape from `tabray new plugin`: its sides are flat at their centres to the fourth order.
+/// The shape of the template that `tabray new plugin` writes: its sides are flat to the fourth order at their centres.
 struct RoundCube(f64);
 
 impl Implicit for RoundCube {
@@ -61,7 +61,7 @@ static ROUND_CUBES: [Entity; 13] = [
     round_cube("template"),
 ];
 
-/// Which rays are tried depends on the name.
+/// The rays that are tried depend on the name.
 #[test]
 fn a_shape_that_is_flat_to_the_fourth_order_keeps_its_contract_under_any_name() {
     for entity in &ROUND_CUBES {
@@ -75,7 +75,7 @@ static RADIUS: Pparm<f64> =
     Pparm::required("radius", "the distance to its surface").must("positive", |radius| *radius > 0.0);
 const TABLE: Table = &[&CENTER as &dyn Row, &RADIUS];
 
-/// What is wrong with a sphere.
+/// A flaw of a sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Flaw {
     None,
@@ -235,7 +235,7 @@ impl Shader for Colour {
 
 fn ball(args: &Args, flaw: Flaw) -> Result<Body, Refusal> {
     let ball = Shape::new(Ball { center: args.get(&CENTER), radius: args.get(&RADIUS), flaw }).bracketed();
-    // The others are not what an equation says.
+    // With the other flaws, the shape differs from its equation.
     Ok(match flaw {
         Flaw::Proof | Flaw::Untouched => Body::shaded(ball.certified(), Colour(flaw)),
         _ => Body::shaded(ball, Colour(flaw)),
@@ -246,7 +246,7 @@ fn refuse<T>(_args: &Args) -> Result<T, Refusal> {
     Err(Refusal { attribute: None, message: "will not be".to_owned(), help: "nothing helps" })
 }
 
-/// The light's colour at its own position, and elsewhere.
+/// A light whose colour is not finite at its own position.
 struct Lamp;
 
 impl Light for Lamp {

@@ -1,4 +1,4 @@
-//! The number types of the truth, against correctly rounded numbers of 160 bits.
+//! The number types of the truth, compared with correctly rounded numbers of 160 bits.
 
 use crate::oracle::rays::Random;
 use dashu_float::FBig;
@@ -209,7 +209,7 @@ fn wide_intervals_hold_the_right_results() {
     }
 }
 
-/// What lies on one side of a pole has a bound there, and what a bounded function makes of it has two.
+/// An interval that ends at a pole has a bound on one side, and a bounded function of it has bounds on both sides.
 #[test]
 fn poles_have_one_sided_bounds() {
     let n = |value: f64| <Interval>::constant(value);

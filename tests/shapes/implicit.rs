@@ -1,4 +1,4 @@
-//! Shapes given by one formula: hits are where the formula says, and none is lost or invented.
+//! Shapes given by one formula: hits are where the formula is zero, and none is missed or invented.
 
 use crate::common::{model, render};
 use dashu_float::FBig;
@@ -18,7 +18,7 @@ const AXIS: DVec3 = DVec3::new(0.4, 1.0, -0.3);
 const RADIUS: f64 = 1.5;
 const TUBE: f64 = 0.5;
 
-/// A mirror in the shape of the torus that the quartic below describes, and an object that it reflects.
+/// Returns a scene with a mirror, the torus that the quartic below describes, and an object that it reflects.
 fn torus() -> Model {
     model(&format!(
         "camera eye {{ pixeldim 160 120 worlddim 8 6 viewpoint 4 3 5 }}
@@ -85,7 +85,7 @@ struct Quartic {
 impl Quartic {
     fn new(ray: &Ray) -> Self {
         let start = (CENTER - ray.origin).dot(ray.dir);
-        // Rounded once, like a single operation.
+        // The sum below is rounded only once, like a single operation.
         let along = |axis: usize| {
             let way = start * ray.dir[axis];
             let way_error = start.mul_add(ray.dir[axis], -way);
@@ -112,7 +112,7 @@ impl Quartic {
         value(&self.coefficients, distance - self.start)
     }
 
-    /// Returns the distances of all roots in order, each with whether the ray enters there; `None` if the ray is so
+    /// Returns the distances of all roots in order, and for each whether the ray enters there; `None` if the ray is so
     /// nearly tangent to the torus that rounding decides.
     fn crossings(&self) -> Option<Vec<(f64, bool)>> {
         let turns = roots(&derivative(&self.coefficients));
@@ -284,7 +284,7 @@ fn what_leaves_a_torus_meets_it_again_where_it_is_and_not_where_it_starts() {
         }
         let origin = there.at(distance);
         let normal = shape.normal(origin);
-        // Very shallow rays too.
+        // Some of the rays are very shallow.
         let steep = [1.0, 1e-2, 1e-4][turn / 3 % 3];
         let shallow = dice.direction().cross(normal).normalize();
         let dir = (shallow + steep * dice.range(0.3..2.0) * normal).normalize();
@@ -367,12 +367,12 @@ fn the_box_cuts_and_shows_the_inside() {
     assert_eq!(hit(DVec3::new(-3.0, 0.5, 0.0), DVec3::X, None), MISS);
     assert!((hit(DVec3::new(-3.0, -0.6, 0.0), DVec3::X, None) - 2.2).abs() < 1e-15);
     assert_eq!(hit(DVec3::NEG_Y, DVec3::Y, Some(Side::Inside)), MISS);
-    // Along a face of the box.
+    // This ray runs along a face of the box.
     assert_eq!(hit(DVec3::new(-3.0, -1.0, 0.5), DVec3::X, None), MISS);
     assert!((hit(DVec3::new(-3.0, 0.0, 0.0), DVec3::X, None) - 2.0).abs() < 1e-15);
 }
 
-/// The template of a shape from `tabray new plugin`.
+/// The shape of the template that `tabray new plugin` writes.
 struct RoundCube;
 
 impl Formula for RoundCube {
@@ -381,7 +381,7 @@ impl Formula for RoundCube {
     }
 }
 
-/// The function along such a ray is x^4 and a constant. It is computed in 300 bits for constants from 1e-2 to 1e-18.
+/// The function along such a ray is x^4 plus a constant. The constant, from 1e-2 to 1e-18, is computed in 300 bits.
 #[test]
 fn a_tangency_of_the_fourth_order_is_told_from_a_miss() {
     let real = |value: f64| FBig::<HalfEven>::try_from(value).expect("finite").with_precision(300).value();
@@ -398,7 +398,7 @@ fn a_tangency_of_the_fourth_order_is_told_from_a_miss() {
         assert_eq!(found < MISS, below >= 0.0, "{y:?} {z:?}: {found}, {below:e}");
         if found < MISS {
             let half = below.sqrt().sqrt();
-            // As far as the rounding error of the function moves its root, where that is resolved in f64.
+            // The rounding error of the function moves its root by this much, where f64 resolves the root.
             let slack = 1e-14 + 8.0 * f64::EPSILON / (4.0 * half.powi(3));
             assert!((found - (10.0 - half)).abs() <= slack.min(1e-3), "{y:?} {z:?}: {found}, {half:e}");
             hits += 1;
@@ -432,7 +432,7 @@ fn a_tip_has_a_normal() {
     assert_eq!(cone.distance(&ray, &RayRange::ALL), 3.0);
 }
 
-/// A wall of the gyroid, clipped to a sphere: it has edges, and rays meet it often.
+/// A wall along the gyroid, clipped to a sphere: it has edges, and rays meet it often.
 struct Gyroid;
 
 impl Formula for Gyroid {

@@ -1,4 +1,4 @@
-//! The hits of rays: against the notes' numbers, against true ones, and against the promises of each plugin.
+//! The hits of rays, compared with the notes' numbers, with true hits, and with the contract that every plugin keeps.
 
 #[path = "../common/mod.rs"]
 mod common;

@@ -7,25 +7,25 @@ use tabray::render::{Plan, trace};
 use tabray::scene::dump;
 use tabray::world::{AnyShape, Hittable};
 
-/// Whether two vectors agree to this many printed decimals.
+/// Asserts that a vector, printed to this many decimals, is the expected text.
 #[track_caller]
 fn prints(actual: DVec3, decimals: usize, expected: &str) {
     let printed = actual.to_array().map(|number| format!("{number:.decimals$}")).join(" ");
     assert_eq!(printed, expected);
 }
 
-// "Points and vectors" to "Useful operations on vectors", and "A sample test driver for vector.h", compute with vectors
-// alone, as glam does: no change here makes them other. The notes print 6 + 6 + 4 = 16 for the product of (2, 3, 4) and
-// (3, 2, 1), and so it is.
+// The sections from "Points and vectors" to "Useful operations on vectors", and "A sample test driver for vector.h",
+// compute with vectors alone. So does glam, and no change here can affect it. The notes print 6 + 6 + 4 = 16 for the
+// dot product of (2, 3, 4) and (3, 2, 1), which is right.
 
 // "Translating from pixel to world coordinates", "An alternative world view", "Computing the direction of a ray"
 
-/// A scene with nothing but a camera of this many pixels.
+/// Returns the camera of a scene, with this many pixels.
 fn camera(pixels: &str) -> tabray::world::Camera {
     model(&format!("camera c {{ pixeldim {pixels} worlddim 8 6 viewpoint 4 3 6 }}")).camera.value
 }
 
-/// Where the ray through a pixel crosses the screen.
+/// Returns where the ray through a pixel crosses the image plane.
 fn on_screen(pixels: &str, column: f64, row: f64) -> DVec3 {
     let ray = camera(pixels).ray(column, row);
     ray.at(-ray.origin.z / ray.dir.z)
@@ -33,7 +33,8 @@ fn on_screen(pixels: &str, column: f64, row: f64) -> DVec3 {
 
 #[test]
 fn a_pixel_maps_to_its_fraction_of_the_screen() {
-    // The notes divide by 640 and 480 first, and by one less in the end; pictures one larger give the nice numbers.
+    // The notes first divide by 640 and 480, and finally by one less; images larger by one pixel give the round
+    // numbers.
     prints(on_screen("641 481", 100.0, 40.0), 9, "1.250000000 0.500000000 0.000000000");
     prints(on_screen("801 601", 400.0, 300.0), 9, "4.000000000 3.000000000 0.000000000");
 }
@@ -53,12 +54,13 @@ fn a_ray_goes_from_the_viewpoint_through_its_pixel() {
     assert!(ray.dir.z < 0.0);
 }
 
-// "The cross product of two vectors" to "Constructing rotation matrices" are glam's, too, whose matrices are columns where
-// the notes' are rows. The notes print (1, 0, -1) for the product of (1, 1, 1) and (0, -1, 0), and so it is.
+// The sections from "The cross product of two vectors" to "Constructing rotation matrices" are glam's, too; its
+// matrices consist of columns, and those of the notes of rows. The notes print (1, 0, -1), which is right, for the
+// cross product of (1, 1, 1) and (0, -1, 0).
 
 // "Determining if a ray hits a plane", "Determining if a ray hits a sphere"
 
-/// The shape of the first object of a scene.
+/// Returns the shape of a scene's first object.
 fn shape(object: &str) -> AnyShape {
     let text = format!(
         "camera c {{ pixeldim 8 6 worlddim 8 6 viewpoint 4 3 6 }} material m {{ ambient 1 1 1 }} {object}"
@@ -77,7 +79,11 @@ fn a_plane_is_hit_once_and_not_from_along_it_or_behind_the_eye() {
     assert_eq!(distance(&*floor, eye, dvec3(0.0, -1.0, 0.0)), 4.0);
     assert_eq!(distance(&*floor, eye, dvec3(3.0, 0.0, -4.0)), MISS, "parallel");
     assert_eq!(distance(&*floor, eye, dvec3(0.0, 1.0, 0.0)), MISS, "behind the eye");
-    assert_eq!(distance(&*floor, dvec3(4.0, 3.0, 6.0), dvec3(0.0, -1.0, 0.0)), MISS, "before the screen");
+    assert_eq!(
+        distance(&*floor, dvec3(4.0, 3.0, 6.0), dvec3(0.0, -1.0, 0.0)),
+        MISS,
+        "in front of the image plane"
+    );
     assert_eq!(floor.normal(DVec3::ZERO), DVec3::Y);
 }
 
@@ -99,8 +105,8 @@ fn a_sphere_is_hit_by_the_sign_of_its_discriminant() {
 
 #[test]
 fn a_lit_surface_sends_back_what_the_notes_compute() {
-    // (1, 2, 10) times (8, 8, 2) is (8, 16, 20), and that times 0.5 / 10 is (0.4, 0.8, 1): a light 10 away from the hit, at
-    // 60 degrees from the normal, seen from 1 away so that nothing is lost on the way to the eye.
+    // (1, 2, 10) times (8, 8, 2) is (8, 16, 20), and that times 0.5 / 10 is (0.4, 0.8, 1): a light 10 units from the
+    // hit, at 60 degrees from the normal, seen from a distance of 1, so that nothing is lost on the way to the eye.
     let scene = model(
         "camera c { pixeldim 1 1 worlddim 8 6 viewpoint 4 3 1 }
          material m { diffuse 1 2 10 }
@@ -120,7 +126,7 @@ fn a_plane_is_dumped_as_the_notes_show_it() {
          plane rightwall { material yellow normal -5 0 1 point 7 0 0 }",
     );
     let dump = dump::notes(&scene);
-    // The notes show the normal as -1.0 0.0 0.2; it is a unit vector, and so -0.98 0 0.196.
+    // The notes show the normal as -1.0 0.0 0.2; as a unit vector it is -0.98 0 0.196.
     let expected = "plane        rightwall \nmaterial     yellow \n\
         normal        -1.0   0.0   0.2 \npoint          7.0   0.0   0.0 \n";
     assert!(dump.contains(expected), "{dump}");
@@ -131,11 +137,11 @@ fn a_plane_is_dumped_as_the_notes_show_it() {
 #[test]
 fn the_cone_has_its_vertex_and_its_base_where_the_notes_put_them() {
     let cone = shape("revsurf cone { material m surfer 1 base 4 0 -4 direction 0 1 0 height 6 }");
-    // At half its height it is 2 wide; the notes' method is exact to half of 1e-4.
+    // At half its height the cone's radius is 2; the notes' method is exact to half of 1e-4.
     let hit = distance(&*cone, dvec3(4.0, 3.0, 7.0), dvec3(0.0, 0.0, -1.0));
     assert!((hit - 9.0).abs() < 5e-5, "{hit}");
     assert_eq!(distance(&*cone, dvec3(4.0, 6.1, 7.0), dvec3(0.0, 0.0, -1.0)), MISS, "above the vertex");
-    // (2x, -2 g g', 2z) at (0, 3, 2): g = 2, g' = -4/6.
+    // The gradient is (2x, -2 g g', 2z) at (0, 3, 2), with g = 2 and g' = -4/6.
     let normal = cone.normal(dvec3(4.0, 3.0, -2.0));
     assert!(normal.abs_diff_eq(dvec3(0.0, 2.0 * 2.0 * 4.0 / 6.0, 4.0).normalize(), 1e-15), "{normal}");
 }

@@ -1,4 +1,4 @@
-//! How exact each method is and what it costs: writes `docs/accuracy.md`.
+//! Measures the errors and the cost of each method, and writes `docs/accuracy.md`.
 //!
 //! `cargo test --profile dist --test slow -- --ignored --nocapture accuracy`
 #![allow(clippy::approx_constant, reason = "the notes' vase is 6.28 high")]
@@ -19,29 +19,29 @@ use tabray::geometry::{MISS, Ray, RayRange};
 use tabray::numeric::Formula;
 use tabray::world::{AnyShape, Hittable};
 
-/// The rays of each kind for each profile.
+/// The number of rays of each kind for each profile.
 const RAYS: usize = 1_000_000;
 
-/// Those for each distance of a sphere and of a plane.
+/// The number of rays for each distance from a sphere and from a plane.
 const FAR_RAYS: usize = 100_000;
 
-/// Random shapes of a kind for each set of rays, and the rays for each of them.
+/// The number of random shapes of a kind for each set of rays, and the number of rays for each of them.
 const HARD_SHAPES: usize = 7_000;
 const HARD_RAYS: usize = 50;
 
-/// How often each method's time is taken; the least counts.
+/// The number of times that each method is timed; the minimum counts.
 const ROUNDS: usize = 5;
 
-/// The rays that are traced between two looks at the clock.
+/// The number of rays that are traced between two readings of the clock.
 const ROUND: usize = 20_000;
 
 const COMMAND: &str = "cargo test --profile dist --test slow -- --ignored --nocapture accuracy";
 
-/// The methods, by the names that a camera's `accuracy` has for them.
+/// The methods, by their names in a camera's `accuracy`.
 const METHODS: [&str; 4] = ["classic", "draft", "exact", "strict"];
 
-/// The notes' page on procedural surfaces: from where a ray enters the surface's heights to where it leaves them, in
-/// steps of 0.1, then bisection to 1e-6.
+/// The method of the notes' page on procedural surfaces: from where a ray enters the surface's heights to where it
+/// leaves them, steps of 0.1 world units, then bisection to 1e-6.
 struct Steps {
     profile: Formula,
     height: f64,
@@ -79,16 +79,17 @@ impl Hittable for Steps {
     }
 }
 
-/// A shape, found by one of the methods.
+/// A shape whose hits are found by one of the methods.
 type Shape = AnyShape;
 
-/// A method's hits are another crossing's if they are nearer to that one, and off by more than it promises.
+/// Returns the tolerance for a method. A hit counts as one of another crossing if it is closer to that one and off by
+/// more than the method promises.
 fn tolerance(method: &str) -> Tolerance {
     let sure = if matches!(method, "steps" | "classic" | "draft") { 1e-2 } else { 1e-9 };
     Tolerance { sure, most: 0.05 }
 }
 
-/// Profiles, their heights and what they are.
+/// Profiles, their heights in world units, and what they are.
 const PROFILES: [(&str, f64, &str); 6] = [
     ("2 + sin(y)", 6.28, "the notes' vase"),
     ("1 + 0.3*sin(20*y)", 6.28, "a column with 20 waves"),
@@ -107,12 +108,13 @@ fn shape(method: &str, object: &str) -> Shape {
     model.objects.remove(0).shape
 }
 
-/// The distances of the first hits.
+/// Returns the distances of the first hits.
 fn trace(shape: &Shape, rays: &[Ray]) -> Vec<f64> {
     rays.iter().map(|ray| shape.distance(black_box(ray), &RayRange::ALL)).collect()
 }
 
-/// How long each shape takes for these rays. They take turns, so that what else the machine does meets them all.
+/// Returns how long each shape takes for these rays. The shapes alternate, so that other work of the machine affects
+/// all of them.
 fn times(shapes: &[Shape], rays: &[Ray]) -> Vec<Duration> {
     let mut totals = vec![Duration::ZERO; shapes.len()];
     for rays in rays.chunks(ROUND).take(5) {
@@ -152,7 +154,7 @@ fn tally(
     tally.finish()
 }
 
-/// One table: the rows of all profiles for one set of rays.
+/// Writes a table with the rows of all profiles for one set of rays.
 fn revolution_table(set: &str, text: &mut String) {
     *text += "| profile | method | missed | invented | later | median error | maximum error | off the surface | time |\n";
     *text += "|---|---|---:|---:|---:|---:|---:|---:|---:|\n";
@@ -177,7 +179,7 @@ fn revolution_table(set: &str, text: &mut String) {
             if !formula.contains("floor") {
                 return off;
             }
-            // It may have hit a step, and so be near to a whole height.
+            // The ray may have hit a step, so that the point is close to an integer height.
             let height = surface.height_at(ray, distance);
             off.min((height - height.round()).abs())
         };
@@ -206,7 +208,7 @@ fn revolution_table(set: &str, text: &mut String) {
     }
 }
 
-/// One table: a shape's greatest error from each distance, in units in the last place.
+/// Writes a table of a shape's largest error from each distance, in units in the last place.
 fn distance_table(object: &str, truth: impl Fn(&Ray, f64) -> Truth, text: &mut String) {
     *text += "| from |";
     for method in METHODS {
@@ -229,7 +231,7 @@ fn distance_table(object: &str, truth: impl Fn(&Ray, f64) -> Truth, text: &mut S
     }
 }
 
-/// One table: random shapes with a formula for their hits, and rays that are hard for them.
+/// Writes a table of random shapes with a formula for their hits, and of rays that are hard for them.
 fn hard_table(text: &mut String) {
     *text += "| shape | rays | hits | ties |";
     for method in METHODS {
@@ -262,20 +264,21 @@ fn hard_table(text: &mut String) {
     }
 }
 
-/// A number with two digits.
+/// Writes a number with one decimal place, in scientific notation from 100 on.
 fn short(number: f64) -> String {
     if number < 100.0 { format!("{number:.1}") } else { format!("{number:.1e}") }
 }
 
 const MIDDLE: DVec3 = dvec3(4.0, 3.0, -4.0);
 
-/// The document is measured and written in two parts, one after the other: either can be measured alone.
+/// A lock: the two parts of the document are measured and written one after the other, and either can be measured
+/// alone.
 static PART: Mutex<()> = Mutex::new(());
 
-/// What the second part of the document begins with.
+/// The heading at which the second part of the document begins.
 const SECOND_PART: &str = "## Shapes with a formula\n";
 
-/// Puts one of the two parts of the document in its place.
+/// Replaces one of the two parts of the document.
 fn write_part(change: impl FnOnce(&str, &str) -> String) {
     let path = common::root().join("docs/accuracy.md");
     let text = std::fs::read_to_string(&path).expect("the document is there");

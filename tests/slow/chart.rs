@@ -1,4 +1,4 @@
-//! Charts of speed against accuracy: what they say of scenes where that is known.
+//! Charts of speed against accuracy, checked on scenes whose results are known.
 
 use crate::common::{assert_tells_fields, registry, root};
 use assert_cmd::cargo::cargo_bin_cmd;
@@ -21,14 +21,14 @@ const FLANGE: &str = "camera eye { pixeldim 64 48 worlddim 8 6 viewpoint 4 7 7 }
     }
     light lamp { location 1 7 3 emissivity 9 9 9 size 0.5 }";
 
-/// A disc before a wall, whose edge is all that samples are for.
+/// A sphere in front of a wall. Only its edge needs more than one sample.
 const EDGE: &str = "camera eye { pixeldim 40 30 worlddim 8 6 viewpoint 4 3 6 }
     material white { ambient 8 8 8 }
     material red { ambient 8 0 0 }
     plane wall { material white normal 0 0 1 point 0 0 -2 }
     sphere ball { material red center 4.3 3.1 -1 radius 1.7 }";
 
-/// Stops after so many units of work.
+/// A [`Progress`] that stops the measurement after this many units of work.
 struct Patience(usize);
 
 impl Progress for Patience {
@@ -80,7 +80,7 @@ fn wrong_hits_are_counted_where_methods_have_them_and_the_default_has_none() {
         }
         assert!(error(panel, "exact") < 1e-8 && error(panel, "draft") > 1e-8, "{}", panel.title);
     }
-    // In the picture those who lose no hit change no pixel, and those who do change some.
+    // In the image, the methods that lose no hit change no pixel, and those that lose hits change some.
     let picture = panel(&chart, "by method");
     let changed = |name: &str| {
         picture
@@ -92,7 +92,7 @@ fn wrong_hits_are_counted_where_methods_have_them_and_the_default_has_none() {
     };
     assert_eq!((changed("exact"), changed("intervals")), (0, 0));
     assert!(changed("classic") > 0);
-    // The light has a size, and what each chart says can be drawn.
+    // The light has a size, so there is a panel of its soft shadows. The chart can be drawn.
     panel(&chart, "soft shadows alone");
     assert!(chart::svg(&chart).expect("a drawing").contains("steps of 0.1: "));
     let png = image::load_from_memory(&chart::png(&chart).expect("a drawing")).expect("a PNG");
@@ -120,7 +120,7 @@ fn numbers(folder: &Path) -> Value {
     serde_json::from_str(&text).expect("JSON")
 }
 
-/// The errors of a chart's numbers, by panel and choice.
+/// Returns the errors in a chart's numbers, by panel and choice.
 fn errors(folder: &Path) -> Vec<(String, String, Value)> {
     let numbers = numbers(folder);
     let panels = numbers["panels"].as_array().expect("panels");
@@ -180,7 +180,7 @@ fn what_is_chosen_is_a_command_line_that_renders() {
     let mut render = Command::new(assert_cmd::cargo::cargo_bin!("tabray"));
     assert!(render.current_dir(folder.path()).args(words).status().expect("it runs").success(), "{line}");
     assert!(folder.path().join("edge.png").is_file());
-    // One sample is not enough for that, and the marked line says what its error is.
+    // One sample is not enough for this error, and the marked line states the error of its choice.
     let marked = text.lines().find(|line| line.starts_with('>')).expect("a marked line");
     let cells: Vec<_> = marked.split_whitespace().collect();
     assert!(cells[2].parse::<u32>().is_ok_and(|samples| samples > 1), "{text}");

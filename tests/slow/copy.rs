@@ -1,5 +1,5 @@
-//! A copy of the package with further plugins in it, and the crate beside it that has its own; built once for all that
-//! is asked of it.
+//! A copy of the package with further plugins in it, and beside it the crate that has a plugin of its own; built once
+//! for all tests that use it.
 
 use crate::common::root;
 use std::collections::BTreeMap;
@@ -8,12 +8,12 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-/// The programs of a copy, and what was said when they were built.
+/// The programs of a copy, and the messages of its build.
 pub struct Built {
     programs: PathBuf,
-    /// What cargo said.
+    /// The messages of cargo.
     pub said: String,
-    /// Files of the copy that building it added or changed.
+    /// The files of the copy that the build added or changed.
     pub touched: Vec<PathBuf>,
 }
 
@@ -23,21 +23,21 @@ const PARTS: [&str; 7] = [
     "Cargo.lock",
     "src",
     "plugins",
-    // The reference begins with it.
+    // The reference begins with this file.
     "docs/language.md",
     "docs/example-plugin/Cargo.toml",
     "docs/example-plugin/src",
 ];
 
-/// The files of a copy by their paths in it.
+/// The files of a copy, by their paths in it.
 pub type Files = BTreeMap<PathBuf, Vec<u8>>;
 
-/// Where copies are made and built.
+/// Returns the folder in which copies are made and built.
 fn base() -> &'static Path {
     Path::new(env!("CARGO_TARGET_TMPDIR"))
 }
 
-/// Builds a copy with some more files, by their paths in it, and keeps its programs under this name.
+/// Builds a copy with further files, given by their paths in it, and keeps its programs under this name.
 pub fn build(name: &str, more: Files) -> Built {
     let (lock, folder) = (base().join("copy.lock"), base().join("copy"));
     let lock = File::create(lock).and_then(|lock| lock.lock().map(|()| lock)).expect("a lock");
@@ -46,7 +46,7 @@ pub fn build(name: &str, more: Files) -> Built {
     let said = cargo(&folder).unwrap_or_else(|said| panic!("{said}"));
     let touched = read(&folder).into_iter().filter(|(path, bytes)| files.get(path) != Some(bytes));
     let touched = touched.map(|(path, _)| path).filter(|path| !path.ends_with("Cargo.lock")).collect();
-    // The next copy is built in the same place.
+    // The next copy is built in the same place, so the programs are kept elsewhere.
     let programs = base().join(name);
     fs::create_dir_all(&programs).expect("room for a folder");
     for program in ["tabray", "contracts", "example-plugin"] {
@@ -56,7 +56,7 @@ pub fn build(name: &str, more: Files) -> Built {
     Built { programs, said, touched }
 }
 
-/// What cargo says where a copy with some more files cannot be built.
+/// Returns cargo's messages about a copy with further files that cannot be built.
 pub fn cannot_be_built(more: Files) -> String {
     let lock =
         File::create(base().join("copy.lock")).and_then(|lock| lock.lock().map(|()| lock)).expect("a lock");
@@ -67,27 +67,28 @@ pub fn cannot_be_built(more: Files) -> String {
     said
 }
 
-/// The package's own files and some more.
+/// Returns the package's own files and further ones.
 fn with_package(more: Files) -> Files {
     let mut files = Files::new();
     for part in PARTS {
         collect(root(), Path::new(part), &mut files);
     }
-    // Next to each other both crates are built with the same features of others, and so with the same libraries.
+    // In one workspace, both crates are built with the same features of their dependencies, and so with the same
+    // libraries.
     let manifest = files.get_mut(Path::new("Cargo.toml")).expect("a manifest");
     manifest.extend_from_slice(b"\n[workspace]\nmembers = [\"docs/example-plugin\"]\n");
     files.extend(more);
     files
 }
 
-/// Builds all programs of a copy; what cargo says of it.
+/// Builds all programs of a copy, and returns cargo's messages.
 fn cargo(folder: &Path) -> Result<String, String> {
     let mut cargo = Command::new(env!("CARGO"));
-    // Where examples may need what tests need, the features of other crates are those that tests have: their libraries
-    // are there already.
+    // Since examples may use the dependencies of tests, building them selects the same features as building tests, and
+    // the libraries are already there.
     cargo.args(["build", "--offline", "--workspace", "--bins", "--examples"]).current_dir(folder);
     cargo.env("CARGO_TARGET_DIR", base().join("copy-target")).env("CARGO_BUILD_BUILD_DIR", base().join(".."));
-    // Its pictures are small: what counts is how long the compiler takes.
+    // The images are small, so the time of compilation matters more than that of rendering.
     cargo.env("CARGO_PROFILE_DEV_OPT_LEVEL", "0").env("CARGO_PROFILE_DEV_DEBUG", "0");
     let output = cargo.output().expect("cargo runs");
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -95,7 +96,7 @@ fn cargo(folder: &Path) -> Result<String, String> {
 }
 
 impl Built {
-    /// What a program of the copy prints.
+    /// Runs a program of the copy, and returns its standard output.
     pub fn prints_of(&self, program: &str, args: &[&str]) -> String {
         let Output { status, stdout, stderr } =
             Command::new(self.programs.join(program)).args(args).output().expect("the program runs");
@@ -103,12 +104,12 @@ impl Built {
         String::from_utf8(stdout).expect("text")
     }
 
-    /// What `tabray` prints.
+    /// Runs `tabray`, and returns its standard output.
     pub fn prints(&self, args: &[&str]) -> String {
         self.prints_of("tabray", args)
     }
 
-    /// What `tabray` says of a scene on standard input.
+    /// Runs `tabray` with a scene on standard input, and returns its standard error.
     pub fn says(&self, args: &[&str], scene: &str) -> String {
         let mut program = Command::new(self.programs.join("tabray"));
         let mut program =
@@ -117,7 +118,7 @@ impl Built {
         String::from_utf8(program.wait_with_output().expect("it ends").stderr).expect("text")
     }
 
-    /// The picture that a program makes of a scene's file.
+    /// Renders a scene's file with a program of the copy.
     pub fn picture_of(&self, program: &str, scene: &Path) -> image::RgbImage {
         let picture = self.programs.join(scene.file_name().expect("a name")).with_extension("png");
         let paths = [scene, &picture].map(|path| path.to_str().expect("a path in UTF-8"));
@@ -125,12 +126,12 @@ impl Built {
         image::open(&picture).expect("a picture").into_rgb8()
     }
 
-    /// The picture that `tabray` makes of a scene's text.
+    /// Renders a scene's text with `tabray`.
     pub fn picture(&self, name: &str, scene: &str) -> image::RgbImage {
         self.picture_of("tabray", &self.scene(name, scene))
     }
 
-    /// A file with a scene's text.
+    /// Writes a scene's text to a file.
     pub fn scene(&self, name: &str, scene: &str) -> PathBuf {
         let path = self.programs.join(name).with_extension("ray");
         fs::write(&path, scene).expect("room for a file");
@@ -138,7 +139,7 @@ impl Built {
     }
 }
 
-/// All files of a folder.
+/// Reads all files of a folder.
 pub fn read(folder: &Path) -> Files {
     let mut files = Files::new();
     collect(folder, Path::new(""), &mut files);
@@ -156,7 +157,8 @@ fn collect(root: &Path, path: &Path, files: &mut Files) {
     }
 }
 
-/// Makes a folder hold these files and no others. What is there already stays as it is, and need not be compiled again.
+/// Makes a folder hold these files and no others. Files that already have these contents are not touched, so that they
+/// need not be compiled again.
 fn write(folder: &Path, files: &Files) {
     fs::create_dir_all(folder).expect("room for a folder");
     let there = read(folder);

@@ -1,21 +1,22 @@
-//! The targets of `tests/fuzz/`, on a fixed sequence of mutated inputs: the same ones on every machine and in every run.
+//! The targets of `tests/fuzz/`, run on a fixed sequence of mutated inputs that is the same on every machine.
 
 use crate::common::{root, scenes};
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use std::fs;
-use target::{formula, notes, render, texture, toml};
+use target::{TO_REVIEW, TO_WATCH, checkpoint, formula, notes, render, review, texture, toml, watch};
 
 #[path = "../fuzz/target.rs"]
 mod target;
 
-/// Words that mutations insert: what readers treat specially.
+/// Text that readers treat specially. Mutations insert it.
 const WORDS: [&str; 20] = [
     "{", "}", "[", "]", "\"", "=", "==", "#", "\n", "\0", "é", "1e300", "1e-320", "-0", "nan", "0", "sphere",
     "material", "^", "(",
 ];
 
-/// Changes some bytes: up to eight times a part is removed, repeated, overwritten, or taken from another seed.
+/// Returns a random seed with one to eight changes: each removes, repeats or overwrites a part, or replaces it with one
+/// of [`WORDS`] or with a part of another seed.
 fn mutated(seeds: &[Vec<u8>], random: &mut Pcg32) -> Vec<u8> {
     let below = |random: &mut Pcg32, end: usize| random.next_u32() as usize % end.max(1);
     let mut bytes = seeds[below(random, seeds.len())].clone();
@@ -38,7 +39,7 @@ fn mutated(seeds: &[Vec<u8>], random: &mut Pcg32) -> Vec<u8> {
     bytes
 }
 
-/// Runs a target on so many inputs.
+/// Runs a target on `count` mutated inputs.
 fn run(target: impl Fn(&[u8]), seeds: &[Vec<u8>], count: usize) {
     let mut random = Pcg32::seed_from_u64(1);
     for _ in 0..count {
@@ -46,7 +47,7 @@ fn run(target: impl Fn(&[u8]), seeds: &[Vec<u8>], count: usize) {
     }
 }
 
-/// The project's scenes whose file names end so.
+/// Returns the bytes of the project's scenes whose file names have this extension.
 fn scenes_in(extension: &str) -> Vec<Vec<u8>> {
     let paths = scenes().into_iter().filter(|path| path.extension().is_some_and(|is| is == extension));
     paths.map(|path| fs::read(path).expect("a scene")).collect()
@@ -87,4 +88,28 @@ fn scenes_are_refused_or_rendered_alike_by_packets_and_by_single_rays() {
         })
         .collect();
     run(render, &seeds, 300);
+}
+
+#[test]
+fn checkpoints_are_refused_or_continued_from() {
+    let changes = [0u8, 1, 2].map(|kind| {
+        let mut random = Pcg32::seed_from_u64(u64::from(kind));
+        let changes = (0..8).flat_map(|_| random.next_u32().to_le_bytes());
+        [kind].into_iter().chain(changes).collect()
+    });
+    run(checkpoint, &changes, 20_000);
+}
+
+fn seeds(requests: &[&str]) -> Vec<Vec<u8>> {
+    requests.iter().map(|request| request.as_bytes().to_vec()).collect()
+}
+
+#[test]
+fn requests_to_watch_are_refused_or_answered() {
+    run(watch, &seeds(&TO_WATCH), 4000);
+}
+
+#[test]
+fn requests_to_review_are_refused_or_answered() {
+    run(review, &seeds(&TO_REVIEW), 4000);
 }

@@ -1,4 +1,4 @@
-//! The gallery of charts: writes `docs/charts.md` and the pictures that it shows.
+//! The gallery of charts: writes `docs/charts.md` and the images that it shows.
 //!
 //! `cargo test --profile dist --test slow -- --ignored --nocapture gallery`
 
@@ -11,7 +11,7 @@ use tempfile::TempDir;
 
 const COMMAND: &str = "cargo test --profile dist --test slow -- --ignored --nocapture gallery";
 
-/// Scenes, what they are and what to look for.
+/// Scenes, their titles, and what to look for in their charts.
 const SCENES: [(&str, &str, &str); 8] = [
     (
         "revsurf/surfer-0",
@@ -63,15 +63,16 @@ const SCENES: [(&str, &str, &str); 8] = [
     ),
 ];
 
-/// Runs the program, which ends well, and gives what it prints.
+/// Runs the program, which must succeed, and returns its standard output.
 fn tabray(arguments: &[&str], folder: &Path) -> String {
     let output = cargo_bin_cmd!("tabray").current_dir(folder).args(arguments).output().expect("it runs");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     String::from_utf8(output.stdout).expect("text")
 }
 
-/// However crowded a chart is. Of samples the names are numbers, which axes have, too; and a choice that finds nothing
-/// has no error, and no place.
+/// Asserts that a chart shows the name of every choice, however crowded it is. The choices of samples are left out,
+/// because their names are numbers, which axes have, too; so are choices that find nothing, which have no error and no
+/// place in the chart.
 fn every_choice_has_its_name(table: &str, drawing: &str) {
     let rows = table.lines().skip(1).filter(|row| !row.starts_with("\"samples"));
     let has_error = |row: &str| row.rsplit(',').nth(8).is_some_and(|error| error != "NaN");

@@ -1,5 +1,5 @@
-//! What takes long: builds of packages with further plugins, hundreds of thousands of rays against true hits, renders that
-//! are stopped midway, charts, and what is measured for the docs.
+//! Tests that take long: builds of packages with further plugins, hundreds of thousands of rays compared with true
+//! hits, renders that are stopped midway, charts, and the measurements of the docs.
 
 #[path = "../common/mod.rs"]
 mod common;

@@ -1,6 +1,6 @@
-//! What takes minutes to measure: tables of `docs/performance.md`, printed in Markdown.
+//! Measurements that take minutes: tables of `docs/performance.md`, printed in Markdown.
 //!
-//! `cargo test --profile dist --test slow -- --ignored --nocapture NAME`, where the name is that of one function here
+//! `cargo test --profile dist --test slow -- --ignored --nocapture NAME`, where NAME is a function of this file
 #![cfg(target_os = "linux")]
 
 use crate::common;
@@ -13,10 +13,11 @@ use tabray::scene::{self, Parsed};
 use tabray::simd::Cpu;
 use tabray::tools::bench::{Speed, scenes};
 
-/// How often each of two commands that are compared is run, by turns.
+/// The number of times that each of two compared commands is run. The commands alternate.
 const ROUNDS: usize = 15;
 
-/// The CPU time of all programs that this one has started and that have ended, and the most memory that any had.
+/// Returns the CPU time of all child processes that have ended, and the largest amount of memory that any of them had,
+/// in KiB.
 fn of_children() -> (Duration, i64) {
     let usage = getrusage(UsageWho::RUSAGE_CHILDREN).expect("the system keeps accounts");
     let [user, system] = [usage.user_time(), usage.system_time()]
@@ -24,7 +25,7 @@ fn of_children() -> (Duration, i64) {
     (user + system, usage.max_rss())
 }
 
-/// Renders to nowhere; how long that takes on the wall and in CPU time.
+/// Renders a scene and discards the image. Returns the wall-clock time and the CPU time.
 fn render(scene: &Path, args: &[&str]) -> [Duration; 2] {
     let (start, before) = (Instant::now(), of_children().0);
     let status = Command::new(env!("CARGO_BIN_EXE_tabray"))
@@ -39,7 +40,7 @@ fn render(scene: &Path, args: &[&str]) -> [Duration; 2] {
     [start.elapsed(), of_children().0 - before]
 }
 
-/// What many objects cost.
+/// Prints the cost of scenes with many objects.
 #[test]
 #[ignore = "it measures"]
 fn many_objects() {
@@ -65,7 +66,7 @@ fn many_objects() {
     }
 }
 
-/// What a picture far larger than memory takes.
+/// Prints the cost of an image far larger than memory.
 #[test]
 #[ignore = "it measures"]
 fn large_pictures() {
@@ -78,7 +79,7 @@ fn large_pictures() {
     }
 }
 
-/// What a second thread gains.
+/// Prints the gain from a second thread.
 #[test]
 #[ignore = "it measures"]
 fn two_threads() {

@@ -1,5 +1,5 @@
-//! Plugins that are dropped into a copy of the package: those that the docs show, those that `tabray new` writes, and ones
-//! with mistakes, which are told as the docs have it; and a crate of its own with a plugin in it.
+//! Plugins dropped into a copy of the package: those that the docs show, those that `tabray new` writes, and some with
+//! mistakes, whose messages the docs quote; and a separate crate with a plugin of its own.
 
 use super::copy::{self, Built, Files};
 use crate::common::{block_with, root};
@@ -22,21 +22,21 @@ fn page() -> String {
     text_of("docs/plugins.md")
 }
 
-/// The plugin that the page begins with.
+/// Returns the plugin that docs/plugins.md begins with.
 fn brick() -> String {
     block_with(&page(), "struct Brick")
 }
 
-/// The line of a plugin's text that registers it.
+/// Returns the number of the line at which a plugin's text registers it.
 fn line(text: &str) -> usize {
     1 + text.lines().position(|line| line.contains("Entity::shape(")).expect("it registers a shape")
 }
 
-/// What is dropped in, by their paths.
+/// The files that are dropped in, by their paths.
 static PLUGINS: LazyLock<Files> = LazyLock::new(|| {
-    // It asks for what is not in its table.
+    // This plugin asks for an attribute that is not in its table.
     let forgetful = brick().replace("&[&CENTER, &SIZE]", "&[&CENTER]").replace("\"box\"", "\"brick\"");
-    // It takes three numbers for one.
+    // This plugin reads three numbers as one.
     let confused = brick()
         .replace(
             "const TABLE",
@@ -74,7 +74,7 @@ const KINDS: [(&str, &str, &str); 4] = [
     ("profile", "ringed_cup", "scenes/revsurf/ringed_cup.ray"),
 ];
 
-/// All that it writes for them.
+/// All files that `tabray new plugin` writes for them.
 static NEW: LazyLock<Files> = LazyLock::new(|| {
     let checkout = TempDir::new().expect("a folder");
     fs::write(checkout.path().join("Cargo.toml"), "[package]\nname = \"tabray\"\n").expect("room for a file");
@@ -96,14 +96,14 @@ static NEW: LazyLock<Files> = LazyLock::new(|| {
 /// The programs with all of these plugins.
 static BUILT: LazyLock<Built> = LazyLock::new(|| copy::build("dropped-in", PLUGINS.clone()));
 
-/// The programs with plugins that claim what others have.
+/// The programs with a plugin that claims names and numbers of other plugins.
 static CONTRADICTORY: LazyLock<Built> = LazyLock::new(|| {
-    // The one is built after the other, from what is there.
+    // This copy is built after the other one, and reuses what was compiled for it.
     LazyLock::force(&BUILT);
     copy::build("contradictory", with("rival", RIVAL))
 });
 
-/// All that is dropped in and one plugin more.
+/// Returns all files that are dropped in, and one more plugin.
 fn with(name: &str, text: &str) -> Files {
     let mut files = PLUGINS.clone();
     files.insert(plugin(name), text.into());
@@ -160,7 +160,7 @@ fn the_readmes_plugin_is_dumped() {
 fn the_readmes_plugin_is_a_round_disc() {
     let picture = BUILT.picture("disc", &block_with(&readme(), "disc target"));
     let red = picture.pixels().filter(|pixel| pixel.0 == [255, 0, 0]).count() as f64;
-    // The disc's radius of 2, seen through the screen, is 2 * 6 / 9 of its 8 by 6 units.
+    // On the image plane, which is 8 by 6 units, the disc's radius of 2 is seen as 2 * 6 / 9.
     let area = std::f64::consts::PI * (2.0_f64 * 6.0 / 9.0).powi(2) / (8.0 * 6.0);
     assert!((red / (160.0 * 120.0) - area).abs() < 0.005, "a round disc of the right size, {red} pixels");
 }
@@ -188,7 +188,7 @@ fn the_pages_plugin_looks_as_the_page_shows_it() {
     assert_shown(&BUILT.picture("box", &block_with(&page(), "box brick")), "box");
 }
 
-/// The docs have this picture.
+/// Asserts that the docs show this image.
 fn assert_shown(picture: &RgbImage, name: &str) {
     let shown = image::open(root().join("docs").join(name).with_extension("png")).expect("a picture");
     assert!(*picture == shown.into_rgb8(), "docs/{name}.png is stale: docs/plugins.md says how to make it");
@@ -217,7 +217,7 @@ fn a_constructor_that_asks_for_what_is_not_in_its_table_is_told() {
 fn a_constructor_that_asks_for_another_type_is_told() {
     let scene = A_BOX.replace("box b", "slab b").replace("center 1 1 1", "center 1 1 1 size 1 1 1");
     let said = BUILT.says(&["check", "-"], &scene);
-    // Two lines were added above.
+    // In this plugin, there are two more lines above the registration.
     let line = line(&brick()) + 2;
     let message = format!(
         "the plugin `slab` asks for `size` with another type than in the table it registers at plugins/slab.rs:{line}: give both the same type"
@@ -287,7 +287,7 @@ fn a_new_plugins_mistake_is_one() {
     assert_eq!(mistakes, 2, "of a shape and of a light");
 }
 
-// A crate of its own
+// A separate crate
 
 #[test]
 fn a_plugin_in_a_crate_of_its_own_is_in_that_program() {
@@ -318,7 +318,7 @@ fn the_page_has_the_program_of_a_crate_of_its_own() {
     assert!(page().contains(&text_of("docs/example-plugin/src/main.rs")), "the page shows another program");
 }
 
-/// Tries all plugins but those with a mistake that breaks off the scene.
+/// A program that checks the contracts of all plugins except those whose mistake stops a scene from being built.
 const CONTRACTS: &str = "//! Contracts.
 
 use tabray::scene::Registry;

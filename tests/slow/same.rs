@@ -1,4 +1,5 @@
-//! A picture is the same whoever makes it: on any instructions, with any number of threads, and pixel by pixel.
+//! An image does not depend on the instruction set, on the number of threads, or on whether its pixels are rendered one
+//! by one.
 
 use crate::common::program::{folder, outcome, scene, tabray};
 use crate::common::{scenes, small};
@@ -56,5 +57,5 @@ fn a_picture_depends_neither_on_instructions_nor_on_threads_nor_on_tiles() {
             }
         }
     }
-    assert!(faults.is_empty(), "not as each pixel alone:\n{}", faults.join("\n"));
+    assert!(faults.is_empty(), "these differ from pixels rendered one by one:\n{}", faults.join("\n"));
 }

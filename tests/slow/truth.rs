@@ -1,4 +1,4 @@
-//! The program's hits against the true ones, with every digit that the program has.
+//! The program's hits compared with the true ones, to the last digits of the program's numbers.
 #![allow(clippy::approx_constant, reason = "the notes' vase is 6.28 high")]
 
 use crate::common::model;
@@ -15,16 +15,16 @@ use tabray::numeric::{Float, Wide};
 use tabray::scene::Model;
 use tabray::world::certify::{self, Enclosure, Precision};
 
-/// The rays of each set.
+/// The number of rays of each set.
 const RAYS: usize = 10_000;
 
-/// Those of the sets that count most.
+/// The number of rays of the sets that matter most.
 const MANY_RAYS: usize = 100_000;
 
-/// The notes' methods stop at 1e-4.
+/// The tolerance for the notes' methods, which stop at 1e-4 world units.
 const ROUGHLY: Tolerance = Tolerance { sure: 1e-3, most: 0.05 };
 
-/// A scene with one object.
+/// Returns the model of a scene with one object.
 fn scene(accuracy: &str, object: &str) -> Model {
     model(&format!(
         "camera eye {{ pixeldim 640 480 worlddim 8 6 viewpoint 4 3 7 accuracy {accuracy} }}
@@ -33,28 +33,28 @@ fn scene(accuracy: &str, object: &str) -> Model {
     ))
 }
 
-/// The distance of its first hit.
+/// Returns the distance of the object's first hit.
 fn distance(model: &Model, ray: &Ray) -> f64 {
     model.objects[0].shape.distance(ray, &RayRange::ALL)
 }
 
-/// A vector as scenes spell it.
+/// Writes a vector as scenes do.
 fn spelt(vector: DVec3) -> String {
     format!("{:?} {:?} {:?}", vector.x, vector.y, vector.z)
 }
 
-/// What a shape's hits are compared with.
+/// A shape, and the truth that its hits are compared with.
 struct Subject<'s> {
-    /// Its name in messages.
+    /// The shape's name in messages.
     name: &'s str,
     model: &'s Model,
-    /// The size of its scene against that of the notes.
+    /// The factor by which its scene is larger than that of the notes.
     scale: f64,
-    /// An error that is one in the choice of a crossing, in a scene of the notes' size.
+    /// The error above which a hit counts as one of another crossing, in world units of a scene of the notes' size.
     most: f64,
-    /// The first hit of a ray that is farther than a distance.
+    /// Returns the first hit of a ray beyond a distance.
     truth: &'s dyn Fn(&Ray, f64) -> Truth,
-    /// How far off the surface the point at a distance along a ray is.
+    /// Returns how far the point at a distance along a ray is from the surface.
     off_surface: &'s dyn Fn(&Ray, f64) -> f64,
 }
 
@@ -71,11 +71,11 @@ impl Subject<'_> {
         tally.finish()
     }
 
-    /// The faults of a set of rays: hits missed, invented or another than the first, more than 1 of 1000 rays without
-    /// a truth, hits farther off the surface than this, distances farther off the true ones than so many units in
-    /// the last place.
+    /// Returns the faults of a set of rays: hits that are missed, invented or not the first; more than 1 of 1000 rays
+    /// without a truth; hits more than `off_surface` world units away from the surface; distances off by more than
+    /// `ulps` units in the last place.
     fn faults(&self, set: &str, rays: &[Ray], off_surface: f64, ulps: f64) -> Vec<String> {
-        // A crossing is not taken for another one, however near they are to each other.
+        // No crossing is taken for another one, however close to each other they are.
         let tolerance = Tolerance { sure: 1e-9 * self.scale, most: self.most * self.scale };
         let tally = self.tally(rays.iter().copied(), tolerance);
         let name = format!("{}, {set} x {:e}", self.name, self.scale);
@@ -91,7 +91,7 @@ impl Subject<'_> {
     }
 }
 
-/// The greatest of the rays' distances from a point, rounded.
+/// Returns the unit in the last place of the greatest distance of the rays' origins from a point.
 fn rounding(rays: &[Ray], from: DVec3) -> f64 {
     rays.iter().map(|ray| ulp((ray.origin - from).length())).fold(0.0, f64::max)
 }
@@ -103,7 +103,7 @@ fn assert_none(faults: &[String]) {
 
 // Surfaces of revolution
 
-/// A formula for a scene that is larger or smaller.
+/// Returns a formula for a scene that is `scale` times as large.
 fn scaled(formula: &str, scale: f64) -> String {
     if scale == 1.0 {
         formula.to_owned()
@@ -112,7 +112,7 @@ fn scaled(formula: &str, scale: f64) -> String {
     }
 }
 
-/// A formula's surface in a scene of some size: its spelling and its truth.
+/// Returns the surface of revolution of a formula in a scene of this scale: its text and its truth.
 fn revsurf(formula: &str, height: f64, scale: f64) -> (String, Revolution) {
     let (formula, base, height) = (scaled(formula, scale), scale * BASE, scale * height);
     let place = format!("direction 0 1 0 base {} height {height:?}", spelt(base));
@@ -120,13 +120,13 @@ fn revsurf(formula: &str, height: f64, scale: f64) -> (String, Revolution) {
     (text, Revolution::new(&formula, base, height))
 }
 
-/// Likewise, its truth and the program's.
+/// Returns the truth of the surface of revolution of a formula, and a model of the same surface.
 fn revolution(accuracy: &str, formula: &str, height: f64, scale: f64) -> (Revolution, Model) {
     let (text, surface) = revsurf(formula, height, scale);
     (surface, scene(accuracy, &text))
 }
 
-/// All sets of rays find the true hits of a formula's surface.
+/// Checks that all sets of rays find the true hits of a formula's surface.
 #[track_caller]
 fn finds_the_revolution(name: &str, formula: &str, height: f64) {
     let mut faults = Vec::new();
@@ -137,7 +137,7 @@ fn finds_the_revolution(name: &str, formula: &str, height: f64) {
             if !formula.contains("floor") {
                 return off;
             }
-            // It may have hit a step, and so be near to a whole height.
+            // The ray may have hit a step, so that the point is close to an integer height.
             let step = surface.height_at(ray, distance) / scale;
             off.min(scale * (step - step.round()).abs())
         };
@@ -156,7 +156,8 @@ fn finds_the_revolution(name: &str, formula: &str, height: f64) {
             let off_surface = 1e-14 * scale + rounding(&rays, middle);
             faults.extend(subject.faults(set, &rays, off_surface, f64::INFINITY));
         };
-        // At its own size a surface is asked as often as is bearable here; `tests/slow/accuracy.rs` asks a million times.
+        // At the notes' scale, a surface is tested with as many rays as the time allows here; `tests/slow/accuracy.rs`
+        // traces a million.
         let many = if scale == 1.0 { MANY_RAYS } else { RAYS };
         check("camera", &mut rays::camera(many, scale));
         check("grazing", &mut rays::grazing(many, scale, |random| rays::place_on(&surface, random)));
@@ -167,7 +168,7 @@ fn finds_the_revolution(name: &str, formula: &str, height: f64) {
     assert_none(&faults);
 }
 
-/// Profiles and their heights.
+/// Profiles, and the heights of their surfaces in world units.
 const VASE: (&str, f64) = ("2 + sin(y)", 6.28);
 const NASTY: (&str, f64) = ("1 + 0.3*sin(20*y)", 6.28);
 const CONE: (&str, f64) = ("-4/6*(y - 6)", 6.0);
@@ -211,7 +212,7 @@ fn a_tube_is_found() {
     finds_the_revolution("tube", TUBE.0, TUBE.1);
 }
 
-/// Thin discs, poles that are cut, roots and waves: all rays find what is there and nothing else.
+/// Checks thin discs, truncated poles, roots and waves: all rays find what is there and nothing else.
 #[test]
 fn profiles_that_hide_in_thin_parts_are_found() {
     let mut faults = Vec::new();
@@ -248,7 +249,7 @@ fn profiles_that_hide_in_thin_parts_are_found() {
     assert_none(&faults);
 }
 
-/// The truth itself: no sign changes before the hit, and it is where the sign changes.
+/// Checks the truth itself: the function changes its sign at the hit, and not before it.
 #[test]
 fn the_truth_of_a_revolution_is_where_the_function_first_changes_its_sign() {
     for (formula, height) in [VASE, NASTY, CONE, FLANGE, KINK, TUBE, JUMP] {
@@ -282,7 +283,7 @@ fn the_truth_of_a_revolution_is_where_the_function_first_changes_its_sign() {
     }
 }
 
-/// A cone is a quadric, too.
+/// A cone is both a surface of revolution and a quadric.
 #[test]
 fn two_truths_of_a_cone_agree() {
     let surface = Revolution::new(CONE.0, BASE, CONE.1);
@@ -306,7 +307,7 @@ fn two_truths_of_a_cone_agree() {
     }
 }
 
-/// The notes' method finds what is in the middle of the picture, to the 1e-4 where it stops.
+/// The notes' method finds the hits away from the silhouette, with errors near the 1e-4 at which it stops.
 #[test]
 fn the_notes_method_finds_the_vase_but_for_its_silhouette() {
     let (surface, model) = revolution("classic", VASE.0, VASE.1, 1.0);
@@ -327,11 +328,11 @@ fn the_notes_method_finds_the_vase_but_for_its_silhouette() {
 
 // Shapes with a formula for their hits
 
-/// Where the shapes with ends are, and how far they reach.
+/// The middle of the bounded shapes, and how far they reach from it, in world units.
 const MIDDLE: DVec3 = dvec3(4.0, 3.0, -4.0);
 const REACH: f64 = 3.0;
 
-/// A shape's spelling in a scene of some size, and its truth.
+/// A shape's text in a scene of some scale, and its truth.
 type Spelt = (String, Box<dyn Fn(&Ray, f64) -> Truth>);
 
 fn sphere(scale: f64) -> Spelt {
@@ -350,7 +351,7 @@ fn ellipsoid(scale: f64) -> Spelt {
     (text, Box::new(move |ray, near| shapes::ellipsoid(center, radius, stretch, &ray.into(), near)))
 }
 
-/// A hyperboloid of one sheet, cut to a box.
+/// Returns a hyperboloid of one sheet, clipped to a box.
 fn quadric(scale: f64) -> Spelt {
     let coefficients = [1.0, -0.5, 1.0, 0.1, 0.2, -0.1, 0.0, 0.0, 0.0, scale * scale];
     let corners = [scale * dvec3(-1.75, -2.0, -1.875), scale * dvec3(1.875, 2.0, 1.75)];
@@ -395,7 +396,7 @@ fn triangle(scale: f64) -> Spelt {
     (text, Box::new(move |ray, near| beyond(shapes::triangle(corners, &ray.into()), near)))
 }
 
-/// What is farther than a distance of a shape that is met at most once.
+/// Returns the hit of a shape that is met at most once, if it is beyond a distance.
 fn beyond(truth: Truth, near: f64) -> Truth {
     match truth {
         Truth::Hit(hit) if hit.t <= near.into() => Truth::Miss,
@@ -403,7 +404,7 @@ fn beyond(truth: Truth, near: f64) -> Truth {
     }
 }
 
-/// A random point of a shape, with its normal.
+/// Returns a random point of a shape, and its normal there.
 fn place_on(subject: &Subject, random: &mut Random) -> (DVec3, DVec3) {
     loop {
         let origin = subject.scale * (MIDDLE + 9.0 * random.direction());
@@ -415,14 +416,15 @@ fn place_on(subject: &Subject, random: &mut Random) -> (DVec3, DVec3) {
     }
 }
 
-/// All sets of rays find the true hits of a shape, their distances to so many units in the last place, but for those
-/// that graze it, and never farther off its surface than rounding makes a point.
+/// Checks that all sets of rays find the true hits of a shape. Except for grazing rays, the distances of the two
+/// methods are right to `exact` and `strict` units in the last place; all hits are as close to the surface as rounding
+/// allows.
 #[track_caller]
 fn finds(name: &str, spelt: fn(f64) -> Spelt, farthest: i32, [exact, strict]: [f64; 2]) {
     let is_flat = matches!(name, "plane" | "fplane" | "triangle");
     let mut faults = Vec::new();
     let methods = [("exact", exact), ("strict", strict)];
-    // The truth takes time, and both methods have the same rays.
+    // The truth takes time to compute, and both methods trace the same rays.
     let known = RefCell::new(HashMap::new());
     for (scale, (accuracy, ulps)) in
         [1.0, 1e-3, 1e6].into_iter().flat_map(|scale| methods.map(|m| (scale, m)))
@@ -498,21 +500,21 @@ fn triangles_are_found_from_afar() {
     finds("triangle", triangle, 9, [4.0, 1.0]);
 }
 
-/// Where a quadric is met next to the ray's origin, a unit in the last place is nothing.
+/// A quadric may be met right next to the ray's origin, where a unit in the last place is far below any rounding error.
 #[test]
 fn quadrics_are_found() {
     finds("quadric", quadric, 9, [f64::INFINITY; 2]);
 }
 
-// Scenes that are the same but for where they are and how large
+// Scenes that differ only in position and scale
 
-/// A ray whose numbers have digits to spare, so that moving it loses none.
+/// Rounds a ray's origin to 20 binary places, so that moving the ray loses no digits.
 fn short(ray: &Ray) -> Ray {
     let cut = |number: f64| (number * 2_f64.powi(20)).round() / 2_f64.powi(20);
     Ray { origin: DVec3::from_array(ray.origin.to_array().map(cut)), dir: ray.dir }
 }
 
-/// Rays toward the shapes.
+/// Returns rays toward the shapes.
 fn sample() -> impl Iterator<Item = Ray> {
     rays::camera(RAYS, 1.0).chain(rays::aimed(RAYS, MIDDLE, REACH, 10.0)).map(|ray| short(&ray))
 }
@@ -535,12 +537,12 @@ fn a_scene_twice_as_large_has_its_hits_twice_as_far() {
             for ray in sample() {
                 let scaled_ray = Ray { origin: scale * ray.origin, ..ray };
                 let (one, other) = (distance(&model, &ray), distance(&scaled, &scaled_ray));
-                // How near to the screen a plane is not there any more does not grow with the scene.
+                // The distance from the image plane at which planes end does not scale with the scene.
                 let in_front = |ray: &Ray, hit: f64| hit != MISS && ray.at(hit).z > 0.0;
                 if in_front(&ray, one) || in_front(&scaled_ray, other) {
                     continue;
                 }
-                // How finely a surface of revolution is cut does not grow with it either: its last digit may differ.
+                // Nor does the subdivision of a surface of revolution, so the last digits of its distances may differ.
                 let slack = if is_cut && one != MISS { scale * slack(&model, &ray, one) } else { 0.0 };
                 let is_same = scale * one == other || (scale * one - other).abs() <= slack;
                 assert!(is_same, "{text} x {scale}: {ray:?}, {one} {other}");
@@ -549,15 +551,15 @@ fn a_scene_twice_as_large_has_its_hits_twice_as_far() {
     }
 }
 
-/// How far two distances to one hit may be from each other: a few roundings of what the ray has on its way, as the
-/// slant of the surface makes them longer.
+/// Returns how far two distances to the same hit may differ, in world units: a few rounding errors of the coordinates
+/// along the ray, divided by the cosine of the angle between the ray and the normal.
 fn slack(model: &Model, ray: &Ray, hit: f64) -> f64 {
     let slant = model.objects[0].shape.normal(ray.at(hit)).dot(ray.dir).abs();
     let size = ray.origin.abs().max_element() + hit;
     8.0 * ulp(size) / slant
 }
 
-/// Both scenes have the same hits, of rays that are the same but for this.
+/// Checks that two scenes have the same hits, of rays that are moved as the scene is.
 #[track_caller]
 fn has_the_same_hits(text: &str, moved_text: &str, moved: impl Fn(&Ray) -> Ray) {
     let (model, moved_model) = (scene("exact", text), scene("exact", moved_text));
@@ -594,7 +596,7 @@ fn a_scene_that_is_moved_has_the_same_hits() {
     }
 }
 
-/// A quarter of a turn around z turns every number into another one, exactly.
+/// A quarter turn around z is exact: it swaps coordinates and changes signs.
 #[test]
 fn a_scene_that_is_turned_has_the_same_hits() {
     let turn = DMat3::from_cols(DVec3::Y, -DVec3::X, DVec3::Z);
@@ -664,9 +666,9 @@ fn rays_that_leave_a_surface_meet_it_again_where_they_should() {
     }
 }
 
-// What the program holds for certain
+// What the program proves
 
-/// The enclosure of a ray's first hit is where the truth is, for every shape and for profiles of each kind.
+/// The enclosure of a ray's first hit holds the truth, for every shape and for profiles of each kind.
 #[test]
 fn what_is_certain_is_true() {
     const RAYS: usize = 1_000;
@@ -684,7 +686,7 @@ fn what_is_certain_is_true() {
         for (index, ray) in rays.enumerate() {
             let (sight, truth) = (Sight::along(&ray), truth(&ray, 0.0));
             let at = truth.hit().map(|hit| hit.t.high);
-            // The truth is rounded here, and nothing else.
+            // Only the truth is rounded here.
             let slack = ulp(at.unwrap_or(0.0));
             let is_true = |certain: Enclosure| match certain {
                 Enclosure::Misses => at.is_none(),
@@ -715,7 +717,7 @@ fn what_is_certain_is_true() {
         }
         println!("{text}: {doubtful} of {} doubtful, {} wrong", 4 * RAYS, wrong.len());
         assert!(wrong.is_empty(), "{text}: {} wrong, such as {}", wrong.len(), wrong[0]);
-        // Bounds of a profile that jumps say little near its steps.
+        // The bounds of a profile that jumps decide little near its steps.
         assert!(doubtful == 0 || text.contains("floor") && doubtful * 10 < 4 * RAYS, "{text}: {doubtful}");
     }
 }

@@ -3,7 +3,7 @@
 use super::items::items;
 use super::pending::{self, Pending};
 use crate::cli::failure::{Failure, tell};
-use crate::cli::serve::{self, Server, Work};
+use crate::cli::serve::{self, Answer, Server, Work};
 use crate::cli::{messages, report};
 use crate::scene::registry::Registry;
 use crate::text;
@@ -22,33 +22,52 @@ pub fn serve(
 ) -> Result<(), Failure> {
     let server = Server::open(port)?;
     messages::note(&format!("review at {} (Ctrl-C quits)", server.url()));
-    // One job at a time, so that no page is made while a snapshot is moved.
-    let work = Work::new(1);
-    let run = server.run(async move |request: Request<Bytes>| {
+    let review = Review::new(registry, folder, before);
+    let run = server.run(async move |request: Request<Bytes>| review.answer(&request).await);
+    run.map_err(|error| Failure::Failed(format!("the server stopped: {}", text::reason(&error))))
+}
+
+/// The snapshots of a folder, which a page decides about.
+pub struct Review {
+    registry: &'static Registry,
+    folder: PathBuf,
+    before: Option<PathBuf>,
+    work: Work,
+}
+
+impl Review {
+    /// Begins to review the pending snapshots below a folder, whose old images `before` made.
+    pub fn new(registry: &'static Registry, folder: PathBuf, before: Option<PathBuf>) -> Self {
+        // One job at a time, so that no page is made while a snapshot is moved.
+        Self { registry, folder, before, work: Work::new(1) }
+    }
+
+    /// Answers a request: for the page, or to accept or reject a snapshot. The last decision breaks.
+    pub async fn answer(&self, request: &Request<Bytes>) -> Answer {
+        let Self { registry, folder, before, work } = self;
         let path = (request.method().as_str(), request.uri().path());
         if path == ("GET", "/") {
-            let (folder, before) = (folder.clone(), before.clone());
+            let (registry, folder, before) = (*registry, folder.clone(), before.clone());
             let page = work.run(move |_| page(registry, &folder, before.as_deref())).await;
             let failed = || serve::text(StatusCode::INTERNAL_SERVER_ERROR, "internal error");
             return ControlFlow::Continue(page.unwrap_or_else(failed));
         }
         let _turn = work.turn().await;
         let verdict = match path {
-            ("POST", "/accept") => decide(&folder, request.body(), "accepted", Pending::accept),
-            ("POST", "/reject") => decide(&folder, request.body(), "rejected", Pending::reject),
+            ("POST", "/accept") => decide(folder, request.body(), "accepted", Pending::accept),
+            ("POST", "/reject") => decide(folder, request.body(), "rejected", Pending::reject),
             _ => Err((StatusCode::NOT_FOUND, "not found".to_owned())),
         };
         match verdict {
             Ok(told) => {
                 messages::note(&told);
                 let response = serve::text(StatusCode::OK, &told);
-                let is_last = pending::find(&folder).is_ok_and(|found| found.is_empty());
+                let is_last = pending::find(folder).is_ok_and(|found| found.is_empty());
                 if is_last { ControlFlow::Break(response) } else { ControlFlow::Continue(response) }
             }
             Err((status, reason)) => ControlFlow::Continue(serve::text(status, &reason)),
         }
-    });
-    run.map_err(|error| Failure::Failed(format!("the server stopped: {}", text::reason(&error))))
+    }
 }
 
 fn page(registry: &Registry, folder: &Path, before: Option<&Path>) -> Response<serve::Body> {

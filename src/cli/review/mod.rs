@@ -1,6 +1,6 @@
 //! `tabray review`: a page with the snapshots that wait for a decision.
 
-mod decide;
+pub(super) mod decide;
 mod items;
 mod pending;
 

@@ -25,7 +25,8 @@ use std::pin::pin;
 use std::rc::Rc;
 use std::task::Poll;
 use std::time::Duration;
-use tokio::net::{TcpListener, TcpStream};
+use tokio::io::{AsyncRead, AsyncWrite};
+use tokio::net::TcpListener;
 use tokio::sync::{Notify, Semaphore};
 use tokio::task::{AbortHandle, spawn_local, yield_now};
 use tokio::time::{sleep, timeout};
@@ -147,7 +148,7 @@ where
     }
 
     /// Reads one request from a connection and answers it.
-    async fn serve(self: Rc<Self>, stream: TcpStream, number: u64) {
+    pub async fn serve(self: Rc<Self>, stream: impl AsyncRead + AsyncWrite, number: u64) {
         let (slot, is_last) = (Cell::new(None), Cell::new(false));
         let service = service_fn(async |request: Request<Incoming>| {
             let mut response = if let Err(reason) = self.access.admit(&request) {

@@ -26,8 +26,9 @@ pub(crate) use scratch::Scratch;
 
 use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::geometry::sight::Sight;
-use crate::render::observer::{Count, Event, Hit, Purpose, RayKind, TraceObserver};
+use crate::render::observer::{Count, DynObserver, Event, Hit, Purpose, RayKind, TraceObserver};
 use crate::render::plan::Plan;
+use crate::render::ray_stats::Cuts;
 use crate::simd::cpu::Cpu;
 use crate::simd::soa::View;
 use crate::world::camera;
@@ -60,12 +61,20 @@ pub fn colour(plan: &Plan, sight: &Sight, sample: Option<Sample>) -> Rgb {
 }
 
 /// Computes the colour that a primary ray returns as [`colour`] does, and reports each step to `observer`.
-pub fn observe_colour(
+pub fn observe_colour<W: TraceObserver>(
     plan: &Plan,
     sight: &Sight,
     sample: Option<Sample>,
-    observer: &mut impl TraceObserver,
+    observer: &mut W,
 ) -> Rgb {
+    if W::SEES {
+        traced(plan, sight, sample, &mut DynObserver::<true>(observer))
+    } else {
+        traced(plan, sight, sample, &mut DynObserver::<false>(observer))
+    }
+}
+
+fn traced(plan: &Plan, sight: &Sight, sample: Option<Sample>, observer: &mut impl TraceObserver) -> Rgb {
     let (mut scratch, mut colours) = (Scratch::default(), VectorList::default());
     scratch.samples.extend(sample);
     let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, observer);
@@ -76,7 +85,7 @@ pub fn observe_colour(
 
 /// Finds the first hit of a primary ray.
 pub fn first_hit<'m>(plan: &Plan<'m>, sight: &Sight) -> Option<Hit<'m>> {
-    let (mut scratch, mut nobody) = (Scratch::default(), ());
+    let (mut scratch, mut nobody) = (Scratch::default(), Cuts::default());
     let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody);
     let mut group = RayGroup::primary(sight, None);
     let (mut hits, mut distances) = (HitRecord::default(), Vec::new());
@@ -167,7 +176,7 @@ mod tests {
 
     /// Traces rays through the lowest row of pixels, each with its own ray budget.
     fn seen(plan: &Plan, pixels: &[usize], budgets: &[u32]) -> Vec<Rgb> {
-        let (mut scratch, mut nobody) = (Scratch::default(), ());
+        let (mut scratch, mut nobody) = (Scratch::default(), Cuts::default());
         scratch.places = [vec![0.0; PACKET_SIZE], vec![0.0; PACKET_SIZE]];
         for (lane, column) in pixels.iter().enumerate() {
             scratch.places[0][lane] = *column as f64;

@@ -50,6 +50,10 @@ impl Equation for Classic {
         x.powi(2) + z.powi(2) - self.line.radius.squared().at(y)
     }
 
+    fn cost(&self) -> usize {
+        self.line.radius.cost() as usize
+    }
+
     fn kept<N: Scalar>(&self, [_, y, _]: [N; 3]) -> N {
         y.min(N::constant(self.height) - y)
     }

@@ -37,6 +37,10 @@ impl<S: Equation> Equation for InFrame<S> {
         self.surface.value(at)
     }
 
+    fn cost(&self) -> usize {
+        self.surface.cost()
+    }
+
     fn kept<N: Scalar>(&self, at: [N; 3]) -> N {
         self.surface.kept(at)
     }

@@ -78,6 +78,10 @@ impl Equation for Revolution {
         x.powi(2) + z.powi(2) - self.square.at(height)
     }
 
+    fn cost(&self) -> usize {
+        self.square.cost() as usize
+    }
+
     fn kept<N: Scalar>(&self, [_, y, _]: [N; 3]) -> N {
         let below_the_top = N::constant(self.height) - y;
         y.min(below_the_top).min(self.profile.at(y))

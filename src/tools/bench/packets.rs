@@ -3,7 +3,7 @@
 use super::clock;
 use crate::geometry::ray::{MISS, Side};
 use crate::geometry::ray_packet::{Nearest, PACKET_SIZE, RayPacket};
-use crate::render::observer::{Count, RayKind, TraceObserver};
+use crate::render::observer::{Count, DynObserver, RayKind, TraceObserver};
 use crate::render::plan::Plan;
 use crate::render::tiles::{self, TILE};
 use crate::render::trace::{self, Scratch, Tracer};
@@ -231,7 +231,7 @@ impl Tested {
     /// Collects the objects of a tile, each once.
     fn of(plan: &Plan, cpu: Cpu, tile: &[[usize; 2]]) -> Self {
         let mut tested = Self::default();
-        Tracer::new(plan, cpu, &mut Scratch::default(), &mut tested).pixels(tile);
+        Tracer::new(plan, cpu, &mut Scratch::default(), &mut DynObserver::<false>(&mut tested)).pixels(tile);
         for objects in [&mut tested.primary, &mut tested.shadow] {
             objects.sort_unstable();
             objects.dedup();

@@ -12,6 +12,7 @@ use super::study::Study;
 use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::render::observer::{Event, TraceObserver};
 use crate::render::plan::Plan;
+use crate::render::ray_stats::Cuts;
 use crate::render::renderer::Renderer;
 use crate::render::trace::{self, Scratch, Tracer};
 use crate::scene::model::Model;
@@ -209,7 +210,7 @@ pub(super) fn count(tiles: &[Pixels]) -> usize {
 
 /// Traces tiles as a render does, on this thread.
 pub(super) fn render(plan: &Plan, tiles: &[Pixels]) {
-    let (mut scratch, mut nobody) = (Scratch::default(), ());
+    let (mut scratch, mut nobody) = (Scratch::default(), Cuts::default());
     for tile in tiles {
         black_box(Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody).pixels(tile));
     }

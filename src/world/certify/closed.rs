@@ -1,6 +1,6 @@
 //! First hits of surfaces whose equation is a quadratic along a line: planes, spheres, cones and the like.
 
-use super::equation::{Equation, Found, is_kept};
+use super::equation::{Found, Values, is_kept};
 use crate::geometry::sight::Line;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::{Float, Interval};
@@ -15,7 +15,7 @@ enum Candidate<F> {
 }
 
 /// Finds the first hit with t > 0. The start of the line itself is not a hit.
-pub fn first_hit<F: Float>(shape: &impl Equation, line: &Line<Interval<F>>) -> Found<F> {
+pub fn first_hit<F: Float>(shape: &dyn Values<F>, line: &Line<Interval<F>>) -> Found<F> {
     let zero = F::of(0.0);
     for candidate in candidates(coefficients(shape, line)).into_iter().flatten() {
         let (is_there, at) = match candidate {
@@ -39,14 +39,14 @@ pub fn first_hit<F: Float>(shape: &impl Equation, line: &Line<Interval<F>>) -> F
 }
 
 /// Computes the coefficients of `a t^2 + 2 b t + c`, the equation's value along the line.
-fn coefficients<F: Float>(shape: &impl Equation, line: &Line<Interval<F>>) -> [Interval<F>; 3] {
+fn coefficients<F: Float>(shape: &dyn Values<F>, line: &Line<Interval<F>>) -> [Interval<F>; 3] {
     // The value and its derivatives are computed at t = 0, so that the start of the line is not rounded.
     let zero = Interval::constant(0.0);
     let at = [0, 1, 2].map(|axis| {
         let (origin, dir) = (line.origin[axis], line.dir[axis]);
         Dual { value: Dual { value: origin, slope: dir }, slope: Dual { value: dir, slope: zero } }
     });
-    let value = shape.value(at);
+    let value = shape.bend(at);
     let half = Interval::constant(0.5);
     [half * value.second(), half * value.first(), value.value.value]
 }

@@ -1,6 +1,7 @@
 //! Shapes as the solutions of equations, and what can be proven about their hits.
 
 use crate::geometry::sight::Line;
+use crate::numeric::dual::Dual;
 use crate::numeric::interval::{Float, Interval};
 use crate::numeric::scalar::Scalar;
 use glam::DVec3;
@@ -21,6 +22,11 @@ pub trait Equation {
     /// Returns the equation's value at a point: 0 on the surface, with opposite signs on the two sides.
     fn value<N: Scalar>(&self, at: [N; 3]) -> N;
 
+    /// Returns the estimated number of arithmetic operations of [`value`](Self::value), if that is a formula of the scene.
+    fn cost(&self) -> usize {
+        1
+    }
+
     /// Returns a positive number where the surface is kept, and a negative number where it is cut off.
     fn kept<N: Scalar>(&self, _at: [N; 3]) -> N {
         N::constant(1.0)
@@ -34,6 +40,61 @@ pub trait Equation {
     }
 }
 
+/// An equation in intervals of one precision. Proofs take it as a `dyn`, so that they are compiled once for a precision,
+/// not once for a shape.
+pub(super) trait Values<F: Float> {
+    /// Returns [`Equation::IS_QUADRATIC`].
+    fn is_quadratic(&self) -> bool;
+
+    /// Transforms a line into the coordinates that the equation is written in.
+    fn own(&self, line: Line<Interval<F>>) -> Line<Interval<F>>;
+
+    /// Encloses the value.
+    fn value(&self, at: [Interval<F>; 3]) -> Interval<F>;
+
+    /// Encloses the value and its first derivative.
+    fn slope(&self, at: [Dual<Interval<F>>; 3]) -> Dual<Interval<F>>;
+
+    /// Encloses the value and its first two derivatives.
+    fn bend(&self, at: [Dual<Dual<Interval<F>>>; 3]) -> Dual<Dual<Interval<F>>>;
+
+    /// Returns a positive interval where the surface is kept, and a negative one where it is cut off.
+    fn kept(&self, at: [Interval<F>; 3]) -> Interval<F>;
+
+    /// Returns [`Equation::extent`].
+    fn extent(&self) -> [DVec3; 2];
+}
+
+impl<E: Equation, F: Float> Values<F> for E {
+    fn is_quadratic(&self) -> bool {
+        E::IS_QUADRATIC
+    }
+
+    fn own(&self, line: Line<Interval<F>>) -> Line<Interval<F>> {
+        Equation::own(self, line)
+    }
+
+    fn value(&self, at: [Interval<F>; 3]) -> Interval<F> {
+        Equation::value(self, at)
+    }
+
+    fn slope(&self, at: [Dual<Interval<F>>; 3]) -> Dual<Interval<F>> {
+        Equation::value(self, at)
+    }
+
+    fn bend(&self, at: [Dual<Dual<Interval<F>>>; 3]) -> Dual<Dual<Interval<F>>> {
+        Equation::value(self, at)
+    }
+
+    fn kept(&self, at: [Interval<F>; 3]) -> Interval<F> {
+        Equation::kept(self, at)
+    }
+
+    fn extent(&self) -> [DVec3; 2] {
+        Equation::extent(self)
+    }
+}
+
 /// What is certain about a first hit, with numbers of one precision; see [`Enclosure`](super::Enclosure).
 pub(super) enum Found<F> {
     Misses,
@@ -44,7 +105,7 @@ pub(super) enum Found<F> {
 
 /// Tells whether the surface is kept at all distances of an interval along a line; `None` where that is uncertain.
 pub(super) fn is_kept<F: Float>(
-    shape: &impl Equation,
+    shape: &dyn Values<F>,
     line: &Line<Interval<F>>,
     distance: Interval<F>,
 ) -> Option<bool> {

@@ -14,7 +14,7 @@ pub use equation::Equation;
 use crate::geometry::sight::Sight;
 use crate::numeric::double_double::DoubleDouble;
 use crate::numeric::interval::{Float, Interval, Wide};
-use equation::Found;
+use equation::{Found, Values};
 use f256::f256;
 
 /// What is certain about a ray's first hit of a shape. Distances are multiples of the length of the sight's direction.
@@ -83,16 +83,24 @@ pub enum Precision {
     Octuple,
 }
 
+/// The maximum number of pieces of a line that are examined before a search is given up.
+const PIECES: usize = 2000;
+
+/// The maximum number of operations with 237 bits that a search may take if each piece is evaluated once: a tenth of a
+/// second's worth. Only formulas of more than ten operations are given up before [`PIECES`].
+const OPERATIONS: usize = 20_000;
+
 /// Returns what is certain about a ray's first hit of a shape.
 pub fn first_hit(shape: &impl Equation, sight: &Sight, precision: Precision) -> Enclosure {
     match precision {
-        Precision::Double => match solve::<f64>(shape, sight) {
+        Precision::Double => match solve::<f64>(shape, sight, PIECES) {
             Found::Misses => Enclosure::Misses,
             Found::Hits(at) => Enclosure::Hits(at.into()),
             Found::Edge(at) => Enclosure::Edge(at.into()),
             Found::Doubtful(from) => Enclosure::Doubtful(from.into()),
         },
-        Precision::Octuple => match solve::<f256>(shape, sight) {
+        Precision::Octuple => match solve::<f256>(shape, sight, PIECES.min(OPERATIONS / shape.cost().max(1)))
+        {
             Found::Misses => Enclosure::Misses,
             Found::Hits(at) => Enclosure::Hits(at),
             Found::Edge(at) => Enclosure::Edge(at),
@@ -101,13 +109,13 @@ pub fn first_hit(shape: &impl Equation, sight: &Sight, precision: Precision) -> 
     }
 }
 
-fn solve<F: Float>(shape: &impl Equation, sight: &Sight) -> Found<F> {
+fn solve<F: Float>(shape: &dyn Values<F>, sight: &Sight, pieces: usize) -> Found<F> {
     let line = shape.own(sight.line());
-    if is_quadratic(shape) { closed::first_hit(shape, &line) } else { search::first_hit(shape, &line) }
-}
-
-fn is_quadratic<E: Equation>(_: &E) -> bool {
-    E::IS_QUADRATIC
+    if shape.is_quadratic() {
+        closed::first_hit(shape, &line)
+    } else {
+        search::first_hit(shape, &line, pieces)
+    }
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! The numbers and the exit statuses.
+//! The numbers and the exit statuses of `tabray diff`.
 
 use crate::review::{pictures, tabray, with_pictures};
 use image::{DynamicImage, RgbImage};

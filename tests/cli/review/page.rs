@@ -1,4 +1,4 @@
-//! The page of a comparison.
+//! The page that `tabray diff` writes.
 
 use crate::common::root;
 use crate::review::{data, folder, pictures, tabray, with_pictures};

@@ -6,13 +6,13 @@ use nix::sys::resource::{Resource, getrlimit, setrlimit};
 use std::net::TcpStream;
 use std::time::{Duration, Instant};
 
-/// The time for an answer, on a machine that is busy.
+/// The time in which an answer must come, on a busy machine.
 const SOON: Duration = Duration::from_secs(9);
 
 /// The number of connections that a hostile user opens.
 const CROWD: usize = 1200;
 
-/// Asserts that the page, and answers that take some computing, come soon.
+/// Asserts that the page, and an answer that takes some computing, come soon.
 fn is_prompt(server: &Running, when: &str) {
     let start = Instant::now();
     assert_eq!(server.page(), 200, "{when}: {}", server.said());

@@ -71,7 +71,7 @@ impl Running {
         Self { program, folder, host, token, said }
     }
 
-    /// Ends the server. The folder stays.
+    /// Ends the server, and returns its folder.
     fn end(mut self) -> TempDir {
         self.kill();
         std::mem::replace(&mut self.folder, TempDir::new().expect("a folder"))
@@ -91,7 +91,7 @@ impl Running {
         let mut stream = TcpStream::connect(&self.host).expect("it listens");
         stream.set_read_timeout(Some(PATIENCE)).expect("a time");
         let text = text.replace("TOKEN", &self.token).replace("HOST", &self.host).replace('\n', "\r\n");
-        // A client that is refused may be so before it has sent everything.
+        // The server may refuse a client before it has sent everything.
         let _ = stream.write_all(text.as_bytes());
         stream
     }

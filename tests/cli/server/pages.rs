@@ -1,5 +1,5 @@
-//! The pages of the servers in a browser: what they may do, and their messages when they no longer may. Skipped where
-//! there is no Chromium.
+//! The pages of the servers in a browser: what they may do, and their messages when they no longer may. These tests are
+//! skipped where there is no Chromium.
 
 use super::{REVIEW, Running, WATCH, folder};
 use crate::watch::browser::Browser;

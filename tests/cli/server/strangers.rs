@@ -126,10 +126,10 @@ fn another_page_in_the_browser_gets_nothing_even_with_the_token() {
             (from("", "cross-site", "no-cors", "script"), OTHER_PAGE),
             (from("", "cross-site", "no-cors", "empty"), OTHER_PAGE),
             (from("", "cross-site", "navigate", "iframe"), OTHER_PAGE),
-            // A form that is sent.
+            // Another page submits a form.
             (from(evil, "cross-site", "navigate", "document"), OTHER_PAGE),
             (from("null", "cross-site", "navigate", "document"), OTHER_PAGE),
-            // What a browser sends for a host whose name was made to lead here.
+            // A browser sends this for a host name that was made to resolve to this machine.
             (format!("Host: evil.example:{port}\n"), OTHER_HOST),
         ] {
             let host = if headers.starts_with("Host") { "" } else { "Host: HOST\n" };

@@ -1,4 +1,5 @@
-//! The page in a browser: it shows, follows, warns and explains. Skipped where there is no Chromium.
+//! The page in a browser: it shows the image, follows edits, shows errors and explains pixels. These tests are skipped
+//! where there is no Chromium.
 
 use crate::common::{load, model, render, root};
 use crate::watch::browser::Browser;
@@ -121,7 +122,7 @@ fn exposure_shows_what_is_dark_and_keys_switch_layers() {
         browser.press(']');
     }
     let bright = canvas(&browser);
-    // Ten stops. Light of 0.01 has travelled about 7 units.
+    // The exposure is raised by ten stops. Light of 0.01 has travelled about 7 units.
     let middle = |picture: &RgbImage| picture.get_pixel(40, 30).0;
     assert_eq!(middle(&dark), [0, 0, 1]);
     let [red, green, blue] = render(&model(&ball("10.24 20.48 30.72"))).get_pixel(40, 30).0;

@@ -12,7 +12,7 @@ use std::thread;
 use std::time::Duration;
 use tempfile::TempDir;
 
-/// Longer than any machine needs; only a faulty program takes as long.
+/// A time longer than any machine needs; only a faulty program takes as long.
 pub const PATIENCE: Duration = Duration::from_secs(180);
 
 /// Returns a scene that is rendered at once: a sphere of this colour, on lines 3 to 7.
@@ -126,7 +126,7 @@ impl Events {
     /// Returns the name and the data of the next event.
     pub fn next(&mut self) -> (String, String) {
         let mut line = self.line();
-        // After a minute without an event, a line says so.
+        // After a minute without events, the program sends a line with a colon.
         while line == ":" {
             assert_eq!(self.line(), "");
             line = self.line();

@@ -129,7 +129,7 @@ fn a_broken_scene_leaves_the_last_good_picture_to_every_page() {
 
 #[test]
 fn a_save_ends_the_render_under_way() {
-    // This would take days.
+    // This render would take days.
     let heavy = ball("9 0 0").replace("80 60", "4000 4000").replace("viewpoint", "samples 65536 viewpoint");
     let watching = Watching::text(&heavy);
     let mut events = watching.events();
@@ -266,7 +266,7 @@ fn nothing_listens_beyond_loopback() {
         })
         .filter_map(|line| {
             let words: Vec<_> = line.split_whitespace().collect();
-            // The third word is the state; 0A listens.
+            // The fourth word is the state; 0A means listening.
             (words[3] == "0A" && words[1].ends_with(&port)).then(|| words[1].to_owned())
         })
         .collect();

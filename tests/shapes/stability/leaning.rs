@@ -1,5 +1,5 @@
-//! Surfaces of revolution around any axis, from near and from afar, against the real numbers: the ray as it is, the axis
-//! along the scene's direction, and quadratic equations in 300 bits.
+//! Surfaces of revolution about any axis, from near and from afar, compared with exact results: the ray as it is, the
+//! axis along the scene's direction, and quadratic equations in 300 bits.
 
 use super::{Random, shape, words};
 use dashu_float::FBig;
@@ -21,7 +21,7 @@ fn reals(vector: DVec3) -> [Real; 3] {
     vector.to_array().map(real)
 }
 
-/// A line whose square is `c + b y + a y^2`, turned.
+/// A surface of revolution about any axis, whose profile squared is `c + b y + a y^2`.
 struct Turned {
     square: [f64; 3],
     height: f64,
@@ -30,7 +30,7 @@ struct Turned {
 }
 
 impl Turned {
-    /// A ray's equation `a t^2 + 2 b t + c`, and its height as `start + rise t`.
+    /// Returns the coefficients of a ray's equation `a t^2 + 2 b t + c`, and of its height `start + rise t`.
     fn equation(&self, ray: &Ray) -> ([Real; 3], [Real; 2]) {
         let axis = reals(self.axis);
         let length = dot(&axis, &axis).sqrt();
@@ -45,8 +45,8 @@ impl Turned {
         ([a, b, c], [start, rise])
     }
 
-    /// Its roots in their order that are ahead and on the surface, and whether any is so near to its rims that its
-    /// height is no matter of the surface's sides.
+    /// Returns the roots that are ahead and on the surface, in order, and whether any root is so close to a rim that
+    /// rounding decides whether its height is on the surface.
     fn hits(&self, ray: &Ray) -> (Vec<Real>, bool) {
         let ([a, b, c], [start, rise]) = self.equation(ray);
         let discriminant = &b * &b - &a * &c;
@@ -65,7 +65,7 @@ impl Turned {
         (roots, rim)
     }
 
-    /// How far from the surface the point at a distance is, to first order.
+    /// Returns the distance from the surface of the point at a distance along the ray, to first order.
     fn off_surface(&self, ray: &Ray, distance: f64) -> f64 {
         let ([a, b, c], [start, rise]) = self.equation(ray);
         let t = real(distance);
@@ -76,7 +76,7 @@ impl Turned {
         (value / (2.0 * radius).hypot(c1 + 2.0 * c2 * y)).abs()
     }
 
-    /// A point of it and the normal there, rounded.
+    /// Returns a point of the surface and the normal there, rounded.
     fn place(&self, random: &mut Random) -> (DVec3, DVec3) {
         let up = self.axis.normalize();
         let (across, away) = up.any_orthonormal_pair();
@@ -97,7 +97,7 @@ const LINES: [(&str, [f64; 3]); 4] = [
     ("sqrt(1 + (y-2)^2)", [5.0, -4.0, 1.0]),
 ];
 
-/// Rays that pass a surface at 1e-2 to 1e-15 from touching it, or go anywhere near it, from 1 to 1e9 away.
+/// Rays pass a surface at 1e-2 to 1e-15 from tangency, or anywhere near it, from 1 to 1e9 away.
 #[test]
 fn leaning_surfaces_are_met_where_the_real_numbers_have_it() {
     let mut random = Random(14);
@@ -139,7 +139,7 @@ fn leaning_surfaces_are_met_where_the_real_numbers_have_it() {
                 misses += 1;
                 continue;
             };
-            // The one that is nearest.
+            // The distance belongs to the first of the true hits.
             let apart = |t: &Real| (t.to_f64().value() - distance).abs();
             assert!(
                 truth.iter().all(|other| apart(first) <= apart(other) + 1e-7),

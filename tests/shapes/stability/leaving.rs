@@ -1,4 +1,4 @@
-//! The table of self-intersection: rays that leave a surface of revolution, as shadow and mirror rays do.
+//! The table of self-intersections: rays that leave a surface of revolution, as shadow rays and reflected rays do.
 
 use super::profiles::{Line, NASTY, VASE};
 use super::{Random, distance};
@@ -6,13 +6,14 @@ use glam::{DVec3, dvec3};
 use tabray::geometry::{MISS, Ray, RayRange, Side};
 use tabray::world::Hittable;
 
-/// A point where a ray of the camera met a surface from outside, as its distance and direction give it, and a way on.
+/// The point where a camera ray met a surface from outside, as computed from its distance and direction, and the
+/// direction of a ray that starts there.
 struct Start {
     point: DVec3,
     dir: DVec3,
 }
 
-/// 5000 starts on a surface, half of them shallow; the camera of the course's scene is moved away by a factor.
+/// Returns 5000 starts on a surface, half of them shallow. The camera of the course's scene is moved away by a factor.
 fn starts(line: &Line, shape: &dyn Hittable, away: f64) -> Vec<Start> {
     let mut random = Random(9);
     let mut found = Vec::new();
@@ -38,19 +39,20 @@ fn starts(line: &Line, shape: &dyn Hittable, away: f64) -> Vec<Start> {
     found
 }
 
-/// Asks a shape for the next hit of a ray that leaves it on the outside.
+/// Returns the distance of the next hit of a ray that leaves the shape on the outside.
 fn next(shape: &dyn Hittable, start: &Start) -> f64 {
     let ray = Ray { origin: start.point, dir: start.dir };
     shape.distance(&ray, &RayRange { origin_side: Some(Side::Outside), ..RayRange::ALL })
 }
 
-/// The first of many samples of a ray that lies inside while the one before lies outside: surely a hit, if not the
-/// first. The start is as far off the surface as its distance was rounded, and samples begin beyond that.
+/// Returns the first of many samples of a ray that lies inside although the sample before it lies outside: a certain
+/// hit, if not the first. The start is off the surface by the rounding error of its distance, and the samples begin
+/// beyond that.
 fn sampled(line: &Line, start: &Start) -> Option<f64> {
     const SAMPLES: usize = 1_000;
     let [_, far] = line.bounds(start.point, start.dir)?;
     let outside = |sample: usize| {
-        // Close together where the surface is near.
+        // The samples are close together near the start, where the surface is near.
         let part = sample as f64 / SAMPLES as f64;
         line.outside(start.point + 1e-3_f64.max(far * part * part) * start.dir) > 0.0
     };
@@ -58,7 +60,7 @@ fn sampled(line: &Line, start: &Start) -> Option<f64> {
     Some(far * ((entered + 1) as f64 / SAMPLES as f64).powi(2))
 }
 
-/// `rounding` is how far from the surface starts may lie.
+/// Asserts that rays that leave a surface meet only what is there. Starts lie up to `rounding` from the surface.
 fn leaves_without_meeting_itself(line: &Line, away: f64, rounding: f64) {
     let shape = line.shape();
     assert!(shape.can_hit_itself(Side::Outside), "a surface of revolution can meet what leaves it");
@@ -66,11 +68,11 @@ fn leaves_without_meeting_itself(line: &Line, away: f64, rounding: f64) {
     let (mut judged_inside, mut again) = (0, 0);
     let (mut met_itself, mut lost) = (Vec::new(), Vec::new());
     for start in &starts {
-        // The naive way: the sign where the ray starts tells its side.
+        // The naive form takes the sign of the function at the start for the side on which the ray starts.
         judged_inside += u32::from(line.outside(start.point) < 0.0);
         let hit = next(&*shape, start);
         let told = format!("{hit} from {:?} along {:?}", start.point.to_array(), start.dir.to_array());
-        // A true hit has come from outside: half way to it the ray is above the surface by more than rounding.
+        // A true hit comes from outside: halfway to it, the ray is outside the surface by more than rounding.
         let half_way = line.outside(start.point + 0.5 * hit * start.dir);
         if hit < MISS && (hit <= 0.0 || half_way <= -rounding || (hit < 1e-3 && half_way <= rounding)) {
             met_itself.push(told.clone());
@@ -98,13 +100,14 @@ fn a_ray_that_leaves_ripples_meets_only_what_is_there() {
     leaves_without_meeting_itself(&NASTY, 1.0, 1e-14);
 }
 
-/// From so far away a hit is rounded to 1e-9.
+/// From so far away, a hit is rounded to 1e-9.
 #[test]
 fn a_ray_that_leaves_a_far_vase_meets_only_what_is_there() {
     leaves_without_meeting_itself(&VASE, 1e6, 1e-8);
 }
 
-/// Rays that leave the inner wall inward: the pipe is convex seen from outside, and a mirror of itself from inside.
+/// Rays leave the inner wall of a pipe inward. Seen from outside, the pipe is convex; from inside, rays meet the
+/// opposite wall.
 #[test]
 fn a_ray_that_leaves_the_inner_wall_meets_the_opposite_one() {
     let pipe = super::profiles::revsurf("", "profile \"1\"", 6.0);

@@ -1,4 +1,4 @@
-//! The six mistakes of the prototype.
+//! The six mistakes of the prototype, each as a lesson.
 
 use super::profiles::{FLANGE, Line, NASTY, STAIR, VASE};
 use super::{Random, distance};
@@ -6,12 +6,13 @@ use glam::{DVec3, dvec3};
 use tabray::geometry::{MISS, Ray, RayRange, Side};
 use tabray::numeric::Interval;
 
-/// Lesson 1: a rounding margin of 32 eps R^2 for q forgets that the rounding of y comes in by the slope of g.
+/// Lesson 1: a rounding margin of 32 eps R^2 for q ignores that the rounding error of y enters q multiplied by the
+/// slope of g.
 #[test]
 fn a_margin_for_rounding_knows_the_slope() {
     let ripples = NASTY.shape();
-    // Each ray dips into a ripple for some 1e-4 and less; a little before its hit, rounding in f64 takes more than that
-    // margin from a q of 3e-10 to 5e-9.
+    // Each ray dips into a ripple by some 1e-4 or less. Shortly before its hit, where q is 3e-10 to 5e-9, the rounding
+    // error in f64 exceeds that margin.
     for (eye, dir, truth) in [
         (
             dvec3(17.26556398093873, 6.020514752678376, -9.194359506659884),
@@ -34,12 +35,12 @@ fn a_margin_for_rounding_knows_the_slope() {
     }
 }
 
-/// Lesson 2: far from where it begins, a steep parabola is a difference of large numbers.
+/// Lesson 2: far from the point about which it is expanded, a steep parabola is a difference of large numbers.
 #[test]
 fn a_slab_is_right_for_a_ray_that_begins_far_from_it() {
-    // Across the rim of the flange, g^2 is 5.3 - 3700 v^2. Evaluated around s = 0, where v is -1.3, that is wrong by more
-    // than 1e-13: any margin for q itself.
-    // Rays that are closest to the axis far above or below the disc, and enter its rim.
+    // Across the rim of the flange, g^2 is 5.3 - 3700 v^2. Evaluated around s = 0, where v is -1.3, it has an error of
+    // more than 1e-13, more than any margin for q itself. The rays here are closest to the axis far above or below the
+    // disc, and enter its rim.
     let flange = FLANGE.shape();
     let mut random = Random(2);
     for _ in 0..5_000 {
@@ -54,17 +55,17 @@ fn a_slab_is_right_for_a_ray_that_begins_far_from_it() {
     }
 }
 
-/// Lesson 3: a NaN among the products of an interval's ends vanishes in `min` and `max`, and with it the jump.
+/// Lesson 3: `min` and `max` drop a NaN among the products of an interval's ends, and the jump is lost with it.
 #[test]
 fn an_undefined_product_is_no_proof() {
-    // 0 times infinity is NaN, the least and the greatest of two of these are NaN, and the greater of 0 and their size is
-    // 0: that was the error of a slab with a jump in it, as it was proven.
+    // 0 times infinity is NaN; the minimum and the maximum of two of these are NaN, and the maximum of 0 and their
+    // magnitude is 0. That was the allegedly proven error of a slab with a jump in it.
     let zero = Interval { low: 0.0, high: 0.0 };
     for product in [zero * Interval::WHOLE, Interval::WHOLE * zero] {
         assert!(!product.low.is_nan() && !product.high.is_nan(), "{product:?}");
         assert!(product.low <= 0.0 && product.high >= 0.0, "{product:?}");
     }
-    // The camera's rays that lost a ledge of the stair by it.
+    // These camera rays lost a ledge of the stair by that.
     let stair = STAIR.shape();
     for (dir, truth) in [
         (dvec3(0.0740714372634855, 0.2047857383166952, -0.9760001145306324), 9.766305097413852),
@@ -76,12 +77,12 @@ fn an_undefined_product_is_no_proof() {
     }
 }
 
-/// Lesson 4: where the error of a slab is infinite, so are both terms of its root, and their quotient is none.
+/// Lesson 4: where the error of a slab is infinite, so are both terms of its root, and their quotient is NaN.
 #[test]
 fn a_slab_without_a_bound_is_not_skipped() {
     // The part of a ray in which the lower parabola of a slab is below 0 ends at below / (-b - root), where `below` is
-    // c - infinity: infinity by infinity, which is NaN, and `max` makes of it where the part begins. Nothing of the slab
-    // was searched.
+    // c - infinity. This is infinity over infinity, thus NaN, and `max` replaces it with the beginning of the part.
+    // Nothing of the slab was searched.
     let stair = STAIR.shape();
     for (eye, dir, truth) in [
         (
@@ -105,28 +106,29 @@ fn a_slab_without_a_bound_is_not_skipped() {
     }
 }
 
-/// Lesson 5: a few ulps in which nothing can be proven hold a hit only if the sign changes in them, or q is 0 but for
-/// rounding.
+/// Lesson 5: a range of a few ulps in which nothing can be proven contains a hit only if the sign changes in it, or if
+/// q is 0 up to rounding.
 #[test]
 fn a_jump_that_a_ray_passes_is_no_surface() {
-    // Bounds of q over a jump hold all that lies between its sides, and so never exclude 0, however short the piece.
+    // Bounds of q over a jump contain everything between its two sides, and so never exclude 0, however short the
+    // range.
     let stair = STAIR.shape();
     for (x, side) in [(0.1, "inside"), (3.0, "outside"), (2.0 + 1e-12, "outside")] {
         for (eye, dir) in [(dvec3(x, -5.0, 0.0), DVec3::Y), (dvec3(x, 9.0, 0.0), DVec3::NEG_Y)] {
             assert_eq!(distance(&*stair, eye, dir), MISS, "along the axis and {side}, at x = {x}");
         }
     }
-    // Across two steps, and above them: out of reach of the lower one, into the side of the higher one.
+    // The ray passes two steps: above the lower one, out of its reach, and into the side of the higher one.
     let (eye, dir) = (dvec3(10.0, 2.5, 0.0), dvec3(-8.0, 0.7, 0.0).normalize());
     let truth = 8.75 / -dir.x;
     let hit = distance(&*stair, eye, dir);
     assert!((hit - truth).abs() < 1e-14, "{hit} is not {truth}");
 }
 
-/// Lesson 6: a ray that leaves the surface enters it where q falls, and no earlier.
+/// Lesson 6: a ray that leaves the surface enters it where q falls through 0, and no earlier.
 #[test]
 fn a_ray_that_leaves_is_hit_by_the_first_entry_and_not_by_the_first_root() {
-    // The start lies inside by rounding; `root` is where the ray gets out of that.
+    // By rounding the start lies inside; `root` is where the ray comes out again.
     type Case = (Line, DVec3, DVec3, f64, f64);
     let cases: [Case; 4] = [
         (
@@ -163,19 +165,19 @@ fn a_ray_that_leaves_is_hit_by_the_first_entry_and_not_by_the_first_root() {
         assert!(!sign(0.0) && sign(100.0 * root), "{}: the first root is next to the start", line.formula);
         let range = RayRange { origin_side: Some(Side::Outside), ..RayRange::ALL };
         let hit = line.shape().distance(&Ray { origin, dir }, &range);
-        // The start is rounded by an ulp, and so is where the ray comes back, by as much as it is steeper here.
+        // The start is off by an ulp, and the point of return by that times the ratio of the two slopes.
         assert!((hit - truth).abs() < 1e-11, "{}: {hit} is not {truth}", line.formula);
     }
 }
 
-/// What all six lessons are for: a hit is at a change of sign, and there is none before it.
+/// The purpose of all six lessons: a hit is at a change of sign, and there is none before it.
 #[test]
 fn a_hit_is_the_first_change_of_sign() {
     let mut random = Random(1);
     for line in [VASE, NASTY, FLANGE] {
         let shape = line.shape();
         for _ in 0..2_000 {
-            // Between the ends and outside, so that no ray comes in by an end.
+            // The eye is between the ends and outside, so that no ray comes in through an end.
             let eye = dvec3(random.between(-4.0, 4.0), random.between(0.1, 6.0), 8.0);
             let dir = (dvec3(random.between(-2.0, 2.0), random.between(0.0, 6.28), 0.0) - eye).normalize();
             let hit = distance(&*shape, eye, dir);
@@ -185,7 +187,7 @@ fn a_hit_is_the_first_change_of_sign() {
             let earlier =
                 (0..500).map(|step| before * f64::from(step) / 500.0).find(|at| range(*at) && !outside(*at));
             assert_eq!(earlier, None, "{}: {hit} from {eye} along {dir}", line.formula);
-            // As steep as it is here, a ray 1e-9 from its hit is above rounding.
+            // For a ray as steep as this, the sign is certain at 1e-9 from its hit.
             let steep = hit < MISS && line.normal(eye + hit * dir).dot(dir).abs() > 1e-3;
             if steep && range(hit + 1e-9) {
                 assert!(

@@ -9,13 +9,13 @@ use tabray::render::{Plan, to_byte, trace};
 use tabray::scene::{Choice, Model};
 use tabray::world::{Accuracy, Rgb};
 
-/// The ambient colour of the first object at a point.
+/// Returns the ambient colour of the first object at a point.
 fn look(model: &Model, at: DVec3) -> Rgb {
     let object = &model.objects[0];
     object.shader.ambient(&object.material, at)
 }
 
-/// The notes' angle around z, from 0 to pi.
+/// Returns the notes' angle around z, from 0 to pi.
 fn naive_angle(x: f64, y: f64) -> f64 {
     (x / (x * x + y * y).sqrt()).acos()
 }
@@ -24,12 +24,12 @@ fn rainbow() -> Model {
     model(&text("", "pplane p { material m normal 0 0 1 point 0 0 0 shader 1 }"))
 }
 
-/// Six times 1 + cos(2 angle + k 2 pi / 3).
+/// Returns the rainbow's colour: 6 (1 + cos(2 angle + k 2 pi / 3)) in channel k.
 fn rainbow_colour(angle: f64) -> Rgb {
     Rgb::from([0.0, 1.0, 2.0].map(|third| 6.0 * (1.0 + (2.0 * angle + third * TAU / 3.0).cos())))
 }
 
-/// F12
+/// F12: at the shader's own point the notes' angle is NaN.
 #[test]
 fn a_rainbow_has_a_colour_at_its_own_point() {
     assert!(naive_angle(0.0, 0.0).is_nan());
@@ -49,7 +49,7 @@ fn a_rainbow_has_a_colour_at_its_own_point() {
     }
 }
 
-/// F12: near 0 and pi an arc cosine has half its digits.
+/// F12: near 0 and pi, an arc cosine has half of its digits.
 #[test]
 fn a_rainbow_is_smooth_beside_the_axis() {
     assert_eq!(naive_angle(1.0, 1e-9), 0.0);
@@ -62,7 +62,8 @@ fn a_rainbow_is_smooth_beside_the_axis() {
     }
 }
 
-/// F12: on a sphere the test for the lower half never fails, so that up and down look alike; the look stays.
+/// F12: on a sphere, the notes' test for the lower half always fails, so that the lower half looks like the upper one.
+/// The look is kept.
 #[test]
 fn an_angular_sphere_has_a_colour_at_its_poles() {
     let sphere = model(&text("", "psphere s { material m center 0 0 0 radius 1 shader 0 }"));
@@ -79,7 +80,7 @@ fn an_angular_sphere_has_a_colour_at_its_poles() {
     }
 }
 
-/// F12 in a picture: no pixel is black.
+/// F12, in an image: no pixel is black.
 #[test]
 fn every_pixel_of_a_rainbow_has_a_colour() {
     let picture = render(&model(
@@ -89,21 +90,21 @@ fn every_pixel_of_a_rainbow_has_a_colour() {
     assert!(picture.pixels().all(|pixel| pixel.0.iter().map(|channel| u32::from(*channel)).sum::<u32>() > 0));
 }
 
-/// The notes' tile of a coordinate.
+/// Returns the number of the notes' tile at a coordinate.
 fn naive_tile(x: f64) -> i32 {
     (2.0 * x + 1000.0) as i32
 }
 
-/// F13: casts cut toward 0, where two tiles become one, and whatever is too large for them.
+/// F13: casts truncate toward 0, where two tiles become one, and saturate at numbers too large for an integer.
 #[test]
 fn tiles_are_as_wide_at_negative_far_coordinates() {
     assert_eq!((naive_tile(-500.49), naive_tile(-499.51)), (0, 0), "a tile of twice the width");
-    assert_eq!(naive_tile(1.1e9), naive_tile(2e9), "one tile to the end of the world");
+    assert_eq!(naive_tile(1.1e9), naive_tile(2e9), "one tile for all larger coordinates");
     assert_eq!(naive_tile(2e9).checked_add(naive_tile(2e9)), None);
     let floor = model(&text("", "pplane p { material m normal 0 1 0 point 0 0 0 shader 0 }"));
     let is_cyan = |x: f64, z: f64| look(&floor, dvec3(x, 0.0, z)).x == 0.0;
     for middle in [-500.25, -499.75, -1234.25, 0.25, -0.25, 7.75, 1.1e9 + 0.25, -2e9 - 0.75, 1e12 + 0.25] {
-        // From one middle of a tile to the next, along x and along z.
+        // The steps lead from the middle of one tile to that of the next, along x and along z.
         for (step, same) in
             [(0.5, false), (-0.5, false), (1.0, true), (-1.0, true), (0.2, true), (-0.2, true)]
         {
@@ -132,7 +133,7 @@ fn tiled_wall(normal: &str, point: &str, dimensions: &str) -> Model {
     ))
 }
 
-/// F13 for tiles of any size, which the notes count from 100000 to the left.
+/// F13, for tiles of any size, which the notes count from -100000.
 #[test]
 fn tiles_of_a_plane_are_as_wide_beyond_the_notes_offset() {
     let naive = |x: f64| (x + 100_000.0).trunc();
@@ -146,8 +147,8 @@ fn tiles_of_a_plane_are_as_wide_beyond_the_notes_offset() {
     }
 }
 
-/// F13: a wall at the edge of a tile has the tiles of its own two directions, and its third one, which is rounded
-/// either way, does not count.
+/// F13: a wall at the edge of a tile has the tiles of its own two directions; the third coordinate, which rounding may
+/// move either way, does not count.
 #[test]
 fn a_wall_on_the_edge_of_a_tile_has_no_speckles() {
     let naive = |x: f64| (2.0 * x).floor();
@@ -159,8 +160,8 @@ fn a_wall_on_the_edge_of_a_tile_has_no_speckles() {
     }
 }
 
-/// F14: what a cast makes of a channel that is no number, or too large for it. In an integer, 1.004 is 256, of which a byte
-/// keeps 0, and what is clamped stays NaN where it was that, as 0 times infinity is.
+/// F14: casts of a channel that is not a number, or too large. As an integer, 1.004 becomes 256, of which a byte keeps
+/// 0; and a NaN, such as 0 times infinity, stays NaN when it is clamped.
 #[test]
 fn a_channel_is_a_byte_whatever_it_is() {
     let bytes =
@@ -168,7 +169,7 @@ fn a_channel_is_a_byte_whatever_it_is() {
     assert_eq!(bytes, [0, 0, 0, 254, 255, 255, 255, 255, 0]);
 }
 
-/// F14: cos / distance with the light on the surface, or nearly so.
+/// F14: cos / distance, with the light on the surface or nearly on it.
 #[test]
 fn a_light_on_the_surface_blinds_nobody() {
     assert!((0.0 * (1.0 / 0.0_f64)).is_nan());
@@ -190,8 +191,7 @@ fn a_light_on_the_surface_blinds_nobody() {
     }
 }
 
-/// F14: what a light lies on does not stand between it and the rest of the scene, however the two distances, which
-/// are one, are rounded.
+/// F14: a surface on which a light lies does not block its light, however the two equal distances are rounded.
 #[test]
 fn a_light_on_a_wall_lights_the_floor_evenly() {
     let scene = model(&text(
@@ -229,7 +229,7 @@ fn an_eye_on_the_surface_has_a_colour() {
     }
 }
 
-/// F14: a picture of one pixel divides by the number of its gaps, which is 0.
+/// F14: for an image of one pixel, the notes divide by the number of gaps between pixels, which is 0.
 #[test]
 fn a_picture_of_one_pixel_has_a_colour() {
     let [width, at] = [1.0_f64, 0.0];
@@ -242,7 +242,7 @@ fn a_picture_of_one_pixel_has_a_colour() {
     assert_eq!(render(&scene).get_pixel(0, 0).0, [255, 0, 0]);
 }
 
-/// F11 and F14: a normal of zero length at the centre of a ball does no harm where nobody asks for it.
+/// F11 and F14: a normal of zero length at the centre of a sphere does no harm if nobody asks for it.
 #[test]
 fn a_ball_is_lit_by_a_light_in_its_middle_on_no_side() {
     let scene = model(&text(
@@ -255,7 +255,8 @@ fn a_ball_is_lit_by_a_light_in_its_middle_on_no_side() {
     assert!(shape("sphere s { material m center 0 0 0 radius 1 }").normal(DVec3::Z).is_normalized());
 }
 
-/// The colour of a place with a light on the other side of it from which it is seen: of half vectors below the surface.
+/// Returns the colour of a point whose light is on the side opposite the viewer, where half vectors lie below the
+/// surface.
 fn glint_from_behind(shininess: &str, lamp: &str, method: Accuracy) -> Rgb {
     let scene = format!(
         "camera c {{ pixeldim 3 3 worlddim 8 6 viewpoint 4 3 6 accuracy {} }}
@@ -275,7 +276,7 @@ fn glint_from_behind(shininess: &str, lamp: &str, method: Accuracy) -> Rgb {
 fn a_glint_does_not_come_from_the_wrong_side() {
     assert!((-0.5_f64).powf(12.5).is_nan() && (-0.5_f64).powf(2.0) > 0.0);
     for method in [Accuracy::Classic, Accuracy::Exact] {
-        // Beside the line of sight, and on it: there the half vector is 0.
+        // Lamps beside the line of sight, and one on it, for which the half vector is 0.
         for lamp in ["9 3 -2", "4.5 3 -4", "4 3 -4"] {
             let matt = glint_from_behind("0", lamp, method);
             assert!(matt.min_element() > 1.0 / 7.0, "{matt}: the light comes to that side");
@@ -287,7 +288,7 @@ fn a_glint_does_not_come_from_the_wrong_side() {
     }
 }
 
-/// A cosine may be rounded to more than 1, of which a large power may be anything.
+/// A cosine may be rounded to more than 1, and a large power of that may be anything.
 #[test]
 fn no_glint_is_brighter_than_its_light() {
     assert!(1.0_f64.next_up().powf(1e18) > 1e90);
@@ -300,7 +301,7 @@ fn no_glint_is_brighter_than_its_light() {
              light l {{ location {} {} {} emissivity 1 1 1 }}",
             lamp.x, lamp.y, lamp.z
         );
-        // Along the line on which the light is mirrored back.
+        // The ray runs along the line on which the light is reflected back.
         let ray = Ray { origin: 0.9 * lamp, dir: -lamp.normalize() };
         let colour = trace::colour(&Plan::new(&model(&scene)), &Sight::along(&ray), None);
         let way = 0.9 * lamp.length() - 1.0;

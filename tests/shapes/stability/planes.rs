@@ -6,7 +6,7 @@ use glam::{DVec3, dvec3};
 use tabray::geometry::{Aabb, MISS, Ray, Sight};
 use tabray::render::{Plan, trace};
 
-/// The notes' `hits_plane`: N.Q is computed once, and a ray is parallel if N.D is exactly 0.
+/// The notes' `hits_plane`, which computes N.Q once and takes a ray for parallel if N.D is exactly 0.
 fn naive(origin: DVec3, dir: DVec3, normal: DVec3, point: DVec3) -> Option<f64> {
     let toward = normal.dot(dir);
     (toward != 0.0).then(|| (normal.dot(point) - normal.dot(origin)) / toward)
@@ -16,7 +16,7 @@ fn plane(normal: DVec3, point: DVec3) -> String {
     format!("plane p {{ material m normal {} point {} }}", words(normal), words(point))
 }
 
-/// F06: N.Q is 7 digits long before the comma, and the distance begins 3 digits after it.
+/// F06: the two terms of N.Q are 6e7 in magnitude, and the distance is 1e-3.
 #[test]
 fn a_plane_far_from_the_origin_is_hit_to_the_last_digit() {
     let (normal, eye) = (dvec3(0.6, 0.8, 0.0), dvec3(1e8, -7.5e7, 0.0));
@@ -27,7 +27,8 @@ fn a_plane_far_from_the_origin_is_hit_to_the_last_digit() {
     holds(distance(&*shape(&plane(normal, point)), eye, normal), truth, 2.0);
 }
 
-/// F07: a ray's numbers are what they are, and one that sinks by 1e-17 meets the floor after 1e17, no nearer.
+/// F07: a ray's numbers are taken as they are: one that sinks by 1e-17 per unit meets the floor after 1e17 units, not
+/// before.
 #[test]
 fn a_ray_along_a_plane_misses_and_one_that_sinks_hits_it_where_that_leads() {
     let eye = DVec3::Y;
@@ -38,8 +39,9 @@ fn a_ray_along_a_plane_misses_and_one_that_sinks_hits_it_where_that_leads() {
     holds(distance(&*floor, eye, dvec3(1.0, -1e-9, 0.0)), 1e9, 1.0);
 }
 
-/// F07: made unit, N and N x K are upright on each other in less than half of all cases. A ray that is parallel but for
-/// the rounding of its direction meets the plane beyond everything, and not at all where it starts in it.
+/// F07: once normalized, N and N x K are exactly perpendicular in less than half of all cases. A ray that is parallel
+/// up to the rounding of its direction meets the plane farther away than anything else, and not at all if it starts in
+/// the plane.
 #[test]
 fn rays_along_any_plane_hit_nothing_near() {
     let mut random = Random(21);
@@ -50,7 +52,7 @@ fn rays_along_any_plane_hit_nothing_near() {
         let (Some(unit), Some(dir)) = (normal.try_normalize(), normal.cross(other).try_normalize()) else {
             continue;
         };
-        // Every third one is in the plane: its numbers are whole.
+        // Every third eye lies in the plane, since its coordinates are integers.
         let eye = if index % 3 == 0 { normal.cross(eye) } else { eye };
         let away = normal.dot(eye).abs() / normal.length();
         parallel += 1;
@@ -58,14 +60,14 @@ fn rays_along_any_plane_hit_nothing_near() {
         naive_hits +=
             u32::from(naive(eye, dir, unit, DVec3::ZERO).is_some_and(|hit| hit > 0.0 && hit < 1e14));
         let hit = distance(&*shape(&plane(normal, DVec3::ZERO)), eye, dir);
-        // The direction's components are off by 2^-53 at most.
+        // The direction's components have errors of at most 2^-53.
         let is_far = away > 0.0 && hit >= away * 2.0_f64.powi(52);
         assert!(hit == MISS || is_far, "normal {normal}, eye {eye}, along {dir}: {hit:e}");
     }
     assert!(naive_hits * 50 > parallel && range > 500, "{naive_hits} of {parallel}, {range} in the plane");
 }
 
-/// Most rays that leave a surface lead away from most planes, and those are not looked at.
+/// Most rays that leave a surface lead away from most planes, and those planes are not tested.
 #[test]
 fn ways_without_an_end_are_clear_of_the_planes_that_they_lead_away_from() {
     let up_from = |height: f64| Aabb { low: dvec3(-4.0, height, -9.0), high: DVec3::INFINITY };
@@ -77,7 +79,7 @@ fn ways_without_an_end_are_clear_of_the_planes_that_they_lead_away_from() {
     assert!(!slope.is_clear_of(&Aabb { low: dvec3(0.0, 9.1, f64::NEG_INFINITY), high: DVec3::INFINITY }));
 }
 
-/// F08: `h_z > 0`, without room for rounding, drops pixels of a plane that lies in the screen.
+/// F08: the test `h_z > 0`, without a margin for rounding, drops pixels of a plane that lies in the image plane.
 #[test]
 fn a_plane_in_the_screen_is_seen_through_every_pixel() {
     let scene = model(
@@ -96,7 +98,7 @@ fn a_plane_in_the_screen_is_seen_through_every_pixel() {
     assert_eq!(seen, 640 * 480);
 }
 
-/// F08: the rule itself stays, as the pictures of the course have it: a plane in front of the screen casts no shadow.
+/// F08: the rule itself is kept, as in the images of the course: a plane in front of the image plane casts no shadow.
 #[test]
 fn a_plane_in_front_of_the_screen_is_not_there() {
     let (point, to_light) = (dvec3(4.0, 0.0, -2.0), dvec3(0.0, 8.0, 6.0).normalize());
@@ -104,12 +106,12 @@ fn a_plane_in_front_of_the_screen_is_not_there() {
     assert_eq!(distance(&*shape(&plane(DVec3::Z, DVec3::Z)), point, to_light), MISS);
 }
 
-/// The notes' projection of a direction on a plane, made unit.
+/// Projects a direction onto a plane as the notes do, and normalizes it.
 fn projected(normal: DVec3, xdir: DVec3) -> DVec3 {
     (xdir - normal.dot(xdir) * normal).normalize()
 }
 
-/// F09: what rounding leaves of the projection, made unit, is the normal itself, turned round.
+/// F09: what rounding leaves of the projection becomes the reversed normal itself once it is normalized.
 #[test]
 fn an_xdir_along_the_normal_is_refused() {
     let normal = DVec3::ONE / 3.0_f64.sqrt();
@@ -125,13 +127,13 @@ fn an_xdir_along_the_normal_is_refused() {
     }
 }
 
-/// F09: with a normal that is not unit, the notes' projection of (1, 0, 0) leaves the plane.
+/// F09: with a normal that is not a unit vector, the notes' projection of (1, 0, 0) leaves the plane.
 #[test]
 fn a_long_normal_does_not_tilt_the_sides() {
     let normal = dvec3(1.0, 0.0, 1.0);
     assert_eq!(projected(normal, DVec3::X).dot(normal), -1.0);
     let pane = shape("fplane f { material m normal 1 0 1 point 0 0 -9 xdir 1 0 0 dimensions 2 1 }");
-    // The first side runs to (1.41, 0, -10.41), the second one upward.
+    // The first side runs to (1.41, 0, -10.41), and the second one upward.
     for (x, range) in [(0.01, true), (1.41, true), (-0.01, false), (1.42, false)] {
         let hit = distance(&*pane, dvec3(x, 0.5, 0.0), DOWN_Z);
         assert_eq!(hit < MISS, range, "at x = {x}");
@@ -139,10 +141,11 @@ fn a_long_normal_does_not_tilt_the_sides() {
     }
 }
 
-/// F10: three of a hundred rays at the seam of two tilted rectangles fall through.
+/// F10: with the notes' form, about three of a hundred rays at the seam of two tilted rectangles fall through.
 #[test]
 fn no_ray_falls_through_the_seam_of_two_rectangles() {
-    // The first side goes by 3/5 and -4/5, so that the corners are whole in the last digit, and the edge is truly one.
+    // The first side runs along (3/5, 0, -4/5), so that the corners are exact in the last digit and the two edges truly
+    // coincide.
     let tilted = dvec3(4.0, 1.5, 3.0);
     let normal = tilted.normalize();
     let across = projected(normal, dvec3(3.0, 0.0, -4.0));
@@ -174,7 +177,7 @@ fn no_ray_falls_through_the_seam_of_two_rectangles() {
     assert_eq!(lost, 0, "of 100000");
 }
 
-/// F10 for the edge that two triangles share.
+/// F10, for the edge that two triangles share.
 #[test]
 fn no_ray_falls_through_the_seam_of_two_triangles() {
     let [a, b] = [dvec3(0.3, 0.7, -1.1), dvec3(1.7, 2.9, -3.7)];
@@ -204,7 +207,7 @@ fn a_normal_without_a_direction_is_refused_where_it_stands() {
     assert!(message.contains("normal 0 0 0") && message.contains("scene:5"), "{message}");
 }
 
-/// F07 and F14 together: a floor seen along it to the horizon has no pixel without a colour.
+/// F07 and F14 together: a floor that is seen up to its horizon has a colour in every pixel.
 #[test]
 fn a_floor_has_a_colour_up_to_the_horizon() {
     let floor =

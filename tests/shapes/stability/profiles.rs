@@ -4,7 +4,7 @@ use super::{Random, shape_of, words};
 use glam::{DVec3, dvec3};
 use tabray::world::AnyShape;
 
-/// A profile that a row is about.
+/// A profile that a row of the table is about.
 pub struct Line {
     pub formula: &'static str,
     pub height: f64,

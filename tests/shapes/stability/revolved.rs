@@ -9,16 +9,17 @@ use tabray::geometry::{MISS, Ray, Sight};
 use tabray::render::{Plan, trace};
 use tabray::world::AnyShape;
 
-/// The notes' cone, 6 high; a greater height goes beyond its apex.
+/// Returns the notes' cone, whose apex is at a height of 6; a greater height goes beyond the apex.
 fn cone(camera: &str, height: f64) -> AnyShape {
     revsurf(camera, "surfer 1", height)
 }
 
-/// F15: steps of 0.1 are longer than the chord of a ray that grazes.
+/// F15: steps of 0.1 are longer than the chord of a grazing ray.
 #[test]
 fn a_ray_that_grazes_the_vase_hits() {
     let vase = VASE.shape();
-    // Conditioning: where the chord is short, an ulp of the vase moves its end by 1e-16 over the chord's slope.
+    // The tolerance follows from the conditioning: where the chord is short, an ulp of the vase's radius moves the
+    // chord's end by 1e-16 divided by its slope.
     for (depth, truth, range) in [
         (1e-2, 9.755255234989594, 1e-14),
         (1e-4, 9.975505306697138, 1e-13),
@@ -27,18 +28,18 @@ fn a_ray_that_grazes_the_vase_hits() {
         (1e-12, 9.999997550401379, 1e-9),
     ] {
         let eye = dvec3(3.0 - depth, FRAC_PI_2, 10.0);
-        // The notes' clip goes as far as the whole vase can lie from the eye, and steps from there.
+        // The notes' method steps from the eye as far as any point of the vase can be.
         let far = eye.length() + VASE.widest + VASE.height;
         let steps = (far / 0.1).ceil();
         let outside = |step: f64| VASE.outside(eye + far * step / steps * DOWN_Z) > 0.0;
         let seen = (0..=steps as i64).any(|step| !outside(step as f64));
-        assert_eq!(seen, depth > 1e-3, "by steps at a depth of {depth:e}");
+        assert_eq!(seen, depth > 1e-3, "found by steps at a depth of {depth:e}");
         let hit = distance(&*vase, eye, DOWN_Z);
         assert!((hit - truth).abs() < range, "{hit} is not {truth} at a depth of {depth:e}");
     }
 }
 
-/// F16
+/// F16: between two samples, a ripple is passed over.
 #[test]
 fn the_first_of_many_ripples_is_hit() {
     let ripples = NASTY.shape();
@@ -63,7 +64,7 @@ fn the_first_of_many_ripples_is_hit() {
     }
 }
 
-/// F17
+/// F17: between two samples, the disc is passed over.
 #[test]
 fn a_disc_thinner_than_the_samples_is_hit() {
     let eye = dvec3(-5.575168080549294, 13.500028868472537, 2.3637476003245292);
@@ -73,7 +74,8 @@ fn a_disc_thinner_than_the_samples_is_hit() {
     assert!((hit - 12.52564944169348).abs() < 1e-12, "{hit}");
 }
 
-/// The notes' bisection, with a limit of steps: the product of two values tells on which side the root is.
+/// Bisects as the notes do, with a limit on the steps: the sign of the product of two values tells on which side the
+/// root is.
 fn bisect(q: impl Fn(f64) -> f64, mut near: f64, mut far: f64, epsilon: f64) -> Option<f64> {
     for _ in 0..4_000 {
         if far - near <= epsilon {
@@ -85,7 +87,7 @@ fn bisect(q: impl Fn(f64) -> f64, mut near: f64, mut far: f64, epsilon: f64) -> 
     None
 }
 
-/// F18a: the product is 0 where the middle is the root, and the loop walks away from it.
+/// F18a: the product is 0 if the middle is the root, and the loop moves away from it.
 #[test]
 fn a_root_in_the_middle_of_the_bracket_is_found() {
     let found = bisect(|t| (3.0 - t).powi(2) - 1.0, 1.0, 3.0, 1e-9).expect("an end");
@@ -94,7 +96,7 @@ fn a_root_in_the_middle_of_the_bracket_is_found() {
     assert_eq!(distance(&*pipe, dvec3(3.0, 2.0, 0.0), DVec3::NEG_X), 2.0);
 }
 
-/// F18b: 1e-12 is less than the distance from one number to the next.
+/// F18b: 1e-12 is less than an ulp of the distance.
 #[test]
 fn a_far_root_is_found_in_the_end() {
     assert_eq!(bisect(|t| t * t - 2e10, 1.4e5, 1.5e5, 1e-12), None);
@@ -103,7 +105,7 @@ fn a_far_root_is_found_in_the_end() {
     holds(distance(&*pipe, dvec3(0.0, 1.0, 3e5), DOWN_Z), 3e5 - 141_421.35623730951, 1.0);
 }
 
-/// F18c: the product of two small numbers is 0.
+/// F18c: the product of two small numbers underflows to 0.
 #[test]
 fn a_root_of_tiny_values_is_found() {
     let found = bisect(|t| (t - 1.0) * 1e-170, 0.0, 2.5, 1e-9).expect("an end");
@@ -113,7 +115,7 @@ fn a_root_of_tiny_values_is_found() {
     assert!((hit - 2e-90).abs() < 1e-103, "{hit:e}");
 }
 
-/// F19: the square of g forgets that g is negative beyond the apex.
+/// F19: the square of g loses the sign of g, which is negative beyond the apex.
 #[test]
 fn nothing_is_beyond_the_apex_of_a_cone() {
     let eye = dvec3(0.0, 7.5, 10.0);
@@ -124,11 +126,11 @@ fn nothing_is_beyond_the_apex_of_a_cone() {
     assert!(mirrored(8.999) > 0.0 && mirrored(9.001) < 0.0, "a phantom at 9");
     assert_eq!(distance(&*cone("", 8.0), eye, DOWN_Z), MISS);
     assert!((distance(&*cone("accuracy classic", 8.0), eye, DOWN_Z) - 9.0).abs() < 1e-4, "the notes have it");
-    // Below the apex all is as it was.
+    // Below the apex nothing has changed.
     holds(distance(&*cone("", 8.0), dvec3(0.0, 3.0, 10.0), DOWN_Z), 8.0, 2.0);
 }
 
-/// F19 for any profile that is negative somewhere.
+/// F19, for any profile that is negative somewhere.
 #[test]
 fn nothing_is_where_a_profile_is_negative() {
     let beads = revsurf("", "profile \"1.5*sin(y)\"", 12.0);
@@ -140,7 +142,7 @@ fn nothing_is_where_a_profile_is_negative() {
     }
 }
 
-/// F20: where the ray is parallel to a line of the cone, a is rounding and nothing else.
+/// F20: where the ray is parallel to a line of the cone, a is nothing but a rounding error.
 #[test]
 fn a_ray_parallel_to_a_line_of_the_cone_hits_the_other_wall() {
     let (eye, dir) = (dvec3(-1.0, 0.0, 0.5), dvec3(-2.0 / 3.0, 1.0, 0.0).normalize());
@@ -156,7 +158,7 @@ fn a_ray_parallel_to_a_line_of_the_cone_hits_the_other_wall() {
     holds(distance(&*shape(quadric), eye, dir), truth, 8.0);
 }
 
-/// F21: at the apex the gradient is 0, and near it its square is.
+/// F21: at the apex the gradient is 0, and close to it the square of the gradient underflows to 0.
 #[test]
 fn the_apex_of_a_cone_has_a_normal() {
     let naive = |at: DVec3| {
@@ -172,7 +174,8 @@ fn the_apex_of_a_cone_has_a_normal() {
     assert!(cone.normal(near).abs_diff_eq(expected, 1e-15), "{}", cone.normal(near));
 }
 
-/// F21: an open vase shows its inner wall from above, and its normal is turned to who sees it.
+/// F21: an open vase shows its inner wall from above. The outward normal points away from the viewer there, so the
+/// surface is two-sided.
 #[test]
 fn the_inner_wall_of_a_vase_is_seen_from_above() {
     let vase = VASE.shape();
@@ -181,7 +184,7 @@ fn the_inner_wall_of_a_vase_is_seen_from_above() {
     holds(inner, 3.935990642401326, 4.0);
     assert!(vase.normal(eye + inner * dir).dot(dir) > 0.0 && vase.is_two_sided());
     assert_eq!(distance(&*VASE.shape_of("accuracy classic"), eye, dir), MISS, "the notes have no inner wall");
-    // A ray that passes the rim outside meets the outer wall below it.
+    // A ray that passes outside the rim meets the outer wall below it.
     let (eye, dir) = (dvec3(0.0, 9.0, 4.0), dvec3(0.0, -1.0, -0.6).normalize());
     let outer = distance(&*vase, eye, dir);
     holds(outer, 5.588674854863526, 4.0);
@@ -193,7 +196,7 @@ fn the_inner_wall_of_a_vase_is_seen_from_above() {
     );
 }
 
-/// F22: a ray along the axis has no point that is closest to it.
+/// F22: a ray parallel to the axis has no single point that is closest to it.
 #[test]
 fn a_ray_parallel_to_the_axis_hits() {
     let (eye, dir) = (dvec3(2.5, -5.0, 0.0), DVec3::Y);
@@ -201,12 +204,13 @@ fn a_ray_parallel_to_the_axis_hits() {
     assert!(!closest.is_finite());
     holds(distance(&*VASE.shape(), eye, dir), 5.0 + FRAC_PI_6, 2.0);
     assert_eq!(distance(&*VASE.shape(), dvec3(0.0, -5.0, 0.0), dir), MISS, "on the axis");
-    // From above the vase is met where it is as wide again: at pi - pi/6, 9 - 2.618 below the eye.
+    // From above, the ray meets the vase where it has this radius for the second time: the height there is pi - pi/6,
+    // which is 2.618, so the distance is 9 - 2.618.
     let from_above = distance(&*VASE.shape(), dvec3(2.5, 9.0, 0.0), DVec3::NEG_Y);
     assert!((from_above - (9.0 - 5.0 * FRAC_PI_6)).abs() < 1e-14, "{from_above}");
 }
 
-/// F23: no number of samples bounds a profile that has no bound.
+/// F23: no number of samples bounds a profile that is unbounded.
 #[test]
 fn a_profile_with_a_pole_is_refused() {
     let radius = |y: f64| 1.0 / (y - 3.1);
@@ -217,7 +221,7 @@ fn a_profile_with_a_pole_is_refused() {
         let message = refusal(&format!("{object} \"{formula}\" }}"));
         assert!(message.contains("profile"), "{message}");
         let without_source: String = message.lines().filter(|line| !line.contains(formula)).collect();
-        assert!(without_source.contains(names), "no word of y = {names} in {message}");
+        assert!(without_source.contains(names), "y = {names} is not mentioned in {message}");
     }
 }
 
@@ -226,18 +230,18 @@ fn a_profile_with_a_pole_is_refused() {
 fn the_edge_of_a_kink_is_hit() {
     let kink = KINK.shape();
     holds(distance(&*kink, dvec3(10.0, 3.0, 0.0), DVec3::NEG_X), 9.4, 2.0);
-    // Upward through the waist, out of it and in again within 2e-6.
+    // The ray goes upward through the waist, out of it and in again within 2e-6.
     let eye = dvec3(0.6 + 5e-7, -5.0, 0.0);
     assert_eq!(KINK.scan(eye, dvec3(1e-30, 1.0, 0.0), 64), None);
     let hit = distance(&*kink, eye, DVec3::Y);
     assert!((hit - (8.0 - 1e-6)).abs() < 1e-14, "{hit}");
 }
 
-/// F23: where the profile jumps there is a ledge, a ring across the axis.
+/// F23: where the profile jumps there is a ledge, a ring perpendicular to the axis.
 #[test]
 fn the_ledge_of_a_jump_is_hit() {
     let stair = STAIR.shape();
-    // Radii are 1 up to y = 3, and 1.25 from there on.
+    // The radius is 1 up to y = 3, and 1.25 from there on.
     for (eye, dir, truth) in [
         (dvec3(1.1, -5.0, 0.0), DVec3::Y, 8.0),
         (dvec3(1.1, 10.0, 0.0), DVec3::NEG_Y, 7.0),
@@ -246,7 +250,7 @@ fn the_ledge_of_a_jump_is_hit() {
         (dvec3(10.0, 2.5, 0.0), DVec3::NEG_X, 9.0),
     ] {
         if dir.x == 0.0 {
-            // No step of Newton's method ends on the ledge: along the axis q' is 0 wherever it is defined.
+            // No step of Newton's method ends on the ledge: along the axis, q' is 0 wherever it is defined.
             let slope = -2.0 * (STAIR.radius)(2.9) * (STAIR.slope)(2.9) * dir.y;
             assert!((STAIR.outside(dvec3(eye.x, 2.9, 0.0)) / slope).is_infinite());
         }
@@ -255,7 +259,7 @@ fn the_ledge_of_a_jump_is_hit() {
     }
 }
 
-/// F23: a ledge is one ring, whose two sides rounding does not mix: seen from below and lit from above it is dark.
+/// F23: rounding does not mix up the two sides of a ledge: seen from below and lit from above, it is dark.
 #[test]
 fn a_ledge_is_dark_from_below() {
     let scene = model(&text(
@@ -269,7 +273,7 @@ fn a_ledge_is_dark_from_below() {
     ));
     let mut random = Random(24);
     let lit = (0..2_000).filter(|_| {
-        // Between the radii 1 and 1.25 on the near side, where the ledge is at 3.
+        // The target lies between the radii 1 and 1.25 on the near side, where the ledge is at a height of 3.
         let target = random.around(DVec3::Z, 0.9) * 1.2;
         let target = dvec3(target.x, 3.0, target.z);
         let eye = dvec3(0.0, -4.0, 8.0);
@@ -283,7 +287,7 @@ fn a_ledge_is_dark_from_below() {
     assert_eq!(lit.count(), 0, "of 2000 points of the ledge are lit through it");
 }
 
-/// F24: expanded in powers of the distance, 1e14 swallows what the vase is.
+/// F24: in an expansion in powers of the distance, terms of 1e14 swamp those of the vase.
 #[test]
 fn a_vase_is_hit_from_ten_million_away() {
     let (eye, dir) = (dvec3(6e6, 3.0, 8e6), dvec3(-0.6, 0.0, -0.8));
@@ -297,8 +301,8 @@ fn a_vase_is_hit_from_ten_million_away() {
     holds(distance(&*VASE.shape(), eye, dir), truth, 2.0);
 }
 
-/// The 33 of 100 grazing rays that the notes' scheme misses: every ray that is known to enter is told so, at a point
-/// of the surface, and no later than where it is known to.
+/// The notes' scheme misses 33 of 100 grazing rays. Here every ray that is known to enter has a hit, at a point of the
+/// surface and no later than the known entry.
 #[test]
 fn no_ray_that_enters_is_missed() {
     let mut random = Random(7);
@@ -312,7 +316,8 @@ fn no_ray_that_enters_is_missed() {
             let scanned = line.scan(eye, dir, 64);
             naive_wrong += u32::from(scanned.is_none_or(|scanned| scanned > known + 1e-3));
             let hit = distance(&*shape, eye, dir);
-            // The known entry has its rounding, too: some 1e-14 across the surface, and by the angle more along it.
+            // The known entry has a rounding error, too: some 1e-14 perpendicular to the surface, and that divided by
+            // the angle along the ray.
             assert!(
                 hit < known + 1e-12 / angle,
                 "{} from {eye} along {dir}: {hit}, entered at {known}",
@@ -325,7 +330,7 @@ fn no_ray_that_enters_is_missed() {
     }
 }
 
-/// What is saved for a draft is digits, and never a hit.
+/// The draft accuracy gives up digits, but no hits.
 #[test]
 fn a_draft_hits_what_is_there() {
     let mut random = Random(8);
@@ -342,8 +347,8 @@ fn a_draft_hits_what_is_there() {
     }
 }
 
-/// The first sign change along a ray at a surface that is made of cones and cylinders, one between any two whole
-/// heights: roots of quadratics, and ledges between them.
+/// Returns the distance of the first change of sign along a ray, for a surface of cones and cylinders, one between any
+/// two consecutive integer heights: roots of quadratics, and ledges between them.
 fn pieces(line: &Line, origin: DVec3, dir: DVec3) -> f64 {
     let mut first = MISS;
     let mut was_outside = None;
@@ -352,7 +357,7 @@ fn pieces(line: &Line, origin: DVec3, dir: DVec3) -> f64 {
         if dir.y > 0.0 { Box::new(heights.iter()) } else { Box::new(heights.iter().rev()) };
     for from in ordered {
         let (low, high) = (*from as f64, (*from as f64 + 1.0).min(line.height));
-        // g = r + s (y - low) between the two.
+        // The profile is g = r + s (y - low) between the two heights.
         let (r, s) = ((line.radius)(low), (line.slope)((low + high) / 2.0));
         let (start, end) = ((low - origin.y) / dir.y, (high - origin.y) / dir.y);
         let (start, end) = (start.min(end).max(0.0), start.max(end));
@@ -381,7 +386,7 @@ fn pieces(line: &Line, origin: DVec3, dir: DVec3) -> f64 {
     first
 }
 
-/// F23: 10 000 rays at surfaces that no derivative describes, but a table of their pieces does.
+/// F23: 10 000 rays at surfaces with kinks and jumps. The true hits come from a list of the surfaces' pieces.
 #[test]
 fn kinks_and_jumps_are_hit_where_their_pieces_are() {
     let mut random = Random(23);
@@ -398,7 +403,7 @@ fn kinks_and_jumps_are_hit_where_their_pieces_are() {
                 wrong.push(format!("{hit} is not {truth} from {eye} along {dir}"));
             }
         }
-        // Rays at the very rim of a ledge may end either way.
+        // Rays at the very rim of a ledge may go either way.
         assert!(wrong.len() <= 4, "{}: {} wrong:\n{}", line.formula, wrong.len(), wrong.join("\n"));
     }
 }

@@ -1,4 +1,4 @@
-//! F01 to F05: spheres, and every shape that is hit by a quadratic equation.
+//! F01 to F05: spheres, and every shape whose hits are roots of a quadratic equation.
 
 use super::{DOWN_Z, Random, distance, holds, shape, shape_of, text, words};
 use crate::common::model;
@@ -28,7 +28,7 @@ fn a_far_sphere_keeps_its_hit() {
     holds(distance(&*ball("", DVec3::ZERO, 1.0), eye, DOWN_Z), 99_999_999.18759616, 1.0);
 }
 
-/// F01 for the shapes that hold a sphere or are one in another spelling.
+/// F01, for other shapes that are spheres, or can be.
 #[test]
 fn a_far_ellipsoid_and_a_far_quadric_keep_their_hits() {
     let eye = dvec3(0.5, 0.3, 1e8);
@@ -41,7 +41,7 @@ fn a_far_ellipsoid_and_a_far_quadric_keep_their_hits() {
     }
 }
 
-/// F02
+/// F02: a tiny sphere far away.
 #[test]
 fn a_tiny_far_sphere_keeps_its_hit() {
     let eye = dvec3(3e-4, 4e-4, 1e6);
@@ -49,7 +49,7 @@ fn a_tiny_far_sphere_keeps_its_hit() {
     holds(distance(&*ball("", DVec3::ZERO, 1e-3), eye, DOWN_Z), 999_999.9991339745, 1.0);
 }
 
-/// F03
+/// F03: a ray one ulp from tangency.
 #[test]
 fn a_ray_one_ulp_from_touching_hits() {
     let eye = dvec3(1.0_f64.next_down(), 0.0, 5.0);
@@ -65,14 +65,14 @@ fn a_graze_of_a_sphere_away_from_the_origin_is_exact() {
     holds(distance(&*ball("", center, 1.0), eye, DOWN_Z), 4.999995735038801, 1.0);
 }
 
-/// A ray along z past the unit sphere, on a grid so fine and so exact that whole numbers tell how it ends.
+/// A ray along z past the unit sphere, with coordinates on so fine a grid that integers decide exactly whether it hits.
 struct Graze {
     eye: DVec3,
     /// The distance to the hit, if there is one.
     truth: Option<f64>,
 }
 
-/// F03: rays within 1e-12 of touching the unit sphere.
+/// F03: returns rays within 1e-12 of a tangent to the unit sphere.
 fn grazes() -> impl Iterator<Item = Graze> {
     const ONE: i64 = 1 << 40;
     let world = |grid: i64| grid as f64 / ONE as f64;
@@ -87,7 +87,7 @@ fn grazes() -> impl Iterator<Item = Graze> {
     })
 }
 
-/// F03: 73 missed and 19 invented of 20 000 by the notes' form, none by one that knows its own rounding.
+/// F03: of 20 000 rays the notes' form misses 73 and invents 19; a form that knows its own rounding error does neither.
 #[test]
 fn rays_that_graze_a_sphere_are_neither_missed_nor_invented() {
     let wrong =
@@ -109,7 +109,7 @@ fn rays_that_graze_a_sphere_are_neither_missed_nor_invented() {
     }
 }
 
-/// The table of spheres: of rays from 1e9 the notes' form misses 72 of 100.
+/// The table of spheres: of the rays from 1e9 away, the notes' form misses 72 of 100.
 #[test]
 fn no_ray_from_a_billion_away_misses() {
     let ball = ball("", DVec3::ZERO, 1.0);
@@ -125,7 +125,7 @@ fn no_ray_from_a_billion_away_misses() {
     assert!(missed > 1_000, "{missed}");
 }
 
-/// The table of spheres: where the eye stands on a globe, the notes' form is off by up to 6e-7.
+/// The table of spheres: if the eye stands on a globe, the notes' form is off by up to 6e-7.
 #[test]
 fn a_globe_is_hit_where_it_is_from_an_eye_that_stands_on_it() {
     let (eye, dir) = (dvec3(0.0, 1e9 + 1.0, 0.0), dvec3(3.0, -1.0, 2.0).normalize());
@@ -137,7 +137,7 @@ fn a_globe_is_hit_where_it_is_from_an_eye_that_stands_on_it() {
     holds(distance(&*ball("accuracy strict", DVec3::ZERO, 1e9), eye, dir), truth, 10.0);
 }
 
-/// F04: the nearer root lies behind the eye, and is thrown away.
+/// F04: the nearer root lies behind the eye, and the notes' form takes no other.
 #[test]
 fn a_sphere_is_seen_from_inside() {
     assert_eq!(naive(DVec3::ZERO, DOWN_Z, DVec3::ZERO, 1.0), Some(-1.0));
@@ -151,7 +151,7 @@ fn a_sphere_is_seen_from_inside() {
     }
 }
 
-/// F04: the inner wall is lit as what it is, a wall that faces the eye.
+/// F04: the inner wall is lit like any wall that faces the eye.
 #[test]
 fn a_light_in_a_sphere_lights_its_inner_wall() {
     let lit = |camera: &str| {
@@ -160,11 +160,11 @@ fn a_light_in_a_sphere_lights_its_inner_wall() {
         let ray = Ray { origin: DVec3::ZERO, dir: DOWN_Z };
         trace::colour(&Plan::new(&model(&text(camera, object))), &Sight::along(&ray), None).x
     };
-    // 1 * 4 * cos 0 / 3 from the light, divided by the 2 to the eye.
+    // The light contributes 1 * 4 * cos 0 / 3, which is divided by the distance of 2 to the eye.
     assert_eq!((lit("accuracy classic"), lit("")), (0.0, 4.0 / 3.0 / 2.0));
 }
 
-/// F05: of rays that leave a sphere, more than four of ten meet it again where they start, if any positive root counts.
+/// F05: if any positive root counts, more than four of ten rays that leave a sphere meet it again where they start.
 #[test]
 fn a_ball_casts_no_shadow_on_itself() {
     let eye = dvec3(0.0, 0.0, 12.0);
@@ -193,7 +193,7 @@ fn a_ball_casts_no_shadow_on_itself() {
     assert!(again * 10 > rays * 3, "{again} of {rays}");
 }
 
-/// Both roots for a sphere around the origin, in their stable form.
+/// Returns both roots for a sphere around the origin, in their stable form.
 fn roots(origin: DVec3, dir: DVec3, radius: f64) -> Option<[f64; 2]> {
     let b = -origin.dot(dir);
     let off = origin + b * dir;

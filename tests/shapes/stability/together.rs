@@ -1,4 +1,4 @@
-//! Rays that leave surfaces: into closed shapes, and from points that several surfaces go through.
+//! Rays that leave surfaces: into closed shapes, and from points that lie on several surfaces.
 
 use super::Random;
 use crate::common::{model, render};
@@ -9,7 +9,7 @@ use tabray::render::{Event, Plan, TraceObserver, to_byte, trace};
 
 const BLUE: [u8; 3] = [0, 0, 255];
 
-/// What objects are made of: `brightness` is what the distance of the viewer takes from it.
+/// Returns the materials of the objects; `brightness` makes up for what the viewer's distance takes away.
 fn materials(brightness: f64) -> String {
     let grey = |value: f64| format!("{0} {0} {0}", value * brightness);
     format!(
@@ -43,13 +43,13 @@ fn picture(text: &str) -> RgbImage {
     render(&model(text))
 }
 
-/// The pixels in which two pictures differ by more than rounding can make of a level.
+/// Counts the pixels in which two images differ by more than one level, which rounding can cause.
 fn differing(one: &RgbImage, other: &RgbImage) -> usize {
     let apart = |(a, b): (&image::Rgb<u8>, &image::Rgb<u8>)| (0..3).any(|i| a[i].abs_diff(b[i]) > 1);
     one.pixels().zip(other.pixels()).filter(|pair| apart(*pair)).count()
 }
 
-/// The ball around a centre with a radius, as each shape that can be one.
+/// Returns the sphere around a centre as each shape that can be one.
 fn balls(material: &str, center: DVec3, radius: f64) -> [(&'static str, String); 5] {
     let (at, r) = (words(center), radius);
     let foot = words(center - radius * DVec3::Y);
@@ -156,7 +156,7 @@ fn the_first_of_two_balls_in_one_place_is_seen_and_stands_for_both() {
     }
 }
 
-/// A part of a floor, given by a point of it and two directions along it.
+/// Returns a part of a floor, given by one of its points and two directions along it.
 fn rug(kind: i64, material: &str, normal: DVec3, [point, along, across]: [DVec3; 3], size: f64) -> String {
     match kind {
         0 => {
@@ -173,8 +173,8 @@ fn rug(kind: i64, material: &str, normal: DVec3, [point, along, across]: [DVec3;
     }
 }
 
-/// A rug of the floor's own material makes no difference: it has no acne, casts no shadow on the floor, mirrors and
-/// tints nothing twice. The floor's numbers are small fractions of 2, by which the rug lies on it exactly.
+/// A rug of the floor's own material makes no difference: it has no acne, casts no shadow on the floor, and reflects
+/// and tints nothing twice. The floor's coordinates are binary fractions, so that the rug lies exactly in it.
 #[test]
 fn a_rug_on_a_floor_of_any_tilt_looks_as_the_floor_does() {
     let mut random = Random(15);
@@ -221,7 +221,7 @@ fn a_rug_on_a_floor_of_any_tilt_looks_as_the_floor_does() {
     assert!(seen > 500 * SCENES, "there is something to see: {seen} pixels of {SCENES} scenes");
 }
 
-/// What stands on a floor with an edge looks as what goes on below the floor.
+/// A triangle that stands on a floor with one edge looks like one that continues below the floor.
 #[test]
 fn a_triangle_with_an_edge_on_the_floor_has_no_seam_there() {
     let mut random = Random(16);
@@ -251,7 +251,7 @@ fn a_triangle_with_an_edge_on_the_floor_has_no_seam_there() {
     }
 }
 
-/// The row of pixels that look exactly at the line where floor and wall meet sees what comes first in the scene.
+/// The row of pixels exactly at the line where floor and wall meet shows the one that comes first in the scene.
 #[test]
 fn the_first_of_floor_and_wall_is_seen_without_dots_where_they_meet() {
     let floor = "plane floor { material matt normal 0 1 0 point 0 0 0 }\n";
@@ -271,7 +271,7 @@ fn the_first_of_floor_and_wall_is_seen_without_dots_where_they_meet() {
     }
 }
 
-/// Looks on, and forgets.
+/// An observer that ignores every event.
 struct Onlooker;
 
 impl TraceObserver for Onlooker {
@@ -280,7 +280,7 @@ impl TraceObserver for Onlooker {
     fn see(&mut self, _event: Event) {}
 }
 
-/// Where surfaces lie together single rays decide: with which others they go must not matter.
+/// Where surfaces coincide, single rays decide, and the other rays of the packet must not matter.
 #[test]
 fn the_colour_of_a_ray_that_starts_on_several_surfaces_is_its_own() {
     let scene = "camera eye { pixeldim 60 45 worlddim 8 6 viewpoint 4 3 6 }".to_owned()
@@ -304,7 +304,7 @@ fn the_colour_of_a_ray_that_starts_on_several_surfaces_is_its_own() {
     }
 }
 
-/// A certain bracket of a ray that may start on a shape would be one of a hit that is none, or miss one.
+/// If a ray that may start on a shape had a certain bracket, the bracket would be that of a false hit, or miss one.
 #[test]
 fn what_may_start_on_a_shape_is_in_doubt() {
     let mut random = Random(17);

@@ -1,4 +1,4 @@
-//! Classes of scenes: shapes, and rays that are aimed where arithmetic is hard.
+//! Classes of scenes: shapes, and rays aimed where the arithmetic is hard.
 
 mod flat;
 mod revolved;
@@ -10,10 +10,10 @@ use super::scenes::Question;
 /// A class of scenes.
 pub struct Class {
     pub name: &'static str,
-    /// The rays of a whole run, and of a small one.
+    /// The number of rays of the long run, and of the short one.
     pub rays: [usize; 2],
     pub ask: fn(&mut Random) -> Question,
-    /// Whether the first in the scene must be seen of those that are met at one distance.
+    /// Whether the first object in the scene must be seen where several are met at the same distance.
     pub is_first_seen: bool,
 }
 
@@ -21,7 +21,7 @@ const fn class(name: &'static str, rays: [usize; 2], ask: fn(&mut Random) -> Que
     Class { name, rays, ask, is_first_seen: false }
 }
 
-/// All of them.
+/// All classes.
 pub const CLASSES: [Class; 25] = [
     class("sphere", [600_000, 4000], round::spheres),
     class("sphere, tangents", [400_000, 4000], round::sphere_tangents),

@@ -1,4 +1,4 @@
-//! First hits of planes, triangles, balls and quadrics: signs of whole numbers, without any rounding.
+//! First hits of planes, triangles, ellipsoids and quadrics: signs of integers, without any rounding.
 
 use super::dyadic::Dyadic;
 use super::number::Number;
@@ -7,23 +7,25 @@ use super::text::{Sides, Vector};
 use super::wide::Wide;
 use std::cmp::Ordering::{self, Equal, Greater, Less};
 
-/// Where a ray first meets a shape.
+/// The first intersection of a ray with a shape.
 #[derive(Clone, Debug)]
 pub enum Hit {
     Miss,
-    /// At this part of its direction.
+    /// An intersection at this multiple of the ray's direction.
     At(Wide),
-    /// It touches an edge or the surface, exactly: a tie between the hits on its sides.
+    /// The ray touches an edge or the surface exactly, as far as can be decided: a tie between the results on either
+    /// side.
     Touch,
 }
 
-/// A point of a ray at `top / bottom` of its direction; `bottom` is above 0.
+/// The point of a ray at `top / bottom` times its direction; `bottom` is above 0.
 struct Crossing {
     top: Dyadic,
     bottom: Dyadic,
 }
 
-/// Where a ray crosses a plane, before the screen or behind.
+/// Returns where a ray crosses a plane, or else `Miss` or `Touch`: planes are hit only ahead of the ray's origin and
+/// not on the viewer's side of the image plane.
 fn crossing(ray: &Ray, normal: &Vector, point: &Vector) -> Result<Crossing, Hit> {
     let bottom = dot(normal, &ray.dir);
     let top = dot(normal, &minus(point, &ray.origin));
@@ -35,7 +37,8 @@ fn crossing(ray: &Ray, normal: &Vector, point: &Vector) -> Result<Crossing, Hit>
     if top.sign() != Greater {
         return Err(Hit::Miss);
     }
-    // On the viewer's side of the screen there are no planes: z > 1/100, or than its nearest f64.
+    // Planes are not hit on the viewer's side of the image plane, where z > 1/100. Between 1/100 and its nearest f64 it
+    // is a tie.
     let z = ray.origin[2].mul(&bottom).add(&ray.dir[2].mul(&top));
     let real = z.mul(&Dyadic::int(100)).compare(&bottom);
     let nearest = z.compare(&Dyadic::from(0.01).mul(&bottom));
@@ -58,7 +61,7 @@ pub fn plane(ray: &Ray, normal: &Vector, point: &Vector, sides: Option<&Sides>) 
         Err(hit) => return hit,
     };
     let Some(Sides { xdir, dimensions }) = sides else { return crossing.hit() };
-    // The first side is xdir without its part along the normal, times that one's square.
+    // The first side is the component of xdir perpendicular to the normal, times the square of the normal's length.
     let first = minus(&times(xdir, &dot(normal, normal)), &times(normal, &dot(normal, xdir)));
     let second = cross(normal, &first);
     let from_corner = [0, 1, 2].map(|axis| {
@@ -68,7 +71,7 @@ pub fn plane(ray: &Ray, normal: &Vector, point: &Vector, sides: Option<&Sides>) 
     let mut touches = false;
     for (side, dimension) in [(first, &dimensions[0]), (second, &dimensions[1])] {
         let along = dot(&side, &from_corner);
-        // Of unit length, times the denominator: along <= dimension * |side| * bottom.
+        // With sides of unit length, times the denominator: along <= dimension * |side| * bottom.
         let most = dimension.mul(&crossing.bottom).square().mul(&dot(&side, &side));
         let (low, high) = (along.sign(), along.square().compare(&most));
         if low == Less || (low == Greater && high == Greater) {
@@ -99,7 +102,7 @@ pub fn triangle(ray: &Ray, corners: &[Vector; 3]) -> Hit {
     }
 }
 
-/// The sign of `p + q * root(square)`.
+/// Returns the sign of `p + q * sqrt(square)`.
 fn sign_with_root(p: &Dyadic, q: &Dyadic, square: &Dyadic) -> Ordering {
     let by_root = if square.is_zero() { Equal } else { q.sign() };
     match (p.sign(), by_root) {
@@ -113,13 +116,14 @@ fn sign_with_root(p: &Dyadic, q: &Dyadic, square: &Dyadic) -> Ordering {
     }
 }
 
-/// The first of the places where `a s^2 + 2 b s + c` is 0 that is ahead and between two bounds on each axis.
+/// Returns the first root of `a s^2 + 2 b s + c` that is ahead of the ray's origin and between the two bounds on each
+/// axis.
 fn quadratic(ray: &Ray, [a, b, c]: [Dyadic; 3], bounds: Option<(&Vector, &Vector, &Vector)>) -> Hit {
     if a.is_zero() {
         if b.is_zero() {
             return if c.is_zero() { Hit::Touch } else { Hit::Miss };
         }
-        // One crossing: in the other terms, (0 * root - c) / 2b.
+        // There is one root, -c / 2b, here written as (-c + 0 * root) / 2b.
         let [b, c] = if b.sign() == Less { [b.neg(), c.neg()] } else { [b, c] };
         let root = Root { p: c.neg(), q: Dyadic::zero(), square: Dyadic::zero(), a: b.shifted(1) };
         return match root.kept(ray, bounds) {
@@ -146,7 +150,7 @@ fn quadratic(ray: &Ray, [a, b, c]: [Dyadic; 3], bounds: Option<(&Vector, &Vector
     Hit::Miss
 }
 
-/// `(p + q root(square)) / a`, where a is above 0.
+/// The root `(p + q sqrt(square)) / a`, where a is above 0.
 struct Root {
     p: Dyadic,
     q: Dyadic,
@@ -155,7 +159,8 @@ struct Root {
 }
 
 impl Root {
-    /// Whether it is ahead and inside of the bounds: above 0 if so, 0 just at one of them.
+    /// Compares the root with the bounds: `Greater` if it is ahead of the ray's origin and inside all bounds, `Equal`
+    /// if it is exactly on one of them, `Less` otherwise.
     fn kept(&self, ray: &Ray, bounds: Option<(&Vector, &Vector, &Vector)>) -> Ordering {
         let mut worst = sign_with_root(&self.p, &self.q, &self.square);
         let Some((center, low, high)) = bounds else { return worst };
@@ -171,7 +176,7 @@ impl Root {
         worst
     }
 
-    /// Its value; of two roots, by their product where a difference would cancel.
+    /// Returns the root's value. Where a difference would cancel, it follows from the product of the two roots.
     fn place(&self, c: &Dyadic) -> Wide {
         if self.q.is_zero() {
             return Wide::quotient(&self.p, &self.a);
@@ -189,7 +194,7 @@ impl Root {
 
 pub fn ball(ray: &Ray, center: &Vector, radius: &Dyadic, scale: &Vector) -> Hit {
     let [x, y, z] = scale;
-    // Squeezed by each axis, times all of them.
+    // The ray in the space in which the ellipsoid is a sphere, with all coordinates multiplied by all three scales.
     let others = [y.mul(z), x.mul(z), x.mul(y)];
     let from = minus(&ray.origin, center);
     let from = [0, 1, 2].map(|axis| from[axis].mul(&others[axis]));
@@ -200,7 +205,7 @@ pub fn ball(ray: &Ray, center: &Vector, radius: &Dyadic, scale: &Vector) -> Hit 
 
 pub fn quadric(ray: &Ray, k: &[Dyadic], center: &Vector, low: &Vector, high: &Vector) -> Hit {
     let from = minus(&ray.origin, center);
-    // Twice the square form of two vectors.
+    // Twice the symmetric bilinear form of the quadratic terms.
     let twice = |a: &Vector, b: &Vector| {
         let mut sum = Dyadic::zero();
         for axis in 0..3 {

@@ -1,5 +1,5 @@
-//! First hits of surfaces of revolution, tori and hearts: pieces of a ray in which the surface's function certainly has
-//! no root, or rises or falls all the way; in `f64` first, then in 320 bits.
+//! First hits of surfaces of revolution, tori and hearts. The ray is divided into pieces in which the surface's
+//! function certainly has no root, or is monotonic; in `f64` first, then in 320 bits.
 
 use super::closed::Hit;
 use super::dyadic::Dyadic;
@@ -11,15 +11,15 @@ use super::text::Vector;
 use super::wide::Wide;
 use std::cmp::Ordering;
 
-/// A function along a ray, which is 0 where it meets a surface.
+/// A function along a ray that is 0 where the ray meets a surface.
 trait Along {
     fn at<T: Number>(&self, place: &Jet<T>, known: &Known<T>) -> Jet<T>;
-    /// Whether what is met in a piece of the ray is a part of the surface, as far as that is certain.
+    /// Tells whether roots in a piece of the ray belong to the part of the surface that is kept, if that is certain.
     fn kept<T: Number>(&self, place: &T, known: &Known<T>) -> Option<bool>;
     fn known(&self) -> &Known<Wide>;
 }
 
-/// The numbers that the function is made of.
+/// The coefficients of a function along a ray.
 struct Known<T>(Vec<T>);
 
 enum Search {
@@ -73,7 +73,7 @@ fn is_not_zero<T: Number>(of: &T) -> bool {
     matches!(of.sign(), Some(Ordering::Less | Ordering::Greater))
 }
 
-/// The only root of a piece, by Newton's method with bounds.
+/// Returns the only root of a piece, by Newton's method with bounds.
 fn narrowed<T: Number>(along: &impl Along, known: &Known<T>, mut piece: T) -> T {
     loop {
         let slope = along.at(&Jet::variable(piece.clone()), known).slope;
@@ -88,18 +88,20 @@ fn narrowed<T: Number>(along: &impl Along, known: &Known<T>, mut piece: T) -> T 
     }
 }
 
-/// A ray told from a point of it near a shape, in steps of about the world's unit: `s = start + step * place`.
+/// A ray as `s = start + 2^power * place`: places are relative to one of its points near a shape, in steps of about a
+/// world unit.
 struct Local {
     start: Dyadic,
     power: i64,
-    /// The point that places are told from, from the shape's own.
+    /// The ray's point at place 0, relative to the shape's own point.
     from: Vector,
-    /// How it goes on from there with the place.
+    /// The change of that point per unit of place.
     dir: Vector,
 }
 
 impl Local {
-    /// From near the point of the ray that is closest to `middle`; the shape's own point is `own`.
+    /// Starts near the point of the ray that is closest to `middle`. Coordinates are relative to `own`, the shape's own
+    /// point.
     fn new(ray: &Ray, middle: &Vector, own: &Vector) -> Self {
         let closest = dot(&minus(middle, &ray.origin), &ray.dir);
         let square = dot(&ray.dir, &ray.dir);
@@ -111,9 +113,9 @@ impl Local {
         Self { start, power, from, dir }
     }
 
-    /// The first hit within so far of the point in the middle.
+    /// Returns the first hit, searched for up to at least `reach` world units from the point at place 0.
     fn first_hit(&self, along: &impl Along, reach: f64) -> Hit {
-        // Steps are from half the unit to twice as long.
+        // A step is from half a world unit to two world units long.
         let reach = 4.0 * reach;
         let begin = self.start.neg().shifted(-self.power);
         let end = Dyadic::from(reach);
@@ -121,7 +123,7 @@ impl Local {
         if from.compare(&end).is_ge() {
             return Hit::Miss;
         }
-        // As far as f64 goes, to the nearer side: the piece between is in front of the ray's origin or out of reach.
+        // The search runs in `f64` first if `f64` represents the start of the range exactly.
         let known = along.known();
         let fast = Known(known.0.iter().map(Fast::of).collect());
         let ends = |at: &Dyadic| Fast::exact(at);
@@ -147,7 +149,8 @@ impl Local {
     }
 }
 
-/// A surface of revolution: heights `h0 + h1 s`, squared distances from the axis `q0 + q1 s + q2 s^2`.
+/// A surface of revolution. The heights of the ray's points are `h0 + h1 s`, and their squared distances from the axis
+/// `q0 + q1 s + q2 s^2`.
 struct OnRevolved<'s> {
     profile: &'s Formula,
     known: Known<Wide>,
@@ -166,7 +169,7 @@ impl Along for OnRevolved<'_> {
     fn at<T: Number>(&self, place: &Jet<T>, known: &Known<T>) -> Jet<T> {
         let constant = |of: usize| Jet::constant(known.0[of].clone());
         let zero = Jet::constant(T::int(0));
-        // Beyond its ends the profile may be anything.
+        // Beyond the ends of the surface the profile may be anything.
         let height = Self::height(place, known).max(&zero).min(&constant(HEIGHT));
         let around = constant(2).add(&constant(3).mul(place)).add(&constant(4).mul(&place.square()));
         around.sub(&self.profile.squared_at(&height))
@@ -209,7 +212,7 @@ pub fn revolved(ray: &Ray, profile: &Formula, axis: &Vector, base: &Vector, heig
         over(dot(&other, &other), &whole),
         Wide::exact(height),
     ];
-    // A bound of the profile, from pieces of it.
+    // An upper bound of the profile: the greatest of the bounds over pieces of its height.
     const PIECES: usize = 64;
     let height = height.to_f64(true);
     let widest = (0..PIECES).map(|piece| {
@@ -221,7 +224,7 @@ pub fn revolved(ray: &Ray, profile: &Formula, axis: &Vector, base: &Vector, heig
     local.first_hit(&OnRevolved { profile, known: Known(known) }, (0.6 * height).hypot(widest) * 1.01)
 }
 
-/// A polynomial, and for some shapes another one that is negative where it is cut off.
+/// A polynomial, and for some shapes a second one, which is negative where the surface is cut off.
 struct OnPolynomial {
     known: Known<Wide>,
     degree: usize,
@@ -240,7 +243,7 @@ fn horner<T: Number>(coefficients: &[T], at: &T) -> T {
     others.iter().rev().fold(last.clone(), |sum, next| sum.mul(at).add(next))
 }
 
-/// The coefficients of a polynomial as seen from another place.
+/// Returns the coefficients of the polynomial `p(x + to)`.
 fn moved<T: Number>(coefficients: &[T], to: &T) -> Vec<T> {
     let mut all = coefficients.to_vec();
     for first in 0..all.len() {
@@ -253,7 +256,7 @@ fn moved<T: Number>(coefficients: &[T], to: &T) -> Vec<T> {
 
 impl Along for OnPolynomial {
     fn at<T: Number>(&self, place: &Jet<T>, known: &Known<T>) -> Jet<T> {
-        // From a point of the piece, so that bounds are narrow where the piece is.
+        // The polynomial is expanded about a point of the piece, so that its bounds are narrow there.
         let inner = place.value.inner();
         let from = place.value.sub(&inner);
         let all = moved(&known.0[..=self.degree], &inner);
@@ -274,7 +277,7 @@ impl Along for OnPolynomial {
     }
 }
 
-/// Coefficients, the lowest first.
+/// The coefficients of a polynomial, the lowest first.
 #[derive(Clone)]
 struct Polynomial(Vec<Dyadic>);
 
@@ -311,10 +314,10 @@ pub fn torus(ray: &Ray, center: &Vector, axis: &Vector, radius: &Dyadic, tube: &
     let local = Local::new(ray, center, center);
     let (p, d) = (&local.from, &local.dir);
     let square = dot(axis, axis);
-    // Of the points of the ray: their squares, and their heights times the length of the axis.
+    // The squared length of the ray's points, and their heights times the length of the axis.
     let point = Polynomial(vec![dot(p, p), dot(p, d).shifted(1), dot(d, d)]);
     let height = Polynomial(vec![dot(p, axis), dot(d, axis)]);
-    // |p|^2 + R^2 - r^2 = 2 R * the distance from the axis; squared.
+    // |p|^2 + R^2 - r^2 = 2 R * (the distance from the axis), with both sides squared.
     let left = point.add(&Polynomial::constant(radius.square().sub(&tube.square())));
     let around = point.times(&square).add(&height.square().times(&Dyadic::int(-1)));
     let right = around.times(&radius.square().shifted(2));
@@ -327,7 +330,7 @@ pub fn heart(ray: &Ray, center: &Vector, size: &Dyadic) -> Hit {
     let local = Local::new(ray, center, center);
     let [x, y, z] = [0, 1, 2].map(|axis| Polynomial(vec![local.from[axis].clone(), local.dir[axis].clone()]));
     let [x2, y2, z2] = [x.square(), y.square(), z.square()];
-    // (x^2 + y^2 + 9/4 z^2 - 1)^3 = (x^2 + 9/80 z^2) y^3, times 80 and size^6.
+    // (x^2 + y^2 + 9/4 z^2 - 1)^3 = (x^2 + 9/80 z^2) y^3, with both sides multiplied by 80 and size^6.
     let ball = x2.add(&y2).add(&z2.times(&Dyadic::from(2.25)));
     let ball = ball.add(&Polynomial::constant(size.square().neg()));
     let right = x2.times(&Dyadic::int(80)).add(&z2.times(&Dyadic::int(9)));

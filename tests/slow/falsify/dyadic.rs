@@ -1,10 +1,10 @@
-//! Whole numbers times powers of two: sums and products of `f64` numbers without any rounding.
+//! Integers times powers of two: sums and products of `f64` numbers without any rounding.
 
 use dashu_int::ops::{BitTest, DivEuclid, SquareRoot};
 use dashu_int::{IBig, Sign, UBig};
 use std::cmp::Ordering;
 
-/// `whole * 2^power`.
+/// The number `whole * 2^power`.
 #[derive(Clone, Debug)]
 pub struct Dyadic {
     whole: IBig,
@@ -24,7 +24,7 @@ impl Dyadic {
         Self { whole, power }
     }
 
-    /// The value of a finite number, all of it.
+    /// Returns the exact value of a finite number.
     pub fn from(number: f64) -> Self {
         assert!(number.is_finite(), "{number} is no number");
         if number == 0.0 {
@@ -54,7 +54,7 @@ impl Dyadic {
         self.whole.is_zero()
     }
 
-    /// The power of two just above its size; of 0, a very small one.
+    /// Returns the exponent of the smallest power of two above the number's magnitude. For 0 it is very small.
     pub fn size(&self) -> i64 {
         if self.is_zero() { i64::MIN / 4 } else { self.whole.bit_len() as i64 + self.power }
     }
@@ -90,7 +90,7 @@ impl Dyadic {
         self.mul(self)
     }
 
-    /// Times a power of two.
+    /// Returns the number times 2^`power`.
     pub fn shifted(&self, power: i64) -> Self {
         Self { whole: self.whole.clone(), power: self.power + power }
     }
@@ -107,14 +107,14 @@ impl Dyadic {
         }
     }
 
-    /// To so many bits, toward plus or minus infinity.
+    /// Rounds to at most `bits` significant bits, toward plus infinity if `up` and toward minus infinity otherwise.
     pub fn rounded(self, bits: i64, up: bool) -> Self {
         let extra = self.whole.bit_len() as i64 - bits;
         if extra <= 0 {
             return self;
         }
         let cut = IBig::from(1) << extra as usize;
-        // Euclidean division by a positive number is rounding down.
+        // Euclidean division by a positive number rounds down.
         let mut whole = self.whole.div_euclid(&cut);
         if up {
             whole += IBig::from(1);
@@ -122,7 +122,8 @@ impl Dyadic {
         Self { whole, power: self.power + extra }
     }
 
-    /// A quotient to about so many bits, toward plus or minus infinity.
+    /// Returns the quotient to about `bits` significant bits, rounded toward plus infinity if `up` and toward minus
+    /// infinity otherwise.
     pub fn divided(&self, by: &Self, bits: i64, up: bool) -> Self {
         assert!(!by.is_zero(), "division by 0");
         if self.is_zero() {
@@ -141,7 +142,8 @@ impl Dyadic {
         Self { whole, power: self.power - by.power - more }.rounded(bits, up)
     }
 
-    /// The root of what is not negative, to about so many bits, toward plus or minus infinity.
+    /// Returns the square root of a number that is not negative, to about `bits` significant bits, rounded toward plus
+    /// infinity if `up` and toward minus infinity otherwise.
     pub fn root(&self, bits: i64, up: bool) -> Self {
         assert!(self.sign() != Ordering::Less, "a root of a negative number");
         if self.is_zero() {
@@ -160,7 +162,7 @@ impl Dyadic {
         Self { whole: root.into(), power: (self.power - more) / 2 }.rounded(bits, up)
     }
 
-    /// As a whole number of so small parts of 1, rounded down.
+    /// Returns the number in units of 2^-`bits`, rounded down to an integer.
     pub fn fixed(&self, bits: i64) -> IBig {
         let shift = self.power + bits;
         if shift >= 0 {
@@ -170,7 +172,8 @@ impl Dyadic {
         }
     }
 
-    /// An `f64` that is not above it, or not below it, and next to it.
+    /// Returns an `f64` near the number: not below it if `up`, and not above it otherwise. Numbers of magnitude below
+    /// 2^-1001 become 0 or that.
     pub fn to_f64(&self, up: bool) -> f64 {
         let size = self.size();
         if self.is_zero() {
@@ -185,15 +188,16 @@ impl Dyadic {
             };
         }
         if size < -1000 {
+            let tiny = 2_f64.powi(-1001);
             return match (self.sign(), up) {
                 (Ordering::Less, true) => 0.0,
-                (Ordering::Less, false) => -f64::MIN_POSITIVE,
-                (_, true) => f64::MIN_POSITIVE,
+                (Ordering::Less, false) => -tiny,
+                (_, true) => tiny,
                 (_, false) => 0.0,
             };
         }
         let Self { whole, power } = self.clone().rounded(53, up);
-        // At most 54 bits, of which the last is 0.
+        // The integer has at most 53 bits, or 54 of which the last is 0.
         let value = whole.to_f64().value();
         let half = (power / 2) as i32;
         value * 2_f64.powi(half) * 2_f64.powi(power as i32 - half)

@@ -1,11 +1,11 @@
-//! Two `f64` numbers, each operation rounded outward: decides most rays.
+//! Intervals with two `f64` ends, rounded outward in each operation. They decide most rays.
 
 use super::dyadic::Dyadic;
 use super::number::Number;
 use super::wide::Wide;
 use std::cmp::Ordering;
 
-/// A number between two others. Where nothing is known, between minus and plus infinity.
+/// An interval. Where nothing is known, it is from minus to plus infinity.
 #[derive(Clone, Copy, Debug)]
 pub struct Fast {
     pub low: f64,
@@ -27,7 +27,7 @@ impl Fast {
         Self::outward(a.min(b).min(c.min(d)), a.max(b).max(c.max(d)))
     }
 
-    /// Values of a function that the standard library has to a few units in the last place.
+    /// Returns bounds of a function's values that the standard library computes to a few units in the last place.
     fn roughly(low: f64, high: f64) -> Self {
         let slack = |value: f64| 1e-15 * value.abs() + 1e-300;
         Self::outward(low - slack(low), high + slack(high))

@@ -1,9 +1,9 @@
-//! Formulas in y, read and evaluated apart from the program.
+//! Formulas in y, parsed and evaluated without any code of the program.
 
 use super::dyadic::Dyadic;
 use super::number::{Jet, Number};
 
-/// A formula. Its numbers are the nearest `f64`, and all else is real.
+/// A formula. Its constants are the nearest `f64`; everything else is exact.
 #[derive(Clone, Debug)]
 pub enum Formula {
     Y,
@@ -15,7 +15,7 @@ pub enum Formula {
 }
 
 impl Formula {
-    /// Reads one that has no mistakes.
+    /// Parses a formula that has no mistakes.
     pub fn read(text: &str) -> Self {
         let mut reader = Reader { rest: text };
         let formula = reader.sum();
@@ -66,7 +66,7 @@ impl Formula {
         }
     }
 
-    /// The square of its value; of a root, what is under it.
+    /// Returns the square of the formula's value. If the formula is a square root, this is its argument.
     pub fn squared_at<T: Number>(&self, y: &Jet<T>) -> Jet<T> {
         match self {
             Self::Call(name, of) if name == "sqrt" => of[0].at(y),
@@ -74,7 +74,7 @@ impl Formula {
         }
     }
 
-    /// A number with its sign.
+    /// Returns a number that has the sign of the formula's value or, if the formula is a square root, of its argument.
     pub fn sign_at<T: Number>(&self, y: &T) -> T {
         match self {
             Self::Call(name, of) if name == "sqrt" => of[0].at(&Jet::constant(y.clone())).value,

@@ -1,17 +1,18 @@
-//! What rays see that leave a surface: the same ball as any shape, and surfaces in one place.
+//! What rays that leave a surface see: the same sphere as each shape that can be one, and surfaces that coincide or
+//! touch.
 
 use super::program::Program;
 use super::random::{Point, Random, cross, dot, moved, unit};
 use super::scenes::numbers;
 use tabray::render::Renderer;
 
-/// A kind of scene, and what is wrong with the picture of one of them.
+/// A kind of scene, and the function that checks the image of a random scene of it.
 struct Kind {
     name: &'static str,
     look: fn(&mut Random, &Renderer) -> Looks,
 }
 
-/// Pixels that were looked at, those that are wrong, and the scene.
+/// The number of pixels that were checked, the number of those that are wrong, and the scene.
 struct Looks {
     pixels: usize,
     wrong: usize,
@@ -27,7 +28,7 @@ const KINDS: [Kind; 6] = [
     Kind { name: "edges on a plane", look: edge },
 ];
 
-/// Looks at so many scenes of each kind; what is wrong with each kind that is.
+/// Checks `scenes` scenes of each kind. Returns a message for each kind in which something is wrong.
 pub fn all(scenes: u64) -> Vec<String> {
     let renderer = Renderer::new(0).expect("threads");
     println!("| scenes | pictures | pixels | wrong |\n|---|--:|--:|--:|");
@@ -54,13 +55,13 @@ fn picture(text: &str, renderer: &Renderer) -> Vec<[u8; 3]> {
     Program::read(text).unwrap_or_else(|| panic!("refused:\n{text}")).picture(renderer)
 }
 
-/// A ball as every shape that can be one.
+/// Returns the text of a sphere as each shape that can be one.
 fn balls(center: Point, radius: f64) -> [String; 5] {
     let at = numbers(center);
     let foot = numbers(moved(center, -radius, [0.0, 1.0, 0.0]));
     [
         format!("sphere ball {{ material m center {at} radius {radius:?} }}"),
-        // Of the material's ambient colour it leaves nothing, as there is none.
+        // The shader changes only the ambient colour, and the material has none.
         format!("psphere ball {{ material m center {at} radius {radius:?} shader tiles }}"),
         format!("ellipsoid ball {{ material m center {at} radius {radius:?} scale 1 1 1 }}"),
         format!(
@@ -76,7 +77,7 @@ fn balls(center: Point, radius: f64) -> [String; 5] {
     ]
 }
 
-/// The pixels by which pictures of the same ball differ. At its rim, rounding decides.
+/// Counts the pixels in which images of the same sphere differ. At its rim, where rounding decides, 1 of 500 may.
 fn alike(before: &str, center: Point, radius: f64, renderer: &Renderer) -> Looks {
     let texts = balls(center, radius).map(|ball| format!("{before}{ball}\n"));
     let [first, others @ ..] = &texts;
@@ -105,12 +106,12 @@ fn camera(screen: f64, eye: Point) -> String {
     )
 }
 
-/// A number of few digits.
+/// Rounds a number to hundredths.
 fn round(number: f64) -> f64 {
     (number * 100.0).round() / 100.0
 }
 
-/// A closed ball around the viewer and a lamp outside of it, or inside.
+/// Checks a closed sphere around the viewer, with a lamp outside or inside.
 fn leak(random: &mut Random, renderer: &Renderer) -> Looks {
     let eye = [2.0, 1.5, 1.0];
     let radius = round(random.between(1.5, 4.0));
@@ -124,7 +125,7 @@ fn leak(random: &mut Random, renderer: &Renderer) -> Looks {
     );
     let mut looks = alike(&before, center, radius, renderer);
     if away > radius {
-        // No light comes in.
+        // No light enters the sphere.
         let text = format!("{before}{}\n", balls(center, radius)[0]);
         let lit = picture(&text, renderer).iter().filter(|seen| **seen != [0; 3]).count();
         if lit > 0 {
@@ -160,17 +161,17 @@ fn glass(random: &mut Random, renderer: &Renderer) -> Looks {
     alike(&before, center, radius, renderer)
 }
 
-/// A direction of small whole numbers that looks up and to the viewer.
+/// Returns a direction of small integers that points up and toward the viewer.
 fn slope(random: &mut Random) -> Point {
     [random.whole(-2, 2), random.whole(1, 4), random.whole(0, 3)]
 }
 
-/// The pixels of a scene that are black: where it has only lit surfaces, and no shadows.
+/// Counts every black pixel of an object as wrong, for a scene whose visible surfaces are all lit and have no shadows.
 fn black(text: String, renderer: &Renderer) -> Looks {
     dark(text, renderer, |_, _| true)
 }
 
-/// Those that are black between two that are not: where it has shadows, which are wider.
+/// Counts each black pixel between two lit pixels as wrong, for a scene with shadows, which are wider than a pixel.
 fn dots(text: String, renderer: &Renderer) -> Looks {
     dark(text, renderer, |[x, y], is_black| {
         let is_lit = |x: usize, y: usize| !is_black(x, y);
@@ -178,7 +179,7 @@ fn dots(text: String, renderer: &Renderer) -> Looks {
     })
 }
 
-/// The pixels that show an object, are black and should not be. What lies beyond the picture counts as black.
+/// Counts the pixels that show an object and are black but should not be. Pixels outside the image count as black.
 fn dark(
     text: String,
     renderer: &Renderer,
@@ -206,7 +207,7 @@ fn rug(random: &mut Random, renderer: &Renderer) -> Looks {
     let corner = moved(point, random.whole(-2, 2), along);
     let size = [random.whole(2, 6), random.whole(2, 6)];
     let eye = [4.0, 3.0, 6.0];
-    // Above the floor, on its lit side.
+    // The lamp is above the floor, on its lit side.
     let lamp = moved(moved(point, random.between(1.0, 6.0), unit(n)), random.between(0.0, 3.0), unit(along));
     let text = format!(
         "{}{LIT}fplane rug {{ material red normal {n} point {} xdir {} dimensions {} }}\n\
@@ -222,7 +223,7 @@ fn rug(random: &mut Random, renderer: &Renderer) -> Looks {
     black(text, renderer)
 }
 
-/// Two planes that both face the viewer and the lamp.
+/// Checks two planes that both face the viewer and the lamp.
 fn seam(random: &mut Random, renderer: &Renderer) -> Looks {
     let eye = [4.0, 3.5, 5.0];
     let part = |random: &mut Random| round(random.between(-0.3, 0.3));
@@ -251,11 +252,12 @@ fn seam(random: &mut Random, renderer: &Renderer) -> Looks {
         numbers(on_wall),
         numbers(lamp),
     );
-    // Through the part of the floor before the screen, which is not seen, there are shadows of the part behind it.
+    // Planes are not hit in front of the image plane. Through the unseen part of the floor, one sees the shadow of the
+    // rest of the floor.
     dots(text, renderer)
 }
 
-/// A triangle that stands with an edge on a floor.
+/// Checks a triangle that stands on a floor with one edge.
 fn edge(random: &mut Random, renderer: &Renderer) -> Looks {
     let n = slope(random);
     let point = [4.0, random.whole(-1, 0), random.whole(-6, -3)];
@@ -266,7 +268,7 @@ fn edge(random: &mut Random, renderer: &Renderer) -> Looks {
     let back = if back[2] > 0.0 { back.map(|part| -part) } else { back };
     let up = unit(n);
     let top = moved(moved(point, random.between(1.0, 3.0), up), random.between(0.1, 1.0), unit(back));
-    // Its lit side is that of the viewer: against the clock from there.
+    // The lit side faces the viewer, from whom its vertices are counterclockwise.
     let eye = [4.0, 3.0, 6.0];
     let sub = |a: Point, b: Point| [0, 1, 2].map(|axis| a[axis] - b[axis]);
     if dot(sub(eye, point), n) < 0.1 {
@@ -274,7 +276,7 @@ fn edge(random: &mut Random, renderer: &Renderer) -> Looks {
     }
     let faces = dot(cross(sub(two, one), sub(top, one)), sub(eye, one)) > 0.0;
     let [first, second] = if faces { [one, two] } else { [two, one] };
-    // A lamp where the viewer is lights all that is seen.
+    // A lamp at the viewer's position lights everything that is seen.
     let text = format!(
         "{}{LIT}triangle flag {{ material red vertex1 {} vertex2 {} vertex3 {} }}\n\
          plane floor {{ material white normal {} point {} }}\nlight lamp {{ location {} emissivity 60 60 60 }}\n",

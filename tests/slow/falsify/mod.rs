@@ -1,5 +1,5 @@
-//! Tries to prove the program wrong: random scenes by class, rays that are aimed where arithmetic is hard, and an oracle
-//! that starts from the scenes' text and shares no code with the program. See docs/falsify.md.
+//! Tries to prove the program wrong: random scenes of several classes, rays aimed where the arithmetic is hard, and an
+//! oracle that starts from the scenes' text and shares no code with the program. See docs/falsify.md.
 //!
 //! `cargo test --release --test slow -- --ignored --nocapture many_scenes`
 
@@ -31,12 +31,13 @@ use std::time::Instant;
 use tabray::render::Renderer;
 use tally::Tally;
 
-/// The number that an environment variable has.
+/// Returns the number that an environment variable is set to, or the default if it is not set.
 fn setting(name: &str, default: f64) -> f64 {
     env::var(name).map_or(default, |value| value.parse().unwrap_or_else(|_| panic!("{name} is a number")))
 }
 
-/// Asks about scenes of a class until enough rays have been asked for, on all cores.
+/// Judges random scenes of a class, on all cores, until at least `rays` rays have been asked for. One ray in `proofs`
+/// is also asked for its proof.
 fn run(class: &Class, rays: usize, seed: u64, proofs: u64) -> Tally {
     let (next, asked, total) = (AtomicUsize::new(0), AtomicUsize::new(0), Mutex::new(Tally::default()));
     let threads = thread::available_parallelism().map_or(1, usize::from);
@@ -58,11 +59,12 @@ fn run(class: &Class, rays: usize, seed: u64, proofs: u64) -> Tally {
     total.into_inner().expect("no panic")
 }
 
-/// Runs all classes that are asked for; what is wrong with each that is.
+/// Runs every class that FALSIFY_CLASS selects, in its long run if `size` is 0 and in its short run if `size` is 1.
+/// Returns a message for each class in which something is wrong.
 fn all(size: usize) -> Vec<String> {
     let (times, seed) = (setting("FALSIFY_RAYS", 1.0), setting("FALSIFY_SEED", 0.0) as u64);
     let only = env::var("FALSIFY_CLASS").unwrap_or_default();
-    // One ray in so many is asked for its proof, too, which takes longest.
+    // One ray in this many is also asked for its proof. Proofs take most of the time.
     let proofs = setting("FALSIFY_PROOFS", [4.0, 1.0][size]) as u64;
     println!("{}", tally::HEADING);
     let mut wrong = Vec::new();
@@ -104,7 +106,7 @@ fn surfaces_meet_their_own_rays_in_many_scenes() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Judges every pixel of the scenes that FALSIFY_SCENES names, with blanks between them.
+/// Judges every pixel of the scenes whose paths FALSIFY_SCENES lists, separated by white space.
 #[test]
 #[ignore = "takes scenes from the environment"]
 fn hits_and_proofs_of_given_scenes_are_right() {

@@ -1,21 +1,22 @@
-//! What the search for roots computes with: numbers that are only known to lie between two others.
+//! The arithmetic of the search for roots: intervals, which are numbers known only to lie between two bounds, and their
+//! derivatives.
 
 use super::dyadic::Dyadic;
 use super::wide::Wide;
 use std::cmp::Ordering;
 
-/// A number between two others.
+/// An interval: a number that is only known to lie between two bounds.
 pub trait Number: Clone {
     fn exact(value: &Dyadic) -> Self;
     fn of(value: &Wide) -> Self;
-    /// All numbers.
+    /// Returns the interval of all numbers.
     fn any() -> Self;
     fn add(&self, other: &Self) -> Self;
     fn mul(&self, other: &Self) -> Self;
     fn div(&self, other: &Self) -> Self;
     fn neg(&self) -> Self;
     fn square(&self) -> Self;
-    /// Of its part that is not negative.
+    /// Returns the square root of the part of the interval that is not negative.
     fn root(&self) -> Self;
     fn sin_cos(&self) -> (Self, Self);
     fn exp(&self) -> Self;
@@ -23,18 +24,18 @@ pub trait Number: Clone {
     fn abs(&self) -> Self;
     fn min(&self, other: &Self) -> Self;
     fn max(&self, other: &Self) -> Self;
-    /// From the low end of one to the high end of the other.
+    /// Returns the interval from the low end of this one to the high end of the other.
     fn hull(&self, other: &Self) -> Self;
-    /// What both have in common, if anything.
+    /// Returns the intersection of two intervals, unless it is empty.
     fn meet(&self, other: &Self) -> Option<Self>;
-    /// The sign, where it is certain.
+    /// Returns the sign, if it is certain.
     fn sign(&self) -> Option<Ordering>;
-    /// A point of it, not quite in its middle.
+    /// Returns a point of the interval, not quite its midpoint.
     fn inner(&self) -> Self;
     fn low(&self) -> Self;
-    /// Whether it is as narrow as is worth while at numbers of this size.
+    /// Tells whether the interval is as narrow as is useful for numbers of the magnitude of `size`.
     fn is_narrow(&self, size: &Self) -> bool;
-    /// Whether it is less than half as wide as another.
+    /// Tells whether the interval is less than half as wide as another.
     fn is_half(&self, other: &Self) -> bool;
     fn to_wide(&self) -> Wide;
 
@@ -47,7 +48,7 @@ pub trait Number: Clone {
     }
 }
 
-/// A number and how fast it grows.
+/// A value and its derivative.
 #[derive(Clone)]
 pub struct Jet<T> {
     pub value: T,
@@ -116,13 +117,13 @@ impl<T: Number> Jet<T> {
         Self { value: self.value.ln(), slope: self.slope.div(&self.value) }
     }
 
-    /// For what is not negative.
+    /// Raises a base that is not negative to a power.
     pub fn power(&self, exponent: &Self) -> Self {
         if self.value.sign() == Some(Ordering::Greater) {
             return self.ln().mul(exponent).exp();
         }
         let value = self.value.ln().mul(&exponent.value).exp();
-        // From 0 to less than 1, to a power that is not negative: from 0 to 1.
+        // A base from 0 to 1, raised to a power that is not negative, is from 0 to 1.
         let (zero, one) = (T::int(0), T::int(1));
         let is_small = self.value.max(&one).sub(&one).sign() == Some(Ordering::Equal);
         let is_up = exponent.value.min(&zero).sign() == Some(Ordering::Equal);
@@ -151,9 +152,9 @@ impl<T: Number> Jet<T> {
     }
 }
 
-/// What all numbers can besides.
+/// A further operation that all intervals have.
 trait Around: Number {
-    /// All between two numbers, whichever is the greater.
+    /// Returns the hull of two intervals, in either order.
     fn hull_of(&self, other: &Self) -> Self {
         self.min(other).hull(&self.max(other))
     }

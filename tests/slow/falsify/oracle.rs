@@ -1,4 +1,4 @@
-//! What a ray certainly meets first, from the text of a scene.
+//! The first hit of a ray, for certain, from the text of a scene.
 
 use super::closed::{self, Hit};
 use super::curved;
@@ -11,16 +11,16 @@ use super::text::{Scene, Shape, Vector};
 use super::wide::Wide;
 use std::cmp::Ordering;
 
-/// What a ray meets first.
+/// The first hit of a ray.
 #[derive(Debug)]
 pub struct Truth {
-    /// The first in the scene of those met at the least distance.
+    /// The index of the first object in the scene among those that are hit at the least distance.
     pub first: Option<usize>,
-    /// That distance's part of the ray's direction.
+    /// The place of the hit, as a multiple of the ray's direction.
     pub place: Option<Wide>,
-    /// Whether others are met at the same distance, to 2^-200 of it.
+    /// Whether other objects are hit at the same distance, to within 2^-200 of it.
     pub is_shared: bool,
-    /// Whether the ray touches something exactly, so that what is first is anyone's choice.
+    /// Whether the ray touches something exactly, so that either result is right.
     pub is_touch: bool,
 }
 
@@ -47,7 +47,7 @@ pub fn first(scene: &Scene, ray: &Ray) -> Truth {
     truth
 }
 
-/// Which of two places is the nearer, unless they are one to 2^-200.
+/// Returns which of two places is nearer, unless they are equal to within 2^-200 of their size.
 fn order(one: &Wide, other: &Wide) -> Option<Ordering> {
     let apart = one.sub(other);
     let (low, high) = apart.ends()?;
@@ -79,8 +79,8 @@ fn hit(shape: &Shape, ray: &Ray) -> Hit {
     }
 }
 
-/// The cosine between a ray and a shape's normal at a place, about: how far off the surface an error of the distance
-/// leads.
+/// Returns the approximate cosine of the angle between a ray and a shape's normal at a place: an error of the distance,
+/// times this, is the distance from the surface.
 pub fn cosine(shape: &Shape, ray: &Ray, place: &Wide) -> f64 {
     let place = place.near();
     let near = |from: &Vector| ray.near(place, from);
@@ -153,7 +153,7 @@ fn unit(of: [f64; 3]) -> [f64; 3] {
 mod tests {
     use super::*;
 
-    /// The first hit of the middle pixel, and its distance.
+    /// Returns the first hit of the middle pixel, its distance, and whether it is a tie.
     fn seen(objects: &str) -> (Option<usize>, f64, bool) {
         let text = format!("camera c {{ pixeldim 1 1 worlddim 8 6 viewpoint 4 3 6 }}\n{objects}");
         let scene = Scene::read(&text);
@@ -208,7 +208,7 @@ mod tests {
             "plane p { normal 0 0 1 point 0 0 -3 } sphere s { center 4 3 -4 radius 1 }",
             "triangle t { vertex1 3 2 -1 vertex2 5 2 -1 vertex3 4 3 -1 }",
             "torus t { center 4 3 -4 direction 0 0 1 radius 2 tube 2 }",
-            // Where y is 0 the heart's polynomial has a threefold root.
+            // Where y is 0, the heart's polynomial has a triple root.
             "heart h { center 4 3 -4 size 3 }",
         ] {
             assert!(seen(objects).2, "{objects}");

@@ -1,4 +1,4 @@
-//! The program: all that is asked of it, and nothing of it is used elsewhere.
+//! The program under test. All questions to it go through this file.
 
 use crate::common::registry;
 use std::path::Path;
@@ -6,31 +6,31 @@ use tabray::render::{Plan, Renderer, trace};
 use tabray::scene::{self, Model};
 use tabray::tools::verify::{self, Verdict};
 
-/// A scene as the program has it.
+/// A scene as the program has loaded it.
 pub struct Program(Model);
 
-/// What it says of a pixel, of the proof that it has for it.
+/// What the program proves about its first hit of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Claim {
-    /// What is found is certainly right.
+    /// The hit is certainly right.
     Right,
-    /// What is found is certainly wrong.
+    /// The hit is certainly wrong.
     Wrong,
-    /// Neither.
+    /// Neither is certain.
     Unknown,
 }
 
-/// What it finds for a ray.
+/// The first hit that the program finds for a ray.
 pub struct Found {
     pub first: Option<usize>,
     pub distance: f64,
-    /// The ray, rounded, as it has it.
+    /// The origin and the direction of the ray as the program rounds them.
     pub origin: [f64; 3],
     pub dir: [f64; 3],
 }
 
 impl Program {
-    /// The scene, unless the program refuses it.
+    /// Loads a scene, unless the program refuses it.
     pub fn read(text: &str) -> Option<Self> {
         scene::read(registry(), "scene", Path::new(""), text.as_bytes(), None)
             .ok()
@@ -60,7 +60,7 @@ impl Program {
         self.0.camera.value.pixels
     }
 
-    /// The picture that packets of rays make, from the top and from the left: red, green and blue of each pixel.
+    /// Renders the image with packets of rays: the red, green and blue of each pixel, from the top left, row by row.
     pub fn picture(&self, renderer: &Renderer) -> Vec<[u8; 3]> {
         renderer.picture(&Plan::new(&self.0)).chunks(3).map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect()
     }

@@ -1,6 +1,6 @@
-//! Random numbers, the same on each run.
+//! Random numbers, the same in every run.
 
-/// A generator (Steele, Lea and Flood 2014).
+/// The generator SplitMix64 (Steele, Lea and Flood 2014).
 pub struct Random(u64);
 
 pub type Point = [f64; 3];
@@ -30,22 +30,22 @@ impl Random {
         self.next() % count
     }
 
-    /// Whether something happens that does once in so many times.
+    /// Returns true once in `count` times on average.
     pub fn once_in(&mut self, count: u64) -> bool {
         self.below(count) == 0
     }
 
-    /// A power of ten between two.
+    /// Returns 10 to a random power between `low` and `high`.
     pub fn power(&mut self, low: f64, high: f64) -> f64 {
         10_f64.powf(self.between(low, high))
     }
 
-    /// A whole number.
+    /// Returns a random integer from `low` to `high`.
     pub fn whole(&mut self, low: i64, high: i64) -> f64 {
         (low + self.below((high - low + 1) as u64) as i64) as f64
     }
 
-    /// A small part of something, of either sign; sometimes none.
+    /// Returns a small factor of either sign, from 1e-16 to 1e-2 in magnitude, or sometimes 0.
     pub fn offset(&mut self) -> f64 {
         match self.below(16) {
             0 => 0.0,
@@ -58,7 +58,7 @@ impl Random {
         if self.once_in(2) { -1.0 } else { 1.0 }
     }
 
-    /// A unit vector, none more likely than another.
+    /// Returns a random unit vector, uniformly distributed.
     pub fn direction(&mut self) -> Point {
         loop {
             let at = [0; 3].map(|_| self.between(-1.0, 1.0));
@@ -69,7 +69,7 @@ impl Random {
         }
     }
 
-    /// A direction that is often one of the axes, or of small whole numbers.
+    /// Returns a direction that is often the y axis or a vector of small integers. It need not have unit length.
     pub fn axis(&mut self) -> Point {
         match self.below(4) {
             0 => [0.0, 1.0, 0.0],
@@ -100,12 +100,12 @@ pub fn cross(a: Point, b: Point) -> Point {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// `at + by * along`.
+/// Returns `at + by * along`.
 pub fn moved(at: Point, by: f64, along: Point) -> Point {
     [0, 1, 2].map(|axis| at[axis] + by * along[axis])
 }
 
-/// Two unit vectors upright on one and on each other.
+/// Returns two unit vectors that are perpendicular to a vector and to each other.
 pub fn across(of: Point) -> [Point; 2] {
     let least = (0..3).min_by(|a, b| of[*a].abs().total_cmp(&of[*b].abs())).unwrap_or(0);
     let mut other = [0.0; 3];
@@ -114,7 +114,7 @@ pub fn across(of: Point) -> [Point; 2] {
     [one, cross(unit(of), one)]
 }
 
-/// A direction across another one, at an angle.
+/// Returns a unit vector perpendicular to another vector, turned around it by an angle in radians.
 pub fn turned(of: Point, angle: f64) -> Point {
     let [one, other] = across(of);
     moved(one.map(|part| part * angle.cos()), angle.sin(), other)

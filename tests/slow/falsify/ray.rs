@@ -1,11 +1,11 @@
-//! Rays, and vectors of numbers without rounding.
+//! Rays, and vectors of exact numbers.
 
 use super::dyadic::Dyadic;
 use super::number::Number;
 use super::text::{Scene, Vector};
 use super::wide::Wide;
 
-/// `origin + s * dir`, and how long `dir` is.
+/// The ray `origin + s * dir`, and the length of `dir`.
 pub struct Ray {
     pub origin: Vector,
     pub dir: Vector,
@@ -13,9 +13,9 @@ pub struct Ray {
 }
 
 impl Ray {
-    /// The real ray from the eye through the place of a pixel, counted from the left and from the bottom.
+    /// Returns the exact ray from the eye through a pixel, whose coordinates count from the left and from the bottom.
     pub fn of_pixel(scene: &Scene, x: i64, y: i64) -> Self {
-        // (x / (width - 1)) of the screen's width, and the middle of a single pixel, times both denominators.
+        // x / (width - 1) of the image plane's width, or the middle of a single pixel, times both denominators.
         let part = |at: i64, pixels: i64| if pixels > 1 { (at, pixels - 1) } else { (1, 2) };
         let [(x, of_x), (y, of_y)] = [part(x, scene.pixels[0]), part(y, scene.pixels[1])];
         let place = [
@@ -29,17 +29,17 @@ impl Ray {
         Self { origin: scene.eye.clone(), dir, length }
     }
 
-    /// A ray of `f64` numbers as they are: distances count in lengths of its direction.
+    /// Returns a ray of `f64` numbers as they are. Distances along it are in units of its direction's length.
     pub fn as_is(origin: [f64; 3], dir: [f64; 3]) -> Self {
         Self { origin: origin.map(Dyadic::from), dir: dir.map(Dyadic::from), length: Wide::int(1) }
     }
 
-    /// A distance from its place along the ray.
+    /// Returns the distance of a place along the ray.
     pub fn distance(&self, place: &Wide) -> Wide {
         place.mul(&self.length)
     }
 
-    /// The place at about this part of the direction, in `f64`, as seen from a point.
+    /// Returns the point at `place` times the direction, relative to the point `from`, rounded to `f64`.
     pub fn near(&self, place: f64, from: &Vector) -> [f64; 3] {
         let place = Dyadic::from(place);
         [0, 1, 2]

@@ -1,32 +1,32 @@
-//! Scenes as text: a viewer, the ray through the middle of the screen, and shapes put in its way.
+//! Scenes as text: a viewer, the ray through the middle of the image plane, and shapes placed in its way.
 
 use super::random::{Point, Random, moved, unit};
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
-/// A scene, and of which of its pixels the first hit is asked for.
+/// A scene, and the pixels whose first hits are asked for.
 pub struct Question {
     pub text: String,
     pub pixels: Vec<[usize; 2]>,
-    /// Whether the whole picture is asked for, too.
+    /// Whether the whole image is rendered as well.
     pub is_picture: bool,
 }
 
-/// A viewer and what is in the middle of the screen.
+/// A viewer, and the ray through the middle of the image plane, on which objects are placed.
 pub struct Aim {
     pub eye: Point,
-    /// The unit vector along the ray through the middle of the screen.
+    /// The unit vector along the ray through the middle of the image plane.
     pub u: Point,
-    /// A point of that ray to put something at, and how far it is.
+    /// A point of that ray at which to place an object; `far` is its distance from the eye.
     pub target: Point,
     pub far: f64,
     screen: [f64; 2],
-    /// What all lengths are multiplied by, a power of two.
+    /// The factor that all lengths are multiplied by, a power of two.
     scale: f64,
 }
 
 impl Aim {
-    /// `far` is the power of ten to which viewers and targets go away from the screen.
+    /// Returns a random viewer and target, up to about 10^`far` world units away from the image plane.
     pub fn new(random: &mut Random, far: f64) -> Self {
         let middle = [random.power(0.0, 1.0), random.power(0.0, 1.0), 0.0];
         let away = if random.once_in(2) { random.between(0.5, 12.0) } else { random.power(0.0, far) };
@@ -40,7 +40,7 @@ impl Aim {
         Self::through(eye, middle, beyond)
     }
 
-    /// From an eye through the middle of the screen, to a point beyond it.
+    /// Aims from an eye through the middle of the image plane, at a point `beyond` world units behind it.
     fn through(eye: Point, middle: Point, beyond: f64) -> Self {
         let u = unit([0, 1, 2].map(|axis| middle[axis] - eye[axis]));
         let screen = [2.0 * middle[0], 2.0 * middle[1]];
@@ -48,19 +48,19 @@ impl Aim {
         Self { eye, u, target: moved(middle, beyond, u), far, screen, scale: 1.0 }
     }
 
-    /// The notes' viewer, or one farther away, and a target in the notes' scene.
+    /// Returns a viewer near that of the notes or farther away, and a target in the notes' scene.
     pub fn plain(random: &mut Random, far: f64) -> Self {
         let away = if random.once_in(2) { 6.0 } else { random.power(0.0, far) };
         let eye = [random.between(2.0, 6.0), random.between(2.0, 4.0), away];
         Self::through(eye, [4.0, 3.0, 0.0], random.between(2.0, 9.0))
     }
 
-    /// Makes all lengths so many times as large.
+    /// Multiplies all lengths by 2^`power`.
     pub fn scaled(&mut self, power: i32) {
         self.scale = 2_f64.powi(power);
     }
 
-    /// The number of a length.
+    /// Writes a length, multiplied by the scale.
     pub fn length(&self, of: f64) -> String {
         format!("{:?}", of * self.scale)
     }
@@ -69,20 +69,21 @@ impl Aim {
         of.map(|length| self.length(length)).join(" ")
     }
 
-    /// The scene with these objects, each its type and attributes without the material; a single pixel.
+    /// Returns the scene of a single pixel with these objects, each given as its type and its attributes without the
+    /// material.
     pub fn question(&self, objects: &[String]) -> Question {
         let pixels = vec![[0, 0]];
         self.with(objects, [1, 1], pixels, false)
     }
 
-    /// The scene with some pixels of a fine grid.
+    /// Returns the scene with 24 random pixels of a fine grid.
     pub fn many(&self, random: &mut Random, objects: &[String]) -> Question {
         let size = [random.whole(2, 3000) as usize, random.whole(2, 3000) as usize];
         let pixels = (0..24).map(|_| size.map(|side| random.below(side as u64) as usize)).collect();
         self.with(objects, size, pixels, false)
     }
 
-    /// The scene with the whole of a small picture.
+    /// Returns the scene with all pixels of a small image.
     pub fn picture(&self, objects: &[String]) -> Question {
         let [width, height] = [16, 12];
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| [x, y])).collect();
@@ -115,7 +116,7 @@ impl Aim {
     }
 }
 
-/// Numbers that are no lengths.
+/// Writes numbers that are not lengths.
 pub fn numbers<const N: usize>(of: [f64; N]) -> String {
     of.map(|number| format!("{number:?}")).join(" ")
 }

@@ -1,4 +1,4 @@
-//! What came of it, by class.
+//! The results of each class: counts of hits and proofs, and of what is wrong with them.
 
 use super::classes::Class;
 use super::dyadic::Dyadic;
@@ -15,36 +15,36 @@ use std::path::Path;
 use std::time::Duration;
 use tabray::render::Renderer;
 
-/// The first lines of the table.
+/// The head of the table.
 pub const HEADING: &str = "\
 | sound | class | rays | wrong hits | wrong distances | rays rounded | ties | ties lost | proofs | wrong proofs | undecided | packets differ | \
 largest error (ulp) | off the surface (ulp) | refused | seconds |
 |---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|";
 
-/// A hit this far off the surface, in units in the last place of its distance or of the eye's largest coordinate, is
-/// another one: an error of rounding would be a few of them.
+/// The deviation from the surface above which a hit counts as a hit of another point, in units in the last place of its
+/// distance or of the eye's largest coordinate. A rounding error is a few of these units.
 const OFF: f64 = 1000.0;
 
-/// Counts, and the worst of what was found.
+/// Counts, the largest errors, and scenes with faults.
 #[derive(Default)]
 pub struct Tally {
     rays: usize,
-    /// Hits of an object that is first neither for the real ray nor for the rounded one.
+    /// Rays that find an object, or none, where neither the exact ray nor the rounded one does.
     wrong: usize,
-    /// Hits of the right object, which are far from its first point for either ray.
+    /// Hits of the right object that are far from its first intersection with either ray.
     late: usize,
-    /// Hits that are right for the rounded ray alone.
+    /// Rays whose result is right for the rounded ray only.
     rounded: usize,
-    /// Rays that touch something, or meet several things at one distance.
+    /// Rays that touch something exactly, or meet several objects at the same distance.
     ties: usize,
-    /// Of those that meet several things, where another one than the first in the scene is seen.
+    /// Rays that meet several objects at the same distance, and show an object other than the first in the scene.
     lost: usize,
-    /// Questions about proofs.
+    /// Rays that were asked for their proof.
     proofs: usize,
     wrong_proofs: usize,
-    /// Proofs that are not there, where the oracle knows.
+    /// Rays for which the program has no proof, although the oracle knows the answer.
     undecided: usize,
-    /// Pixels of pictures in which something else is seen than by a single ray.
+    /// Pixels of images that show an object other than the one that a single ray finds.
     differ: usize,
     refused: usize,
     error: f64,
@@ -55,7 +55,7 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// Judges what the program says of a scene; one ray in `proofs` is asked for its proof.
+    /// Judges what the program finds in a scene. One ray in `proofs` is also asked for its proof.
     pub fn judge(
         &mut self,
         class: &Class,
@@ -102,7 +102,7 @@ impl Tally {
         let truth = oracle::first(scene, &real);
         let rounded = Ray::as_is(found.origin, found.dir);
         let of_rounded = oracle::first(scene, &rounded);
-        // The lesser of the two errors of the distance: a rounded ray has one of its own.
+        // The smaller of the two errors of the distance counts, since the rounded ray itself has an error.
         let by_real = Off::of(scene, &real, &truth, found);
         let by_rounded = Off::of(scene, &rounded, &of_rounded, found);
         if truth.is_touch || truth.is_shared || of_rounded.is_touch || of_rounded.is_shared {
@@ -190,12 +190,12 @@ impl Tally {
         self.kept.extend(other.kept);
     }
 
-    /// Whether nothing is wrong.
+    /// Tells whether nothing is wrong.
     pub fn is_sound(&self) -> bool {
         self.wrong + self.late + self.wrong_proofs + self.differ == 0 && (self.lost == 0 || !self.strict)
     }
 
-    /// A line of the table. Scenes with faults are written to the folder that FALSIFY_KEEP names.
+    /// Returns the table's row for a class. Scenes with faults are written to the folder that FALSIFY_KEEP names.
     pub fn row(&self, name: &str, time: Duration) -> String {
         if let Ok(folder) = env::var("FALSIFY_KEEP") {
             fs::create_dir_all(&folder).expect("room for a folder");
@@ -229,7 +229,7 @@ impl Tally {
         )
     }
 
-    /// The counts of what is wrong, and a scene.
+    /// Returns the counts of what is wrong, and the scene with the worst fault.
     pub fn worst(&self) -> String {
         let rank = |kind: &str| {
             ["proof", "wrong", "late", "packets", "lost"].iter().position(|other| *other == kind)
@@ -246,7 +246,7 @@ impl Tally {
     }
 }
 
-/// Which object a pixel shows, by the channels that are white.
+/// Returns the index of the object that a pixel shows, by the channels that are 255.
 fn object_of(seen: [u8; 3]) -> Option<usize> {
     match seen.map(|channel| channel == 255) {
         [true, true, _] => Some(3),
@@ -257,13 +257,13 @@ fn object_of(seen: [u8; 3]) -> Option<usize> {
     }
 }
 
-/// How far off a hit is from the true one.
+/// The deviation of a hit from the true one.
 struct Off {
-    /// Whether it is of the true object.
+    /// Whether the hit is of the true object.
     is_hit: bool,
-    /// Of its distance, in units in the last place.
+    /// The error of the distance, in units in the last place of the distance.
     error: f64,
-    /// From the surface, in those units.
+    /// The distance from the surface, in units in the last place of the distance or of the eye's largest coordinate.
     off: f64,
 }
 
@@ -280,7 +280,7 @@ impl Off {
             let near = distance.near();
             let unit = Wide::f64(near.next_up() - near);
             off.error = apart.div(&unit).near();
-            // A place right before the eye is known no better than the eye's own.
+            // A point right in front of the eye is known no better than the eye's own position.
             let size = found.origin.iter().fold(near, |most, part| most.max(part.abs()));
             let grain = Wide::f64(size.next_up() - size);
             off.off = apart.div(&grain).near() * oracle::cosine(&scene.objects[first], ray, place);

@@ -1,4 +1,4 @@
-//! Scenes from their text, read apart from the program.
+//! Scenes parsed from their text, without any code of the program.
 
 use super::dyadic::Dyadic;
 use super::formula::Formula;
@@ -7,7 +7,7 @@ use std::collections::HashMap;
 /// A point or a direction.
 pub type Vector = [Dyadic; 3];
 
-/// What is in a scene, as far as first hits go.
+/// The part of a scene that first hits depend on.
 pub struct Scene {
     pub pixels: [i64; 2],
     pub screen: [Dyadic; 2],
@@ -15,7 +15,7 @@ pub struct Scene {
     pub objects: Vec<Shape>,
 }
 
-/// An object, by its numbers as written.
+/// An object, with its numbers as the text has them.
 pub enum Shape {
     Plane {
         normal: Vector,
@@ -55,7 +55,7 @@ pub enum Shape {
     },
 }
 
-/// What bounds a rectangle.
+/// The sides of a rectangle.
 pub struct Sides {
     pub xdir: Vector,
     pub dimensions: [Dyadic; 2],
@@ -87,7 +87,7 @@ impl Attributes<'_> {
     }
 }
 
-/// Words, braces, and what is between quotation marks.
+/// Splits a text into words, braces and the contents of quotation marks.
 fn words(text: &str) -> Vec<&str> {
     let mut found = Vec::new();
     for line in text.lines() {
@@ -108,7 +108,7 @@ fn words(text: &str) -> Vec<&str> {
     found
 }
 
-/// The profiles of the notes, by their numbers.
+/// The notes' profiles, in the order of their numbers.
 const SURFERS: [&str; 4] = ["2 + sin(y)", "-4/6 * (y - 6)", "1 + 0.5 * cos(y)", "1 + 0.5 * sin(y)"];
 
 const ATTRIBUTES: [&str; 30] = [

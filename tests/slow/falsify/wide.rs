@@ -1,4 +1,4 @@
-//! Two numbers of 320 bits, each operation rounded outward: decides what `f64` does not.
+//! Intervals with two ends of 320 bits, rounded outward in each operation. They decide what `f64` does not.
 
 use super::dyadic::Dyadic;
 use super::number::Number;
@@ -7,17 +7,17 @@ use dashu_int::ops::DivEuclid;
 use std::cmp::Ordering;
 use std::sync::OnceLock;
 
-/// The bits of each end.
+/// The number of significant bits of each end.
 const BITS: i64 = 320;
 
-/// The bits behind the point in the sums of series.
+/// The number of bits after the binary point in the sums of series.
 const FIXED: i64 = 440;
 
-/// How far the sum of a series may be off: far more than the few hundred roundings of 2^-440, each made up to 2^16
-/// times as large by doubling.
+/// The exponent of a bound on the error of a series' sum: 2^-400 is far more than the few hundred rounding errors of
+/// 2^-440, each made up to 2^16 times as large by doubling.
 const SLACK: i64 = -400;
 
-/// A number between two others; without ends, any.
+/// An interval; without ends, it holds all numbers.
 #[derive(Clone, Debug)]
 pub struct Wide(Option<(Dyadic, Dyadic)>);
 
@@ -46,7 +46,7 @@ impl Wide {
         self.0.as_ref().map(|(low, high)| (low, high))
     }
 
-    /// An `f64` near its low end.
+    /// Returns an `f64` near the low end.
     pub fn near(&self) -> f64 {
         self.ends().map_or(f64::NAN, |(low, _)| low.to_f64(false))
     }
@@ -59,7 +59,7 @@ impl Wide {
         Self::between(value.sub(radius), value.add(radius))
     }
 
-    /// In `-1..1`, as sines are.
+    /// Intersects the interval with [-1, 1], the range of sines.
     fn clipped(self) -> Self {
         let one = Dyadic::int(1);
         self.meet(&Self::between(one.neg(), one)).expect("a sine")
@@ -70,7 +70,7 @@ fn tiny() -> Dyadic {
     Dyadic::int(1).shifted(SLACK)
 }
 
-/// What stands for infinity at one end.
+/// Returns the number that stands for infinity as an end.
 fn huge() -> Dyadic {
     Dyadic::int(1).shifted(100_000)
 }
@@ -79,7 +79,7 @@ fn halved(value: &IBig, bits: i64) -> IBig {
     value.div_euclid(IBig::from(1) << bits as usize)
 }
 
-/// The inverse tangent or its hyperbolic form of 1 over a whole number.
+/// Returns the inverse tangent, or the inverse hyperbolic tangent, of 1 / `of` in units of 2^-[`FIXED`].
 fn series(of: i64, hyperbolic: bool) -> IBig {
     let mut power = (IBig::from(1) << FIXED as usize).div_euclid(IBig::from(of));
     let (mut sum, mut count) = (IBig::ZERO, 1_i64);
@@ -109,7 +109,7 @@ fn ln_two() -> &'static IBig {
     })
 }
 
-/// Sine and cosine of one number, which are right but for [`SLACK`] where it is below 2^24.
+/// Returns the sine and the cosine of a number of magnitude below 2^23, each with an error of less than 2^[`SLACK`].
 fn sin_cos(of: &Dyadic) -> (Dyadic, Dyadic) {
     assert!(of.size() < 24, "a sine of {}", of.to_f64(false));
     let whole = of.fixed(FIXED);
@@ -160,7 +160,7 @@ fn sin_cos(of: &Dyadic) -> (Dyadic, Dyadic) {
     (Dyadic::parts(sin, -FIXED), Dyadic::parts(cos, -FIXED))
 }
 
-/// The exponential of one number below 2^20, right but for a part of 2^-390.
+/// Returns bounds of the exponential of a number. Below 2^20 in magnitude, their relative width is about 2^-390.
 fn exp(of: &Dyadic) -> Wide {
     if of.size() > 20 && of.sign() == Ordering::Less {
         return Wide::between(Dyadic::zero(), Dyadic::int(1).shifted(-1_000_000));
@@ -190,9 +190,9 @@ fn exp(of: &Dyadic) -> Wide {
     Wide::around(Dyadic::parts(sum, -FIXED), &Dyadic::int(1).shifted(-390)).shifted(times)
 }
 
-/// The logarithm of one positive number.
+/// Returns bounds of the logarithm of a positive number.
 fn ln(of: &Dyadic) -> Wide {
-    // Of what is left of it without its power of two, from an `f64` by Newton's method.
+    // The logarithm of the number divided by its power of two, from an `f64` by Newton's method.
     let size = of.size();
     let rest = of.shifted(-size);
     let mut at = Dyadic::from(rest.to_f64(false).ln());

@@ -1,4 +1,4 @@
-//! Full disks, places that cannot be written to, and programs that are killed: no picture is ever lost or damaged.
+//! Full disks, places that cannot be written to, and programs that are killed: no image is ever lost or damaged.
 
 use crate::common::program::names_in;
 use crate::stop::{Running, bytes, render, rgba, tabray_path, workplace};
@@ -11,7 +11,8 @@ use std::thread;
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-/// Stops a render that may write no file larger than so many blocks of 512 bytes.
+/// Stops a render that may write no file of more than `blocks` blocks of 512 bytes. Returns its exit status and its
+/// standard error.
 fn with_little_room(folder: &TempDir, blocks: usize, picture: &str) -> (i32, String) {
     let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" \"$@\"");
     let output = Command::new("sh")
@@ -51,7 +52,7 @@ fn a_checkpoint_that_cannot_be_written_leaves_what_was_there() {
     assert_eq!(names_in(folder.path()), ["a.png", "a.png.checkpoint", "hall.ray"]);
 }
 
-/// Kills a render so many times at random moments, and looks at what there is then.
+/// Kills a render `times` times at random moments, and checks the folder each time.
 fn killed(times: usize, args: &[&str], sound: impl Fn(&TempDir)) {
     let mut random = Pcg32::new(9, 0);
     let folder = workplace();
@@ -73,8 +74,8 @@ fn killed(times: usize, args: &[&str], sound: impl Fn(&TempDir)) {
     assert!(0 < ended && ended < times, "some ended before they were killed, and some did not: {ended}");
 }
 
-/// What is in the folder but a scene, a picture and its checkpoint: for a moment the whole file has a hidden name, which
-/// stays where the render is killed right then.
+/// Returns the names in the folder other than those of the scene, the image and its checkpoint. A complete file has a
+/// hidden name for a moment, which stays if the render is killed right then.
 fn hidden(folder: &TempDir) -> Vec<String> {
     let mut names = names_in(folder.path());
     names.retain(|name| !["hall.ray", "a.png", "a.png.checkpoint"].contains(&name.as_str()));

@@ -1,4 +1,4 @@
-//! Limits and interruptions at any moment: while a scene is read, within a tile, within a pixel of a proof.
+//! Limits and interruptions at any moment: while a scene is read, within a tile, within the proof of a pixel.
 
 use crate::common::program::{folder, names_in, outcome, scene, tabray};
 use crate::stop::{Running, bytes, render, rgba, tabray_path, workplace};
@@ -8,11 +8,11 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-/// What is asked to end at once may take so long on a machine that is busy with other tests. What is not asked takes
-/// minutes, or never ends.
+/// The time within which a command must end that is told to end at once, on a machine that is busy with other tests.
+/// Commands that are not told to end take minutes here, or never end.
 const SOON: Duration = Duration::from_secs(8);
 
-/// Between mirrors one packet of rays takes long, and with its samples a tile takes hours.
+/// A scene between mirrors, where one packet of rays takes long, and a tile with all its samples takes hours.
 pub const MIRRORS: &str =
     "camera eye { pixeldim 64 48 samples 65536 worlddim 8e-9 6e-9 viewpoint 4e-9 3e-9 6e-9 }
     material m { ambient 1 1 1 specular 1 1 1 transparency 0.9 diffuse 1 1 1 }
@@ -41,7 +41,7 @@ fn a_time_limit_holds_within_a_tile() {
     assert_eq!(names_in(folder.path()), ["large.ray", "mirrors.ray"]);
 }
 
-/// The tiles around a ball are soon done; those that see it, lit by many lights, take far longer.
+/// The tiles around a sphere are soon finished; those that show it, lit by many lights, take far longer.
 #[test]
 fn a_time_limit_within_a_tile_keeps_those_that_are_done() {
     let mut text = String::from(
@@ -75,7 +75,7 @@ fn a_time_limit_holds_while_a_scene_is_read() {
     let folder = folder();
     let mut command = Command::new(tabray_path());
     command.args(["render", "-", "-o", "a.png", "--time-limit", "100ms"]).current_dir(folder.path());
-    // Nothing comes, and no end.
+    // Standard input neither delivers anything nor ends.
     command.stdin(Stdio::piped()).stderr(Stdio::piped());
     let start = Instant::now();
     let mut child = command.spawn().expect("the program runs");
@@ -93,7 +93,7 @@ fn a_time_limit_holds_while_a_scene_is_read() {
 fn a_time_limit_holds_for_pictures_beside() {
     let folder = workplace();
     let mut limit = 200;
-    // The errors of a picture take far longer than the picture.
+    // The image of errors takes far longer than the main image.
     let args = ["hall.ray", "-o", "a.png", "--aov", "error"];
     loop {
         let limited = format!("{limit}ms");
@@ -107,8 +107,8 @@ fn a_time_limit_holds_for_pictures_beside() {
     }
 }
 
-/// The signal of Ctrl-C; where a shell has started the tests in the background, and programs so ignore that, the signal
-/// that ends them.
+/// Returns the signal of Ctrl-C. If a shell has started the tests in the background, so that programs ignore that
+/// signal, returns the one that terminates them instead.
 fn interruption() -> Signal {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
@@ -139,19 +139,19 @@ fn an_interruption_ends_every_command_soon() {
         let mut child = command.spawn().expect("the program runs");
         let held = child.stdin.take();
         let running = Running(child);
-        // What reads from a pipe computes nothing.
+        // Commands that read from a pipe use no CPU time to wait for.
         std::thread::sleep(Duration::from_millis(500));
         let start = Instant::now();
         running.send(interruption());
         let (status, err) = running.end();
         assert!(start.elapsed() < SOON, "{args:?}: {:?}", start.elapsed());
-        // What ends by the signal itself has no status of its own.
+        // A program that the signal itself ends has no exit status of its own.
         assert!(matches!(status, 130 | -1), "{args:?}: {status} {err}");
         drop(held);
     }
 }
 
-/// Of a large picture of which little is done, the rest is not written; what is done is kept all the same.
+/// When little of a large image is finished, the rest is not written, but the finished part is kept.
 #[test]
 fn a_large_picture_ends_where_it_was_stopped_and_is_resumed() {
     let path = scene("sphere/in-front.ray");
@@ -175,7 +175,7 @@ fn a_large_picture_ends_where_it_was_stopped_and_is_resumed() {
         if name == "a.png" {
             assert!(rgba(&folder, name) == checkpoint);
         } else {
-            // Its rest is a hole in the file.
+            // The rest of the image is a hole in the file.
             assert_eq!(bytes(&folder, name).len(), "P6 6000 8000 255\n".len() + 3 * 6000 * 8000);
         }
         assert!(checkpoint.pixels().any(|pixel| pixel.0[3] == 255));

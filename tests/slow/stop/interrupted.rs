@@ -1,4 +1,4 @@
-//! Interruptions: the first and the second.
+//! The first and the second interruption of a render.
 
 use crate::common::program::names_in;
 use crate::stop::{Running, bytes, render, stop_midway, workplace};
@@ -23,7 +23,7 @@ fn each_reason_to_stop_is_told() {
     assert!(err.starts_with("interrupted; press Ctrl-C again to quit at once\nwrote "), "{err}");
 }
 
-/// One tile takes seconds.
+/// The arguments of a render of which one tile takes seconds.
 const SLOWEST: [&str; 5] = ["hall.ray", "--samples", "65536", "-o", "a.png"];
 
 #[test]
@@ -55,7 +55,7 @@ fn a_second_interruption_ends_at_once() {
 
 #[test]
 fn a_second_interruption_ends_the_writing_too() {
-    // Where nobody reads, it would go on for ever.
+    // As nobody reads its output, the program would wait forever.
     let folder = workplace();
     let mut running = Running::render(&folder, &["hall.ray", "--size", "3000", "-o", "-"]);
     running.until_it_renders();

@@ -1,4 +1,4 @@
-//! `--time-limit` and `--max-memory`, and what becomes of standard output.
+//! The options `--time-limit` and `--max-memory`, and what a render that stops writes to standard output.
 
 use crate::common::program::{folder, names_in, scene};
 use crate::stop::{bytes, render, workplace};
@@ -13,7 +13,7 @@ fn too_little_memory_is_refused_and_reached_memory_stops() {
     assert!(status == 2 && err.starts_with(said) && err.ends_with(" MiB\n"), "{err}");
     assert!(names_in(folder.path()).is_empty());
 
-    // Far more rays are reflected here than have room in that much more.
+    // The rays that are reflected here need far more than 16 MiB.
     let least: f64 = err[said.len()..].split(' ').next().expect("a number").parse().expect("a number");
     let limit = format!("{}MiB", least.ceil() + 16.0);
     let (status, _, err) = render(&folder, &[&args[..], &["--max-memory", &limit]].concat());

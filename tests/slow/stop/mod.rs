@@ -1,4 +1,4 @@
-//! Renders that stop before their picture is finished: what they leave, how they are gone on with, and that nothing is
+//! Renders that stop before the image is finished: what they leave behind, how they are resumed, and that no file is
 //! ever damaged.
 #![cfg(target_os = "linux")]
 
@@ -22,10 +22,10 @@ use std::thread;
 use std::time::Duration;
 use tempfile::TempDir;
 
-/// A scene whose picture takes some seconds.
+/// A scene whose image takes some seconds.
 const SLOW: &str = "gallery/hall-of-mirrors.ray";
 
-/// A program under way.
+/// A running program.
 struct Running(Child);
 
 impl Running {
@@ -35,12 +35,12 @@ impl Running {
         Self(command.spawn().expect("the program runs"))
     }
 
-    /// `tabray render` with these arguments.
+    /// Starts `tabray render` with these arguments.
     fn render(folder: &TempDir, args: &[&str]) -> Self {
         Self::start(&tabray_path(), folder, &[&["render"], args].concat())
     }
 
-    /// Waits until it catches interruptions, or has ended.
+    /// Waits until the program catches interruptions, or has ended.
     fn until_it_catches(&mut self) {
         let status = format!("/proc/{}/status", self.0.id());
         while self.0.try_wait().expect("its status").is_none() {
@@ -54,15 +54,15 @@ impl Running {
         }
     }
 
-    /// Waits until it has computed for a while: a tile is under way, or is done.
+    /// Waits until the program has used 200 ms of CPU time: it has begun a tile by then, or has finished one.
     fn until_it_renders(&mut self) {
         self.until_it_has_computed(Duration::from_millis(200));
     }
 
-    /// Waits until it has computed for so long, or has ended.
+    /// Waits until the program has used this much CPU time, or has ended.
     fn until_it_has_computed(&mut self, time: Duration) {
         let stat = format!("/proc/{}/stat", self.0.id());
-        // After the name, which stands in brackets, the twelfth number is CPU time in hundredths of a second.
+        // After the name, which is in parentheses, the twelfth field is the user CPU time in hundredths of a second.
         let ticks = || {
             let stat = fs::read_to_string(&stat).ok()?;
             stat.rsplit_once(") ")?.1.split(' ').nth(11)?.parse::<u32>().ok()
@@ -78,7 +78,7 @@ impl Running {
         kill(Pid::from_raw(self.0.id() as i32), signal).expect("it is not waited for yet");
     }
 
-    /// Its exit status, -1 where a signal ended it, and what it said.
+    /// Waits for the program to end. Returns its exit status, -1 if a signal ended it, and its standard error.
     fn end(self) -> (i32, String) {
         let output = self.0.wait_with_output().expect("it ends");
         (output.status.code().unwrap_or(-1), String::from_utf8_lossy(&output.stderr).into_owned())
@@ -89,7 +89,7 @@ fn tabray_path() -> PathBuf {
     assert_cmd::cargo::cargo_bin!("tabray").to_owned()
 }
 
-/// A working directory with a slow scene, `hall.ray`.
+/// Makes a working directory with a slow scene, `hall.ray`.
 fn workplace() -> TempDir {
     let folder = folder();
     fs::copy(scene(SLOW), folder.path().join("hall.ray")).expect("a copy");
@@ -100,7 +100,7 @@ fn render(folder: &TempDir, args: &[&str]) -> (i32, Vec<u8>, String) {
     outcome(tabray(folder).arg("render").args(args))
 }
 
-/// Renders with a time limit under which some of the picture is finished, but not all; what was said.
+/// Renders with a time limit within which part of the image is finished, but not all of it. Returns standard error.
 fn stop_midway(folder: &TempDir, args: &[&str]) -> String {
     let mut limit = 40;
     loop {

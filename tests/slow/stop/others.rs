@@ -1,4 +1,4 @@
-//! Commands other than `render` that are interrupted: each says what is there.
+//! Interruptions of commands other than `render`: each command says what it leaves behind.
 
 use crate::common::program::names_in;
 use crate::stop::{Running, tabray_path, workplace};
@@ -6,7 +6,7 @@ use nix::sys::signal::Signal;
 use std::fs;
 use std::time::Duration;
 
-/// Interrupts a command once it has computed for so long; what it said.
+/// Interrupts a command when it has used this much CPU time. Returns its exit status and its standard error.
 fn interrupted(args: &[&str], time: Duration) -> (i32, String) {
     let folder = workplace();
     fs::write(folder.path().join("edge.ray"), EDGE).expect("a file");
@@ -21,7 +21,7 @@ fn interrupted(args: &[&str], time: Duration) -> (i32, String) {
     ended
 }
 
-/// A small scene, of which charts are measured soon.
+/// A small scene, whose charts are measured quickly.
 const EDGE: &str = "camera eye { pixeldim 16 12 worlddim 8 6 viewpoint 4 3 6 }
     material white { ambient 8 8 8 }
     sphere ball { material white center 4.3 3.1 -1 radius 1.7 }
@@ -37,7 +37,7 @@ fn what_was_begun_and_is_not_there_is_told() {
     ] {
         let (status, err) = interrupted(args, Duration::ZERO);
         assert_eq!(status, 130, "{args:?}: {err}");
-        // The debug lines come before.
+        // The debug lines come first.
         assert!(err.ends_with(&format!("interrupted: {said}\n")), "{args:?}: {err}");
     }
 }
@@ -49,7 +49,7 @@ fn pictures_beside_that_are_not_finished_are_told() {
     loop {
         let (status, err) = interrupted(&args, time);
         assert_eq!(status, 130, "{err}");
-        // By then the main picture may not be whole.
+        // The main image may not be finished by then.
         if err.starts_with("wrote a.png ") {
             assert!(err.ends_with(" s)\ninterrupted: the image was not finished\n"), "{err}");
             return;

@@ -1,4 +1,4 @@
-//! Checkpoints that `--resume` does not go on from, and what it says of them.
+//! Checkpoints that `--resume` refuses, and what it says about them.
 
 use crate::common::program::{folder, names_in, scene};
 use crate::stop::{Running, bytes, render, rgb, stop_midway, tabray_path, workplace};
@@ -9,7 +9,7 @@ use std::path::Path;
 
 const HELP: &str = " |\n = help: leave out `--resume` to start from the beginning\n";
 
-/// A scene with a texture, slow to render.
+/// A scene with a texture, which is slow to render.
 const TEXTURED: &str = "camera eye { pixeldim 640 480  worlddim 8 6  viewpoint 4 3 6 }
 material white { ambient 2 2 2 }
 texture bricks { filename bricks.png }
@@ -58,7 +58,7 @@ fn what_differs_is_named() {
     refused(&args, "the file of mesh `lid` has changed");
     fs::write(at("lid.obj"), LID).expect("a file");
 
-    // The end of the file is no part of what the system loads.
+    // A byte after the end of the program changes its file, but not what the system loads.
     let mut program = fs::read(tabray_path()).expect("the program's file");
     program.push(0);
     let other = at("other");

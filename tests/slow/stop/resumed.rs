@@ -1,4 +1,4 @@
-//! What a render that stops leaves, and a render that goes on from it.
+//! What a render that stops leaves behind, and renders that resume from it.
 
 use crate::common::program::{folder, names_in, scene};
 use crate::common::root;
@@ -18,7 +18,7 @@ fn a_checkpoint_that_cannot_be_removed_is_told_and_the_picture_is_whole() {
     stop_midway(&folder, &args);
     let mut running = Running::render(&folder, &[&args[..], &["--resume"]].concat());
     running.until_it_renders();
-    // Something else is in its place by the time it is to go.
+    // By the time the checkpoint is to be removed, a folder is in its place.
     let path = folder.path().join("a.png.checkpoint");
     fs::remove_file(&path).and_then(|()| fs::create_dir(&path)).expect("a folder");
     let said = "error: cannot remove `a.png.checkpoint`: is a directory; the image is finished, so remove the file by hand\n";
@@ -27,8 +27,8 @@ fn a_checkpoint_that_cannot_be_removed_is_told_and_the_picture_is_whole() {
     assert!(bytes(&folder, "a.png") == bytes(&folder, "whole.png"));
 }
 
-/// Interrupts a render at ten random moments and goes on each time, with any number of threads; the picture is that of
-/// a render that was left alone.
+/// Interrupts a render at ten random moments and resumes it each time, with one to four threads. The image is the same
+/// as that of a render without interruptions.
 fn interrupted_ten_times(seed: u64, name: &str, scene: &str, options: &[&str], last: &[&str]) {
     let folder = folder();
     let scene = root().join("scenes").join(scene);
@@ -37,7 +37,7 @@ fn interrupted_ten_times(seed: u64, name: &str, scene: &str, options: &[&str], l
     let start = Instant::now();
     let (status, _, err) = render(&folder, &[&args[..], &["-o", &whole]].concat());
     assert_eq!(status, 0, "{err}");
-    // It has ten times to be interrupted in, and is not to be finished before.
+    // Each part lasts less than a twelfth of the whole render, so that ten interruptions come before its end.
     let longest = start.elapsed().as_micros() as u32 / 12;
 
     let mut random = Pcg32::new(seed, 0);
@@ -76,7 +76,7 @@ fn a_part_interrupted_at_random_and_resumed_is_the_same() {
     interrupted_ten_times(3, "a.png", SLOW, &["--crop", "101,53,203,307", "--samples", "9"], &[]);
 }
 
-/// Its bands have 40 rows, and with little memory 8.
+/// The image's bands have 40 rows, or 8 where memory is limited.
 #[test]
 fn a_picture_of_many_bands_interrupted_at_random_and_resumed_is_the_same() {
     let size = ["--size", "100000x90"];
@@ -97,7 +97,7 @@ fn what_is_done_is_in_the_picture_and_the_rest_is_transparent() {
     let mut done = 0;
     for (x, y, pixel) in partial.enumerate_pixels() {
         let [red, green, blue, alpha] = pixel.0;
-        // A tile is rendered as a whole.
+        // A tile is finished as a whole or not at all.
         assert_eq!(alpha, partial.get_pixel(x / 8 * 8, y / 8 * 8)[3]);
         let expected = if alpha == 0 { [0; 3] } else { whole.get_pixel(x, y).0 };
         assert_eq!([red, green, blue], expected, "at {x} {y}");
@@ -152,7 +152,7 @@ fn a_resumed_render_without_a_checkpoint_begins_anew_and_says_so() {
     assert_eq!(names_in(folder.path()), ["a.png", "hall.ray"]);
 }
 
-/// Hours may be in it, and a look at a smaller picture must not cost them.
+/// A checkpoint may hold hours of work, which a look at a smaller image must not discard.
 #[test]
 fn a_checkpoint_stays_where_it_is_not_asked_for() {
     let folder = workplace();

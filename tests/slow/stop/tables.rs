@@ -11,7 +11,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-/// A scene of so many small spheres.
+/// Returns the text of a scene of `count` small spheres.
 fn spheres(count: usize) -> String {
     let mut text = String::from(
         "camera c { pixeldim 1600 1200 samples 256 worlddim 8 6 viewpoint 4 3 6 }
@@ -30,8 +30,8 @@ fn spheres(count: usize) -> String {
     text
 }
 
-/// How long a command takes, from the interruption on if it is interrupted after so long; the most memory that it was
-/// seen to have, in MiB; and what it said last.
+/// Runs a command, and interrupts it after a time if one is given. Returns how long it took, from the interruption on
+/// if there was one; the most memory that it was seen to use, in MiB; and the last line of its standard error.
 fn measured(folder: &TempDir, args: &[&str], interrupt: Option<Duration>) -> (Duration, u64, String) {
     let mut command = Command::new(tabray_path());
     command.args(args).current_dir(folder.path());
@@ -98,7 +98,7 @@ fn limits_table() {
     }
 }
 
-/// What became of `a.png`, which was there before, and what else is there.
+/// Describes what has become of `a.png`, which was there before, and which other files there are.
 fn left(folder: &TempDir, whole: &[u8]) -> String {
     let picture = bytes(folder, "a.png");
     let picture = match picture.as_slice() {
@@ -120,7 +120,7 @@ fn faults_table() {
     assert_eq!(render(&whole, &ARGS.split(' ').skip(1).collect::<Vec<_>>()).0, 0);
     let whole = bytes(&whole, "a.png");
     println!("| fault | status | left | last line |\n|---|---|---|---|");
-    // Each line is a shell's, in which `$0` is the program.
+    // Each script is run by a shell in which `$0` is the program.
     for (fault, script) in [
         ("a full disk (a file of at most 512 bytes)", format!("ulimit -f 1; exec \"$0\" {ARGS}")),
         ("a full disk while it stops", format!("ulimit -f 20; exec \"$0\" {ARGS} --time-limit 300ms")),

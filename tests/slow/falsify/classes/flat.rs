@@ -7,7 +7,7 @@ fn plane(normal: Point, point: Point) -> String {
     format!("plane normal {} point {}", numbers(normal), numbers(point))
 }
 
-/// A normal of any length.
+/// Returns a random normal, which need not have unit length.
 fn normal(random: &mut Random) -> Point {
     if random.once_in(4) {
         return random.axis();
@@ -16,11 +16,11 @@ fn normal(random: &mut Random) -> Point {
     random.direction().map(|part| part * length)
 }
 
-/// A few planes, seen through pixels here and there; some end near the screen, where planes are no more.
+/// Returns a scene of three planes seen through random pixels, or of one plane hit near z = 0.01, where planes end.
 pub fn planes(random: &mut Random) -> Question {
     let mut aim = if random.once_in(3) { Aim::new(random, 9.0) } else { Aim::plain(random, 9.0) };
     if random.once_in(4) {
-        // Near z = 0.01.
+        // The plane is hit near z = 0.01.
         let by = (0.01 * (1.0 + random.offset()) - aim.target[2]) / aim.u[2];
         aim.target = moved(aim.target, by, aim.u);
         let object = plane(normal(random), aim.target);
@@ -32,7 +32,8 @@ pub fn planes(random: &mut Random) -> Question {
     if random.once_in(4) { aim.picture(&objects) } else { aim.many(random, &objects) }
 }
 
-/// A plane along which the ray runs but for an offset, and which it meets near, far or never.
+/// Returns a scene of a plane that is parallel to the ray up to a small offset, so that it is hit near, far away or not
+/// at all.
 pub fn parallel(random: &mut Random) -> Question {
     let aim = Aim::new(random, 6.0);
     let side = turned(aim.u, aim.angle(random));
@@ -62,7 +63,7 @@ fn rectangle(n: Point, xdir: Point, corner: Point, size: [f64; 2]) -> String {
     )
 }
 
-/// Rectangles whose edge or corner the ray passes but for an offset.
+/// Returns a scene of a rectangle, often with an edge or a corner that the ray meets up to a small offset.
 pub fn rectangles(random: &mut Random) -> Question {
     let aim = if random.once_in(2) { Aim::new(random, 9.0) } else { Aim::plain(random, 9.0) };
     let n = normal(random);
@@ -77,7 +78,7 @@ pub fn rectangles(random: &mut Random) -> Question {
     };
     let (u, v) = (part(random, size[0]), part(random, size[1]));
     let corner = moved(moved(aim.target, -u, one), -v, other);
-    // Its direction need not lie in it.
+    // `xdir` need not lie in the rectangle's plane.
     let lean = random.between(-1.0, 1.0) / dot(n, n).sqrt();
     let xdir = if random.once_in(2) { one } else { moved(one, lean, n) };
     let mut objects = vec![rectangle(n, xdir, corner, size)];
@@ -91,7 +92,7 @@ fn triangle([a, b, c]: [Point; 3]) -> String {
     format!("triangle vertex1 {} vertex2 {} vertex3 {}", numbers(a), numbers(b), numbers(c))
 }
 
-/// Two triangles with an edge in common, which the ray passes near.
+/// Returns a scene of two triangles with a common edge, close to which the ray passes.
 pub fn triangles(random: &mut Random) -> Question {
     let aim = if random.once_in(2) { Aim::new(random, 9.0) } else { Aim::plain(random, 9.0) };
     let size = if random.once_in(2) { random.between(0.5, 4.0) } else { aim.far * random.power(-5.0, -0.5) };
@@ -117,7 +118,7 @@ pub fn triangles(random: &mut Random) -> Question {
     }
 }
 
-/// A thin triangle just in front of or behind another one, seen near its edges.
+/// Returns a scene of a thin triangle just in front of or behind another triangle, often seen near an edge.
 pub fn slivers(random: &mut Random) -> Question {
     let aim = Aim::plain(random, 3.0);
     let [length, width] = [random.power(0.0, 3.0), random.power(-8.0, -1.0)];
@@ -128,7 +129,7 @@ pub fn slivers(random: &mut Random) -> Question {
         0 => random.offset(),
         _ => random.between(0.0, 1.0),
     };
-    // The tip is at one end; at `part` of the length it is so wide.
+    // The tip is at one end; at `part` of the length the triangle is `part * width` wide.
     let tip = moved(moved(aim.target, -part * length, along), -across * part * width, side);
     let end = moved(tip, length, along);
     let sliver = [tip, end, moved(end, width, side)];
@@ -151,7 +152,7 @@ pub fn slivers(random: &mut Random) -> Question {
     aim.question(&objects)
 }
 
-/// Surfaces in one plane, whose numbers are whole: the first in the scene is seen.
+/// Returns a scene of surfaces in one plane, whose coordinates are integers: the first one in the scene must be seen.
 pub fn rugs(random: &mut Random) -> Question {
     let aim = Aim::plain(random, 3.0);
     let n = loop {
@@ -161,7 +162,7 @@ pub fn rugs(random: &mut Random) -> Question {
         }
     };
     let point = [random.whole(0, 8), random.whole(0, 6), random.whole(-9, -1)];
-    // Whole vectors in the plane.
+    // These are vectors of integers in the plane.
     let mut along = [n[1], -n[0], 0.0];
     if along == [0.0; 3] {
         along = [1.0, 0.0, 0.0];

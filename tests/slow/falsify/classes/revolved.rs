@@ -7,7 +7,7 @@ use crate::falsify::ray::Ray;
 use crate::falsify::scenes::{Aim, Question, numbers};
 use crate::falsify::text::Scene;
 
-/// A profile, its formula in Rust, and a height that suits it.
+/// A profile's attribute, the same profile as a Rust function, and a suitable height in world units.
 type Profile = (String, Box<dyn Fn(f64) -> f64>, f64);
 
 fn surfer(random: &mut Random) -> Profile {
@@ -72,7 +72,7 @@ fn revolved(text: &str, axis: Point, base: Point, height: f64) -> String {
     format!("revsurf {text} direction {} base {} height {height:?}", numbers(axis), numbers(base))
 }
 
-/// Whatever is near the target, seen through pixels here and there.
+/// Returns a scene of a surface of revolution near the target, seen through random pixels or in a whole image.
 fn seen(random: &mut Random, profile: Profile, far: f64) -> Question {
     let aim = if random.once_in(3) { Aim::new(random, far) } else { Aim::plain(random, far) };
     let (text, _, height) = profile;
@@ -83,19 +83,19 @@ fn seen(random: &mut Random, profile: Profile, far: f64) -> Question {
     if random.once_in(8) { aim.picture(&objects) } else { aim.many(random, &objects) }
 }
 
-/// The notes' surfaces.
+/// Returns a scene of one of the notes' surfaces.
 pub fn surfers(random: &mut Random) -> Question {
     let profile = surfer(random);
     seen(random, profile, 9.0)
 }
 
-/// Formulas: thin discs, waves, kinks, ends on the axis.
+/// Returns a scene of a surface whose profile is a formula: thin discs, waves, kinks, ends on the axis.
 pub fn formulas(random: &mut Random) -> Question {
     let profile = formula(random);
     seen(random, profile, 6.0)
 }
 
-/// Touched by the ray but for an offset, or met at its rim.
+/// Returns a scene of a surface that the ray is tangent to up to a small offset, or that it meets at the rim.
 pub fn tangents(random: &mut Random) -> Question {
     let aim = Aim::new(random, 8.0);
     let (text, profile, height) = if random.once_in(2) { surfer(random) } else { formula(random) };
@@ -110,10 +110,10 @@ pub fn tangents(random: &mut Random) -> Question {
     let radius = profile(y.clamp(0.0, height));
     let slope = (profile((y + 1e-6).min(height)) - profile((y - 1e-6).max(0.0))) / 2e-6;
     let by = if at_rim { 1.0 } else { 1.0 + random.offset() };
-    // An axis so that the surface's normal at this height is across the ray.
+    // The axis is such that the surface's normal at this height is perpendicular to the ray.
     let normal = if at_rim { random.direction() } else { turned(aim.u, aim.angle(random)) };
     let beside = unit(cross(normal, random.direction()));
-    // normal = (out - slope * axis) / root(1 + slope^2), in the plane of `normal` and `beside`.
+    // normal = (out - slope * axis) / sqrt(1 + slope^2), in the plane of `normal` and `beside`.
     let root = (1.0 + slope * slope).sqrt();
     let out = moved(normal.map(|part| part / root), slope / root, beside);
     let axis = moved(beside.map(|part| part / root), -slope / root, normal);
@@ -126,7 +126,7 @@ pub fn tangents(random: &mut Random) -> Question {
     aim.question(&[revolved(&text, axis, base, height)])
 }
 
-/// Rings, many of them touched but for an offset.
+/// Returns a scene of a torus. In half of the scenes the ray is tangent to it up to a small offset.
 pub fn tori(random: &mut Random) -> Question {
     let is_aimed = random.once_in(2);
     let aim = if is_aimed || random.once_in(3) { Aim::new(random, 8.0) } else { Aim::plain(random, 8.0) };
@@ -134,7 +134,7 @@ pub fn tori(random: &mut Random) -> Question {
     let axis = random.axis();
     let up = unit(axis);
     let center = if is_aimed {
-        // normal = out * cos + up * sin, across the ray.
+        // normal = out * cos + up * sin, perpendicular to the ray.
         let normal = turned(aim.u, aim.angle(random));
         let height = dot(normal, up);
         let out = unit(moved(normal, -height, up));
@@ -159,13 +159,13 @@ pub fn tori(random: &mut Random) -> Question {
     }
 }
 
-/// Hearts, near and far.
+/// Returns a scene of a heart, near or far away.
 pub fn hearts(random: &mut Random) -> Question {
     let aim = if random.once_in(3) { Aim::new(random, 8.0) } else { Aim::plain(random, 8.0) };
     let size = random.power(-0.5, 1.0);
     let object = |center: Point| format!("heart center {} size {size:?}", numbers(center));
     if random.once_in(4) {
-        // Near its cleft, its tip and its sides.
+        // The ray passes close to the heart's cleft, its tip or one of its sides.
         let near = [[0.0, 1.0, 0.0], [0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 2.0 / 3.0]];
         let near = near[random.below(4) as usize];
         let near = moved(near, random.offset(), random.direction());
@@ -176,7 +176,7 @@ pub fn hearts(random: &mut Random) -> Question {
     if random.once_in(16) { aim.picture(&[object(center)]) } else { aim.many(random, &[object(center)]) }
 }
 
-/// Any of these shapes, moved until it is between hit and missed but for an offset.
+/// Returns a scene of one of these shapes, moved by bisection until the ray barely hits or barely misses it.
 pub fn silhouettes(random: &mut Random) -> Question {
     let aim = match random.below(3) {
         0 => Aim::new(random, 1.0),

@@ -7,7 +7,7 @@ fn sphere(aim: &Aim, center: Point, radius: f64) -> String {
     format!("sphere center {} radius {}", aim.lengths(center), aim.length(radius))
 }
 
-/// A size that suits the distance of what has it.
+/// Returns a random radius in world units, sometimes in proportion to the target's distance.
 fn size(random: &mut Random, aim: &Aim) -> f64 {
     match random.below(3) {
         0 => random.between(0.5, 3.0),
@@ -16,7 +16,7 @@ fn size(random: &mut Random, aim: &Aim) -> f64 {
     }
 }
 
-/// A few of them, seen through pixels here and there.
+/// Returns a scene of three spheres, seen through random pixels or in a whole image.
 pub fn spheres(random: &mut Random) -> Question {
     let aim = if random.once_in(3) { Aim::new(random, 9.0) } else { Aim::plain(random, 9.0) };
     let objects: Vec<_> = (0..3)
@@ -29,7 +29,8 @@ pub fn spheres(random: &mut Random) -> Question {
     if random.once_in(4) { aim.picture(&objects) } else { aim.many(random, &objects) }
 }
 
-/// Balls that the ray touches but for an offset, another one behind.
+/// Returns a scene of a sphere that the ray is tangent to up to a small offset, sometimes with another sphere behind
+/// it.
 pub fn sphere_tangents(random: &mut Random) -> Question {
     let aim = Aim::new(random, 9.0);
     let radius = size(random, &aim);
@@ -43,7 +44,7 @@ pub fn sphere_tangents(random: &mut Random) -> Question {
     aim.question(&objects)
 }
 
-/// Balls around the viewer.
+/// Returns a scene of a sphere around the viewer, as one of three shapes.
 pub fn inside(random: &mut Random) -> Question {
     let aim = Aim::new(random, 4.0);
     let radius = random.power(-1.0, 5.0);
@@ -63,7 +64,7 @@ pub fn inside(random: &mut Random) -> Question {
     aim.many(random, &[object])
 }
 
-/// Scenes of every size that squares of f64 numbers have room for.
+/// Returns a scene of any size for which squares of lengths stay within the range of f64.
 pub fn scales(random: &mut Random) -> Question {
     let far = if random.once_in(2) { 1.0 } else { 12.0 };
     let mut aim = Aim::new(random, far);
@@ -100,13 +101,13 @@ fn ellipsoid(aim: &Aim, center: Point, radius: f64, scale: Point) -> String {
     format!("ellipsoid center {} radius {} scale {}", aim.lengths(center), aim.length(radius), numbers(scale))
 }
 
-/// Seen through pixels here and there.
+/// Returns a scene of two ellipsoids, seen through random pixels or in a whole image.
 pub fn ellipsoids(random: &mut Random) -> Question {
     let aim = if random.once_in(3) { Aim::new(random, 9.0) } else { Aim::plain(random, 9.0) };
     let objects: Vec<_> = (0..2)
         .map(|_| {
             let (scale, radius) = (stretch(random), random.between(0.5, 2.5));
-            // The target is somewhere in it.
+            // The target is somewhere inside the ellipsoid.
             let inside = moved([0.0; 3], random.between(0.0, 1.0), random.direction());
             let center = [0, 1, 2].map(|axis| aim.target[axis] + radius * scale[axis] * inside[axis]);
             ellipsoid(&aim, center, radius, scale)
@@ -115,7 +116,7 @@ pub fn ellipsoids(random: &mut Random) -> Question {
     if random.once_in(4) { aim.picture(&objects) } else { aim.many(random, &objects) }
 }
 
-/// Touched by the ray but for an offset.
+/// Returns a scene of an ellipsoid that the ray is tangent to up to a small offset.
 pub fn ellipsoid_tangents(random: &mut Random) -> Question {
     let aim = Aim::new(random, 9.0);
     let (scale, radius) = (stretch(random), size(random, &aim));
@@ -157,7 +158,7 @@ fn gradient(k: &[f64; 10], [x, y, z]: Point) -> Point {
     ]
 }
 
-/// Coefficients of many kinds of quadric.
+/// Returns the coefficients of a random quadric, of one of many kinds.
 fn coefficients(random: &mut Random) -> [f64; 10] {
     let mut k = [0.0; 10];
     match random.below(4) {
@@ -176,7 +177,7 @@ fn coefficients(random: &mut Random) -> [f64; 10] {
     k
 }
 
-/// All kinds, through a point near the target, seen through pixels here and there.
+/// Returns a scene of two random quadrics with a point near the target, seen through random pixels or in a whole image.
 pub fn quadrics(random: &mut Random) -> Question {
     let aim = if random.once_in(3) { Aim::new(random, 6.0) } else { Aim::plain(random, 6.0) };
     let objects: Vec<_> = (0..2)
@@ -192,12 +193,12 @@ pub fn quadrics(random: &mut Random) -> Question {
     if random.once_in(4) { aim.picture(&objects) } else { aim.many(random, &objects) }
 }
 
-/// Touched by the ray but for an offset.
+/// Returns a scene of a quadric that the ray is tangent to up to a small offset.
 pub fn quadric_tangents(random: &mut Random) -> Question {
     let aim = Aim::new(random, 6.0);
     let mut k = coefficients(random);
     let from = moved([0.0; 3], random.between(0.1, 2.0), random.direction());
-    // The linear terms turn the gradient across the ray.
+    // The linear terms make the gradient perpendicular to the ray.
     let along = dot(gradient(&k, from), aim.u);
     for axis in 0..3 {
         k[6 + axis] -= along * aim.u[axis];
@@ -210,7 +211,7 @@ pub fn quadric_tangents(random: &mut Random) -> Question {
     aim.question(&[quadric(k, center, [-20.0; 3], [20.0; 3])])
 }
 
-/// Balls that linear terms move from their center to 10^4 away.
+/// Returns a scene of a sphere that the linear terms move 10 to 10^4.5 world units away from its `center`.
 pub fn quadric_moved(random: &mut Random) -> Question {
     let aim = Aim::new(random, 5.0);
     let away = moved([0.0; 3], random.power(1.0, 4.5), random.direction());
@@ -226,12 +227,12 @@ pub fn quadric_moved(random: &mut Random) -> Question {
     aim.question(&[quadric(k, center, away.map(|part| part - reach), away.map(|part| part + reach))])
 }
 
-/// Balls in boxes that touch them, and cylinders whose box cuts just where the ray is.
+/// Returns a scene of a sphere in a box that touches it, or of a cylinder whose box cuts it where the ray meets it.
 pub fn quadric_boxes(random: &mut Random) -> Question {
     let aim = if random.once_in(2) { Aim::plain(random, 3.0) } else { Aim::new(random, 5.0) };
     let radius = (random.between(0.1, 3.0) * 100.0).round() / 100.0;
     if random.once_in(2) {
-        // The ray meets it near a pole, where it touches the box.
+        // The ray meets the sphere near a pole, where the sphere touches the box.
         let mut pole = [0.0; 3];
         pole[random.below(3) as usize] = random.sign();
         if dot(pole, aim.u) > 0.0 {
@@ -252,7 +253,7 @@ pub fn quadric_boxes(random: &mut Random) -> Question {
     aim.question(&[quadric(k, center, [-radius, from[1] - 2.0, -radius], high)])
 }
 
-/// Double planes, and pairs of planes that are near to each other.
+/// Returns a scene of a double plane, or of a pair of planes close to each other.
 pub fn quadric_pairs(random: &mut Random) -> Question {
     let aim = Aim::new(random, 4.0);
     let n = if random.once_in(2) { [0; 3].map(|_| random.whole(-3, 3)) } else { random.direction() };
@@ -276,7 +277,7 @@ pub fn quadric_pairs(random: &mut Random) -> Question {
     if random.once_in(2) { aim.question(&[object]) } else { aim.many(random, &[object]) }
 }
 
-/// Cones seen near their apexes, and equations of tiny numbers.
+/// Returns a scene of a cone seen near its apex, or of an equation with tiny or huge coefficients.
 pub fn quadric_cones(random: &mut Random) -> Question {
     let aim = Aim::new(random, 5.0);
     let many = match random.below(3) {
@@ -298,7 +299,7 @@ pub fn quadric_cones(random: &mut Random) -> Question {
     if random.once_in(2) { aim.question(&[object]) } else { aim.many(random, &[object]) }
 }
 
-/// Shapes that meet where the ray does, but for an offset.
+/// Returns a scene of shapes that meet the ray at the same point, up to a small offset.
 pub fn meeting(random: &mut Random) -> Question {
     let aim = Aim::new(random, 6.0);
     let mut objects: Vec<String> = (0..2)

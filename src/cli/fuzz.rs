@@ -1,0 +1,216 @@
+//! Entries for fuzzing (`tests/fuzz/`): what the program reads from its files and from its clients, handed in as bytes.
+
+use super::resume::{self, Begun};
+use super::review::decide::Review;
+use super::serve::Work;
+use super::serve::access::Access;
+use super::serve::connections::{Answer, Connections, Limits};
+use super::size::Part;
+use super::watch::answer::{self, JOBS};
+use super::watch::board::Board;
+use super::watch::frame::Frame;
+use crate::output::checkpoint::{self, Identity};
+use crate::output::picture::Format;
+use crate::render::tiles::{Band, TILE, Tiles};
+use crate::scene::model::Model;
+use crate::scene::reader::Loaded;
+use crate::scene::registry::Registry;
+use hyper::Request;
+use hyper::body::Bytes;
+use std::cell::Cell;
+use std::fs::File;
+use std::io::{self, Seek};
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::pin::Pin;
+use std::rc::Rc;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::task::{Context, Poll};
+use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
+use tokio::runtime::{Builder, Runtime};
+
+/// An image that is rendered in parts, with a checkpoint in between.
+pub struct Image {
+    identity: Identity,
+    part: Part,
+}
+
+impl Image {
+    /// Begins the image of a model.
+    pub fn new(model: &Model) -> Option<Self> {
+        let part = Part::whole(&model.camera.value);
+        let identity = resume::identity(model, &part).ok()?;
+        Some(Self { identity, part })
+    }
+
+    /// Makes the checkpoint of an image with these pixels, of which only these tiles are rendered; both in rows from the
+    /// top, each from the left.
+    ///
+    /// # Errors
+    /// Those of a temporary file.
+    pub fn checkpoint(&self, pixels: &[[u8; 3]], tiles: &[bool]) -> io::Result<Vec<u8>> {
+        let (band, size) = (self.blank(), self.part.size());
+        for (index, (pixels, tiles)) in
+            pixels.chunks(TILE * size[0]).zip(tiles.chunks(size[0].div_ceil(TILE))).enumerate()
+        {
+            let mut strip = band.strip(index);
+            strip.pixels.copy_from_slice(pixels);
+            strip.tiles.copy_from_slice(tiles);
+        }
+        let mut is_rendered = Tiles::none(size);
+        is_rendered.add(&band);
+        let mut file = tempfile::tempfile()?;
+        Format::Ppm.write(&mut file, size, band.bytes(usize::MAX).into_iter().map(Ok))?;
+        file.rewind()?;
+        let mut bytes = Vec::new();
+        checkpoint::write(&mut bytes, size, &self.identity, &is_rendered, Format::Ppm.read(file)?)?;
+        Ok(bytes)
+    }
+
+    /// Continues from a checkpoint: returns all pixels, and which tiles need not be rendered any more. Nothing where the
+    /// checkpoint is refused.
+    pub fn resume(&self, file: File) -> Option<(Vec<[u8; 3]>, Vec<bool>)> {
+        let mut begun = Begun::read(PathBuf::new(), Ok(file)).ok()?;
+        begun.belongs_to(&self.identity, self.part.size()).ok()?;
+        let band = self.blank();
+        begun.fill(&band).ok()?;
+        let (mut pixels, mut tiles) = (Vec::new(), Vec::new());
+        for index in 0..band.strips.len() {
+            let strip = band.strip(index);
+            pixels.extend_from_slice(&strip.pixels);
+            tiles.extend_from_slice(&strip.tiles);
+        }
+        Some((pixels, tiles))
+    }
+
+    fn blank(&self) -> Band {
+        Band::blank(self.part.columns.clone(), self.part.rows.clone())
+    }
+}
+
+/// The port that addresses name; nothing listens there.
+const PORT: u16 = 3000;
+
+/// The server of a page, without a socket.
+pub struct Server {
+    /// The address of the page, with the token.
+    pub url: String,
+    respond: Respond,
+}
+
+type Respond = Box<dyn Fn(&[u8]) -> Served>;
+
+/// What came of a connection.
+pub struct Served {
+    /// What was sent to the client.
+    pub sent: Vec<u8>,
+    /// Whether a request was let in and has been answered.
+    pub is_let_in: bool,
+}
+
+impl Server {
+    /// Makes the server of `tabray watch`, for this scene.
+    ///
+    /// # Errors
+    /// Those of the system.
+    pub fn watch(loaded: Loaded) -> io::Result<Self> {
+        let frame = Arc::new(Frame {
+            version: 1,
+            name: "scene.ray".to_owned(),
+            text: String::new(),
+            warnings: String::new(),
+            model: loaded.model,
+            places: loaded.places,
+            stale: AtomicBool::new(false),
+        });
+        let work = Work::new(JOBS);
+        Self::new(async move |request: Request<Bytes>| {
+            // Events end with their board.
+            let board = Board::new();
+            board.show(&frame);
+            ControlFlow::Continue(answer::answer(&request, &board, &work).await)
+        })
+    }
+
+    /// Makes the server of `tabray review --serve`, for the snapshots of this folder.
+    ///
+    /// # Errors
+    /// Those of the system.
+    pub fn review(registry: &'static Registry, folder: &Path) -> io::Result<Self> {
+        let review = Review::new(registry, folder.to_owned(), None);
+        Self::new(async move |request: Request<Bytes>| review.answer(&request).await)
+    }
+
+    fn new<A: AsyncFn(Request<Bytes>) -> Answer + 'static>(answer: A) -> io::Result<Self> {
+        let access = Access::new(PORT).map_err(io::Error::other)?;
+        let url = access.url();
+        let is_let_in = Rc::new(Cell::new(false));
+        let answered = is_let_in.clone();
+        let connections = Rc::new(Connections::new(access, Limits::USUAL, async move |request| {
+            answered.set(true);
+            answer(request).await
+        }));
+        let runtime: Runtime = Builder::new_current_thread().enable_all().build()?;
+        let respond = move |bytes: &[u8]| {
+            is_let_in.set(false);
+            let mut sent = Vec::new();
+            let client = Client { unread: bytes, patience: 8, is_let_in: &is_let_in, sent: &mut sent };
+            runtime.block_on(connections.clone().serve(client, 0));
+            Served { sent, is_let_in: is_let_in.get() }
+        };
+        Ok(Self { url, respond: Box::new(respond) })
+    }
+
+    /// Serves a connection on which a client sends these bytes.
+    pub fn serve(&self, bytes: &[u8]) -> Served {
+        (self.respond)(bytes)
+    }
+}
+
+/// A client that sends bytes, waits for the answer if they are a request that is let in, and closes the connection.
+struct Client<'c> {
+    unread: &'c [u8],
+    /// How often the server may ask for more before the connection is closed: it asks before it looks at what it has.
+    patience: u32,
+    is_let_in: &'c Cell<bool>,
+    sent: &'c mut Vec<u8>,
+}
+
+impl AsyncRead for Client<'_> {
+    fn poll_read(
+        mut self: Pin<&mut Self>,
+        context: &mut Context<'_>,
+        buffer: &mut ReadBuf<'_>,
+    ) -> Poll<io::Result<()>> {
+        if self.unread.is_empty() {
+            if self.is_let_in.get() {
+                return Poll::Pending;
+            }
+            if self.patience > 0 {
+                self.patience -= 1;
+                context.waker().wake_by_ref();
+                return Poll::Pending;
+            }
+        }
+        let (now, later) = self.unread.split_at(buffer.remaining().min(self.unread.len()));
+        buffer.put_slice(now);
+        self.unread = later;
+        Poll::Ready(Ok(()))
+    }
+}
+
+impl AsyncWrite for Client<'_> {
+    fn poll_write(mut self: Pin<&mut Self>, _: &mut Context<'_>, bytes: &[u8]) -> Poll<io::Result<usize>> {
+        self.sent.extend_from_slice(bytes);
+        Poll::Ready(Ok(bytes.len()))
+    }
+
+    fn poll_flush(self: Pin<&mut Self>, _: &mut Context<'_>) -> Poll<io::Result<()>> {
+        Poll::Ready(Ok(()))
+    }
+
+    fn poll_shutdown(self: Pin<&mut Self>, _: &mut Context<'_>) -> Poll<io::Result<()>> {
+        Poll::Ready(Ok(()))
+    }
+}
