@@ -118,7 +118,7 @@ fn a_probe_names_the_face() {
         mesh wall { material m file wall.obj }";
     let model = model_in(folder.path(), text);
     let shape = &model.objects[0].shape;
-    for (x, y, face) in [(7.0, 1.0, "face 1"), (1.0, 5.0, "face 2"), (4.0, 3.0, "face 1")] {
+    for (x, y, face) in [(6.0, 2.0, "face 1"), (2.0, 4.0, "face 2"), (4.0, 3.0, "face 1")] {
         let ray = model.camera.value.ray(x, y);
         let distance = shape.distance(&ray, &RayRange::ALL);
         assert_eq!(shape.part(&ray, distance).as_deref(), Some(face));

@@ -266,39 +266,59 @@ impl Surface {
         best.0
     }
 
-    /// Returns the face that is nearest to a point; of several, the first in the file.
+    /// Returns the face that is nearest to a point; of several, up to rounding, the first in the file.
     pub(super) fn face_at(&self, at: DVec3) -> usize {
-        self.nearest(at).1
+        let rounding = 8.0 * f64::EPSILON * (at.abs().max_element() + self.reach());
+        let (distance, face) = self.nearest(at);
+        let within = distance + rounding;
+        let mut first = face;
+        self.near(at, within, |face, distance| {
+            if distance <= within && self.order[face] < self.order[first] {
+                first = face;
+            }
+            within
+        });
+        first
     }
 
     /// Returns the distance of the nearest face to a point in world units, and the face.
     pub(super) fn nearest(&self, at: DVec3) -> (f64, usize) {
-        struct NearestTo<'s> {
+        // Most points are on the surface: few boxes are so near.
+        for within in [CLOSE * (at.abs().max_element() + self.reach()), MISS] {
+            let mut best = (within, None);
+            self.near(at, within, |face, distance| {
+                if distance < best.0 {
+                    best = (distance, Some(face));
+                }
+                best.0
+            });
+            if let (distance, Some(face)) = best {
+                return (distance, face);
+            }
+        }
+        // The point is not finite.
+        (MISS, 0)
+    }
+
+    /// Calls a function with each face that may be within a distance of a point, and with its distance, in world units.
+    /// The function returns the distance beyond which no more faces matter.
+    fn near(&self, at: DVec3, within: f64, call: impl FnMut(usize, f64) -> f64) {
+        struct Near<'s, F> {
             surface: &'s Surface,
             at: DVec3,
-            best: (f64, usize),
+            within: f64,
+            call: F,
         }
-        impl Faces for NearestTo<'_> {
+        impl<F: FnMut(usize, f64) -> f64> Faces for Near<'_, F> {
             fn visit(&mut self, faces: Range<usize>) -> f64 {
                 for face in faces {
                     let distance = nearest_point(self.surface.corners(face), self.at).distance(self.at);
-                    let order = |face: usize| self.surface.order.get(face).copied().unwrap_or(u32::MAX);
-                    if distance < self.best.0 || distance == self.best.0 && order(face) < order(self.best.1) {
-                        self.best = (distance, face);
-                    }
+                    self.within = (self.call)(face, distance);
                 }
-                self.best.0
+                self.within
             }
         }
-        // Most points are on the surface: few boxes are so near.
-        let beside = CLOSE * (at.abs().max_element() + self.reach());
-        let mut nearest = NearestTo { surface: self, at, best: (beside, usize::MAX) };
-        self.tree.around(at, beside, &mut nearest);
-        if nearest.best.1 == usize::MAX {
-            nearest.best = (MISS, usize::MAX);
-            self.tree.around(at, MISS, &mut nearest);
-        }
-        nearest.best
+        self.tree.around(at, within, &mut Near { surface: self, at, within, call });
     }
 
     /// Tells whether a point is on a face, up to an error in world units and to rounding.

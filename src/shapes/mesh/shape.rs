@@ -115,7 +115,7 @@ impl<A: Bounded> Hittable for Mesh<A> {
     }
 
     fn part(&self, ray: &Ray, distance: f64) -> Option<String> {
-        let face = self.surface.face_along::<A>(ray, distance);
+        let face = distance.is_finite().then(|| self.surface.face_along::<A>(ray, distance))?;
         Some(format!("face {}", self.surface.order[face] + 1))
     }
 
