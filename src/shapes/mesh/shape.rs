@@ -106,7 +106,7 @@ impl<A: Bounded> Hittable for Mesh<A> {
             _ => format!("open at {open_edges} edges, and so lit on one side"),
         };
         let nodes = text::count(tree.nodes.len(), "node");
-        format!("a tree of {nodes} over {}; {sides}", text::count(self.surface.len(), "face"))
+        format!("a tree of {nodes} over {}; {sides}", text::count(self.surface.face_count(), "face"))
     }
 
     fn clearance(&self, from: DVec3) -> Option<f64> {

@@ -61,7 +61,7 @@ impl Surface {
         }
         let Model { vertices, mut faces, materials, slots } = model;
         let vertices = merge(vertices, &mut faces, placement);
-        if vertices.par_iter().any(|at| !(at.abs().max_element() <= MOST_LENGTH)) {
+        if vertices.par_iter().any(|at| !at.is_finite() || at.abs().max_element() > MOST_LENGTH) {
             return Err(Unfit::TooLarge);
         }
         let mut order: Vec<u32> = (0..faces.len() as u32).collect();
@@ -87,7 +87,7 @@ impl Surface {
     }
 
     /// Returns the number of faces.
-    pub fn len(&self) -> usize {
+    pub fn face_count(&self) -> usize {
         self.faces.len()
     }
 

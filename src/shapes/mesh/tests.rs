@@ -52,7 +52,7 @@ fn shape(surface: &Arc<Surface>) -> AnyShape {
 
 /// Returns the distance of a ray's first hit of any triangle.
 fn among(surface: &Surface, ray: &Ray) -> f64 {
-    (0..surface.len()).fold(MISS, |first, face| {
+    (0..surface.face_count()).fold(MISS, |first, face| {
         let triangle: Triangle<Exact> = surface.triangle(face);
         let distance = RayRange::ALL.keep(triangle.plane.crossing(ray));
         if triangle.is_passed_by(ray) { distance.min(first) } else { first }
@@ -84,7 +84,7 @@ proptest! {
         prop_assert_eq!(surface.open_edges, 0);
         let (inside, shape) = (placement.place(DVec3::ZERO), shape(&surface));
         for (index, part, dir) in toward {
-            let [a, b, c] = surface.corners(index.index(surface.len()));
+            let [a, b, c] = surface.corners(index.index(surface.face_count()));
             // To a vertex, to an edge, to the middle of a face and anywhere.
             for at in [a, a.lerp(b, part), b, (a + b + c) / 3.0, inside + dir] {
                 let Some(dir) = (at - inside).try_normalize() else { continue };
@@ -113,7 +113,7 @@ proptest! {
         let surface = Arc::new(surface(closed(&bumps, rows), &placement));
         let shape = shape(&surface);
         for (from, dir, index, far) in rays {
-            let [a, b, _] = surface.corners(index.index(surface.len()));
+            let [a, b, _] = surface.corners(index.index(surface.face_count()));
             let origin = placement.place(far * from);
             for dir in [Some(dir), (a - origin).try_normalize(), (a.lerp(b, 0.3) - origin).try_normalize()] {
                 let Some(dir) = dir else { continue };
@@ -172,7 +172,7 @@ fn equal_vertices_are_one_and_faces_without_an_area_are_left_out() {
     let alone = (0..vertices.len() as u32 / 3).map(|face| [3 * face, 3 * face + 1, 3 * face + 2]).collect();
     let model = Model { vertices, faces: alone, ..Model::default() };
     let surface = surface(model, &Placement::new(PLAIN, DVec3::ZERO, DVec3::ZERO));
-    assert_eq!((surface.len(), surface.degenerate, surface.open_edges), (faces.len(), 2, 0));
+    assert_eq!((surface.face_count(), surface.degenerate, surface.open_edges), (faces.len(), 2, 0));
     assert!(surface.vertices.len() < faces.len());
 }
 
@@ -191,6 +191,6 @@ fn a_placement_scales_then_rotates_then_moves() {
 #[test]
 fn the_memory_of_a_mesh_is_far_below_150_bytes_for_each_face() {
     let surface = surface(closed(&[1.0, 1.1, 0.9], 200), &Placement::new(PLAIN, DVec3::ZERO, DVec3::ZERO));
-    let each = surface.bytes() as f64 / surface.len() as f64;
+    let each = surface.bytes() as f64 / surface.face_count() as f64;
     assert!(each < 75.0, "{each} bytes");
 }
