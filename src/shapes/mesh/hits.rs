@@ -6,13 +6,12 @@ use super::traversal::Faces;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
 use crate::geometry::sight::{Line, Sight};
-use crate::numeric::double_double::DoubleDouble;
 use crate::numeric::interval::{Float, Interval, Wide};
 use crate::numeric::scalar::Scalar;
 use crate::shapes::triangle::Triangle;
 use crate::world::accuracy::Bounded;
 use crate::world::certify::{self, Enclosure, Precision};
-use crate::world::coincidence::{CLOSE, LEAST_COSINE, SAME};
+use crate::world::coincidence::CLOSE;
 use f256::f256;
 use glam::DVec3;
 use std::ops::Range;
@@ -211,59 +210,20 @@ impl Surface {
         first
     }
 
-    /// Returns the face that a ray hits at a distance: of several, the first in the file. Where the ray passes an edge
-    /// to within rounding, the faces on both sides count.
+    /// Returns the face that a ray hits at a distance in world units: of several that hold the point up to rounding, the
+    /// first in the file.
     #[inline(always)]
-    pub(super) fn face_along<A: Bounded>(&self, ray: &Ray, distance: f64) -> usize {
+    pub(super) fn face_along(&self, ray: &Ray, distance: f64) -> usize {
         let close = CLOSE * (distance + ray.origin.abs().max_element());
-        let (mut only, mut others) = (None, Vec::new());
+        let (mut only, mut count) = (0, 0);
         let range = RayRange { far: distance + close, ..RayRange::ALL };
         self.each(ray, &range, NOTHING, |face, bracket| {
             if bracket.far >= distance - close {
-                match only {
-                    None => only = Some(face),
-                    Some(_) => others.push(face),
-                }
+                (only, count) = (face, count + 1);
             }
             range.far
         });
-        match only {
-            None => self.face_at(ray.at(distance)),
-            Some(face) if others.is_empty() => face,
-            Some(face) => {
-                others.push(face);
-                self.earliest::<A>(ray, distance, others)
-            }
-        }
-    }
-
-    /// Returns the face that a ray hits first of several near one distance; of those whose order is uncertain, the
-    /// first in the file.
-    #[inline(never)]
-    fn earliest<A: Bounded>(&self, ray: &Ray, distance: f64, mut faces: Vec<usize>) -> usize {
-        faces.sort_unstable_by_key(|face| self.order[*face]);
-        let size = distance + ray.origin.abs().max_element() + self.reach();
-        let met = faces.iter().map(|face| {
-            let plane = self.triangle::<A>(*face).plane;
-            let cosine = plane.normal.dot(ray.dir);
-            (*face, plane.exact_crossing(ray), plane.normal, cosine)
-        });
-        let met: Vec<_> = met.collect();
-        let apart = |at: &DoubleDouble| (at.high - distance).abs();
-        let least = met.iter().map(|(_, at, ..)| apart(at)).fold(MISS, f64::min);
-        let mut candidates =
-            met.iter().filter(|(_, at, ..)| apart(at) <= least + 256.0 * f64::EPSILON * size);
-        let Some(mut best) = candidates.next() else { return faces[0] };
-        for other in candidates {
-            // As for two objects: `render/trace/order.rs`.
-            let divergence = (best.2 / best.3 - other.2 / other.3).length();
-            let least_cosine = best.3.abs().min(other.3.abs()).max(LEAST_COSINE);
-            let same = 4.0 * f64::EPSILON * distance * divergence + SAME * size / least_cosine;
-            if (other.1 - best.1).high < -same {
-                best = other;
-            }
-        }
-        best.0
+        if count == 1 { only } else { self.face_at(ray.at(distance)) }
     }
 
     /// Returns the face that is nearest to a point; of several, up to rounding, the first in the file.

@@ -115,7 +115,7 @@ impl<A: Bounded> Hittable for Mesh<A> {
     }
 
     fn part(&self, ray: &Ray, distance: f64) -> Option<String> {
-        let face = distance.is_finite().then(|| self.surface.face_along::<A>(ray, distance))?;
+        let face = distance.is_finite().then(|| self.surface.face_along(ray, distance))?;
         Some(format!("face {}", self.surface.order[face] + 1))
     }
 
@@ -131,7 +131,7 @@ impl<A: Bounded> Proofs for Shape<Mesh<A>, ByPackets, ByFaces> {
 
     fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble> {
         let surface = &self.shape.surface;
-        let face = surface.face_along::<A>(ray, distance);
+        let face = surface.face_along(ray, distance);
         Some(surface.triangle::<A>(face).plane.exact_crossing(ray))
     }
 
@@ -273,7 +273,7 @@ kernels! {
                 normals.set(lane, normals.get(lane - 1));
             } else {
                 let point = ray.at(distances[lane]);
-                let face = mesh.surface.face_along::<A>(&ray, distances[lane]);
+                let face = mesh.surface.face_along(&ray, distances[lane]);
                 let flat = last.triangle(&mesh.surface, face).plane.normal;
                 let turn;
                 (sides[lane], cosines[lane], turn) = turned(ray.dir, flat, is_two_sided);
