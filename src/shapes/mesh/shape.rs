@@ -13,7 +13,7 @@ use crate::simd::cpu::{Cpu, kernels};
 use crate::text;
 use crate::world::accuracy::{Accuracy, Bounded};
 use crate::world::certify::{Enclosure, Precision};
-use crate::world::coincidence::ROUNDING;
+use crate::world::coincidence::{CLOSE, ROUNDING};
 use crate::world::hittable::Hittable;
 use crate::world::interaction::{SurfaceInteraction, turned};
 use crate::world::packets::shape::{Packets, Proofs};
@@ -132,7 +132,10 @@ impl<A: Bounded> Proofs for Shape<Mesh<A>, ByPackets, ByFaces> {
     fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble> {
         let surface = &self.shape.surface;
         let face = surface.face_along(ray, distance);
-        Some(surface.triangle::<A>(face).plane.exact_crossing(ray))
+        let fine = surface.triangle::<A>(face).plane.exact_crossing(ray);
+        // At an edge, the ray may hit the plane of a neighbouring face far from the edge.
+        let size = distance + ray.origin.abs().max_element();
+        ((fine.high - distance).abs() <= CLOSE * size).then_some(fine)
     }
 
     fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
