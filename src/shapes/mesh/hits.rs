@@ -211,7 +211,8 @@ impl Surface {
     }
 
     /// Returns the face that a ray hits at a distance in world units: of several that hold the point up to rounding, the
-    /// first in the file.
+    /// first in the file whose outside the ray hits, if there is any. At the outline of a closed mesh, a face whose
+    /// inside is hit would show light from within.
     #[inline(always)]
     pub(super) fn face_along(&self, ray: &Ray, distance: f64) -> usize {
         let close = CLOSE * (distance + ray.origin.abs().max_element());
@@ -223,17 +224,35 @@ impl Surface {
             }
             range.far
         });
-        if count == 1 { only } else { self.face_at(ray.at(distance)) }
+        if count == 1 {
+            only
+        } else {
+            self.first_at(ray.at(distance), |face| self.is_outside_hit(face, ray.dir))
+        }
     }
 
     /// Returns the face that is nearest to a point; of several, up to rounding, the first in the file.
     pub(super) fn face_at(&self, at: DVec3) -> usize {
+        self.first_at(at, |_| true)
+    }
+
+    /// Tells whether a ray along a direction hits the outside of a face, in plain arithmetic.
+    fn is_outside_hit(&self, face: usize, dir: DVec3) -> bool {
+        let [a, b, c] = self.corners(face);
+        // An open mesh is lit on one side, and shows nothing of the other.
+        self.open_edges > 0 || (b - a).cross(c - a).dot(dir) < 0.0
+    }
+
+    /// Returns the face that is nearest to a point; of several, up to rounding, the first in the file among those that
+    /// are preferred, or else among all.
+    fn first_at(&self, at: DVec3, is_preferred: impl Fn(usize) -> bool) -> usize {
         let rounding = 8.0 * f64::EPSILON * (at.abs().max_element() + self.reach());
         let (distance, face) = self.nearest(at);
         let within = distance + rounding;
         let mut first = face;
         self.near(at, within, |face, distance| {
-            if distance <= within && self.order[face] < self.order[first] {
+            let place = |face: usize| (!is_preferred(face), self.order[face]);
+            if distance <= within && place(face) < place(first) {
                 first = face;
             }
             within
