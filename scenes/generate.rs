@@ -167,7 +167,7 @@ fn forest(folder: &Path) -> io::Result<()> {
         needles.grid(2, 18, |along, around| {
             let (sin, cos) = (TAU * around + tier).sin_cos();
             // The tips of the branches hang down between the others.
-            let tip = if (around * 18.0).round() as usize % 2 == 0 { 1.0 } else { 0.6 };
+            let tip = if ((around * 18.0).round() as usize).is_multiple_of(2) { 1.0 } else { 0.6 };
             let from_axis = radius * (1.0 - along) * (1.0 + (tip - 1.0) * (1.0 - along));
             let droop = 0.05 * tip * (1.0 - along).powi(3);
             DVec3::new(from_axis * cos, low + (high - low) * along - droop, from_axis * sin)

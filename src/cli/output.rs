@@ -4,7 +4,9 @@ use super::failure::Failure;
 use super::temporary::Temporary;
 use super::{input, messages};
 use crate::output::picture::Format;
+use crate::scene::kind::Kind;
 use crate::scene::model::{Item, Model};
+use crate::scene::store::Record;
 use crate::text;
 use crate::world::texture::Texture;
 use same_file::{Handle, is_same_file};
@@ -120,10 +122,18 @@ pub fn is_no_source(path: &Path, scene: &Path, model: &Model) -> Result<(), Fail
         }
     };
     let is_source = |texture: &Item<Arc<Texture>>| is_same_file(texture.value.path(), path).unwrap_or(false);
+    let is_read = |record: &&&Record| {
+        let args = record.entity().reads_files().then(|| record.args());
+        args.is_some_and(|args| {
+            args.files().any(|file| is_same_file(args.setting.folder.join(file), path).unwrap_or(false))
+        })
+    };
     let what = if is_scene() {
         "the scene".to_owned()
     } else if let Some(texture) = model.textures.iter().find(|texture| is_source(texture)) {
         format!("the image of texture `{}`", texture.args.name())
+    } else if let Some(record) = model.entities(Kind::Object).iter().find(is_read) {
+        format!("the file of {} `{}`", record.entity().name, record.name())
     } else {
         return Ok(());
     };

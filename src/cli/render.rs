@@ -66,8 +66,8 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let start = Instant::now();
     let accuracy = args.method.accuracy()?;
     let source = Source::read(&args.scene)?;
-    let textures = args.stop.left();
-    let chosen = |accuracy| Chosen { above_all: accuracy, textures, ..Chosen::default() };
+    let memory = args.stop.left();
+    let chosen = |accuracy| Chosen { above_all: accuracy, memory, ..Chosen::default() };
     let Loaded { mut model, building, .. } = input::told(source.load_by(registry, chosen(accuracy)))?;
     let mut stats = Stats { reading: start.elapsed() - building, building, ..Stats::default() };
     let camera = &mut model.camera.value;

@@ -165,7 +165,7 @@ impl Args {
         })
     }
 
-    /// Returns the memory that the textures of a scene may take, in bytes, if there is a limit.
+    /// Returns the memory that the textures and the objects of a scene may take, in bytes, if there is a limit.
     pub fn left(&self) -> Option<u64> {
         let now = memory::now().unwrap_or(0) + ASIDE;
         self.max_memory.map(|limit| limit.as_u64().saturating_sub(now))

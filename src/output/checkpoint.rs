@@ -38,6 +38,8 @@ pub struct Identity {
     crop: Option<[usize; 4]>,
     /// The hash of the program's file. It changes with each build, because plugins are part of the program.
     program: String,
+    /// The hashes of what objects were read from files of their own, by the types and names of the objects.
+    files: BTreeMap<String, String>,
     /// The name of the sampler.
     sampler: String,
     /// The number of samples per pixel.
@@ -69,6 +71,7 @@ impl Identity {
         Ok(Self {
             accuracy: camera.accuracy.option().name.to_owned(),
             crop: (!is_whole).then(|| [columns.start, height - rows.end, columns.len(), rows.len()]),
+            files: files(model),
             program: program()?,
             sampler: text::name(&camera.sampler),
             samples: camera.samples,
@@ -90,8 +93,11 @@ impl Identity {
         }
         let textures = self.textures.iter().filter(|(name, hash)| old.textures.get(*name) != Some(hash));
         let textures = textures.map(|(name, _)| format!("the image of texture `{name}`"));
+        let files = self.files.iter().filter(|(name, hash)| old.files.get(*name) != Some(hash));
+        let files = files.map(|(name, _)| format!("the file of {name}"));
         let scene = (self.scene != old.scene).then(|| "the scene".to_owned());
-        differences.extend(scene.into_iter().chain(textures).map(|what| format!("{what} has changed")));
+        differences
+            .extend(scene.into_iter().chain(textures).chain(files).map(|what| format!("{what} has changed")));
         let size = |[width, height]: [usize; 2]| format!("{width} x {height}");
         let crop = |crop: Option<[usize; 4]>| {
             crop.map_or("none".to_owned(), |crop| crop.map(|number| number.to_string()).join(","))
@@ -144,6 +150,18 @@ fn scene(model: &Model) -> String {
         None => chunks.map(hash).collect(),
     };
     shown(hashes.iter().fold(Sha256::new(), |all, hash| all.chain_update(hash)))
+}
+
+fn files(model: &Model) -> BTreeMap<String, String> {
+    let objects = model.objects.iter().map(|object| (&object.args, &object.shape));
+    let patterns = model.patterns.iter().filter_map(|item| Some((&item.args, &item.value.get()?.shape)));
+    let from_files = objects.chain(patterns).filter(|(record, _)| record.entity().reads_files());
+    let named = from_files.map(|(record, shape)| {
+        let mut hasher = Sha256::new();
+        shape.read_from_files(&mut |bytes| hasher.update(bytes));
+        (format!("{} `{}`", record.entity().name, record.name()), shown(hasher))
+    });
+    named.collect()
 }
 
 fn hash(bytes: &[u8]) -> String {

@@ -2,13 +2,14 @@
 
 use crate::scene::kind::Kind;
 use crate::scene::pparm::{Attribute, Attributes, Given, Pparm, Row, Table};
-use crate::scene::value::Datum;
+use crate::scene::value::{Datum, Type};
 use crate::text;
 use crate::world::accuracy::Accuracy;
 use crate::world::body::{AnyLight, Body};
 use crate::world::camera::Camera;
 use crate::world::material::Material;
 use crate::world::texture::Texture;
+use std::collections::BTreeMap;
 use std::ops::Deref;
 use std::panic::Location;
 use std::path::PathBuf;
@@ -162,6 +163,11 @@ impl Entity {
         self.rows().filter_map(|row| row.attribute())
     }
 
+    /// Tells whether a constructor reads files that the entity names.
+    pub(crate) fn reads_files(&self) -> bool {
+        self.attributes().any(|attribute| matches!(attribute.value_type(), Type::File))
+    }
+
     /// Returns the file and line that register the type.
     pub fn place(&self) -> String {
         text::place(self.place)
@@ -176,6 +182,10 @@ pub struct Setting {
     pub camera: Camera,
     /// The folder to which the scene's file names are relative.
     pub folder: PathBuf,
+    /// The scene's materials by their names; only objects and lights are certain to see all of them.
+    pub materials: Arc<BTreeMap<String, Arc<Material>>>,
+    /// How many bytes of memory an object may take beside the scene.
+    pub memory: u64,
 }
 
 /// An entity of a scene as a constructor sees it: its type, its name and its checked values.

@@ -155,7 +155,9 @@ fn attribute_rule(attribute: &'static dyn Attribute) -> Rule {
     let (end, scopes) = match attribute.value_type() {
         Type::Whole | Type::Number => return Rule::matching(begin, Some(ATTRIBUTE)),
         Type::Name(_) => (format!("({QUOTED}|{BARE})|(?=[{{}}])"), &[REFERENCE][..]),
-        Type::Word | Type::Formula => (format!("({QUOTED})|({BARE})|(?=[{{}}])"), &[IN_QUOTES, WORD][..]),
+        Type::Word | Type::File | Type::Formula => {
+            (format!("({QUOTED})|({BARE})|(?=[{{}}])"), &[IN_QUOTES, WORD][..])
+        }
         Type::Choice(choices) => {
             let known = one_of(choices.all().iter().map(|choice| choice.name));
             let end = format!("({QUOTED})|({NUMBER}){END}|({known}){END}|({BARE})|(?=[{{}}])");

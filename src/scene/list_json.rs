@@ -128,6 +128,7 @@ impl Attribute {
             Type::Whole => ("whole number", None, None),
             Type::Number => ("number", None, None),
             Type::Word => ("word", None, None),
+            Type::File => ("file", None, None),
             Type::Formula => ("formula", None, None),
             Type::Name(kind) => ("name", Some(kind), None),
             Type::Choice(choices) => {

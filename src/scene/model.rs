@@ -3,7 +3,7 @@
 use crate::scene::kind::Kind;
 use crate::scene::store::Record;
 use crate::world::any_shape::AnyShape;
-use crate::world::body::{AnyLight, AnyShader};
+use crate::world::body::{AnyLight, AnyShader, NamedBody};
 use crate::world::camera::Camera;
 use crate::world::material::{Material, Rgb};
 use crate::world::texture::Texture;
@@ -21,7 +21,7 @@ pub struct Model {
     /// The visible objects, in the order of the scene.
     pub objects: Vec<Object>,
     /// The objects that other entities refer to, in the order of the scene: they are seen only where these put them.
-    pub patterns: Vec<Record>,
+    pub patterns: Vec<Item<NamedBody>>,
     /// The lights, in the order of the scene.
     pub lights: Vec<Item<AnyLight>>,
 }
@@ -35,7 +35,7 @@ impl Model {
             Kind::Texture => self.textures.iter().map(|item| &item.args).collect(),
             Kind::Object => {
                 let shown = self.objects.iter().map(|object| &object.args);
-                let mut all: Vec<_> = shown.chain(&self.patterns).collect();
+                let mut all: Vec<_> = shown.chain(self.patterns.iter().map(|item| &item.args)).collect();
                 all.sort_by_key(|record| record.order());
                 all
             }

@@ -76,6 +76,7 @@ pub trait Attribute: Sync {
             Type::Whole => format!("{counts} whole number{plural}"),
             Type::Number => format!("{counts} number{plural}"),
             Type::Word => "a word".to_owned(),
+            Type::File => "the name of a file".to_owned(),
             Type::Name(kind) => format!("the name of {}", kind.with_article()),
             Type::Choice(choices) if choices.all().iter().any(|choice| choice.number.is_some()) => {
                 format!("the name or number of a {}", choices.what)
@@ -319,6 +320,14 @@ impl Attributes {
     fn found<T: Value>(&self, key: &Pparm<T>) -> Option<&Datum> {
         let itself = self.values.iter().find(|(attribute, _)| ptr::addr_eq(*attribute, key));
         itself.map(|(_, (datum, _))| datum).or_else(|| self.find(key.name()))
+    }
+
+    /// Returns the names of the files that the entity is read from, as the scene gives them.
+    pub fn files(&self) -> impl Iterator<Item = &str> {
+        self.values().filter_map(|(attribute, datum)| match (attribute.value_type(), datum) {
+            (Type::File, Datum::Word(file)) => Some(file.as_str()),
+            _ => None,
+        })
     }
 
     /// Finds the value of the attribute of this name.

@@ -56,7 +56,7 @@ impl ProceduralShader {
 impl Body {
     /// Makes an object with the look of a procedural shader.
     pub fn procedural(shape: impl Into<AnyShape>, shader: &ProceduralShader, anchor: Anchor) -> Self {
-        Self { shape: shape.into(), shader: (shader.make)(anchor) }
+        Self { shader: (shader.make)(anchor), ..Self::plain(shape) }
     }
 }
 

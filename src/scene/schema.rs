@@ -172,7 +172,7 @@ fn value(attribute: &'static dyn Attribute) -> Schema {
     let one = match attribute.value_type() {
         Type::Whole => Schema::sort("integer"),
         Type::Number => Schema::sort("number"),
-        Type::Word | Type::Name(_) | Type::Formula => Schema::sort("string"),
+        Type::Word | Type::File | Type::Name(_) | Type::Formula => Schema::sort("string"),
         Type::Choice(choices) => {
             let all = choices.all();
             let names = all.iter().map(|choice| Constant::Text(choice.name.to_owned()));

@@ -43,11 +43,13 @@ impl Syntax {
         let (value, count) = match attribute.value_type() {
             Type::Whole | Type::Number => ("N", attribute.arity().first().copied().unwrap_or(1)),
             Type::Word => ("WORD", 1),
+            Type::File => ("FILE", 1),
             Type::Name(_) => ("NAME", 1),
             Type::Choice(_) => ("N", 1),
             Type::Formula => ("2 + sin(y)", 1),
         };
-        let is_text = matches!(attribute.value_type(), Type::Word | Type::Name(_) | Type::Formula);
+        let is_text =
+            matches!(attribute.value_type(), Type::Word | Type::File | Type::Name(_) | Type::Formula);
         let values = vec![if is_text { self.word(value) } else { value.to_owned() }; count];
         self.pair(attribute.name(), &values)
     }

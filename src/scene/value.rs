@@ -7,6 +7,7 @@ use crate::world::body::NamedBody;
 use crate::world::material::{Material, Rgb};
 use crate::world::texture::Texture;
 use glam::{DVec2, DVec3};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// The type of an attribute's values.
@@ -18,6 +19,8 @@ pub enum Type {
     Number,
     /// One word, which needs quotes where it contains white space or braces.
     Word,
+    /// The name of a file, relative to the scene's folder, from which the entity is read.
+    File,
     /// The name of an entity of this kind, which must be defined before it is used.
     Name(Kind),
     /// The name or the number of one of several alternatives.
@@ -224,6 +227,20 @@ impl Value for String {
             Datum::Word(word) => Some(word.clone()),
             _ => None,
         }
+    }
+}
+
+/// The name of a file.
+impl Value for PathBuf {
+    const TYPE: Type = Type::File;
+    const ARITY: &'static [usize] = &[1];
+
+    fn to_datum(&self) -> Datum {
+        Datum::Word(self.display().to_string())
+    }
+
+    fn from_datum(datum: &Datum) -> Option<Self> {
+        String::from_datum(datum).map(Self::from)
     }
 }
 

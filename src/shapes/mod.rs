@@ -2,6 +2,7 @@
 
 mod finite_plane;
 pub(crate) mod implicit;
+pub mod mesh;
 pub(crate) mod placed;
 pub mod plane;
 pub(crate) mod quadratic;

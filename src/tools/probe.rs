@@ -167,7 +167,14 @@ impl<W: Write> Probe<'_, W> {
             self.line(if row == 0 { "tested" } else { "" }, &text);
         }
         let met = hit.map_or("nothing".to_owned(), |hit| {
-            format!("`{}` at {}, {} away", hit.object.args.name(), triple(hit.point), number(hit.distance))
+            let part = hit.object.shape.part(&search.ray, hit.distance);
+            let part = part.map_or(String::new(), |part| format!(", {part},"));
+            format!(
+                "`{}`{part} at {}, {} away",
+                hit.object.args.name(),
+                triple(hit.point),
+                number(hit.distance)
+            )
         });
         self.line("hit", &met);
     }

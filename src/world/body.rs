@@ -49,6 +49,21 @@ pub struct Body {
     pub shape: AnyShape,
     /// The object's reflectivities.
     pub shader: AnyShader,
+    /// What the user should know of the object, although it can be rendered.
+    pub warnings: Vec<Warning>,
+    /// The memory that the object takes beside the scene, in bytes.
+    pub bytes: u64,
+}
+
+/// A warning about an object.
+#[derive(Clone, Debug)]
+pub struct Warning {
+    /// The attribute to mark.
+    pub attribute: &'static str,
+    /// What may not be as intended, phrased to follow the entity's name: "leaves out 3 faces".
+    pub message: String,
+    /// What would be right, or what happens otherwise.
+    pub help: String,
 }
 
 impl Body {
@@ -59,6 +74,6 @@ impl Body {
 
     /// Makes an object with a shader of its own.
     pub fn shaded(shape: impl Into<AnyShape>, shader: impl Shader + 'static) -> Self {
-        Self { shape: shape.into(), shader: Box::new(shader) }
+        Self { shape: shape.into(), shader: Box::new(shader), warnings: Vec::new(), bytes: 0 }
     }
 }

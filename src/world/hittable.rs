@@ -23,6 +23,12 @@ pub trait Hittable: Send + Sync {
     /// Returns the unit normal at a point of the surface.
     fn normal(&self, at: DVec3) -> DVec3;
 
+    /// Returns the unit normal with which a point of the surface is shaded, where it is not that of the surface: that
+    /// of a mesh which looks smooth. `normal` is that of the surface, flipped to face the ray where both sides are lit.
+    fn shading_normal(&self, _at: DVec3, normal: DVec3) -> DVec3 {
+        normal
+    }
+
     /// Returns a bounding box of the shape, or `None` for an unbounded shape.
     fn bounds(&self) -> Option<Aabb> {
         None
@@ -46,6 +52,16 @@ pub trait Hittable: Send + Sync {
     fn method(&self) -> String {
         "its own distance".to_owned()
     }
+
+    /// Names the part of the shape that a ray hits at a distance in world units, for explanations: `face 7` of a mesh.
+    /// `None` for a shape of one part.
+    fn part(&self, _ray: &Ray, _distance: f64) -> Option<String> {
+        None
+    }
+
+    /// Passes on what the shape has read from files beside the scene, as bytes: a finished part of an image fits only
+    /// the same bytes.
+    fn read_from_files(&self, _each: &mut dyn FnMut(&[u8])) {}
 
     /// Tells whether no part of the shape lies in a region, which may be unbounded. An unbounded shape may know more
     /// than the default does; `false` is always correct.

@@ -8,7 +8,7 @@ use glam::DVec3;
 pub struct SurfaceInteraction<'l> {
     /// The hit points, in world coordinates.
     pub points: ViewMut<'l>,
-    /// The unit normals at the hit points, flipped to face the rays where both sides are lit.
+    /// The unit normals with which the hit points are shaded, flipped to face the rays where both sides are lit.
     pub normals: ViewMut<'l>,
     /// The side that each ray hits.
     pub sides: &'l mut [Side],

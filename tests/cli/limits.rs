@@ -59,6 +59,26 @@ fn a_texture_that_is_a_pipe_a_device_or_a_folder_is_refused() {
 }
 
 #[test]
+fn a_mesh_that_is_a_pipe_or_takes_too_much_memory_is_refused() {
+    let folder = folder();
+    let text = "camera eye { pixeldim 8 6 worlddim 8 6 viewpoint 4 3 6 } material m { ambient 1 1 1 }
+mesh wall { material m file wall.obj }";
+    fs::write(folder.path().join("wall.ray"), text).expect("a scene");
+    let wall = folder.path().join("wall.obj");
+    pipe(&wall);
+    let (status, _, said) = outcome(tabray(&folder).args(["check", "wall.ray"]));
+    assert_eq!(status, 2, "{said}");
+    assert!(said.contains("`wall.obj`: it is a pipe or a device, not a file"), "{said}");
+    fs::remove_file(&wall).expect("a pipe");
+    // A file of 400 MB without a block on the disk.
+    fs::File::create(&wall).and_then(|file| file.set_len(400 << 20)).expect("a file");
+    let args = ["render", "wall.ray", "-o", "x.png", "--max-memory", "1GiB"];
+    let (status, _, said) = outcome(tabray(&folder).args(args));
+    assert_eq!(status, 2, "{said}");
+    assert!(said.contains("it has 400.0 MiB, which may take more than the"), "{said}");
+}
+
+#[test]
 fn a_checkpoint_that_is_a_pipe_is_refused() {
     let folder = folder();
     fs::copy(scene("sphere/in-front.ray"), folder.path().join("ball.ray")).expect("a copy");

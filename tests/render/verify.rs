@@ -8,12 +8,13 @@ use tabray::world::certify::{Enclosure, Precision};
 use tempfile::TempDir;
 
 /// Scenes in which many pixels look at an edge on purpose, or at two coinciding surfaces.
-const AT_EDGES: [&str; 10] = [
+const AT_EDGES: [&str; 11] = [
     "camera/edges-of-the-screen.ray", // two rectangles in one plane
     "plane/equal-distance.ray",       // two planes in one place
     "fplane/seam.ray",                // a column of pixels looks at the seam
     "hard/rug.ray",                   // a rug on a floor
     "hard/seam.ray",
+    "hard/lantern-inside.ray",       // a row of pixels looks at the edges of a mesh
     "hard/light-on-the-surface.ray", // a row of pixels looks at the corner of floor and wall
     "hard/tangent.ray",              // a column of pixels looks at the rim
     "hard/jump.ray",                 // the rims of a stair

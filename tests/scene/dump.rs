@@ -82,6 +82,9 @@ fn of_a_constructor(fault: &Fault) -> bool {
         "is defined",
         "squared",
         "has a profile",
+        "squares overflow",
+        "has no face with an area",
+        "without an area",
     ];
     found.iter().any(|words| fault.message.contains(words))
 }
@@ -136,6 +139,7 @@ fn any_values(attribute: &'static dyn Attribute) -> BoxedStrategy<String> {
             .boxed(),
         Type::Name(Kind::Texture) => return Just(format!("{} t0\n", attribute.name())).boxed(),
         Type::Name(Kind::Object) => return Just(format!("{} o0\n", attribute.name())).boxed(),
+        Type::File => return Just(format!("{} scenes/models/bowl.stl\n", attribute.name())).boxed(),
         Type::Word | Type::Name(_) => return Just(format!("{} m0\n", attribute.name())).boxed(),
         // A revsurf takes either a surfer or a formula; formulas are covered by the project's scenes.
         Type::Formula => return Just(String::new()).boxed(),

@@ -139,14 +139,17 @@ fn convert(folder: &Path, args: &[&str]) -> (Option<i32>, String) {
 
 #[test]
 fn converting_there_and_back_gives_the_same_scene() {
-    // File names are relative to the scene's folder, so the textures are copied too.
+    // File names are relative to the scene's folder, so the textures and the models are copied too.
     let root_of_copies = TempDir::new().expect("a folder");
-    let (folder, textures) = (root_of_copies.path().join("copies"), root_of_copies.path().join("textures"));
+    let folder = root_of_copies.path().join("copies");
     fs::create_dir(&folder).expect("a folder");
-    fs::create_dir(&textures).expect("a folder");
-    for entry in fs::read_dir(root().join("scenes/textures")).expect("the textures") {
-        let path = entry.expect("an entry").path();
-        fs::copy(&path, textures.join(path.file_name().expect("a name"))).expect("a copy");
+    for kind in ["textures", "models"] {
+        let copies = root_of_copies.path().join(kind);
+        fs::create_dir(&copies).expect("a folder");
+        for entry in fs::read_dir(root().join("scenes").join(kind)).expect("the files") {
+            let path = entry.expect("an entry").path();
+            fs::copy(&path, copies.join(path.file_name().expect("a name"))).expect("a copy");
+        }
     }
     for (index, path) in scenes().iter().enumerate() {
         let (there, back) = (format!("{index}.toml"), format!("{index}.ray"));

@@ -9,6 +9,7 @@ mod arithmetic;
 mod contract;
 mod double_double;
 mod implicit;
+mod mesh;
 mod notes;
 mod places;
 mod stability;

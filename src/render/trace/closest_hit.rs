@@ -172,7 +172,8 @@ fn located(shape: &AnyShape, start: &Start, origin_side: Option<Side>, far: f64)
         Some(side) if !shape.can_hit_itself(side) => return (MISS, Bracket::MISS),
         None => {}
         origin_side => {
-            return known(shape.distance(&start.ray, &RayRange { far, origin_side, ..RayRange::ALL }));
+            let range = RayRange { far, origin_side, origin_error: start.error, ..RayRange::ALL };
+            return known(shape.distance(&start.ray, &range));
         }
     }
     let range = RayRange { far, ..RayRange::ALL };

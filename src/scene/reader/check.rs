@@ -3,7 +3,6 @@
 use super::attributes::{Against, whole};
 use super::fault::{Fault, Place, Places, Severity};
 use super::guesses::find_attribute;
-use super::made::{Made, made};
 use super::names::{Missing, Names, stand_in, suggestion};
 use super::notes;
 use super::parsed::{Parsed, Word};
@@ -18,13 +17,13 @@ use crate::scene::store::{Record, Store};
 use crate::scene::value::Datum;
 use crate::text::list;
 use crate::world::accuracy::Accuracy;
-use crate::world::body::{AnyLight, Body};
+use crate::world::body::{AnyLight, NamedBody};
 use crate::world::camera::Camera;
 use crate::world::material::Material;
 use crate::world::texture::Texture;
 use std::borrow::Cow;
 use std::collections::hash_map::Entry;
-use std::collections::{BTreeSet, HashMap};
+use std::collections::HashMap;
 use std::mem::{replace, swap, take};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -40,7 +39,12 @@ pub enum Source<'s, 'a> {
 
 impl<'a> Source<'_, 'a> {
     /// Returns an entity whose place is known.
-    fn entity(&self, registry: &Registry, order: usize, place: &Place) -> Option<Cow<'_, Parsed<'a>>> {
+    pub(super) fn entity(
+        &self,
+        registry: &Registry,
+        order: usize,
+        place: &Place,
+    ) -> Option<Cow<'_, Parsed<'a>>> {
         match self {
             Self::Text(text, _) => notes::again(registry, text, place.as_ref()?.start).map(Cow::Owned),
             Self::List(parsed) => parsed.get(order).map(Cow::Borrowed),
@@ -49,8 +53,8 @@ impl<'a> Source<'_, 'a> {
 }
 
 /// The number of entities that are parsed and then checked at one time: 8 times what a thread checks at one time.
-const TOGETHER: usize = 1 << 11;
-const PIECE: usize = 1 << 8;
+pub(super) const TOGETHER: usize = 1 << 11;
+pub(super) const PIECE: usize = 1 << 8;
 
 /// A model, the places of its entities, and the time that it took to make, in addition to parsing.
 pub type Checked = (Option<Model>, Places, Duration);
@@ -65,7 +69,8 @@ pub fn model(
     report: &mut Report<'_>,
 ) -> Checked {
     let camera = Camera { accuracy: accuracy.by_default, ..Camera::default() };
-    let setting = Setting { camera, folder: folder.to_owned() };
+    let memory = accuracy.memory.unwrap_or(u64::MAX);
+    let setting = Setting { camera, folder: folder.to_owned(), materials: Arc::default(), memory };
     let threads = Threads::default();
     let mut check = Check {
         registry,
@@ -81,7 +86,7 @@ pub fn model(
         materials: Vec::new(),
         textures: Vec::new(),
         files: HashMap::new(),
-        texture_memory: accuracy.textures.unwrap_or(TEXTURE_MEMORY),
+        texture_memory: accuracy.memory.unwrap_or(TEXTURE_MEMORY),
         objects: Vec::new(),
         patterns: Vec::new(),
         lights: Vec::new(),
@@ -123,45 +128,46 @@ pub fn model(
 /// small file can claim to hold.
 const TEXTURE_MEMORY: u64 = 1 << 30;
 
-/// The accuracy of a scene and the memory limit of its textures, as far as the caller chooses them.
+/// The accuracy of a scene and its memory limit, as far as the caller chooses them.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Chosen {
     /// The accuracy that overrides the scene's own.
     pub above_all: Option<Accuracy>,
     /// The accuracy where the scene chooses none.
     pub by_default: Accuracy,
-    /// The limit on the memory of the scene's textures, in bytes; by default 1 GiB.
-    pub textures: Option<u64>,
+    /// The limit on the memory of the scene's textures and of its objects' files, in bytes; by default 1 GiB for the
+    /// textures, and none for the objects, which take little more than their files do.
+    pub memory: Option<u64>,
 }
 
-struct Check<'r, 't> {
-    registry: &'r Registry,
-    report: &'r mut Report<'t>,
-    names: Names,
+pub(super) struct Check<'r, 't> {
+    pub(super) registry: &'r Registry,
+    pub(super) report: &'r mut Report<'t>,
+    pub(super) names: Names,
     /// Unknown entity types.
     unknown: Missing<()>,
     /// The place of the first camera's name.
     first_camera: Option<Place>,
-    setting: Arc<Setting>,
+    pub(super) setting: Arc<Setting>,
     /// The accuracy that overrides the scene's own.
     accuracy: Option<Accuracy>,
     /// The entities as they were given, and where.
-    store: Store,
-    places: Places,
+    pub(super) store: Store,
+    pub(super) places: Places,
     /// What was constructed, with the orders of the entities.
     camera: Option<(usize, Camera)>,
-    materials: Vec<(usize, Arc<Material>)>,
-    textures: Vec<(usize, Arc<Texture>)>,
+    pub(super) materials: Vec<(usize, Arc<Material>)>,
+    pub(super) textures: Vec<(usize, Arc<Texture>)>,
     /// The textures by the paths of their files.
     files: HashMap<PathBuf, Arc<Texture>>,
     /// How many more bytes the images of textures may take.
-    texture_memory: u64,
-    objects: Vec<Object>,
+    pub(super) texture_memory: u64,
+    pub(super) objects: Vec<Object>,
     /// The objects that other entities refer to.
-    patterns: Vec<Record>,
-    lights: Vec<Item<AnyLight>>,
+    pub(super) patterns: Vec<Item<NamedBody>>,
+    pub(super) lights: Vec<Item<AnyLight>>,
     quick: Quick<'r>,
-    threads: &'r Threads,
+    pub(super) threads: &'r Threads,
 }
 
 impl Check<'_, '_> {
@@ -265,8 +271,7 @@ impl Check<'_, '_> {
             Construct::Camera(construct) => {
                 if let Some(mut camera) = self.made(parsed, &args, construct) {
                     camera.accuracy = self.accuracy.unwrap_or(camera.accuracy);
-                    let folder = self.setting.folder.clone();
-                    self.setting = Arc::new(Setting { camera: camera.clone(), folder });
+                    Arc::make_mut(&mut self.setting).camera = camera.clone();
                     self.camera = Some((order, camera));
                 }
             }
@@ -293,51 +298,6 @@ impl Check<'_, '_> {
         }
     }
 
-    /// Constructs the objects and the lights.
-    fn construct_waiting(&mut self, source: &Source<'_, '_>) -> Arc<Store> {
-        self.store.setting = self.setting.clone();
-        let store = Arc::new(take(&mut self.store));
-        let patterns = self.names.patterns();
-        self.names.forget();
-        // One after the other, as one may refer to another before it.
-        for (order, datum) in &patterns {
-            let (args, record) = (store.args(*order), Record::new(&store, *order));
-            if let (Some(Construct::Object(construct)), Datum::Object { body, .. }) =
-                (store.sound(*order).map(|entity| entity.construct), datum)
-                && !args.refers_to_nothing()
-            {
-                match construct(&args) {
-                    Ok(made) => body.set(made),
-                    Err(refusal) => {
-                        let parsed = source.entity(self.registry, *order, &self.places.get(*order));
-                        self.refuse(parsed.as_deref(), &args, refusal);
-                    }
-                }
-            }
-            self.patterns.push(record);
-        }
-        for start in (0..store.len()).step_by(8 * TOGETHER) {
-            let orders = start..store.len().min(start + 8 * TOGETHER);
-            let made = self.threads.map(orders.len().div_ceil(PIECE), |piece| {
-                let start = start + piece * PIECE;
-                made(&store, start..orders.end.min(start + PIECE), &patterns)
-            });
-            for (order, made) in made.into_iter().flatten() {
-                let record = Record::new(&store, order);
-                match made {
-                    Ok(Made::Object(body)) => self.objects.extend(object(record, body)),
-                    Ok(Made::Light(light)) => self.lights.push(Item { args: record, value: light }),
-                    Err(refusal) => {
-                        let parsed = source.entity(self.registry, order, &self.places.get(order));
-                        self.refuse(parsed.as_deref(), &record.args(), refusal);
-                    }
-                }
-            }
-        }
-        self.objects.shrink_to_fit();
-        store
-    }
-
     /// Calls a constructor with checked values and reports a refusal.
     fn made<T>(
         &mut self,
@@ -348,7 +308,7 @@ impl Check<'_, '_> {
         construct(args).map_err(|refusal| self.refuse(Some(parsed), args, refusal)).ok()
     }
 
-    fn refuse(&mut self, parsed: Option<&Parsed<'_>>, args: &Args, refusal: Refusal) {
+    pub(super) fn refuse(&mut self, parsed: Option<&Parsed<'_>>, args: &Args, refusal: Refusal) {
         debug_assert!(
             args.has_what_is_refused(&refusal),
             "the plugin `{}` refuses `{}`, which is not in the table it registers at {}: name an attribute of that table",
@@ -359,45 +319,6 @@ impl Check<'_, '_> {
         let place = parsed.and_then(|parsed| place_of(args.entity, parsed, refusal.attribute));
         let message = format!("{} `{}` {}", args.entity.name, args.name, refusal.message);
         self.report.add(Fault::error(place, message).help(refusal.help));
-    }
-
-    /// Reads the textures that some entity refers to, and no others.
-    fn textures_can_be_read(&mut self, store: &Store, source: &Source<'_, '_>) {
-        if self.textures.is_empty() {
-            return;
-        }
-        let users =
-            self.objects.iter().map(|object| &object.args).chain(self.lights.iter().map(|light| &light.args));
-        let users = users.chain(&self.patterns);
-        let (mut used, mut memory) = (BTreeSet::new(), None);
-        for user in users {
-            used.extend(user.args_in(&mut memory).textures().map(str::to_owned));
-        }
-        for (order, texture) in &self.textures {
-            let args = store.args(*order);
-            if !used.contains(&args.name) {
-                continue;
-            }
-            let read = texture.load_within(self.texture_memory);
-            self.texture_memory -= texture.bytes().min(self.texture_memory);
-            if let Err(reason) = read {
-                let place = self.places.get(*order);
-                let is_told = self.report.tells(Severity::Error, &place);
-                let near = if is_told { texture.near() } else { None };
-                let reason =
-                    near.map_or(reason.to_owned(), |near| format!("it does not exist, but `{near}` does"));
-                let message = format!("the file of texture `{}` cannot be read: {reason}", args.name);
-                let mut files = args.values().filter(|(_, datum)| matches!(datum, Datum::Word(_)));
-                let file = files.next().map(|(file, _)| file.name());
-                let parsed = source.entity(self.registry, *order, &place);
-                let place = parsed.and_then(|parsed| place_of(args.entity, &parsed, file));
-                self.report.add(
-                    Fault::error(place, message).help(
-                        "a texture is a PPM or PNG file, and its name is relative to the scene's folder",
-                    ),
-                );
-            }
-        }
     }
 
     /// Returns the model, after reporting the faults that show only when the whole scene has been read.
@@ -450,14 +371,8 @@ fn item<T>(store: &Arc<Store>, (order, value): (usize, T)) -> Item<T> {
     Item { args: Record::new(store, order), value }
 }
 
-/// Returns an object, with the material that its record names.
-fn object(record: Record, Body { shape, shader }: Body) -> Option<Object> {
-    let material = record.material()?;
-    Some(Object { args: record, material, shape, shader })
-}
-
 /// Returns the place of an attribute with its values, or of the entity's name where the attribute is not given.
-fn place_of(entity: &'static Entity, parsed: &Parsed<'_>, attribute: Option<&str>) -> Place {
+pub(super) fn place_of(entity: &'static Entity, parsed: &Parsed<'_>, attribute: Option<&str>) -> Place {
     let known = |word: &Word<'_>| find_attribute(entity, &word.text).map(|known| known.name());
     let given = attribute
         .and_then(|attribute| parsed.attributes().rev().find(|(word, _)| known(word) == Some(attribute)));

@@ -1,6 +1,6 @@
 //! Constructs objects and lights, some at a time.
 
-use crate::scene::entity::{Args, Construct, Refusal};
+use crate::scene::entity::{Args, Construct, Entity, Refusal};
 use crate::scene::store::Store;
 use crate::scene::value::Datum;
 use crate::world::body::{AnyLight, Body};
@@ -11,6 +11,8 @@ use std::ops::Range;
 pub enum Made {
     Object(Body),
     Light(AnyLight),
+    /// An object that reads files, which is not constructed here.
+    ByFile,
 }
 
 /// Constructs the objects and lights among some entities, except for `patterns`, the objects that others refer to, and
@@ -23,8 +25,10 @@ pub fn made(
     // Where it has to grow, it leaves holes in memory between the shapes.
     let (mut made, mut memory) = (Vec::with_capacity(orders.len()), None);
     for order in orders {
+        let reads_files = store.sound(order).is_some_and(Entity::reads_files);
         let construct: &dyn Fn(&Args) -> Result<Made, Refusal> =
             match store.sound(order).map(|entity| entity.construct) {
+                Some(Construct::Object(_)) if reads_files => &|_| Ok(Made::ByFile),
                 Some(Construct::Object(construct)) => &move |args| construct(args).map(Made::Object),
                 Some(Construct::Light(construct)) => &move |args| construct(args).map(Made::Light),
                 _ => continue,

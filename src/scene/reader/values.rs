@@ -17,7 +17,7 @@ pub fn read(value_type: Type, words: &[Word<'_>]) -> Result<Datum, Vec<Fault>> {
     match value_type {
         Type::Whole => all(words, whole).map(Datum::Whole),
         Type::Number => all(words, number).map(Datum::Numbers),
-        Type::Word | Type::Name(_) => words.first().ok_or_else(Vec::new).and_then(text),
+        Type::Word | Type::File | Type::Name(_) => words.first().ok_or_else(Vec::new).and_then(text),
         Type::Formula => words.first().ok_or_else(Vec::new).and_then(formula),
         Type::Choice(choices) => words.first().ok_or_else(Vec::new).and_then(|word| choice(choices, word)),
     }

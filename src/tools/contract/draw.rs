@@ -10,6 +10,7 @@ use glam::DVec3;
 use image::RgbImage;
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
+use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
 
@@ -18,6 +19,13 @@ const TRIES: usize = 1000;
 
 /// An image for attributes that name one, in the folder of the drawn scenes.
 const PICTURE: &str = "picture.png";
+
+/// A triangle mesh for attributes that name a file, in the same folder: a tetrahedron, and a flap beside it.
+const MODEL: &str = "model.obj";
+
+/// The text of [`MODEL`].
+const TETRAHEDRON: &str = "v 0 0 0\nv 2 0 0.5\nv 0.25 2 0\nv 0 0.5 2\nv 3 3 1\n
+    f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\nf 2 5 3\n";
 
 const FORMULAS: [&str; 4] = ["2 + sin(y)", "1", "0.5 * y", "sqrt(abs(4 - y^2))"];
 
@@ -29,6 +37,7 @@ impl SceneFolder {
         let scenes = Self(TempDir::new().expect("room for a temporary folder"));
         let colours = RgbImage::from_fn(5, 4, |x, y| [50 * x as u8, 60 * y as u8, 255].into());
         colours.save(scenes.folder().join(PICTURE)).expect("room for a picture");
+        fs::write(scenes.folder().join(MODEL), TETRAHEDRON).expect("room for a mesh");
         scenes
     }
 
@@ -132,10 +141,11 @@ impl Draw {
                 Datum::Numbers((0..count).map(|_| sign(draw.number())).collect())
             }
             Type::Choice(choices) => Datum::Choice(draw.pick(&choices.all())),
-            Type::Word | Type::Name(_) | Type::Formula => Datum::Absent,
+            Type::Word | Type::File | Type::Name(_) | Type::Formula => Datum::Absent,
         };
         match attribute.value_type() {
             Type::Word => word(PICTURE),
+            Type::File => word(MODEL),
             Type::Name(kind) => word(name(kind)),
             Type::Formula => word(&format!("\"{}\"", self.pick(&FORMULAS))),
             _ => {

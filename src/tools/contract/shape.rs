@@ -123,7 +123,8 @@ impl Tried<'_> {
                 let (at, normal) = (ray.at(distance), shape.normal(ray.at(distance)));
                 let side = Side::seen_along(ray.dir, normal);
                 let turned = shape.is_two_sided() && side == Side::Inside;
-                let (one, many) = (if turned { -normal } else { normal }, normals.get(0));
+                let (one, many) =
+                    (shape.shading_normal(at, if turned { -normal } else { normal }), normals.get(0));
                 if !same_bits(one, many) && one.is_finite() {
                     return fault(format!("the normal {one} in single rays, and {many} in packets ({cpu})"));
                 }

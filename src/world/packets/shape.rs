@@ -398,7 +398,7 @@ kernels! {
             let normal;
             (sides[lane], cosines[lane], normal) = turned(ray.dir, shape.normal(point), is_two_sided);
             points.set(lane, point);
-            normals.set(lane, normal);
+            normals.set(lane, shape.shading_normal(point, normal));
             travelled[lane] += distances[lane];
         }
     }

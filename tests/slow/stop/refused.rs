@@ -13,7 +13,11 @@ const HELP: &str = " |\n = help: leave out `--resume` to start from the beginnin
 const TEXTURED: &str = "camera eye { pixeldim 640 480  worlddim 8 6  viewpoint 4 3 6 }
 material white { ambient 2 2 2 }
 texture bricks { filename bricks.png }
-texplane wall { material white  normal 0 0 1  point 0 0 -8  xdir 1 0 0  dimensions 8 6  texname bricks  mode 0 }";
+texplane wall { material white  normal 0 0 1  point 0 0 -8  xdir 1 0 0  dimensions 8 6  texname bricks  mode 0 }
+mesh lid { material white  file lid.obj }";
+
+/// A triangle behind the wall.
+const LID: &str = "v 0 0 -9\nv 1 0 -9\nv 0 1 -9\nf 1 2 3\n";
 
 #[test]
 fn what_differs_is_named() {
@@ -22,6 +26,7 @@ fn what_differs_is_named() {
     let copy = |from: &str, to: &str| fs::copy(scene(from), at(to)).expect("a copy");
     copy("textures/bricks.png", "bricks.png");
     fs::write(at("wall.ray"), TEXTURED).expect("a file");
+    fs::write(at("lid.obj"), LID).expect("a file");
     let args = ["wall.ray", "--samples", "144", "-o", "a.png"];
     stop_midway(&folder, &args);
     let checkpoint = bytes(&folder, "a.png.checkpoint");
@@ -49,6 +54,9 @@ fn what_differs_is_named() {
     bricks.save(at("bricks.png")).expect("a picture");
     refused(&args, "the image of texture `bricks` has changed");
     copy("textures/bricks.png", "bricks.png");
+    fs::write(at("lid.obj"), LID.replace("v 1", "v 1.5")).expect("a file");
+    refused(&args, "the file of mesh `lid` has changed");
+    fs::write(at("lid.obj"), LID).expect("a file");
 
     // A byte after the end of the program changes its file, but not what the system loads.
     let mut program = fs::read(tabray_path()).expect("the program's file");

@@ -1,0 +1,143 @@
+//! A mesh of triangles from a file.
+
+use crate::prelude::*;
+use crate::shapes::mesh::{Mesh, Painted, Placement, Surface, Unfit, read};
+use crate::text;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+static FILE: Pparm<PathBuf> =
+    Pparm::required("file", "an OBJ, PLY or STL file, relative to the scene's folder");
+static SCALE: Pparm<DVec3> = Pparm::or("scale", "the scale factors along the file's x, y and z", DVec3::ONE)
+    .must("other than 0 in each dimension", |scale: &DVec3| {
+        scale.to_array().iter().all(|factor| *factor != 0.0)
+    });
+static ROTATION: Pparm<DVec3> = Pparm::or(
+    "rotation",
+    "the angles by which the scaled mesh is rotated around x, then y, then z, counterclockwise",
+    DVec3::ZERO,
+)
+.unit("degrees");
+static TRANSLATION: Pparm<DVec3> =
+    Pparm::or("translation", "where the file's origin lies", DVec3::ZERO).unit("world coordinates");
+static SMOOTH: Pparm<i64> =
+    Pparm::or("smooth", "1 shades the mesh as if it were smooth, 0 shades each face flat", 0)
+        .must("0 or 1", |smooth| (0..=1).contains(smooth));
+
+const TABLE: Table = &[&FILE, &SCALE, &ROTATION, &TRANSLATION, &SMOOTH];
+
+inventory::submit! {
+    Entity::shape("mesh", "a surface of triangles from a file", &[TABLE], |args| {
+        let surface = Arc::new(surface(args)?);
+        let shape: AnyShape = match args.accuracy() {
+            Accuracy::Draft => Mesh::<Draft>::shape(surface.clone(), args.accuracy()).into(),
+            Accuracy::Strict => Mesh::<Strict>::shape(surface.clone(), args.accuracy()).into(),
+            _ => Mesh::<Exact>::shape(surface.clone(), args.accuracy()).into(),
+        };
+        let mut warnings: Vec<_> = degenerate(&surface).into_iter().collect();
+        let body = if surface.materials.is_empty() {
+            Body::plain(shape)
+        } else {
+            let materials = surface.materials.iter().map(|name| args.setting.materials.get(name).cloned()).collect();
+            let painted = Painted { surface: surface.clone(), materials };
+            warnings.extend(unknown(args, &painted));
+            warnings.extend(unlike(args, &painted));
+            Body::shaded(shape, painted)
+        };
+        Ok(Body { warnings, bytes: surface.bytes(), ..body })
+    })
+}
+
+/// Reads and places the surface.
+fn surface(args: &Args) -> Result<Surface, Refusal> {
+    let file = args.get(&FILE);
+    let refusal = |message, help| Refusal { attribute: Some("file"), message, help };
+    let model = read::read(&args.setting.folder.join(&file), args.setting.memory).map_err(|broken| {
+        let read::Broken { at, message } = broken;
+        let place = at.map_or(String::new(), |at| format!(", {at}"));
+        refusal(
+            format!("has a file that cannot be read, `{}`{place}: {message}", file.display()),
+            "a mesh is an OBJ, PLY or STL file, and its name is relative to the scene's folder",
+        )
+    })?;
+    let placement = Placement::new(args.get(&SCALE), args.get(&ROTATION), args.get(&TRANSLATION));
+    Surface::new(model, &placement, args.get(&SMOOTH) == 1).map_err(|unfit| match unfit {
+        Unfit::TooLarge => refusal(
+            "has coordinates so large that their squares overflow".to_owned(),
+            "the coordinates in the world must not exceed 1e152",
+        ),
+        Unfit::TooMany => refusal("has more than 2^28 faces".to_owned(), "split it into several meshes"),
+        Unfit::NoArea => {
+            refusal("has no face with an area".to_owned(), "the corners of a face must not lie on one line")
+        }
+    })
+}
+
+fn degenerate(surface: &Surface) -> Option<Warning> {
+    let count = surface.degenerate;
+    (count > 0).then(|| Warning {
+        attribute: "file",
+        message: format!("leaves out {} without an area", text::count(count, "face")),
+        help: "the corners of such a face lie on one line: no ray hits it".to_owned(),
+    })
+}
+
+/// Warns of materials that the scene does not have.
+fn unknown(args: &Args, painted: &Painted) -> Option<Warning> {
+    let known = &args.setting.materials;
+    let unknown: Vec<_> =
+        painted.surface.materials.iter().filter(|name| !known.contains_key(*name)).collect();
+    let first = unknown.first()?;
+    let near = text::nearest(first, known.keys().map(String::as_str));
+    let guess = near.map_or(String::new(), |near| format!(" (did you mean `{near}`?)"));
+    Some(Warning {
+        attribute: "file",
+        message: format!(
+            "names {} that the scene does not have: {}{guess}",
+            text::count(unknown.len(), "material"),
+            some(&unknown)
+        ),
+        help: "define a material of each name; until then these faces have the material of the mesh"
+            .to_owned(),
+    })
+}
+
+/// Warns of materials whose shininess or transparency differs from that of the mesh, which are those of all its faces.
+fn unlike(args: &Args, painted: &Painted) -> Option<Warning> {
+    let own = args.values().find_map(|(_, datum)| match datum {
+        Datum::Material { material, .. } => Some(material),
+        _ => None,
+    })?;
+    let is_unlike = |material: &Material| {
+        material.shininess != own.shininess || material.transparency != own.transparency
+    };
+    let named = painted.surface.materials.iter().zip(&painted.materials);
+    let unlike =
+        named.filter(|(_, material)| material.as_deref().is_some_and(is_unlike)).map(|(name, _)| name);
+    let unlike: Vec<_> = unlike.collect();
+    (!unlike.is_empty()).then(|| Warning {
+        attribute: "material",
+        message: format!(
+            "has faces whose material is as shiny and transparent as that of the mesh: {}",
+            some(&unlike)
+        ),
+        help:
+            "only the ambient, diffuse and specular colours differ from face to face: make a mesh of its own"
+                .to_owned(),
+    })
+}
+
+/// Lists the first few names.
+fn some(names: &[&String]) -> String {
+    const FEW: usize = 5;
+    let listed = text::list(
+        names
+            .iter()
+            .take(FEW)
+            .map(|name| text::abridged(name))
+            .collect::<Vec<_>>()
+            .iter()
+            .map(|name| &**name),
+    );
+    if names.len() > FEW { format!("{listed} and {} more", names.len() - FEW) } else { listed }
+}

@@ -1,0 +1,93 @@
+//! Constructs the objects and the lights of a scene, which may ask for what the whole scene has.
+
+use super::check::{Check, PIECE, Source, TOGETHER, place_of};
+use super::fault::Fault;
+use super::made::{Made, made};
+use crate::scene::entity::{Args, Construct, Refusal};
+use crate::scene::model::{Item, Object};
+use crate::scene::store::{Record, Store};
+use crate::scene::value::Datum;
+use crate::world::body::{Body, Warning};
+use std::mem::take;
+use std::sync::Arc;
+
+impl Check<'_, '_> {
+    /// Constructs the objects and the lights. Those that read files, and those that others refer to, are constructed one
+    /// after the other: the memory that one takes is not left for the next, and one may refer to another before it.
+    pub fn construct_waiting(&mut self, source: &Source<'_, '_>) -> Arc<Store> {
+        let materials = self
+            .materials
+            .iter()
+            .map(|(order, material)| (self.store.name(*order).to_owned(), material.clone()));
+        Arc::make_mut(&mut self.setting).materials = Arc::new(materials.collect());
+        self.store.setting = self.setting.clone();
+        let store = Arc::new(take(&mut self.store));
+        let patterns = self.names.patterns();
+        self.names.forget();
+        for (order, datum) in &patterns {
+            let Datum::Object { body, .. } = datum else { continue };
+            let args = store.args(*order);
+            if store.sound(*order).is_some()
+                && !args.refers_to_nothing()
+                && let Some(made) = self.body(args, source)
+            {
+                body.set(made);
+            }
+            self.patterns.push(Item { args: Record::new(&store, *order), value: body.clone() });
+        }
+        for start in (0..store.len()).step_by(8 * TOGETHER) {
+            let orders = start..store.len().min(start + 8 * TOGETHER);
+            let made = self.threads.map(orders.len().div_ceil(PIECE), |piece| {
+                let start = start + piece * PIECE;
+                made(&store, start..orders.end.min(start + PIECE), &patterns)
+            });
+            for (order, made) in made.into_iter().flatten() {
+                let record = Record::new(&store, order);
+                match made {
+                    Ok(Made::Object(body)) => self.objects.extend(object(record, body)),
+                    Ok(Made::ByFile) => {
+                        let body = self.body(record.args(), source);
+                        self.objects.extend(body.and_then(|body| object(record, body)));
+                    }
+                    Ok(Made::Light(light)) => self.lights.push(Item { args: record, value: light }),
+                    Err(refusal) => self.refused(&record.args(), refusal, source),
+                }
+            }
+        }
+        self.objects.shrink_to_fit();
+        store
+    }
+
+    /// Constructs the body of an object within the memory that is left, and reports a refusal or warnings.
+    fn body(&mut self, mut args: Args, source: &Source<'_, '_>) -> Option<Body> {
+        let Construct::Object(construct) = args.entity.construct else { return None };
+        args.setting = self.setting.clone();
+        for file in args.files() {
+            self.report.add_file(self.setting.folder.join(file));
+        }
+        let body = construct(&args).map_err(|refusal| self.refused(&args, refusal, source)).ok()?;
+        for Warning { attribute, message, help } in &body.warnings {
+            let parsed = source.entity(self.registry, args.order, &self.places.get(args.order));
+            let place = parsed.and_then(|parsed| place_of(args.entity, &parsed, Some(attribute)));
+            let message = format!("{} `{}` {message}", args.entity.name, args.name);
+            self.report.add(Fault::warning(place, message).help(help));
+        }
+        if body.bytes > 0 {
+            let setting = Arc::make_mut(&mut self.setting);
+            setting.memory = setting.memory.saturating_sub(body.bytes);
+            self.texture_memory = self.texture_memory.min(setting.memory);
+        }
+        Some(body)
+    }
+
+    fn refused(&mut self, args: &Args, refusal: Refusal, source: &Source<'_, '_>) {
+        let parsed = source.entity(self.registry, args.order, &self.places.get(args.order));
+        self.refuse(parsed.as_deref(), args, refusal);
+    }
+}
+
+/// Returns an object, with the material that its record names.
+fn object(record: Record, Body { shape, shader, .. }: Body) -> Option<Object> {
+    let material = record.material()?;
+    Some(Object { args: record, material, shape, shader })
+}

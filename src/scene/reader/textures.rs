@@ -1,0 +1,48 @@
+//! Reads the images of textures.
+
+use super::check::{Check, Source, place_of};
+use super::fault::{Fault, Severity};
+use crate::scene::store::Store;
+use crate::scene::value::Datum;
+use std::collections::BTreeSet;
+
+impl Check<'_, '_> {
+    /// Reads the textures that some entity refers to, and no others.
+    pub fn textures_can_be_read(&mut self, store: &Store, source: &Source<'_, '_>) {
+        if self.textures.is_empty() {
+            return;
+        }
+        let users =
+            self.objects.iter().map(|object| &object.args).chain(self.lights.iter().map(|light| &light.args));
+        let users = users.chain(self.patterns.iter().map(|pattern| &pattern.args));
+        let (mut used, mut memory) = (BTreeSet::new(), None);
+        for user in users {
+            used.extend(user.args_in(&mut memory).textures().map(str::to_owned));
+        }
+        for (order, texture) in &self.textures {
+            let args = store.args(*order);
+            if !used.contains(&args.name) {
+                continue;
+            }
+            let read = texture.load_within(self.texture_memory);
+            self.texture_memory -= texture.bytes().min(self.texture_memory);
+            if let Err(reason) = read {
+                let place = self.places.get(*order);
+                let is_told = self.report.tells(Severity::Error, &place);
+                let near = if is_told { texture.near() } else { None };
+                let reason =
+                    near.map_or(reason.to_owned(), |near| format!("it does not exist, but `{near}` does"));
+                let message = format!("the file of texture `{}` cannot be read: {reason}", args.name);
+                let mut files = args.values().filter(|(_, datum)| matches!(datum, Datum::Word(_)));
+                let file = files.next().map(|(file, _)| file.name());
+                let parsed = source.entity(self.registry, *order, &place);
+                let place = parsed.and_then(|parsed| place_of(args.entity, &parsed, file));
+                self.report.add(
+                    Fault::error(place, message).help(
+                        "a texture is a PPM or PNG file, and its name is relative to the scene's folder",
+                    ),
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,402 @@
+//! First hits of rays with a mesh: brackets in plain arithmetic, distances, and proofs.
+
+use super::face::{Face, Leaving, nearest_point, t_bounds};
+use super::surface::Surface;
+use super::traversal::Faces;
+use crate::geometry::aabb::Aabb;
+use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
+use crate::geometry::sight::{Line, Sight};
+use crate::numeric::interval::{Float, Interval, Wide};
+use crate::numeric::scalar::Scalar;
+use crate::shapes::triangle::Triangle;
+use crate::world::accuracy::Bounded;
+use crate::world::certify::{self, Enclosure, Precision};
+use crate::world::coincidence::CLOSE;
+use f256::f256;
+use glam::DVec3;
+use std::ops::Range;
+
+/// The search for a bracket of a ray's first hit.
+struct Nearest<'s> {
+    surface: &'s Surface,
+    ray: &'s Ray,
+    range: &'s RayRange,
+    leaving: Leaving,
+    /// Whether any certain hit ends the search.
+    is_any: bool,
+    /// The smallest upper bound of a certain hit's distance so far.
+    far: f64,
+    /// The smallest lower bound of a hit's distance, and its face; and the second smallest.
+    near: (f64, usize),
+    second: f64,
+    /// The smallest lower bound of an uncertain hit's distance.
+    doubtful: f64,
+}
+
+impl Faces for Nearest<'_> {
+    #[inline(always)]
+    fn visit(&mut self, faces: Range<usize>) -> f64 {
+        for face in faces {
+            let Bracket { near, far } =
+                t_bounds(self.surface.corners(face), self.ray, self.range, self.leaving);
+            if near == MISS {
+                continue;
+            }
+            if near < self.near.0 {
+                self.second = self.near.0;
+                self.near = (near, face);
+            } else if near < self.second {
+                self.second = near;
+            }
+            if far == MISS {
+                self.doubtful = self.doubtful.min(near);
+            } else if far < self.far {
+                self.far = far;
+                if self.is_any {
+                    return -1.0;
+                }
+            }
+        }
+        self.far
+    }
+}
+
+/// The triangle of the face that the last ray hit: neighbouring rays often hit the same, and its normal takes many
+/// digits.
+pub(super) struct Last<A>(Option<(usize, Triangle<A>)>);
+
+impl<A: Bounded> Last<A> {
+    pub(super) fn none() -> Self {
+        Self(None)
+    }
+
+    /// Returns the triangle of a face.
+    #[inline(always)]
+    pub(super) fn triangle(&mut self, surface: &Surface, face: usize) -> &Triangle<A> {
+        if self.0.as_ref().is_none_or(|(last, _)| *last != face) {
+            self.0 = Some((face, surface.triangle(face)));
+        }
+        let (_, triangle) = self.0.as_ref().expect("a triangle");
+        triangle
+    }
+}
+
+/// What is known of a ray's first hit.
+pub(super) enum Known {
+    /// A bracket of the distance.
+    Bracket(Bracket),
+    /// The ray certainly hits this face first.
+    Face(usize, Bracket),
+}
+
+impl Surface {
+    /// Finds a bracket of a ray's first hit in a range. If `is_any`, any certain hit in the range will do.
+    #[inline(always)]
+    pub(super) fn first(&self, ray: &Ray, range: &RayRange, leaving: Leaving, is_any: bool) -> Known {
+        let mut nearest = Nearest {
+            surface: self,
+            ray,
+            range,
+            leaving,
+            is_any,
+            far: MISS,
+            near: (MISS, 0),
+            second: MISS,
+            doubtful: MISS,
+        };
+        self.tree.along(ray, range.far, &mut nearest);
+        let Nearest { far, near: (near, face), second, doubtful, .. } = nearest;
+        if doubtful < far {
+            // A certain hit behind an uncertain one does not make the nearer one certain.
+            return Known::Bracket(Bracket { near, far: if is_any && far < MISS { far } else { MISS } });
+        }
+        let bracket = Bracket { near, far };
+        if far < MISS && far < second && !is_any {
+            Known::Face(face, bracket)
+        } else {
+            Known::Bracket(bracket)
+        }
+    }
+
+    /// Returns the bracket of a ray's first hit in a range: of width 0, where plain arithmetic finds the distance.
+    #[inline(always)]
+    pub(super) fn bracket<A: Bounded>(
+        &self,
+        ray: &Ray,
+        range: &RayRange,
+        leaving: Leaving,
+        last: &mut Last<A>,
+    ) -> Bracket {
+        let (distance, bracket) = match self.first(ray, range, leaving, false) {
+            Known::Face(face, bracket) => (last.triangle(self, face).plane.quick_crossing(ray), bracket),
+            Known::Bracket(bracket) if bracket.far < MISS => {
+                (self.refined::<A>(ray, range, leaving, bracket), bracket)
+            }
+            Known::Bracket(bracket) => return bracket,
+        };
+        if distance.is_nan() {
+            return bracket;
+        }
+        let distance = distance.clamp(bracket.near, bracket.far);
+        let close = if range.far < MISS { CLOSE * range.far } else { 0.0 };
+        // At the distance of another surface, the bracket is widened, so that more digits decide which comes first.
+        if (distance - range.far).abs() <= close {
+            return Bracket { near: distance - close, far: distance + close };
+        }
+        Bracket::exactly(distance)
+    }
+
+    /// Returns the distance of a certain hit with a bracket, or NaN where it takes more than plain arithmetic.
+    #[inline(never)]
+    pub(super) fn refined<A: Bounded>(
+        &self,
+        ray: &Ray,
+        range: &RayRange,
+        leaving: Leaving,
+        bracket: Bracket,
+    ) -> f64 {
+        let mut first = MISS;
+        let far = bracket.far.next_up();
+        self.each(ray, &RayRange { far, ..*range }, leaving, |face, _| {
+            let distance = self.triangle::<A>(face).plane.quick_crossing(ray);
+            first = if distance < first || distance.is_nan() { distance } else { first };
+            far
+        });
+        first
+    }
+
+    /// Calls a function with each face that a ray may hit in a range, and with the bracket of its distance. The
+    /// function returns the distance beyond which no more faces matter.
+    fn each(&self, ray: &Ray, range: &RayRange, leaving: Leaving, call: impl FnMut(usize, Bracket) -> f64) {
+        struct Each<'s, F> {
+            surface: &'s Surface,
+            ray: &'s Ray,
+            range: &'s RayRange,
+            leaving: Leaving,
+            call: F,
+            far: f64,
+        }
+        impl<F: FnMut(usize, Bracket) -> f64> Faces for Each<'_, F> {
+            #[inline(always)]
+            fn visit(&mut self, faces: Range<usize>) -> f64 {
+                for face in faces {
+                    let bracket = t_bounds(self.surface.corners(face), self.ray, self.range, self.leaving);
+                    if bracket.near < MISS {
+                        self.far = (self.call)(face, bracket);
+                    }
+                }
+                self.far
+            }
+        }
+        let far = range.far;
+        self.tree.along(ray, far, &mut Each { surface: self, ray, range, leaving, call, far });
+    }
+
+    /// Returns the distance of a ray's first hit in a range, decided for the ray as it is rounded; [`MISS`] for none.
+    /// The ray leaves the faces within `leaves` world units of its origin; negative where it leaves none.
+    pub(super) fn distance<A: Bounded>(&self, ray: &Ray, range: &RayRange, leaves: f64) -> f64 {
+        let mut first = MISS;
+        self.each(ray, range, NOTHING, |face, _| {
+            let triangle = self.triangle::<A>(face);
+            if leaves < 0.0 || !touches(&triangle, ray.origin, leaves) {
+                let distance = range.keep(triangle.plane.crossing(ray));
+                if distance < first && triangle.is_passed_by(ray) {
+                    first = distance;
+                }
+            }
+            // Brackets are bounds of rounded distances too, but for the last bits.
+            if first < MISS { first * (1.0 + CLOSE) } else { range.far }
+        });
+        first
+    }
+
+    /// Returns the face that a ray hits at a distance in world units: of several that hold the point up to rounding, the
+    /// first in the file whose outside the ray hits, if there is any. At the outline of a closed mesh, a face whose
+    /// inside is hit would show light from within.
+    #[inline(always)]
+    pub(super) fn face_along(&self, ray: &Ray, distance: f64) -> usize {
+        let close = CLOSE * (distance + ray.origin.abs().max_element());
+        let (mut only, mut count) = (0, 0);
+        let range = RayRange { far: distance + close, ..RayRange::ALL };
+        self.each(ray, &range, NOTHING, |face, bracket| {
+            if bracket.far >= distance - close {
+                (only, count) = (face, count + 1);
+            }
+            range.far
+        });
+        if count == 1 {
+            only
+        } else {
+            self.first_at(ray.at(distance), |face| self.is_outside_hit(face, ray.dir))
+        }
+    }
+
+    /// Returns the face that is nearest to a point; of several, up to rounding, the first in the file.
+    pub(super) fn face_at(&self, at: DVec3) -> usize {
+        self.first_at(at, |_| true)
+    }
+
+    /// Tells whether a ray along a direction hits the outside of a face, in plain arithmetic.
+    fn is_outside_hit(&self, face: usize, dir: DVec3) -> bool {
+        let [a, b, c] = self.corners(face);
+        // An open mesh is lit on one side, and shows nothing of the other.
+        self.open_edges > 0 || (b - a).cross(c - a).dot(dir) < 0.0
+    }
+
+    /// Returns the face that is nearest to a point; of several, up to rounding, the first in the file among those that
+    /// are preferred, or else among all.
+    fn first_at(&self, at: DVec3, is_preferred: impl Fn(usize) -> bool) -> usize {
+        let rounding = 8.0 * f64::EPSILON * (at.abs().max_element() + self.reach());
+        let (distance, face) = self.nearest(at);
+        let within = distance + rounding;
+        let mut first = face;
+        self.near(at, within, |face, distance| {
+            let place = |face: usize| (!is_preferred(face), self.order[face]);
+            if distance <= within && place(face) < place(first) {
+                first = face;
+            }
+            within
+        });
+        first
+    }
+
+    /// Returns the distance of the nearest face to a point in world units, and the face.
+    pub(super) fn nearest(&self, at: DVec3) -> (f64, usize) {
+        // Most points are on the surface: few boxes are so near.
+        for within in [CLOSE * (at.abs().max_element() + self.reach()), MISS] {
+            let mut best = (within, None);
+            self.near(at, within, |face, distance| {
+                if distance < best.0 {
+                    best = (distance, Some(face));
+                }
+                best.0
+            });
+            if let (distance, Some(face)) = best {
+                return (distance, face);
+            }
+        }
+        // The point is not finite.
+        (MISS, 0)
+    }
+
+    /// Calls a function with each face that may be within a distance of a point, and with its distance, in world units.
+    /// The function returns the distance beyond which no more faces matter.
+    fn near(&self, at: DVec3, within: f64, call: impl FnMut(usize, f64) -> f64) {
+        struct Near<'s, F> {
+            surface: &'s Surface,
+            at: DVec3,
+            within: f64,
+            call: F,
+        }
+        impl<F: FnMut(usize, f64) -> f64> Faces for Near<'_, F> {
+            fn visit(&mut self, faces: Range<usize>) -> f64 {
+                for face in faces {
+                    let distance = nearest_point(self.surface.corners(face), self.at).distance(self.at);
+                    self.within = (self.call)(face, distance);
+                }
+                self.within
+            }
+        }
+        self.tree.around(at, within, &mut Near { surface: self, at, within, call });
+    }
+
+    /// Tells whether a point is on a face, up to an error in world units and to rounding.
+    pub(super) fn touches<A: Bounded>(&self, at: DVec3, error: f64) -> bool {
+        struct Touched<'s, F> {
+            surface: &'s Surface,
+            touches: F,
+            within: f64,
+            any: bool,
+        }
+        impl<F: Fn([DVec3; 3]) -> bool> Faces for Touched<'_, F> {
+            fn visit(&mut self, mut faces: Range<usize>) -> f64 {
+                self.any |= faces.any(|face| (self.touches)(self.surface.corners(face)));
+                if self.any { -1.0 } else { self.within }
+            }
+        }
+        let error_there = error + 8.0 * f64::EPSILON * at.abs().max_element();
+        let touches = |corners: [DVec3; 3]| {
+            Triangle::<A>::new(corners).is_some_and(|triangle| touches(&triangle, at, error))
+        };
+        let mut touched = Touched { surface: self, touches, within: error_there, any: false };
+        self.tree.around(at, error_there, &mut touched);
+        touched.any
+    }
+
+    /// Returns what is certain about a ray's first hit.
+    pub(super) fn certify<A: Bounded>(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        let line = sight.line::<Interval>();
+        let end = std::cell::Cell::new(f256::INFINITY);
+        let mut met = Vec::new();
+        self.tree.within(
+            |bounds| entry(&line, bounds).is_some_and(|entry| f256::from(entry) <= end.get()),
+            |faces| {
+                for face in faces {
+                    let enclosure = certify::first_hit(&Face(self.triangle::<A>(face)), sight, precision);
+                    let low = match enclosure {
+                        Enclosure::Misses => continue,
+                        Enclosure::Hits(at) => {
+                            end.set(Float::min(end.get(), at.high));
+                            at.low
+                        }
+                        Enclosure::Edge(at) => at.low,
+                        Enclosure::Doubtful(low) => low,
+                    };
+                    met.push((low, enclosure));
+                }
+            },
+        );
+        let end = end.get();
+        met.retain(|(low, _)| *low <= end);
+        let first = met.iter().copied().reduce(|one, other| if other.0 < one.0 { other } else { one });
+        match first {
+            None => Enclosure::Misses,
+            // It is hit there, or a certain hit overlaps it: then the first hit is in both together.
+            Some((low, Enclosure::Edge(at) | Enclosure::Hits(at))) if end <= at.high => {
+                Enclosure::Hits(Wide { low, high: end })
+            }
+            Some((_, first)) => first,
+        }
+    }
+
+    /// Returns the exact triangle of a face.
+    #[inline(always)]
+    pub(super) fn triangle<A: Bounded>(&self, face: usize) -> Triangle<A> {
+        let corners = self.corners(face);
+        Triangle::new(corners).expect("faces without an area are left out")
+    }
+
+    /// Returns the largest magnitude of a coordinate, in world units.
+    pub(super) fn reach(&self) -> f64 {
+        self.bounds.low.abs().max(self.bounds.high.abs()).max_element()
+    }
+}
+
+/// What a ray leaves that starts on no face.
+pub(super) const NOTHING: Leaving = Leaving { least: -1.0, most: -1.0 };
+
+/// Tells whether a point is on a face, up to an error in world units and to rounding.
+fn touches<A: Bounded>(triangle: &Triangle<A>, at: DVec3, error: f64) -> bool {
+    let Aabb { low, high } = Aabb::around(&triangle.corners);
+    let beside = error + 4.0 * f64::EPSILON * at.abs().max_element();
+    (low - beside).cmple(at).all() && at.cmple(high + beside).all() && triangle.plane.touches(at, error)
+}
+
+/// Returns a lower bound of the distance at which a line enters a box, from 0 on; `None` where it misses the box.
+fn entry(line: &Line<Interval>, bounds: &Aabb) -> Option<f64> {
+    let (mut from, mut to) = (0.0_f64, f64::INFINITY);
+    for axis in 0..3 {
+        let (origin, dir) = (line.origin[axis], line.dir[axis]);
+        let (low, high) = (Interval::constant(bounds.low[axis]), Interval::constant(bounds.high[axis]));
+        if dir.has_zero() {
+            if dir.is_zero() && (origin.high < low.low || origin.low > high.high) {
+                return None;
+            }
+            continue;
+        }
+        let (one, other) = ((low - origin) / dir, (high - origin) / dir);
+        from = from.max(one.low.min(other.low));
+        to = to.min(one.high.max(other.high));
+    }
+    (from <= to).then_some(from)
+}

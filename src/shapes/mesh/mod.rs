@@ -1,0 +1,25 @@
+//! Meshes: surfaces of triangles from a file.
+//!
+//! Vertices are placed in the world and rounded once, when the file is read. The triangles through the rounded vertices
+//! are the surface: an edge belongs to the faces on both of its sides, so that no ray falls through between them. First
+//! hits are found face by face as those of single triangles are, in plain arithmetic with bounds of its errors, and in
+//! more digits where the bounds leave open which face is hit, or whether any is. Of faces at the same distance the first
+//! in the file is hit.
+
+mod face;
+mod hits;
+mod painted;
+mod placement;
+pub mod read;
+mod shape;
+mod smooth;
+mod surface;
+#[cfg(test)]
+mod tests;
+mod traversal;
+mod tree;
+
+pub use painted::Painted;
+pub use placement::Placement;
+pub use shape::Mesh;
+pub use surface::{Surface, Unfit};

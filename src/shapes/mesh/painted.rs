@@ -1,0 +1,52 @@
+//! The materials of a mesh whose file names them.
+
+use super::surface::Surface;
+use crate::world::material::{Look, Material, Rgb};
+use crate::world::shader::Shader;
+use glam::DVec3;
+use std::sync::Arc;
+
+/// The colours of a mesh whose faces have materials of their own.
+///
+/// A face is chosen by the point alone: at an edge, where two materials meet, it may be that of the neighbouring face.
+pub struct Painted {
+    /// The surface.
+    pub surface: Arc<Surface>,
+    /// The materials in the order of the file's names; `None` for the material of the mesh itself.
+    pub materials: Vec<Option<Arc<Material>>>,
+}
+
+impl Painted {
+    /// Returns the material at a point; `own` is that of the mesh itself.
+    fn at<'m>(&'m self, own: &'m Material, at: DVec3) -> &'m Material {
+        let slot = usize::from(self.surface.slots[self.surface.face_at(at)]);
+        slot.checked_sub(1).and_then(|index| self.materials[index].as_deref()).unwrap_or(own)
+    }
+}
+
+impl Shader for Painted {
+    fn ambient(&self, material: &Material, at: DVec3) -> Rgb {
+        self.at(material, at).ambient
+    }
+
+    fn diffuse(&self, material: &Material, at: DVec3) -> Rgb {
+        self.at(material, at).diffuse
+    }
+
+    fn specular(&self, material: &Material, at: DVec3) -> Rgb {
+        self.at(material, at).specular
+    }
+
+    /// The largest of all materials, if none has a negative diffuse colour.
+    fn brightest(&self, material: &Material) -> Option<Look> {
+        let all = || self.materials.iter().flatten().map(|material| &**material).chain([material]);
+        let most =
+            |of: fn(&Material) -> Rgb| all().fold(Rgb::ZERO, |most, material| most.max(of(material).abs()));
+        let is_plain = all().all(|material| material.diffuse.min_element() >= 0.0);
+        is_plain.then(|| Look {
+            ambient: most(|material| material.ambient),
+            diffuse: most(|material| material.diffuse),
+            specular: most(|material| material.specular),
+        })
+    }
+}

@@ -1,0 +1,50 @@
+//! Where a mesh is placed: scaled, rotated and moved.
+
+use glam::{DMat3, DVec3};
+
+/// A scaling along the axes, followed by a rotation and a translation.
+#[derive(Clone, Copy, Debug)]
+pub struct Placement {
+    /// Rotation and scale.
+    linear: DMat3,
+    translation: DVec3,
+    /// Whether there is neither a rotation nor a scale, so that coordinates stay as they are.
+    is_plain: bool,
+}
+
+impl Placement {
+    /// Makes a placement. `rotation` holds the angles in degrees by which the mesh is rotated around the x, then the y
+    /// and then the z axis, counterclockwise as seen from the axis's end.
+    pub fn new(scale: DVec3, rotation: DVec3, translation: DVec3) -> Self {
+        let [x, y, z] = rotation.to_array().map(sin_cos);
+        let around_x = DMat3::from_cols(DVec3::X, DVec3::new(0.0, x.1, x.0), DVec3::new(0.0, -x.0, x.1));
+        let around_y = DMat3::from_cols(DVec3::new(y.1, 0.0, -y.0), DVec3::Y, DVec3::new(y.0, 0.0, y.1));
+        let around_z = DMat3::from_cols(DVec3::new(z.1, z.0, 0.0), DVec3::new(-z.0, z.1, 0.0), DVec3::Z);
+        let linear = around_z * around_y * around_x * DMat3::from_diagonal(scale);
+        Self { linear, translation, is_plain: linear == DMat3::IDENTITY }
+    }
+
+    /// Transforms a point of a file to world coordinates.
+    pub fn place(&self, at: DVec3) -> DVec3 {
+        let turned = if self.is_plain { at } else { self.linear * at };
+        // The sum makes -0 to 0, so that equal coordinates have equal bits.
+        turned + self.translation + 0.0
+    }
+
+    /// Tells whether the mesh is mirrored, so that its faces turn the other way.
+    pub fn is_mirrored(&self) -> bool {
+        self.linear.determinant() < 0.0
+    }
+}
+
+/// Returns the sine and the cosine of an angle in degrees, exact for multiples of 90.
+fn sin_cos(degrees: f64) -> (f64, f64) {
+    let turned = degrees.rem_euclid(360.0);
+    match turned {
+        0.0 => (0.0, 1.0),
+        90.0 => (1.0, 0.0),
+        180.0 => (0.0, -1.0),
+        270.0 => (-1.0, 0.0),
+        _ => (libm::sin(turned.to_radians()), libm::cos(turned.to_radians())),
+    }
+}

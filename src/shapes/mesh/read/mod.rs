@@ -1,0 +1,59 @@
+//! Files of triangle meshes: OBJ, PLY and STL.
+
+mod model;
+mod obj;
+mod ply;
+mod stl;
+#[cfg(test)]
+mod tests;
+
+pub use model::{At, Broken, Model};
+
+use crate::files;
+use crate::text;
+use bytesize::ByteSize;
+use std::io::{self, Read};
+use std::path::Path;
+
+/// About the bytes of memory that a mesh takes, at most, for each byte of its file while it is read and its tree is
+/// built: a face of a binary PLY has 13 bytes, and takes about 100.
+const BYTES_PER_BYTE: u64 = 8;
+
+/// Reads a file by the format of its name or, if that names none, by how it begins. Takes no more memory than so many
+/// bytes, roughly.
+///
+/// # Errors
+/// What is wrong, and where.
+pub fn read(path: &Path, memory: u64) -> Result<Model, Broken> {
+    let cannot = |error: io::Error| {
+        let is_missing = error.kind() == io::ErrorKind::NotFound;
+        let near = if is_missing { text::nearest_file(path) } else { None };
+        let reason =
+            near.map_or(text::reason(&error), |near| format!("it does not exist, but `{near}` does"));
+        Broken::file(reason)
+    };
+    let mut file = files::open(path).map_err(cannot)?;
+    let size = file.metadata().map_err(cannot)?.len();
+    if size.saturating_mul(BYTES_PER_BYTE) > memory {
+        return Err(Broken::file(format!(
+            "it has {}, which may take more than the {} of memory that are left",
+            ByteSize(size),
+            ByteSize(memory)
+        )));
+    }
+    let mut bytes = Vec::with_capacity(size as usize);
+    file.by_ref().take(size).read_to_end(&mut bytes).map_err(cannot)?;
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_lowercase();
+    let model = match (ending.as_str(), &bytes[..]) {
+        ("obj", bytes) => obj::read(bytes),
+        ("stl", bytes) => stl::read(bytes),
+        ("ply", bytes) | (_, bytes @ [b'p', b'l', b'y', b'\r' | b'\n', ..]) => ply::read(bytes),
+        _ => {
+            return Err(Broken::file("its name does not end in `.obj`, `.ply` or `.stl`"));
+        }
+    }?;
+    if model.faces.is_empty() {
+        return Err(Broken::file("it has no faces"));
+    }
+    Ok(model)
+}

@@ -1,0 +1,210 @@
+//! What readers make of files, sound and broken.
+
+use super::{At, Broken, Model, obj, ply, stl};
+use glam::DVec3;
+use proptest::prelude::*;
+
+const CORNERS: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.5], [0.25, 1.0, 0.0], [0.0, 0.5, 2.0]];
+const FACES: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+
+fn tetrahedron() -> Model {
+    Model { vertices: CORNERS.map(DVec3::from).to_vec(), faces: FACES.to_vec(), ..Model::default() }
+}
+
+fn obj_text() -> String {
+    let vertices = CORNERS.iter().map(|[x, y, z]| format!("v {x} {y} {z}\n"));
+    let faces = FACES.iter().map(|[a, b, c]| format!("f {} {} {}\n", a + 1, b + 1, c + 1));
+    vertices.chain(faces).collect()
+}
+
+fn ply_header(format: &str) -> String {
+    format!(
+        "ply\nformat {format} 1.0\ncomment made by a test\nelement vertex 4\nproperty double x\nproperty float y\n\
+         property double z\nproperty uchar red\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n"
+    )
+}
+
+fn ply_text() -> String {
+    let vertices = CORNERS.iter().map(|[x, y, z]| format!("{x} {y} {z} 255\n"));
+    let faces = FACES.iter().map(|[a, b, c]| format!("3 {a} {b} {c}\n"));
+    ply_header("ascii") + &vertices.chain(faces).collect::<String>()
+}
+
+fn ply_bytes(is_big: bool) -> Vec<u8> {
+    let mut bytes =
+        ply_header(if is_big { "binary_big_endian" } else { "binary_little_endian" }).into_bytes();
+    let mut put = |of: Vec<u8>| bytes.extend(if is_big { of.into_iter().rev().collect() } else { of });
+    for [x, y, z] in CORNERS {
+        put(x.to_le_bytes().to_vec());
+        put((y as f32).to_le_bytes().to_vec());
+        put(z.to_le_bytes().to_vec());
+        put(vec![255]);
+    }
+    for face in FACES {
+        put(vec![3]);
+        face.iter().for_each(|corner| put(corner.to_le_bytes().to_vec()));
+    }
+    bytes
+}
+
+fn stl_text() -> String {
+    let vertex = |corner: &u32| {
+        let [x, y, z] = CORNERS[*corner as usize];
+        format!("vertex {x} {y} {z}\n")
+    };
+    let facet = |face: &[u32; 3]| {
+        let vertices: String = face.iter().map(vertex).collect();
+        format!("facet normal 0 0 0\nouter loop\n{vertices}endloop\nendfacet\n")
+    };
+    format!("solid tetrahedron\n{}endsolid tetrahedron\n", FACES.iter().map(facet).collect::<String>())
+}
+
+fn stl_bytes(title: &str) -> Vec<u8> {
+    let mut bytes = title.as_bytes().to_vec();
+    bytes.resize(80, b' ');
+    bytes.extend(4_u32.to_le_bytes());
+    for face in FACES {
+        bytes.extend([0; 12]);
+        for part in face.iter().flat_map(|corner| CORNERS[*corner as usize]) {
+            bytes.extend((part as f32).to_le_bytes());
+        }
+        bytes.extend([0; 2]);
+    }
+    bytes
+}
+
+/// Returns the corners of each face.
+fn corners(model: &Model) -> Vec<[DVec3; 3]> {
+    model.faces.iter().map(|face| face.map(|corner| model.vertices[corner as usize])).collect()
+}
+
+#[test]
+fn each_format_holds_the_same_triangles() {
+    assert_eq!(obj::read(obj_text().as_bytes()), Ok(tetrahedron()));
+    assert_eq!(obj::read(obj_text().replace('\n', "\r\n").as_bytes()), Ok(tetrahedron()));
+    assert_eq!(ply::read(ply_text().as_bytes()), Ok(tetrahedron()));
+    assert_eq!(ply::read(&ply_bytes(false)), Ok(tetrahedron()));
+    assert_eq!(ply::read(&ply_bytes(true)), Ok(tetrahedron()));
+    for stl in [stl_text().into_bytes(), stl_bytes("binary"), stl_bytes("solid, and binary all the same")] {
+        assert_eq!(corners(&stl::read(&stl).expect("a model")), corners(&tetrahedron()));
+    }
+}
+
+#[test]
+fn an_obj_has_polygons_and_materials_and_counts_backward() {
+    let text = "# a quadrilateral and two triangles\nmtllib x.mtl\nv 0 0 0\nv 1 0 0 1\nv 1 1 0\nv 0 1 0\nvn 0 0 1\n\
+                f 1//1 2//1 3//1 4//1\nusemtl dark oak\nf -4/1/1 -3/2/1 -2/3/1\nusemtl ash\ng a\ns off\nf 1 3 4 # last";
+    let model = obj::read(text.as_bytes()).expect("a model");
+    assert_eq!(model.faces, [[0, 1, 2], [0, 2, 3], [0, 1, 2], [0, 2, 3]]);
+    assert_eq!(model.materials, ["dark oak", "ash"]);
+    assert_eq!(model.slots, [0, 0, 1, 2]);
+}
+
+#[test]
+fn a_broken_text_is_told_with_its_line() {
+    let vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    for (line, message) in [
+        ("f 1 2 4", "there is no vertex 4: 3 vertices precede this face"),
+        ("f 1 2 -4", "there is no vertex -4: 3 vertices precede this face"),
+        ("f 0 1 2", "vertices count from 1, and there is none of number 0"),
+        ("f 1 2 99999999999999999999", "`99999999999999999999` is not a vertex's number"),
+        ("f 1 2", "a face needs three vertices, and this one has 2 vertices"),
+        ("f", "a face needs three vertices, and this one has none"),
+        ("v 1 nan 2", "`nan` is not a finite number"),
+        ("v 1 1e999 2", "`1e999` is not a finite number"),
+        ("v 1 2", "a vertex needs three coordinates"),
+        ("v 1 2 three", "`three` is not a number"),
+        ("usemtl", "`usemtl` needs the name of a material"),
+    ] {
+        let broken = obj::read(format!("{vertices}{line}\nf 1 2 3\n").as_bytes()).expect_err(line);
+        assert_eq!(broken, Broken { at: Some(At::Line(4)), message: message.to_owned() });
+    }
+    for (wrong, right, line, message) in [
+        ("0.25 1 0 255", "0.25 inf 0 255", 14, "`inf` is not a finite number"),
+        ("0.25 1 0 255", "0.25 x 0 255", 14, "`x` is not a number"),
+        ("3 1 2 3", "3 1 2 4", 18, "face 2 refers to vertex 4, and there are 4, from 0"),
+        ("3 1 2 3", "3 1 2 -1", 18, "face 2 refers to vertex -1, and there are 4, from 0"),
+        ("3 1 2 3", "2 1 2", 18, "face 2 has 2 vertices, and needs three"),
+        ("3 1 2 3", "200 1 2 3", 18, "`200 1 2 3` is not what the header makes expect here"),
+        (
+            "property float y",
+            "property flat y",
+            6,
+            "`property flat y` is not what the header makes expect here",
+        ),
+    ] {
+        let text = ply_text().replace(wrong, right);
+        let broken = ply::read(text.as_bytes()).expect_err(right);
+        assert_eq!(broken, Broken { at: Some(At::Line(line)), message: message.to_owned() });
+    }
+    for (wrong, right, line, message) in [
+        ("vertex 1 0 0.5\nendloop", "endloop", 6, "a facet has three vertices, and this one has 2"),
+        ("vertex 1 0 0.5\nendloop", "vertex 1 nan 0.5\nendloop", 6, "`nan` is not a finite number"),
+        ("facet normal", "facette normal", 2, "`facette` is not a word of STL"),
+    ] {
+        let text = stl_text().replacen(wrong, right, 1);
+        let broken = stl::read(text.as_bytes()).expect_err(right);
+        assert_eq!(broken, Broken { at: Some(At::Line(line)), message: message.to_owned() });
+    }
+}
+
+#[test]
+fn a_file_that_ends_too_early_is_told() {
+    let bytes = ply_bytes(false);
+    let end = bytes.len() - 3;
+    let message = "the file ends before all of its elements".to_owned();
+    assert_eq!(ply::read(&bytes[..end]), Err(Broken { at: Some(At::Byte(end)), message }));
+    let bytes = stl_bytes("binary");
+    let message = "the file ends after 3 of 4 triangles".to_owned();
+    assert_eq!(stl::read(&bytes[..200 + 84 - 1]), Err(Broken { at: Some(At::Byte(283)), message }));
+    assert!(stl::read(b"").is_err() && ply::read(b"").is_err() && ply::read(b"ply\n").is_err());
+}
+
+#[test]
+fn a_header_that_promises_too_much_takes_no_memory() {
+    for count in ["4000000000", "18446744073709551615", "99999999999999999999999"] {
+        for text in [ply_text(), String::from_utf8_lossy(&ply_bytes(false)).into_owned()] {
+            for element in ["element vertex 4", "element face 4"] {
+                let (element, number) = (element, element.replace('4', count));
+                ply::read(text.replace(element, &number).as_bytes()).expect_err(count);
+            }
+            let text = text.replace("end_header", &format!("element nothing {count}\nend_header"));
+            ply::read(text.as_bytes()).expect_err(count);
+        }
+    }
+    let lists = "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty list uint double x\nproperty double y\n\
+                 property double z\nelement face 1\nproperty list uint uint vertex_indices\nend_header\n";
+    ply::read(&[lists.as_bytes(), &[255; 64]].concat()).expect_err("a list of 2^32 numbers");
+    let mut stl = stl_bytes("binary");
+    stl[80..84].copy_from_slice(&[255; 4]);
+    stl::read(&stl).expect_err("2^32 triangles");
+}
+
+proptest! {
+    #[test]
+    fn a_file_with_some_bytes_changed_never_panics(
+        which in 0..6_usize,
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..8),
+        cut in any::<prop::sample::Index>(),
+    ) {
+        let mut bytes = match which {
+            0 => obj_text().into_bytes(),
+            1 => ply_text().into_bytes(),
+            2 => ply_bytes(false),
+            3 => ply_bytes(true),
+            4 => stl_text().into_bytes(),
+            _ => stl_bytes("binary"),
+        };
+        for (place, byte) in changes {
+            let place = place.index(bytes.len());
+            bytes[place] = byte;
+        }
+        bytes.truncate(bytes.len() - cut.index(bytes.len()) % 40);
+        for read in [obj::read, ply::read, stl::read] {
+            if let Ok(model) = read(&bytes) {
+                prop_assert!(model.vertices.iter().all(|at| at.is_finite()));
+                prop_assert!(model.faces.iter().flatten().all(|corner| (*corner as usize) < model.vertices.len()));
+            }
+        }
+    }
+}

@@ -1,0 +1,28 @@
+//! Normals of a mesh that looks smooth.
+
+use super::surface::Surface;
+use glam::DVec3;
+
+impl Surface {
+    /// Returns the normal at a point of a face: the face's own, or the interpolated normals of its corners. `flat` is
+    /// the face's normal, turned to the ray where both sides are lit, and so is the result.
+    #[inline(always)]
+    pub(super) fn smoothed(&self, face: usize, at: DVec3, flat: DVec3) -> DVec3 {
+        if self.normals.is_empty() { flat } else { self.interpolated(face, at, flat) }
+    }
+
+    fn interpolated(&self, face: usize, at: DVec3, flat: DVec3) -> DVec3 {
+        let [a, b, c] = self.corners(face);
+        let across = (b - a).cross(c - a);
+        // The parts of the face's area that lie opposite to each corner.
+        let part = |from: DVec3, to: DVec3| (to - from).cross(at - from).dot(across).max(0.0);
+        let weights = [part(b, c), part(c, a), part(a, b)];
+        let sum = self.faces[face].iter().zip(weights).fold(DVec3::ZERO, |sum, (corner, weight)| {
+            let normal = self.normals[*corner as usize].map(f64::from);
+            sum + weight * DVec3::from(normal)
+        });
+        // Normals are those of the faces' outer sides.
+        let sum = if flat.dot(across) < 0.0 { -sum } else { sum };
+        sum.try_normalize().filter(|normal| normal.dot(flat) > 0.0).unwrap_or(flat)
+    }
+}

@@ -1,0 +1,183 @@
+//! The surface of a mesh: its vertices, its faces, and the tree in which rays find them.
+
+use super::face;
+use super::placement::Placement;
+use super::read::Model;
+use super::tree::{MAX_FACES, Tree};
+use crate::geometry::aabb::Aabb;
+use crate::scene::pparm::MOST_LENGTH;
+use crate::shapes::triangle::Triangle;
+use crate::world::accuracy::Exact;
+use glam::DVec3;
+use rayon::prelude::*;
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+use std::mem::take;
+
+/// The triangles of a mesh in the world.
+///
+/// Vertices are placed and rounded once; the triangles through the rounded vertices are the surface, so that faces that
+/// share an edge share it exactly.
+pub struct Surface {
+    /// The vertices in world coordinates, each once.
+    pub(super) vertices: Vec<DVec3>,
+    /// The corners of each face, in the order of the tree's leaves, counterclockwise as seen from the outside.
+    pub(super) faces: Vec<[u32; 3]>,
+    /// For each face, its index in the file.
+    pub(super) order: Vec<u32>,
+    /// For each face, the index of its material plus 1; 0 for none. Empty where no face has any.
+    pub(super) slots: Vec<u16>,
+    /// The normals at the vertices, where the mesh looks smooth; 0 where the normals around a vertex cancel.
+    pub(super) normals: Vec<[f32; 3]>,
+    pub(super) tree: Tree,
+    /// A bounding box of the vertices, in world coordinates.
+    pub(super) bounds: Aabb,
+    /// The number of edges that do not join two faces. Where it is 0, the surface is closed.
+    pub open_edges: usize,
+    /// The number of faces of the file without an area, which are left out.
+    pub degenerate: usize,
+    /// The names of materials, as the file gives them.
+    pub materials: Vec<String>,
+}
+
+/// Why no surface can be made.
+pub enum Unfit {
+    /// A coordinate is so large that its square overflows.
+    TooLarge,
+    /// There are more faces than the tree can hold.
+    TooMany,
+    /// No face has an area.
+    NoArea,
+}
+
+impl Surface {
+    /// Makes the surface of a file's triangles.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn new(model: Model, placement: &Placement, is_smooth: bool) -> Result<Self, Unfit> {
+        if model.faces.len() > MAX_FACES {
+            return Err(Unfit::TooMany);
+        }
+        let Model { vertices, mut faces, materials, slots } = model;
+        let vertices = merge(vertices, &mut faces, placement);
+        if vertices.par_iter().any(|at| !at.is_finite() || at.abs().max_element() > MOST_LENGTH) {
+            return Err(Unfit::TooLarge);
+        }
+        let mut order: Vec<u32> = (0..faces.len() as u32).collect();
+        let has_area =
+            |face: &u32| face::has_area(faces[*face as usize].map(|corner| vertices[corner as usize]));
+        let total = order.len();
+        order = order.into_par_iter().filter(has_area).collect();
+        let degenerate = total - order.len();
+        if order.is_empty() {
+            return Err(Unfit::NoArea);
+        }
+        let kept: Vec<_> = order.iter().map(|face| faces[*face as usize]).collect();
+        drop(take(&mut faces));
+        let open_edges = open_edges(&kept);
+        let normals = if is_smooth { smooth(&vertices, &kept) } else { Vec::new() };
+        let (tree, sorted) = Tree::new(&vertices, &kept);
+        let faces = sorted.iter().map(|face| kept[*face as usize]).collect();
+        let order: Vec<_> = sorted.iter().map(|face| order[*face as usize]).collect();
+        let slots =
+            if slots.is_empty() { slots } else { order.iter().map(|face| slots[*face as usize]).collect() };
+        let bounds = Aabb::around(&vertices);
+        Ok(Self { vertices, faces, order, slots, normals, tree, bounds, open_edges, degenerate, materials })
+    }
+
+    /// Returns the number of faces.
+    pub fn face_count(&self) -> usize {
+        self.faces.len()
+    }
+
+    /// Returns the memory that the surface takes, in bytes.
+    pub fn bytes(&self) -> u64 {
+        let Self { vertices, faces, order, slots, normals, tree, .. } = self;
+        let arrays = [
+            size_of_val(&vertices[..]),
+            size_of_val(&faces[..]),
+            size_of_val(&order[..]),
+            size_of_val(&slots[..]),
+            size_of_val(&normals[..]),
+        ];
+        (arrays.iter().sum::<usize>() + tree.bytes()) as u64
+    }
+
+    /// Passes on all that the surface was made of, as bytes.
+    pub(super) fn bytes_of(&self, each: &mut dyn FnMut(&[u8])) {
+        let Self { vertices, faces, order, slots, normals, materials, .. } = self;
+        vertices.iter().flat_map(|at| at.to_array()).for_each(|part| each(&part.to_le_bytes()));
+        faces.iter().flatten().chain(order).for_each(|index| each(&index.to_le_bytes()));
+        slots.iter().for_each(|slot| each(&slot.to_le_bytes()));
+        normals.iter().flatten().for_each(|part| each(&part.to_le_bytes()));
+        materials.iter().for_each(|name| each(name.as_bytes()));
+    }
+
+    /// Returns the corners of a face in world coordinates.
+    #[inline(always)]
+    pub(super) fn corners(&self, face: usize) -> [DVec3; 3] {
+        self.faces[face].map(|corner| self.vertices[corner as usize])
+    }
+}
+
+/// Places the vertices of faces, and merges those at the same place. Vertices without a face are left out.
+fn merge(vertices: Vec<DVec3>, faces: &mut [[u32; 3]], placement: &Placement) -> Vec<DVec3> {
+    const UNKNOWN: u32 = u32::MAX;
+    let mut merged: Vec<DVec3> = Vec::with_capacity(vertices.len());
+    let mut known = HashMap::with_capacity(vertices.len());
+    let is_mirrored = placement.is_mirrored();
+    let mut indices = vec![UNKNOWN; vertices.len()];
+    for face in faces.iter_mut() {
+        for corner in face.iter_mut() {
+            let index = &mut indices[*corner as usize];
+            if *index == UNKNOWN {
+                let at = placement.place(vertices[*corner as usize]);
+                *index = match known.entry(at.to_array().map(f64::to_bits)) {
+                    Entry::Occupied(other) => *other.get(),
+                    Entry::Vacant(free) => {
+                        merged.push(at);
+                        *free.insert(merged.len() as u32 - 1)
+                    }
+                };
+            }
+            *corner = *index;
+        }
+        if is_mirrored {
+            face.swap(1, 2);
+        }
+    }
+    merged.shrink_to_fit();
+    merged
+}
+
+/// Counts the edges that are not passed as often in one direction as in the other.
+fn open_edges(faces: &[[u32; 3]]) -> usize {
+    // Both ends, the smaller one first, and the direction.
+    let edge = |from: u32, to: u32| {
+        (u64::from(from.min(to)) << 32) | (u64::from(from.max(to)) << 1) | u64::from(from > to)
+    };
+    let mut edges: Vec<_> =
+        faces.par_iter().flat_map_iter(|[a, b, c]| [edge(*a, *b), edge(*b, *c), edge(*c, *a)]).collect();
+    edges.par_sort_unstable();
+    edges
+        .chunk_by(|one, other| one >> 1 == other >> 1)
+        .filter(|same| 2 * same.iter().filter(|edge| **edge & 1 == 1).count() != same.len())
+        .count()
+}
+
+/// Computes normals at the vertices: the sums of the normals of the faces around each, weighted by their angles there.
+fn smooth(vertices: &[DVec3], faces: &[[u32; 3]]) -> Vec<[f32; 3]> {
+    let mut normals = vec![DVec3::ZERO; vertices.len()];
+    for face in faces {
+        let corners = face.map(|corner| vertices[corner as usize]);
+        let Some(triangle) = Triangle::<Exact>::new(corners) else { continue };
+        for (side, corner) in face.iter().enumerate() {
+            let (to, from) =
+                (corners[(side + 1) % 3] - corners[side], corners[(side + 2) % 3] - corners[side]);
+            let angle = libm::atan2(to.cross(from).length(), to.dot(from));
+            normals[*corner as usize] += angle * triangle.plane.normal;
+        }
+    }
+    normals.into_iter().map(|normal| normal.normalize_or_zero().to_array().map(|part| part as f32)).collect()
+}

@@ -1,0 +1,197 @@
+//! Properties of meshes: their hits are those of their triangles, and no ray escapes from a closed one.
+
+use super::{Mesh, Placement, Surface, read::Model};
+use crate::geometry::ray::{MISS, Ray, RayRange, Side};
+use crate::geometry::sight::Sight;
+use crate::shapes::triangle::Triangle;
+use crate::world::accuracy::{Accuracy, Exact};
+use crate::world::any_shape::AnyShape;
+use crate::world::certify::{Enclosure, Precision};
+use crate::world::coincidence;
+use glam::DVec3;
+use proptest::prelude::*;
+use std::sync::Arc;
+
+const PLAIN: DVec3 = DVec3::ONE;
+
+/// Returns a closed surface around the origin: a sphere of latitudes and longitudes with bumps.
+fn closed(bumps: &[f64], rows: u32) -> Model {
+    let columns = 2 * rows;
+    let mut vertices = vec![DVec3::Y, -DVec3::Y];
+    for row in 1..rows {
+        for column in 0..columns {
+            let up = std::f64::consts::PI * f64::from(row) / f64::from(rows);
+            let around = std::f64::consts::TAU * f64::from(column) / f64::from(columns);
+            let at = DVec3::new(up.sin() * around.cos(), up.cos(), up.sin() * around.sin());
+            vertices.push(at * bumps[vertices.len() % bumps.len()]);
+        }
+    }
+    let at = |row: u32, column: u32| match row {
+        0 => 0,
+        row if row == rows => 1,
+        row => 2 + (row - 1) * columns + column % columns,
+    };
+    let mut faces = Vec::new();
+    for row in 0..rows {
+        for column in 0..columns {
+            let [a, b, c, d] =
+                [at(row, column), at(row, column + 1), at(row + 1, column + 1), at(row + 1, column)];
+            faces.extend([[a, b, c], [a, c, d]].into_iter().filter(|[a, b, c]| a != b && b != c && a != c));
+        }
+    }
+    Model { vertices, faces, ..Model::default() }
+}
+
+fn surface(model: Model, placement: &Placement) -> Surface {
+    Surface::new(model, placement, false).unwrap_or_else(|_| panic!("a surface"))
+}
+
+fn shape(surface: &Arc<Surface>) -> AnyShape {
+    Mesh::<Exact>::shape(surface.clone(), Accuracy::Exact).into()
+}
+
+/// Returns the distance of a ray's first hit of any triangle.
+fn among(surface: &Surface, ray: &Ray) -> f64 {
+    (0..surface.face_count()).fold(MISS, |first, face| {
+        let triangle: Triangle<Exact> = surface.triangle(face);
+        let distance = RayRange::ALL.keep(triangle.plane.crossing(ray));
+        if triangle.is_passed_by(ray) { distance.min(first) } else { first }
+    })
+}
+
+fn scale() -> impl Strategy<Value = DVec3> {
+    let factor = || prop_oneof![Just(1.0), Just(1e-6), Just(1e6), 0.5..2.0];
+    (factor(), factor(), factor()).prop_map(DVec3::from)
+}
+
+fn direction() -> impl Strategy<Value = DVec3> {
+    (-1.0..1.0, -1.0..1.0, -1.0..1.0)
+        .prop_map(DVec3::from)
+        .prop_filter_map("a direction", |dir| (dir.length() > 0.1).then(|| dir.normalize()))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn no_ray_from_inside_escapes(
+        bumps in prop::collection::vec(0.6..1.5, 1..9),
+        (rows, scale, rotation) in (3..9_u32, scale(), -180.0..180.0),
+        toward in prop::collection::vec((any::<prop::sample::Index>(), 0.0..1.0, direction()), 40),
+    ) {
+        let placement = Placement::new(scale, DVec3::splat(rotation), DVec3::new(3.0, 2.0, -1.0));
+        let surface = Arc::new(surface(closed(&bumps, rows), &placement));
+        prop_assert_eq!(surface.open_edges, 0);
+        let (inside, shape) = (placement.place(DVec3::ZERO), shape(&surface));
+        for (index, part, dir) in toward {
+            let [a, b, c] = surface.corners(index.index(surface.face_count()));
+            // To a vertex, to an edge, to the middle of a face and anywhere.
+            for at in [a, a.lerp(b, part), b, (a + b + c) / 3.0, inside + dir] {
+                let Some(dir) = (at - inside).try_normalize() else { continue };
+                let ray = Ray { origin: inside, dir };
+                let bracket = shape.t_bounds(&ray, &RayRange::ALL);
+                prop_assert!(bracket.near < MISS, "{ray:?}");
+                let distance = shape.distance(&ray, &RayRange::ALL);
+                prop_assert!(distance < MISS, "{ray:?}");
+                prop_assert!(bracket.near <= distance && distance <= bracket.far, "{bracket:?} {distance}");
+                let enclosure = shape.certify(&Sight::along(&ray), Precision::Octuple);
+                prop_assert!(enclosure != Enclosure::Misses, "{ray:?}");
+                if let Some(fine) = shape.packets().fine_distance(&ray, distance) {
+                    prop_assert!((fine.high - distance).abs() <= 2.0 * coincidence::CLOSE * (distance + inside.length()));
+                }
+                prop_assert!(shape.touches(ray.at(distance), coincidence::error(&ray, distance, shape.normal(ray.at(distance)), shape.reach())));
+            }
+        }
+    }
+
+    #[test]
+    fn hits_are_those_of_the_triangles(
+        bumps in prop::collection::vec(0.3..2.0, 1..9),
+        (rows, scale, rotation) in (3..7_u32, scale(), -180.0..180.0),
+        rays in prop::collection::vec((direction(), direction(), any::<prop::sample::Index>(), 0.1..1e3), 40),
+    ) {
+        let placement = Placement::new(scale, DVec3::splat(rotation), DVec3::new(3.0, 2.0, -1.0));
+        let surface = Arc::new(surface(closed(&bumps, rows), &placement));
+        let shape = shape(&surface);
+        for (from, dir, index, far) in rays {
+            let [a, b, _] = surface.corners(index.index(surface.face_count()));
+            let origin = placement.place(far * from);
+            for dir in [Some(dir), (a - origin).try_normalize(), (a.lerp(b, 0.3) - origin).try_normalize()] {
+                let Some(dir) = dir else { continue };
+                let ray = Ray { origin, dir };
+                let right = among(&surface, &ray);
+                prop_assert_eq!(shape.distance(&ray, &RayRange::ALL), right, "{:?}", ray);
+                let bracket = shape.t_bounds(&ray, &RayRange::ALL);
+                prop_assert!(bracket.near <= right && right <= bracket.far, "{bracket:?} {right}");
+                match shape.certify(&Sight::along(&ray), Precision::Octuple) {
+                    Enclosure::Misses => prop_assert_eq!(right, MISS),
+                    Enclosure::Hits(_) => prop_assert!(right < MISS),
+                    _ => {}
+                }
+                if right < MISS {
+                    // A ray that goes on inside leaves the mesh, as it is closed.
+                    let (at, normal) = (ray.at(right), shape.normal(ray.at(right)));
+                    let origin_error = coincidence::error(&ray, right, normal, shape.reach());
+                    let side = Side::seen_along(dir, normal).opposite();
+                    let range = RayRange { origin_side: Some(side), origin_error, ..RayRange::ALL };
+                    let next = shape.distance(&Ray { origin: at, dir }, &range);
+                    prop_assert!(next > 0.0);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_ray_through_a_vertex_hits_the_first_face_of_the_file() {
+    let vertices = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]];
+    let fan = [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]];
+    for first in 0..4 {
+        let mut faces = fan.to_vec();
+        faces.rotate_left(first);
+        let model =
+            Model { vertices: vertices.map(DVec3::from).to_vec(), faces: faces.clone(), ..Model::default() };
+        let surface = Arc::new(surface(model, &Placement::new(PLAIN, DVec3::ZERO, DVec3::ZERO)));
+        assert_eq!(surface.open_edges, 4);
+        let ray = Ray { origin: DVec3::Z, dir: -DVec3::Z };
+        assert_eq!(shape(&surface).distance(&ray, &RayRange::ALL), 1.0);
+        assert_eq!(shape(&surface).part(&ray, 1.0).as_deref(), Some("face 1"));
+        // The edge to vertex 2 belongs to the two faces on its sides.
+        let ray = Ray { origin: DVec3::new(0.0, 0.5, 1.0), dir: -DVec3::Z };
+        let beside = faces.iter().position(|face| face.contains(&2)).expect("one");
+        assert_eq!(shape(&surface).part(&ray, 1.0), Some(format!("face {}", beside + 1)));
+    }
+}
+
+#[test]
+fn equal_vertices_are_one_and_faces_without_an_area_are_left_out() {
+    // Each face with vertices of its own, as in an STL, one of them on a line, and one of one point.
+    let Model { vertices, faces, .. } = closed(&[1.0], 4);
+    let corners = faces.iter().flatten().map(|corner| vertices[*corner as usize]);
+    let extra = [DVec3::X, 2.0 * DVec3::X, 3.0 * DVec3::X, DVec3::Y, DVec3::Y, DVec3::Y];
+    let vertices: Vec<_> = corners.chain(extra).collect();
+    let alone = (0..vertices.len() as u32 / 3).map(|face| [3 * face, 3 * face + 1, 3 * face + 2]).collect();
+    let model = Model { vertices, faces: alone, ..Model::default() };
+    let surface = surface(model, &Placement::new(PLAIN, DVec3::ZERO, DVec3::ZERO));
+    assert_eq!((surface.face_count(), surface.degenerate, surface.open_edges), (faces.len(), 2, 0));
+    assert!(surface.vertices.len() < faces.len());
+}
+
+#[test]
+fn a_placement_scales_then_rotates_then_moves() {
+    let placement =
+        Placement::new(DVec3::new(2.0, 3.0, 4.0), DVec3::new(0.0, 0.0, 90.0), DVec3::new(10.0, 0.0, 0.0));
+    assert_eq!(placement.place(DVec3::new(1.0, 1.0, 1.0)), DVec3::new(7.0, 2.0, 4.0));
+    assert!(!placement.is_mirrored());
+    assert!(Placement::new(DVec3::new(1.0, 1.0, -1.0), DVec3::ZERO, DVec3::ZERO).is_mirrored());
+    let turned = Placement::new(PLAIN, DVec3::new(90.0, 90.0, 0.0), DVec3::ZERO);
+    // Around x first: y becomes z, which becomes x around y.
+    assert_eq!(turned.place(DVec3::Y), DVec3::X);
+}
+
+#[test]
+fn the_memory_of_a_mesh_is_far_below_150_bytes_for_each_face() {
+    let surface = surface(closed(&[1.0, 1.1, 0.9], 200), &Placement::new(PLAIN, DVec3::ZERO, DVec3::ZERO));
+    let each = surface.bytes() as f64 / surface.face_count() as f64;
+    assert!(each < 75.0, "{each} bytes");
+}

@@ -1,0 +1,126 @@
+//! Meshes in scenes: they look as their triangles do, whatever they are read from.
+
+use crate::common::{model_in, registry, render};
+use std::fmt::Write;
+use std::fs;
+use tabray::geometry::RayRange;
+use tabray::scene;
+use tempfile::TempDir;
+
+const WORLD: &str = "camera eye { pixeldim 61 45 worlddim 8 6 viewpoint 4 3 6 }
+    material red { ambient 1 0.3 0.2 diffuse 9 3 2 specular 0.2 shininess 20 }
+    material glass { ambient 0.2 0.4 0.3 diffuse 3 5 4 transparency 0.5 }
+    material mirror { ambient 0.1 0.1 0.1 diffuse 1 1 1 specular 0.6 }
+    plane floor { material mirror normal 0 1 0 point 0 0.25 0 }
+    sphere ball { material mirror center 6 2 -5 radius 1.5 }
+    light lamp { location 2 6 1 emissivity 5 5 5 }
+    light other { location 7 2 -1 emissivity 3 3 3 }
+    ";
+
+/// Returns a closed, bumpy ring: the coordinates of its vertices, and the corners of its faces.
+fn ring() -> (Vec<[f64; 3]>, Vec<[usize; 3]>) {
+    let (around, across) = (24, 12);
+    let (mut vertices, mut faces) = (Vec::new(), Vec::new());
+    for row in 0..around {
+        for column in 0..across {
+            let angle = |part: usize, of: usize| std::f64::consts::TAU * part as f64 / of as f64;
+            let (sin, cos) = angle(row, around).sin_cos();
+            let (up, out) = angle(column, across).sin_cos();
+            let tube = 0.6 + 0.2 * (3.0 * angle(row, around)).sin();
+            let from = 1.4 + tube * out;
+            vertices.push([3.5 + from * cos, 2.0 + from * sin, -3.0 + tube * up]);
+            let at = |row: usize, column: usize| (row % around) * across + column % across;
+            let [a, b, c, d] =
+                [at(row, column), at(row, column + 1), at(row + 1, column + 1), at(row + 1, column)];
+            faces.extend([[a, d, c], [a, c, b]]);
+        }
+    }
+    (vertices, faces)
+}
+
+#[test]
+fn a_mesh_looks_as_its_triangles_do() {
+    let folder = TempDir::new().expect("a folder");
+    let (vertices, faces) = ring();
+    let mut obj = String::new();
+    vertices.iter().for_each(|[x, y, z]| writeln!(obj, "v {x} {y} {z}").expect("text"));
+    faces.iter().for_each(|[a, b, c]| writeln!(obj, "f {} {} {}", a + 1, b + 1, c + 1).expect("text"));
+    fs::write(folder.path().join("ring.obj"), obj).expect("a file");
+    for material in ["red", "mirror"] {
+        for accuracy in ["draft", "exact", "strict"] {
+            let world = WORLD.replace("viewpoint", &format!("accuracy {accuracy} viewpoint"));
+            let mesh = model_in(
+                folder.path(),
+                &format!("{world} mesh ring {{ material {material} file ring.obj }}"),
+            );
+            let mut triangles = world;
+            for (index, face) in faces.iter().enumerate() {
+                write!(triangles, "triangle t{index} {{ material {material} ").expect("text");
+                for (number, corner) in face.iter().enumerate() {
+                    let [x, y, z] = vertices[*corner];
+                    write!(triangles, "vertex{} {x} {y} {z} ", number + 1).expect("text");
+                }
+                triangles += "}\n";
+            }
+            let triangles = model_in(folder.path(), &triangles);
+            assert!(render(&mesh) == render(&triangles), "{material} {accuracy}");
+        }
+    }
+}
+
+#[test]
+fn materials_are_chosen_by_name_and_the_others_are_the_meshs_own() {
+    let folder = TempDir::new().expect("a folder");
+    let obj = "v 0 0 -3\nv 4 0 -3\nv 4 6 -3\nv 0 6 -3\nv 8 0 -3\nv 8 6 -3\nf 1 2 3\nusemtl paint\nf 1 3 4\n\
+               usemtl other\nf 2 5 6 3\n";
+    fs::write(folder.path().join("wall.obj"), obj).expect("a file");
+    let text = "camera eye { pixeldim 9 7 worlddim 8 6 viewpoint 4 3 6 }
+        material own { ambient 3 3 3 }
+        material paint { ambient 0 9 0 }
+        mesh wall { material own file wall.obj }";
+    let loaded = scene::read(registry(), "scene", folder.path(), text.as_bytes(), None).expect("a model");
+    assert!(loaded.warnings.to_string().contains("names 1 material that the scene does not have: `other`"));
+    assert_eq!(loaded.warnings.files(), [folder.path().join("wall.obj")]);
+    let image = render(&loaded.model);
+    let is_green = |x: u32, y: u32| image.get_pixel(x, y).0[0] == 0 && image.get_pixel(x, y).0[1] > 0;
+    let is_grey = |x: u32, y: u32| {
+        image.get_pixel(x, y).0[0] > 0 && image.get_pixel(x, y).0[0] == image.get_pixel(x, y).0[1]
+    };
+    assert!(is_green(2, 2) && is_grey(3, 4) && is_grey(6, 3));
+}
+
+#[test]
+fn a_file_that_cannot_be_read_is_watched_all_the_same() {
+    let folder = TempDir::new().expect("a folder");
+    let text = "camera eye { pixeldim 9 7 worlddim 8 6 viewpoint 4 3 6 } material m { ambient 3 3 3 }
+        mesh wall { material m file wall.obj }";
+    let read = |text: &str| scene::read(registry(), "scene", folder.path(), text.as_bytes(), None).err();
+    let report = read(text).expect("there is no file");
+    assert_eq!(report.files(), [folder.path().join("wall.obj")]);
+    for (content, said) in [
+        ("", "has a file that cannot be read, `wall.obj`: it has no faces"),
+        ("v 0 0 0\nv 1 1 1\nv 2 2 2\nf 1 2 3\n", "has no face with an area"),
+        ("v 0 0 0\nv 1 0 0\nv 0 1e200 0\nf 1 2 3\n", "has coordinates so large that their squares overflow"),
+        ("v 0 0 0\nf 1 2 3\n", "`wall.obj`, line 2: there is no vertex 2: 1 vertex precedes this face"),
+    ] {
+        fs::write(folder.path().join("wall.obj"), content).expect("a file");
+        let report = read(text).expect("a broken file").to_string();
+        assert!(report.contains(said), "{report}");
+    }
+}
+
+#[test]
+fn a_probe_names_the_face() {
+    let folder = TempDir::new().expect("a folder");
+    let obj = "v 0 0 -3\nv 8 0 -3\nv 8 6 -3\nv 0 6 -3\nf 1 2 3\nf 1 3 4\n";
+    fs::write(folder.path().join("wall.obj"), obj).expect("a file");
+    let text = "camera eye { pixeldim 9 7 worlddim 8 6 viewpoint 4 3 6 } material m { ambient 3 3 3 }
+        mesh wall { material m file wall.obj }";
+    let model = model_in(folder.path(), text);
+    let shape = &model.objects[0].shape;
+    for (x, y, face) in [(6.0, 2.0, "face 1"), (2.0, 4.0, "face 2"), (4.0, 3.0, "face 1")] {
+        let ray = model.camera.value.ray(x, y);
+        let distance = shape.distance(&ray, &RayRange::ALL);
+        assert_eq!(shape.part(&ray, distance).as_deref(), Some(face));
+    }
+}
