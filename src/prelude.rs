@@ -12,7 +12,7 @@ pub use inventory;
 // What a constructor returns: a camera, a material, a texture, an object or a light.
 pub use crate::world::accuracy::{Accuracy, Bounded, Classic, Draft, Exact, Strict};
 pub use crate::world::any_shape::AnyShape;
-pub use crate::world::body::Body;
+pub use crate::world::body::{Body, NamedBody};
 pub use crate::world::camera::Camera;
 pub use crate::world::hittable::{Bracketed, Certified, Hittable};
 pub use crate::world::light::Light;

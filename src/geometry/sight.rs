@@ -1,15 +1,26 @@
 //! Rays whose digits are all known, so that something can be proven about them.
 
+use crate::geometry::placement::Placement;
 use crate::geometry::ray::Ray;
 use crate::numeric::dual::Dual;
 use crate::numeric::scalar::Scalar;
 use glam::{DVec2, DVec3};
+use std::sync::Arc;
 
 /// A ray as the scene gives it, before rounding.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Sight {
     origin: DVec3,
     toward: Toward,
+    /// The placement in whose coordinates the line is, if it is not in the world's.
+    within: Option<Arc<Within>>,
+}
+
+/// A placement, which may lie in the coordinates of another one.
+#[derive(Debug)]
+struct Within {
+    placement: Placement,
+    outer: Option<Arc<Within>>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -35,17 +46,29 @@ impl Sight {
     /// height from its lower left corner.
     #[inline(always)]
     pub fn through(viewpoint: DVec3, at: DVec2, last: DVec2, size: DVec2) -> Self {
-        Self { origin: viewpoint, toward: Toward::ImagePoint { at, last, size } }
+        Self { origin: viewpoint, toward: Toward::ImagePoint { at, last, size }, within: None }
     }
 
     /// Returns a sight along a ray, taking all of its numbers for exact, including the length of its direction.
     pub fn along(ray: &Ray) -> Self {
-        Self { origin: ray.origin, toward: Toward::Direction(ray.dir) }
+        Self { origin: ray.origin, toward: Toward::Direction(ray.dir), within: None }
+    }
+
+    /// Returns the sight whose [`line`](Self::line) is this one's in the own coordinates of a shape that is placed. What t
+    /// means does not change.
+    pub fn within(&self, placement: Placement) -> Self {
+        let Self { origin, toward, .. } = *self;
+        let outer = self.within.clone();
+        Self { origin, toward, within: Some(Arc::new(Within { placement, outer })) }
     }
 
     /// Returns the ray, rounded.
     #[inline(always)]
     pub fn ray(&self) -> Ray {
+        if self.within.is_some() {
+            let Line { origin, dir } = self.line::<f64>();
+            return Ray { origin: origin.into(), dir: DVec3::from(dir).normalize() };
+        }
         let dir = match self.toward {
             Toward::Direction(dir) => dir,
             Toward::ImagePoint { at, last, size } => direction(self.origin, at, last, size),
@@ -63,13 +86,28 @@ impl Sight {
                 [part(0), part(1), n(-self.origin.z)]
             }
         };
-        Line { origin: self.origin.to_array().map(n), dir }
+        let line = Line { origin: self.origin.to_array().map(n), dir };
+        match &self.within {
+            None => line,
+            Some(within) => within.line(line),
+        }
     }
 
     /// Returns the squared length of the direction of [`line`](Self::line), in square world units.
     pub fn squared_length<N: Scalar>(&self) -> N {
         let [x, y, z] = self.line::<N>().dir.map(|part| part.powi(2));
         x + y + z
+    }
+}
+
+impl Within {
+    /// Takes a line from the world to the placed shape's own coordinates.
+    fn line<N: Scalar>(&self, line: Line<N>) -> Line<N> {
+        let Line { origin, dir } = match &self.outer {
+            None => line,
+            Some(outer) => outer.line(line),
+        };
+        Line { origin: self.placement.point(origin), dir: self.placement.vector(dir) }
     }
 }
 

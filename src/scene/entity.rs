@@ -219,6 +219,20 @@ impl Args {
         self.setting.camera.accuracy
     }
 
+    /// Returns the material of an object.
+    ///
+    /// # Panics
+    /// If the entity is not an object.
+    #[track_caller]
+    pub fn material(&self) -> Arc<Material> {
+        self.get(&MATERIAL)
+    }
+
+    /// Tells whether the entity refers to an object that could not be made.
+    pub(crate) fn refers_to_nothing(&self) -> bool {
+        self.values().any(|(_, datum)| matches!(datum, Datum::Object { body, .. } if body.get().is_none()))
+    }
+
     /// Tells whether the attribute that a refusal marks is in the type's table. It is if the refusal marks none.
     pub(crate) fn has_what_is_refused(&self, refusal: &Refusal) -> bool {
         refusal.attribute.is_none_or(|attribute| self.find(attribute).is_some())

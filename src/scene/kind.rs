@@ -19,6 +19,13 @@ pub enum Kind {
     Light,
 }
 
+impl Kind {
+    /// Returns the kind with its article: `a light`, `an object`.
+    pub fn with_article(self) -> String {
+        format!("{} {self}", if self == Self::Object { "an" } else { "a" })
+    }
+}
+
 impl fmt::Display for Kind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(match self {

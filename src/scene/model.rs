@@ -20,6 +20,8 @@ pub struct Model {
     pub textures: Vec<Item<Arc<Texture>>>,
     /// The visible objects, in the order of the scene.
     pub objects: Vec<Object>,
+    /// The objects that other entities refer to, in the order of the scene: they are seen only where these put them.
+    pub patterns: Vec<Record>,
     /// The lights, in the order of the scene.
     pub lights: Vec<Item<AnyLight>>,
 }
@@ -31,7 +33,12 @@ impl Model {
             Kind::Camera => vec![&self.camera.args],
             Kind::Material => self.materials.iter().map(|item| &item.args).collect(),
             Kind::Texture => self.textures.iter().map(|item| &item.args).collect(),
-            Kind::Object => self.objects.iter().map(|object| &object.args).collect(),
+            Kind::Object => {
+                let shown = self.objects.iter().map(|object| &object.args);
+                let mut all: Vec<_> = shown.chain(&self.patterns).collect();
+                all.sort_by_key(|record| record.order());
+                all
+            }
             Kind::Light => self.lights.iter().map(|item| &item.args).collect(),
         }
     }

@@ -76,7 +76,7 @@ pub trait Attribute: Sync {
             Type::Whole => format!("{counts} whole number{plural}"),
             Type::Number => format!("{counts} number{plural}"),
             Type::Word => "a word".to_owned(),
-            Type::Name(kind) => format!("the name of a {kind}"),
+            Type::Name(kind) => format!("the name of {}", kind.with_article()),
             Type::Choice(choices) if choices.all().iter().any(|choice| choice.number.is_some()) => {
                 format!("the name or number of a {}", choices.what)
             }

@@ -213,7 +213,9 @@ impl Constant {
             },
             Datum::Word(word) => Self::Text(word.clone()),
             Datum::Formula(formula) => Self::Text(formula.to_string()),
-            Datum::Material { name, .. } | Datum::Texture { name, .. } => Self::Text(name.to_string()),
+            Datum::Material { name, .. } | Datum::Texture { name, .. } | Datum::Object { name, .. } => {
+                Self::Text(name.to_string())
+            }
             Datum::Choice(choice) => {
                 choice.number.map_or_else(|| Self::Text(choice.name.to_owned()), Self::Whole)
             }

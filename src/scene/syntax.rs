@@ -87,7 +87,9 @@ impl Syntax {
             Datum::Word(word) => vec![self.word(word)],
             Datum::Formula(formula) => vec![quoted(&formula.to_string())],
             Datum::Absent => Vec::new(),
-            Datum::Material { name, .. } | Datum::Texture { name, .. } => vec![self.word(name)],
+            Datum::Material { name, .. } | Datum::Texture { name, .. } | Datum::Object { name, .. } => {
+                vec![self.word(name)]
+            }
             Datum::Choice(choice) => {
                 vec![choice.number.map_or_else(|| self.word(choice.name), |number| number.to_string())]
             }

@@ -3,6 +3,7 @@
 use crate::numeric::formula::Formula;
 use crate::scene::choice::{Choice, ChoiceName, Choices};
 use crate::scene::kind::Kind;
+use crate::world::body::NamedBody;
 use crate::world::material::{Material, Rgb};
 use crate::world::texture::Texture;
 use glam::{DVec2, DVec3};
@@ -48,6 +49,13 @@ pub enum Datum {
         /// The texture of this name.
         texture: Arc<Texture>,
     },
+    /// An object and its name.
+    Object {
+        /// The name that the scene gives it.
+        name: Arc<str>,
+        /// The body of the object of this name.
+        body: NamedBody,
+    },
     /// One of several alternatives.
     Choice(ChoiceName),
     /// A formula.
@@ -66,6 +74,7 @@ impl Datum {
             (Self::Texture { name, texture }, Self::Texture { name: name2, texture: texture2 }) => {
                 Arc::ptr_eq(name, name2) && Arc::ptr_eq(texture, texture2)
             }
+            (Self::Object { name, .. }, Self::Object { name: name2, .. }) => Arc::ptr_eq(name, name2),
             (Self::Choice(one), Self::Choice(other)) => one == other,
             _ => false,
         }
@@ -81,7 +90,7 @@ impl Datum {
             Self::Absent => return String::new(),
             Self::Formula(formula) => format!(" {formula}"),
             Self::Word(word) => format!(" {word}"),
-            Self::Material { name, .. } => format!(" {name}"),
+            Self::Material { name, .. } | Self::Object { name, .. } => format!(" {name}"),
             Self::Choice(choice) => format!(" {}", choice.name),
         };
         format!("{label:<12}{values}{ending}")
@@ -280,6 +289,23 @@ impl Value for Arc<Material> {
     fn from_datum(datum: &Datum) -> Option<Self> {
         match datum {
             Datum::Material { material, .. } => Some(material.clone()),
+            _ => None,
+        }
+    }
+}
+
+/// An object, which a scene refers to by its name. It is seen only where entities that refer to it put it.
+impl Value for NamedBody {
+    const TYPE: Type = Type::Name(Kind::Object);
+    const ARITY: &'static [usize] = &[1];
+
+    fn to_datum(&self) -> Datum {
+        Datum::Object { name: Arc::from(""), body: self.clone() }
+    }
+
+    fn from_datum(datum: &Datum) -> Option<Self> {
+        match datum {
+            Datum::Object { body, .. } => Some(body.clone()),
             _ => None,
         }
     }

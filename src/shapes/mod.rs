@@ -2,6 +2,7 @@
 
 mod finite_plane;
 pub(crate) mod implicit;
+pub(crate) mod placed;
 pub mod plane;
 pub(crate) mod quadratic;
 pub mod rectangle;
@@ -10,6 +11,7 @@ pub mod sphere;
 pub(crate) mod triangle;
 
 pub use implicit::Implicit;
+pub use placed::Placed;
 pub use quadratic::Quadric;
 pub use revolution::{Classic, Finish, InFrame, Revolution};
 pub use triangle::Triangle;

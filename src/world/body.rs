@@ -4,12 +4,44 @@ use crate::world::any_shape::AnyShape;
 use crate::world::packets::light::PacketLight;
 use crate::world::packets::shader::PacketShader;
 use crate::world::shader::{Plain, Shader};
+use std::fmt;
+use std::sync::{Arc, OnceLock};
 
 /// Any [`Shader`]: `Box::new(shader)` makes one.
 pub type AnyShader = Box<dyn PacketShader>;
 
 /// Any [`Light`](crate::world::light::Light): `Box::new(light)` makes one.
 pub type AnyLight = Box<dyn PacketLight>;
+
+/// The body of a named object, for other entities that refer to it. It is empty until the object is made, and stays empty
+/// where that is faulty.
+#[derive(Clone, Default)]
+pub struct NamedBody(Arc<OnceLock<Arc<Body>>>);
+
+impl NamedBody {
+    /// Returns the body, if the object is made.
+    pub fn get(&self) -> Option<&Arc<Body>> {
+        self.0.get()
+    }
+
+    /// Sets the body, once.
+    pub(crate) fn set(&self, body: Body) {
+        let _ = self.0.set(Arc::new(body));
+    }
+}
+
+/// All are equal: their names tell them apart.
+impl PartialEq for NamedBody {
+    fn eq(&self, _other: &Self) -> bool {
+        true
+    }
+}
+
+impl fmt::Debug for NamedBody {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("NamedBody")
+    }
+}
 
 /// What an object's constructor returns: the object's shape and its shader.
 pub struct Body {

@@ -19,7 +19,7 @@ pub(crate) mod texture;
 
 pub use accuracy::{Accuracy, Bounded, Classic, Draft, Exact, Strict};
 pub use any_shape::AnyShape;
-pub use body::{AnyLight, AnyShader, Body};
+pub use body::{AnyLight, AnyShader, Body, NamedBody};
 pub use camera::Camera;
 pub use hittable::{Bracketed, Certified, Hittable, Searched};
 pub use light::Light;

@@ -99,7 +99,9 @@ fn any_scene() -> impl Strategy<Value = String> {
             let materials =
                 materials.iter().enumerate().map(|(i, text)| text.replace("NAME", &format!("m{i}")));
             let texture = format!("texture t0 {{ filename {} }}\n", root().join(TEXTURE).display());
-            [cameras[0].clone(), materials.collect(), texture, objects.concat(), lights.concat()].concat()
+            let object = "sphere o0 { material m0 center 1 2 3 radius 4 }\n".to_owned();
+            [cameras[0].clone(), materials.collect(), texture, object, objects.concat(), lights.concat()]
+                .concat()
         },
     )
 }
@@ -133,6 +135,7 @@ fn any_values(attribute: &'static dyn Attribute) -> BoxedStrategy<String> {
             .prop_map(Datum::Numbers)
             .boxed(),
         Type::Name(Kind::Texture) => return Just(format!("{} t0\n", attribute.name())).boxed(),
+        Type::Name(Kind::Object) => return Just(format!("{} o0\n", attribute.name())).boxed(),
         Type::Word | Type::Name(_) => return Just(format!("{} m0\n", attribute.name())).boxed(),
         // A revsurf takes either a surfer or a formula; formulas are covered by the project's scenes.
         Type::Formula => return Just(String::new()).boxed(),

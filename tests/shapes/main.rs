@@ -10,4 +10,5 @@ mod contract;
 mod double_double;
 mod implicit;
 mod notes;
+mod places;
 mod stability;

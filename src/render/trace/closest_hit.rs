@@ -76,7 +76,8 @@ impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
     /// Returns one ray of a group, with what is known of its errors.
     fn start(&self, group: &RayGroup, lane: usize) -> Start {
         let [x, y] = &self.scratch.places;
-        let sight = group.looks.then(|| self.plan.camera.sight(x[lane], y[lane])).or(group.sight);
+        let sight =
+            group.looks.then(|| self.plan.camera.sight(x[lane], y[lane])).or_else(|| group.sight.clone());
         Start { ray: group.rays().get(lane), error: group.error(lane), sight }
     }
 

@@ -64,7 +64,7 @@ impl RayGroup {
         let (mut group, ray) = (Self::default(), sight.ray());
         group.begin(ray.origin, 1, true, depth);
         group.dir.fill(LANES, ray.dir);
-        group.sight = Some(*sight);
+        group.sight = Some(sight.clone());
         group
     }
 

@@ -3,11 +3,13 @@
 use super::attributes::{Against, whole};
 use super::fault::{Fault, Place, Places, Severity};
 use super::guesses::find_attribute;
+use super::made::{Made, made};
 use super::names::{Missing, Names, stand_in, suggestion};
 use super::notes;
 use super::parsed::{Parsed, Word};
 use super::quick::Quick;
 use super::report::Report;
+use super::threads::Threads;
 use crate::scene::entity::{Args, Construct, Entity, Refusal, Setting};
 use crate::scene::kind::Kind;
 use crate::scene::model::{Item, Model, Object};
@@ -20,15 +22,12 @@ use crate::world::body::{AnyLight, Body};
 use crate::world::camera::Camera;
 use crate::world::material::Material;
 use crate::world::texture::Texture;
-use rayon::prelude::*;
-use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::borrow::Cow;
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeSet, HashMap};
 use std::mem::{replace, swap, take};
-use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// The entities of a scene: parsed while they are checked, or all of them parsed before.
@@ -84,6 +83,7 @@ pub fn model(
         files: HashMap::new(),
         texture_memory: accuracy.textures.unwrap_or(TEXTURE_MEMORY),
         objects: Vec::new(),
+        patterns: Vec::new(),
         lights: Vec::new(),
         quick: Quick::new(registry),
         threads: &threads,
@@ -157,6 +157,8 @@ struct Check<'r, 't> {
     /// How many more bytes the images of textures may take.
     texture_memory: u64,
     objects: Vec<Object>,
+    /// The objects that other entities refer to.
+    patterns: Vec<Record>,
     lights: Vec<Item<AnyLight>>,
     quick: Quick<'r>,
     threads: &'r Threads,
@@ -295,12 +297,30 @@ impl Check<'_, '_> {
     fn construct_waiting(&mut self, source: &Source<'_, '_>) -> Arc<Store> {
         self.store.setting = self.setting.clone();
         let store = Arc::new(take(&mut self.store));
+        let patterns = self.names.patterns();
         self.names.forget();
+        // One after the other, as one may refer to another before it.
+        for (order, datum) in &patterns {
+            let (args, record) = (store.args(*order), Record::new(&store, *order));
+            if let (Some(Construct::Object(construct)), Datum::Object { body, .. }) =
+                (store.sound(*order).map(|entity| entity.construct), datum)
+                && !args.refers_to_nothing()
+            {
+                match construct(&args) {
+                    Ok(made) => body.set(made),
+                    Err(refusal) => {
+                        let parsed = source.entity(self.registry, *order, &self.places.get(*order));
+                        self.refuse(parsed.as_deref(), &args, refusal);
+                    }
+                }
+            }
+            self.patterns.push(record);
+        }
         for start in (0..store.len()).step_by(8 * TOGETHER) {
             let orders = start..store.len().min(start + 8 * TOGETHER);
             let made = self.threads.map(orders.len().div_ceil(PIECE), |piece| {
                 let start = start + piece * PIECE;
-                made(&store, start..orders.end.min(start + PIECE))
+                made(&store, start..orders.end.min(start + PIECE), &patterns)
             });
             for (order, made) in made.into_iter().flatten() {
                 let record = Record::new(&store, order);
@@ -348,6 +368,7 @@ impl Check<'_, '_> {
         }
         let users =
             self.objects.iter().map(|object| &object.args).chain(self.lights.iter().map(|light| &light.args));
+        let users = users.chain(&self.patterns);
         let (mut used, mut memory) = (BTreeSet::new(), None);
         for user in users {
             used.extend(user.args_in(&mut memory).textures().map(str::to_owned));
@@ -412,38 +433,17 @@ impl Check<'_, '_> {
                     )),
             );
         }
-        let Self { camera, materials, textures, objects, lights, places, .. } = self;
+        let Self { camera, materials, textures, objects, patterns, lights, places, .. } = self;
         let model = camera.map(|camera| Model {
             camera: item(store, camera),
             materials: materials.into_iter().map(|material| item(store, material)).collect(),
             textures: textures.into_iter().map(|texture| item(store, texture)).collect(),
             objects,
+            patterns,
             lights,
         });
         (model, places)
     }
-}
-
-/// What the constructor of an object or a light makes.
-enum Made {
-    Object(Body),
-    Light(AnyLight),
-}
-
-/// Constructs the objects and lights among some entities.
-fn made(store: &Store, orders: Range<usize>) -> Vec<(usize, Result<Made, Refusal>)> {
-    // Where it has to grow, it leaves holes in memory between the shapes.
-    let (mut made, mut memory) = (Vec::with_capacity(orders.len()), None);
-    for order in orders {
-        let construct: &dyn Fn(&Args) -> Result<Made, Refusal> =
-            match store.sound(order).map(|entity| entity.construct) {
-                Some(Construct::Object(construct)) => &move |args| construct(args).map(Made::Object),
-                Some(Construct::Light(construct)) => &move |args| construct(args).map(Made::Light),
-                _ => continue,
-            };
-        made.push((order, construct(store.args_in(order, &mut memory))));
-    }
-    made
 }
 
 fn item<T>(store: &Arc<Store>, (order, value): (usize, T)) -> Item<T> {
@@ -454,38 +454,6 @@ fn item<T>(store: &Arc<Store>, (order, value): (usize, T)) -> Item<T> {
 fn object(record: Record, Body { shape, shader }: Body) -> Option<Object> {
     let material = record.material()?;
     Some(Object { args: record, material, shape, shader })
-}
-
-/// The threads that the entities of large scenes are checked and constructed by: one on each core. They are started when
-/// they are first needed.
-#[derive(Default)]
-struct Threads(OnceLock<Option<ThreadPool>>);
-
-impl Threads {
-    fn pool(&self) -> Option<&ThreadPool> {
-        self.0.get_or_init(|| ThreadPoolBuilder::new().build().ok()).as_ref()
-    }
-
-    /// Does pieces of work, and returns the results in the order of the pieces.
-    fn map<T: Send>(&self, pieces: usize, work: impl Fn(usize) -> T + Send + Sync) -> Vec<T> {
-        match if pieces > 1 { self.pool() } else { None } {
-            Some(pool) => pool.install(|| (0..pieces).into_par_iter().map(work).collect()),
-            None => (0..pieces).map(work).collect(),
-        }
-    }
-
-    /// Does two pieces of work, at the same time if both are large.
-    fn join<A: Send, B: Send>(
-        &self,
-        are_large: bool,
-        one: impl FnOnce() -> A + Send,
-        other: impl FnOnce() -> B + Send,
-    ) -> (A, B) {
-        match if are_large { self.pool() } else { None } {
-            Some(pool) => pool.join(one, other),
-            None => (one(), other()),
-        }
-    }
 }
 
 /// Returns the place of an attribute with its values, or of the entity's name where the attribute is not given.

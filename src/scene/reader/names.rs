@@ -9,10 +9,12 @@ use crate::scene::registry::Registry;
 use crate::scene::store::Store;
 use crate::scene::value::Datum;
 use crate::text::{self, nearest};
+use crate::world::body::NamedBody;
 use hashbrown::hash_table::Entry;
 use hashbrown::{DefaultHashBuilder, HashMap, HashSet, HashTable};
 use std::collections::{BTreeMap, btree_map};
 use std::hash::{BuildHasher, Hash};
+use std::mem::take;
 use std::sync::{Arc, LazyLock};
 
 /// The scope in which a name must be unique: the entity type for an object, and an empty string, the whole kind, for
@@ -42,6 +44,8 @@ pub struct Names {
     doubtful: HashSet<u64>,
     /// The materials that can be referred to so far, and the textures, by the indices of their data.
     defined: [HashMap<String, u32>; 2],
+    /// The objects that other entities refer to, by their orders: a datum each.
+    patterns: BTreeMap<usize, Datum>,
     /// References to entities not (yet) defined.
     unresolved: Missing<Kind>,
 }
@@ -232,7 +236,15 @@ impl Names {
 
     /// Returns the index of the datum of an entity that is defined.
     pub fn defined(&self, kind: Kind, name: &str) -> Option<u32> {
+        if kind == Kind::Object {
+            return None;
+        }
         self.defined[usize::from(kind == Kind::Texture)].get(name).copied()
+    }
+
+    /// Takes the objects that other entities refer to, by their orders: a datum each.
+    pub fn patterns(&mut self) -> BTreeMap<usize, Datum> {
+        take(&mut self.patterns)
     }
 
     /// Returns the entity that a word refers to. If it is not defined, the reference is remembered and a stand-in is
@@ -240,6 +252,12 @@ impl Names {
     pub fn resolve(&mut self, store: &Store, kind: Kind, word: &Word<'_>) -> Datum {
         if let Some(index) = self.defined(kind, &word.text) {
             return store.datum(index).clone();
+        }
+        if kind == Kind::Object
+            && let Some(order) = self.first(store, kind, &word.text)
+        {
+            let new = || Datum::Object { name: Arc::from(&*word.text), body: NamedBody::default() };
+            return self.patterns.entry(order).or_insert_with(new).clone();
         }
         let hash = self.hash_of(&word.text);
         self.unresolved.add(kind, word, hash);
@@ -279,7 +297,7 @@ impl Names {
                     Fault::error(first.clone(), format!("{kind} `{text}` is used before it is defined"))
                         .label(suggestion(None, *count))
                         .also(place(defined), "defined here")
-                        .help(format!("a {kind} must be defined before it is used"))
+                        .help(format!("{} must be defined before it is used", kind.with_article()))
                 }
                 None => {
                     let known = known.get(kind).filter(|_| is_told).into_iter().flatten().copied();
@@ -311,7 +329,9 @@ fn spread(hash: u32) -> u64 {
 /// Tells whether an entity, given by its hash and its order, is of this kind and name.
 fn is_of(store: &Store, first: (u32, u32), hash: u32, kind: Kind, name: &str) -> bool {
     let order = first.1 as usize;
+    // An entity that is being checked has its name, and is not in the store yet.
     first.0 == hash
+        && order < store.len()
         && store.entity(order).is_some_and(|entity| entity.kind() == kind)
         && store.name(order) == name
 }
@@ -338,6 +358,9 @@ fn few(mut all: Vec<Repeated<'_>>, is_placed: bool) -> Vec<(Repeated<'_>, usize,
 
 /// Returns a default entity, in place of one that is faulty or missing. All of a kind are the same.
 pub fn stand_in(kind: Kind) -> Datum {
+    if kind == Kind::Object {
+        return Datum::Object { name: Arc::from(""), body: NamedBody::default() };
+    }
     static STAND_INS: LazyLock<[Datum; 2]> = LazyLock::new(|| {
         [
             Datum::Material { name: Arc::from(""), material: Arc::default() },

@@ -96,6 +96,12 @@ impl Draw {
                 text += &self.entity(other, name(kind));
             }
         }
+        let is_plain = |other: &&Entity| other.kind() == Kind::Object && !refers_to(other, Kind::Object);
+        if refers_to(entity, Kind::Object)
+            && let Some(other) = registry.iter().find(is_plain)
+        {
+            text += &self.entity(other, name(Kind::Object));
+        }
         if matches!(entity.kind(), Kind::Object | Kind::Light) {
             text += &self.entity(entity, "tried");
         }
@@ -159,6 +165,7 @@ fn name(kind: Kind) -> &'static str {
         Kind::Camera => "eye",
         Kind::Material => "m",
         Kind::Texture => "t",
-        Kind::Object | Kind::Light => "tried",
+        Kind::Object => "o",
+        Kind::Light => "tried",
     }
 }

@@ -1,0 +1,39 @@
+//! A copy of another object in another place, which shares its shape.
+
+use crate::geometry::Placement;
+use crate::prelude::*;
+use crate::shapes::Placed;
+
+static OBJECT: Pparm<NamedBody> = Pparm::required(
+    "object",
+    "the object to be placed, defined earlier in the scene; it is seen only where it is placed",
+);
+static SCALE: Pparm<DVec3> =
+    Pparm::or("scale", "the scale factors along the object's x, y and z", DVec3::ONE)
+        .must("positive in each dimension", |scale: &DVec3| scale.min_element() > 0.0);
+static ROTATION: Pparm<DVec3> = Pparm::or(
+    "rotation",
+    "the angles by which the scaled object is rotated around x, then y, then z, counterclockwise",
+    DVec3::ZERO,
+)
+.unit("degrees");
+static TRANSLATION: Pparm<DVec3> =
+    Pparm::or("translation", "where the object's origin lies", DVec3::ZERO).unit("world coordinates");
+
+const TABLE: Table = &[&OBJECT, &SCALE, &ROTATION, &TRANSLATION];
+
+inventory::submit! {
+    Entity::shape("place", "a copy of an object in another place", &[TABLE], |args| {
+        let placement = Placement {
+            scale: args.get(&SCALE),
+            rotation: args.get(&ROTATION),
+            translation: args.get(&TRANSLATION),
+        };
+        let object = args.get(&OBJECT).get().cloned().ok_or(Refusal {
+            attribute: Some("object"),
+            message: "refers to an object that has not been made".to_owned(),
+            help: "the object is to be defined before it is placed",
+        })?;
+        Ok(Placed::body(object, placement, &args.material()))
+    })
+}

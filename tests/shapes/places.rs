@@ -1,0 +1,110 @@
+//! Copies of objects in other places: they look as the same object written out there.
+
+use crate::common::{model, render};
+use tabray::render::Plan;
+use tabray::tools::verify::{self, Verdict};
+
+const BEFORE: &str = "camera eye { pixeldim 160 120 worlddim 8 6 viewpoint 4 3 8 }
+    material red { ambient 1 0.3 0.2 diffuse 5 2 1 specular 0.3 shininess 12 }
+    material grey { ambient 0.4 0.4 0.5 diffuse 2 2 2.5 }
+    texture bricks { filename scenes/textures/bricks.png }
+    light lamp { location 1 9 5 emissivity 5 5 5 }
+    plane floor { material grey normal 0 1 0 point 0 0 0 }\n";
+
+/// Asserts that two scenes look the same but for the rounding of single pixels' bytes.
+fn look_the_same(one: &str, other: &str) {
+    let [one_bytes, other_bytes] = [one, other].map(|scene| render(&model(&format!("{BEFORE}{scene}"))));
+    let differences = || one_bytes.iter().zip(other_bytes.iter()).map(|(one, other)| one.abs_diff(*other));
+    assert!(differences().all(|difference| difference <= 1), "{one}");
+    let different = differences().filter(|difference| *difference > 0).count();
+    assert!(different * 1000 <= one_bytes.len(), "{one}: {different}");
+}
+
+#[test]
+fn a_placed_object_looks_as_the_same_object_written_out() {
+    for (pattern, placed, written) in [
+        (
+            "sphere o { material red center 0 0 0 radius 1 }",
+            "place p { object o material red translation 3 1.5 -2 }",
+            "sphere p { material red center 3 1.5 -2 radius 1 }",
+        ),
+        (
+            "sphere o { material red center 1 0 0 radius 1 }",
+            "place p { object o material red scale 0.5 0.5 0.5 rotation 0 0 90 translation 3 1.5 -2 }",
+            "sphere p { material red center 3 2 -2 radius 0.5 }",
+        ),
+        (
+            "sphere o { material red center 0 0 0 radius 1 }",
+            "place p { object o material red scale 2 0.5 1 translation 4 1.5 -3 }",
+            "ellipsoid p { material red center 4 1.5 -3 radius 1 scale 2 0.5 1 }",
+        ),
+        (
+            "triangle o { material red vertex1 0 0 0 vertex2 2 0 0 vertex3 0 2 0 }",
+            "place p { object o material red rotation 0 0 45 translation 4 1 -2 }",
+            "triangle p { material red vertex1 4 1 -2 vertex2 5.414213562373095 2.414213562373095 -2
+                vertex3 2.585786437626905 2.414213562373095 -2 }",
+        ),
+        (
+            "torus o { material red center 0 0 0 radius 1 tube 0.3 }",
+            "place p { object o material red rotation 90 0 0 translation 4 2 -2 }",
+            "torus p { material red center 4 2 -2 direction 0 0 1 radius 1 tube 0.3 }",
+        ),
+        (
+            "texplane o { material grey normal 0 0 1 point 0 0 -1 xdir 1 0 0 dimensions 3 2 texname bricks mode 0 }",
+            "place p { object o material grey translation 2 1 -2 }",
+            "texplane p { material grey normal 0 0 1 point 2 1 -3 xdir 1 0 0 dimensions 3 2 texname bricks mode 0 }",
+        ),
+    ] {
+        look_the_same(&format!("{pattern}\n{placed}"), written);
+    }
+}
+
+#[test]
+fn a_placed_place_is_placed_twice() {
+    look_the_same(
+        "sphere o { material red center 1 0 0 radius 0.5 }
+         place turned { object o material red rotation 0 0 90 }
+         place p { object turned material red scale 2 1 1 translation 3 1.5 -2 }",
+        "ellipsoid p { material red center 3 2.5 -2 radius 0.5 scale 2 1 1 }",
+    );
+}
+
+#[test]
+fn an_object_that_is_placed_is_not_seen_elsewhere() {
+    let scene = model(&format!(
+        "{BEFORE}sphere o {{ material red center 4 3 -2 radius 1 }}
+         place p {{ object o material red translation 0 0 2000 }}"
+    ));
+    assert!(render(&scene) == render(&model(BEFORE)));
+}
+
+#[test]
+fn first_hits_of_placed_objects_are_proven() {
+    let objects = [
+        "sphere o { material red center 0 0 0 radius 1 }",
+        "torus o { material red center 0 0 0 radius 0.8 tube 0.2 }",
+        "triangle o { material red vertex1 0 0 0 vertex2 1 0 0 vertex3 0 1 0 }",
+        "revsurf o { material red surfer 3 base 0 -1 0 direction 0 1 0 height 2 }",
+    ];
+    for object in objects {
+        let mut scene = format!("{BEFORE}{object}\n");
+        for (index, angle) in (0..12).zip((0..).step_by(37)) {
+            scene += &format!(
+                "place p{index} {{ object o material red scale 0.9 0.{} 0.6 rotation {angle} {} 45 translation {} {} -{index} }}\n",
+                4 + index % 6,
+                2 * angle,
+                index % 5 * 2,
+                1 + index % 3 * 2
+            );
+        }
+        let model = model(&scene);
+        let plan = Plan::new(&model);
+        let mut proven = 0;
+        for (x, y) in (0..120).step_by(3).flat_map(|y| (0..160).step_by(3).map(move |x| (x, y))) {
+            let verdict = verify::pixel(&plan, x, y);
+            assert!(verdict != Verdict::Contradicted, "{object}: {x} {y}");
+            proven += usize::from(verdict == Verdict::Proven);
+        }
+        assert!(proven > 2140, "{object}: {proven}");
+    }
+}
