@@ -164,8 +164,8 @@ fn search(model: &Model, plan: &Plan) -> String {
             let rest =
                 if listed > 0 { format!(", and a list of the {listed} without") } else { String::new() };
             format!(
-                "a BVH of {} boxes for the {bounded} objects with bounds, as it pays off from {TREE} on{rest}",
-                tree.size()
+                "a BVH of {} for the {bounded} objects with bounds, as it pays off from {TREE} on{rest}",
+                count(tree.size(), "node")
             )
         }
         (None, 0) => format!("a list of {}: none has bounds; {by_one}", count(listed, "object")),

@@ -9,6 +9,7 @@ use std::env;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
+use std::thread;
 use std::time::{Duration, Instant};
 use tabray::render::{Plan, Renderer};
 use tabray::scene::{self, Parsed, Syntax, dump};
@@ -113,11 +114,21 @@ fn reading() {
     let program = env::var_os("TABRAY").unwrap_or_else(|| env!("CARGO_BIN_EXE_tabray").into());
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("many.ray");
+    // The time in seconds, and the most memory in KiB. The system's own account of the latter would include this program.
     let check = || {
         let before = of_children().0;
-        let status = Command::new(&program).arg("check").arg(&path).stderr(Stdio::null()).status();
-        assert!(status.expect("the program runs").success());
-        (of_children().0 - before).as_secs_f64()
+        let mut child = Command::new(&program).arg("check").arg(&path).stderr(Stdio::null()).spawn();
+        let child = child.as_mut().expect("the program runs");
+        let (status, mut peak) = (format!("/proc/{}/status", child.id()), 0);
+        while child.try_wait().expect("its status").is_none() {
+            let status = fs::read_to_string(&status).unwrap_or_default();
+            let most =
+                status.lines().find_map(|line| line.strip_prefix("VmHWM:")?.trim().strip_suffix(" kB"));
+            peak = peak.max(most.and_then(|most| most.parse().ok()).unwrap_or(0));
+            thread::sleep(Duration::from_millis(1));
+        }
+        assert!(child.wait().expect("its status").success());
+        ((of_children().0 - before).as_secs_f64(), peak)
     };
     let write = |scene| {
         let built = scene::build(common::registry(), scene);
@@ -126,12 +137,10 @@ fn reading() {
         fs::write(&path, &text).expect("a file");
         (text.len(), model.objects.len())
     };
-    write(scenes::spheres(1));
-    check();
-    let empty = of_children().1;
+    write(scenes::spheres(1000));
+    let empty: u64 = check().1;
     println!("\n| objects | text, MB | CPU, s | MB/s | most memory, MiB | bytes per object | of them text |");
     println!("|---|---:|---:|---:|---:|---:|---:|");
-    // In the order of the memory that they take: the system tells only the most that any program has had.
     for (name, scene) in [
         ("10^5 spheres", scenes::spheres(100_000)),
         ("10^5 triangles", scenes::triangles(100_000)),
@@ -139,8 +148,9 @@ fn reading() {
         ("10^6 triangles", scenes::triangles(1_000_000)),
     ] {
         let (bytes, count) = write(scene);
-        let seconds = (0..5).map(|_| check()).fold(f64::INFINITY, f64::min);
-        let (megabytes, memory) = (1e-6 * bytes as f64, of_children().1);
+        let runs: Vec<_> = (0..3).map(|_| check()).collect();
+        let seconds = runs.iter().fold(f64::INFINITY, |least, run| least.min(run.0));
+        let (megabytes, memory) = (1e-6 * bytes as f64, runs.iter().fold(0, |most, run| most.max(run.1)));
         let [each, text] = [1024.0 * (memory - empty) as f64, bytes as f64].map(|all| all / count as f64);
         println!(
             "| {name} | {megabytes:.1} | {seconds:.2} | {:.0} | {:.0} | {each:.0} | {text:.0} |",

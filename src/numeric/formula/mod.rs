@@ -61,9 +61,9 @@ impl Formula {
     pub fn at<N: Scalar>(&self, y: N) -> N {
         // Most formulas need a small stack, which is quicker to set up.
         if self.stack_depth <= SMALL_STACK {
-            self.run(y, &mut [y; SMALL_STACK])
+            self.run::<N, SMALL_STACK>(y)
         } else {
-            self.run(y, &mut [y; MAX_DEPTH])
+            self.run::<N, MAX_DEPTH>(y)
         }
     }
 
@@ -79,16 +79,15 @@ impl Formula {
         self.steps.iter().map(cost).sum()
     }
 
-    fn run<N: Scalar>(&self, y: N, stack: &mut [N]) -> N {
-        self.run_inline(y, stack)
+    fn run<N: Scalar, const STACK: usize>(&self, y: N) -> N {
+        self.run_inline::<N, STACK>(y)
     }
 
     /// Evaluates the formula and its derivative at eight y, for kernels.
     #[inline(always)]
     pub fn at_eight(&self, y: [f64; LANES]) -> Dual<F64x8> {
         if self.is_plain {
-            let y = Dual::variable(F64x8(y));
-            return self.run_inline(y, &mut [y; SMALL_STACK]);
+            return self.run_inline::<_, SMALL_STACK>(Dual::variable(F64x8(y)));
         }
         let (mut value, mut slope) = ([0.0; LANES], [0.0; LANES]);
         for lane in 0..LANES {
@@ -98,7 +97,8 @@ impl Formula {
     }
 
     #[inline(always)]
-    fn run_inline<N: Scalar>(&self, y: N, stack: &mut [N]) -> N {
+    fn run_inline<N: Scalar, const STACK: usize>(&self, y: N) -> N {
+        let mut stack = [y; STACK];
         let mut top = 0_usize;
         for step in &self.steps {
             // The parser has checked that the operands are there and that they fit on the stack.

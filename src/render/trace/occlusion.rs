@@ -53,8 +53,6 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let (mut doubt, mut ends) = (take(&mut self.scratch.doubt), take(&mut self.scratch.ends));
         let part = 0..shadow_rays.t_max.len();
         let doubted = resized(&mut doubt, part.len());
-        ends.clear();
-        ends.extend_from_slice(shadow_rays.t_max);
         let region = from.and(to).with_slack(0.0);
         Occlusion { tracer: self, shadow_rays, part, region, ends: &mut ends, blocked, doubt: doubted }
             .run(&mut stack);
@@ -70,8 +68,9 @@ struct Occlusion<'s, 'm, 'w, W> {
     part: Range<usize>,
     /// A box that contains the rays.
     region: Aabb,
-    /// The distances at which the rays end, in world units; 0 for a ray that is not cast or is blocked.
-    ends: &'s mut [f64],
+    /// The distances at which the rays end, in world units, 0 for a ray that is not cast or is blocked. Valid only while
+    /// the BVH is searched.
+    ends: &'s mut Vec<f64>,
     blocked: &'s mut [u64],
     doubt: &'s mut [u64],
 }
@@ -99,7 +98,18 @@ impl<W: TraceObserver> Occlusion<'_, '_, '_, W> {
             }
         }
         if let Some(tree) = &plan.tree {
+            let t_max = self.shadow_rays.t_max;
+            self.ends.clear();
+            self.ends.extend_from_slice(t_max);
+            self.end_blocked(0..t_max.len());
             bvh::visit(self.tracer.cpu, tree, stack, self.shadow_rays.rays, &mut self);
+        }
+    }
+
+    /// Ends the rays of some lanes that are blocked, so that the BVH is searched for them no more.
+    fn end_blocked(&mut self, lanes: Range<usize>) {
+        for (end, blocked) in self.ends[lanes.clone()].iter_mut().zip(&self.blocked[lanes]) {
+            *end = if *blocked == 0 { *end } else { 0.0 };
         }
     }
 
@@ -131,9 +141,6 @@ impl<W: TraceObserver> Occlusion<'_, '_, '_, W> {
                 }
             }
         }
-        for (end, blocked) in self.ends[self.part.clone()].iter_mut().zip(blocked) {
-            *end = if *blocked == 0 { *end } else { 0.0 };
-        }
     }
 }
 
@@ -145,8 +152,9 @@ impl<W: TraceObserver> PacketVisitor for Occlusion<'_, '_, '_, W> {
 
     fn test(&mut self, index: usize, lanes: Range<usize>) {
         if self.tracer.may_meet(self.left(), index) {
-            self.part = lanes;
+            self.part = lanes.clone();
             self.test_part(index);
+            self.end_blocked(lanes);
         }
     }
 

@@ -3,11 +3,13 @@
 use super::attributes::{Against, whole};
 use super::fault::{Fault, Place, Places, Severity};
 use super::guesses::find_attribute;
+use super::made::{Made, made};
 use super::names::{Missing, Names, stand_in, suggestion};
 use super::notes;
 use super::parsed::{Parsed, Word};
 use super::quick::Quick;
 use super::report::Report;
+use super::threads::Threads;
 use crate::scene::entity::{Args, Construct, Entity, Refusal, Setting};
 use crate::scene::kind::Kind;
 use crate::scene::model::{Item, Model, Object};
@@ -20,15 +22,12 @@ use crate::world::body::{AnyLight, Body};
 use crate::world::camera::Camera;
 use crate::world::material::Material;
 use crate::world::texture::Texture;
-use rayon::prelude::*;
-use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::borrow::Cow;
 use std::collections::hash_map::Entry;
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeSet, HashMap};
 use std::mem::{replace, swap, take};
-use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// The entities of a scene: parsed while they are checked, or all of them parsed before.
@@ -447,36 +446,6 @@ impl Check<'_, '_> {
     }
 }
 
-/// What the constructor of an object or a light makes.
-enum Made {
-    Object(Body),
-    Light(AnyLight),
-}
-
-/// Constructs the objects and lights among some entities,
-/// except for those that others refer to, and for those that refer to faulty ones.
-fn made(
-    store: &Store,
-    orders: Range<usize>,
-    patterns: &BTreeMap<usize, Datum>,
-) -> Vec<(usize, Result<Made, Refusal>)> {
-    // Where it has to grow, it leaves holes in memory between the shapes.
-    let (mut made, mut memory) = (Vec::with_capacity(orders.len()), None);
-    for order in orders {
-        let construct: &dyn Fn(&Args) -> Result<Made, Refusal> =
-            match store.sound(order).map(|entity| entity.construct) {
-                Some(Construct::Object(construct)) => &move |args| construct(args).map(Made::Object),
-                Some(Construct::Light(construct)) => &move |args| construct(args).map(Made::Light),
-                _ => continue,
-            };
-        let args = store.args_in(order, &mut memory);
-        if !patterns.contains_key(&order) && !args.refers_to_nothing() {
-            made.push((order, construct(args)));
-        }
-    }
-    made
-}
-
 fn item<T>(store: &Arc<Store>, (order, value): (usize, T)) -> Item<T> {
     Item { args: Record::new(store, order), value }
 }
@@ -485,38 +454,6 @@ fn item<T>(store: &Arc<Store>, (order, value): (usize, T)) -> Item<T> {
 fn object(record: Record, Body { shape, shader }: Body) -> Option<Object> {
     let material = record.material()?;
     Some(Object { args: record, material, shape, shader })
-}
-
-/// The threads that the entities of large scenes are checked and constructed by: one on each core. They are started when
-/// they are first needed.
-#[derive(Default)]
-struct Threads(OnceLock<Option<ThreadPool>>);
-
-impl Threads {
-    fn pool(&self) -> Option<&ThreadPool> {
-        self.0.get_or_init(|| ThreadPoolBuilder::new().build().ok()).as_ref()
-    }
-
-    /// Does pieces of work, and returns the results in the order of the pieces.
-    fn map<T: Send>(&self, pieces: usize, work: impl Fn(usize) -> T + Send + Sync) -> Vec<T> {
-        match if pieces > 1 { self.pool() } else { None } {
-            Some(pool) => pool.install(|| (0..pieces).into_par_iter().map(work).collect()),
-            None => (0..pieces).map(work).collect(),
-        }
-    }
-
-    /// Does two pieces of work, at the same time if both are large.
-    fn join<A: Send, B: Send>(
-        &self,
-        are_large: bool,
-        one: impl FnOnce() -> A + Send,
-        other: impl FnOnce() -> B + Send,
-    ) -> (A, B) {
-        match if are_large { self.pool() } else { None } {
-            Some(pool) => pool.join(one, other),
-            None => (one(), other()),
-        }
-    }
 }
 
 /// Returns the place of an attribute with its values, or of the entity's name where the attribute is not given.

@@ -6,11 +6,14 @@ mod excerpt;
 mod fault;
 mod guesses;
 mod machine;
+mod made;
 mod names;
 mod notes;
 mod parsed;
 mod quick;
 mod report;
+mod threads;
+mod tokens;
 mod toml;
 mod values;
 

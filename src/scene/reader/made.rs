@@ -1,0 +1,38 @@
+//! Constructs objects and lights, some at a time.
+
+use crate::scene::entity::{Args, Construct, Refusal};
+use crate::scene::store::Store;
+use crate::scene::value::Datum;
+use crate::world::body::{AnyLight, Body};
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+/// What the constructor of an object or a light makes.
+pub enum Made {
+    Object(Body),
+    Light(AnyLight),
+}
+
+/// Constructs the objects and lights among some entities, except for `patterns`, the objects that others refer to, and
+/// for those that refer to faulty ones.
+pub fn made(
+    store: &Store,
+    orders: Range<usize>,
+    patterns: &BTreeMap<usize, Datum>,
+) -> Vec<(usize, Result<Made, Refusal>)> {
+    // Where it has to grow, it leaves holes in memory between the shapes.
+    let (mut made, mut memory) = (Vec::with_capacity(orders.len()), None);
+    for order in orders {
+        let construct: &dyn Fn(&Args) -> Result<Made, Refusal> =
+            match store.sound(order).map(|entity| entity.construct) {
+                Some(Construct::Object(construct)) => &move |args| construct(args).map(Made::Object),
+                Some(Construct::Light(construct)) => &move |args| construct(args).map(Made::Light),
+                _ => continue,
+            };
+        let args = store.args_in(order, &mut memory);
+        if !patterns.contains_key(&order) && !args.refers_to_nothing() {
+            made.push((order, construct(args)));
+        }
+    }
+    made
+}

@@ -1,0 +1,208 @@
+//! The words and braces of a scene in the notes' syntax.
+
+use super::fault::Fault;
+use super::parsed::{Form, Word};
+use super::report::Report;
+use std::borrow::Cow;
+use std::ops::Range;
+
+/// A word or a brace, and its place.
+#[derive(Clone, Copy)]
+pub struct Token {
+    pub form: TokenForm,
+    pub start: usize,
+    pub end: usize,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum TokenForm {
+    Word,
+    /// A word in quotes.
+    Quoted,
+    /// A word after a quote that is never closed.
+    Unclosed,
+    Open,
+    Close,
+}
+
+impl Token {
+    pub fn is_brace(self) -> bool {
+        matches!(self.form, TokenForm::Open | TokenForm::Close)
+    }
+
+    pub fn form(self) -> Form {
+        if matches!(self.form, TokenForm::Quoted | TokenForm::Unclosed) { Form::Text } else { Form::Any }
+    }
+
+    pub fn place(self) -> Range<usize> {
+        self.start..self.end
+    }
+}
+
+/// What a byte is, or may be the beginning of.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Class {
+    Letter,
+    Space,
+    Brace,
+    /// Part of a character of several bytes, which may be white space.
+    Wide,
+}
+
+/// The classes of all bytes.
+const CLASSES: [Class; 256] = {
+    let mut classes = [Class::Letter; 256];
+    let mut byte = 0;
+    while byte < 256 {
+        classes[byte] = match byte as u8 {
+            b'{' | b'}' => Class::Brace,
+            128.. => Class::Wide,
+            byte if (byte as char).is_whitespace() => Class::Space,
+            _ => Class::Letter,
+        };
+        byte += 1;
+    }
+    classes
+};
+
+/// Returns the end of the word that begins at a byte of a text: the beginning of white space or a brace.
+fn word_end(text: &str, mut at: usize) -> usize {
+    let bytes = text.as_bytes();
+    while let Some(byte) = bytes.get(at) {
+        match CLASSES[usize::from(*byte)] {
+            Class::Letter => at += 1,
+            Class::Wide => match text[at..].chars().next() {
+                Some(letter) if !letter.is_whitespace() => at += letter.len_utf8(),
+                _ => break,
+            },
+            Class::Space | Class::Brace => break,
+        }
+    }
+    at
+}
+
+/// The tokens of a text, with enough lookahead to recognise the beginning of an entity.
+pub struct Tokens<'a> {
+    pub text: &'a str,
+    at: usize,
+    pub ahead: [Option<Token>; 3],
+}
+
+impl<'a> Tokens<'a> {
+    pub fn of(text: &'a str, report: &mut Report<'_>) -> Self {
+        Self::from(text, 0, report)
+    }
+
+    pub fn from(text: &'a str, at: usize, report: &mut Report<'_>) -> Self {
+        let mut tokens = Self { text, at, ahead: [None; 3] };
+        for _ in 0..3 {
+            tokens.step(report);
+        }
+        tokens
+    }
+
+    /// Advances by one token and returns it.
+    pub fn step(&mut self, report: &mut Report<'_>) -> Option<Token> {
+        let next = self.read(report);
+        let [first, second, third] = self.ahead;
+        self.ahead = [second, third, next];
+        first
+    }
+
+    /// Reads the token after the lookahead. A `#` at the beginning of a word begins a comment, and a `"` a word in
+    /// quotes.
+    fn read(&mut self, report: &mut Report<'_>) -> Option<Token> {
+        let bytes = self.text.as_bytes();
+        loop {
+            let start = self.at;
+            let (form, end) = match *bytes.get(start)? {
+                b'#' => {
+                    self.at = self.text[start..].find('\n').map_or(bytes.len(), |length| start + length);
+                    continue;
+                }
+                b'"' => {
+                    let (is_closed, length) = quoted(&self.text[start..], start, report);
+                    (if is_closed { TokenForm::Quoted } else { TokenForm::Unclosed }, start + length)
+                }
+                b'{' => (TokenForm::Open, start + 1),
+                b'}' => (TokenForm::Close, start + 1),
+                byte => match CLASSES[usize::from(byte)] {
+                    Class::Space => {
+                        self.at += 1;
+                        continue;
+                    }
+                    Class::Wide if self.text[start..].starts_with(char::is_whitespace) => {
+                        self.at += self.text[start..].chars().next().map_or(1, char::len_utf8);
+                        continue;
+                    }
+                    _ => (TokenForm::Word, word_end(self.text, start)),
+                },
+            };
+            self.at = end;
+            return Some(Token { form, start, end });
+        }
+    }
+
+    /// Returns the word that a token stands for.
+    pub fn text(&self, token: Token) -> Cow<'a, str> {
+        match token.form {
+            TokenForm::Quoted => unescaped(&self.text[token.start + 1..token.end - 1]),
+            TokenForm::Unclosed => Cow::Borrowed(&self.text[token.start + 1..token.end]),
+            _ => Cow::Borrowed(self.raw(token)),
+        }
+    }
+
+    /// Returns the text of a token, with its quotes if it has any.
+    pub fn raw(&self, token: Token) -> &'a str {
+        &self.text[token.start..token.end]
+    }
+
+    pub fn word(&self, token: Token) -> Word<'a> {
+        Word::at(self.text(token), token.form(), token.place())
+    }
+}
+
+/// Finds the end of the quoted word that a text begins with; returns whether it has one, and the length of the word in
+/// bytes, quotes included.
+fn quoted(text: &str, at: usize, report: &mut Report<'_>) -> (bool, usize) {
+    let mut letters = text.char_indices().skip(1);
+    while let Some((index, letter)) = letters.next().filter(|(_, letter)| *letter != '\n') {
+        match letter {
+            '"' => return (true, index + 1),
+            '\\' => match letters.next() {
+                Some((_, '"' | '\\')) => {}
+                other => {
+                    let end = index + 1 + other.map_or(0, |(_, letter)| letter.len_utf8());
+                    report.add(
+                        Fault::error(Some(at + index..at + end), "unknown escape sequence")
+                            .help("in quotes, write `\\\\` for a backslash and `\\\"` for a quote"),
+                    );
+                }
+            },
+            _ => {}
+        }
+    }
+    report.add(
+        Fault::error(Some(at..at + 1), "missing closing quote")
+            .help("a quoted word must end on the line on which it begins"),
+    );
+    // The closing quote is missing: probably only the first word was meant.
+    (false, word_end(text, 1))
+}
+
+/// Returns what is written between quotes: `\\` and `\"` stand for a backslash and for a quote, and other escape sequences
+/// for nothing.
+fn unescaped(text: &str) -> Cow<'_, str> {
+    if !text.contains('\\') {
+        return Cow::Borrowed(text);
+    }
+    let mut word = String::new();
+    let mut letters = text.chars();
+    while let Some(letter) = letters.next() {
+        match letter {
+            '\\' => word.extend(letters.next().filter(|letter| matches!(letter, '"' | '\\'))),
+            letter => word.push(letter),
+        }
+    }
+    Cow::Owned(word)
+}
