@@ -1,9 +1,9 @@
-//! Checks parsed entities and makes a [`Model`] of them.
+//! Checks parsed entities, and constructs those that others can refer to.
 
 use super::attributes::{Against, whole};
-use super::fault::{Fault, Place, Places, Severity};
+use super::fault::{Fault, Place, Places};
 use super::guesses::find_attribute;
-use super::names::{Missing, Names, stand_in, suggestion};
+use super::names::{Missing, Names, stand_in};
 use super::notes;
 use super::parsed::{Parsed, Word};
 use super::quick::Quick;
@@ -11,23 +11,21 @@ use super::report::Report;
 use super::threads::Threads;
 use crate::scene::entity::{Args, Construct, Entity, Refusal, Setting};
 use crate::scene::kind::Kind;
-use crate::scene::model::{Item, Model, Object};
+use crate::scene::model::{Item, Object};
 use crate::scene::registry::Registry;
-use crate::scene::store::{Record, Store};
+use crate::scene::store::Store;
 use crate::scene::value::Datum;
-use crate::text::list;
 use crate::world::accuracy::Accuracy;
 use crate::world::body::{AnyLight, NamedBody};
 use crate::world::camera::Camera;
 use crate::world::material::Material;
 use crate::world::texture::Texture;
 use std::borrow::Cow;
-use std::collections::hash_map::Entry;
 use std::collections::HashMap;
-use std::mem::{replace, swap, take};
+use std::collections::hash_map::Entry;
+use std::mem::replace;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::{Duration, Instant};
 
 /// The entities of a scene: parsed while they are checked, or all of them parsed before.
 pub enum Source<'s, 'a> {
@@ -56,74 +54,6 @@ impl<'a> Source<'_, 'a> {
 pub(super) const TOGETHER: usize = 1 << 11;
 pub(super) const PIECE: usize = 1 << 8;
 
-/// A model, the places of its entities, and the time that it took to make, in addition to parsing.
-pub type Checked = (Option<Model>, Places, Duration);
-
-/// Makes a model of entities and reports all their faults. Returns a model only if there are no faults. File names are
-/// relative to `folder`. If the text has syntax errors, it is not read to its end.
-pub fn model(
-    registry: &Registry,
-    folder: &Path,
-    accuracy: Chosen,
-    source: &mut Source<'_, '_>,
-    report: &mut Report<'_>,
-) -> Checked {
-    let camera = Camera { accuracy: accuracy.by_default, ..Camera::default() };
-    let memory = accuracy.memory.unwrap_or(u64::MAX);
-    let setting = Setting { camera, folder: folder.to_owned(), materials: Arc::default(), memory };
-    let threads = Threads::default();
-    let mut check = Check {
-        registry,
-        report,
-        names: Names::default(),
-        unknown: Missing::default(),
-        first_camera: None,
-        setting: Arc::new(setting),
-        accuracy: accuracy.above_all,
-        store: Store::default(),
-        places: Places::default(),
-        camera: None,
-        materials: Vec::new(),
-        textures: Vec::new(),
-        files: HashMap::new(),
-        texture_memory: accuracy.memory.unwrap_or(TEXTURE_MEMORY),
-        objects: Vec::new(),
-        patterns: Vec::new(),
-        lights: Vec::new(),
-        quick: Quick::new(registry),
-        threads: &threads,
-    };
-    let mut time = Duration::ZERO;
-    match source {
-        Source::List(parsed) => {
-            let start = Instant::now();
-            parsed.chunks(TOGETHER).for_each(|parsed| check.entities(&parsed.iter().collect::<Vec<_>>()));
-            time += start.elapsed();
-        }
-        Source::Text(_, parser) => {
-            // While some are checked, the next ones are parsed.
-            let [mut memory, mut other] = [vec![None; TOGETHER], vec![None; TOGETHER]];
-            let mut count = parser.entities(&mut memory);
-            while count > 0 {
-                let entities: Vec<_> = memory[..count].iter().flatten().collect();
-                let work = || {
-                    let start = Instant::now();
-                    check.entities(&entities);
-                    time += start.elapsed();
-                };
-                (_, count) = threads.join(count == TOGETHER, work, || parser.entities(&mut other));
-                swap(&mut memory, &mut other);
-            }
-        }
-    }
-    let start = Instant::now();
-    // Objects and lights may ask for the camera, wherever it stands in the text, so they are constructed last.
-    let store = check.construct_waiting(source);
-    check.textures_can_be_read(&store, source);
-    let (model, places) = check.finish(&store, source);
-    (model, places, time + start.elapsed())
-}
-
 /// The default limit on the memory of all textures of a scene, in bytes: far more than scenes need, and far less than a
 /// small file can claim to hold.
 const TEXTURE_MEMORY: u64 = 1 << 30;
@@ -145,9 +75,9 @@ pub(super) struct Check<'r, 't> {
     pub(super) report: &'r mut Report<'t>,
     pub(super) names: Names,
     /// Unknown entity types.
-    unknown: Missing<()>,
+    pub(super) unknown: Missing<()>,
     /// The place of the first camera's name.
-    first_camera: Option<Place>,
+    pub(super) first_camera: Option<Place>,
     pub(super) setting: Arc<Setting>,
     /// The accuracy that overrides the scene's own.
     accuracy: Option<Accuracy>,
@@ -155,7 +85,7 @@ pub(super) struct Check<'r, 't> {
     pub(super) store: Store,
     pub(super) places: Places,
     /// What was constructed, with the orders of the entities.
-    camera: Option<(usize, Camera)>,
+    pub(super) camera: Option<(usize, Camera)>,
     pub(super) materials: Vec<(usize, Arc<Material>)>,
     pub(super) textures: Vec<(usize, Arc<Texture>)>,
     /// The textures by the paths of their files.
@@ -170,9 +100,45 @@ pub(super) struct Check<'r, 't> {
     pub(super) threads: &'r Threads,
 }
 
+impl<'r, 't> Check<'r, 't> {
+    /// Begins to check a scene whose file names are relative to `folder`.
+    pub fn new(
+        registry: &'r Registry,
+        folder: &Path,
+        accuracy: Chosen,
+        report: &'r mut Report<'t>,
+        threads: &'r Threads,
+    ) -> Self {
+        let camera = Camera { accuracy: accuracy.by_default, ..Camera::default() };
+        let memory = accuracy.memory.unwrap_or(u64::MAX);
+        let setting = Setting { camera, folder: folder.to_owned(), materials: Arc::default(), memory };
+        Self {
+            registry,
+            report,
+            names: Names::default(),
+            unknown: Missing::default(),
+            first_camera: None,
+            setting: Arc::new(setting),
+            accuracy: accuracy.above_all,
+            store: Store::default(),
+            places: Places::default(),
+            camera: None,
+            materials: Vec::new(),
+            textures: Vec::new(),
+            files: HashMap::new(),
+            texture_memory: accuracy.memory.unwrap_or(TEXTURE_MEMORY),
+            objects: Vec::new(),
+            patterns: Vec::new(),
+            lights: Vec::new(),
+            quick: Quick::new(registry),
+            threads,
+        }
+    }
+}
+
 impl Check<'_, '_> {
     /// Checks some entities that follow each other.
-    fn entities<'p>(&mut self, parsed: &[&'p Parsed<'p>]) {
+    pub(super) fn entities<'p>(&mut self, parsed: &[&'p Parsed<'p>]) {
         let mut rest = parsed;
         while let Some(first) = rest.first() {
             // What others can refer to is defined before they are checked.
@@ -320,55 +286,6 @@ impl Check<'_, '_> {
         let message = format!("{} `{}` {}", args.entity.name, args.name, refusal.message);
         self.report.add(Fault::error(place, message).help(refusal.help));
     }
-
-    /// Returns the model, after reporting the faults that show only when the whole scene has been read.
-    fn finish(mut self, store: &Arc<Store>, source: &Source<'_, '_>) -> (Option<Model>, Places) {
-        let mut camera_misspelt = false;
-        self.report.count_more(Severity::Error, self.unknown.others().count());
-        let mut unknown: Vec<_> = take(&mut self.unknown.names).into_iter().collect();
-        unknown.sort_by_key(|(_, (place, _))| place.as_ref().map(|place| place.start));
-        for ((_, name), (place, count)) in unknown {
-            let is_told = self.report.tells(Severity::Error, &place);
-            let near = if is_told { self.registry.nearest(&name) } else { None };
-            camera_misspelt |=
-                near.and_then(|near| self.registry.find(near)).is_some_and(|e| e.kind() == Kind::Camera);
-            let known = list(self.registry.iter().map(|entity| entity.name));
-            let fault = Fault::error(place, format!("there is no entity type `{name}`"));
-            self.report
-                .add(fault.label(suggestion(near, count)).help(format!("the entity types are {known}")));
-        }
-        let parsed = |order| source.entity(self.registry, order, &self.places.get(order));
-        let place = |order| parsed(order)?.name.place.clone();
-        self.names.report_unresolved(self.registry, store, place, self.report);
-        self.names.report_repeated(store, place, self.report);
-        if let Some(first) = parsed(0)
-            && self.first_camera.is_none()
-            && !camera_misspelt
-        {
-            self.report.add(
-                Fault::error(first.kind.place.clone(), "the scene has no camera")
-                    .label("expected a camera")
-                    .help(format!(
-                        "add one: {}",
-                        self.registry.example(Kind::Camera, "NAME", self.report.syntax())
-                    )),
-            );
-        }
-        let Self { camera, materials, textures, objects, patterns, lights, places, .. } = self;
-        let model = camera.map(|camera| Model {
-            camera: item(store, camera),
-            materials: materials.into_iter().map(|material| item(store, material)).collect(),
-            textures: textures.into_iter().map(|texture| item(store, texture)).collect(),
-            objects,
-            patterns,
-            lights,
-        });
-        (model, places)
-    }
-}
-
-fn item<T>(store: &Arc<Store>, (order, value): (usize, T)) -> Item<T> {
-    Item { args: Record::new(store, order), value }
 }
 
 /// Returns the place of an attribute with its values, or of the entity's name where the attribute is not given.

@@ -1,6 +1,7 @@
 //! From a scene's text to a [`Model`], or to a report of all its faults.
 
 mod attributes;
+mod build;
 mod check;
 mod excerpt;
 mod fault;
@@ -28,7 +29,8 @@ use crate::scene::model::Model;
 use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
 use crate::world::accuracy::Accuracy;
-use check::{Checked, Source};
+use build::Checked;
+use check::Source;
 use std::path::Path;
 use std::time::Duration;
 
@@ -81,7 +83,7 @@ pub fn read_by(
         _ => Syntax::of_text(text),
     };
     let checked = |report: &mut report::Report<'_>, mut source: Source<'_, '_>| {
-        check::model(registry, folder, accuracy, &mut source, report)
+        build::model(registry, folder, accuracy, &mut source, report)
     };
     let mut report = report::Report::new(name, text, syntax);
     if syntax == Syntax::Toml {
@@ -139,7 +141,7 @@ pub fn build(
     let mut report = Report::new("model", "", Syntax::Notes);
     let parsed: Vec<_> = parsed.into_iter().collect();
     let mut source = Source::List(&parsed);
-    let checked = check::model(registry, Path::new(""), Chosen::default(), &mut source, &mut report);
+    let checked = build::model(registry, Path::new(""), Chosen::default(), &mut source, &mut report);
     finish(checked, registry, report)
 }
 

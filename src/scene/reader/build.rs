@@ -1,0 +1,112 @@
+//! Makes a [`Model`] of a scene's entities.
+
+use super::check::{Check, Chosen, Source, TOGETHER};
+use super::fault::{Fault, Places, Severity};
+use super::names::suggestion;
+use super::report::Report;
+use super::threads::Threads;
+use crate::scene::kind::Kind;
+use crate::scene::model::{Item, Model};
+use crate::scene::registry::Registry;
+use crate::scene::store::{Record, Store};
+use crate::text::list;
+use std::mem::{swap, take};
+use std::path::Path;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// A model, the places of its entities, and the time that it took to make, in addition to parsing.
+pub type Checked = (Option<Model>, Places, Duration);
+
+/// Makes a model of entities and reports all their faults. Returns a model only if there are no faults. File names are
+/// relative to `folder`. If the text has syntax errors, it is not read to its end.
+pub fn model(
+    registry: &Registry,
+    folder: &Path,
+    accuracy: Chosen,
+    source: &mut Source<'_, '_>,
+    report: &mut Report<'_>,
+) -> Checked {
+    let threads = Threads::default();
+    let mut check = Check::new(registry, folder, accuracy, report, &threads);
+    let mut time = Duration::ZERO;
+    match source {
+        Source::List(parsed) => {
+            let start = Instant::now();
+            parsed.chunks(TOGETHER).for_each(|parsed| check.entities(&parsed.iter().collect::<Vec<_>>()));
+            time += start.elapsed();
+        }
+        Source::Text(_, parser) => {
+            // While some are checked, the next ones are parsed.
+            let [mut memory, mut other] = [vec![None; TOGETHER], vec![None; TOGETHER]];
+            let mut count = parser.entities(&mut memory);
+            while count > 0 {
+                let entities: Vec<_> = memory[..count].iter().flatten().collect();
+                let work = || {
+                    let start = Instant::now();
+                    check.entities(&entities);
+                    time += start.elapsed();
+                };
+                (_, count) = threads.join(count == TOGETHER, work, || parser.entities(&mut other));
+                swap(&mut memory, &mut other);
+            }
+        }
+    }
+    let start = Instant::now();
+    // Objects and lights may ask for the camera, wherever it stands in the text, so they are constructed last.
+    let store = check.construct_waiting(source);
+    check.textures_can_be_read(&store, source);
+    let (model, places) = check.finish(&store, source);
+    (model, places, time + start.elapsed())
+}
+
+impl Check<'_, '_> {
+    /// Returns the model, after reporting the faults that show only when the whole scene has been read.
+    fn finish(mut self, store: &Arc<Store>, source: &Source<'_, '_>) -> (Option<Model>, Places) {
+        let mut camera_misspelt = false;
+        self.report.count_more(Severity::Error, self.unknown.others().count());
+        let mut unknown: Vec<_> = take(&mut self.unknown.names).into_iter().collect();
+        unknown.sort_by_key(|(_, (place, _))| place.as_ref().map(|place| place.start));
+        for ((_, name), (place, count)) in unknown {
+            let is_told = self.report.tells(Severity::Error, &place);
+            let near = if is_told { self.registry.nearest(&name) } else { None };
+            camera_misspelt |=
+                near.and_then(|near| self.registry.find(near)).is_some_and(|e| e.kind() == Kind::Camera);
+            let known = list(self.registry.iter().map(|entity| entity.name));
+            let fault = Fault::error(place, format!("there is no entity type `{name}`"));
+            self.report
+                .add(fault.label(suggestion(near, count)).help(format!("the entity types are {known}")));
+        }
+        let parsed = |order| source.entity(self.registry, order, &self.places.get(order));
+        let place = |order| parsed(order)?.name.place.clone();
+        self.names.report_unresolved(self.registry, store, place, self.report);
+        self.names.report_repeated(store, place, self.report);
+        if let Some(first) = parsed(0)
+            && self.first_camera.is_none()
+            && !camera_misspelt
+        {
+            self.report.add(
+                Fault::error(first.kind.place.clone(), "the scene has no camera")
+                    .label("expected a camera")
+                    .help(format!(
+                        "add one: {}",
+                        self.registry.example(Kind::Camera, "NAME", self.report.syntax())
+                    )),
+            );
+        }
+        let Self { camera, materials, textures, objects, patterns, lights, places, .. } = self;
+        let model = camera.map(|camera| Model {
+            camera: item(store, camera),
+            materials: materials.into_iter().map(|material| item(store, material)).collect(),
+            textures: textures.into_iter().map(|texture| item(store, texture)).collect(),
+            objects,
+            patterns,
+            lights,
+        });
+        (model, places)
+    }
+}
+
+fn item<T>(store: &Arc<Store>, (order, value): (usize, T)) -> Item<T> {
+    Item { args: Record::new(store, order), value }
+}
