@@ -18,11 +18,13 @@ pub struct Built {
 }
 
 /// The folders and files that are copied.
-const PARTS: [&str; 7] = [
+const PARTS: [&str; 8] = [
     "Cargo.toml",
     "Cargo.lock",
     "src",
     "plugins",
+    // The manifest names it.
+    "scenes/generate.rs",
     // The reference begins with this file.
     "docs/language.md",
     "docs/example-plugin/Cargo.toml",
