@@ -63,14 +63,12 @@ impl Surface {
         }
     }
 
-    /// Writes the surface's points, and its triangles with a material, to an OBJ file whose earlier points are
-    /// `points_before`.
-    fn write(&self, out: &mut impl Write, material: &str, points_before: usize) -> io::Result<()> {
+    /// Writes the surface as an OBJ file.
+    fn write(&self, out: &mut impl Write) -> io::Result<()> {
         for point in &self.points {
             writeln!(out, "v {:.7} {:.7} {:.7}", point.x, point.y, point.z)?;
         }
-        writeln!(out, "usemtl {material}")?;
-        for [a, b, c] in self.faces.iter().map(|face| face.map(|index| points_before + index + 1)) {
+        for [a, b, c] in self.faces.iter().map(|face| face.map(|index| index + 1)) {
             writeln!(out, "f {a} {b} {c}")?;
         }
         Ok(())
@@ -103,7 +101,7 @@ fn shell(folder: &Path) -> io::Result<()> {
         DVec3::new(from_axis * cos, height, from_axis * sin)
     });
     let mut out = create(folder, "shell.obj")?;
-    surface.write(&mut out, "pearl", 0)?;
+    surface.write(&mut out)?;
     out.flush()?;
     fs::write(folder.join("shell.ray"), SHELL)
 }
@@ -119,29 +117,30 @@ camera eye
     samples   16
 }
 
-material sand  { ambient 0.5 0.45 0.36 diffuse 0.9 0.8 0.6 }
-material sea   { ambient 0.3 0.4 0.5 diffuse 0.5 0.65 0.8 specular 0.2 }
-material pearl { ambient 0.9 0.75 0.65 diffuse 1.3 1.05 0.85 specular 0.14 shininess 60 }
+material sand  { ambient 2.2 1.9 1.4 diffuse 1.6 1.4 1.0 }
+material dusk  { ambient 5 7 10 diffuse 0.6 0.7 0.9 }
+material pearl { ambient 1.6 1.25 1.05 diffuse 1.9 1.5 1.2 specular 0.12 shininess 50 }
 
 plane beach { material sand normal 0 1 0 point 0 0 0 }
-plane water { material sea normal 0 0 1 point 0 0 -12 }
+plane sky   { material dusk normal 0 0 1 point 0 0 -14 }
 
 mesh shell
 {
     material    pearl
     file        shell.obj
     smooth      1
-    scale       1.25 1.25 1.25
+    scale       1.35 1.35 1.35
     rotation    0 -70 -62
-    translation 1.7 2.5 -4
+    translation 6.9 3.55 -3
 }
 
-light sun  { location -3 12 6 emissivity 70 64 52 size 0.8 }
-light sky  { location 9 8 4 emissivity 16 19 24 }
+light sun  { location -2 11 5 emissivity 80 72 56 size 0.8 }
+light sky  { location 9 7 5 emissivity 16 20 26 }
 ";
 
-/// The extent of the forest along x and along z, in world units.
-const EXTENT: [f64; 2] = [130.0, 130.0];
+/// The extent of the forest along x and along z, in world units, and the z at which it begins before the image plane.
+const EXTENT: [f64; 2] = [130.0, 135.0];
+const NEAREST: f64 = 5.0;
 
 /// The number of trees in each of as many rows.
 const TREES: usize = 1000;
@@ -155,27 +154,26 @@ fn ground(x: f64, z: f64) -> f64 {
 
 /// A million trees on hills: places of one mesh, which is not copied.
 fn forest(folder: &Path) -> io::Result<()> {
-    let mut trunk = Surface::default();
-    trunk.grid(1, 8, |along, around| {
+    let mut tree = Surface::default();
+    tree.grid(1, 8, |along, around| {
         let (sin, cos) = (TAU * around).sin_cos();
-        DVec3::new(0.035 * cos, 0.3 * along, 0.035 * sin)
+        DVec3::new(0.035 * cos, 0.3 * along, -0.035 * sin)
     });
-    let mut needles = Surface::default();
     for tier in 0..5 {
         let tier = f64::from(tier);
         let (low, high, radius) = (0.15 + 0.15 * tier, 0.42 + 0.15 * tier, 0.27 - 0.045 * tier);
-        needles.grid(2, 18, |along, around| {
+        tree.grid(2, 18, |along, around| {
             let (sin, cos) = (TAU * around + tier).sin_cos();
             // The tips of the branches hang down between the others.
             let tip = if ((around * 18.0).round() as usize).is_multiple_of(2) { 1.0 } else { 0.6 };
-            let from_axis = radius * (1.0 - along) * (1.0 + (tip - 1.0) * (1.0 - along));
-            let droop = 0.05 * tip * (1.0 - along).powi(3);
-            DVec3::new(from_axis * cos, low + (high - low) * along - droop, from_axis * sin)
+            let out = 1.0 - 0.98 * along;
+            let from_axis = radius * out * (1.0 + (tip - 1.0) * out);
+            let droop = 0.05 * tip * out.powi(3);
+            DVec3::new(from_axis * cos, low + (high - low) * along - droop, -from_axis * sin)
         });
     }
     let mut out = create(folder, "tree.obj")?;
-    trunk.write(&mut out, "bark", 0)?;
-    needles.write(&mut out, "needles", trunk.points.len())?;
+    tree.write(&mut out)?;
     out.flush()?;
 
     let [wide, deep] = EXTENT;
@@ -184,7 +182,7 @@ fn forest(folder: &Path) -> io::Result<()> {
     for row in 0..=cells {
         for column in 0..=cells {
             let [x, z] = [column, row].map(|at| at as f64 / cells as f64);
-            let (x, z) = (4.0 + wide * (x - 0.5), -deep * z);
+            let (x, z) = (4.0 + wide * (x - 0.5), NEAREST - deep * z);
             hills.points.push(DVec3::new(x, ground(x, z), z));
             if row < cells && column < cells {
                 let at = row * (cells + 1) + column;
@@ -194,7 +192,7 @@ fn forest(folder: &Path) -> io::Result<()> {
         }
     }
     let mut out = create(folder, "hills.obj")?;
-    hills.write(&mut out, "moss", 0)?;
+    hills.write(&mut out)?;
     out.flush()?;
 
     let mut out = create(folder, "forest.ray")?;
@@ -204,11 +202,11 @@ fn forest(folder: &Path) -> io::Result<()> {
         |low: f64, high: f64| low + (high - low) * f64::from(random.next_u32()) / f64::from(u32::MAX);
     for number in 0..TREES * TREES {
         let at = [number % TREES, number / TREES].map(|at| (at as f64 + between(0.0, 1.0)) / TREES as f64);
-        let (x, z) = (4.0 + wide * (at[0] - 0.5), -deep * at[1]);
+        let (x, z) = (4.0 + wide * (at[0] - 0.5), NEAREST - deep * at[1]);
         let (turn, scale) = (between(0.0, 360.0), between(0.7, 1.5));
         writeln!(
             out,
-            "place {number} {{ object tree translation {x:.3} {:.3} {z:.3} rotation 0 {turn:.0} 0 scale {scale:.2} }}",
+            "place {number} {{ object tree material needles translation {x:.3} {:.3} {z:.3} rotation 0 {turn:.0} 0 scale {scale:.2} {scale:.2} {scale:.2} }}",
             ground(x, z)
         )?;
     }
@@ -222,20 +220,20 @@ camera eye
 {
     pixeldim  640 480
     worlddim  8 6
-    viewpoint 4 4.6 6
+    viewpoint 4 5 6
     samples   16
 }
 
-material bark    { ambient 0.5 0.35 0.2 diffuse 0.6 0.4 0.25 }
-material needles { ambient 1.2 2.2 1.2 diffuse 6 12 5 }
-material moss    { ambient 1.2 1.5 0.6 diffuse 5 6 2.5 }
-material evening { ambient 90 60 46 }
+material needles { ambient 0.6 1 0.7 diffuse 0.24 0.42 0.2 }
+material moss    { ambient 0.4 0.5 0.2 diffuse 0.12 0.16 0.06 }
+material evening { ambient 96 62 44 }
 
 plane heaven { material evening normal 0 0 1 point 0 0 -140 }
 
 mesh hills { material moss file hills.obj smooth 1 }
 mesh tree  { material needles file tree.obj }
 
-light sun { location -160 120 -20 emissivity 60 46 30 }
+light sun { location -70 45 -30 emissivity 1700 1300 800 }
+light sky { location 40 80 -20 emissivity 500 560 760 }
 
 ";
