@@ -20,6 +20,10 @@ static ROTATION: Pparm<DVec3> = Pparm::or(
 static TRANSLATION: Pparm<DVec3> =
     Pparm::or("translation", "where the object's origin lies", DVec3::ZERO).unit("world coordinates");
 
+/// The maximum number of copies within each other. Margins for rounding grow by a factor of 3.5 with each of them, and
+/// hide thin parts of a shape from 24 copies on.
+const MAX_DEPTH: u32 = 12;
+
 const TABLE: Table = &[&OBJECT, &SCALE, &ROTATION, &TRANSLATION];
 
 inventory::submit! {
@@ -34,6 +38,13 @@ inventory::submit! {
             message: "refers to an object that has not been made".to_owned(),
             help: "the object is to be defined before it is placed",
         })?;
+        if object.depth == MAX_DEPTH {
+            return Err(Refusal {
+                attribute: Some("object"),
+                message: format!("is a copy of a copy, more than {MAX_DEPTH} deep"),
+                help: "rounding grows with each copy: place the first object instead",
+            });
+        }
         Ok(Placed::body(object, placement, &args.material()))
     })
 }

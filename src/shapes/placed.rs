@@ -43,7 +43,8 @@ impl Placed {
         };
         let shape = Shape::new(placed()).by::<ByBracket, ByPlacement>();
         let is_plain = body.shader.uniform(material) == Plain.uniform(material);
-        if is_plain { Body::plain(shape) } else { Body::shaded(shape, PlacedShader(placed())) }
+        let copy = if is_plain { Body::plain(shape) } else { Body::shaded(shape, PlacedShader(placed())) };
+        Body { depth: body.depth + 1, ..copy }
     }
 
     /// Takes a point from the world to the object's own coordinates.
@@ -98,6 +99,19 @@ impl Hittable for Placed {
 
     fn normal(&self, at: DVec3) -> DVec3 {
         (self.to_own.transpose() * self.body.shape.normal(self.own_point(at))).normalize()
+    }
+
+    fn shading_normal(&self, at: DVec3, normal: DVec3) -> DVec3 {
+        let (at, to_world) = (self.own_point(at), self.to_own.transpose());
+        let own = self.body.shape.normal(at);
+        let own = if (to_world * own).dot(normal) < 0.0 { -own } else { own };
+        let shaded = self.body.shape.shading_normal(at, own);
+        if shaded == own { normal } else { (to_world * shaded).normalize() }
+    }
+
+    fn part(&self, ray: &Ray, distance: f64) -> Option<String> {
+        let (own, length) = self.own_ray(ray);
+        self.body.shape.part(&own, distance * length)
     }
 
     fn bounds(&self) -> Option<Aabb> {

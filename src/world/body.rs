@@ -53,6 +53,8 @@ pub struct Body {
     pub warnings: Vec<Warning>,
     /// The memory that the object takes beside the scene, in bytes.
     pub bytes: u64,
+    /// The number of objects that lie within each other in it: 1 for a copy of a shape, 2 for a copy of a copy.
+    pub depth: u32,
 }
 
 /// A warning about an object.
@@ -74,6 +76,6 @@ impl Body {
 
     /// Makes an object with a shader of its own.
     pub fn shaded(shape: impl Into<AnyShape>, shader: impl Shader + 'static) -> Self {
-        Self { shape: shape.into(), shader: Box::new(shader), warnings: Vec::new(), bytes: 0 }
+        Self { shape: shape.into(), shader: Box::new(shader), warnings: Vec::new(), bytes: 0, depth: 0 }
     }
 }

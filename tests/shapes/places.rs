@@ -1,7 +1,9 @@
 //! Copies of objects in other places: they look as the same object written out there.
 
 use crate::common::{model, render};
+use std::path::Path;
 use tabray::render::Plan;
+use tabray::scene::{self, Registry};
 use tabray::tools::verify::{self, Verdict};
 
 const BEFORE: &str = "camera eye { pixeldim 160 120 worlddim 8 6 viewpoint 4 3 8 }
@@ -67,6 +69,29 @@ fn a_placed_place_is_placed_twice() {
          place p { object turned material red scale 2 1 1 translation 3 1.5 -2 }",
         "ellipsoid p { material red center 3 2.5 -2 radius 0.5 scale 2 1 1 }",
     );
+}
+
+#[test]
+fn a_copy_of_a_smooth_mesh_is_smooth() {
+    let mesh = |place: &str| {
+        format!("mesh o {{ material red file scenes/models/knot.obj smooth 1 rotation 50 0 20 {place} }}")
+    };
+    let copy = "place p { object o material red translation 4 2 -2 }";
+    look_the_same(&format!("{}\n{copy}", mesh("")), &mesh("translation 4 2 -2"));
+}
+
+#[test]
+fn copies_of_copies_have_a_limit() {
+    let copies = |count: usize| {
+        let pattern = "sphere p0 { material red center 0 0 0 radius 1 }\n".to_owned();
+        let copy = |index| format!("place p{} {{ object p{index} material red }}\n", index + 1);
+        format!("{BEFORE}{pattern}{}", (0..count).map(copy).collect::<String>())
+    };
+    model(&copies(12));
+    let registry = Registry::get().expect("no two plugins claim one name");
+    let faults = scene::read(registry, "a.ray", Path::new(""), copies(40_000).as_bytes(), None);
+    let faults = faults.err().expect("too deep").to_string();
+    assert!(faults.contains("place `p13` is a copy of a copy, more than 12 deep"), "{faults}");
 }
 
 #[test]

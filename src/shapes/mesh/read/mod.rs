@@ -41,7 +41,11 @@ pub fn read(path: &Path, memory: u64) -> Result<Model, Broken> {
             ByteSize(memory)
         )));
     }
-    let mut bytes = Vec::with_capacity(size as usize);
+    let mut bytes = Vec::new();
+    let room = usize::try_from(size).is_ok_and(|size| bytes.try_reserve_exact(size).is_ok());
+    if !room {
+        return Err(Broken::file(format!("there is no memory for its {}", ByteSize(size))));
+    }
     file.by_ref().take(size).read_to_end(&mut bytes).map_err(cannot)?;
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_lowercase();
     let model = match (ending.as_str(), &bytes[..]) {

@@ -7,6 +7,8 @@ use std::collections::HashMap;
 
 /// Reads a file's text.
 pub fn read(bytes: &[u8]) -> Result<Model, Broken> {
+    // A byte order mark is no part of the text.
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let mut model = Model::default();
     let mut names = HashMap::new();
     let mut slot = 0;

@@ -149,6 +149,12 @@ fn a_broken_text_is_told_with_its_line() {
 }
 
 #[test]
+fn a_byte_order_mark_is_no_part_of_an_obj() {
+    let text = obj_text();
+    assert_eq!(obj::read(format!("\u{feff}{text}").as_bytes()), obj::read(text.as_bytes()));
+}
+
+#[test]
 fn a_file_that_ends_too_early_is_told() {
     let bytes = ply_bytes(false);
     let end = bytes.len() - 3;
