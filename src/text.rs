@@ -34,10 +34,12 @@ pub fn nearest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Opti
             }
             left = left.checked_sub(count * letters)?;
             let distance = strsim::damerau_levenshtein(&lower, candidate);
-            (distance <= max_distance).then_some((distance, candidate))
+            // Of words that are equally far, the one that has more letters in the same places.
+            let unlike = || 1.0 - strsim::jaro(&lower, candidate);
+            (distance <= max_distance).then(|| (distance, unlike(), candidate))
         })
-        .min_by_key(|(distance, _)| *distance)
-        .map(|(_, candidate)| candidate)
+        .min_by(|one, other| one.0.cmp(&other.0).then(one.1.total_cmp(&other.1)))
+        .map(|(_, _, candidate)| candidate)
 }
 
 /// The longest run of letters without white space that a message shows in full, in bytes, and how many bytes of a
@@ -164,4 +166,14 @@ pub fn name(value: &impl ValueEnum) -> String {
 pub fn capital(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_of_words_that_are_equally_far_has_more_letters_in_the_same_places() {
+        assert_eq!(nearest("plain", ["place", "plane"]), Some("plane"));
+    }
 }
