@@ -3,6 +3,7 @@
 use crate::geometry::placement::Placement;
 use crate::geometry::ray::Ray;
 use crate::numeric::dual::Dual;
+use crate::numeric::interval::{Float, Interval};
 use crate::numeric::scalar::Scalar;
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
@@ -39,6 +40,28 @@ pub struct Line<N> {
     pub origin: [N; 3],
     /// The direction, of any length.
     pub dir: [N; 3],
+}
+
+impl<F: Float> Line<Interval<F>> {
+    /// Returns bounds of the t, from 0 on, at which the line is in a box given by its low and its high corner; `None` if
+    /// it certainly misses the box.
+    pub fn clip(&self, low: DVec3, high: DVec3) -> Option<(F, F)> {
+        let (mut from, mut to) = (F::of(0.0), F::INFINITY);
+        for axis in 0..3 {
+            let (origin, dir) = (self.origin[axis], self.dir[axis]);
+            let (low, high) = (Interval::<F>::constant(low[axis]), Interval::<F>::constant(high[axis]));
+            if dir.has_zero() {
+                if dir.is_zero() && (origin.high < low.low || origin.low > high.high) {
+                    return None;
+                }
+                continue;
+            }
+            let (one, other) = ((low - origin) / dir, (high - origin) / dir);
+            from = from.max(one.low.min(other.low));
+            to = to.min(one.high.max(other.high));
+        }
+        (from <= to).then_some((from, to))
+    }
 }
 
 impl Sight {

@@ -5,9 +5,8 @@ use super::surface::Surface;
 use super::traversal::Faces;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
-use crate::geometry::sight::{Line, Sight};
+use crate::geometry::sight::Sight;
 use crate::numeric::interval::{Float, Interval, Wide};
-use crate::numeric::scalar::Scalar;
 use crate::shapes::triangle::Triangle;
 use crate::world::accuracy::Bounded;
 use crate::world::certify::{self, Enclosure, Precision};
@@ -329,7 +328,9 @@ impl Surface {
         let end = std::cell::Cell::new(f256::INFINITY);
         let mut met = Vec::new();
         self.tree.within(
-            |bounds| entry(&line, bounds).is_some_and(|entry| f256::from(entry) <= end.get()),
+            |bounds| {
+                line.clip(bounds.low, bounds.high).is_some_and(|(entry, _)| f256::from(entry) <= end.get())
+            },
             |faces| {
                 for face in faces {
                     let enclosure = certify::first_hit(&Face(self.triangle::<A>(face)), sight, precision);
@@ -380,23 +381,4 @@ fn touches<A: Bounded>(triangle: &Triangle<A>, at: DVec3, error: f64) -> bool {
     let Aabb { low, high } = Aabb::around(&triangle.corners);
     let beside = error + 4.0 * f64::EPSILON * at.abs().max_element();
     (low - beside).cmple(at).all() && at.cmple(high + beside).all() && triangle.plane.touches(at, error)
-}
-
-/// Returns a lower bound of the distance at which a line enters a box, from 0 on; `None` where it misses the box.
-fn entry(line: &Line<Interval>, bounds: &Aabb) -> Option<f64> {
-    let (mut from, mut to) = (0.0_f64, f64::INFINITY);
-    for axis in 0..3 {
-        let (origin, dir) = (line.origin[axis], line.dir[axis]);
-        let (low, high) = (Interval::constant(bounds.low[axis]), Interval::constant(bounds.high[axis]));
-        if dir.has_zero() {
-            if dir.is_zero() && (origin.high < low.low || origin.low > high.high) {
-                return None;
-            }
-            continue;
-        }
-        let (one, other) = ((low - origin) / dir, (high - origin) / dir);
-        from = from.max(one.low.min(other.low));
-        to = to.min(one.high.max(other.high));
-    }
-    (from <= to).then_some(from)
 }

@@ -4,7 +4,6 @@ use super::equation::{Found, Values, is_kept};
 use crate::geometry::sight::Line;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::{Float, Interval};
-use crate::numeric::scalar::Scalar;
 
 /// The length below which a piece is not cut where the value jumps, as a fraction of the whole line: a fraction of
 /// an ulp of `f64`. A ray that passes through a jump stays undecided however short the piece is, and 237 bits of exponential
@@ -14,7 +13,7 @@ const JUMP: f64 = f64::EPSILON / 16.0;
 /// Finds the first hit with t > 0. The search is given up after `pieces` pieces of the line.
 pub fn first_hit<F: Float>(shape: &dyn Values<F>, line: &Line<Interval<F>>, pieces: usize) -> Found<F> {
     let zero = F::of(0.0);
-    let Some((from, to)) = clip(shape, line) else { return Found::Misses };
+    let Some((from, to)) = clipped(shape, line) else { return Found::Misses };
     if !to.is_finite() {
         return Found::Doubtful(from);
     }
@@ -66,24 +65,10 @@ fn cut<F: Float>(low: F, high: F) -> [(F, F); 2] {
     [(cut, high), (low, cut)]
 }
 
-/// Clips a line, from t = 0 on, to the shape's extent. Returns `None` where the line misses the extent.
-fn clip<F: Float>(shape: &dyn Values<F>, line: &Line<Interval<F>>) -> Option<(F, F)> {
+/// Clips a line to the extent of a shape, from t = 0 on.
+fn clipped<F: Float>(shape: &dyn Values<F>, line: &Line<Interval<F>>) -> Option<(F, F)> {
     let [low, high] = shape.extent();
-    let (mut from, mut to) = (F::of(0.0), F::INFINITY);
-    for axis in 0..3 {
-        let (origin, dir) = (line.origin[axis], line.dir[axis]);
-        let (low, high) = (Interval::<F>::constant(low[axis]), Interval::<F>::constant(high[axis]));
-        if dir.has_zero() {
-            if dir.is_zero() && (origin.high < low.low || origin.low > high.high) {
-                return None;
-            }
-            continue;
-        }
-        let (one, other) = ((low - origin) / dir, (high - origin) / dir);
-        from = from.max(one.low.min(other.low));
-        to = to.min(one.high.max(other.high));
-    }
-    (from <= to).then_some((from, to))
+    line.clip(low, high)
 }
 
 /// The search for roots of an equation along a line.
@@ -205,6 +190,7 @@ impl<F: Float> Search<'_, F> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numeric::scalar::Scalar;
     use crate::world::certify::equation::Equation;
     use f256::f256;
     use glam::DVec3;
