@@ -16,7 +16,7 @@ use glam::DVec3;
 /// than 64.
 const AWAY_ERROR: f64 = 32.0 * f64::EPSILON;
 
-/// Likewise for the dot product with the ray's direction, as a fraction of the product of the edges: a camera ray's
+/// A bound on the rounding error of the dot product with the ray's direction, as a fraction of the product of the edges: a camera ray's
 /// direction is off by 3, and components of a direction add up to at most 1.74: 1.74 * (10 + 2 * 6) = 39, less than 48.
 const TOWARD_ERROR: f64 = 24.0 * f64::EPSILON;
 
@@ -85,7 +85,7 @@ pub(super) fn t_bounds(corners: [DVec3; 3], ray: &Ray, range: &RayRange, leaving
 
 /// Tells whether the line of a ray passes every edge on the same side; `None` where rounding could have changed a sign.
 ///
-/// The same numbers as [`Triangle::passed`], whose comment derives the error.
+/// It computes the same numbers as [`Triangle::passed`], whose comment derives the error.
 #[inline(always)]
 fn passed(corners: [DVec3; 3], ray: &Ray) -> Option<bool> {
     let [a, b, c] = corners.map(|corner| corner - ray.origin);

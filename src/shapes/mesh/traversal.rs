@@ -28,7 +28,7 @@ pub(super) trait Faces {
 struct LocalRay {
     /// For each axis, the origin moved by its error, so that distances of boxes' near sides are too small.
     near_origin: [f32; 3],
-    /// Likewise for the distances of far sides, which are too large.
+    /// For each axis, the origin moved by its error the other way, so that distances of boxes' far sides are too large.
     far_origin: [f32; 3],
     inverse: [f32; 3],
     is_backward: [bool; 3],

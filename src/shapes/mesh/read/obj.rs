@@ -35,15 +35,12 @@ pub fn read(bytes: &[u8]) -> Result<Model, Broken> {
                 for word in words {
                     corners.push(corner(word, model.vertices.len()).map_err(fault)?);
                 }
-                let [first, rest @ ..] = &corners[..] else {
-                    return Err(fault("a face needs three vertices, and this one has none".to_owned()));
-                };
-                if rest.len() < 2 {
-                    let count = text::count(corners.len(), "vertex").replace("vertexs", "vertices");
+                if corners.len() < 3 {
+                    let count = corners.len();
                     return Err(fault(format!("a face needs three vertices, and this one has {count}")));
                 }
-                for pair in rest.windows(2) {
-                    model.faces.push([*first, pair[0], pair[1]]);
+                for pair in corners[1..].windows(2) {
+                    model.faces.push([corners[0], pair[0], pair[1]]);
                 }
                 if slot != 0 || !model.slots.is_empty() {
                     model.slots.resize(model.faces.len(), slot);
