@@ -144,8 +144,9 @@ fn what_is_written_is_on_the_disk_before_it_has_its_name() {
         return;
     }
     let calls = fs::read_to_string(folder.path().join("calls")).expect("text");
-    let calls: Vec<_> =
-        calls.lines().filter_map(|line| Some(line.split_once(' ')?.1.trim().split_once('(')?.0)).collect();
+    let calls = calls.lines().filter_map(|line| Some(line.split_once(' ')?.1.trim().split_once('(')?.0));
+    // `strace` writes `???` for the call of a thread that has just ended.
+    let calls: Vec<_> = calls.filter(|call| *call != "???").collect();
     assert_eq!(calls, ["fsync", "linkat", "fsync"]);
 }
 
