@@ -1,5 +1,6 @@
 //! One face of a mesh: what plain arithmetic tells of a ray's hit, and its equation.
 
+use super::tree::LEAF;
 use crate::geometry::aabb::{Aabb, larger};
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
 use crate::numeric::scalar::{Scalar, dot};
@@ -106,6 +107,43 @@ fn passed(corners: [DVec3; 3], ray: &Ray) -> Option<bool> {
     let is_inside = (plus[0] & plus[1] & plus[2]) | (minus[0] & minus[1] & minus[2]);
     let is_outside = (plus[0] | plus[1] | plus[2]) & (minus[0] | minus[1] | minus[2]);
     if is_inside | is_outside { Some(is_inside) } else { None }
+}
+
+/// Returns a bit for each of a leaf's faces, the lowest one for the first: 0 where [`passed`] tells that the line of a
+/// ray passes outside of the face, and else 1. It takes all faces at once, and computes the same numbers.
+#[inline(always)]
+pub(super) fn not_missed(faces: [[DVec3; 3]; LEAF], ray: &Ray) -> u64 {
+    let mut corners = [[[0.0; LEAF]; 3]; 3];
+    for (lane, face) in faces.iter().enumerate() {
+        for (axes, corner) in corners.iter_mut().zip(face) {
+            (axes[0][lane], axes[1][lane], axes[2][lane]) = (corner.x, corner.y, corner.z);
+        }
+    }
+    let (mut sides, mut errors) = ([[0.0; LEAF]; 3], [[0.0; LEAF]; 3]);
+    for lane in 0..LEAF {
+        let corners = [0, 1, 2].map(|corner: usize| {
+            let [x, y, z] = &corners[corner];
+            DVec3::new(x[lane], y[lane], z[lane]) - ray.origin
+        });
+        let largest = corners.map(|corner| {
+            let DVec3 { x, y, z } = corner.abs();
+            larger(larger(x, y), z)
+        });
+        for (side, (one, other)) in [(0, 1), (1, 2), (2, 0)].into_iter().enumerate() {
+            sides[side][lane] = corners[one].cross(corners[other]).dot(ray.dir);
+            errors[side][lane] = 32.0 * f64::EPSILON * largest[one] * largest[other] + UNDERFLOW;
+        }
+    }
+    let mut signs = [0; LEAF];
+    for (lane, signs) in signs.iter_mut().enumerate() {
+        // Signs of differences, not comparisons, which the compiler would take one by one.
+        let sign = |of: fn(f64, f64) -> f64| {
+            (0..3).fold(0, |any, side| any | of(errors[side][lane], sides[side][lane]).to_bits())
+        };
+        *signs = sign(|error, side| error - side) & sign(|error, side| error + side);
+    }
+    let missed = signs.iter().enumerate().fold(0, |bits, (lane, sign)| bits | (sign >> 63) << lane);
+    !missed & ((1 << LEAF) - 1)
 }
 
 /// Tells whether the corners of a face do not lie on one line.

@@ -1,13 +1,14 @@
 //! First hits of rays with a mesh: brackets in plain arithmetic, distances, and proofs.
 
-use super::face::{Face, Leaving, nearest_point, t_bounds};
+use super::face::{self, Face, Leaving, nearest_point, t_bounds};
 use super::surface::Surface;
 use super::traversal::Faces;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
 use crate::geometry::sight::Sight;
 use crate::numeric::interval::{Float, Interval, Wide};
-use crate::shapes::triangle::Triangle;
+use crate::shapes::plane::Plane;
+use crate::shapes::triangle::{Triangle, plane_for_distances};
 use crate::world::accuracy::Bounded;
 use crate::world::certify::{self, Enclosure, Precision};
 use crate::world::coincidence::CLOSE;
@@ -32,10 +33,21 @@ struct Nearest<'s> {
     doubtful: f64,
 }
 
+impl Nearest<'_> {
+    /// Returns more than the distance between two hits that [`Surface::face_along`] takes for the same, in world units.
+    #[inline(always)]
+    fn close(&self, distance: f64) -> f64 {
+        2.0 * CLOSE * (distance + self.ray.origin.abs().max_element())
+    }
+}
+
 impl Faces for Nearest<'_> {
     #[inline(always)]
     fn visit(&mut self, faces: Range<usize>) -> f64 {
-        for face in faces {
+        let mut bits = self.surface.not_missed(&faces, self.ray);
+        while bits != 0 {
+            let face = faces.start + bits.trailing_zeros() as usize;
+            bits &= bits - 1;
             let Bracket { near, far } =
                 t_bounds(self.surface.corners(face), self.ray, self.range, self.leaving);
             if near == MISS {
@@ -56,27 +68,28 @@ impl Faces for Nearest<'_> {
                 }
             }
         }
-        self.far
+        // Beyond the hit, hits are found that rounding may not tell from it.
+        self.far + self.close(self.far)
     }
 }
 
-/// The triangle of the face that the last ray hit: neighbouring rays often hit the same, and its normal takes many
-/// digits.
-pub(super) struct Last<A>(Option<(usize, Triangle<A>)>);
+/// What was computed from the face that the last ray hit: neighbouring rays often hit the same, and its normal takes
+/// many digits.
+pub(super) struct Last<T>(Option<(usize, T)>);
 
-impl<A: Bounded> Last<A> {
+impl<T> Last<T> {
     pub(super) fn none() -> Self {
         Self(None)
     }
 
-    /// Returns the triangle of a face.
+    /// Returns what `compute` returns for a face.
     #[inline(always)]
-    pub(super) fn triangle(&mut self, surface: &Surface, face: usize) -> &Triangle<A> {
+    pub(super) fn of(&mut self, face: usize, compute: impl FnOnce(usize) -> T) -> &T {
         if self.0.as_ref().is_none_or(|(last, _)| *last != face) {
-            self.0 = Some((face, surface.triangle(face)));
+            self.0 = None;
         }
-        let (_, triangle) = self.0.as_ref().expect("a triangle");
-        triangle
+        let (_, last) = self.0.get_or_insert_with(|| (face, compute(face)));
+        last
     }
 }
 
@@ -84,8 +97,8 @@ impl<A: Bounded> Last<A> {
 pub(super) enum Known {
     /// A bracket of the distance.
     Bracket(Bracket),
-    /// The ray certainly hits this face first.
-    Face(usize, Bracket),
+    /// The ray certainly hits this face first. Where `is_alone`, it is the face that [`Surface::face_along`] returns.
+    Face { face: usize, bracket: Bracket, is_alone: bool },
 }
 
 impl Surface {
@@ -104,6 +117,7 @@ impl Surface {
             doubtful: MISS,
         };
         self.tree.along(ray, range.far, &mut nearest);
+        let close = nearest.close(nearest.far);
         let Nearest { far, near: (near, face), second, doubtful, .. } = nearest;
         if doubtful < far {
             // A certain hit behind an uncertain one does not make the nearer one certain.
@@ -111,38 +125,43 @@ impl Surface {
         }
         let bracket = Bracket { near, far };
         if far < MISS && far < second && !is_any {
-            Known::Face(face, bracket)
+            let is_alone = leaving.most < 0.0 && far + close < second.min(range.far);
+            Known::Face { face, bracket, is_alone }
         } else {
             Known::Bracket(bracket)
         }
     }
 
-    /// Returns the bracket of a ray's first hit in a range: of width 0, where plain arithmetic finds the distance.
+    /// Returns the bracket of a ray's first hit in a range: of width 0, where plain arithmetic finds the distance. If the
+    /// face is known, too, that [`face_along`](Self::face_along) returns for that distance, it is returned.
     #[inline(always)]
     pub(super) fn bracket<A: Bounded>(
         &self,
         ray: &Ray,
         range: &RayRange,
         leaving: Leaving,
-        last: &mut Last<A>,
-    ) -> Bracket {
-        let (distance, bracket) = match self.first(ray, range, leaving, false) {
-            Known::Face(face, bracket) => (last.triangle(self, face).plane.quick_crossing(ray), bracket),
-            Known::Bracket(bracket) if bracket.far < MISS => {
-                (self.refined::<A>(ray, range, leaving, bracket), bracket)
+        last: &mut Last<Plane<A>>,
+    ) -> (Bracket, Option<usize>) {
+        let (distance, bracket, only) = match self.first(ray, range, leaving, false) {
+            Known::Face { face, bracket, is_alone } => {
+                let distance = last.of(face, |face| self.plane(face)).quick_crossing(ray);
+                (distance, bracket, is_alone.then_some(face))
             }
-            Known::Bracket(bracket) => return bracket,
+            Known::Bracket(bracket) if bracket.far < MISS => {
+                (self.refined::<A>(ray, range, leaving, bracket), bracket, None)
+            }
+            Known::Bracket(bracket) => return (bracket, None),
         };
         if distance.is_nan() {
-            return bracket;
+            return (bracket, None);
         }
         let distance = distance.clamp(bracket.near, bracket.far);
         let close = if range.far < MISS { CLOSE * range.far } else { 0.0 };
         // At the distance of another surface, the bracket is widened, so that more digits decide which comes first.
         if (distance - range.far).abs() <= close {
-            return Bracket { near: distance - close, far: distance + close };
+            return (Bracket { near: distance - close, far: distance + close }, None);
         }
-        Bracket::exactly(distance)
+        (Bracket::exactly(distance), only)
     }
 
     /// Returns the distance of a certain hit with a bracket, or NaN where it takes more than plain arithmetic.
@@ -157,7 +176,7 @@ impl Surface {
         let mut first = MISS;
         let far = bracket.far.next_up();
         self.each(ray, &RayRange { far, ..*range }, leaving, |face, _| {
-            let distance = self.triangle::<A>(face).plane.quick_crossing(ray);
+            let distance = self.plane::<A>(face).quick_crossing(ray);
             first = if distance < first || distance.is_nan() { distance } else { first };
             far
         });
@@ -178,7 +197,10 @@ impl Surface {
         impl<F: FnMut(usize, Bracket) -> f64> Faces for Each<'_, F> {
             #[inline(always)]
             fn visit(&mut self, faces: Range<usize>) -> f64 {
-                for face in faces {
+                let mut bits = self.surface.not_missed(&faces, self.ray);
+                while bits != 0 {
+                    let face = faces.start + bits.trailing_zeros() as usize;
+                    bits &= bits - 1;
                     let bracket = t_bounds(self.surface.corners(face), self.ray, self.range, self.leaving);
                     if bracket.near < MISS {
                         self.far = (self.call)(face, bracket);
@@ -365,6 +387,20 @@ impl Surface {
     pub(super) fn triangle<A: Bounded>(&self, face: usize) -> Triangle<A> {
         let corners = self.corners(face);
         Triangle::new(corners).expect("faces without an area are left out")
+    }
+
+    /// Returns a bit for each face of a leaf, the lowest one for the first: 0 where the ray's line certainly misses it.
+    #[inline(always)]
+    fn not_missed(&self, faces: &Range<usize>, ray: &Ray) -> u64 {
+        let last = faces.end - 1;
+        let corners = [0, 1, 2, 3].map(|lane: usize| self.corners((faces.start + lane).min(last)));
+        face::not_missed(corners, ray) & ((1 << faces.len()) - 1)
+    }
+
+    /// Returns the plane of a face, for distances only.
+    #[inline(always)]
+    pub(super) fn plane<A: Bounded>(&self, face: usize) -> Plane<A> {
+        plane_for_distances(self.corners(face))
     }
 
     /// Returns the largest magnitude of a coordinate, in world units.

@@ -8,6 +8,7 @@
 
 mod face;
 mod hits;
+mod memo;
 mod painted;
 mod placement;
 pub mod read;
