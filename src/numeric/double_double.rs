@@ -239,11 +239,12 @@ pub fn cross(a: [DoubleDouble; 3], b: [DoubleDouble; 3]) -> [DoubleDouble; 3] {
 /// double-double, as it mostly is; else `None`.
 #[inline]
 fn quick_cross(a: [DoubleDouble; 3], b: [DoubleDouble; 3]) -> Option<[DoubleDouble; 3]> {
-    if a.iter().chain(&b).any(|part| part.low != 0.0) {
+    let is_plain = |of: [DoubleDouble; 3]| (of[0].low == 0.0) & (of[1].low == 0.0) & (of[2].low == 0.0);
+    if !is_plain(a) | !is_plain(b) {
         return None;
     }
     let mut lost = 0.0;
-    let product = [(1, 2), (2, 0), (0, 1)].map(|(one, other)| {
+    let mut part = |one: usize, other: usize| {
         let (plus, plus_low) = two_product(a[one].high, b[other].high);
         let (minus, minus_low) = two_product(-a[other].high, b[one].high);
         let (sum, of_sum) = two_sum(plus, minus);
@@ -252,7 +253,8 @@ fn quick_cross(a: [DoubleDouble; 3], b: [DoubleDouble; 3]) -> Option<[DoubleDoub
         lost += of_lows.abs() + of_low.abs();
         let (high, low) = two_sum(sum, low);
         DoubleDouble { high, low }
-    });
+    };
+    let product = [part(1, 2), part(2, 0), part(0, 1)];
     (lost == 0.0).then_some(product)
 }
 
@@ -294,14 +296,15 @@ pub fn rounded_unit(vector: [DoubleDouble; 3]) -> [f64; 3] {
     let first = 1.0 / length.high;
     let rest = DoubleDouble::from(1.0) - length * DoubleDouble::from(first);
     let inverse = DoubleDouble::normal(first, rest.high * first);
-    vector.map(|part| {
+    let rounded = |part: DoubleDouble| {
         let DoubleDouble { high, low } = part * inverse;
         // The product and the inverse are off by a few 2^-104, and so is the quotient: where so little does not change
         // how either is rounded, both are rounded to the same number.
-        let error = 2_f64.powi(-98) * high.abs();
+        let error = power_of_two(-98) * high.abs();
         let is_certain = high + (low - error) == high && high + (low + error) == high;
         if is_certain && part.high.abs() > 1e-200 { high } else { (part / length).high }
-    })
+    };
+    [rounded(vector[0]), rounded(vector[1]), rounded(vector[2])]
 }
 
 #[cfg(test)]

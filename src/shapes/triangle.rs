@@ -122,8 +122,8 @@ pub fn plane_for_distances<A>(corners: [DVec3; 3]) -> Plane<A> {
 #[inline]
 fn exact_normal([a, b, c]: [DVec3; 3]) -> [DoubleDouble; 3] {
     let edge = |to: DVec3| {
-        let edge = [0, 1, 2].map(|axis| DoubleDouble::difference(to[axis], a[axis]));
-        scaled_to_one(edge)
+        let edge = |axis: usize| DoubleDouble::difference(to[axis], a[axis]);
+        scaled_to_one([edge(0), edge(1), edge(2)])
     };
     scaled_to_one(double_double::cross(edge(b), edge(c)))
 }
@@ -132,6 +132,9 @@ fn exact_normal([a, b, c]: [DVec3; 3]) -> [DoubleDouble; 3] {
 #[inline]
 fn scaled_to_one(vector: [DoubleDouble; 3]) -> [DoubleDouble; 3] {
     let exponent = exponent_to_one(vector.iter().fold(0.0, |largest, part| part.high.abs().max(largest)));
-    let scaled = |part: f64| times_power_of_two(part, exponent);
-    vector.map(|DoubleDouble { high, low }| DoubleDouble { high: scaled(high), low: scaled(low) })
+    let scaled = |DoubleDouble { high, low }: DoubleDouble| DoubleDouble {
+        high: times_power_of_two(high, exponent),
+        low: times_power_of_two(low, exponent),
+    };
+    [scaled(vector[0]), scaled(vector[1]), scaled(vector[2])]
 }

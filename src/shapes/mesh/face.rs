@@ -5,6 +5,7 @@ use crate::geometry::aabb::{Aabb, larger};
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
 use crate::numeric::scalar::{Scalar, dot};
 use crate::shapes::triangle::Triangle;
+use crate::simd::cpu::kernels;
 use crate::world::accuracy::Exact;
 use crate::world::certify::Equation;
 use glam::DVec3;
@@ -88,7 +89,7 @@ pub(super) fn t_bounds(corners: [DVec3; 3], ray: &Ray, range: &RayRange, leaving
 ///
 /// It computes the same numbers as [`Triangle::passed`], whose comment derives the error.
 #[inline(always)]
-fn passed(corners: [DVec3; 3], ray: &Ray) -> Option<bool> {
+pub(super) fn passed(corners: [DVec3; 3], ray: &Ray) -> Option<bool> {
     let [a, b, c] = corners.map(|corner| corner - ray.origin);
     let size = [a, b, c].map(|corner| 32.0 * f64::EPSILON * corner.abs().max_element());
     let largest = [a, b, c].map(|corner| corner.abs().max_element());
@@ -109,41 +110,46 @@ fn passed(corners: [DVec3; 3], ray: &Ray) -> Option<bool> {
     if is_inside | is_outside { Some(is_inside) } else { None }
 }
 
-/// Returns a bit for each of a leaf's faces, the lowest one for the first: 0 where [`passed`] tells that the line of a
-/// ray passes outside of the face, and else 1. It takes all faces at once, and computes the same numbers.
-#[inline(always)]
-pub(super) fn not_missed(faces: [[DVec3; 3]; LEAF], ray: &Ray) -> u64 {
-    let mut corners = [[[0.0; LEAF]; 3]; 3];
-    for (lane, face) in faces.iter().enumerate() {
-        for (axes, corner) in corners.iter_mut().zip(face) {
-            (axes[0][lane], axes[1][lane], axes[2][lane]) = (corner.x, corner.y, corner.z);
+/// The x, y and z of each corner of a leaf's faces, in world coordinates.
+pub(super) type Corners = [[[f64; LEAF]; 3]; 3];
+
+kernels! {
+    /// Returns a bit for each of a leaf's faces, the lowest one for the first: 0 where [`passed`] tells that the line of
+    /// a ray passes outside of the face, and else 1. It takes all faces at once, and computes the same numbers.
+    ///
+    /// A kernel of its own, as the compiler does not reliably take the faces at a time where it is inlined.
+    pub(super) fn not_missed(corners: &Corners, ray: &Ray) -> u64 {
+        let (mut sides, mut errors) = ([[0.0; LEAF]; 3], [[0.0; LEAF]; 3]);
+        for lane in 0..LEAF {
+            let corner = |corner: usize| {
+                let [x, y, z] = &corners[corner];
+                DVec3::new(x[lane], y[lane], z[lane]) - ray.origin
+            };
+            let corners = [corner(0), corner(1), corner(2)];
+            let largest = |corner: DVec3| {
+                let DVec3 { x, y, z } = corner.abs();
+                larger(larger(x, y), z)
+            };
+            let largest = [largest(corners[0]), largest(corners[1]), largest(corners[2])];
+            for (side, (one, other)) in [(0, 1), (1, 2), (2, 0)].into_iter().enumerate() {
+                sides[side][lane] = corners[one].cross(corners[other]).dot(ray.dir);
+                errors[side][lane] = 32.0 * f64::EPSILON * largest[one] * largest[other] + UNDERFLOW;
+            }
         }
-    }
-    let (mut sides, mut errors) = ([[0.0; LEAF]; 3], [[0.0; LEAF]; 3]);
-    for lane in 0..LEAF {
-        let corners = [0, 1, 2].map(|corner: usize| {
-            let [x, y, z] = &corners[corner];
-            DVec3::new(x[lane], y[lane], z[lane]) - ray.origin
-        });
-        let largest = corners.map(|corner| {
-            let DVec3 { x, y, z } = corner.abs();
-            larger(larger(x, y), z)
-        });
-        for (side, (one, other)) in [(0, 1), (1, 2), (2, 0)].into_iter().enumerate() {
-            sides[side][lane] = corners[one].cross(corners[other]).dot(ray.dir);
-            errors[side][lane] = 32.0 * f64::EPSILON * largest[one] * largest[other] + UNDERFLOW;
+        let mut signs = [0; LEAF];
+        for lane in 0..LEAF {
+            // Signs of differences, not comparisons, which the compiler would take one by one. Nothing is NaN, as
+            // coordinates are at most 1e152.
+            let (mut plus, mut minus) = (0, 0);
+            for side in 0..3 {
+                plus |= (errors[side][lane] - sides[side][lane]).to_bits();
+                minus |= (errors[side][lane] + sides[side][lane]).to_bits();
+            }
+            signs[lane] = plus & minus;
         }
+        let missed = signs.iter().enumerate().fold(0, |bits, (lane, sign)| bits | (sign >> 63) << lane);
+        !missed & ((1 << LEAF) - 1)
     }
-    let mut signs = [0; LEAF];
-    for (lane, signs) in signs.iter_mut().enumerate() {
-        // Signs of differences, not comparisons, which the compiler would take one by one.
-        let sign = |of: fn(f64, f64) -> f64| {
-            (0..3).fold(0, |any, side| any | of(errors[side][lane], sides[side][lane]).to_bits())
-        };
-        *signs = sign(|error, side| error - side) & sign(|error, side| error + side);
-    }
-    let missed = signs.iter().enumerate().fold(0, |bits, (lane, sign)| bits | (sign >> 63) << lane);
-    !missed & ((1 << LEAF) - 1)
 }
 
 /// Tells whether the corners of a face do not lie on one line.

@@ -1,14 +1,16 @@
 //! First hits of rays with a mesh: brackets in plain arithmetic, distances, and proofs.
 
-use super::face::{self, Face, Leaving, nearest_point, t_bounds};
+use super::face::{self, Corners, Face, Leaving, nearest_point, t_bounds};
 use super::surface::Surface;
 use super::traversal::Faces;
+use super::tree::LEAF;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
 use crate::geometry::sight::Sight;
 use crate::numeric::interval::{Float, Interval, Wide};
 use crate::shapes::plane::Plane;
 use crate::shapes::triangle::{Triangle, plane_for_distances};
+use crate::simd::cpu::Cpu;
 use crate::world::accuracy::Bounded;
 use crate::world::certify::{self, Enclosure, Precision};
 use crate::world::coincidence::CLOSE;
@@ -18,6 +20,7 @@ use std::ops::Range;
 
 /// The search for a bracket of a ray's first hit.
 struct Nearest<'s> {
+    cpu: Cpu,
     surface: &'s Surface,
     ray: &'s Ray,
     range: &'s RayRange,
@@ -44,7 +47,7 @@ impl Nearest<'_> {
 impl Faces for Nearest<'_> {
     #[inline(always)]
     fn visit(&mut self, faces: Range<usize>) -> f64 {
-        let mut bits = self.surface.not_missed(&faces, self.ray);
+        let mut bits = self.surface.not_missed(self.cpu, &faces, self.ray);
         while bits != 0 {
             let face = faces.start + bits.trailing_zeros() as usize;
             bits &= bits - 1;
@@ -104,8 +107,16 @@ pub(super) enum Known {
 impl Surface {
     /// Finds a bracket of a ray's first hit in a range. If `is_any`, any certain hit in the range will do.
     #[inline(always)]
-    pub(super) fn first(&self, ray: &Ray, range: &RayRange, leaving: Leaving, is_any: bool) -> Known {
+    pub(super) fn first(
+        &self,
+        cpu: Cpu,
+        ray: &Ray,
+        range: &RayRange,
+        leaving: Leaving,
+        is_any: bool,
+    ) -> Known {
         let mut nearest = Nearest {
+            cpu,
             surface: self,
             ray,
             range,
@@ -132,17 +143,18 @@ impl Surface {
         }
     }
 
-    /// Returns the bracket of a ray's first hit in a range: of width 0, where plain arithmetic finds the distance. If the
-    /// face is known, too, that [`face_along`](Self::face_along) returns for that distance, it is returned.
+    /// Returns the bracket of a ray's first hit in a range: of width 0, where plain arithmetic finds the distance. If
+    /// the face is known, too, that [`face_along`](Self::face_along) returns for that distance, it is returned.
     #[inline(always)]
     pub(super) fn bracket<A: Bounded>(
         &self,
+        cpu: Cpu,
         ray: &Ray,
         range: &RayRange,
         leaving: Leaving,
         last: &mut Last<Plane<A>>,
     ) -> (Bracket, Option<usize>) {
-        let (distance, bracket, only) = match self.first(ray, range, leaving, false) {
+        let (distance, bracket, only) = match self.first(cpu, ray, range, leaving, false) {
             Known::Face { face, bracket, is_alone } => {
                 let distance = last.of(face, |face| self.plane(face)).quick_crossing(ray);
                 (distance, bracket, is_alone.then_some(face))
@@ -197,10 +209,7 @@ impl Surface {
         impl<F: FnMut(usize, Bracket) -> f64> Faces for Each<'_, F> {
             #[inline(always)]
             fn visit(&mut self, faces: Range<usize>) -> f64 {
-                let mut bits = self.surface.not_missed(&faces, self.ray);
-                while bits != 0 {
-                    let face = faces.start + bits.trailing_zeros() as usize;
-                    bits &= bits - 1;
+                for face in faces {
                     let bracket = t_bounds(self.surface.corners(face), self.ray, self.range, self.leaving);
                     if bracket.near < MISS {
                         self.far = (self.call)(face, bracket);
@@ -391,10 +400,15 @@ impl Surface {
 
     /// Returns a bit for each face of a leaf, the lowest one for the first: 0 where the ray's line certainly misses it.
     #[inline(always)]
-    fn not_missed(&self, faces: &Range<usize>, ray: &Ray) -> u64 {
-        let last = faces.end - 1;
-        let corners = [0, 1, 2, 3].map(|lane: usize| self.corners((faces.start + lane).min(last)));
-        face::not_missed(corners, ray) & ((1 << faces.len()) - 1)
+    fn not_missed(&self, cpu: Cpu, faces: &Range<usize>, ray: &Ray) -> u64 {
+        let (last, mut corners) = (faces.end - 1, Corners::default());
+        for lane in 0..LEAF {
+            let face = self.corners((faces.start + lane).min(last));
+            for (axes, corner) in corners.iter_mut().zip(face) {
+                (axes[0][lane], axes[1][lane], axes[2][lane]) = (corner.x, corner.y, corner.z);
+            }
+        }
+        face::not_missed(cpu, &corners, ray) & ((1 << faces.len()) - 1)
     }
 
     /// Returns the plane of a face, for distances only.

@@ -1,5 +1,5 @@
-//! Which faces a thread's last rays hit: what the search for a hit finds out need not be searched for again where the hit
-//! is shaded.
+//! Which faces a thread's last rays hit: what the search for a hit finds out need not be searched for again where the
+//! hit is shaded.
 //!
 //! A face is taken from here only for the very ray, distance and mesh for which it was found, so that no result depends
 //! on what was traced before.

@@ -58,11 +58,17 @@ impl<A: Bounded> Mesh<A> {
 
     /// Returns the bracket of a ray's first hit, and the face if it is known to be that of the hit point.
     #[inline(always)]
-    fn bracket(&self, ray: &Ray, range: &RayRange, last: &mut Last<Plane<A>>) -> (Bracket, Option<usize>) {
+    fn bracket(
+        &self,
+        cpu: Cpu,
+        ray: &Ray,
+        range: &RayRange,
+        last: &mut Last<Plane<A>>,
+    ) -> (Bracket, Option<usize>) {
         if range.origin_side.is_some() && !self.can_hit_itself {
             return (Bracket::MISS, None);
         }
-        self.surface.bracket(ray, range, self.leaving(range.origin_side, range.origin_error), last)
+        self.surface.bracket(cpu, ray, range, self.leaving(range.origin_side, range.origin_error), last)
     }
 }
 
@@ -162,7 +168,17 @@ impl<A: Bounded> Packets for Shape<Mesh<A>, ByPackets, ByFaces> {
         let (mut near, mut far) = ([MISS; PACKET_SIZE], [MISS; PACKET_SIZE]);
         let count = rays.len();
         Memo::with(|memo| {
-            brackets(cpu, &self.shape, rays, sides, nearest.far, memo, &mut near[..count], &mut far[..count]);
+            brackets(
+                cpu,
+                cpu,
+                &self.shape,
+                rays,
+                sides,
+                nearest.far,
+                memo,
+                &mut near[..count],
+                &mut far[..count],
+            );
         });
         ray_packet::closest_of_brackets(cpu, &near[..count], &far[..count], id, nearest)
     }
@@ -178,7 +194,7 @@ impl<A: Bounded> Packets for Shape<Mesh<A>, ByPackets, ByFaces> {
     ) -> bool {
         let (mut near, mut far) = ([MISS; PACKET_SIZE], [MISS; PACKET_SIZE]);
         let count = t_max.len();
-        any_hits(cpu, &self.shape, rays, sides, t_max, blocked, &mut near[..count], &mut far[..count]);
+        any_hits(cpu, cpu, &self.shape, rays, sides, t_max, blocked, &mut near[..count], &mut far[..count]);
         ray_packet::occluded_by_brackets(cpu, &near[..count], &far[..count], t_max, blocked, doubt)
     }
 
@@ -209,12 +225,13 @@ impl<A: Bounded> Packets for Shape<Mesh<A>, ByPackets, ByFaces> {
     }
 
     fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
-        self.shape.bracket(ray, range, &mut Last::none()).0
+        self.shape.bracket(Cpu::best(), ray, range, &mut Last::none()).0
     }
 
     fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
-        let leaving = self.shape.leaving(origin_side, 0.0);
-        match self.shape.surface.first(ray, &RayRange { origin_side, ..RayRange::ALL }, leaving, false) {
+        let (leaving, range) =
+            (self.shape.leaving(origin_side, 0.0), RayRange { origin_side, ..RayRange::ALL });
+        match self.shape.surface.first(Cpu::best(), ray, &range, leaving, false) {
             Known::Face { face, .. } => self.shape.surface.plane::<A>(face).quick_crossing(ray),
             Known::Bracket(_) => f64::NAN,
         }
@@ -233,8 +250,8 @@ fn is_copy(rays: &RayPacket, lane: usize) -> bool {
 kernels! {
     /// Computes brackets of the distances of rays' first hits before `ends`.
     fn brackets[A: Bounded](
-        mesh: &Mesh<A>, rays: RayPacket, sides: Option<&[Side]>, ends: &[f64], memo: &mut Memo, near: &mut [f64],
-        far: &mut [f64]
+        level: Cpu, mesh: &Mesh<A>, rays: RayPacket, sides: Option<&[Side]>, ends: &[f64], memo: &mut Memo,
+        near: &mut [f64], far: &mut [f64]
     ) {
         let (id, mut last) = (mesh.surface.id, Last::none());
         for lane in 0..near.len() {
@@ -244,7 +261,7 @@ kernels! {
                 (near[lane], far[lane]) = (near[lane - 1], far[lane - 1]);
             } else {
                 let ray = rays.get(lane);
-                let (bracket, face) = mesh.bracket(&ray, &range, &mut last);
+                let (bracket, face) = mesh.bracket(level, &ray, &range, &mut last);
                 (near[lane], far[lane]) = (bracket.near, bracket.far);
                 if let Some(face) = face {
                     memo.note(id, &ray, bracket.near, face);
@@ -255,8 +272,8 @@ kernels! {
 
     /// Computes brackets of the distances of any hits of rays before `ends`, except for rays that are blocked already.
     fn any_hits[A: Bounded](
-        mesh: &Mesh<A>, rays: RayPacket, sides: Option<&[Side]>, ends: &[f64], blocked: &[u64], near: &mut [f64],
-        far: &mut [f64]
+        level: Cpu, mesh: &Mesh<A>, rays: RayPacket, sides: Option<&[Side]>, ends: &[f64], blocked: &[u64],
+        near: &mut [f64], far: &mut [f64]
     ) {
         for lane in 0..near.len() {
             let origin_side = sides.map(|sides| sides[lane]);
@@ -270,7 +287,8 @@ kernels! {
             }
             let range = RayRange { far: end, origin_side, ..RayRange::ALL };
             let leaving = mesh.leaving(origin_side, rays.origin_error);
-            let (Known::Face { bracket, .. } | Known::Bracket(bracket)) = mesh.surface.first(&ray, &range, leaving, true);
+            let known = mesh.surface.first(level, &ray, &range, leaving, true);
+            let (Known::Face { bracket, .. } | Known::Bracket(bracket)) = known;
             (near[lane], far[lane]) = (bracket.near, bracket.far);
         }
     }

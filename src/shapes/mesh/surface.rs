@@ -137,7 +137,8 @@ impl Surface {
     /// Returns the corners of a face in world coordinates.
     #[inline(always)]
     pub(super) fn corners(&self, face: usize) -> [DVec3; 3] {
-        self.faces[face].map(|corner| self.vertices[corner as usize])
+        let [a, b, c] = self.faces[face];
+        [self.vertices[a as usize], self.vertices[b as usize], self.vertices[c as usize]]
     }
 }
 
@@ -171,8 +172,8 @@ fn merge(vertices: Vec<DVec3>, faces: &mut [[u32; 3]], placement: &Placement) ->
     merged
 }
 
-/// Sorts vertices, and their normals if there are any, in the order in which faces use them, so that those of a leaf lie
-/// close together in memory.
+/// Sorts vertices, and their normals if there are any, in the order in which faces use them, so that those of a leaf
+/// lie close together in memory.
 fn in_order_of_use(
     vertices: &[DVec3],
     normals: &[[f32; 3]],

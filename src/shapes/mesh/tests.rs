@@ -1,9 +1,13 @@
 //! Properties of meshes: their hits are those of their triangles, and no ray escapes from a closed one.
 
+use super::face::{Corners, not_missed, passed};
+use super::hits::{Last, NOTHING};
+use super::tree::LEAF;
 use super::{Mesh, Placement, Surface, read::Model};
 use crate::geometry::ray::{MISS, Ray, RayRange, Side};
 use crate::geometry::sight::Sight;
 use crate::shapes::triangle::Triangle;
+use crate::simd::cpu::Cpu;
 use crate::world::accuracy::{Accuracy, Exact};
 use crate::world::any_shape::AnyShape;
 use crate::world::certify::{Enclosure, Precision};
@@ -175,6 +179,58 @@ fn equal_vertices_are_one_and_faces_without_an_area_are_left_out() {
     let surface = surface(model, &Placement::new(PLAIN, DVec3::ZERO, DVec3::ZERO));
     assert_eq!((surface.face_count(), surface.degenerate, surface.open_edges), (faces.len(), 2, 0));
     assert!(surface.vertices.len() < faces.len());
+}
+
+proptest! {
+    #[test]
+    fn a_face_that_the_search_knows_is_that_of_the_hit_point(
+        bumps in prop::collection::vec(0.6..1.5, 1..9),
+        (rows, scale) in (3..9_u32, scale()),
+        ways in prop::collection::vec((direction(), any::<prop::sample::Index>(), 0.0..1.0), 40),
+    ) {
+        let surface = surface(closed(&bumps, rows), &Placement::new(scale, DVec3::ZERO, DVec3::ZERO));
+        for (from, to, along) in ways {
+            // Toward an edge, a vertex or the inside of a face.
+            let [a, b, c] = surface.corners(to.index(surface.face_count()));
+            let at = if along < 0.3 { a } else if along < 0.6 { a.lerp(b, along) } else { (a + b + c) / 3.0 };
+            let origin = 3.0 * surface.reach() * from;
+            let Some(dir) = (at - origin).try_normalize() else { continue };
+            let ray = Ray { origin, dir };
+            for cpu in Cpu::all() {
+                let (bracket, face) =
+                    surface.bracket::<Exact>(cpu, &ray, &RayRange::ALL, NOTHING, &mut Last::none());
+                if let Some(face) = face {
+                    prop_assert_eq!(face, surface.face_along(&ray, bracket.near));
+                } else {
+                    prop_assert!(along < 0.6 || bracket.near != bracket.far || bracket.near == MISS, "unknown");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn faces_that_a_ray_misses_are_told_as_one_by_one(
+        corners in prop::collection::vec((direction(), scale()), 3 * LEAF),
+        (origin, to, weight) in (direction(), 0..3 * LEAF, prop_oneof![Just(0.0), Just(1e-16), 0.0..1.0]),
+    ) {
+        let at = |index: usize| corners[index].0 * corners[index].1;
+        let Some(dir) = (at(to) + weight * origin - origin).try_normalize() else { return Ok(()) };
+        let (ray, mut of_leaf) = (Ray { origin, dir }, Corners::default());
+        for lane in 0..LEAF {
+            for corner in 0..3 {
+                of_leaf[corner][0][lane] = at(3 * lane + corner).x;
+                of_leaf[corner][1][lane] = at(3 * lane + corner).y;
+                of_leaf[corner][2][lane] = at(3 * lane + corner).z;
+            }
+        }
+        for cpu in Cpu::all() {
+            let bits = not_missed(cpu, &of_leaf, &ray);
+            for lane in 0..LEAF {
+                let face = [0, 1, 2].map(|corner| at(3 * lane + corner));
+                prop_assert_eq!(bits >> lane & 1 == 0, passed(face, &ray) == Some(false), "{}", lane);
+            }
+        }
+    }
 }
 
 #[test]
