@@ -1,7 +1,7 @@
 //! Properties of meshes: their hits are those of their triangles, and no ray escapes from a closed one.
 
 use super::face::{Corners, not_missed, passed};
-use super::hits::{Last, NOTHING};
+use super::hits::{NOTHING, Searches};
 use super::tree::LEAF;
 use super::{Mesh, Placement, Surface, read::Model};
 use crate::geometry::ray::{MISS, Ray, RayRange, Side};
@@ -189,6 +189,7 @@ proptest! {
         ways in prop::collection::vec((direction(), any::<prop::sample::Index>(), 0.0..1.0), 40),
     ) {
         let surface = surface(closed(&bumps, rows), &Placement::new(scale, DVec3::ZERO, DVec3::ZERO));
+        let mut known = 0;
         for (from, to, along) in ways {
             // Toward an edge, a vertex or the inside of a face.
             let [a, b, c] = surface.corners(to.index(surface.face_count()));
@@ -197,15 +198,20 @@ proptest! {
             let Some(dir) = (at - origin).try_normalize() else { continue };
             let ray = Ray { origin, dir };
             for cpu in Cpu::all() {
-                let (bracket, face) =
-                    surface.bracket::<Exact>(cpu, &ray, &RayRange::ALL, NOTHING, &mut Last::none());
+                // As it is found, and after the same face has been hit twice.
+                let mut searches = Searches::<Exact>::new();
+                let mut search = || surface.bracket(cpu, &ray, &RayRange::ALL, NOTHING, &mut searches);
+                let (bracket, face) = search();
+                prop_assert_eq!((bracket, face), search());
+                prop_assert_eq!((bracket, face), search());
                 if let Some(face) = face {
                     prop_assert_eq!(face, surface.face_along(&ray, bracket.near));
-                } else {
-                    prop_assert!(along < 0.6 || bracket.near != bracket.far || bracket.near == MISS, "unknown");
+                    known += 1;
                 }
             }
         }
+        // Where a mesh is so thin that its sides lie together up to rounding, no face may be known.
+        prop_assert!(known > 0 || scale != DVec3::ONE);
     }
 
     #[test]
