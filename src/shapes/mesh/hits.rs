@@ -2,7 +2,7 @@
 
 use super::face::{self, Corners, Face, Leaving, nearest_point, t_bounds};
 use super::surface::Surface;
-use super::traversal::{Faces, Waiting};
+use super::traversal::Faces;
 use super::tree::LEAF;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
@@ -25,8 +25,6 @@ struct Nearest<'s> {
     ray: &'s Ray,
     range: &'s RayRange,
     leaving: Leaving,
-    /// A face that has been tested before the search.
-    tested: Option<usize>,
     /// Whether any certain hit ends the search.
     is_any: bool,
     /// The smallest upper bound of a certain hit's distance so far.
@@ -46,38 +44,6 @@ impl Nearest<'_> {
     }
 }
 
-impl Nearest<'_> {
-    /// Tests a face. Returns whether that ends the search.
-    #[inline(always)]
-    fn test(&mut self, face: usize) -> bool {
-        let Bracket { near, far } = t_bounds(self.surface.corners(face), self.ray, self.range, self.leaving);
-        if near == MISS {
-            return false;
-        }
-        if near < self.near.0 {
-            self.second = self.near.0;
-            self.near = (near, face);
-        } else if near < self.second {
-            self.second = near;
-        }
-        if far == MISS {
-            self.doubtful = self.doubtful.min(near);
-        } else if far < self.far {
-            self.far = far;
-            return self.is_any;
-        }
-        false
-    }
-
-    /// Returns the distance beyond which no more faces matter, in world units: beyond the hit, those are found that
-    /// rounding may not tell from it.
-    #[inline(always)]
-    fn end(&self) -> f64 {
-        let end = self.far + self.close(self.far);
-        if end < self.range.far { end } else { self.range.far }
-    }
-}
-
 impl Faces for Nearest<'_> {
     #[inline(always)]
     fn visit(&mut self, faces: Range<usize>) -> f64 {
@@ -85,27 +51,28 @@ impl Faces for Nearest<'_> {
         while bits != 0 {
             let face = faces.start + bits.trailing_zeros() as usize;
             bits &= bits - 1;
-            if self.tested != Some(face) && self.test(face) {
-                return -1.0;
+            let Bracket { near, far } =
+                t_bounds(self.surface.corners(face), self.ray, self.range, self.leaving);
+            if near == MISS {
+                continue;
+            }
+            if near < self.near.0 {
+                self.second = self.near.0;
+                self.near = (near, face);
+            } else if near < self.second {
+                self.second = near;
+            }
+            if far == MISS {
+                self.doubtful = self.doubtful.min(near);
+            } else if far < self.far {
+                self.far = far;
+                if self.is_any {
+                    return -1.0;
+                }
             }
         }
-        self.end()
-    }
-}
-
-/// What one search leaves to the next: neighbouring rays often hit the same face, whose normal takes many digits.
-pub(super) struct Searches<A> {
-    waiting: Waiting,
-    last: Last<Plane<A>>,
-    /// The face that the last ray hit, if it was that of the one before, too. It is tested first: a hit leaves out
-    /// what is behind it.
-    run: Option<usize>,
-}
-
-impl<A: Bounded> Searches<A> {
-    #[inline(always)]
-    pub(super) fn new() -> Self {
-        Self { waiting: Waiting::new(), last: Last::none(), run: None }
+        // Beyond the hit, hits are found that rounding may not tell from it.
+        self.far + self.close(self.far)
     }
 }
 
@@ -116,12 +83,6 @@ pub(super) struct Last<T>(Option<(usize, T)>);
 impl<T> Last<T> {
     pub(super) fn none() -> Self {
         Self(None)
-    }
-
-    /// Returns the face.
-    #[inline(always)]
-    fn face(&self) -> Option<usize> {
-        self.0.as_ref().map(|(face, _)| *face)
     }
 
     /// Returns what `compute` returns for a face.
@@ -144,17 +105,15 @@ pub(super) enum Known {
 }
 
 impl Surface {
-    /// Finds a bracket of a ray's first hit in a range. If `is_any`, any certain hit in the range will do. The result
-    /// does not depend on the searches before.
+    /// Finds a bracket of a ray's first hit in a range. If `is_any`, any certain hit in the range will do.
     #[inline(always)]
-    pub(super) fn first<A>(
+    pub(super) fn first(
         &self,
         cpu: Cpu,
         ray: &Ray,
         range: &RayRange,
         leaving: Leaving,
         is_any: bool,
-        searches: &mut Searches<A>,
     ) -> Known {
         let mut nearest = Nearest {
             cpu,
@@ -162,17 +121,13 @@ impl Surface {
             ray,
             range,
             leaving,
-            tested: searches.run.filter(|_| !is_any),
             is_any,
             far: MISS,
             near: (MISS, 0),
             second: MISS,
             doubtful: MISS,
         };
-        if let Some(face) = nearest.tested {
-            nearest.test(face);
-        }
-        self.tree.along(ray, nearest.end(), &mut searches.waiting, &mut nearest);
+        self.tree.along(ray, range.far, &mut nearest);
         let close = nearest.close(nearest.far);
         let Nearest { far, near: (near, face), second, doubtful, .. } = nearest;
         if doubtful < far {
@@ -197,21 +152,17 @@ impl Surface {
         ray: &Ray,
         range: &RayRange,
         leaving: Leaving,
-        searches: &mut Searches<A>,
+        last: &mut Last<Plane<A>>,
     ) -> (Bracket, Option<usize>) {
-        let (distance, bracket, only) = match self.first(cpu, ray, range, leaving, false, searches) {
+        let (distance, bracket, only) = match self.first(cpu, ray, range, leaving, false) {
             Known::Face { face, bracket, is_alone } => {
-                searches.run = (searches.last.face() == Some(face)).then_some(face);
-                let distance = searches.last.of(face, |face| self.plane(face)).quick_crossing(ray);
+                let distance = last.of(face, |face| self.plane(face)).quick_crossing(ray);
                 (distance, bracket, is_alone.then_some(face))
             }
             Known::Bracket(bracket) if bracket.far < MISS => {
                 (self.refined::<A>(ray, range, leaving, bracket), bracket, None)
             }
-            Known::Bracket(bracket) => {
-                searches.run = None;
-                return (bracket, None);
-            }
+            Known::Bracket(bracket) => return (bracket, None),
         };
         if distance.is_nan() {
             return (bracket, None);
@@ -268,12 +219,7 @@ impl Surface {
             }
         }
         let far = range.far;
-        self.tree.along(
-            ray,
-            far,
-            &mut Waiting::new(),
-            &mut Each { surface: self, ray, range, leaving, call, far },
-        );
+        self.tree.along(ray, far, &mut Each { surface: self, ray, range, leaving, call, far });
     }
 
     /// Returns the distance of a ray's first hit in a range, decided for the ray as it is rounded; [`MISS`] for none.

@@ -1,7 +1,7 @@
 //! Meshes as shapes.
 
 use super::face::Leaving;
-use super::hits::{Known, Last, NOTHING, Searches};
+use super::hits::{Known, Last, NOTHING};
 use super::memo::Memo;
 use super::surface::Surface;
 use crate::geometry::aabb::{Aabb, SLACK};
@@ -10,6 +10,7 @@ use crate::geometry::ray_packet::{self, Nearest, PACKET_SIZE, RayPacket};
 use crate::geometry::roots::Method;
 use crate::geometry::sight::Sight;
 use crate::numeric::double_double::DoubleDouble;
+use crate::shapes::plane::Plane;
 use crate::simd::cpu::{Cpu, kernels};
 use crate::text;
 use crate::world::accuracy::{Accuracy, Bounded};
@@ -62,12 +63,12 @@ impl<A: Bounded> Mesh<A> {
         cpu: Cpu,
         ray: &Ray,
         range: &RayRange,
-        searches: &mut Searches<A>,
+        last: &mut Last<Plane<A>>,
     ) -> (Bracket, Option<usize>) {
         if range.origin_side.is_some() && !self.can_hit_itself {
             return (Bracket::MISS, None);
         }
-        self.surface.bracket(cpu, ray, range, self.leaving(range.origin_side, range.origin_error), searches)
+        self.surface.bracket(cpu, ray, range, self.leaving(range.origin_side, range.origin_error), last)
     }
 }
 
@@ -224,13 +225,13 @@ impl<A: Bounded> Packets for Shape<Mesh<A>, ByPackets, ByFaces> {
     }
 
     fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
-        self.shape.bracket(Cpu::best(), ray, range, &mut Searches::new()).0
+        self.shape.bracket(Cpu::best(), ray, range, &mut Last::none()).0
     }
 
     fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
         let (leaving, range) =
             (self.shape.leaving(origin_side, 0.0), RayRange { origin_side, ..RayRange::ALL });
-        match self.shape.surface.first::<A>(Cpu::best(), ray, &range, leaving, false, &mut Searches::new()) {
+        match self.shape.surface.first(Cpu::best(), ray, &range, leaving, false) {
             Known::Face { face, .. } => self.shape.surface.plane::<A>(face).quick_crossing(ray),
             Known::Bracket(_) => f64::NAN,
         }
@@ -252,7 +253,7 @@ kernels! {
         level: Cpu, mesh: &Mesh<A>, rays: RayPacket, sides: Option<&[Side]>, ends: &[f64], memo: &mut Memo,
         near: &mut [f64], far: &mut [f64]
     ) {
-        let (id, mut searches) = (mesh.surface.id, Searches::new());
+        let (id, mut last) = (mesh.surface.id, Last::none());
         for lane in 0..near.len() {
             let origin_side = sides.map(|sides| sides[lane]);
             let range = RayRange { far: ends[lane], origin_side, origin_error: rays.origin_error, ..RayRange::ALL };
@@ -260,7 +261,7 @@ kernels! {
                 (near[lane], far[lane]) = (near[lane - 1], far[lane - 1]);
             } else {
                 let ray = rays.get(lane);
-                let (bracket, face) = mesh.bracket(level, &ray, &range, &mut searches);
+                let (bracket, face) = mesh.bracket(level, &ray, &range, &mut last);
                 (near[lane], far[lane]) = (bracket.near, bracket.far);
                 if let Some(face) = face {
                     memo.note(id, &ray, bracket.near, face);
@@ -274,7 +275,6 @@ kernels! {
         level: Cpu, mesh: &Mesh<A>, rays: RayPacket, sides: Option<&[Side]>, ends: &[f64], blocked: &[u64],
         near: &mut [f64], far: &mut [f64]
     ) {
-        let mut searches = Searches::<A>::new();
         for lane in 0..near.len() {
             let origin_side = sides.map(|sides| sides[lane]);
             let (end, ray) = (ends[lane], rays.get(lane));
@@ -287,7 +287,7 @@ kernels! {
             }
             let range = RayRange { far: end, origin_side, ..RayRange::ALL };
             let leaving = mesh.leaving(origin_side, rays.origin_error);
-            let known = mesh.surface.first(level, &ray, &range, leaving, true, &mut searches);
+            let known = mesh.surface.first(level, &ray, &range, leaving, true);
             let (Known::Face { bracket, .. } | Known::Bracket(bracket)) = known;
             (near[lane], far[lane]) = (bracket.near, bracket.far);
         }

@@ -17,17 +17,6 @@ const ROUNDING: f64 = 1.0 / (1 << 21) as f64;
 /// moves a ray by far less than [`ROUNDING`].
 const LEAST: f64 = 1.0 / (1_u64 << 40) as f64;
 
-/// Room for the boxes that wait to be visited, with the distances at which a ray enters them; for one ray after the
-/// other, as it takes time to clear.
-pub(super) struct Waiting([(f32, u32); STACK]);
-
-impl Waiting {
-    #[inline(always)]
-    pub fn new() -> Self {
-        Self([(0.0, 0); STACK])
-    }
-}
-
 /// A byte of 1 for each box of a node.
 const ALL: u64 = u64::from_le_bytes([1; WIDTH]);
 
@@ -109,10 +98,10 @@ impl Tree {
     /// Visits the faces in the boxes that a ray passes through before a distance in world units, roughly from near to
     /// far.
     #[inline(always)]
-    pub fn along(&self, ray: &Ray, far: f64, Waiting(stack): &mut Waiting, faces: &mut impl Faces) {
+    pub fn along(&self, ray: &Ray, far: f64, faces: &mut impl Faces) {
         let local = LocalRay::new(self, ray);
         let mut limit = local.limit(far);
-        stack[0] = (0.0, 0);
+        let mut stack = [(0.0_f32, 0_u32); STACK];
         let mut waiting = 1;
         while waiting > 0 {
             waiting -= 1;
