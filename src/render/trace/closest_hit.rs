@@ -37,10 +37,10 @@ impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
             self.closest_seen(group, hits);
             return;
         }
-        let mut stack = take(&mut self.scratch.stack);
+        let (mut stack, mut ends) = (take(&mut self.scratch.stack), take(&mut self.scratch.ends));
         let part = 0..group.padded();
-        Closest { tracer: self, group, hits, part, single: None }.run(&mut stack);
-        self.scratch.stack = stack;
+        Closest { tracer: self, group, hits, part, single: None }.run(&mut stack, &mut ends);
+        (self.scratch.stack, self.scratch.ends) = (stack, ends);
     }
 
     /// Finds one ray's closest hit and reports each step to the observer.
@@ -252,13 +252,16 @@ struct Single {
 }
 
 impl<W: TraceObserver> Closest<'_, '_, '_, W> {
-    fn run(mut self, stack: &mut Stack) {
+    /// Tests all objects. `ends` is scratch space.
+    fn run(mut self, stack: &mut Stack, ends: &mut Vec<f64>) {
         let plan = self.tracer.plan;
         if !plan.unbounded.is_empty() || !plan.bounded.is_empty() {
             self.listed();
         }
         if let Some(tree) = &plan.tree {
-            bvh::visit(self.tracer.cpu, tree, stack, self.group.rays(), &mut self);
+            ends.clear();
+            ends.extend_from_slice(&self.hits.far[..self.group.padded()]);
+            bvh::visit(self.tracer.cpu, tree, stack, self.group.rays(), ends, &mut self);
         }
     }
 
@@ -362,19 +365,15 @@ impl<W: TraceObserver> Closest<'_, '_, '_, W> {
 }
 
 impl<W: TraceObserver> PacketVisitor for Closest<'_, '_, '_, W> {
-    #[inline(always)]
-    fn t_max(&self) -> &[f64] {
-        &self.hits.far[..self.group.padded()]
-    }
-
-    fn test(&mut self, index: usize, lanes: Range<usize>) {
+    fn test(&mut self, index: usize, lanes: Range<usize>, t_max: &mut [f64]) {
         if self.tracer.may_meet(self.group.left(), index) {
-            self.part = lanes;
+            self.part = lanes.clone();
             self.test_part(index);
+            t_max[lanes.clone()].copy_from_slice(&self.hits.far[lanes]);
         }
     }
 
-    fn test_one(&mut self, index: usize, lane: usize) {
+    fn test_one(&mut self, index: usize, lane: usize, t_max: &mut [f64]) {
         if !self.tracer.may_meet(self.group.left(), index) {
             return;
         }
@@ -397,6 +396,7 @@ impl<W: TraceObserver> PacketVisitor for Closest<'_, '_, '_, W> {
         if is_open && doubt[0] != 0 {
             self.decide(lane, index, side);
         }
+        t_max[lane] = self.hits.far[lane];
     }
 }
 
