@@ -1,8 +1,8 @@
 //! Occlusion: which rays of a packet any object blocks.
 
 use super::arrays::resized;
-use super::closest_hit::{Start, exact};
 use super::context::Tracer;
+use super::one_ray::{Start, exact};
 use super::surface::Surface;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::bvh::{self, PacketVisitor, Stack};
