@@ -11,6 +11,7 @@ mod hits;
 mod memo;
 mod painted;
 mod placement;
+mod points;
 pub mod read;
 mod shape;
 mod smooth;
