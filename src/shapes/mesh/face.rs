@@ -1,7 +1,7 @@
 //! One face of a mesh: what plain arithmetic tells of a ray's hit, and its equation.
 
 use crate::geometry::aabb::{Aabb, larger};
-use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
+use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange};
 use crate::numeric::scalar::{Scalar, dot};
 use crate::shapes::triangle::Triangle;
 use crate::world::accuracy::Exact;
@@ -33,10 +33,16 @@ pub(super) struct Leaving {
     pub most: f64,
 }
 
-/// Returns bounds of the distance at which a ray hits a face.
+/// Returns bounds of the distance at which a ray hits a face; with a drift, of all rays within it.
 #[inline(always)]
-pub(super) fn t_bounds(corners: [DVec3; 3], ray: &Ray, range: &RayRange, leaving: Leaving) -> Bracket {
-    let passed = passed(corners, ray);
+pub(super) fn t_bounds(
+    corners: [DVec3; 3],
+    ray: &Ray,
+    range: &RayRange,
+    leaving: Leaving,
+    drift: Option<Drift>,
+) -> Bracket {
+    let passed = passed(corners, ray, drift);
     if passed == Some(false) {
         return Bracket::MISS;
     }
@@ -47,6 +53,13 @@ pub(super) fn t_bounds(corners: [DVec3; 3], ray: &Ray, range: &RayRange, leaving
     let (away, toward) = (normal.dot(between), normal.dot(ray.dir));
     let (away_error, toward_error) =
         (AWAY_ERROR * edges * between.abs().max_element() + UNDERFLOW, TOWARD_ERROR * edges + UNDERFLOW);
+    // A normal is no longer than 3 times that product, as an edge is no longer than the root of 3 of its components.
+    let (away_error, toward_error) = match drift {
+        None => (away_error, toward_error),
+        Some(drift) => {
+            (away_error + 3.0 * edges * drift.origin, toward_error + 3.0 * edges * drift.dir)
+        }
+    };
     if leaving.most >= 0.0 {
         let size = normal.length();
         // The length is off by less than an error of a direction.
@@ -87,10 +100,19 @@ pub(super) fn t_bounds(corners: [DVec3; 3], ray: &Ray, range: &RayRange, leaving
 ///
 /// It computes the same numbers as [`Triangle::passed`], whose comment derives the error.
 #[inline(always)]
-fn passed(corners: [DVec3; 3], ray: &Ray) -> Option<bool> {
+fn passed(corners: [DVec3; 3], ray: &Ray, drift: Option<Drift>) -> Option<bool> {
     let [a, b, c] = corners.map(|corner| corner - ray.origin);
-    let size = [a, b, c].map(|corner| 32.0 * f64::EPSILON * corner.abs().max_element());
     let largest = [a, b, c].map(|corner| corner.abs().max_element());
+    // A drift of the direction changes a product by 3 of the drift and of the two largest components, and one of the
+    // origin by 2 of it and of their sum.
+    let (error, largest) = match drift {
+        None => (32.0 * f64::EPSILON, largest),
+        Some(Drift { origin, dir }) => {
+            let error = 32.0 * f64::EPSILON + 3.0 * dir;
+            (error, largest.map(|largest| largest + 2.0 * origin / error))
+        }
+    };
+    let size = largest.map(|largest| error * largest);
     let one = a.cross(b).dot(ray.dir);
     let two = b.cross(c).dot(ray.dir);
     let three = c.cross(a).dot(ray.dir);

@@ -4,7 +4,7 @@ use super::face::{Face, Leaving, nearest_point, t_bounds};
 use super::surface::Surface;
 use super::traversal::Faces;
 use crate::geometry::aabb::Aabb;
-use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
+use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange};
 use crate::geometry::sight::Sight;
 use crate::numeric::interval::{Float, Interval, Wide};
 use crate::shapes::triangle::Triangle;
@@ -21,6 +21,7 @@ struct Nearest<'s> {
     ray: &'s Ray,
     range: &'s RayRange,
     leaving: Leaving,
+    drift: Option<Drift>,
     /// Whether any certain hit ends the search.
     is_any: bool,
     /// The smallest upper bound of a certain hit's distance so far.
@@ -37,7 +38,7 @@ impl Faces for Nearest<'_> {
     fn visit(&mut self, faces: Range<usize>) -> f64 {
         for face in faces {
             let Bracket { near, far } =
-                t_bounds(self.surface.corners(face), self.ray, self.range, self.leaving);
+                t_bounds(self.surface.corners(face), self.ray, self.range, self.leaving, self.drift);
             if near == MISS {
                 continue;
             }
@@ -91,19 +92,27 @@ pub(super) enum Known {
 impl Surface {
     /// Finds a bracket of a ray's first hit in a range. If `is_any`, any certain hit in the range will do.
     #[inline(always)]
-    pub(super) fn first(&self, ray: &Ray, range: &RayRange, leaving: Leaving, is_any: bool) -> Known {
+    pub(super) fn first(
+        &self,
+        ray: &Ray,
+        range: &RayRange,
+        leaving: Leaving,
+        drift: Option<Drift>,
+        is_any: bool,
+    ) -> Known {
         let mut nearest = Nearest {
             surface: self,
             ray,
             range,
             leaving,
+            drift,
             is_any,
             far: MISS,
             near: (MISS, 0),
             second: MISS,
             doubtful: MISS,
         };
-        self.tree.along(ray, range.far, &mut nearest);
+        self.tree.along(ray, range.far, drift, &mut nearest);
         let Nearest { far, near: (near, face), second, doubtful, .. } = nearest;
         if doubtful < far {
             // A certain hit behind an uncertain one does not make the nearer one certain.
@@ -126,7 +135,7 @@ impl Surface {
         leaving: Leaving,
         last: &mut Last<A>,
     ) -> Bracket {
-        let (distance, bracket) = match self.first(ray, range, leaving, false) {
+        let (distance, bracket) = match self.first(ray, range, leaving, None, false) {
             Known::Face(face, bracket) => (last.triangle(self, face).plane.quick_crossing(ray), bracket),
             Known::Bracket(bracket) if bracket.far < MISS => {
                 (self.refined::<A>(ray, range, leaving, bracket), bracket)
@@ -143,6 +152,27 @@ impl Surface {
             return Bracket { near: distance - close, far: distance + close };
         }
         Bracket::exactly(distance)
+    }
+
+    /// Returns a bracket of the first hits in a range of all rays within a drift of one.
+    #[inline(always)]
+    pub(super) fn bracket_within<A: Bounded>(
+        &self,
+        ray: &Ray,
+        range: &RayRange,
+        drift: Drift,
+        last: &mut Last<A>,
+    ) -> Bracket {
+        match self.first(ray, range, NOTHING, Some(drift), false) {
+            Known::Face(face, bracket) => {
+                let distance = last.triangle(self, face).plane.quick_crossing(ray);
+                // A bracket that is far narrower than what coincides is taken for the distance.
+                let is_narrow = bracket.far - bracket.near <= 0.125 * CLOSE * bracket.near;
+                let is_known = is_narrow & (bracket.near <= distance) & (distance <= bracket.far);
+                if is_known { Bracket::exactly(distance) } else { bracket }
+            }
+            Known::Bracket(bracket) => bracket,
+        }
     }
 
     /// Returns the distance of a certain hit with a bracket, or NaN where it takes more than plain arithmetic.
@@ -179,7 +209,13 @@ impl Surface {
             #[inline(always)]
             fn visit(&mut self, faces: Range<usize>) -> f64 {
                 for face in faces {
-                    let bracket = t_bounds(self.surface.corners(face), self.ray, self.range, self.leaving);
+                    let bracket = t_bounds(
+                        self.surface.corners(face),
+                        self.ray,
+                        self.range,
+                        self.leaving,
+                        None,
+                    );
                     if bracket.near < MISS {
                         self.far = (self.call)(face, bracket);
                     }
@@ -188,7 +224,7 @@ impl Surface {
             }
         }
         let far = range.far;
-        self.tree.along(ray, far, &mut Each { surface: self, ray, range, leaving, call, far });
+        self.tree.along(ray, far, None, &mut Each { surface: self, ray, range, leaving, call, far });
     }
 
     /// Returns the distance of a ray's first hit in a range, decided for the ray as it is rounded; [`MISS`] for none.
