@@ -231,7 +231,8 @@ impl Surface {
     /// The ray leaves the faces within `leaves` world units of its origin; negative where it leaves none.
     pub(super) fn distance<A: Bounded>(&self, ray: &Ray, range: &RayRange, leaves: f64) -> f64 {
         let mut first = MISS;
-        self.each(ray, range, NOTHING, |face, _| {
+        let leaving = if leaves < 0.0 { NOTHING } else { Leaving { least: leaves, most: leaves } };
+        self.each(ray, range, leaving, |face, _| {
             let triangle = self.triangle::<A>(face);
             if leaves < 0.0 || !touches(&triangle, ray.origin, leaves) {
                 let distance = range.keep(triangle.plane.crossing(ray));
