@@ -56,9 +56,7 @@ pub(super) fn t_bounds(
     // A normal is no longer than 3 times that product, as an edge is no longer than the root of 3 of its components.
     let (away_error, toward_error) = match drift {
         None => (away_error, toward_error),
-        Some(drift) => {
-            (away_error + 3.0 * edges * drift.origin, toward_error + 3.0 * edges * drift.dir)
-        }
+        Some(drift) => (away_error + 3.0 * edges * drift.origin, toward_error + 3.0 * edges * drift.dir),
     };
     if leaving.most >= 0.0 {
         let size = normal.length();

@@ -209,13 +209,8 @@ impl Surface {
             #[inline(always)]
             fn visit(&mut self, faces: Range<usize>) -> f64 {
                 for face in faces {
-                    let bracket = t_bounds(
-                        self.surface.corners(face),
-                        self.ray,
-                        self.range,
-                        self.leaving,
-                        None,
-                    );
+                    let bracket =
+                        t_bounds(self.surface.corners(face), self.ray, self.range, self.leaving, None);
                     if bracket.near < MISS {
                         self.far = (self.call)(face, bracket);
                     }

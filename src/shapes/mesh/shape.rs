@@ -223,7 +223,8 @@ impl<A: Bounded> Packets for Shape<Mesh<A>, ByPackets, ByFaces> {
 
     fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
         let leaving = self.shape.leaving(origin_side, 0.0);
-        match self.shape.surface.first(ray, &RayRange { origin_side, ..RayRange::ALL }, leaving, None, false) {
+        match self.shape.surface.first(ray, &RayRange { origin_side, ..RayRange::ALL }, leaving, None, false)
+        {
             Known::Face(face, _) => self.shape.surface.triangle::<A>(face).plane.quick_crossing(ray),
             Known::Bracket(_) => f64::NAN,
         }

@@ -88,8 +88,7 @@ impl Placed {
     /// where it is so large that brackets would say little.
     fn own_drift(&self, origins: impl Iterator<Item = DVec3>, drift: Drift) -> Option<Drift> {
         let Placement { scale, translation, .. } = self.placement;
-        let away =
-            origins.map(|origin| (origin - translation).abs().element_sum()).fold(0.0, f64::max);
+        let away = origins.map(|origin| (origin - translation).abs().element_sum()).fold(0.0, f64::max);
         let (least, most) = (scale.min_element(), scale.max_element());
         // Making two vectors unit vectors at most doubles the difference between them, relative to the shorter one,
         // which is as long as 1 / `most` at least.

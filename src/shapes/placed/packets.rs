@@ -299,9 +299,7 @@ impl Packets for Shape<Placed, ByPackets, ByPlacement> {
     fn interact(&self, cpu: Cpu, rays: RayPacket, distances: &[f64], interaction: SurfaceInteraction) {
         let SurfaceInteraction { mut points, mut normals, sides, cosines, travelled } = interaction;
         if self.shape.body.shape.packets().is_of_the_notes() {
-            shape::interact(
-                cpu, &self.shape, rays, distances, sides, cosines, travelled, points, normals,
-            );
+            shape::interact(cpu, &self.shape, rays, distances, sides, cosines, travelled, points, normals);
             return;
         }
         for part in split(travelled.len(), PART) {

@@ -61,7 +61,8 @@ impl Quadratic {
         let at_size = self.sizes.dot(at * at);
         let linear = self.linear.abs();
         let gradient = 2.0 * self.sizes.dot(at.abs()) + linear.element_sum();
-        let at_error = DD_ERROR * (high.abs().element_sum() + base.abs()) + dir_error * base.abs() + origin_error;
+        let at_error =
+            DD_ERROR * (high.abs().element_sum() + base.abs()) + dir_error * base.abs() + origin_error;
         let b_size = (at_size * a_size).sqrt() + 0.5 * linear.dot(dir.abs());
         let c_size = at_size + linear.dot(at.abs()) + self.constant.abs();
         let reach = self.sizes.dot(dir.abs());
