@@ -9,7 +9,7 @@ use crate::geometry::roots::Method;
 use crate::numeric::double_double::DoubleDouble;
 use crate::world::certify::Equation;
 use crate::world::coincidence;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 /// A shape that rays can hit. Shapes do not change while an image is rendered.
 ///
@@ -31,6 +31,12 @@ pub trait Hittable: Send + Sync {
 
     /// Returns a bounding box of the shape, or `None` for an unbounded shape.
     fn bounds(&self) -> Option<Aabb> {
+        None
+    }
+
+    /// Returns a bounding box of what a linear map makes of the shape, up to rounding, where it is tighter than that of
+    /// the corners of its box.
+    fn bounds_after(&self, _linear: &DMat3) -> Option<Aabb> {
         None
     }
 

@@ -9,7 +9,7 @@ use crate::geometry::bvh::{self, PacketVisitor, Stack};
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
 use crate::geometry::ray_packet::{Nearest, RayPacket};
 use crate::geometry::sight::Sight;
-use crate::numeric::interval::{Interval, Wide};
+use crate::numeric::interval::{Float, Interval, Wide};
 use crate::render::culling;
 use crate::render::frusta::{self, PART};
 use crate::render::observer::{Count, Event, Hit, Reason, TraceObserver};
@@ -18,6 +18,7 @@ use crate::simd::soa::{LANES, Vectors};
 use crate::world::any_shape::AnyShape;
 use crate::world::certify::{self, Enclosure, Precision};
 use crate::world::coincidence::CLOSE;
+use std::cmp::Ordering;
 use std::mem::take;
 use std::ops::Range;
 
@@ -101,9 +102,16 @@ impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
         }
         let shape = |index: usize| &self.model.objects[index].shape;
         let (one, other) = ((shape(index), distance), (shape(rival), far));
-        let is_before = order::is_before(&start.ray, start.error, one, other)
-            .or_else(|| order::is_certainly_before(one.0, other.0, start.sight.as_ref()?));
-        is_before.unwrap_or(index < rival)
+        let certain = || order::certain_order(one.0, other.0, start.sight.as_ref()?);
+        if order::is_unclear(&start.ray, one, other)
+            && let Some(order) = certain()
+        {
+            return order.then(index.cmp(&rival)) == Ordering::Less;
+        }
+        let is_before = order::is_before(&start.ray, start.error, one, other);
+        let is_before = is_before.map(|is_before| if is_before { Ordering::Less } else { Ordering::Greater });
+        let order = is_before.or_else(certain).unwrap_or(Ordering::Equal);
+        order.then(index.cmp(&rival)) == Ordering::Less
     }
 
     /// Computes the distances, in world units, at which the rays of a group hit an object. Each lies between `near` and
@@ -186,11 +194,18 @@ fn located(shape: &AnyShape, start: &Start, origin_side: Option<Side>, far: f64)
     if bracket.is_doubtful() { decided(shape, sight, distance) } else { (distance, bracket) }
 }
 
+/// The width from which on an enclosure of a distance is too wide to be that of a point, as a fraction of the distance.
+const WIDE: f64 = 64.0 * f64::EPSILON;
+
 /// Returns a distance and a bracket of it, if the ray before anything is rounded hits the shape as far as a proof with
 /// 237 bits tells, and [`MISS`] otherwise.
 fn decided(shape: &AnyShape, sight: &Sight, distance: f64) -> (f64, Bracket) {
     let enclosure = match shape.certify(sight, Precision::Double) {
         Enclosure::Edge(_) | Enclosure::Doubtful(_) => shape.certify(sight, Precision::Octuple),
+        // As where the ray passes near the edge of a face that it grazes, which holds much of the ray.
+        Enclosure::Hits(at) if at.width().to_f64() > WIDE * at.high.to_f64() => {
+            shape.certify(sight, Precision::Octuple)
+        }
         certain => certain,
     };
     match enclosure {

@@ -242,8 +242,8 @@ impl Surface {
     }
 
     /// Returns the face that a ray hits at a distance in world units: of several that hold the point up to rounding, the
-    /// first in the file whose outside the ray hits, if there is any. At the outline of a closed mesh, a face whose
-    /// inside is hit would show light from within.
+    /// first in the file of those that are seen there; of these, those whose outside the ray hits, if there are any. At
+    /// the outline of a closed mesh, a face that others hide would show light from within.
     #[inline(always)]
     pub(super) fn face_along(&self, ray: &Ray, distance: f64) -> usize {
         let close = CLOSE * (distance + ray.origin.abs().max_element());
@@ -258,13 +258,17 @@ impl Surface {
         if count == 1 {
             only
         } else {
-            self.first_at(ray.at(distance), |face| self.is_outside_hit(face, ray.dir))
+            let at = ray.at(distance);
+            self.first_at(at, |face| match self.is_hidden(face, ray, at) {
+                true => 2,
+                false => u8::from(!self.is_outside_hit(face, ray.dir)),
+            })
         }
     }
 
     /// Returns the face that is nearest to a point; of several, up to rounding, the first in the file.
     pub(super) fn face_at(&self, at: DVec3) -> usize {
-        self.first_at(at, |_| true)
+        self.first_at(at, |_| 0)
     }
 
     /// Tells whether a ray along a direction hits the outside of a face, in plain arithmetic.
@@ -274,16 +278,30 @@ impl Surface {
         self.open_edges > 0 || (b - a).cross(c - a).dot(dir) < 0.0
     }
 
-    /// Returns the face that is nearest to a point; of several, up to rounding, the first in the file among those that
-    /// are preferred, or else among all.
-    fn first_at(&self, at: DVec3, is_preferred: impl Fn(usize) -> bool) -> usize {
+    /// Tells whether the part of a face of a closed mesh beside a point of it is certainly hidden from where a ray starts.
+    fn is_hidden(&self, face: usize, ray: &Ray, at: DVec3) -> bool {
+        const BESIDE: f64 = 1.0 / (1 << 20) as f64;
+        let [a, b, c] = self.corners(face);
+        let way = at + BESIDE * ((a + b + c) / 3.0 - at) - ray.origin;
+        let distance = way.length();
+        let far = distance - 64.0 * f64::EPSILON * (distance + ray.origin.abs().max_element());
+        let (toward, range) = (Ray { dir: way / distance, ..*ray }, RayRange { far, ..RayRange::ALL });
+        let first = || self.first(&toward, &range, NOTHING, None, false);
+        // The upper end of a bracket may lie beyond the range.
+        self.open_edges == 0
+            && matches!(first(), Known::Bracket(bracket) | Known::Face(_, bracket) if bracket.far < far)
+    }
+
+    /// Returns the face that is nearest to a point; of several, up to rounding, the first in the file of those with the
+    /// least rank.
+    fn first_at(&self, at: DVec3, rank: impl Fn(usize) -> u8) -> usize {
         let rounding = 8.0 * f64::EPSILON * (at.abs().max_element() + self.reach());
         let (distance, face) = self.nearest(at);
         let within = distance + rounding;
         let mut first = face;
         self.near(at, within, |face, distance| {
-            let place = |face: usize| (!is_preferred(face), self.order[face]);
-            if distance <= within && place(face) < place(first) {
+            let place = |face: usize| (rank(face), self.order[face]);
+            if distance <= within && face != first && place(face) < place(first) {
                 first = face;
             }
             within

@@ -18,7 +18,7 @@ use crate::world::hittable::Hittable;
 use crate::world::interaction::{SurfaceInteraction, turned};
 use crate::world::packets::shape::{Packets, Proofs};
 use crate::world::shape::{ByPackets, Shape};
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use std::marker::PhantomData;
 use std::sync::Arc;
 
@@ -29,6 +29,10 @@ pub struct Mesh<A> {
     can_hit_itself: bool,
     accuracy: PhantomData<A>,
 }
+
+/// The number of vertices up to which they are mapped to find the box of a copy: a million copies of so many take two
+/// seconds.
+const MOST_MAPPED: usize = 1000;
 
 /// Marks a shape that consists of faces, whose hits are proven face by face.
 pub struct ByFaces;
@@ -88,6 +92,17 @@ impl<A: Bounded> Hittable for Mesh<A> {
 
     fn bounds(&self) -> Option<Aabb> {
         Some(self.surface.bounds)
+    }
+
+    fn bounds_after(&self, linear: &DMat3) -> Option<Aabb> {
+        let vertices = &self.surface.vertices;
+        let around = || {
+            vertices
+                .iter()
+                .map(|at| *linear * *at)
+                .fold(Aabb::EMPTY, |all, at| all.and(&Aabb { low: at, high: at }))
+        };
+        (vertices.len() <= MOST_MAPPED).then(around)
     }
 
     fn can_hit_itself(&self, _leaving: Side) -> bool {

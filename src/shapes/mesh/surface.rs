@@ -1,8 +1,8 @@
 //! The surface of a mesh: its vertices, its faces, and the tree in which rays find them.
 
 use super::face;
-use super::placement::Placement;
 use super::read::Model;
+use super::to_world::ToWorld;
 use super::tree::{MAX_FACES, Tree};
 use crate::geometry::aabb::Aabb;
 use crate::scene::pparm::MOST_LENGTH;
@@ -55,7 +55,7 @@ impl Surface {
     ///
     /// # Errors
     /// Why there is none.
-    pub fn new(model: Model, placement: &Placement, is_smooth: bool) -> Result<Self, Unfit> {
+    pub fn new(model: Model, placement: &ToWorld, is_smooth: bool) -> Result<Self, Unfit> {
         if model.faces.len() > MAX_FACES {
             return Err(Unfit::TooMany);
         }
@@ -122,7 +122,7 @@ impl Surface {
 }
 
 /// Places the vertices of faces, and merges those at the same place. Vertices without a face are left out.
-fn merge(vertices: Vec<DVec3>, faces: &mut [[u32; 3]], placement: &Placement) -> Vec<DVec3> {
+fn merge(vertices: Vec<DVec3>, faces: &mut [[u32; 3]], placement: &ToWorld) -> Vec<DVec3> {
     const UNKNOWN: u32 = u32::MAX;
     let mut merged: Vec<DVec3> = Vec::with_capacity(vertices.len());
     let mut known = HashMap::with_capacity(vertices.len());

@@ -30,6 +30,8 @@ pub struct Placed {
     body: Arc<Body>,
     placement: Placement,
     to_own: DMat3,
+    /// A bounding box in world coordinates.
+    bounds: Option<Aabb>,
 }
 
 /// Marks a shape whose hits are proven in the coordinates of the object that it is a copy of.
@@ -53,10 +55,9 @@ const MOST_DRIFT: f64 = CLOSE / 16.0;
 impl Placed {
     /// Makes a copy of an object with this material.
     pub fn body(body: Arc<Body>, placement: Placement, material: &Material) -> Body {
-        let placed = || {
-            let body = Arc::clone(&body);
-            Self { body, placement, to_own: placement.to_own() }
-        };
+        let to_own = placement.to_own();
+        let bounds = bounds(&body, placement, to_own);
+        let placed = || Self { body: Arc::clone(&body), placement, to_own, bounds };
         let shape = Shape::new(placed()).by::<ByPackets, ByPlacement>();
         let is_plain = body.shader.uniform(material) == Plain.uniform(material);
         let copy = if is_plain { Body::plain(shape) } else { Body::shaded(shape, PlacedShader(placed())) };
@@ -148,6 +149,22 @@ impl Placed {
     }
 }
 
+/// Returns a bounding box of a copy in world coordinates.
+fn bounds(body: &Body, placement: Placement, to_own: DMat3) -> Option<Aabb> {
+    let Placement { scale, translation, .. } = placement;
+    let to_world = to_own.transpose() * DMat3::from_diagonal(scale * scale);
+    let own = body.shape.bounds()?;
+    let turned = body.shape.bounds_after(&to_world).unwrap_or_else(|| {
+        let middle = to_world * own.middle();
+        let DMat3 { x_axis, y_axis, z_axis } = to_world;
+        let reach = DMat3::from_cols(x_axis.abs(), y_axis.abs(), z_axis.abs()) * own.half_size();
+        Aabb { low: middle - reach, high: middle + reach }
+    });
+    let size = own.low.abs().max(own.high.abs()).max_element() * scale.max_element();
+    let slack = SLACK * (size + translation.abs().max_element());
+    Some(Aabb { low: translation + turned.low - slack, high: translation + turned.high + slack })
+}
+
 /// Returns a bracket in world units of one in an object's own, in which a world unit has a length that may be off by
 /// `error`, as a fraction.
 #[inline(always)]
@@ -201,15 +218,7 @@ impl Hittable for Placed {
     }
 
     fn bounds(&self) -> Option<Aabb> {
-        let own = self.body.shape.bounds()?;
-        let Placement { scale, translation, .. } = self.placement;
-        let to_world = self.to_own.transpose() * DMat3::from_diagonal(scale * scale);
-        let middle = translation + to_world * own.middle();
-        let DMat3 { x_axis, y_axis, z_axis } = to_world;
-        let reach = DMat3::from_cols(x_axis.abs(), y_axis.abs(), z_axis.abs()) * own.half_size();
-        let size = own.low.abs().max(own.high.abs()).max_element() * scale.max_element();
-        let reach = reach + SLACK * (size + translation.abs().max_element());
-        Some(Aabb { low: middle - reach, high: middle + reach })
+        self.bounds
     }
 
     fn can_hit_itself(&self, leaving: Side) -> bool {

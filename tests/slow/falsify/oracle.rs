@@ -89,6 +89,19 @@ pub fn cosine(shape: &Shape, ray: &Ray, place: &Wide) -> f64 {
     if cosine.is_nan() { 1.0 } else { cosine }
 }
 
+/// Returns the largest coordinate that a copy's hits are computed from: those of its translation, and of its object when
+/// it is scaled. 0 for a shape of its own, whose hits are as exact as the ray is.
+pub fn reach(shape: &Shape) -> f64 {
+    let Shape::Placed { shape, place } = shape else { return 0.0 };
+    let most = |of: &Vector| of.iter().fold(0.0, |most: f64, part| most.max(part.to_f64(false).abs()));
+    let own = match &**shape {
+        Shape::Mesh { faces } => faces.iter().flatten().map(most).fold(0.0, f64::max),
+        Shape::Ball { center, radius, scale } => most(center) + radius.to_f64(true) * most(scale),
+        shape => reach(shape),
+    };
+    most(&place.translation) + most(&place.scale) * own
+}
+
 /// Returns a shape's normal at a place of a ray, roughly and up to its length.
 fn normal(shape: &Shape, ray: &Ray, at: &Wide) -> [f64; 3] {
     let place = at.near();

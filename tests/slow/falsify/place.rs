@@ -12,10 +12,10 @@ const BITS: i64 = 400;
 
 /// A scaling along the axes, then rotations around x, y and z, then a translation.
 pub struct Place {
-    scale: Vector,
+    pub scale: Vector,
     /// The sines and the cosines of the angles.
     turns: [[Dyadic; 2]; 3],
-    translation: Vector,
+    pub translation: Vector,
 }
 
 impl Place {

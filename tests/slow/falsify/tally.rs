@@ -288,6 +288,7 @@ impl Off {
             off.error = apart.div(&unit).near();
             // A point right in front of the eye is known no better than the eye's own position.
             let size = found.origin.iter().fold(near, |most, part| most.max(part.abs()));
+            let size = size.max(oracle::reach(&scene.objects[first]));
             let grain = Wide::f64(size.next_up() - size);
             off.off = apart.div(&grain).near() * oracle::cosine(&scene.objects[first], ray, place);
         }
