@@ -1,7 +1,7 @@
 //! A mesh of triangles from a file.
 
 use crate::prelude::*;
-use crate::shapes::mesh::{Mesh, Painted, ToWorld, Surface, Unfit, read};
+use crate::shapes::mesh::{Mesh, Painted, Surface, ToWorld, Unfit, read};
 use crate::text;
 use std::path::PathBuf;
 use std::sync::Arc;

@@ -2,6 +2,7 @@
 
 use crate::geometry::aabb::{Aabb, larger};
 use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange};
+use crate::numeric::double_double::{exponent_to_one, times_power_of_two};
 use crate::numeric::scalar::{Scalar, dot};
 use crate::shapes::triangle::Triangle;
 use crate::world::accuracy::Exact;
@@ -20,8 +21,9 @@ const AWAY_ERROR: f64 = 32.0 * f64::EPSILON;
 /// direction is off by 3, and components of a direction add up to at most 1.74: 1.74 * (10 + 2 * 6) = 39, less than 48.
 const TOWARD_ERROR: f64 = 24.0 * f64::EPSILON;
 
-/// Far more than what products lose that are too small for all digits: the sum of a few of 5e-324, times 1e152.
-const UNDERFLOW: f64 = 1e-170;
+/// Far more than what products lose that are too small for all digits: the sum of a few of 5e-324. A product with such a
+/// sum loses as many times more as the other factor is.
+const UNDERFLOW: f64 = 1e-320;
 
 /// What a ray may leave: bounds on the distance of its origin from the point that it stands for, in world units. The
 /// ray leaves the faces within that distance.
@@ -51,8 +53,9 @@ pub(super) fn t_bounds(
     let normal = one.cross(other);
     let edges = one.abs().max_element() * other.abs().max_element();
     let (away, toward) = (normal.dot(between), normal.dot(ray.dir));
+    let largest = between.abs().max_element();
     let (away_error, toward_error) =
-        (AWAY_ERROR * edges * between.abs().max_element() + UNDERFLOW, TOWARD_ERROR * edges + UNDERFLOW);
+        (AWAY_ERROR * edges * largest + UNDERFLOW * (1.0 + largest), TOWARD_ERROR * edges + UNDERFLOW);
     // A normal is no longer than 3 times that product, as an edge is no longer than the root of 3 of its components.
     let (away_error, toward_error) = match drift {
         None => (away_error, toward_error),
@@ -157,6 +160,13 @@ impl<A> Equation for Face<A> {
 
 /// Returns the point of a triangle that is nearest to a point (Ericson, "Real-Time Collision Detection", 2005).
 pub(super) fn nearest_point([a, b, c]: [DVec3; 3], at: DVec3) -> DVec3 {
+    let size = (a - at).abs().max((b - at).abs()).max((c - at).abs()).max_element();
+    if !(1e-70..1e70).contains(&size) && size > 0.0 && size < MISS {
+        // Its fourth power would underflow or overflow.
+        let scale = times_power_of_two(1.0, exponent_to_one(size));
+        let corners = [a, b, c].map(|corner| (corner - at) * scale);
+        return at + nearest_point(corners, DVec3::ZERO) / scale;
+    }
     let (ab, ac) = (b - a, c - a);
     let (d1, d2) = (ab.dot(at - a), ac.dot(at - a));
     if d1 <= 0.0 && d2 <= 0.0 {

@@ -1,7 +1,7 @@
 //! Packets of rays that meet a copy: taken to the object's own coordinates together, so that the shape is tested against
 //! packets there, too.
 
-use super::{ByPlacement, CAMERA, Placed, entered, in_world};
+use super::shape::{ByPlacement, CAMERA, Placed, entered, in_world};
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
 use crate::geometry::ray_packet::{self, Nearest, PACKET_SIZE, RayPacket, split};
