@@ -74,18 +74,17 @@ impl Placed {
         sides: Option<&[Side]>,
         drift: Option<Drift>,
         ends: &[f64],
-        near: &mut [f64],
-        far: &mut [f64],
+        (near, far): (&mut [f64], &mut [f64]),
     ) {
         if near.len() <= LANES {
-            self.few_brackets::<LANES>(cpu, rays, sides, drift, ends, near, far);
+            self.few_brackets::<LANES>(cpu, rays, sides, drift, ends, (near, far));
             return;
         }
         for part in split(near.len(), PART) {
             let sides = sides.map(|sides| &sides[part.clone()]);
-            let (near, far) = (&mut near[part.clone()], &mut far[part.clone()]);
+            let brackets = (&mut near[part.clone()], &mut far[part.clone()]);
             let (rays, ends) = (rays.part(part.clone()), &ends[part]);
-            self.few_brackets::<PART>(cpu, rays, sides, drift, ends, near, far);
+            self.few_brackets::<PART>(cpu, rays, sides, drift, ends, brackets);
         }
     }
 
@@ -96,8 +95,7 @@ impl Placed {
         sides: Option<&[Side]>,
         drift: Option<Drift>,
         ends: &[f64],
-        near: &mut [f64],
-        far: &mut [f64],
+        (near, far): (&mut [f64], &mut [f64]),
     ) {
         let (count, shape) = (near.len(), self.body.shape.packets());
         let is_from_camera = sides.is_none() && rays.origin_error == 0.0;
@@ -118,11 +116,13 @@ impl Placed {
                 shape.brackets_within(cpu, own.rays(count), drift, &own.ends[..count], near, far);
                 error = drift.dir;
             } else {
-                (near.fill(0.0), far.fill(MISS));
+                near.fill(0.0);
+                far.fill(MISS);
             }
         } else {
             let (mut met, mut doubt) = ([0; N], [0; N]);
-            (near.copy_from_slice(&own.ends[..count]), far.copy_from_slice(&own.ends[..count]));
+            near.copy_from_slice(&own.ends[..count]);
+            far.copy_from_slice(&own.ends[..count]);
             let (met, doubt) = (&mut met[..count], &mut doubt[..count]);
             let nearest = Nearest { near, far, met, doubt };
             shape.closest_hits(cpu, own.rays(count), sides, 1, nearest);
@@ -237,12 +237,12 @@ impl Packets for Shape<Placed, ByPackets, ByPlacement> {
         if count <= LANES {
             let (mut near, mut far) = ([MISS; LANES], [MISS; LANES]);
             let (near, far) = (&mut near[..count], &mut far[..count]);
-            self.shape.brackets(cpu, rays, sides, None, nearest.far, near, far);
+            self.shape.brackets(cpu, rays, sides, None, nearest.far, (&mut *near, &mut *far));
             return ray_packet::closest_of_brackets(cpu, near, far, id, nearest);
         }
         let (mut near, mut far) = ([MISS; PACKET_SIZE], [MISS; PACKET_SIZE]);
         let (near, far) = (&mut near[..count], &mut far[..count]);
-        self.shape.brackets(cpu, rays, sides, None, nearest.far, near, far);
+        self.shape.brackets(cpu, rays, sides, None, nearest.far, (&mut *near, &mut *far));
         ray_packet::closest_of_brackets(cpu, near, far, id, nearest)
     }
 
@@ -260,7 +260,7 @@ impl Packets for Shape<Placed, ByPackets, ByPlacement> {
         let Some(bounds) = placed.bounds().filter(|_| !is_of_the_notes) else {
             let (mut near, mut far) = ([MISS; PACKET_SIZE], [MISS; PACKET_SIZE]);
             let (near, far) = (&mut near[..count], &mut far[..count]);
-            placed.brackets(cpu, rays, sides, None, t_max, near, far);
+            placed.brackets(cpu, rays, sides, None, t_max, (&mut *near, &mut *far));
             return ray_packet::occluded_by_brackets(cpu, near, far, t_max, blocked, doubt);
         };
         if count <= LANES {
@@ -332,7 +332,7 @@ impl Packets for Shape<Placed, ByPackets, ByPlacement> {
         near: &mut [f64],
         far: &mut [f64],
     ) {
-        self.shape.brackets(cpu, rays, None, Some(drift), ends, near, far);
+        self.shape.brackets(cpu, rays, None, Some(drift), ends, (near, far));
     }
 
     fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
