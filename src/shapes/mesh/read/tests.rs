@@ -1,8 +1,23 @@
 //! What readers make of files, sound and broken.
 
-use super::{At, Broken, Model, obj, ply, stl};
+use super::model::Room;
+use super::{At, Broken, Model};
 use glam::DVec3;
 use proptest::prelude::*;
+
+macro_rules! readers {
+    ($($format:ident)*) => {$(
+        /// Reads a file of this format, with room enough.
+        mod $format {
+            use super::{Broken, Model, Room};
+
+            pub fn read(bytes: &[u8]) -> Result<Model, Broken> {
+                super::super::$format::read(bytes, &Room::new(1 << 30, 0).map_err(Broken::file)?)
+            }
+        }
+    )*};
+}
+readers!(obj ply stl);
 
 const CORNERS: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.5], [0.25, 1.0, 0.0], [0.0, 0.5, 2.0]];
 const FACES: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
