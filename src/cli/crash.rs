@@ -28,6 +28,11 @@ pub fn about(scene: &str) {
     scene.clone_into(&mut last().1);
 }
 
+/// Returns the name of the scene that was read last, unless it is being set now.
+pub fn scene() -> Option<String> {
+    LAST.try_lock().ok().map(|last| last.1.clone()).filter(|scene| !scene.is_empty())
+}
+
 /// Runs `work` and turns a panic into a failure.
 pub fn catch<T>(work: impl FnOnce() -> T) -> Result<T, Failure> {
     panic::catch_unwind(AssertUnwindSafe(work)).map_err(|_| {

@@ -14,6 +14,7 @@ use model::Room;
 pub use model::{At, Broken, Model};
 
 use crate::files;
+use crate::heap;
 use crate::text;
 use bytesize::ByteSize;
 use std::io::{self, Read};
@@ -39,7 +40,8 @@ pub fn read(path: &Path, memory: u64) -> Result<Model, Broken> {
     let size = file.metadata().map_err(cannot)?.len();
     let room = Room::new(memory, size).map_err(Broken::file)?;
     let mut bytes = Vec::new();
-    let is_held = usize::try_from(size).is_ok_and(|size| bytes.try_reserve_exact(size).is_ok());
+    let is_held =
+        usize::try_from(size).is_ok_and(|size| heap::may_fail(|| bytes.try_reserve_exact(size).is_ok()));
     if !is_held {
         return Err(Broken::file(format!("there is no memory for its {}", ByteSize(size))));
     }
