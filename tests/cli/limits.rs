@@ -106,9 +106,6 @@ fn a_mesh_keeps_to_the_limit_on_memory_while_it_is_read() {
         assert_eq!(status, 2, "{said}");
         let message = "faces, which may take more than the";
         assert!(said.contains(message) && said.contains("of memory that are left"), "{said}");
-        let (status, _, said) =
-            outcome(tabray(&folder).args(["render", "wall.ray", "-o", "x.png", "--max-memory", "2GiB"]));
-        assert_eq!(status, 0, "{said}");
     }
 }
 
@@ -123,7 +120,7 @@ fn memory_that_is_refused_is_told() {
     }
     fs::write(folder.path().join("balls.ray"), balls).expect("a scene");
     let mut refused = 0;
-    for kib in (20_000..200_000).step_by(10_000) {
+    for kib in (40_000..200_000).step_by(20_000) {
         for command in ["check balls.ray", "render balls.ray -o x.png", "convert balls.ray x.toml"] {
             let limited = format!("ulimit -v {kib}; exec \"$0\" {command}");
             let mut shell = assert_cmd::Command::new("bash");

@@ -266,10 +266,10 @@ fn a_long_text_is_read_as_a_short_one_is() {
     let count = |slot| model.slots.iter().filter(|of| **of == slot).count();
     assert_eq!([count(0), count(1), count(2)], [TIMES, TIMES, 1]);
     // The first of several faults is told, wherever blocks begin.
-    let lines = 6 * TIMES;
+    let lines = 5 * TIMES;
     for line in [1, 7, lines / 3, lines / 2, lines] {
         let mut text: Vec<_> = long.lines().collect();
-        let whole = line - line % 6;
+        let whole = line - line % 5;
         text.splice(whole..whole, ["f x"]);
         text.push("v x");
         let broken = obj::read(text.join("\n").as_bytes());
@@ -306,7 +306,7 @@ fn a_model_takes_no_more_memory_than_there_is() {
     assert!(super::obj::read(fan.as_bytes(), &room(enough)).is_ok());
     let broken = super::obj::read(fan.as_bytes(), &room(enough - 400)).expect_err("too little");
     assert!(broken.message.starts_with("it has at least 3 vertices and 120000 faces, which may take more"));
-    assert!(Room::new(999, 1000).is_err());
+    assert!(Room::new(2999, 1000).is_err());
 }
 
 proptest! {
