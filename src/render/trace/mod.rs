@@ -49,11 +49,11 @@ pub fn pixel(plan: &Plan, x: usize, y: usize) -> Rgb {
 /// Computes the colour of a pixel as [`pixel`] does, and reports each step to `observer`.
 pub fn observe_pixel(plan: &Plan, x: usize, y: usize, observer: &mut impl TraceObserver) -> Rgb {
     let (camera, mut sum, mut budget) = (&plan.camera, Rgb::ZERO, None);
-    for (index, (place, sample)) in camera.places(x, y).enumerate() {
+    for (place, sample) in camera.places(x, y) {
         let sight = camera.sight(place.x, place.y);
         let (colour, missing) = observed(plan, &sight, sample, budget, observer);
         sum += colour;
-        if index == 0 && missing == f64::INFINITY && sampled::is_unbounded(plan) {
+        if missing == f64::INFINITY && sampled::is_unbounded(plan) {
             budget = Some(sampled::REST);
         }
     }
@@ -130,9 +130,13 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let depth = self.plan.depth.as_ref();
         let mut primary = self.scratch.primary.take().unwrap_or_default();
         self.scratch.places.iter_mut().for_each(|places| places.resize(PACKET_SIZE, 0.0));
+        if camera.samples > 1 && sampled::is_unbounded(self.plan) {
+            self.one_by_one(pixels, &mut primary);
+            return self.scratch.primary.insert(primary).colours.view(pixels.len());
+        }
+        let PrimaryScratch { group, seen, colours } = &mut *primary;
+        let mut colours = colours.resized(pixels.len());
         if camera.samples == 1 {
-            let PrimaryScratch { group, seen, colours } = &mut *primary;
-            let mut colours = colours.resized(pixels.len());
             self.scratch.samples.clear();
             for (pixels, first) in pixels.chunks(PACKET_SIZE).zip((0..).step_by(PACKET_SIZE)) {
                 let [x, y] = &mut self.scratch.places;
@@ -145,7 +149,25 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 }
             }
         } else {
-            self.sampled(pixels, &mut primary);
+            let samples = camera.samples as usize;
+            let (mut sum, mut missing, mut count) = (Rgb::ZERO, 0.0, 0);
+            while count < samples * pixels.len() {
+                let len = PACKET_SIZE.min(samples * pixels.len() - count);
+                let Scratch { places: [x, y], samples: drawn, .. } = &mut *self.scratch;
+                camera.scatter(self.cpu, pixels, count..count + len, drawn, [&mut x[..len], &mut y[..len]]);
+                group.look(self.cpu, camera, depth, &mut self.scratch.places, len);
+                self.colours(group, seen);
+                for lane in 0..len {
+                    sum += seen.get(lane);
+                    missing += self.missing(lane);
+                    count += 1;
+                    if count % samples == 0 {
+                        colours.set(count / samples - 1, sum / f64::from(camera.samples));
+                        self.cut(missing / f64::from(camera.samples));
+                        (sum, missing) = (Rgb::ZERO, 0.0);
+                    }
+                }
+            }
         }
         self.scratch.primary.insert(primary).colours.view(pixels.len())
     }

@@ -1,11 +1,10 @@
-//! Pixels with several samples.
+//! Pixels with several samples, where nothing bounds the light that rays may return.
 //!
-//! Where nothing bounds the light that rays may return, a pixel whose first sample uses up its ray budget is off by an
-//! unknown amount, whatever its other samples return. They then get a small part of the budget, so that such a pixel
-//! costs about as much as one with a single sample.
+//! A pixel is then off by an unknown amount as soon as one of its samples uses up its ray budget, whatever the others
+//! return. So those after it get a small part of the budget, and the pixel costs about as much as one of a single
+//! sample. What a sample may cost depends on those before it, which are traced first.
 
 use super::context::Tracer;
-use super::ray_group::RayGroup;
 use super::scratch::{PrimaryScratch, Scratch};
 use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::render::limits::MAX_RAYS;
@@ -13,7 +12,7 @@ use crate::render::observer::TraceObserver;
 use crate::render::plan::Plan;
 use crate::world::material::Rgb;
 
-/// The number of rays that a further sample may cost in a pixel that is off by an unknown amount.
+/// The number of rays that a sample may cost in a pixel that is off by an unknown amount.
 pub(super) const REST: u32 = MAX_RAYS as u32 / 100;
 
 /// Tells whether nothing bounds the light that rays may return.
@@ -22,73 +21,83 @@ pub(super) fn is_unbounded(plan: &Plan) -> bool {
 }
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
-    /// Computes the colours of pixels with several samples as [`pixels`](Self::pixels) does.
-    pub(super) fn sampled(&mut self, pixels: &[[usize; 2]], primary: &mut PrimaryScratch) {
+    /// Computes the colours of pixels sample by sample.
+    pub(super) fn one_by_one(&mut self, pixels: &[[usize; 2]], primary: &mut PrimaryScratch) {
         let (camera, depth) = (&self.plan.camera, self.plan.depth.as_ref());
-        let samples = camera.samples as usize;
-        let firsts = if is_unbounded(self.plan) { self.firsts(pixels, primary) } else { Vec::new() };
         let PrimaryScratch { group, seen, colours } = primary;
         let mut colours = colours.resized(pixels.len());
-        let (mut sum, mut missing, mut count) = (Rgb::ZERO, 0.0, 0);
-        while count < samples * pixels.len() {
-            let len = PACKET_SIZE.min(samples * pixels.len() - count);
-            let Scratch { places: [x, y], samples: drawn, .. } = &mut *self.scratch;
-            camera.scatter(self.cpu, pixels, count..count + len, drawn, [&mut x[..len], &mut y[..len]]);
-            let is_first = |at: usize| !firsts.is_empty() && at % samples == 0;
-            let mut lanes = 0;
-            for lane in (0..len).filter(|lane| !is_first(count + lane)) {
-                (x[lanes], y[lanes], drawn[lanes]) = (x[lane], y[lane], drawn[lane]);
-                lanes += 1;
-            }
-            drawn.truncate(lanes);
-            if lanes > 0 {
-                group.look(self.cpu, camera, depth, &mut self.scratch.places, lanes);
-                let budgets = group.ray_budget.iter_mut();
-                let rest = (count..count + len).filter(|at| !is_first(*at));
-                for (budget, at) in budgets.zip(rest).filter(|_| !firsts.is_empty()) {
-                    *budget = if firsts[at / samples].1 == f64::INFINITY { REST } else { *budget };
+        for (pixels, first) in pixels.chunks(PACKET_SIZE).zip((0..).step_by(PACKET_SIZE)) {
+            let len = pixels.len();
+            let mut places: Vec<_> =
+                pixels.iter().map(|[column, row]| camera.places(*column, *row)).collect();
+            let mut sums = vec![(Rgb::ZERO, 0.0); len];
+            for _ in 0..camera.samples {
+                let Scratch { places: [x, y], samples: drawn, .. } = &mut *self.scratch;
+                drawn.clear();
+                for (lane, (place, sample)) in places.iter_mut().filter_map(Iterator::next).enumerate() {
+                    (x[lane], y[lane]) = (place.x, place.y);
+                    drawn.extend(sample);
+                }
+                group.look(self.cpu, camera, depth, &mut self.scratch.places, len);
+                for (budget, (_, missing)) in group.ray_budget.iter_mut().zip(&sums) {
+                    *budget = if *missing == f64::INFINITY { REST } else { *budget };
                 }
                 self.colours(group, seen);
+                for (lane, (sum, missing)) in sums.iter_mut().enumerate() {
+                    *sum += seen.get(lane);
+                    *missing += self.missing(lane);
+                }
             }
-            let mut lane = 0;
-            for _ in 0..len {
-                if is_first(count) {
-                    let (colour, lacks) = firsts[count / samples];
-                    sum += colour;
-                    missing += lacks;
-                } else {
-                    sum += seen.get(lane);
-                    missing += self.missing(lane);
-                    lane += 1;
-                }
-                count += 1;
-                if count % samples == 0 {
-                    colours.set(count / samples - 1, sum / f64::from(camera.samples));
-                    self.cut(missing / f64::from(camera.samples));
-                    (sum, missing) = (Rgb::ZERO, 0.0);
-                }
+            for (lane, (sum, missing)) in sums.into_iter().enumerate() {
+                colours.set(first + lane, sum / f64::from(camera.samples));
+                self.cut(missing / f64::from(camera.samples));
             }
         }
     }
+}
 
-    /// Computes the colour of each pixel's first sample, and a bound on the light that it lacks.
-    fn firsts(&mut self, pixels: &[[usize; 2]], primary: &mut PrimaryScratch) -> Vec<(Rgb, f64)> {
-        let (camera, depth) = (&self.plan.camera, self.plan.depth.as_ref());
-        let mut firsts = Vec::with_capacity(pixels.len());
-        for pixels in pixels.chunks(PACKET_SIZE) {
-            let Scratch { places: [x, y], samples: drawn, .. } = &mut *self.scratch;
-            drawn.clear();
-            for (lane, (place, sample)) in
-                pixels.iter().filter_map(|[column, row]| camera.places(*column, *row).next()).enumerate()
-            {
-                (x[lane], y[lane]) = (place.x, place.y);
-                drawn.extend(sample);
-            }
-            let group: &mut RayGroup = &mut primary.group;
-            group.look(self.cpu, camera, depth, &mut self.scratch.places, pixels.len());
-            self.colours(group, &mut primary.seen);
-            firsts.extend((0..pixels.len()).map(|lane| (primary.seen.get(lane), self.missing(lane))));
-        }
-        firsts
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::ray_stats::RayStats;
+    use crate::render::renderer::Renderer;
+    use crate::render::trace;
+    use crate::scene::reader;
+    use crate::scene::registry::Registry;
+    use crate::simd::cpu::Cpu;
+    use std::path::Path;
+
+    /// Panes that pass on more light than they receive.
+    const SCENE: &[u8] = b"camera eye { pixeldim 5 4 worlddim 8 6 viewpoint 4 3 6 samples 5 }
+        material g { ambient 0.5 0.6 0.7 diffuse 1 1 1 specular 0.9 transparency 0.9 }
+        plane p0 { material g normal 0 0 1 point 0 0 -1 }
+        plane p1 { material g normal 0.01 0 1 point 0 0 -1.5 }
+        plane p2 { material g normal 0 0 1 point 0 0 -2 }
+        plane p3 { material g normal 0 0 1 point 0 0 -2.5 }
+        plane p4 { material g normal 0 0 1 point 0 0 -3 }";
+
+    #[test]
+    fn a_pixel_off_by_an_unknown_amount_costs_as_one_of_a_single_sample() {
+        let registry = Registry::get().expect("sound types");
+        let Ok(loaded) = reader::read(registry, "scene", Path::new(""), SCENE, None) else {
+            panic!("a sound scene");
+        };
+        let plan = Plan::new(&loaded.model);
+        assert!(is_unbounded(&plan));
+        let pixels: Vec<_> = (0..4).flat_map(|row| (0..5).map(move |column| [column, row])).collect();
+        let renderer = Renderer::new(1).expect("a thread");
+        let (mut scratch, mut stats) = (Scratch::default(), RayStats::default());
+        let together: Vec<Rgb> = renderer.run(|| {
+            let mut tracer = Tracer::new(&plan, Cpu::best(), &mut scratch, &mut stats);
+            let seen = tracer.pixels(&pixels);
+            (0..pixels.len()).map(|lane| seen.get(lane)).collect()
+        });
+        assert_eq!(stats.cuts.pixels, 20);
+        let rays = stats.all_rays();
+        // Five samples of 20 pixels would cost 2,000,000. The first sample may be one that does not meet the limit.
+        assert!((400_000..500_000).contains(&rays), "{rays} rays");
+        let alone =
+            renderer.run(|| pixels.iter().map(|[x, y]| trace::pixel(&plan, *x, *y)).collect::<Vec<_>>());
+        assert_eq!(together, alone);
     }
 }

@@ -17,8 +17,11 @@ use crate::files;
 use crate::heap;
 use crate::text;
 use bytesize::ByteSize;
+use rayon::ThreadPoolBuilder;
+use std::error::Error;
 use std::io::{self, Read};
 use std::path::Path;
+use std::sync::OnceLock;
 
 /// What is wrong with a file that was cut.
 const ENDS_EARLY: &str = "the file ends before all of its elements";
@@ -39,6 +42,7 @@ pub fn read(path: &Path, memory: u64) -> Result<Model, Broken> {
     let mut file = files::open(path).map_err(cannot)?;
     let size = file.metadata().map_err(cannot)?.len();
     let room = Room::new(memory, size).map_err(Broken::file)?;
+    threads().map_err(Broken::file)?;
     let mut bytes = Vec::new();
     let is_held =
         usize::try_from(size).is_ok_and(|size| heap::may_fail(|| bytes.try_reserve_exact(size).is_ok()));
@@ -59,4 +63,16 @@ pub fn read(path: &Path, memory: u64) -> Result<Model, Broken> {
         return Err(Broken::file("it has no faces"));
     }
     Ok(model)
+}
+
+/// Starts the threads that read files and build trees, once. Without this, a system that refuses them would be met where
+/// no error can be returned.
+fn threads() -> Result<(), String> {
+    static STARTED: OnceLock<Result<(), String>> = OnceLock::new();
+    let start = || match ThreadPoolBuilder::new().build_global() {
+        // An error without a source says that they have been started already.
+        Err(error) if error.source().is_some() => Err(format!("cannot start threads to read it: {error}")),
+        _ => Ok(()),
+    };
+    STARTED.get_or_init(start).clone()
 }

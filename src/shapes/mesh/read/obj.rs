@@ -91,11 +91,11 @@ fn each_line<'b, E>(
 
 /// Returns the number of a block's vertices.
 fn vertices(block: &[u8]) -> usize {
-    let mut count = 0;
-    let _ = each_line(block, |_, line| {
-        count += usize::from(words(&line).next() == Some(b"v"));
-        Ok::<_, ()>(())
-    });
+    let (mut count, mut is_continued) = (0, false);
+    for line in blocks::lines(block) {
+        count += usize::from(!is_continued && words(line).next() == Some(b"v"));
+        is_continued = continues(line);
+    }
     count
 }
 
@@ -140,7 +140,7 @@ impl Part {
                 for word in words {
                     corners.push(corner(word, count)?);
                     // A polygon may be as long as the file.
-                    if corners.len() % (1 << 16) == 0 {
+                    if corners.len().is_multiple_of(1 << 16) {
                         room.holds(count, self.faces.len() + corners.len())?;
                     }
                 }

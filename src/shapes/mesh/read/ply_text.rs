@@ -108,7 +108,9 @@ impl Part {
                     for _ in 0..word.parse::<usize>().ok()? {
                         self.given.push(whole(str::from_utf8(words.next()?).ok()?, number)?);
                         // A polygon may be as long as the file: what does not fit is refused with its faces.
-                        if self.given.len() % (1 << 16) == 0 && room.holds(0, self.given.len()).is_err() {
+                        if self.given.len().is_multiple_of(1 << 16)
+                            && room.holds(0, self.given.len()).is_err()
+                        {
                             break;
                         }
                     }

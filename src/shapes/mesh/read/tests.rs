@@ -294,7 +294,7 @@ fn a_long_text_is_read_as_a_short_one_is() {
     assert_eq!(ply::read(long.as_bytes()).expect("a model").faces, vec![[0, 1, 2]; TIMES]);
     let wrong = format!("{header}{vertices}{}3 0 1 9\n", "3 0 1 2\n".repeat(TIMES - 1));
     let message = format!("face {} refers to vertex 9, and there are 4, from 0", TIMES - 1);
-    assert_eq!(ply::read(wrong.as_bytes()), Err(Broken { at: Some(At::Line(14 + TIMES)), message }));
+    assert_eq!(ply::read(wrong.as_bytes()), Err(Broken { at: Some(At::Line(15 + TIMES)), message }));
 }
 
 #[test]
