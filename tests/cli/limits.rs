@@ -120,7 +120,7 @@ fn memory_that_is_refused_is_told() {
     }
     fs::write(folder.path().join("balls.ray"), balls).expect("a scene");
     let mut refused = 0;
-    for kib in (40_000..200_000).step_by(20_000) {
+    for kib in (40_000..160_000).step_by(20_000) {
         for command in ["check balls.ray", "render balls.ray -o x.png", "convert balls.ray x.toml"] {
             let limited = format!("ulimit -v {kib}; exec \"$0\" {command}");
             let mut shell = assert_cmd::Command::new("bash");
