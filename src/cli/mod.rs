@@ -112,6 +112,7 @@ pub fn run() -> ExitCode {
     #[cfg(target_os = "linux")]
     let _ = SigSet::from(Signal::SIGXFSZ).thread_block();
     crash::keep();
+    memory::tell_when_refused();
     crash::catch(chosen).unwrap_or_else(|failure| tell(&failure))
 }
 
