@@ -20,6 +20,7 @@ mod grammar;
 mod input;
 mod interrupt;
 mod job;
+mod keep;
 mod list;
 mod man;
 mod memory;

@@ -85,7 +85,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 shader.ambient_and_specular(cpu, material, points, ambients, speculars)
             }
         };
-        let goes_on = !self.model.lights.is_empty() || surface.is_mirror || material.transparency != 0.0;
+        let goes_on = !self.plan.needs.lights.is_empty() || surface.is_mirror || material.transparency != 0.0;
         surface.errors = if goes_on {
             self.errors(&**shape, &surface.travelled[..count], &surface.cosines[..count])
         } else {
