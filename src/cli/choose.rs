@@ -1,9 +1,10 @@
 //! `tabray choose`: chooses accuracy and samples for a maximum error or time.
 
-use super::chart::{Work, all_accuracies};
+use super::chart::all_accuracies;
 use super::failure::{Failure, print};
 use super::input::{self, Source};
 use super::interrupt::{self, Manner};
+use super::measuring::Work;
 use super::program;
 use crate::scene::choice::Choice;
 use crate::scene::registry::Registry;
@@ -48,7 +49,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     input::told(source.load(registry, None))?;
     let load = all_accuracies(registry, &source)?;
     interrupt::catch(Manner::Ends("nothing has been chosen"))?;
-    let mut work = Work::new();
+    let mut work = Work::within(Duration::from_secs(60));
     let estimates = chart::estimates(&load, &mut work);
     work.end();
     let estimates = estimates.map_err(|error| match error.kind() {

@@ -23,6 +23,7 @@ mod job;
 mod keep;
 mod list;
 mod man;
+mod measuring;
 mod memory;
 mod messages;
 mod method;

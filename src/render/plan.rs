@@ -36,6 +36,8 @@ pub struct Plan<'m> {
     pub(crate) has_glass: bool,
     /// How deep rays are followed; `None` where no object reflects or transmits rays.
     pub(crate) depth: Option<Depth>,
+    /// The maximum number of reflections and transmissions on a path.
+    pub(crate) bounces: usize,
     /// The lights that are sampled, and what is left out.
     pub(crate) needs: Needs,
 }
@@ -82,7 +84,7 @@ impl<'m> Plan<'m> {
         let mut met = objects.iter().enumerate().filter(|(index, _)| unmet.next_if_eq(&index).is_none());
         let has_glass = met.any(|(_, object)| object.material.transparency != 0.0);
         let camera = model.camera.value.clone();
-        Self { model, camera, unbounded, bounded, tree, has_glass, depth, needs }
+        Self { model, camera, unbounded, bounded, tree, has_glass, depth, bounces: usize::MAX, needs }
     }
 
     /// Returns how rays continue from the object of this index.

@@ -4,6 +4,7 @@ use super::clock::Times;
 use super::machine::Machine;
 
 /// All that is charted of a scene.
+#[derive(Clone)]
 pub struct Chart {
     /// The name of the scene.
     pub scene: String,
@@ -16,6 +17,7 @@ pub struct Chart {
 }
 
 /// Choices that answer one question, compared.
+#[derive(Clone)]
 pub struct Panel {
     /// The title.
     pub title: String,
@@ -36,9 +38,12 @@ pub enum Subject {
     Methods,
     /// Colours of pixels, by the number of samples. Times are for one pixel.
     Samples,
+    /// Colours of pixels, by the number of times that rays are reflected or transmitted. Times are for one pixel.
+    Bounces,
 }
 
 /// One choice.
+#[derive(Clone)]
 pub struct Point {
     /// The choice's name.
     pub name: String,
@@ -108,7 +113,7 @@ impl Panel {
     pub fn measure(&self) -> &'static str {
         match self.subject {
             Subject::Distances => "error of the distance, 99th percentile (world units)",
-            Subject::Methods | Subject::Samples => "error of the colour, RMSE (1 = white)",
+            Subject::Methods | Subject::Samples | Subject::Bounces => "error of the colour, RMSE (1 = white)",
         }
     }
 
@@ -116,7 +121,7 @@ impl Panel {
     pub fn unit(&self) -> (&'static str, f64) {
         match self.subject {
             Subject::Distances => ("CPU time per ray and object (ns)", 1e9),
-            Subject::Methods | Subject::Samples => ("CPU time per pixel (µs)", 1e6),
+            Subject::Methods | Subject::Samples | Subject::Bounces => ("CPU time per pixel (µs)", 1e6),
         }
     }
 
@@ -124,7 +129,7 @@ impl Panel {
     pub fn negligible(&self) -> f64 {
         match self.subject {
             Subject::Distances => 0.0,
-            Subject::Methods | Subject::Samples => 1e-9,
+            Subject::Methods | Subject::Samples | Subject::Bounces => 1e-9,
         }
     }
 }
