@@ -21,6 +21,7 @@ mod packets;
 mod pictures;
 mod places;
 mod progress;
+mod sampled;
 mod study;
 mod verdict;
 
@@ -28,7 +29,7 @@ pub use candidate::Load;
 pub use clock::Times;
 pub use data::{Chart, Family, Panel, Point, Subject, Wrong};
 pub use draw::{png, svg};
-pub use estimate::{Estimate, estimates};
+pub use estimate::{Estimate, Estimates, Goal, estimates};
 pub use files::{csv, json};
 pub use machine::Machine;
 pub use progress::Progress;

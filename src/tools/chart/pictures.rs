@@ -10,6 +10,7 @@ use super::places::{Pixels, spread, tiles};
 use super::progress::Progress;
 use super::study::Study;
 use crate::geometry::ray_packet::PACKET_SIZE;
+use crate::render::bytes::shown;
 use crate::render::observer::{Event, TraceObserver};
 use crate::render::plan::Plan;
 use crate::render::ray_stats::Cuts;
@@ -264,6 +265,20 @@ pub(super) fn render(plan: &Plan, tiles: &[Pixels]) {
     for tile in tiles {
         black_box(Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody).pixels(tile));
     }
+}
+
+/// Returns the colours of pixels as they are shown, traced in packets on all threads of a renderer.
+pub(super) fn shown_colours(threads: &Renderer, plan: &Plan, pixels: &[[usize; 2]]) -> Vec<Rgb> {
+    use rayon::prelude::*;
+    let at_once = (4 * PACKET_SIZE / plan.camera.samples as usize).max(1);
+    let part = |scratch: &mut Scratch, pixels: &[[usize; 2]]| -> Vec<Rgb> {
+        let mut nobody = Cuts::default();
+        let mut tracer = Tracer::new(plan, Cpu::best(), scratch, &mut nobody);
+        let colours = tracer.pixels(pixels);
+        (0..pixels.len()).map(|pixel| shown(colours.get(pixel))).collect()
+    };
+    let parts = || pixels.par_chunks(at_once).map_init(Scratch::default, part).flatten_iter().collect();
+    threads.run(parts)
 }
 
 /// Returns the true colours: with so many samples that more make no difference, and other ones than those that are
