@@ -95,7 +95,7 @@ impl Goal {
     }
 
     /// Returns the first choice that meets the goal, among those of one accuracy by ascending samples.
-    pub fn met<'e>(self, estimates: &'e [Estimate], threads: usize) -> Option<&'e Estimate> {
+    pub fn met(self, estimates: &[Estimate], threads: usize) -> Option<&Estimate> {
         match self {
             Self::Error { most, .. } => estimates.iter().find(|one| one.bound <= most),
             Self::Time { most, .. } => estimates.iter().rfind(|one| one.seconds / threads as f64 <= most),

@@ -8,9 +8,14 @@ use crate::render::renderer::Renderer;
 use crate::world::material::Rgb;
 use std::io;
 
-/// How many standard deviations the mean of the squared errors may be off. A normal distribution stays below 2.33 with a
-/// confidence of 99 %; squared errors are skewed, since few pixels have most of the error.
+/// How many standard deviations the mean of the squared errors may be off: a normal distribution stays below 2.33 with a
+/// confidence of 99 %.
 const DEVIATIONS: f64 = 3.0;
+
+/// How much of the skewness is added to the deviations, divided by the root of the number of pixels. Few pixels have most
+/// of the error, and where too few of these are measured, the deviation is too small as well (N. Johnson, "Modified t
+/// tests and confidence intervals for asymmetrical populations", 1978).
+const SKEWNESS: f64 = (1.0 + 2.0 * DEVIATIONS * DEVIATIONS) / 6.0;
 
 /// The part of the pixels that may be worse than the error of the worst pixels.
 const WORST: f64 = 0.001;
@@ -76,9 +81,13 @@ impl Errors {
         }
         let count = errors.len() as f64;
         let mean = errors.iter().map(|error| error[0]).sum::<f64>() / count;
-        let variance = errors.iter().map(|error| (error[0] - mean) * (error[0] - mean)).sum::<f64>() / count;
+        let moment =
+            |power: i32| errors.iter().map(|error| (error[0] - mean).powi(power)).sum::<f64>() / count;
+        let deviation = moment(2).sqrt();
+        let skewness = if deviation > 0.0 { moment(3) / deviation.powi(3) } else { 0.0 };
         let rest = 1.0 - count / all.max(errors.len()) as f64;
-        let bound = mean + DEVIATIONS * (variance * rest / count).sqrt();
+        let deviations = DEVIATIONS + SKEWNESS * (skewness / count.sqrt()).max(0.0);
+        let bound = mean + deviations * deviation * (rest / count).sqrt();
         [mean, bound].map(|square| (square / known).sqrt())
     }
 
@@ -115,7 +124,8 @@ mod tests {
     fn errors(of: impl Iterator<Item = f64>) -> Errors {
         let mut errors = Errors::new(1);
         let colours: Vec<_> = of.map(Rgb::splat).collect();
-        errors.add(&[colours.clone()], &vec![Rgb::ZERO; colours.len()]);
+        let right = vec![Rgb::ZERO; colours.len()];
+        errors.add(&[colours], &right);
         errors
     }
 

@@ -105,36 +105,40 @@ impl Scene<'_> {
         let views = self.views(view);
         let everything = |index: usize| Seen::of(self.bounds[index].as_ref());
         // For each view, the objects that it may show. Where anything may be seen, it is seen from anywhere.
-        let shown: Vec<(Option<&View>, Vec<usize>)> = match &views {
-            Some(views) => views.iter().map(|(view, shown)| (Some(view), shown.clone())).collect(),
-            None => vec![(None, (0..self.model.objects.len()).collect())],
+        let all: Vec<usize> = (0..self.model.objects.len()).collect();
+        let shown: Vec<(Option<&View>, &[usize])> = match &views {
+            Some(views) => views.iter().map(|(view, shown)| (Some(view), &shown[..])).collect(),
+            None => vec![(None, &all)],
         };
         let mut needs =
             Needs { lights: Vec::new(), dark: Vec::new(), unmet: Vec::new(), clearance: f64::INFINITY };
+        let candidates = views.as_deref().map_or_else(Vec::new, |views| self.unseen(views));
         let mut regions: Vec<Hull> = Vec::new();
         for (index, item) in self.model.lights.iter().enumerate() {
             let (light, mut reason) = (&item.value, None);
             let mut is_needed = false;
             for (view, shown) in &shown {
-                let mut lit = Vec::new();
-                for object in shown {
+                let mut depth: Option<f64> = None;
+                for object in *shown {
                     let bounds = self.bounds[*object].as_ref();
                     let of = &self.model.objects[*object];
                     let seen = view.map_or_else(|| everything(*object), |view| view.seen(of, bounds));
                     match self.darkness(light, of, &seen, *view) {
-                        None if view.is_none() => {
+                        None => {
                             is_needed = true;
-                            break;
+                            match view {
+                                Some(view) if !candidates.is_empty() => {
+                                    depth = Some(view.depth(&seen).max(depth.unwrap_or(0.0)));
+                                }
+                                _ => break,
+                            }
                         }
-                        None => lit.push(seen),
                         Some(own) if reason.is_none_or(|reason| reason == own) => reason = Some(own),
                         Some(_) => reason = Some(Darkness::Mixed),
                     }
                 }
-                if let Some(view) = view.filter(|_| !lit.is_empty()) {
-                    is_needed = true;
-                    regions.push(view.paths(&lit, light.location(), light.size()));
-                }
+                let region = |(view, depth): (&View, f64)| view.paths(depth, light.location(), light.size());
+                regions.extend(view.zip(depth).map(region));
             }
             if is_needed {
                 needs.lights.push(index);
@@ -143,26 +147,32 @@ impl Scene<'_> {
             }
         }
         let Some(views) = views else { return needs };
-        let clearance = |index: usize| {
-            let (object, bounds) = (&self.model.objects[index], self.bounds[index].as_ref());
+        let clearance = |index: &usize| {
+            let (object, bounds) = (&self.model.objects[*index], self.bounds[*index].as_ref());
             let views = views.iter().map(|(view, _)| view.clearance(object, bounds));
             let paths = regions.iter().map(|region| view::clearance(region, object, bounds));
             // Stops at the first that the object may meet.
             views.chain(paths).try_fold(f64::INFINITY, |least, one| (one > 0.0).then_some(least.min(one)))
         };
-        let count = self.model.objects.len();
-        let clear: Vec<_> = if count < MANY {
-            (0..count).map(clearance).collect()
+        let clear: Vec<_> = if candidates.len() < MANY {
+            candidates.iter().map(clearance).collect()
         } else {
-            (0..count).into_par_iter().map(clearance).collect()
+            candidates.par_iter().map(clearance).collect()
         };
-        for (index, clearance) in clear.into_iter().enumerate() {
+        for (index, clearance) in candidates.into_iter().zip(clear) {
             if let Some(clearance) = clearance {
                 needs.unmet.push(index);
                 needs.clearance = needs.clearance.min(clearance);
             }
         }
         needs
+    }
+
+    /// Returns the indices of the objects that no view may show, in ascending order.
+    fn unseen(&self, views: &[(View, Vec<usize>)]) -> Vec<usize> {
+        let mut is_seen = vec![false; self.model.objects.len()];
+        views.iter().flat_map(|(_, shown)| shown).for_each(|index| is_seen[*index] = true);
+        (0..is_seen.len()).filter(|index| !is_seen[*index]).collect()
     }
 
     /// Returns the views of an image, each with the indices of the objects that it may show; `None` where anything may

@@ -71,15 +71,25 @@ impl View {
         }
     }
 
-    /// Returns the region of the paths from what is seen to a light, whose location this is.
-    pub fn paths(&self, seen: &[Seen], location: DVec3, size: f64) -> Hull {
-        let middle = self.dirs.iter().sum::<DVec3>().normalize();
+    /// Returns how far along the middle of the rays an object may be seen, in world units; infinite where nothing ends
+    /// it.
+    pub fn depth(&self, seen: &Seen) -> f64 {
+        let middle = self.middle();
         let depth = |at: DVec3| middle.dot(at - self.apex);
-        let far = seen.iter().map(|seen| match &seen.corners {
+        let far = match &seen.corners {
             Some(corners) => corners.iter().map(|corner| depth(*corner)).fold(0.0, f64::max),
             None => depth(seen.bounds.middle()) + middle.abs().dot(seen.bounds.half_size()),
-        });
-        let far = far.fold(0.0, |far, depth| if depth.is_nan() { f64::INFINITY } else { depth.max(far) });
+        };
+        if far.is_nan() { f64::INFINITY } else { far.max(0.0) }
+    }
+
+    fn middle(&self) -> DVec3 {
+        self.dirs.iter().sum::<DVec3>().normalize()
+    }
+
+    /// Returns the region of the paths from what is seen, up to a depth along the middle of the rays, to a light.
+    pub fn paths(&self, far: f64, location: DVec3, size: f64) -> Hull {
+        let middle = self.middle();
         let mut points = if size > 0.0 {
             let corner = |index: i32| {
                 DVec3::from([0, 1, 2].map(|axis| if index >> axis & 1 == 0 { size } else { -size }))
