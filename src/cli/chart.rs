@@ -3,7 +3,7 @@
 use super::failure::{self, Failure, print};
 use super::input::{self, Source};
 use super::interrupt::{self, Manner};
-use super::measuring::Work;
+use super::measuring::{Work, wait};
 use super::output::{self, Output};
 use super::{messages, progress, stop};
 use crate::scene::choice::Choice;
@@ -62,7 +62,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         Output::open(&path).map(|output| (path, output))
     });
     interrupt::catch(Manner::NotesFirst(NOTHING))?;
-    let kept = work.kept();
+    let (kept, units) = (work.kept(), work.units());
     let end = |chart: Chart| {
         interrupt::from_here(Manner::Notes);
         end(&chart, files, start.elapsed() >= limit)
@@ -77,7 +77,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         });
         // A measurement that takes far too long is not waited for.
         let last = limit.saturating_add(limit / GRACE).saturating_add(Duration::from_millis(500));
-        match measured.recv_timeout(last.saturating_sub(start.elapsed())) {
+        match wait(&measured, &units, last.saturating_sub(start.elapsed())) {
             Ok(chart) => end(chart?),
             Err(RecvTimeoutError::Timeout) => {
                 progress::clear();

@@ -4,7 +4,7 @@ use super::chart::all_accuracies;
 use super::failure::{self, Failure, print};
 use super::input::{self, Source};
 use super::interrupt::{self, Manner};
-use super::measuring::Work;
+use super::measuring::{Work, wait};
 use super::{program, stop};
 use crate::scene::choice::Choice;
 use crate::scene::registry::Registry;
@@ -61,6 +61,7 @@ fn positive(text: &str) -> Result<f64, String> {
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let limit = args.time_limit.unwrap_or(LIMIT).min(Duration::from_secs(1 << 30));
     let (mut work, start) = (Work::within(limit), Instant::now());
+    let units = work.units();
     let source = Source::read(&args.scene)?;
     input::told(source.load(registry, None))?;
     let load = all_accuracies(registry, &source)?;
@@ -85,7 +86,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         });
         // A pixel that takes far too long is not waited for.
         let last = limit.saturating_add(limit / 10).saturating_sub(start.elapsed());
-        let estimates = match measured.recv_timeout(last) {
+        let estimates = match wait(&measured, &units, last) {
             Ok(estimates) => estimates.map_err(|error| match error.kind() {
                 io::ErrorKind::Interrupted => too_long(),
                 _ => error.into(),

@@ -7,6 +7,8 @@ use super::progress::Progress;
 use crate::tools::chart::{self, Panel};
 use std::io::{self, IsTerminal};
 use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -20,11 +22,13 @@ pub struct Work {
     limit: Duration,
     /// When the current panel began, and when it must end.
     panel: [Instant; 2],
-    /// The units of work that are done, and all units.
-    units: [usize; 2],
-    told: Instant,
+    units: Units,
     kept: Kept,
 }
+
+/// The units of work that are done, and all units.
+#[derive(Clone, Default)]
+pub struct Units(Arc<[AtomicUsize; 2]>);
 
 /// The panels of a chart so far.
 type Kept = Arc<Mutex<Vec<Panel>>>;
@@ -36,42 +40,58 @@ impl Work {
         let limit = limit.min(Duration::from_secs(1 << 30));
         let now = Instant::now();
         let panel = [now, now.checked_add(limit).unwrap_or(now)];
-        let (progress, units, kept) = (Progress::new(0), [0, 0], Kept::default());
-        Self { progress, start: now, limit, panel, units, told: now, kept }
+        let (progress, units, kept) = (Progress::new(0), Units::default(), Kept::default());
+        Self { progress, start: now, limit, panel, units, kept }
     }
 
     pub fn end(&self) {
         self.progress.end();
     }
 
-    /// Returns the panels so far, which others may look at.
+    /// Returns how far the work is, for others to look at.
+    pub fn units(&self) -> Units {
+        self.units.clone()
+    }
+
+    /// Returns the panels so far, for others to look at.
     pub fn kept(&self) -> Kept {
         Arc::clone(&self.kept)
     }
+}
 
-    /// Prints a line now and then, where there is no terminal to show a bar on.
-    fn tell(&mut self) {
-        if self.told.elapsed() < LINES || io::stderr().is_terminal() {
+/// Waits for a measurement on another thread, up to a time after its start.
+pub fn wait<T>(measured: &Receiver<T>, units: &Units, last: Duration) -> Result<T, RecvTimeoutError> {
+    let start = Instant::now();
+    loop {
+        let left = last.saturating_sub(start.elapsed());
+        match measured.recv_timeout(left.min(LINES)) {
+            Err(RecvTimeoutError::Timeout) if left > LINES => units.tell(start.elapsed()),
+            measured => return measured,
+        }
+    }
+}
+
+impl Units {
+    /// Prints a line, where there is no terminal to show a bar on.
+    fn tell(&self, spent: Duration) {
+        if io::stderr().is_terminal() {
             return;
         }
-        self.told = Instant::now();
-        let [done, all] = self.units;
-        let (spent, percent) = (self.start.elapsed().as_secs(), 100 * done.min(all) / all.max(1));
-        let limit = self.limit.as_secs();
-        messages::note(&format!("about {percent} % is measured after {spent} s, of at most {limit} s"));
+        let [done, all] = [&self.0[0], &self.0[1]].map(|units| units.load(Ordering::Relaxed));
+        let (spent, percent) = (spent.as_secs(), 100 * done.min(all) / all.max(1));
+        messages::note(&format!("about {percent} % is measured after {spent} s"));
     }
 }
 
 impl chart::Progress for Work {
     fn more(&mut self, units: usize) {
-        self.units[1] += units;
+        self.units.0[1].fetch_add(units, Ordering::Relaxed);
         self.progress.lengthen(units);
     }
 
     fn done(&mut self, units: usize) -> ControlFlow<()> {
-        self.units[0] += units;
+        self.units.0[0].fetch_add(units, Ordering::Relaxed);
         self.progress.advance(units);
-        self.tell();
         if Instant::now() >= self.panel[1] { ControlFlow::Break(()) } else { interrupt::check() }
     }
 

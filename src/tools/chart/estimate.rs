@@ -5,15 +5,19 @@
 //! time runs out.
 
 use super::candidate::Load;
+use super::clock::Times;
+use super::data::{Family, Panel, Point, Subject, Wrong};
 use super::pictures::{count, render, timed};
 use super::places::{Pixels, spread};
 use super::progress::Progress;
 use super::sampled::{Colours, Errors};
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
+use crate::scene::choice::Choice;
 use crate::scene::model::Model;
 use crate::tools::bench::clock;
 use crate::world::accuracy::Accuracy;
+use crate::world::camera::Camera;
 use crate::world::sample::Sampler;
 use std::io;
 use std::time::Instant;
@@ -72,6 +76,8 @@ pub struct Estimate {
     pub error: f64,
     /// What the error of the whole image is at most, with a confidence of 99 %.
     pub bound: f64,
+    /// The largest measured error of a pixel, where 1 is white.
+    pub worst: f64,
 }
 
 /// Estimates, and what they rest on.
@@ -142,6 +148,42 @@ pub fn estimates(load: Load, goal: Goal, progress: &mut dyn Progress) -> io::Res
     let mut estimates = last.ok_or(io::ErrorKind::Interrupted)?;
     estimates.all.sort_by_key(|one| (one.accuracy != own, one.accuracy.to_string(), one.samples));
     Ok(estimates)
+}
+
+/// Compares accuracies and numbers of samples together, as [`estimates`] measures them.
+///
+/// # Errors
+/// Those of [`estimates`].
+pub(super) fn panel(load: Load, progress: &mut dyn Progress) -> io::Result<Panel> {
+    let model = load(None)?;
+    let Camera { samples, pixels: [width, height], .. } = model.camera.value;
+    // No choice but one without an error meets this, so that all numbers of samples are measured.
+    let estimates = estimates(load, Goal::Error { most: 0.0, worst: false }, progress)?;
+    let all = (width * height) as f64;
+    let point = |one: &Estimate| {
+        let seconds = one.seconds / all;
+        Point {
+            name: format!("{} {}", one.accuracy.option().name, one.samples),
+            family: if one.accuracy == Accuracy::Classic { Family::Notes } else { Family::Own },
+            is_default: one.accuracy == estimates.own && one.samples == samples,
+            times: Times { least: seconds, median: seconds, rounds: ROUNDS, waited: 0.0 },
+            error: one.error,
+            worst: one.worst,
+            wrong: Wrong::default(),
+            visible: None,
+            changed: None,
+            samples: one.samples,
+        }
+    };
+    Ok(Panel {
+        title: "the whole image: accuracy and samples together".to_owned(),
+        note: format!(
+            "{} of {} pixels, against {} samples",
+            estimates.pixels[0], estimates.pixels[1], estimates.against
+        ),
+        subject: Subject::Whole,
+        points: estimates.all.iter().map(point).collect(),
+    })
 }
 
 /// What a measurement needs.
@@ -230,6 +272,7 @@ impl Study {
                         seconds: self.time(*index, *samples),
                         error,
                         bound,
+                        worst: errors.worst(place),
                     }
                 };
                 samples.iter().enumerate().map(choice)

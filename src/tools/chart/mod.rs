@@ -46,7 +46,7 @@ use study::Study;
 pub fn measure(scene: &str, load: Load, progress: &mut dyn Progress) -> io::Result<Chart> {
     let study = Study::new(load)?;
     let mut chart = Chart::empty(scene);
-    chart.is_whole = study.run(&mut chart.panels, progress).is_continue();
+    chart.is_whole = study.run(load, &mut chart.panels, progress).is_continue();
     Ok(chart)
 }
 
@@ -61,7 +61,7 @@ impl Chart {
 type Part<'p> = Box<dyn FnOnce(&mut dyn Progress) -> ControlFlow<(), Option<Panel>> + 'p>;
 
 impl Study {
-    fn run(&self, panels: &mut Vec<Panel>, progress: &mut dyn Progress) -> ControlFlow<()> {
+    fn run(&self, load: Load, panels: &mut Vec<Panel>, progress: &mut dyn Progress) -> ControlFlow<()> {
         let sets = hits::sets(&self.candidates[self.strict].model);
         let candidates = self.candidates.len();
         let works = sets.iter().map(|set| hits::work(set, candidates)).sum::<usize>();
@@ -77,6 +77,10 @@ impl Study {
         if pictures::has_size(model) {
             parts.push(Box::new(|progress| pictures::samples(self, pictures::Seen::Shadows, progress)));
         }
+        parts.push(Box::new(|progress| match estimate::panel(load, progress) {
+            Ok(panel) => ControlFlow::Continue(Some(panel)),
+            Err(_) => ControlFlow::Break(()),
+        }));
         let (mut left, mut is_whole) = (parts.len(), true);
         for part in parts {
             progress.share(left);

@@ -59,6 +59,11 @@ impl Errors {
         self.choices[0].len()
     }
 
+    /// Returns the largest error of a choice in any channel.
+    pub fn worst(&self, choice: usize) -> f64 {
+        self.choices[choice].iter().map(|error| error[1]).fold(0.0, f64::max)
+    }
+
     /// Adds pixels: for each choice their colours, and the true ones.
     pub fn add(&mut self, choices: &[Vec<Rgb>], right: &[Rgb]) {
         for (errors, colours) in self.choices.iter_mut().zip(choices) {

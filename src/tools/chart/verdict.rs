@@ -17,6 +17,7 @@ pub fn words(chart: &Chart) -> String {
             Subject::Methods => methods(panel),
             Subject::Samples => samples(panel),
             Subject::Bounces => bounces(panel),
+            Subject::Whole => [front(panel)].into_iter().chain(standing(panel)).collect(),
         };
         for line in lines {
             let _ = writeln!(text, "  {line}");
