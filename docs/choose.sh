@@ -9,7 +9,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 tabray=$(realpath "$1")
 out=$(mktemp -d)
-trap 'rm -r "$out"' EXIT
+trap 'rm -r "$out"; rm -f scenes/*/*.small.ray' EXIT
 
 # A scene made at random, from a seed.
 random() {
@@ -41,7 +41,7 @@ echo "| scene | asked | samples | promised | measured | kept | choosing / render
 echo "|---|---|---|---|---|---|---|"
 scenes=(gallery/hall-of-mirrors gallery/marbles gallery/stained-glass gallery/three-lamps notes/three-planes
     hard/ripples hard/globe hard/rug hard/lantern hard/glass-balls entities/revsurf entities/torus material/mirror
-    material/transparent texplane/fit light/size projector/shadow heart/glass)
+    material/transparent texplane/fit light/size projector/shadow light/distance)
 count=0
 rows() {
     local name=$1 scene=$2
