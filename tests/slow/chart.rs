@@ -146,7 +146,10 @@ fn a_chart_has_all_its_files_and_its_errors_are_the_same_twice() {
     for folder in &folders {
         std::fs::write(folder.path().join("edge.ray"), EDGE).expect("a file");
         let mut chart = cargo_bin_cmd!("tabray");
-        let output = chart.current_dir(folder.path()).args(["chart", "edge.ray", "-o", "."]).output();
+        let output = chart
+            .current_dir(folder.path())
+            .args(["chart", "edge.ray", "-o", ".", "--time-limit", "1h"])
+            .output();
         let output = output.expect("the program runs");
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         for extension in ["svg", "png", "csv", "json", "txt"] {

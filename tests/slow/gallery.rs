@@ -167,7 +167,8 @@ Errors of distances are the 99th percentile of all right hits. The ground truth 
 point of the image and of the scene's numbers as they are written: a hit is isolated by intervals of 237 bits, as in
 `tabray verify`, and the error of a distance includes the effect of rounding the ray. Where the intervals do not decide,
 the pair is left out and counted as undecided. Errors of colours are root mean squares over pixels and channels, of the
-colours as displayed, from 0 to 1. Errors depend on the scene alone: two runs give the same errors to the last digit.
+colours as displayed, from 0 to 1. Errors depend on the scene alone: two runs give the same errors to the last digit,
+unless the time limit, 2 minutes if `--time-limit` does not set it, leaves time for fewer pixels; the panel has their number.
 
 Times are CPU times of one thread, of the same work for each choice in turn, in up to 15 rounds after a warm-up round;
 the minimum counts. Distances are timed on about 2000 of the pairs, images on some of their tiles. Both are traced as in

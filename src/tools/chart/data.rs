@@ -1,7 +1,7 @@
 //! The data of a chart: panels of points, one point for each choice.
 
-use super::clock::Times;
 use super::machine::Machine;
+use super::times::Times;
 
 /// All that is charted of a scene.
 #[derive(Clone)]

@@ -5,12 +5,12 @@
 //! time runs out.
 
 use super::candidate::Load;
-use super::clock::Times;
 use super::data::{Family, Panel, Point, Subject, Wrong};
 use super::pictures::{count, render, timed};
 use super::places::{Pixels, spread};
 use super::progress::Progress;
 use super::sampled::{Colours, Errors};
+use super::times::Times;
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::scene::choice::Choice;

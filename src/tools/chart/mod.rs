@@ -23,16 +23,17 @@ mod places;
 mod progress;
 mod sampled;
 mod study;
+mod times;
 mod verdict;
 
 pub use candidate::Load;
-pub use clock::Times;
 pub use data::{Chart, Family, Panel, Point, Subject, Wrong};
 pub use draw::{png, svg};
 pub use estimate::{Estimate, Estimates, Goal, estimates};
 pub use files::{csv, json};
 pub use machine::Machine;
 pub use progress::Progress;
+pub use times::Times;
 pub use verdict::words;
 
 use std::io;

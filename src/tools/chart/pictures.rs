@@ -3,12 +3,13 @@
 //! Errors are those of some of the image's own pixels, spread evenly; times are those of some of its tiles, each traced
 //! on one thread as in a render.
 
-use super::clock::{self, Times};
+use super::clock;
 use super::colours::{Difference, difference};
 use super::data::{Family, Panel, Point, Subject, Wrong};
 use super::places::{Pixels, spread, tiles};
 use super::progress::Progress;
 use super::study::Study;
+use super::times::Times;
 use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::render::bytes::shown;
 use crate::render::observer::{Event, TraceObserver};
