@@ -96,7 +96,8 @@ fn the_gallery_of_charts_is_drawn() {
     let mut text = INTRODUCTION.replace("COMMAND", COMMAND);
     for (scene, title, words) in SCENES {
         let path = root().join("scenes").join(scene).with_extension("ray");
-        let verdict = tabray(&["chart", path.to_str().expect("UTF-8"), "-o", "."], folder.path());
+        let verdict =
+            tabray(&["chart", path.to_str().expect("UTF-8"), "-o", ".", "--time-limit", "1h"], folder.path());
         let name = path.file_stem().expect("a name").to_str().expect("UTF-8");
         for extension in ["png", "csv"] {
             let file = Path::new(name).with_extension(extension);
