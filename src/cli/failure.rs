@@ -66,6 +66,13 @@ pub fn end_in_haste(failure: &Failure) -> ! {
     process::exit(status.into())
 }
 
+/// Ends the program, which has done what it was asked to do, whatever its other threads are doing.
+pub fn exit() -> ! {
+    progress::clear();
+    temporary::remove_all();
+    process::exit(0)
+}
+
 fn told(failure: &Failure) -> u8 {
     match failure {
         Failure::Scene(report) => messages::report(report),

@@ -76,7 +76,8 @@ pub trait Hittable: Send + Sync {
     }
 
     /// Returns a point and the unit normal of the plane that contains the whole shape, if there is one: rays that leave
-    /// the shape stay on their side of the plane. `None` is always correct.
+    /// the shape stay on their side of the plane, it is shaded with the plane's normal, and a light behind the plane does
+    /// not light it. `None` is always correct.
     fn plane(&self) -> Option<[DVec3; 2]> {
         None
     }
