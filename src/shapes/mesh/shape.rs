@@ -216,6 +216,10 @@ impl<A: Bounded> Packets for Shape<Mesh<A>, ByPackets, ByFaces> {
         interact(cpu, &self.shape, rays, distances, sides, cosines, travelled, points, normals);
     }
 
+    fn finds_normals_by_rays(&self) -> bool {
+        true
+    }
+
     fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
         self.shape.bracket(ray, range, &mut Last::none())
     }
