@@ -14,6 +14,10 @@ impl Shader for Rainbow {
         6.0 * around(&self.0, at)
     }
 
+    fn enclose(&self, material: &Material, at: [Wide; 3]) -> Option<LookBounds> {
+        Some(LookBounds { ambient: enclosed_around(&self.0, at), ..material.into() })
+    }
+
     fn brightest(&self, material: &Material) -> Option<Look> {
         brightest(6.0, material)
     }
@@ -43,4 +47,20 @@ pub fn brightest(times: f64, material: &Material) -> Option<Look> {
 #[inline]
 pub fn around(anchor: &Anchor, at: DVec3) -> Rgb {
     colour((at - anchor.origin).truncate())
+}
+
+/// Encloses [`colour`].
+pub fn enclose([x, y]: [Wide; 2]) -> [Wide; 3] {
+    let n = Wide::constant;
+    let square = x.powi(2) + y.powi(2);
+    let part = |of: Wide| (of / square).max(n(-1.0)).min(n(1.0));
+    let (cos, sin) = (part(x.powi(2) - y.powi(2)), part(n(2.0) * x * y));
+    let (half, half_root_3) = (n(0.5), n(0.5) * n(3.0).sqrt());
+    [n(1.0) + cos, n(1.0) - half * cos - half_root_3 * sin, n(1.0) - half * cos + half_root_3 * sin]
+}
+
+/// Encloses six times the colour of [`around`].
+pub fn enclosed_around(anchor: &Anchor, [x, y, _]: [Wide; 3]) -> [Wide; 3] {
+    let colour = enclose([x - Wide::constant(anchor.origin.x), y - Wide::constant(anchor.origin.y)]);
+    colour.map(|channel| Wide::constant(6.0) * channel)
 }

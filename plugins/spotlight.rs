@@ -23,7 +23,8 @@ inventory::submit! {
             });
         }
         let edge = args.get(&THETA) * std::f64::consts::PI / 180.0;
-        Ok(Box::new(Spotlight { light: PointLight::new(args), axis: axis(args), cos_edge: libm::cos(edge) }))
+        let given = (args.get(&POINT), args.get(&THETA));
+        Ok(Box::new(Spotlight { light: PointLight::new(args), axis: axis(args), cos_edge: libm::cos(edge), given }))
     })
     .dumped_as("light")
 }
@@ -37,6 +38,8 @@ struct Spotlight {
     light: PointLight,
     axis: DVec3,
     cos_edge: f64,
+    /// The point on the axis, and the angle in degrees.
+    given: (DVec3, f64),
 }
 
 impl Light for Spotlight {
@@ -49,6 +52,21 @@ impl Light for Spotlight {
     fn emissivity(&self, toward: DVec3) -> Option<Rgb> {
         let cos = (toward - self.light.location).normalize().dot(self.axis);
         (cos > self.cos_edge).then_some(self.light.emissivity)
+    }
+
+    fn enclose(&self, toward: [Wide; 3]) -> Option<[Wide; 3]> {
+        let (n, (point, theta)) = (Wide::constant, self.given);
+        let location = self.light.location.to_array().map(n);
+        let from = |at: [Wide; 3]| [0, 1, 2].map(|axis| at[axis] - location[axis]);
+        let (axis, away) = (from(point.to_array().map(n)), from(toward));
+        let edge = (n(theta) * Wide::pi() / n(180.0)).cos();
+        let inside = dot(away, axis) - edge * (dot(away, away) * dot(axis, axis)).sqrt();
+        let (sent, nothing) = (self.light.emissivity.to_array().map(n), [n(0.0); 3]);
+        Some(match inside.has_zero() {
+            true => [0, 1, 2].map(|channel| sent[channel].hull(nothing[channel])),
+            false if inside.low > nothing[0].low => sent,
+            false => nothing,
+        })
     }
 
     fn brightest(&self) -> Option<Rgb> {

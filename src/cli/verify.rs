@@ -9,6 +9,7 @@ use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::scene::registry::Registry;
 use crate::text;
+use crate::tools::colours;
 use crate::tools::verify::{self, Verdict};
 use std::iter;
 use std::ops::ControlFlow;
@@ -28,6 +29,9 @@ pub struct Args {
     /// object; a .png or .ppm file
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
+    /// Prove the colours: each byte of the image
+    #[arg(long)]
+    colours: bool,
     #[command(flatten)]
     method: method::Args,
     /// The number of threads; by default one per core
@@ -46,6 +50,20 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let progress = Progress::new(size[1]);
     let renderer = Renderer::new(args.threads.unwrap_or(0).into())?;
     let plan = Plan::new(&model);
+    if args.colours {
+        let start = std::time::Instant::now();
+        let pixels = colours::Prover::new(&plan).picture(&renderer, &|| {
+            progress.step();
+            ControlFlow::Continue(())
+        });
+        progress.end();
+        let pixels = pixels.map_err(|_| Failure::Interrupted("the image was not finished"))?;
+        let width = size[0];
+        let of = |v: colours::Verdict| pixels.iter().filter(|p| p.verdict() == v).count();
+        let first: Vec<_> = pixels.iter().enumerate().filter(|(_, p)| p.verdict() != colours::Verdict::Proven).map(|(i, p)| (i % width, size[1] - 1 - i / width, p.verdict())).take(5).collect();
+        print(&format!("{} proven {} open {} contradicted of {} in {:?} {first:?}\n", of(colours::Verdict::Proven), of(colours::Verdict::Open), of(colours::Verdict::Contradicted), pixels.len(), start.elapsed()))?;
+        return Ok(());
+    }
     let verdicts = verify::picture(&renderer, &plan, &|| {
         progress.step();
         ControlFlow::Continue(())

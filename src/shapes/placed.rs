@@ -8,15 +8,17 @@ use crate::geometry::aabb::{Aabb, SLACK};
 use crate::geometry::placement::Placement;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
 use crate::geometry::roots::Method;
-use crate::geometry::sight::Sight;
+use crate::geometry::sight::{Line, Sight};
 use crate::numeric::double_double::DoubleDouble;
+use crate::numeric::dual::Dual;
+use crate::numeric::interval::{Interval, Wide};
 use crate::world::body::Body;
-use crate::world::certify::{Enclosure, Precision};
+use crate::world::certify::{Enclosure, Found, Onward, Precise, Precision, Proven};
 use crate::world::coincidence::{CLOSE, ROUNDING};
 use crate::world::hittable::{Bracketed, Hittable};
 use crate::world::material::{Look, Material, Rgb};
 use crate::world::packets::shape::{Proofs, by_distance};
-use crate::world::shader::{Plain, Shader};
+use crate::world::shader::{LookBounds, Plain, Shader};
 use crate::world::shape::{ByBracket, Shape};
 use glam::{DMat3, DVec3};
 use std::sync::Arc;
@@ -182,12 +184,38 @@ impl Proofs for Shape<Placed, ByBracket, ByPlacement> {
         self.shape.body.shape.certify(&sight.within(self.shape.placement), precision)
     }
 
+    fn proven(&self) -> Option<&dyn Proven> {
+        Some(&self.shape)
+    }
+
     fn is_of_the_notes(&self) -> bool {
         self.shape.body.shape.packets().is_of_the_notes()
     }
 
     fn distance_by(&self, _method: Method, _ray: &Ray, _range: &RayRange) -> Option<f64> {
         None
+    }
+}
+
+impl<F: Precise> Onward<F> for Placed {
+    fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (Found<F>, usize) {
+        let own = Line { origin: self.placement.point(line.origin), dir: self.placement.vector(line.dir) };
+        match self.body.shape.proven() {
+            Some(proven) => F::proofs(proven).first_hit(&own, leaves),
+            None => (Found::Doubtful(F::of(0.0)), 0),
+        }
+    }
+
+    fn slope(&self, at: [Dual<Interval<F>>; 3], part: usize) -> Dual<Interval<F>> {
+        let own = self.placement.point(at);
+        match self.body.shape.proven() {
+            Some(proven) => F::proofs(proven).slope(own, part),
+            None => Dual::fixed(Interval::whole()),
+        }
+    }
+
+    fn is_smoothed(&self) -> bool {
+        self.body.shape.proven().is_some_and(|proven| F::proofs(proven).is_smoothed())
     }
 }
 
@@ -202,6 +230,10 @@ impl Shader for PlacedShader {
 
     fn specular(&self, material: &Material, at: DVec3) -> Rgb {
         self.0.body.shader.specular(material, self.0.own_point(at))
+    }
+
+    fn enclose(&self, material: &Material, at: [Wide; 3]) -> Option<LookBounds> {
+        self.0.body.shader.enclose(material, self.0.placement.point(at))
     }
 
     fn uniform(&self, material: &Material) -> Option<Look> {

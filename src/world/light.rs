@@ -1,5 +1,7 @@
 //! Lights: the trait that a plugin implements.
 
+use crate::numeric::interval::Wide;
+use crate::numeric::scalar::Scalar;
 use crate::world::material::Rgb;
 use glam::DVec3;
 
@@ -15,6 +17,12 @@ pub trait Light: Send + Sync {
     /// everywhere. Then `emissivity` is not called for each point. `None` is always correct.
     fn uniform(&self) -> Option<Rgb> {
         None
+    }
+
+    /// Encloses the light sent toward every point of a box, as mathematics has it, 0 where it does not point there;
+    /// `None` where it is not known. Proofs of colours ask for it. `None` is always correct.
+    fn enclose(&self, _toward: [Wide; 3]) -> Option<[Wide; 3]> {
+        self.uniform().map(|sent| sent.to_array().map(Wide::constant))
     }
 
     /// Returns the largest magnitude of each channel of [`emissivity`](Self::emissivity) over all points, with either

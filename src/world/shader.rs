@@ -1,5 +1,7 @@
 //! Shaders: the trait that a plugin implements for one point of a surface.
 
+use crate::numeric::interval::Wide;
+use crate::numeric::scalar::Scalar;
 use crate::world::material::{Look, Material, Rgb};
 use glam::DVec3;
 
@@ -31,11 +33,55 @@ pub trait Shader: Send + Sync {
         None
     }
 
+    /// Encloses the three reflectivities, as mathematics has them, at every point of a box; `None` where they are not
+    /// known. Proofs of colours ask for them. `None` is always correct.
+    fn enclose(&self, material: &Material, _at: [Wide; 3]) -> Option<LookBounds> {
+        self.uniform(material).map(LookBounds::from)
+    }
+
     /// Returns the largest magnitudes of the three reflectivities over all points, with either sign. They decide how
     /// deep rays are followed into mirrors and glass. Returns `None` where they are not known, or where a surface that
     /// is not uniform has a negative diffuse channel somewhere. `None` is always correct.
     fn brightest(&self, material: &Material) -> Option<Look> {
         self.uniform(material)
+    }
+}
+
+/// Enclosures of a surface's reflectivities, per channel.
+#[derive(Clone, Copy, Debug)]
+pub struct LookBounds {
+    /// The reflectivity for ambient light.
+    pub ambient: [Wide; 3],
+    /// The reflectivity for light from the scene's lights, scattered diffusely.
+    pub diffuse: [Wide; 3],
+    /// The mirror reflectivity.
+    pub specular: [Wide; 3],
+}
+
+/// Takes the numbers for exact.
+impl From<Look> for LookBounds {
+    fn from(Look { ambient, diffuse, specular }: Look) -> Self {
+        let exactly = |colour: Rgb| colour.to_array().map(Wide::constant);
+        Self { ambient: exactly(ambient), diffuse: exactly(diffuse), specular: exactly(specular) }
+    }
+}
+
+impl From<&Material> for LookBounds {
+    fn from(material: &Material) -> Self {
+        let Material { ambient, diffuse, specular, .. } = *material;
+        Look { ambient, diffuse, specular }.into()
+    }
+}
+
+impl LookBounds {
+    /// Returns the smallest bounds that contain both.
+    pub fn hull(&self, other: &Self) -> Self {
+        let hull = |one: [Wide; 3], other: [Wide; 3]| [0, 1, 2].map(|channel| one[channel].hull(other[channel]));
+        Self {
+            ambient: hull(self.ambient, other.ambient),
+            diffuse: hull(self.diffuse, other.diffuse),
+            specular: hull(self.specular, other.specular),
+        }
     }
 }
 

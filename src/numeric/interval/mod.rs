@@ -48,7 +48,7 @@ impl Interval {
 
 impl<F: Float> Interval<F> {
     /// Returns all numbers, and undefined results.
-    fn whole() -> Self {
+    pub fn whole() -> Self {
         Self { low: -F::INFINITY, high: F::INFINITY }
     }
 
@@ -78,6 +78,27 @@ impl<F: Float> Interval<F> {
     /// Returns the midpoint, rounded.
     pub fn middle(self) -> F {
         self.low + F::of(0.5) * (self.high - self.low)
+    }
+
+    /// Returns the smallest interval that contains both.
+    pub fn hull(self, other: Self) -> Self {
+        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
+    }
+
+    /// Converts to `f64`, rounded outward.
+    pub fn coarse(self) -> Interval {
+        Interval { low: self.low.to_f64().next_down(), high: self.high.to_f64().next_up() }
+    }
+
+    /// Returns the greatest integer that is not greater than the numbers, where it is the same for all of them.
+    pub fn certain_floor(self) -> Option<f64> {
+        let floor = self.low.floor();
+        (floor == self.high.floor() && floor.is_finite()).then(|| floor.to_f64())
+    }
+
+    /// Encloses π.
+    pub fn pi() -> Self {
+        Self::outward(F::PI, F::PI)
     }
 
     /// Returns whether both endpoints are finite.

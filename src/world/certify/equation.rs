@@ -96,10 +96,15 @@ impl<E: Equation, F: Float> Values<F> for E {
 }
 
 /// What is certain about a first hit, with numbers of one precision; see [`Enclosure`](super::Enclosure).
-pub(super) enum Found<F> {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Found<F> {
+    /// There is no hit.
     Misses,
+    /// There is a hit at a t in this interval.
     Hits(Interval<F>),
+    /// There is a hit at a t in this interval if the edge belongs to the surface.
     Edge(Interval<F>),
+    /// There may be a hit, at no smaller t than this.
     Doubtful(F),
 }
 
