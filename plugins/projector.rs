@@ -57,12 +57,12 @@ where
         Some(self.light.emissivity * self.picture.colour(ray.at(distance)))
     }
 
-    fn enclose(&self, toward: [Wide; 3]) -> Option<[Wide; 3]> {
-        let n = Wide::constant;
+    fn enclose(&self, toward: [Fine; 3]) -> Option<[Fine; 3]> {
+        let n = Fine::constant;
         let zero = n(0.0);
-        let minus = |one: [Wide; 3], other: DVec3| [0, 1, 2].map(|axis| one[axis] - n(other[axis]));
+        let minus = |one: [Fine; 3], other: DVec3| [0, 1, 2].map(|axis| one[axis] - n(other[axis]));
         let away = minus(toward, self.light.location).map(|part| -part);
-        let normal = self.window.plane.given_normal::<Wide>();
+        let normal = self.window.plane.given_normal::<Fine>();
         let slope = dot(normal, away);
         let crossing = -dot(normal, minus(toward, self.window.plane.point)) / slope;
         let at = [0, 1, 2].map(|axis| toward[axis] + crossing * away[axis]);

@@ -14,7 +14,7 @@ impl Shader for Rainbow {
         6.0 * around(&self.0, at)
     }
 
-    fn enclose(&self, material: &Material, at: [Wide; 3]) -> Option<LookBounds> {
+    fn enclose(&self, material: &Material, at: [Fine; 3]) -> Option<LookBounds> {
         Some(LookBounds { ambient: enclosed_around(&self.0, at), ..material.into() })
     }
 
@@ -50,17 +50,17 @@ pub fn around(anchor: &Anchor, at: DVec3) -> Rgb {
 }
 
 /// Encloses [`colour`].
-pub fn enclose([x, y]: [Wide; 2]) -> [Wide; 3] {
-    let n = Wide::constant;
+pub fn enclose([x, y]: [Fine; 2]) -> [Fine; 3] {
+    let n = Fine::constant;
     let square = x.powi(2) + y.powi(2);
-    let part = |of: Wide| (of / square).max(n(-1.0)).min(n(1.0));
+    let part = |of: Fine| (of / square).max(n(-1.0)).min(n(1.0));
     let (cos, sin) = (part(x.powi(2) - y.powi(2)), part(n(2.0) * x * y));
     let (half, half_root_3) = (n(0.5), n(0.5) * n(3.0).sqrt());
     [n(1.0) + cos, n(1.0) - half * cos - half_root_3 * sin, n(1.0) - half * cos + half_root_3 * sin]
 }
 
 /// Encloses six times the colour of [`around`].
-pub fn enclosed_around(anchor: &Anchor, [x, y, _]: [Wide; 3]) -> [Wide; 3] {
-    let colour = enclose([x - Wide::constant(anchor.origin.x), y - Wide::constant(anchor.origin.y)]);
-    colour.map(|channel| Wide::constant(6.0) * channel)
+pub fn enclosed_around(anchor: &Anchor, [x, y, _]: [Fine; 3]) -> [Fine; 3] {
+    let colour = enclose([x - Fine::constant(anchor.origin.x), y - Fine::constant(anchor.origin.y)]);
+    colour.map(|channel| Fine::constant(6.0) * channel)
 }

@@ -54,12 +54,12 @@ impl Light for Spotlight {
         (cos > self.cos_edge).then_some(self.light.emissivity)
     }
 
-    fn enclose(&self, toward: [Wide; 3]) -> Option<[Wide; 3]> {
-        let (n, (point, theta)) = (Wide::constant, self.given);
+    fn enclose(&self, toward: [Fine; 3]) -> Option<[Fine; 3]> {
+        let (n, (point, theta)) = (Fine::constant, self.given);
         let location = self.light.location.to_array().map(n);
-        let from = |at: [Wide; 3]| [0, 1, 2].map(|axis| at[axis] - location[axis]);
+        let from = |at: [Fine; 3]| [0, 1, 2].map(|axis| at[axis] - location[axis]);
         let (axis, away) = (from(point.to_array().map(n)), from(toward));
-        let edge = (n(theta) * Wide::pi() / n(180.0)).cos();
+        let edge = (n(theta) * Fine::pi() / n(180.0)).cos();
         let inside = dot(away, axis) - edge * (dot(away, away) * dot(axis, axis)).sqrt();
         let (sent, nothing) = (self.light.emissivity.to_array().map(n), [n(0.0); 3]);
         Some(match inside.has_zero() {

@@ -54,12 +54,12 @@ impl Shader for Tiles {
         self.material(material, at).diffuse
     }
 
-    fn enclose(&self, material: &Material, at: [Wide; 3]) -> Option<LookBounds> {
+    fn enclose(&self, material: &Material, at: [Fine; 3]) -> Option<LookBounds> {
         let [normal, xdir] = self.given;
         let [u, v] = along_sides(normal, xdir, at);
-        let tile = |along: Wide, side: usize| {
-            let offset = Wide::constant(100_000.0);
-            ((along + offset) / Wide::constant(self.dimensions[side])).certain_floor()
+        let tile = |along: Fine, side: usize| {
+            let offset = Fine::constant(100_000.0);
+            ((along + offset) / Fine::constant(self.dimensions[side])).certain_floor()
         };
         let other = Material { specular: material.specular, ..(*self.other).clone() };
         let (own, other) = (LookBounds::from(material), LookBounds::from(&other));

@@ -11,7 +11,7 @@ use crate::geometry::roots::Method;
 use crate::geometry::sight::{Line, Sight};
 use crate::numeric::double_double::DoubleDouble;
 use crate::numeric::dual::Dual;
-use crate::numeric::interval::{Interval, Wide};
+use crate::numeric::interval::{Fine, Interval};
 use crate::world::body::Body;
 use crate::world::certify::{Enclosure, Found, Onward, Precise, Precision, Proven};
 use crate::world::coincidence::{CLOSE, ROUNDING};
@@ -232,7 +232,7 @@ impl Shader for PlacedShader {
         self.0.body.shader.specular(material, self.0.own_point(at))
     }
 
-    fn enclose(&self, material: &Material, at: [Wide; 3]) -> Option<LookBounds> {
+    fn enclose(&self, material: &Material, at: [Fine; 3]) -> Option<LookBounds> {
         self.0.body.shader.enclose(material, self.0.placement.point(at))
     }
 

@@ -1,6 +1,6 @@
 //! Shaders: the trait that a plugin implements for one point of a surface.
 
-use crate::numeric::interval::Wide;
+use crate::numeric::interval::Fine;
 use crate::numeric::scalar::Scalar;
 use crate::world::material::{Look, Material, Rgb};
 use glam::DVec3;
@@ -35,7 +35,7 @@ pub trait Shader: Send + Sync {
 
     /// Encloses the three reflectivities, as mathematics has them, at every point of a box; `None` where they are not
     /// known. Proofs of colours ask for them. `None` is always correct.
-    fn enclose(&self, material: &Material, _at: [Wide; 3]) -> Option<LookBounds> {
+    fn enclose(&self, material: &Material, _at: [Fine; 3]) -> Option<LookBounds> {
         self.uniform(material).map(LookBounds::from)
     }
 
@@ -51,17 +51,17 @@ pub trait Shader: Send + Sync {
 #[derive(Clone, Copy, Debug)]
 pub struct LookBounds {
     /// The reflectivity for ambient light.
-    pub ambient: [Wide; 3],
+    pub ambient: [Fine; 3],
     /// The reflectivity for light from the scene's lights, scattered diffusely.
-    pub diffuse: [Wide; 3],
+    pub diffuse: [Fine; 3],
     /// The mirror reflectivity.
-    pub specular: [Wide; 3],
+    pub specular: [Fine; 3],
 }
 
 /// Takes the numbers for exact.
 impl From<Look> for LookBounds {
     fn from(Look { ambient, diffuse, specular }: Look) -> Self {
-        let exactly = |colour: Rgb| colour.to_array().map(Wide::constant);
+        let exactly = |colour: Rgb| colour.to_array().map(Fine::constant);
         Self { ambient: exactly(ambient), diffuse: exactly(diffuse), specular: exactly(specular) }
     }
 }
@@ -76,7 +76,7 @@ impl From<&Material> for LookBounds {
 impl LookBounds {
     /// Returns the smallest bounds that contain both.
     pub fn hull(&self, other: &Self) -> Self {
-        let hull = |one: [Wide; 3], other: [Wide; 3]| [0, 1, 2].map(|channel| one[channel].hull(other[channel]));
+        let hull = |one: [Fine; 3], other: [Fine; 3]| [0, 1, 2].map(|channel| one[channel].hull(other[channel]));
         Self {
             ambient: hull(self.ambient, other.ambient),
             diffuse: hull(self.diffuse, other.diffuse),

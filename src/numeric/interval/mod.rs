@@ -3,10 +3,12 @@
 //! The endpoints are `f64`, or have 237 bits where `f64` leaves a question open ([`Wide`]).
 
 mod float;
+mod fraction;
 
 use crate::numeric::scalar::Scalar;
 use f256::f256;
 pub use float::Float;
+pub use fraction::Fraction;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Inlines an operation on intervals, or where numbers are [long](Float::IS_LONG) calls it, so that it is compiled once and
@@ -35,8 +37,17 @@ pub struct Interval<F = f64> {
 /// An interval whose endpoints have 237 bits.
 pub type Wide = Interval<f256>;
 
+/// An interval whose endpoints are fractions.
+pub type Fine = Interval<Fraction>;
+
 impl From<Interval> for Wide {
     fn from(of: Interval) -> Self {
+        Self { low: of.low.into(), high: of.high.into() }
+    }
+}
+
+impl From<Wide> for Fine {
+    fn from(of: Wide) -> Self {
         Self { low: of.low.into(), high: of.high.into() }
     }
 }

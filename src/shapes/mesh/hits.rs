@@ -9,7 +9,7 @@ use crate::geometry::sight::{Line, Sight};
 use crate::numeric::interval::{Float, Interval, Wide};
 use crate::shapes::triangle::Triangle;
 use crate::world::accuracy::Bounded;
-use crate::world::certify::{self, Enclosure, Found, Onward, Precision};
+use crate::world::certify::{self, Enclosure, Found, Onward, Precise, Precision};
 use crate::world::coincidence::CLOSE;
 use f256::f256;
 use glam::DVec3;
@@ -362,7 +362,7 @@ impl Surface {
 
     /// Returns what is certain about a line's first hit with t > 0, and the face that is hit. `leaves` is the face on which
     /// the line's true start lies.
-    pub(super) fn first_along<A: Bounded, F: Float>(
+    pub(super) fn first_along<A: Bounded, F: Precise>(
         &self,
         line: &Line<Interval<F>>,
         leaves: Option<usize>,

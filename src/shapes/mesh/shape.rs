@@ -10,11 +10,11 @@ use crate::geometry::roots::Method;
 use crate::geometry::sight::{Line, Sight};
 use crate::numeric::double_double::DoubleDouble;
 use crate::numeric::dual::Dual;
-use crate::numeric::interval::{Float, Interval};
+use crate::numeric::interval::Interval;
 use crate::simd::cpu::{Cpu, kernels};
 use crate::text;
 use crate::world::accuracy::{Accuracy, Bounded};
-use crate::world::certify::{Enclosure, Found, Onward, Precision, Proven};
+use crate::world::certify::{Enclosure, Found, Onward, Precise, Precision, Proven};
 use crate::world::coincidence::{CLOSE, ROUNDING};
 use crate::world::hittable::Hittable;
 use crate::world::interaction::{SurfaceInteraction, turned};
@@ -153,7 +153,7 @@ impl<A: Bounded> Proofs for Shape<Mesh<A>, ByPackets, ByFaces> {
     }
 }
 
-impl<A: Bounded, F: Float> Onward<F> for Mesh<A> {
+impl<A: Bounded, F: Precise> Onward<F> for Mesh<A> {
     fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (Found<F>, usize) {
         self.surface.first_along::<A, F>(line, leaves)
     }

@@ -8,15 +8,17 @@ use crate::numeric::scalar::{Scalar, dot};
 use crate::world::certify::{Found, Precise};
 use crate::scene::model::Object;
 use crate::world::light::Light;
+use glam::DVec2;
 
 /// The number of panes on a shadow ray after which what passes is open.
 const MAX_PANES: usize = 100;
 
-/// Encloses what a light adds to the colour of a point. `dir` is the unit vector along the ray that sees the point. `None`
-/// where it is open.
+/// Encloses what a light adds to the colour of a point. `draw` chooses the point of a light with a size that is seen, and
+/// `dir` is the unit vector along the ray that sees the point. `None` where it is open.
 pub(super) fn shine<F: Precise>(
     scene: &Scene,
     light: &(impl Light + ?Sized),
+    draw: Option<DVec2>,
     surface: &Surface<F>,
     dir: [Interval<F>; 3],
 ) -> Option<Colour<F>> {
@@ -27,8 +29,7 @@ pub(super) fn shine<F: Precise>(
     if is_black(&surface.diffuse) && !has_glint {
         return Some(black);
     }
-    let location = light.location();
-    let toward = [0, 1, 2].map(|axis| n(location[axis]) - surface.at[axis]);
+    let toward = toward(light, draw, surface.at)?;
     let distance = dot(toward, toward).sqrt();
     let cosine = dot(toward, surface.normal) / distance;
     if cosine.high <= zero {
@@ -57,6 +58,36 @@ pub(super) fn shine<F: Precise>(
         };
         if cosine.low > zero { lit } else { lit.hull(black[channel]) }
     }))
+}
+
+/// Encloses the vector from a point to the point of a light that it sees: the light's own, or one on the disc around it that
+/// faces the point. `None` where it is open.
+fn toward<F: Precise>(
+    light: &(impl Light + ?Sized),
+    draw: Option<DVec2>,
+    at: [Interval<F>; 3],
+) -> Option<[Interval<F>; 3]> {
+    let n = Interval::<F>::constant;
+    let (location, size) = (light.location(), light.size());
+    let toward = [0, 1, 2].map(|axis| n(location[axis]) - at[axis]);
+    let Some(draw) = draw.filter(|_| size != 0.0) else { return Some(toward) };
+    let length = dot(toward, toward).sqrt();
+    let [x, y, z] = toward.map(|part| part / length);
+    let sign = if z.low >= F::of(0.0) {
+        n(1.0)
+    } else if z.high < F::of(0.0) {
+        n(-1.0)
+    } else {
+        return None;
+    };
+    // The two vectors perpendicular to a unit vector that `glam` chooses.
+    let a = n(-1.0) / (sign + z);
+    let b = x * y * a;
+    let across = [n(1.0) + sign * x * x * a, sign * b, -sign * x];
+    let up = [b, sign + y * y * a, -y];
+    let (sin, cos) = (n(2.0) * Interval::pi() * n(draw.y)).sin_cos();
+    let radius = n(size) * n(draw.x).sqrt();
+    Some([0, 1, 2].map(|axis| toward[axis] + radius * (cos * across[axis] + sin * up[axis])))
 }
 
 /// Encloses the power of a cosine above 0; 0 below.

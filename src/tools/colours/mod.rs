@@ -11,7 +11,7 @@ mod scene;
 mod surface;
 
 use crate::geometry::sight::Sight;
-use crate::numeric::interval::{Float, Interval};
+use crate::numeric::interval::{Float, Fraction, Interval};
 use crate::numeric::scalar::Scalar;
 use crate::render::plan::Plan;
 use crate::render::plan::depth::FAINT;
@@ -64,7 +64,11 @@ impl<'p, 'm> Prover<'p, 'm> {
     /// Returns the verdict on a pixel with these bytes: `x` counts from the left, `y` from the bottom.
     pub fn pixel(&self, x: usize, y: usize, bytes: [u8; 3]) -> Pixel {
         let (quick, is_final) = self.verdicts::<f64>(x, y, bytes);
-        if is_final { quick } else { self.verdicts::<f256>(x, y, bytes).0 }
+        if is_final {
+            return quick;
+        }
+        let (wide, is_final) = self.verdicts::<f256>(x, y, bytes);
+        if is_final { wide } else { self.verdicts::<Fraction>(x, y, bytes).0 }
     }
 
     /// Encloses a pixel's colour in `f64`; `None` where it is open.
@@ -88,9 +92,9 @@ impl<'p, 'm> Prover<'p, 'm> {
         let camera = &self.plan.camera;
         let mut sum = [Interval::constant(0.0); 3];
         let mut is_spent = false;
-        for (place, _) in camera.places(x, y) {
+        for (place, sample) in camera.places(x, y) {
             let sight: Sight = camera.sight(place.x, place.y);
-            let mut tracer = Tracer::new(&self.scene);
+            let mut tracer = Tracer::new(&self.scene, sample);
             let colour = tracer.primary::<F>(&sight.line());
             is_spent |= tracer.is_spent();
             let Some(colour) = colour else { return (None, is_spent) };

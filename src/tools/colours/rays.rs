@@ -8,6 +8,7 @@ use crate::numeric::interval::Interval;
 use crate::numeric::scalar::{Scalar, dot};
 use crate::render::limits::MAX_DIST;
 use crate::world::certify::Precise;
+use crate::world::sample::Sample;
 
 /// The number of rays after which a pixel's branches are no longer followed, but bounded.
 const MAX_RAYS: usize = 4000;
@@ -34,13 +35,15 @@ struct Ray<F> {
 /// Traces the rays of one sample.
 pub(super) struct Tracer<'s, 'p, 'm> {
     scene: &'s Scene<'p, 'm>,
+    /// The sample of the pixel, if it has several.
+    sample: Option<Sample>,
     rays: usize,
     is_spent: bool,
 }
 
 impl<'s, 'p, 'm> Tracer<'s, 'p, 'm> {
-    pub fn new(scene: &'s Scene<'p, 'm>) -> Self {
-        Self { scene, rays: 0, is_spent: false }
+    pub fn new(scene: &'s Scene<'p, 'm>, sample: Option<Sample>) -> Self {
+        Self { scene, sample, rays: 0, is_spent: false }
     }
 
     /// Tells whether branches were not followed because of their number.
@@ -77,8 +80,9 @@ impl<'s, 'p, 'm> Tracer<'s, 'p, 'm> {
         let travelled = ray.travelled + t * ray.length;
         let mut colour = surface.ambient;
         let toward = ray.path.line.dir.map(|part| part / ray.length);
-        for light in &self.scene.plan.model.lights {
-            let added = light::shine(self.scene, &*light.value, &surface, toward)?;
+        for (index, light) in self.scene.plan.model.lights.iter().enumerate() {
+            let draw = self.sample.map(|sample| sample.on_light(index));
+            let added = light::shine(self.scene, &*light.value, draw, &surface, toward)?;
             colour = [0, 1, 2].map(|channel| colour[channel] + added[channel]);
         }
         colour = colour.map(|channel| channel / travelled);

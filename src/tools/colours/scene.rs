@@ -91,6 +91,12 @@ impl<'p, 'm> Scene<'p, 'm> {
         match (nearest.next(), nearest.next()) {
             (None, _) => First::Nothing,
             (Some((_, Found::Hits(at), place)), None) => First::Hit(*at, *place),
+            // Of several at exactly the same distance, the first in the file is seen.
+            (Some((_, first @ Found::Hits(at), place)), Some((_, second, _)))
+                if at.low == at.high && first == second && nearest.all(|(_, other, _)| other == first) =>
+            {
+                First::Hit(*at, *place)
+            }
             _ => First::Open,
         }
     }

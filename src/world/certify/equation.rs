@@ -27,7 +27,8 @@ pub trait Equation {
         1
     }
 
-    /// Returns a positive number where the surface is kept, and a negative number where it is cut off.
+    /// Returns a positive number where the surface is kept, 0 at its edge, which belongs to it, and a negative number
+    /// where it is cut off.
     fn kept<N: Scalar>(&self, _at: [N; 3]) -> N {
         N::constant(1.0)
     }
@@ -115,5 +116,6 @@ pub(super) fn is_kept<F: Float>(
     distance: Interval<F>,
 ) -> Option<bool> {
     let kept = shape.kept(line.at(distance));
-    if kept.has_zero() { None } else { Some(kept.low > F::of(0.0)) }
+    // The edge belongs to the surface.
+    if kept.low >= F::of(0.0) { Some(true) } else if kept.has_zero() { None } else { Some(false) }
 }

@@ -7,7 +7,7 @@ use super::along::{PIECES, first_along, most_pieces};
 use super::equation::{Equation, Found};
 use crate::geometry::sight::Line;
 use crate::numeric::dual::Dual;
-use crate::numeric::interval::{Float, Interval, Wide};
+use crate::numeric::interval::{Fine, Float, Fraction, Interval, Wide};
 use crate::numeric::scalar::Scalar;
 use f256::f256;
 
@@ -26,15 +26,14 @@ pub trait Onward<F: Float> {
     }
 }
 
-/// What can be proven of a shape's hits along any line, in both precisions.
-pub trait Proven: Onward<f64> + Onward<f256> {}
+/// What can be proven of a shape's hits along any line, in every precision.
+pub trait Proven: Onward<f64> + Onward<f256> + Onward<Fraction> {}
 
-impl<T: Onward<f64> + Onward<f256>> Proven for T {}
+impl<T: Onward<f64> + Onward<f256> + Onward<Fraction>> Proven for T {}
 
-impl<E: Equation, F: Float> Onward<F> for E {
+impl<E: Equation, F: Precise> Onward<F> for E {
     fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (Found<F>, usize) {
-        let pieces = if F::IS_LONG { most_pieces(self) } else { PIECES };
-        (first_along(self, line, leaves.is_some(), pieces), 0)
+        (F::along(self, line, leaves.is_some()), 0)
     }
 
     fn slope(&self, at: [Dual<Interval<F>>; 3], _part: usize) -> Dual<Interval<F>> {
@@ -62,11 +61,14 @@ pub trait Precise: Float {
     /// Returns a shape's proofs in this precision.
     fn proofs(shape: &dyn Proven) -> &dyn Onward<Self>;
 
+    /// Returns what is certain about a line's first hit. With `leaves`, the line's true start lies on the shape.
+    fn along(shape: &impl Equation, line: &Line<Interval<Self>>, leaves: bool) -> Found<Self>;
+
     /// Converts an interval, rounded outward. Numbers that need no rounding stay as they are.
-    fn narrow(of: Wide) -> Interval<Self>;
+    fn narrow(of: Fine) -> Interval<Self>;
 
     /// Converts an interval, exactly.
-    fn widen(of: Interval<Self>) -> Wide;
+    fn widen(of: Interval<Self>) -> Fine;
 }
 
 impl Precise for f64 {
@@ -74,7 +76,12 @@ impl Precise for f64 {
         shape
     }
 
-    fn narrow(of: Wide) -> Interval {
+    fn along(shape: &impl Equation, line: &Line<Interval>, leaves: bool) -> Found<Self> {
+        first_along(shape, line, leaves, PIECES)
+    }
+
+    fn narrow(of: Fine) -> Interval {
+        let of = of.wide();
         let (low, high) = (of.low.to_f64(), of.high.to_f64());
         Interval {
             low: if f256::from(low) == of.low { low } else { low.next_down() },
@@ -82,8 +89,8 @@ impl Precise for f64 {
         }
     }
 
-    fn widen(of: Interval) -> Wide {
-        of.into()
+    fn widen(of: Interval) -> Fine {
+        Wide::from(of).into()
     }
 }
 
@@ -92,11 +99,48 @@ impl Precise for f256 {
         shape
     }
 
-    fn narrow(of: Wide) -> Wide {
+    fn along(shape: &impl Equation, line: &Line<Wide>, leaves: bool) -> Found<Self> {
+        first_along(shape, line, leaves, most_pieces(shape))
+    }
+
+    fn narrow(of: Fine) -> Wide {
+        of.wide()
+    }
+
+    fn widen(of: Wide) -> Fine {
+        of.into()
+    }
+}
+
+/// Fractions decide ties of surfaces whose hits have closed forms; other surfaces are searched in 237 bits.
+impl Precise for Fraction {
+    fn proofs(shape: &dyn Proven) -> &dyn Onward<Self> {
+        shape
+    }
+
+    fn along(shape: &impl Equation, line: &Line<Fine>, leaves: bool) -> Found<Self> {
+        if is_closed(shape) {
+            return first_along(shape, line, leaves, 0);
+        }
+        let wide = Line { origin: line.origin.map(Interval::wide), dir: line.dir.map(Interval::wide) };
+        match f256::along(shape, &wide, leaves) {
+            Found::Misses => Found::Misses,
+            Found::Hits(at) => Found::Hits(at.into()),
+            Found::Edge(at) => Found::Edge(at.into()),
+            Found::Doubtful(from) => Found::Doubtful(from.into()),
+        }
+    }
+
+    fn narrow(of: Fine) -> Fine {
         of
     }
 
-    fn widen(of: Wide) -> Wide {
+    fn widen(of: Fine) -> Fine {
         of
     }
+}
+
+/// Tells whether the hits of a shape have closed forms.
+fn is_closed<E: Equation>(_shape: &E) -> bool {
+    E::IS_QUADRATIC
 }
