@@ -18,8 +18,8 @@ impl Shader for Angular {
         rainbow::colour(DVec2::new(x, -y.abs()))
     }
 
-    fn enclose(&self, material: &Material, [x, y, _]: [Fine; 3]) -> Option<LookBounds> {
-        let [x, y] = [x - Fine::constant(self.0.origin.x), y - Fine::constant(self.0.origin.y)];
+    fn enclose<F: Precise>(&self, material: &Material, [x, y, _]: [Interval<F>; 3]) -> Option<LookBounds<F>> {
+        let [x, y] = [x - Interval::constant(self.0.origin.x), y - Interval::constant(self.0.origin.y)];
         Some(LookBounds { ambient: rainbow::enclose([x, -y.abs()]), ..material.into() })
     }
 

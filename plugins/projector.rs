@@ -57,12 +57,12 @@ where
         Some(self.light.emissivity * self.picture.colour(ray.at(distance)))
     }
 
-    fn enclose(&self, toward: [Fine; 3]) -> Option<[Fine; 3]> {
-        let n = Fine::constant;
+    fn enclose<F: Precise>(&self, toward: [Interval<F>; 3]) -> Option<[Interval<F>; 3]> {
+        let n = Interval::<F>::constant;
         let zero = n(0.0);
-        let minus = |one: [Fine; 3], other: DVec3| [0, 1, 2].map(|axis| one[axis] - n(other[axis]));
+        let minus = |one: [Interval<F>; 3], other: DVec3| [0, 1, 2].map(|axis| one[axis] - n(other[axis]));
         let away = minus(toward, self.light.location).map(|part| -part);
-        let normal = self.window.plane.given_normal::<Fine>();
+        let normal = self.window.plane.given_normal::<Interval<F>>();
         let slope = dot(normal, away);
         let crossing = -dot(normal, minus(toward, self.window.plane.point)) / slope;
         let at = [0, 1, 2].map(|axis| toward[axis] + crossing * away[axis]);

@@ -15,7 +15,7 @@ impl Shader for RainbowTiles {
         if tiles::is_odd(at) { material.ambient } else { 6.0 * rainbow::around(&self.0, at) }
     }
 
-    fn enclose(&self, material: &Material, at: [Fine; 3]) -> Option<LookBounds> {
+    fn enclose<F: Precise>(&self, material: &Material, at: [Interval<F>; 3]) -> Option<LookBounds<F>> {
         let odd = LookBounds::from(material);
         let even = LookBounds { ambient: rainbow::enclosed_around(&self.0, at), ..odd };
         Some(match tiles::is_certainly_odd(at) {

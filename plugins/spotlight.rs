@@ -23,8 +23,9 @@ inventory::submit! {
             });
         }
         let edge = args.get(&THETA) * std::f64::consts::PI / 180.0;
-        let given = (args.get(&POINT), args.get(&THETA));
-        Ok(Box::new(Spotlight { light: PointLight::new(args), axis: axis(args), cos_edge: libm::cos(edge), given }))
+        let cosine = (Wide::constant(args.get(&THETA)) * Wide::pi() / Wide::constant(180.0)).cos();
+        let (light, point) = (PointLight::new(args), args.get(&POINT));
+        Ok(Box::new(Spotlight { light, axis: axis(args), cos_edge: libm::cos(edge), point, cosine }))
     })
     .dumped_as("light")
 }
@@ -38,8 +39,10 @@ struct Spotlight {
     light: PointLight,
     axis: DVec3,
     cos_edge: f64,
-    /// The point on the axis, and the angle in degrees.
-    given: (DVec3, f64),
+    /// The point on the axis.
+    point: DVec3,
+    /// Encloses the cosine of the angle between the axis and the edge.
+    cosine: Wide,
 }
 
 impl Light for Spotlight {
@@ -54,13 +57,12 @@ impl Light for Spotlight {
         (cos > self.cos_edge).then_some(self.light.emissivity)
     }
 
-    fn enclose(&self, toward: [Fine; 3]) -> Option<[Fine; 3]> {
-        let (n, (point, theta)) = (Fine::constant, self.given);
+    fn enclose<F: Precise>(&self, toward: [Interval<F>; 3]) -> Option<[Interval<F>; 3]> {
+        let n = Interval::<F>::constant;
         let location = self.light.location.to_array().map(n);
-        let from = |at: [Fine; 3]| [0, 1, 2].map(|axis| at[axis] - location[axis]);
-        let (axis, away) = (from(point.to_array().map(n)), from(toward));
-        let edge = (n(theta) * Fine::pi() / n(180.0)).cos();
-        let inside = dot(away, axis) - edge * (dot(away, away) * dot(axis, axis)).sqrt();
+        let from = |at: [Interval<F>; 3]| [0, 1, 2].map(|axis| at[axis] - location[axis]);
+        let (axis, away) = (from(self.point.to_array().map(n)), from(toward));
+        let inside = dot(away, axis) - F::narrow(self.cosine.into()) * (dot(away, away) * dot(axis, axis)).sqrt();
         let (sent, nothing) = (self.light.emissivity.to_array().map(n), [n(0.0); 3]);
         Some(match inside.has_zero() {
             true => [0, 1, 2].map(|channel| sent[channel].hull(nothing[channel])),

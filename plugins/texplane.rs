@@ -73,9 +73,9 @@ impl Picture {
     }
 
     /// Encloses the texels at the points of a box in the rectangle's plane.
-    pub fn enclose(&self, at: [Fine; 3]) -> [Fine; 3] {
+    pub fn enclose<F: Precise>(&self, at: [Interval<F>; 3]) -> [Interval<F>; 3] {
         let Given { normal, xdir, screen, pixels } = self.given;
-        let (corner, n) = (self.rectangle.corner, Fine::constant);
+        let (corner, n) = (self.rectangle.corner, Interval::<F>::constant);
         let across = along_sides(normal, xdir, [0, 1, 2].map(|axis| at[axis] - n(corner[axis])));
         let size = self.texture.size();
         let range = |side: usize| {
@@ -90,7 +90,7 @@ impl Picture {
         };
         let (columns, rows) = (range(0), range(1));
         let count = |range: &RangeInclusive<u32>| u64::from(range.end() - range.start()) + 1;
-        let any = [Fine { low: n(0.0).low, high: n(1.0).high }; 3];
+        let any = [Interval { low: n(0.0).low, high: n(1.0).high }; 3];
         if count(&columns).max(count(&rows)) > MOST_TEXELS {
             return any;
         }
@@ -98,7 +98,7 @@ impl Picture {
         let texels = rows.flat_map(|row| columns.clone().map(move |column| (column, row)));
         let colours =
             texels.map(|(column, row)| self.texture.texel(wrapped(column, 0), wrapped(row, 1)).to_array().map(n));
-        let hull = |one: [Fine; 3], other: [Fine; 3]| [0, 1, 2].map(|channel| one[channel].hull(other[channel]));
+        let hull = |one: [Interval<F>; 3], other: [Interval<F>; 3]| [0, 1, 2].map(|channel| one[channel].hull(other[channel]));
         colours.reduce(hull).unwrap_or(any)
     }
 }
@@ -116,9 +116,9 @@ impl Shader for Textured {
         material.diffuse * self.0.colour(at)
     }
 
-    fn enclose(&self, material: &Material, at: [Fine; 3]) -> Option<LookBounds> {
+    fn enclose<F: Precise>(&self, material: &Material, at: [Interval<F>; 3]) -> Option<LookBounds<F>> {
         let (look, texel) = (LookBounds::from(material), self.0.enclose(at));
-        let times = |colour: [Fine; 3]| [0, 1, 2].map(|channel| colour[channel] * texel[channel]);
+        let times = |colour: [Interval<F>; 3]| [0, 1, 2].map(|channel| colour[channel] * texel[channel]);
         Some(LookBounds { ambient: times(look.ambient), diffuse: times(look.diffuse), ..look })
     }
 

@@ -54,12 +54,12 @@ impl Shader for Tiles {
         self.material(material, at).diffuse
     }
 
-    fn enclose(&self, material: &Material, at: [Fine; 3]) -> Option<LookBounds> {
+    fn enclose<F: Precise>(&self, material: &Material, at: [Interval<F>; 3]) -> Option<LookBounds<F>> {
         let [normal, xdir] = self.given;
         let [u, v] = along_sides(normal, xdir, at);
-        let tile = |along: Fine, side: usize| {
-            let offset = Fine::constant(100_000.0);
-            ((along + offset) / Fine::constant(self.dimensions[side])).certain_floor()
+        let tile = |along: Interval<F>, side: usize| {
+            let offset = Interval::constant(100_000.0);
+            ((along + offset) / Interval::constant(self.dimensions[side])).certain_floor()
         };
         let other = Material { specular: material.specular, ..(*self.other).clone() };
         let (own, other) = (LookBounds::from(material), LookBounds::from(&other));

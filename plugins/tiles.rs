@@ -15,11 +15,11 @@ impl Shader for Tiles {
         if is_odd(at) { Rgb::new(0.0, green, blue) } else { Rgb::new(red, green, 0.0) }
     }
 
-    fn enclose(&self, material: &Material, at: [Fine; 3]) -> Option<LookBounds> {
+    fn enclose<F: Precise>(&self, material: &Material, at: [Interval<F>; 3]) -> Option<LookBounds<F>> {
         let own = LookBounds::from(material);
         let without = |channel: usize| {
             let mut look = own;
-            look.ambient[channel] = Fine::constant(0.0);
+            look.ambient[channel] = Interval::constant(0.0);
             look
         };
         let (odd, even) = (without(0), without(2));
@@ -45,7 +45,7 @@ pub fn is_odd(at: DVec3) -> bool {
 }
 
 /// Tells whether a point lies on an odd tile, where that is certain.
-pub fn is_certainly_odd([x, _, z]: [Fine; 3]) -> Option<bool> {
-    let tile = |along: Fine| (Fine::constant(2.0) * along + Fine::constant(1000.0)).certain_floor();
+pub fn is_certainly_odd<F: Precise>([x, _, z]: [Interval<F>; 3]) -> Option<bool> {
+    let tile = |along: Interval<F>| (Interval::constant(2.0) * along + Interval::constant(1000.0)).certain_floor();
     Some((tile(x)? + tile(z)?).rem_euclid(2.0) != 0.0)
 }

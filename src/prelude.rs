@@ -32,10 +32,10 @@ pub use crate::geometry::aabb::{Aabb, SLACK};
 pub use crate::geometry::frame::Frame;
 pub use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
 pub use crate::numeric::double_double::DoubleDouble;
-pub use crate::numeric::interval::{Fine, Interval};
+pub use crate::numeric::interval::{Interval, Wide};
 pub use crate::numeric::scalar::{Scalar, cross, dot};
 pub use crate::shapes::implicit::Implicit;
-pub use crate::world::certify::Equation;
+pub use crate::world::certify::{Equation, Precise};
 
 // Vectors and matrices.
 pub use glam::{DMat3, DVec2, DVec3};

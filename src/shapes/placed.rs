@@ -11,12 +11,13 @@ use crate::geometry::roots::Method;
 use crate::geometry::sight::{Line, Sight};
 use crate::numeric::double_double::DoubleDouble;
 use crate::numeric::dual::Dual;
-use crate::numeric::interval::{Fine, Interval};
+use crate::numeric::interval::{Fine, Fraction, Interval};
 use crate::world::body::Body;
 use crate::world::certify::{Enclosure, Found, Onward, Precise, Precision, Proven};
 use crate::world::coincidence::{CLOSE, ROUNDING};
 use crate::world::hittable::{Bracketed, Hittable};
 use crate::world::material::{Look, Material, Rgb};
+use crate::world::packets::shader::EncloseLook;
 use crate::world::packets::shape::{Proofs, by_distance};
 use crate::world::shader::{LookBounds, Plain, Shader};
 use crate::world::shape::{ByBracket, Shape};
@@ -232,8 +233,16 @@ impl Shader for PlacedShader {
         self.0.body.shader.specular(material, self.0.own_point(at))
     }
 
-    fn enclose(&self, material: &Material, at: [Fine; 3]) -> Option<LookBounds> {
-        self.0.body.shader.enclose(material, self.0.placement.point(at))
+    fn enclose<F: Precise>(&self, material: &Material, at: [Interval<F>; 3]) -> Option<LookBounds<F>> {
+        let own = self.0.placement.point(at).map(F::widen);
+        let look = EncloseLook::<Fraction>::look(&*self.0.body.shader, material, own)?;
+        let narrow = |colour: [Fine; 3]| colour.map(F::narrow);
+        let LookBounds { ambient, diffuse, specular } = look;
+        Some(LookBounds {
+            ambient: narrow(ambient),
+            diffuse: narrow(diffuse),
+            specular: narrow(specular),
+        })
     }
 
     fn uniform(&self, material: &Material) -> Option<Look> {

@@ -1,7 +1,8 @@
 //! Lights: the trait that a plugin implements.
 
-use crate::numeric::interval::Fine;
+use crate::numeric::interval::Interval;
 use crate::numeric::scalar::Scalar;
+use crate::world::certify::Precise;
 use crate::world::material::Rgb;
 use glam::DVec3;
 
@@ -21,8 +22,11 @@ pub trait Light: Send + Sync {
 
     /// Encloses the light sent toward every point of a box, as mathematics has it, 0 where it does not point there;
     /// `None` where it is not known. Proofs of colours ask for it. `None` is always correct.
-    fn enclose(&self, _toward: [Fine; 3]) -> Option<[Fine; 3]> {
-        self.uniform().map(|sent| sent.to_array().map(Fine::constant))
+    fn enclose<F: Precise>(&self, _toward: [Interval<F>; 3]) -> Option<[Interval<F>; 3]>
+    where
+        Self: Sized,
+    {
+        self.uniform().map(|sent| sent.to_array().map(Interval::constant))
     }
 
     /// Returns the largest magnitude of each channel of [`emissivity`](Self::emissivity) over all points, with either

@@ -1,7 +1,8 @@
 //! Shaders: the trait that a plugin implements for one point of a surface.
 
-use crate::numeric::interval::Fine;
+use crate::numeric::interval::{Float, Interval};
 use crate::numeric::scalar::Scalar;
+use crate::world::certify::Precise;
 use crate::world::material::{Look, Material, Rgb};
 use glam::DVec3;
 
@@ -35,7 +36,10 @@ pub trait Shader: Send + Sync {
 
     /// Encloses the three reflectivities, as mathematics has them, at every point of a box; `None` where they are not
     /// known. Proofs of colours ask for them. `None` is always correct.
-    fn enclose(&self, material: &Material, _at: [Fine; 3]) -> Option<LookBounds> {
+    fn enclose<F: Precise>(&self, material: &Material, _at: [Interval<F>; 3]) -> Option<LookBounds<F>>
+    where
+        Self: Sized,
+    {
         self.uniform(material).map(LookBounds::from)
     }
 
@@ -49,34 +53,34 @@ pub trait Shader: Send + Sync {
 
 /// Enclosures of a surface's reflectivities, per channel.
 #[derive(Clone, Copy, Debug)]
-pub struct LookBounds {
+pub struct LookBounds<F> {
     /// The reflectivity for ambient light.
-    pub ambient: [Fine; 3],
+    pub ambient: [Interval<F>; 3],
     /// The reflectivity for light from the scene's lights, scattered diffusely.
-    pub diffuse: [Fine; 3],
+    pub diffuse: [Interval<F>; 3],
     /// The mirror reflectivity.
-    pub specular: [Fine; 3],
+    pub specular: [Interval<F>; 3],
 }
 
 /// Takes the numbers for exact.
-impl From<Look> for LookBounds {
+impl<F: Float> From<Look> for LookBounds<F> {
     fn from(Look { ambient, diffuse, specular }: Look) -> Self {
-        let exactly = |colour: Rgb| colour.to_array().map(Fine::constant);
+        let exactly = |colour: Rgb| colour.to_array().map(Interval::constant);
         Self { ambient: exactly(ambient), diffuse: exactly(diffuse), specular: exactly(specular) }
     }
 }
 
-impl From<&Material> for LookBounds {
+impl<F: Float> From<&Material> for LookBounds<F> {
     fn from(material: &Material) -> Self {
         let Material { ambient, diffuse, specular, .. } = *material;
         Look { ambient, diffuse, specular }.into()
     }
 }
 
-impl LookBounds {
+impl<F: Float> LookBounds<F> {
     /// Returns the smallest bounds that contain both.
     pub fn hull(&self, other: &Self) -> Self {
-        let hull = |one: [Fine; 3], other: [Fine; 3]| [0, 1, 2].map(|channel| one[channel].hull(other[channel]));
+        let hull = |one: [Interval<F>; 3], other: [Interval<F>; 3]| [0, 1, 2].map(|channel| one[channel].hull(other[channel]));
         Self {
             ambient: hull(self.ambient, other.ambient),
             diffuse: hull(self.diffuse, other.diffuse),

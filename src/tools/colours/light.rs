@@ -1,13 +1,12 @@
 //! The light that reaches a point of a surface, in intervals.
 
-use super::scene::{Colour, Path, Place, Scene, coarse};
+use super::scene::{Colour, Number, Path, Place, Scene, coarse};
 use super::surface::{Surface, is_black, tint};
 use crate::geometry::sight::Line;
 use crate::numeric::interval::{Float, Interval};
 use crate::numeric::scalar::{Scalar, dot};
-use crate::world::certify::{Found, Precise};
-use crate::scene::model::Object;
-use crate::world::light::Light;
+use crate::world::certify::Found;
+use crate::world::packets::light::PacketLight;
 use glam::DVec2;
 
 /// The number of panes on a shadow ray after which what passes is open.
@@ -15,9 +14,9 @@ const MAX_PANES: usize = 100;
 
 /// Encloses what a light adds to the colour of a point. `draw` chooses the point of a light with a size that is seen, and
 /// `dir` is the unit vector along the ray that sees the point. `None` where it is open.
-pub(super) fn shine<F: Precise>(
+pub(super) fn shine<F: Number>(
     scene: &Scene,
-    light: &(impl Light + ?Sized),
+    light: &(dyn PacketLight + 'static),
     draw: Option<DVec2>,
     surface: &Surface<F>,
     dir: [Interval<F>; 3],
@@ -35,7 +34,7 @@ pub(super) fn shine<F: Precise>(
     if cosine.high <= zero {
         return Some(black);
     }
-    let sent = light.enclose(surface.at.map(F::widen))?.map(F::narrow);
+    let sent = F::sent(light, surface.at)?;
     if is_black(&sent) {
         return Some(black);
     }
@@ -62,8 +61,8 @@ pub(super) fn shine<F: Precise>(
 
 /// Encloses the vector from a point to the point of a light that it sees: the light's own, or one on the disc around it that
 /// faces the point. `None` where it is open.
-fn toward<F: Precise>(
-    light: &(impl Light + ?Sized),
+fn toward<F: Number>(
+    light: &(dyn PacketLight + 'static),
     draw: Option<DVec2>,
     at: [Interval<F>; 3],
 ) -> Option<[Interval<F>; 3]> {
@@ -103,7 +102,7 @@ fn power<F: Float>(cosine: Interval<F>, shininess: f64) -> Interval<F> {
 }
 
 /// Encloses the fraction of light that passes along a line from t = 0 to t = 1; `None` where it is open.
-fn passed<F: Precise>(scene: &Scene, path: &Path<F>) -> Option<Colour<F>> {
+fn passed<F: Number>(scene: &Scene, path: &Path<F>) -> Option<Colour<F>> {
     let (one, black) = (F::of(1.0), [Interval::constant(0.0); 3]);
     let coarse = coarse(&path.line);
     let is_glass = |index: &usize| scene.objects[*index].material.transparency != 0.0;
@@ -137,7 +136,7 @@ struct Panes<F> {
     passed: Colour<F>,
 }
 
-impl<F: Precise> Panes<F> {
+impl<F: Number> Panes<F> {
     /// Adds each wall of a transparent object that a line passes through before t = 1; `None` where that is open.
     fn add(&mut self, scene: &Scene, path: &Path<F>, object: usize) -> Option<()> {
         let one = F::of(1.0);
@@ -158,9 +157,8 @@ impl<F: Precise> Panes<F> {
                 return None;
             }
             let point = path.line.at(at);
-            let Object { material, shader, .. } = &scene.objects[object];
-            let look = shader.enclose(material, point.map(F::widen))?;
-            let tint = tint(material.transparency, look.diffuse.map(F::narrow))?;
+            let pane = &scene.objects[object];
+            let tint = tint(pane.material.transparency, F::look(pane, point)?.diffuse)?;
             self.passed = [0, 1, 2].map(|channel| self.passed[channel] * tint[channel]);
             self.at.push(at);
             start = at;

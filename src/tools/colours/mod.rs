@@ -16,10 +16,9 @@ use crate::numeric::scalar::Scalar;
 use crate::render::plan::Plan;
 use crate::render::plan::depth::FAINT;
 use crate::render::renderer::Renderer;
-use crate::world::certify::Precise;
 use f256::f256;
 use rays::Tracer;
-use scene::{Colour, Scene};
+use scene::{Colour, Number, Scene};
 use std::io;
 use std::ops::ControlFlow;
 
@@ -78,7 +77,7 @@ impl<'p, 'm> Prover<'p, 'm> {
     }
 
     /// Returns the verdict, and whether a higher precision would not change it.
-    fn verdicts<F: Precise>(&self, x: usize, y: usize, bytes: [u8; 3]) -> (Pixel, bool) {
+    fn verdicts<F: Number>(&self, x: usize, y: usize, bytes: [u8; 3]) -> (Pixel, bool) {
         let (colour, is_spent) = self.mean::<F>(x, y);
         let Some(colour) = colour else { return (Pixel::default(), is_spent) };
         // Rays may be left out that add less than this to a pixel.
@@ -88,7 +87,7 @@ impl<'p, 'm> Prover<'p, 'm> {
     }
 
     /// Encloses a pixel's colour, the mean of its samples, and tells whether a limit on the number of rays was reached.
-    fn mean<F: Precise>(&self, x: usize, y: usize) -> (Option<Colour<F>>, bool) {
+    fn mean<F: Number>(&self, x: usize, y: usize) -> (Option<Colour<F>>, bool) {
         let camera = &self.plan.camera;
         let mut sum = [Interval::constant(0.0); 3];
         let mut is_spent = false;

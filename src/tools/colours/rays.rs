@@ -1,13 +1,12 @@
 //! The colours that rays return, in intervals.
 
 use super::light;
-use super::scene::{Colour, First, Path, Scene};
+use super::scene::{Colour, First, Number, Path, Scene};
 use super::surface::{Surface, is_black, tint};
 use crate::geometry::sight::Line;
 use crate::numeric::interval::Interval;
 use crate::numeric::scalar::{Scalar, dot};
 use crate::render::limits::MAX_DIST;
-use crate::world::certify::Precise;
 use crate::world::sample::Sample;
 
 /// The number of rays after which a pixel's branches are no longer followed, but bounded.
@@ -52,13 +51,13 @@ impl<'s, 'p, 'm> Tracer<'s, 'p, 'm> {
     }
 
     /// Encloses the colour that a primary ray returns; `None` where it is open.
-    pub fn primary<F: Precise>(&mut self, line: &Line<Interval<F>>) -> Option<Colour<F>> {
+    pub fn primary<F: Number>(&mut self, line: &Line<Interval<F>>) -> Option<Colour<F>> {
         let length = dot(line.dir, line.dir).sqrt();
         let path = Path { line: *line, leaves: None };
         self.colour(&Ray { path, length, travelled: Interval::constant(0.0), weight: 1.0, depth: 0 })
     }
 
-    fn colour<F: Precise>(&mut self, ray: &Ray<F>) -> Option<Colour<F>> {
+    fn colour<F: Number>(&mut self, ray: &Ray<F>) -> Option<Colour<F>> {
         let black = [Interval::constant(0.0); 3];
         let farthest = F::of(MAX_DIST);
         if ray.travelled.low > farthest {
@@ -104,7 +103,7 @@ impl<'s, 'p, 'm> Tracer<'s, 'p, 'm> {
     }
 
     /// Encloses the colour that a ray returns which continues from a surface. Its light is multiplied by `factor`.
-    fn onward<F: Precise>(
+    fn onward<F: Number>(
         &mut self,
         ray: &Ray<F>,
         surface: &Surface<F>,
@@ -120,7 +119,7 @@ impl<'s, 'p, 'm> Tracer<'s, 'p, 'm> {
     }
 
     /// Bounds what a ray returns that leaves an object, where that is negligible, or where there are too many rays.
-    fn bound<F: Precise>(&mut self, ray: &Ray<F>) -> Option<Interval<F>> {
+    fn bound<F: Number>(&mut self, ray: &Ray<F>) -> Option<Interval<F>> {
         let (depth, leaves) = (self.scene.plan.depth.as_ref()?, ray.path.leaves?);
         let most = depth.beyond(Some(leaves.object)) / ray.travelled.coarse().low;
         let is_negligible = ray.weight * most < NEGLIGIBLE;

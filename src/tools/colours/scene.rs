@@ -6,6 +6,9 @@ use crate::numeric::interval::Interval;
 use crate::render::plan::Plan;
 use crate::scene::model::Object;
 use crate::world::certify::{Found, Precise};
+use crate::world::packets::light::{EncloseLight, PacketLight};
+use crate::world::packets::shader::{EncloseLook, PacketShader};
+use crate::world::shader::LookBounds;
 
 /// A colour in intervals.
 pub(super) type Colour<F> = [Interval<F>; 3];
@@ -17,6 +20,29 @@ pub(super) struct Place {
     pub object: usize,
     /// The part of the object, as proofs count them.
     pub part: usize,
+}
+
+/// A precision in which colours are proven.
+pub(super) trait Number: Precise {
+    /// Encloses the look of an object at a point.
+    fn look(object: &Object, at: [Interval<Self>; 3]) -> Option<LookBounds<Self>>;
+
+    /// Encloses what a light sends toward a point.
+    fn sent(light: &(dyn PacketLight + 'static), toward: [Interval<Self>; 3]) -> Option<Colour<Self>>;
+}
+
+impl<F: Precise> Number for F
+where
+    dyn PacketShader: EncloseLook<F>,
+    dyn PacketLight: EncloseLight<F>,
+{
+    fn look(object: &Object, at: [Interval<Self>; 3]) -> Option<LookBounds<Self>> {
+        EncloseLook::<F>::look(&*object.shader, &object.material, at)
+    }
+
+    fn sent(light: &(dyn PacketLight + 'static), toward: [Interval<Self>; 3]) -> Option<Colour<Self>> {
+        EncloseLight::<F>::sent(light, toward)
+    }
 }
 
 /// A plan, and a box around each object that has bounds.

@@ -1,10 +1,10 @@
 //! A point of a surface that a ray hits, in intervals.
 
-use super::scene::{Colour, Place, Scene};
+use super::scene::{Colour, Number, Place, Scene};
 use crate::geometry::sight::Line;
 use crate::numeric::interval::{Float, Interval};
 use crate::numeric::scalar::{Scalar, dot};
-use crate::world::certify::{Precise, gradient};
+use crate::world::certify::gradient;
 
 /// A point that a ray hits, and how it looks there.
 pub(super) struct Surface<F> {
@@ -17,7 +17,7 @@ pub(super) struct Surface<F> {
     pub specular: Colour<F>,
 }
 
-impl<F: Precise> Surface<F> {
+impl<F: Number> Surface<F> {
     /// Returns the point at t of a line; `None` where its normal or its look are open.
     pub fn new(scene: &Scene, line: &Line<Interval<F>>, t: Interval<F>, place: Place) -> Option<Self> {
         let object = &scene.objects[place.object];
@@ -41,15 +41,15 @@ impl<F: Precise> Surface<F> {
         } else {
             return None;
         };
-        let look = object.shader.enclose(&object.material, at.map(F::widen))?;
+        let look = F::look(object, at)?;
         let [ambient, diffuse, specular] =
-            [look.ambient, look.diffuse, look.specular].map(|colour| colour.map(F::narrow));
+            [look.ambient, look.diffuse, look.specular];
         Some(Self { place, at, normal, ambient, diffuse, specular })
     }
 }
 
 /// Returns the fraction of light that passes through an object at a point; `None` where it is open.
-pub(super) fn tint<F: Precise>(transparency: f64, diffuse: Colour<F>) -> Option<Colour<F>> {
+pub(super) fn tint<F: Number>(transparency: f64, diffuse: Colour<F>) -> Option<Colour<F>> {
     let [red, green, blue] = diffuse;
     let strongest = red.max(green).max(blue);
     let transparency = Interval::constant(transparency);
