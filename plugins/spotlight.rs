@@ -62,7 +62,8 @@ impl Light for Spotlight {
         let location = self.light.location.to_array().map(n);
         let from = |at: [Interval<F>; 3]| [0, 1, 2].map(|axis| at[axis] - location[axis]);
         let (axis, away) = (from(self.point.to_array().map(n)), from(toward));
-        let inside = dot(away, axis) - F::narrow(self.cosine.into()) * (dot(away, away) * dot(axis, axis)).sqrt();
+        let inside =
+            dot(away, axis) - F::narrow(self.cosine.into()) * (dot(away, away) * dot(axis, axis)).sqrt();
         let (sent, nothing) = (self.light.emissivity.to_array().map(n), [n(0.0); 3]);
         Some(match inside.has_zero() {
             true => [0, 1, 2].map(|channel| sent[channel].hull(nothing[channel])),

@@ -46,6 +46,7 @@ pub fn is_odd(at: DVec3) -> bool {
 
 /// Tells whether a point lies on an odd tile, where that is certain.
 pub fn is_certainly_odd<F: Precise>([x, _, z]: [Interval<F>; 3]) -> Option<bool> {
-    let tile = |along: Interval<F>| (Interval::constant(2.0) * along + Interval::constant(1000.0)).certain_floor();
+    let tile =
+        |along: Interval<F>| (Interval::constant(2.0) * along + Interval::constant(1000.0)).certain_floor();
     Some((tile(x)? + tile(z)?).rem_euclid(2.0) != 0.0)
 }

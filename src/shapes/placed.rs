@@ -12,6 +12,7 @@ use crate::geometry::sight::{Line, Sight};
 use crate::numeric::double_double::DoubleDouble;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::{Fine, Fraction, Interval};
+use crate::numeric::scalar::{Scalar, dot};
 use crate::world::body::Body;
 use crate::world::certify::{Enclosure, Found, Onward, Precise, Precision, Proven};
 use crate::world::coincidence::{CLOSE, ROUNDING};
@@ -215,8 +216,27 @@ impl<F: Precise> Onward<F> for Placed {
         }
     }
 
-    fn is_smoothed(&self) -> bool {
-        self.body.shape.proven().is_some_and(|proven| F::proofs(proven).is_smoothed())
+    fn shading_normal(
+        &self,
+        at: [Interval<F>; 3],
+        part: usize,
+        normal: [Interval<F>; 3],
+    ) -> Option<[Interval<F>; 3]> {
+        let shape = F::proofs(self.body.shape.proven()?);
+        let n = Interval::<F>::constant;
+        // Normals are transformed by the inverse transpose of what transforms vectors.
+        let own = self.placement.vector(normal);
+        let own = [0, 1, 2].map(|axis| own[axis] * n(self.placement.scale[axis]).powi(2));
+        let length = dot(own, own).sqrt();
+        let own = own.map(|part| part / length);
+        let shaded = shape.shading_normal(self.placement.point(at), part, own)?;
+        if shaded == own {
+            return Some(normal);
+        }
+        let axes = DMat3::IDENTITY.to_cols_array_2d().map(|axis| self.placement.vector(axis.map(n)));
+        let world = axes.map(|axis| dot(axis, shaded));
+        let length = dot(world, world).sqrt();
+        Some(world.map(|part| part / length))
     }
 }
 
@@ -238,11 +258,7 @@ impl Shader for PlacedShader {
         let look = EncloseLook::<Fraction>::look(&*self.0.body.shader, material, own)?;
         let narrow = |colour: [Fine; 3]| colour.map(F::narrow);
         let LookBounds { ambient, diffuse, specular } = look;
-        Some(LookBounds {
-            ambient: narrow(ambient),
-            diffuse: narrow(diffuse),
-            specular: narrow(specular),
-        })
+        Some(LookBounds { ambient: narrow(ambient), diffuse: narrow(diffuse), specular: narrow(specular) })
     }
 
     fn uniform(&self, material: &Material) -> Option<Look> {

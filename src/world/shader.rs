@@ -80,7 +80,9 @@ impl<F: Float> From<&Material> for LookBounds<F> {
 impl<F: Float> LookBounds<F> {
     /// Returns the smallest bounds that contain both.
     pub fn hull(&self, other: &Self) -> Self {
-        let hull = |one: [Interval<F>; 3], other: [Interval<F>; 3]| [0, 1, 2].map(|channel| one[channel].hull(other[channel]));
+        let hull = |one: [Interval<F>; 3], other: [Interval<F>; 3]| {
+            [0, 1, 2].map(|channel| one[channel].hull(other[channel]))
+        };
         Self {
             ambient: hull(self.ambient, other.ambient),
             diffuse: hull(self.diffuse, other.diffuse),

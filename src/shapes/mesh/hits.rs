@@ -367,8 +367,7 @@ impl Surface {
         line: &Line<Interval<F>>,
         leaves: Option<usize>,
     ) -> (Found<F>, usize) {
-        let coarse =
-            Line { origin: line.origin.map(Interval::coarse), dir: line.dir.map(Interval::coarse) };
+        let coarse = Line { origin: line.origin.map(Interval::coarse), dir: line.dir.map(Interval::coarse) };
         let mut met = Vec::new();
         self.tree.within(
             |bounds| coarse.clip(bounds.low, bounds.high).is_some(),

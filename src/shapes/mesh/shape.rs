@@ -162,8 +162,13 @@ impl<A: Bounded, F: Precise> Onward<F> for Mesh<A> {
         Onward::slope(&Face(self.surface.triangle::<A>(part)), at, 0)
     }
 
-    fn is_smoothed(&self) -> bool {
-        !self.surface.normals.is_empty()
+    fn shading_normal(
+        &self,
+        at: [Interval<F>; 3],
+        part: usize,
+        normal: [Interval<F>; 3],
+    ) -> Option<[Interval<F>; 3]> {
+        self.surface.enclosed_normal(part, at, normal)
     }
 }
 

@@ -115,7 +115,8 @@ fn passed<F: Number>(scene: &Scene, path: &Path<F>) -> Option<Colour<F>> {
     if panes.at.windows(2).any(|pair| pair[1].low <= pair[0].high) {
         return None;
     }
-    let is_at_pane = |at: &Interval<F>| panes.at.iter().any(|pane| pane.low <= at.high && at.low <= pane.high);
+    let is_at_pane =
+        |at: &Interval<F>| panes.at.iter().any(|pane| pane.low <= at.high && at.low <= pane.high);
     let mut is_open = false;
     for index in (0..scene.objects.len()).filter(|index| !is_glass(index)) {
         match scene.hit(path, &coarse, index).0 {

@@ -13,31 +13,40 @@ mod surface;
 use crate::geometry::sight::Sight;
 use crate::numeric::interval::{Float, Fraction, Interval};
 use crate::numeric::scalar::Scalar;
+use crate::render::bytes::to_byte;
 use crate::render::plan::Plan;
 use crate::render::plan::depth::FAINT;
 use crate::render::renderer::Renderer;
+use crate::render::trace;
 use f256::f256;
 use rays::Tracer;
 use scene::{Colour, Number, Scene};
-use std::io;
 use std::ops::ControlFlow;
 
-/// What is proven of a byte, or of a pixel: of all of its bytes.
+/// What is proven of a byte, or of a pixel: the last in this order of those of its bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
     /// The byte is that of the true colour.
     Proven,
-    /// The interval of the true colour holds several bytes.
+    /// The byte is not that of the true colour, but `f64` does not tell: the true ray passes through an edge, or the true
+    /// level is a whole number, up to rounding. An enclosure in `f64` holds the byte.
+    Rounded,
+    /// The enclosure of the true colour holds several bytes, or the colour is not known.
     #[default]
     Open,
-    /// No colour in the interval has the byte.
+    /// No enclosure of the true colour holds the byte.
     Contradicted,
 }
 
-/// A pixel's verdicts.
+impl Verdict {
+    /// All verdicts, in their order.
+    pub const ALL: [Self; 4] = [Self::Proven, Self::Rounded, Self::Open, Self::Contradicted];
+}
+
+/// The verdicts on the three bytes of a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Pixel {
-    /// What is proven of each channel.
+    /// The verdicts on red, green and blue.
     pub channels: [Verdict; 3],
 }
 
@@ -46,6 +55,15 @@ impl Pixel {
     pub fn verdict(&self) -> Verdict {
         self.channels.into_iter().max().unwrap_or_default()
     }
+}
+
+/// What one precision tells of a pixel.
+struct Attempt {
+    pixel: Pixel,
+    /// Whether the colour was enclosed at all.
+    is_enclosed: bool,
+    /// Whether a higher precision would tell no more.
+    is_final: bool,
 }
 
 /// Proves the colours of an image.
@@ -60,30 +78,40 @@ impl<'p, 'm> Prover<'p, 'm> {
         Self { plan, scene: Scene::new(plan) }
     }
 
+    /// Returns the verdict on a pixel as the tracer renders it: `x` counts from the left, `y` from the bottom.
+    pub fn traced(&self, x: usize, y: usize) -> Pixel {
+        self.pixel(x, y, trace::pixel(self.plan, x, y).to_array().map(to_byte))
+    }
+
     /// Returns the verdict on a pixel with these bytes: `x` counts from the left, `y` from the bottom.
     pub fn pixel(&self, x: usize, y: usize, bytes: [u8; 3]) -> Pixel {
-        let (quick, is_final) = self.verdicts::<f64>(x, y, bytes);
-        if is_final {
-            return quick;
+        let quick = self.verdicts::<f64>(x, y, bytes);
+        if quick.is_final {
+            return quick.pixel;
         }
-        let (wide, is_final) = self.verdicts::<f256>(x, y, bytes);
-        if is_final { wide } else { self.verdicts::<Fraction>(x, y, bytes).0 }
+        let wide = self.verdicts::<f256>(x, y, bytes);
+        let last = if wide.is_final { wide } else { self.verdicts::<Fraction>(x, y, bytes) };
+        let may_round = quick.is_enclosed;
+        let channels = [0, 1, 2].map(|channel| match last.pixel.channels[channel] {
+            Verdict::Contradicted if may_round && quick.pixel.channels[channel] == Verdict::Open => {
+                Verdict::Rounded
+            }
+            verdict => verdict,
+        });
+        Pixel { channels }
     }
 
-    /// Encloses a pixel's colour in `f64`; `None` where it is open.
-    #[cfg(test)]
-    fn colour(&self, x: usize, y: usize) -> Option<Colour<f64>> {
-        self.mean(x, y).0
-    }
-
-    /// Returns the verdict, and whether a higher precision would not change it.
-    fn verdicts<F: Number>(&self, x: usize, y: usize, bytes: [u8; 3]) -> (Pixel, bool) {
+    /// Tries a proof in one precision.
+    fn verdicts<F: Number>(&self, x: usize, y: usize, bytes: [u8; 3]) -> Attempt {
         let (colour, is_spent) = self.mean::<F>(x, y);
-        let Some(colour) = colour else { return (Pixel::default(), is_spent) };
+        let Some(colour) = colour else {
+            return Attempt { pixel: Pixel::default(), is_enclosed: false, is_final: is_spent };
+        };
         // Rays may be left out that add less than this to a pixel.
         let missing = if self.plan.depth.is_some() { FAINT } else { 0.0 };
         let channels = [0, 1, 2].map(|channel| verdict(colour[channel], bytes[channel], missing));
-        (Pixel { channels }, is_spent || !channels.contains(&Verdict::Open))
+        let is_final = is_spent || !channels.contains(&Verdict::Open);
+        Attempt { pixel: Pixel { channels }, is_enclosed: true, is_final }
     }
 
     /// Encloses a pixel's colour, the mean of its samples, and tells whether a limit on the number of rays was reached.
@@ -104,23 +132,25 @@ impl<'p, 'm> Prover<'p, 'm> {
         (Some(mean), is_spent)
     }
 
-    /// Returns the verdicts on all pixels, row by row from the top. `done` is called after each row, and may break off.
-    ///
-    /// # Errors
-    /// `Interrupted` if `done` broke off.
+    /// Returns the verdicts on all pixels of the image that is rendered here, row by row from the top. `done` is called
+    /// after each row; once `stops` returns true, pixels have no verdict.
     pub fn picture(
         &self,
         renderer: &Renderer,
-        done: &(dyn Fn() -> ControlFlow<()> + Sync),
-    ) -> io::Result<Vec<Pixel>> {
+        done: &(dyn Fn() + Sync),
+        stops: &(dyn Fn() -> bool + Sync),
+    ) -> Vec<Option<Pixel>> {
         let [width, height] = self.plan.camera.pixels;
         let bytes = renderer.picture(self.plan);
         let verdict = |x: usize, y: usize| {
             let first = 3 * ((height - 1 - y) * width + x);
-            self.pixel(x, y, [0, 1, 2].map(|channel| bytes[first + channel]))
+            (!stops()).then(|| self.pixel(x, y, [0, 1, 2].map(|channel| bytes[first + channel])))
         };
-        let pixels = renderer.pixels(self.plan, 0..height, done, verdict);
-        pixels.ok_or_else(|| io::ErrorKind::Interrupted.into())
+        let done = || {
+            done();
+            ControlFlow::Continue(())
+        };
+        renderer.pixels(self.plan, 0..height, &done, verdict).unwrap_or_default()
     }
 }
 
@@ -136,5 +166,101 @@ fn verdict<F: Float>(channel: Interval<F>, byte: u8, missing: f64) -> Verdict {
         Verdict::Open
     } else {
         Verdict::Contradicted
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::model::Model;
+    use crate::scene::reader;
+    use crate::scene::registry::Registry;
+    use std::path::Path;
+
+    /// The middle pixel of 3 x 3 looks along -z, from 7 units in front of z = -2.
+    fn model(objects: &str) -> Model {
+        let registry = Registry::get().expect("sound types");
+        let scene = format!(
+            "camera eye {{ pixeldim 3 3 worlddim 8 6 viewpoint 4 3 5 }}
+             light lamp {{ location 4 6 2 emissivity 8 8 8 }} {objects}"
+        );
+        reader::read(registry, "scene", Path::new(""), scene.as_bytes(), None).expect("a sound scene").model
+    }
+
+    /// Asserts that the red of the middle pixel is this fraction, in every precision.
+    #[track_caller]
+    fn is_red(objects: &str, [numerator, denominator]: [f64; 2]) {
+        fn red<F: Number>(prover: &Prover) -> Interval<F> {
+            prover.mean::<F>(1, 1).0.expect("a known colour")[0]
+        }
+        fn is_enclosed<F: Float>(red: Interval<F>, [numerator, denominator]: [f64; 2], within: f64) {
+            let off = red * Interval::constant(denominator) - Interval::constant(numerator);
+            assert!(off.has_zero() && red.width().to_f64() < within, "{red:?}");
+        }
+        let model = model(objects);
+        let plan = Plan::new(&model);
+        let prover = Prover::new(&plan);
+        is_enclosed(red::<f64>(&prover), [numerator, denominator], 1e-13);
+        is_enclosed(red::<f256>(&prover), [numerator, denominator], 1e-60);
+        is_enclosed(red::<Fraction>(&prover), [numerator, denominator], 1e-60);
+        assert_eq!(prover.traced(1, 1).verdict(), Verdict::Proven);
+        let byte = (255.0 * numerator / denominator) as u8;
+        assert_eq!(prover.pixel(1, 1, [byte + 1, 0, 0]).channels[0], Verdict::Contradicted);
+    }
+
+    const BALL: &str = "sphere ball { material matt center 4 3 -3 radius 1 }";
+
+    #[test]
+    fn light_is_scattered_as_worked_out_by_hand() {
+        // The light is at (0, 3, 4) from the point: 5 away, at a cosine of 4/5.
+        let matt = "material matt { ambient 0.5 diffuse 1.25 }";
+        is_red(&format!("{matt} {BALL}"), [0.5 + 1.25 * 8.0 * 0.8 / 5.0, 7.0]);
+    }
+
+    #[test]
+    fn a_glint_is_as_worked_out_by_hand() {
+        // Half of the way to the light is (0, 3/5, 9/5); the square of its cosine is 9/10.
+        let shiny = "material matt { specular 0.125 shininess 2 }";
+        is_red(&format!("{shiny} {BALL}"), [0.9, 7.0]);
+    }
+
+    #[test]
+    fn shadows_and_panes_are_as_worked_out_by_hand() {
+        let matt = "material matt { ambient 0.5 diffuse 1.25 }";
+        let stop = "sphere stop { material matt center 4 4.5 0 radius 0.25 }";
+        is_red(&format!("{matt} {BALL} {stop}"), [0.5, 7.0]);
+        // Both walls of the ball of glass tint the light with 1/4 of red.
+        let glass = "material glass { diffuse 1 2 2 transparency 0.5 }";
+        let pane = "sphere pane { material glass center 4 4.5 0 radius 0.25 }";
+        is_red(&format!("{matt} {glass} {BALL} {pane}"), [0.5 + 1.6 / 16.0, 7.0]);
+    }
+
+    #[test]
+    fn mirrors_and_glass_are_as_worked_out_by_hand() {
+        // The mirror shows the far ball 9 before it, 16 from the viewer by way of it.
+        let mirror =
+            "material m { ambient 0.5 specular 0.25 } plane wall { material m normal 0 0 1 point 0 0 -2 }";
+        let behind = "material far { ambient 6 } sphere far { material far center 4 3 8 radius 1 }";
+        // 1/14 + 3/32
+        is_red(&format!("{mirror} {behind}"), [37.0, 224.0]);
+    }
+
+    #[test]
+    fn a_pixel_at_the_edge_of_a_tile_is_decided() {
+        let tiles = |color: &str| {
+            format!(
+                "material matt {{ ambient {color} }} pplane wall {{ material matt normal 0 0 1 point 0 0 -2 shader 0 }}"
+            )
+        };
+        // The point is (4, 3, -2): the corner of four tiles. That of greater x and z is even, without blue.
+        let model = model(&tiles("3.5 3.5 3.5"));
+        let plan = Plan::new(&model);
+        let prover = Prover::new(&plan);
+        assert_eq!(prover.pixel(1, 1, [127, 127, 0]).channels, [Verdict::Proven; 3]);
+        assert_eq!(
+            prover.pixel(1, 1, [0, 127, 127]).channels,
+            [Verdict::Rounded, Verdict::Proven, Verdict::Rounded]
+        );
+        assert_eq!(prover.pixel(1, 1, [0, 128, 127]).verdict(), Verdict::Contradicted);
     }
 }

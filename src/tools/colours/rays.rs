@@ -1,7 +1,7 @@
 //! The colours that rays return, in intervals.
 
 use super::light;
-use super::scene::{Colour, First, Number, Path, Scene};
+use super::scene::{Colour, First, Number, Path, Place, Scene};
 use super::surface::{Surface, is_black, tint};
 use crate::geometry::sight::Line;
 use crate::numeric::interval::Interval;
@@ -69,12 +69,25 @@ impl<'s, 'p, 'm> Tracer<'s, 'p, 'm> {
         if ray.travelled.high > farthest || self.is_spent {
             return None;
         }
+        match self.scene.first(&ray.path) {
+            First::Nothing => Some(black),
+            First::Hit(t, place) => self.seen(ray, t, place),
+            First::OneOf(places, may_be_nothing) => {
+                let hull = |one: Colour<F>, other: Colour<F>| [0, 1, 2].map(|at| one[at].hull(other[at]));
+                let mut any = may_be_nothing.then_some(black);
+                for (t, place) in places {
+                    let seen = self.seen(ray, t, place)?;
+                    any = Some(any.map_or(seen, |any| hull(any, seen)));
+                }
+                any
+            }
+            First::Open => None,
+        }
+    }
+
+    /// Encloses the colour that a ray returns which hits a place at t.
+    fn seen<F: Number>(&mut self, ray: &Ray<F>, t: Interval<F>, place: Place) -> Option<Colour<F>> {
         self.rays += 1;
-        let (t, place) = match self.scene.first(&ray.path) {
-            First::Nothing => return Some(black),
-            First::Hit(t, place) => (t, place),
-            First::Open => return None,
-        };
         let surface = Surface::new(self.scene, &ray.path.line, t, place)?;
         let travelled = ray.travelled + t * ray.length;
         let mut colour = surface.ambient;
@@ -123,7 +136,9 @@ impl<'s, 'p, 'm> Tracer<'s, 'p, 'm> {
         let (depth, leaves) = (self.scene.plan.depth.as_ref()?, ray.path.leaves?);
         let most = depth.beyond(Some(leaves.object)) / ray.travelled.coarse().low;
         let is_negligible = ray.weight * most < NEGLIGIBLE;
-        let is_last = self.rays >= MAX_RAYS || ray.depth >= MAX_DEPTH;
+        // An operation with many digits takes a hundred times as long.
+        let fewer = if F::IS_LONG { 10 } else { 1 };
+        let is_last = self.rays >= MAX_RAYS / fewer || ray.depth >= MAX_DEPTH / fewer;
         self.is_spent |= is_last && !is_negligible;
         // Written so that a NaN is no bound.
         let is_bound = (is_negligible || is_last) && most < f64::INFINITY;

@@ -58,9 +58,14 @@ pub(super) enum First<F> {
     Nothing,
     /// This place, at a t in this interval, for certain.
     Hit(Interval<F>, Place),
-    /// It is not certain which of several objects, if any.
+    /// One of these places, at a t in the interval beside it, or nothing.
+    OneOf(Vec<(Interval<F>, Place)>, MayBeNothing),
+    /// It is not known.
     Open,
 }
+
+/// Whether a line may hit nothing.
+pub(super) type MayBeNothing = bool;
 
 /// A line, and the place that it leaves.
 #[derive(Clone, Copy)]
@@ -82,7 +87,12 @@ impl<'p, 'm> Scene<'p, 'm> {
     }
 
     /// Returns what is certain about the first hit of a line with the object of this index.
-    pub fn hit<F: Precise>(&self, path: &Path<F>, coarse: &Line<Interval>, index: usize) -> (Found<F>, usize) {
+    pub fn hit<F: Precise>(
+        &self,
+        path: &Path<F>,
+        coarse: &Line<Interval>,
+        index: usize,
+    ) -> (Found<F>, usize) {
         if let Some(Aabb { low, high }) = self.boxes[index]
             && coarse.clip(low, high).is_none()
         {
@@ -123,7 +133,15 @@ impl<'p, 'm> Scene<'p, 'm> {
             {
                 First::Hit(*at, *place)
             }
-            _ => First::Open,
+            _ => {
+                let at = |hit: &Found<F>| match hit {
+                    Found::Hits(at) | Found::Edge(at) => Some(*at),
+                    Found::Misses | Found::Doubtful(_) => None,
+                };
+                let among = found.iter().filter(|(low, ..)| *low <= end);
+                let among = among.map(|(_, hit, place)| Some((at(hit)?, *place))).collect::<Option<Vec<_>>>();
+                among.map_or(First::Open, |among| First::OneOf(among, !end.is_finite()))
+            }
         }
     }
 }

@@ -23,9 +23,6 @@ impl<F: Number> Surface<F> {
         let object = &scene.objects[place.object];
         let at = line.at(t);
         let shape = F::proofs(object.shape.proven()?);
-        if shape.is_smoothed() {
-            return None;
-        }
         let normal = gradient(shape, at, place.part);
         let length = dot(normal, normal).sqrt();
         if length.has_zero() || !length.is_bounded() {
@@ -33,7 +30,8 @@ impl<F: Number> Surface<F> {
         }
         let normal = normal.map(|part| part / length);
         let zero = F::of(0.0);
-        let toward = if object.shape.is_two_sided() { dot(normal, line.dir) } else { Interval::constant(-1.0) };
+        let toward =
+            if object.shape.is_two_sided() { dot(normal, line.dir) } else { Interval::constant(-1.0) };
         let normal = if toward.high < zero {
             normal
         } else if toward.low > zero {
@@ -41,9 +39,10 @@ impl<F: Number> Surface<F> {
         } else {
             return None;
         };
+        // What is mirrored is mirrored by the shading normal, too.
+        let normal = shape.shading_normal(at, place.part, normal)?;
         let look = F::look(object, at)?;
-        let [ambient, diffuse, specular] =
-            [look.ambient, look.diffuse, look.specular];
+        let [ambient, diffuse, specular] = [look.ambient, look.diffuse, look.specular];
         Some(Self { place, at, normal, ambient, diffuse, specular })
     }
 }

@@ -117,5 +117,11 @@ pub(super) fn is_kept<F: Float>(
 ) -> Option<bool> {
     let kept = shape.kept(line.at(distance));
     // The edge belongs to the surface.
-    if kept.low >= F::of(0.0) { Some(true) } else if kept.has_zero() { None } else { Some(false) }
+    if kept.low >= F::of(0.0) {
+        Some(true)
+    } else if kept.has_zero() {
+        None
+    } else {
+        Some(false)
+    }
 }

@@ -20,9 +20,15 @@ pub trait Onward<F: Float> {
     /// Encloses the value of the equation of a part at a point in world coordinates, and its derivative.
     fn slope(&self, at: [Dual<Interval<F>>; 3], part: usize) -> Dual<Interval<F>>;
 
-    /// Tells whether the surface is shaded with another normal than its own.
-    fn is_smoothed(&self) -> bool {
-        false
+    /// Encloses the unit normal with which a point of a part is shaded, where it is not that of the surface, which is
+    /// `normal`, turned to the ray where both sides are lit; `None` where it is open.
+    fn shading_normal(
+        &self,
+        _at: [Interval<F>; 3],
+        _part: usize,
+        normal: [Interval<F>; 3],
+    ) -> Option<[Interval<F>; 3]> {
+        Some(normal)
     }
 }
 
