@@ -7,6 +7,7 @@ use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
 use crate::geometry::sight::{Line, Sight};
 use crate::numeric::interval::{Float, Interval, Wide};
+use crate::numeric::scalar::dot;
 use crate::shapes::triangle::Triangle;
 use crate::world::accuracy::Bounded;
 use crate::world::certify::{self, Enclosure, Found, Onward, Precise, Precision};
@@ -386,8 +387,30 @@ impl Surface {
         let first = met.iter().copied().reduce(|one, other| if other.0.0 < one.0.0 { other } else { one });
         let Some(((low, first), face)) = first else { return (Found::Misses, 0) };
         let Found::Hits(at) = first else { return (Found::Doubtful(low), face) };
-        let is_alone = met.iter().all(|((low, _), other)| *other == face || *low > at.high);
-        (if is_alone { first } else { Found::Doubtful(low) }, face)
+        let rivals = || met.iter().filter(|((low, _), _)| *low <= at.high);
+        // Of several faces at exactly the same distance, that which `face_along` chooses.
+        if rivals().all(|((_, found), other)| *other == face || *found == first && at.low == at.high) {
+            let place =
+                |face: usize| Some((!self.is_certainly_outside::<A, F>(face, line)?, self.order[face]));
+            let places: Option<Vec<_>> = rivals().map(|(_, face)| Some((place(*face)?, *face))).collect();
+            if let Some((_, face)) = places.and_then(|places| places.into_iter().min()) {
+                return (first, face);
+            }
+        }
+        (Found::Doubtful(low), face)
+    }
+
+    /// Tells whether a line hits the outside of a face, or whether that makes no difference; `None` where it is open.
+    fn is_certainly_outside<A: Bounded, F: Precise>(
+        &self,
+        face: usize,
+        line: &Line<Interval<F>>,
+    ) -> Option<bool> {
+        if self.open_edges > 0 {
+            return Some(true);
+        }
+        let slope = dot(self.triangle::<A>(face).upright(), line.dir);
+        if slope.has_zero() { None } else { Some(slope.high < F::of(0.0)) }
     }
 
     /// Returns the exact triangle of a face.
