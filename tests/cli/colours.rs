@@ -5,7 +5,8 @@ use serde_json::Value;
 
 /// Proves the colours of a scene. Returns the exit status, what is printed, and the messages.
 fn proven(name: &str, options: &[&str]) -> (i32, String, String) {
-    let mut command = tabray(&folder());
+    let folder = folder();
+    let mut command = tabray(&folder);
     let (status, out, err) = outcome(command.args(["verify", "--colours"]).arg(scene(name)).args(options));
     (status, String::from_utf8(out).expect("text"), err)
 }
@@ -13,7 +14,7 @@ fn proven(name: &str, options: &[&str]) -> (i32, String, String) {
 #[test]
 fn colours_of_lights_shadows_mirrors_and_glass_are_proven() {
     for name in
-        ["light/shadow.ray", "material/mirror.ray", "material/coloured-shadow.ray", "texplane/tiled.ray"]
+        ["light/shadow.ray", "material/mirror.ray", "material/coloured-shadow.ray", "spotlight/shadow.ray"]
     {
         let (status, out, err) = proven(name, &[]);
         assert_eq!(status, 0, "{name}: {err}");
@@ -68,7 +69,8 @@ fn the_colours_of_the_classic_method_are_refused() {
     let (status, _, err) = proven("light/shadow.ray", &["--method", "classic"]);
     assert_eq!(status, 2);
     assert!(err.contains("the colours of the classic method cannot be proven"), "{err}");
-    let mut command = tabray(&folder());
+    let folder = folder();
+    let mut command = tabray(&folder);
     let (status, _, err) = outcome(command.args(["verify", "--json"]).arg(scene("light/shadow.ray")));
     assert_eq!(status, 2, "{err}");
     assert!(err.contains("--colours"), "{err}");

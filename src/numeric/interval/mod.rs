@@ -52,6 +52,13 @@ impl From<Wide> for Fine {
     }
 }
 
+impl Fine {
+    /// Converts to 237 bits, rounded outward.
+    pub fn wide(self) -> Wide {
+        Wide { low: self.low.neighbours().0, high: self.high.neighbours().1 }
+    }
+}
+
 impl Interval {
     /// All numbers, and undefined results.
     pub const WHOLE: Self = Self { low: f64::NEG_INFINITY, high: f64::INFINITY };
