@@ -1,12 +1,19 @@
 //! The bytes of images are those of the proven colours, in every scene.
 
 use crate::common::{load, root, scenes};
+use std::thread;
 use tabray::render::Plan;
 use tabray::tools::colours::{Prover, Verdict};
 use tabray::world::Accuracy;
 
 #[test]
 fn no_byte_is_contradicted_and_nearly_every_pixel_is_proven() {
+    // Deep reflections take a stack as large as those of the program's threads.
+    let thread = thread::Builder::new().stack_size(128 << 20).spawn(all_scenes).expect("a thread");
+    thread.join().expect("no failure");
+}
+
+fn all_scenes() {
     // Proven, rounded, open and contradicted pixels.
     let mut counts = [0; 4];
     for path in scenes() {

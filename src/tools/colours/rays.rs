@@ -13,7 +13,7 @@ use crate::world::sample::Sample;
 const MAX_RAYS: usize = 4000;
 
 /// The number of rays one after the other, each continuing the last, after which they are bounded.
-const MAX_DEPTH: usize = 1000;
+const MAX_DEPTH: usize = 300;
 
 /// A branch that can add no more than this to a pixel's channel is bounded and not followed: a part of a level that no
 /// byte is likely to notice.
