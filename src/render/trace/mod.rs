@@ -13,6 +13,7 @@ mod hit_record;
 mod light;
 mod missing;
 mod occlusion;
+mod one_ray;
 mod order;
 mod ray_group;
 mod scratch;
