@@ -6,6 +6,7 @@ mod common;
 mod colours;
 mod differences;
 mod inside;
+mod needs;
 mod plan;
 mod readme;
 mod snapshots;
