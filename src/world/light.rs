@@ -1,5 +1,9 @@
 //! Lights: the trait that a plugin implements.
 
+use crate::geometry::aabb::Aabb;
+use crate::numeric::interval::Interval;
+use crate::numeric::scalar::Scalar;
+use crate::world::certify::Precise;
 use crate::world::material::Rgb;
 use glam::DVec3;
 
@@ -17,10 +21,25 @@ pub trait Light: Send + Sync {
         None
     }
 
+    /// Encloses the light sent toward every point of a box, as mathematics has it, 0 where it does not point there;
+    /// `None` where it is not known. Proofs of colours ask for it. `None` is always correct.
+    fn enclose<F: Precise>(&self, _toward: [Interval<F>; 3]) -> Option<[Interval<F>; 3]>
+    where
+        Self: Sized,
+    {
+        self.uniform().map(|sent| sent.to_array().map(Interval::constant))
+    }
+
     /// Returns the largest magnitude of each channel of [`emissivity`](Self::emissivity) over all points, with either
     /// sign, or `None` where it is not known. `None` is always correct.
     fn brightest(&self) -> Option<Rgb> {
         self.uniform()
+    }
+
+    /// Tells whether the light shines on no point of a region, which may be unbounded: [`emissivity`](Self::emissivity) is
+    /// `None` there. Then it is left out where nothing else is seen. `false` is always correct.
+    fn is_clear_of(&self, _region: &Aabb) -> bool {
+        false
     }
 
     /// Returns the radius of a spherical light in world units; 0 for a point light, whose shadows have sharp edges.

@@ -3,8 +3,10 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod colours;
 mod differences;
 mod inside;
+mod needs;
 mod plan;
 mod readme;
 mod snapshots;

@@ -14,6 +14,7 @@ use crate::render::frusta::{self, PART};
 use crate::render::observer::{Count, Event, Hit, Reason, TraceObserver};
 use crate::simd::cpu::kernels;
 use crate::simd::soa::{LANES, Vectors};
+use std::cmp::Ordering;
 use std::mem::take;
 use std::ops::Range;
 
@@ -97,9 +98,16 @@ impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
         }
         let shape = |index: usize| &self.model.objects[index].shape;
         let (one, other) = ((shape(index), distance), (shape(rival), far));
-        let is_before = order::is_before(&start.ray, start.error, one, other)
-            .or_else(|| order::is_certainly_before(one.0, other.0, start.sight.as_ref()?));
-        is_before.unwrap_or(index < rival)
+        let certain = || order::certain_order(one.0, other.0, start.sight.as_ref()?);
+        if order::is_unclear(&start.ray, one, other)
+            && let Some(order) = certain()
+        {
+            return order.then(index.cmp(&rival)) == Ordering::Less;
+        }
+        let is_before = order::is_before(&start.ray, start.error, one, other);
+        let is_before = is_before.map(|is_before| if is_before { Ordering::Less } else { Ordering::Greater });
+        let order = is_before.or_else(certain).unwrap_or(Ordering::Equal);
+        order.then(index.cmp(&rival)) == Ordering::Less
     }
 
     /// Computes the distances, in world units, at which the rays of a group hit an object. Each lies between `near` and

@@ -2,7 +2,7 @@
 
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
 use crate::geometry::sight::Sight;
-use crate::numeric::interval::{Interval, Wide};
+use crate::numeric::interval::{Float, Interval, Wide};
 use crate::world::any_shape::AnyShape;
 use crate::world::certify::{self, Enclosure, Precision};
 use crate::world::coincidence::CLOSE;
@@ -59,11 +59,18 @@ pub(super) fn located(
     if bracket.is_doubtful() { decided(shape, sight, distance) } else { (distance, bracket) }
 }
 
+/// The width from which on an enclosure of a distance is too wide to be that of a point, as a fraction of the distance.
+const WIDE: f64 = 64.0 * f64::EPSILON;
+
 /// Returns a distance and a bracket of it, if the ray before anything is rounded hits the shape as far as a proof with
 /// 237 bits tells, and [`MISS`] otherwise.
 fn decided(shape: &AnyShape, sight: &Sight, distance: f64) -> (f64, Bracket) {
     let enclosure = match shape.certify(sight, Precision::Double) {
         Enclosure::Edge(_) | Enclosure::Doubtful(_) => shape.certify(sight, Precision::Octuple),
+        // As where the ray passes near the edge of a face that it grazes, which holds much of the ray.
+        Enclosure::Hits(at) if at.width().to_f64() > WIDE * at.high.to_f64() => {
+            shape.certify(sight, Precision::Octuple)
+        }
         certain => certain,
     };
     match enclosure {

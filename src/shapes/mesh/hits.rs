@@ -5,7 +5,7 @@ use super::points::touches;
 use super::surface::Surface;
 use super::traversal::Faces;
 use super::tree::LEAF;
-use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
+use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange};
 use crate::geometry::sight::Sight;
 use crate::numeric::interval::{Float, Interval, Wide};
 use crate::shapes::plane::Plane;
@@ -25,6 +25,7 @@ struct Nearest<'s> {
     ray: &'s Ray,
     range: &'s RayRange,
     leaving: Leaving,
+    drift: Option<Drift>,
     /// Whether any certain hit ends the search.
     is_any: bool,
     /// The smallest upper bound of a certain hit's distance so far.
@@ -47,12 +48,16 @@ impl Nearest<'_> {
 impl Faces for Nearest<'_> {
     #[inline(always)]
     fn visit(&mut self, faces: Range<usize>) -> f64 {
-        let mut bits = self.surface.not_missed(self.cpu, &faces, self.ray);
+        let mut bits = match self.drift {
+            None => self.surface.not_missed(self.cpu, &faces, self.ray),
+            // Another ray within the drift may hit a face that this one misses.
+            Some(_) => (1 << faces.len()) - 1,
+        };
         while bits != 0 {
             let face = faces.start + bits.trailing_zeros() as usize;
             bits &= bits - 1;
             let Bracket { near, far } =
-                t_bounds(self.surface.corners(face), self.ray, self.range, self.leaving);
+                t_bounds(self.surface.corners(face), self.ray, self.range, self.leaving, self.drift);
             if near == MISS {
                 continue;
             }
@@ -113,6 +118,7 @@ impl Surface {
         ray: &Ray,
         range: &RayRange,
         leaving: Leaving,
+        drift: Option<Drift>,
         is_any: bool,
     ) -> Known {
         let mut nearest = Nearest {
@@ -121,13 +127,14 @@ impl Surface {
             ray,
             range,
             leaving,
+            drift,
             is_any,
             far: MISS,
             near: (MISS, 0),
             second: MISS,
             doubtful: MISS,
         };
-        self.tree.along(ray, range.far, &mut nearest);
+        self.tree.along(ray, range.far, drift, &mut nearest);
         let close = nearest.close(nearest.far);
         let Nearest { far, near: (near, face), second, doubtful, .. } = nearest;
         if doubtful < far {
@@ -154,7 +161,7 @@ impl Surface {
         leaving: Leaving,
         last: &mut Last<Plane<A>>,
     ) -> (Bracket, Option<usize>) {
-        let (distance, bracket, only) = match self.first(cpu, ray, range, leaving, false) {
+        let (distance, bracket, only) = match self.first(cpu, ray, range, leaving, None, false) {
             Known::Face { face, bracket, is_alone } => {
                 let distance = last.of(face, |face| self.plane(face)).quick_crossing(ray);
                 (distance, bracket, is_alone.then_some(face))
@@ -174,6 +181,28 @@ impl Surface {
             return (Bracket { near: distance - close, far: distance + close }, None);
         }
         (Bracket::exactly(distance), only)
+    }
+
+    /// Returns a bracket of the first hits in a range of all rays within a drift of one.
+    #[inline(always)]
+    pub(super) fn bracket_within<A: Bounded>(
+        &self,
+        cpu: Cpu,
+        ray: &Ray,
+        range: &RayRange,
+        drift: Drift,
+        last: &mut Last<Plane<A>>,
+    ) -> Bracket {
+        match self.first(cpu, ray, range, NOTHING, Some(drift), false) {
+            Known::Face { face, bracket, .. } => {
+                let distance = last.of(face, |face| self.plane(face)).quick_crossing(ray);
+                // A bracket that is far narrower than what coincides is taken for the distance.
+                let is_narrow = bracket.far - bracket.near <= 0.125 * CLOSE * bracket.near;
+                let is_known = is_narrow & (bracket.near <= distance) & (distance <= bracket.far);
+                if is_known { Bracket::exactly(distance) } else { bracket }
+            }
+            Known::Bracket(bracket) => bracket,
+        }
     }
 
     /// Returns the distance of a certain hit with a bracket, or NaN where it takes more than plain arithmetic.
@@ -210,7 +239,8 @@ impl Surface {
             #[inline(always)]
             fn visit(&mut self, faces: Range<usize>) -> f64 {
                 for face in faces {
-                    let bracket = t_bounds(self.surface.corners(face), self.ray, self.range, self.leaving);
+                    let bracket =
+                        t_bounds(self.surface.corners(face), self.ray, self.range, self.leaving, None);
                     if bracket.near < MISS {
                         self.far = (self.call)(face, bracket);
                     }
@@ -219,14 +249,15 @@ impl Surface {
             }
         }
         let far = range.far;
-        self.tree.along(ray, far, &mut Each { surface: self, ray, range, leaving, call, far });
+        self.tree.along(ray, far, None, &mut Each { surface: self, ray, range, leaving, call, far });
     }
 
     /// Returns the distance of a ray's first hit in a range, decided for the ray as it is rounded; [`MISS`] for none.
     /// The ray leaves the faces within `leaves` world units of its origin; negative where it leaves none.
     pub(super) fn distance<A: Bounded>(&self, ray: &Ray, range: &RayRange, leaves: f64) -> f64 {
         let mut first = MISS;
-        self.each(ray, range, NOTHING, |face, _| {
+        let leaving = if leaves < 0.0 { NOTHING } else { Leaving { least: leaves, most: leaves } };
+        self.each(ray, range, leaving, |face, _| {
             let triangle = self.triangle::<A>(face);
             if leaves < 0.0 || !touches(&triangle, ray.origin, leaves) {
                 let distance = range.keep(triangle.plane.crossing(ray));
@@ -241,8 +272,8 @@ impl Surface {
     }
 
     /// Returns the face that a ray hits at a distance in world units: of several that hold the point up to rounding, the
-    /// first in the file whose outside the ray hits, if there is any. At the outline of a closed mesh, a face whose
-    /// inside is hit would show light from within.
+    /// first in the file of those that are seen there; of these, those whose outside the ray hits, if there are any. At
+    /// the outline of a closed mesh, a face that others hide would show light from within.
     #[inline(always)]
     pub(super) fn face_along(&self, ray: &Ray, distance: f64) -> usize {
         let close = CLOSE * (distance + ray.origin.abs().max_element());
@@ -257,7 +288,11 @@ impl Surface {
         if count == 1 {
             only
         } else {
-            self.first_at(ray.at(distance), |face| self.is_outside_hit(face, ray.dir))
+            let at = ray.at(distance);
+            self.first_at(at, |face| match self.is_hidden(face, ray, at) {
+                true => 2,
+                false => u8::from(!self.is_outside_hit(face, ray.dir)),
+            })
         }
     }
 
@@ -266,6 +301,20 @@ impl Surface {
         let [a, b, c] = self.corners(face);
         // An open mesh is lit on one side, and shows nothing of the other.
         self.open_edges > 0 || (b - a).cross(c - a).dot(dir) < 0.0
+    }
+
+    /// Tells whether the part of a face of a closed mesh beside a point of it is certainly hidden from where a ray starts.
+    fn is_hidden(&self, face: usize, ray: &Ray, at: DVec3) -> bool {
+        const BESIDE: f64 = 1.0 / (1 << 20) as f64;
+        let [a, b, c] = self.corners(face);
+        let way = at + BESIDE * ((a + b + c) / 3.0 - at) - ray.origin;
+        let distance = way.length();
+        let far = distance - 64.0 * f64::EPSILON * (distance + ray.origin.abs().max_element());
+        let (toward, range) = (Ray { dir: way / distance, ..*ray }, RayRange { far, ..RayRange::ALL });
+        let first = || self.first(Cpu::best(), &toward, &range, NOTHING, None, false);
+        // The upper end of a bracket may lie beyond the range.
+        self.open_edges == 0
+            && matches!(first(), Known::Bracket(bracket) | Known::Face { bracket, .. } if bracket.far < far)
     }
 
     /// Returns what is certain about a ray's first hit.

@@ -6,11 +6,11 @@
 //! more digits where the bounds leave open which face is hit, or whether any is. Of faces at the same distance the first
 //! in the file is hit.
 
+mod along;
 mod face;
 mod hits;
 mod memo;
 mod painted;
-mod placement;
 mod points;
 pub mod read;
 mod shape;
@@ -18,10 +18,11 @@ mod smooth;
 mod surface;
 #[cfg(test)]
 mod tests;
+mod to_world;
 mod traversal;
 mod tree;
 
 pub use painted::Painted;
-pub use placement::Placement;
 pub use shape::Mesh;
 pub use surface::{Surface, Unfit};
+pub use to_world::ToWorld;

@@ -14,19 +14,19 @@ use std::ops::Range;
 impl Surface {
     /// Returns the face that is nearest to a point; of several, up to rounding, the first in the file.
     pub(super) fn face_at(&self, at: DVec3) -> usize {
-        self.first_at(at, |_| true)
+        self.first_at(at, |_| 0)
     }
 
-    /// Returns the face that is nearest to a point; of several, up to rounding, the first in the file among those that
-    /// are preferred, or else among all.
-    pub(super) fn first_at(&self, at: DVec3, is_preferred: impl Fn(usize) -> bool) -> usize {
+    /// Returns the face that is nearest to a point; of several, up to rounding, the first in the file of those with the
+    /// least rank.
+    pub(super) fn first_at(&self, at: DVec3, rank: impl Fn(usize) -> u8) -> usize {
         let rounding = 8.0 * f64::EPSILON * (at.abs().max_element() + self.reach());
         let (distance, face) = self.nearest(at);
         let within = distance + rounding;
         let mut first = face;
         self.near(at, within, |face, distance| {
-            let place = |face: usize| (!is_preferred(face), self.order[face]);
-            if distance <= within && place(face) < place(first) {
+            let place = |face: usize| (rank(face), self.order[face]);
+            if distance <= within && face != first && place(face) < place(first) {
                 first = face;
             }
             within

@@ -1,26 +1,28 @@
 //! Meshes as shapes.
 
-use super::face::Leaving;
+use super::face::{Face, Leaving};
 use super::hits::{Known, Last, NOTHING};
 use super::memo::Memo;
 use super::surface::Surface;
 use crate::geometry::aabb::{Aabb, SLACK};
-use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
+use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
 use crate::geometry::ray_packet::{self, Nearest, PACKET_SIZE, RayPacket};
 use crate::geometry::roots::Method;
-use crate::geometry::sight::Sight;
+use crate::geometry::sight::{Line, Sight};
 use crate::numeric::double_double::DoubleDouble;
+use crate::numeric::dual::Dual;
+use crate::numeric::interval::Interval;
 use crate::shapes::plane::Plane;
 use crate::simd::cpu::{Cpu, kernels};
 use crate::text;
 use crate::world::accuracy::{Accuracy, Bounded};
-use crate::world::certify::{Enclosure, Precision};
+use crate::world::certify::{Enclosure, Found, Onward, Precise, Precision, Proven};
 use crate::world::coincidence::{CLOSE, ROUNDING};
 use crate::world::hittable::Hittable;
 use crate::world::interaction::{SurfaceInteraction, turned};
 use crate::world::packets::shape::{Packets, Proofs};
 use crate::world::shape::{ByPackets, Shape};
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use std::marker::PhantomData;
 use std::sync::Arc;
 
@@ -31,6 +33,10 @@ pub struct Mesh<A> {
     can_hit_itself: bool,
     accuracy: PhantomData<A>,
 }
+
+/// The number of vertices up to which they are mapped to find the box of a copy: a million copies of so many take two
+/// seconds.
+const MOST_MAPPED: usize = 1000;
 
 /// Marks a shape that consists of faces, whose hits are proven face by face.
 pub struct ByFaces;
@@ -99,6 +105,17 @@ impl<A: Bounded> Hittable for Mesh<A> {
         Some(self.surface.bounds)
     }
 
+    fn bounds_after(&self, linear: &DMat3) -> Option<Aabb> {
+        let vertices = &self.surface.vertices;
+        let around = || {
+            vertices
+                .iter()
+                .map(|at| *linear * *at)
+                .fold(Aabb::EMPTY, |all, at| all.and(&Aabb { low: at, high: at }))
+        };
+        (vertices.len() <= MOST_MAPPED).then(around)
+    }
+
     fn can_hit_itself(&self, _leaving: Side) -> bool {
         self.can_hit_itself
     }
@@ -151,8 +168,31 @@ impl<A: Bounded> Proofs for Shape<Mesh<A>, ByPackets, ByFaces> {
         self.shape.surface.certify::<A>(sight, precision)
     }
 
+    fn proven(&self) -> Option<&dyn Proven> {
+        Some(&self.shape)
+    }
+
     fn distance_by(&self, _method: Method, _ray: &Ray, _range: &RayRange) -> Option<f64> {
         None
+    }
+}
+
+impl<A: Bounded, F: Precise> Onward<F> for Mesh<A> {
+    fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (Found<F>, usize) {
+        self.surface.first_along::<A, F>(line, leaves)
+    }
+
+    fn slope(&self, at: [Dual<Interval<F>>; 3], part: usize) -> Dual<Interval<F>> {
+        Onward::slope(&Face(self.surface.triangle::<A>(part)), at, 0)
+    }
+
+    fn shading_normal(
+        &self,
+        at: [Interval<F>; 3],
+        part: usize,
+        normal: [Interval<F>; 3],
+    ) -> Option<[Interval<F>; 3]> {
+        self.surface.enclosed_normal(part, at, normal)
     }
 }
 
@@ -224,14 +264,34 @@ impl<A: Bounded> Packets for Shape<Mesh<A>, ByPackets, ByFaces> {
         });
     }
 
+    fn finds_normals_by_rays(&self) -> bool {
+        true
+    }
+
     fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
         self.shape.bracket(Cpu::best(), ray, range, &mut Last::none()).0
+    }
+
+    fn t_bounds_within(&self, ray: &Ray, range: &RayRange, drift: Drift) -> Bracket {
+        self.shape.surface.bracket_within::<A>(Cpu::best(), ray, range, drift, &mut Last::none())
+    }
+
+    fn brackets_within(
+        &self,
+        cpu: Cpu,
+        rays: RayPacket,
+        drift: Drift,
+        ends: &[f64],
+        near: &mut [f64],
+        far: &mut [f64],
+    ) {
+        brackets_within(cpu, cpu, &self.shape, rays, drift, ends, near, far);
     }
 
     fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
         let (leaving, range) =
             (self.shape.leaving(origin_side, 0.0), RayRange { origin_side, ..RayRange::ALL });
-        match self.shape.surface.first(Cpu::best(), ray, &range, leaving, false) {
+        match self.shape.surface.first(Cpu::best(), ray, &range, leaving, None, false) {
             Known::Face { face, .. } => self.shape.surface.plane::<A>(face).quick_crossing(ray),
             Known::Bracket(_) => f64::NAN,
         }
@@ -270,6 +330,22 @@ kernels! {
         }
     }
 
+    /// Computes brackets of the distances of the first hits before `ends` of all rays within a drift of each ray.
+    fn brackets_within[A: Bounded](
+        level: Cpu, mesh: &Mesh<A>, rays: RayPacket, drift: Drift, ends: &[f64], near: &mut [f64], far: &mut [f64]
+    ) {
+        let mut last = Last::<Plane<A>>::none();
+        for lane in 0..near.len() {
+            if is_copy(&rays, lane) && ends[lane] == ends[lane - 1] {
+                (near[lane], far[lane]) = (near[lane - 1], far[lane - 1]);
+            } else {
+                let range = RayRange { far: ends[lane], ..RayRange::ALL };
+                let bracket = mesh.surface.bracket_within(level, &rays.get(lane), &range, drift, &mut last);
+                (near[lane], far[lane]) = (bracket.near, bracket.far);
+            }
+        }
+    }
+
     /// Computes brackets of the distances of any hits of rays before `ends`, except for rays that are blocked already.
     fn any_hits[A: Bounded](
         level: Cpu, mesh: &Mesh<A>, rays: RayPacket, sides: Option<&[Side]>, ends: &[f64], blocked: &[u64],
@@ -287,7 +363,7 @@ kernels! {
             }
             let range = RayRange { far: end, origin_side, ..RayRange::ALL };
             let leaving = mesh.leaving(origin_side, rays.origin_error);
-            let known = mesh.surface.first(level, &ray, &range, leaving, true);
+            let known = mesh.surface.first(level, &ray, &range, leaving, None, true);
             let (Known::Face { bracket, .. } | Known::Bracket(bracket)) = known;
             (near[lane], far[lane]) = (bracket.near, bracket.far);
         }

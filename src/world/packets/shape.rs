@@ -6,7 +6,7 @@
 
 pub use super::proofs::Proofs;
 
-use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
+use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
 use crate::geometry::ray_packet::{Brackets, Nearest, RayPacket, mark_occluded, merge_nearest};
 use crate::simd::cpu::{Cpu, kernels};
 use crate::world::coincidence::CLOSE;
@@ -69,8 +69,35 @@ pub trait Packets: Send + Sync {
     /// Computes the points, normals and sides that the rays of a packet hit at these distances, in world units.
     fn interact(&self, cpu: Cpu, rays: RayPacket, distances: &[f64], interaction: SurfaceInteraction);
 
+    /// Tells whether [`interact`](Self::interact) finds normals by the rays and not, as by default, by the points.
+    fn finds_normals_by_rays(&self) -> bool {
+        false
+    }
+
     /// Returns a bracket of the distance of one ray's first hit.
     fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket;
+
+    /// Returns a bracket of the first hits of all rays within a drift of a camera ray; unknown by default.
+    fn t_bounds_within(&self, _ray: &Ray, _range: &RayRange, _drift: Drift) -> Bracket {
+        Bracket::UNKNOWN
+    }
+
+    /// Computes the brackets that [`t_bounds_within`](Self::t_bounds_within) returns for each ray of a packet and its end.
+    fn brackets_within(
+        &self,
+        _cpu: Cpu,
+        rays: RayPacket,
+        drift: Drift,
+        ends: &[f64],
+        near: &mut [f64],
+        far: &mut [f64],
+    ) {
+        for lane in 0..near.len() {
+            let range = RayRange { far: ends[lane], ..RayRange::ALL };
+            Bracket { near: near[lane], far: far[lane] } =
+                self.t_bounds_within(&rays.get(lane), &range, drift);
+        }
+    }
 
     /// Returns the distance of one ray's hit that [`t_bounds`](Self::t_bounds) has found for certain, or NaN where it
     /// takes more than plain arithmetic.
@@ -87,6 +114,12 @@ pub trait OneRay: Send + Sync {
 
     /// Returns a bracket of the distance of the ray's first hit.
     fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket;
+
+    /// Returns a bracket of the first hits of all rays within a drift of a camera ray; unknown by default.
+    #[inline(always)]
+    fn t_bounds_within(&self, _ray: &Ray, _range: &RayRange, _drift: Drift) -> Bracket {
+        Bracket::UNKNOWN
+    }
 
     /// Returns the distance of a hit that [`t_bounds`](Self::t_bounds) has found for certain, or NaN where it takes
     /// more than plain arithmetic.
@@ -122,6 +155,11 @@ impl<T: Bracketed, P> OneRay for Shape<T, ByBracket, P> {
     #[inline(always)]
     fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
         self.shape.t_bounds(ray, range)
+    }
+
+    #[inline(always)]
+    fn t_bounds_within(&self, ray: &Ray, range: &RayRange, drift: Drift) -> Bracket {
+        self.shape.t_bounds_within(ray, range, drift)
     }
 
     #[inline(always)]
@@ -239,6 +277,22 @@ where
         OneRay::t_bounds(self, ray, range)
     }
 
+    fn t_bounds_within(&self, ray: &Ray, range: &RayRange, drift: Drift) -> Bracket {
+        OneRay::t_bounds_within(self, ray, range, drift)
+    }
+
+    fn brackets_within(
+        &self,
+        cpu: Cpu,
+        rays: RayPacket,
+        drift: Drift,
+        ends: &[f64],
+        near: &mut [f64],
+        far: &mut [f64],
+    ) {
+        brackets_within(cpu, self, rays, drift, ends, near, far);
+    }
+
     fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
         OneRay::refine(self, ray, origin_side)
     }
@@ -268,13 +322,26 @@ kernels! {
         }
     }
 
+    /// Computes brackets of the first hits of all rays within a drift of each ray.
+    fn brackets_within[T: OneRay](
+        shape: &T, rays: RayPacket, drift: Drift, ends: &[f64], near: &mut [f64], far: &mut [f64]
+    ) {
+        let (count, rays) = (near.len(), rays.first(near.len()));
+        let (ends, far) = (&ends[..count], &mut far[..count]);
+        for lane in 0..count {
+            let range = RayRange { far: ends[lane], ..RayRange::ALL };
+            let bracket = shape.t_bounds_within(&rays.get(lane), &range, drift);
+            (near[lane], far[lane]) = (bracket.near, bracket.far);
+        }
+    }
+
     /// Computes the distances of a shape's hits, as [`OneRay::refine`] returns them.
     fn refine[T: OneRay](shape: &T, rays: RayPacket, sides: Option<&[Side]>, out: &mut [f64]) {
         shape.refine_each(rays, sides, out);
     }
 
     /// Computes the points, normals and sides that rays hit at these distances, in world units.
-    fn interact[T: Hittable](
+    pub(crate) fn interact[T: Hittable](
         shape: &T, rays: RayPacket, distances: &[f64], sides: &mut [Side], cosines: &mut [f64], travelled: &mut [f64]
     ) => points, normals {
         let (count, is_two_sided) = (travelled.len(), shape.is_two_sided());
