@@ -104,6 +104,7 @@ pub fn exact_sum(terms: impl IntoIterator<Item = f64>) -> DoubleDouble {
 }
 
 /// Returns the exponent of the power of two that scales a magnitude to between 1/2 and 1; 0 for 0.
+#[inline]
 pub fn exponent_to_one(magnitude: f64) -> i32 {
     // Subnormal numbers are scaled as the smallest normal number is.
     let bits = magnitude.abs().max(f64::MIN_POSITIVE).to_bits() >> 52;
@@ -111,9 +112,17 @@ pub fn exponent_to_one(magnitude: f64) -> i32 {
 }
 
 /// Returns a number times 2^`exponent`: exactly, unless the result is too small or too large for a normal number.
+#[inline]
 pub fn times_power_of_two(number: f64, exponent: i32) -> f64 {
     let half = exponent / 2;
-    number * 2_f64.powi(half) * 2_f64.powi(exponent - half)
+    number * power_of_two(half) * power_of_two(exponent - half)
+}
+
+/// Returns 2^`exponent`; infinity or 0 where that is too large or too small.
+#[inline]
+fn power_of_two(exponent: i32) -> f64 {
+    let is_normal = (-1022..=1023).contains(&exponent);
+    if is_normal { f64::from_bits(((exponent + 1023) as u64) << 52) } else { 2_f64.powi(exponent) }
 }
 
 /// A double-double: the unevaluated sum of two numbers, of which the second is about 2^-53 of the first.
@@ -221,7 +230,36 @@ pub fn product(a: [DoubleDouble; 3], b: [DoubleDouble; 3]) -> DoubleDouble {
 }
 
 /// Returns the cross product of two vectors, each component rounded once however much of it cancels.
+#[inline]
 pub fn cross(a: [DoubleDouble; 3], b: [DoubleDouble; 3]) -> [DoubleDouble; 3] {
+    quick_cross(a, b).unwrap_or_else(|| exact_cross(a, b))
+}
+
+/// Returns the cross product of two vectors whose components are plain numbers, where each component is exactly a
+/// double-double, as it mostly is; else `None`.
+#[inline]
+fn quick_cross(a: [DoubleDouble; 3], b: [DoubleDouble; 3]) -> Option<[DoubleDouble; 3]> {
+    let is_plain = |of: [DoubleDouble; 3]| (of[0].low == 0.0) & (of[1].low == 0.0) & (of[2].low == 0.0);
+    if !is_plain(a) | !is_plain(b) {
+        return None;
+    }
+    let mut lost = 0.0;
+    let mut part = |one: usize, other: usize| {
+        let (plus, plus_low) = two_product(a[one].high, b[other].high);
+        let (minus, minus_low) = two_product(-a[other].high, b[one].high);
+        let (sum, of_sum) = two_sum(plus, minus);
+        let (lows, of_lows) = two_sum(plus_low, minus_low);
+        let (low, of_low) = two_sum(of_sum, lows);
+        lost += of_lows.abs() + of_low.abs();
+        let (high, low) = two_sum(sum, low);
+        DoubleDouble { high, low }
+    };
+    let product = [part(1, 2), part(2, 0), part(0, 1)];
+    (lost == 0.0).then_some(product)
+}
+
+#[inline(never)]
+fn exact_cross(a: [DoubleDouble; 3], b: [DoubleDouble; 3]) -> [DoubleDouble; 3] {
     let parts = |of: DoubleDouble, with: DoubleDouble| {
         let pairs = [(of.high, with.high), (of.high, with.low), (of.low, with.high), (of.low, with.low)];
         pairs.into_iter().flat_map(|(one, other)| <[f64; 2]>::from(two_product(one, other)))
@@ -251,6 +289,24 @@ pub fn unit(vector: [DoubleDouble; 3]) -> [DoubleDouble; 3] {
     vector.map(|part| part / length)
 }
 
+/// Returns the components of [`unit`], each rounded to a plain number.
+#[inline]
+pub fn rounded_unit(vector: [DoubleDouble; 3]) -> [f64; 3] {
+    let length = product(vector, vector).sqrt();
+    let first = 1.0 / length.high;
+    let rest = DoubleDouble::from(1.0) - length * DoubleDouble::from(first);
+    let inverse = DoubleDouble::normal(first, rest.high * first);
+    let rounded = |part: DoubleDouble| {
+        let DoubleDouble { high, low } = part * inverse;
+        // The product and the inverse are off by a few 2^-104, and so is the quotient: where so little does not change
+        // how either is rounded, both are rounded to the same number.
+        let error = power_of_two(-98) * high.abs();
+        let is_certain = high + (low - error) == high && high + (low + error) == high;
+        if is_certain && part.high.abs() > 1e-200 { high } else { (part / length).high }
+    };
+    [rounded(vector[0]), rounded(vector[1]), rounded(vector[2])]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -268,6 +324,50 @@ mod tests {
         assert_eq!(exact_sum([0.1, 0.2, -0.2, -0.1]), DoubleDouble::from(0.0));
         let DoubleDouble { high, low } = exact_sum([1e-40, 1e-20, 1.0, 1e40, -1e40]);
         assert_eq!((high, low), (1.0, 1e-20));
+    }
+
+    /// Returns a pseudorandom number from -1 to 1, with zeros and few digits among them.
+    fn random(state: &mut u64) -> f64 {
+        *state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        let number = (*state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0;
+        match *state >> 32 & 7 {
+            0 => 0.0,
+            1 => f64::from(number as f32),
+            2 => 1e-9 * number,
+            _ => number,
+        }
+    }
+
+    #[test]
+    fn quick_cross_products_are_the_exact_ones() {
+        let (mut state, mut quick) = (1, 0);
+        for _ in 0..10_000 {
+            let a = [(); 3].map(|()| DoubleDouble::from(random(&mut state)));
+            let mut b = [(); 3].map(|()| DoubleDouble::from(random(&mut state)));
+            if state >> 40 & 1 == 0 {
+                // Nearly all cancels.
+                b = a.map(|part| DoubleDouble::from(3.0 * part.high));
+            }
+            if let Some(product) = quick_cross(a, b) {
+                assert_eq!(product, exact_cross(a, b), "{a:?} x {b:?}");
+                quick += 1;
+            }
+        }
+        assert!(quick > 5000, "{quick}");
+    }
+
+    #[test]
+    fn rounded_units_are_units_that_are_rounded() {
+        let mut state = 7;
+        for _ in 0..10_000 {
+            let vector = [(); 3].map(|()| {
+                let (high, low) = two_sum(random(&mut state), 1e-17 * random(&mut state));
+                DoubleDouble { high, low }
+            });
+            if vector.iter().any(|part| part.high != 0.0) {
+                assert_eq!(rounded_unit(vector), unit(vector).map(|part| part.high), "{vector:?}");
+            }
+        }
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use crate::geometry::ray::Ray;
 use crate::numeric::double_double::{
-    self, DoubleDouble, exponent_to_one, times_power_of_two, triple_product, unit,
+    self, DoubleDouble, exponent_to_one, rounded_unit, times_power_of_two, triple_product,
 };
 use crate::numeric::scalar::{Scalar, cross, dot};
 use crate::shapes::plane::Plane;
@@ -34,7 +34,7 @@ impl<A: Bounded> Triangle<A> {
         if upright.iter().all(|part| part.high == 0.0) {
             return None;
         }
-        let normal = DVec3::from(unit(upright).map(|part| part.high));
+        let normal = DVec3::from(rounded_unit(upright));
         Some(Self { plane: Plane::new(normal, upright, corners[0]), corners })
     }
 }
@@ -110,19 +110,31 @@ fn exact_side(from: DVec3, to: DVec3, ray: &Ray) -> f64 {
     triple_product(place(from), place(to), ray.dir.to_array()).high
 }
 
+/// Returns the plane through the corners of a triangle with an area, for distances only: its unit normal, which takes
+/// longer than all else of it, is left 0.
+#[inline]
+pub fn plane_for_distances<A>(corners: [DVec3; 3]) -> Plane<A> {
+    Plane::new(DVec3::ZERO, exact_normal(corners), corners[0])
+}
+
 /// Returns a normal of the plane through three points, each component rounded once however thin their triangle is; 0
 /// where the points are collinear.
+#[inline]
 fn exact_normal([a, b, c]: [DVec3; 3]) -> [DoubleDouble; 3] {
     let edge = |to: DVec3| {
-        let edge = [0, 1, 2].map(|axis| DoubleDouble::difference(to[axis], a[axis]));
-        scaled_to_one(edge)
+        let edge = |axis: usize| DoubleDouble::difference(to[axis], a[axis]);
+        scaled_to_one([edge(0), edge(1), edge(2)])
     };
     scaled_to_one(double_double::cross(edge(b), edge(c)))
 }
 
 /// Returns a vector scaled by a power of two so that its largest component is between 1/2 and 1.
+#[inline]
 fn scaled_to_one(vector: [DoubleDouble; 3]) -> [DoubleDouble; 3] {
     let exponent = exponent_to_one(vector.iter().fold(0.0, |largest, part| part.high.abs().max(largest)));
-    let scaled = |part: f64| times_power_of_two(part, exponent);
-    vector.map(|DoubleDouble { high, low }| DoubleDouble { high: scaled(high), low: scaled(low) })
+    let scaled = |DoubleDouble { high, low }: DoubleDouble| DoubleDouble {
+        high: times_power_of_two(high, exponent),
+        low: times_power_of_two(low, exponent),
+    };
+    [scaled(vector[0]), scaled(vector[1]), scaled(vector[2])]
 }

@@ -34,6 +34,9 @@ pub(super) struct ShadowRays<'r> {
 impl ShadowRays<'_> {
     /// Returns how many rays of a sub-packet are cast.
     fn count(&self, part: &Range<usize>) -> usize {
+        if part.len() == self.t_max.len() {
+            return self.going;
+        }
         let part = part.start..part.end.min(self.len);
         self.t_max[part].iter().filter(|t_max| **t_max > 0.0).count()
     }

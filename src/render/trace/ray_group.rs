@@ -233,8 +233,8 @@ impl RayGroup {
     }
 }
 
-/// The number of runs from which on they are sorted by objects.
-const SOME: usize = 16;
+/// The number of runs from which on they are sorted by objects. Few runs are gone through in less time.
+const SOME: usize = 48;
 
 /// Groups a packet's rays by the object that they hit.
 #[derive(Default)]
@@ -274,9 +274,6 @@ impl HitGroups {
         let (id, mut count) = (self.runs[self.next].0, 0);
         let is_sorted = self.runs.len() > SOME;
         for (other, run) in &mut self.runs[self.next..] {
-            if is_sorted && *other != id {
-                break;
-            }
             if *other == id {
                 for first in run.clone().step_by(LANES) {
                     let eight: [u8; LANES] = array::from_fn(|lane| (first + lane) as u8);
@@ -284,6 +281,8 @@ impl HitGroups {
                 }
                 count += run.len();
                 run.end = run.start;
+            } else if is_sorted {
+                break;
             }
         }
         Some((id, &self.lanes[..count]))

@@ -1,10 +1,12 @@
 //! One face of a mesh: what plain arithmetic tells of a ray's hit, and its equation.
 
+use super::tree::LEAF;
 use crate::geometry::aabb::{Aabb, larger};
 use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange};
 use crate::numeric::double_double::{exponent_to_one, times_power_of_two};
 use crate::numeric::scalar::{Scalar, dot};
 use crate::shapes::triangle::Triangle;
+use crate::simd::cpu::kernels;
 use crate::world::accuracy::Exact;
 use crate::world::certify::Equation;
 use glam::DVec3;
@@ -101,7 +103,7 @@ pub(super) fn t_bounds(
 ///
 /// It computes the same numbers as [`Triangle::passed`], whose comment derives the error.
 #[inline(always)]
-fn passed(corners: [DVec3; 3], ray: &Ray, drift: Option<Drift>) -> Option<bool> {
+pub(super) fn passed(corners: [DVec3; 3], ray: &Ray, drift: Option<Drift>) -> Option<bool> {
     let [a, b, c] = corners.map(|corner| corner - ray.origin);
     let largest = [a, b, c].map(|corner| corner.abs().max_element());
     // A drift of the direction changes a product by 3 of the drift and of the two largest components, and one of the
@@ -129,6 +131,48 @@ fn passed(corners: [DVec3; 3], ray: &Ray, drift: Option<Drift>) -> Option<bool> 
     let is_inside = (plus[0] & plus[1] & plus[2]) | (minus[0] & minus[1] & minus[2]);
     let is_outside = (plus[0] | plus[1] | plus[2]) & (minus[0] | minus[1] | minus[2]);
     if is_inside | is_outside { Some(is_inside) } else { None }
+}
+
+/// The x, y and z of each corner of a leaf's faces, in world coordinates.
+pub(super) type Corners = [[[f64; LEAF]; 3]; 3];
+
+kernels! {
+    /// Returns a bit for each of a leaf's faces, the lowest one for the first: 0 where [`passed`] tells that the line of
+    /// a ray without a drift passes outside of the face, and else 1. It takes all faces at once, and computes the same numbers.
+    ///
+    /// A kernel of its own, as the compiler does not reliably take the faces at a time where it is inlined.
+    pub(super) fn not_missed(corners: &Corners, ray: &Ray) -> u64 {
+        let (mut sides, mut errors) = ([[0.0; LEAF]; 3], [[0.0; LEAF]; 3]);
+        for lane in 0..LEAF {
+            let corner = |corner: usize| {
+                let [x, y, z] = &corners[corner];
+                DVec3::new(x[lane], y[lane], z[lane]) - ray.origin
+            };
+            let corners = [corner(0), corner(1), corner(2)];
+            let largest = |corner: DVec3| {
+                let DVec3 { x, y, z } = corner.abs();
+                larger(larger(x, y), z)
+            };
+            let largest = [largest(corners[0]), largest(corners[1]), largest(corners[2])];
+            for (side, (one, other)) in [(0, 1), (1, 2), (2, 0)].into_iter().enumerate() {
+                sides[side][lane] = corners[one].cross(corners[other]).dot(ray.dir);
+                errors[side][lane] = 32.0 * f64::EPSILON * largest[one] * largest[other] + UNDERFLOW;
+            }
+        }
+        let mut signs = [0; LEAF];
+        for lane in 0..LEAF {
+            // Signs of differences, not comparisons, which the compiler would take one by one. Nothing is NaN, as
+            // coordinates are at most 1e152.
+            let (mut plus, mut minus) = (0, 0);
+            for side in 0..3 {
+                plus |= (errors[side][lane] - sides[side][lane]).to_bits();
+                minus |= (errors[side][lane] + sides[side][lane]).to_bits();
+            }
+            signs[lane] = plus & minus;
+        }
+        let missed = signs.iter().enumerate().fold(0, |bits, (lane, sign)| bits | (sign >> 63) << lane);
+        !missed & ((1 << LEAF) - 1)
+    }
 }
 
 /// Tells whether the corners of a face do not lie on one line.

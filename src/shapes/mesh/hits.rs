@@ -1,13 +1,16 @@
 //! First hits of rays with a mesh: brackets in plain arithmetic, distances, and proofs.
 
-use super::face::{Face, Leaving, nearest_point, t_bounds};
+use super::face::{self, Corners, Face, Leaving, t_bounds};
+use super::points::touches;
 use super::surface::Surface;
 use super::traversal::Faces;
-use crate::geometry::aabb::Aabb;
+use super::tree::LEAF;
 use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange};
 use crate::geometry::sight::Sight;
 use crate::numeric::interval::{Float, Interval, Wide};
-use crate::shapes::triangle::Triangle;
+use crate::shapes::plane::Plane;
+use crate::shapes::triangle::{Triangle, plane_for_distances};
+use crate::simd::cpu::Cpu;
 use crate::world::accuracy::Bounded;
 use crate::world::certify::{self, Enclosure, Precision};
 use crate::world::coincidence::CLOSE;
@@ -17,6 +20,7 @@ use std::ops::Range;
 
 /// The search for a bracket of a ray's first hit.
 struct Nearest<'s> {
+    cpu: Cpu,
     surface: &'s Surface,
     ray: &'s Ray,
     range: &'s RayRange,
@@ -33,10 +37,25 @@ struct Nearest<'s> {
     doubtful: f64,
 }
 
+impl Nearest<'_> {
+    /// Returns more than the distance between two hits that [`Surface::face_along`] takes for the same, in world units.
+    #[inline(always)]
+    fn close(&self, distance: f64) -> f64 {
+        2.0 * CLOSE * (distance + self.ray.origin.abs().max_element())
+    }
+}
+
 impl Faces for Nearest<'_> {
     #[inline(always)]
     fn visit(&mut self, faces: Range<usize>) -> f64 {
-        for face in faces {
+        let mut bits = match self.drift {
+            None => self.surface.not_missed(self.cpu, &faces, self.ray),
+            // Another ray within the drift may hit a face that this one misses.
+            Some(_) => (1 << faces.len()) - 1,
+        };
+        while bits != 0 {
+            let face = faces.start + bits.trailing_zeros() as usize;
+            bits &= bits - 1;
             let Bracket { near, far } =
                 t_bounds(self.surface.corners(face), self.ray, self.range, self.leaving, self.drift);
             if near == MISS {
@@ -57,27 +76,28 @@ impl Faces for Nearest<'_> {
                 }
             }
         }
-        self.far
+        // Beyond the hit, hits are found that rounding may not tell from it.
+        self.far + self.close(self.far)
     }
 }
 
-/// The triangle of the face that the last ray hit: neighbouring rays often hit the same, and its normal takes many
-/// digits.
-pub(super) struct Last<A>(Option<(usize, Triangle<A>)>);
+/// What was computed from the face that the last ray hit: neighbouring rays often hit the same, and its normal takes
+/// many digits.
+pub(super) struct Last<T>(Option<(usize, T)>);
 
-impl<A: Bounded> Last<A> {
+impl<T> Last<T> {
     pub(super) fn none() -> Self {
         Self(None)
     }
 
-    /// Returns the triangle of a face.
+    /// Returns what `compute` returns for a face.
     #[inline(always)]
-    pub(super) fn triangle(&mut self, surface: &Surface, face: usize) -> &Triangle<A> {
+    pub(super) fn of(&mut self, face: usize, compute: impl FnOnce(usize) -> T) -> &T {
         if self.0.as_ref().is_none_or(|(last, _)| *last != face) {
-            self.0 = Some((face, surface.triangle(face)));
+            self.0 = None;
         }
-        let (_, triangle) = self.0.as_ref().expect("a triangle");
-        triangle
+        let (_, last) = self.0.get_or_insert_with(|| (face, compute(face)));
+        last
     }
 }
 
@@ -85,8 +105,8 @@ impl<A: Bounded> Last<A> {
 pub(super) enum Known {
     /// A bracket of the distance.
     Bracket(Bracket),
-    /// The ray certainly hits this face first.
-    Face(usize, Bracket),
+    /// The ray certainly hits this face first. Where `is_alone`, it is the face that [`Surface::face_along`] returns.
+    Face { face: usize, bracket: Bracket, is_alone: bool },
 }
 
 impl Surface {
@@ -94,6 +114,7 @@ impl Surface {
     #[inline(always)]
     pub(super) fn first(
         &self,
+        cpu: Cpu,
         ray: &Ray,
         range: &RayRange,
         leaving: Leaving,
@@ -101,6 +122,7 @@ impl Surface {
         is_any: bool,
     ) -> Known {
         let mut nearest = Nearest {
+            cpu,
             surface: self,
             ray,
             range,
@@ -113,6 +135,7 @@ impl Surface {
             doubtful: MISS,
         };
         self.tree.along(ray, range.far, drift, &mut nearest);
+        let close = nearest.close(nearest.far);
         let Nearest { far, near: (near, face), second, doubtful, .. } = nearest;
         if doubtful < far {
             // A certain hit behind an uncertain one does not make the nearer one certain.
@@ -120,52 +143,59 @@ impl Surface {
         }
         let bracket = Bracket { near, far };
         if far < MISS && far < second && !is_any {
-            Known::Face(face, bracket)
+            let is_alone = leaving.most < 0.0 && far + close < second.min(range.far);
+            Known::Face { face, bracket, is_alone }
         } else {
             Known::Bracket(bracket)
         }
     }
 
-    /// Returns the bracket of a ray's first hit in a range: of width 0, where plain arithmetic finds the distance.
+    /// Returns the bracket of a ray's first hit in a range: of width 0, where plain arithmetic finds the distance. If
+    /// the face is known, too, that [`face_along`](Self::face_along) returns for that distance, it is returned.
     #[inline(always)]
     pub(super) fn bracket<A: Bounded>(
         &self,
+        cpu: Cpu,
         ray: &Ray,
         range: &RayRange,
         leaving: Leaving,
-        last: &mut Last<A>,
-    ) -> Bracket {
-        let (distance, bracket) = match self.first(ray, range, leaving, None, false) {
-            Known::Face(face, bracket) => (last.triangle(self, face).plane.quick_crossing(ray), bracket),
-            Known::Bracket(bracket) if bracket.far < MISS => {
-                (self.refined::<A>(ray, range, leaving, bracket), bracket)
+        last: &mut Last<Plane<A>>,
+    ) -> (Bracket, Option<usize>) {
+        let (distance, bracket, only) = match self.first(cpu, ray, range, leaving, None, false) {
+            Known::Face { face, bracket, is_alone } => {
+                let distance = last.of(face, |face| self.plane(face)).quick_crossing(ray);
+                (distance, bracket, is_alone.then_some(face))
             }
-            Known::Bracket(bracket) => return bracket,
+            Known::Bracket(bracket) if bracket.far < MISS => {
+                (self.refined::<A>(ray, range, leaving, bracket), bracket, None)
+            }
+            Known::Bracket(bracket) => return (bracket, None),
         };
         if distance.is_nan() {
-            return bracket;
+            return (bracket, None);
         }
         let distance = distance.clamp(bracket.near, bracket.far);
         let close = if range.far < MISS { CLOSE * range.far } else { 0.0 };
         // At the distance of another surface, the bracket is widened, so that more digits decide which comes first.
         if (distance - range.far).abs() <= close {
-            return Bracket { near: distance - close, far: distance + close };
+            return (Bracket { near: distance - close, far: distance + close }, None);
         }
-        Bracket::exactly(distance)
+        (Bracket::exactly(distance), only)
     }
 
     /// Returns a bracket of the first hits in a range of all rays within a drift of one.
     #[inline(always)]
     pub(super) fn bracket_within<A: Bounded>(
         &self,
+        cpu: Cpu,
         ray: &Ray,
         range: &RayRange,
         drift: Drift,
-        last: &mut Last<A>,
+        last: &mut Last<Plane<A>>,
     ) -> Bracket {
-        match self.first(ray, range, NOTHING, Some(drift), false) {
-            Known::Face(face, bracket) => {
-                let distance = last.triangle(self, face).plane.quick_crossing(ray);
+        match self.first(cpu, ray, range, NOTHING, Some(drift), false) {
+            Known::Face { face, bracket, .. } => {
+                let distance = last.of(face, |face| self.plane(face)).quick_crossing(ray);
                 // A bracket that is far narrower than what coincides is taken for the distance.
                 let is_narrow = bracket.far - bracket.near <= 0.125 * CLOSE * bracket.near;
                 let is_known = is_narrow & (bracket.near <= distance) & (distance <= bracket.far);
@@ -187,7 +217,7 @@ impl Surface {
         let mut first = MISS;
         let far = bracket.far.next_up();
         self.each(ray, &RayRange { far, ..*range }, leaving, |face, _| {
-            let distance = self.triangle::<A>(face).plane.quick_crossing(ray);
+            let distance = self.plane::<A>(face).quick_crossing(ray);
             first = if distance < first || distance.is_nan() { distance } else { first };
             far
         });
@@ -266,11 +296,6 @@ impl Surface {
         }
     }
 
-    /// Returns the face that is nearest to a point; of several, up to rounding, the first in the file.
-    pub(super) fn face_at(&self, at: DVec3) -> usize {
-        self.first_at(at, |_| 0)
-    }
-
     /// Tells whether a ray along a direction hits the outside of a face, in plain arithmetic.
     fn is_outside_hit(&self, face: usize, dir: DVec3) -> bool {
         let [a, b, c] = self.corners(face);
@@ -286,90 +311,10 @@ impl Surface {
         let distance = way.length();
         let far = distance - 64.0 * f64::EPSILON * (distance + ray.origin.abs().max_element());
         let (toward, range) = (Ray { dir: way / distance, ..*ray }, RayRange { far, ..RayRange::ALL });
-        let first = || self.first(&toward, &range, NOTHING, None, false);
+        let first = || self.first(Cpu::best(), &toward, &range, NOTHING, None, false);
         // The upper end of a bracket may lie beyond the range.
         self.open_edges == 0
-            && matches!(first(), Known::Bracket(bracket) | Known::Face(_, bracket) if bracket.far < far)
-    }
-
-    /// Returns the face that is nearest to a point; of several, up to rounding, the first in the file of those with the
-    /// least rank.
-    fn first_at(&self, at: DVec3, rank: impl Fn(usize) -> u8) -> usize {
-        let rounding = 8.0 * f64::EPSILON * (at.abs().max_element() + self.reach());
-        let (distance, face) = self.nearest(at);
-        let within = distance + rounding;
-        let mut first = face;
-        self.near(at, within, |face, distance| {
-            let place = |face: usize| (rank(face), self.order[face]);
-            if distance <= within && face != first && place(face) < place(first) {
-                first = face;
-            }
-            within
-        });
-        first
-    }
-
-    /// Returns the distance of the nearest face to a point in world units, and the face.
-    pub(super) fn nearest(&self, at: DVec3) -> (f64, usize) {
-        // Most points are on the surface: few boxes are so near.
-        for within in [CLOSE * (at.abs().max_element() + self.reach()), MISS] {
-            let mut best = (within, None);
-            self.near(at, within, |face, distance| {
-                if distance < best.0 {
-                    best = (distance, Some(face));
-                }
-                best.0
-            });
-            if let (distance, Some(face)) = best {
-                return (distance, face);
-            }
-        }
-        // The point is not finite.
-        (MISS, 0)
-    }
-
-    /// Calls a function with each face that may be within a distance of a point, and with its distance, in world units.
-    /// The function returns the distance beyond which no more faces matter.
-    fn near(&self, at: DVec3, within: f64, call: impl FnMut(usize, f64) -> f64) {
-        struct Near<'s, F> {
-            surface: &'s Surface,
-            at: DVec3,
-            within: f64,
-            call: F,
-        }
-        impl<F: FnMut(usize, f64) -> f64> Faces for Near<'_, F> {
-            fn visit(&mut self, faces: Range<usize>) -> f64 {
-                for face in faces {
-                    let distance = nearest_point(self.surface.corners(face), self.at).distance(self.at);
-                    self.within = (self.call)(face, distance);
-                }
-                self.within
-            }
-        }
-        self.tree.around(at, within, &mut Near { surface: self, at, within, call });
-    }
-
-    /// Tells whether a point is on a face, up to an error in world units and to rounding.
-    pub(super) fn touches<A: Bounded>(&self, at: DVec3, error: f64) -> bool {
-        struct Touched<'s, F> {
-            surface: &'s Surface,
-            touches: F,
-            within: f64,
-            any: bool,
-        }
-        impl<F: Fn([DVec3; 3]) -> bool> Faces for Touched<'_, F> {
-            fn visit(&mut self, mut faces: Range<usize>) -> f64 {
-                self.any |= faces.any(|face| (self.touches)(self.surface.corners(face)));
-                if self.any { -1.0 } else { self.within }
-            }
-        }
-        let error_there = error + 8.0 * f64::EPSILON * at.abs().max_element();
-        let touches = |corners: [DVec3; 3]| {
-            Triangle::<A>::new(corners).is_some_and(|triangle| touches(&triangle, at, error))
-        };
-        let mut touched = Touched { surface: self, touches, within: error_there, any: false };
-        self.tree.around(at, error_there, &mut touched);
-        touched.any
+            && matches!(first(), Known::Bracket(bracket) | Known::Face { bracket, .. } if bracket.far < far)
     }
 
     /// Returns what is certain about a ray's first hit.
@@ -417,6 +362,25 @@ impl Surface {
         Triangle::new(corners).expect("faces without an area are left out")
     }
 
+    /// Returns a bit for each face of a leaf, the lowest one for the first: 0 where the ray's line certainly misses it.
+    #[inline(always)]
+    fn not_missed(&self, cpu: Cpu, faces: &Range<usize>, ray: &Ray) -> u64 {
+        let (last, mut corners) = (faces.end - 1, Corners::default());
+        for lane in 0..LEAF {
+            let face = self.corners((faces.start + lane).min(last));
+            for (axes, corner) in corners.iter_mut().zip(face) {
+                (axes[0][lane], axes[1][lane], axes[2][lane]) = (corner.x, corner.y, corner.z);
+            }
+        }
+        face::not_missed(cpu, &corners, ray) & ((1 << faces.len()) - 1)
+    }
+
+    /// Returns the plane of a face, for distances only.
+    #[inline(always)]
+    pub(super) fn plane<A: Bounded>(&self, face: usize) -> Plane<A> {
+        plane_for_distances(self.corners(face))
+    }
+
     /// Returns the largest magnitude of a coordinate, in world units.
     pub(super) fn reach(&self) -> f64 {
         self.bounds.low.abs().max(self.bounds.high.abs()).max_element()
@@ -425,10 +389,3 @@ impl Surface {
 
 /// What a ray leaves that starts on no face.
 pub(super) const NOTHING: Leaving = Leaving { least: -1.0, most: -1.0 };
-
-/// Tells whether a point is on a face, up to an error in world units and to rounding.
-fn touches<A: Bounded>(triangle: &Triangle<A>, at: DVec3, error: f64) -> bool {
-    let Aabb { low, high } = Aabb::around(&triangle.corners);
-    let beside = error + 4.0 * f64::EPSILON * at.abs().max_element();
-    (low - beside).cmple(at).all() && at.cmple(high + beside).all() && triangle.plane.touches(at, error)
-}

@@ -9,7 +9,9 @@
 mod along;
 mod face;
 mod hits;
+mod memo;
 mod painted;
+mod points;
 pub mod read;
 mod shape;
 mod smooth;

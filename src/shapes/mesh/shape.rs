@@ -2,6 +2,7 @@
 
 use super::face::{Face, Leaving};
 use super::hits::{Known, Last, NOTHING};
+use super::memo::Memo;
 use super::surface::Surface;
 use crate::geometry::aabb::{Aabb, SLACK};
 use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
@@ -11,6 +12,7 @@ use crate::geometry::sight::{Line, Sight};
 use crate::numeric::double_double::DoubleDouble;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
+use crate::shapes::plane::Plane;
 use crate::simd::cpu::{Cpu, kernels};
 use crate::text;
 use crate::world::accuracy::{Accuracy, Bounded};
@@ -60,12 +62,19 @@ impl<A: Bounded> Mesh<A> {
         }
     }
 
+    /// Returns the bracket of a ray's first hit, and the face if it is known to be that of the hit point.
     #[inline(always)]
-    fn bracket(&self, ray: &Ray, range: &RayRange, last: &mut Last<A>) -> Bracket {
+    fn bracket(
+        &self,
+        cpu: Cpu,
+        ray: &Ray,
+        range: &RayRange,
+        last: &mut Last<Plane<A>>,
+    ) -> (Bracket, Option<usize>) {
         if range.origin_side.is_some() && !self.can_hit_itself {
-            return Bracket::MISS;
+            return (Bracket::MISS, None);
         }
-        self.surface.bracket(ray, range, self.leaving(range.origin_side, range.origin_error), last)
+        self.surface.bracket(cpu, ray, range, self.leaving(range.origin_side, range.origin_error), last)
     }
 }
 
@@ -198,7 +207,19 @@ impl<A: Bounded> Packets for Shape<Mesh<A>, ByPackets, ByFaces> {
     ) -> bool {
         let (mut near, mut far) = ([MISS; PACKET_SIZE], [MISS; PACKET_SIZE]);
         let count = rays.len();
-        brackets(cpu, &self.shape, rays, sides, nearest.far, &mut near[..count], &mut far[..count]);
+        Memo::with(|memo| {
+            brackets(
+                cpu,
+                cpu,
+                &self.shape,
+                rays,
+                sides,
+                nearest.far,
+                memo,
+                &mut near[..count],
+                &mut far[..count],
+            );
+        });
         ray_packet::closest_of_brackets(cpu, &near[..count], &far[..count], id, nearest)
     }
 
@@ -213,7 +234,7 @@ impl<A: Bounded> Packets for Shape<Mesh<A>, ByPackets, ByFaces> {
     ) -> bool {
         let (mut near, mut far) = ([MISS; PACKET_SIZE], [MISS; PACKET_SIZE]);
         let count = t_max.len();
-        any_hits(cpu, &self.shape, rays, sides, t_max, blocked, &mut near[..count], &mut far[..count]);
+        any_hits(cpu, cpu, &self.shape, rays, sides, t_max, blocked, &mut near[..count], &mut far[..count]);
         ray_packet::occluded_by_brackets(cpu, &near[..count], &far[..count], t_max, blocked, doubt)
     }
 
@@ -238,7 +259,9 @@ impl<A: Bounded> Packets for Shape<Mesh<A>, ByPackets, ByFaces> {
 
     fn interact(&self, cpu: Cpu, rays: RayPacket, distances: &[f64], interaction: SurfaceInteraction) {
         let SurfaceInteraction { points, normals, sides, cosines, travelled } = interaction;
-        interact(cpu, &self.shape, rays, distances, sides, cosines, travelled, points, normals);
+        Memo::with(|memo| {
+            interact(cpu, &self.shape, rays, distances, memo, sides, cosines, travelled, points, normals);
+        });
     }
 
     fn finds_normals_by_rays(&self) -> bool {
@@ -246,11 +269,11 @@ impl<A: Bounded> Packets for Shape<Mesh<A>, ByPackets, ByFaces> {
     }
 
     fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
-        self.shape.bracket(ray, range, &mut Last::none())
+        self.shape.bracket(Cpu::best(), ray, range, &mut Last::none()).0
     }
 
     fn t_bounds_within(&self, ray: &Ray, range: &RayRange, drift: Drift) -> Bracket {
-        self.shape.surface.bracket_within(ray, range, drift, &mut Last::<A>::none())
+        self.shape.surface.bracket_within::<A>(Cpu::best(), ray, range, drift, &mut Last::none())
     }
 
     fn brackets_within(
@@ -262,14 +285,14 @@ impl<A: Bounded> Packets for Shape<Mesh<A>, ByPackets, ByFaces> {
         near: &mut [f64],
         far: &mut [f64],
     ) {
-        brackets_within(cpu, &self.shape, rays, drift, ends, near, far);
+        brackets_within(cpu, cpu, &self.shape, rays, drift, ends, near, far);
     }
 
     fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
-        let leaving = self.shape.leaving(origin_side, 0.0);
-        match self.shape.surface.first(ray, &RayRange { origin_side, ..RayRange::ALL }, leaving, None, false)
-        {
-            Known::Face(face, _) => self.shape.surface.triangle::<A>(face).plane.quick_crossing(ray),
+        let (leaving, range) =
+            (self.shape.leaving(origin_side, 0.0), RayRange { origin_side, ..RayRange::ALL });
+        match self.shape.surface.first(Cpu::best(), ray, &range, leaving, None, false) {
+            Known::Face { face, .. } => self.shape.surface.plane::<A>(face).quick_crossing(ray),
             Known::Bracket(_) => f64::NAN,
         }
     }
@@ -287,31 +310,37 @@ fn is_copy(rays: &RayPacket, lane: usize) -> bool {
 kernels! {
     /// Computes brackets of the distances of rays' first hits before `ends`.
     fn brackets[A: Bounded](
-        mesh: &Mesh<A>, rays: RayPacket, sides: Option<&[Side]>, ends: &[f64], near: &mut [f64], far: &mut [f64]
+        level: Cpu, mesh: &Mesh<A>, rays: RayPacket, sides: Option<&[Side]>, ends: &[f64], memo: &mut Memo,
+        near: &mut [f64], far: &mut [f64]
     ) {
-        let mut last = Last::none();
+        let (id, mut last) = (mesh.surface.id, Last::none());
         for lane in 0..near.len() {
             let origin_side = sides.map(|sides| sides[lane]);
             let range = RayRange { far: ends[lane], origin_side, origin_error: rays.origin_error, ..RayRange::ALL };
             if is_copy(&rays, lane) && ends[lane] == ends[lane - 1] {
                 (near[lane], far[lane]) = (near[lane - 1], far[lane - 1]);
             } else {
-                Bracket { near: near[lane], far: far[lane] } = mesh.bracket(&rays.get(lane), &range, &mut last);
+                let ray = rays.get(lane);
+                let (bracket, face) = mesh.bracket(level, &ray, &range, &mut last);
+                (near[lane], far[lane]) = (bracket.near, bracket.far);
+                if let Some(face) = face {
+                    memo.note(id, &ray, bracket.near, face);
+                }
             }
         }
     }
 
     /// Computes brackets of the distances of the first hits before `ends` of all rays within a drift of each ray.
     fn brackets_within[A: Bounded](
-        mesh: &Mesh<A>, rays: RayPacket, drift: Drift, ends: &[f64], near: &mut [f64], far: &mut [f64]
+        level: Cpu, mesh: &Mesh<A>, rays: RayPacket, drift: Drift, ends: &[f64], near: &mut [f64], far: &mut [f64]
     ) {
-        let mut last = Last::<A>::none();
+        let mut last = Last::<Plane<A>>::none();
         for lane in 0..near.len() {
             if is_copy(&rays, lane) && ends[lane] == ends[lane - 1] {
                 (near[lane], far[lane]) = (near[lane - 1], far[lane - 1]);
             } else {
                 let range = RayRange { far: ends[lane], ..RayRange::ALL };
-                let bracket = mesh.surface.bracket_within(&rays.get(lane), &range, drift, &mut last);
+                let bracket = mesh.surface.bracket_within(level, &rays.get(lane), &range, drift, &mut last);
                 (near[lane], far[lane]) = (bracket.near, bracket.far);
             }
         }
@@ -319,8 +348,8 @@ kernels! {
 
     /// Computes brackets of the distances of any hits of rays before `ends`, except for rays that are blocked already.
     fn any_hits[A: Bounded](
-        mesh: &Mesh<A>, rays: RayPacket, sides: Option<&[Side]>, ends: &[f64], blocked: &[u64], near: &mut [f64],
-        far: &mut [f64]
+        level: Cpu, mesh: &Mesh<A>, rays: RayPacket, sides: Option<&[Side]>, ends: &[f64], blocked: &[u64],
+        near: &mut [f64], far: &mut [f64]
     ) {
         for lane in 0..near.len() {
             let origin_side = sides.map(|sides| sides[lane]);
@@ -334,17 +363,18 @@ kernels! {
             }
             let range = RayRange { far: end, origin_side, ..RayRange::ALL };
             let leaving = mesh.leaving(origin_side, rays.origin_error);
-            let (Known::Face(_, bracket) | Known::Bracket(bracket)) = mesh.surface.first(&ray, &range, leaving, None, true);
+            let known = mesh.surface.first(level, &ray, &range, leaving, None, true);
+            let (Known::Face { bracket, .. } | Known::Bracket(bracket)) = known;
             (near[lane], far[lane]) = (bracket.near, bracket.far);
         }
     }
 
     /// Computes the points, normals and sides that rays hit at these distances, in world units.
     fn interact[A: Bounded](
-        mesh: &Mesh<A>, rays: RayPacket, distances: &[f64], sides: &mut [Side], cosines: &mut [f64],
-        travelled: &mut [f64]
+        mesh: &Mesh<A>, rays: RayPacket, distances: &[f64], memo: &Memo, sides: &mut [Side],
+        cosines: &mut [f64], travelled: &mut [f64]
     ) => points, normals {
-        let (is_two_sided, mut last) = (mesh.is_two_sided(), Last::<A>::none());
+        let (is_two_sided, mut last) = (mesh.is_two_sided(), Last::none());
         for lane in 0..travelled.len() {
             let ray = rays.get(lane);
             if is_copy(&rays, lane) && distances[lane] == distances[lane - 1] {
@@ -353,8 +383,9 @@ kernels! {
                 normals.set(lane, normals.get(lane - 1));
             } else {
                 let point = ray.at(distances[lane]);
-                let face = mesh.surface.face_along(&ray, distances[lane]);
-                let flat = last.triangle(&mesh.surface, face).plane.normal;
+                let noted = memo.face(mesh.surface.id, &ray, distances[lane]);
+                let face = noted.unwrap_or_else(|| mesh.surface.face_along(&ray, distances[lane]));
+                let flat = *last.of(face, |face| mesh.surface.triangle::<A>(face).plane.normal);
                 let turn;
                 (sides[lane], cosines[lane], turn) = turned(ray.dir, flat, is_two_sided);
                 points.set(lane, point);

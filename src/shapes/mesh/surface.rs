@@ -14,12 +14,18 @@ use rayon::prelude::*;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::mem::take;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// The number of surfaces that have been made.
+static SURFACES: AtomicU64 = AtomicU64::new(0);
 
 /// The triangles of a mesh in the world.
 ///
 /// Vertices are placed and rounded once; the triangles through the rounded vertices are the surface, so that faces that
 /// share an edge share it exactly.
 pub struct Surface {
+    /// A number that no other surface of this process has; not 0.
+    pub(super) id: u64,
     /// The vertices in world coordinates, each once.
     pub(super) vertices: Vec<DVec3>,
     /// The corners of each face, in the order of the tree's leaves, counterclockwise as seen from the outside.
@@ -79,12 +85,26 @@ impl Surface {
         let open_edges = open_edges(&kept);
         let normals = if is_smooth { smooth(&vertices, &kept) } else { Vec::new() };
         let (tree, sorted) = Tree::new(&vertices, &kept);
-        let faces = sorted.iter().map(|face| kept[*face as usize]).collect();
+        let mut faces: Vec<_> = sorted.iter().map(|face| kept[*face as usize]).collect();
+        let (vertices, normals) = in_order_of_use(&vertices, &normals, &mut faces);
         let order: Vec<_> = sorted.iter().map(|face| order[*face as usize]).collect();
         let slots =
             if slots.is_empty() { slots } else { order.iter().map(|face| slots[*face as usize]).collect() };
         let bounds = Aabb::around(&vertices);
-        Ok(Self { vertices, faces, order, slots, normals, tree, bounds, open_edges, degenerate, materials })
+        let id = 1 + SURFACES.fetch_add(1, Ordering::Relaxed);
+        Ok(Self {
+            id,
+            vertices,
+            faces,
+            order,
+            slots,
+            normals,
+            tree,
+            bounds,
+            open_edges,
+            degenerate,
+            materials,
+        })
     }
 
     /// Returns the number of faces.
@@ -118,7 +138,8 @@ impl Surface {
     /// Returns the corners of a face in world coordinates.
     #[inline(always)]
     pub(super) fn corners(&self, face: usize) -> [DVec3; 3] {
-        self.faces[face].map(|corner| self.vertices[corner as usize])
+        let [a, b, c] = self.faces[face];
+        [self.vertices[a as usize], self.vertices[b as usize], self.vertices[c as usize]]
     }
 }
 
@@ -150,6 +171,31 @@ fn merge(vertices: Vec<DVec3>, faces: &mut [[u32; 3]], placement: &ToWorld) -> V
     }
     merged.shrink_to_fit();
     merged
+}
+
+/// Sorts vertices, and their normals if there are any, in the order in which faces use them, so that those of a leaf
+/// lie close together in memory.
+fn in_order_of_use(
+    vertices: &[DVec3],
+    normals: &[[f32; 3]],
+    faces: &mut [[u32; 3]],
+) -> (Vec<DVec3>, Vec<[f32; 3]>) {
+    let (mut places, mut order) = (vec![u32::MAX; vertices.len()], Vec::with_capacity(vertices.len()));
+    for corner in faces.iter_mut().flatten() {
+        let place = &mut places[*corner as usize];
+        if *place == u32::MAX {
+            *place = order.len() as u32;
+            order.push(*corner);
+        }
+        *corner = *place;
+    }
+    let sorted = order.iter().map(|vertex| vertices[*vertex as usize]).collect();
+    let normals = if normals.is_empty() {
+        Vec::new()
+    } else {
+        order.iter().map(|vertex| normals[*vertex as usize]).collect()
+    };
+    (sorted, normals)
 }
 
 /// Counts the edges that are not passed as often in one direction as in the other.

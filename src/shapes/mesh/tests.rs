@@ -1,7 +1,10 @@
 //! Properties of meshes: their hits are those of their triangles, and no ray escapes from a closed one.
 
+use super::face::{Corners, not_missed, passed};
+use super::hits::{Last, NOTHING};
+use super::tree::LEAF;
 use super::{Mesh, Surface, ToWorld, read::Model};
-use crate::geometry::ray::{MISS, Ray, RayRange, Side};
+use crate::geometry::ray::{Drift, MISS, Ray, RayRange, Side};
 use crate::geometry::ray_packet::RayPacket;
 use crate::geometry::sight::Sight;
 use crate::shapes::triangle::Triangle;
@@ -179,6 +182,76 @@ fn equal_vertices_are_one_and_faces_without_an_area_are_left_out() {
     let surface = surface(model, &ToWorld::new(PLAIN, DVec3::ZERO, DVec3::ZERO));
     assert_eq!((surface.face_count(), surface.degenerate, surface.open_edges), (faces.len(), 2, 0));
     assert!(surface.vertices.len() < faces.len());
+}
+
+proptest! {
+    #[test]
+    fn a_face_that_the_search_knows_is_that_of_the_hit_point(
+        bumps in prop::collection::vec(0.6..1.5, 1..9),
+        (rows, scale) in (3..9_u32, scale()),
+        ways in prop::collection::vec((direction(), any::<prop::sample::Index>(), 0.0..1.0), 40),
+    ) {
+        let surface = surface(closed(&bumps, rows), &ToWorld::new(scale, DVec3::ZERO, DVec3::ZERO));
+        let mut known = 0;
+        for (from, to, along) in ways {
+            // Toward an edge, a vertex or the inside of a face.
+            let [a, b, c] = surface.corners(to.index(surface.face_count()));
+            let at = if along < 0.3 { a } else if along < 0.6 { a.lerp(b, along) } else { (a + b + c) / 3.0 };
+            let origin = 3.0 * surface.reach() * from;
+            let Some(dir) = (at - origin).try_normalize() else { continue };
+            let ray = Ray { origin, dir };
+            for cpu in Cpu::all() {
+                let (bracket, face) =
+                    surface.bracket::<Exact>(cpu, &ray, &RayRange::ALL, NOTHING, &mut Last::none());
+                if let Some(face) = face {
+                    prop_assert_eq!(face, surface.face_along(&ray, bracket.near));
+                    known += 1;
+                }
+            }
+        }
+        // Where a mesh is so thin that its sides lie together up to rounding, no face may be known.
+        prop_assert!(known > 0 || scale != DVec3::ONE);
+    }
+
+    #[test]
+    fn faces_that_a_ray_misses_are_told_as_one_by_one(
+        corners in prop::collection::vec((direction(), scale()), 3 * LEAF),
+        (origin, to, weight) in (direction(), 0..3 * LEAF, prop_oneof![Just(0.0), Just(1e-16), 0.0..1.0]),
+    ) {
+        let at = |index: usize| corners[index].0 * corners[index].1;
+        let Some(dir) = (at(to) + weight * origin - origin).try_normalize() else { return Ok(()) };
+        let (ray, mut of_leaf) = (Ray { origin, dir }, Corners::default());
+        for lane in 0..LEAF {
+            for corner in 0..3 {
+                of_leaf[corner][0][lane] = at(3 * lane + corner).x;
+                of_leaf[corner][1][lane] = at(3 * lane + corner).y;
+                of_leaf[corner][2][lane] = at(3 * lane + corner).z;
+            }
+        }
+        for cpu in Cpu::all() {
+            let bits = not_missed(cpu, &of_leaf, &ray);
+            for lane in 0..LEAF {
+                let face = [0, 1, 2].map(|corner| at(3 * lane + corner));
+                prop_assert_eq!(bits >> lane & 1 == 0, passed(face, &ray, None) == Some(false), "{}", lane);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_face_that_only_another_ray_within_the_drift_hits_is_not_missed() {
+    let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+    let model = Model { vertices, faces: vec![[0, 1, 2]], ..Model::default() };
+    let surface = surface(model, &ToWorld::new(PLAIN, DVec3::ZERO, DVec3::ZERO));
+    let ray = Ray { origin: DVec3::new(-1e-6, 0.5, 2.0), dir: DVec3::NEG_Z };
+    for cpu in Cpu::all() {
+        let (exactly, _) = surface.bracket::<Exact>(cpu, &ray, &RayRange::ALL, NOTHING, &mut Last::none());
+        assert_eq!(exactly.near, MISS);
+        for drift in [Drift { origin: 2e-6, dir: 0.0 }, Drift { origin: 0.0, dir: 1e-6 }] {
+            let within = surface.bracket_within::<Exact>(cpu, &ray, &RayRange::ALL, drift, &mut Last::none());
+            assert!(within.near <= 2.0 && within.far == MISS, "{drift:?}: {within:?}");
+        }
+    }
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! How rays and points find the faces of a mesh that may matter to them.
 
-use super::tree::{Child, Node, Tree, WIDTH};
+use super::tree::{Child, Node, Tree, WIDTH, larger, smaller};
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{Drift, Ray};
 use glam::DVec3;
@@ -16,6 +16,9 @@ const ROUNDING: f64 = 1.0 / (1 << 21) as f64;
 /// The smallest magnitude of a component of a direction by which it is divided: over the size of a mesh, a smaller one
 /// moves a ray by far less than [`ROUNDING`].
 const LEAST: f64 = 1.0 / (1_u64 << 40) as f64;
+
+/// A byte of 1 for each box of a node.
+const ALL: u64 = u64::from_le_bytes([1; WIDTH]);
 
 /// Visits faces in the boxes that a ray passes through.
 pub(super) trait Faces {
@@ -70,26 +73,29 @@ impl LocalRay {
         (own + ROUNDING * (own.abs() + 1.0)) as f32
     }
 
-    /// Computes the distances at which the ray enters the boxes of a node, rounded down; infinity where it certainly
-    /// misses a box before `limit`.
+    /// Computes the distances at which the ray enters the boxes of a node, rounded down, and a byte for each box, the
+    /// lowest one for the first: 0 where the ray certainly misses the box before `limit`, and else 1.
     #[inline(always)]
-    fn enters(&self, node: &Node, limit: f32) -> [f32; WIDTH] {
-        let (mut near, mut far) = ([0.0_f32; WIDTH], [limit; WIDTH]);
-        for axis in 0..3 {
-            let (low, high) = (&node.low[axis], &node.high[axis]);
-            let (first, last) = if self.is_backward[axis] { (high, low) } else { (low, high) };
-            for index in 0..WIDTH {
-                let enters = (first[index] - self.near_origin[axis]) * self.inverse[axis];
-                let leaves = (last[index] - self.far_origin[axis]) * self.inverse[axis];
-                near[index] = if enters > near[index] { enters } else { near[index] };
-                far[index] = if leaves < far[index] { leaves } else { far[index] };
-            }
-        }
-        let mut entries = [f32::INFINITY; WIDTH];
+    fn enters(&self, node: &Node, limit: f32) -> ([f32; WIDTH], u64) {
+        let sides =
+            |is_near: bool| {
+                [0, 1, 2].map(|axis: usize| {
+                    if self.is_backward[axis] == is_near { &node.high[axis] } else { &node.low[axis] }
+                })
+            };
+        let (near, far) = (sides(true), sides(false));
+        let Self { near_origin, far_origin, inverse, .. } = self;
+        let (mut entries, mut is_missed) = ([0.0; WIDTH], [0; WIDTH]);
         for index in 0..WIDTH {
-            entries[index] = if near[index] <= far[index] { near[index] } else { f32::INFINITY };
+            let enters = |axis: usize| (near[axis][index] - near_origin[axis]) * inverse[axis];
+            let leaves = |axis: usize| (far[axis][index] - far_origin[axis]) * inverse[axis];
+            let entry = larger(enters(2), larger(enters(1), larger(enters(0), 0.0)));
+            let exit = smaller(leaves(2), smaller(leaves(1), smaller(leaves(0), limit)));
+            entries[index] = entry;
+            // The sign of the difference, not a comparison: with that, the compiler takes the boxes one by one.
+            is_missed[index] = ((exit - entry).to_bits() >> 31) as u8;
         }
-        entries
+        (entries, u64::from_le_bytes(is_missed) ^ ALL)
     }
 }
 
@@ -118,13 +124,12 @@ impl Tree {
                 }
                 Child::Node(index) => {
                     let node = &self.nodes[index];
-                    let entries = local.enters(node, limit);
+                    let (entries, mut entered) = local.enters(node, limit);
                     let first = waiting;
-                    for index in 0..WIDTH {
+                    while entered != 0 {
+                        let index = (entered.trailing_zeros() / u8::BITS) as usize % WIDTH;
+                        entered &= entered - 1;
                         let entry = entries[index];
-                        if entry == f32::INFINITY {
-                            continue;
-                        }
                         // The nearest box is on top of the stack.
                         let mut place = waiting;
                         while place > first && stack[place - 1].0 < entry {

@@ -13,7 +13,7 @@ use std::ops::Range;
 pub(super) const WIDTH: usize = 8;
 
 /// The maximum number of faces in a leaf.
-const LEAF: usize = 4;
+pub(super) const LEAF: usize = 4;
 
 /// The number of bins along each axis; a set of faces is split between two bins.
 const BINS: usize = 16;
@@ -239,11 +239,13 @@ impl Box3 {
     }
 }
 
-fn smaller(one: f32, other: f32) -> f32 {
+#[inline(always)]
+pub(super) fn smaller(one: f32, other: f32) -> f32 {
     if one < other { one } else { other }
 }
 
-fn larger(one: f32, other: f32) -> f32 {
+#[inline(always)]
+pub(super) fn larger(one: f32, other: f32) -> f32 {
     if one > other { one } else { other }
 }
 

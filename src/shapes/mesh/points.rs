@@ -1,0 +1,106 @@
+//! The faces of a mesh near a point.
+
+use super::face::nearest_point;
+use super::surface::Surface;
+use super::traversal::Faces;
+use crate::geometry::aabb::Aabb;
+use crate::geometry::ray::MISS;
+use crate::shapes::triangle::Triangle;
+use crate::world::accuracy::Bounded;
+use crate::world::coincidence::CLOSE;
+use glam::DVec3;
+use std::ops::Range;
+
+impl Surface {
+    /// Returns the face that is nearest to a point; of several, up to rounding, the first in the file.
+    pub(super) fn face_at(&self, at: DVec3) -> usize {
+        self.first_at(at, |_| 0)
+    }
+
+    /// Returns the face that is nearest to a point; of several, up to rounding, the first in the file of those with the
+    /// least rank.
+    pub(super) fn first_at(&self, at: DVec3, rank: impl Fn(usize) -> u8) -> usize {
+        let rounding = 8.0 * f64::EPSILON * (at.abs().max_element() + self.reach());
+        let (distance, face) = self.nearest(at);
+        let within = distance + rounding;
+        let mut first = face;
+        self.near(at, within, |face, distance| {
+            let place = |face: usize| (rank(face), self.order[face]);
+            if distance <= within && face != first && place(face) < place(first) {
+                first = face;
+            }
+            within
+        });
+        first
+    }
+
+    /// Returns the distance of the nearest face to a point in world units, and the face.
+    pub(super) fn nearest(&self, at: DVec3) -> (f64, usize) {
+        // Most points are on the surface: few boxes are so near.
+        for within in [CLOSE * (at.abs().max_element() + self.reach()), MISS] {
+            let mut best = (within, None);
+            self.near(at, within, |face, distance| {
+                if distance < best.0 {
+                    best = (distance, Some(face));
+                }
+                best.0
+            });
+            if let (distance, Some(face)) = best {
+                return (distance, face);
+            }
+        }
+        // The point is not finite.
+        (MISS, 0)
+    }
+
+    /// Calls a function with each face that may be within a distance of a point, and with its distance, in world units.
+    /// The function returns the distance beyond which no more faces matter.
+    fn near(&self, at: DVec3, within: f64, call: impl FnMut(usize, f64) -> f64) {
+        struct Near<'s, F> {
+            surface: &'s Surface,
+            at: DVec3,
+            within: f64,
+            call: F,
+        }
+        impl<F: FnMut(usize, f64) -> f64> Faces for Near<'_, F> {
+            fn visit(&mut self, faces: Range<usize>) -> f64 {
+                for face in faces {
+                    let distance = nearest_point(self.surface.corners(face), self.at).distance(self.at);
+                    self.within = (self.call)(face, distance);
+                }
+                self.within
+            }
+        }
+        self.tree.around(at, within, &mut Near { surface: self, at, within, call });
+    }
+
+    /// Tells whether a point is on a face, up to an error in world units and to rounding.
+    pub(super) fn touches<A: Bounded>(&self, at: DVec3, error: f64) -> bool {
+        struct Touched<'s, F> {
+            surface: &'s Surface,
+            touches: F,
+            within: f64,
+            any: bool,
+        }
+        impl<F: Fn([DVec3; 3]) -> bool> Faces for Touched<'_, F> {
+            fn visit(&mut self, mut faces: Range<usize>) -> f64 {
+                self.any |= faces.any(|face| (self.touches)(self.surface.corners(face)));
+                if self.any { -1.0 } else { self.within }
+            }
+        }
+        let error_there = error + 8.0 * f64::EPSILON * at.abs().max_element();
+        let touches = |corners: [DVec3; 3]| {
+            Triangle::<A>::new(corners).is_some_and(|triangle| touches(&triangle, at, error))
+        };
+        let mut touched = Touched { surface: self, touches, within: error_there, any: false };
+        self.tree.around(at, error_there, &mut touched);
+        touched.any
+    }
+}
+
+/// Tells whether a point is on a face, up to an error in world units and to rounding.
+pub(super) fn touches<A: Bounded>(triangle: &Triangle<A>, at: DVec3, error: f64) -> bool {
+    let Aabb { low, high } = Aabb::around(&triangle.corners);
+    let beside = error + 4.0 * f64::EPSILON * at.abs().max_element();
+    (low - beside).cmple(at).all() && at.cmple(high + beside).all() && triangle.plane.touches(at, error)
+}
