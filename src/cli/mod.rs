@@ -37,6 +37,7 @@ mod render;
 mod report;
 mod resume;
 mod review;
+mod samples;
 mod schema;
 mod serve;
 mod size;

@@ -6,7 +6,7 @@ use super::job::Job;
 use super::output::{Output, named};
 use super::resume::Begun;
 use super::stats::{self, Stats};
-use super::{aov, cpu, debug, input, messages, method, output, size, stop};
+use super::{aov, cpu, debug, input, messages, method, output, samples, size, stop};
 use crate::output::deflate::Compression;
 use crate::output::picture::Format;
 use crate::render::plan::Plan;
@@ -14,7 +14,6 @@ use crate::render::renderer::Renderer;
 use crate::scene::reader::{Chosen, Loaded};
 use crate::scene::registry::Registry;
 use crate::world::accuracy::Accuracy;
-use crate::world::sample::Sampler;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -33,12 +32,8 @@ pub struct Args {
     /// The compression of a PNG
     #[arg(long, value_name = "HOW", default_value = "fast")]
     compress: Compression,
-    /// The number of samples per pixel, to smooth edges; by default that of the scene's camera
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(Sampler::MOST)))]
-    samples: Option<u32>,
-    /// The distribution of the samples within a pixel
-    #[arg(long, value_name = "NAME", default_value = "sobol")]
-    sampler: Sampler,
+    #[command(flatten)]
+    samples: samples::Args,
     /// The number of threads; by default one per core
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -71,8 +66,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let Loaded { mut model, building, .. } = input::told(source.load_by(registry, chosen(accuracy)))?;
     let mut stats = Stats { reading: start.elapsed() - building, building, ..Stats::default() };
     let camera = &mut model.camera.value;
-    camera.samples = args.samples.unwrap_or(camera.samples);
-    camera.sampler = args.sampler;
+    args.samples.apply(camera)?;
     let part = args.size.apply(camera)?;
     output::is_no_source(&path, &args.scene, &model)?;
     let output = Output::open(&path)?;

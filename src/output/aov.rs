@@ -6,6 +6,7 @@ use crate::render::observer::{Event, TraceObserver};
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::render::trace;
+use crate::world::camera::Camera;
 use clap::ValueEnum;
 use glam::DVec3;
 use image::codecs::openexr::OpenExrEncoder;
@@ -31,6 +32,10 @@ pub enum Aov {
     ///
     /// The most expensive pixel is white.
     Cost,
+    /// Number of samples that a pixel takes.
+    ///
+    /// The maximum number is white, one is black, and equal ratios are equally far apart.
+    Samples,
     /// Error of a pixel's colour, against four times its samples, at least 64, traced exactly.
     ///
     /// The worst one is white; red where another object is seen.
@@ -42,7 +47,8 @@ pub struct Layer {
     /// Red, green and blue of each pixel, to be looked at.
     pub bytes: Vec<u8>,
     /// The numbers behind the image, three for each pixel, where they say more than the bytes. A depth, in world units,
-    /// fills all three channels and is infinite where nothing is hit; a normal is 0 there. An error consists of the
+    /// fills all three channels and is infinite where nothing is hit; a normal is 0 there. Samples consist of their
+    /// number, the estimated error of the colour, and 1 where that is above the limit, else 0. An error consists of the
     /// error of the colour, the root of the mean square over its channels; the error of the distance to the first hit,
     /// in world units; and 1 where another object is hit, else 0.
     pub exact: Option<Vec<f32>>,
@@ -59,7 +65,7 @@ const FARTHEST: f64 = 0.1;
 impl Aov {
     /// Tells whether the image has exact numbers.
     pub fn is_exact(self) -> bool {
-        matches!(self, Self::Depth | Self::Normal | Self::Error)
+        matches!(self, Self::Depth | Self::Normal | Self::Samples | Self::Error)
     }
 
     /// Renders this image. `truth` is a plan of the same scene, exact and with many samples; only the error uses it.
@@ -92,6 +98,9 @@ impl Aov {
                     rays.0
                 })?;
                 Ok(cost(&costs, plan.camera.pixels))
+            }
+            Self::Samples => {
+                Ok(samples(&each(renderer, plan, done, |x, y| trace::samples(plan, x, y))?, &plan.camera))
             }
             Self::Error => {
                 let errors = each(renderer, plan, done, |x, y| PixelError::of(plan, truth, x, y))?;
@@ -194,6 +203,25 @@ fn cost(costs: &[u64], [width, height]: [usize; 2]) -> Layer {
         bytes: shown_all(costs.iter().map(|cost| DVec3::splat(*cost as f64 / most as f64))),
         exact: None,
         most: Some((most, [place % width, height - 1 - place / width])),
+        worst: None,
+    }
+}
+
+fn samples(pixels: &[(u32, Option<f64>)], camera: &Camera) -> Layer {
+    let most = camera.adaptive.map_or(camera.samples, |adaptive| adaptive.most);
+    let shade = |(samples, _): &(u32, Option<f64>)| {
+        let part = libm::log2(f64::from(*samples)) / libm::log2(f64::from(most));
+        DVec3::splat(if most == 1 { 1.0 } else { part })
+    };
+    let limit = camera.adaptive.and_then(|adaptive| adaptive.error).unwrap_or(f64::INFINITY);
+    let numbers = |(samples, error): &(u32, Option<f64>)| {
+        let error = error.unwrap_or(0.0);
+        [*samples as f32, error as f32, f32::from(u8::from(error > limit))]
+    };
+    Layer {
+        bytes: shown_all(pixels.iter().map(shade)),
+        exact: Some(pixels.iter().flat_map(numbers).collect()),
+        most: None,
         worst: None,
     }
 }

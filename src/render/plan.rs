@@ -7,6 +7,7 @@ use depth::{Depth, Onward};
 use crate::geometry::aabb::Aabb;
 use crate::geometry::bvh::Bvh;
 use crate::render::culling;
+use crate::render::features::Features;
 use crate::scene::model::Model;
 use crate::world::camera::Camera;
 use rayon::prelude::*;
@@ -32,6 +33,8 @@ pub struct Plan<'m> {
     pub(crate) tree: Option<Bvh>,
     /// Whether any object is transparent, so that shadows may be partial.
     pub(crate) has_glass: bool,
+    /// The objects that are small in the image, where the number of a pixel's samples depends on them.
+    pub(crate) features: Option<Features>,
     /// How deep rays are followed; `None` where no object reflects or transmits rays.
     pub(crate) depth: Option<Depth>,
 }
@@ -52,6 +55,8 @@ impl<'m> Plan<'m> {
                 None => unbounded.push(index),
             }
         }
+        let camera = model.camera.value.clone();
+        let features = camera.adaptive.map(|_| Features::new(&camera, objects));
         let tree = (bounded.len() >= TREE).then(|| {
             let (objects, boxes): (Vec<_>, Vec<_>) = bounded.drain(..).unzip();
             let mut tree = Bvh::new(&boxes);
@@ -59,8 +64,8 @@ impl<'m> Plan<'m> {
             tree
         });
         let has_glass = objects.iter().any(|object| object.material.transparency != 0.0);
-        let (camera, depth) = (model.camera.value.clone(), Depth::new(model));
-        Self { model, camera, unbounded, bounded, tree, has_glass, depth }
+        let depth = Depth::new(model);
+        Self { model, camera, unbounded, bounded, tree, has_glass, features, depth }
     }
 
     /// Returns how rays continue from the object of this index.

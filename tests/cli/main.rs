@@ -12,6 +12,7 @@ mod messages;
 mod new;
 mod refusals;
 mod review;
+mod samples;
 mod server;
 mod size;
 mod watch;

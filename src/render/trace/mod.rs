@@ -5,6 +5,7 @@
 //! (`shadow_rays`) and the rays that are transmitted and reflected there. A single ray is a packet of one. A ray's
 //! colour does not depend on the other rays of its packet.
 
+mod adaptive;
 mod arrays;
 mod closest_hit;
 mod context;
@@ -19,6 +20,7 @@ mod scratch;
 mod shade;
 mod shadow_rays;
 mod surface;
+mod trail;
 mod transmittance;
 
 pub(crate) use context::Tracer;
@@ -47,11 +49,23 @@ pub fn pixel(plan: &Plan, x: usize, y: usize) -> Rgb {
 
 /// Computes the colour of a pixel as [`pixel`] does, and reports each step to `observer`.
 pub fn observe_pixel(plan: &Plan, x: usize, y: usize, observer: &mut impl TraceObserver) -> Rgb {
-    let camera = &plan.camera;
+    let (camera, count) = (&plan.camera, samples(plan, x, y).0);
     let colours = camera
-        .places(x, y)
+        .places(x, y, count)
         .map(|(place, sample)| observe_colour(plan, &camera.sight(place.x, place.y), sample, observer));
-    colours.sum::<Rgb>() / f64::from(camera.samples)
+    colours.sum::<Rgb>() / f64::from(count)
+}
+
+/// Returns the number of samples that a pixel takes, and where pixels differ in that, the estimated error of its colour,
+/// where 1 is white.
+pub fn samples(plan: &Plan, x: usize, y: usize) -> (u32, Option<f64>) {
+    if plan.camera.adaptive.is_none() {
+        return (plan.camera.samples, None);
+    }
+    let (mut scratch, mut nobody) = (Scratch::default(), Cuts::default());
+    Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody).pixels(&[[x, y]]);
+    let (count, error) = scratch.primary.map_or((0, 0.0), |primary| primary.adaptive.first());
+    (count, Some(error))
 }
 
 /// Computes the colour that a primary ray returns, before it is clamped. Lights with a size are sampled at the point
@@ -103,10 +117,12 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let camera = &self.plan.camera;
         let depth = self.plan.depth.as_ref();
         let mut primary = self.scratch.primary.take().unwrap_or_default();
-        let PrimaryScratch { group, seen, colours } = &mut *primary;
+        let PrimaryScratch { group, seen, colours, .. } = &mut *primary;
         self.scratch.places.iter_mut().for_each(|places| places.resize(PACKET_SIZE, 0.0));
         let mut colours = colours.resized(pixels.len());
-        if camera.samples == 1 {
+        if let Some(adaptive) = camera.adaptive {
+            self.adaptive_pixels(pixels, adaptive, &mut primary);
+        } else if camera.samples == 1 {
             self.scratch.samples.clear();
             for (pixels, first) in pixels.chunks(PACKET_SIZE).zip((0..).step_by(PACKET_SIZE)) {
                 let [x, y] = &mut self.scratch.places;
@@ -154,6 +170,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         self.observer.count(Count::Rays(RayKind::Primary, group.len));
         self.viewer = group.origin.get(0).abs().max_element();
         self.begin_missing(group.len);
+        self.scratch.trails.begin(group.len);
         if W::SEES {
             self.observer.see(Event::Begin(Purpose::Primary));
         }

@@ -1,0 +1,339 @@
+//! Pixels that take more samples where their colour is less certain.
+//!
+//! A pixel first takes [`Camera::samples`] samples, and then twice as many again and again, by the sampler's sequence,
+//! until [`Estimate::error`] is small enough. That depends on the pixel's own samples and on the first ones of the eight
+//! pixels around it, and so not on tiles, threads, or the part of the image that is rendered. A pixel that ends with N
+//! samples has the colour that it has in an image of N samples per pixel.
+//!
+//! [`Camera::samples`]: crate::world::camera::Camera::samples
+
+use super::arrays::VectorList;
+use super::context::Tracer;
+use super::ray_group::RayGroup;
+use super::scratch::{PrimaryScratch, Scratch};
+use crate::geometry::ray_packet::PACKET_SIZE;
+use crate::render::bytes::shown;
+use crate::render::features::FEATURE_SAMPLES;
+use crate::render::observer::{Count, TraceObserver};
+use crate::world::camera::Adaptive;
+use crate::world::material::Rgb;
+use crate::world::sample::{self, Sample};
+use glam::DVec3;
+use std::array;
+use std::mem::take;
+
+/// The number of blocks of samples whose means are compared.
+const BLOCKS: usize = 8;
+
+/// How many estimated errors the error of a pixel may be, where it is limited.
+const CONFIDENCE: f64 = 2.0;
+
+/// The estimated error, where 1 is white, up to which one sample would be enough where no error is limited. It grows with
+/// the root of the number of samples: so the samples go where each lowers the mean square error of the image most.
+const BALANCED: f64 = 0.25 / 255.0;
+
+/// What part of the contrast around a pixel may lie unseen between its samples: this, divided by their number. The
+/// second one holds where all of them have met the same on their paths.
+const UNSEEN: f64 = 0.25;
+const UNSEEN_WITHIN: f64 = 0.06;
+
+/// The scratch space of pixels that take more samples where that is needed.
+#[derive(Default)]
+pub(super) struct AdaptiveScratch {
+    /// The first samples of the pixels and of those around them.
+    firsts: Vec<First>,
+    /// For each place of a grid around the pixels, the index of its sample in `firsts` plus 1; 0 where there is none.
+    grid: Vec<u32>,
+    /// The pixels' estimates.
+    pub estimates: Vec<Estimate>,
+    /// The indices of the pixels that take more samples.
+    active: Vec<u32>,
+    /// The rays to be traced next.
+    batch: Vec<Wanted>,
+}
+
+impl AdaptiveScratch {
+    /// Returns the number of samples of the first pixel, and the estimated error of its colour.
+    pub fn first(&self) -> (u32, f64) {
+        self.estimates.first().map_or((0, 0.0), |estimate| (estimate.count, estimate.error()))
+    }
+}
+
+/// A ray that is to be traced.
+#[derive(Clone, Copy)]
+struct Wanted {
+    /// The index of what it belongs to.
+    of: u32,
+    /// The pixel's column and row, which may lie outside of the image.
+    pixel: [f64; 2],
+    /// The sample's index.
+    index: u32,
+}
+
+/// What a sample found.
+#[derive(Clone, Copy, Default)]
+struct Found {
+    colour: Rgb,
+    /// A bound on the light that the colour lacks.
+    missing: f64,
+    /// What the ray met on its path.
+    mark: u64,
+    /// The distance of the first hit, in world units.
+    distance: f64,
+}
+
+/// The first sample of a pixel.
+#[derive(Clone, Copy, Default)]
+struct First {
+    pixel: [f64; 2],
+    found: Found,
+}
+
+/// What is known of a pixel's colour.
+#[derive(Clone, Default)]
+pub(super) struct Estimate {
+    /// The number of samples.
+    pub count: u32,
+    /// The sum of their colours.
+    sum: Rgb,
+    /// The sums of the colours of equally long runs of samples, as many as there are samples but no more than
+    /// [`BLOCKS`].
+    blocks: [Rgb; BLOCKS],
+    /// The sum of the bounds on the light that they lack.
+    missing: f64,
+    /// The least and the greatest colour of its samples and of the first ones of the pixels around it.
+    low: Rgb,
+    high: Rgb,
+    /// What the first sample met, and whether another one here or around met anything else.
+    mark: u64,
+    is_crossed: bool,
+    /// The distance of the farthest first hit, in world units.
+    distance: f64,
+}
+
+impl Estimate {
+    /// Starts with the first sample.
+    fn new(found: &Found) -> Self {
+        let &Found { colour, missing, mark, distance } = found;
+        let mut blocks = [Rgb::ZERO; BLOCKS];
+        blocks[0] = colour;
+        let (low, high) = (colour, colour);
+        Self { count: 1, sum: colour, blocks, missing, low, high, mark, is_crossed: false, distance }
+    }
+
+    /// Includes what was found here or around.
+    fn compare(&mut self, found: &Found) {
+        (self.low, self.high) = (self.low.min(found.colour), self.high.max(found.colour));
+        self.is_crossed |= found.mark != self.mark;
+    }
+
+    /// Adds the next sample of `goal`, a power of two.
+    fn add(&mut self, found: &Found, goal: u32) {
+        self.compare(found);
+        self.sum += found.colour;
+        self.missing += found.missing;
+        self.distance = self.distance.max(found.distance);
+        let long = goal.div_ceil(BLOCKS as u32);
+        self.blocks[(self.count / long) as usize] += found.colour;
+        self.count += 1;
+    }
+
+    /// Joins pairs of blocks, so that there is room for as many samples again.
+    fn join(&mut self) {
+        if self.count as usize >= BLOCKS {
+            let blocks = self.blocks;
+            let joined = |pair: usize| {
+                if pair < BLOCKS / 2 { blocks[2 * pair] + blocks[2 * pair + 1] } else { Rgb::ZERO }
+            };
+            self.blocks = array::from_fn(joined);
+        }
+    }
+
+    /// Returns the colour.
+    fn colour(&self) -> Rgb {
+        self.sum / f64::from(self.count)
+    }
+
+    /// Estimates the error of the colour as it is shown, the largest of its channels, where 1 is white: the standard
+    /// error of the mean, as the means of its blocks have it, and what the contrast around leaves open.
+    ///
+    /// Sobol points are spread more evenly than independent ones, so that blocks differ more than their number says.
+    pub fn error(&self) -> f64 {
+        let blocks = (self.count as usize).min(BLOCKS);
+        let (mean, long) = (self.colour(), f64::from(self.count) / blocks as f64);
+        let squares: DVec3 = self.blocks[..blocks]
+            .iter()
+            .map(|sum| {
+                let d = *sum / long - mean;
+                d * d
+            })
+            .sum();
+        let spread = match blocks {
+            1 => DVec3::ZERO,
+            _ => squares.map(f64::sqrt) / ((blocks * (blocks - 1)) as f64).sqrt(),
+        };
+        let unseen = if self.is_crossed { UNSEEN } else { UNSEEN_WITHIN };
+        let error = spread + (self.high - self.low) * (unseen / f64::from(self.count));
+        (shown(mean + error) - shown(mean)).max(shown(mean) - shown(mean - error)).max_element()
+    }
+}
+
+/// Returns the estimated error at which a pixel takes no more samples, where 1 is white.
+fn most_error(adaptive: Adaptive, samples: u32) -> f64 {
+    match adaptive.error {
+        Some(error) => error / CONFIDENCE,
+        None => BALANCED * f64::from(samples).sqrt(),
+    }
+}
+
+impl<W: TraceObserver> Tracer<'_, '_, W> {
+    /// Computes the colours of pixels, given by column and row, each with as many samples as it needs.
+    pub(super) fn adaptive_pixels(
+        &mut self,
+        pixels: &[[usize; 2]],
+        adaptive: Adaptive,
+        primary: &mut PrimaryScratch,
+    ) {
+        let PrimaryScratch { group, seen, colours, adaptive: scratch } = primary;
+        let mut colours = colours.resized(pixels.len());
+        let AdaptiveScratch { firsts, grid, estimates, active, batch } = scratch;
+        self.scratch.trails.is_on = true;
+        let mut rays = Rays { tracer: self, group, seen, batch: take(batch) };
+        rays.begin(pixels, firsts, grid, estimates);
+        active.clear();
+        active.extend(0..pixels.len() as u32);
+        let mut goal = rays.tracer.plan.camera.samples;
+        while !active.is_empty() {
+            for of in &*active {
+                let count = estimates[*of as usize].count;
+                for index in count..goal {
+                    rays.want(
+                        Wanted { of: *of, pixel: pixels[*of as usize].map(|side| side as f64), index },
+                        &mut |of, found| {
+                            estimates[of].add(found, goal);
+                        },
+                    );
+                }
+            }
+            rays.trace(&mut |of, found| estimates[of].add(found, goal));
+            active.retain(|of| {
+                let (estimate, pixel) = (&mut estimates[*of as usize], pixels[*of as usize]);
+                let goes_on = goal < adaptive.most
+                    && (estimate.error() > most_error(adaptive, goal)
+                        || goal < FEATURE_SAMPLES && rays.is_feature(pixel, estimate.distance));
+                if goes_on {
+                    estimate.join();
+                }
+                goes_on
+            });
+            goal *= 2;
+        }
+        *batch = rays.batch;
+        self.scratch.trails.is_on = false;
+        for (pixel, estimate) in estimates.iter().enumerate() {
+            colours.set(pixel, estimate.colour());
+            self.cut(estimate.missing / f64::from(estimate.count));
+            self.observer.count(Count::Sampled(estimate.count));
+        }
+    }
+}
+
+/// Collects rays until there is a packet of them.
+struct Rays<'r, 'm, 'w, W> {
+    tracer: &'r mut Tracer<'m, 'w, W>,
+    group: &'r mut RayGroup,
+    seen: &'r mut VectorList,
+    batch: Vec<Wanted>,
+}
+
+impl<W: TraceObserver> Rays<'_, '_, '_, W> {
+    /// Takes the first samples of pixels and of those around them, and starts the pixels' estimates.
+    fn begin(
+        &mut self,
+        pixels: &[[usize; 2]],
+        firsts: &mut Vec<First>,
+        grid: &mut Vec<u32>,
+        estimates: &mut Vec<Estimate>,
+    ) {
+        let [left, low] = [0, 1].map(|axis| pixels.iter().map(|pixel| pixel[axis]).min().unwrap_or(0));
+        let [right, high] = [0, 1].map(|axis| pixels.iter().map(|pixel| pixel[axis]).max().unwrap_or(0));
+        // The grid has a margin of one pixel, which may lie outside of the image: nothing else shows what lies there.
+        let wide = right - left + 3;
+        let place = |[x, y]: [usize; 2]| (y - low) * wide + x - left;
+        // From the place in the grid at the lower left of a pixel.
+        let around = |[x, y]: [usize; 2]| (y..y + 3).flat_map(move |y| (x..x + 3).map(move |x| [x, y]));
+        grid.clear();
+        grid.resize(wide * (high - low + 3), 0);
+        firsts.clear();
+        for pixel in pixels {
+            for pixel in around(*pixel) {
+                grid[place(pixel)] = 1;
+            }
+        }
+        // In rows, so that neighbours are traced together however the pixels are ordered.
+        for (index, wanted) in grid.iter_mut().enumerate().filter(|(_, wanted)| **wanted != 0) {
+            let pixel = [(index % wide + left) as f64 - 1.0, (index / wide + low) as f64 - 1.0];
+            firsts.push(First { pixel, found: Found::default() });
+            *wanted = firsts.len() as u32;
+        }
+        for of in 0..firsts.len() {
+            let wanted = Wanted { of: of as u32, pixel: firsts[of].pixel, index: 0 };
+            self.want(wanted, &mut |of, found| firsts[of].found = *found);
+        }
+        self.trace(&mut |of, found| firsts[of].found = *found);
+        let first = |pixel| &firsts[grid[place(pixel)] as usize - 1].found;
+        estimates.clear();
+        estimates.extend(pixels.iter().map(|pixel| {
+            let mut estimate = Estimate::new(first(pixel.map(|side| side + 1)));
+            around(*pixel).for_each(|other| estimate.compare(first(other)));
+            estimate
+        }));
+    }
+
+    /// Tells whether the bounds of a small object, no farther than a distance, reach into a pixel.
+    fn is_feature(&self, pixel: [usize; 2], distance: f64) -> bool {
+        let features = self.tracer.plan.features.as_ref();
+        features.is_some_and(|features| features.any_at(pixel, distance))
+    }
+
+    /// Adds a ray, and traces the rays once there is a packet of them. `found` is told what each found.
+    fn want(&mut self, wanted: Wanted, found: &mut impl FnMut(usize, &Found)) {
+        self.batch.push(wanted);
+        if self.batch.len() == PACKET_SIZE {
+            self.trace(found);
+        }
+    }
+
+    /// Traces the rays that wait.
+    fn trace(&mut self, found: &mut impl FnMut(usize, &Found)) {
+        let Self { tracer, group, seen, batch } = self;
+        let (len, camera) = (batch.len(), &tracer.plan.camera);
+        if len == 0 {
+            return;
+        }
+        let Scratch { places, samples, .. } = &mut *tracer.scratch;
+        let sampler = camera.sampler;
+        let sample = |&Wanted { pixel: [x, y], index, .. }: &Wanted| Sample {
+            sampler,
+            index,
+            pixel: camera.seed(x as i64, y as i64),
+        };
+        samples.clear();
+        samples.extend(batch.iter().map(sample));
+        let [x, y] = &mut *places;
+        sample::jitters(tracer.cpu, samples, &mut x[..len], &mut y[..len]);
+        for (lane, wanted) in batch.iter().enumerate() {
+            x[lane] += wanted.pixel[0];
+            y[lane] += wanted.pixel[1];
+        }
+        group.look(tracer.cpu, camera, tracer.plan.depth.as_ref(), places, len);
+        tracer.colours(group, seen);
+        for (lane, wanted) in batch.iter().enumerate() {
+            let trails = &tracer.scratch.trails;
+            let (mark, distance) = (trails.marks[lane], trails.distances[lane]);
+            let (colour, missing) = (seen.get(lane), tracer.missing(lane));
+            found(wanted.of as usize, &Found { colour, missing, mark, distance });
+        }
+        batch.clear();
+    }
+}
