@@ -5,4 +5,5 @@ pub mod chart;
 pub mod contract;
 pub mod debug;
 pub mod probe;
+pub mod sampling;
 pub mod verify;
