@@ -14,6 +14,7 @@ mod diff;
 mod dump;
 mod explain;
 mod failure;
+mod full_range;
 #[doc(hidden)]
 pub mod fuzz;
 mod grammar;

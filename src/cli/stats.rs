@@ -71,6 +71,11 @@ impl Sum {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// Returns the pixels that have used up their ray budget.
+    pub fn cuts(&self) -> Cuts {
+        self.get().cuts
+    }
+
     /// Adds the counts of a part.
     pub fn add(&self, part: &RayStats) {
         self.get().add(part);

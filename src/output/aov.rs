@@ -1,20 +1,21 @@
 //! Images of what a renderer computes beside colours: depth, normals, objects, the cost of each pixel and its error.
 
 use crate::geometry::sight::Sight;
+use crate::output::full_range::FullRange;
 use crate::render::bytes::{shown, to_byte};
 use crate::render::observer::{Event, TraceObserver};
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::render::trace;
 use crate::world::camera::Camera;
+use crate::world::material::Rgb;
 use clap::ValueEnum;
 use glam::DVec3;
-use image::codecs::openexr::OpenExrEncoder;
-use image::{ExtendedColorType, ImageEncoder};
-use std::io::{self, Cursor};
+use std::io;
 use std::ops::ControlFlow;
 
-/// An image beside the main one (an arbitrary output variable). All but the cost and the colours of the error are taken
+/// An image beside the main one (an arbitrary output variable). All but the colour, the cost, the
+/// samples and the colours of the error are taken
 /// along the ray through the centre of each pixel, however many samples the pixel has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Aov {
@@ -28,6 +29,10 @@ pub enum Aov {
     Normal,
     /// Object seen, each in its own colour.
     Object,
+    /// Colour, before it is clamped and rounded.
+    ///
+    /// With all samples, as in the main image.
+    Colour,
     /// Number of rays that a pixel takes.
     ///
     /// The most expensive pixel is white.
@@ -65,7 +70,7 @@ const FARTHEST: f64 = 0.1;
 impl Aov {
     /// Tells whether the image has exact numbers.
     pub fn is_exact(self) -> bool {
-        matches!(self, Self::Depth | Self::Normal | Self::Samples | Self::Error)
+        matches!(self, Self::Depth | Self::Normal | Self::Colour | Self::Samples | Self::Error)
     }
 
     /// Renders this image. `truth` is a plan of the same scene, exact and with many samples; only the error uses it.
@@ -91,6 +96,7 @@ impl Aov {
             Self::Object => Ok(object(&each(renderer, plan, done, |x, y| {
                 trace::first_hit(plan, &middle(plan, x, y)).map(|hit| hit.index)
             })?)),
+            Self::Colour => Ok(colour(&each(renderer, plan, done, |x, y| trace::pixel(plan, x, y))?)),
             Self::Cost => {
                 let costs = each(renderer, plan, done, |x, y| {
                     let mut rays = Rays(0);
@@ -115,15 +121,11 @@ impl Layer {
     ///
     /// # Errors
     /// If there are no exact numbers, or if the format cannot hold the size.
-    pub fn exr(&self, [width, height]: [usize; 2]) -> io::Result<Vec<u8>> {
-        let size = |pixels: usize| u32::try_from(pixels).map_err(io::Error::other);
+    pub fn exr(&self, size: [usize; 2]) -> io::Result<Vec<u8>> {
         let numbers = self.exact.as_ref().ok_or(io::ErrorKind::InvalidInput)?;
-        let bytes: Vec<u8> = numbers.iter().flat_map(|number| number.to_ne_bytes()).collect();
-        let mut file = Cursor::new(Vec::new());
-        OpenExrEncoder::new(&mut file)
-            .write_image(&bytes, size(width)?, size(height)?, ExtendedColorType::Rgb32F)
-            .map_err(io::Error::other)?;
-        Ok(file.into_inner())
+        let mut file = Vec::new();
+        FullRange::Exr.write(&mut file, size, numbers)?;
+        Ok(file)
     }
 }
 
@@ -182,6 +184,15 @@ fn normal(normals: &[Option<DVec3>]) -> Layer {
         exact: Some(
             normals.iter().flat_map(|n| n.unwrap_or_default().to_array().map(|part| part as f32)).collect(),
         ),
+        most: None,
+        worst: None,
+    }
+}
+
+fn colour(colours: &[Rgb]) -> Layer {
+    Layer {
+        bytes: shown_all(colours.iter().copied()),
+        exact: Some(colours.iter().flat_map(|colour| colour.as_vec3().to_array()).collect()),
         most: None,
         worst: None,
     }

@@ -5,7 +5,7 @@ use crate::render::observer::RayKind;
 use crate::render::plan::Plan;
 use crate::render::ray_stats::RayStats;
 use crate::render::renderer::Renderer;
-use crate::render::tiles::{self, TILE};
+use crate::render::tiles::{self, TILE, TOGETHER};
 use crate::render::trace::{Scratch, Tracer};
 use crate::scene::model::Model;
 use crate::simd::cpu::Cpu;
@@ -62,7 +62,7 @@ pub fn truth(renderer: &Renderer, model: &mut Model, samples: u32) -> Vec<Rgb> {
     (camera.samples, camera.adaptive, camera.sampler) = (samples, None, Sampler::Sobol);
     camera.scramble = SCRAMBLE;
     let plan = Plan::new(model);
-    let all = tiles(plan.camera.pixels);
+    let all = tiles(plan.camera.pixels, 1);
     let render = |tile: &[Range<usize>; 2]| {
         let mut colours = Vec::new();
         let mut scratch = Scratch::default();
@@ -85,7 +85,8 @@ pub fn measure(model: &mut Model, all: &[Samples], truth: &[Rgb], rounds: usize)
             let (mut colours, mut scratch, mut rays) = (Vec::new(), Scratch::default(), RayStats::default());
             let start = clock::now();
             let plan = Plan::new(model);
-            for tile in tiles(plan.camera.pixels) {
+            let together = if choice.adaptive.is_some() { TOGETHER } else { 1 };
+            for tile in tiles(plan.camera.pixels, together) {
                 trace(&plan, &mut scratch, &mut rays, &tile, &mut colours);
             }
             let seconds = (clock::now() - start).as_secs_f64();
@@ -112,11 +113,14 @@ fn compare(colours: &[Rgb], truth: &[Rgb], rays: f64) -> Measured {
 }
 
 /// Lists the tiles of an image, by their columns and rows.
-fn tiles([width, height]: [usize; 2]) -> Vec<[Range<usize>; 2]> {
-    let side = |from: usize, end: usize| from..end.min(from + TILE);
+fn tiles([width, height]: [usize; 2], together: usize) -> Vec<[Range<usize>; 2]> {
+    let wide = TILE * together;
+    let side = |from: usize, end: usize, size: usize| from..end.min(from + size);
     let rows = (0..height).step_by(TILE);
-    rows.flat_map(|low| (0..width).step_by(TILE).map(move |left| [side(left, width), side(low, height)]))
-        .collect()
+    rows.flat_map(|low| {
+        (0..width).step_by(wide).map(move |left| [side(left, width, wide), side(low, height, TILE)])
+    })
+    .collect()
 }
 
 fn trace(
@@ -127,7 +131,9 @@ fn trace(
     colours: &mut Vec<Rgb>,
 ) {
     let mut pixels = Vec::new();
-    tiles::list(columns.clone(), rows.clone(), &mut pixels);
+    for left in columns.clone().step_by(TILE) {
+        tiles::list(left..columns.end.min(left + TILE), rows.clone(), &mut pixels);
+    }
     let mut tracer = Tracer::new(plan, Cpu::best(), scratch, rays);
     let seen = tracer.pixels(&pixels);
     colours.extend((0..pixels.len()).map(|pixel| seen.get(pixel)));

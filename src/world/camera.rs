@@ -26,6 +26,8 @@ pub struct Camera {
     /// What the samplers' sequences are scrambled with beside the pixel: 0 in a render, and another number where the
     /// same image is wanted with independent samples.
     pub scramble: u32,
+    /// The exposure in stops: colours are multiplied by 2 to this power.
+    pub exposure: f64,
     /// How exactly hits are found.
     pub accuracy: Accuracy,
 }
@@ -42,7 +44,13 @@ pub struct Adaptive {
 }
 
 impl Camera {
+    /// Returns the factor of all colours.
+    pub(crate) fn gain(&self) -> f64 {
+        libm::exp2(self.exposure)
+    }
+
     /// Returns what the sequence of a pixel's samples depends on. The pixel may lie outside of the image.
+    #[inline]
     pub(crate) fn seed(&self, x: i64, y: i64) -> u32 {
         (y * self.pixels[0] as i64 + x) as u32 ^ self.scramble
     }

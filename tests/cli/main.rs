@@ -7,6 +7,7 @@ mod bench;
 mod cli;
 mod discovery;
 mod failures;
+mod full_range;
 mod limits;
 mod messages;
 mod new;

@@ -54,8 +54,8 @@ pub(super) struct AdaptiveScratch {
 
 impl AdaptiveScratch {
     /// Returns the number of samples of the first pixel, and the estimated error of its colour.
-    pub fn first(&self) -> (u32, f64) {
-        self.estimates.first().map_or((0, 0.0), |estimate| (estimate.count, estimate.error()))
+    pub fn first(&self, gain: f64) -> (u32, f64) {
+        self.estimates.first().map_or((0, 0.0), |estimate| (estimate.count, estimate.error(gain)))
     }
 }
 
@@ -113,6 +113,7 @@ pub(super) struct Estimate {
 
 impl Estimate {
     /// Starts with the first sample.
+    #[inline]
     fn new(found: &Found) -> Self {
         let &Found { colour, missing, mark, distance } = found;
         let mut blocks = [Rgb::ZERO; BLOCKS];
@@ -122,12 +123,14 @@ impl Estimate {
     }
 
     /// Includes what was found here or around.
+    #[inline]
     fn compare(&mut self, found: &Found) {
         (self.low, self.high) = (self.low.min(found.colour), self.high.max(found.colour));
         self.is_crossed |= found.mark != self.mark;
     }
 
     /// Adds the next sample of `goal`, a power of two.
+    #[inline]
     fn add(&mut self, found: &Found, goal: u32) {
         self.compare(found);
         self.sum += found.colour;
@@ -139,6 +142,7 @@ impl Estimate {
     }
 
     /// Joins pairs of blocks, so that there is room for as many samples again.
+    #[inline]
     fn join(&mut self) {
         if self.count as usize >= BLOCKS {
             let blocks = self.blocks;
@@ -150,15 +154,18 @@ impl Estimate {
     }
 
     /// Returns the colour.
+    #[inline]
     fn colour(&self) -> Rgb {
         self.sum / f64::from(self.count)
     }
 
     /// Estimates the error of the colour as it is shown, the largest of its channels, where 1 is white: the standard
-    /// error of the mean, as the means of its blocks have it, and what the contrast around leaves open.
+    /// error of the mean, as the means of its blocks have it, and what the contrast around leaves open. `gain` is the factor
+    /// of all colours.
     ///
     /// Sobol points are spread more evenly than independent ones, so that blocks differ more than their number says.
-    pub fn error(&self) -> f64 {
+    #[inline]
+    pub fn error(&self, gain: f64) -> f64 {
         let blocks = (self.count as usize).min(BLOCKS);
         let (mean, long) = (self.colour(), f64::from(self.count) / blocks as f64);
         let squares: DVec3 = self.blocks[..blocks]
@@ -174,6 +181,10 @@ impl Estimate {
         };
         let unseen = if self.is_crossed { UNSEEN } else { UNSEEN_WITHIN };
         let error = spread + (self.high - self.low) * (unseen / f64::from(self.count));
+        let (mean, error) = (gain * mean, gain * error);
+        if mean.max_element() + error.max_element() <= 1.0 && (mean - error).min_element() >= 0.0 {
+            return error.max_element();
+        }
         (shown(mean + error) - shown(mean)).max(shown(mean) - shown(mean - error)).max_element()
     }
 }
@@ -203,6 +214,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         active.clear();
         active.extend(0..pixels.len() as u32);
         let mut goal = rays.tracer.plan.camera.samples;
+        let gain = rays.tracer.plan.camera.gain();
         while !active.is_empty() {
             for of in &*active {
                 let count = estimates[*of as usize].count;
@@ -216,10 +228,11 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 }
             }
             rays.trace(&mut |of, found| estimates[of].add(found, goal));
+            let limit = most_error(adaptive, goal);
             active.retain(|of| {
                 let (estimate, pixel) = (&mut estimates[*of as usize], pixels[*of as usize]);
                 let goes_on = goal < adaptive.most
-                    && (estimate.error() > most_error(adaptive, goal)
+                    && (estimate.error(gain) > limit
                         || goal < FEATURE_SAMPLES && rays.is_feature(pixel, estimate.distance));
                 if goes_on {
                     estimate.join();
@@ -297,6 +310,7 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
     }
 
     /// Adds a ray, and traces the rays once there is a packet of them. `found` is told what each found.
+    #[inline]
     fn want(&mut self, wanted: Wanted, found: &mut impl FnMut(usize, &Found)) {
         self.batch.push(wanted);
         if self.batch.len() == PACKET_SIZE {

@@ -53,7 +53,8 @@ pub fn observe_pixel(plan: &Plan, x: usize, y: usize, observer: &mut impl TraceO
     let colours = camera
         .places(x, y, count)
         .map(|(place, sample)| observe_colour(plan, &camera.sight(place.x, place.y), sample, observer));
-    colours.sum::<Rgb>() / f64::from(count)
+    let colour = colours.sum::<Rgb>() / f64::from(count);
+    if camera.exposure == 0.0 { colour } else { camera.gain() * colour }
 }
 
 /// Returns the number of samples that a pixel takes, and where pixels differ in that, the estimated error of its colour,
@@ -64,7 +65,8 @@ pub fn samples(plan: &Plan, x: usize, y: usize) -> (u32, Option<f64>) {
     }
     let (mut scratch, mut nobody) = (Scratch::default(), Cuts::default());
     Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody).pixels(&[[x, y]]);
-    let (count, error) = scratch.primary.map_or((0, 0.0), |primary| primary.adaptive.first());
+    let (count, error) =
+        scratch.primary.map_or((0, 0.0), |primary| primary.adaptive.first(plan.camera.gain()));
     (count, Some(error))
 }
 
@@ -154,6 +156,10 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                     }
                 }
             }
+        }
+        if camera.exposure != 0.0 {
+            let mut colours = primary.colours.resized(pixels.len());
+            (0..pixels.len()).for_each(|pixel| colours.set(pixel, camera.gain() * colours.get(pixel)));
         }
         self.scratch.primary.insert(primary).colours.view(pixels.len())
     }

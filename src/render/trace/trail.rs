@@ -17,6 +17,7 @@ pub(super) struct Trails {
 
 impl Trails {
     /// Starts the trails of new primary rays.
+    #[inline]
     pub fn begin(&mut self, len: usize) {
         if self.is_on {
             self.marks.clear();
@@ -28,6 +29,7 @@ impl Trails {
 
     /// Records that descendants of the primary rays in these lanes hit the object of this index, and the distances, if
     /// they are the primary rays themselves.
+    #[inline]
     pub fn meet(&mut self, camera: &[u8], object: usize, distances: Option<&[f64]>) {
         camera.iter().for_each(|lane| self.add(*lane, 2 * object as u64 + 1));
         for (lane, distance) in camera.iter().zip(distances.into_iter().flatten()) {
@@ -37,6 +39,7 @@ impl Trails {
 
     /// Records on which of these points the light of this index shines, as far as they reflect any of it: others may
     /// not have been looked at.
+    #[inline]
     pub fn see_light(&mut self, camera: &[u8], light: usize, lit: &Lit, is_shiny: bool) {
         for (lane, primary) in camera.iter().enumerate() {
             let reflects = match lit.looks {
@@ -51,6 +54,7 @@ impl Trails {
         }
     }
 
+    #[inline]
     fn add(&mut self, lane: u8, what: u64) {
         let mark = &mut self.marks[usize::from(lane)];
         *mark = (mark.rotate_left(23) ^ what).wrapping_mul(0x9e37_79b9_7f4a_7c15);
