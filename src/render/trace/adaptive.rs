@@ -9,21 +9,15 @@
 
 use super::arrays::VectorList;
 use super::context::Tracer;
+use super::estimate::{AdaptiveScratch, Estimate, First, Found, Wanted};
 use super::ray_group::RayGroup;
 use super::scratch::{PrimaryScratch, Scratch};
 use crate::geometry::ray_packet::PACKET_SIZE;
-use crate::render::bytes::shown;
 use crate::render::features::FEATURE_SAMPLES;
 use crate::render::observer::{Count, TraceObserver};
 use crate::world::camera::Adaptive;
-use crate::world::material::Rgb;
 use crate::world::sample::{self, Sample};
-use glam::DVec3;
-use std::array;
 use std::mem::take;
-
-/// The number of blocks of samples whose means are compared.
-const BLOCKS: usize = 8;
 
 /// How many estimated errors the error of a pixel may be, where it is limited.
 const CONFIDENCE: f64 = 2.0;
@@ -31,163 +25,6 @@ const CONFIDENCE: f64 = 2.0;
 /// The estimated error, where 1 is white, up to which one sample would be enough where no error is limited. It grows with
 /// the root of the number of samples: so the samples go where each lowers the mean square error of the image most.
 const BALANCED: f64 = 0.25 / 255.0;
-
-/// What part of the contrast around a pixel may lie unseen between its samples: this, divided by their number. The
-/// second one holds where all of them have met the same on their paths.
-const UNSEEN: f64 = 0.25;
-const UNSEEN_WITHIN: f64 = 0.06;
-
-/// The scratch space of pixels that take more samples where that is needed.
-#[derive(Default)]
-pub(super) struct AdaptiveScratch {
-    /// The first samples of the pixels and of those around them.
-    firsts: Vec<First>,
-    /// For each place of a grid around the pixels, the index of its sample in `firsts` plus 1; 0 where there is none.
-    grid: Vec<u32>,
-    /// The pixels' estimates.
-    pub estimates: Vec<Estimate>,
-    /// The indices of the pixels that take more samples.
-    active: Vec<u32>,
-    /// The rays to be traced next.
-    batch: Vec<Wanted>,
-}
-
-impl AdaptiveScratch {
-    /// Returns the number of samples of the first pixel, and the estimated error of its colour.
-    pub fn first(&self, gain: f64) -> (u32, f64) {
-        self.estimates.first().map_or((0, 0.0), |estimate| (estimate.count, estimate.error(gain)))
-    }
-}
-
-/// A ray that is to be traced.
-#[derive(Clone, Copy)]
-struct Wanted {
-    /// The index of what it belongs to.
-    of: u32,
-    /// The pixel's column and row, which may lie outside of the image.
-    pixel: [f64; 2],
-    /// The sample's index.
-    index: u32,
-}
-
-/// What a sample found.
-#[derive(Clone, Copy, Default)]
-struct Found {
-    colour: Rgb,
-    /// A bound on the light that the colour lacks.
-    missing: f64,
-    /// What the ray met on its path.
-    mark: u64,
-    /// The distance of the first hit, in world units.
-    distance: f64,
-}
-
-/// The first sample of a pixel.
-#[derive(Clone, Copy, Default)]
-struct First {
-    pixel: [f64; 2],
-    found: Found,
-}
-
-/// What is known of a pixel's colour.
-#[derive(Clone, Default)]
-pub(super) struct Estimate {
-    /// The number of samples.
-    pub count: u32,
-    /// The sum of their colours.
-    sum: Rgb,
-    /// The sums of the colours of equally long runs of samples, as many as there are samples but no more than
-    /// [`BLOCKS`].
-    blocks: [Rgb; BLOCKS],
-    /// The sum of the bounds on the light that they lack.
-    missing: f64,
-    /// The least and the greatest colour of its samples and of the first ones of the pixels around it.
-    low: Rgb,
-    high: Rgb,
-    /// What the first sample met, and whether another one here or around met anything else.
-    mark: u64,
-    is_crossed: bool,
-    /// The distance of the farthest first hit, in world units.
-    distance: f64,
-}
-
-impl Estimate {
-    /// Starts with the first sample.
-    #[inline]
-    fn new(found: &Found) -> Self {
-        let &Found { colour, missing, mark, distance } = found;
-        let mut blocks = [Rgb::ZERO; BLOCKS];
-        blocks[0] = colour;
-        let (low, high) = (colour, colour);
-        Self { count: 1, sum: colour, blocks, missing, low, high, mark, is_crossed: false, distance }
-    }
-
-    /// Includes what was found here or around.
-    #[inline]
-    fn compare(&mut self, found: &Found) {
-        (self.low, self.high) = (self.low.min(found.colour), self.high.max(found.colour));
-        self.is_crossed |= found.mark != self.mark;
-    }
-
-    /// Adds the next sample of `goal`, a power of two.
-    #[inline]
-    fn add(&mut self, found: &Found, goal: u32) {
-        self.compare(found);
-        self.sum += found.colour;
-        self.missing += found.missing;
-        self.distance = self.distance.max(found.distance);
-        let long = goal.div_ceil(BLOCKS as u32);
-        self.blocks[(self.count / long) as usize] += found.colour;
-        self.count += 1;
-    }
-
-    /// Joins pairs of blocks, so that there is room for as many samples again.
-    #[inline]
-    fn join(&mut self) {
-        if self.count as usize >= BLOCKS {
-            let blocks = self.blocks;
-            let joined = |pair: usize| {
-                if pair < BLOCKS / 2 { blocks[2 * pair] + blocks[2 * pair + 1] } else { Rgb::ZERO }
-            };
-            self.blocks = array::from_fn(joined);
-        }
-    }
-
-    /// Returns the colour.
-    #[inline]
-    fn colour(&self) -> Rgb {
-        self.sum / f64::from(self.count)
-    }
-
-    /// Estimates the error of the colour as it is shown, the largest of its channels, where 1 is white: the standard
-    /// error of the mean, as the means of its blocks have it, and what the contrast around leaves open. `gain` is the factor
-    /// of all colours.
-    ///
-    /// Sobol points are spread more evenly than independent ones, so that blocks differ more than their number says.
-    #[inline]
-    pub fn error(&self, gain: f64) -> f64 {
-        let blocks = (self.count as usize).min(BLOCKS);
-        let (mean, long) = (self.colour(), f64::from(self.count) / blocks as f64);
-        let squares: DVec3 = self.blocks[..blocks]
-            .iter()
-            .map(|sum| {
-                let d = *sum / long - mean;
-                d * d
-            })
-            .sum();
-        let spread = match blocks {
-            1 => DVec3::ZERO,
-            _ => squares.map(f64::sqrt) / ((blocks * (blocks - 1)) as f64).sqrt(),
-        };
-        let unseen = if self.is_crossed { UNSEEN } else { UNSEEN_WITHIN };
-        let error = spread + (self.high - self.low) * (unseen / f64::from(self.count));
-        let (mean, error) = (gain * mean, gain * error);
-        if mean.max_element() + error.max_element() <= 1.0 && (mean - error).min_element() >= 0.0 {
-            return error.max_element();
-        }
-        (shown(mean + error) - shown(mean)).max(shown(mean) - shown(mean - error)).max_element()
-    }
-}
 
 /// Returns the estimated error at which a pixel takes no more samples, where 1 is white.
 fn most_error(adaptive: Adaptive, samples: u32) -> f64 {

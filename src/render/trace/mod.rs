@@ -10,6 +10,7 @@ mod arrays;
 mod closest_hit;
 mod context;
 mod direct_light;
+mod estimate;
 mod hit_record;
 mod light;
 mod missing;

@@ -1,7 +1,7 @@
 //! Scratch space for packets, which is reused from one packet to the next.
 
-use super::adaptive::AdaptiveScratch;
 use super::arrays::VectorList;
+use super::estimate::AdaptiveScratch;
 use super::hit_record::HitRecord;
 use super::ray_group::{HitGroups, RayGroup};
 use super::surface::Surface;
