@@ -144,6 +144,16 @@ impl<A: Bounded> Bracketed for Ellipsoid<A> {
     }
 
     #[inline(always)]
+    fn t_bounds_within(&self, ray: &Ray, _range: &RayRange, drift: Drift) -> Bracket {
+        let (from, dir) = self.squeezed(ray);
+        let inverse = 1.0 / dir.dot(dir);
+        let spread = self.most_squeezed * inverse.sqrt();
+        let drift = Drift { origin: drift.origin * self.most_squeezed, dir: drift.dir * spread };
+        let spread = spread + sphere::spread_within(from, self.radius, drift);
+        sphere::t_bounds(from, dir, inverse, spread, self.radius, None, 0.0)
+    }
+
+    #[inline(always)]
     fn refine(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
         sphere::refine::<A>(&self.line(ray), self.radius, origin_side)
     }

@@ -1,7 +1,7 @@
 //! A mesh of triangles from a file.
 
 use crate::prelude::*;
-use crate::shapes::mesh::{Mesh, Painted, Placement, Surface, Unfit, read};
+use crate::shapes::mesh::{Mesh, Painted, Surface, ToWorld, Unfit, read};
 use crate::text;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -60,7 +60,7 @@ fn surface(args: &Args) -> Result<Surface, Refusal> {
             "a mesh is an OBJ, PLY or STL file, and its name is relative to the scene's folder",
         )
     })?;
-    let placement = Placement::new(args.get(&SCALE), args.get(&ROTATION), args.get(&TRANSLATION));
+    let placement = ToWorld::new(args.get(&SCALE), args.get(&ROTATION), args.get(&TRANSLATION));
     Surface::new(model, &placement, args.get(&SMOOTH) == 1).map_err(|unfit| match unfit {
         Unfit::TooLarge => refusal(
             "has coordinates so large that their squares overflow".to_owned(),

@@ -45,6 +45,6 @@ inventory::submit! {
                 help: "rounding grows with each copy: place the first object instead",
             });
         }
-        Ok(Placed::body(object, placement, &args.material()))
+        Ok(Placed::body(&object, placement, &args.material()))
     })
 }

@@ -130,6 +130,11 @@ impl<A: Bounded> Bracketed for Quadric<A> {
     }
 
     #[inline(always)]
+    fn t_bounds_within(&self, ray: &Ray, range: &RayRange, drift: Drift) -> Bracket {
+        Quadric::t_bounds_within(self, ray, range, drift)
+    }
+
+    #[inline(always)]
     fn refine(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
         self.fast_distance(ray, &RayRange { origin_side, ..RayRange::ALL })
     }

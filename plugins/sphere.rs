@@ -132,6 +132,13 @@ impl<A: Bounded> Bracketed for Sphere<A> {
     }
 
     #[inline(always)]
+    fn t_bounds_within(&self, ray: &Ray, _range: &RayRange, drift: Drift) -> Bracket {
+        let from = ray.origin - self.center;
+        let spread = sphere::spread_within(from, self.radius, drift);
+        sphere::t_bounds(from, ray.dir, 1.0, spread, self.radius, None, 0.0)
+    }
+
+    #[inline(always)]
     fn refine(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
         sphere::refine::<A>(&self.line(ray), self.radius, origin_side)
     }

@@ -51,6 +51,19 @@ impl Light for Spotlight {
         (cos > self.cos_edge).then_some(self.light.emissivity)
     }
 
+    /// The region is clear if the sphere around its corners is clear of the cone: if its centre lies off the axis by
+    /// more than the angles of the cone and of the sphere together.
+    fn is_clear_of(&self, region: &Aabb) -> bool {
+        let (between, radius) = (region.middle() - self.light.location, region.half_size().length());
+        let distance = between.length();
+        if !(radius < distance && distance.is_finite()) {
+            return false;
+        }
+        let off = libm::acos((between.dot(self.axis) / distance).clamp(-1.0, 1.0));
+        // The slack is far above the rounding errors of these angles, which are the largest around 0 and 180 degrees.
+        off > libm::acos(self.cos_edge.clamp(-1.0, 1.0)) + libm::asin(radius / distance) + 1e-6
+    }
+
     fn brightest(&self) -> Option<Rgb> {
         self.light.uniform()
     }

@@ -1,7 +1,7 @@
 //! Opens files that a scene or a command names; the path may lead to something else than a file.
 
 use std::fs::{self, File};
-use std::io;
+use std::io::{self, BufRead, Seek};
 use std::path::Path;
 use std::sync::mpsc;
 use std::thread;
@@ -9,6 +9,11 @@ use std::time::Duration;
 
 /// How long a program may take to begin to write to a named pipe.
 const PATIENCE: Duration = Duration::from_secs(5);
+
+/// The bytes of an image's file. Decoders are given a `&mut dyn` of it, so that each is compiled once.
+pub trait ImageBytes: BufRead + Seek {}
+
+impl<B: BufRead + Seek> ImageBytes for B {}
 
 /// Opens a file to read it. Refuses a pipe, at which opening might wait for ever, and a device, which might have no
 /// end.

@@ -15,6 +15,7 @@ pub use glam;
 pub mod cli;
 mod files;
 pub mod geometry;
+mod heap;
 pub mod numeric;
 pub mod output;
 pub mod prelude;

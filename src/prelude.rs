@@ -30,7 +30,7 @@ pub use crate::scene::profile::{Profile, ProfileLine};
 // What the traits of shapes take and return.
 pub use crate::geometry::aabb::{Aabb, SLACK};
 pub use crate::geometry::frame::Frame;
-pub use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
+pub use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
 pub use crate::numeric::double_double::DoubleDouble;
 pub use crate::numeric::scalar::{Scalar, cross, dot};
 pub use crate::shapes::implicit::Implicit;

@@ -1,18 +1,23 @@
 //! `tabray chart`: what each choice costs in a scene, and how wrong it is.
 
-use super::failure::{Failure, print};
+use super::failure::{self, Failure, print};
 use super::input::{self, Source};
 use super::interrupt::{self, Manner};
+use super::measuring::{Work, wait};
 use super::output::{self, Output};
-use super::progress::Progress;
+use super::{messages, progress, stop};
 use crate::scene::choice::Choice;
 use crate::scene::model::Model;
 use crate::scene::registry::Registry;
 use crate::tools::chart::{self, Chart};
 use crate::world::accuracy::Accuracy;
 use std::io::{self, Write};
-use std::ops::ControlFlow;
+use std::panic;
 use std::path::PathBuf;
+use std::sync::PoisonError;
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::thread;
+use std::time::{Duration, Instant};
 
 /// Chart the cost and the error of each choice in a scene
 ///
@@ -26,9 +31,23 @@ pub struct Args {
     /// words (SCENE.txt); by default the working directory
     #[arg(short, long, value_name = "DIR", default_value = ".", hide_default_value = true)]
     output: PathBuf,
+    /// The time that the chart may take, such as 90s or 5m, instead of 2 minutes; what is not measured by then is left
+    /// out
+    #[arg(long, value_name = "TIME", value_parser = stop::time)]
+    time_limit: Option<Duration>,
 }
 
+/// How long a chart may take if no time limit is given: on a quiet machine, most scenes take less.
+const LIMIT: Duration = Duration::from_secs(120);
+
+/// How much longer than its limit a measurement that is under way may take, as a fraction of the limit.
+const GRACE: u32 = 10;
+
+const NOTHING: &str = "nothing has been measured yet";
+
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
+    let limit = args.time_limit.unwrap_or(LIMIT).min(Duration::from_secs(1 << 30));
+    let (mut work, start) = (Work::within(limit), Instant::now());
     let source = Source::read(&args.scene)?;
     input::told(source.load(registry, None))?;
     let load = all_accuracies(registry, &source)?;
@@ -42,26 +61,62 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         let path = folder.join(format!("{name}.{extension}"));
         Output::open(&path).map(|output| (path, output))
     });
-    interrupt::catch(Manner::NotesFirst("nothing has been measured yet"))?;
-    let mut work = Work::new();
-    let chart = chart::measure(&name, &load, &mut work);
-    interrupt::from_here(Manner::Notes);
-    work.end();
-    let chart = chart?;
+    interrupt::catch(Manner::NotesFirst(NOTHING))?;
+    let (kept, units) = (work.kept(), work.units());
+    let end = |chart: Chart| {
+        interrupt::from_here(Manner::Notes);
+        end(&chart, files, start.elapsed() >= limit)
+    };
+    thread::scope(|scope| {
+        let (sender, measured) = mpsc::channel();
+        let (title, load) = (name.clone(), &load);
+        scope.spawn(move || {
+            let chart = chart::measure(&title, load, &mut work);
+            work.end();
+            let _ = sender.send(chart);
+        });
+        // A measurement that takes far too long is not waited for.
+        let last = limit.saturating_add(limit / GRACE).saturating_add(Duration::from_millis(500));
+        match wait(&measured, &units, last.saturating_sub(start.elapsed())) {
+            Ok(chart) => end(chart?),
+            Err(RecvTimeoutError::Timeout) => {
+                progress::clear();
+                let panels = kept.lock().unwrap_or_else(PoisonError::into_inner).clone();
+                match end(Chart { panels, ..Chart::empty(&name) }) {
+                    Ok(()) => failure::exit(),
+                    Err(failure) => failure::end(&failure),
+                }
+            }
+            // The thread panicked, and has said so.
+            Err(RecvTimeoutError::Disconnected) => panic::resume_unwind(Box::new(())),
+        }
+    })
+}
+
+type Files = [Result<(PathBuf, Output), Failure>; 5];
+
+/// Writes a chart and prints its verdict.
+fn end(chart: &Chart, files: Files, is_late: bool) -> Result<(), Failure> {
     if chart.panels.is_empty() {
-        return Err(Failure::Interrupted("nothing has been measured yet"));
+        return Err(if is_late {
+            Failure::Failed("the time limit has been reached, and nothing is measured yet".to_owned())
+        } else {
+            Failure::Interrupted(NOTHING)
+        });
     }
-    let words = chart::words(&chart);
-    for (file, bytes) in files.into_iter().zip(contents(&chart, &words)?) {
+    let words = chart::words(chart);
+    for (file, bytes) in files.into_iter().zip(contents(chart, &words)?) {
         let (path, output) = file?;
         output::put(&path, output, |out| out.write_all(&bytes))?;
     }
     print(&words)?;
-    if chart.is_whole {
-        Ok(())
-    } else {
-        Err(Failure::Interrupted("the chart shows what has been measured so far"))
+    if interrupt::check().is_break() {
+        return Err(Failure::Interrupted("the chart shows what has been measured so far"));
     }
+    if !chart.is_whole {
+        messages::note("the time did not suffice for all of the chart; `--time-limit` gives it more");
+    }
+    Ok(())
 }
 
 fn contents(chart: &Chart, words: &str) -> io::Result<[Vec<u8>; 5]> {
@@ -86,34 +141,4 @@ pub fn all_accuracies<'s>(
         let loaded = source.load(registry, accuracy);
         loaded.map(|loaded| loaded.model).map_err(|report| io::Error::other(report.to_string()))
     })
-}
-
-/// The progress of a measurement on a terminal: a bar, which an interruption ends.
-pub struct Work(Progress);
-
-impl Work {
-    pub fn new() -> Self {
-        Self(Progress::new(0))
-    }
-
-    pub fn end(&self) {
-        self.0.end();
-    }
-}
-
-impl chart::Progress for Work {
-    fn more(&mut self, units: usize) {
-        self.0.lengthen(units);
-    }
-
-    fn done(&mut self, units: usize) -> ControlFlow<()> {
-        self.0.advance(units);
-        interrupt::check()
-    }
-
-    fn kept(&mut self) {
-        interrupt::from_here(Manner::NotesFirst(
-            "the measurement under way takes too long, and there is no chart",
-        ));
-    }
 }

@@ -20,6 +20,8 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     for scene in &args.scenes {
         match input::load(registry, scene, None) {
             Ok(_) => messages::note(&format!("{}: no errors", scene.display())),
+            // The scene may be sound: the machine is at fault.
+            Err(failure @ Failure::Failed(_)) => return Err(failure),
             Err(failure) => {
                 tell(&failure);
                 sound = false;

@@ -1,25 +1,30 @@
 //! `tabray choose`: chooses accuracy and samples for a maximum error or time.
 
-use super::chart::{Work, all_accuracies};
-use super::failure::{Failure, print};
+use super::chart::all_accuracies;
+use super::failure::{self, Failure, print};
 use super::input::{self, Source};
 use super::interrupt::{self, Manner};
-use super::program;
+use super::measuring::{Work, wait};
+use super::{program, stop};
 use crate::scene::choice::Choice;
 use crate::scene::registry::Registry;
-use crate::tools::chart::{self, Estimate};
+use crate::tools::chart::{self, Estimate, Estimates, Goal};
 use crate::world::accuracy::Accuracy;
 use clap::ArgGroup;
+use std::cmp::Ordering;
 use std::fmt::Write;
 use std::io;
+use std::panic;
 use std::path::{Path, PathBuf};
+use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Choose accuracy and samples for a maximum error or time
 ///
-/// Measures the choices on a part of the image, shows those it considered, and prints the command line to use. The
-/// whole image may come out a little worse or take a little longer.
+/// Measures the choices on a part of the image, shows them with a bound on their errors that holds with a confidence of
+/// 99 %, and prints the command line to use. Takes at most half as many rays as the image that it recommends, or 1 million
+/// where that is more (with `--worst` 2 million), and never longer than 10 seconds unless it is given more.
 #[derive(clap::Args)]
 #[command(group = ArgGroup::new("limit").args(["max_error", "max_time"]).required(true))]
 pub struct Args {
@@ -31,10 +36,20 @@ pub struct Args {
     /// Maximum time for the image on all cores, in seconds
     #[arg(long, value_name = "T", value_parser = positive)]
     max_time: Option<f64>,
+    /// Measure the error that one of a thousand pixels exceeds, instead of the root mean square of all: a few jagged edges
+    /// count
+    #[arg(long)]
+    worst: bool,
+    /// The time that choosing may take, such as 30s or 2m, instead of 10 seconds
+    #[arg(long, value_name = "TIME", value_parser = stop::time)]
+    time_limit: Option<Duration>,
 }
 
-/// The ratio up to which times and errors count as equal; among equal choices the default accuracy is taken.
-const SAME: f64 = 1.1;
+/// How long choosing may take if no time limit is given.
+const LIMIT: Duration = Duration::from_secs(10);
+
+/// The ratio of times or errors from which on another accuracy than the scene's is worth choosing.
+const GAIN: f64 = 0.8;
 
 fn positive(text: &str) -> Result<f64, String> {
     match text.parse() {
@@ -44,32 +59,52 @@ fn positive(text: &str) -> Result<f64, String> {
 }
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
+    let limit = args.time_limit.unwrap_or(LIMIT).min(Duration::from_secs(1 << 30));
+    let (mut work, start) = (Work::within(limit), Instant::now());
+    let units = work.units();
     let source = Source::read(&args.scene)?;
     input::told(source.load(registry, None))?;
     let load = all_accuracies(registry, &source)?;
     interrupt::catch(Manner::Ends("nothing has been chosen"))?;
-    let mut work = Work::new();
-    let estimates = chart::estimates(&load, &mut work);
-    work.end();
-    let estimates = estimates.map_err(|error| match error.kind() {
-        io::ErrorKind::Interrupted => Failure::Interrupted("nothing has been chosen"),
-        _ => error.into(),
-    })?;
-    let cores = thread::available_parallelism().map_or(1, usize::from);
-    let choice = Weighed { estimates: &estimates, cores };
-    let (chosen, why) = if let Some(error) = args.max_error {
-        (choice.for_error(error)?, format!("the fastest with a measured error of at most {error}"))
-    } else {
+    let worst = args.worst;
+    let goal = match (args.max_error, args.max_time) {
+        (Some(most), _) => Goal::Error { most, worst },
         // Either the error or the time is given.
-        let time = args.max_time.unwrap_or(f64::INFINITY);
-        (choice.for_time(time)?, format!("the one with the least error within {time} s on {cores} threads"))
+        (None, most) => Goal::Time { most: most.unwrap_or(f64::INFINITY), worst },
     };
-    print(&choice.words(chosen, &why, &args.scene))
+    let too_long = || {
+        let limit = humantime::format_duration(limit);
+        Failure::Failed(format!("choosing takes longer than {limit}; `--time-limit` gives it more"))
+    };
+    thread::scope(|scope| {
+        let (sender, measured) = mpsc::channel();
+        let load = &load;
+        scope.spawn(move || {
+            let estimates = chart::estimates(load, goal, &mut work);
+            work.end();
+            let _ = sender.send(estimates);
+        });
+        // A pixel that takes far too long is not waited for.
+        let last = limit.saturating_add(limit / 10).saturating_sub(start.elapsed());
+        let estimates = match wait(&measured, &units, last) {
+            Ok(estimates) => estimates.map_err(|error| match error.kind() {
+                io::ErrorKind::Interrupted => too_long(),
+                _ => error.into(),
+            })?,
+            Err(RecvTimeoutError::Timeout) => failure::end(&too_long()),
+            // The thread panicked, and has said so.
+            Err(RecvTimeoutError::Disconnected) => panic::resume_unwind(Box::new(())),
+        };
+        let cores = thread::available_parallelism().map_or(1, usize::from);
+        let choice = Weighed { estimates: &estimates, cores, goal };
+        print(&choice.words(choice.chosen()?, &args.scene))
+    })
 }
 
 struct Weighed<'e> {
-    estimates: &'e [Estimate],
+    estimates: &'e Estimates,
     cores: usize,
+    goal: Goal,
 }
 
 impl<'e> Weighed<'e> {
@@ -78,56 +113,79 @@ impl<'e> Weighed<'e> {
         estimate.seconds / self.cores as f64
     }
 
-    fn for_error(&self, error: f64) -> Result<&'e Estimate, Failure> {
-        let fit: Vec<_> = self.estimates.iter().filter(|estimate| estimate.rmse <= error).collect();
-        let fastest = fit.iter().min_by(|a, b| a.seconds.total_cmp(&b.seconds)).ok_or_else(|| {
-            let least = self.estimates.iter().map(|estimate| estimate.rmse).fold(f64::INFINITY, f64::min);
-            Failure::Failed(format!(
-                "no choice has a measured error of at most {error:e}; the least is {least:.2e}"
-            ))
-        })?;
-        Ok(fit
-            .iter()
-            .find(|own| own.accuracy == Accuracy::default() && own.seconds <= SAME * fastest.seconds)
-            .unwrap_or(fastest))
-    }
-
-    fn for_time(&self, time: f64) -> Result<&'e Estimate, Failure> {
-        let fit: Vec<_> = self.estimates.iter().filter(|estimate| self.time(estimate) <= time).collect();
-        let best = fit.iter().min_by(|a, b| a.rmse.total_cmp(&b.rmse)).ok_or_else(|| {
-            let least =
-                self.estimates.iter().map(|estimate| self.time(estimate)).fold(f64::INFINITY, f64::min);
-            let least = Duration::from_secs_f64(least);
-            Failure::Failed(format!(
-                "no choice is estimated to take at most {time} s; the fastest takes about {least:.2?}"
-            ))
-        })?;
-        Ok(fit
-            .iter()
-            .find(|own| own.accuracy == Accuracy::default() && own.rmse <= SAME * best.rmse)
-            .unwrap_or(best))
+    /// Returns the choice that meets the goal: of the scene's own accuracy, unless another one is clearly better.
+    fn chosen(&self) -> Result<&'e Estimate, Failure> {
+        let accuracies = self.estimates.all.chunk_by(|one, other| one.accuracy == other.accuracy);
+        let mut best: Option<&Estimate> = None;
+        for met in accuracies.filter_map(|choices| self.goal.met(choices, self.cores)) {
+            let is_better = |best: &Estimate| match self.goal {
+                Goal::Error { .. } => met.seconds <= GAIN * best.seconds,
+                Goal::Time { .. } => met.bound <= GAIN * best.bound,
+            };
+            if best.is_none_or(is_better) {
+                best = Some(met);
+            }
+        }
+        best.ok_or_else(|| {
+            let least = |of: &dyn Fn(&Estimate) -> f64| {
+                self.estimates.all.iter().map(of).fold(f64::INFINITY, f64::min)
+            };
+            Failure::Failed(match self.goal {
+                Goal::Error { most, .. } => {
+                    let least = least(&|one| one.bound);
+                    let least = if least.is_finite() { format!("{least:.2e}") } else { "unknown".to_owned() };
+                    format!(
+                        "no choice has an error of at most {most:e} for certain; the least bound is {least}"
+                    )
+                }
+                Goal::Time { most, .. } => {
+                    let least = Duration::from_secs_f64(least(&|one| self.time(one)));
+                    format!(
+                        "no choice is estimated to take at most {most} s; the fastest takes about {least:.2?}"
+                    )
+                }
+            })
+        })
     }
 
     /// Says which choices were considered and which one was chosen, and shows the command line.
-    fn words(&self, chosen: &Estimate, why: &str, scene: &Path) -> String {
-        let mut text = format!("  {:<9}{:>8}{:>12}{:>12}\n", "accuracy", "samples", "error", "time");
+    fn words(&self, chosen: &Estimate, scene: &Path) -> String {
+        let head = ["accuracy", "samples", "error", "at most", "time"];
+        let mut text =
+            format!("  {:<9}{:>8}{:>12}{:>12}{:>12}\n", head[0], head[1], head[2], head[3], head[4]);
+        let is_chosen = |one: &Estimate| (one.accuracy, one.samples) == (chosen.accuracy, chosen.samples);
         let mut shown: Vec<_> =
-            self.estimates.iter().filter(|one| self.is_best(one) || std::ptr::eq(*one, chosen)).collect();
-        shown.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
+            self.estimates.all.iter().filter(|one| self.is_best(one) || is_chosen(one)).collect();
+        shown.sort_by(|a, b| {
+            (a.samples, a.seconds).partial_cmp(&(b.samples, b.seconds)).unwrap_or(Ordering::Equal)
+        });
         for estimate in shown {
-            let mark = if std::ptr::eq(estimate, chosen) { '>' } else { ' ' };
+            let mark = if is_chosen(estimate) { '>' } else { ' ' };
             let name = estimate.accuracy.option().name;
-            let (error, time) = (format!("{:.2e}", estimate.rmse), format!("{:.3} s", self.time(estimate)));
-            let _ = writeln!(text, "{mark} {name:<9}{:>8}{error:>12}{time:>12}", estimate.samples);
+            let error =
+                |error: f64| if error.is_finite() { format!("{error:.2e}") } else { "unknown".to_owned() };
+            let [measured, bound] = [error(estimate.error), error(estimate.bound)];
+            let time = format!("{:.3} s", self.time(estimate));
+            let _ =
+                writeln!(text, "{mark} {name:<9}{:>8}{measured:>12}{bound:>12}{time:>12}", estimate.samples);
         }
         let how = match chosen.accuracy {
             Accuracy::Classic => "--method classic".to_owned(),
             accuracy => format!("--accuracy {}", accuracy.option().name),
         };
+        let why = match self.goal {
+            Goal::Error { most, .. } => format!("the fastest with an error of at most {most}"),
+            Goal::Time { most, .. } => {
+                format!("the one with the least error within {most} s on {} threads", self.cores)
+            }
+        };
+        let Estimates { pixels: [measured, all], against, is_short, .. } = *self.estimates;
+        let sure = if measured == all { "" } else { ", with a confidence of 99 %" };
+        let short = if is_short { "; the time did not suffice for more" } else { "" };
         let _ = write!(
             text,
-            "\nThe marked choice is {why}. The others have less error and take longer, or take less time and have more \
-             error. All were measured on a part of the image.\n\n\
+            "\nThe marked choice is {why}{sure}. Errors were measured on {measured} of {all} pixels, against {against} \
+             samples in each{short}; those of the whole image are at most what the table says. Times are estimates.\n\n\
              {} render {} {how} --samples {}\n",
             program::name(),
             scene.display(),
@@ -136,15 +194,11 @@ impl<'e> Weighed<'e> {
         text
     }
 
-    /// Tells whether no other choice is as fast and as accurate, and also clearly better in one of the two or the
-    /// default.
+    /// Tells whether no other choice is clearly faster and has no larger bound.
     fn is_best(&self, one: &Estimate) -> bool {
-        let is_default = |own: &Estimate| own.accuracy == Accuracy::default();
-        !self.estimates.iter().any(|other| {
-            let (time, error) = (other.seconds / one.seconds, other.rmse / one.rmse);
-            let is_better = time <= 1.0 && error <= SAME && (time * SAME < 1.0 || error * SAME < 1.0);
-            let is_equal = time <= SAME && error <= SAME;
-            is_better || (is_equal && is_default(other) && !is_default(one))
+        !self.estimates.all.iter().any(|other| {
+            let is_other = (other.accuracy, other.samples) != (one.accuracy, one.samples);
+            is_other && other.seconds <= GAIN * one.seconds && other.bound <= one.bound
         })
     }
 }

@@ -1,6 +1,6 @@
 //! Panics: faults of the program itself. They are reported as messages, and servers keep running.
 
-use super::failure::Failure;
+use super::failure::{self, Failure};
 use super::program;
 use std::panic::{self, AssertUnwindSafe, Location};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -18,6 +18,13 @@ pub fn keep() {
         let payload = info.payload();
         let text = payload.downcast_ref::<String>().map(String::as_str);
         let said = text.or_else(|| payload.downcast_ref().copied()).unwrap_or("no reason");
+        // So the standard library tells that a thread did not start for lack of memory, where nothing can be unwound.
+        if said.contains("alternative stack") {
+            let scene = scene().map_or(String::new(), |scene| format!(" for `{scene}`"));
+            failure::end_in_haste(&Failure::Failed(format!(
+                "not enough memory{scene}: a thread did not start"
+            )));
+        }
         let place = info.location().map(Location::to_string).unwrap_or_default();
         last().0 = format!("{said} ({place})");
     }));
@@ -26,6 +33,11 @@ pub fn keep() {
 /// From here on panics are reported as concerning this scene.
 pub fn about(scene: &str) {
     scene.clone_into(&mut last().1);
+}
+
+/// Returns the name of the scene that was read last, unless it is being set now.
+pub fn scene() -> Option<String> {
+    LAST.try_lock().ok().map(|last| last.1.clone()).filter(|scene| !scene.is_empty())
 }
 
 /// Runs `work` and turns a panic into a failure.

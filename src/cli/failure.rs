@@ -54,11 +54,23 @@ pub fn tell(failure: &Failure) -> ExitCode {
 /// Prints why a command failed, and ends the program, whatever its other threads are doing.
 pub fn end(failure: &Failure) -> ! {
     progress::clear();
+    end_in_haste(failure)
+}
+
+/// Ends the program as [`end`] does, but a bar on the terminal stays: it may be what the thread was drawing.
+pub fn end_in_haste(failure: &Failure) -> ! {
     // From here on no other thread prints anything.
     let _held = io::stderr().lock();
     let status = told(failure);
     temporary::remove_all();
     process::exit(status.into())
+}
+
+/// Ends the program, which has done what it was asked to do, whatever its other threads are doing.
+pub fn exit() -> ! {
+    progress::clear();
+    temporary::remove_all();
+    process::exit(0)
 }
 
 fn told(failure: &Failure) -> u8 {

@@ -1,16 +1,56 @@
-//! The memory use of the program, on systems that report it: Linux.
+//! The memory of the program: what the system provides, and, on systems that report it, what is used: Linux.
 
-use super::failure::Failure;
+use super::crash;
+use super::failure::{self, Failure};
+use crate::heap;
 use bytesize::ByteSize;
 use std::fs;
+use std::io::{self, Write};
+use std::process;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+use std::time::Duration;
 
-/// Returns an error if the system would not provide about `bytes` bytes: an allocation that fails later ends the
-/// program with a signal.
+/// The memory that is kept for telling the user that there is no more, in bytes. It is more than what the system's
+/// allocator takes from the system piece by piece, so that giving it up helps every thread.
+const KEPT: usize = 1 << 20;
+
+static RESERVE: Mutex<Vec<u8>> = Mutex::new(Vec::new());
+
+static IS_ENDING: AtomicBool = AtomicBool::new(false);
+
+/// Returns an error if the system would not provide about `bytes` bytes.
 pub fn room(bytes: usize, what: &str) -> Result<(), Failure> {
-    let refused = |_| {
-        Failure::Failed(format!("not enough memory for {what}: it takes about {}", ByteSize(bytes as u64)))
-    };
-    Vec::<u8>::new().try_reserve_exact(bytes).map_err(refused)
+    if heap::has_room(bytes) {
+        return Ok(());
+    }
+    Err(Failure::Failed(format!("not enough memory for {what}: it takes about {}", ByteSize(bytes as u64))))
+}
+
+/// From here on the program ends with a message if the system refuses it memory.
+pub fn tell_when_refused() {
+    if let Ok(mut reserve) = RESERVE.lock() {
+        heap::may_fail(|| reserve.try_reserve_exact(KEPT).ok());
+    }
+    heap::when_refused(end);
+}
+
+/// Ends the program. This is called wherever memory is allocated, so it waits for no lock that such code may hold.
+fn end(bytes: usize) {
+    if IS_ENDING.swap(true, Ordering::Relaxed) {
+        // Another thread is telling the user, or this one was and the reserve did not suffice.
+        thread::sleep(Duration::from_secs(1));
+        let _ = io::stderr().write_all(b"error: not enough memory\n");
+        process::exit(1);
+    }
+    if let Ok(mut reserve) = RESERVE.try_lock() {
+        *reserve = Vec::new();
+    }
+    let scene = crash::scene().map_or(String::new(), |scene| format!(" for `{scene}`"));
+    let bytes = ByteSize(bytes as u64);
+    let message = format!("not enough memory{scene}: the system refused {bytes} more");
+    failure::end_in_haste(&Failure::Failed(message))
 }
 
 /// Returns the memory that the program uses now, in bytes.

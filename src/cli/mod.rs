@@ -21,8 +21,10 @@ mod grammar;
 mod input;
 mod interrupt;
 mod job;
+mod keep;
 mod list;
 mod man;
+mod measuring;
 mod memory;
 mod messages;
 mod method;
@@ -114,6 +116,7 @@ pub fn run() -> ExitCode {
     #[cfg(target_os = "linux")]
     let _ = SigSet::from(Signal::SIGXFSZ).thread_block();
     crash::keep();
+    memory::tell_when_refused();
     crash::catch(chosen).unwrap_or_else(|failure| tell(&failure))
 }
 

@@ -1,18 +1,18 @@
 //! Reads images, to compare them.
 
 use super::failure::Failure;
-use crate::files;
+use crate::files::{self, ImageBytes};
 use crate::output::full_range::{self, FullRange};
 use crate::text;
 use image::{DynamicImage, ImageFormat, ImageReader, Rgb32FImage, RgbImage};
-use std::io::{self, BufRead, BufReader, Seek};
+use std::io::{self, BufReader};
 use std::path::Path;
 
 /// Reads the image in a file.
 pub fn read(path: &Path) -> Result<RgbImage, Failure> {
     let cannot = |reason: String| Failure::Usage(format!("cannot read `{}`: {reason}", path.display()), None);
     let file = files::open(path).map_err(|error| cannot(text::reason(&error)))?;
-    decode(BufReader::new(file)).map_err(cannot)
+    decode(&mut BufReader::new(file)).map_err(cannot)
 }
 
 /// An image with bytes or with numbers of full range.
@@ -59,7 +59,7 @@ impl Picture {
 }
 
 /// Decodes an image. Content that 8-bit red, green and blue cannot represent is an error, and is not dropped.
-pub fn decode(bytes: impl BufRead + Seek) -> Result<RgbImage, String> {
+pub fn decode(bytes: &mut dyn ImageBytes) -> Result<RgbImage, String> {
     let reader = ImageReader::new(bytes).with_guessed_format().map_err(|error| text::reason(&error))?;
     let picture = reader.decode().map_err(|error| text::picture_reason(&error))?;
     let is_plain = match &picture {

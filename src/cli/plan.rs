@@ -1,9 +1,8 @@
 //! `tabray plan`: how a scene would be rendered, and why.
 
 use super::failure::{Failure, print};
-use super::{input, method, samples};
+use super::{input, keep, method, samples};
 use crate::render::decisions::{self, Decision};
-use crate::render::plan::Plan;
 use crate::scene::registry::Registry;
 use crate::simd::cpu::Cpu;
 use std::path::PathBuf;
@@ -17,6 +16,8 @@ pub struct Args {
     samples: samples::Args,
     #[command(flatten)]
     method: method::Args,
+    #[command(flatten)]
+    keep: keep::Args,
 }
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
@@ -25,7 +26,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let best = format!("{}, the highest level of this machine; the image is the same with any", Cpu::best());
     let cpu = Decision { subject: "instructions", text: best };
     print(
-        &decisions::of(&Plan::new(&model))
+        &decisions::of(&args.keep.plan(&model))
             .iter()
             .chain([&cpu])
             .map(|decision| format!("{decision}\n"))

@@ -6,11 +6,10 @@ use super::job::Job;
 use super::output::{Output, named};
 use super::resume::Begun;
 use super::stats::{self, Stats};
-use super::{aov, cpu, debug, full_range, input, messages, method, output, samples, size, stop};
+use super::{aov, cpu, debug, full_range, input, keep, messages, method, output, samples, size, stop};
 use crate::output::deflate::Compression;
 use crate::output::full_range::FullRange;
 use crate::output::picture::Format;
-use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::scene::reader::{Chosen, Loaded};
 use crate::scene::registry::Registry;
@@ -45,6 +44,8 @@ pub struct Args {
     size: size::Args,
     #[command(flatten)]
     method: method::Args,
+    #[command(flatten)]
+    keep: keep::Args,
     #[command(flatten)]
     aov: aov::Args,
     #[command(flatten)]
@@ -88,7 +89,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     debug::print(&model, &args.debug)?;
     let threads = args.threads.unwrap_or(0).into();
     let start = Instant::now();
-    let plan = Plan::new(&model);
+    let plan = args.keep.plan(&model);
     stats.building += start.elapsed();
     let renderer = Renderer::new(threads)?.on(cpu);
     let whole = Instant::now();

@@ -204,7 +204,7 @@ impl Args {
     }
 }
 
-fn time(text: &str) -> Result<Duration, String> {
+pub fn time(text: &str) -> Result<Duration, String> {
     let time = humantime::parse_duration(text).ok().filter(|time| !time.is_zero());
     time.ok_or_else(|| "give a time as `90s`, `5m` or `1.5h`".to_owned())
 }

@@ -3,8 +3,10 @@
 use std::collections::BTreeSet;
 use std::fs::{self, File, OpenOptions};
 use std::io;
+use std::mem;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
+use std::thread;
 use tempfile::NamedTempFile;
 
 /// The paths of all files with hidden names, including files that no longer exist.
@@ -12,7 +14,15 @@ static HIDDEN: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
 /// Removes all files with hidden names, because the program ends without dropping their owners.
 pub fn remove_all() {
-    for path in std::mem::take(&mut *HIDDEN.lock().unwrap_or_else(PoisonError::into_inner)) {
+    // The lock is held for a moment, but perhaps by this very thread: it may end where its memory is refused.
+    let hidden = (0..100).find_map(|_| match HIDDEN.try_lock() {
+        Ok(mut hidden) => Some(mem::take(&mut *hidden)),
+        Err(_) => {
+            thread::yield_now();
+            None
+        }
+    });
+    for path in hidden.into_iter().flatten() {
         let _ = fs::remove_file(path);
     }
 }

@@ -145,7 +145,7 @@ fn painter(board: Arc<Board>) -> Result<Sender<Arc<Frame>>, Failure> {
             let start = Instant::now();
             let part = |area, colours: Vec<_>| board.add(&frame, events::part(&frame, &area, &colours));
             let painted = crash::catch(|| {
-                progressive::render(&renderer, &Plan::new(&frame.model), part, || frame.check())
+                progressive::render(&renderer, &Plan::for_picture(&frame.model), part, || frame.check())
             });
             match painted {
                 Ok(ControlFlow::Continue(())) => board.add(&frame, events::done(&frame, start.elapsed())),

@@ -108,3 +108,12 @@ impl Bracket {
     /// The bracket of a ray about which plain arithmetic says nothing.
     pub const UNKNOWN: Self = Self { near: 0.0, far: MISS };
 }
+
+/// How far a ray that was transformed and rounded may be from the one that it stands for.
+#[derive(Clone, Copy, Debug)]
+pub struct Drift {
+    /// A bound on the distance between the origins, in units of the coordinates that the ray was taken to.
+    pub origin: f64,
+    /// A bound on the length of the difference between the directions, which are unit vectors.
+    pub dir: f64,
+}

@@ -4,6 +4,7 @@ use crate::render::culling;
 use crate::render::features::{FEATURE_SAMPLES, Features};
 use crate::render::limits::{MAX_DIST, MAX_RAYS};
 use crate::render::plan::depth::Depth;
+use crate::render::plan::needs::{self, Needs};
 use crate::render::plan::{Plan, TREE};
 use crate::scene::model::{Item, Model, Object};
 use crate::scene::store::Record;
@@ -18,6 +19,9 @@ use std::sync::Arc;
 
 /// The maximum number of names that are listed.
 const NAMED: usize = 4;
+
+/// The levels up to which it is said how little a light changes.
+const FAINT: f64 = 2.0;
 
 /// A decision, and the reason for it.
 pub struct Decision {
@@ -41,18 +45,19 @@ pub fn of(plan: &Plan) -> Vec<Decision> {
     let mut all = vec![
         decision("image", picture(&plan.camera)),
         decision("accuracy", model.camera.value.accuracy.to_string()),
-        decision("lights", lights(model)),
+        decision("lights", lights(plan)),
     ];
-    if !model.lights.is_empty() {
+    if !plan.needs.lights.is_empty() {
         all.push(decision("shadows", shadows(plan)));
     }
-    all.push(decision("glass", glass(&model.objects)));
-    all.push(decision("mirrors", mirrors(&model.objects)));
+    all.push(decision("glass", glass(plan)));
+    all.push(decision("mirrors", mirrors(plan)));
     all.extend(plan.depth.as_ref().map(|depth| decision("depth", self::depth(model, depth))));
-    all.extend(textures(model).into_iter().map(|text| decision("texture", text)));
+    all.extend(textures(plan).into_iter().map(|text| decision("texture", text)));
+    all.extend(unmet(plan).map(|text| decision("unmet", text)));
     all.push(decision("search", search(model, plan)));
     all.extend(plan.features.as_ref().map(|features| decision("small", small(features))));
-    all.extend(objects(model, plan));
+    all.extend(objects(plan));
     all
 }
 
@@ -86,15 +91,27 @@ fn picture(camera: &Camera) -> String {
     }
 }
 
-fn lights(model: &Model) -> String {
-    let names = some(model.lights.iter().map(|light| light.args.name()));
-    match model.lights.len() {
+fn lights(plan: &Plan) -> String {
+    let model = plan.model;
+    let name = |index: usize| model.lights[index].args.name();
+    let names = some(plan.needs.lights.iter().map(|index| name(*index)));
+    let cast = match plan.needs.lights.len() {
         0 => "none: surfaces show their ambient colour, and no shadow rays are cast".to_owned(),
         1 => format!("{names}: a shadow ray from each point that faces it and reflects its light"),
         _ => {
             format!("{names}: from each point that reflects light, a shadow ray to each light that it faces")
         }
-    }
+    };
+    let dark = plan.needs.dark.iter().take(NAMED);
+    let dark = dark.map(|(index, why)| format!("; `{}` is left out, as {}", name(*index), why.reason()));
+    let more = plan.needs.dark.len().saturating_sub(NAMED);
+    let more = (more > 0).then(|| format!("; {more} more are left out"));
+    let levels = needs::most_levels(model);
+    let faint = plan.needs.lights.iter().filter(|index| levels[**index] <= FAINT).take(NAMED);
+    let faint = faint.map(|index| {
+        format!("; `{}` changes no pixel by more than {} of 255 levels", name(*index), short(levels[*index]))
+    });
+    cast + &dark.chain(more).chain(faint).collect::<String>()
 }
 
 fn shadows(plan: &Plan) -> String {
@@ -106,20 +123,51 @@ fn shadows(plan: &Plan) -> String {
     .to_owned()
 }
 
-fn glass(objects: &[Object]) -> String {
-    match of_material(objects, |object| object.material.transparency != 0.0) {
+fn glass(plan: &Plan) -> String {
+    match some(kept(plan).filter(|(_, object)| object.material.transparency != 0.0).map(named)) {
         names if names.is_empty() => "none: no object is transparent, and no rays are transmitted".to_owned(),
         names => format!("{names}: each ray that hits one is transmitted"),
     }
 }
 
-fn mirrors(objects: &[Object]) -> String {
-    match of_material(objects, |object| object.material.specular != Rgb::ZERO) {
-        names if names.is_empty() => {
-            "none: no object has a specular material, and no rays are reflected".to_owned()
-        }
-        names => format!("{names}: each ray that hits one is reflected"),
+fn mirrors(plan: &Plan) -> String {
+    let mirrors = || kept(plan).filter(|(_, object)| object.material.specular != Rgb::ZERO);
+    // As long as there is a bound on all light, rays that return none are not followed.
+    let is_blind = |index: usize| {
+        plan.depth
+            .as_ref()
+            .is_some_and(|depth| depth.most.is_finite() && plan.onward(index).mirrored.faint == 0.0)
+    };
+    let names = some(mirrors().filter(|(index, _)| !is_blind(*index)).map(named));
+    let blind = some(mirrors().filter(|(index, _)| is_blind(*index)).map(named));
+    let blind =
+        (!blind.is_empty()).then(|| format!("{blind}: no light comes from where rays would be reflected to"));
+    match (names.is_empty(), blind) {
+        (true, None) => "none: no object has a specular material, and no rays are reflected".to_owned(),
+        (true, Some(blind)) => format!("none: no rays are reflected by {blind}"),
+        (false, None) => format!("{names}: each ray that hits one is reflected"),
+        (false, Some(blind)) => format!("{names}: each ray that hits one is reflected; none by {blind}"),
     }
+}
+
+/// Describes the objects that are left out, if there are any.
+fn unmet(plan: &Plan) -> Option<String> {
+    let Needs { unmet, clearance, .. } = &plan.needs;
+    let names = some(unmet.iter().map(|index| plan.model.objects[*index].args.name()));
+    let apart = short(*clearance);
+    (!unmet.is_empty()).then(|| {
+        format!("{names}: left out, as no ray from the viewer, off a mirror or to a light comes within {apart} of them")
+    })
+}
+
+/// Returns the objects that are not left out, with their indices.
+fn kept<'p>(plan: &'p Plan) -> impl Iterator<Item = (usize, &'p Object)> {
+    let mut unmet = plan.needs.unmet.iter().peekable();
+    plan.model.objects.iter().enumerate().filter(move |(index, _)| unmet.next_if_eq(&index).is_none())
+}
+
+fn named((_, object): (usize, &Object)) -> &str {
+    object.args.name()
 }
 
 fn depth(model: &Model, depth: &Depth) -> String {
@@ -142,33 +190,36 @@ fn depth(model: &Model, depth: &Depth) -> String {
     }
 }
 
-/// Lists the names of the objects that satisfy a condition.
-fn of_material(objects: &[Object], is_wanted: impl Fn(&Object) -> bool) -> String {
-    some(objects.iter().filter(|object| is_wanted(object)).map(|object| object.args.name()))
-}
-
-fn textures(model: &Model) -> Vec<String> {
+fn textures(plan: &Plan) -> Vec<String> {
+    let model = plan.model;
     if model.textures.is_empty() {
         return Vec::new();
     }
-    let objects = model.objects.iter().map(|object| &object.args);
-    let users: Vec<_> =
-        objects.chain(model.lights.iter().map(|light| &light.args)).map(Record::args).collect();
+    let uses = |record: &Record, is_needed: bool| (record.args(), is_needed);
+    let mut unmet = plan.needs.unmet.iter().peekable();
+    let objects = model.objects.iter().enumerate();
+    let mut users: Vec<_> =
+        objects.map(|(index, object)| uses(&object.args, unmet.next_if_eq(&&index).is_none())).collect();
+    let lights = model.lights.iter().enumerate();
+    users.extend(lights.map(|(index, light)| uses(&light.args, plan.needs.lights.contains(&index))));
     let text = |item: &Item<Arc<Texture>>| {
         let name = item.args.name();
-        let its = users.iter().filter(|args| args.textures().any(|used| used == name));
-        let its: Vec<_> = its.map(|args| args.name.as_str()).collect();
+        let its = users.iter().filter(|(args, _)| args.textures().any(|used| used == name));
+        let its: Vec<_> = its.map(|(args, is_needed)| (args.name.as_str(), *is_needed)).collect();
         if its.is_empty() {
             return format!("`{name}` is not read: nothing uses it");
         }
         let [width, height] = item.value.size();
-        format!("`{name}` of {width} x {height} texels, read once: used by {}", some(its))
+        let is_needed = its.iter().any(|(_, is_needed)| *is_needed);
+        let rest = if is_needed { "" } else { ", which is left out" };
+        let its = some(its.into_iter().map(|(name, _)| name));
+        format!("`{name}` of {width} x {height} texels, read once: used by {its}{rest}")
     };
     model.textures.iter().map(text).collect()
 }
 
 fn search(model: &Model, plan: &Plan) -> String {
-    let bounded = model.objects.len() - plan.unbounded.len();
+    let bounded = model.objects.len() - plan.needs.unmet.len() - plan.unbounded.len();
     let listed = plan.unbounded.len() + plan.bounded.len();
     let by_one = match model.camera.value.accuracy {
         Accuracy::Classic => "every ray is tested against each object",
@@ -202,9 +253,9 @@ fn small(features: &Features) -> String {
 }
 
 /// Describes the objects; consecutive objects of the same kind and method share a line.
-fn objects(model: &Model, plan: &Plan) -> Vec<Decision> {
+fn objects(plan: &Plan) -> Vec<Decision> {
     let mut alike: Vec<(&'static str, String, Vec<&str>)> = Vec::new();
-    for object in &model.objects {
+    for (_, object) in kept(plan) {
         let place = match (&plan.tree, culling::bounds(object)) {
             (Some(_), Some(_)) => "in the BVH",
             (None, Some(_)) => "with bounds",

@@ -1,8 +1,10 @@
 //! What a scene needs, decided once before any ray is traced, so that rendering can leave out everything else.
 
 pub(crate) mod depth;
+pub(crate) mod needs;
 
 use depth::{Depth, Onward};
+use needs::Needs;
 
 use crate::geometry::aabb::Aabb;
 use crate::geometry::bvh::Bvh;
@@ -22,8 +24,8 @@ const MANY: usize = 1 << 14;
 pub struct Plan<'m> {
     /// The scene.
     pub model: &'m Model,
-    /// The camera, initially the model's own. Image size, samples and sampler may be changed; the rest is what the plan
-    /// was made for.
+    /// The camera, initially the model's own. A fixed number of samples and the sampler may be changed, and the image size of a plan that was
+    /// made for any ray; the rest is what the plan was made for.
     pub camera: Camera,
     /// The indices of the objects without bounds.
     pub(crate) unbounded: Vec<usize>,
@@ -31,17 +33,31 @@ pub struct Plan<'m> {
     pub(crate) bounded: Vec<(usize, Aabb)>,
     /// The objects with bounds, if there are at least [`TREE`].
     pub(crate) tree: Option<Bvh>,
-    /// Whether any object is transparent, so that shadows may be partial.
+    /// Whether any object that is needed is transparent, so that shadows may be partial.
     pub(crate) has_glass: bool,
     /// The objects that are small in the image, where the number of a pixel's samples depends on them.
     pub(crate) features: Option<Features>,
     /// How deep rays are followed; `None` where no object reflects or transmits rays.
     pub(crate) depth: Option<Depth>,
+    /// The maximum number of reflections and transmissions on a path.
+    pub(crate) bounces: usize,
+    /// The lights that are sampled, and what is left out.
+    pub(crate) needs: Needs,
 }
 
 impl<'m> Plan<'m> {
-    /// Makes the plan for a model.
+    /// Makes the plan for a model, through which any ray may be traced.
     pub fn new(model: &'m Model) -> Self {
+        Self::with(model, |_, _| Needs::all(model))
+    }
+
+    /// Makes the plan for the image of a model's camera, of any number of samples, without the objects and lights that
+    /// can change no byte of it. Only rays through the image's pixels may be traced through it.
+    pub fn for_picture(model: &'m Model) -> Self {
+        Self::with(model, |bounds, depth| Needs::of(model, bounds, depth))
+    }
+
+    fn with(model: &'m Model, needs: impl FnOnce(&[Option<Aabb>], Option<&Depth>) -> Needs) -> Self {
         let objects = &model.objects;
         let (mut unbounded, mut bounded) = (Vec::new(), Vec::new());
         let bounds: Vec<_> = if objects.len() < MANY {
@@ -49,7 +65,13 @@ impl<'m> Plan<'m> {
         } else {
             objects.par_iter().map(culling::bounds).collect()
         };
+        let depth = Depth::new(model);
+        let needs = needs(&bounds, depth.as_ref());
+        let mut unmet = needs.unmet.iter().peekable();
         for (index, bounds) in bounds.into_iter().enumerate() {
+            if unmet.next_if_eq(&&index).is_some() {
+                continue;
+            }
             match bounds {
                 Some(bounds) => bounded.push((index, bounds)),
                 None => unbounded.push(index),
@@ -63,9 +85,11 @@ impl<'m> Plan<'m> {
             tree.rename(|object| objects[object as usize] as u32);
             tree
         });
-        let has_glass = objects.iter().any(|object| object.material.transparency != 0.0);
-        let depth = Depth::new(model);
-        Self { model, camera, unbounded, bounded, tree, has_glass, features, depth }
+        let mut unmet = needs.unmet.iter().peekable();
+        let mut met = objects.iter().enumerate().filter(|(index, _)| unmet.next_if_eq(&index).is_none());
+        let has_glass = met.any(|(_, object)| object.material.transparency != 0.0);
+        let bounces = usize::MAX;
+        Self { model, camera, unbounded, bounded, tree, has_glass, features, depth, bounces, needs }
     }
 
     /// Returns how rays continue from the object of this index.

@@ -5,7 +5,7 @@
 //! step of Newton's method, and what rounding could decide is decided in double-double arithmetic.
 
 use crate::geometry::aabb::larger;
-use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
+use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
 use crate::numeric::double_double::{DoubleDouble, exponent_to_one, times_power_of_two, two_product};
 use crate::world::accuracy::{Accuracy, Bounded};
 use glam::DVec3;
@@ -226,6 +226,17 @@ pub fn t_bounds(
         },
         far: if is_there & !is_missed { distance + error } else { MISS },
     }
+}
+
+/// Returns the `spread` with which [`t_bounds`] holds for all rays within a drift of one with a unit direction.
+///
+/// The drift moves `aside` by `k` EPSILON of the size. Where the discriminant exceeds `doubt`, which grows with the
+/// spread `K`, that moves half the chord by less than `k EPSILON size / sqrt(32,768 EPSILON K)`, of which half of
+/// `ERROR K size` is more than enough for `K = 1 + k / 8`.
+#[inline(always)]
+pub fn spread_within(from: DVec3, radius: f64, drift: Drift) -> f64 {
+    let size = from.abs().element_sum() + radius;
+    1.0 + (2.0 * drift.origin / size + 3.0 * drift.dir) / (8.0 * f64::EPSILON)
 }
 
 #[inline(always)]

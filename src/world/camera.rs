@@ -121,7 +121,7 @@ impl Camera {
     /// them; `None` for points that are not in front of the viewer, and where all rays of a row or column are one.
     pub(crate) fn project(&self, point: DVec3) -> Option<DVec2> {
         let (from, depth) = (self.viewpoint, self.viewpoint.z - point.z);
-        if !(depth > 0.0) || self.pixels.contains(&1) {
+        if depth.is_nan() || depth <= 0.0 || self.pixels.contains(&1) {
             return None;
         }
         let on_screen = from.truncate() + (point - from).truncate() * (from.z / depth);

@@ -4,12 +4,12 @@
 //! [`Certified`], and declares both to [`Shape`](crate::world::shape::Shape).
 
 use crate::geometry::aabb::Aabb;
-use crate::geometry::ray::{Bracket, Ray, RayRange, Side};
+use crate::geometry::ray::{Bracket, Drift, Ray, RayRange, Side};
 use crate::geometry::roots::Method;
 use crate::numeric::double_double::DoubleDouble;
 use crate::world::certify::Equation;
 use crate::world::coincidence;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 /// A shape that rays can hit. Shapes do not change while an image is rendered.
 ///
@@ -31,6 +31,12 @@ pub trait Hittable: Send + Sync {
 
     /// Returns a bounding box of the shape, or `None` for an unbounded shape.
     fn bounds(&self) -> Option<Aabb> {
+        None
+    }
+
+    /// Returns a bounding box of what a linear map makes of the shape, up to rounding, where it is tighter than that of
+    /// the corners of its box.
+    fn bounds_after(&self, _linear: &DMat3) -> Option<Aabb> {
         None
     }
 
@@ -70,7 +76,8 @@ pub trait Hittable: Send + Sync {
     }
 
     /// Returns a point and the unit normal of the plane that contains the whole shape, if there is one: rays that leave
-    /// the shape stay on their side of the plane. `None` is always correct.
+    /// the shape stay on their side of the plane, it is shaded with the plane's normal, and a light behind the plane does
+    /// not light it. `None` is always correct.
     fn plane(&self) -> Option<[DVec3; 2]> {
         None
     }
@@ -98,6 +105,14 @@ pub trait Bracketed: Hittable {
     /// Where the ray may start on the shape, because the shape touches the origin within the range's `origin_error`,
     /// the bracket has no certain upper end.
     fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket;
+
+    /// Returns a bracket of the distances of all rays within a drift of this one, none of which starts on the shape.
+    /// Where it is unknown, as by default, the hits of a camera ray in a copy of the shape are proven, which takes a
+    /// hundred times as long.
+    #[inline(always)]
+    fn t_bounds_within(&self, _ray: &Ray, _range: &RayRange, _drift: Drift) -> Bracket {
+        Bracket::UNKNOWN
+    }
 
     /// Returns what [`distance`](Hittable::distance) returns, to the last bit, for a ray whose hit a bracket has found
     /// for certain, or NaN where it takes more than plain arithmetic. For other rays it need not detect a miss.

@@ -1,5 +1,6 @@
 //! Lights: the trait that a plugin implements.
 
+use crate::geometry::aabb::Aabb;
 use crate::world::material::Rgb;
 use glam::DVec3;
 
@@ -21,6 +22,12 @@ pub trait Light: Send + Sync {
     /// sign, or `None` where it is not known. `None` is always correct.
     fn brightest(&self) -> Option<Rgb> {
         self.uniform()
+    }
+
+    /// Tells whether the light shines on no point of a region, which may be unbounded: [`emissivity`](Self::emissivity) is
+    /// `None` there. Then it is left out where nothing else is seen. `false` is always correct.
+    fn is_clear_of(&self, _region: &Aabb) -> bool {
+        false
     }
 
     /// Returns the radius of a spherical light in world units; 0 for a point light, whose shadows have sharp edges.

@@ -1,6 +1,6 @@
 //! Textures: images that colour surfaces and light.
 
-use crate::files;
+use crate::files::{self, ImageBytes};
 use crate::text;
 use crate::world::material::Rgb;
 use bytesize::ByteSize;
@@ -62,7 +62,8 @@ impl Texture {
             ImageError::Limits(_) => format!("it takes more than {} of memory", ByteSize(most)),
             _ => text::picture_reason(&error),
         };
-        let reader = ImageReader::new(BufReader::new(file)).with_guessed_format();
+        let bytes: &mut dyn ImageBytes = &mut BufReader::new(file);
+        let reader = ImageReader::new(bytes).with_guessed_format();
         let mut reader = reader.map_err(|error| text::reason(&error))?;
         reader.limits(limits);
         let decoder = reader.into_decoder().map_err(cannot)?;

@@ -1,7 +1,7 @@
 //! Limits on what is read: images that only claim to be large, and files without an end.
 #![cfg(target_os = "linux")]
 
-use crate::common::program::{folder, outcome, scene, tabray};
+use crate::common::program::{folder, names_in, outcome, scene, tabray};
 use std::fs;
 use std::io::Write;
 use std::path::Path;
@@ -76,6 +76,76 @@ mesh wall { material m file wall.obj }";
     let (status, _, said) = outcome(tabray(&folder).args(args));
     assert_eq!(status, 2, "{said}");
     assert!(said.contains("it has 400.0 MiB, which may take more than the"), "{said}");
+}
+
+/// Meshes that take far more memory than their files.
+#[test]
+fn a_mesh_keeps_to_the_limit_on_memory_while_it_is_read() {
+    let folder = folder();
+    let mesh = |file: &str| {
+        format!(
+            "camera eye {{ pixeldim 8 6 worlddim 8 6 viewpoint 4 3 6 }} material m {{ ambient 1 1 1 }}
+            mesh wall {{ material m file {file} }}"
+        )
+    };
+    let fan = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nf{}\n", " 1 2 3".repeat(500_000));
+    fs::write(folder.path().join("fan.obj"), fan).expect("a mesh");
+    let header = "ply\nformat binary_little_endian 1.0\nelement junk 3000000\nproperty uchar x\nelement vertex 3\n\
+        property uchar x\nproperty uchar y\nproperty uchar z\nelement face 1\nproperty list int uchar vertex_indices\n\
+        property list int uchar other\nend_header\n";
+    let counts = [1_500_000_i32.to_le_bytes(), 500_000_i32.to_le_bytes()];
+    let (corners, other) = ([0, 1, 2].repeat(500_000), vec![0; 500_000]);
+    let vertices = [0, 0, 0, 1, 0, 0, 0, 1, 0];
+    let junk = vec![0; 3_000_000];
+    let ply = [header.as_bytes(), &junk, &vertices, &counts[0], &corners, &counts[1], &other].concat();
+    fs::write(folder.path().join("fan.ply"), ply).expect("a mesh");
+    for file in ["fan.obj", "fan.ply"] {
+        fs::write(folder.path().join("wall.ray"), mesh(file)).expect("a scene");
+        let args = ["render", "wall.ray", "-o", "x.png", "--max-memory", "100MiB"];
+        let (status, _, said) = outcome(tabray(&folder).args(args));
+        assert_eq!(status, 2, "{said}");
+        let message = "faces, which may take more than the";
+        assert!(said.contains(message) && said.contains("of memory that are left"), "{said}");
+    }
+}
+
+/// Memory that the system refuses anywhere ends the program with a message, and no file is left.
+#[test]
+fn memory_that_is_refused_is_told() {
+    let folder = folder();
+    let mut balls =
+        "camera eye { pixeldim 8 6 worlddim 8 6 viewpoint 4 3 6 }\nmaterial m { ambient 1 1 1 }\n".to_owned();
+    for ball in 0..20_000 {
+        balls += &format!("sphere s{ball} {{ material m center {ball} 1 2 radius 1 }}\n");
+    }
+    fs::write(folder.path().join("balls.ray"), balls).expect("a scene");
+    let mut refused = 0;
+    for kib in (40_000..160_000).step_by(20_000) {
+        for command in ["check balls.ray", "render balls.ray -o x.png", "convert balls.ray x.toml"] {
+            let limited = format!("ulimit -v {kib}; exec \"$0\" {command}");
+            let mut shell = assert_cmd::Command::new("bash");
+            shell.args(["-c", &limited]).arg(env!("CARGO_BIN_EXE_tabray")).current_dir(folder.path());
+            let (status, _, said) = outcome(&mut shell);
+            let written = names_in(folder.path());
+            match status {
+                0 => assert!(
+                    command.starts_with("check") || written.len() == 2,
+                    "{command} in {kib}: {written:?}"
+                ),
+                // The program itself cannot be loaded.
+                127 => assert!(said.contains("error while loading shared libraries"), "{said}"),
+                _ => {
+                    assert_eq!((status, written.len()), (1, 1), "{command} in {kib}: {said}");
+                    assert!(said.starts_with("error: "), "{said}");
+                    refused += usize::from(said.contains("memory for `balls.ray`: the system refused"));
+                }
+            }
+            for file in ["x.png", "x.toml"] {
+                let _ = fs::remove_file(folder.path().join(file));
+            }
+        }
+    }
+    assert!(refused > 0, "some limit is met within the program");
 }
 
 #[test]

@@ -45,10 +45,27 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 }
                 formulas.extend(text.split('"').skip(1).step_by(2).map(str::to_owned));
             }
+            Some(kind @ ("obj" | "ply" | "stl")) if bytes.len() < 1 << 14 => {
+                let format = target::MESHES.iter().position(|format| *format == kind).unwrap_or(0) as u8;
+                for (first, name) in [(format, 2 * index), (format + 3, 2 * index + 1)] {
+                    write("mesh", name, &[&[first], &bytes[..bytes.len().min(2000)]].concat())?;
+                }
+            }
             Some("png" | "ppm" | "pgm" | "pbm") if bytes.len() < 1 << 14 => write("texture", index, &bytes)?,
             _ => {}
         }
     }
+    // A triangle in bytes.
+    let corners: Vec<u8> =
+        [0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.5].into_iter().flat_map(f32::to_le_bytes).collect();
+    let ply = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+               element face 1\nproperty list uchar uchar vertex_indices\nend_header\n";
+    write("mesh", 1000, &[&[1], ply.as_bytes(), &corners, &[3, 0, 1, 2]].concat())?;
+    write(
+        "mesh",
+        1001,
+        &[&[2][..], &[b' '; 80], &1_u32.to_le_bytes(), &[0; 12], &corners, &[0; 2]].concat(),
+    )?;
     for (index, formula) in formulas.iter().enumerate() {
         write("formula", index, formula.as_bytes())?;
     }
@@ -67,6 +84,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     let functions = "sin cos tan exp ln sqrt abs floor min max 1e300 1e-320 -0 nan inf".split(' ');
     words.extend(functions.map(str::to_owned));
+    let meshes = "v f usemtl solid facet normal outer loop vertex endloop endfacet endsolid ply format ascii \
+                  binary_little_endian binary_big_endian element face property list uchar int float double \
+                  vertex_indices end_header";
+    words.extend(meshes.split_whitespace().map(str::to_owned));
     let names = "GET POST HEAD HTTP/1.0 HTTP/1.1 Host: Origin: Sec-Fetch-Site: Sec-Fetch-Dest: Content-Length: \
                  Transfer-Encoding: Connection: Expect: chunked close same-origin none cross-site document http:// \
                  localhost:3000 ?token= TOKEN HOST SNAPSHOT VERSION /events /probe/1/ /layer/1/ /accept /reject \

@@ -107,6 +107,43 @@ pub fn texture(bytes: &[u8]) {
     load("scene.ray", scene.as_bytes(), None);
 }
 
+/// The formats of meshes, as file names end.
+pub const MESHES: [&str; 3] = ["obj", "ply", "stl"];
+
+/// Reads the file of a mesh, which is accepted or refused with a reason. The first byte chooses the format, and
+/// whether an OBJ is read again with comments after it that make it many blocks, which changes nothing.
+pub fn mesh(bytes: &[u8]) {
+    let [kind, file @ ..] = bytes else { return };
+    let format = MESHES[usize::from(kind % 3)];
+    let path = memory().join(format!("tabray-fuzz-{}.{format}", std::process::id()));
+    let read = |file: &[u8]| {
+        fs::write(&path, file).expect("it is written");
+        let scene = format!(
+            "camera eye {{ pixeldim 2 2 worlddim 2 2 viewpoint 0 0 1 }} material plain {{ ambient 1 1 1 }} \
+             mesh surface {{ material plain file {} }}",
+            path.display()
+        );
+        match scene::read(&REGISTRY, "scene.ray", Path::new(""), scene.as_bytes(), None) {
+            Ok(_) => None,
+            Err(report) => Some(report.to_string()),
+        }
+    };
+    let said = read(file);
+    // Blank lines after the first ones change nothing in an OBJ but the numbers of later lines.
+    if kind / 3 == 0 && format == "obj" && file.len() < 1 << 10 {
+        let blank = [file, &b"\n"[..], &b"# a comment\n".repeat(1 << 15)].concat();
+        let is_continued = file.ends_with(b"\\") || file.ends_with(b"\\\r");
+        assert!(
+            is_continued || read(&blank).is_none() == said.is_none(),
+            "comments change what is read: {said:?}"
+        );
+    }
+    fs::remove_file(&path).expect("it was written");
+    if let Some(said) = said {
+        assert!(said.contains("mesh `surface` ") && said.len() < 1 << 14, "{said}");
+    }
+}
+
 /// A renderer for each instruction set of this machine.
 static RENDERERS: LazyLock<Vec<Renderer>> =
     LazyLock::new(|| Cpu::all().map(|cpu| Renderer::new(1).expect("a thread").on(cpu)).collect());

@@ -5,6 +5,7 @@ mod common;
 
 mod differences;
 mod inside;
+mod needs;
 mod plan;
 mod readme;
 mod snapshots;

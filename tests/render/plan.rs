@@ -39,7 +39,7 @@ fn count(model: &Model, threads: usize) -> RayStats {
 }
 
 fn text(model: &Model) -> String {
-    decisions::of(&Plan::new(model)).iter().map(|decision| format!("{decision}\n")).collect()
+    decisions::of(&Plan::for_picture(model)).iter().map(|decision| format!("{decision}\n")).collect()
 }
 
 /// Returns the line of a scene's plan about a subject.

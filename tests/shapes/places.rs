@@ -81,6 +81,23 @@ fn a_copy_of_a_smooth_mesh_is_smooth() {
 }
 
 #[test]
+fn a_copy_of_a_mesh_of_1e_150_or_1e150_looks_as_the_mesh_does() {
+    for (mesh, copy) in [("1e150", "1e-150"), ("1e-150", "1e150")] {
+        for smooth in [0, 1] {
+            let object = format!("material red file scenes/models/knot.obj smooth {smooth}");
+            let place = "rotation 50 0 20 translation 4 2 -2";
+            look_the_same(
+                &format!(
+                    "mesh o {{ {object} scale {mesh} {mesh} {mesh} }}
+                     place p {{ object o material red scale {copy} {copy} {copy} {place} }}"
+                ),
+                &format!("mesh p {{ {object} {place} }}"),
+            );
+        }
+    }
+}
+
+#[test]
 fn copies_of_copies_have_a_limit() {
     let copies = |count: usize| {
         let pattern = "sphere p0 { material red center 0 0 0 radius 1 }\n".to_owned();

@@ -4,7 +4,9 @@ use crate::common::{root, scenes};
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 use std::fs;
-use target::{TO_REVIEW, TO_WATCH, checkpoint, formula, notes, render, review, texture, toml, watch};
+use target::{
+    MESHES, TO_REVIEW, TO_WATCH, checkpoint, formula, mesh, notes, render, review, texture, toml, watch,
+};
 
 #[path = "../fuzz/target.rs"]
 mod target;
@@ -68,6 +70,17 @@ fn formulas_are_refused_or_evaluated() {
     let formulas =
         ["y", "2 + sin(y)", "sqrt(1 - y^2)", "max(0.2, ln(y))", "min(2, 1/abs(y-3))", "exp(-y)*cos(3*y)"];
     run(formula, &formulas.map(|formula| formula.as_bytes().to_vec()), 20_000);
+}
+
+#[test]
+fn meshes_are_refused_or_read() {
+    let names = ["slivers.obj", "icosahedron.ply", "bowl.stl", "points.ply", "lantern.obj"];
+    let seed = |name: &str| {
+        let bytes = fs::read(root().join("scenes/models").join(name)).expect("a mesh");
+        let format = MESHES.iter().position(|format| name.ends_with(format)).expect("a format") as u8;
+        [&[format], &bytes[..bytes.len().min(2000)]].concat()
+    };
+    run(mesh, &names.map(seed), 2000);
 }
 
 #[test]

@@ -96,7 +96,8 @@ fn the_gallery_of_charts_is_drawn() {
     let mut text = INTRODUCTION.replace("COMMAND", COMMAND);
     for (scene, title, words) in SCENES {
         let path = root().join("scenes").join(scene).with_extension("ray");
-        let verdict = tabray(&["chart", path.to_str().expect("UTF-8"), "-o", "."], folder.path());
+        let verdict =
+            tabray(&["chart", path.to_str().expect("UTF-8"), "-o", ".", "--time-limit", "1h"], folder.path());
         let name = path.file_stem().expect("a name").to_str().expect("UTF-8");
         for extension in ["png", "csv"] {
             let file = Path::new(name).with_extension(extension);
@@ -158,12 +159,17 @@ so do errors that differ by less than a half.
 - **The image, by method**: one ray through each pixel, and the difference of its colours from those of `strict`.
 - **Samples per pixel**: the error of the image against 1024 other samples. `sobol` samples are evenly spread, `random`
   ones are those of the notes.
+- **Reflections and transmissions**: one ray through each pixel, in scenes with mirrors or glass, where paths end after
+  so many of them; the errors are those against all that can be seen.
+- **The whole image**: accuracy and samples together, as `tabray choose` measures them: pixels spread over the image
+  against more samples, with all sources of error.
 
 Errors of distances are the 99th percentile of all right hits. The ground truth is that of the real ray through the
 point of the image and of the scene's numbers as they are written: a hit is isolated by intervals of 237 bits, as in
 `tabray verify`, and the error of a distance includes the effect of rounding the ray. Where the intervals do not decide,
 the pair is left out and counted as undecided. Errors of colours are root mean squares over pixels and channels, of the
-colours as displayed, from 0 to 1. Errors depend on the scene alone: two runs give the same errors to the last digit.
+colours as displayed, from 0 to 1. Errors depend on the scene alone: two runs give the same errors to the last digit,
+unless the time limit, 2 minutes if `--time-limit` does not set it, leaves time for fewer pixels; the panel has their number.
 
 Times are CPU times of one thread, of the same work for each choice in turn, in up to 15 rounds after a warm-up round;
 the minimum counts. Distances are timed on about 2000 of the pairs, images on some of their tiles. Both are traced as in
@@ -221,4 +227,11 @@ The classic method loses hits at every ripple; what remains with the exact metho
 
 `tabray choose SCENE --max-error 0.01` quickly measures the effect of accuracy and samples on a scene, shows the choices
 that it considered, and prints the command line to use; `--max-time 2` chooses the best within two seconds on all cores.
+With `--worst`, the error is that which one of a thousand pixels exceeds, instead of the root mean square.
+
+Each error has a bound that holds with a confidence of 99 %, and the bound of what is chosen is at most what was asked
+for; if all pixels are measured, the bound is the error. The samples are chosen by counts, so that the same scene has
+the same answer. Another accuracy than the scene's is chosen only if it takes at most 80 % of its time in each of five
+rounds. Choosing takes at most half as many rays as the image that it recommends, or a million, and ends after 10 seconds
+unless `--time-limit` gives it more. [What was promised and what was measured](choose.md), for 30 scenes.
 ";

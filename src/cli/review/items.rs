@@ -68,7 +68,7 @@ fn change(snapshot: &Pending) -> Result<Change, Failure> {
         let old = old.and_then(Content::text).map(str::to_owned);
         return Ok(Change::Text { old, new: new.to_owned() });
     }
-    let decode = |content: &Content| picture::decode(Cursor::new(content.bytes()));
+    let decode = |content: &Content| picture::decode(&mut Cursor::new(content.bytes()));
     let new = decode(new).map_err(unreadable)?;
     // An old file that is not an image is a reason to accept a new one.
     let old = old.and_then(|old| decode(old).ok());

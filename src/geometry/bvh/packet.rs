@@ -20,47 +20,49 @@ const PART: usize = 64;
 /// 10^3 to 10^6 objects take the same time to a tenth.
 const WIDE: f64 = 1.0;
 
-/// A search for the objects that a packet's rays may hit.
+/// What is done with the objects that a packet's rays may hit.
+///
+/// `t_max` holds the distance at which each ray of the packet ends, in world units, for which a test may put a lesser
+/// one. It is handed over, and the visitor is behind `dyn`, so that the search is compiled once for all visitors.
 pub trait PacketVisitor {
-    /// Returns the distance at which each ray ends, in world units, which may become less from one test to the next. A
-    /// ray that ends at 0 or less is not searched for.
-    fn t_max(&self) -> &[f64];
-
     /// Tests the rays in a range of lanes against the object of this index. The range is as long as a multiple of
     /// [`LANES`], and no ray is tested against one object twice, here or alone.
-    fn test(&mut self, object: usize, lanes: Range<usize>);
+    fn test(&mut self, object: usize, lanes: Range<usize>, t_max: &mut [f64]);
 
     /// Tests the ray in one lane against the object of this index.
-    fn test_one(&mut self, object: usize, lane: usize);
+    fn test_one(&mut self, object: usize, lane: usize, t_max: &mut [f64]);
 }
 
 kernels! {
-    /// Visits the objects whose boxes the rays of a packet enter before their ends, roughly from near to far.
-    pub fn visit[V: PacketVisitor](tree: &Bvh, stack: &mut Stack, rays: RayPacket, visitor: &mut V) {
+    /// Visits the objects whose boxes the rays of a packet enter before their ends, roughly from near to far. A ray that
+    /// ends at 0 or less is not searched for.
+    pub fn visit(tree: &Bvh, stack: &mut Stack, rays: RayPacket, t_max: &mut [f64], visitor: &mut dyn PacketVisitor) {
         if tree.nodes.is_empty() {
             return;
         }
         for part in split(rays.len(), PART) {
             let Stack { ahead, inverse } = stack;
-            Search { tree, stack: ahead, rays, visitor, inverse, start: part.start }.part(part.len());
+            Search { tree, stack: ahead, rays, t_max, visitor, inverse, start: part.start }.part(part.len());
         }
     }
 }
 
 /// The search for the objects that the rays of a part of a packet may hit.
-struct Search<'s, V> {
+struct Search<'s, 'v> {
     tree: &'s Bvh,
     stack: &'s mut Vec<Ahead>,
     /// The rays of the packet.
     rays: RayPacket<'s>,
-    visitor: &'s mut V,
+    /// The distances at which they end, in world units.
+    t_max: &'s mut [f64],
+    visitor: &'s mut (dyn PacketVisitor + 'v),
     /// The reciprocals of the directions of the part's rays.
     inverse: &'s mut [Vec<f64>; 3],
     /// The first lane of the part.
     start: usize,
 }
 
-impl<V: PacketVisitor> Search<'_, V> {
+impl Search<'_, '_> {
     /// Searches for a part of this many rays.
     #[inline(always)]
     fn part(mut self, count: usize) {
@@ -76,8 +78,7 @@ impl<V: PacketVisitor> Search<'_, V> {
             self.eight(self.start, 0);
             return;
         }
-        let Some(beam) = Beam::around(self.rays.part(lanes.clone()), &self.visitor.t_max()[lanes.clone()])
-        else {
+        let Some(beam) = Beam::around(self.rays.part(lanes.clone()), &self.t_max[lanes.clone()]) else {
             return;
         };
         let (start, mut t_max) = (self.stack.len(), self.most(lanes.clone()));
@@ -116,8 +117,7 @@ impl<V: PacketVisitor> Search<'_, V> {
     #[inline(always)]
     fn eight(&mut self, first: usize, root: u32) {
         let lanes = first..first + LANES;
-        let Some(beam) = Beam::around(self.rays.part(lanes.clone()), &self.visitor.t_max()[lanes.clone()])
-        else {
+        let Some(beam) = Beam::around(self.rays.part(lanes.clone()), &self.t_max[lanes.clone()]) else {
             return;
         };
         let (start, mut t_max) = (self.stack.len(), self.most(lanes.clone()));
@@ -150,12 +150,11 @@ impl<V: PacketVisitor> Search<'_, V> {
     /// Searches a subtree for one ray.
     #[inline(always)]
     fn one(&mut self, lane: usize, root: u32) {
-        let t_max = self.visitor.t_max()[lane];
-        if t_max > 0.0 {
-            let (beam, visitor) = (Beam::of(&self.rays.get(lane)), &mut *self.visitor);
-            descend(self.tree, self.stack, &beam, root, t_max, &mut |object, _| {
-                visitor.test_one(object, lane);
-                visitor.t_max()[lane]
+        let (beam, visitor, t_max) = (Beam::of(&self.rays.get(lane)), &mut *self.visitor, &mut *self.t_max);
+        if t_max[lane] > 0.0 {
+            descend(self.tree, self.stack, &beam, root, t_max[lane], &mut |object, _| {
+                visitor.test_one(object, lane, t_max);
+                t_max[lane]
             });
         }
     }
@@ -164,7 +163,7 @@ impl<V: PacketVisitor> Search<'_, V> {
     #[inline(always)]
     fn test(&mut self, child: u32, lanes: Range<usize>) {
         if !lanes.is_empty() {
-            self.visitor.test(self.tree.objects[(child ^ OBJECT) as usize] as usize, lanes);
+            self.visitor.test(self.tree.objects[(child ^ OBJECT) as usize] as usize, lanes, self.t_max);
         }
     }
 
@@ -172,7 +171,7 @@ impl<V: PacketVisitor> Search<'_, V> {
     #[inline(always)]
     fn most(&self, lanes: Range<usize>) -> f64 {
         let mut most = [0.0; LANES];
-        for t_max in self.visitor.t_max()[lanes].chunks_exact(LANES) {
+        for t_max in self.t_max[lanes].chunks_exact(LANES) {
             for lane in 0..LANES {
                 most[lane] = larger(t_max[lane], most[lane]);
             }
@@ -194,7 +193,7 @@ impl<V: PacketVisitor> Search<'_, V> {
     #[inline(always)]
     fn any_enters(&self, first: usize, bounds: &Aabb) -> bool {
         let lanes = first..first + LANES;
-        let (origin, t_max) = (self.rays.origin.part(lanes.clone()), &self.visitor.t_max()[lanes]);
+        let (origin, t_max) = (self.rays.origin.part(lanes.clone()), &self.t_max[lanes]);
         let first = first - self.start;
         let [x, y, z] = &*self.inverse;
         let inverse = View { x, y, z }.part(first..first + LANES);

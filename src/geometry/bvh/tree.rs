@@ -231,22 +231,17 @@ mod tests {
     }
 
     /// Counts how often each ray is tested against each object.
-    struct Counter<'c> {
-        t_max: &'c [f64],
+    struct Counter {
         tests: Vec<Vec<u32>>,
     }
 
-    impl PacketVisitor for Counter<'_> {
-        fn t_max(&self) -> &[f64] {
-            self.t_max
-        }
-
-        fn test(&mut self, object: usize, lanes: Range<usize>) {
+    impl PacketVisitor for Counter {
+        fn test(&mut self, object: usize, lanes: Range<usize>, t_max: &mut [f64]) {
             assert_eq!((lanes.start % LANES, lanes.end % LANES), (0, 0));
-            lanes.for_each(|lane| self.test_one(object, lane));
+            lanes.for_each(|lane| self.test_one(object, lane, t_max));
         }
 
-        fn test_one(&mut self, object: usize, lane: usize) {
+        fn test_one(&mut self, object: usize, lane: usize, _: &mut [f64]) {
             self.tests[object][lane] += 1;
         }
     }
@@ -289,8 +284,8 @@ mod tests {
             let rays = RayPacket { origin: origin.view(count), dir: dir.view(count), origin_error: 0.0 };
             let tree = Bvh::new(&boxes);
             for cpu in Cpu::all() {
-                let mut counter = Counter { t_max: &t_max, tests: vec![vec![0; count]; boxes.len()] };
-                visit(cpu, &tree, &mut Stack::default(), rays, &mut counter);
+                let mut counter = Counter { tests: vec![vec![0; count]; boxes.len()] };
+                visit(cpu, &tree, &mut Stack::default(), rays, &mut t_max.clone(), &mut counter);
                 for (index, bounds) in boxes.iter().enumerate() {
                     for lane in 0..count {
                         let times = counter.tests[index][lane];

@@ -61,9 +61,9 @@ impl Formula {
     pub fn at<N: Scalar>(&self, y: N) -> N {
         // Most formulas need a small stack, which is quicker to set up.
         if self.stack_depth <= SMALL_STACK {
-            self.run::<N, SMALL_STACK>(y)
+            self.run(y, &mut [y; SMALL_STACK])
         } else {
-            self.run::<N, MAX_DEPTH>(y)
+            self.run(y, &mut [y; MAX_DEPTH])
         }
     }
 
@@ -79,15 +79,17 @@ impl Formula {
         self.steps.iter().map(cost).sum()
     }
 
-    fn run<N: Scalar, const STACK: usize>(&self, y: N) -> N {
-        self.run_inline::<N, STACK>(y)
+    /// Evaluates the formula on a stack that is deep enough; one function for stacks of any size.
+    fn run<N: Scalar>(&self, y: N, stack: &mut [N]) -> N {
+        self.run_inline(y, stack)
     }
 
     /// Evaluates the formula and its derivative at eight y, for kernels.
     #[inline(always)]
     pub fn at_eight(&self, y: [f64; LANES]) -> Dual<F64x8> {
         if self.is_plain {
-            return self.run_inline::<_, SMALL_STACK>(Dual::variable(F64x8(y)));
+            let y = Dual::variable(F64x8(y));
+            return self.run_inline(y, &mut [y; SMALL_STACK]);
         }
         let (mut value, mut slope) = ([0.0; LANES], [0.0; LANES]);
         for lane in 0..LANES {
@@ -97,8 +99,7 @@ impl Formula {
     }
 
     #[inline(always)]
-    fn run_inline<N: Scalar, const STACK: usize>(&self, y: N) -> N {
-        let mut stack = [y; STACK];
+    fn run_inline<N: Scalar>(&self, y: N, stack: &mut [N]) -> N {
         let mut top = 0_usize;
         for step in &self.steps {
             // The parser has checked that the operands are there and that they fit on the stack.

@@ -3,6 +3,7 @@
 //! The endpoints are `f64`, or have 237 bits where `f64` leaves a question open ([`Wide`]).
 
 mod float;
+mod functions;
 
 use crate::numeric::scalar::Scalar;
 use f256::f256;
@@ -13,9 +14,11 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// not into every formula, which would take megabytes of code.
 macro_rules! apart_if_long {
     ($F:ident, $operation:expr) => {
-        if $F::IS_LONG { apart(move || $operation) } else { $operation }
+        if $F::IS_LONG { $crate::numeric::interval::apart(move || $operation) } else { $operation }
     };
 }
+
+use apart_if_long;
 
 /// Calls a function without inlining it.
 #[inline(never)]
@@ -103,34 +106,6 @@ impl<F: Float> Interval<F> {
     fn around(low: F, high: F) -> Self {
         let (low, high) = F::around(low, high);
         if low.is_nan() || high.is_nan() { Self::whole() } else { Self { low, high } }
-    }
-
-    /// Returns whether the interval may contain `start` plus any multiple of 2π radians.
-    fn holds_angle(self, start: F) -> bool {
-        // Roundings of half an EPSILON of the angles each: two in the difference, one each in π, the quotient, the
-        // product and the two sums. That is 3.5 EPSILON in all.
-        let rounding = F::of(4.503_599_627_370_496) * F::EPSILON;
-        let slack = rounding * (F::of(1.0) + self.low.abs() + self.high.abs());
-        let turn = F::of(2.0) * F::PI;
-        let turns = -(-((self.low - slack - start) / turn)).floor();
-        start + turns * turn <= self.high + slack
-    }
-
-    /// Returns whether the interval is narrower than a bound in radians, and below 1e15 radians, where sines still mean
-    /// something; other angles are taken for any angle.
-    fn is_narrower(self, than: F) -> bool {
-        self.width() < than && self.magnitude() < F::of(1e15)
-    }
-
-    /// Returns the sine or cosine over the interval, from its values at the endpoints; it is 1 at `top` and -1 at `top
-    /// - π` radians.
-    fn sine_or_cosine(self, at_low: F, at_high: F, top: F) -> Self {
-        let one = F::of(1.0);
-        let Self { low, high } = Self::around(at_low.min(at_high), at_low.max(at_high));
-        Self {
-            low: if self.holds_angle(top - F::PI) { -one } else { low.max(-one) },
-            high: if self.holds_angle(top) { one } else { high.min(one) },
-        }
     }
 
     /// Returns the minimum and the maximum of four numbers, NaN ignored.
@@ -243,170 +218,5 @@ impl<F: Float> Div for Interval<F> {
             );
             Self::outward(low, high)
         })
-    }
-}
-
-impl<F: Float> Scalar for Interval<F> {
-    #[inline(always)]
-    fn constant(value: f64) -> Self {
-        Self::point(F::of(value))
-    }
-
-    #[inline(always)]
-    fn about(value: f64, error: f64) -> Self {
-        apart_if_long!(F, {
-            let (value, error) = (F::of(value), F::of(error));
-            Self::outward_sum(value - error, value + error)
-        })
-    }
-
-    fn sin_cos(self) -> (Self, Self) {
-        let half_turn = F::PI;
-        if !self.is_narrower(half_turn + half_turn) {
-            let any = Self { low: F::of(-1.0), high: F::of(1.0) };
-            return (any, any);
-        }
-        let (sin_low, cos_low) = self.low.sin_cos();
-        let is_point = self.low == self.high;
-        let (sin_high, cos_high) = if is_point { (sin_low, cos_low) } else { self.high.sin_cos() };
-        let zero = F::of(0.0);
-        (
-            self.sine_or_cosine(sin_low, sin_high, F::of(0.5) * half_turn),
-            self.sine_or_cosine(cos_low, cos_high, zero),
-        )
-    }
-
-    fn tan(self) -> Self {
-        let quarter = F::of(0.5) * F::PI;
-        if !self.is_narrower(F::PI) || self.holds_angle(quarter) || self.holds_angle(-quarter) {
-            return Self::whole();
-        }
-        Self::around(self.low.tan(), self.high.tan())
-    }
-
-    fn exp(self) -> Self {
-        let Self { low, high } = Self::around(self.low.exp(), self.high.exp());
-        Self { low: low.max(F::of(0.0)), high }
-    }
-
-    fn ln(self) -> Self {
-        let zero = F::of(0.0);
-        if self.low > zero {
-            Self::around(self.low.ln(), self.high.ln())
-        } else if self.low == zero && self.high > zero {
-            Self { low: -F::INFINITY, ..Self::around(zero, self.high.ln()) }
-        } else {
-            Self::whole()
-        }
-    }
-
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        apart_if_long!(F, {
-            let zero = F::of(0.0);
-            // Written so that a NaN stays a NaN.
-            let root = |of: F| (if of < zero { zero } else { of }).sqrt();
-            let root = Self::outward(root(self.low), root(self.high));
-            Self { low: root.low.max(zero), high: root.high }
-        })
-    }
-
-    #[inline(always)]
-    fn abs(self) -> Self {
-        apart_if_long!(F, {
-            let zero = F::of(0.0);
-            if self.low >= zero {
-                self
-            } else if self.high <= zero {
-                -self
-            } else {
-                Self { low: zero, high: self.magnitude() }
-            }
-        })
-    }
-
-    fn floor(self) -> Self {
-        Self { low: self.low.floor(), high: self.high.floor() }
-    }
-
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        apart_if_long!(F, Self { low: self.low.min(other.low), high: self.high.min(other.high) })
-    }
-
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        apart_if_long!(F, Self { low: self.low.max(other.low), high: self.high.max(other.high) })
-    }
-
-    fn pow(self, exponent: Self) -> Self {
-        let zero = F::of(0.0);
-        if self.is_zero() && exponent.low > zero {
-            Self::constant(0.0)
-        } else if self.low >= zero {
-            (exponent * self.ln()).exp()
-        } else {
-            Self::whole()
-        }
-    }
-
-    #[inline(always)]
-    fn powi(self, exponent: i32) -> Self {
-        apart_if_long!(F, {
-            if exponent < 0 {
-                return Self::constant(1.0) / self.powi(-exponent);
-            }
-            let zero = F::of(0.0);
-            match exponent {
-                0 => return Self::constant(1.0),
-                1 => return self,
-                2 => {
-                    let Self { low, high } = self.abs();
-                    let square = Self::outward(low * low, high * high);
-                    return Self {
-                        low: if square.low > zero { square.low } else { zero },
-                        high: square.high,
-                    };
-                }
-                _ => {}
-            }
-            let base = if exponent % 2 == 0 { self.abs() } else { self };
-            let mut power = base;
-            for _ in 1..exponent {
-                let next = power * base;
-                // As after an underflow, whose numbers are also slow.
-                if next.low == power.low && next.high == power.high {
-                    break;
-                }
-                power = next;
-            }
-            if exponent % 2 == 0 { Self { low: power.low.max(zero), high: power.high } } else { power }
-        })
-    }
-
-    #[inline(always)]
-    fn step(self) -> Self {
-        apart_if_long!(F, {
-            let (zero, one) = (F::of(0.0), F::of(1.0));
-            Self {
-                low: if self.low > zero { one } else { zero },
-                high: if self.high < zero { zero } else { one },
-            }
-        })
-    }
-
-    #[inline(always)]
-    fn kink(self) -> Self {
-        if self.has_zero() { Self::whole() } else { Self::constant(0.0) }
-    }
-
-    fn jump(self) -> Self {
-        let below = self.low.floor();
-        if below == self.high.floor() && self.low > below { Self::constant(0.0) } else { Self::whole() }
-    }
-
-    #[inline(always)]
-    fn is_zero(self) -> bool {
-        self.low == F::of(0.0) && self.high == F::of(0.0)
     }
 }

@@ -11,6 +11,7 @@ use super::arrays::VectorList;
 use super::context::Tracer;
 use super::estimate::{AdaptiveScratch, Estimate, First, Found, Wanted};
 use super::ray_group::RayGroup;
+use super::sampled;
 use super::scratch::{PrimaryScratch, Scratch};
 use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::render::features::FEATURE_SAMPLES;
@@ -52,23 +53,42 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         active.extend(0..pixels.len() as u32);
         let mut goal = rays.tracer.plan.camera.samples;
         let gain = rays.tracer.plan.camera.gain();
+        let is_unbounded = sampled::is_unbounded(rays.tracer.plan);
         while !active.is_empty() {
-            for of in &*active {
-                let count = estimates[*of as usize].count;
-                for index in count..goal {
-                    rays.want(
-                        Wanted { of: *of, pixel: pixels[*of as usize].map(|side| side as f64), index },
-                        &mut |of, found| {
-                            estimates[of].add(found, goal);
-                        },
-                    );
+            let wanted = |of: u32, index, ray_budget| {
+                let pixel = pixels[of as usize].map(|side| side as f64);
+                Wanted { of, pixel, index, ray_budget }
+            };
+            if is_unbounded {
+                // What a sample may cost depends on those before it.
+                for index in 1..goal {
+                    for of in &*active {
+                        let Estimate { count, missing, .. } = estimates[*of as usize];
+                        if count <= index {
+                            let budget = (missing == f64::INFINITY).then_some(sampled::REST);
+                            rays.want(wanted(*of, index, budget), &mut |of, found| {
+                                estimates[of].add(found, goal);
+                            });
+                        }
+                    }
+                    rays.trace(&mut |of, found| estimates[of].add(found, goal));
                 }
+            } else {
+                for of in &*active {
+                    for index in estimates[*of as usize].count..goal {
+                        rays.want(wanted(*of, index, None), &mut |of, found| {
+                            estimates[of].add(found, goal);
+                        });
+                    }
+                }
+                rays.trace(&mut |of, found| estimates[of].add(found, goal));
             }
-            rays.trace(&mut |of, found| estimates[of].add(found, goal));
             let limit = most_error(adaptive, goal);
             active.retain(|of| {
                 let (estimate, pixel) = (&mut estimates[*of as usize], pixels[*of as usize]);
+                // More samples do not help a pixel that is off by an unknown amount.
                 let goes_on = goal < adaptive.most
+                    && estimate.missing != f64::INFINITY
                     && (estimate.error(gain) > limit
                         || goal < FEATURE_SAMPLES && rays.is_feature(pixel, estimate.distance));
                 if goes_on {
@@ -127,7 +147,7 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
             *wanted = firsts.len() as u32;
         }
         for of in 0..firsts.len() {
-            let wanted = Wanted { of: of as u32, pixel: firsts[of].pixel, index: 0 };
+            let wanted = Wanted { of: of as u32, pixel: firsts[of].pixel, index: 0, ray_budget: None };
             self.want(wanted, &mut |of, found| firsts[of].found = *found);
         }
         self.trace(&mut |of, found| firsts[of].found = *found);
@@ -178,6 +198,9 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
             y[lane] += wanted.pixel[1];
         }
         group.look(tracer.cpu, camera, tracer.plan.depth.as_ref(), places, len);
+        for (budget, wanted) in group.ray_budget.iter_mut().zip(&*batch) {
+            *budget = wanted.ray_budget.unwrap_or(*budget);
+        }
         tracer.colours(group, seen);
         for (lane, wanted) in batch.iter().enumerate() {
             let trails = &tracer.scratch.trails;

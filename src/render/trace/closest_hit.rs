@@ -3,21 +3,18 @@
 use super::arrays::resized;
 use super::context::Tracer;
 use super::hit_record::HitRecord;
+use super::one_ray::{Start, exact, located};
 use super::order;
 use super::ray_group::RayGroup;
 use crate::geometry::bvh::{self, PacketVisitor, Stack};
-use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
+use crate::geometry::ray::{Bracket, MISS, Ray, Side};
 use crate::geometry::ray_packet::{Nearest, RayPacket};
-use crate::geometry::sight::Sight;
-use crate::numeric::interval::{Interval, Wide};
 use crate::render::culling;
 use crate::render::frusta::{self, PART};
 use crate::render::observer::{Count, Event, Hit, Reason, TraceObserver};
 use crate::simd::cpu::kernels;
 use crate::simd::soa::{LANES, Vectors};
-use crate::world::any_shape::AnyShape;
-use crate::world::certify::{self, Enclosure, Precision};
-use crate::world::coincidence::CLOSE;
+use std::cmp::Ordering;
 use std::mem::take;
 use std::ops::Range;
 
@@ -37,10 +34,10 @@ impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
             self.closest_seen(group, hits);
             return;
         }
-        let mut stack = take(&mut self.scratch.stack);
+        let (mut stack, mut ends) = (take(&mut self.scratch.stack), take(&mut self.scratch.ends));
         let part = 0..group.padded();
-        Closest { tracer: self, group, hits, part, single: None }.run(&mut stack);
-        self.scratch.stack = stack;
+        Closest { tracer: self, group, hits, part, single: None }.run(&mut stack, &mut ends);
+        (self.scratch.stack, self.scratch.ends) = (stack, ends);
     }
 
     /// Finds one ray's closest hit and reports each step to the observer.
@@ -101,9 +98,16 @@ impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
         }
         let shape = |index: usize| &self.model.objects[index].shape;
         let (one, other) = ((shape(index), distance), (shape(rival), far));
-        let is_before = order::is_before(&start.ray, start.error, one, other)
-            .or_else(|| order::is_certainly_before(one.0, other.0, start.sight.as_ref()?));
-        is_before.unwrap_or(index < rival)
+        let certain = || order::certain_order(one.0, other.0, start.sight.as_ref()?);
+        if order::is_unclear(&start.ray, one, other)
+            && let Some(order) = certain()
+        {
+            return order.then(index.cmp(&rival)) == Ordering::Less;
+        }
+        let is_before = order::is_before(&start.ray, start.error, one, other);
+        let is_before = is_before.map(|is_before| if is_before { Ordering::Less } else { Ordering::Greater });
+        let order = is_before.or_else(certain).unwrap_or(Ordering::Equal);
+        order.then(index.cmp(&rival)) == Ordering::Less
     }
 
     /// Computes the distances, in world units, at which the rays of a group hit an object. Each lies between `near` and
@@ -136,77 +140,6 @@ impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
         // spoil the bounding box of the points.
         let last = distances[len - 1];
         distances[len..].fill(last);
-    }
-}
-
-/// A rounded ray, and what is known of the true ray that it stands for.
-pub(super) struct Start {
-    pub ray: Ray,
-    /// A bound on the error of the origin, in world units.
-    pub error: f64,
-    /// The ray before anything is rounded, if it is a primary ray.
-    pub sight: Option<Sight>,
-}
-
-impl Start {
-    /// Returns the side of a shape that the ray leaves, if the ray starts on the shape. `own` is that side if the shape
-    /// belongs to the object that the ray leaves. Another shape that passes through the same point is left, too.
-    fn leaves(&self, shape: &AnyShape, own: Option<Side>) -> Option<Side> {
-        let Ray { origin, dir } = self.ray;
-        let touched = || Side::seen_along(dir, shape.normal(origin)).opposite();
-        own.or_else(|| (self.error > 0.0 && shape.touches(origin, self.error)).then(touched))
-    }
-}
-
-/// Returns the exact distance of one ray's hit of a shape before `far`, in world units, or [`MISS`]. `origin_side` is
-/// the side of the shape that the ray leaves, if the shape belongs to the object that the packet leaves.
-pub(super) fn exact(shape: &AnyShape, start: &Start, origin_side: Option<Side>, far: f64) -> f64 {
-    located(shape, start, origin_side, far).0
-}
-
-/// Returns the exact distance as [`exact`] does, and a bracket of that distance and of the distance along the ray
-/// before anything is rounded.
-fn located(shape: &AnyShape, start: &Start, origin_side: Option<Side>, far: f64) -> (f64, Bracket) {
-    let known = |distance| (distance, Bracket::exactly(distance));
-    match start.leaves(shape, origin_side) {
-        Some(side) if !shape.can_hit_itself(side) => return (MISS, Bracket::MISS),
-        None => {}
-        origin_side => {
-            let range = RayRange { far, origin_side, origin_error: start.error, ..RayRange::ALL };
-            return known(shape.distance(&start.ray, &range));
-        }
-    }
-    let range = RayRange { far, ..RayRange::ALL };
-    let Some(sight) = &start.sight else { return known(shape.distance(&start.ray, &range)) };
-    let bracket = shape.t_bounds(&start.ray, &RayRange::ALL);
-    // A bracket of width 0 is the distance itself.
-    let is_known = bracket.near == bracket.far;
-    let distance = if is_known { range.keep(bracket.near) } else { shape.distance(&start.ray, &range) };
-    // Where the rounding of the ray may decide whether it hits the shape, the unrounded ray decides.
-    if bracket.is_doubtful() { decided(shape, sight, distance) } else { (distance, bracket) }
-}
-
-/// Returns a distance and a bracket of it, if the ray before anything is rounded hits the shape as far as a proof with
-/// 237 bits tells, and [`MISS`] otherwise.
-fn decided(shape: &AnyShape, sight: &Sight, distance: f64) -> (f64, Bracket) {
-    let enclosure = match shape.certify(sight, Precision::Double) {
-        Enclosure::Edge(_) | Enclosure::Doubtful(_) => shape.certify(sight, Precision::Octuple),
-        certain => certain,
-    };
-    match enclosure {
-        Enclosure::Misses => (MISS, Bracket::MISS),
-        // Edges belong to their surfaces.
-        Enclosure::Hits(at) | Enclosure::Edge(at) => {
-            let Interval { low, high } = certify::bounds_in_world_units(at, sight);
-            (distance.clamp(low, high), Bracket { near: low, far: high })
-        }
-        // What is undecided lies beyond the computed distance, as for a ray that is parallel to a plane up to rounding.
-        Enclosure::Doubtful(from)
-            if certify::in_world_units(Wide::point(from), sight).high * (1.0 - CLOSE) > distance =>
-        {
-            (MISS, Bracket::MISS)
-        }
-        Enclosure::Doubtful(_) => (distance, Bracket::exactly(distance)),
     }
 }
 
@@ -252,13 +185,16 @@ struct Single {
 }
 
 impl<W: TraceObserver> Closest<'_, '_, '_, W> {
-    fn run(mut self, stack: &mut Stack) {
+    /// Tests all objects. `ends` is scratch space.
+    fn run(mut self, stack: &mut Stack, ends: &mut Vec<f64>) {
         let plan = self.tracer.plan;
         if !plan.unbounded.is_empty() || !plan.bounded.is_empty() {
             self.listed();
         }
         if let Some(tree) = &plan.tree {
-            bvh::visit(self.tracer.cpu, tree, stack, self.group.rays(), &mut self);
+            ends.clear();
+            ends.extend_from_slice(&self.hits.far[..self.group.padded()]);
+            bvh::visit(self.tracer.cpu, tree, stack, self.group.rays(), ends, &mut self);
         }
     }
 
@@ -362,19 +298,15 @@ impl<W: TraceObserver> Closest<'_, '_, '_, W> {
 }
 
 impl<W: TraceObserver> PacketVisitor for Closest<'_, '_, '_, W> {
-    #[inline(always)]
-    fn t_max(&self) -> &[f64] {
-        &self.hits.far[..self.group.padded()]
-    }
-
-    fn test(&mut self, index: usize, lanes: Range<usize>) {
+    fn test(&mut self, index: usize, lanes: Range<usize>, t_max: &mut [f64]) {
         if self.tracer.may_meet(self.group.left(), index) {
-            self.part = lanes;
+            self.part = lanes.clone();
             self.test_part(index);
+            t_max[lanes.clone()].copy_from_slice(&self.hits.far[lanes]);
         }
     }
 
-    fn test_one(&mut self, index: usize, lane: usize) {
+    fn test_one(&mut self, index: usize, lane: usize, t_max: &mut [f64]) {
         if !self.tracer.may_meet(self.group.left(), index) {
             return;
         }
@@ -397,6 +329,7 @@ impl<W: TraceObserver> PacketVisitor for Closest<'_, '_, '_, W> {
         if is_open && doubt[0] != 0 {
             self.decide(lane, index, side);
         }
+        t_max[lane] = self.hits.far[lane];
     }
 }
 

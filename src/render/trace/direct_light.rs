@@ -18,7 +18,7 @@ use crate::world::sample;
 impl<W: TraceObserver> Tracer<'_, '_, W> {
     /// Adds the contributions of all lights.
     pub(super) fn illuminate(&mut self, group: &mut RayGroup, surface: &Surface, colours: &mut VectorList) {
-        if self.model.lights.is_empty() {
+        if self.plan.needs.lights.is_empty() {
             return;
         }
         let mut lighting = self.scratch.lighting.take().unwrap_or_default();
@@ -34,8 +34,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         // Where nothing is scattered, lights make no difference, but an observer is told of them all the same.
         if scatters || W::SEES {
             let around = aabb::around(cpu, points);
-            for index in 0..self.model.lights.len() {
-                self.shine(index, group, surface, &around, &mut lighting, colours);
+            for index in &self.plan.needs.lights {
+                self.shine(*index, group, surface, &around, &mut lighting, colours);
             }
             if scatters {
                 self.miss_shadows(group, surface);

@@ -44,6 +44,8 @@ pub(super) struct Wanted {
     pub pixel: [f64; 2],
     /// The sample's index.
     pub index: u32,
+    /// The number of rays that it may cost, where that is not the usual one.
+    pub ray_budget: Option<u32>,
 }
 
 /// What a sample found.

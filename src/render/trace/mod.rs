@@ -15,8 +15,10 @@ mod hit_record;
 mod light;
 mod missing;
 mod occlusion;
+mod one_ray;
 mod order;
 mod ray_group;
+mod sampled;
 mod scratch;
 mod shade;
 mod shadow_rays;
@@ -51,10 +53,16 @@ pub fn pixel(plan: &Plan, x: usize, y: usize) -> Rgb {
 /// Computes the colour of a pixel as [`pixel`] does, and reports each step to `observer`.
 pub fn observe_pixel(plan: &Plan, x: usize, y: usize, observer: &mut impl TraceObserver) -> Rgb {
     let (camera, count) = (&plan.camera, samples(plan, x, y).0);
-    let colours = camera
-        .places(x, y, count)
-        .map(|(place, sample)| observe_colour(plan, &camera.sight(place.x, place.y), sample, observer));
-    let colour = colours.sum::<Rgb>() / f64::from(count);
+    let (mut sum, mut budget) = (Rgb::ZERO, None);
+    for (place, sample) in camera.places(x, y, count) {
+        let sight = camera.sight(place.x, place.y);
+        let (colour, missing) = observed(plan, &sight, sample, budget, observer);
+        sum += colour;
+        if missing == f64::INFINITY && sampled::is_unbounded(plan) {
+            budget = Some(sampled::REST);
+        }
+    }
+    let colour = sum / f64::from(count);
     if camera.exposure == 0.0 { colour } else { camera.gain() * colour }
 }
 
@@ -84,20 +92,40 @@ pub fn observe_colour<W: TraceObserver>(
     sample: Option<Sample>,
     observer: &mut W,
 ) -> Rgb {
+    observed(plan, sight, sample, None, observer).0
+}
+
+/// Computes a colour, with the usual ray budget or this one, and a bound on the light that it lacks.
+fn observed<W: TraceObserver>(
+    plan: &Plan,
+    sight: &Sight,
+    sample: Option<Sample>,
+    budget: Option<u32>,
+    observer: &mut W,
+) -> (Rgb, f64) {
     if W::SEES {
-        traced(plan, sight, sample, &mut DynObserver::<true>(observer))
+        traced(plan, sight, sample, budget, &mut DynObserver::<true>(observer))
     } else {
-        traced(plan, sight, sample, &mut DynObserver::<false>(observer))
+        traced(plan, sight, sample, budget, &mut DynObserver::<false>(observer))
     }
 }
 
-fn traced(plan: &Plan, sight: &Sight, sample: Option<Sample>, observer: &mut impl TraceObserver) -> Rgb {
+fn traced(
+    plan: &Plan,
+    sight: &Sight,
+    sample: Option<Sample>,
+    budget: Option<u32>,
+    observer: &mut impl TraceObserver,
+) -> (Rgb, f64) {
     let (mut scratch, mut colours) = (Scratch::default(), VectorList::default());
     scratch.samples.extend(sample);
     let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, observer);
-    let depth = plan.depth.as_ref();
-    tracer.colours(&mut RayGroup::primary(sight, depth), &mut colours);
-    colours.get(0)
+    let mut group = RayGroup::primary(sight, plan.depth.as_ref());
+    if let Some(budget) = budget {
+        group.ray_budget.fill(budget);
+    }
+    tracer.colours(&mut group, &mut colours);
+    (colours.get(0), tracer.missing(0))
 }
 
 /// Finds the first hit of a primary ray.
@@ -120,11 +148,13 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let camera = &self.plan.camera;
         let depth = self.plan.depth.as_ref();
         let mut primary = self.scratch.primary.take().unwrap_or_default();
-        let PrimaryScratch { group, seen, colours, .. } = &mut *primary;
         self.scratch.places.iter_mut().for_each(|places| places.resize(PACKET_SIZE, 0.0));
+        let PrimaryScratch { group, seen, colours, .. } = &mut *primary;
         let mut colours = colours.resized(pixels.len());
         if let Some(adaptive) = camera.adaptive {
             self.adaptive_pixels(pixels, adaptive, &mut primary);
+        } else if camera.samples > 1 && sampled::is_unbounded(self.plan) {
+            self.one_by_one(pixels, &mut primary);
         } else if camera.samples == 1 {
             self.scratch.samples.clear();
             for (pixels, first) in pixels.chunks(PACKET_SIZE).zip((0..).step_by(PACKET_SIZE)) {

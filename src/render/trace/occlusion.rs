@@ -1,8 +1,8 @@
 //! Occlusion: which rays of a packet any object blocks.
 
 use super::arrays::resized;
-use super::closest_hit::{Start, exact};
 use super::context::Tracer;
+use super::one_ray::{Start, exact};
 use super::surface::Surface;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::bvh::{self, PacketVisitor, Stack};
@@ -54,8 +54,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let part = 0..shadow_rays.t_max.len();
         let doubted = resized(&mut doubt, part.len());
         let region = from.and(to).with_slack(0.0);
-        Occlusion { tracer: self, shadow_rays, part, region, ends: &mut ends, blocked, doubt: doubted }
-            .run(&mut stack);
+        Occlusion { tracer: self, shadow_rays, part, region, blocked, doubt: doubted }
+            .run(&mut stack, &mut ends);
         (self.scratch.stack, self.scratch.doubt, self.scratch.ends) = (stack, doubt, ends);
     }
 }
@@ -68,15 +68,13 @@ struct Occlusion<'s, 'm, 'w, W> {
     part: Range<usize>,
     /// A box that contains the rays.
     region: Aabb,
-    /// The distances at which the rays end, in world units, 0 for a ray that is not cast or is blocked. Valid only while
-    /// the BVH is searched.
-    ends: &'s mut Vec<f64>,
     blocked: &'s mut [u64],
     doubt: &'s mut [u64],
 }
 
 impl<W: TraceObserver> Occlusion<'_, '_, '_, W> {
-    fn run(mut self, stack: &mut Stack) {
+    /// Tests all objects. `ends` is scratch space.
+    fn run(mut self, stack: &mut Stack, ends: &mut Vec<f64>) {
         let plan = self.tracer.plan;
         let unbounded = plan.unbounded.iter().map(|index| (index, None));
         for (index, bounds) in
@@ -99,16 +97,16 @@ impl<W: TraceObserver> Occlusion<'_, '_, '_, W> {
         }
         if let Some(tree) = &plan.tree {
             let t_max = self.shadow_rays.t_max;
-            self.ends.clear();
-            self.ends.extend_from_slice(t_max);
-            self.end_blocked(0..t_max.len());
-            bvh::visit(self.tracer.cpu, tree, stack, self.shadow_rays.rays, &mut self);
+            ends.clear();
+            ends.extend_from_slice(t_max);
+            self.end_blocked(0..t_max.len(), ends);
+            bvh::visit(self.tracer.cpu, tree, stack, self.shadow_rays.rays, ends, &mut self);
         }
     }
 
     /// Ends the rays of some lanes that are blocked, so that the BVH is searched for them no more.
-    fn end_blocked(&mut self, lanes: Range<usize>) {
-        for (end, blocked) in self.ends[lanes.clone()].iter_mut().zip(&self.blocked[lanes]) {
+    fn end_blocked(&self, lanes: Range<usize>, ends: &mut [f64]) {
+        for (end, blocked) in ends[lanes.clone()].iter_mut().zip(&self.blocked[lanes]) {
             *end = if *blocked == 0 { *end } else { 0.0 };
         }
     }
@@ -145,22 +143,17 @@ impl<W: TraceObserver> Occlusion<'_, '_, '_, W> {
 }
 
 impl<W: TraceObserver> PacketVisitor for Occlusion<'_, '_, '_, W> {
-    #[inline(always)]
-    fn t_max(&self) -> &[f64] {
-        self.ends
-    }
-
-    fn test(&mut self, index: usize, lanes: Range<usize>) {
+    fn test(&mut self, index: usize, lanes: Range<usize>, t_max: &mut [f64]) {
         if self.tracer.may_meet(self.left(), index) {
             self.part = lanes.clone();
             self.test_part(index);
-            self.end_blocked(lanes);
+            self.end_blocked(lanes, t_max);
         }
     }
 
-    fn test_one(&mut self, index: usize, lane: usize) {
+    fn test_one(&mut self, index: usize, lane: usize, t_max: &mut [f64]) {
         // Eight rays take no longer than one, and none is blocked by what it is tested against twice.
         let first = lane / LANES * LANES;
-        self.test(index, first..first + LANES);
+        self.test(index, first..first + LANES, t_max);
     }
 }

@@ -6,6 +6,7 @@ use crate::geometry::sight::Sight;
 use crate::world::any_shape::AnyShape;
 use crate::world::certify::{Enclosure, Precision};
 use crate::world::coincidence::{CLOSE, LEAST_COSINE, SAME};
+use std::cmp::Ordering;
 
 /// Tells whether a ray hits one shape before another, given their approximate distances in world units. Returns `None`
 /// where they coincide as far as the ray is known, whose origin may be off by `origin_error` world units.
@@ -37,13 +38,28 @@ pub(super) fn is_before(
     (distance != far).then_some(distance < far)
 }
 
-/// Tells whether a ray certainly hits one shape before another, by a proof with 237 bits; `None` where that decides
-/// nothing.
-pub(super) fn is_certainly_before(one: &AnyShape, other: &AnyShape, sight: &Sight) -> Option<bool> {
+/// Tells whether two distances may be equal up to rounding, and there are no more digits of one of them, as of a copy.
+pub(super) fn is_unclear(
+    ray: &Ray,
+    (one, distance): (&AnyShape, f64),
+    (other, far): (&AnyShape, f64),
+) -> bool {
+    let size = ray.origin.abs().max_element() + distance;
+    let has_digits = |shape: &AnyShape, at: f64| shape.packets().fine_distance(ray, at).is_some();
+    (distance - far).abs() <= CLOSE * size && !(has_digits(one, distance) && has_digits(other, far))
+}
+
+/// Returns the order in which a ray hits two shapes, by a proof with 237 bits, up to which equal distances are the same;
+/// `None` where that decides nothing.
+pub(super) fn certain_order(one: &AnyShape, other: &AnyShape, sight: &Sight) -> Option<Ordering> {
     let distance = |shape: &AnyShape| match shape.certify(sight, Precision::Octuple) {
         Enclosure::Hits(at) | Enclosure::Edge(at) => Some(at),
         Enclosure::Misses | Enclosure::Doubtful(_) => None,
     };
     let (one, other) = (distance(one)?, distance(other)?);
-    (one.high < other.low || other.high < one.low).then_some(one.high < other.low)
+    Some(match (one.high < other.low, other.high < one.low) {
+        (true, _) => Ordering::Less,
+        (_, true) => Ordering::Greater,
+        _ => Ordering::Equal,
+    })
 }

@@ -34,7 +34,7 @@ pub(crate) struct Scratch {
     pub(super) parts: Vec<u32>,
     /// The stack for the traversal of the BVH.
     pub(super) stack: Stack,
-    /// The distances at which shadow rays end that nothing has blocked so far, in world units; 0 for the others.
+    /// The distances at which rays end that the BVH is searched for, in world units; 0 for shadow rays that are blocked.
     pub(super) ends: Vec<f64>,
     /// For each current primary ray, a bound on the light that it lacks because its ray budget is used up. Valid only
     /// if `any_missing` is set.

@@ -89,7 +89,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             let nearest = (self.depth == 0).then_some(distances);
             self.scratch.trails.meet(&group.camera[..group.len], index, nearest);
         }
-        let goes_on = !self.model.lights.is_empty() || surface.is_mirror || material.transparency != 0.0;
+        let goes_on = !self.plan.needs.lights.is_empty() || surface.is_mirror || material.transparency != 0.0;
         surface.errors = if goes_on {
             self.errors(&**shape, &surface.travelled[..count], &surface.cosines[..count])
         } else {
@@ -131,6 +131,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let (travelled, goes) = (&surface.travelled[..count], resized(&mut shading.goes, count));
         light::reach(self.cpu, travelled, MAX_DIST, goes);
         group.leave_out(self.cpu, &branch, travelled, goes);
+        self.end_bounces(goes);
         shading.dir.copy(group.dir.view(count));
         let flip = |sides: &mut [Side]| sides.iter_mut().for_each(|side| *side = side.opposite());
         flip(&mut surface.sides[..count]);
@@ -140,6 +141,13 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         for lane in 0..group.len {
             let tint = object.tint(surface.points.get(lane));
             colours.set(lane, kept * colours.get(lane) + tint * shading.behind.get(lane));
+        }
+    }
+
+    /// Ends all rays where a measurement limits the number of bounces.
+    fn end_bounces(&self, goes: &mut [u64]) {
+        if self.depth >= self.plan.bounces {
+            goes.fill(0);
         }
     }
 
@@ -165,6 +173,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let branch = self.plan.onward(surface.index).mirrored;
         light::mirror(cpu, group.dir.view(count), normals, specular, travelled, MAX_DIST, goes, dir);
         group.leave_out(cpu, &branch, travelled, goes);
+        self.end_bounces(goes);
         let do_all = goes[0] != 0 && closest_hit::is_one(cpu, goes);
         if do_all && group.len <= self.max_packet() {
             self.onward_all(group, shading, branch);

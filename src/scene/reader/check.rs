@@ -210,6 +210,15 @@ impl Check<'_, '_> {
             .values(parsed);
         let values = values.filter(|_| counts);
         self.store.add(entity, text, values.as_deref());
+        // An object to which one entity refers is often that of many.
+        for (datum, _) in values.iter().flatten() {
+            if let Datum::Object { name, .. } = datum
+                && !name.is_empty()
+                && self.names.defined(Kind::Object, name).is_none()
+            {
+                self.define(Kind::Object, name, datum);
+            }
+        }
         if let Some(values) = values
             && !matches!(entity.kind(), Kind::Object | Kind::Light)
         {

@@ -42,8 +42,9 @@ pub struct Names {
     again: BTreeMap<usize, Claims>,
     /// The hashes of the names of entities of unknown types, which a reference may mean.
     doubtful: HashSet<u64>,
-    /// The materials that can be referred to so far, and the textures, by the indices of their data.
-    defined: [HashMap<String, u32>; 2],
+    /// The materials that can be referred to so far, the textures, and those objects to which an entity has referred, by
+    /// the indices of their data.
+    defined: [HashMap<String, u32>; 3],
     /// The objects that other entities refer to, by their orders: a datum each.
     patterns: BTreeMap<usize, Datum>,
     /// References to entities not (yet) defined.
@@ -231,15 +232,12 @@ impl Names {
 
     /// Defines a name, so that later entities can refer to it.
     pub fn define(&mut self, kind: Kind, name: &str, index: u32) {
-        self.defined[usize::from(kind == Kind::Texture)].insert(name.to_owned(), index);
+        self.defined[table_of(kind)].insert(name.to_owned(), index);
     }
 
     /// Returns the index of the datum of an entity that is defined.
     pub fn defined(&self, kind: Kind, name: &str) -> Option<u32> {
-        if kind == Kind::Object {
-            return None;
-        }
-        self.defined[usize::from(kind == Kind::Texture)].get(name).copied()
+        self.defined[table_of(kind)].get(name).copied()
     }
 
     /// Takes the objects that other entities refer to, by their orders: a datum each.
@@ -311,6 +309,15 @@ impl Names {
             };
             report.add(fault);
         }
+    }
+}
+
+/// Returns the index of the table of the defined entities of a kind.
+fn table_of(kind: Kind) -> usize {
+    match kind {
+        Kind::Object => 2,
+        Kind::Texture => 1,
+        _ => 0,
     }
 }
 

@@ -1,7 +1,8 @@
 //! One face of a mesh: what plain arithmetic tells of a ray's hit, and its equation.
 
 use crate::geometry::aabb::{Aabb, larger};
-use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
+use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange};
+use crate::numeric::double_double::{exponent_to_one, times_power_of_two};
 use crate::numeric::scalar::{Scalar, dot};
 use crate::shapes::triangle::Triangle;
 use crate::world::accuracy::Exact;
@@ -20,8 +21,9 @@ const AWAY_ERROR: f64 = 32.0 * f64::EPSILON;
 /// direction is off by 3, and components of a direction add up to at most 1.74: 1.74 * (10 + 2 * 6) = 39, less than 48.
 const TOWARD_ERROR: f64 = 24.0 * f64::EPSILON;
 
-/// Far more than what products lose that are too small for all digits: the sum of a few of 5e-324, times 1e152.
-const UNDERFLOW: f64 = 1e-170;
+/// Far more than what products lose that are too small for all digits: the sum of a few of 5e-324. A product with such a
+/// sum loses as many times more as the other factor is.
+const UNDERFLOW: f64 = 1e-320;
 
 /// What a ray may leave: bounds on the distance of its origin from the point that it stands for, in world units. The
 /// ray leaves the faces within that distance.
@@ -33,10 +35,16 @@ pub(super) struct Leaving {
     pub most: f64,
 }
 
-/// Returns bounds of the distance at which a ray hits a face.
+/// Returns bounds of the distance at which a ray hits a face; with a drift, of all rays within it.
 #[inline(always)]
-pub(super) fn t_bounds(corners: [DVec3; 3], ray: &Ray, range: &RayRange, leaving: Leaving) -> Bracket {
-    let passed = passed(corners, ray);
+pub(super) fn t_bounds(
+    corners: [DVec3; 3],
+    ray: &Ray,
+    range: &RayRange,
+    leaving: Leaving,
+    drift: Option<Drift>,
+) -> Bracket {
+    let passed = passed(corners, ray, drift);
     if passed == Some(false) {
         return Bracket::MISS;
     }
@@ -45,8 +53,14 @@ pub(super) fn t_bounds(corners: [DVec3; 3], ray: &Ray, range: &RayRange, leaving
     let normal = one.cross(other);
     let edges = one.abs().max_element() * other.abs().max_element();
     let (away, toward) = (normal.dot(between), normal.dot(ray.dir));
+    let largest = between.abs().max_element();
     let (away_error, toward_error) =
-        (AWAY_ERROR * edges * between.abs().max_element() + UNDERFLOW, TOWARD_ERROR * edges + UNDERFLOW);
+        (AWAY_ERROR * edges * largest + UNDERFLOW * (1.0 + largest), TOWARD_ERROR * edges + UNDERFLOW);
+    // A normal is no longer than 3 times that product, as an edge is no longer than the root of 3 of its components.
+    let (away_error, toward_error) = match drift {
+        None => (away_error, toward_error),
+        Some(drift) => (away_error + 3.0 * edges * drift.origin, toward_error + 3.0 * edges * drift.dir),
+    };
     if leaving.most >= 0.0 {
         let size = normal.length();
         // The length is off by less than an error of a direction.
@@ -87,10 +101,19 @@ pub(super) fn t_bounds(corners: [DVec3; 3], ray: &Ray, range: &RayRange, leaving
 ///
 /// It computes the same numbers as [`Triangle::passed`], whose comment derives the error.
 #[inline(always)]
-fn passed(corners: [DVec3; 3], ray: &Ray) -> Option<bool> {
+fn passed(corners: [DVec3; 3], ray: &Ray, drift: Option<Drift>) -> Option<bool> {
     let [a, b, c] = corners.map(|corner| corner - ray.origin);
-    let size = [a, b, c].map(|corner| 32.0 * f64::EPSILON * corner.abs().max_element());
     let largest = [a, b, c].map(|corner| corner.abs().max_element());
+    // A drift of the direction changes a product by 3 of the drift and of the two largest components, and one of the
+    // origin by 2 of it and of their sum.
+    let (error, largest) = match drift {
+        None => (32.0 * f64::EPSILON, largest),
+        Some(Drift { origin, dir }) => {
+            let error = 32.0 * f64::EPSILON + 3.0 * dir;
+            (error, largest.map(|largest| largest + 2.0 * origin / error))
+        }
+    };
+    let size = largest.map(|largest| error * largest);
     let one = a.cross(b).dot(ray.dir);
     let two = b.cross(c).dot(ray.dir);
     let three = c.cross(a).dot(ray.dir);
@@ -137,6 +160,13 @@ impl<A> Equation for Face<A> {
 
 /// Returns the point of a triangle that is nearest to a point (Ericson, "Real-Time Collision Detection", 2005).
 pub(super) fn nearest_point([a, b, c]: [DVec3; 3], at: DVec3) -> DVec3 {
+    let size = (a - at).abs().max((b - at).abs()).max((c - at).abs()).max_element();
+    if !(1e-70..1e70).contains(&size) && size > 0.0 && size < MISS {
+        // Its fourth power would underflow or overflow.
+        let scale = times_power_of_two(1.0, exponent_to_one(size));
+        let corners = [a, b, c].map(|corner| (corner - at) * scale);
+        return at + nearest_point(corners, DVec3::ZERO) / scale;
+    }
     let (ab, ac) = (b - a, c - a);
     let (d1, d2) = (ab.dot(at - a), ac.dot(at - a));
     if d1 <= 0.0 && d2 <= 0.0 {

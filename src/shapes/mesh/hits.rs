@@ -4,7 +4,7 @@ use super::face::{Face, Leaving, nearest_point, t_bounds};
 use super::surface::Surface;
 use super::traversal::Faces;
 use crate::geometry::aabb::Aabb;
-use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
+use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange};
 use crate::geometry::sight::Sight;
 use crate::numeric::interval::{Float, Interval, Wide};
 use crate::shapes::triangle::Triangle;
@@ -21,6 +21,7 @@ struct Nearest<'s> {
     ray: &'s Ray,
     range: &'s RayRange,
     leaving: Leaving,
+    drift: Option<Drift>,
     /// Whether any certain hit ends the search.
     is_any: bool,
     /// The smallest upper bound of a certain hit's distance so far.
@@ -37,7 +38,7 @@ impl Faces for Nearest<'_> {
     fn visit(&mut self, faces: Range<usize>) -> f64 {
         for face in faces {
             let Bracket { near, far } =
-                t_bounds(self.surface.corners(face), self.ray, self.range, self.leaving);
+                t_bounds(self.surface.corners(face), self.ray, self.range, self.leaving, self.drift);
             if near == MISS {
                 continue;
             }
@@ -91,19 +92,27 @@ pub(super) enum Known {
 impl Surface {
     /// Finds a bracket of a ray's first hit in a range. If `is_any`, any certain hit in the range will do.
     #[inline(always)]
-    pub(super) fn first(&self, ray: &Ray, range: &RayRange, leaving: Leaving, is_any: bool) -> Known {
+    pub(super) fn first(
+        &self,
+        ray: &Ray,
+        range: &RayRange,
+        leaving: Leaving,
+        drift: Option<Drift>,
+        is_any: bool,
+    ) -> Known {
         let mut nearest = Nearest {
             surface: self,
             ray,
             range,
             leaving,
+            drift,
             is_any,
             far: MISS,
             near: (MISS, 0),
             second: MISS,
             doubtful: MISS,
         };
-        self.tree.along(ray, range.far, &mut nearest);
+        self.tree.along(ray, range.far, drift, &mut nearest);
         let Nearest { far, near: (near, face), second, doubtful, .. } = nearest;
         if doubtful < far {
             // A certain hit behind an uncertain one does not make the nearer one certain.
@@ -126,7 +135,7 @@ impl Surface {
         leaving: Leaving,
         last: &mut Last<A>,
     ) -> Bracket {
-        let (distance, bracket) = match self.first(ray, range, leaving, false) {
+        let (distance, bracket) = match self.first(ray, range, leaving, None, false) {
             Known::Face(face, bracket) => (last.triangle(self, face).plane.quick_crossing(ray), bracket),
             Known::Bracket(bracket) if bracket.far < MISS => {
                 (self.refined::<A>(ray, range, leaving, bracket), bracket)
@@ -143,6 +152,27 @@ impl Surface {
             return Bracket { near: distance - close, far: distance + close };
         }
         Bracket::exactly(distance)
+    }
+
+    /// Returns a bracket of the first hits in a range of all rays within a drift of one.
+    #[inline(always)]
+    pub(super) fn bracket_within<A: Bounded>(
+        &self,
+        ray: &Ray,
+        range: &RayRange,
+        drift: Drift,
+        last: &mut Last<A>,
+    ) -> Bracket {
+        match self.first(ray, range, NOTHING, Some(drift), false) {
+            Known::Face(face, bracket) => {
+                let distance = last.triangle(self, face).plane.quick_crossing(ray);
+                // A bracket that is far narrower than what coincides is taken for the distance.
+                let is_narrow = bracket.far - bracket.near <= 0.125 * CLOSE * bracket.near;
+                let is_known = is_narrow & (bracket.near <= distance) & (distance <= bracket.far);
+                if is_known { Bracket::exactly(distance) } else { bracket }
+            }
+            Known::Bracket(bracket) => bracket,
+        }
     }
 
     /// Returns the distance of a certain hit with a bracket, or NaN where it takes more than plain arithmetic.
@@ -179,7 +209,8 @@ impl Surface {
             #[inline(always)]
             fn visit(&mut self, faces: Range<usize>) -> f64 {
                 for face in faces {
-                    let bracket = t_bounds(self.surface.corners(face), self.ray, self.range, self.leaving);
+                    let bracket =
+                        t_bounds(self.surface.corners(face), self.ray, self.range, self.leaving, None);
                     if bracket.near < MISS {
                         self.far = (self.call)(face, bracket);
                     }
@@ -188,14 +219,15 @@ impl Surface {
             }
         }
         let far = range.far;
-        self.tree.along(ray, far, &mut Each { surface: self, ray, range, leaving, call, far });
+        self.tree.along(ray, far, None, &mut Each { surface: self, ray, range, leaving, call, far });
     }
 
     /// Returns the distance of a ray's first hit in a range, decided for the ray as it is rounded; [`MISS`] for none.
     /// The ray leaves the faces within `leaves` world units of its origin; negative where it leaves none.
     pub(super) fn distance<A: Bounded>(&self, ray: &Ray, range: &RayRange, leaves: f64) -> f64 {
         let mut first = MISS;
-        self.each(ray, range, NOTHING, |face, _| {
+        let leaving = if leaves < 0.0 { NOTHING } else { Leaving { least: leaves, most: leaves } };
+        self.each(ray, range, leaving, |face, _| {
             let triangle = self.triangle::<A>(face);
             if leaves < 0.0 || !touches(&triangle, ray.origin, leaves) {
                 let distance = range.keep(triangle.plane.crossing(ray));
@@ -210,8 +242,8 @@ impl Surface {
     }
 
     /// Returns the face that a ray hits at a distance in world units: of several that hold the point up to rounding, the
-    /// first in the file whose outside the ray hits, if there is any. At the outline of a closed mesh, a face whose
-    /// inside is hit would show light from within.
+    /// first in the file of those that are seen there; of these, those whose outside the ray hits, if there are any. At
+    /// the outline of a closed mesh, a face that others hide would show light from within.
     #[inline(always)]
     pub(super) fn face_along(&self, ray: &Ray, distance: f64) -> usize {
         let close = CLOSE * (distance + ray.origin.abs().max_element());
@@ -226,13 +258,17 @@ impl Surface {
         if count == 1 {
             only
         } else {
-            self.first_at(ray.at(distance), |face| self.is_outside_hit(face, ray.dir))
+            let at = ray.at(distance);
+            self.first_at(at, |face| match self.is_hidden(face, ray, at) {
+                true => 2,
+                false => u8::from(!self.is_outside_hit(face, ray.dir)),
+            })
         }
     }
 
     /// Returns the face that is nearest to a point; of several, up to rounding, the first in the file.
     pub(super) fn face_at(&self, at: DVec3) -> usize {
-        self.first_at(at, |_| true)
+        self.first_at(at, |_| 0)
     }
 
     /// Tells whether a ray along a direction hits the outside of a face, in plain arithmetic.
@@ -242,16 +278,30 @@ impl Surface {
         self.open_edges > 0 || (b - a).cross(c - a).dot(dir) < 0.0
     }
 
-    /// Returns the face that is nearest to a point; of several, up to rounding, the first in the file among those that
-    /// are preferred, or else among all.
-    fn first_at(&self, at: DVec3, is_preferred: impl Fn(usize) -> bool) -> usize {
+    /// Tells whether the part of a face of a closed mesh beside a point of it is certainly hidden from where a ray starts.
+    fn is_hidden(&self, face: usize, ray: &Ray, at: DVec3) -> bool {
+        const BESIDE: f64 = 1.0 / (1 << 20) as f64;
+        let [a, b, c] = self.corners(face);
+        let way = at + BESIDE * ((a + b + c) / 3.0 - at) - ray.origin;
+        let distance = way.length();
+        let far = distance - 64.0 * f64::EPSILON * (distance + ray.origin.abs().max_element());
+        let (toward, range) = (Ray { dir: way / distance, ..*ray }, RayRange { far, ..RayRange::ALL });
+        let first = || self.first(&toward, &range, NOTHING, None, false);
+        // The upper end of a bracket may lie beyond the range.
+        self.open_edges == 0
+            && matches!(first(), Known::Bracket(bracket) | Known::Face(_, bracket) if bracket.far < far)
+    }
+
+    /// Returns the face that is nearest to a point; of several, up to rounding, the first in the file of those with the
+    /// least rank.
+    fn first_at(&self, at: DVec3, rank: impl Fn(usize) -> u8) -> usize {
         let rounding = 8.0 * f64::EPSILON * (at.abs().max_element() + self.reach());
         let (distance, face) = self.nearest(at);
         let within = distance + rounding;
         let mut first = face;
         self.near(at, within, |face, distance| {
-            let place = |face: usize| (!is_preferred(face), self.order[face]);
-            if distance <= within && place(face) < place(first) {
+            let place = |face: usize| (rank(face), self.order[face]);
+            if distance <= within && face != first && place(face) < place(first) {
                 first = face;
             }
             within

@@ -9,17 +9,17 @@
 mod face;
 mod hits;
 mod painted;
-mod placement;
 pub mod read;
 mod shape;
 mod smooth;
 mod surface;
 #[cfg(test)]
 mod tests;
+mod to_world;
 mod traversal;
 mod tree;
 
 pub use painted::Painted;
-pub use placement::Placement;
 pub use shape::Mesh;
 pub use surface::{Surface, Unfit};
+pub use to_world::ToWorld;

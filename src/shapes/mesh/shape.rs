@@ -4,7 +4,7 @@ use super::face::Leaving;
 use super::hits::{Known, Last, NOTHING};
 use super::surface::Surface;
 use crate::geometry::aabb::{Aabb, SLACK};
-use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
+use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
 use crate::geometry::ray_packet::{self, Nearest, PACKET_SIZE, RayPacket};
 use crate::geometry::roots::Method;
 use crate::geometry::sight::Sight;
@@ -18,7 +18,7 @@ use crate::world::hittable::Hittable;
 use crate::world::interaction::{SurfaceInteraction, turned};
 use crate::world::packets::shape::{Packets, Proofs};
 use crate::world::shape::{ByPackets, Shape};
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use std::marker::PhantomData;
 use std::sync::Arc;
 
@@ -29,6 +29,10 @@ pub struct Mesh<A> {
     can_hit_itself: bool,
     accuracy: PhantomData<A>,
 }
+
+/// The number of vertices up to which they are mapped to find the box of a copy: a million copies of so many take two
+/// seconds.
+const MOST_MAPPED: usize = 1000;
 
 /// Marks a shape that consists of faces, whose hits are proven face by face.
 pub struct ByFaces;
@@ -88,6 +92,17 @@ impl<A: Bounded> Hittable for Mesh<A> {
 
     fn bounds(&self) -> Option<Aabb> {
         Some(self.surface.bounds)
+    }
+
+    fn bounds_after(&self, linear: &DMat3) -> Option<Aabb> {
+        let vertices = &self.surface.vertices;
+        let around = || {
+            vertices
+                .iter()
+                .map(|at| *linear * *at)
+                .fold(Aabb::EMPTY, |all, at| all.and(&Aabb { low: at, high: at }))
+        };
+        (vertices.len() <= MOST_MAPPED).then(around)
     }
 
     fn can_hit_itself(&self, _leaving: Side) -> bool {
@@ -205,9 +220,26 @@ impl<A: Bounded> Packets for Shape<Mesh<A>, ByPackets, ByFaces> {
         self.shape.bracket(ray, range, &mut Last::none())
     }
 
+    fn t_bounds_within(&self, ray: &Ray, range: &RayRange, drift: Drift) -> Bracket {
+        self.shape.surface.bracket_within(ray, range, drift, &mut Last::<A>::none())
+    }
+
+    fn brackets_within(
+        &self,
+        cpu: Cpu,
+        rays: RayPacket,
+        drift: Drift,
+        ends: &[f64],
+        near: &mut [f64],
+        far: &mut [f64],
+    ) {
+        brackets_within(cpu, &self.shape, rays, drift, ends, near, far);
+    }
+
     fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
         let leaving = self.shape.leaving(origin_side, 0.0);
-        match self.shape.surface.first(ray, &RayRange { origin_side, ..RayRange::ALL }, leaving, false) {
+        match self.shape.surface.first(ray, &RayRange { origin_side, ..RayRange::ALL }, leaving, None, false)
+        {
             Known::Face(face, _) => self.shape.surface.triangle::<A>(face).plane.quick_crossing(ray),
             Known::Bracket(_) => f64::NAN,
         }
@@ -240,6 +272,22 @@ kernels! {
         }
     }
 
+    /// Computes brackets of the distances of the first hits before `ends` of all rays within a drift of each ray.
+    fn brackets_within[A: Bounded](
+        mesh: &Mesh<A>, rays: RayPacket, drift: Drift, ends: &[f64], near: &mut [f64], far: &mut [f64]
+    ) {
+        let mut last = Last::<A>::none();
+        for lane in 0..near.len() {
+            if is_copy(&rays, lane) && ends[lane] == ends[lane - 1] {
+                (near[lane], far[lane]) = (near[lane - 1], far[lane - 1]);
+            } else {
+                let range = RayRange { far: ends[lane], ..RayRange::ALL };
+                let bracket = mesh.surface.bracket_within(&rays.get(lane), &range, drift, &mut last);
+                (near[lane], far[lane]) = (bracket.near, bracket.far);
+            }
+        }
+    }
+
     /// Computes brackets of the distances of any hits of rays before `ends`, except for rays that are blocked already.
     fn any_hits[A: Bounded](
         mesh: &Mesh<A>, rays: RayPacket, sides: Option<&[Side]>, ends: &[f64], blocked: &[u64], near: &mut [f64],
@@ -257,7 +305,7 @@ kernels! {
             }
             let range = RayRange { far: end, origin_side, ..RayRange::ALL };
             let leaving = mesh.leaving(origin_side, rays.origin_error);
-            let (Known::Face(_, bracket) | Known::Bracket(bracket)) = mesh.surface.first(&ray, &range, leaving, true);
+            let (Known::Face(_, bracket) | Known::Bracket(bracket)) = mesh.surface.first(&ray, &range, leaving, None, true);
             (near[lane], far[lane]) = (bracket.near, bracket.far);
         }
     }

@@ -1,6 +1,7 @@
 //! Normals of a mesh that looks smooth.
 
 use super::surface::Surface;
+use crate::numeric::double_double::{exponent_to_one, times_power_of_two};
 use glam::DVec3;
 
 impl Surface {
@@ -14,8 +15,11 @@ impl Surface {
     fn interpolated(&self, face: usize, at: DVec3, flat: DVec3) -> DVec3 {
         let [a, b, c] = self.corners(face);
         let across = (b - a).cross(c - a);
+        // By a power of two, so that products of tiny or huge areas neither underflow nor overflow.
+        let scale = times_power_of_two(1.0, exponent_to_one(across.abs().max_element()));
+        let across = across * scale;
         // The parts of the face's area that lie opposite to each corner.
-        let part = |from: DVec3, to: DVec3| (to - from).cross(at - from).dot(across).max(0.0);
+        let part = |from: DVec3, to: DVec3| ((to - from).cross(at - from) * scale).dot(across).max(0.0);
         let weights = [part(b, c), part(c, a), part(a, b)];
         let sum = self.faces[face].iter().zip(weights).fold(DVec3::ZERO, |sum, (corner, weight)| {
             let normal = self.normals[*corner as usize].map(f64::from);

@@ -1,10 +1,11 @@
 //! The surface of a mesh: its vertices, its faces, and the tree in which rays find them.
 
 use super::face;
-use super::placement::Placement;
 use super::read::Model;
+use super::to_world::ToWorld;
 use super::tree::{MAX_FACES, Tree};
 use crate::geometry::aabb::Aabb;
+use crate::numeric::double_double::{exponent_to_one, times_power_of_two};
 use crate::scene::pparm::MOST_LENGTH;
 use crate::shapes::triangle::Triangle;
 use crate::world::accuracy::Exact;
@@ -55,7 +56,7 @@ impl Surface {
     ///
     /// # Errors
     /// Why there is none.
-    pub fn new(model: Model, placement: &Placement, is_smooth: bool) -> Result<Self, Unfit> {
+    pub fn new(model: Model, placement: &ToWorld, is_smooth: bool) -> Result<Self, Unfit> {
         if model.faces.len() > MAX_FACES {
             return Err(Unfit::TooMany);
         }
@@ -122,7 +123,7 @@ impl Surface {
 }
 
 /// Places the vertices of faces, and merges those at the same place. Vertices without a face are left out.
-fn merge(vertices: Vec<DVec3>, faces: &mut [[u32; 3]], placement: &Placement) -> Vec<DVec3> {
+fn merge(vertices: Vec<DVec3>, faces: &mut [[u32; 3]], placement: &ToWorld) -> Vec<DVec3> {
     const UNKNOWN: u32 = u32::MAX;
     let mut merged: Vec<DVec3> = Vec::with_capacity(vertices.len());
     let mut known = HashMap::with_capacity(vertices.len());
@@ -173,8 +174,12 @@ fn smooth(vertices: &[DVec3], faces: &[[u32; 3]]) -> Vec<[f32; 3]> {
         let corners = face.map(|corner| vertices[corner as usize]);
         let Some(triangle) = Triangle::<Exact>::new(corners) else { continue };
         for (side, corner) in face.iter().enumerate() {
-            let (to, from) =
-                (corners[(side + 1) % 3] - corners[side], corners[(side + 2) % 3] - corners[side]);
+            // By powers of two, so that products of tiny or huge edges neither underflow nor overflow.
+            let edge = |to: usize| {
+                let edge = corners[(side + to) % 3] - corners[side];
+                edge * times_power_of_two(1.0, exponent_to_one(edge.abs().max_element()))
+            };
+            let (to, from) = (edge(1), edge(2));
             let angle = libm::atan2(to.cross(from).length(), to.dot(from));
             normals[*corner as usize] += angle * triangle.plane.normal;
         }

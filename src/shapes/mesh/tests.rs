@@ -1,13 +1,17 @@
 //! Properties of meshes: their hits are those of their triangles, and no ray escapes from a closed one.
 
-use super::{Mesh, Placement, Surface, read::Model};
+use super::{Mesh, Surface, ToWorld, read::Model};
 use crate::geometry::ray::{MISS, Ray, RayRange, Side};
+use crate::geometry::ray_packet::RayPacket;
 use crate::geometry::sight::Sight;
 use crate::shapes::triangle::Triangle;
+use crate::simd::cpu::Cpu;
+use crate::simd::soa::{LANES, Vectors};
 use crate::world::accuracy::{Accuracy, Exact};
 use crate::world::any_shape::AnyShape;
 use crate::world::certify::{Enclosure, Precision};
 use crate::world::coincidence;
+use crate::world::interaction::SurfaceInteraction;
 use glam::DVec3;
 use proptest::prelude::*;
 use std::sync::Arc;
@@ -42,7 +46,7 @@ fn closed(bumps: &[f64], rows: u32) -> Model {
     Model { vertices, faces, ..Model::default() }
 }
 
-fn surface(model: Model, placement: &Placement) -> Surface {
+fn surface(model: Model, placement: &ToWorld) -> Surface {
     Surface::new(model, placement, false).unwrap_or_else(|_| panic!("a surface"))
 }
 
@@ -79,7 +83,7 @@ proptest! {
         (rows, scale, rotation) in (3..9_u32, scale(), -180.0..180.0),
         toward in prop::collection::vec((any::<prop::sample::Index>(), 0.0..1.0, direction()), 40),
     ) {
-        let placement = Placement::new(scale, DVec3::splat(rotation), DVec3::new(3.0, 2.0, -1.0));
+        let placement = ToWorld::new(scale, DVec3::splat(rotation), DVec3::new(3.0, 2.0, -1.0));
         let surface = Arc::new(surface(closed(&bumps, rows), &placement));
         prop_assert_eq!(surface.open_edges, 0);
         let (inside, shape) = (placement.place(DVec3::ZERO), shape(&surface));
@@ -110,7 +114,7 @@ proptest! {
         (rows, scale, rotation) in (3..7_u32, scale(), -180.0..180.0),
         rays in prop::collection::vec((direction(), direction(), any::<prop::sample::Index>(), 0.1..1e3), 40),
     ) {
-        let placement = Placement::new(scale, DVec3::splat(rotation), DVec3::new(3.0, 2.0, -1.0));
+        let placement = ToWorld::new(scale, DVec3::splat(rotation), DVec3::new(3.0, 2.0, -1.0));
         let surface = Arc::new(surface(closed(&bumps, rows), &placement));
         let shape = shape(&surface);
         for (from, dir, index, far) in rays {
@@ -151,7 +155,7 @@ fn a_ray_through_a_vertex_hits_the_first_face_of_the_file() {
         faces.rotate_left(first);
         let model =
             Model { vertices: vertices.map(DVec3::from).to_vec(), faces: faces.clone(), ..Model::default() };
-        let surface = Arc::new(surface(model, &Placement::new(PLAIN, DVec3::ZERO, DVec3::ZERO)));
+        let surface = Arc::new(surface(model, &ToWorld::new(PLAIN, DVec3::ZERO, DVec3::ZERO)));
         assert_eq!(surface.open_edges, 4);
         let ray = Ray { origin: DVec3::Z, dir: -DVec3::Z };
         assert_eq!(shape(&surface).distance(&ray, &RayRange::ALL), 1.0);
@@ -172,7 +176,7 @@ fn equal_vertices_are_one_and_faces_without_an_area_are_left_out() {
     let vertices: Vec<_> = corners.chain(extra).collect();
     let alone = (0..vertices.len() as u32 / 3).map(|face| [3 * face, 3 * face + 1, 3 * face + 2]).collect();
     let model = Model { vertices, faces: alone, ..Model::default() };
-    let surface = surface(model, &Placement::new(PLAIN, DVec3::ZERO, DVec3::ZERO));
+    let surface = surface(model, &ToWorld::new(PLAIN, DVec3::ZERO, DVec3::ZERO));
     assert_eq!((surface.face_count(), surface.degenerate, surface.open_edges), (faces.len(), 2, 0));
     assert!(surface.vertices.len() < faces.len());
 }
@@ -180,18 +184,58 @@ fn equal_vertices_are_one_and_faces_without_an_area_are_left_out() {
 #[test]
 fn a_placement_scales_then_rotates_then_moves() {
     let placement =
-        Placement::new(DVec3::new(2.0, 3.0, 4.0), DVec3::new(0.0, 0.0, 90.0), DVec3::new(10.0, 0.0, 0.0));
+        ToWorld::new(DVec3::new(2.0, 3.0, 4.0), DVec3::new(0.0, 0.0, 90.0), DVec3::new(10.0, 0.0, 0.0));
     assert_eq!(placement.place(DVec3::new(1.0, 1.0, 1.0)), DVec3::new(7.0, 2.0, 4.0));
     assert!(!placement.is_mirrored());
-    assert!(Placement::new(DVec3::new(1.0, 1.0, -1.0), DVec3::ZERO, DVec3::ZERO).is_mirrored());
-    let turned = Placement::new(PLAIN, DVec3::new(90.0, 90.0, 0.0), DVec3::ZERO);
+    assert!(ToWorld::new(DVec3::new(1.0, 1.0, -1.0), DVec3::ZERO, DVec3::ZERO).is_mirrored());
+    let turned = ToWorld::new(PLAIN, DVec3::new(90.0, 90.0, 0.0), DVec3::ZERO);
     // Around x first: y becomes z, which becomes x around y.
     assert_eq!(turned.place(DVec3::Y), DVec3::X);
 }
 
 #[test]
 fn the_memory_of_a_mesh_is_far_below_150_bytes_for_each_face() {
-    let surface = surface(closed(&[1.0, 1.1, 0.9], 200), &Placement::new(PLAIN, DVec3::ZERO, DVec3::ZERO));
+    let surface = surface(closed(&[1.0, 1.1, 0.9], 200), &ToWorld::new(PLAIN, DVec3::ZERO, DVec3::ZERO));
     let each = surface.bytes() as f64 / surface.face_count() as f64;
     assert!(each < 75.0, "{each} bytes");
+}
+
+#[test]
+fn no_doubled_face_at_an_outline_is_seen_from_behind() {
+    let Model { vertices, faces, .. } = closed(&[1.0, 1.3, 0.8, 1.1], 7);
+    let turned = faces.iter().map(|[a, b, c]| [*a, *c, *b]);
+    for doubled in
+        [turned.clone().chain(faces.clone()).collect(), faces.iter().copied().chain(turned).collect()]
+    {
+        let model = Model { vertices: vertices.clone(), faces: doubled, ..Model::default() };
+        let surface = Arc::new(surface(model, &ToWorld::new(PLAIN, DVec3::ZERO, DVec3::ZERO)));
+        let (shape, mut seen) = (shape(&surface), 0);
+        for view in 0..40 {
+            let angle = f64::from(view);
+            let origin = 4.0 * DVec3::new(angle.cos(), 0.7 * (1.7 * angle).sin(), angle.sin());
+            for [a, b, _] in &faces {
+                let [a, b] = [a, b].map(|corner| vertices[*corner as usize]);
+                let dir = (0.5 * (a + b) - origin).normalize();
+                let distance = shape.distance(&Ray { origin, dir }, &RayRange::ALL);
+                if distance < (0.5 * (a + b) - origin).length() * (1.0 - 1e-9) || distance == MISS {
+                    continue;
+                }
+                let (from, along) = (Vectors::<LANES>::of(origin), Vectors::<LANES>::of(dir));
+                let rays = RayPacket { origin: from.view(LANES), dir: along.view(LANES), origin_error: 0.0 };
+                let (mut points, mut normals) = (Vectors::<LANES>::ZERO, Vectors::<LANES>::ZERO);
+                let interaction = SurfaceInteraction {
+                    points: points.view_mut(LANES),
+                    normals: normals.view_mut(LANES),
+                    sides: &mut [Side::Outside; LANES],
+                    cosines: &mut [0.0; LANES],
+                    travelled: &mut [0.0; LANES],
+                };
+                shape.packets().interact(Cpu::best(), rays, &[distance; LANES], interaction);
+                // All outer sides face away from the middle.
+                assert!(normals.get(0).dot(points.get(0)) > 0.0, "{origin} {a} {b}");
+                seen += 1;
+            }
+        }
+        assert!(seen > 1000, "{seen}");
+    }
 }

@@ -2,7 +2,7 @@
 
 use super::tree::{Child, Node, Tree, WIDTH};
 use crate::geometry::aabb::Aabb;
-use crate::geometry::ray::Ray;
+use crate::geometry::ray::{Drift, Ray};
 use glam::DVec3;
 use std::ops::Range;
 
@@ -39,12 +39,17 @@ struct LocalRay {
 
 impl LocalRay {
     #[inline(always)]
-    fn new(tree: &Tree, ray: &Ray) -> Self {
+    fn new(tree: &Tree, ray: &Ray, drift: Option<Drift>) -> Self {
         let origin = tree.space.point(ray.origin);
         // The mesh lies within 2 of its center.
         let skipped = (origin.length() - 2.0).max(0.0);
         let near = origin + skipped * ray.dir;
         let error = ROUNDING * (1.0 + near.abs().max_element()) + 8.0 * f64::EPSILON * skipped;
+        // In the mesh, no point of the ray is farther than 4 from where it was moved to.
+        let error = match drift {
+            None => error,
+            Some(Drift { origin, dir }) => error + origin * tree.space.scale + dir * (skipped + 8.0),
+        };
         let (mut near_origin, mut far_origin, mut inverse) = ([0.0; 3], [0.0; 3], [0.0; 3]);
         let mut is_backward = [false; 3];
         for axis in 0..3 {
@@ -90,10 +95,10 @@ impl LocalRay {
 
 impl Tree {
     /// Visits the faces in the boxes that a ray passes through before a distance in world units, roughly from near to
-    /// far.
+    /// far; with a drift, those of all rays within it.
     #[inline(always)]
-    pub fn along(&self, ray: &Ray, far: f64, faces: &mut impl Faces) {
-        let local = LocalRay::new(self, ray);
+    pub fn along(&self, ray: &Ray, far: f64, drift: Option<Drift>, faces: &mut impl Faces) {
+        let local = LocalRay::new(self, ray, drift);
         let mut limit = local.limit(far);
         let mut stack = [(0.0_f32, 0_u32); STACK];
         let mut waiting = 1;

@@ -4,14 +4,17 @@
 use super::quick::Quick;
 use super::surface::{OwnRay, Quadratic};
 use crate::geometry::aabb::{Aabb, SLACK};
-use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
+use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
 use crate::numeric::scalar::Scalar;
 use crate::world::accuracy::{Accuracy, Bounded, Classic};
 use glam::{DMat3, DVec3};
 use std::marker::PhantomData;
 
-/// A bound of the error of a component of a camera ray's direction: 3 units of 2^-53.
-const CAMERA: f64 = 1.5 * f64::EPSILON;
+/// A bound of the error of a camera ray, whose direction is off by 3 units of 2^-53 in each component.
+const CAMERA: Drift = Drift { origin: 0.0, dir: 1.5 * f64::EPSILON };
+
+/// The drift of a ray that is taken as it is.
+pub(super) const NO_DRIFT: Drift = Drift { origin: 0.0, dir: 0.0 };
 
 /// A quadric `p·Sp + l·p + c = 0`, for points `p` relative to the center, in a box.
 #[derive(Clone, Debug)]
@@ -150,7 +153,7 @@ impl<A: Bounded> Quadric<A> {
             return f64::NAN;
         }
         let own = self.own_ray(ray);
-        let quick = self.own.quick_hit(&own, range.near, 0.0);
+        let quick = self.own.quick_hit(&own, range.near, NO_DRIFT);
         let corrected = self.own.corrected(&own, quick.distance);
         let is_unknown = quick.is_unknown | corrected.is_nan();
         let hit = if is_unknown { f64::NAN } else { range.keep(corrected) };
@@ -163,8 +166,14 @@ impl<A: Bounded> Quadric<A> {
         if let Some(side) = range.origin_side {
             return Bracket::exactly(self.other_distance(ray, side, range));
         }
+        self.t_bounds_within(ray, range, CAMERA)
+    }
+
+    /// Returns bounds of the distances at which all rays within a drift of this one first hit the quadric in a range.
+    #[inline(always)]
+    pub fn t_bounds_within(&self, ray: &Ray, range: &RayRange, drift: Drift) -> Bracket {
         let Quick { is_missed, is_unknown, distance, error } =
-            self.own.quick_hit(&self.own_ray(ray), range.near, CAMERA);
+            self.own.quick_hit(&self.own_ray(ray), range.near, drift);
         let (near, far) = if is_unknown { (range.near, MISS) } else { (distance - error, distance + error) };
         if is_missed { Bracket::MISS } else { Bracket { near, far } }
     }

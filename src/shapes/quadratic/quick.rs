@@ -2,6 +2,7 @@
 
 use super::surface::{DD_ERROR, OwnRay, Quadratic};
 use crate::geometry::aabb::smaller;
+use crate::geometry::ray::Drift;
 use crate::numeric::double_double::{two_product, two_sum};
 use glam::DVec3;
 
@@ -34,13 +35,13 @@ struct RayPolynomial {
 }
 
 impl Quadratic {
-    /// Computes the polynomial along a ray whose direction may be off by `dir_error` in each component.
+    /// Computes the polynomial along a ray whose origin and direction may be off by these errors in each component.
     ///
     /// Units of 2^-53: a point is off by 1; a product of three factors and the sums that it enters are off by 8, and
     /// the point enters it at most twice: less than 16. An error of the point or the direction adds to this, multiplied
     /// by the gradient.
     #[inline(always)]
-    fn along(&self, ray: &OwnRay, dir_error: f64) -> RayPolynomial {
+    fn along(&self, ray: &OwnRay, origin_error: f64, dir_error: f64) -> RayPolynomial {
         const ROUNDING: f64 = 8.0 * f64::EPSILON;
         let OwnRay { from, dir } = *ray;
         let high = DVec3::new(from[0].high, from[1].high, from[2].high);
@@ -60,7 +61,8 @@ impl Quadratic {
         let at_size = self.sizes.dot(at * at);
         let linear = self.linear.abs();
         let gradient = 2.0 * self.sizes.dot(at.abs()) + linear.element_sum();
-        let at_error = DD_ERROR * (high.abs().element_sum() + base.abs()) + dir_error * base.abs();
+        let at_error =
+            DD_ERROR * (high.abs().element_sum() + base.abs()) + dir_error * base.abs() + origin_error;
         let b_size = (at_size * a_size).sqrt() + 0.5 * linear.dot(dir.abs());
         let c_size = at_size + linear.dot(at.abs()) + self.constant.abs();
         let reach = self.sizes.dot(dir.abs());
@@ -78,11 +80,11 @@ impl Quadratic {
         }
     }
 
-    /// Computes the first hit beyond `near` in plain arithmetic without branches, for a ray whose direction may be off
-    /// by `dir_error` in each component.
+    /// Computes the first hit beyond `near` in plain arithmetic without branches, for a ray whose origin and direction
+    /// may be off by as much as a drift in each component.
     #[inline(always)]
-    pub fn quick_hit(&self, ray: &OwnRay, near: f64, dir_error: f64) -> Quick {
-        let along = self.along(ray, dir_error);
+    pub fn quick_hit(&self, ray: &OwnRay, near: f64, drift: Drift) -> Quick {
+        let along = self.along(ray, drift.origin * self.scale, drift.dir);
         let RayPolynomial { a, b, c, a_error, b_error, c_error, .. } = along;
         let (square, product) = (b * b, a * c);
         let discriminant = square - product;

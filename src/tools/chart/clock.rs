@@ -2,6 +2,7 @@
 //! times are CPU times of the thread, the minimum of many rounds.
 
 use super::progress::Progress;
+use super::times::Times;
 use crate::tools::bench::clock;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -20,26 +21,6 @@ const MIN_DURATION: Duration = Duration::from_millis(2);
 
 /// The estimate of the work for one choice before it is known, in units of [`Progress`].
 const UNITS: usize = 100_000;
-
-/// The times of a piece of work, in seconds.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Times {
-    /// The time of the shortest round.
-    pub least: f64,
-    /// The median time of the rounds.
-    pub median: f64,
-    /// The number of rounds.
-    pub rounds: usize,
-    /// The time that the rounds waited for other work of the machine, as a fraction of the time that they took.
-    pub waited: f64,
-}
-
-impl Times {
-    /// Returns the relative excess of the median round over the shortest.
-    pub fn spread(&self) -> f64 {
-        self.median / self.least - 1.0
-    }
-}
 
 /// Returns the work of timing this many choices, in units of [`Progress`].
 pub fn work(choices: usize) -> usize {

@@ -1,9 +1,10 @@
 //! The data of a chart: panels of points, one point for each choice.
 
-use super::clock::Times;
 use super::machine::Machine;
+use super::times::Times;
 
 /// All that is charted of a scene.
+#[derive(Clone)]
 pub struct Chart {
     /// The name of the scene.
     pub scene: String,
@@ -16,6 +17,7 @@ pub struct Chart {
 }
 
 /// Choices that answer one question, compared.
+#[derive(Clone)]
 pub struct Panel {
     /// The title.
     pub title: String,
@@ -36,9 +38,14 @@ pub enum Subject {
     Methods,
     /// Colours of pixels, by the number of samples. Times are for one pixel.
     Samples,
+    /// Colours of pixels, by the number of times that rays are reflected or transmitted. Times are for one pixel.
+    Bounces,
+    /// Colours of pixels, by accuracy and number of samples. Times are for one pixel.
+    Whole,
 }
 
 /// One choice.
+#[derive(Clone)]
 pub struct Point {
     /// The choice's name.
     pub name: String,
@@ -110,7 +117,9 @@ impl Panel {
     pub fn measure(&self) -> &'static str {
         match self.subject {
             Subject::Distances => "error of the distance, 99th percentile (world units)",
-            Subject::Methods | Subject::Samples => "error of the colour, RMSE (1 = white)",
+            Subject::Methods | Subject::Samples | Subject::Bounces | Subject::Whole => {
+                "error of the colour, RMSE (1 = white)"
+            }
         }
     }
 
@@ -118,7 +127,9 @@ impl Panel {
     pub fn unit(&self) -> (&'static str, f64) {
         match self.subject {
             Subject::Distances => ("CPU time per ray and object (ns)", 1e9),
-            Subject::Methods | Subject::Samples => ("CPU time per pixel (µs)", 1e6),
+            Subject::Methods | Subject::Samples | Subject::Bounces | Subject::Whole => {
+                ("CPU time per pixel (µs)", 1e6)
+            }
         }
     }
 
@@ -126,7 +137,7 @@ impl Panel {
     pub fn negligible(&self) -> f64 {
         match self.subject {
             Subject::Distances => 0.0,
-            Subject::Methods | Subject::Samples => 1e-9,
+            Subject::Methods | Subject::Samples | Subject::Bounces | Subject::Whole => 1e-9,
         }
     }
 }
@@ -157,7 +168,9 @@ impl Chart {
     }
 
     fn middle(&self, of: impl Fn(&Times) -> f64) -> f64 {
-        let points = self.panels.iter().flat_map(|panel| &panel.points);
+        // The whole image is timed in its own way, without a median.
+        let panels = self.panels.iter().filter(|panel| panel.subject != Subject::Whole);
+        let points = panels.flat_map(|panel| &panel.points);
         let mut parts: Vec<f64> = points.map(|point| of(&point.times)).collect();
         parts.sort_by(f64::total_cmp);
         parts.get(parts.len() / 2).copied().unwrap_or(0.0)

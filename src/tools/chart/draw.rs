@@ -197,8 +197,8 @@ fn draw_panel<D: DrawingBackend>(canvas: &Canvas<D>, panel: &Panel, corner: (f64
     canvas.text(unit, (middle, plot.bottom + 36.0), Align::Middle, axis)?;
     canvas.upward(panel.measure(), (corner.0 + 20.0, 0.5 * (plot.top + plot.bottom)), axis)?;
 
-    if panel.subject == Subject::Samples {
-        for family in [Family::Sobol, Family::Random] {
+    if matches!(panel.subject, Subject::Samples | Subject::Bounces) {
+        for family in [Family::Sobol, Family::Random, Family::Own] {
             let series = panel.points.iter().filter(|point| point.family == family);
             canvas.line(&series.map(place).collect::<Vec<_>>(), look(family).1, 1.0)?;
         }

@@ -33,7 +33,6 @@ const TRUTH: usize = 30;
 /// Rays, with the objects that they are tested against.
 pub struct Set {
     title: String,
-    note: String,
     packets: Vec<Packet>,
     /// Whether the objects' hits are roots of a function along a ray.
     is_searched: bool,
@@ -66,8 +65,7 @@ pub fn sets(model: &Model) -> Vec<Set> {
         let mut add = |kind: &str, packets: Vec<Packet>| {
             if !packets.is_empty() {
                 let title = format!("{what}: {kind}");
-                let note = format!("{} rays", count(&packets));
-                sets.push(Set { title, note, packets, is_searched: is_of_roots });
+                sets.push(Set { title, packets, is_searched: is_of_roots });
             }
         };
         add("camera rays", camera(model, &group));
@@ -98,6 +96,9 @@ pub fn panel(study: &Study, set: &Set, progress: &mut dyn Progress) -> ControlFl
             study.threads.run(|| each(packets, |packet| truths_of(strict, packet))).into_iter().flatten(),
         );
         progress.done(count(packets) * TRUTH)?;
+        if progress.is_late() {
+            break;
+        }
     }
     let screen = strict.camera.value.screen.max_element();
     let mut errors = Vec::new();
@@ -144,7 +145,7 @@ pub fn panel(study: &Study, set: &Set, progress: &mut dyn Progress) -> ControlFl
     });
     ControlFlow::Continue(Some(Panel {
         title: set.title.clone(),
-        note: format!("{}, {hits} hits{undecided}{lost}", set.note),
+        note: format!("{} rays, {hits} hits{undecided}{lost}", truths.len()),
         subject: Subject::Distances,
         points: points.collect(),
     }))

@@ -6,6 +6,7 @@ use std::thread;
 use std::time::SystemTime;
 
 /// A machine, a build of the program, and a time.
+#[derive(Clone)]
 pub struct Machine {
     /// The processor's name according to the system, the level of CPU instructions that is used, and the number of its
     /// threads.

@@ -21,52 +21,79 @@ mod packets;
 mod pictures;
 mod places;
 mod progress;
+mod sampled;
 mod study;
+mod times;
 mod verdict;
 
 pub use candidate::Load;
-pub use clock::Times;
 pub use data::{Chart, Family, Panel, Point, Subject, Wrong};
 pub use draw::{png, svg};
-pub use estimate::{Estimate, estimates};
+pub use estimate::{Estimate, Estimates, Goal, estimates};
 pub use files::{csv, json};
 pub use machine::Machine;
 pub use progress::Progress;
+pub use times::Times;
 pub use verdict::words;
 
 use std::io;
 use std::ops::ControlFlow;
 use study::Study;
 
-/// Measures the cost and the error of a scene's choices. If `progress` breaks off, what has been measured so far is
-/// kept.
+/// Measures the cost and the error of a scene's choices. If `progress` breaks off a panel, the others are kept.
 ///
 /// # Errors
 /// Those of `load`, and those of starting threads.
 pub fn measure(scene: &str, load: Load, progress: &mut dyn Progress) -> io::Result<Chart> {
     let study = Study::new(load)?;
-    let mut chart =
-        Chart { scene: scene.to_owned(), machine: Machine::here(), panels: Vec::new(), is_whole: false };
-    chart.is_whole = study.run(&mut chart.panels, progress).is_continue();
+    let mut chart = Chart::empty(scene);
+    chart.is_whole = study.run(load, &mut chart.panels, progress).is_continue();
     Ok(chart)
 }
 
+impl Chart {
+    /// Makes the chart of a scene of which nothing is measured yet.
+    pub fn empty(scene: &str) -> Self {
+        Self { scene: scene.to_owned(), machine: Machine::here(), panels: Vec::new(), is_whole: false }
+    }
+}
+
+/// The measurement of one panel.
+type Part<'p> = Box<dyn FnOnce(&mut dyn Progress) -> ControlFlow<(), Option<Panel>> + 'p>;
+
 impl Study {
-    fn run(&self, panels: &mut Vec<Panel>, progress: &mut dyn Progress) -> ControlFlow<()> {
+    fn run(&self, load: Load, panels: &mut Vec<Panel>, progress: &mut dyn Progress) -> ControlFlow<()> {
         let sets = hits::sets(&self.candidates[self.strict].model);
         let candidates = self.candidates.len();
         let works = sets.iter().map(|set| hits::work(set, candidates)).sum::<usize>();
         progress.more(works + pictures::work(self));
-        for set in &sets {
-            panels.extend(hits::panel(self, set, progress)?);
-            progress.kept();
+        let of = |set| -> Part { Box::new(move |progress| hits::panel(self, set, progress)) };
+        let mut parts: Vec<Part> = sets.iter().map(of).collect();
+        parts.push(Box::new(|progress| ControlFlow::Continue(Some(pictures::methods(self, progress)?))));
+        let model = &self.candidates[self.default].model;
+        if pictures::goes_on(model) {
+            parts.push(Box::new(|progress| pictures::bounces(self, progress)));
         }
-        panels.push(pictures::methods(self, progress)?);
-        progress.kept();
-        panels.extend(pictures::samples(self, pictures::Seen::Picture, progress)?);
-        if self.candidates[self.default].model.lights.iter().any(|light| light.value.size() > 0.0) {
-            panels.extend(pictures::samples(self, pictures::Seen::Shadows, progress)?);
+        parts.push(Box::new(|progress| pictures::samples(self, pictures::Seen::Picture, progress)));
+        if pictures::has_size(model) {
+            parts.push(Box::new(|progress| pictures::samples(self, pictures::Seen::Shadows, progress)));
         }
-        ControlFlow::Continue(())
+        parts.push(Box::new(|progress| match estimate::panel(load, progress) {
+            Ok(panel) => ControlFlow::Continue(Some(panel)),
+            Err(_) => ControlFlow::Break(()),
+        }));
+        let (mut left, mut is_whole) = (parts.len(), true);
+        for part in parts {
+            progress.share(left);
+            left -= 1;
+            match part(progress) {
+                ControlFlow::Continue(panel) => panels.extend(panel),
+                ControlFlow::Break(()) => is_whole = false,
+            }
+            progress.kept(panels);
+            progress.share(left);
+            progress.done(0)?;
+        }
+        if is_whole { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     }
 }

@@ -3,13 +3,15 @@
 //! Errors are those of some of the image's own pixels, spread evenly; times are those of some of its tiles, each traced
 //! on one thread as in a render.
 
-use super::clock::{self, Times};
+use super::clock;
 use super::colours::{Difference, difference};
 use super::data::{Family, Panel, Point, Subject, Wrong};
 use super::places::{Pixels, spread, tiles};
 use super::progress::Progress;
 use super::study::Study;
+use super::times::Times;
 use crate::geometry::ray_packet::PACKET_SIZE;
+use crate::render::bytes::shown;
 use crate::render::observer::{Event, TraceObserver};
 use crate::render::plan::Plan;
 use crate::render::ray_stats::Cuts;
@@ -29,6 +31,12 @@ pub(super) const TRUE_SAMPLES: u32 = 1024;
 
 /// The numbers of samples that are compared, beside the scene's own.
 const SAMPLES: [u32; 8] = [1, 2, 4, 8, 16, 24, 32, 64];
+
+/// The numbers of reflections and transmissions on a path that are compared, beside all.
+const BOUNCES: [usize; 8] = [0, 1, 2, 3, 4, 6, 8, 12];
+
+/// The minimum number of pixels of which the true colours must be known.
+const FEWEST: usize = 256;
 
 /// The maximum number of object tests for the true colours of one panel of samples: about 0.1 µs each, so 5 s.
 pub(super) const TRUE_TESTS: usize = 50_000_000;
@@ -52,11 +60,14 @@ pub(super) enum Seen {
 /// Returns the approximate work of measuring all images, in units of [`Progress`].
 pub fn work(study: &Study) -> usize {
     let kinds = 1 + usize::from(has_size(&study.candidates[study.default].model));
-    let methods = study.candidates.len() * METHOD_TESTS / 10 + clock::work(study.candidates.len());
-    methods + kinds * (TRUE_TESTS / 8 + clock::work(2 * SAMPLES.len()))
+    let of_images = |count: usize| count * METHOD_TESTS / 10 + clock::work(count);
+    let model = &study.candidates[study.default].model;
+    let bounces = if goes_on(model) { of_images(BOUNCES.len() + 1) } else { 0 };
+    of_images(study.candidates.len()) + bounces + kinds * (TRUE_TESTS / 8 + clock::work(2 * SAMPLES.len()))
 }
 
-fn has_size(model: &Model) -> bool {
+/// Tells whether any light of a model has a size.
+pub fn has_size(model: &Model) -> bool {
     model.lights.iter().any(|light| light.value.size() > 0.0)
 }
 
@@ -96,6 +107,46 @@ pub fn methods(study: &Study, progress: &mut dyn Progress) -> ControlFlow<(), Pa
     })
 }
 
+/// Tells whether rays of a model are reflected or transmitted.
+pub fn goes_on(model: &Model) -> bool {
+    Plan::new(model).depth.is_some()
+}
+
+/// Compares how often rays are reflected and transmitted, on an image with one ray through the centre of each pixel;
+/// returns `None` where that makes no difference.
+pub fn bounces(study: &Study, progress: &mut dyn Progress) -> ControlFlow<(), Option<Panel>> {
+    let model = &study.candidates[study.default].model;
+    let tests = tests(&Plan::new(model), &study.threads);
+    let own = model.camera.value.pixels;
+    let pixels = spread(own, (METHOD_TESTS as f64 / tests) as usize);
+    let timed = timed(own, tests);
+    let plan = |bounces: usize| Plan { bounces, ..one_ray(model) };
+    let plans: Vec<_> = BOUNCES.into_iter().chain([usize::MAX]).map(plan).collect();
+    let mut colours = Vec::new();
+    for plan in &plans {
+        colours.push(each(&study.threads, &pixels, |x, y| trace::pixel(plan, x, y)));
+        progress.done(METHOD_TESTS / 10)?;
+    }
+    let right = &colours[plans.len() - 1];
+    let differences: Vec<_> = colours.iter().map(|colours| difference(colours, right)).collect();
+    if differences.iter().all(|off| off.rmse == 0.0) {
+        return ControlFlow::Continue(None);
+    }
+    let work = |choice: usize| render(&plans[choice], &timed);
+    let times = study.thread.run(|| clock::rounds(plans.len(), count(&timed), work, progress));
+    let points = plans.iter().zip(differences).zip(times?).map(|((plan, off), times)| {
+        let is_default = plan.bounces == usize::MAX;
+        let name = if is_default { "all".to_owned() } else { plan.bounces.to_string() };
+        Point { is_default, ..point(name, Family::Own, times, off, (pixels.len(), 1)) }
+    });
+    ControlFlow::Continue(Some(Panel {
+        title: "reflections and transmissions on a path, at most".to_owned(),
+        note: format!("{} of {} pixels, against all that can be seen", pixels.len(), own[0] * own[1]),
+        subject: Subject::Bounces,
+        points: points.collect(),
+    }))
+}
+
 /// Compares numbers of samples against so many samples that more make no difference; returns `None` where one sample is
 /// already right.
 pub fn samples(study: &Study, seen: Seen, progress: &mut dyn Progress) -> ControlFlow<(), Option<Panel>> {
@@ -105,8 +156,9 @@ pub fn samples(study: &Study, seen: Seen, progress: &mut dyn Progress) -> Contro
     let mut plan = Plan::new(model);
     let tests = tests(&plan, threads);
     let max_pixels = (TRUE_TESTS as f64 / (f64::from(TRUE_SAMPLES) * tests)) as usize;
-    let pixels = spread(own.pixels, max_pixels.clamp(1024, 8192));
+    let mut pixels = spread(own.pixels, max_pixels.clamp(1024, 8192));
     let right = truth(&plan, threads, &pixels, seen, progress)?;
+    pixels.truncate(right.len());
     let choices: Vec<_> = choices(own.samples, own.sampler);
     let mut differences = Vec::new();
     for (samples, sampler) in &choices {
@@ -216,8 +268,22 @@ pub(super) fn render(plan: &Plan, tiles: &[Pixels]) {
     }
 }
 
+/// Returns the colours of pixels as they are shown, traced in packets on all threads of a renderer.
+pub(super) fn shown_colours(threads: &Renderer, plan: &Plan, pixels: &[[usize; 2]]) -> Vec<Rgb> {
+    use rayon::prelude::*;
+    let at_once = (4 * PACKET_SIZE / plan.camera.samples as usize).max(1);
+    let part = |scratch: &mut Scratch, pixels: &[[usize; 2]]| -> Vec<Rgb> {
+        let mut nobody = Cuts::default();
+        let mut tracer = Tracer::new(plan, Cpu::best(), scratch, &mut nobody);
+        let colours = tracer.pixels(pixels);
+        (0..pixels.len()).map(|pixel| shown(colours.get(pixel))).collect()
+    };
+    let parts = || pixels.par_chunks(at_once).map_init(Scratch::default, part).flatten_iter().collect();
+    threads.run(parts)
+}
+
 /// Returns the true colours: with so many samples that more make no difference, and other ones than those that are
-/// compared.
+/// compared. Where time does not suffice, they are those of the first pixels only, which are spread as evenly.
 pub(super) fn truth(
     plan: &Plan,
     threads: &Renderer,
@@ -233,9 +299,12 @@ pub(super) fn truth(
         let one = |index| colour_of(plan, [x, y], sample(index), seen);
         (0..TRUE_SAMPLES).map(one).sum::<Rgb>() / f64::from(TRUE_SAMPLES)
     };
-    for part in pixels.chunks(pixels.len().div_ceil(50)) {
+    for part in pixels.chunks(pixels.len().div_ceil(100)) {
         colours.extend(each(threads, part, colour));
         progress.done(TRUE_TESTS / 10 * part.len() / pixels.len())?;
+        if progress.is_late() && colours.len() >= FEWEST {
+            break;
+        }
     }
     ControlFlow::Continue(colours)
 }

@@ -1,5 +1,6 @@
 //! How far a measurement is.
 
+use super::data::Panel;
 use std::ops::ControlFlow;
 
 /// Receives the progress of a measurement, and may break it off.
@@ -8,6 +9,13 @@ pub trait Progress: Send {
     fn more(&mut self, units: usize);
     /// Counts work as done, in the same units; breaks if no more is to be done.
     fn done(&mut self, units: usize) -> ControlFlow<()>;
-    /// Says that there are measurements that are kept if the rest is broken off.
-    fn kept(&mut self) {}
+    /// Says that what is left is to take the time that is left, and consists of this many panels: then the one that
+    /// begins may take its share.
+    fn share(&mut self, _panels: usize) {}
+    /// Tells whether half of the panel's share is used: what is known by then of the truth must do.
+    fn is_late(&self) -> bool {
+        false
+    }
+    /// Passes on the panels so far, which are kept if the rest is broken off.
+    fn kept(&mut self, _panels: &[Panel]) {}
 }

@@ -16,6 +16,8 @@ pub fn words(chart: &Chart) -> String {
             Subject::Distances => distances(panel),
             Subject::Methods => methods(panel),
             Subject::Samples => samples(panel),
+            Subject::Bounces => bounces(panel),
+            Subject::Whole => [front(panel)].into_iter().chain(standing(panel)).collect(),
         };
         for line in lines {
             let _ = writeln!(text, "  {line}");
@@ -37,7 +39,7 @@ pub fn words(chart: &Chart) -> String {
         );
     }
     if !chart.is_whole {
-        text += "Interrupted: this is what had been measured by then.\n";
+        text += "Not all was measured: this is what had been measured by then.\n";
     }
     text
 }
@@ -90,6 +92,15 @@ fn methods(panel: &Panel) -> Vec<String> {
         lines.push(format!("change pixels: {}", others.join("; ")));
     }
     lines
+}
+
+fn bounces(panel: &Panel) -> Vec<String> {
+    let all = panel.points.iter().find(|point| point.is_default);
+    let fits = |point: &&Point| point.worst <= 0.5 / 255.0;
+    let line = |what: &str, point: &Point| format!("{what}: {}, {}", point.name, time(panel, point));
+    let first =
+        panel.points.iter().find(fits).map(|point| line("no pixel is off by more than half a level", point));
+    all.map(|point| line("the default", point)).into_iter().chain(first).collect()
 }
 
 fn samples(panel: &Panel) -> Vec<String> {

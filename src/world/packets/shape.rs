@@ -4,18 +4,15 @@
 //! are compiled for each instruction set. [`Packets`] takes packets; it is derived from [`OneRay`], except for shapes
 //! that take packets themselves. [`Proofs`] tells what is certain about hits.
 
-use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
+pub use super::proofs::Proofs;
+
+use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
 use crate::geometry::ray_packet::{Brackets, Nearest, RayPacket, mark_occluded, merge_nearest};
-use crate::geometry::roots::Method;
-use crate::geometry::sight::Sight;
-use crate::numeric::double_double::DoubleDouble;
 use crate::simd::cpu::{Cpu, kernels};
-use crate::world::certify::{self, Enclosure, Equation, Precision};
-use crate::world::coincidence::{CLOSE, ROUNDING};
-use crate::world::hittable::{Bracketed, Certified, Hittable, Searched};
+use crate::world::coincidence::CLOSE;
+use crate::world::hittable::{Bracketed, Hittable};
 use crate::world::interaction::{SurfaceInteraction, turned};
 use crate::world::shape::{ByBracket, ByDistance, ByEquation, ByFormula, ByRoots, Shape, Unproven};
-use glam::DVec3;
 
 /// A shape of any type, with its interfaces for packets and proofs.
 pub trait PacketShape: Packets + Proofs {
@@ -75,117 +72,31 @@ pub trait Packets: Send + Sync {
     /// Returns a bracket of the distance of one ray's first hit.
     fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket;
 
+    /// Returns a bracket of the first hits of all rays within a drift of a camera ray; unknown by default.
+    fn t_bounds_within(&self, _ray: &Ray, _range: &RayRange, _drift: Drift) -> Bracket {
+        Bracket::UNKNOWN
+    }
+
+    /// Computes the brackets that [`t_bounds_within`](Self::t_bounds_within) returns for each ray of a packet and its end.
+    fn brackets_within(
+        &self,
+        _cpu: Cpu,
+        rays: RayPacket,
+        drift: Drift,
+        ends: &[f64],
+        near: &mut [f64],
+        far: &mut [f64],
+    ) {
+        for lane in 0..near.len() {
+            let range = RayRange { far: ends[lane], ..RayRange::ALL };
+            Bracket { near: near[lane], far: far[lane] } =
+                self.t_bounds_within(&rays.get(lane), &range, drift);
+        }
+    }
+
     /// Returns the distance of one ray's hit that [`t_bounds`](Self::t_bounds) has found for certain, or NaN where it
     /// takes more than plain arithmetic.
     fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64;
-}
-
-/// A shape about whose hits something may be proven.
-pub trait Proofs: Send + Sync {
-    /// Tells whether a point lies on the surface, up to an error in world units and to the rounding of the shape's own
-    /// numbers. Rays that start at such a point leave the shape.
-    fn touches(&self, at: DVec3, error: f64) -> bool;
-
-    /// Returns the distance of the hit near `distance` in double-double arithmetic, or `None` where no such distance
-    /// can be computed.
-    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble>;
-
-    /// Returns what is certain about a ray's first hit.
-    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure;
-
-    /// Tells whether hits are found by a formula of the notes, whose program tests every ray against every shape.
-    fn is_of_the_notes(&self) -> bool {
-        false
-    }
-
-    /// Returns the distance by another root-finding method, or `None` where the shape's hits are not the roots of a
-    /// function along the ray, or are found in closed form.
-    fn distance_by(&self, method: Method, ray: &Ray, range: &RayRange) -> Option<f64>;
-}
-
-impl<T: Hittable, S> Proofs for Shape<T, S, Unproven> {
-    fn touches(&self, at: DVec3, error: f64) -> bool {
-        is_met_within(&self.shape, at, error)
-    }
-
-    fn fine_distance(&self, _ray: &Ray, _distance: f64) -> Option<DoubleDouble> {
-        None
-    }
-
-    fn certify(&self, _sight: &Sight, _precision: Precision) -> Enclosure {
-        Enclosure::UNKNOWN
-    }
-
-    fn distance_by(&self, _method: Method, _ray: &Ray, _range: &RayRange) -> Option<f64> {
-        None
-    }
-}
-
-impl<T: Hittable + Equation, S> Proofs for Shape<T, S, ByFormula> {
-    fn is_of_the_notes(&self) -> bool {
-        true
-    }
-
-    fn touches(&self, at: DVec3, error: f64) -> bool {
-        is_met_within(&self.shape, at, error)
-    }
-
-    fn fine_distance(&self, _ray: &Ray, _distance: f64) -> Option<DoubleDouble> {
-        None
-    }
-
-    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        certify::first_hit(&self.shape, sight, precision)
-    }
-
-    fn distance_by(&self, _method: Method, _ray: &Ray, _range: &RayRange) -> Option<f64> {
-        None
-    }
-}
-
-impl<T: Certified, S> Proofs for Shape<T, S, ByEquation> {
-    fn touches(&self, at: DVec3, error: f64) -> bool {
-        self.shape.touches(at, error)
-    }
-
-    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble> {
-        self.shape.fine_distance(ray, distance)
-    }
-
-    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        certify::first_hit(&self.shape, sight, precision)
-    }
-
-    fn distance_by(&self, _method: Method, _ray: &Ray, _range: &RayRange) -> Option<f64> {
-        None
-    }
-}
-
-impl<T: Searched, S> Proofs for Shape<T, S, ByRoots> {
-    fn touches(&self, at: DVec3, error: f64) -> bool {
-        self.shape.touches(at, error)
-    }
-
-    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble> {
-        self.shape.fine_distance(ray, distance)
-    }
-
-    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
-        certify::first_hit(&self.shape, sight, precision)
-    }
-
-    fn distance_by(&self, method: Method, ray: &Ray, range: &RayRange) -> Option<f64> {
-        Some(self.shape.distance_by(method, ray, range))
-    }
-}
-
-/// Tells whether a short ray through a point, perpendicular to a shape, hits the shape within an error in world units.
-fn is_met_within(shape: &impl Hittable, at: DVec3, error: f64) -> bool {
-    let dir = shape.normal(at);
-    // Twice the error, so that a surface at the error itself lies inside the range; and the rounding of the new origin.
-    let half_length = 2.0 * error + ROUNDING * at.abs().max_element();
-    let ray = Ray { origin: at - half_length * dir, dir };
-    shape.distance(&ray, &RayRange { far: 2.0 * half_length, ..RayRange::ALL }) < MISS
 }
 
 /// A shape that is tested against one ray at a time.
@@ -198,6 +109,12 @@ pub trait OneRay: Send + Sync {
 
     /// Returns a bracket of the distance of the ray's first hit.
     fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket;
+
+    /// Returns a bracket of the first hits of all rays within a drift of a camera ray; unknown by default.
+    #[inline(always)]
+    fn t_bounds_within(&self, _ray: &Ray, _range: &RayRange, _drift: Drift) -> Bracket {
+        Bracket::UNKNOWN
+    }
 
     /// Returns the distance of a hit that [`t_bounds`](Self::t_bounds) has found for certain, or NaN where it takes
     /// more than plain arithmetic.
@@ -233,6 +150,11 @@ impl<T: Bracketed, P> OneRay for Shape<T, ByBracket, P> {
     #[inline(always)]
     fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
         self.shape.t_bounds(ray, range)
+    }
+
+    #[inline(always)]
+    fn t_bounds_within(&self, ray: &Ray, range: &RayRange, drift: Drift) -> Bracket {
+        self.shape.t_bounds_within(ray, range, drift)
     }
 
     #[inline(always)]
@@ -350,6 +272,22 @@ where
         OneRay::t_bounds(self, ray, range)
     }
 
+    fn t_bounds_within(&self, ray: &Ray, range: &RayRange, drift: Drift) -> Bracket {
+        OneRay::t_bounds_within(self, ray, range, drift)
+    }
+
+    fn brackets_within(
+        &self,
+        cpu: Cpu,
+        rays: RayPacket,
+        drift: Drift,
+        ends: &[f64],
+        near: &mut [f64],
+        far: &mut [f64],
+    ) {
+        brackets_within(cpu, self, rays, drift, ends, near, far);
+    }
+
     fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
         OneRay::refine(self, ray, origin_side)
     }
@@ -379,13 +317,26 @@ kernels! {
         }
     }
 
+    /// Computes brackets of the first hits of all rays within a drift of each ray.
+    fn brackets_within[T: OneRay](
+        shape: &T, rays: RayPacket, drift: Drift, ends: &[f64], near: &mut [f64], far: &mut [f64]
+    ) {
+        let (count, rays) = (near.len(), rays.first(near.len()));
+        let (ends, far) = (&ends[..count], &mut far[..count]);
+        for lane in 0..count {
+            let range = RayRange { far: ends[lane], ..RayRange::ALL };
+            let bracket = shape.t_bounds_within(&rays.get(lane), &range, drift);
+            (near[lane], far[lane]) = (bracket.near, bracket.far);
+        }
+    }
+
     /// Computes the distances of a shape's hits, as [`OneRay::refine`] returns them.
     fn refine[T: OneRay](shape: &T, rays: RayPacket, sides: Option<&[Side]>, out: &mut [f64]) {
         shape.refine_each(rays, sides, out);
     }
 
     /// Computes the points, normals and sides that rays hit at these distances, in world units.
-    fn interact[T: Hittable](
+    pub(crate) fn interact[T: Hittable](
         shape: &T, rays: RayPacket, distances: &[f64], sides: &mut [Side], cosines: &mut [f64], travelled: &mut [f64]
     ) => points, normals {
         let (count, is_two_sided) = (travelled.len(), shape.is_two_sided());

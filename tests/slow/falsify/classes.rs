@@ -1,6 +1,7 @@
 //! Classes of scenes: shapes, and rays aimed where the arithmetic is hard.
 
 mod flat;
+mod meshes;
 mod revolved;
 mod round;
 
@@ -15,14 +16,20 @@ pub struct Class {
     pub ask: fn(&mut Random) -> Question,
     /// Whether the first object in the scene must be seen where several are met at the same distance.
     pub is_first_seen: bool,
+    /// Whether each ray must hit something, as from inside a closed mesh.
+    pub is_closed: bool,
 }
 
 const fn class(name: &'static str, rays: [usize; 2], ask: fn(&mut Random) -> Question) -> Class {
-    Class { name, rays, ask, is_first_seen: false }
+    Class { name, rays, ask, is_first_seen: false, is_closed: false }
+}
+
+const fn closed(name: &'static str, rays: [usize; 2], ask: fn(&mut Random) -> Question) -> Class {
+    Class { is_closed: true, ..class(name, rays, ask) }
 }
 
 /// All classes.
-pub const CLASSES: [Class; 25] = [
+pub const CLASSES: [Class; 35] = [
     class("sphere", [600_000, 4000], round::spheres),
     class("sphere, tangents", [400_000, 4000], round::sphere_tangents),
     class("sphere, from inside", [100_000, 1000], round::inside),
@@ -40,8 +47,18 @@ pub const CLASSES: [Class; 25] = [
     class("fplane, edges", [1_000_000, 4000], flat::rectangles),
     class("triangle", [700_000, 4000], flat::triangles),
     class("triangle, slivers", [300_000, 4000], flat::slivers),
-    Class { name: "coincident", rays: [200_000, 2000], ask: flat::rugs, is_first_seen: true },
+    Class { is_first_seen: true, ..class("coincident", [200_000, 2000], flat::rugs) },
     class("mixed, equal distances", [100_000, 2000], round::meeting),
+    class("mesh, edges and vertices", [1_000_000, 1500], meshes::edges),
+    class("mesh, slivers", [1_000_000, 1500], meshes::slivers),
+    class("mesh, doubled faces", [1_000_000, 1500], meshes::doubled),
+    class("mesh, 1e-6 beside 1e6", [1_000_000, 1500], meshes::sizes),
+    class("mesh, along an edge or in a face", [1_000_000, 1500], meshes::along),
+    closed("mesh, from inside", [1_000_000, 3000], meshes::inside),
+    class("place, spheres", [1_000_000, 1500], meshes::placed_spheres),
+    class("place, meshes", [1_000_000, 1500], meshes::placed_meshes),
+    class("place, places", [1_000_000, 1500], meshes::placed_places),
+    closed("place, from inside", [1_000_000, 3000], meshes::placed_inside),
     class("revsurf, surfers", [900_000, 800], revolved::surfers),
     class("revsurf, formulas", [80_000, 600], revolved::formulas),
     class("revsurf, tangents and rims", [50_000, 600], revolved::tangents),

@@ -102,6 +102,67 @@ pub fn triangle(ray: &Ray, corners: &[Vector; 3]) -> Hit {
     }
 }
 
+/// A face that a ray meets, ahead of its origin.
+struct Met {
+    face: usize,
+    crossing: Crossing,
+    /// Whether the ray passes through the inside of the face, not through an edge or a corner.
+    is_inner: bool,
+    /// Whether the ray comes from the face's outside.
+    is_outside: bool,
+}
+
+/// Returns the faces that a ray meets first, at one distance; `None` if the ray touches a face in whose plane it lies.
+fn met(ray: &Ray, faces: &[[Vector; 3]]) -> Option<Vec<Met>> {
+    let mut nearest: Vec<Met> = Vec::new();
+    for (face, [a, b, c]) in faces.iter().enumerate() {
+        let from = [a, b, c].map(|corner| minus(corner, &ray.origin));
+        let side = |one: usize, other: usize| dot(&cross(&from[one], &from[other]), &ray.dir).sign();
+        let sides = [side(0, 1), side(1, 2), side(2, 0)];
+        if sides.contains(&Less) && sides.contains(&Greater) {
+            continue;
+        }
+        let normal = cross(&minus(b, a), &minus(c, a));
+        let (bottom, top) = (dot(&normal, &ray.dir), dot(&normal, &from[0]));
+        let (top, bottom, is_outside) = match bottom.sign() {
+            // A line that meets no corner of a face that has an area passes none of its edges in its plane.
+            Equal if top.is_zero() => return None,
+            Equal => continue,
+            Less => (top.neg(), bottom.neg(), true),
+            Greater => (top, bottom, false),
+        };
+        if top.sign() != Greater {
+            continue;
+        }
+        let order = nearest
+            .first()
+            .map_or(Less, |first| top.mul(&first.crossing.bottom).compare(&first.crossing.top.mul(&bottom)));
+        if order == Greater {
+            continue;
+        }
+        if order == Less {
+            nearest.clear();
+        }
+        let is_inner = !sides.contains(&Equal);
+        nearest.push(Met { face, crossing: Crossing { top, bottom }, is_inner, is_outside });
+    }
+    Some(nearest)
+}
+
+/// Returns the first hit of a mesh, whose faces share their edges. Where the ray meets an edge or a corner, it hits the
+/// mesh if it passes from one side to the other there, and touches it if it does not.
+pub fn mesh(ray: &Ray, faces: &[[Vector; 3]]) -> Hit {
+    let Some(nearest) = met(ray, faces) else { return Hit::Touch };
+    let Some(first) = nearest.first() else { return Hit::Miss };
+    let passes = nearest.len() > 1 && nearest.iter().all(|met| met.is_outside == first.is_outside);
+    if passes || nearest.iter().any(|met| met.is_inner) { first.crossing.hit() } else { Hit::Touch }
+}
+
+/// Returns the index of a face of a mesh that a ray hits first.
+pub fn face(ray: &Ray, faces: &[[Vector; 3]]) -> Option<usize> {
+    met(ray, faces)?.first().map(|met| met.face)
+}
+
 /// Returns the sign of `p + q * sqrt(square)`.
 fn sign_with_root(p: &Dyadic, q: &Dyadic, square: &Dyadic) -> Ordering {
     let by_root = if square.is_zero() { Equal } else { q.sign() };

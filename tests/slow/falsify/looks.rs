@@ -52,7 +52,7 @@ pub fn all(scenes: u64) -> Vec<String> {
 }
 
 fn picture(text: &str, renderer: &Renderer) -> Vec<[u8; 3]> {
-    Program::read(text).unwrap_or_else(|| panic!("refused:\n{text}")).picture(renderer)
+    Program::read(text, "").unwrap_or_else(|| panic!("refused:\n{text}")).picture(renderer)
 }
 
 /// Returns the text of a sphere as each shape that can be one.
@@ -185,7 +185,7 @@ fn dark(
     renderer: &Renderer,
     is_wrong: impl Fn([usize; 2], &dyn Fn(usize, usize) -> bool) -> bool,
 ) -> Looks {
-    let program = Program::read(&text).unwrap_or_else(|| panic!("refused:\n{text}"));
+    let program = Program::read(&text, "").unwrap_or_else(|| panic!("refused:\n{text}"));
     let (seen, [width, height]) = (program.picture(renderer), program.size());
     let is_black = |x: usize, y: usize| x >= width || y >= height || seen[y * width + x] == [0; 3];
     let mut looks = Looks { pixels: 0, wrong: 0, text };

@@ -76,16 +76,38 @@ fn hit(shape: &Shape, ray: &Ray) -> Hit {
             curved::torus(ray, center, direction, radius, tube)
         }
         Shape::Heart { center, size } => curved::heart(ray, center, size),
+        Shape::Mesh { faces } => closed::mesh(ray, faces),
+        Shape::Placed { shape, place } => hit(shape, &place.own(ray)),
     }
 }
 
 /// Returns the approximate cosine of the angle between a ray and a shape's normal at a place: an error of the distance,
 /// times this, is the distance from the surface.
 pub fn cosine(shape: &Shape, ray: &Ray, place: &Wide) -> f64 {
-    let place = place.near();
+    let f64s = |of: &Vector| [0, 1, 2].map(|axis| of[axis].to_f64(false));
+    let cosine = dot(unit(normal(shape, ray, place)), unit(f64s(&ray.dir))).abs();
+    if cosine.is_nan() { 1.0 } else { cosine }
+}
+
+/// Returns the largest coordinate that a copy's hits are computed from: those of its translation, and of its object when
+/// it is scaled. 0 for a shape of its own, whose hits are as exact as the ray is.
+pub fn reach(shape: &Shape) -> f64 {
+    let Shape::Placed { shape, place } = shape else { return 0.0 };
+    let most = |of: &Vector| of.iter().fold(0.0, |most: f64, part| most.max(part.to_f64(false).abs()));
+    let own = match &**shape {
+        Shape::Mesh { faces } => faces.iter().flatten().map(most).fold(0.0, f64::max),
+        Shape::Ball { center, radius, scale } => most(center) + radius.to_f64(true) * most(scale),
+        shape => reach(shape),
+    };
+    most(&place.translation) + most(&place.scale) * own
+}
+
+/// Returns a shape's normal at a place of a ray, roughly and up to its length.
+fn normal(shape: &Shape, ray: &Ray, at: &Wide) -> [f64; 3] {
+    let place = at.near();
     let near = |from: &Vector| ray.near(place, from);
     let f64s = |of: &Vector| [0, 1, 2].map(|axis| of[axis].to_f64(false));
-    let normal = match shape {
+    match shape {
         Shape::Plane { normal, .. } => f64s(normal),
         Shape::Triangle { corners: [a, b, c] } => {
             f64s(&super::ray::cross(&super::ray::minus(b, a), &super::ray::minus(c, a)))
@@ -127,9 +149,12 @@ pub fn cosine(shape: &Shape, ray: &Ray, place: &Wide) -> f64 {
                 13.5 * ball * ball * z - 0.225 * z * y.powi(3),
             ]
         }
-    };
-    let cosine = dot(unit(normal), unit(f64s(&ray.dir))).abs();
-    if cosine.is_nan() { 1.0 } else { cosine }
+        Shape::Mesh { faces } => {
+            let [a, b, c] = &faces[closed::face(ray, faces).unwrap_or(0)];
+            f64s(&super::ray::cross(&super::ray::minus(b, a), &super::ray::minus(c, a)))
+        }
+        Shape::Placed { shape, place } => place.world_normal(normal(shape, &place.own(ray), at)),
+    }
 }
 
 fn slope_of(profile: &Formula, y: f64) -> f64 {
@@ -156,7 +181,7 @@ mod tests {
     /// Returns the first hit of the middle pixel, its distance, and whether it is a tie.
     fn seen(objects: &str) -> (Option<usize>, f64, bool) {
         let text = format!("camera c {{ pixeldim 1 1 worlddim 8 6 viewpoint 4 3 6 }}\n{objects}");
-        let scene = Scene::read(&text);
+        let scene = Scene::read(&text, "");
         let ray = Ray::of_pixel(&scene, 0, 0);
         let truth = first(&scene, &ray);
         let distance = truth.place.as_ref().map_or(0.0, |place| ray.distance(place).near());

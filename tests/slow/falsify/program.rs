@@ -1,6 +1,7 @@
 //! The program under test. All questions to it go through this file.
 
 use crate::common::registry;
+use std::fs;
 use std::path::Path;
 use tabray::render::{Plan, Renderer, trace};
 use tabray::scene::{self, Model};
@@ -30,11 +31,14 @@ pub struct Found {
 }
 
 impl Program {
-    /// Loads a scene, unless the program refuses it.
-    pub fn read(text: &str) -> Option<Self> {
-        scene::read(registry(), "scene", Path::new(""), text.as_bytes(), None)
-            .ok()
-            .map(|loaded| Self(loaded.model))
+    /// Loads a scene, unless the program refuses it. `mesh` is the text of `mesh.obj`, if the scene has one.
+    pub fn read(text: &str, mesh: &str) -> Option<Self> {
+        let folder = (!mesh.is_empty()).then(|| tempfile::tempdir().expect("room for a folder"));
+        let path = folder.as_ref().map_or(Path::new(""), |folder| folder.path());
+        if folder.is_some() {
+            fs::write(path.join("mesh.obj"), mesh).expect("room for a file");
+        }
+        scene::read(registry(), "scene", path, text.as_bytes(), None).ok().map(|loaded| Self(loaded.model))
     }
 
     pub fn find(&self, [x, y]: [usize; 2]) -> Found {

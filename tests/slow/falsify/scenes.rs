@@ -7,6 +7,8 @@ use std::fmt::Write;
 /// A scene, and the pixels whose first hits are asked for.
 pub struct Question {
     pub text: String,
+    /// The text of `mesh.obj`, beside the scene; empty if there is none.
+    pub mesh: String,
     pub pixels: Vec<[usize; 2]>,
     /// Whether the whole image is rendered as well.
     pub is_picture: bool,
@@ -25,6 +27,18 @@ pub struct Aim {
     scale: f64,
 }
 
+impl Question {
+    /// Returns the question with the text of `mesh.obj`.
+    pub fn with_mesh(self, mesh: String) -> Self {
+        Self { mesh, ..self }
+    }
+
+    /// Returns the question with entities before all others, to which these refer.
+    pub fn with_patterns(self, patterns: &str) -> Self {
+        Self { text: format!("{patterns}{}", self.text), ..self }
+    }
+}
+
 impl Aim {
     /// Returns a random viewer and target, up to about 10^`far` world units away from the image plane.
     pub fn new(random: &mut Random, far: f64) -> Self {
@@ -41,7 +55,7 @@ impl Aim {
     }
 
     /// Aims from an eye through the middle of the image plane, at a point `beyond` world units behind it.
-    fn through(eye: Point, middle: Point, beyond: f64) -> Self {
+    pub fn through(eye: Point, middle: Point, beyond: f64) -> Self {
         let u = unit([0, 1, 2].map(|axis| middle[axis] - eye[axis]));
         let screen = [2.0 * middle[0], 2.0 * middle[1]];
         let far = (eye[2] / -u[2]) + beyond;
@@ -108,7 +122,7 @@ impl Aim {
             writeln!(text, "material m{index} {{ ambient {colour} }}").expect("room");
             writeln!(text, "{kind} o{index} {{ material m{index} {rest} }}").expect("room");
         }
-        Question { text, pixels, is_picture }
+        Question { text, mesh: String::new(), pixels, is_picture }
     }
 
     pub fn angle(&self, random: &mut Random) -> f64 {

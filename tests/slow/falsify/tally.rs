@@ -50,6 +50,7 @@ pub struct Tally {
     error: f64,
     off: f64,
     strict: bool,
+    is_closed: bool,
     /// The first scenes of each kind of fault: the kind, the scene's number, its text and the pixel.
     kept: Vec<(&'static str, u64, String, [usize; 2])>,
 }
@@ -64,13 +65,13 @@ impl Tally {
         renderer: &Renderer,
         proofs: u64,
     ) {
-        self.strict = class.is_first_seen;
-        let Some(program) = Program::read(&question.text) else {
+        (self.strict, self.is_closed) = (class.is_first_seen, class.is_closed);
+        let Some(program) = Program::read(&question.text, &question.mesh) else {
             self.refused += question.pixels.len();
             self.keep("refused", number, question, [0, 0]);
             return;
         };
-        let scene = Scene::read(&question.text);
+        let scene = Scene::read(&question.text, &question.mesh);
         let picture = question.is_picture.then(|| program.picture(renderer));
         for pixel in &question.pixels {
             let found = program.find(*pixel);
@@ -105,7 +106,10 @@ impl Tally {
         // The smaller of the two errors of the distance counts, since the rounded ray itself has an error.
         let by_real = Off::of(scene, &real, &truth, found);
         let by_rounded = Off::of(scene, &rounded, &of_rounded, found);
-        if truth.is_touch || truth.is_shared || of_rounded.is_touch || of_rounded.is_shared {
+        if self.is_closed && found.first.is_none() {
+            self.wrong += 1;
+            self.keep("wrong", number, question, pixel);
+        } else if truth.is_touch || truth.is_shared || of_rounded.is_touch || of_rounded.is_shared {
             self.ties += 1;
             self.keep("tie", number, question, pixel);
             if !truth.is_touch && !of_rounded.is_touch && !by_real.is_hit && !by_rounded.is_hit {
@@ -165,7 +169,9 @@ impl Tally {
     fn keep(&mut self, kind: &'static str, number: u64, question: &Question, pixel: [usize; 2]) {
         const MOST: usize = 3;
         if self.kept.iter().filter(|(other, ..)| *other == kind).count() < MOST {
-            self.kept.push((kind, number, question.text.clone(), pixel));
+            let mesh = question.mesh.lines().map(|line| format!("# {line}\n"));
+            let text = mesh.fold(question.text.clone(), |text, line| text + &line);
+            self.kept.push((kind, number, text, pixel));
         }
     }
 
@@ -282,6 +288,7 @@ impl Off {
             off.error = apart.div(&unit).near();
             // A point right in front of the eye is known no better than the eye's own position.
             let size = found.origin.iter().fold(near, |most, part| most.max(part.abs()));
+            let size = size.max(oracle::reach(&scene.objects[first]));
             let grain = Wide::f64(size.next_up() - size);
             off.off = apart.div(&grain).near() * oracle::cosine(&scene.objects[first], ray, place);
         }

@@ -2,7 +2,9 @@
 
 use super::dyadic::Dyadic;
 use super::formula::Formula;
+use super::place::Place;
 use std::collections::HashMap;
+use std::rc::Rc;
 
 /// A point or a direction.
 pub type Vector = [Dyadic; 3];
@@ -12,7 +14,8 @@ pub struct Scene {
     pub pixels: [i64; 2],
     pub screen: [Dyadic; 2],
     pub eye: Vector,
-    pub objects: Vec<Shape>,
+    /// The objects that are seen where they are, not only where they are placed.
+    pub objects: Vec<Rc<Shape>>,
 }
 
 /// An object, with its numbers as the text has them.
@@ -52,6 +55,14 @@ pub enum Shape {
     Heart {
         center: Vector,
         size: Dyadic,
+    },
+    /// Triangles, of a closed surface or not.
+    Mesh {
+        faces: Vec<[Vector; 3]>,
+    },
+    Placed {
+        shape: Rc<Shape>,
+        place: Place,
     },
 }
 
@@ -111,7 +122,7 @@ fn words(text: &str) -> Vec<&str> {
 /// The notes' profiles, in the order of their numbers.
 const SURFERS: [&str; 4] = ["2 + sin(y)", "-4/6 * (y - 6)", "1 + 0.5 * cos(y)", "1 + 0.5 * sin(y)"];
 
-const ATTRIBUTES: [&str; 30] = [
+const ATTRIBUTES: [&str; 35] = [
     "pixeldim",
     "worlddim",
     "viewpoint",
@@ -142,11 +153,37 @@ const ATTRIBUTES: [&str; 30] = [
     "tube",
     "size",
     "shader",
+    "file",
+    "smooth",
+    "object",
+    "rotation",
+    "translation",
 ];
 
+/// Returns the faces of an OBJ file.
+fn faces(text: &str) -> Vec<[Vector; 3]> {
+    let (mut points, mut faces) = (Vec::new(), Vec::new());
+    for line in text.lines() {
+        let mut words = line.split(' ');
+        let kind = words.next();
+        let mut three = || [0; 3].map(|_| words.next().expect("three numbers"));
+        match kind {
+            Some("v") => {
+                points.push(three().map(|word| Dyadic::from(word.parse().expect("a number"))));
+            }
+            Some("f") => faces.push(three().map(|word| word.parse::<usize>().expect("an index") - 1)),
+            _ => panic!("`{line}` is neither a vertex nor a face"),
+        }
+    }
+    faces.into_iter().map(|face: [usize; 3]| face.map(|corner| points[corner].clone())).collect()
+}
+
 impl Scene {
-    pub fn read(text: &str) -> Self {
+    /// Reads a scene; `mesh` is the text of its mesh's file.
+    pub fn read(text: &str, mesh: &str) -> Self {
         let words = words(text);
+        let mut named: HashMap<&str, (Rc<Shape>, bool)> = HashMap::new();
+        let mut order = Vec::new();
         let mut scene = Self {
             pixels: [1, 1],
             screen: [Dyadic::int(8), Dyadic::int(6)],
@@ -156,7 +193,7 @@ impl Scene {
         let mut at = 0;
         while at < words.len() {
             let kind = words[at];
-            at += 1;
+            let name = words[at + 1];
             while words[at] != "{" {
                 at += 1;
             }
@@ -173,20 +210,40 @@ impl Scene {
                 attributes.0.insert(name, words[start..at].to_vec());
             }
             at += 1;
-            scene.add(kind, &attributes);
+            let object = attributes.0.get("object").map(|object| {
+                let (shape, is_seen) = named.get_mut(object[0]).expect("an object");
+                *is_seen = false;
+                shape.clone()
+            });
+            if let Some(shape) = scene.shape(kind, &attributes, mesh, object) {
+                named.insert(name, (Rc::new(shape), true));
+                order.push(name);
+            }
         }
+        scene.objects =
+            order.iter().map(|name| &named[name]).filter(|of| of.1).map(|of| of.0.clone()).collect();
         scene
     }
 
-    fn add(&mut self, kind: &str, a: &Attributes) {
-        let shape = match kind {
+    /// Returns the shape of an entity, if it is an object; `object` is the one that it refers to.
+    fn shape(&mut self, kind: &str, a: &Attributes, mesh: &str, object: Option<Rc<Shape>>) -> Option<Shape> {
+        Some(match kind {
             "camera" => {
                 self.pixels = a.pair("pixeldim").map(|side| side.to_f64(false) as i64);
                 self.screen = a.pair("worlddim");
                 self.eye = a.vector("viewpoint");
-                return;
+                return None;
             }
-            "material" | "light" => return,
+            "material" | "light" => return None,
+            "mesh" => Shape::Mesh { faces: faces(mesh) },
+            "place" => Shape::Placed {
+                shape: object.expect("an object"),
+                place: Place::new(
+                    a.vector_or("scale", [1, 1, 1]),
+                    &a.vector_or("rotation", [0, 0, 0]),
+                    a.vector_or("translation", [0, 0, 0]),
+                ),
+            },
             "plane" => Shape::Plane { normal: a.vector("normal"), point: a.vector("point"), sides: None },
             "fplane" => Shape::Plane {
                 normal: a.vector("normal"),
@@ -233,7 +290,6 @@ impl Scene {
             },
             "heart" => Shape::Heart { center: a.vector("center"), size: a.number("size") },
             _ => panic!("no oracle for `{kind}`"),
-        };
-        self.objects.push(shape);
+        })
     }
 }

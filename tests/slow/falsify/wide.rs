@@ -51,6 +51,11 @@ impl Wide {
         self.ends().map_or(f64::NAN, |(low, _)| low.to_f64(false))
     }
 
+    /// Returns π.
+    pub fn half_turn() -> Self {
+        Self::around(Dyadic::parts(pi().clone(), -FIXED), &tiny())
+    }
+
     pub fn low_end(&self) -> Dyadic {
         self.ends().expect("a number with ends").0.clone()
     }

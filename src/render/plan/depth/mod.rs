@@ -45,6 +45,7 @@ mod surface;
 #[cfg(test)]
 pub(crate) use branch::FAINT;
 pub(crate) use branch::{Branch, MANY, Onward};
+pub(crate) use surface::clearance;
 
 use crate::scene::model::Model;
 use crate::world::accuracy::Accuracy;
@@ -71,7 +72,7 @@ impl Depth {
         if !shiny {
             return None;
         }
-        let surfaces = Surface::all(model, &looks);
+        let surfaces = Surface::all(model, &looks, None);
         let cuts = model.camera.value.accuracy != Accuracy::Classic;
         let (most, objects) = Scene::new(model, surfaces).bounds(cuts);
         Some(Self { most, objects })
@@ -93,4 +94,13 @@ impl Depth {
         }
         self
     }
+}
+
+/// Bounds what one light of a model adds to a primary ray in any channel, times the path length; infinite where there is
+/// no bound.
+pub(crate) fn most_of_light(model: &Model, light: usize) -> f64 {
+    let looks: Vec<_> =
+        model.objects.iter().map(|object| object.shader.brightest(&object.material)).collect();
+    let surfaces = Surface::all(model, &looks, Some(light));
+    Scene::new(model, surfaces).bounds(false).0
 }

@@ -24,8 +24,9 @@ pub(super) struct Surface {
 }
 
 impl Surface {
-    /// Bounds the surfaces of a scene, given each object's brightest look, if it has one.
-    pub fn all(model: &Model, looks: &[Option<Look>]) -> Vec<Self> {
+    /// Bounds the surfaces of a scene, given each object's brightest look, if it has one. With `only`, their own light is
+    /// what they scatter of this light.
+    pub fn all(model: &Model, looks: &[Option<Look>], only: Option<usize>) -> Vec<Self> {
         let objects = || model.objects.iter().zip(looks);
         let tints: Vec<_> = objects().map(|(object, look)| tint(object, look.as_ref())).collect();
         // Otherwise many panes may let through more light than is sent.
@@ -33,7 +34,7 @@ impl Surface {
         objects()
             .zip(&tints)
             .map(|((object, look), tint)| {
-                let own = look.map_or(f64::INFINITY, |look| own(model, object, &look, any_light_comes));
+                let own = look.map_or(f64::INFINITY, |look| own(model, object, &look, only, any_light_comes));
                 Self {
                     own: gain(1.0 - object.material.transparency, own) * ROUNDING,
                     through: tint * ROUNDING,
@@ -101,11 +102,12 @@ fn tint(object: &Object, look: Option<&Look>) -> f64 {
 }
 
 /// Bounds the light of an object's own surface, times the path length to the surface.
-fn own(model: &Model, object: &Object, look: &Look, any_light_comes: bool) -> f64 {
+fn own(model: &Model, object: &Object, look: &Look, only: Option<usize>, any_light_comes: bool) -> f64 {
     let highlight = if object.material.shininess == 0.0 { Rgb::ZERO } else { look.specular.abs() };
     let diffuse = look.diffuse.abs();
-    let mut own = look.ambient.abs();
-    for light in &model.lights {
+    let mut own = if only.is_some() { Rgb::ZERO } else { look.ambient.abs() };
+    let lights = model.lights.iter().enumerate().filter(|(index, _)| only.is_none_or(|only| only == *index));
+    for (_, light) in lights {
         if highlight == Rgb::ZERO && diffuse == Rgb::ZERO {
             break;
         }
@@ -123,7 +125,7 @@ fn own(model: &Model, object: &Object, look: &Look, any_light_comes: bool) -> f6
 }
 
 /// Returns a lower bound on the distance from a point to an object, in world units.
-fn clearance(object: &Object, from: DVec3) -> f64 {
+pub(crate) fn clearance(object: &Object, from: DVec3) -> f64 {
     let by_bounds =
         || aabb::clearance(from, culling::bounds(object), |region| culling::is_clear_of(object, region));
     object.shape.clearance(from).unwrap_or_else(by_bounds)

@@ -1,23 +1,30 @@
 //! Files of triangle meshes: OBJ, PLY and STL.
 
+mod blocks;
 mod model;
 mod obj;
 mod ply;
+mod ply_bytes;
+mod ply_text;
 mod stl;
 #[cfg(test)]
 mod tests;
 
+use model::Room;
 pub use model::{At, Broken, Model};
 
 use crate::files;
+use crate::heap;
 use crate::text;
 use bytesize::ByteSize;
+use rayon::ThreadPoolBuilder;
+use std::error::Error;
 use std::io::{self, Read};
 use std::path::Path;
+use std::sync::OnceLock;
 
-/// About the bytes of memory that a mesh takes, at most, for each byte of its file while it is read and its tree is
-/// built: a face of a binary PLY has 13 bytes, and takes about 100.
-const BYTES_PER_BYTE: u64 = 8;
+/// What is wrong with a file that was cut.
+const ENDS_EARLY: &str = "the file ends before all of its elements";
 
 /// Reads a file by the format of its name or, if that names none, by how it begins. Takes no more memory than so many
 /// bytes, roughly.
@@ -34,24 +41,20 @@ pub fn read(path: &Path, memory: u64) -> Result<Model, Broken> {
     };
     let mut file = files::open(path).map_err(cannot)?;
     let size = file.metadata().map_err(cannot)?.len();
-    if size.saturating_mul(BYTES_PER_BYTE) > memory {
-        return Err(Broken::file(format!(
-            "it has {}, which may take more than the {} of memory that are left",
-            ByteSize(size),
-            ByteSize(memory)
-        )));
-    }
+    let room = Room::new(memory, size).map_err(Broken::file)?;
+    threads().map_err(Broken::file)?;
     let mut bytes = Vec::new();
-    let room = usize::try_from(size).is_ok_and(|size| bytes.try_reserve_exact(size).is_ok());
-    if !room {
+    let is_held =
+        usize::try_from(size).is_ok_and(|size| heap::may_fail(|| bytes.try_reserve_exact(size).is_ok()));
+    if !is_held {
         return Err(Broken::file(format!("there is no memory for its {}", ByteSize(size))));
     }
     file.by_ref().take(size).read_to_end(&mut bytes).map_err(cannot)?;
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_lowercase();
     let model = match (ending.as_str(), &bytes[..]) {
-        ("obj", bytes) => obj::read(bytes),
-        ("stl", bytes) => stl::read(bytes),
-        ("ply", bytes) | (_, bytes @ [b'p', b'l', b'y', b'\r' | b'\n', ..]) => ply::read(bytes),
+        ("obj", bytes) => obj::read(bytes, &room),
+        ("stl", bytes) => stl::read(bytes, &room),
+        ("ply", bytes) | (_, bytes @ [b'p', b'l', b'y', b'\r' | b'\n', ..]) => ply::read(bytes, &room),
         _ => {
             return Err(Broken::file("its name does not end in `.obj`, `.ply` or `.stl`"));
         }
@@ -60,4 +63,16 @@ pub fn read(path: &Path, memory: u64) -> Result<Model, Broken> {
         return Err(Broken::file("it has no faces"));
     }
     Ok(model)
+}
+
+/// Starts the threads that read files and build trees, once. Without this, a system that refuses them would be met where
+/// no error can be returned.
+fn threads() -> Result<(), String> {
+    static STARTED: OnceLock<Result<(), String>> = OnceLock::new();
+    let start = || match ThreadPoolBuilder::new().build_global() {
+        // An error without a source says that they have been started already.
+        Err(error) if error.source().is_some() => Err(format!("cannot start threads to read it: {error}")),
+        _ => Ok(()),
+    };
+    STARTED.get_or_init(start).clone()
 }

@@ -1,8 +1,8 @@
 //! What a file of a mesh holds, and how its faults are told.
 
 use crate::text;
+use bytesize::ByteSize;
 use glam::DVec3;
-use std::borrow::Cow;
 use std::fmt;
 
 /// The triangles of a file, before they are placed in a scene.
@@ -65,17 +65,73 @@ impl Broken {
 /// The largest number of vertices: indices are 32 bits wide.
 pub(super) const MAX_VERTICES: usize = 1 << 31;
 
-/// Reads a coordinate.
-pub(super) fn coordinate(word: &str) -> Result<f64, String> {
-    match word.parse::<f64>() {
-        Ok(number) if number.is_finite() => Ok(number),
-        Ok(_) => Err(format!("`{}` is not a finite number", text::abridged(word))),
-        Err(_) => Err(format!("`{}` is not a number", text::abridged(word))),
+/// How much memory a mesh may take while its file is read and its tree is built.
+#[derive(Clone, Copy)]
+pub struct Room {
+    /// In bytes; the file's are included.
+    memory: u64,
+    /// The length of the file in bytes.
+    file: u64,
+}
+
+/// The memory that a vertex and a face take, in bytes: at most while the tree is built, which needs several lists of
+/// faces, their boxes and edges.
+const TAKEN: [u64; 2] = [48, 160];
+
+/// About the bytes of memory that a mesh takes, at least, for each byte of its file: those of a face in a wordy text, an
+/// STL, take 160 bytes and 48 for each corner, beside the file.
+const LEAST: u64 = 3;
+
+impl Room {
+    /// Refuses a file whose mesh surely takes more memory than there is, before it is read.
+    pub fn new(memory: u64, file: u64) -> Result<Self, String> {
+        if file.saturating_mul(LEAST) > memory {
+            return Err(format!(
+                "it has {}, which may take more than the {} of memory that are left",
+                ByteSize(file),
+                ByteSize(memory)
+            ));
+        }
+        Ok(Self { memory, file })
+    }
+
+    /// Refuses more vertices and faces than there is memory for.
+    #[inline]
+    pub fn holds(&self, vertices: usize, faces: usize) -> Result<(), String> {
+        let taken = [vertices, faces].into_iter().zip(TAKEN).map(|(count, each)| count as u64 * each);
+        if self.file + taken.sum::<u64>() <= self.memory {
+            Ok(())
+        } else {
+            Err(self.refusal(vertices, faces))
+        }
+    }
+
+    #[cold]
+    fn refusal(&self, vertices: usize, faces: usize) -> String {
+        format!(
+            "it has at least {vertices} vertices and {faces} faces, which may take more than the {} of memory that are left",
+            ByteSize(self.memory)
+        )
     }
 }
 
-/// Returns the lines of a text with their numbers, from 1. Bytes that are not UTF-8 are replaced.
-pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
-    let lines = bytes.split(|byte| *byte == b'\n').enumerate();
-    lines.map(|(index, line)| (index + 1, String::from_utf8_lossy(line)))
+/// Cuts a polygon into triangles from its first corner.
+pub(super) fn fan(corners: &[u32], faces: &mut Vec<[u32; 3]>) {
+    if let [first, rest @ ..] = corners {
+        faces.extend(rest.windows(2).map(|pair| [*first, pair[0], pair[1]]));
+    }
+}
+
+/// Reads a coordinate.
+pub(super) fn coordinate(word: &[u8]) -> Result<f64, String> {
+    match str::from_utf8(word).ok().and_then(|word| word.parse::<f64>().ok()) {
+        Some(number) if number.is_finite() => Ok(number),
+        Some(_) => Err(format!("`{}` is not a finite number", shown(word))),
+        None => Err(format!("`{}` is not a number", shown(word))),
+    }
+}
+
+/// Returns a part of a file as messages show it: in UTF-8, and not too long.
+pub(super) fn shown(part: &[u8]) -> String {
+    text::abridged(&String::from_utf8_lossy(part)).to_string()
 }

@@ -1,78 +1,174 @@
 //! Wavefront OBJ: vertices, faces, and the names of their materials. All else is ignored.
 
-use super::model::{Broken, MAX_VERTICES, Model, coordinate, lines};
-use crate::text;
+use super::blocks::{self, words};
+use super::model::{Broken, MAX_VERTICES, Model, Room, coordinate, fan, shown};
 use glam::DVec3;
+use memchr::memchr;
+use std::borrow::Cow;
 use std::collections::HashMap;
 
+/// What a block of a file holds.
+#[derive(Default)]
+struct Part {
+    vertices: Vec<DVec3>,
+    faces: Vec<[u32; 3]>,
+    /// The names of materials, each with the number of the block's faces before it and its line.
+    uses: Vec<(usize, String, usize)>,
+    lines: usize,
+    /// The first fault, with its line.
+    fault: Option<(usize, String)>,
+}
+
 /// Reads a file's text.
-pub fn read(bytes: &[u8]) -> Result<Model, Broken> {
+pub fn read(bytes: &[u8], room: &Room) -> Result<Model, Broken> {
     // A byte order mark is no part of the text.
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let mut model = Model::default();
     let mut names = HashMap::new();
-    let mut slot = 0;
-    let mut corners = Vec::new();
-    for (number, line) in lines(bytes) {
-        let fault = |message: String| Broken::line(number, message);
-        let line = line.split('#').next().unwrap_or_default();
-        let mut words = line.split_ascii_whitespace();
-        match words.next() {
-            Some("v") => {
-                let mut at = [0.0; 3];
-                for part in &mut at {
-                    let word =
-                        words.next().ok_or_else(|| fault("a vertex needs three coordinates".to_owned()))?;
-                    *part = coordinate(word).map_err(fault)?;
-                }
-                if model.vertices.len() == MAX_VERTICES {
-                    return Err(fault("there are more than 2^31 vertices".to_owned()));
-                }
-                model.vertices.push(DVec3::from(at));
+    let (mut slot, mut line) = (0, 0);
+    let take = |part: Part| {
+        room.holds(model.vertices.len() + part.vertices.len(), model.faces.len() + part.faces.len())
+            .map_err(Broken::file)?;
+        let before = model.faces.len();
+        model.vertices.extend(part.vertices);
+        model.faces.extend(part.faces);
+        for (faces, name, number) in part.uses {
+            // Faces so far without a material keep none.
+            model.slots.resize(before + faces, slot);
+            let next = names.len() + 1;
+            slot = *names.entry(name).or_insert_with_key(|name| {
+                model.materials.push(name.clone());
+                next as u16
+            });
+            if next > usize::from(u16::MAX) {
+                return Err(Broken::line(line + number, "there are more than 65534 materials"));
             }
-            Some("f") => {
-                corners.clear();
-                for word in words {
-                    corners.push(corner(word, model.vertices.len()).map_err(fault)?);
-                }
-                if corners.len() < 3 {
-                    let count = corners.len();
-                    return Err(fault(format!("a face needs three vertices, and this one has {count}")));
-                }
-                for pair in corners[1..].windows(2) {
-                    model.faces.push([corners[0], pair[0], pair[1]]);
-                }
-                if slot != 0 || !model.slots.is_empty() {
-                    model.slots.resize(model.faces.len(), slot);
-                }
-            }
-            Some("usemtl") => {
-                let name = words.collect::<Vec<_>>().join(" ");
-                if name.is_empty() {
-                    return Err(fault("`usemtl` needs the name of a material".to_owned()));
-                }
-                // Faces so far without a material keep none.
-                model.slots.resize(model.faces.len(), 0);
-                let next = names.len() + 1;
-                slot = *names.entry(name).or_insert_with_key(|name| {
-                    model.materials.push(name.clone());
-                    next as u16
-                });
-                if next > usize::from(u16::MAX) {
-                    return Err(fault("there are more than 65534 materials".to_owned()));
-                }
-            }
-            _ => {}
         }
-    }
+        if slot != 0 || !model.slots.is_empty() {
+            model.slots.resize(model.faces.len(), slot);
+        }
+        let fault = part.fault.map(|(number, message)| Broken::line(line + number, message));
+        line += part.lines;
+        fault.map_or(Ok(()), Err)
+    };
+    blocks::read(bytes, continues, vertices, |block, before| Part::read(block, before, room), take)?;
     Ok(model)
 }
 
+/// Tells whether a line goes on in the next one: it ends with a backslash that is not in a comment.
+fn continues(line: &[u8]) -> bool {
+    line.strip_suffix(b"\r").unwrap_or(line).ends_with(b"\\") && memchr(b'#', line).is_none()
+}
+
+/// Calls `each` with the number of every line, from 1, and the line without its comment, until that fails. Lines that
+/// are continued are one. Returns the number of lines.
+fn each_line<'b, E>(
+    block: &'b [u8],
+    mut each: impl FnMut(usize, Cow<'b, [u8]>) -> Result<(), E>,
+) -> Result<usize, E> {
+    let mut lines = blocks::lines(block);
+    let mut count = 0;
+    while let Some(line) = lines.next() {
+        count += 1;
+        let first = count;
+        if !continues(line) {
+            each(first, Cow::Borrowed(&line[..memchr(b'#', line).unwrap_or(line.len())]))?;
+            continue;
+        }
+        let (mut whole, mut next) = (Vec::new(), Some(line));
+        while let Some(line) = next {
+            let goes_on = continues(line);
+            let end = if goes_on { line.iter().rposition(|byte| *byte == b'\\') } else { memchr(b'#', line) };
+            whole.extend_from_slice(&line[..end.unwrap_or(line.len())]);
+            whole.push(b' ');
+            next = if goes_on { lines.next() } else { None };
+            count += usize::from(next.is_some());
+        }
+        each(first, Cow::Owned(whole))?;
+    }
+    Ok(count)
+}
+
+/// Returns the number of a block's vertices.
+fn vertices(block: &[u8]) -> usize {
+    let (mut count, mut is_continued) = (0, false);
+    for line in blocks::lines(block) {
+        count += usize::from(!is_continued && words(line).next() == Some(b"v"));
+        is_continued = continues(line);
+    }
+    count
+}
+
+impl Part {
+    /// Reads a block with so many vertices before it, up to the first fault.
+    fn read(block: &[u8], before: usize, room: &Room) -> Self {
+        let mut part = Self::default();
+        let mut corners = Vec::new();
+        let read = each_line(block, |number, line| {
+            part.line(number, &line, before, &mut corners, room).map_err(|message| (number, message))
+        });
+        match read {
+            Ok(lines) => part.lines = lines,
+            Err(fault) => part.fault = Some(fault),
+        }
+        part
+    }
+
+    fn line(
+        &mut self,
+        number: usize,
+        line: &[u8],
+        before: usize,
+        corners: &mut Vec<u32>,
+        room: &Room,
+    ) -> Result<(), String> {
+        let mut words = words(line);
+        match words.next() {
+            Some(b"v") => {
+                let mut at = [0.0; 3];
+                for part in &mut at {
+                    *part = coordinate(words.next().ok_or("a vertex needs three coordinates")?)?;
+                }
+                if before + self.vertices.len() == MAX_VERTICES {
+                    return Err("there are more than 2^31 vertices".to_owned());
+                }
+                self.vertices.push(DVec3::from(at));
+            }
+            Some(b"f") => {
+                corners.clear();
+                let count = before + self.vertices.len();
+                for word in words {
+                    corners.push(corner(word, count)?);
+                    // A polygon may be as long as the file.
+                    if corners.len().is_multiple_of(1 << 16) {
+                        room.holds(count, self.faces.len() + corners.len())?;
+                    }
+                }
+                if corners.len() < 3 {
+                    let count = corners.len();
+                    return Err(format!("a face needs three vertices, and this one has {count}"));
+                }
+                room.holds(count, self.faces.len() + corners.len())?;
+                fan(corners, &mut self.faces);
+            }
+            Some(b"usemtl") => {
+                let name = words.map(String::from_utf8_lossy).collect::<Vec<_>>().join(" ");
+                if name.is_empty() {
+                    return Err("`usemtl` needs the name of a material".to_owned());
+                }
+                self.uses.push((self.faces.len(), name, number));
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+}
+
 /// Reads a corner of a face, `vertex/texture/normal`: its vertex counts from 1, or backward from -1.
-fn corner(word: &str, count: usize) -> Result<u32, String> {
-    let vertex = word.split('/').next().unwrap_or_default();
-    let index: i64 =
-        vertex.parse().map_err(|_| format!("`{}` is not a vertex's number", text::abridged(word)))?;
+fn corner(word: &[u8], count: usize) -> Result<u32, String> {
+    let vertex = &word[..word.iter().position(|byte| *byte == b'/').unwrap_or(word.len())];
+    let index: Option<i64> = str::from_utf8(vertex).ok().and_then(|vertex| vertex.parse().ok());
+    let index = index.ok_or_else(|| format!("`{}` is not a vertex's number", shown(word)))?;
     let found = match index {
         1.. => usize::try_from(index - 1).ok(),
         0 => return Err("vertices count from 1, and there is none of number 0".to_owned()),

@@ -1,115 +1,163 @@
 //! PLY, in text and in bytes of either order.
 
-use super::model::{Broken, MAX_VERTICES, Model, coordinate, lines};
-use crate::text::abridged;
-use glam::DVec3;
+use super::model::{Broken, MAX_VERTICES, Model, Room, coordinate, shown};
+use super::{ply_bytes, ply_text};
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
-use ply_rs_bw::ply::{Encoding, Header, Property, PropertyAccess, PropertyAccessResult};
+use ply_rs_bw::ply::{DefaultElement, ElementDef, Encoding, Header, PropertyDef, PropertyType, ScalarType};
 use std::io::ErrorKind;
-
-/// A vertex or a face, as the parser fills it in.
-#[derive(Default)]
-struct Element {
-    at: [f64; 3],
-    corners: Vec<i64>,
-}
-
-impl PropertyAccess for Element {
-    fn new() -> Self {
-        Self::default()
-    }
-
-    fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
-        if let Some(axis) = ["x", "y", "z"].iter().position(|axis| *axis == name) {
-            let Some(number) = number(&property) else { return PropertyAccessResult::UnsupportedType };
-            self.at[axis] = number;
-        } else if CORNERS.contains(&name) {
-            let Some(corners) = integers(property) else { return PropertyAccessResult::UnsupportedType };
-            self.corners = corners;
-        }
-        PropertyAccessResult::Set
-    }
-}
 
 /// The names that programs give to the corners of faces.
 const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
-fn number(property: &Property) -> Option<f64> {
-    Some(match *property {
-        Property::Char(number) => number.into(),
-        Property::UChar(number) => number.into(),
-        Property::Short(number) => number.into(),
-        Property::UShort(number) => number.into(),
-        Property::Int(number) => number.into(),
-        Property::UInt(number) => number.into(),
-        Property::Float(number) => number.into(),
-        Property::Double(number) => number,
-        _ => return None,
-    })
+/// The longest header, in bytes: the parser takes many times the memory of the header's lines.
+const LONGEST_HEADER: usize = 1 << 20;
+
+/// The type of a number.
+#[derive(Clone, Copy)]
+pub(super) enum Number {
+    /// A whole number of so many bytes, from a negative one upward.
+    Signed(usize),
+    /// A whole number of so many bytes, from 0 upward.
+    Unsigned(usize),
+    Float,
+    Double,
 }
 
-fn integers(property: Property) -> Option<Vec<i64>> {
-    fn all<T: Into<i64>>(of: Vec<T>) -> Vec<i64> {
-        of.into_iter().map(Into::into).collect()
+impl Number {
+    fn of(scalar: &ScalarType) -> Self {
+        match scalar {
+            ScalarType::Char => Self::Signed(1),
+            ScalarType::UChar => Self::Unsigned(1),
+            ScalarType::Short => Self::Signed(2),
+            ScalarType::UShort => Self::Unsigned(2),
+            ScalarType::Int => Self::Signed(4),
+            ScalarType::UInt => Self::Unsigned(4),
+            ScalarType::Float => Self::Float,
+            ScalarType::Double => Self::Double,
+        }
     }
-    Some(match property {
-        Property::ListChar(list) => all(list),
-        Property::ListUChar(list) => all(list),
-        Property::ListShort(list) => all(list),
-        Property::ListUShort(list) => all(list),
-        Property::ListInt(list) => all(list),
-        Property::ListUInt(list) => all(list),
-        _ => return None,
-    })
+
+    fn is_whole(self) -> bool {
+        matches!(self, Self::Signed(_) | Self::Unsigned(_))
+    }
+
+    /// Returns the number's length in bytes.
+    #[inline(always)]
+    pub fn size(self) -> usize {
+        match self {
+            Self::Signed(size) | Self::Unsigned(size) => size,
+            Self::Float => 4,
+            Self::Double => 8,
+        }
+    }
+}
+
+/// What is read of a property. An element has its properties one after the other.
+#[derive(Clone, Copy)]
+pub(super) enum Field {
+    /// The coordinate along this axis.
+    Coordinate(usize, Number),
+    /// The corners of a face: the type of their number, and their own.
+    Corners(Number, Number),
+    /// A number that is not needed.
+    Number(Number),
+    /// A list that is not needed: the type of its length, and of its numbers.
+    List(Number, Number),
+}
+
+/// The elements of a name, as the header describes them.
+pub(super) struct Section {
+    pub count: usize,
+    pub fields: Vec<Field>,
+    pub kind: Kind,
+    /// The number of vertices in the file.
+    pub vertices: usize,
+}
+
+/// The elements that are read; others are skipped.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Kind {
+    Vertex,
+    Face,
+    Other,
 }
 
 /// Reads a file.
-pub fn read(bytes: &[u8]) -> Result<Model, Broken> {
-    let parser = Parser::<Element>::new();
-    let mut reader = Reader::new(bytes);
-    let header = parser.read_header(&mut reader).map_err(|error| fault(&error, true, bytes))?;
-    let is_text = header.encoding == Encoding::Ascii;
+pub fn read(bytes: &[u8], room: &Room) -> Result<Model, Broken> {
+    let (header, rest, line) = header(bytes)?;
     may_fit(&header, bytes.len())?;
-    let mut model = Model::default();
-    for (name, definition) in &header.elements {
-        // Where the first of these elements is: its line, or its byte.
-        let (line, byte) = (reader.line(), bytes.len() - reader.get_ref().len());
-        let broken = |index: usize, message: String| {
-            if is_text { Broken::line(line + index, message) } else { Broken::byte(byte, message) }
-        };
-        let elements = parser.read_payload_for_element(&mut reader, definition, &header);
-        let elements = elements.map_err(|error| fault(&error, is_text, bytes))?;
-        match name.as_str() {
-            "vertex" => {
-                for (index, Element { at, .. }) in elements.into_iter().enumerate() {
-                    let at = DVec3::from(at);
-                    if !at.is_finite() {
-                        return Err(broken(index, format!("vertex {index} is not finite")));
-                    }
-                    model.vertices.push(at);
-                }
-            }
-            "face" => {
-                let count = model.vertices.len();
-                for (face, Element { corners, .. }) in elements.into_iter().enumerate() {
-                    if corners.len() < 3 {
-                        let message = format!("face {face} has {} vertices, and needs three", corners.len());
-                        return Err(broken(face, message));
-                    }
-                    if let Some(corner) = corners.iter().find(|corner| !(0..count as i64).contains(corner)) {
-                        let message =
-                            format!("face {face} refers to vertex {corner}, and there are {count}, from 0");
-                        return Err(broken(face, message));
-                    }
-                    for pair in corners[1..].windows(2) {
-                        model.faces.push([corners[0], pair[0], pair[1]].map(|corner| corner as u32));
-                    }
-                }
-            }
-            _ => {}
-        }
+    let vertices = header.elements.get("vertex").map_or(0, |element| element.count);
+    let sections = header.elements.values().map(|element| Section::new(element, vertices));
+    let sections = sections.collect::<Result<Vec<_>, _>>()?;
+    match header.encoding {
+        Encoding::Ascii => ply_text::read(rest, line, &sections, room),
+        Encoding::BinaryLittleEndian => ply_bytes::read::<false>(bytes, rest, &sections, room),
+        Encoding::BinaryBigEndian => ply_bytes::read::<true>(bytes, rest, &sections, room),
     }
-    Ok(model)
+}
+
+/// Reads the header: returns it, what comes after it, and the line where that begins.
+fn header(bytes: &[u8]) -> Result<(Header, &[u8], usize), Broken> {
+    let first = &bytes[..bytes.len().min(LONGEST_HEADER)];
+    let mut reader = Reader::new(first);
+    let header = Parser::<DefaultElement>::new().read_header(&mut reader).map_err(|error| {
+        if error.kind() == ErrorKind::UnexpectedEof && first.len() < bytes.len() {
+            return Broken::file("its header does not end within 1 MiB");
+        }
+        fault(&error, first)
+    })?;
+    let rest = &bytes[first.len() - reader.get_ref().len()..];
+    Ok((header, rest, reader.line()))
+}
+
+impl Section {
+    fn new(element: &ElementDef, vertices: usize) -> Result<Self, Broken> {
+        let kind = match element.name.as_str() {
+            "vertex" => Kind::Vertex,
+            "face" => Kind::Face,
+            _ => Kind::Other,
+        };
+        let field = |(name, property): (&String, &PropertyDef)| {
+            let axis = ["x", "y", "z"].iter().position(|axis| axis == name).filter(|_| kind == Kind::Vertex);
+            let is_corners = kind == Kind::Face && CORNERS.contains(&name.as_str());
+            let wrong = |what: &str| {
+                Err(Broken::file(format!("`{name}` of its elements `{}` is not {what}", element.name)))
+            };
+            match &property.data_type {
+                PropertyType::Scalar(number) => match axis {
+                    _ if is_corners => wrong("a list"),
+                    Some(axis) => Ok(Field::Coordinate(axis, Number::of(number))),
+                    None => Ok(Field::Number(Number::of(number))),
+                },
+                PropertyType::List(length, number) => {
+                    let (length, number) = (Number::of(length), Number::of(number));
+                    match axis {
+                        Some(_) => wrong("a number"),
+                        None if !length.is_whole() => wrong("a list with a whole number of values"),
+                        None if is_corners && !number.is_whole() => wrong("a list of whole numbers"),
+                        None if is_corners => Ok(Field::Corners(length, number)),
+                        None => Ok(Field::List(length, number)),
+                    }
+                }
+            }
+        };
+        let fields = element.properties.iter().map(field).collect::<Result<_, _>>()?;
+        Ok(Self { count: element.count, fields, kind, vertices })
+    }
+
+    /// Checks the corners of the face of this index, and makes 32 bits of each.
+    pub fn corners(&self, face: usize, given: &[i64], corners: &mut Vec<u32>) -> Result<(), String> {
+        if given.len() < 3 {
+            return Err(format!("face {face} has {} vertices, and needs three", given.len()));
+        }
+        let count = self.vertices;
+        if let Some(corner) = given.iter().find(|corner| !(0..count as i64).contains(corner)) {
+            return Err(format!("face {face} refers to vertex {corner}, and there are {count}, from 0"));
+        }
+        corners.clear();
+        corners.extend(given.iter().map(|corner| *corner as u32));
+        Ok(())
+    }
 }
 
 /// Refuses a header that promises more than the file can hold: each element takes at least a byte.
@@ -139,26 +187,23 @@ fn may_fit(header: &Header, size: usize) -> Result<(), Broken> {
     Ok(())
 }
 
-/// Says what the parser says, in a line and without the text that it repeats.
-fn fault(error: &ParseError, is_text: bool, bytes: &[u8]) -> Broken {
-    let at = error.line().filter(|_| is_text).and_then(|line| lines(bytes).nth(line.saturating_sub(1)));
+/// Says what the parser says of a header, in a line and without the text that it repeats.
+fn fault(error: &ParseError, bytes: &[u8]) -> Broken {
     if error.kind() == ErrorKind::UnexpectedEof {
-        let message = "the file ends before all of its elements";
-        return if is_text { Broken::file(message) } else { Broken::byte(bytes.len(), message) };
+        return Broken::file(super::ENDS_EARLY);
     }
-    let Some((number, line)) = at else {
+    let line = error.line().and_then(|line| Some((line, bytes.split(|byte| *byte == b'\n').nth(line - 1)?)));
+    let Some((number, line)) = line else {
         let text = error.to_string();
-        let message = text.lines().next().unwrap_or_default().trim_end_matches('.').to_lowercase();
-        return if is_text { Broken::file(message) } else { Broken::byte(bytes.len(), message) };
+        return Broken::file(text.lines().next().unwrap_or_default().trim_end_matches('.').to_lowercase());
     };
-    let is_header = line.split_ascii_whitespace().next().is_none_or(|word| HEADER.contains(&word));
-    let wrong = line.split_ascii_whitespace().find_map(|word| coordinate(word).err());
-    let message = match wrong.filter(|_| !is_header) {
-        Some(wrong) => wrong,
-        None => format!("`{}` is not what the header makes expect here", abridged(line.trim())),
-    };
-    Broken::line(number, message)
+    Broken::line(number, unexpected(line, true))
 }
 
-/// The words with which lines of a header begin.
-const HEADER: [&str; 7] = ["ply", "format", "comment", "obj_info", "element", "property", "end_header"];
+/// Says that a line is not what the header makes expect.
+pub(super) fn unexpected(line: &[u8], is_header: bool) -> String {
+    let wrong = super::blocks::words(line).find_map(|word| coordinate(word).err());
+    wrong
+        .filter(|_| !is_header)
+        .unwrap_or_else(|| format!("`{}` is not what the header makes expect here", shown(line.trim_ascii())))
+}

@@ -1,8 +1,9 @@
 //! STL, in text and in bytes.
 
-use super::model::{Broken, MAX_VERTICES, Model, coordinate, lines};
-use crate::text;
+use super::blocks::{self, never, words};
+use super::model::{Broken, MAX_VERTICES, Model, Room, coordinate, shown};
 use glam::DVec3;
+use rayon::prelude::*;
 
 /// The bytes before the first triangle: a title, and the number of triangles.
 const HEADER: usize = 84;
@@ -11,12 +12,12 @@ const TRIANGLE: usize = 50;
 
 /// Reads a file. It is binary if its length is what its number of triangles says, as titles of binary files may begin
 /// with `solid` too.
-pub fn read(bytes: &[u8]) -> Result<Model, Broken> {
+pub fn read(bytes: &[u8], room: &Room) -> Result<Model, Broken> {
     let count = bytes.get(80..HEADER).map(|count| word(count) as usize);
     let is_binary = count.is_some_and(|count| bytes.len() - HEADER == TRIANGLE * count);
     let begins = bytes.trim_ascii_start();
-    if !is_binary && begins.starts_with(b"solid") {
-        return in_text(bytes);
+    if !is_binary && begins.get(..5).is_some_and(|begins| begins.eq_ignore_ascii_case(b"solid")) {
+        return in_text(bytes, room);
     }
     let Some(count) = count else {
         return Err(Broken::byte(bytes.len(), "the file ends before its number of triangles"));
@@ -26,20 +27,18 @@ pub fn read(bytes: &[u8]) -> Result<Model, Broken> {
             format!("the file ends after {} of {count} triangles", (bytes.len() - HEADER) / TRIANGLE);
         return Err(Broken::byte(bytes.len(), message));
     }
-    let mut model = Model::default();
-    for (index, triangle) in bytes[HEADER..].chunks_exact(TRIANGLE).take(count).enumerate() {
-        for corner in 0..3 {
-            let part =
-                |axis: usize| f64::from(f32::from_bits(word(&triangle[12 + 12 * corner + 4 * axis..][..4])));
-            let at = DVec3::new(part(0), part(1), part(2));
-            if !at.is_finite() {
-                let byte = HEADER + TRIANGLE * index + 12 + 12 * corner;
-                return Err(Broken::byte(byte, format!("a corner of triangle {} is not finite", index + 1)));
-            }
-            model.vertices.push(at);
-        }
+    room.holds(3 * count, count).map_err(Broken::file)?;
+    let byte = |corner: usize| HEADER + TRIANGLE * (corner / 3) + 12 + 12 * (corner % 3);
+    let at = |corner: usize| {
+        let part = |axis: usize| f64::from(f32::from_bits(word(&bytes[byte(corner) + 4 * axis..][..4])));
+        DVec3::new(part(0), part(1), part(2))
+    };
+    let vertices: Vec<_> = (0..3 * count).into_par_iter().map(at).collect();
+    if let Some(corner) = vertices.par_iter().position_first(|at| !at.is_finite()) {
+        let message = format!("a corner of triangle {} is not finite", corner / 3 + 1);
+        return Err(Broken::byte(byte(corner), message));
     }
-    finish(model)
+    finish(vertices)
 }
 
 /// Reads a number from four bytes, the lowest first.
@@ -47,48 +46,137 @@ fn word(bytes: &[u8]) -> u32 {
     bytes.iter().rev().fold(0, |word, byte| word << 8 | u32::from(*byte))
 }
 
-fn in_text(bytes: &[u8]) -> Result<Model, Broken> {
-    let mut model = Model::default();
+/// The words that begin what a text says.
+#[derive(Clone, Copy)]
+enum Keyword {
+    Vertex,
+    EndLoop,
+    /// `solid` or `endsolid`, after which a name follows.
+    Solid,
+    /// `facet`, `outer` or `endfacet`.
+    Other,
+}
+
+impl Keyword {
+    fn of(word: &[u8]) -> Option<Self> {
+        let all: [(&[u8], Self); 7] = [
+            (b"vertex", Self::Vertex),
+            (b"endloop", Self::EndLoop),
+            (b"facet", Self::Other),
+            (b"outer", Self::Other),
+            (b"endfacet", Self::Other),
+            (b"solid", Self::Solid),
+            (b"endsolid", Self::Solid),
+        ];
+        all.into_iter().find_map(|(known, keyword)| word.eq_ignore_ascii_case(known).then_some(keyword))
+    }
+}
+
+/// What a block of a text holds.
+#[derive(Default)]
+struct Part {
+    vertices: Vec<DVec3>,
+    lines: usize,
+    /// The line of the first `endloop`, and the number of vertices before it.
+    first: Option<(usize, usize)>,
+    /// The number of vertices before the last `endloop`.
+    last: usize,
+    /// The first fault apart from that of the first `endloop`, with its line.
+    fault: Option<(usize, String)>,
+}
+
+fn in_text(bytes: &[u8], room: &Room) -> Result<Model, Broken> {
+    let mut vertices = Vec::new();
     // The number of corners before the current facet.
-    let mut start = 0;
-    let mut last = 1;
-    for (number, line) in lines(bytes) {
-        let fault = |message: String| Broken::line(number, message);
-        let mut words = line.split_ascii_whitespace();
-        match words.next() {
-            Some("vertex") => {
-                let mut at = [0.0; 3];
-                for part in &mut at {
-                    let word =
-                        words.next().ok_or_else(|| fault("a vertex needs three coordinates".to_owned()))?;
-                    *part = coordinate(word).map_err(fault)?;
-                }
-                model.vertices.push(DVec3::from(at));
-            }
-            Some("endloop") => {
-                let count = model.vertices.len() - start;
-                if count != 3 {
-                    return Err(fault(format!("a facet has three vertices, and this one has {count}")));
-                }
-                start += 3;
-            }
-            Some("facet" | "outer" | "endfacet" | "solid" | "endsolid") | None => {}
-            Some(word) => return Err(fault(format!("`{}` is not a word of STL", text::abridged(word)))),
+    let (mut start, mut line) = (0, 0);
+    let take = |part: Part| {
+        if let Some((number, count)) = part.first {
+            three(vertices.len() - start + count).map_err(|message| Broken::line(line + number, message))?;
+            start = vertices.len() + part.last;
         }
-        last = number;
+        if let Some((number, message)) = part.fault {
+            return Err(Broken::line(line + number, message));
+        }
+        let count = vertices.len() + part.vertices.len();
+        room.holds(count, count / 3).map_err(Broken::file)?;
+        vertices.extend(part.vertices);
+        line += part.lines;
+        Ok(())
+    };
+    blocks::read(bytes, never, |_| 0, |block, _| Part::read(block, room), take)?;
+    if vertices.len() != start {
+        return Err(Broken::line(blocks::line_ends(bytes) + 1, "the file ends within a facet"));
     }
-    if model.vertices.len() != start {
-        return Err(Broken::line(last, "the file ends within a facet"));
+    finish(vertices)
+}
+
+/// Refuses a facet without three vertices.
+fn three(count: usize) -> Result<(), String> {
+    let message = || format!("a facet has three vertices, and this one has {count}");
+    if count == 3 { Ok(()) } else { Err(message()) }
+}
+
+impl Part {
+    /// Reads a block up to the first fault.
+    fn read(block: &[u8], room: &Room) -> Self {
+        let mut part = Self::default();
+        for line in blocks::lines(block) {
+            part.lines += 1;
+            if let Err(message) = part.line(line, room) {
+                part.fault = Some((part.lines, message));
+                break;
+            }
+        }
+        part
     }
-    finish(model)
+
+    /// Reads a line, which may say several things. What follows a keyword and is of no use here is skipped.
+    fn line(&mut self, line: &[u8], room: &Room) -> Result<(), String> {
+        let mut words = words(line);
+        let Some(first) = words.next() else { return Ok(()) };
+        let mut keyword = Keyword::of(first);
+        if keyword.is_none() {
+            return Err(format!("`{}` is not a word of STL", shown(first)));
+        }
+        while let Some(current) = keyword {
+            match current {
+                Keyword::Vertex => {
+                    let mut at = [0.0; 3];
+                    for part in &mut at {
+                        *part = coordinate(words.next().ok_or("a vertex needs three coordinates")?)?;
+                    }
+                    room.holds(self.vertices.len(), self.vertices.len() / 3)?;
+                    self.vertices.push(DVec3::from(at));
+                }
+                Keyword::EndLoop => {
+                    let count = self.vertices.len() - self.last;
+                    match self.first {
+                        None => self.first = Some((self.lines, count)),
+                        Some(_) => three(count)?,
+                    }
+                    self.last = self.vertices.len();
+                }
+                // A name may be any words; the first facet of a file in one line follows it.
+                Keyword::Solid => {
+                    words
+                        .by_ref()
+                        .skip_while(|word| !word.eq_ignore_ascii_case(b"facet"))
+                        .find(|word| word.eq_ignore_ascii_case(b"normal"));
+                }
+                Keyword::Other => {}
+            }
+            keyword = words.find_map(Keyword::of);
+        }
+        Ok(())
+    }
 }
 
 /// Makes a face of every three vertices.
-fn finish(mut model: Model) -> Result<Model, Broken> {
-    if model.vertices.len() > MAX_VERTICES {
+fn finish(vertices: Vec<DVec3>) -> Result<Model, Broken> {
+    if vertices.len() > MAX_VERTICES {
         return Err(Broken::file("it has more than 2^31 corners"));
     }
-    model.faces =
-        (0..model.vertices.len() as u32 / 3).map(|index| [3 * index, 3 * index + 1, 3 * index + 2]).collect();
-    Ok(model)
+    let faces =
+        (0..vertices.len() as u32 / 3).map(|index| [3 * index, 3 * index + 1, 3 * index + 2]).collect();
+    Ok(Model { vertices, faces, ..Model::default() })
 }

@@ -1,8 +1,23 @@
 //! What readers make of files, sound and broken.
 
-use super::{At, Broken, Model, obj, ply, stl};
+use super::model::Room;
+use super::{At, Broken, Model};
 use glam::DVec3;
 use proptest::prelude::*;
+
+macro_rules! readers {
+    ($($format:ident)*) => {$(
+        /// Reads a file of this format, with room enough.
+        mod $format {
+            use super::{Broken, Model, Room};
+
+            pub fn read(bytes: &[u8]) -> Result<Model, Broken> {
+                super::super::$format::read(bytes, &Room::new(1 << 30, 0).map_err(Broken::file)?)
+            }
+        }
+    )*};
+}
+readers!(obj ply stl);
 
 const CORNERS: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.5], [0.25, 1.0, 0.0], [0.0, 0.5, 2.0]];
 const FACES: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
@@ -184,6 +199,114 @@ fn a_header_that_promises_too_much_takes_no_memory() {
     let mut stl = stl_bytes("binary");
     stl[80..84].copy_from_slice(&[255; 4]);
     stl::read(&stl).expect_err("2^32 triangles");
+}
+
+#[test]
+fn faces_of_a_ply_may_come_before_its_vertices() {
+    let text = ply_text();
+    let (header, body) = text.split_once("end_header\n").expect("a header");
+    let (start, faces) = header.split_once("element face").expect("faces");
+    let (start, vertices) = start.split_once("element vertex").expect("vertices");
+    let lines: Vec<_> = body.lines().collect();
+    let turned = |first: &str, last: &str| {
+        let elements = format!("{start}element face{faces}element vertex{vertices}");
+        format!("{elements}end_header\n{first}\n{last}\n")
+    };
+    let (points, corners) = (lines[..4].join("\n"), lines[4..].join("\n"));
+    assert_eq!(ply::read(turned(&corners, &points).as_bytes()), Ok(tetrahedron()));
+    let broken = ply::read(turned(&corners.replace("3 1 2 3", "3 1 2 4"), &points).as_bytes());
+    let message = "face 2 refers to vertex 4, and there are 4, from 0".to_owned();
+    assert_eq!(broken, Err(Broken { at: Some(At::Line(14)), message }));
+}
+
+#[test]
+fn lines_of_an_obj_may_be_continued() {
+    let folded = |end: &str| {
+        let text = obj_text()
+            .replace("v 1 ", &format!("v\\{end}1 \\{end}  "))
+            .replace(" 3\n", &format!(" \\{end}3\n"));
+        // A comment is not continued.
+        format!("# in C:\\a\\{end}{text}")
+    };
+    assert_eq!(obj::read(folded("\n").as_bytes()), Ok(tetrahedron()));
+    assert_eq!(obj::read(folded("\r\n").as_bytes()), Ok(tetrahedron()));
+    let broken = obj::read(b"v 0 \\\n0 0\nv 0 0 \\\n\\\nx\n");
+    assert_eq!(broken, Err(Broken { at: Some(At::Line(3)), message: "`x` is not a number".to_owned() }));
+    assert!(obj::read(b"v 0 0 \\").is_err());
+}
+
+#[test]
+fn an_stl_may_be_in_capitals_and_in_one_line() {
+    let faces = corners(&tetrahedron());
+    let text = stl_text();
+    for stl in [text.to_uppercase(), text.replace('\n', " "), text.to_uppercase().replace('\n', "\t")] {
+        assert_eq!(corners(&stl::read(stl.as_bytes()).expect("a model")), faces, "{stl}");
+    }
+    // A name may be any words.
+    for name in ["my facet", "vertex endloop", "a facet normal map"] {
+        let stl = text.replace("tetrahedron", name);
+        assert_eq!(corners(&stl::read(stl.as_bytes()).expect("a model")), faces, "{stl}");
+    }
+}
+
+/// Files of many blocks.
+#[test]
+fn a_long_text_is_read_as_a_short_one_is() {
+    const TIMES: usize = 20_000;
+    // Each face refers to the last three vertices.
+    let part = "v 0 0 0\nv 1 0 0.5 # a comment\nv 0 1 \\\n 2\nf -3 -2 -1\n";
+    let long = part.repeat(TIMES);
+    let model = obj::read(long.as_bytes()).expect("a model");
+    assert_eq!((model.vertices.len(), model.faces.len()), (3 * TIMES, TIMES));
+    assert!(
+        (0..).zip(&model.faces).all(|(face, corners)| *corners == [3 * face, 3 * face + 1, 3 * face + 2])
+    );
+    let named = format!("{long}usemtl a\n{long}usemtl b\nf 1 2 3\n");
+    let model = obj::read(named.as_bytes()).expect("a model");
+    let count = |slot| model.slots.iter().filter(|of| **of == slot).count();
+    assert_eq!([count(0), count(1), count(2)], [TIMES, TIMES, 1]);
+    // The first of several faults is told, wherever blocks begin.
+    let lines = 5 * TIMES;
+    for line in [1, 7, lines / 3, lines / 2, lines] {
+        let mut text: Vec<_> = long.lines().collect();
+        let whole = line - line % 5;
+        text.splice(whole..whole, ["f x"]);
+        text.push("v x");
+        let broken = obj::read(text.join("\n").as_bytes());
+        let message = "`x` is not a vertex's number".to_owned();
+        assert_eq!(broken, Err(Broken { at: Some(At::Line(whole + 1)), message }));
+    }
+    let facet =
+        "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
+    let long = format!("solid\n{}endsolid\n", facet.repeat(TIMES));
+    let model = stl::read(long.as_bytes()).expect("a model");
+    assert_eq!((model.vertices.len(), model.faces.len()), (3 * TIMES, TIMES));
+    for facet in [0, 3, TIMES / 2, TIMES - 1] {
+        let mut lines: Vec<_> = long.lines().collect();
+        lines.remove(1 + 7 * facet + 3);
+        let message = "a facet has three vertices, and this one has 2".to_owned();
+        let broken = Err(Broken { at: Some(At::Line(1 + 7 * facet + 5)), message });
+        assert_eq!(stl::read(lines.join("\n").as_bytes()), broken);
+    }
+    let header = ply_header("ascii").replace("face 4", &format!("face {TIMES}"));
+    let vertices = CORNERS.map(|[x, y, z]| format!("{x} {y} {z} 255\n")).concat();
+    let long = format!("{header}{vertices}{}", "3 0 1 2\n".repeat(TIMES));
+    assert_eq!(ply::read(long.as_bytes()).expect("a model").faces, vec![[0, 1, 2]; TIMES]);
+    let wrong = format!("{header}{vertices}{}3 0 1 9\n", "3 0 1 2\n".repeat(TIMES - 1));
+    let message = format!("face {} refers to vertex 9, and there are 4, from 0", TIMES - 1);
+    assert_eq!(ply::read(wrong.as_bytes()), Err(Broken { at: Some(At::Line(15 + TIMES)), message }));
+}
+
+#[test]
+fn a_model_takes_no_more_memory_than_there_is() {
+    let fan = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nf{}\n", " 1 2 3".repeat(40_000));
+    let faces = 3 * 40_000 - 2;
+    let room = |memory: u64| Room::new(memory, fan.len() as u64).expect("room for the file");
+    let enough = 160 * (faces + 2) + 48 * 3 + fan.len() as u64;
+    assert!(super::obj::read(fan.as_bytes(), &room(enough)).is_ok());
+    let broken = super::obj::read(fan.as_bytes(), &room(enough - 400)).expect_err("too little");
+    assert!(broken.message.starts_with("it has at least 3 vertices and 120000 faces, which may take more"));
+    assert!(Room::new(2999, 1000).is_err());
 }
 
 proptest! {

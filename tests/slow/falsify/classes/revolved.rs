@@ -206,7 +206,7 @@ pub fn silhouettes(random: &mut Random) -> Question {
         aim.question(&[format!("{before}{} {after}", numbers(at))])
     };
     let is_met = |by: f64| {
-        let scene = Scene::read(&question(by).text);
+        let scene = Scene::read(&question(by).text, "");
         let truth = oracle::first(&scene, &Ray::of_pixel(&scene, 0, 0));
         truth.first.is_some()
     };

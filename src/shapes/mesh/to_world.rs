@@ -4,7 +4,7 @@ use glam::{DMat3, DVec3};
 
 /// A scaling along the axes, followed by a rotation and a translation.
 #[derive(Clone, Copy, Debug)]
-pub struct Placement {
+pub struct ToWorld {
     /// Rotation and scale.
     linear: DMat3,
     translation: DVec3,
@@ -12,7 +12,7 @@ pub struct Placement {
     is_plain: bool,
 }
 
-impl Placement {
+impl ToWorld {
     /// Makes a placement. `rotation` holds the angles in degrees by which the mesh is rotated around the x, then the y
     /// and then the z axis, counterclockwise as seen from the axis's end.
     pub fn new(scale: DVec3, rotation: DVec3, translation: DVec3) -> Self {

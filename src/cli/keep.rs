@@ -1,0 +1,19 @@
+//! `--keep-all`: whether objects and lights that can change no byte of the image are left out.
+
+use crate::render::plan::Plan;
+use crate::scene::model::Model;
+
+#[derive(clap::Args)]
+#[group(id = "what is left out")]
+pub struct Args {
+    /// Leave out no object and no light that the image does not need; the image is the same
+    #[arg(long)]
+    keep_all: bool,
+}
+
+impl Args {
+    /// Makes the plan of a model's image.
+    pub fn plan<'m>(&self, model: &'m Model) -> Plan<'m> {
+        if self.keep_all { Plan::new(model) } else { Plan::for_picture(model) }
+    }
+}

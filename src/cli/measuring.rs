@@ -1,0 +1,118 @@
+//! The progress of a measurement: a bar on a terminal, and lines elsewhere. An interruption ends it, and so does a time
+//! limit.
+
+use super::interrupt::{self, Manner};
+use super::messages;
+use super::progress::Progress;
+use crate::tools::chart::{self, Panel};
+use std::io::{self, IsTerminal};
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+/// The time between two lines of progress.
+const LINES: Duration = Duration::from_secs(10);
+
+/// A measurement under way.
+pub struct Work {
+    progress: Progress,
+    start: Instant,
+    limit: Duration,
+    /// When the current panel began, and when it must end.
+    panel: [Instant; 2],
+    units: Units,
+    kept: Kept,
+}
+
+/// The units of work that are done, and all units.
+#[derive(Clone, Default)]
+pub struct Units(Arc<[AtomicUsize; 2]>);
+
+/// The panels of a chart so far.
+type Kept = Arc<Mutex<Vec<Panel>>>;
+
+impl Work {
+    /// Starts work that is to end within a time.
+    pub fn within(limit: Duration) -> Self {
+        // No measurement takes years, and sums of times must not overflow.
+        let limit = limit.min(Duration::from_secs(1 << 30));
+        let now = Instant::now();
+        let panel = [now, now.checked_add(limit).unwrap_or(now)];
+        let (progress, units, kept) = (Progress::new(0), Units::default(), Kept::default());
+        Self { progress, start: now, limit, panel, units, kept }
+    }
+
+    pub fn end(&self) {
+        self.progress.end();
+    }
+
+    /// Returns how far the work is, for others to look at.
+    pub fn units(&self) -> Units {
+        self.units.clone()
+    }
+
+    /// Returns the panels so far, for others to look at.
+    pub fn kept(&self) -> Kept {
+        Arc::clone(&self.kept)
+    }
+}
+
+/// Waits for a measurement on another thread, up to a time after its start.
+pub fn wait<T>(measured: &Receiver<T>, units: &Units, last: Duration) -> Result<T, RecvTimeoutError> {
+    let start = Instant::now();
+    loop {
+        let left = last.saturating_sub(start.elapsed());
+        match measured.recv_timeout(left.min(LINES)) {
+            Err(RecvTimeoutError::Timeout) if left > LINES => units.tell(start.elapsed()),
+            measured => return measured,
+        }
+    }
+}
+
+impl Units {
+    /// Prints a line, where there is no terminal to show a bar on.
+    fn tell(&self, spent: Duration) {
+        if io::stderr().is_terminal() {
+            return;
+        }
+        let [done, all] = [&self.0[0], &self.0[1]].map(|units| units.load(Ordering::Relaxed));
+        let (spent, percent) = (spent.as_secs(), 100 * done.min(all) / all.max(1));
+        messages::note(&format!("about {percent} % is measured after {spent} s"));
+    }
+}
+
+impl chart::Progress for Work {
+    fn more(&mut self, units: usize) {
+        self.units.0[1].fetch_add(units, Ordering::Relaxed);
+        self.progress.lengthen(units);
+    }
+
+    fn done(&mut self, units: usize) -> ControlFlow<()> {
+        self.units.0[0].fetch_add(units, Ordering::Relaxed);
+        self.progress.advance(units);
+        if Instant::now() >= self.panel[1] { ControlFlow::Break(()) } else { interrupt::check() }
+    }
+
+    fn share(&mut self, panels: usize) {
+        let now = Instant::now();
+        let left = self.limit.saturating_sub(self.start.elapsed());
+        // Some panels take less than their share, so that one may take more.
+        let share = if panels > 1 { left.mul_f64(1.5 / (panels as f64 + 0.5)) } else { left };
+        self.panel = [now, now.checked_add(share).unwrap_or(now)];
+    }
+
+    fn is_late(&self) -> bool {
+        let [from, to] = self.panel;
+        from.elapsed() > (to - from) / 2
+    }
+
+    fn kept(&mut self, panels: &[Panel]) {
+        panels.clone_into(&mut self.kept.lock().unwrap_or_else(PoisonError::into_inner));
+        if !panels.is_empty() {
+            let said = "the measurement under way takes too long, and there is no chart";
+            interrupt::from_here(Manner::NotesFirst(said));
+        }
+    }
+}

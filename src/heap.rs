@@ -1,0 +1,77 @@
+//! The program's allocator: the system's, with a say in what happens when the system refuses memory.
+//!
+//! Rust ends a program with a signal where memory is refused, unless the code asked for it in a way that can fail. No
+//! stable interface changes that, so the allocator itself calls a function of the command line, which tells the user.
+#![allow(
+    unsafe_code,
+    reason = "the trait of allocators is unsafe; this one hands everything on to the system's"
+)]
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::sync::OnceLock;
+
+struct Heap;
+
+#[global_allocator]
+static HEAP: Heap = Heap;
+
+/// What is called with the length in bytes of an allocation that is refused.
+static REFUSED: OnceLock<fn(usize)> = OnceLock::new();
+
+thread_local! {
+    static MAY_FAIL: Cell<bool> = const { Cell::new(false) };
+}
+
+/// From here on this is called where memory is refused, with the length of the allocation in bytes. If it returns, the
+/// program ends with a signal.
+pub fn when_refused(call: fn(usize)) {
+    REFUSED.get_or_init(|| call);
+}
+
+/// Tells whether the system would provide so many bytes in one piece.
+pub fn has_room(bytes: usize) -> bool {
+    may_fail(|| Vec::<u8>::new().try_reserve_exact(bytes).is_ok())
+}
+
+/// Does work in which a refused allocation is an ordinary error.
+pub fn may_fail<T>(work: impl FnOnce() -> T) -> T {
+    let before = MAY_FAIL.replace(true);
+    let done = work();
+    MAY_FAIL.set(before);
+    done
+}
+
+// SAFETY: each method hands its arguments on to the system's allocator as they are, and returns what that returns.
+unsafe impl GlobalAlloc for Heap {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        told(unsafe { System.alloc(layout) }, layout.size())
+    }
+
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        told(unsafe { System.alloc_zeroed(layout) }, layout.size())
+    }
+
+    unsafe fn realloc(&self, memory: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        told(unsafe { System.realloc(memory, layout, size) }, size)
+    }
+
+    unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
+        unsafe { System.dealloc(memory, layout) }
+    }
+}
+
+#[inline(always)]
+fn told(memory: *mut u8, bytes: usize) -> *mut u8 {
+    if memory.is_null() {
+        refused(bytes);
+    }
+    memory
+}
+
+#[cold]
+fn refused(bytes: usize) {
+    if let Some(call) = REFUSED.get().filter(|_| !MAY_FAIL.get()) {
+        call(bytes);
+    }
+}

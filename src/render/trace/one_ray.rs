@@ -1,0 +1,91 @@
+//! The exact hit of one ray with one shape, where rounding leaves the hits of a packet in doubt.
+
+use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
+use crate::geometry::sight::Sight;
+use crate::numeric::interval::{Float, Interval, Wide};
+use crate::world::any_shape::AnyShape;
+use crate::world::certify::{self, Enclosure, Precision};
+use crate::world::coincidence::CLOSE;
+
+/// A rounded ray, and what is known of the true ray that it stands for.
+pub(super) struct Start {
+    pub ray: Ray,
+    /// A bound on the error of the origin, in world units.
+    pub error: f64,
+    /// The ray before anything is rounded, if it is a primary ray.
+    pub sight: Option<Sight>,
+}
+
+impl Start {
+    /// Returns the side of a shape that the ray leaves, if the ray starts on the shape. `own` is that side if the shape
+    /// belongs to the object that the ray leaves. Another shape that passes through the same point is left, too.
+    pub fn leaves(&self, shape: &AnyShape, own: Option<Side>) -> Option<Side> {
+        let Ray { origin, dir } = self.ray;
+        let touched = || Side::seen_along(dir, shape.normal(origin)).opposite();
+        own.or_else(|| (self.error > 0.0 && shape.touches(origin, self.error)).then(touched))
+    }
+}
+
+/// Returns the exact distance of one ray's hit of a shape before `far`, in world units, or [`MISS`]. `origin_side` is
+/// the side of the shape that the ray leaves, if the shape belongs to the object that the packet leaves.
+pub(super) fn exact(shape: &AnyShape, start: &Start, origin_side: Option<Side>, far: f64) -> f64 {
+    located(shape, start, origin_side, far).0
+}
+
+/// Returns the exact distance as [`exact`] does, and a bracket of that distance and of the distance along the ray
+/// before anything is rounded.
+pub(super) fn located(
+    shape: &AnyShape,
+    start: &Start,
+    origin_side: Option<Side>,
+    far: f64,
+) -> (f64, Bracket) {
+    let known = |distance| (distance, Bracket::exactly(distance));
+    match start.leaves(shape, origin_side) {
+        Some(side) if !shape.can_hit_itself(side) => return (MISS, Bracket::MISS),
+        None => {}
+        origin_side => {
+            let range = RayRange { far, origin_side, origin_error: start.error, ..RayRange::ALL };
+            return known(shape.distance(&start.ray, &range));
+        }
+    }
+    let range = RayRange { far, ..RayRange::ALL };
+    let Some(sight) = &start.sight else { return known(shape.distance(&start.ray, &range)) };
+    let bracket = shape.t_bounds(&start.ray, &RayRange::ALL);
+    // A bracket of width 0 is the distance itself.
+    let is_known = bracket.near == bracket.far;
+    let distance = if is_known { range.keep(bracket.near) } else { shape.distance(&start.ray, &range) };
+    // Where the rounding of the ray may decide whether it hits the shape, the unrounded ray decides.
+    if bracket.is_doubtful() { decided(shape, sight, distance) } else { (distance, bracket) }
+}
+
+/// The width from which on an enclosure of a distance is too wide to be that of a point, as a fraction of the distance.
+const WIDE: f64 = 64.0 * f64::EPSILON;
+
+/// Returns a distance and a bracket of it, if the ray before anything is rounded hits the shape as far as a proof with
+/// 237 bits tells, and [`MISS`] otherwise.
+fn decided(shape: &AnyShape, sight: &Sight, distance: f64) -> (f64, Bracket) {
+    let enclosure = match shape.certify(sight, Precision::Double) {
+        Enclosure::Edge(_) | Enclosure::Doubtful(_) => shape.certify(sight, Precision::Octuple),
+        // As where the ray passes near the edge of a face that it grazes, which holds much of the ray.
+        Enclosure::Hits(at) if at.width().to_f64() > WIDE * at.high.to_f64() => {
+            shape.certify(sight, Precision::Octuple)
+        }
+        certain => certain,
+    };
+    match enclosure {
+        Enclosure::Misses => (MISS, Bracket::MISS),
+        // Edges belong to their surfaces.
+        Enclosure::Hits(at) | Enclosure::Edge(at) => {
+            let Interval { low, high } = certify::bounds_in_world_units(at, sight);
+            (distance.clamp(low, high), Bracket { near: low, far: high })
+        }
+        // What is undecided lies beyond the computed distance, as for a ray that is parallel to a plane up to rounding.
+        Enclosure::Doubtful(from)
+            if certify::in_world_units(Wide::point(from), sight).high * (1.0 - CLOSE) > distance =>
+        {
+            (MISS, Bracket::MISS)
+        }
+        Enclosure::Doubtful(_) => (distance, Bracket::exactly(distance)),
+    }
+}

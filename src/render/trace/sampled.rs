@@ -1,0 +1,103 @@
+//! Pixels with several samples, where nothing bounds the light that rays may return.
+//!
+//! A pixel is then off by an unknown amount as soon as one of its samples uses up its ray budget, whatever the others
+//! return. So those after it get a small part of the budget, and the pixel costs about as much as one of a single
+//! sample. What a sample may cost depends on those before it, which are traced first.
+
+use super::context::Tracer;
+use super::scratch::{PrimaryScratch, Scratch};
+use crate::geometry::ray_packet::PACKET_SIZE;
+use crate::render::limits::MAX_RAYS;
+use crate::render::observer::TraceObserver;
+use crate::render::plan::Plan;
+use crate::world::material::Rgb;
+
+/// The number of rays that a sample may cost in a pixel that is off by an unknown amount.
+pub(super) const REST: u32 = MAX_RAYS as u32 / 100;
+
+/// Tells whether nothing bounds the light that rays may return.
+pub(super) fn is_unbounded(plan: &Plan) -> bool {
+    plan.depth.as_ref().is_some_and(|depth| !depth.most.is_finite())
+}
+
+impl<W: TraceObserver> Tracer<'_, '_, W> {
+    /// Computes the colours of pixels sample by sample.
+    pub(super) fn one_by_one(&mut self, pixels: &[[usize; 2]], primary: &mut PrimaryScratch) {
+        let (camera, depth) = (&self.plan.camera, self.plan.depth.as_ref());
+        let PrimaryScratch { group, seen, colours, .. } = primary;
+        let mut colours = colours.resized(pixels.len());
+        for (pixels, first) in pixels.chunks(PACKET_SIZE).zip((0..).step_by(PACKET_SIZE)) {
+            let len = pixels.len();
+            let mut places: Vec<_> =
+                pixels.iter().map(|[column, row]| camera.places(*column, *row, camera.samples)).collect();
+            let mut sums = vec![(Rgb::ZERO, 0.0); len];
+            for _ in 0..camera.samples {
+                let Scratch { places: [x, y], samples: drawn, .. } = &mut *self.scratch;
+                drawn.clear();
+                for (lane, (place, sample)) in places.iter_mut().filter_map(Iterator::next).enumerate() {
+                    (x[lane], y[lane]) = (place.x, place.y);
+                    drawn.extend(sample);
+                }
+                group.look(self.cpu, camera, depth, &mut self.scratch.places, len);
+                for (budget, (_, missing)) in group.ray_budget.iter_mut().zip(&sums) {
+                    *budget = if *missing == f64::INFINITY { REST } else { *budget };
+                }
+                self.colours(group, seen);
+                for (lane, (sum, missing)) in sums.iter_mut().enumerate() {
+                    *sum += seen.get(lane);
+                    *missing += self.missing(lane);
+                }
+            }
+            for (lane, (sum, missing)) in sums.into_iter().enumerate() {
+                colours.set(first + lane, sum / f64::from(camera.samples));
+                self.cut(missing / f64::from(camera.samples));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::ray_stats::RayStats;
+    use crate::render::renderer::Renderer;
+    use crate::render::trace;
+    use crate::scene::reader;
+    use crate::scene::registry::Registry;
+    use crate::simd::cpu::Cpu;
+    use std::path::Path;
+
+    /// Panes that pass on more light than they receive.
+    const SCENE: &[u8] = b"camera eye { pixeldim 5 4 worlddim 8 6 viewpoint 4 3 6 samples 5 }
+        material g { ambient 0.5 0.6 0.7 diffuse 1 1 1 specular 0.9 transparency 0.9 }
+        plane p0 { material g normal 0 0 1 point 0 0 -1 }
+        plane p1 { material g normal 0.01 0 1 point 0 0 -1.5 }
+        plane p2 { material g normal 0 0 1 point 0 0 -2 }
+        plane p3 { material g normal 0 0 1 point 0 0 -2.5 }
+        plane p4 { material g normal 0 0 1 point 0 0 -3 }";
+
+    #[test]
+    fn a_pixel_off_by_an_unknown_amount_costs_as_one_of_a_single_sample() {
+        let registry = Registry::get().expect("sound types");
+        let Ok(loaded) = reader::read(registry, "scene", Path::new(""), SCENE, None) else {
+            panic!("a sound scene");
+        };
+        let plan = Plan::new(&loaded.model);
+        assert!(is_unbounded(&plan));
+        let pixels: Vec<_> = (0..4).flat_map(|row| (0..5).map(move |column| [column, row])).collect();
+        let renderer = Renderer::new(1).expect("a thread");
+        let (mut scratch, mut stats) = (Scratch::default(), RayStats::default());
+        let together: Vec<Rgb> = renderer.run(|| {
+            let mut tracer = Tracer::new(&plan, Cpu::best(), &mut scratch, &mut stats);
+            let seen = tracer.pixels(&pixels);
+            (0..pixels.len()).map(|lane| seen.get(lane)).collect()
+        });
+        assert_eq!(stats.cuts.pixels, 20);
+        let rays = stats.all_rays();
+        // Five samples of 20 pixels would cost 2,000,000. The first sample may be one that does not meet the limit.
+        assert!((400_000..500_000).contains(&rays), "{rays} rays");
+        let alone =
+            renderer.run(|| pixels.iter().map(|[x, y]| trace::pixel(&plan, *x, *y)).collect::<Vec<_>>());
+        assert_eq!(together, alone);
+    }
+}

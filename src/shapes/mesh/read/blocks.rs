@@ -1,0 +1,99 @@
+//! Lines of a text, and blocks of lines that are read on all cores.
+
+use super::model::Broken;
+use memchr::{memchr, memchr_iter, memrchr};
+use rayon::prelude::*;
+
+/// The length of a block in bytes, about.
+const BLOCK: usize = 1 << 17;
+
+/// The number of blocks for each thread that are read before their contents are put together: few, so that little is
+/// held twice.
+const BLOCKS_PER_THREAD: usize = 2;
+
+/// Cuts a text into blocks of whole lines. A block does not end with a line that `continues` in the next one.
+struct Blocks<'b> {
+    rest: &'b [u8],
+    continues: fn(&[u8]) -> bool,
+}
+
+impl<'b> Iterator for Blocks<'b> {
+    type Item = &'b [u8];
+
+    fn next(&mut self) -> Option<&'b [u8]> {
+        let mut end = BLOCK.min(self.rest.len());
+        while let Some(line) = memchr(b'\n', &self.rest[end..]) {
+            let start = memrchr(b'\n', &self.rest[..end]).map_or(0, |start| start + 1);
+            let is_whole = !(self.continues)(&self.rest[start..end + line]);
+            end += line + 1;
+            if is_whole {
+                let (block, rest) = self.rest.split_at(end);
+                self.rest = rest;
+                return Some(block);
+            }
+        }
+        Some(std::mem::take(&mut self.rest)).filter(|block| !block.is_empty())
+    }
+}
+
+/// Reads a text block by block, some at a time on all cores: `count` counts something in a block, `read` reads a block,
+/// given how much was counted before it, and `take` gets what was read, in the order of the text.
+pub(super) fn read<T: Send>(
+    text: &[u8],
+    continues: fn(&[u8]) -> bool,
+    count: impl Fn(&[u8]) -> usize + Sync,
+    read: impl Fn(&[u8], usize) -> T + Sync,
+    mut take: impl FnMut(T) -> Result<(), Broken>,
+) -> Result<(), Broken> {
+    let mut blocks = Blocks { rest: text, continues };
+    let mut before = 0;
+    loop {
+        let some: Vec<_> = blocks.by_ref().take(BLOCKS_PER_THREAD * rayon::current_num_threads()).collect();
+        if some.is_empty() {
+            return Ok(());
+        }
+        let counts: Vec<_> = some.par_iter().map(|block| count(block)).collect();
+        let befores = counts.iter().scan(before, |sum, count| {
+            *sum += count;
+            Some(*sum - count)
+        });
+        let befores: Vec<_> = befores.collect();
+        before += counts.iter().sum::<usize>();
+        let parts: Vec<_> =
+            some.par_iter().zip(&befores).map(|(block, before)| read(block, *before)).collect();
+        parts.into_iter().try_for_each(&mut take)?;
+    }
+}
+
+/// Tells that no line continues in the next one.
+pub(super) fn never(_: &[u8]) -> bool {
+    false
+}
+
+/// Returns the number of line ends.
+pub(super) fn line_ends(text: &[u8]) -> usize {
+    memchr_iter(b'\n', text).count()
+}
+
+/// Returns the lines of a text, without their ends.
+pub(super) fn lines(text: &[u8]) -> impl Iterator<Item = &[u8]> {
+    let mut rest = Some(text).filter(|text| !text.is_empty());
+    std::iter::from_fn(move || {
+        let text = rest?;
+        let end = memchr(b'\n', text);
+        rest = end.map(|end| &text[end + 1..]).filter(|rest| !rest.is_empty());
+        Some(&text[..end.unwrap_or(text.len())])
+    })
+}
+
+/// Returns the words of a line, between blanks.
+pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
+    let mut rest = line;
+    std::iter::from_fn(move || {
+        let start = rest.iter().position(|byte| !byte.is_ascii_whitespace())?;
+        let word = &rest[start..];
+        let end = word.iter().position(u8::is_ascii_whitespace).unwrap_or(word.len());
+        rest = &word[end..];
+        Some(&word[..end])
+    })
+}

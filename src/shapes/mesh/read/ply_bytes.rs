@@ -1,0 +1,143 @@
+//! The elements of a PLY in bytes of either order.
+
+use super::ENDS_EARLY;
+use super::model::{Broken, Model, Room, fan};
+use super::ply::{Field, Kind, Number, Section};
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// Reads what follows the header of a file; the highest byte comes first if `BIG`.
+pub(super) fn read<const BIG: bool>(
+    file: &[u8],
+    mut rest: &[u8],
+    sections: &[Section],
+    room: &Room,
+) -> Result<Model, Broken> {
+    let mut model = Model::default();
+    let early = || Broken::byte(file.len(), ENDS_EARLY);
+    for section in sections {
+        let place = |rest: &[u8]| file.len() - rest.len();
+        if let Some(size) = section.size() {
+            let length =
+                size.checked_mul(section.count).filter(|length| *length <= rest.len()).ok_or_else(early)?;
+            let (elements, after) = rest.split_at(length);
+            if section.kind == Kind::Vertex {
+                room.holds(section.count, model.faces.len()).map_err(Broken::file)?;
+                let read = |element: &[u8]| section.vertex::<BIG>(element);
+                model.vertices = elements.par_chunks_exact(size).map(read).collect();
+                if let Some(index) = model.vertices.par_iter().position_first(|at| !at.is_finite()) {
+                    let message = format!("vertex {index} is not finite");
+                    return Err(Broken::byte(place(rest) + index * size, message));
+                }
+            }
+            rest = after;
+            continue;
+        }
+        let (mut given, mut corners) = (Vec::new(), Vec::new());
+        for index in 0..section.count {
+            let byte = place(rest);
+            let broken = |message| Broken::byte(byte, message);
+            let mut at = [0.0; 3];
+            given.clear();
+            for field in &section.fields {
+                match *field {
+                    Field::Number(number) => drop(take(&mut rest, number.size()).ok_or_else(early)?),
+                    Field::Coordinate(axis, number) => {
+                        at[axis] = scalar::<BIG>(take(&mut rest, number.size()).ok_or_else(early)?, number);
+                    }
+                    Field::List(length, number) | Field::Corners(length, number) => {
+                        let count = whole::<BIG>(take(&mut rest, length.size()).ok_or_else(early)?, length);
+                        let count = usize::try_from(count)
+                            .map_err(|_| broken(format!("a list of {count} numbers makes no sense")))?;
+                        let length = count.checked_mul(number.size()).ok_or_else(early)?;
+                        let list = take(&mut rest, length).ok_or_else(early)?;
+                        if matches!(field, Field::Corners(..)) {
+                            room.holds(section.vertices, model.faces.len() + count).map_err(broken)?;
+                            given.clear();
+                            given.extend(
+                                list.chunks_exact(number.size()).map(|corner| whole::<BIG>(corner, number)),
+                            );
+                        }
+                    }
+                }
+            }
+            match section.kind {
+                Kind::Vertex => {
+                    let at = DVec3::from(at);
+                    if !at.is_finite() {
+                        return Err(broken(format!("vertex {index} is not finite")));
+                    }
+                    room.holds(model.vertices.len(), model.faces.len()).map_err(broken)?;
+                    model.vertices.push(at);
+                }
+                Kind::Face => {
+                    section.corners(index, &given, &mut corners).map_err(broken)?;
+                    fan(&corners, &mut model.faces);
+                }
+                Kind::Other => {}
+            }
+        }
+    }
+    Ok(model)
+}
+
+/// Takes so many bytes; `None` where there are fewer.
+fn take<'b>(rest: &mut &'b [u8], count: usize) -> Option<&'b [u8]> {
+    let (taken, after) = rest.split_at_checked(count)?;
+    *rest = after;
+    Some(taken)
+}
+
+impl Section {
+    /// Returns the length of an element in bytes, if all have the same.
+    fn size(&self) -> Option<usize> {
+        let length = |field: &Field| match *field {
+            Field::Number(number) | Field::Coordinate(_, number) => Some(number.size()),
+            Field::List(..) | Field::Corners(..) => None,
+        };
+        // Elements without properties have no length; there are none of them.
+        self.fields.iter().map(length).sum::<Option<usize>>().filter(|size| *size > 0)
+    }
+
+    /// Reads a vertex without lists.
+    fn vertex<const BIG: bool>(&self, element: &[u8]) -> DVec3 {
+        let (mut at, mut start) = ([0.0; 3], 0);
+        for field in &self.fields {
+            let (Field::Number(number) | Field::Coordinate(_, number)) = *field else { continue };
+            if let Field::Coordinate(axis, _) = *field {
+                at[axis] = scalar::<BIG>(&element[start..start + number.size()], number);
+            }
+            start += number.size();
+        }
+        DVec3::from(at)
+    }
+}
+
+/// Reads the bits of a number.
+#[inline(always)]
+fn bits<const BIG: bool>(bytes: &[u8]) -> u64 {
+    match (BIG, bytes.try_into()) {
+        (false, Ok(four)) => u32::from_le_bytes(four).into(),
+        (true, Ok(four)) => u32::from_be_bytes(four).into(),
+        (false, Err(_)) => bytes.iter().rev().fold(0, |bits, byte| bits << 8 | u64::from(*byte)),
+        (true, Err(_)) => bytes.iter().fold(0, |bits, byte| bits << 8 | u64::from(*byte)),
+    }
+}
+
+/// Reads a number of a type.
+#[inline(always)]
+fn scalar<const BIG: bool>(bytes: &[u8], number: Number) -> f64 {
+    match number {
+        Number::Float => f32::from_bits(bits::<BIG>(bytes) as u32).into(),
+        Number::Double => f64::from_bits(bits::<BIG>(bytes)),
+        Number::Signed(_) | Number::Unsigned(_) => whole::<BIG>(bytes, number) as f64,
+    }
+}
+
+/// Reads a whole number.
+#[inline(always)]
+fn whole<const BIG: bool>(bytes: &[u8], number: Number) -> i64 {
+    let bits = bits::<BIG>(bytes) as i64;
+    let unused = 64 - 8 * bytes.len() as u32;
+    if let Number::Signed(_) = number { bits << unused >> unused } else { bits }
+}

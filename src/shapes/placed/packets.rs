@@ -1,0 +1,401 @@
+//! Packets of rays that meet a copy: taken to the object's own coordinates together, so that the shape is tested against
+//! packets there, too.
+
+use super::shape::{ByPlacement, CAMERA, Placed, entered, in_world};
+use crate::geometry::aabb::Aabb;
+use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
+use crate::geometry::ray_packet::{self, Nearest, PACKET_SIZE, RayPacket, split};
+use crate::simd::cpu::{Cpu, kernels};
+use crate::simd::soa::{LANES, Vectors};
+use crate::world::coincidence::CLOSE;
+use crate::world::hittable::Hittable;
+use crate::world::interaction::SurfaceInteraction;
+use crate::world::packets::shape::{self, Packets};
+use crate::world::shape::{ByPackets, Shape};
+use glam::DVec3;
+
+/// The number of rays that are taken to an object's own coordinates together, where there are more than [`LANES`].
+const PART: usize = 64;
+
+/// Rays in an object's own coordinates.
+struct Own<const N: usize> {
+    origin: Vectors<N>,
+    dir: Vectors<N>,
+    /// The lengths of a world unit along each ray.
+    lengths: [f64; N],
+    /// The distances at which the rays end.
+    ends: [f64; N],
+    origin_error: f64,
+}
+
+impl<const N: usize> Own<N> {
+    /// Takes at most `N` rays to a copy's coordinates, which end at these distances in world units.
+    #[inline(always)]
+    fn of(cpu: Cpu, placed: &Placed, rays: RayPacket, ends: &[f64]) -> Self {
+        let count = ends.len();
+        let mut own = Self {
+            origin: Vectors::ZERO,
+            dir: Vectors::ZERO,
+            lengths: [0.0; N],
+            ends: [0.0; N],
+            origin_error: 0.0,
+        };
+        let (lengths, own_ends) = (&mut own.lengths[..count], &mut own.ends[..count]);
+        let largest = take_in(
+            cpu,
+            placed,
+            rays,
+            ends,
+            lengths,
+            own_ends,
+            own.origin.view_mut(count),
+            own.dir.view_mut(count),
+        );
+        if rays.origin_error > 0.0 {
+            own.origin_error = placed.own_error(DVec3::splat(largest), rays.origin_error);
+        }
+        own
+    }
+
+    /// Returns the first `count` rays.
+    #[inline(always)]
+    fn rays(&self, count: usize) -> RayPacket<'_> {
+        let (origin, dir) = (self.origin.view(count), self.dir.view(count));
+        RayPacket { origin, dir, origin_error: self.origin_error }
+    }
+}
+
+impl Placed {
+    /// Computes brackets of first hits before `ends`. `drift` is that of rays in another copy's coordinates.
+    fn brackets(
+        &self,
+        cpu: Cpu,
+        rays: RayPacket,
+        sides: Option<&[Side]>,
+        drift: Option<Drift>,
+        ends: &[f64],
+        (near, far): (&mut [f64], &mut [f64]),
+    ) {
+        if near.len() <= LANES {
+            self.few_brackets::<LANES>(cpu, rays, sides, drift, ends, (near, far));
+            return;
+        }
+        for part in split(near.len(), PART) {
+            let sides = sides.map(|sides| &sides[part.clone()]);
+            let brackets = (&mut near[part.clone()], &mut far[part.clone()]);
+            let (rays, ends) = (rays.part(part.clone()), &ends[part]);
+            self.few_brackets::<PART>(cpu, rays, sides, drift, ends, brackets);
+        }
+    }
+
+    fn few_brackets<const N: usize>(
+        &self,
+        cpu: Cpu,
+        rays: RayPacket,
+        sides: Option<&[Side]>,
+        drift: Option<Drift>,
+        ends: &[f64],
+        (near, far): (&mut [f64], &mut [f64]),
+    ) {
+        let (count, shape) = (near.len(), self.body.shape.packets());
+        let is_from_camera = sides.is_none() && rays.origin_error == 0.0;
+        if shape.is_of_the_notes() {
+            for lane in 0..count {
+                let origin_side = sides.map(|sides| sides[lane]);
+                let range = RayRange { far: ends[lane], origin_side, ..RayRange::ALL };
+                near[lane] = self.distance(&rays.get(lane), &range);
+                far[lane] = near[lane];
+            }
+            return;
+        }
+        let own = Own::<N>::of(cpu, self, rays, &ends[..count]);
+        let mut error = 0.0;
+        if is_from_camera {
+            let origins = (0..count).map(|lane| rays.origin.get(lane));
+            if let Some(drift) = self.own_drift(origins, drift.unwrap_or(CAMERA)) {
+                shape.brackets_within(cpu, own.rays(count), drift, &own.ends[..count], near, far);
+                error = drift.dir;
+            } else {
+                near.fill(0.0);
+                far.fill(MISS);
+            }
+        } else {
+            let (mut met, mut doubt) = ([0; N], [0; N]);
+            near.copy_from_slice(&own.ends[..count]);
+            far.copy_from_slice(&own.ends[..count]);
+            let (met, doubt) = (&mut met[..count], &mut doubt[..count]);
+            let nearest = Nearest { near, far, met, doubt };
+            shape.closest_hits(cpu, own.rays(count), sides, 1, nearest);
+            for lane in 0..count {
+                let is_in_doubt = doubt[lane] != 0;
+                if is_in_doubt || met[lane] == 0 {
+                    (near[lane], far[lane]) = (if is_in_doubt { 0.0 } else { MISS }, MISS);
+                }
+            }
+        }
+        to_world(cpu, error, &own.lengths[..count], ends, near, far);
+        if is_from_camera && drift.is_none() {
+            let mut bounds = None;
+            for lane in 0..count {
+                let bracket = Bracket { near: near[lane], far: far[lane] };
+                let entry = || Self::entry(*bounds.get_or_insert_with(|| self.bounds()), &rays.get(lane));
+                Bracket { near: near[lane], far: far[lane] } = entered(bracket, entry);
+            }
+        }
+    }
+
+    fn few_occluded<const N: usize>(
+        &self,
+        cpu: Cpu,
+        rays: RayPacket,
+        sides: Option<&[Side]>,
+        (t_max, bounds): (&[f64], &Aabb),
+        blocked: &mut [u64],
+        doubt: &mut [u64],
+    ) -> bool {
+        let (count, shape) = (t_max.len(), self.body.shape.packets());
+        let mut own = Own::<N>::of(cpu, self, rays, t_max);
+        let mut ends_within = false;
+        for lane in 0..count {
+            // Where a ray ends in the copy's box, rounding may decide whether it is blocked before that.
+            let end = rays.get(lane).at(t_max[lane]);
+            if bounds.low.cmple(end).all() && end.cmple(bounds.high).all() {
+                own.ends[lane] = -1.0;
+                ends_within |= t_max[lane] > 0.0;
+            }
+        }
+        let any = shape.occluded(cpu, own.rays(count), sides, &own.ends[..count], blocked, doubt);
+        if ends_within {
+            for lane in 0..count {
+                let is_open = own.ends[lane] < 0.0 && t_max[lane] > 0.0 && blocked[lane] == 0;
+                doubt[lane] |= u64::from(is_open);
+            }
+        }
+        any || ends_within
+    }
+
+    fn few_refined<const N: usize>(
+        &self,
+        cpu: Cpu,
+        rays: RayPacket,
+        sides: Option<&[Side]>,
+        (near, far): (&[f64], &[f64]),
+        out: &mut [f64],
+    ) {
+        let count = out.len();
+        let own = Own::<N>::of(cpu, self, rays, &far[..count]);
+        let (mut own_near, mut own_far) = ([0.0; N], [0.0; N]);
+        for lane in 0..count {
+            let (near, far, length) = (near[lane], far[lane], own.lengths[lane]);
+            let error = if near == far { 0.0 } else { 4.0 * f64::EPSILON };
+            own_near[lane] = near * length * (1.0 - error);
+            own_far[lane] = far * length * (1.0 + error);
+        }
+        let brackets = (&own_near[..count], &own_far[..count]);
+        self.body.shape.packets().refine(cpu, own.rays(count), sides, brackets, out);
+        out.iter_mut().zip(own.lengths).for_each(|(out, length)| *out /= length);
+    }
+
+    fn few_interact<const N: usize>(
+        &self,
+        cpu: Cpu,
+        rays: RayPacket,
+        distances: &[f64],
+        interaction: SurfaceInteraction,
+    ) {
+        let SurfaceInteraction { mut points, mut normals, sides, cosines, travelled } = interaction;
+        let count = travelled.len();
+        let own = Own::<N>::of(cpu, self, rays, &distances[..count]);
+        let mut own_distances = [0.0; N];
+        for lane in 0..count {
+            own_distances[lane] = distances[lane] * own.lengths[lane];
+        }
+        let own_interaction = SurfaceInteraction {
+            points: points.first(count),
+            normals: normals.first(count),
+            sides: &mut *sides,
+            cosines: &mut *cosines,
+            travelled: &mut [0.0; N][..count],
+        };
+        let (shape, own_rays) = (self.body.shape.packets(), own.rays(count));
+        shape.interact(cpu, own_rays, &own_distances[..count], own_interaction);
+        let lengths = &own.lengths[..count];
+        take_out(cpu, self, rays, own_rays, lengths, distances, cosines, travelled, points, normals);
+    }
+}
+
+impl Packets for Shape<Placed, ByPackets, ByPlacement> {
+    fn closest_hits(
+        &self,
+        cpu: Cpu,
+        rays: RayPacket,
+        sides: Option<&[Side]>,
+        id: u64,
+        nearest: Nearest,
+    ) -> bool {
+        let count = rays.len();
+        if count <= LANES {
+            let (mut near, mut far) = ([MISS; LANES], [MISS; LANES]);
+            let (near, far) = (&mut near[..count], &mut far[..count]);
+            self.shape.brackets(cpu, rays, sides, None, nearest.far, (&mut *near, &mut *far));
+            return ray_packet::closest_of_brackets(cpu, near, far, id, nearest);
+        }
+        let (mut near, mut far) = ([MISS; PACKET_SIZE], [MISS; PACKET_SIZE]);
+        let (near, far) = (&mut near[..count], &mut far[..count]);
+        self.shape.brackets(cpu, rays, sides, None, nearest.far, (&mut *near, &mut *far));
+        ray_packet::closest_of_brackets(cpu, near, far, id, nearest)
+    }
+
+    fn occluded(
+        &self,
+        cpu: Cpu,
+        rays: RayPacket,
+        sides: Option<&[Side]>,
+        t_max: &[f64],
+        blocked: &mut [u64],
+        doubt: &mut [u64],
+    ) -> bool {
+        let (placed, count) = (&self.shape, t_max.len());
+        let is_of_the_notes = placed.body.shape.packets().is_of_the_notes();
+        let Some(bounds) = placed.bounds().filter(|_| !is_of_the_notes) else {
+            let (mut near, mut far) = ([MISS; PACKET_SIZE], [MISS; PACKET_SIZE]);
+            let (near, far) = (&mut near[..count], &mut far[..count]);
+            placed.brackets(cpu, rays, sides, None, t_max, (&mut *near, &mut *far));
+            return ray_packet::occluded_by_brackets(cpu, near, far, t_max, blocked, doubt);
+        };
+        if count <= LANES {
+            return placed.few_occluded::<LANES>(cpu, rays, sides, (t_max, &bounds), blocked, doubt);
+        }
+        split(count, PART).fold(false, |any, part| {
+            let sides = sides.map(|sides| &sides[part.clone()]);
+            let (blocked, doubt) = (&mut blocked[part.clone()], &mut doubt[part.clone()]);
+            let (rays, t_max) = (rays.part(part.clone()), &t_max[part]);
+            placed.few_occluded::<PART>(cpu, rays, sides, (t_max, &bounds), blocked, doubt) | any
+        })
+    }
+
+    fn refine(
+        &self,
+        cpu: Cpu,
+        rays: RayPacket,
+        sides: Option<&[Side]>,
+        (near, far): (&[f64], &[f64]),
+        out: &mut [f64],
+    ) {
+        if self.shape.body.shape.packets().is_of_the_notes() {
+            for lane in 0..out.len() {
+                out[lane] = self.refine_one(&rays.get(lane), sides.map(|sides| sides[lane]));
+            }
+            return;
+        }
+        for part in split(out.len(), PART) {
+            let sides = sides.map(|sides| &sides[part.clone()]);
+            let brackets = (&near[part.clone()], &far[part.clone()]);
+            let rays = rays.part(part.clone());
+            self.shape.few_refined::<PART>(cpu, rays, sides, brackets, &mut out[part]);
+        }
+    }
+
+    fn interact(&self, cpu: Cpu, rays: RayPacket, distances: &[f64], interaction: SurfaceInteraction) {
+        let SurfaceInteraction { mut points, mut normals, sides, cosines, travelled } = interaction;
+        if self.shape.body.shape.packets().is_of_the_notes() {
+            shape::interact(cpu, &self.shape, rays, distances, sides, cosines, travelled, points, normals);
+            return;
+        }
+        for part in split(travelled.len(), PART) {
+            let interaction = SurfaceInteraction {
+                points: points.part(part.clone()),
+                normals: normals.part(part.clone()),
+                sides: &mut sides[part.clone()],
+                cosines: &mut cosines[part.clone()],
+                travelled: &mut travelled[part.clone()],
+            };
+            let rays = rays.part(part.clone());
+            self.shape.few_interact::<PART>(cpu, rays, &distances[part], interaction);
+        }
+    }
+
+    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+        self.shape.t_bounds(ray, range)
+    }
+
+    fn t_bounds_within(&self, ray: &Ray, range: &RayRange, drift: Drift) -> Bracket {
+        self.shape.t_bounds_within(ray, range, drift)
+    }
+
+    fn brackets_within(
+        &self,
+        cpu: Cpu,
+        rays: RayPacket,
+        drift: Drift,
+        ends: &[f64],
+        near: &mut [f64],
+        far: &mut [f64],
+    ) {
+        self.shape.brackets(cpu, rays, None, Some(drift), ends, (near, far));
+    }
+
+    fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
+        self.shape.distance(ray, &RayRange { origin_side, ..RayRange::ALL })
+    }
+}
+
+kernels! {
+    /// Takes rays, and the distances at which they end, to a copy's coordinates. Returns the largest coordinate of their
+    /// origins in the world.
+    fn take_in(
+        placed: &Placed, rays: RayPacket, ends: &[f64], lengths: &mut [f64], own_ends: &mut [f64]
+    ) => origins, dirs -> f64 {
+        let count = ends.len();
+        let rays = rays.first(count);
+        let (lengths, own_ends) = (&mut lengths[..count], &mut own_ends[..count]);
+        let (mut origins, mut dirs) = (origins.first(count), dirs.first(count));
+        let mut largest = 0.0_f64;
+        for lane in 0..count {
+            let ray = rays.get(lane);
+            let (own, length) = placed.own_ray(&ray);
+            origins.set(lane, own.origin);
+            dirs.set(lane, own.dir);
+            lengths[lane] = length;
+            own_ends[lane] = ends[lane] * length * (1.0 + CLOSE);
+            largest = largest.max(ray.origin.abs().max_element());
+        }
+        largest
+    }
+
+    /// Takes brackets to world units, as [`in_world`] does.
+    fn to_world(error: f64, lengths: &[f64], ends: &[f64], near: &mut [f64], far: &mut [f64]) {
+        let count = near.len();
+        let (lengths, ends, far) = (&lengths[..count], &ends[..count], &mut far[..count]);
+        for lane in 0..count {
+            let range = RayRange { far: ends[lane], ..RayRange::ALL };
+            let bracket = in_world(Bracket { near: near[lane], far: far[lane] }, lengths[lane], error, &range);
+            (near[lane], far[lane]) = (bracket.near, bracket.far);
+        }
+    }
+
+    /// Takes hits to the world: `own` and `lengths` are the rays in the copy's coordinates and the lengths of a world
+    /// unit there.
+    fn take_out(
+        placed: &Placed, rays: RayPacket, own: RayPacket, lengths: &[f64], distances: &[f64], cosines: &mut [f64],
+        travelled: &mut [f64]
+    ) => points, normals {
+        let (count, to_world) = (travelled.len(), placed.to_own.transpose());
+        let least = placed.placement.scale.min_element();
+        let (rays, own, lengths) = (rays.first(count), own.first(count), &lengths[..count]);
+        let (distances, cosines) = (&distances[..count], &mut cosines[..count]);
+        let (mut points, mut normals) = (points.first(count), normals.first(count));
+        for lane in 0..count {
+            let normal = normals.get(lane);
+            let there = to_world * normal;
+            let size = there.length();
+            // The cosine is that of the flat normal, which a smooth surface does not tell: then a lower bound.
+            let (cosine, shaded) = (cosines[lane], own.dir.get(lane).dot(normal));
+            let is_flat = (cosine.abs() - shaded.abs()).abs() <= 1e-12;
+            cosines[lane] = cosine * lengths[lane] * if is_flat { 1.0 / size } else { least };
+            points.set(lane, rays.get(lane).at(distances[lane]));
+            normals.set(lane, there.normalize());
+            travelled[lane] += distances[lane];
+        }
+    }
+}

@@ -1,0 +1,255 @@
+//! The shape of a copy: rays and hits of single rays in the coordinates of its object.
+
+use crate::geometry::aabb::{Aabb, SLACK};
+use crate::geometry::placement::Placement;
+use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
+use crate::geometry::roots::Method;
+use crate::geometry::sight::Sight;
+use crate::numeric::double_double::DoubleDouble;
+use crate::world::body::Body;
+use crate::world::certify::{Enclosure, Precision};
+use crate::world::coincidence::{CLOSE, ROUNDING};
+use crate::world::hittable::Hittable;
+use crate::world::packets::shape::Proofs;
+use crate::world::shape::{ByPackets, Shape};
+use glam::{DMat3, DVec3};
+use std::sync::Arc;
+
+/// A copy of an object's shape.
+pub struct Placed {
+    pub(super) body: Arc<Body>,
+    pub(super) placement: Placement,
+    pub(super) to_own: DMat3,
+    /// A bounding box in world coordinates.
+    bounds: Option<Aabb>,
+}
+
+/// Marks a shape whose hits are proven in the coordinates of the object that it is a copy of.
+pub struct ByPlacement;
+
+/// A bound of the error of [`Placed::to_own`] as a map of unit vectors, times the least scale, and of the rounding of a
+/// point or a direction that it maps.
+///
+/// Units of 2^-53: an angle of up to 2 pi is off by 3 roundings, 19 units, and its sine and cosine by 20; a component of
+/// the product of three rotations by 3 * 20 * sqrt(2) and by the rounding of the products, together less than 100. A
+/// matrix of nine such components is off by 300, and a product with it by 8 more: less than 512.
+const TURN: f64 = 256.0 * f64::EPSILON;
+
+/// The drift of a camera ray in the world: a component of its direction is off by 3 units of 2^-53 at most.
+pub(super) const CAMERA: Drift = Drift { origin: 0.0, dir: 3.0 * f64::EPSILON };
+
+/// The largest drift of a direction for which brackets are asked for. Lengths are off by as much, and what is known of
+/// them must be known far better than to what coincides.
+const MOST_DRIFT: f64 = CLOSE / 16.0;
+
+impl Placed {
+    /// Makes a copy of an object's shape.
+    pub(super) fn new(body: &Arc<Body>, placement: Placement) -> Self {
+        let to_own = placement.to_own();
+        Self { body: Arc::clone(body), placement, to_own, bounds: bounds(body, placement, to_own) }
+    }
+
+    /// Takes a point from the world to the object's own coordinates.
+    #[inline(always)]
+    pub(super) fn own_point(&self, at: DVec3) -> DVec3 {
+        self.to_own * (at - self.placement.translation)
+    }
+
+    /// Takes a ray from the world to the object's own coordinates. Returns it with the length there of a world unit.
+    #[inline(always)]
+    pub(super) fn own_ray(&self, ray: &Ray) -> (Ray, f64) {
+        let dir = self.to_own * ray.dir;
+        let length = dir.length();
+        (Ray { origin: self.own_point(ray.origin), dir: dir / length }, length)
+    }
+
+    /// Returns a bound on the error in the object's own coordinates of a point with this error in the world, the
+    /// rounding of the transformation included.
+    pub(super) fn own_error(&self, at: DVec3, error: f64) -> f64 {
+        let size = at.abs().max_element() + self.placement.translation.abs().max_element();
+        (error + ROUNDING * size) / self.placement.scale.min_element()
+    }
+
+    /// Returns the drift in the object's own coordinates of rays from these origins with a drift in the world. `None`
+    /// where it is so large that brackets would say little.
+    pub(super) fn own_drift(&self, origins: impl Iterator<Item = DVec3>, drift: Drift) -> Option<Drift> {
+        let Placement { scale, translation, .. } = self.placement;
+        let away = origins.map(|origin| (origin - translation).abs().element_sum()).fold(0.0, f64::max);
+        let (least, most) = (scale.min_element(), scale.max_element());
+        // Making two vectors unit vectors at most doubles the difference between them, relative to the shorter one,
+        // which is as long as 1 / `most` at least.
+        let dir = 2.0 * (drift.dir + TURN) * (most / least);
+        let own = Drift { origin: (drift.origin + TURN * away) / least, dir };
+        (dir < MOST_DRIFT && own.origin < MISS).then_some(own)
+    }
+
+    /// Returns a range in the object's own coordinates, for a ray along which a world unit has this length there.
+    #[inline(always)]
+    fn own_range(&self, ray: &Ray, range: &RayRange, length: f64) -> RayRange {
+        let RayRange { near, far, origin_side, origin_error } = *range;
+        RayRange {
+            near: near * length,
+            far: far * length * (1.0 + CLOSE),
+            origin_side,
+            origin_error: self.own_error(ray.origin, origin_error),
+        }
+    }
+
+    /// Returns a lower bound on the distance to a bounding box, or `None` where a ray misses it.
+    pub(super) fn entry(bounds: Option<Aabb>, ray: &Ray) -> Option<f64> {
+        let Some(Aabb { low, high }) = bounds else { return Some(0.0) };
+        let slack = SLACK * (ray.origin.abs().max_element() + low.abs().max(high.abs()).max_element());
+        let (mut from, mut to) = (0.0_f64, MISS);
+        for axis in 0..3 {
+            let (origin, dir) = (ray.origin[axis], ray.dir[axis]);
+            let (one, other) = ((low[axis] - slack - origin) / dir, (high[axis] + slack - origin) / dir);
+            // Of a NaN, where a ray lies in a side of the box, the other number is taken.
+            (from, to) = (from.max(one.min(other)), to.min(one.max(other)));
+        }
+        let from = from * (1.0 - SLACK);
+        (from <= to * (1.0 + SLACK)).then_some(from)
+    }
+
+    /// Returns a bracket of the first hit of one ray.
+    pub(super) fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+        if self.body.shape.packets().is_of_the_notes() {
+            return Bracket::exactly(self.distance(ray, range));
+        }
+        if range.origin_side.is_none() && range.origin_error == 0.0 {
+            let bracket = self.t_bounds_within(ray, range, CAMERA);
+            return entered(bracket, || Self::entry(self.bounds(), ray));
+        }
+        let (own, length) = self.own_ray(ray);
+        let bracket = self.body.shape.t_bounds(&own, &self.own_range(ray, range, length));
+        in_world(bracket, length, 0.0, range)
+    }
+
+    /// Returns a bracket of the first hits of all rays within a drift of a camera ray.
+    pub(super) fn t_bounds_within(&self, ray: &Ray, range: &RayRange, drift: Drift) -> Bracket {
+        let Some(drift) = self.own_drift([ray.origin].into_iter(), drift) else { return Bracket::UNKNOWN };
+        let (own, length) = self.own_ray(ray);
+        let own_range = RayRange { origin_error: 0.0, ..self.own_range(ray, range, length) };
+        let bracket = self.body.shape.packets().t_bounds_within(&own, &own_range, drift);
+        in_world(bracket, length, drift.dir, range)
+    }
+}
+
+/// Returns a bounding box of a copy in world coordinates.
+fn bounds(body: &Body, placement: Placement, to_own: DMat3) -> Option<Aabb> {
+    let Placement { scale, translation, .. } = placement;
+    let to_world = to_own.transpose() * DMat3::from_diagonal(scale * scale);
+    let own = body.shape.bounds()?;
+    let turned = body.shape.bounds_after(&to_world).unwrap_or_else(|| {
+        let middle = to_world * own.middle();
+        let DMat3 { x_axis, y_axis, z_axis } = to_world;
+        let reach = DMat3::from_cols(x_axis.abs(), y_axis.abs(), z_axis.abs()) * own.half_size();
+        Aabb { low: middle - reach, high: middle + reach }
+    });
+    let size = own.low.abs().max(own.high.abs()).max_element() * scale.max_element();
+    let slack = SLACK * (size + translation.abs().max_element());
+    Some(Aabb { low: translation + turned.low - slack, high: translation + turned.high + slack })
+}
+
+/// Returns a bracket in world units of one in an object's own, in which a world unit has a length that may be off by
+/// `error`, as a fraction.
+#[inline(always)]
+pub(super) fn in_world(Bracket { near, far }: Bracket, length: f64, error: f64, range: &RayRange) -> Bracket {
+    if near == far {
+        let close = if range.far < MISS { CLOSE * range.far } else { 0.0 };
+        let distance = RayRange { far: range.far + close, ..*range }.keep(near / length);
+        // At the distance of another surface, the bracket is widened, so that more digits decide which comes first.
+        return if (distance - range.far).abs() <= close {
+            Bracket { near: distance - close, far: distance + close }
+        } else {
+            Bracket::exactly(distance)
+        };
+    }
+    let error = error + 4.0 * f64::EPSILON;
+    Bracket { near: near / length * (1.0 - error), far: far / length * (1.0 + error) }
+}
+
+/// Returns a bracket that is no nearer than a bounding box, given where the ray enters that, where a hit is in doubt.
+#[inline(always)]
+pub(super) fn entered(bracket: Bracket, entry: impl FnOnce() -> Option<f64>) -> Bracket {
+    if bracket.is_doubtful() {
+        entry().map_or(Bracket::MISS, |entry| Bracket { near: bracket.near.max(entry), far: MISS })
+    } else {
+        bracket
+    }
+}
+
+impl Hittable for Placed {
+    fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
+        let (own, length) = self.own_ray(ray);
+        let range_there = self.own_range(ray, range, length);
+        range.keep(self.body.shape.distance(&own, &range_there) / length)
+    }
+
+    fn normal(&self, at: DVec3) -> DVec3 {
+        (self.to_own.transpose() * self.body.shape.normal(self.own_point(at))).normalize()
+    }
+
+    fn shading_normal(&self, at: DVec3, normal: DVec3) -> DVec3 {
+        let (at, to_world) = (self.own_point(at), self.to_own.transpose());
+        let own = self.body.shape.normal(at);
+        let own = if (to_world * own).dot(normal) < 0.0 { -own } else { own };
+        let shaded = self.body.shape.shading_normal(at, own);
+        if shaded == own { normal } else { (to_world * shaded).normalize() }
+    }
+
+    fn part(&self, ray: &Ray, distance: f64) -> Option<String> {
+        let (own, length) = self.own_ray(ray);
+        self.body.shape.part(&own, distance * length)
+    }
+
+    fn bounds(&self) -> Option<Aabb> {
+        self.bounds
+    }
+
+    fn can_hit_itself(&self, leaving: Side) -> bool {
+        self.body.shape.can_hit_itself(leaving)
+    }
+
+    fn is_two_sided(&self) -> bool {
+        self.body.shape.is_two_sided()
+    }
+
+    fn method(&self) -> String {
+        format!("in the object's own coordinates: {}", self.body.shape.method())
+    }
+
+    fn reach(&self) -> f64 {
+        let Placement { scale, translation, .. } = self.placement;
+        // A rotation moves what lies in a corner of a cube onto an axis.
+        let own = 3_f64.sqrt() * scale.max_element() * self.body.shape.reach();
+        // Twice as much, for the rounding of the ray's way there and back.
+        2.0 * (translation.abs().max_element() + own)
+    }
+}
+
+/// Tells whether a point in the world lies on a copy, up to an error in world units.
+fn touches(placed: &Placed, at: DVec3, error: f64) -> bool {
+    placed.body.shape.touches(placed.own_point(at), placed.own_error(at, error))
+}
+
+impl Proofs for Shape<Placed, ByPackets, ByPlacement> {
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        touches(&self.shape, at, error)
+    }
+
+    fn fine_distance(&self, _ray: &Ray, _distance: f64) -> Option<DoubleDouble> {
+        None
+    }
+
+    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        self.shape.body.shape.certify(&sight.within(self.shape.placement), precision)
+    }
+
+    fn is_of_the_notes(&self) -> bool {
+        self.shape.body.shape.packets().is_of_the_notes()
+    }
+
+    fn distance_by(&self, _method: Method, _ray: &Ray, _range: &RayRange) -> Option<f64> {
+        None
+    }
+}

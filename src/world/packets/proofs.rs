@@ -1,0 +1,119 @@
+//! What is certain about the hits of a shape, by how its distances are found.
+
+use crate::geometry::ray::{MISS, Ray, RayRange};
+use crate::geometry::roots::Method;
+use crate::geometry::sight::Sight;
+use crate::numeric::double_double::DoubleDouble;
+use crate::world::certify::{self, Enclosure, Equation, Precision};
+use crate::world::coincidence::ROUNDING;
+use crate::world::hittable::{Certified, Hittable, Searched};
+use crate::world::shape::{ByEquation, ByFormula, ByRoots, Shape, Unproven};
+use glam::DVec3;
+
+/// A shape about whose hits something may be proven.
+pub trait Proofs: Send + Sync {
+    /// Tells whether a point lies on the surface, up to an error in world units and to the rounding of the shape's own
+    /// numbers. Rays that start at such a point leave the shape.
+    fn touches(&self, at: DVec3, error: f64) -> bool;
+
+    /// Returns the distance of the hit near `distance` in double-double arithmetic, or `None` where no such distance
+    /// can be computed.
+    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble>;
+
+    /// Returns what is certain about a ray's first hit.
+    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure;
+
+    /// Tells whether hits are found by a formula of the notes, whose program tests every ray against every shape.
+    fn is_of_the_notes(&self) -> bool {
+        false
+    }
+
+    /// Returns the distance by another root-finding method, or `None` where the shape's hits are not the roots of a
+    /// function along the ray, or are found in closed form.
+    fn distance_by(&self, method: Method, ray: &Ray, range: &RayRange) -> Option<f64>;
+}
+
+impl<T: Hittable, S> Proofs for Shape<T, S, Unproven> {
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        is_met_within(&self.shape, at, error)
+    }
+
+    fn fine_distance(&self, _ray: &Ray, _distance: f64) -> Option<DoubleDouble> {
+        None
+    }
+
+    fn certify(&self, _sight: &Sight, _precision: Precision) -> Enclosure {
+        Enclosure::UNKNOWN
+    }
+
+    fn distance_by(&self, _method: Method, _ray: &Ray, _range: &RayRange) -> Option<f64> {
+        None
+    }
+}
+
+impl<T: Hittable + Equation, S> Proofs for Shape<T, S, ByFormula> {
+    fn is_of_the_notes(&self) -> bool {
+        true
+    }
+
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        is_met_within(&self.shape, at, error)
+    }
+
+    fn fine_distance(&self, _ray: &Ray, _distance: f64) -> Option<DoubleDouble> {
+        None
+    }
+
+    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        certify::first_hit(&self.shape, sight, precision)
+    }
+
+    fn distance_by(&self, _method: Method, _ray: &Ray, _range: &RayRange) -> Option<f64> {
+        None
+    }
+}
+
+impl<T: Certified, S> Proofs for Shape<T, S, ByEquation> {
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        self.shape.touches(at, error)
+    }
+
+    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble> {
+        self.shape.fine_distance(ray, distance)
+    }
+
+    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        certify::first_hit(&self.shape, sight, precision)
+    }
+
+    fn distance_by(&self, _method: Method, _ray: &Ray, _range: &RayRange) -> Option<f64> {
+        None
+    }
+}
+
+impl<T: Searched, S> Proofs for Shape<T, S, ByRoots> {
+    fn touches(&self, at: DVec3, error: f64) -> bool {
+        self.shape.touches(at, error)
+    }
+
+    fn fine_distance(&self, ray: &Ray, distance: f64) -> Option<DoubleDouble> {
+        self.shape.fine_distance(ray, distance)
+    }
+
+    fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
+        certify::first_hit(&self.shape, sight, precision)
+    }
+
+    fn distance_by(&self, method: Method, ray: &Ray, range: &RayRange) -> Option<f64> {
+        Some(self.shape.distance_by(method, ray, range))
+    }
+}
+
+/// Tells whether a short ray through a point, perpendicular to a shape, hits the shape within an error in world units.
+fn is_met_within(shape: &impl Hittable, at: DVec3, error: f64) -> bool {
+    let dir = shape.normal(at);
+    // Twice the error, so that a surface at the error itself lies inside the range; and the rounding of the new origin.
+    let half_length = 2.0 * error + ROUNDING * at.abs().max_element();
+    let ray = Ray { origin: at - half_length * dir, dir };
+    shape.distance(&ray, &RayRange { far: 2.0 * half_length, ..RayRange::ALL }) < MISS
+}
