@@ -18,6 +18,11 @@ impl Shader for Angular {
         rainbow::colour(DVec2::new(x, -y.abs()))
     }
 
+    fn enclose<F: Precise>(&self, material: &Material, [x, y, _]: [Interval<F>; 3]) -> Option<LookBounds<F>> {
+        let [x, y] = [x - Interval::constant(self.0.origin.x), y - Interval::constant(self.0.origin.y)];
+        Some(LookBounds { ambient: rainbow::enclose([x, -y.abs()]), ..material.into() })
+    }
+
     fn brightest(&self, material: &Material) -> Option<Look> {
         rainbow::brightest(1.0, material)
     }

@@ -9,7 +9,7 @@ pub static DIMENSIONS: Pparm<DVec2> =
         .unit("world units")
         .must("positive in each dimension", |size: &DVec2| size.min_element() > 0.0)
         .dumped("dimensions", "\n");
-static XDIR: Pparm<DVec3> =
+pub static XDIR: Pparm<DVec3> =
     Pparm::required("xdir", "the direction of the first side, projected onto the plane")
         .must("a nonzero vector", |xdir: &DVec3| xdir.try_normalize().is_some())
         .dumped("xdir", "\n");

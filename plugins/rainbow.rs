@@ -14,6 +14,10 @@ impl Shader for Rainbow {
         6.0 * around(&self.0, at)
     }
 
+    fn enclose<F: Precise>(&self, material: &Material, at: [Interval<F>; 3]) -> Option<LookBounds<F>> {
+        Some(LookBounds { ambient: enclosed_around(&self.0, at), ..material.into() })
+    }
+
     fn brightest(&self, material: &Material) -> Option<Look> {
         brightest(6.0, material)
     }
@@ -43,4 +47,20 @@ pub fn brightest(times: f64, material: &Material) -> Option<Look> {
 #[inline]
 pub fn around(anchor: &Anchor, at: DVec3) -> Rgb {
     colour((at - anchor.origin).truncate())
+}
+
+/// Encloses [`colour`].
+pub fn enclose<F: Precise>([x, y]: [Interval<F>; 2]) -> [Interval<F>; 3] {
+    let n = Interval::<F>::constant;
+    let square = x.powi(2) + y.powi(2);
+    let part = |of: Interval<F>| (of / square).max(n(-1.0)).min(n(1.0));
+    let (cos, sin) = (part(x.powi(2) - y.powi(2)), part(n(2.0) * x * y));
+    let (half, half_root_3) = (n(0.5), n(0.5) * n(3.0).sqrt());
+    [n(1.0) + cos, n(1.0) - half * cos - half_root_3 * sin, n(1.0) - half * cos + half_root_3 * sin]
+}
+
+/// Encloses six times the colour of [`around`].
+pub fn enclosed_around<F: Precise>(anchor: &Anchor, [x, y, _]: [Interval<F>; 3]) -> [Interval<F>; 3] {
+    let colour = enclose([x - Interval::constant(anchor.origin.x), y - Interval::constant(anchor.origin.y)]);
+    colour.map(|channel| Interval::constant(6.0) * channel)
 }

@@ -15,6 +15,16 @@ impl Shader for RainbowTiles {
         if tiles::is_odd(at) { material.ambient } else { 6.0 * rainbow::around(&self.0, at) }
     }
 
+    fn enclose<F: Precise>(&self, material: &Material, at: [Interval<F>; 3]) -> Option<LookBounds<F>> {
+        let odd = LookBounds::from(material);
+        let even = LookBounds { ambient: rainbow::enclosed_around(&self.0, at), ..odd };
+        Some(match tiles::is_certainly_odd(at) {
+            Some(true) => odd,
+            Some(false) => even,
+            None => odd.hull(&even),
+        })
+    }
+
     fn brightest(&self, material: &Material) -> Option<Look> {
         let look = rainbow::brightest(6.0, material)?;
         Some(Look { ambient: look.ambient.max(material.ambient.abs()), ..look })

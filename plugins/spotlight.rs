@@ -23,7 +23,9 @@ inventory::submit! {
             });
         }
         let edge = args.get(&THETA) * std::f64::consts::PI / 180.0;
-        Ok(Box::new(Spotlight { light: PointLight::new(args), axis: axis(args), cos_edge: libm::cos(edge) }))
+        let cosine = (Wide::constant(args.get(&THETA)) * Wide::pi() / Wide::constant(180.0)).cos();
+        let (light, point) = (PointLight::new(args), args.get(&POINT));
+        Ok(Box::new(Spotlight { light, axis: axis(args), cos_edge: libm::cos(edge), point, cosine }))
     })
     .dumped_as("light")
 }
@@ -37,6 +39,10 @@ struct Spotlight {
     light: PointLight,
     axis: DVec3,
     cos_edge: f64,
+    /// The point on the axis.
+    point: DVec3,
+    /// Encloses the cosine of the angle between the axis and the edge.
+    cosine: Wide,
 }
 
 impl Light for Spotlight {
@@ -49,6 +55,21 @@ impl Light for Spotlight {
     fn emissivity(&self, toward: DVec3) -> Option<Rgb> {
         let cos = (toward - self.light.location).normalize().dot(self.axis);
         (cos > self.cos_edge).then_some(self.light.emissivity)
+    }
+
+    fn enclose<F: Precise>(&self, toward: [Interval<F>; 3]) -> Option<[Interval<F>; 3]> {
+        let n = Interval::<F>::constant;
+        let location = self.light.location.to_array().map(n);
+        let from = |at: [Interval<F>; 3]| [0, 1, 2].map(|axis| at[axis] - location[axis]);
+        let (axis, away) = (from(self.point.to_array().map(n)), from(toward));
+        let inside =
+            dot(away, axis) - F::narrow(self.cosine.into()) * (dot(away, away) * dot(axis, axis)).sqrt();
+        let (sent, nothing) = (self.light.emissivity.to_array().map(n), [n(0.0); 3]);
+        Some(match inside.has_zero() {
+            true => [0, 1, 2].map(|channel| sent[channel].hull(nothing[channel])),
+            false if inside.low > nothing[0].low => sent,
+            false => nothing,
+        })
     }
 
     /// The region is clear if the sphere around its corners is clear of the cone: if its centre lies off the axis by

@@ -2,8 +2,12 @@
 
 use super::{fplane, plane};
 use crate::prelude::*;
-use crate::shapes::rectangle::Rectangle;
+use crate::shapes::rectangle::{Rectangle, along_sides};
+use std::ops::RangeInclusive;
 use std::sync::Arc;
+
+/// The number of texels along a side from which on an enclosure no longer looks at each.
+const MOST_TEXELS: u64 = 8;
 
 static TEXNAME: Pparm<Arc<Texture>> = Pparm::required("texname", "the texture, defined earlier in the scene");
 static MODE: Pparm<i64> = Pparm::required(
@@ -34,15 +38,26 @@ pub struct Picture {
     texture: Arc<Texture>,
     /// The width and height of a texel in world units where the image is tiled; `None` where it is stretched to fit.
     texel: Option<DVec2>,
+    /// The numbers of the scene that these follow from: the normal and `xdir`, of any length, and the image plane's size
+    /// in world units and in pixels.
+    given: Given,
+}
+
+struct Given {
+    normal: DVec3,
+    xdir: DVec3,
+    screen: DVec2,
+    pixels: DVec2,
 }
 
 impl Picture {
     /// Makes the image of an entity whose table has the rows of [`TABLE`].
     pub fn new(args: &Args, rectangle: Rectangle) -> Self {
         let camera = &args.setting.camera;
-        let pixel = camera.screen / DVec2::from(camera.pixels.map(|side| side as f64));
-        let texel = (args.get(&MODE) == 1).then_some(pixel);
-        Self { rectangle, texture: args.get(&TEXNAME), texel }
+        let (screen, pixels) = (camera.screen, DVec2::from(camera.pixels.map(|side| side as f64)));
+        let texel = (args.get(&MODE) == 1).then_some(screen / pixels);
+        let given = Given { normal: args.get(&plane::NORMAL), xdir: args.get(&fplane::XDIR), screen, pixels };
+        Self { rectangle, texture: args.get(&TEXNAME), texel, given }
     }
 
     /// Returns the texel at a point of the rectangle, each channel from 0 to 1.
@@ -55,6 +70,38 @@ impl Picture {
             Some(texel) => (across[side] / texel[side]) as u32 % size[side].max(1),
         };
         self.texture.texel(texel(0), texel(1))
+    }
+
+    /// Encloses the texels at the points of a box in the rectangle's plane.
+    pub fn enclose<F: Precise>(&self, at: [Interval<F>; 3]) -> [Interval<F>; 3] {
+        let Given { normal, xdir, screen, pixels } = self.given;
+        let (corner, n) = (self.rectangle.corner, Interval::<F>::constant);
+        let across = along_sides(normal, xdir, [0, 1, 2].map(|axis| at[axis] - n(corner[axis])));
+        let size = self.texture.size();
+        let range = |side: usize| {
+            let texels = match self.texel {
+                None => across[side] / n(self.rectangle.dimensions[side]) * n(f64::from(size[side])),
+                Some(_) => across[side] * n(pixels[side]) / n(screen[side]),
+            };
+            let Interval { low, high } = texels.coarse();
+            // Infinite ends become the least and the greatest number.
+            let exact = texels.certain_floor().map(|at| at as u32..=at as u32);
+            exact.unwrap_or(low as u32..=high as u32)
+        };
+        let (columns, rows) = (range(0), range(1));
+        let count = |range: &RangeInclusive<u32>| u64::from(range.end() - range.start()) + 1;
+        let any = [Interval { low: n(0.0).low, high: n(1.0).high }; 3];
+        if count(&columns).max(count(&rows)) > MOST_TEXELS {
+            return any;
+        }
+        let wrapped = |at: u32, side: usize| if self.texel.is_some() { at % size[side].max(1) } else { at };
+        let texels = rows.flat_map(|row| columns.clone().map(move |column| (column, row)));
+        let colours = texels
+            .map(|(column, row)| self.texture.texel(wrapped(column, 0), wrapped(row, 1)).to_array().map(n));
+        let hull = |one: [Interval<F>; 3], other: [Interval<F>; 3]| {
+            [0, 1, 2].map(|channel| one[channel].hull(other[channel]))
+        };
+        colours.reduce(hull).unwrap_or(any)
     }
 }
 
@@ -69,6 +116,12 @@ impl Shader for Textured {
     #[inline]
     fn diffuse(&self, material: &Material, at: DVec3) -> Rgb {
         material.diffuse * self.0.colour(at)
+    }
+
+    fn enclose<F: Precise>(&self, material: &Material, at: [Interval<F>; 3]) -> Option<LookBounds<F>> {
+        let (look, texel) = (LookBounds::from(material), self.0.enclose(at));
+        let times = |colour: [Interval<F>; 3]| [0, 1, 2].map(|channel| colour[channel] * texel[channel]);
+        Some(LookBounds { ambient: times(look.ambient), diffuse: times(look.diffuse), ..look })
     }
 
     /// The material's colours are the bounds, since texels lie between 0 and 1.

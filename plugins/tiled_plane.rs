@@ -1,8 +1,9 @@
 //! A tiled plane: an infinite plane with tiles of two materials.
 
-use super::fplane::{self, DIMENSIONS, sides};
+use super::fplane::{self, DIMENSIONS, XDIR, sides};
 use super::plane;
 use crate::prelude::*;
+use crate::shapes::rectangle::along_sides;
 use std::sync::Arc;
 
 static ALTMATERIAL: Pparm<Arc<Material>> =
@@ -14,6 +15,7 @@ inventory::submit! {
     Entity::shape("tiled_plane", "an infinite plane, tiled with two materials", &[plane::TABLE, fplane::TABLE, TABLE], |args| {
         let tiles = Tiles {
             sides: sides(args)?,
+            given: [args.get(&plane::NORMAL), args.get(&XDIR)],
             dimensions: args.get(&DIMENSIONS),
             other: args.get(&ALTMATERIAL),
         };
@@ -25,6 +27,8 @@ inventory::submit! {
 
 struct Tiles {
     sides: [DVec3; 2],
+    /// The normal and `xdir`, of any length.
+    given: [DVec3; 2],
     dimensions: DVec2,
     other: Arc<Material>,
 }
@@ -48,6 +52,22 @@ impl Shader for Tiles {
     #[inline]
     fn diffuse(&self, material: &Material, at: DVec3) -> Rgb {
         self.material(material, at).diffuse
+    }
+
+    fn enclose<F: Precise>(&self, material: &Material, at: [Interval<F>; 3]) -> Option<LookBounds<F>> {
+        let [normal, xdir] = self.given;
+        let [u, v] = along_sides(normal, xdir, at);
+        let tile = |along: Interval<F>, side: usize| {
+            let offset = Interval::constant(100_000.0);
+            ((along + offset) / Interval::constant(self.dimensions[side])).certain_floor()
+        };
+        let other = Material { specular: material.specular, ..(*self.other).clone() };
+        let (own, other) = (LookBounds::from(material), LookBounds::from(&other));
+        Some(match (tile(u, 0), tile(v, 1)) {
+            (Some(i), Some(j)) if (i + j).rem_euclid(2.0) == 0.0 => other,
+            (Some(_), Some(_)) => own,
+            _ => own.hull(&other),
+        })
     }
 
     fn brightest(&self, material: &Material) -> Option<Look> {

@@ -15,6 +15,21 @@ impl Shader for Tiles {
         if is_odd(at) { Rgb::new(0.0, green, blue) } else { Rgb::new(red, green, 0.0) }
     }
 
+    fn enclose<F: Precise>(&self, material: &Material, at: [Interval<F>; 3]) -> Option<LookBounds<F>> {
+        let own = LookBounds::from(material);
+        let without = |channel: usize| {
+            let mut look = own;
+            look.ambient[channel] = Interval::constant(0.0);
+            look
+        };
+        let (odd, even) = (without(0), without(2));
+        Some(match is_certainly_odd(at) {
+            Some(true) => odd,
+            Some(false) => even,
+            None => odd.hull(&even),
+        })
+    }
+
     fn brightest(&self, material: &Material) -> Option<Look> {
         let Material { ambient, diffuse, specular, .. } = *material;
         (diffuse.min_element() >= 0.0).then_some(Look { ambient, diffuse, specular })
@@ -27,4 +42,11 @@ impl Shader for Tiles {
 pub fn is_odd(at: DVec3) -> bool {
     let tile = |coordinate: f64| (2.0 * coordinate + 1000.0).floor();
     (tile(at.x) + tile(at.z)).rem_euclid(2.0) != 0.0
+}
+
+/// Tells whether a point lies on an odd tile, where that is certain.
+pub fn is_certainly_odd<F: Precise>([x, _, z]: [Interval<F>; 3]) -> Option<bool> {
+    let tile =
+        |along: Interval<F>| (Interval::constant(2.0) * along + Interval::constant(1000.0)).certain_floor();
+    Some((tile(x)? + tile(z)?).rem_euclid(2.0) != 0.0)
 }

@@ -18,7 +18,7 @@ pub use crate::world::hittable::{Bracketed, Certified, Hittable};
 pub use crate::world::light::Light;
 pub use crate::world::material::{Look, Material, Rgb};
 pub use crate::world::sample::Sampler;
-pub use crate::world::shader::Shader;
+pub use crate::world::shader::{LookBounds, Shader};
 pub use crate::world::shape::Shape;
 pub use crate::world::texture::Texture;
 
@@ -32,9 +32,10 @@ pub use crate::geometry::aabb::{Aabb, SLACK};
 pub use crate::geometry::frame::Frame;
 pub use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
 pub use crate::numeric::double_double::DoubleDouble;
+pub use crate::numeric::interval::{Interval, Wide};
 pub use crate::numeric::scalar::{Scalar, cross, dot};
 pub use crate::shapes::implicit::Implicit;
-pub use crate::world::certify::Equation;
+pub use crate::world::certify::{Equation, Precise};
 
 // Vectors and matrices.
 pub use glam::{DMat3, DVec2, DVec3};

@@ -1,4 +1,6 @@
-//! `tabray verify`: proves, pixel by pixel, which object is seen.
+//! `tabray verify`: proves, pixel by pixel, which object is seen, or what its colour is.
+
+mod colours;
 
 use super::failure::{Failure, print};
 use super::interrupt::{self, Manner};
@@ -14,20 +16,30 @@ use std::iter;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
-/// Prove for each pixel which object is seen
+/// Prove for each pixel which object is seen, or the bytes of its colour
 ///
 /// The proof is about the real ray through the centre of the pixel and the scene's numbers as they are written. It uses
 /// intervals of 53 bits that contain all rounding errors and, where these do not decide, of 237 bits; it is independent
 /// of the methods that render the image. What 237 bits leave undecided is a tie, as where two objects coincide. The exit
 /// status is 1 if the tracer finds an object that is neither the first nor part of a tie.
+///
+/// With --colours, every decision behind a pixel is proven: each hit, shadow, mirror and pane, and the tile or texel that
+/// is met. Its colour is enclosed in intervals, and the pixel is proven where these hold one colour in bytes, which is that
+/// of the image. The image may differ by rounding, where the true ray passes exactly through an edge or a level is a whole
+/// number; the exit status is 1 if it differs by more.
 #[derive(clap::Args)]
 pub struct Args {
     /// The scene; `-` reads it from standard input
     scene: PathBuf,
     /// Write an image of the result: black for proven pixels, white for ties, red where the tracer finds another
-    /// object; a .png or .ppm file
+    /// object; a .png or .ppm file. With --colours, white for open pixels, and grey where the image differs by rounding
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
+    /// Prove the colours of pixels, byte by byte
+    #[arg(long)]
+    colours: bool,
+    #[command(flatten)]
+    of_colours: colours::Args,
     #[command(flatten)]
     method: method::Args,
     /// The number of threads; by default one per core
@@ -38,14 +50,23 @@ pub struct Args {
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let model = input::load(registry, &args.scene, args.method.accuracy()?)?;
     interrupt::catch(Manner::Ends("the image was not finished"))?;
-    let picture = match &args.output {
-        Some(path) => Some((path, named(path, "end it in .png or .ppm")?, Output::open(path)?)),
+    let picture = match args.output {
+        Some(path) => {
+            let format = named(&path, "end it in .png or .ppm")?;
+            let output = Output::open(&path)?;
+            Some((path, format, output))
+        }
         None => None,
     };
     let size = model.camera.value.pixels;
     let progress = Progress::new(size[1]);
     let renderer = Renderer::new(args.threads.unwrap_or(0).into())?;
     let plan = Plan::new(&model);
+    if args.colours {
+        let proof = colours::prove(&args.of_colours, &renderer, plan, &progress);
+        progress.end();
+        return colours::report(&args.of_colours, proof?, picture);
+    }
     let verdicts = verify::picture(&renderer, &plan, &|| {
         progress.step();
         ControlFlow::Continue(())
@@ -68,7 +89,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
             Verdict::Contradicted => [255, 0, 0],
         };
         let bytes = verdicts.iter().flat_map(colour).collect();
-        output::put(path, output, |out| format.write(out, size, iter::once(Ok(bytes))))?;
+        output::put(&path, output, |out| format.write(out, size, iter::once(Ok(bytes))))?;
     }
     if contradicted > 0 {
         return Err(Failure::Failed(format!("the tracer finds another object at {contradicted} pixels")));

@@ -52,6 +52,16 @@ impl Rectangle {
     }
 }
 
+/// Returns the coordinates of a vector along the sides of a rectangle with this normal, whose first side is along the
+/// projection of `xdir`, in the unit of the vector. The normal and `xdir` may have any length.
+pub fn along_sides<N: Scalar>(normal: DVec3, xdir: DVec3, vector: [N; 3]) -> [N; 2] {
+    let [normal, xdir] = [normal, xdir].map(|of| of.to_array().map(N::constant));
+    let (square, across) = (dot(normal, normal), dot(normal, xdir));
+    let first = [0, 1, 2].map(|axis| square * xdir[axis] - across * normal[axis]);
+    let sides = [first, scalar::cross(normal, xdir)];
+    sides.map(|side| dot(side, vector) / dot(side, side).sqrt())
+}
+
 impl<A> FinitePlane<A> {
     /// Returns the part of a plane with a corner at the plane's point, sides of these lengths (in world units) and
     /// directions; the first side is along the projection of `given_xdir`.

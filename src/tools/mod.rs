@@ -2,6 +2,7 @@
 
 pub mod bench;
 pub mod chart;
+pub mod colours;
 pub mod contract;
 pub mod debug;
 pub mod probe;

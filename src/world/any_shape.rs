@@ -4,7 +4,7 @@ use crate::geometry::ray::{Bracket, Ray, RayRange, Side};
 use crate::geometry::ray_packet::{Nearest, RayPacket};
 use crate::geometry::sight::Sight;
 use crate::simd::cpu::Cpu;
-use crate::world::certify::{Enclosure, Precision};
+use crate::world::certify::{Enclosure, Precision, Proven};
 use crate::world::hittable::Hittable;
 use crate::world::packets::shape::{PacketShape, Packets, Proofs};
 use crate::world::shape::Shape;
@@ -40,6 +40,11 @@ impl AnyShape {
     /// Returns what is certain about a ray's first hit. For a shape without an equation, nothing is.
     pub fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
         self.0.certify(sight, precision)
+    }
+
+    /// Returns what proofs about other rays than primary ones need; `None` for a shape without an equation.
+    pub(crate) fn proven(&self) -> Option<&dyn Proven> {
+        self.0.proven()
     }
 
     /// Merges the hits of a packet's rays with this shape into the nearest hits so far, and tells whether the order of

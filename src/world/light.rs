@@ -1,6 +1,9 @@
 //! Lights: the trait that a plugin implements.
 
 use crate::geometry::aabb::Aabb;
+use crate::numeric::interval::Interval;
+use crate::numeric::scalar::Scalar;
+use crate::world::certify::Precise;
 use crate::world::material::Rgb;
 use glam::DVec3;
 
@@ -16,6 +19,15 @@ pub trait Light: Send + Sync {
     /// everywhere. Then `emissivity` is not called for each point. `None` is always correct.
     fn uniform(&self) -> Option<Rgb> {
         None
+    }
+
+    /// Encloses the light sent toward every point of a box, as mathematics has it, 0 where it does not point there;
+    /// `None` where it is not known. Proofs of colours ask for it. `None` is always correct.
+    fn enclose<F: Precise>(&self, _toward: [Interval<F>; 3]) -> Option<[Interval<F>; 3]>
+    where
+        Self: Sized,
+    {
+        self.uniform().map(|sent| sent.to_array().map(Interval::constant))
     }
 
     /// Returns the largest magnitude of each channel of [`emissivity`](Self::emissivity) over all points, with either

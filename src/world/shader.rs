@@ -1,5 +1,8 @@
 //! Shaders: the trait that a plugin implements for one point of a surface.
 
+use crate::numeric::interval::{Float, Interval};
+use crate::numeric::scalar::Scalar;
+use crate::world::certify::Precise;
 use crate::world::material::{Look, Material, Rgb};
 use glam::DVec3;
 
@@ -31,11 +34,60 @@ pub trait Shader: Send + Sync {
         None
     }
 
+    /// Encloses the three reflectivities, as mathematics has them, at every point of a box; `None` where they are not
+    /// known. Proofs of colours ask for them. `None` is always correct.
+    fn enclose<F: Precise>(&self, material: &Material, _at: [Interval<F>; 3]) -> Option<LookBounds<F>>
+    where
+        Self: Sized,
+    {
+        self.uniform(material).map(LookBounds::from)
+    }
+
     /// Returns the largest magnitudes of the three reflectivities over all points, with either sign. They decide how
     /// deep rays are followed into mirrors and glass. Returns `None` where they are not known, or where a surface that
     /// is not uniform has a negative diffuse channel somewhere. `None` is always correct.
     fn brightest(&self, material: &Material) -> Option<Look> {
         self.uniform(material)
+    }
+}
+
+/// Enclosures of a surface's reflectivities, per channel.
+#[derive(Clone, Copy, Debug)]
+pub struct LookBounds<F> {
+    /// The reflectivity for ambient light.
+    pub ambient: [Interval<F>; 3],
+    /// The reflectivity for light from the scene's lights, scattered diffusely.
+    pub diffuse: [Interval<F>; 3],
+    /// The mirror reflectivity.
+    pub specular: [Interval<F>; 3],
+}
+
+/// Takes the numbers for exact.
+impl<F: Float> From<Look> for LookBounds<F> {
+    fn from(Look { ambient, diffuse, specular }: Look) -> Self {
+        let exactly = |colour: Rgb| colour.to_array().map(Interval::constant);
+        Self { ambient: exactly(ambient), diffuse: exactly(diffuse), specular: exactly(specular) }
+    }
+}
+
+impl<F: Float> From<&Material> for LookBounds<F> {
+    fn from(material: &Material) -> Self {
+        let Material { ambient, diffuse, specular, .. } = *material;
+        Look { ambient, diffuse, specular }.into()
+    }
+}
+
+impl<F: Float> LookBounds<F> {
+    /// Returns the smallest bounds that contain both.
+    pub fn hull(&self, other: &Self) -> Self {
+        let hull = |one: [Interval<F>; 3], other: [Interval<F>; 3]| {
+            [0, 1, 2].map(|channel| one[channel].hull(other[channel]))
+        };
+        Self {
+            ambient: hull(self.ambient, other.ambient),
+            diffuse: hull(self.diffuse, other.diffuse),
+            specular: hull(self.specular, other.specular),
+        }
     }
 }
 

@@ -5,6 +5,7 @@ mod common;
 
 mod bench;
 mod cli;
+mod colours;
 mod discovery;
 mod failures;
 mod full_range;

@@ -3,11 +3,13 @@
 //! The endpoints are `f64`, or have 237 bits where `f64` leaves a question open ([`Wide`]).
 
 mod float;
+mod fraction;
 mod functions;
 
 use crate::numeric::scalar::Scalar;
 use f256::f256;
 pub use float::Float;
+pub use fraction::Fraction;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Inlines an operation on intervals, or where numbers are [long](Float::IS_LONG) calls it, so that it is compiled once and
@@ -38,9 +40,25 @@ pub struct Interval<F = f64> {
 /// An interval whose endpoints have 237 bits.
 pub type Wide = Interval<f256>;
 
+/// An interval whose endpoints are fractions.
+pub type Fine = Interval<Fraction>;
+
 impl From<Interval> for Wide {
     fn from(of: Interval) -> Self {
         Self { low: of.low.into(), high: of.high.into() }
+    }
+}
+
+impl From<Wide> for Fine {
+    fn from(of: Wide) -> Self {
+        Self { low: of.low.into(), high: of.high.into() }
+    }
+}
+
+impl Fine {
+    /// Converts to 237 bits, rounded outward.
+    pub fn wide(self) -> Wide {
+        Wide { low: self.low.neighbours().0, high: self.high.neighbours().1 }
     }
 }
 
@@ -51,7 +69,7 @@ impl Interval {
 
 impl<F: Float> Interval<F> {
     /// Returns all numbers, and undefined results.
-    fn whole() -> Self {
+    pub fn whole() -> Self {
         Self { low: -F::INFINITY, high: F::INFINITY }
     }
 
@@ -81,6 +99,27 @@ impl<F: Float> Interval<F> {
     /// Returns the midpoint, rounded.
     pub fn middle(self) -> F {
         self.low + F::of(0.5) * (self.high - self.low)
+    }
+
+    /// Returns the smallest interval that contains both.
+    pub fn hull(self, other: Self) -> Self {
+        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
+    }
+
+    /// Converts to `f64`, rounded outward.
+    pub fn coarse(self) -> Interval {
+        Interval { low: self.low.to_f64().next_down(), high: self.high.to_f64().next_up() }
+    }
+
+    /// Returns the greatest integer that is not greater than the numbers, where it is the same for all of them.
+    pub fn certain_floor(self) -> Option<f64> {
+        let floor = self.low.floor();
+        (floor == self.high.floor() && floor.is_finite()).then(|| floor.to_f64())
+    }
+
+    /// Encloses π.
+    pub fn pi() -> Self {
+        Self::outward(F::PI, F::PI)
     }
 
     /// Returns whether both endpoints are finite.

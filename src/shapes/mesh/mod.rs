@@ -6,6 +6,7 @@
 //! more digits where the bounds leave open which face is hit, or whether any is. Of faces at the same distance the first
 //! in the file is hit.
 
+mod along;
 mod face;
 mod hits;
 mod painted;

@@ -1,18 +1,20 @@
 //! Meshes as shapes.
 
-use super::face::Leaving;
+use super::face::{Face, Leaving};
 use super::hits::{Known, Last, NOTHING};
 use super::surface::Surface;
 use crate::geometry::aabb::{Aabb, SLACK};
 use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
 use crate::geometry::ray_packet::{self, Nearest, PACKET_SIZE, RayPacket};
 use crate::geometry::roots::Method;
-use crate::geometry::sight::Sight;
+use crate::geometry::sight::{Line, Sight};
 use crate::numeric::double_double::DoubleDouble;
+use crate::numeric::dual::Dual;
+use crate::numeric::interval::Interval;
 use crate::simd::cpu::{Cpu, kernels};
 use crate::text;
 use crate::world::accuracy::{Accuracy, Bounded};
-use crate::world::certify::{Enclosure, Precision};
+use crate::world::certify::{Enclosure, Found, Onward, Precise, Precision, Proven};
 use crate::world::coincidence::{CLOSE, ROUNDING};
 use crate::world::hittable::Hittable;
 use crate::world::interaction::{SurfaceInteraction, turned};
@@ -157,8 +159,31 @@ impl<A: Bounded> Proofs for Shape<Mesh<A>, ByPackets, ByFaces> {
         self.shape.surface.certify::<A>(sight, precision)
     }
 
+    fn proven(&self) -> Option<&dyn Proven> {
+        Some(&self.shape)
+    }
+
     fn distance_by(&self, _method: Method, _ray: &Ray, _range: &RayRange) -> Option<f64> {
         None
+    }
+}
+
+impl<A: Bounded, F: Precise> Onward<F> for Mesh<A> {
+    fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (Found<F>, usize) {
+        self.surface.first_along::<A, F>(line, leaves)
+    }
+
+    fn slope(&self, at: [Dual<Interval<F>>; 3], part: usize) -> Dual<Interval<F>> {
+        Onward::slope(&Face(self.surface.triangle::<A>(part)), at, 0)
+    }
+
+    fn shading_normal(
+        &self,
+        at: [Interval<F>; 3],
+        part: usize,
+        normal: [Interval<F>; 3],
+    ) -> Option<[Interval<F>; 3]> {
+        self.surface.enclosed_normal(part, at, normal)
     }
 }
 
@@ -214,6 +239,10 @@ impl<A: Bounded> Packets for Shape<Mesh<A>, ByPackets, ByFaces> {
     fn interact(&self, cpu: Cpu, rays: RayPacket, distances: &[f64], interaction: SurfaceInteraction) {
         let SurfaceInteraction { points, normals, sides, cosines, travelled } = interaction;
         interact(cpu, &self.shape, rays, distances, sides, cosines, travelled, points, normals);
+    }
+
+    fn finds_normals_by_rays(&self) -> bool {
+        true
     }
 
     fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {

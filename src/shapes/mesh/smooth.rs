@@ -2,6 +2,8 @@
 
 use super::surface::Surface;
 use crate::numeric::double_double::{exponent_to_one, times_power_of_two};
+use crate::numeric::interval::{Float, Interval};
+use crate::numeric::scalar::{Scalar, cross, dot};
 use glam::DVec3;
 
 impl Surface {
@@ -10,6 +12,45 @@ impl Surface {
     #[inline(always)]
     pub(super) fn smoothed(&self, face: usize, at: DVec3, flat: DVec3) -> DVec3 {
         if self.normals.is_empty() { flat } else { self.interpolated(face, at, flat) }
+    }
+
+    /// Encloses [`smoothed`](Self::smoothed); `None` where it is open.
+    pub(super) fn enclosed_normal<F: Float>(
+        &self,
+        face: usize,
+        at: [Interval<F>; 3],
+        flat: [Interval<F>; 3],
+    ) -> Option<[Interval<F>; 3]> {
+        if self.normals.is_empty() {
+            return Some(flat);
+        }
+        let n = Interval::<F>::constant;
+        let zero = F::of(0.0);
+        let minus =
+            |one: [Interval<F>; 3], other: [Interval<F>; 3]| [0, 1, 2].map(|axis| one[axis] - other[axis]);
+        let [a, b, c] = self.corners(face).map(|corner| corner.to_array().map(n));
+        let across = cross(minus(b, a), minus(c, a));
+        let part = |from: [Interval<F>; 3], to: [Interval<F>; 3]| {
+            dot(cross(minus(to, from), minus(at, from)), across).max(n(0.0))
+        };
+        let weights = [part(b, c), part(c, a), part(a, b)];
+        let mut sum = [n(0.0); 3];
+        for (corner, weight) in self.faces[face].iter().zip(weights) {
+            let normal = self.normals[*corner as usize].map(f64::from);
+            sum = [0, 1, 2].map(|axis| sum[axis] + weight * n(normal[axis]));
+        }
+        let side = dot(flat, across);
+        if side.has_zero() {
+            return None;
+        }
+        let sum = if side.high < zero { sum.map(|part| -part) } else { sum };
+        let length = dot(sum, sum).sqrt();
+        if length.has_zero() || !length.is_bounded() {
+            return None;
+        }
+        let normal = sum.map(|part| part / length);
+        let cosine = dot(normal, flat);
+        if cosine.has_zero() { None } else { Some(if cosine.low > zero { normal } else { flat }) }
     }
 
     fn interpolated(&self, face: usize, at: DVec3, flat: DVec3) -> DVec3 {

@@ -2,9 +2,12 @@
 
 use super::shape::{ByPlacement, Placed};
 use crate::geometry::placement::Placement;
+use crate::numeric::interval::{Fine, Fraction, Interval};
 use crate::world::body::Body;
+use crate::world::certify::Precise;
 use crate::world::material::{Look, Material, Rgb};
-use crate::world::shader::{Plain, Shader};
+use crate::world::packets::shader::EncloseLook;
+use crate::world::shader::{LookBounds, Plain, Shader};
 use crate::world::shape::{ByPackets, Shape};
 use glam::DVec3;
 use std::sync::Arc;
@@ -34,6 +37,14 @@ impl Shader for PlacedShader {
 
     fn specular(&self, material: &Material, at: DVec3) -> Rgb {
         self.0.body.shader.specular(material, self.0.own_point(at))
+    }
+
+    fn enclose<F: Precise>(&self, material: &Material, at: [Interval<F>; 3]) -> Option<LookBounds<F>> {
+        let own = self.0.placement.point(at).map(F::widen);
+        let look = EncloseLook::<Fraction>::look(&*self.0.body.shader, material, own)?;
+        let narrow = |colour: [Fine; 3]| colour.map(F::narrow);
+        let LookBounds { ambient, diffuse, specular } = look;
+        Some(LookBounds { ambient: narrow(ambient), diffuse: narrow(diffuse), specular: narrow(specular) })
     }
 
     fn uniform(&self, material: &Material) -> Option<Look> {

@@ -5,6 +5,7 @@
 //! it decides, for which the angles' sines and cosines are enclosed in intervals.
 
 mod body;
+mod onward;
 mod packets;
 mod shape;
 

@@ -298,7 +298,8 @@ impl Packets for Shape<Placed, ByPackets, ByPlacement> {
 
     fn interact(&self, cpu: Cpu, rays: RayPacket, distances: &[f64], interaction: SurfaceInteraction) {
         let SurfaceInteraction { mut points, mut normals, sides, cosines, travelled } = interaction;
-        if self.shape.body.shape.packets().is_of_the_notes() {
+        let shape = self.shape.body.shape.packets();
+        if shape.is_of_the_notes() || !shape.finds_normals_by_rays() {
             shape::interact(cpu, &self.shape, rays, distances, sides, cosines, travelled, points, normals);
             return;
         }
@@ -313,6 +314,10 @@ impl Packets for Shape<Placed, ByPackets, ByPlacement> {
             let rays = rays.part(part.clone());
             self.shape.few_interact::<PART>(cpu, rays, &distances[part], interaction);
         }
+    }
+
+    fn finds_normals_by_rays(&self) -> bool {
+        self.shape.body.shape.packets().finds_normals_by_rays()
     }
 
     fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {

@@ -7,7 +7,7 @@ use crate::geometry::roots::Method;
 use crate::geometry::sight::Sight;
 use crate::numeric::double_double::DoubleDouble;
 use crate::world::body::Body;
-use crate::world::certify::{Enclosure, Precision};
+use crate::world::certify::{Enclosure, Precision, Proven};
 use crate::world::coincidence::{CLOSE, ROUNDING};
 use crate::world::hittable::Hittable;
 use crate::world::packets::shape::Proofs;
@@ -243,6 +243,10 @@ impl Proofs for Shape<Placed, ByPackets, ByPlacement> {
 
     fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
         self.shape.body.shape.certify(&sight.within(self.shape.placement), precision)
+    }
+
+    fn proven(&self) -> Option<&dyn Proven> {
+        Some(&self.shape)
     }
 
     fn is_of_the_notes(&self) -> bool {

@@ -14,10 +14,13 @@ enum Candidate<F> {
     Perhaps(Interval<F>),
 }
 
-/// Finds the first hit with t > 0. The start of the line itself is not a hit.
-pub fn first_hit<F: Float>(shape: &dyn Values<F>, line: &Line<Interval<F>>) -> Found<F> {
+/// Finds the first hit with t > 0. The start of the line itself is not a hit; with `leaves`, the line's true start lies
+/// on the surface, although its enclosure does not tell.
+pub fn first_hit<F: Float>(shape: &dyn Values<F>, line: &Line<Interval<F>>, leaves: bool) -> Found<F> {
     let zero = F::of(0.0);
-    for candidate in candidates(coefficients(shape, line)).into_iter().flatten() {
+    let [a, b, c] = coefficients(shape, line);
+    let c = if leaves { Interval::constant(0.0) } else { c };
+    for candidate in candidates([a, b, c]).into_iter().flatten() {
         let (is_there, at) = match candidate {
             Candidate::Root(at) => (true, at),
             Candidate::Perhaps(at) => (false, at),
@@ -25,13 +28,11 @@ pub fn first_hit<F: Float>(shape: &dyn Values<F>, line: &Line<Interval<F>>) -> F
         if at.high <= zero {
             continue;
         }
-        if at.low <= zero {
-            return Found::Doubtful(zero);
-        }
         match is_kept(shape, line, at) {
+            Some(false) => {}
+            _ if at.low <= zero => return Found::Doubtful(zero),
             Some(true) if is_there => return Found::Hits(at),
             None if is_there => return Found::Edge(at),
-            Some(false) => {}
             _ => return Found::Doubtful(at.low),
         }
     }
@@ -69,6 +70,9 @@ fn candidates<F: Float>([a, b, c]: [Interval<F>; 3]) -> [Option<Candidate<F>>; 2
         } else {
             [Some(Root(-c / (two * b))), None]
         };
+    }
+    if c.is_zero() && !a.has_zero() {
+        return [Some(Root(start)), Some(Root(-(b + b) / a))];
     }
     let discriminant = b * b - a * c;
     if discriminant.high < F::of(0.0) {

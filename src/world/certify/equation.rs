@@ -27,7 +27,8 @@ pub trait Equation {
         1
     }
 
-    /// Returns a positive number where the surface is kept, and a negative number where it is cut off.
+    /// Returns a positive number where the surface is kept, 0 at its edge, which belongs to it, and a negative number
+    /// where it is cut off.
     fn kept<N: Scalar>(&self, _at: [N; 3]) -> N {
         N::constant(1.0)
     }
@@ -96,10 +97,15 @@ impl<E: Equation, F: Float> Values<F> for E {
 }
 
 /// What is certain about a first hit, with numbers of one precision; see [`Enclosure`](super::Enclosure).
-pub(super) enum Found<F> {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Found<F> {
+    /// There is no hit.
     Misses,
+    /// There is a hit at a t in this interval.
     Hits(Interval<F>),
+    /// There is a hit at a t in this interval if the edge belongs to the surface.
     Edge(Interval<F>),
+    /// There may be a hit, at no smaller t than this.
     Doubtful(F),
 }
 
@@ -110,5 +116,12 @@ pub(super) fn is_kept<F: Float>(
     distance: Interval<F>,
 ) -> Option<bool> {
     let kept = shape.kept(line.at(distance));
-    if kept.has_zero() { None } else { Some(kept.low > F::of(0.0)) }
+    // The edge belongs to the surface.
+    if kept.low >= F::of(0.0) {
+        Some(true)
+    } else if kept.has_zero() {
+        None
+    } else {
+        Some(false)
+    }
 }

@@ -5,16 +5,20 @@
 //! derived from them, and the ray is a [`Sight`]. Everything after that is computed with intervals, so that a proof
 //! holds for the real numbers.
 
+mod along;
 mod closed;
 mod equation;
+mod onward;
 mod search;
 
-pub use equation::Equation;
+pub use equation::{Equation, Found};
+pub use onward::{Onward, Precise, Proven, gradient};
 
 use crate::geometry::sight::Sight;
 use crate::numeric::double_double::DoubleDouble;
 use crate::numeric::interval::{Float, Interval, Wide};
-use equation::{Found, Values};
+use along::{PIECES, first_along, most_pieces};
+use equation::Values;
 use f256::f256;
 
 /// What is certain about a ray's first hit of a shape. Distances are multiples of the length of the sight's direction.
@@ -83,13 +87,6 @@ pub enum Precision {
     Octuple,
 }
 
-/// The maximum number of pieces of a line that are examined before a search is given up.
-const PIECES: usize = 2000;
-
-/// The maximum number of operations with 237 bits that a search may take if each piece is evaluated once: a tenth of a
-/// second's worth. Only formulas of more than ten operations are given up before [`PIECES`].
-const OPERATIONS: usize = 20_000;
-
 /// Returns what is certain about a ray's first hit of a shape.
 pub fn first_hit(shape: &impl Equation, sight: &Sight, precision: Precision) -> Enclosure {
     match precision {
@@ -99,8 +96,7 @@ pub fn first_hit(shape: &impl Equation, sight: &Sight, precision: Precision) -> 
             Found::Edge(at) => Enclosure::Edge(at.into()),
             Found::Doubtful(from) => Enclosure::Doubtful(from.into()),
         },
-        Precision::Octuple => match solve::<f256>(shape, sight, PIECES.min(OPERATIONS / shape.cost().max(1)))
-        {
+        Precision::Octuple => match solve::<f256>(shape, sight, most_pieces(shape)) {
             Found::Misses => Enclosure::Misses,
             Found::Hits(at) => Enclosure::Hits(at),
             Found::Edge(at) => Enclosure::Edge(at),
@@ -110,12 +106,7 @@ pub fn first_hit(shape: &impl Equation, sight: &Sight, precision: Precision) -> 
 }
 
 fn solve<F: Float>(shape: &dyn Values<F>, sight: &Sight, pieces: usize) -> Found<F> {
-    let line = shape.own(sight.line());
-    if shape.is_quadratic() {
-        closed::first_hit(shape, &line)
-    } else {
-        search::first_hit(shape, &line, pieces)
-    }
+    first_along(shape, &sight.line(), false, pieces)
 }
 
 #[cfg(test)]

@@ -10,12 +10,27 @@ use crate::numeric::interval::{Float, Interval};
 /// functions take a long time.
 const JUMP: f64 = f64::EPSILON / 16.0;
 
-/// Finds the first hit with t > 0. The search is given up after `pieces` pieces of the line.
-pub fn first_hit<F: Float>(shape: &dyn Values<F>, line: &Line<Interval<F>>, pieces: usize) -> Found<F> {
+/// Finds the first hit with t > 0. The search is given up after `pieces` pieces of the line. With `leaves`, the line's
+/// true start lies on the surface, and is not a hit.
+pub fn first_hit<F: Float>(
+    shape: &dyn Values<F>,
+    line: &Line<Interval<F>>,
+    leaves: bool,
+    pieces: usize,
+) -> Found<F> {
     let zero = F::of(0.0);
-    let Some((from, to)) = clipped(shape, line) else { return Found::Misses };
+    let Some((mut from, to)) = clipped(shape, line) else { return Found::Misses };
     if !to.is_finite() {
         return Found::Doubtful(from);
+    }
+    if leaves && from == zero {
+        match left(shape, line, to) {
+            Some(length) => from = length,
+            None => return Found::Doubtful(zero),
+        }
+        if from == to {
+            return Found::Misses;
+        }
     }
     // The parameter counts from near the shape, so that a piece of the line is not a small difference of large numbers.
     let base = Interval::point(from + F::of(0.5) * (to - from));
@@ -57,6 +72,22 @@ pub fn first_hit<F: Float>(shape: &dyn Values<F>, line: &Line<Interval<F>>, piec
         }
     }
     Found::Doubtful(pending.last().map_or(zero, |(low, _)| (base + Interval::point(*low)).low.max(zero)))
+}
+
+/// Returns a length from a line's start, which lies on the surface, within which the value is strictly monotonic, and so
+/// has no other root; at most `to`. `None` where the line touches the surface, as far as intervals tell.
+fn left<F: Float>(shape: &dyn Values<F>, line: &Line<Interval<F>>, to: F) -> Option<F> {
+    let shortest = F::of(1024.0) * F::EPSILON * to;
+    let mut length = to;
+    while length > shortest {
+        let piece = Interval { low: F::of(0.0), high: length };
+        let slope = shape.slope(line.along(Dual::variable(piece))).slope;
+        if slope.is_bounded() && !slope.has_zero() {
+            return Some(length);
+        }
+        length = F::of(0.5) * length;
+    }
+    None
 }
 
 /// Cuts a piece in two, the nearer one last. Not in the middle, where the round numbers of scenes often put a root.
@@ -214,7 +245,7 @@ mod tests {
     fn a_jump_is_left_in_doubt_after_a_few_pieces() {
         let step = Step(Cell::new(0));
         let [origin, dir] = [[-2.0, 0.0, 0.0], [1.0, 0.0, 0.0]].map(|of| of.map(Interval::<f256>::constant));
-        let Found::Doubtful(from) = first_hit(&step, &Line { origin, dir }, 2000) else {
+        let Found::Doubtful(from) = first_hit(&step, &Line { origin, dir }, false, 2000) else {
             panic!("a jump is no root")
         };
         assert!((from.to_f64() - 2.3).abs() < 1e-15, "{from:?}");

@@ -1,17 +1,32 @@
 //! Lights, sampled from many shading points at once.
 
 use crate::geometry::aabb::larger;
+use crate::numeric::interval::{Fraction, Interval};
 use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::ViewMut;
+use crate::world::certify::Precise;
 use crate::world::light::Light;
 use crate::world::light_samples::{LightSamples, Lit, ShadingPoints};
 use crate::world::material::Rgb;
+use f256::f256;
 use glam::DVec3;
 
 /// A light for packets. Every [`Light`] is one.
-pub trait PacketLight: Light {
+pub trait PacketLight: Light + EncloseLight<f64> + EncloseLight<f256> + EncloseLight<Fraction> {
     /// Samples the light from many points, with what [`emissivity`](Light::emissivity) returns for each.
     fn sample(&self, cpu: Cpu, points: &ShadingPoints, samples: LightSamples) -> Lit;
+}
+
+/// A light that is enclosed in one precision. Every [`Light`] is one.
+pub trait EncloseLight<F> {
+    /// Returns what [`Light::enclose`] does.
+    fn sent(&self, toward: [Interval<F>; 3]) -> Option<[Interval<F>; 3]>;
+}
+
+impl<T: Light, F: Precise> EncloseLight<F> for T {
+    fn sent(&self, toward: [Interval<F>; 3]) -> Option<[Interval<F>; 3]> {
+        self.enclose(toward)
+    }
 }
 
 impl<T: Light> PacketLight for T {

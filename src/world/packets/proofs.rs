@@ -4,7 +4,7 @@ use crate::geometry::ray::{MISS, Ray, RayRange};
 use crate::geometry::roots::Method;
 use crate::geometry::sight::Sight;
 use crate::numeric::double_double::DoubleDouble;
-use crate::world::certify::{self, Enclosure, Equation, Precision};
+use crate::world::certify::{self, Enclosure, Equation, Precision, Proven};
 use crate::world::coincidence::ROUNDING;
 use crate::world::hittable::{Certified, Hittable, Searched};
 use crate::world::shape::{ByEquation, ByFormula, ByRoots, Shape, Unproven};
@@ -22,6 +22,11 @@ pub trait Proofs: Send + Sync {
 
     /// Returns what is certain about a ray's first hit.
     fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure;
+
+    /// Returns what proofs about other rays than primary ones need; `None` for a shape without an equation.
+    fn proven(&self) -> Option<&dyn Proven> {
+        None
+    }
 
     /// Tells whether hits are found by a formula of the notes, whose program tests every ray against every shape.
     fn is_of_the_notes(&self) -> bool {
@@ -86,6 +91,10 @@ impl<T: Certified, S> Proofs for Shape<T, S, ByEquation> {
         certify::first_hit(&self.shape, sight, precision)
     }
 
+    fn proven(&self) -> Option<&dyn Proven> {
+        Some(&self.shape)
+    }
+
     fn distance_by(&self, _method: Method, _ray: &Ray, _range: &RayRange) -> Option<f64> {
         None
     }
@@ -102,6 +111,10 @@ impl<T: Searched, S> Proofs for Shape<T, S, ByRoots> {
 
     fn certify(&self, sight: &Sight, precision: Precision) -> Enclosure {
         certify::first_hit(&self.shape, sight, precision)
+    }
+
+    fn proven(&self) -> Option<&dyn Proven> {
+        Some(&self.shape)
     }
 
     fn distance_by(&self, method: Method, ray: &Ray, range: &RayRange) -> Option<f64> {

@@ -1,12 +1,15 @@
 //! Shaders, evaluated at many points at once.
 
+use crate::numeric::interval::{Fraction, Interval};
 use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::{View, ViewMut};
+use crate::world::certify::Precise;
 use crate::world::material::{Material, Rgb};
-use crate::world::shader::Shader;
+use crate::world::shader::{LookBounds, Shader};
+use f256::f256;
 
 /// A shader for packets. Every [`Shader`] is one.
-pub trait PacketShader: Shader {
+pub trait PacketShader: Shader + EncloseLook<f64> + EncloseLook<f256> + EncloseLook<Fraction> {
     /// Evaluates [`ambient`](Shader::ambient) and [`specular`](Shader::specular) at many points. Returns whether any
     /// specular reflectivity is not 0.
     fn ambient_and_specular(
@@ -20,6 +23,18 @@ pub trait PacketShader: Shader {
 
     /// Evaluates [`diffuse`](Shader::diffuse) at many points. Returns whether any reflectivity is not 0.
     fn diffuses(&self, cpu: Cpu, material: &Material, points: View, out: ViewMut) -> bool;
+}
+
+/// A shader whose looks are enclosed in one precision. Every [`Shader`] is one.
+pub trait EncloseLook<F> {
+    /// Returns what [`Shader::enclose`] does.
+    fn look(&self, material: &Material, at: [Interval<F>; 3]) -> Option<LookBounds<F>>;
+}
+
+impl<T: Shader, F: Precise> EncloseLook<F> for T {
+    fn look(&self, material: &Material, at: [Interval<F>; 3]) -> Option<LookBounds<F>> {
+        self.enclose(material, at)
+    }
 }
 
 impl<T: Shader> PacketShader for T {

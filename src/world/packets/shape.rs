@@ -69,6 +69,11 @@ pub trait Packets: Send + Sync {
     /// Computes the points, normals and sides that the rays of a packet hit at these distances, in world units.
     fn interact(&self, cpu: Cpu, rays: RayPacket, distances: &[f64], interaction: SurfaceInteraction);
 
+    /// Tells whether [`interact`](Self::interact) finds normals by the rays and not, as by default, by the points.
+    fn finds_normals_by_rays(&self) -> bool {
+        false
+    }
+
     /// Returns a bracket of the distance of one ray's first hit.
     fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket;
 

@@ -42,9 +42,7 @@ mod sides;
 mod solve;
 mod surface;
 
-#[cfg(test)]
-pub(crate) use branch::FAINT;
-pub(crate) use branch::{Branch, MANY, Onward};
+pub(crate) use branch::{Branch, FAINT, MANY, Onward};
 pub(crate) use surface::clearance;
 
 use crate::scene::model::Model;

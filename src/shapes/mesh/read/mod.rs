@@ -5,6 +5,7 @@ mod model;
 mod obj;
 mod ply;
 mod ply_bytes;
+mod ply_header;
 mod ply_text;
 mod stl;
 #[cfg(test)]
@@ -22,9 +23,6 @@ use std::error::Error;
 use std::io::{self, Read};
 use std::path::Path;
 use std::sync::OnceLock;
-
-/// What is wrong with a file that was cut.
-const ENDS_EARLY: &str = "the file ends before all of its elements";
 
 /// Reads a file by the format of its name or, if that names none, by how it begins. Takes no more memory than so many
 /// bytes, roughly.

@@ -5,6 +5,9 @@ use bytesize::ByteSize;
 use glam::DVec3;
 use std::fmt;
 
+/// What is wrong with a file that was cut.
+pub(super) const ENDS_EARLY: &str = "the file ends before all of its elements";
+
 /// The triangles of a file, before they are placed in a scene.
 #[derive(Debug, Default, PartialEq)]
 pub struct Model {

@@ -1,8 +1,7 @@
 //! The elements of a PLY in bytes of either order.
 
-use super::ENDS_EARLY;
-use super::model::{Broken, Model, Room, fan};
-use super::ply::{Field, Kind, Number, Section};
+use super::model::{Broken, ENDS_EARLY, Model, Room, fan};
+use super::ply_header::{Field, Kind, Number, Section};
 use glam::DVec3;
 use rayon::prelude::*;
 

@@ -1,9 +1,8 @@
 //! The elements of a PLY in text: each has a line.
 
-use super::ENDS_EARLY;
 use super::blocks::{self, line_ends, never, words};
-use super::model::{Broken, Model, Room, coordinate, fan};
-use super::ply::{Field, Kind, Number, Section, unexpected};
+use super::model::{Broken, ENDS_EARLY, Model, Room, coordinate, fan};
+use super::ply_header::{Field, Kind, Number, Section, unexpected};
 use glam::DVec3;
 use memchr::memchr_iter;
 

@@ -1,0 +1,180 @@
+//! `tabray verify --colours`: proves the bytes of an image.
+
+use crate::cli::failure::{Failure, print};
+use crate::cli::messages;
+use crate::cli::output::{self, Output};
+use crate::cli::progress::Progress;
+use crate::cli::stop;
+use crate::output::picture::Format;
+use crate::render::plan::Plan;
+use crate::render::renderer::Renderer;
+use crate::text;
+use crate::tools::colours::{Pixel, Prover, Verdict};
+use crate::world::accuracy::Accuracy;
+use crate::world::sample::Sampler;
+use serde::Serialize;
+use std::iter;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+/// The number of pixels of each kind that are named.
+const NAMED: usize = 5;
+
+#[derive(clap::Args)]
+#[group(id = "proofs of colours")]
+pub struct Args {
+    /// With --colours, the number of samples per pixel; by default that of the scene's camera
+    #[arg(
+        long, value_name = "N", requires = "colours",
+        value_parser = clap::value_parser!(u32).range(1..=i64::from(Sampler::MOST))
+    )]
+    samples: Option<u32>,
+    /// With --colours, stop after this time, such as 90s, 5m or 1.5h, and report the pixels proven so far
+    #[arg(long, value_name = "TIME", requires = "colours", value_parser = stop::time)]
+    time_limit: Option<Duration>,
+    /// With --colours, print the counts and the first pixels of each kind as JSON
+    #[arg(long, requires = "colours")]
+    json: bool,
+}
+
+/// What was found.
+pub struct Proof {
+    size: [usize; 2],
+    /// The pixels in rows from the top; `None` where the time was up.
+    pixels: Vec<Option<Pixel>>,
+}
+
+/// The numbers of pixels or bytes.
+#[derive(Serialize)]
+struct Counts {
+    all: usize,
+    proven: usize,
+    rounded: usize,
+    open: usize,
+    contradicted: usize,
+    not_reached: usize,
+}
+
+/// The first pixels of each kind, by column from the left and row from the bottom.
+#[derive(Serialize)]
+struct First {
+    rounded: Vec<[usize; 2]>,
+    open: Vec<[usize; 2]>,
+    contradicted: Vec<[usize; 2]>,
+}
+
+/// What is printed as JSON.
+#[derive(Serialize)]
+struct Numbers {
+    pixels: Counts,
+    bytes: Counts,
+    first: First,
+}
+
+/// Proves the colours of a plan's pixels.
+pub fn prove(
+    args: &Args,
+    renderer: &Renderer,
+    mut plan: Plan,
+    progress: &Progress,
+) -> Result<Proof, Failure> {
+    if plan.camera.accuracy == Accuracy::Classic {
+        return Err(Failure::Usage(
+            "the colours of the classic method cannot be proven: it renders what the notes' formulas round to".to_owned(),
+            Some("add `--method exact`".to_owned()),
+        ));
+    }
+    plan.camera.samples = args.samples.unwrap_or(plan.camera.samples);
+    let end = args.time_limit.map(|limit| Instant::now() + limit);
+    let stops = || end.is_some_and(|end| Instant::now() >= end);
+    let pixels = Prover::new(&plan).picture(renderer, &|| progress.step(), &stops);
+    Ok(Proof { size: plan.camera.pixels, pixels })
+}
+
+/// Reports what was found, and writes the image of it.
+pub fn report(args: &Args, proof: Proof, picture: Option<(PathBuf, Format, Output)>) -> Result<(), Failure> {
+    let Proof { size, pixels } = &proof;
+    let verdicts: Vec<_> = pixels.iter().map(|pixel| pixel.map(|pixel| pixel.verdict())).collect();
+    let bytes = pixels.iter().flat_map(|pixel| match pixel {
+        Some(pixel) => pixel.channels.map(Some),
+        None => [None; 3],
+    });
+    let first = |verdict| first(&verdicts, *size, verdict);
+    let numbers = Numbers {
+        pixels: Counts::of(verdicts.iter().copied()),
+        bytes: Counts::of(bytes),
+        first: First {
+            rounded: first(Verdict::Rounded),
+            open: first(Verdict::Open),
+            contradicted: first(Verdict::Contradicted),
+        },
+    };
+    print(&if args.json { text::json_in_lines(&numbers) } else { numbers.told() })?;
+    if let Some((path, format, output)) = picture {
+        let colour = |verdict: &Option<Verdict>| match verdict {
+            Some(Verdict::Proven) => [0; 3],
+            Some(Verdict::Rounded) => [128; 3],
+            Some(Verdict::Open) | None => [255; 3],
+            Some(Verdict::Contradicted) => [255, 0, 0],
+        };
+        let bytes = verdicts.iter().flat_map(colour).collect();
+        output::put(&path, output, |out| format.write(out, *size, iter::once(Ok(bytes))))?;
+    }
+    let contradicted = numbers.pixels.contradicted;
+    if contradicted > 0 {
+        let pixels = text::count(contradicted, "pixel");
+        return Err(Failure::Failed(format!("the image contradicts the true colours at {pixels}")));
+    }
+    if let (Some(limit), 1..) = (args.time_limit, numbers.pixels.not_reached) {
+        messages::note(&format!("the time limit of {} has been reached", humantime::format_duration(limit)));
+        return Err(Failure::Stopped);
+    }
+    Ok(())
+}
+
+/// Returns the first pixels with a verdict.
+fn first(verdicts: &[Option<Verdict>], [width, height]: [usize; 2], wanted: Verdict) -> Vec<[usize; 2]> {
+    let found = verdicts.iter().enumerate().filter(|(_, verdict)| **verdict == Some(wanted));
+    found.map(|(index, _)| [index % width, height - 1 - index / width]).take(NAMED).collect()
+}
+
+impl Counts {
+    fn of(verdicts: impl Iterator<Item = Option<Verdict>> + Clone) -> Self {
+        let count = |wanted| verdicts.clone().filter(|verdict| *verdict == wanted).count();
+        Self {
+            all: verdicts.clone().count(),
+            proven: count(Some(Verdict::Proven)),
+            rounded: count(Some(Verdict::Rounded)),
+            open: count(Some(Verdict::Open)),
+            contradicted: count(Some(Verdict::Contradicted)),
+            not_reached: count(None),
+        }
+    }
+
+    fn told(&self, what: &str) -> String {
+        let Self { all, proven, rounded, open, contradicted, not_reached } = self;
+        let percent = 100.0 * *proven as f64 / *all as f64;
+        let rest = if *not_reached > 0 { format!(", {not_reached} not reached") } else { String::new() };
+        format!(
+            "{proven} of {all} {what} proven ({percent:.4} %), {rounded} off by rounding, {open} open, {contradicted} contradicted{rest}\n"
+        )
+    }
+}
+
+impl Numbers {
+    fn told(&self) -> String {
+        let named = |kind: &str, pixels: &[[usize; 2]]| match pixels {
+            [] => String::new(),
+            _ => {
+                let places: Vec<_> = pixels.iter().map(|[x, y]| format!("{x} {y}")).collect();
+                format!("first {kind}: {}\n", places.join(", "))
+            }
+        };
+        let First { rounded, open, contradicted } = &self.first;
+        self.pixels.told("pixels")
+            + &self.bytes.told("bytes")
+            + &named("off by rounding", rounded)
+            + &named("open", open)
+            + &named("contradicted", contradicted)
+    }
+}

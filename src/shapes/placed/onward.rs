@@ -1,0 +1,50 @@
+//! The hits of copies along lines with interval coefficients.
+
+use super::shape::Placed;
+use crate::geometry::sight::Line;
+use crate::numeric::dual::Dual;
+use crate::numeric::interval::Interval;
+use crate::numeric::scalar::{Scalar, dot};
+use crate::world::certify::{Found, Onward, Precise};
+use glam::DMat3;
+
+impl<F: Precise> Onward<F> for Placed {
+    fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (Found<F>, usize) {
+        let own = Line { origin: self.placement.point(line.origin), dir: self.placement.vector(line.dir) };
+        match self.body.shape.proven() {
+            Some(proven) => F::proofs(proven).first_hit(&own, leaves),
+            None => (Found::Doubtful(F::of(0.0)), 0),
+        }
+    }
+
+    fn slope(&self, at: [Dual<Interval<F>>; 3], part: usize) -> Dual<Interval<F>> {
+        let own = self.placement.point(at);
+        match self.body.shape.proven() {
+            Some(proven) => F::proofs(proven).slope(own, part),
+            None => Dual::fixed(Interval::whole()),
+        }
+    }
+
+    fn shading_normal(
+        &self,
+        at: [Interval<F>; 3],
+        part: usize,
+        normal: [Interval<F>; 3],
+    ) -> Option<[Interval<F>; 3]> {
+        let shape = F::proofs(self.body.shape.proven()?);
+        let n = Interval::<F>::constant;
+        // Normals are transformed by the inverse transpose of what transforms vectors.
+        let own = self.placement.vector(normal);
+        let own = [0, 1, 2].map(|axis| own[axis] * n(self.placement.scale[axis]).powi(2));
+        let length = dot(own, own).sqrt();
+        let own = own.map(|part| part / length);
+        let shaded = shape.shading_normal(self.placement.point(at), part, own)?;
+        if shaded == own {
+            return Some(normal);
+        }
+        let axes = DMat3::IDENTITY.to_cols_array_2d().map(|axis| self.placement.vector(axis.map(n)));
+        let world = axes.map(|axis| dot(axis, shaded));
+        let length = dot(world, world).sqrt();
+        Some(world.map(|part| part / length))
+    }
+}

@@ -1,0 +1,265 @@
+//! Proves the colours of pixels: encloses each channel in an interval, and compares the bytes with those of the image.
+//!
+//! This is a second evaluation of the rules by which a scene is rendered, in intervals from the scene's numbers on. It
+//! shares no arithmetic with the tracer: only the equations of shapes, and what shaders and lights enclose. It follows all
+//! that a pixel's colour depends on: each hit, shadow ray, mirror and pane, and the tile or texel that is met. What an
+//! interval leaves open widens the colour, or opens the pixel.
+
+mod light;
+mod rays;
+mod scene;
+mod surface;
+
+use crate::geometry::sight::Sight;
+use crate::numeric::interval::{Float, Fraction, Interval};
+use crate::numeric::scalar::Scalar;
+use crate::render::bytes::to_byte;
+use crate::render::plan::Plan;
+use crate::render::plan::depth::FAINT;
+use crate::render::renderer::Renderer;
+use crate::render::trace;
+use f256::f256;
+use rays::Tracer;
+use scene::{Colour, Number, Scene};
+use std::ops::ControlFlow;
+
+/// What is proven of a byte, or of a pixel: the last in this order of those of its bytes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Verdict {
+    /// The byte is that of the true colour.
+    Proven,
+    /// The byte is not that of the true colour, but `f64` does not tell: the true ray passes through an edge, or the true
+    /// level is a whole number, up to rounding. An enclosure in `f64` holds the byte.
+    Rounded,
+    /// The enclosure of the true colour holds several bytes, or the colour is not known.
+    #[default]
+    Open,
+    /// No enclosure of the true colour holds the byte.
+    Contradicted,
+}
+
+impl Verdict {
+    /// All verdicts, in their order.
+    pub const ALL: [Self; 4] = [Self::Proven, Self::Rounded, Self::Open, Self::Contradicted];
+}
+
+/// The verdicts on the three bytes of a pixel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Pixel {
+    /// The verdicts on red, green and blue.
+    pub channels: [Verdict; 3],
+}
+
+impl Pixel {
+    /// Returns the verdict on the whole pixel.
+    pub fn verdict(&self) -> Verdict {
+        self.channels.into_iter().max().unwrap_or_default()
+    }
+}
+
+/// What one precision tells of a pixel.
+struct Attempt {
+    pixel: Pixel,
+    /// Whether the colour was enclosed at all.
+    is_enclosed: bool,
+    /// Whether a higher precision would tell no more.
+    is_final: bool,
+}
+
+/// Proves the colours of an image.
+pub struct Prover<'p, 'm> {
+    plan: &'p Plan<'m>,
+    scene: Scene<'p, 'm>,
+}
+
+impl<'p, 'm> Prover<'p, 'm> {
+    /// Prepares the proofs of a plan.
+    pub fn new(plan: &'p Plan<'m>) -> Self {
+        Self { plan, scene: Scene::new(plan) }
+    }
+
+    /// Returns the verdict on a pixel as the tracer renders it: `x` counts from the left, `y` from the bottom.
+    pub fn traced(&self, x: usize, y: usize) -> Pixel {
+        self.pixel(x, y, trace::pixel(self.plan, x, y).to_array().map(to_byte))
+    }
+
+    /// Returns the verdict on a pixel with these bytes: `x` counts from the left, `y` from the bottom.
+    pub fn pixel(&self, x: usize, y: usize, bytes: [u8; 3]) -> Pixel {
+        let quick = self.verdicts::<f64>(x, y, bytes);
+        if quick.is_final {
+            return quick.pixel;
+        }
+        let wide = self.verdicts::<f256>(x, y, bytes);
+        let last = if wide.is_final { wide } else { self.verdicts::<Fraction>(x, y, bytes) };
+        let may_round = quick.is_enclosed;
+        let channels = [0, 1, 2].map(|channel| match last.pixel.channels[channel] {
+            Verdict::Contradicted if may_round && quick.pixel.channels[channel] == Verdict::Open => {
+                Verdict::Rounded
+            }
+            verdict => verdict,
+        });
+        Pixel { channels }
+    }
+
+    /// Tries a proof in one precision.
+    fn verdicts<F: Number>(&self, x: usize, y: usize, bytes: [u8; 3]) -> Attempt {
+        let (colour, is_spent) = self.mean::<F>(x, y);
+        let Some(colour) = colour else {
+            return Attempt { pixel: Pixel::default(), is_enclosed: false, is_final: is_spent };
+        };
+        // Rays may be left out that add less than this to a pixel.
+        let missing = if self.plan.depth.is_some() { FAINT } else { 0.0 };
+        let channels = [0, 1, 2].map(|channel| verdict(colour[channel], bytes[channel], missing));
+        let is_final = is_spent || !channels.contains(&Verdict::Open);
+        Attempt { pixel: Pixel { channels }, is_enclosed: true, is_final }
+    }
+
+    /// Encloses a pixel's colour, the mean of its samples, and tells whether a limit on the number of rays was reached.
+    fn mean<F: Number>(&self, x: usize, y: usize) -> (Option<Colour<F>>, bool) {
+        let camera = &self.plan.camera;
+        let mut sum = [Interval::constant(0.0); 3];
+        let mut is_spent = false;
+        for (place, sample) in camera.places(x, y) {
+            let sight: Sight = camera.sight(place.x, place.y);
+            let mut tracer = Tracer::new(&self.scene, sample);
+            let colour = tracer.primary::<F>(&sight.line());
+            is_spent |= tracer.is_spent();
+            let Some(colour) = colour else { return (None, is_spent) };
+            sum = [0, 1, 2].map(|channel| sum[channel] + colour[channel]);
+        }
+        let count = Interval::constant(f64::from(camera.samples));
+        let mean = if camera.samples == 1 { sum } else { sum.map(|channel| channel / count) };
+        (Some(mean), is_spent)
+    }
+
+    /// Returns the verdicts on all pixels of the image that is rendered here, row by row from the top. `done` is called
+    /// after each row; once `stops` returns true, pixels have no verdict.
+    pub fn picture(
+        &self,
+        renderer: &Renderer,
+        done: &(dyn Fn() + Sync),
+        stops: &(dyn Fn() -> bool + Sync),
+    ) -> Vec<Option<Pixel>> {
+        let [width, height] = self.plan.camera.pixels;
+        let bytes = renderer.picture(self.plan);
+        let verdict = |x: usize, y: usize| {
+            let first = 3 * ((height - 1 - y) * width + x);
+            (!stops()).then(|| self.pixel(x, y, [0, 1, 2].map(|channel| bytes[first + channel])))
+        };
+        let done = || {
+            done();
+            ControlFlow::Continue(())
+        };
+        renderer.pixels(self.plan, 0..height, &done, verdict).unwrap_or_default()
+    }
+}
+
+/// Returns the verdict on the byte of a channel. `missing` is the most that the image may lack.
+fn verdict<F: Float>(channel: Interval<F>, byte: u8, missing: f64) -> Verdict {
+    let level = Interval::constant(255.0) * channel;
+    let to_byte = |level: F| level.floor().to_f64() as u8;
+    let (low, high) = (to_byte(level.low), to_byte(level.high));
+    let least = to_byte((level - Interval::constant(255.0 * missing)).low);
+    if low == high && byte == low {
+        Verdict::Proven
+    } else if (least..=high).contains(&byte) {
+        Verdict::Open
+    } else {
+        Verdict::Contradicted
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::model::Model;
+    use crate::scene::reader;
+    use crate::scene::registry::Registry;
+    use std::path::Path;
+
+    /// The middle pixel of 3 x 3 looks along -z, from 7 units in front of z = -2.
+    fn model(objects: &str) -> Model {
+        let registry = Registry::get().expect("sound types");
+        let scene = format!(
+            "camera eye {{ pixeldim 3 3 worlddim 8 6 viewpoint 4 3 5 }}
+             light lamp {{ location 4 6 2 emissivity 8 8 8 }} {objects}"
+        );
+        reader::read(registry, "scene", Path::new(""), scene.as_bytes(), None).expect("a sound scene").model
+    }
+
+    /// Asserts that the red of the middle pixel is this fraction, in every precision.
+    #[track_caller]
+    fn is_red(objects: &str, [numerator, denominator]: [f64; 2]) {
+        fn red<F: Number>(prover: &Prover) -> Interval<F> {
+            prover.mean::<F>(1, 1).0.expect("a known colour")[0]
+        }
+        fn is_enclosed<F: Float>(red: Interval<F>, [numerator, denominator]: [f64; 2], within: f64) {
+            let off = red * Interval::constant(denominator) - Interval::constant(numerator);
+            assert!(off.has_zero() && red.width().to_f64() < within, "{red:?}");
+        }
+        let model = model(objects);
+        let plan = Plan::new(&model);
+        let prover = Prover::new(&plan);
+        is_enclosed(red::<f64>(&prover), [numerator, denominator], 1e-12);
+        is_enclosed(red::<f256>(&prover), [numerator, denominator], 1e-60);
+        is_enclosed(red::<Fraction>(&prover), [numerator, denominator], 1e-60);
+        assert_eq!(prover.traced(1, 1).verdict(), Verdict::Proven);
+        let byte = (255.0 * numerator / denominator) as u8;
+        assert_eq!(prover.pixel(1, 1, [byte + 1, 0, 0]).channels[0], Verdict::Contradicted);
+    }
+
+    const BALL: &str = "sphere ball { material matt center 4 3 -3 radius 1 }";
+
+    #[test]
+    fn light_is_scattered_as_worked_out_by_hand() {
+        // The light is at (0, 3, 4) from the point: 5 away, at a cosine of 4/5. It adds 1.25 * 8 * 4/5 / 5 to 1/2.
+        let matt = "material matt { ambient 0.5 0.5 0.5 diffuse 1.25 1.25 1.25 }";
+        is_red(&format!("{matt} {BALL}"), [21.0, 70.0]);
+    }
+
+    #[test]
+    fn a_glint_is_as_worked_out_by_hand() {
+        // Half of the way to the light is (0, 3/5, 9/5); the square of its cosine is 9/10.
+        let shiny = "material matt { specular 0.125 shininess 2 }";
+        is_red(&format!("{shiny} {BALL}"), [9.0, 70.0]);
+    }
+
+    #[test]
+    fn shadows_and_panes_are_as_worked_out_by_hand() {
+        let matt = "material matt { ambient 0.5 0.5 0.5 diffuse 1.25 1.25 1.25 }";
+        let stop = "sphere stop { material matt center 4 4.5 0 radius 0.25 }";
+        is_red(&format!("{matt} {BALL} {stop}"), [0.5, 7.0]);
+        // Both walls of the ball of glass tint the light with 1/4 of red: 1.6 / 16 is added to 1/2.
+        let glass = "material glass { diffuse 1 2 2 transparency 0.5 }";
+        let pane = "sphere pane { material glass center 4 4.5 0 radius 0.25 }";
+        is_red(&format!("{matt} {glass} {BALL} {pane}"), [6.0, 70.0]);
+    }
+
+    #[test]
+    fn mirrors_and_glass_are_as_worked_out_by_hand() {
+        // The mirror shows the far ball 9 before it, 16 from the viewer by way of it.
+        let mirror = "material m { ambient 0.5 0.5 0.5 specular 0.25 } plane wall { material m normal 0 0 1 point 0 0 -2 }";
+        let behind = "material far { ambient 6 6 6 } sphere far { material far center 4 3 8 radius 1 }";
+        // 1/14 + 3/32
+        is_red(&format!("{mirror} {behind}"), [37.0, 224.0]);
+    }
+
+    #[test]
+    fn a_pixel_at_the_edge_of_a_tile_is_decided() {
+        let tiles = |color: &str| {
+            format!(
+                "material matt {{ ambient {color} }} pplane wall {{ material matt normal 0 0 1 point 0 0 -2 shader 0 }}"
+            )
+        };
+        // The point is (4, 3, -2): the corner of four tiles. That of greater x and z is even, without blue.
+        let model = model(&tiles("3.5 3.5 3.5"));
+        let plan = Plan::new(&model);
+        let prover = Prover::new(&plan);
+        assert_eq!(prover.pixel(1, 1, [127, 127, 0]).channels, [Verdict::Proven; 3]);
+        assert_eq!(
+            prover.pixel(1, 1, [0, 127, 127]).channels,
+            [Verdict::Rounded, Verdict::Proven, Verdict::Rounded]
+        );
+        assert_eq!(prover.pixel(1, 1, [0, 128, 127]).verdict(), Verdict::Contradicted);
+    }
+}

@@ -1,0 +1,152 @@
+//! A scene as proofs of colours look at it: what a line may hit.
+
+use crate::geometry::aabb::{Aabb, SLACK};
+use crate::geometry::sight::Line;
+use crate::numeric::interval::Interval;
+use crate::render::plan::Plan;
+use crate::scene::model::Object;
+use crate::world::certify::{Found, Precise};
+use crate::world::packets::light::{EncloseLight, PacketLight};
+use crate::world::packets::shader::{EncloseLook, PacketShader};
+use crate::world::shader::LookBounds;
+
+/// A colour in intervals.
+pub(super) type Colour<F> = [Interval<F>; 3];
+
+/// A place on an object.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Place {
+    /// The object's index.
+    pub object: usize,
+    /// The part of the object, as proofs count them.
+    pub part: usize,
+}
+
+/// A precision in which colours are proven.
+pub(super) trait Number: Precise {
+    /// Encloses the look of an object at a point.
+    fn look(object: &Object, at: [Interval<Self>; 3]) -> Option<LookBounds<Self>>;
+
+    /// Encloses what a light sends toward a point.
+    fn sent(light: &(dyn PacketLight + 'static), toward: [Interval<Self>; 3]) -> Option<Colour<Self>>;
+}
+
+impl<F: Precise> Number for F
+where
+    dyn PacketShader: EncloseLook<F>,
+    dyn PacketLight: EncloseLight<F>,
+{
+    fn look(object: &Object, at: [Interval<Self>; 3]) -> Option<LookBounds<Self>> {
+        EncloseLook::<F>::look(&*object.shader, &object.material, at)
+    }
+
+    fn sent(light: &(dyn PacketLight + 'static), toward: [Interval<Self>; 3]) -> Option<Colour<Self>> {
+        EncloseLight::<F>::sent(light, toward)
+    }
+}
+
+/// A plan, and a box around each object that has bounds.
+pub(super) struct Scene<'p, 'm> {
+    pub plan: &'p Plan<'m>,
+    pub objects: &'m [Object],
+    boxes: Vec<Option<Aabb>>,
+}
+
+/// What a line hits first.
+pub(super) enum First<F> {
+    /// Nothing, for certain.
+    Nothing,
+    /// This place, at a t in this interval, for certain.
+    Hit(Interval<F>, Place),
+    /// One of these places, at a t in the interval beside it, or nothing.
+    OneOf(Vec<(Interval<F>, Place)>, MayBeNothing),
+    /// It is not known.
+    Open,
+}
+
+/// Whether a line may hit nothing.
+pub(super) type MayBeNothing = bool;
+
+/// A line, and the place that it leaves.
+#[derive(Clone, Copy)]
+pub(super) struct Path<F> {
+    pub line: Line<Interval<F>>,
+    /// The place on which the line's true start lies, if it lies on an object.
+    pub leaves: Option<Place>,
+}
+
+impl<'p, 'm> Scene<'p, 'm> {
+    pub fn new(plan: &'p Plan<'m>) -> Self {
+        let objects = &plan.model.objects;
+        let around = |object: &Object| {
+            let Aabb { low, high } = object.shape.bounds()?;
+            let slack = SLACK * low.abs().max(high.abs()).max_element();
+            Some(Aabb { low: low - slack, high: high + slack })
+        };
+        Self { plan, objects, boxes: objects.iter().map(around).collect() }
+    }
+
+    /// Returns what is certain about the first hit of a line with the object of this index.
+    pub fn hit<F: Precise>(
+        &self,
+        path: &Path<F>,
+        coarse: &Line<Interval>,
+        index: usize,
+    ) -> (Found<F>, usize) {
+        if let Some(Aabb { low, high }) = self.boxes[index]
+            && coarse.clip(low, high).is_none()
+        {
+            return (Found::Misses, 0);
+        }
+        let leaves = path.leaves.filter(|place| place.object == index).map(|place| place.part);
+        match self.objects[index].shape.proven() {
+            Some(proven) => F::proofs(proven).first_hit(&path.line, leaves),
+            None => (Found::Doubtful(F::of(0.0)), 0),
+        }
+    }
+
+    /// Returns what a line hits first.
+    pub fn first<F: Precise>(&self, path: &Path<F>) -> First<F> {
+        let coarse = coarse(&path.line);
+        let mut found = Vec::new();
+        let mut end = F::INFINITY;
+        for object in 0..self.objects.len() {
+            let (hit, part) = self.hit(path, &coarse, object);
+            let low = match hit {
+                Found::Misses => continue,
+                Found::Hits(at) => {
+                    end = end.min(at.high);
+                    at.low
+                }
+                Found::Edge(at) => at.low,
+                Found::Doubtful(low) => low,
+            };
+            found.push((low, hit, Place { object, part }));
+        }
+        let mut nearest = found.iter().filter(|(low, ..)| *low <= end);
+        match (nearest.next(), nearest.next()) {
+            (None, _) => First::Nothing,
+            (Some((_, Found::Hits(at), place)), None) => First::Hit(*at, *place),
+            // Of several at exactly the same distance, the first in the file is seen.
+            (Some((_, first @ Found::Hits(at), place)), Some((_, second, _)))
+                if at.low == at.high && first == second && nearest.all(|(_, other, _)| other == first) =>
+            {
+                First::Hit(*at, *place)
+            }
+            _ => {
+                let at = |hit: &Found<F>| match hit {
+                    Found::Hits(at) | Found::Edge(at) => Some(*at),
+                    Found::Misses | Found::Doubtful(_) => None,
+                };
+                let among = found.iter().filter(|(low, ..)| *low <= end);
+                let among = among.map(|(_, hit, place)| Some((at(hit)?, *place))).collect::<Option<Vec<_>>>();
+                among.map_or(First::Open, |among| First::OneOf(among, !end.is_finite()))
+            }
+        }
+    }
+}
+
+/// Converts a line to `f64`, rounded outward.
+pub(super) fn coarse<F: Precise>(line: &Line<Interval<F>>) -> Line<Interval> {
+    Line { origin: line.origin.map(Interval::coarse), dir: line.dir.map(Interval::coarse) }
+}

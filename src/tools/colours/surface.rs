@@ -1,0 +1,73 @@
+//! A point of a surface that a ray hits, in intervals.
+
+use super::scene::{Colour, Number, Place, Scene};
+use crate::geometry::sight::Line;
+use crate::numeric::interval::{Float, Interval};
+use crate::numeric::scalar::{Scalar, dot};
+use crate::world::certify::gradient;
+
+/// A point that a ray hits, and how it looks there.
+pub(super) struct Surface<F> {
+    pub place: Place,
+    pub at: [Interval<F>; 3],
+    /// The unit normal, turned to face the ray where both sides are lit.
+    pub normal: [Interval<F>; 3],
+    pub ambient: Colour<F>,
+    pub diffuse: Colour<F>,
+    pub specular: Colour<F>,
+}
+
+impl<F: Number> Surface<F> {
+    /// Returns the point at t of a line; `None` where its normal or its look are open.
+    pub fn new(scene: &Scene, line: &Line<Interval<F>>, t: Interval<F>, place: Place) -> Option<Self> {
+        let object = &scene.objects[place.object];
+        let at = line.at(t);
+        let shape = F::proofs(object.shape.proven()?);
+        let normal = gradient(shape, at, place.part);
+        let length = dot(normal, normal).sqrt();
+        if length.has_zero() || !length.is_bounded() {
+            return None;
+        }
+        let normal = normal.map(|part| part / length);
+        let zero = F::of(0.0);
+        let toward =
+            if object.shape.is_two_sided() { dot(normal, line.dir) } else { Interval::constant(-1.0) };
+        let normal = if toward.high < zero {
+            normal
+        } else if toward.low > zero {
+            normal.map(|part| -part)
+        } else {
+            return None;
+        };
+        // What is mirrored is mirrored by the shading normal, too.
+        let normal = shape.shading_normal(at, place.part, normal)?;
+        let look = F::look(object, at)?;
+        let [ambient, diffuse, specular] = [look.ambient, look.diffuse, look.specular];
+        Some(Self { place, at, normal, ambient, diffuse, specular })
+    }
+}
+
+/// Returns the fraction of light that passes through an object at a point; `None` where it is open.
+pub(super) fn tint<F: Number>(transparency: f64, diffuse: Colour<F>) -> Option<Colour<F>> {
+    let [red, green, blue] = diffuse;
+    let strongest = red.max(green).max(blue);
+    let transparency = Interval::constant(transparency);
+    if strongest.low > F::of(0.0) {
+        Some(diffuse.map(|channel| transparency * ratio(channel, strongest)))
+    } else if strongest.high <= F::of(0.0) {
+        Some([transparency; 3])
+    } else {
+        None
+    }
+}
+
+/// Divides a channel by the strongest one, which it is no greater than.
+fn ratio<F: Float>(channel: Interval<F>, strongest: Interval<F>) -> Interval<F> {
+    let one = Interval::constant(1.0);
+    if channel == strongest && channel.low == channel.high { one } else { (channel / strongest).min(one) }
+}
+
+/// Tells whether a colour is black, for certain.
+pub(super) fn is_black<F: Float>(colour: &Colour<F>) -> bool {
+    colour.iter().all(|channel| channel.is_zero())
+}

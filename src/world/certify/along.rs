@@ -1,0 +1,33 @@
+//! The first hit of a line, by the method that fits the equation.
+
+use super::equation::{Equation, Found, Values};
+use super::{closed, search};
+use crate::geometry::sight::Line;
+use crate::numeric::interval::{Float, Interval};
+
+/// The maximum number of pieces of a line that are examined before a search is given up.
+pub(super) const PIECES: usize = 2000;
+
+/// The maximum number of operations with 237 bits that a search may take if each piece is evaluated once: a tenth of a
+/// second's worth. Only formulas of more than ten operations are given up before [`PIECES`].
+const OPERATIONS: usize = 20_000;
+
+/// Returns the number of pieces after which a search with 237 bits is given up.
+pub(super) fn most_pieces(shape: &impl Equation) -> usize {
+    PIECES.min(OPERATIONS / shape.cost().max(1))
+}
+
+/// Finds the first hit of a line given in world coordinates. With `leaves`, the line's true start lies on the shape.
+pub(super) fn first_along<F: Float>(
+    shape: &dyn Values<F>,
+    line: &Line<Interval<F>>,
+    leaves: bool,
+    pieces: usize,
+) -> Found<F> {
+    let line = shape.own(*line);
+    if shape.is_quadratic() {
+        closed::first_hit(shape, &line, leaves)
+    } else {
+        search::first_hit(shape, &line, leaves, pieces)
+    }
+}

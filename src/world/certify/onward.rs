@@ -1,0 +1,152 @@
+//! Proofs about rays that continue from a point of a surface: mirrored rays, those that glass lets pass, and shadow rays.
+//!
+//! Nothing about such a ray is a number of the scene. Its line has intervals as coefficients, and starts at the true point
+//! on the surface, somewhere in an enclosure. That the point lies on the surface is known, although no interval tells.
+
+use super::along::{PIECES, first_along, most_pieces};
+use super::equation::{Equation, Found};
+use crate::geometry::sight::Line;
+use crate::numeric::dual::Dual;
+use crate::numeric::interval::{Fine, Float, Fraction, Interval, Wide};
+use crate::numeric::scalar::Scalar;
+use f256::f256;
+
+/// What can be proven of a shape's hits along any line, in one precision.
+pub trait Onward<F: Float> {
+    /// Returns what is certain about a line's first hit with t > 0, and the part of the shape that is hit. The line is in
+    /// world coordinates; `leaves` is the part on which the line's true start lies, if it lies on the shape.
+    fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (Found<F>, usize);
+
+    /// Encloses the value of the equation of a part at a point in world coordinates, and its derivative.
+    fn slope(&self, at: [Dual<Interval<F>>; 3], part: usize) -> Dual<Interval<F>>;
+
+    /// Encloses the unit normal with which a point of a part is shaded, where it is not that of the surface, which is
+    /// `normal`, turned to the ray where both sides are lit; `None` where it is open.
+    fn shading_normal(
+        &self,
+        _at: [Interval<F>; 3],
+        _part: usize,
+        normal: [Interval<F>; 3],
+    ) -> Option<[Interval<F>; 3]> {
+        Some(normal)
+    }
+}
+
+/// What can be proven of a shape's hits along any line, in every precision.
+pub trait Proven: Onward<f64> + Onward<f256> + Onward<Fraction> {}
+
+impl<T: Onward<f64> + Onward<f256> + Onward<Fraction>> Proven for T {}
+
+impl<E: Equation, F: Precise> Onward<F> for E {
+    fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (Found<F>, usize) {
+        (F::along(self, line, leaves.is_some()), 0)
+    }
+
+    fn slope(&self, at: [Dual<Interval<F>>; 3], _part: usize) -> Dual<Interval<F>> {
+        let point = Line { origin: at, dir: [Dual::constant(0.0); 3] };
+        self.value(self.own(point).origin)
+    }
+}
+
+/// Encloses the gradient of a part's equation at a point: a vector along the normal.
+pub fn gradient<F: Float>(
+    shape: &(impl Onward<F> + ?Sized),
+    at: [Interval<F>; 3],
+    part: usize,
+) -> [Interval<F>; 3] {
+    [0, 1, 2].map(|axis| {
+        let along = |other: usize| {
+            if other == axis { Dual::variable(at[other]) } else { Dual::fixed(at[other]) }
+        };
+        shape.slope([along(0), along(1), along(2)], part).slope
+    })
+}
+
+/// A precision that proofs are tried in.
+pub trait Precise: Float {
+    /// Returns a shape's proofs in this precision.
+    fn proofs(shape: &dyn Proven) -> &dyn Onward<Self>;
+
+    /// Returns what is certain about a line's first hit. With `leaves`, the line's true start lies on the shape.
+    fn along(shape: &impl Equation, line: &Line<Interval<Self>>, leaves: bool) -> Found<Self>;
+
+    /// Converts an interval, rounded outward. Numbers that need no rounding stay as they are.
+    fn narrow(of: Fine) -> Interval<Self>;
+
+    /// Converts an interval, exactly.
+    fn widen(of: Interval<Self>) -> Fine;
+}
+
+impl Precise for f64 {
+    fn proofs(shape: &dyn Proven) -> &dyn Onward<Self> {
+        shape
+    }
+
+    fn along(shape: &impl Equation, line: &Line<Interval>, leaves: bool) -> Found<Self> {
+        first_along(shape, line, leaves, PIECES)
+    }
+
+    fn narrow(of: Fine) -> Interval {
+        let of = of.wide();
+        let (low, high) = (of.low.to_f64(), of.high.to_f64());
+        Interval {
+            low: if f256::from(low) == of.low { low } else { low.next_down() },
+            high: if f256::from(high) == of.high { high } else { high.next_up() },
+        }
+    }
+
+    fn widen(of: Interval) -> Fine {
+        Wide::from(of).into()
+    }
+}
+
+impl Precise for f256 {
+    fn proofs(shape: &dyn Proven) -> &dyn Onward<Self> {
+        shape
+    }
+
+    fn along(shape: &impl Equation, line: &Line<Wide>, leaves: bool) -> Found<Self> {
+        first_along(shape, line, leaves, most_pieces(shape))
+    }
+
+    fn narrow(of: Fine) -> Wide {
+        of.wide()
+    }
+
+    fn widen(of: Wide) -> Fine {
+        of.into()
+    }
+}
+
+/// Fractions decide ties of surfaces whose hits have closed forms; other surfaces are searched in 237 bits.
+impl Precise for Fraction {
+    fn proofs(shape: &dyn Proven) -> &dyn Onward<Self> {
+        shape
+    }
+
+    fn along(shape: &impl Equation, line: &Line<Fine>, leaves: bool) -> Found<Self> {
+        if is_closed(shape) {
+            return first_along(shape, line, leaves, 0);
+        }
+        let wide = Line { origin: line.origin.map(Interval::wide), dir: line.dir.map(Interval::wide) };
+        match f256::along(shape, &wide, leaves) {
+            Found::Misses => Found::Misses,
+            Found::Hits(at) => Found::Hits(at.into()),
+            Found::Edge(at) => Found::Edge(at.into()),
+            Found::Doubtful(from) => Found::Doubtful(from.into()),
+        }
+    }
+
+    fn narrow(of: Fine) -> Fine {
+        of
+    }
+
+    fn widen(of: Fine) -> Fine {
+        of
+    }
+}
+
+/// Tells whether the hits of a shape have closed forms.
+fn is_closed<E: Equation>(_shape: &E) -> bool {
+    E::IS_QUADRATIC
+}

@@ -1,0 +1,40 @@
+//! The bytes of images are those of the proven colours, in every scene.
+
+use crate::common::{load, root, scenes};
+use std::thread;
+use tabray::render::Plan;
+use tabray::tools::colours::{Prover, Verdict};
+use tabray::world::Accuracy;
+
+#[test]
+fn no_byte_is_contradicted_and_nearly_every_pixel_is_proven() {
+    // Deep reflections take a stack as large as those of the program's threads.
+    let thread = thread::Builder::new().stack_size(128 << 20).spawn(all_scenes).expect("a thread");
+    thread.join().expect("no failure");
+}
+
+fn all_scenes() {
+    // Proven, rounded, open and contradicted pixels.
+    let mut counts = [0; 4];
+    for path in scenes() {
+        let name = path.strip_prefix(root().join("scenes")).expect("a scene").to_string_lossy().into_owned();
+        let model = load(&path);
+        if model.camera.value.accuracy == Accuracy::Classic {
+            continue;
+        }
+        let mut plan = Plan::new(&model);
+        plan.camera.samples = 1;
+        let prover = Prover::new(&plan);
+        let [width, height] = plan.camera.pixels;
+        let step = if width > 320 { 61 } else { 17 };
+        for y in (0..height).step_by(step) {
+            for x in (0..width).step_by(step) {
+                let verdict = prover.traced(x, y).verdict();
+                assert_ne!(verdict, Verdict::Contradicted, "{name}: {x} {y}");
+                counts[verdict as usize] += 1;
+            }
+        }
+    }
+    let [proven, rounded, open, _] = counts;
+    assert!(100 * (rounded + open) < proven, "{counts:?}");
+}
