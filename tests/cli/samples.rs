@@ -79,6 +79,30 @@ fn a_small_object_between_samples_is_not_lost() {
 }
 
 #[test]
+fn adaptive_samples_do_not_depend_on_what_the_image_does_not_need() {
+    // The red lamp adds nothing to the green floor, and `aside` is seen by pixels around the image only.
+    let text = "camera eye { pixeldim 40 30  worlddim 8 6  viewpoint 4 3 8 }
+        material green { ambient 0 0.2 0  diffuse 0 3 0 }
+        material white { ambient 8 8 8 }
+        light green { location 2 6 -3  emissivity 0 3 0 }
+        light red { location 6 6 -3  emissivity 3 0 0 }
+        sphere ball { material green  center 4 2 -3  radius 1 }
+        sphere aside { material white  center -1.2 3 0  radius 1.09 }
+        plane floor { material green  normal 0 1 0  point 0 0 0 }";
+    let folder = folder();
+    fs::write(folder.path().join("a.ray"), text).expect("a file");
+    let render = |options: &[&str]| {
+        let arguments = ["render", "a.ray", "-o", "-", "--samples", "2..64", "--stats", "json"];
+        let (status, out, err) = outcome(tabray(&folder).args(arguments).args(options));
+        assert_eq!(status, 0, "{err}");
+        let json = err.lines().find(|line| line.starts_with('{')).expect("statistics");
+        let stats: serde_json::Value = serde_json::from_str(json).expect("JSON");
+        (out, stats["samples"].clone())
+    };
+    assert_eq!(render(&[]), render(&["--keep-all"]));
+}
+
+#[test]
 fn plan_says_how_many_samples_pixels_take() {
     let says = |options: &[&str]| {
         let (status, out, err) =
