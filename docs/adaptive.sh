@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # What adaptive numbers of samples cost and how wrong they are: the tables of docs/adaptive.md, printed in Markdown, and
-# its chart, docs/charts/adaptive.svg.
+# a chart, docs/charts/adaptive.svg.
 #
 #     bash docs/adaptive.sh [rms|limits|povray]
 #

@@ -22,8 +22,9 @@ use std::time::Instant;
 pub struct Args {
     /// The scene; `-` reads it from standard input
     scene: PathBuf,
-    /// The image to write: a .png or .ppm file, or an .exr or .pfm file for colours that are not clamped or rounded, or `-` for standard output (a PPM unless --format says otherwise); by
-    /// default the scene's name with .png in the working directory
+    /// The image to write: a .png or .ppm file, or an .exr or .pfm file for colours that are not clamped or rounded, or
+    /// `-` for standard output (a PPM unless --format says otherwise); by default the scene's name with .png in the
+    /// working directory
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// The image format, whatever the file's extension

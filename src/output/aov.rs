@@ -14,9 +14,8 @@ use glam::DVec3;
 use std::io;
 use std::ops::ControlFlow;
 
-/// An image beside the main one (an arbitrary output variable). All but the colour, the cost, the
-/// samples and the colours of the error are taken
-/// along the ray through the centre of each pixel, however many samples the pixel has.
+/// An image beside the main one (an arbitrary output variable). All but the colour, the cost, the samples and the colours
+/// of the error are taken along the ray through the centre of each pixel, however many samples the pixel has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Aov {
     /// Distance of the first hit, near ones bright.

@@ -38,8 +38,8 @@ pub struct Camera {
 pub struct Adaptive {
     /// The maximum number of primary rays per pixel: [`Camera::samples`] times a power of two.
     pub most: u32,
-    /// The maximum error of a pixel's colour, where 1 is white, which 99 of 100 pixels are meant to keep; `None` where
-    /// the samples are to lower the error of the whole image.
+    /// The error of a pixel's colour, where 1 is white, that is to be estimated at last; `None` where the samples are to
+    /// lower the error of the whole image.
     pub error: Option<f64>,
 }
 
