@@ -39,6 +39,9 @@ inventory::submit! {
             });
         }
         Ok(Camera {
+            adaptive: None,
+            scramble: 0,
+            exposure: 0.0,
             // The attributes' rules ensure that these casts are lossless.
             pixels: args.get(&PIXELDIM).map(|side| side as usize),
             screen: args.get(&WORLDDIM),

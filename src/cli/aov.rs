@@ -10,7 +10,7 @@ use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::scene::model::Model;
 use crate::text;
-use crate::world::sample::Sampler;
+use crate::world::sample::{SCRAMBLE, Sampler};
 use std::ffi::OsStr;
 use std::io::Write;
 use std::iter;
@@ -87,6 +87,9 @@ pub fn open(
 const TRUE_TIMES: u32 = 4;
 const TRUE_LEAST: u32 = 64;
 
+/// The maximum number of samples per pixel of the reference where pixels take different numbers.
+const TRUE_MOST: u32 = 1024;
+
 /// Renders the auxiliary images and writes their files. `exact` makes the model of the reference for errors.
 pub fn write(
     plan: &Plan,
@@ -99,7 +102,14 @@ pub fn write(
     let truth = if files.iter().any(|file| file.aov == Aov::Error) {
         exact_model = exact()?;
         let mut exact = Plan::new(&exact_model);
-        let samples = (TRUE_TIMES * plan.camera.samples).clamp(TRUE_LEAST, Sampler::MOST);
+        let samples = match plan.camera.adaptive {
+            None => (TRUE_TIMES * plan.camera.samples).clamp(TRUE_LEAST, Sampler::MOST),
+            Some(adaptive) => {
+                // Samples of their own, since a pixel may have taken as many.
+                exact.camera.scramble = SCRAMBLE;
+                TRUE_TIMES.saturating_mul(adaptive.most).clamp(TRUE_LEAST, TRUE_MOST)
+            }
+        };
         (exact.camera.samples, exact.camera.sampler) = (samples, Sampler::Sobol);
         own = exact;
         &own

@@ -1,5 +1,7 @@
 //! `tabray bench`: how fast scenes are traced on one core.
 
+mod sampling;
+
 use super::failure::{Failure, print};
 use super::{cpu, input, method};
 use crate::scene::model::Model;
@@ -26,6 +28,15 @@ pub struct Args {
     /// Measuring time for each number, in seconds
     #[arg(long, value_name = "S", default_value = "0.3", value_parser = seconds, allow_negative_numbers = true)]
     seconds: Duration,
+    /// Compare numbers of samples per pixel instead, and print a table in Markdown
+    #[arg(long, value_name = "QUESTION", conflicts_with_all = ["json", "seconds"])]
+    sampling: Option<sampling::Question>,
+    /// The width and height of the images of --sampling in pixels; by default those of the scenes' cameras
+    #[arg(long, value_name = "WxH", value_parser = size, requires = "sampling")]
+    size: Option<[usize; 2]>,
+    /// Write a chart of --sampling, an .svg file
+    #[arg(short, long, value_name = "FILE", requires = "sampling")]
+    output: Option<PathBuf>,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -40,6 +51,12 @@ fn seconds(text: &str) -> Result<Duration, String> {
         .ok_or_else(|| "must be from 0 to 3600 seconds".to_owned())
 }
 
+fn size(text: &str) -> Result<[usize; 2], String> {
+    let side = |text: &str| text.parse().ok().filter(|side| (2..=4096).contains(side));
+    let sides = text.split_once('x').and_then(|(width, height)| Some([side(width)?, side(height)?]));
+    sides.ok_or_else(|| "give the width and height as `160x120`, each from 2 to 4096".to_owned())
+}
+
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let cpu = args.cpu.cpu()?;
     let accuracy = args.method.accuracy()?;
@@ -52,6 +69,9 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
             let built = reader::build(registry, scene).map_err(Failure::Scene)?;
             models.push((name.to_owned(), built.model));
         }
+    }
+    if let Some(question) = args.sampling {
+        return sampling::run(question, models, args.size, args.output.as_deref());
     }
     let mut measured = Vec::new();
     for (name, model) in models {

@@ -2,11 +2,11 @@
 
 use super::explain::Place;
 use super::failure::{Failure, print, tell};
+use super::input;
+use super::picture::Picture;
 use super::report::{Change, Item, Page};
-use super::{input, picture};
-use crate::output::compare::Comparison;
+use crate::output::compare::{Comparison, FullRangeComparison};
 use crate::scene::registry::Registry;
-use image::RgbImage;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -18,7 +18,7 @@ use std::process::ExitCode;
 #[derive(clap::Args)]
 #[command(after_help = EXIT_STATUS)]
 pub struct Args {
-    /// The old image, PNG or PPM
+    /// The old image: PNG or PPM, or EXR or PFM
     old: PathBuf,
     /// The new image, of the same size
     new: PathBuf,
@@ -57,17 +57,33 @@ pub fn run(registry: &Registry, args: &Args) -> ExitCode {
 fn compare(registry: &Registry, args: &Args) -> Result<bool, Failure> {
     let page = args.output.as_deref().map(Page::open).transpose()?;
     let model = args.scene.as_deref().map(|scene| input::load(registry, scene, None)).transpose()?;
-    let (old, new) = (picture::read(&args.old)?, picture::read(&args.new)?);
+    let (old, new) = (Picture::read(&args.old)?, Picture::read(&args.new)?);
     let names = [&args.old, &args.new].map(|path| path.display().to_string());
-    let comparison = Comparison::new(&old, &new, args.tolerance).ok_or_else(|| {
-        let size = |name: &str, picture: &RgbImage| {
-            format!("`{name}` has {} x {} pixels", picture.width(), picture.height())
-        };
+    let sizes = [old.size(), new.size()];
+    let other_size = || {
+        let size =
+            |name: &str, (width, height): (u32, u32)| format!("`{name}` has {width} x {height} pixels");
         Failure::Usage(
-            format!("{}, and {}", size(&names[0], &old), size(&names[1], &new)),
+            format!("{}, and {}", size(&names[0], sizes[0]), size(&names[1], sizes[1])),
             Some("only images of the same size can be compared".to_owned()),
         )
-    })?;
+    };
+    let (old, new) = match (old, new) {
+        (Picture::Bytes(old), Picture::Bytes(new)) => (old, new),
+        (old, new) if page.is_none() => {
+            let comparison = FullRangeComparison::new(&old.full_range(), &new.full_range(), args.tolerance);
+            let comparison = comparison.ok_or_else(other_size)?;
+            print(&format!("{comparison}\n"))?;
+            return Ok(comparison.differing == 0);
+        }
+        _ => {
+            return Err(Failure::Usage(
+                "a page shows images of 8 bits per channel only".to_owned(),
+                Some("compare PNGs or PPMs, or leave out `--output`".to_owned()),
+            ));
+        }
+    };
+    let comparison = Comparison::new(&old, &new, args.tolerance).ok_or_else(other_size)?;
     let first = comparison.first;
     let place = first.map(|pixel| format!("first at {pixel}\n")).unwrap_or_default();
     print(&format!("{comparison}\n{place}"))?;

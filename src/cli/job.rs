@@ -180,7 +180,7 @@ impl Job<'_> {
 }
 
 /// Warns of pixels that reached the limit on their number of rays, if there are any.
-fn warn_of(cuts: Cuts) {
+pub fn warn_of(cuts: Cuts) {
     if cuts.pixels == 0 {
         return;
     }

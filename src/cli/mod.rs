@@ -14,6 +14,7 @@ mod diff;
 mod dump;
 mod explain;
 mod failure;
+mod full_range;
 #[doc(hidden)]
 pub mod fuzz;
 mod grammar;
@@ -39,6 +40,7 @@ mod render;
 mod report;
 mod resume;
 mod review;
+mod samples;
 mod schema;
 mod serve;
 mod size;

@@ -2,9 +2,10 @@
 
 use super::failure::Failure;
 use crate::files::{self, ImageBytes};
+use crate::output::full_range::{self, FullRange};
 use crate::text;
-use image::{DynamicImage, ImageReader, RgbImage};
-use std::io::BufReader;
+use image::{DynamicImage, ImageFormat, ImageReader, Rgb32FImage, RgbImage};
+use std::io::{self, BufReader};
 use std::path::Path;
 
 /// Reads the image in a file.
@@ -12,6 +13,49 @@ pub fn read(path: &Path) -> Result<RgbImage, Failure> {
     let cannot = |reason: String| Failure::Usage(format!("cannot read `{}`: {reason}", path.display()), None);
     let file = files::open(path).map_err(|error| cannot(text::reason(&error)))?;
     decode(&mut BufReader::new(file)).map_err(cannot)
+}
+
+/// An image with bytes or with numbers of full range.
+pub enum Picture {
+    Bytes(RgbImage),
+    FullRange(Rgb32FImage),
+}
+
+impl Picture {
+    /// Reads the image in a file.
+    pub fn read(path: &Path) -> Result<Self, Failure> {
+        let cannot =
+            |reason: String| Failure::Usage(format!("cannot read `{}`: {reason}", path.display()), None);
+        let Some(format) = FullRange::of(path) else { return read(path).map(Self::Bytes) };
+        let file = BufReader::new(files::open(path).map_err(|error| cannot(text::reason(&error)))?);
+        let picture = match format {
+            FullRange::Pfm => full_range::read_pfm(file).map_err(|error| match error.kind() {
+                io::ErrorKind::InvalidData => "it is no PFM of three channels".to_owned(),
+                _ => text::reason(&error),
+            }),
+            FullRange::Exr => ImageReader::with_format(file, ImageFormat::OpenExr)
+                .decode()
+                .map(DynamicImage::into_rgb32f)
+                .map_err(|error| text::picture_reason(&error)),
+        };
+        picture.map(Self::FullRange).map_err(cannot)
+    }
+
+    /// Returns the numbers, where 1 is white.
+    pub fn full_range(self) -> Rgb32FImage {
+        match self {
+            Self::Bytes(picture) => DynamicImage::ImageRgb8(picture).into_rgb32f(),
+            Self::FullRange(picture) => picture,
+        }
+    }
+
+    /// Returns the width and the height in pixels.
+    pub fn size(&self) -> (u32, u32) {
+        match self {
+            Self::Bytes(picture) => picture.dimensions(),
+            Self::FullRange(picture) => picture.dimensions(),
+        }
+    }
 }
 
 /// Decodes an image. Content that 8-bit red, green and blue cannot represent is an error, and is not dropped.

@@ -1,7 +1,7 @@
 //! `tabray plan`: how a scene would be rendered, and why.
 
 use super::failure::{Failure, print};
-use super::{input, keep, method};
+use super::{input, keep, method, samples};
 use crate::render::decisions::{self, Decision};
 use crate::scene::registry::Registry;
 use crate::simd::cpu::Cpu;
@@ -13,13 +13,16 @@ pub struct Args {
     /// The scene; `-` reads it from standard input
     scene: PathBuf,
     #[command(flatten)]
+    samples: samples::Args,
+    #[command(flatten)]
     method: method::Args,
     #[command(flatten)]
     keep: keep::Args,
 }
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
-    let model = input::load(registry, &args.scene, args.method.accuracy()?)?;
+    let mut model = input::load(registry, &args.scene, args.method.accuracy()?)?;
+    args.samples.apply(&mut model.camera.value)?;
     let best = format!("{}, the highest level of this machine; the image is the same with any", Cpu::best());
     let cpu = Decision { subject: "instructions", text: best };
     print(

@@ -6,14 +6,14 @@ use super::job::Job;
 use super::output::{Output, named};
 use super::resume::Begun;
 use super::stats::{self, Stats};
-use super::{aov, cpu, debug, input, keep, messages, method, output, size, stop};
+use super::{aov, cpu, debug, full_range, input, keep, messages, method, output, samples, size, stop};
 use crate::output::deflate::Compression;
+use crate::output::full_range::FullRange;
 use crate::output::picture::Format;
 use crate::render::renderer::Renderer;
 use crate::scene::reader::{Chosen, Loaded};
 use crate::scene::registry::Registry;
 use crate::world::accuracy::Accuracy;
-use crate::world::sample::Sampler;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -22,8 +22,9 @@ use std::time::Instant;
 pub struct Args {
     /// The scene; `-` reads it from standard input
     scene: PathBuf,
-    /// The image to write: a .png or .ppm file, or `-` for standard output (a PPM unless --format says otherwise); by
-    /// default the scene's name with .png in the working directory
+    /// The image to write: a .png or .ppm file, or an .exr or .pfm file for colours that are not clamped or rounded, or
+    /// `-` for standard output (a PPM unless --format says otherwise); by default the scene's name with .png in the
+    /// working directory
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// The image format, whatever the file's extension
@@ -32,15 +33,14 @@ pub struct Args {
     /// The compression of a PNG
     #[arg(long, value_name = "HOW", default_value = "fast")]
     compress: Compression,
-    /// The number of samples per pixel, to smooth edges; by default that of the scene's camera
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(Sampler::MOST)))]
-    samples: Option<u32>,
-    /// The distribution of the samples within a pixel
-    #[arg(long, value_name = "NAME", default_value = "sobol")]
-    sampler: Sampler,
+    #[command(flatten)]
+    samples: samples::Args,
     /// The number of threads; by default one per core
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+    /// The exposure in stops: each doubles all colours, and each below 0 halves them
+    #[arg(long, value_name = "STOPS", default_value = "0", value_parser = exposure, allow_negative_numbers = true)]
+    exposure: f64,
     #[command(flatten)]
     size: size::Args,
     #[command(flatten)]
@@ -61,7 +61,9 @@ pub struct Args {
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let path = target(&args)?;
-    let format = format(&args, &path)?;
+    let full_range = FullRange::of(&path).filter(|_| args.format.is_none());
+    // Images beside one of full range are PNGs.
+    let format = if full_range.is_some() { Format::Png(args.compress) } else { format(&args, &path)? };
     let stop = args.stop.watch()?;
     let cpu = args.cpu.cpu()?;
     let start = Instant::now();
@@ -72,14 +74,18 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let Loaded { mut model, building, .. } = input::told(source.load_by(registry, chosen(accuracy)))?;
     let mut stats = Stats { reading: start.elapsed() - building, building, ..Stats::default() };
     let camera = &mut model.camera.value;
-    camera.samples = args.samples.unwrap_or(camera.samples);
-    camera.sampler = args.sampler;
+    args.samples.apply(camera)?;
+    camera.exposure = args.exposure;
     let part = args.size.apply(camera)?;
     output::is_no_source(&path, &args.scene, &model)?;
     let output = Output::open(&path)?;
-    let beside = aov::open((&args.scene, &model), &args.aov, &path, &output)?;
+    let main = if full_range.is_some() { path.with_extension("png") } else { path.clone() };
+    let beside = aov::open((&args.scene, &model), &args.aov, &main, &output)?;
     // The text of a large scene takes as much memory as its model.
     let source = (!beside.is_empty()).then_some(source);
+    if full_range.is_some() && args.stop.resume {
+        return Err(full_range::refuse(&path, "resumed"));
+    }
     let begun = Begun::open(args.stop.resume, &model, &part, &path, &output)?;
     debug::print(&model, &args.debug)?;
     let threads = args.threads.unwrap_or(0).into();
@@ -88,23 +94,28 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     stats.building += start.elapsed();
     let renderer = Renderer::new(threads)?.on(cpu);
     let whole = Instant::now();
-    let job = Job {
-        plan: &plan,
-        part: &part,
-        renderer: &renderer,
-        format,
-        path: &path,
-        at_once: args.stop.band(part.columns.len())?,
-        stop: &stop,
-        stats: args.stats.wants_any().then_some(&stats),
-    };
-    job.run(output, begun)?;
-    stats.writing = whole.elapsed().saturating_sub(stats.rendering.get());
-    if path != Path::new("-") {
-        let [width, height] = part.size();
-        let seconds = start.elapsed().as_secs_f64();
-        messages::note(&format!("wrote {} ({width} x {height} pixels, {seconds:.2} s)", path.display()));
+    if let Some(format) = full_range {
+        args.stop.fits(full_range::PIXEL * part.columns.len() * part.rows.len())?;
+        full_range::render((&plan, &part), (&renderer, &stop), (format, &path), output, &stats)?;
+    } else {
+        let job = Job {
+            plan: &plan,
+            part: &part,
+            renderer: &renderer,
+            format,
+            path: &path,
+            at_once: args.stop.band(part.columns.len())?,
+            stop: &stop,
+            stats: args.stats.wants_any().then_some(&stats),
+        };
+        job.run(output, begun)?;
+        if path != Path::new("-") {
+            let [width, height] = part.size();
+            let seconds = start.elapsed().as_secs_f64();
+            messages::note(&format!("wrote {} ({width} x {height} pixels, {seconds:.2} s)", path.display()));
+        }
     }
+    stats.writing = whole.elapsed().saturating_sub(stats.rendering.get());
     args.stats.print(&stats, &model);
     let Some(source) = source else { return Ok(()) };
     let exact = || match source.load_by(registry, chosen(Some(Accuracy::Exact))) {
@@ -113,6 +124,11 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     };
     stop.ends_from_here()?;
     aov::write(&plan, exact, threads, format, beside)
+}
+
+fn exposure(text: &str) -> Result<f64, String> {
+    let stops = text.parse().ok().filter(|stops: &f64| (-32.0..=32.0).contains(stops));
+    stops.ok_or_else(|| "give stops as `1.5` or `-2`, from -32 to 32".to_owned())
 }
 
 fn target(args: &Args) -> Result<PathBuf, Failure> {

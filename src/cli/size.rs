@@ -15,7 +15,7 @@ pub struct Args {
     #[arg(long, value_name = "W|WxH", value_parser = size)]
     size: Option<Size>,
     /// Render a preview: a quarter of the width and height, with one sample per pixel
-    #[arg(long, conflicts_with_all = ["size", "samples"])]
+    #[arg(long, conflicts_with_all = ["size", "samples", "max_error"])]
     quick: bool,
     /// Render only this part of the image, W pixels wide and H high, exactly as it is in the whole image: X is its
     /// first column, from 0 at the left, and Y its first row, from 0 at the bottom

@@ -71,6 +71,11 @@ impl Sum {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// Returns the pixels that have used up their ray budget.
+    pub fn cuts(&self) -> Cuts {
+        self.get().cuts
+    }
+
     /// Adds the counts of a part.
     pub fn add(&self, part: &RayStats) {
         self.get().add(part);
@@ -96,6 +101,13 @@ impl Stats {
         let mut out = format!("{:<12} {:>14}\n", "rays", "cast");
         for kind in RayKind::ALL {
             let _ = writeln!(out, "{kind:<12} {:>14}", tally.rays(kind));
+        }
+        if let Some(mean) = mean_samples(&tally) {
+            let _ = writeln!(out, "\n{:<12} {:>14}", "samples", "pixels");
+            for (samples, pixels) in tally.sampled() {
+                let _ = writeln!(out, "{samples:<12} {pixels:>14}");
+            }
+            let _ = writeln!(out, "{:<12} {mean:>14.2}", "mean");
         }
         let Cuts { pixels, most } = tally.cuts;
         let _ = writeln!(out, "\n{:<12} {:>14} {:>14}", "cut off", "pixels", "levels");
@@ -134,6 +146,7 @@ impl Stats {
                 shadow: tally.rays(RayKind::Shadow),
                 transmitted: tally.rays(RayKind::Transmitted),
             },
+            samples: mean_samples(&tally).map(|mean| Samples { mean, pixels: tally.sampled().collect() }),
             seconds: self.seconds(),
             tests: tally.tests(model),
         }
@@ -150,6 +163,9 @@ struct Counts {
     peak_memory: Option<u64>,
     /// The numbers of rays that were traced.
     rays: Rays,
+    /// The numbers of samples that pixels took; left out where all take the same.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    samples: Option<Samples>,
     /// The time of each stage.
     seconds: Seconds,
     /// The outcomes of the tests, by entity type.
@@ -159,7 +175,7 @@ struct Counts {
 /// The numbers of rays that were traced.
 #[derive(Serialize)]
 struct Rays {
-    /// Primary rays: pixels times samples.
+    /// Primary rays: pixels times samples; where pixels differ in their samples, also those around the tiles.
     primary: u64,
     /// Reflected rays.
     reflected: u64,
@@ -167,6 +183,22 @@ struct Rays {
     shadow: u64,
     /// Rays through glass.
     transmitted: u64,
+}
+
+/// The numbers of samples that pixels took.
+#[derive(Serialize)]
+struct Samples {
+    /// The mean number per pixel.
+    mean: f64,
+    /// The number of pixels that took each number of samples.
+    pixels: BTreeMap<u32, u64>,
+}
+
+/// Returns the mean number of samples of a pixel, where pixels differ in it.
+fn mean_samples(tally: &RayStats) -> Option<f64> {
+    let pixels: u64 = tally.sampled().map(|(_, pixels)| pixels).sum();
+    let samples: u64 = tally.sampled().map(|(samples, pixels)| u64::from(samples) * pixels).sum();
+    (pixels > 0).then(|| samples as f64 / pixels as f64)
 }
 
 /// The time of each stage, in seconds.

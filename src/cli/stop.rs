@@ -171,6 +171,17 @@ impl Args {
         self.max_memory.map(|limit| limit.as_u64().saturating_sub(now))
     }
 
+    /// Refuses an image that takes more memory at one time, in bytes, than the limit leaves.
+    pub fn fits(&self, bytes: usize) -> Result<(), Failure> {
+        match (self.max_memory, self.left()) {
+            (Some(limit), Some(left)) if left < bytes as u64 => Err(Failure::Usage(
+                format!("{limit} of memory is not enough for this image"),
+                Some(format!("it needs about {} more", ByteSize(bytes as u64 - left))),
+            )),
+            _ => Ok(()),
+        }
+    }
+
     /// Returns how many pixels of an image of this width may be in memory at one time.
     pub fn band(&self, width: usize) -> Result<usize, Failure> {
         let Some(limit) = self.max_memory else { return Ok(BAND) };

@@ -1,20 +1,21 @@
 //! Images of what a renderer computes beside colours: depth, normals, objects, the cost of each pixel and its error.
 
 use crate::geometry::sight::Sight;
+use crate::output::full_range::FullRange;
 use crate::render::bytes::{shown, to_byte};
 use crate::render::observer::{Event, TraceObserver};
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::render::trace;
+use crate::world::camera::Camera;
+use crate::world::material::Rgb;
 use clap::ValueEnum;
 use glam::DVec3;
-use image::codecs::openexr::OpenExrEncoder;
-use image::{ExtendedColorType, ImageEncoder};
-use std::io::{self, Cursor};
+use std::io;
 use std::ops::ControlFlow;
 
-/// An image beside the main one (an arbitrary output variable). All but the cost and the colours of the error are taken
-/// along the ray through the centre of each pixel, however many samples the pixel has.
+/// An image beside the main one (an arbitrary output variable). All but the colour, the cost, the samples and the colours
+/// of the error are taken along the ray through the centre of each pixel, however many samples the pixel has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Aov {
     /// Distance of the first hit, near ones bright.
@@ -27,10 +28,18 @@ pub enum Aov {
     Normal,
     /// Object seen, each in its own colour.
     Object,
+    /// Colour, before it is clamped and rounded.
+    ///
+    /// With all samples, as in the main image.
+    Colour,
     /// Number of rays that a pixel takes.
     ///
     /// The most expensive pixel is white.
     Cost,
+    /// Number of samples that a pixel takes.
+    ///
+    /// The maximum number is white, one is black, and equal ratios are equally far apart.
+    Samples,
     /// Error of a pixel's colour, against four times its samples, at least 64, traced exactly.
     ///
     /// The worst one is white; red where another object is seen.
@@ -42,7 +51,8 @@ pub struct Layer {
     /// Red, green and blue of each pixel, to be looked at.
     pub bytes: Vec<u8>,
     /// The numbers behind the image, three for each pixel, where they say more than the bytes. A depth, in world units,
-    /// fills all three channels and is infinite where nothing is hit; a normal is 0 there. An error consists of the
+    /// fills all three channels and is infinite where nothing is hit; a normal is 0 there. Samples consist of their
+    /// number, the estimated error of the colour, and 1 where that is above the limit, else 0. An error consists of the
     /// error of the colour, the root of the mean square over its channels; the error of the distance to the first hit,
     /// in world units; and 1 where another object is hit, else 0.
     pub exact: Option<Vec<f32>>,
@@ -59,7 +69,7 @@ const FARTHEST: f64 = 0.1;
 impl Aov {
     /// Tells whether the image has exact numbers.
     pub fn is_exact(self) -> bool {
-        matches!(self, Self::Depth | Self::Normal | Self::Error)
+        matches!(self, Self::Depth | Self::Normal | Self::Colour | Self::Samples | Self::Error)
     }
 
     /// Renders this image. `truth` is a plan of the same scene, exact and with many samples; only the error uses it.
@@ -85,6 +95,7 @@ impl Aov {
             Self::Object => Ok(object(&each(renderer, plan, done, |x, y| {
                 trace::first_hit(plan, &middle(plan, x, y)).map(|hit| hit.index)
             })?)),
+            Self::Colour => Ok(colour(&each(renderer, plan, done, |x, y| trace::pixel(plan, x, y))?)),
             Self::Cost => {
                 let costs = each(renderer, plan, done, |x, y| {
                     let mut rays = Rays(0);
@@ -92,6 +103,9 @@ impl Aov {
                     rays.0
                 })?;
                 Ok(cost(&costs, plan.camera.pixels))
+            }
+            Self::Samples => {
+                Ok(samples(&each(renderer, plan, done, |x, y| trace::samples(plan, x, y))?, &plan.camera))
             }
             Self::Error => {
                 let errors = each(renderer, plan, done, |x, y| PixelError::of(plan, truth, x, y))?;
@@ -106,15 +120,11 @@ impl Layer {
     ///
     /// # Errors
     /// If there are no exact numbers, or if the format cannot hold the size.
-    pub fn exr(&self, [width, height]: [usize; 2]) -> io::Result<Vec<u8>> {
-        let size = |pixels: usize| u32::try_from(pixels).map_err(io::Error::other);
+    pub fn exr(&self, size: [usize; 2]) -> io::Result<Vec<u8>> {
         let numbers = self.exact.as_ref().ok_or(io::ErrorKind::InvalidInput)?;
-        let bytes: Vec<u8> = numbers.iter().flat_map(|number| number.to_ne_bytes()).collect();
-        let mut file = Cursor::new(Vec::new());
-        OpenExrEncoder::new(&mut file)
-            .write_image(&bytes, size(width)?, size(height)?, ExtendedColorType::Rgb32F)
-            .map_err(io::Error::other)?;
-        Ok(file.into_inner())
+        let mut file = Vec::new();
+        FullRange::Exr.write(&mut file, size, numbers)?;
+        Ok(file)
     }
 }
 
@@ -178,6 +188,15 @@ fn normal(normals: &[Option<DVec3>]) -> Layer {
     }
 }
 
+fn colour(colours: &[Rgb]) -> Layer {
+    Layer {
+        bytes: shown_all(colours.iter().copied()),
+        exact: Some(colours.iter().flat_map(|colour| colour.as_vec3().to_array()).collect()),
+        most: None,
+        worst: None,
+    }
+}
+
 fn object(objects: &[Option<usize>]) -> Layer {
     Layer {
         bytes: shown_all(objects.iter().map(|object| object.map_or(DVec3::ZERO, colour_of))),
@@ -194,6 +213,25 @@ fn cost(costs: &[u64], [width, height]: [usize; 2]) -> Layer {
         bytes: shown_all(costs.iter().map(|cost| DVec3::splat(*cost as f64 / most as f64))),
         exact: None,
         most: Some((most, [place % width, height - 1 - place / width])),
+        worst: None,
+    }
+}
+
+fn samples(pixels: &[(u32, Option<f64>)], camera: &Camera) -> Layer {
+    let most = camera.adaptive.map_or(camera.samples, |adaptive| adaptive.most);
+    let shade = |(samples, _): &(u32, Option<f64>)| {
+        let part = libm::log2(f64::from(*samples)) / libm::log2(f64::from(most));
+        DVec3::splat(if most == 1 { 1.0 } else { part })
+    };
+    let limit = camera.adaptive.and_then(|adaptive| adaptive.error).unwrap_or(f64::INFINITY);
+    let numbers = |(samples, error): &(u32, Option<f64>)| {
+        let error = error.unwrap_or(0.0);
+        [*samples as f32, error as f32, f32::from(u8::from(error > limit))]
+    };
+    Layer {
+        bytes: shown_all(pixels.iter().map(shade)),
+        exact: Some(pixels.iter().flat_map(numbers).collect()),
+        most: None,
         worst: None,
     }
 }

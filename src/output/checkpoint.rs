@@ -11,6 +11,7 @@ use crate::scene::model::Model;
 use crate::scene::store::Record;
 use crate::scene::syntax::Syntax;
 use crate::text;
+use crate::world::camera::Adaptive;
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -42,8 +43,14 @@ pub struct Identity {
     files: BTreeMap<String, String>,
     /// The name of the sampler.
     sampler: String,
+    /// The exposure in stops, if colours are multiplied at all.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    exposure: Option<f64>,
     /// The number of samples per pixel.
     samples: u32,
+    /// The maximum number of samples per pixel, if pixels differ in that, and what they need more for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    more_samples: Option<String>,
     /// The hash of the scene's dump, or rather of the hashes of its parts.
     scene: String,
     /// The width and the height of the image in pixels.
@@ -74,7 +81,12 @@ impl Identity {
             files: files(model),
             program: program()?,
             sampler: text::name(&camera.sampler),
+            exposure: (camera.exposure != 0.0).then_some(camera.exposure),
             samples: camera.samples,
+            more_samples: camera.adaptive.map(|Adaptive { most, error }| match error {
+                Some(error) => format!("up to {most} for an error of {} levels", 255.0 * error),
+                None => format!("up to {most}"),
+            }),
             scene: scene(model),
             size: camera.pixels,
             textures: textures.collect(),
@@ -102,10 +114,14 @@ impl Identity {
         let crop = |crop: Option<[usize; 4]>| {
             crop.map_or("none".to_owned(), |crop| crop.map(|number| number.to_string()).join(","))
         };
+        let more = |of: &Self| of.more_samples.clone().unwrap_or_else(|| "none".to_owned());
+        let exposure = |of: &Self| format!("{} stops", of.exposure.unwrap_or(0.0));
         let values = [
             ("size", size(old.size), size(self.size)),
             ("crop", crop(old.crop), crop(self.crop)),
             ("number of samples", old.samples.to_string(), self.samples.to_string()),
+            ("number of further samples", more(old), more(self)),
+            ("exposure", exposure(old), exposure(self)),
             ("sampler", old.sampler.clone(), self.sampler.clone()),
             ("accuracy", old.accuracy.clone(), self.accuracy.clone()),
         ];

@@ -1,7 +1,7 @@
 //! The difference of two images, in numbers.
 
 use crate::text;
-use image::RgbImage;
+use image::{Rgb32FImage, RgbImage};
 use std::fmt;
 
 /// The difference of two images of the same size. Differences are in levels of a channel, from 0 to 255.
@@ -19,6 +19,76 @@ pub struct Comparison {
     pub rms: f64,
     /// The first pixel that differs by more than the tolerance, row by row from the top, each row from the left.
     pub first: Option<Pixel>,
+}
+
+/// The difference of two images of the same size, of which one at least has numbers of full range. Differences are in
+/// levels, of which there are 255 from black to white, and any number beyond.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FullRangeComparison {
+    /// The number of pixels.
+    pub pixels: usize,
+    /// The tolerance in levels.
+    pub tolerance: u8,
+    /// The number of pixels that differ by more than the tolerance.
+    pub differing: usize,
+    /// The largest difference of any channel; infinite where one number is NaN or infinite and the other is another.
+    pub largest: f64,
+    /// The root mean square of the differences of all channels.
+    pub rms: f64,
+}
+
+impl FullRangeComparison {
+    /// Compares two images; returns `None` if their sizes differ.
+    pub fn new(old: &Rgb32FImage, new: &Rgb32FImage, tolerance: u8) -> Option<Self> {
+        if old.dimensions() != new.dimensions() {
+            return None;
+        }
+        let (mut differing, mut largest, mut squares) = (0, 0.0_f64, 0.0);
+        for (a, b) in old.pixels().zip(new.pixels()) {
+            let apart = |channel: usize| {
+                let (a, b) = (f64::from(a[channel]), f64::from(b[channel]));
+                let levels = 255.0 * (a - b).abs();
+                let is_same = a == b || a.is_nan() && b.is_nan();
+                if is_same {
+                    0.0
+                } else if levels.is_nan() {
+                    f64::INFINITY
+                } else {
+                    levels
+                }
+            };
+            let apart = [0, 1, 2].map(apart);
+            let max = apart.into_iter().fold(0.0, f64::max);
+            largest = largest.max(max);
+            squares += apart.map(|levels| levels * levels).iter().sum::<f64>();
+            differing += usize::from(max > f64::from(tolerance));
+        }
+        let pixels = old.width() as usize * old.height() as usize;
+        let rms = (squares / (3.0 * pixels as f64)).sqrt();
+        Some(Self { pixels, tolerance, differing, largest, rms })
+    }
+}
+
+/// Writes a sentence for people, without a line end.
+impl fmt::Display for FullRangeComparison {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let &Self { pixels, tolerance, differing, largest, rms } = self;
+        let beyond = match tolerance {
+            0 => String::new(),
+            tolerance => format!(" by more than {}", text::count(tolerance.into(), "level")),
+        };
+        let verb = if differing == 1 { "differs" } else { "differ" };
+        let percent = 100.0 * differing as f64 / pixels as f64;
+        let pixels = text::count(pixels, "pixel");
+        match differing {
+            0 => write!(f, "none of {pixels} differs{beyond}")?,
+            _ => write!(f, "{differing} of {pixels} {verb}{beyond} ({percent:.4} %)")?,
+        }
+        if largest > 0.0 {
+            write!(f, "; largest difference {largest:.4} levels, RMS {rms:.4}")?;
+        }
+        Ok(())
+    }
 }
 
 /// One pixel in both images.

@@ -5,6 +5,7 @@ pub(crate) mod checkpoint;
 pub(crate) mod compare;
 pub(crate) mod deflate;
 mod filter;
+pub(crate) mod full_range;
 pub(crate) mod packing;
 pub(crate) mod picture;
 

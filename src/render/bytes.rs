@@ -44,6 +44,7 @@ kernels! {
 }
 
 /// Clamps a colour to what an image can show: each channel from 0 to 1, a NaN as 0.
+#[inline]
 pub fn shown(colour: Rgb) -> Rgb {
     DVec3::from_array(colour.to_array().map(|channel| if channel > 0.0 { channel.min(1.0) } else { 0.0 }))
 }

@@ -1,6 +1,7 @@
 //! A plan's decisions as text, each with its reason.
 
 use crate::render::culling;
+use crate::render::features::{FEATURE_SAMPLES, Features};
 use crate::render::limits::{MAX_DIST, MAX_RAYS};
 use crate::render::plan::depth::Depth;
 use crate::render::plan::needs::{self, Needs};
@@ -9,7 +10,7 @@ use crate::scene::model::{Item, Model, Object};
 use crate::scene::store::Record;
 use crate::text::{count, list, short};
 use crate::world::accuracy::Accuracy;
-use crate::world::camera::Camera;
+use crate::world::camera::{Adaptive, Camera};
 use crate::world::material::Rgb;
 use crate::world::sample::Sampler;
 use crate::world::texture::Texture;
@@ -55,6 +56,7 @@ pub fn of(plan: &Plan) -> Vec<Decision> {
     all.extend(textures(plan).into_iter().map(|text| decision("texture", text)));
     all.extend(unmet(plan).map(|text| decision("unmet", text)));
     all.push(decision("search", search(model, plan)));
+    all.extend(plan.features.as_ref().map(|features| decision("small", small(features))));
     all.extend(objects(plan));
     all
 }
@@ -62,6 +64,19 @@ pub fn of(plan: &Plan) -> Vec<Decision> {
 fn picture(camera: &Camera) -> String {
     let Camera { pixels: [width, height], samples, sampler, .. } = *camera;
     let size = format!("{width} x {height} pixels");
+    if let Some(Adaptive { most, error }) = camera.adaptive {
+        let kind = match sampler {
+            Sampler::Sobol => "evenly spread",
+            Sampler::Random => "random",
+        };
+        let until = match error {
+            Some(error) => {
+                format!("until its error is estimated to be at most {} of 255 levels", short(255.0 * error))
+            }
+            None => "where its colour is less certain".to_owned(),
+        };
+        return format!("{size}, {samples} to {most} {kind} samples in each: more {until}");
+    }
     let rays = (width * height) as u64 * u64::from(samples);
     match (samples, sampler) {
         (1, _) => {
@@ -223,6 +238,16 @@ fn search(model: &Model, plan: &Plan) -> String {
         (None, _) => format!(
             "a list of {}, {bounded} with bounds: a BVH pays off from {TREE} on; {by_one}",
             count(listed, "object")
+        ),
+    }
+}
+
+fn small(features: &Features) -> String {
+    match features.count() {
+        0 => "none: no bounds of an object are projected on less than 2 pixels".to_owned(),
+        small => format!(
+            "{} with bounds on less than 2 pixels across or down: a pixel with one takes {FEATURE_SAMPLES} samples",
+            count(small, "object")
         ),
     }
 }

@@ -3,6 +3,7 @@
 pub(crate) mod bytes;
 mod culling;
 pub mod decisions;
+mod features;
 mod frusta;
 pub(crate) mod limits;
 pub(crate) mod observer;

@@ -67,6 +67,8 @@ pub enum Count {
     Tested(usize, usize),
     /// The object of this index was not tested against a number of rays, since they do not meet its bounds.
     Culled(usize, usize),
+    /// A pixel took a number of samples, where pixels differ in that.
+    Sampled(u32),
     /// A pixel has used up its ray budget; it lacks at most this much light in any channel.
     Cut(f64),
 }

@@ -9,6 +9,7 @@ use needs::Needs;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::bvh::Bvh;
 use crate::render::culling;
+use crate::render::features::Features;
 use crate::scene::model::Model;
 use crate::world::camera::Camera;
 use rayon::prelude::*;
@@ -23,7 +24,7 @@ const MANY: usize = 1 << 14;
 pub struct Plan<'m> {
     /// The scene.
     pub model: &'m Model,
-    /// The camera, initially the model's own. Samples and sampler may be changed, and the image size of a plan that was
+    /// The camera, initially the model's own. A fixed number of samples and the sampler may be changed, and the image size of a plan that was
     /// made for any ray; the rest is what the plan was made for.
     pub camera: Camera,
     /// The indices of the objects without bounds.
@@ -34,6 +35,8 @@ pub struct Plan<'m> {
     pub(crate) tree: Option<Bvh>,
     /// Whether any object that is needed is transparent, so that shadows may be partial.
     pub(crate) has_glass: bool,
+    /// The objects that are small in the image, where the number of a pixel's samples depends on them.
+    pub(crate) features: Option<Features>,
     /// How deep rays are followed; `None` where no object reflects or transmits rays.
     pub(crate) depth: Option<Depth>,
     /// The maximum number of reflections and transmissions on a path.
@@ -74,6 +77,8 @@ impl<'m> Plan<'m> {
                 None => unbounded.push(index),
             }
         }
+        let camera = model.camera.value.clone();
+        let features = camera.adaptive.map(|_| Features::new(&camera, objects));
         let tree = (bounded.len() >= TREE).then(|| {
             let (objects, boxes): (Vec<_>, Vec<_>) = bounded.drain(..).unzip();
             let mut tree = Bvh::new(&boxes);
@@ -83,8 +88,8 @@ impl<'m> Plan<'m> {
         let mut unmet = needs.unmet.iter().peekable();
         let mut met = objects.iter().enumerate().filter(|(index, _)| unmet.next_if_eq(&index).is_none());
         let has_glass = met.any(|(_, object)| object.material.transparency != 0.0);
-        let camera = model.camera.value.clone();
-        Self { model, camera, unbounded, bounded, tree, has_glass, depth, bounces: usize::MAX, needs }
+        let bounces = usize::MAX;
+        Self { model, camera, unbounded, bounded, tree, has_glass, features, depth, bounces, needs }
     }
 
     /// Returns how rays continue from the object of this index.

@@ -2,6 +2,7 @@
 
 use crate::render::observer::{Count, RayKind, TraceObserver};
 use crate::scene::model::Model;
+use crate::world::sample::Sampler;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -14,7 +15,12 @@ pub struct RayStats {
     tests: Vec<TestCounts>,
     /// The pixels that have used up their ray budget.
     pub cuts: Cuts,
+    /// The numbers of pixels that took 1, 2, 4 ... samples, where pixels differ in that.
+    sampled: [u64; SAMPLE_COUNTS],
 }
+
+/// How many different numbers of samples a pixel can take: the powers of two up to [`Sampler::MOST`].
+const SAMPLE_COUNTS: usize = Sampler::MOST.ilog2() as usize + 1;
 
 /// The pixels that have used up their ray budget. It is an observer that counts nothing else.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -65,6 +71,7 @@ impl TraceObserver for RayStats {
             Count::Rays(kind, rays) => self.rays[kind as usize] += rays as u64,
             Count::Tested(object, rays) => self.of(object).tested += rays as u64,
             Count::Culled(object, rays) => self.of(object).culled += rays as u64,
+            Count::Sampled(samples) => self.sampled[samples.ilog2() as usize] += 1,
             Count::Cut(_) => self.cuts.count(count),
         }
     }
@@ -85,10 +92,20 @@ impl RayStats {
             *sum += part;
         }
         self.cuts.add(other.cuts);
+        for (sum, part) in self.sampled.iter_mut().zip(other.sampled) {
+            *sum += part;
+        }
         for (object, part) in other.tests.iter().enumerate() {
             let sum = self.of(object);
             (sum.tested, sum.culled) = (sum.tested + part.tested, sum.culled + part.culled);
         }
+    }
+
+    /// Returns the numbers of samples that pixels took, each with the number of these pixels; empty where all pixels take
+    /// the same number.
+    pub fn sampled(&self) -> impl Iterator<Item = (u32, u64)> {
+        let each = self.sampled.into_iter().zip(0..).map(|(pixels, power)| (1 << power, pixels));
+        each.filter(|(_, pixels)| *pixels > 0)
     }
 
     /// Returns the number of rays of a kind that were cast.

@@ -118,28 +118,74 @@ impl Renderer {
     ) {
         let (width, height) = (columns.len(), tracer.height());
         let (top, below) = (height - 1 - rows.start, height - rows.end);
-        let (mut tile, mut bytes) = (Vec::new(), [[0; 3]; TILE * TILE]);
-        for (index, left) in columns.clone().step_by(TILE).enumerate() {
-            if locked(strip).tiles[index] {
-                continue;
-            }
+        let (mut pixels, mut bytes) = (Vec::new(), [[0; 3]; TILE * TILE]);
+        let wide = |index: usize| {
+            let left = columns.start + TILE * index;
+            left..columns.end.min(left + TILE)
+        };
+        let left: Vec<_> = (0..width.div_ceil(TILE)).filter(|index| !locked(strip).tiles[*index]).collect();
+        for indices in left.chunks(tracer.tiles_together()) {
             if (overseer.stops)() {
                 break;
             }
-            let (wide, rows) = (left..columns.end.min(left + TILE), below..top + 1);
-            tiles::list(wide.clone(), rows.clone(), &mut tile);
-            let colours = tracer.pixels(&tile);
-            to_bytes(self.cpu, colours, &mut bytes[..tile.len()]);
-            let mut rest = &bytes[..];
-            let mut strip = locked(strip);
-            for (run, y) in tiles::runs(wide, rows) {
-                let (bytes, others) = rest.split_at(run.len());
-                strip.pixels[(top - y) * width + run.start - columns.start..][..run.len()]
-                    .copy_from_slice(bytes);
-                rest = others;
+            let rows = below..top + 1;
+            pixels.clear();
+            indices.iter().for_each(|index| tiles::list(wide(*index), rows.clone(), &mut pixels));
+            let (colours, mut from) = (tracer.pixels(&pixels), 0);
+            for index in indices {
+                let count = wide(*index).len() * rows.len();
+                to_bytes(self.cpu, colours.part(from..from + count), &mut bytes[..count]);
+                from += count;
+                let mut rest = &bytes[..];
+                let mut strip = locked(strip);
+                for (run, y) in tiles::runs(wide(*index), rows.clone()) {
+                    let (bytes, others) = rest.split_at(run.len());
+                    strip.pixels[(top - y) * width + run.start - columns.start..][..run.len()]
+                        .copy_from_slice(bytes);
+                    rest = others;
+                }
+                strip.tiles[*index] = true;
             }
-            strip.tiles[index] = true;
         }
+    }
+
+    /// Renders a part of the image with its colours as they are computed: red, green and blue of each pixel, in rows from
+    /// the top, each from the left. Returns `None` if the overseer stops it. Observers are passed to `watched` as in
+    /// [`bands`](Self::bands).
+    pub fn colours<W: TraceObserver + Default>(
+        &self,
+        plan: &Plan,
+        [columns, rows]: [&Range<usize>; 2],
+        overseer: Overseer,
+        watched: &(dyn Fn(W) + Sync),
+    ) -> Option<Vec<f32>> {
+        let (width, end) = (columns.len(), plan.camera.pixels[1]);
+        let mut all = vec![0.0; 3 * width * rows.len()];
+        let strip = |(index, strip): (usize, &mut [f32])| {
+            let mut observer = W::default();
+            let (top, mut pixels, mut scratch) = (rows.start + TILE * index, Vec::new(), Scratch::default());
+            let tall = strip.len() / (3 * width);
+            let mut tracer = Tracer::new(plan, self.cpu, &mut scratch, &mut observer);
+            let side = TILE * tracer.tiles_together();
+            for left in columns.clone().step_by(side) {
+                if (overseer.stops)() {
+                    return None;
+                }
+                let right = columns.end.min(left + side);
+                pixels.clear();
+                tiles::list(left..right, end - top - tall..end - top, &mut pixels);
+                let colours = tracer.pixels(&pixels);
+                for (index, [x, y]) in pixels.iter().enumerate() {
+                    let at = 3 * ((end - 1 - y - top) * width + x - columns.start);
+                    strip[at..at + 3].copy_from_slice(&colours.get(index).as_vec3().to_array());
+                }
+            }
+            watched(observer);
+            (0..tall).for_each(|_| (overseer.row)());
+            Some(())
+        };
+        let strips = || all.par_chunks_mut(3 * width * TILE).enumerate().try_for_each(strip);
+        self.pool.install(strips).is_some().then_some(all)
     }
 
     /// Lets `work` render bands with `Unfinished::fill`, which may leave threads at work.

@@ -6,4 +6,5 @@ pub mod colours;
 pub mod contract;
 pub mod debug;
 pub mod probe;
+pub mod sampling;
 pub mod verify;

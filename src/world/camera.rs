@@ -19,20 +19,54 @@ pub struct Camera {
     pub viewpoint: DVec3,
     /// The number of primary rays per pixel, from 1 to [`Sampler::MOST`].
     pub samples: u32,
+    /// When a pixel takes more primary rays than `samples`; `None` where all take the same number.
+    pub adaptive: Option<Adaptive>,
     /// How the rays are placed within a pixel, if there is more than one.
     pub sampler: Sampler,
+    /// What the samplers' sequences are scrambled with beside the pixel: 0 in a render, and another number where the
+    /// same image is wanted with independent samples.
+    pub scramble: u32,
+    /// The exposure in stops: colours are multiplied by 2 to this power.
+    pub exposure: f64,
     /// How exactly hits are found.
     pub accuracy: Accuracy,
 }
 
+/// How many primary rays a pixel takes, where pixels differ in that: [`Camera::samples`], and then twice as many again
+/// and again, each time by the sampler's sequence, until its estimated error is small enough.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Adaptive {
+    /// The maximum number of primary rays per pixel: [`Camera::samples`] times a power of two.
+    pub most: u32,
+    /// The error of a pixel's colour, where 1 is white, that is to be estimated at last; `None` where the samples are to
+    /// lower the error of the whole image.
+    pub error: Option<f64>,
+}
+
 impl Camera {
-    /// Returns the image positions of a pixel's primary rays, in pixels as [`ray`](Self::ray) takes them, each with its
-    /// random numbers. A single ray goes through the pixel's centre and needs none.
-    pub(crate) fn places(&self, x: usize, y: usize) -> impl Iterator<Item = (DVec2, Option<Sample>)> + use<> {
-        let Self { samples, sampler, .. } = *self;
-        let (pixel, middle) = ((y * self.pixels[0] + x) as u32, DVec2::new(x as f64, y as f64));
-        (0..samples).map(move |index| {
-            if samples == 1 {
+    /// Returns the factor of all colours.
+    pub(crate) fn gain(&self) -> f64 {
+        libm::exp2(self.exposure)
+    }
+
+    /// Returns what the sequence of a pixel's samples depends on. The pixel may lie outside of the image.
+    #[inline]
+    pub(crate) fn seed(&self, x: i64, y: i64) -> u32 {
+        (y * self.pixels[0] as i64 + x) as u32 ^ self.scramble
+    }
+
+    /// Returns the image positions of the first `count` of a pixel's primary rays, in pixels as [`ray`](Self::ray) takes
+    /// them, each with its random numbers. If all pixels have a single ray, it goes through the centre and needs none.
+    pub(crate) fn places(
+        &self,
+        x: usize,
+        y: usize,
+        count: u32,
+    ) -> impl Iterator<Item = (DVec2, Option<Sample>)> + use<> {
+        let (sampler, is_single) = (self.sampler, self.samples == 1 && self.adaptive.is_none());
+        let (pixel, middle) = (self.seed(x as i64, y as i64), DVec2::new(x as f64, y as f64));
+        (0..count).map(move |index| {
+            if is_single {
                 return (middle, None);
             }
             let sample = Sample { sampler, index, pixel };
@@ -58,7 +92,7 @@ impl Camera {
         });
         list.clear();
         for ([column, row], run, first) in runs.clone() {
-            let pixel = (row * self.pixels[0] + column) as u32;
+            let pixel = self.seed(column as i64, row as i64);
             list.extend(run.map(|at| Sample { sampler, index: (at - first) as u32, pixel }));
         }
         sample::jitters(cpu, list, x, y);
@@ -81,6 +115,18 @@ impl Camera {
     pub fn sight(&self, x: f64, y: f64) -> Sight {
         let (at, last) = self.place(x, y);
         Sight::through(self.viewpoint, at, last, self.screen)
+    }
+
+    /// Returns the image position at which a point in world coordinates is seen, in pixels as [`ray`](Self::ray) takes
+    /// them; `None` for points that are not in front of the viewer, and where all rays of a row or column are one.
+    pub(crate) fn project(&self, point: DVec3) -> Option<DVec2> {
+        let (from, depth) = (self.viewpoint, self.viewpoint.z - point.z);
+        if depth.is_nan() || depth <= 0.0 || self.pixels.contains(&1) {
+            return None;
+        }
+        let on_screen = from.truncate() + (point - from).truncate() * (from.z / depth);
+        let last = DVec2::new((self.pixels[0] - 1) as f64, (self.pixels[1] - 1) as f64);
+        Some(on_screen / self.screen * last)
     }
 
     /// Returns an image position and the position of the last pixel, whose quotient is a fraction of the image plane's

@@ -28,6 +28,9 @@ impl Sampler {
     pub const MOST: u32 = 1 << 16;
 }
 
+/// What sequences are scrambled with for an image that shares no samples with a render.
+pub(crate) const SCRAMBLE: u32 = 0x5bd1_e995;
+
 /// One of several samples of a pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample {

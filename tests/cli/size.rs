@@ -14,7 +14,12 @@ fn picture(name: &str, options: &[&str]) -> RgbImage {
 #[test]
 fn a_part_is_as_it_is_in_the_whole_picture() {
     let scene = "gallery/stained-glass.ray";
-    for options in [&["--size", "90"][..], &["--size", "90", "--samples", "3"], &["--quick"]] {
+    for options in [
+        &["--size", "90"][..],
+        &["--size", "90", "--samples", "3"],
+        &["--size", "90", "--samples", "2..16"],
+        &["--quick"],
+    ] {
         let whole = picture(scene, options);
         let [left, bottom, wide, high] = [11, 7, 40, 23];
         let part = picture(scene, &[options, &["--crop", "11,7,40,23"]].concat());

@@ -6,6 +6,7 @@ use super::surface::Errors;
 use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::render::observer::TraceObserver;
 use crate::render::plan::Plan;
+use crate::render::tiles::TOGETHER;
 use crate::scene::model::Model;
 use crate::simd::cpu::Cpu;
 use crate::world::accuracy::Accuracy;
@@ -32,6 +33,11 @@ pub(crate) struct Tracer<'m, 'w, W> {
 impl<'m, 'w, W: TraceObserver> Tracer<'m, 'w, W> {
     pub(crate) fn new(plan: &'m Plan, cpu: Cpu, scratch: &'w mut Scratch, observer: &'w mut W) -> Self {
         Self { model: plan.model, plan, cpu, viewer: 0.0, depth: 0, scratch, observer }
+    }
+
+    /// Returns how many tiles are best traced together.
+    pub(crate) fn tiles_together(&self) -> usize {
+        if self.plan.camera.adaptive.is_some() { TOGETHER } else { 1 }
     }
 
     /// Returns the height of the image in pixels.

@@ -135,6 +135,10 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             },
         };
         light::shine(cpu, &lit, material.shininess, colours.resized(count));
+        if self.scratch.trails.is_on {
+            let is_shiny = material.shininess != 0.0;
+            self.scratch.trails.see_light(&group.camera[..group.len], index, &lit, is_shiny);
+        }
         if W::SEES {
             let mut alone = VectorList::default();
             alone.fill(count, Rgb::ZERO);

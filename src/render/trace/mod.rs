@@ -5,10 +5,12 @@
 //! (`shadow_rays`) and the rays that are transmitted and reflected there. A single ray is a packet of one. A ray's
 //! colour does not depend on the other rays of its packet.
 
+mod adaptive;
 mod arrays;
 mod closest_hit;
 mod context;
 mod direct_light;
+mod estimate;
 mod hit_record;
 mod light;
 mod missing;
@@ -21,6 +23,7 @@ mod scratch;
 mod shade;
 mod shadow_rays;
 mod surface;
+mod trail;
 mod transmittance;
 
 pub(crate) use context::Tracer;
@@ -49,8 +52,9 @@ pub fn pixel(plan: &Plan, x: usize, y: usize) -> Rgb {
 
 /// Computes the colour of a pixel as [`pixel`] does, and reports each step to `observer`.
 pub fn observe_pixel(plan: &Plan, x: usize, y: usize, observer: &mut impl TraceObserver) -> Rgb {
-    let (camera, mut sum, mut budget) = (&plan.camera, Rgb::ZERO, None);
-    for (place, sample) in camera.places(x, y) {
+    let (camera, count) = (&plan.camera, samples(plan, x, y).0);
+    let (mut sum, mut budget) = (Rgb::ZERO, None);
+    for (place, sample) in camera.places(x, y, count) {
         let sight = camera.sight(place.x, place.y);
         let (colour, missing) = observed(plan, &sight, sample, budget, observer);
         sum += colour;
@@ -58,7 +62,21 @@ pub fn observe_pixel(plan: &Plan, x: usize, y: usize, observer: &mut impl TraceO
             budget = Some(sampled::REST);
         }
     }
-    sum / f64::from(camera.samples)
+    let colour = sum / f64::from(count);
+    if camera.exposure == 0.0 { colour } else { camera.gain() * colour }
+}
+
+/// Returns the number of samples that a pixel takes, and where pixels differ in that, the estimated error of its colour,
+/// where 1 is white.
+pub fn samples(plan: &Plan, x: usize, y: usize) -> (u32, Option<f64>) {
+    if plan.camera.adaptive.is_none() {
+        return (plan.camera.samples, None);
+    }
+    let (mut scratch, mut nobody) = (Scratch::default(), Cuts::default());
+    Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody).pixels(&[[x, y]]);
+    let (count, error) =
+        scratch.primary.map_or((0, 0.0), |primary| primary.adaptive.first(plan.camera.gain()));
+    (count, Some(error))
 }
 
 /// Computes the colour that a primary ray returns, before it is clamped. Lights with a size are sampled at the point
@@ -131,13 +149,13 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         let depth = self.plan.depth.as_ref();
         let mut primary = self.scratch.primary.take().unwrap_or_default();
         self.scratch.places.iter_mut().for_each(|places| places.resize(PACKET_SIZE, 0.0));
-        if camera.samples > 1 && sampled::is_unbounded(self.plan) {
-            self.one_by_one(pixels, &mut primary);
-            return self.scratch.primary.insert(primary).colours.view(pixels.len());
-        }
-        let PrimaryScratch { group, seen, colours } = &mut *primary;
+        let PrimaryScratch { group, seen, colours, .. } = &mut *primary;
         let mut colours = colours.resized(pixels.len());
-        if camera.samples == 1 {
+        if let Some(adaptive) = camera.adaptive {
+            self.adaptive_pixels(pixels, adaptive, &mut primary);
+        } else if camera.samples > 1 && sampled::is_unbounded(self.plan) {
+            self.one_by_one(pixels, &mut primary);
+        } else if camera.samples == 1 {
             self.scratch.samples.clear();
             for (pixels, first) in pixels.chunks(PACKET_SIZE).zip((0..).step_by(PACKET_SIZE)) {
                 let [x, y] = &mut self.scratch.places;
@@ -170,6 +188,10 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 }
             }
         }
+        if camera.exposure != 0.0 {
+            let mut colours = primary.colours.resized(pixels.len());
+            (0..pixels.len()).for_each(|pixel| colours.set(pixel, camera.gain() * colours.get(pixel)));
+        }
         self.scratch.primary.insert(primary).colours.view(pixels.len())
     }
 
@@ -185,6 +207,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         self.observer.count(Count::Rays(RayKind::Primary, group.len));
         self.viewer = group.origin.get(0).abs().max_element();
         self.begin_missing(group.len);
+        self.scratch.trails.begin(group.len);
         if W::SEES {
             self.observer.see(Event::Begin(Purpose::Primary));
         }

@@ -77,7 +77,7 @@ impl RayGroup {
         [x, y]: &mut [Vec<f64>; 2],
         len: usize,
     ) {
-        self.begin(camera.viewpoint, len, camera.samples > 1, depth);
+        self.begin(camera.viewpoint, len, camera.samples > 1 || camera.adaptive.is_some(), depth);
         let count = self.padded();
         let last = (x[len - 1], y[len - 1]);
         x[len..count].fill(last.0);

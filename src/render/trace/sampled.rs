@@ -2,7 +2,7 @@
 //!
 //! A pixel is then off by an unknown amount as soon as one of its samples uses up its ray budget, whatever the others
 //! return. So those after it get a small part of the budget, and the pixel costs about as much as one of a single
-//! sample. What a sample may cost depends on those before it, which are traced first.
+//! sample; it takes no more than the first ones where the number depends on the pixel. What a sample may cost depends on those before it, which are traced first.
 
 use super::context::Tracer;
 use super::scratch::{PrimaryScratch, Scratch};
@@ -24,12 +24,12 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     /// Computes the colours of pixels sample by sample.
     pub(super) fn one_by_one(&mut self, pixels: &[[usize; 2]], primary: &mut PrimaryScratch) {
         let (camera, depth) = (&self.plan.camera, self.plan.depth.as_ref());
-        let PrimaryScratch { group, seen, colours } = primary;
+        let PrimaryScratch { group, seen, colours, .. } = primary;
         let mut colours = colours.resized(pixels.len());
         for (pixels, first) in pixels.chunks(PACKET_SIZE).zip((0..).step_by(PACKET_SIZE)) {
             let len = pixels.len();
             let mut places: Vec<_> =
-                pixels.iter().map(|[column, row]| camera.places(*column, *row)).collect();
+                pixels.iter().map(|[column, row]| camera.places(*column, *row, camera.samples)).collect();
             let mut sums = vec![(Rgb::ZERO, 0.0); len];
             for _ in 0..camera.samples {
                 let Scratch { places: [x, y], samples: drawn, .. } = &mut *self.scratch;
@@ -65,6 +65,7 @@ mod tests {
     use crate::scene::reader;
     use crate::scene::registry::Registry;
     use crate::simd::cpu::Cpu;
+    use crate::world::camera::Adaptive;
     use std::path::Path;
 
     /// Panes that pass on more light than they receive.
@@ -99,5 +100,35 @@ mod tests {
         let alone =
             renderer.run(|| pixels.iter().map(|[x, y]| trace::pixel(&plan, *x, *y)).collect::<Vec<_>>());
         assert_eq!(together, alone);
+    }
+
+    #[test]
+    fn a_pixel_off_by_an_unknown_amount_takes_no_more_samples_than_the_first() {
+        let registry = Registry::get().expect("sound types");
+        let Ok(mut loaded) = reader::read(registry, "scene", Path::new(""), SCENE, None) else {
+            panic!("a sound scene");
+        };
+        loaded.model.camera.value.samples = 4;
+        let fixed = Plan::new(&loaded.model).camera;
+        loaded.model.camera.value.adaptive = Some(Adaptive { most: 64, error: Some(1e-9) });
+        let mut plan = Plan::new(&loaded.model);
+        let pixels: Vec<_> = (0..4).flat_map(|row| (0..5).map(move |column| [column, row])).collect();
+        let renderer = Renderer::new(1).expect("a thread");
+        let (mut scratch, mut stats) = (Scratch::default(), RayStats::default());
+        let together: Vec<Rgb> = renderer.run(|| {
+            let mut tracer = Tracer::new(&plan, Cpu::best(), &mut scratch, &mut stats);
+            let seen = tracer.pixels(&pixels);
+            (0..pixels.len()).map(|lane| seen.get(lane)).collect()
+        });
+        assert_eq!(stats.cuts.pixels, 20);
+        // One sample of each of 42 pixels, in the image and around it, may cost 20,000 rays.
+        let rays = stats.all_rays();
+        assert!((400_000..900_000).contains(&rays), "{rays} rays");
+        let alone = |plan: &Plan| {
+            renderer.run(|| pixels.iter().map(|[x, y]| trace::pixel(plan, *x, *y)).collect::<Vec<_>>())
+        };
+        assert_eq!(together, alone(&plan));
+        plan.camera = fixed;
+        assert_eq!(together, alone(&plan));
     }
 }

@@ -1,9 +1,11 @@
 //! Scratch space for packets, which is reused from one packet to the next.
 
 use super::arrays::VectorList;
+use super::estimate::AdaptiveScratch;
 use super::hit_record::HitRecord;
 use super::ray_group::{HitGroups, RayGroup};
 use super::surface::Surface;
+use super::trail::Trails;
 use crate::geometry::bvh::Stack;
 use crate::geometry::ray::Side;
 use crate::world::sample::Sample;
@@ -16,6 +18,8 @@ pub(crate) struct Scratch {
     pub(super) places: [Vec<f64>; 2],
     /// The samples of the current primary rays, where pixels have more than one.
     pub(super) samples: Vec<Sample>,
+    /// What the current primary rays meet on their paths.
+    pub(super) trails: Trails,
     /// The unused scratch space of packets, one for each level of recursion, the outermost one last.
     #[expect(clippy::vec_box, reason = "they come and go, and are large")]
     pub(super) levels: Vec<Box<HitScratch>>,
@@ -47,6 +51,7 @@ pub(super) struct PrimaryScratch {
     pub seen: VectorList,
     /// The colours of the pixels.
     pub colours: VectorList,
+    pub adaptive: AdaptiveScratch,
 }
 
 /// The scratch space of a packet whose rays are sorted by the objects that they hit.

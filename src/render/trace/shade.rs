@@ -85,6 +85,10 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 shader.ambient_and_specular(cpu, material, points, ambients, speculars)
             }
         };
+        if self.scratch.trails.is_on {
+            let nearest = (self.depth == 0).then_some(distances);
+            self.scratch.trails.meet(&group.camera[..group.len], index, nearest);
+        }
         let goes_on = !self.plan.needs.lights.is_empty() || surface.is_mirror || material.transparency != 0.0;
         surface.errors = if goes_on {
             self.errors(&**shape, &surface.travelled[..count], &surface.cosines[..count])

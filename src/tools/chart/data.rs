@@ -108,6 +108,8 @@ pub enum Family {
     Sobol,
     /// Samples within pixels at random positions.
     Random,
+    /// Samples within pixels from a Sobol sequence, more where a pixel needs them.
+    Adaptive,
 }
 
 impl Panel {

@@ -115,6 +115,7 @@ fn legend<D: DrawingBackend>(canvas: &Canvas<D>, chart: &Chart, y: f64) -> io::R
         (Family::Bounds, "bounds"),
         (Family::Sobol, "sobol"),
         (Family::Random, "random"),
+        (Family::Adaptive, "adaptive, by the maximum number"),
     ] {
         if points().any(|point| point.family == family) {
             let (marker, colour) = look(family);
@@ -142,6 +143,7 @@ fn look(family: Family) -> (Marker, RGBColor) {
         Family::Tracing => (Marker::Down, PURPLE),
         Family::Bounds => (Marker::Up, BLUE),
         Family::Sobol => (Marker::Disc, GREEN),
+        Family::Adaptive => (Marker::Up, BLUE),
     }
 }
 

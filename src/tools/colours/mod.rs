@@ -119,7 +119,7 @@ impl<'p, 'm> Prover<'p, 'm> {
         let camera = &self.plan.camera;
         let mut sum = [Interval::constant(0.0); 3];
         let mut is_spent = false;
-        for (place, sample) in camera.places(x, y) {
+        for (place, sample) in camera.places(x, y, camera.samples) {
             let sight: Sight = camera.sight(place.x, place.y);
             let mut tracer = Tracer::new(&self.scene, sample);
             let colour = tracer.primary::<F>(&sight.line());

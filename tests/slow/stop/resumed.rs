@@ -76,6 +76,11 @@ fn a_part_interrupted_at_random_and_resumed_is_the_same() {
     interrupted_ten_times(3, "a.png", SLOW, &["--crop", "101,53,203,307", "--samples", "9"], &[]);
 }
 
+#[test]
+fn a_png_of_adaptive_samples_interrupted_at_random_and_resumed_is_the_same() {
+    interrupted_ten_times(5, "a.png", SLOW, &["--size", "420", "--samples", "2..16"], &["--cpu", "baseline"]);
+}
+
 /// The image's bands have 40 rows, or 8 where memory is limited.
 #[test]
 fn a_picture_of_many_bands_interrupted_at_random_and_resumed_is_the_same() {

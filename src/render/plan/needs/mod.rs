@@ -13,6 +13,9 @@
 //! is needed. What is left out is tested by no ray that could meet it, so the image stays the same to the byte. All tests
 //! have margins far above the rounding errors of rays.
 //!
+//! Where pixels take more samples the less certain their colours are, nothing is left out: that is decided by pixels around
+//! the image too, and by which lights shine on what a ray meets, even on black.
+//!
 //! The notes' program tests every ray against every shape, so with `--method classic` nothing is left out.
 
 mod hull;
@@ -81,6 +84,9 @@ impl Needs {
     /// What the image of the model's camera needs, given the objects' bounding boxes. `depth` has the mirrors that
     /// reflect nothing.
     pub fn of(model: &Model, bounds: &[Option<Aabb>], depth: Option<&Depth>) -> Self {
+        if model.camera.value.adaptive.is_some() {
+            return Self::all(model);
+        }
         // Rays of a draft may be off by 1e-3 of their length.
         let margin = match model.camera.value.accuracy {
             Accuracy::Classic => return Self::all(model),

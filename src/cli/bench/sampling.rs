@@ -1,0 +1,189 @@
+//! `bench --sampling`: what numbers of samples per pixel cost, and how wrong they leave an image.
+
+use crate::cli::failure::{Failure, print};
+use crate::cli::output;
+use crate::render::renderer::Renderer;
+use crate::scene::model::Model;
+use crate::text::short;
+use crate::tools::chart::{self, Chart, Family, Machine, Panel, Point, Subject, Times, Wrong};
+use crate::tools::sampling::{self, Measured, Samples};
+use crate::world::camera::Adaptive;
+use crate::world::sample::Sampler;
+use std::fmt::Write;
+use std::path::Path;
+
+/// The number of samples per pixel of the images that count as true.
+const TRUTH: u32 = 1024;
+const TRUTH_OF_LIMITS: u32 = 4096;
+
+/// How often each choice is timed.
+const ROUNDS: usize = 2;
+
+/// The part of the pixels for which `--max-error` is meant to hold.
+const PROMISED: f64 = 0.99;
+
+/// What is compared.
+#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Question {
+    /// Time against the RMS error of the image, against 1024 samples
+    Rms,
+    /// What --max-error promises, for 1, 2 and 4 levels, against 4096 samples
+    Limits,
+}
+
+/// Measures the scenes, prints a table in Markdown, and writes a chart, if a file is named for it.
+pub fn run(
+    question: Question,
+    models: Vec<(String, Model)>,
+    size: Option<[usize; 2]>,
+    file: Option<&Path>,
+) -> Result<(), Failure> {
+    let renderer = Renderer::new(0)?;
+    let mut chart = Chart {
+        scene: "samples per pixel".to_owned(),
+        machine: Machine::here(),
+        panels: Vec::new(),
+        is_whole: true,
+    };
+    print(match question {
+        Question::Rms => {
+            "| scene | samples | CPU seconds | rays per pixel | RMS error | worst pixel | fixed samples of that RMS | their time |\n\
+             |---|---|---:|---:|---:|---:|---:|---:|\n"
+        }
+        Question::Limits => {
+            "| scene | levels | CPU seconds | rays per pixel | pixels within | worst pixel | kept | fixed samples that keep it | their time |\n\
+             |---|---:|---:|---:|---:|---:|---|---:|---:|\n"
+        }
+    })?;
+    for (path, mut model) in models {
+        let camera = &mut model.camera.value;
+        camera.pixels = size.unwrap_or(camera.pixels);
+        let pixels = camera.pixels[0] * camera.pixels[1];
+        let stem = Path::new(&path).file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let all = choices(question);
+        let truth = if question == Question::Rms { TRUTH } else { TRUTH_OF_LIMITS };
+        let right = sampling::truth(&renderer, &mut model, truth);
+        let rounds = if question == Question::Rms { ROUNDS } else { 1 };
+        let measured = sampling::measure(&mut model, &all, &right, rounds);
+        let all: Vec<_> = all.into_iter().zip(measured).collect();
+        print(&match question {
+            Question::Rms => errors(&stem, &all),
+            Question::Limits => limits(&stem, &all),
+        })?;
+        chart.panels.push(Panel {
+            title: stem,
+            note: format!("{pixels} pixels, against {truth} samples"),
+            subject: Subject::Samples,
+            points: all.iter().map(|one| point(one, pixels)).collect(),
+        });
+    }
+    let Some(file) = file else { return Ok(()) };
+    output::replace(file, chart::svg(&chart)?.as_bytes())
+}
+
+fn choices(question: Question) -> Vec<Samples> {
+    let fixed = |sampler| move |samples| Samples { sampler, samples, adaptive: None };
+    let adaptive = |samples, most, levels: Option<f64>| {
+        let error = levels.map(|levels| levels / 255.0);
+        Samples { sampler: Sampler::Sobol, samples, adaptive: Some(Adaptive { most, error }) }
+    };
+    let mut all: Vec<_> = match question {
+        Question::Rms => [1, 2, 4, 8, 16, 32, 64, 128, 256].map(fixed(Sampler::Sobol)).into(),
+        Question::Limits => [1, 4, 16, 32, 64, 128, 256, 512, 1024].map(fixed(Sampler::Sobol)).into(),
+    };
+    match question {
+        Question::Rms => {
+            all.extend([4, 16, 64].map(fixed(Sampler::Random)));
+            all.extend(
+                [(1, 16), (2, 16), (2, 64), (4, 16), (4, 64), (4, 256), (8, 512)]
+                    .map(|(least, most)| adaptive(least, most, None)),
+            );
+        }
+        Question::Limits => all.extend([1.0, 2.0, 4.0].map(|levels| adaptive(4, 4096, Some(levels)))),
+    }
+    all
+}
+
+/// Returns the rows of a scene: each choice, and which fixed number of samples has the same error.
+fn errors(scene: &str, all: &[(Samples, Measured)]) -> String {
+    let fixed: Vec<_> = all
+        .iter()
+        .filter(|(choice, _)| choice.adaptive.is_none() && choice.sampler == Sampler::Sobol)
+        .collect();
+    let mut text = String::new();
+    for (choice, measured) in all {
+        let Measured { seconds, rays, rms, .. } = measured;
+        let name = match (choice.adaptive, choice.sampler) {
+            (Some(Adaptive { most, .. }), _) => format!("{}..{most}", choice.samples),
+            (None, Sampler::Sobol) => choice.samples.to_string(),
+            (None, Sampler::Random) => format!("{} random", choice.samples),
+        };
+        let equal = if choice.adaptive.is_none() { None } else { equal(&fixed, *rms) };
+        let (samples, time) = equal.map_or(("-".to_owned(), "-".to_owned()), |(samples, time)| {
+            (format!("{samples:.0}"), format!("{:.1} x", time / seconds))
+        });
+        let _ = writeln!(
+            text,
+            "| {scene} | {name} | {seconds:.3} | {rays:.2} | {rms:.3} | {:.1} | {samples} | {time} |",
+            measured.worst()
+        );
+    }
+    text
+}
+
+/// Returns the fixed number of samples that has this RMS error, and its time, between those that were measured.
+fn equal(fixed: &[&(Samples, Measured)], rms: f64) -> Option<(f64, f64)> {
+    fixed.windows(2).find_map(|pair| {
+        let [(less, coarse), (more, fine)] = pair else { return None };
+        let part = libm::log(coarse.rms / rms) / libm::log(coarse.rms / fine.rms);
+        let between = |from: f64, to: f64| from * libm::pow(to / from, part);
+        (0.0..=1.0).contains(&part).then(|| {
+            (between(less.samples.into(), more.samples.into()), between(coarse.seconds, fine.seconds))
+        })
+    })
+}
+
+/// Returns the rows of a scene: each limit, whether it was kept, and the least fixed number of samples that keeps it.
+fn limits(scene: &str, all: &[(Samples, Measured)]) -> String {
+    let mut text = String::new();
+    for (choice, measured) in all {
+        let Some(error) = choice.adaptive.and_then(|adaptive| adaptive.error) else { continue };
+        let levels = 255.0 * error;
+        let (within, Measured { seconds, rays, .. }) = (measured.within(levels), measured);
+        let kept = if within >= PROMISED { "yes" } else { "no" };
+        let fixed = all.iter().find(|(choice, fixed)| {
+            choice.adaptive.is_none() && fixed.within(levels) >= within.max(PROMISED)
+        });
+        let (samples, time) = fixed.map_or(("more".to_owned(), "-".to_owned()), |(choice, fixed)| {
+            (choice.samples.to_string(), format!("{:.1} x", fixed.seconds / seconds))
+        });
+        let _ = writeln!(
+            text,
+            "| {scene} | {} | {seconds:.3} | {rays:.1} | {:.2} % | {:.1} | {kept} | {samples} | {time} |",
+            short(levels),
+            (1e4 * within).floor() / 100.0,
+            measured.worst()
+        );
+    }
+    text
+}
+
+fn point((choice, measured): &(Samples, Measured), pixels: usize) -> Point {
+    let seconds = measured.seconds / pixels as f64;
+    Point {
+        name: String::new(),
+        family: match (choice.adaptive, choice.sampler) {
+            (Some(_), _) => Family::Adaptive,
+            (None, Sampler::Sobol) => Family::Sobol,
+            (None, Sampler::Random) => Family::Random,
+        },
+        is_default: false,
+        times: Times { least: seconds, median: seconds, rounds: ROUNDS, waited: 0.0 },
+        error: measured.rms / 255.0,
+        worst: measured.worst() / 255.0,
+        wrong: Wrong::default(),
+        visible: None,
+        changed: None,
+        samples: choice.adaptive.map_or(choice.samples, |adaptive| adaptive.most),
+    }
+}

@@ -1,0 +1,52 @@
+//! Renders an image into a file of full range: colours before they are clamped and rounded to levels.
+
+use super::failure::Failure;
+use super::output::{self, Output};
+use super::progress::Progress;
+use super::size::Part;
+use super::stats::Stats;
+use super::stop::Stop;
+use super::{job, memory, messages};
+use crate::output::full_range::FullRange;
+use crate::render::plan::Plan;
+use crate::render::ray_stats::RayStats;
+use crate::render::renderer::{Overseer, Renderer};
+use std::path::Path;
+
+/// The memory for a pixel, in bytes: its colour, and what encodes it.
+pub const PIXEL: usize = 12 * 4;
+
+/// Renders a part of an image, and writes it once it is whole: its formats have no place for what is not rendered.
+pub fn render(
+    (plan, part): (&Plan, &Part),
+    (renderer, stop): (&Renderer, &Stop),
+    (format, path): (FullRange, &Path),
+    output: Output,
+    stats: &Stats,
+) -> Result<(), Failure> {
+    let [width, height] = part.size();
+    memory::room(PIXEL.saturating_mul(width).saturating_mul(height), "the image")?;
+    let progress = Progress::new(height);
+    stop.begin();
+    let overseer = Overseer { stops: &|| stop.is_due(), row: &|| progress.step() };
+    let tally = &stats.tally;
+    let add = |part: RayStats| tally.add(&part);
+    let mut pixels = None;
+    stats.timed(|| pixels = renderer.colours(plan, [&part.columns, &part.rows], overseer, &add));
+    progress.end();
+    job::warn_of(stats.tally.cuts());
+    let Some(pixels) = pixels else {
+        stop.tell();
+        messages::note("an EXR or a PFM is written once it is whole: nothing is written");
+        return Err(Failure::Stopped);
+    };
+    output::put(path, output, |out| format.write(out, [width, height], &pixels))
+}
+
+/// Returns the error for options that these formats cannot serve.
+pub fn refuse(path: &Path, what: &str) -> Failure {
+    Failure::Usage(
+        format!("`{}` cannot be {what}: an EXR or a PFM is written once it is whole", path.display()),
+        Some("name a .png or .ppm file, or leave out the option".to_owned()),
+    )
+}

@@ -1,0 +1,126 @@
+//! `--samples`, `--max-error` and `--sampler`: how many samples the pixels of an image take, and where.
+
+use super::failure::Failure;
+use crate::world::camera::{Adaptive, Camera};
+use crate::world::sample::Sampler;
+
+/// The numbers of samples per pixel that `--max-error` chooses from, where `--samples` does not say.
+const BY_ERROR: [u32; 2] = [4, 4096];
+
+/// The number of levels from black to white.
+const LEVELS: f64 = 255.0;
+
+#[derive(clap::Args)]
+#[group(id = "how many samples")]
+pub struct Args {
+    /// The number of samples per pixel, to smooth edges; by default that of the scene's camera. With two powers of two
+    /// as `4..64`, each pixel takes the first number, and more up to the second where its colour is less certain: at
+    /// edges, in soft shadows, where objects are small
+    #[arg(long, value_name = "N|MIN..MAX", value_parser = samples)]
+    samples: Option<Samples>,
+    /// Take as many samples in each pixel as it needs for this error of its colour, such as `2` (levels of 255) or
+    /// `0.5%` (of white): an estimate, which 97 to 99.9 of 100 pixels kept in the scenes of docs/adaptive.md; 4 to 4096
+    /// samples unless --samples gives other limits
+    #[arg(long, value_name = "LEVELS|PERCENT%", value_parser = error, allow_negative_numbers = true)]
+    max_error: Option<f64>,
+    /// The distribution of the samples within a pixel
+    #[arg(long, value_name = "NAME", default_value = "sobol")]
+    sampler: Sampler,
+}
+
+/// Numbers of samples per pixel.
+#[derive(Clone, Copy)]
+enum Samples {
+    /// The same in all pixels.
+    Fixed(u32),
+    /// The minimum and the maximum.
+    From(u32, u32),
+}
+
+impl Args {
+    /// Gives the camera the requested samples.
+    pub fn apply(&self, camera: &mut Camera) -> Result<(), Failure> {
+        camera.sampler = self.sampler;
+        let limits = match (self.samples, self.max_error) {
+            (None, None) => return Ok(()),
+            (Some(Samples::Fixed(samples)), None) => {
+                camera.samples = samples;
+                return Ok(());
+            }
+            (Some(Samples::Fixed(samples)), Some(_)) => {
+                return Err(Failure::Usage(
+                    format!(
+                        "`--max-error` chooses the number of samples, and `--samples {samples}` fixes it"
+                    ),
+                    Some("give limits such as `--samples 4..1024`, or leave out one of the two".to_owned()),
+                ));
+            }
+            (Some(Samples::From(least, most)), _) => [least, most],
+            (None, Some(_)) => BY_ERROR,
+        };
+        camera.samples = limits[0];
+        camera.adaptive = Some(Adaptive { most: limits[1], error: self.max_error });
+        Ok(())
+    }
+}
+
+fn samples(text: &str) -> Result<Samples, String> {
+    let number = |text: &str| text.parse().ok().filter(|number| (1..=Sampler::MOST).contains(number));
+    let Some((least, most)) = text.split_once("..") else {
+        return number(text)
+            .map(Samples::Fixed)
+            .ok_or_else(|| format!("give a number from 1 to {}, or two as `4..64`", Sampler::MOST));
+    };
+    match (number(least), number(most)) {
+        (Some(least), Some(most)) if least < most && least.is_power_of_two() && most.is_power_of_two() => {
+            Ok(Samples::From(least, most))
+        }
+        (Some(least), Some(most)) if least < most => {
+            let near = |number: u32| (number.next_power_of_two()).min(Sampler::MOST);
+            Err(format!("both must be powers of two, such as `{}..{}`", near(least), near(most)))
+        }
+        (Some(least), Some(most)) if least > most => {
+            Err("the smaller number comes first, such as `4..64`".to_owned())
+        }
+        (Some(same), Some(_)) => Err(format!("for the same number in all pixels, give `{same}`")),
+        _ => Err(format!("give two powers of two from 1 to {} as `4..64`", Sampler::MOST)),
+    }
+}
+
+/// Returns an error where 1 is white.
+fn error(text: &str) -> Result<f64, String> {
+    let (number, white) = match text.strip_suffix('%') {
+        Some(percent) => (percent, 100.0),
+        None => (text, LEVELS),
+    };
+    let error = number.trim_end().parse().ok().map(|number: f64| number / white);
+    error.filter(|error| *error > 0.0 && *error <= 1.0).ok_or_else(|| {
+        "give levels as `2` or `0.5`, up to 255, or a part of white as `0.5%`, up to 100%".to_owned()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_error_is_in_levels_or_a_part_of_white() {
+        assert_eq!(error("51"), Ok(0.2));
+        assert_eq!(error("20%"), Ok(0.2));
+        assert_eq!(error("20 %"), Ok(0.2));
+        for wrong in ["", "%", "0", "-1", "256", "101%", "nan", "inf", "2 levels"] {
+            assert!(error(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn limits_of_samples_are_two_powers_of_two() {
+        assert!(matches!(samples("7"), Ok(Samples::Fixed(7))));
+        assert!(matches!(samples("1..65536"), Ok(Samples::From(1, 65536))));
+        for wrong in
+            ["0", "65537", "", "..", "4..", "..4", "4..4", "64..4", "3..64", "4..65", "4..131072", "4...64"]
+        {
+            assert!(samples(wrong).is_err(), "{wrong}");
+        }
+    }
+}

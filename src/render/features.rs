@@ -1,0 +1,103 @@
+//! The objects that are so small in the image that they may lie between samples.
+
+use crate::geometry::aabb::Aabb;
+use crate::render::tiles::TILE;
+use crate::scene::model::Object;
+use crate::world::camera::Camera;
+use glam::{DVec2, DVec3};
+use std::ops::RangeInclusive;
+
+/// The width or height in pixels below which an object may be missed by the first samples of pixels that see it: its
+/// bounds then hold no whole neighbourhood of a pixel.
+const SMALL: f64 = 2.0;
+
+/// The number of samples that a pixel takes at least if the bounds of a small object reach into it.
+pub(crate) const FEATURE_SAMPLES: u32 = 64;
+
+/// The small objects of an image, by the squares of pixels on which their bounds are projected.
+pub(crate) struct Features {
+    /// The number of squares across and down.
+    squares: [usize; 2],
+    /// For each square, from the lower left one in rows, the index of its first entry in `small`; and the end.
+    starts: Vec<u32>,
+    small: Vec<Small>,
+    /// The number of small objects, of which some may be in several squares.
+    count: usize,
+}
+
+/// The bounds of a small object as they are seen.
+#[derive(Clone)]
+struct Small {
+    /// The columns and rows of the pixels on which it is projected.
+    columns: RangeInclusive<u32>,
+    rows: RangeInclusive<u32>,
+    /// The distance from the viewer to its bounds in world units.
+    distance: f64,
+}
+
+impl Features {
+    /// Projects the bounds of objects.
+    pub fn new(camera: &Camera, objects: &[Object]) -> Self {
+        let squares = camera.pixels.map(|side| side.div_ceil(TILE));
+        let small = objects.iter().filter_map(|object| Small::of(camera, &object.shape.bounds()?));
+        let mut each: Vec<(u32, Small)> = Vec::new();
+        let mut count = 0;
+        for small in small {
+            count += 1;
+            let squares_of = |pixels: &RangeInclusive<u32>| {
+                *pixels.start() as usize / TILE..=*pixels.end() as usize / TILE
+            };
+            for row in squares_of(&small.rows) {
+                for column in squares_of(&small.columns) {
+                    each.push(((row * squares[0] + column) as u32, small.clone()));
+                }
+            }
+        }
+        each.sort_by_key(|(square, _)| *square);
+        let last = (squares[0] * squares[1]) as u32;
+        let start = |square| each.partition_point(|(other, _)| *other < square) as u32;
+        let starts = (0..=last).map(start).collect();
+        Self { squares, starts, small: each.into_iter().map(|(_, small)| small).collect(), count }
+    }
+
+    /// Tells whether the bounds of a small object reach into a pixel, given by column and row, and are no farther than a
+    /// distance in world units.
+    pub fn any_at(&self, [column, row]: [usize; 2], distance: f64) -> bool {
+        let square = row / TILE * self.squares[0] + column / TILE;
+        let [from, to] = [self.starts[square], self.starts[square + 1]];
+        let (column, row) = (column as u32, row as u32);
+        self.small[from as usize..to as usize].iter().any(|small| {
+            small.distance < distance && small.columns.contains(&column) && small.rows.contains(&row)
+        })
+    }
+
+    /// Returns the number of small objects.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+}
+
+impl Small {
+    /// Projects bounds; `None` where they are not small, or not in the image.
+    fn of(camera: &Camera, bounds: &Aabb) -> Option<Self> {
+        let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        for corner in 0..8 {
+            let part = |axis: usize| {
+                if corner >> axis & 1 == 0 { bounds.low[axis] } else { bounds.high[axis] }
+            };
+            let place = camera.project(DVec3::from_array([0, 1, 2].map(part)))?;
+            (low, high) = (low.min(place), high.max(place));
+        }
+        // So written that no NaN counts as small.
+        let is_small = (high - low).min_element() < SMALL && (high - low).is_finite();
+        let pixels = |axis: usize| {
+            let last = camera.pixels[axis] as f64 - 1.0;
+            let (from, to) = ((low[axis] - 0.5).ceil(), (high[axis] + 0.5).floor());
+            let is_seen = from <= last && to >= 0.0;
+            is_seen.then(|| from.max(0.0) as u32..=to.min(last) as u32)
+        };
+        let (columns, rows) = (pixels(0).filter(|_| is_small)?, pixels(1)?);
+        let nearest = camera.viewpoint.clamp(bounds.low, bounds.high);
+        Some(Self { columns, rows, distance: nearest.distance(camera.viewpoint) })
+    }
+}

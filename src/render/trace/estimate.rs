@@ -1,0 +1,168 @@
+//! What is known of a pixel's colour after some of its samples.
+
+use crate::render::bytes::shown;
+use crate::world::material::Rgb;
+use glam::DVec3;
+use std::array;
+
+/// The number of blocks of samples whose means are compared.
+const BLOCKS: usize = 8;
+
+/// What part of the contrast around a pixel may lie unseen between its samples: this, divided by their number. The
+/// second one holds where all of them have met the same on their paths.
+const UNSEEN: f64 = 0.25;
+const UNSEEN_WITHIN: f64 = 0.06;
+
+/// The scratch space of pixels that take more samples where that is needed.
+#[derive(Default)]
+pub(super) struct AdaptiveScratch {
+    /// The first samples of the pixels and of those around them.
+    pub firsts: Vec<First>,
+    /// For each place of a grid around the pixels, the index of its sample in `firsts` plus 1; 0 where there is none.
+    pub grid: Vec<u32>,
+    /// The pixels' estimates.
+    pub estimates: Vec<Estimate>,
+    /// The indices of the pixels that take more samples.
+    pub active: Vec<u32>,
+    /// The rays to be traced next.
+    pub batch: Vec<Wanted>,
+}
+
+impl AdaptiveScratch {
+    /// Returns the number of samples of the first pixel, and the estimated error of its colour.
+    pub fn first(&self, gain: f64) -> (u32, f64) {
+        self.estimates.first().map_or((0, 0.0), |estimate| (estimate.count, estimate.error(gain)))
+    }
+}
+
+/// A ray that is to be traced.
+#[derive(Clone, Copy)]
+pub(super) struct Wanted {
+    /// The index of what it belongs to.
+    pub of: u32,
+    /// The pixel's column and row, which may lie outside of the image.
+    pub pixel: [f64; 2],
+    /// The sample's index.
+    pub index: u32,
+    /// The number of rays that it may cost, where that is not the usual one.
+    pub ray_budget: Option<u32>,
+}
+
+/// What a sample found.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Found {
+    pub colour: Rgb,
+    /// A bound on the light that the colour lacks.
+    pub missing: f64,
+    /// What the ray met on its path.
+    pub mark: u64,
+    /// The distance of the first hit, in world units.
+    pub distance: f64,
+}
+
+/// The first sample of a pixel.
+#[derive(Clone, Copy, Default)]
+pub(super) struct First {
+    pub pixel: [f64; 2],
+    pub found: Found,
+}
+
+/// What is known of a pixel's colour.
+#[derive(Clone, Default)]
+pub(super) struct Estimate {
+    /// The number of samples.
+    pub count: u32,
+    /// The sum of their colours.
+    sum: Rgb,
+    /// The sums of the colours of equally long runs of samples, as many as there are samples but no more than
+    /// [`BLOCKS`].
+    blocks: [Rgb; BLOCKS],
+    /// The sum of the bounds on the light that they lack.
+    pub missing: f64,
+    /// The least and the greatest colour of its samples and of the first ones of the pixels around it.
+    low: Rgb,
+    high: Rgb,
+    /// What the first sample met, and whether another one here or around met anything else.
+    pub mark: u64,
+    is_crossed: bool,
+    /// The distance of the farthest first hit, in world units.
+    pub distance: f64,
+}
+
+impl Estimate {
+    /// Starts with the first sample.
+    #[inline]
+    pub fn new(found: &Found) -> Self {
+        let &Found { colour, missing, mark, distance } = found;
+        let mut blocks = [Rgb::ZERO; BLOCKS];
+        blocks[0] = colour;
+        let (low, high) = (colour, colour);
+        Self { count: 1, sum: colour, blocks, missing, low, high, mark, is_crossed: false, distance }
+    }
+
+    /// Includes what was found here or around.
+    #[inline]
+    pub fn compare(&mut self, found: &Found) {
+        (self.low, self.high) = (self.low.min(found.colour), self.high.max(found.colour));
+        self.is_crossed |= found.mark != self.mark;
+    }
+
+    /// Adds the next sample of `goal`, a power of two.
+    #[inline]
+    pub fn add(&mut self, found: &Found, goal: u32) {
+        self.compare(found);
+        self.sum += found.colour;
+        self.missing += found.missing;
+        self.distance = self.distance.max(found.distance);
+        let long = goal.div_ceil(BLOCKS as u32);
+        self.blocks[(self.count / long) as usize] += found.colour;
+        self.count += 1;
+    }
+
+    /// Joins pairs of blocks, so that there is room for as many samples again.
+    #[inline]
+    pub fn join(&mut self) {
+        if self.count as usize >= BLOCKS {
+            let blocks = self.blocks;
+            let joined = |pair: usize| {
+                if pair < BLOCKS / 2 { blocks[2 * pair] + blocks[2 * pair + 1] } else { Rgb::ZERO }
+            };
+            self.blocks = array::from_fn(joined);
+        }
+    }
+
+    /// Returns the colour.
+    #[inline]
+    pub fn colour(&self) -> Rgb {
+        self.sum / f64::from(self.count)
+    }
+
+    /// Estimates the error of the colour as it is shown, the largest of its channels, where 1 is white: the standard
+    /// error of the mean, as the means of its blocks have it, and what the contrast around leaves open. `gain` is the factor
+    /// of all colours.
+    ///
+    /// Sobol points are spread more evenly than independent ones, so that blocks differ more than their number says.
+    #[inline]
+    pub fn error(&self, gain: f64) -> f64 {
+        let blocks = (self.count as usize).min(BLOCKS);
+        let (mean, long) = (self.colour(), f64::from(self.count) / blocks as f64);
+        let squares: DVec3 = self.blocks[..blocks]
+            .iter()
+            .map(|sum| {
+                let d = *sum / long - mean;
+                d * d
+            })
+            .sum();
+        let spread = match blocks {
+            1 => DVec3::ZERO,
+            _ => squares.map(f64::sqrt) / ((blocks * (blocks - 1)) as f64).sqrt(),
+        };
+        let unseen = if self.is_crossed { UNSEEN } else { UNSEEN_WITHIN };
+        let error = spread + (self.high - self.low) * (unseen / f64::from(self.count));
+        let (mean, error) = (gain * mean, gain * error);
+        if mean.max_element() + error.max_element() <= 1.0 && (mean - error).min_element() >= 0.0 {
+            return error.max_element();
+        }
+        (shown(mean + error) - shown(mean)).max(shown(mean) - shown(mean - error)).max_element()
+    }
+}

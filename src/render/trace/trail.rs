@@ -1,0 +1,62 @@
+//! What primary rays meet on their paths, so that rays of one pixel can be told apart by it.
+
+use super::light::{Lit, Reflectivities};
+use crate::world::material::Rgb;
+
+/// For each current primary ray, a hash of the objects and the lights on its path: through mirrors and glass, in the
+/// order in which they are met. It does not depend on the other rays of the packet.
+#[derive(Default)]
+pub(super) struct Trails {
+    /// Whether anything is recorded.
+    pub is_on: bool,
+    /// The hashes.
+    pub marks: Vec<u64>,
+    /// The distances of the first hits in world units, infinite for rays that hit nothing.
+    pub distances: Vec<f64>,
+}
+
+impl Trails {
+    /// Starts the trails of new primary rays.
+    #[inline]
+    pub fn begin(&mut self, len: usize) {
+        if self.is_on {
+            self.marks.clear();
+            self.marks.resize(len, 0);
+            self.distances.clear();
+            self.distances.resize(len, f64::INFINITY);
+        }
+    }
+
+    /// Records that descendants of the primary rays in these lanes hit the object of this index, and the distances, if
+    /// they are the primary rays themselves.
+    #[inline]
+    pub fn meet(&mut self, camera: &[u8], object: usize, distances: Option<&[f64]>) {
+        camera.iter().for_each(|lane| self.add(*lane, 2 * object as u64 + 1));
+        for (lane, distance) in camera.iter().zip(distances.into_iter().flatten()) {
+            self.distances[usize::from(*lane)] = *distance;
+        }
+    }
+
+    /// Records on which of these points the light of this index shines, as far as they reflect any of it: others may
+    /// not have been looked at.
+    #[inline]
+    pub fn see_light(&mut self, camera: &[u8], light: usize, lit: &Lit, is_shiny: bool) {
+        for (lane, primary) in camera.iter().enumerate() {
+            let reflects = match lit.looks {
+                Reflectivities::Uniform(_) => true,
+                Reflectivities::Each { diffuse, specular } => {
+                    diffuse.get(lane) != Rgb::ZERO || is_shiny && specular.get(lane) != Rgb::ZERO
+                }
+            };
+            if reflects && lit.shines[lane] != 0 && lit.blocked[lane] != 1 {
+                self.add(*primary, 2 * light as u64 + 2);
+            }
+        }
+    }
+
+    #[inline]
+    fn add(&mut self, lane: u8, what: u64) {
+        let mark = &mut self.marks[usize::from(lane)];
+        *mark = (mark.rotate_left(23) ^ what).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    }
+}

@@ -1,0 +1,140 @@
+//! Measures what numbers of samples per pixel cost, and how wrong they leave an image.
+
+use crate::render::bytes::shown;
+use crate::render::observer::RayKind;
+use crate::render::plan::Plan;
+use crate::render::ray_stats::RayStats;
+use crate::render::renderer::Renderer;
+use crate::render::tiles::{self, TILE, TOGETHER};
+use crate::render::trace::{Scratch, Tracer};
+use crate::scene::model::Model;
+use crate::simd::cpu::Cpu;
+use crate::tools::bench::clock;
+use crate::world::camera::Adaptive;
+use crate::world::material::Rgb;
+use crate::world::sample::{SCRAMBLE, Sampler};
+use rayon::prelude::*;
+use serde::Serialize;
+use std::ops::Range;
+
+/// Numbers of samples per pixel.
+#[derive(Clone, Copy, Debug)]
+pub struct Samples {
+    /// How samples are distributed.
+    pub sampler: Sampler,
+    /// The number of samples, or the least of the numbers.
+    pub samples: u32,
+    /// Where pixels take more.
+    pub adaptive: Option<Adaptive>,
+}
+
+/// What numbers of samples cost, and how wrong they are. Errors are in levels of 1/255, of colours as they are shown but
+/// not rounded to levels.
+#[derive(Clone, Debug, Serialize)]
+pub struct Measured {
+    /// The CPU time of one thread, in seconds: the least of some rounds.
+    pub seconds: f64,
+    /// The mean number of primary rays per pixel.
+    pub rays: f64,
+    /// The root of the mean square of the errors of all channels.
+    pub rms: f64,
+    /// The errors of the pixels, each the largest of its channels, in ascending order.
+    #[serde(skip)]
+    pub errors: Vec<f64>,
+}
+
+impl Measured {
+    /// Returns the largest error of a pixel.
+    pub fn worst(&self) -> f64 {
+        self.errors.last().copied().unwrap_or(0.0)
+    }
+
+    /// Returns the fraction of pixels whose errors are no larger than this.
+    pub fn within(&self, error: f64) -> f64 {
+        let count = self.errors.partition_point(|other| *other <= error);
+        count as f64 / self.errors.len() as f64
+    }
+}
+
+/// Renders the colours of a model with so many samples per pixel that they count as true, on all threads.
+pub fn truth(renderer: &Renderer, model: &mut Model, samples: u32) -> Vec<Rgb> {
+    let camera = &mut model.camera.value;
+    (camera.samples, camera.adaptive, camera.sampler) = (samples, None, Sampler::Sobol);
+    camera.scramble = SCRAMBLE;
+    let plan = Plan::new(model);
+    let all = tiles(plan.camera.pixels, 1);
+    let render = |tile: &[Range<usize>; 2]| {
+        let mut colours = Vec::new();
+        let mut scratch = Scratch::default();
+        trace(&plan, &mut scratch, &mut RayStats::default(), tile, &mut colours);
+        colours
+    };
+    let colours: Vec<_> = renderer.run(|| all.par_iter().map(render).collect());
+    model.camera.value.scramble = 0;
+    colours.concat()
+}
+
+/// Measures numbers of samples, by turns, against the colours that [`truth`] returns.
+pub fn measure(model: &mut Model, all: &[Samples], truth: &[Rgb], rounds: usize) -> Vec<Measured> {
+    let mut measured: Vec<Option<Measured>> = vec![None; all.len()];
+    for _ in 0..rounds {
+        for (choice, measured) in all.iter().zip(&mut measured) {
+            let camera = &mut model.camera.value;
+            (camera.samples, camera.adaptive) = (choice.samples, choice.adaptive);
+            camera.sampler = choice.sampler;
+            let (mut colours, mut scratch, mut rays) = (Vec::new(), Scratch::default(), RayStats::default());
+            let start = clock::now();
+            let plan = Plan::new(model);
+            let together = if choice.adaptive.is_some() { TOGETHER } else { 1 };
+            for tile in tiles(plan.camera.pixels, together) {
+                trace(&plan, &mut scratch, &mut rays, &tile, &mut colours);
+            }
+            let seconds = (clock::now() - start).as_secs_f64();
+            let measured = measured.get_or_insert_with(|| {
+                let rays = rays.rays(RayKind::Primary) as f64 / colours.len() as f64;
+                compare(&colours, truth, rays)
+            });
+            measured.seconds = measured.seconds.min(seconds);
+        }
+    }
+    measured.into_iter().flatten().collect()
+}
+
+fn compare(colours: &[Rgb], truth: &[Rgb], rays: f64) -> Measured {
+    let (mut errors, mut squares) = (Vec::new(), 0.0);
+    for (colour, truth) in colours.iter().zip(truth) {
+        let off = 255.0 * (shown(*colour) - shown(*truth)).abs();
+        squares += off.length_squared();
+        errors.push(off.max_element());
+    }
+    errors.sort_by(f64::total_cmp);
+    let rms = (squares / (3 * errors.len()) as f64).sqrt();
+    Measured { seconds: f64::INFINITY, rays, rms, errors }
+}
+
+/// Lists the tiles of an image, by their columns and rows.
+fn tiles([width, height]: [usize; 2], together: usize) -> Vec<[Range<usize>; 2]> {
+    let wide = TILE * together;
+    let side = |from: usize, end: usize, size: usize| from..end.min(from + size);
+    let rows = (0..height).step_by(TILE);
+    rows.flat_map(|low| {
+        (0..width).step_by(wide).map(move |left| [side(left, width, wide), side(low, height, TILE)])
+    })
+    .collect()
+}
+
+fn trace(
+    plan: &Plan,
+    scratch: &mut Scratch,
+    rays: &mut RayStats,
+    [columns, rows]: &[Range<usize>; 2],
+    colours: &mut Vec<Rgb>,
+) {
+    let mut pixels = Vec::new();
+    for left in columns.clone().step_by(TILE) {
+        tiles::list(left..columns.end.min(left + TILE), rows.clone(), &mut pixels);
+    }
+    let mut tracer = Tracer::new(plan, Cpu::best(), scratch, rays);
+    let seen = tracer.pixels(&pixels);
+    colours.extend((0..pixels.len()).map(|pixel| seen.get(pixel)));
+}

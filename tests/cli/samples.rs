@@ -1,0 +1,121 @@
+//! `render --samples MIN..MAX` and `--max-error`: pixels that take different numbers of samples.
+
+use crate::common::program::{folder, outcome, scene, tabray};
+use image::RgbImage;
+use std::fs;
+
+/// Renders a scene at a small size with these options.
+fn picture(name: &str, options: &[&str]) -> RgbImage {
+    let folder = folder();
+    let mut command = tabray(&folder);
+    command.arg("render").arg(scene(name)).args(["--size", "100", "-o", "-"]).args(options);
+    let (status, out, err) = outcome(&mut command);
+    assert_eq!(status, 0, "{options:?}: {err}");
+    image::load_from_memory(&out).expect("a picture").into_rgb8()
+}
+
+#[test]
+fn adaptive_samples_depend_on_neither_threads_nor_instructions() {
+    for options in [["--samples", "2..32"], ["--max-error", "3"]] {
+        let with = |others: &[&str]| picture("gallery/marbles.ray", &[&options[..], others].concat());
+        let one = with(&["--threads", "1"]);
+        assert!(with(&["--threads", "4"]) == one, "{options:?}");
+        assert!(with(&["--threads", "3", "--cpu", "baseline"]) == one, "{options:?}");
+    }
+}
+
+#[test]
+fn a_pixel_with_so_many_samples_has_the_colour_of_a_picture_with_as_many() {
+    let name = "gallery/stained-glass.ray";
+    let fixed = [2, 4, 8, 16].map(|samples: u32| picture(name, &["--samples", &samples.to_string()]));
+    let adaptive = picture(name, &["--samples", "2..16"]);
+    let mut used = [0; 4];
+    for (x, y, pixel) in adaptive.enumerate_pixels() {
+        let same = fixed.iter().map(|picture| picture.get_pixel(x, y) == pixel);
+        let which = same.enumerate().find(|(_, same)| *same).map(|(which, _)| which);
+        used[which.unwrap_or_else(|| panic!("pixel {x} {y} is of none of the pictures"))] += 1;
+    }
+    assert!(used[0] > used[1] && used[3] > 0, "{used:?}");
+}
+
+#[test]
+fn samples_are_counted_and_shown() {
+    let folder = folder();
+    let arguments =
+        ["--size", "60", "-o", "out.png", "--max-error", "4", "--aov", "samples", "--stats", "json"];
+    let mut command = tabray(&folder);
+    let (status, _, err) =
+        outcome(command.arg("render").arg(scene("gallery/three-lamps.ray")).args(arguments));
+    assert_eq!(status, 0, "{err}");
+    let json = err.lines().find(|line| line.starts_with('{')).expect("statistics");
+    let stats: serde_json::Value = serde_json::from_str(json).expect("JSON");
+    let counts = stats["samples"]["pixels"].as_object().expect("counts of pixels");
+    let number = |count: &serde_json::Value| count.as_u64().expect("a count");
+    assert_eq!(counts.values().map(number).sum::<u64>(), 60 * 45);
+    let exact = image::open(folder.path().join("out-samples.exr")).expect("an EXR").into_rgb32f();
+    for (samples, pixels) in counts {
+        let samples: f32 = samples.parse().expect("a number");
+        let shown = exact.pixels().filter(|pixel| pixel.0[0] == samples).count() as u64;
+        assert_eq!(shown, number(pixels), "{samples} samples");
+    }
+    assert!(fs::exists(folder.path().join("out-samples.png")).expect("a folder"));
+}
+
+#[test]
+fn a_small_object_between_samples_is_not_lost() {
+    // About a sixth of a pixel across, and far from the centre of any.
+    let text = "camera eye { pixeldim 40 30  worlddim 8 6  viewpoint 4 3 8 }
+        material white { ambient 8 8 8 }
+        sphere dot { material white  center 4.04 3.04 -2  radius 0.021 }";
+    let folder = folder();
+    fs::write(folder.path().join("dot.ray"), text).expect("a file");
+    let render = |samples: &str| {
+        let arguments = ["render", "dot.ray", "-o", "-", "--samples", samples];
+        let (status, out, err) = outcome(tabray(&folder).args(arguments));
+        assert_eq!(status, 0, "{err}");
+        image::load_from_memory(&out).expect("a picture").into_rgb8()
+    };
+    assert!(render("1..64") == render("64"));
+}
+
+#[test]
+fn adaptive_samples_do_not_depend_on_what_the_image_does_not_need() {
+    // The red lamp adds nothing to the green floor, and `aside` is seen by pixels around the image only.
+    let text = "camera eye { pixeldim 40 30  worlddim 8 6  viewpoint 4 3 8 }
+        material green { ambient 0 0.2 0  diffuse 0 3 0 }
+        material white { ambient 8 8 8 }
+        light green { location 2 6 -3  emissivity 0 3 0 }
+        light red { location 6 6 -3  emissivity 3 0 0 }
+        sphere ball { material green  center 4 2 -3  radius 1 }
+        sphere aside { material white  center -1.2 3 0  radius 1.09 }
+        plane floor { material green  normal 0 1 0  point 0 0 0 }";
+    let folder = folder();
+    fs::write(folder.path().join("a.ray"), text).expect("a file");
+    let render = |options: &[&str]| {
+        let arguments = ["render", "a.ray", "-o", "-", "--samples", "2..64", "--stats", "json"];
+        let (status, out, err) = outcome(tabray(&folder).args(arguments).args(options));
+        assert_eq!(status, 0, "{err}");
+        let json = err.lines().find(|line| line.starts_with('{')).expect("statistics");
+        let stats: serde_json::Value = serde_json::from_str(json).expect("JSON");
+        (out, stats["samples"].clone())
+    };
+    assert_eq!(render(&[]), render(&["--keep-all"]));
+}
+
+#[test]
+fn plan_says_how_many_samples_pixels_take() {
+    let says = |options: &[&str]| {
+        let (status, out, err) =
+            outcome(tabray(&folder()).arg("plan").arg(scene("gallery/marbles.ray")).args(options));
+        assert_eq!(status, 0, "{err}");
+        String::from_utf8(out).expect("text").lines().next().expect("a line").to_owned()
+    };
+    assert_eq!(
+        says(&["--samples", "4..64"]),
+        "image        640 x 480 pixels, 4 to 64 evenly spread samples in each: more where its colour is less certain"
+    );
+    assert!(
+        says(&["--max-error", "1%"])
+            .ends_with("until its error is estimated to be at most 2.55 of 255 levels")
+    );
+}
