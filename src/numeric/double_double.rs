@@ -289,7 +289,7 @@ pub fn unit(vector: [DoubleDouble; 3]) -> [DoubleDouble; 3] {
     vector.map(|part| part / length)
 }
 
-/// Returns the components of [`unit`], each rounded to a plain number.
+/// Returns the components of [`unit()`], each rounded to a plain number.
 #[inline]
 pub fn rounded_unit(vector: [DoubleDouble; 3]) -> [f64; 3] {
     let length = product(vector, vector).sqrt();
