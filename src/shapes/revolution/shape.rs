@@ -185,6 +185,14 @@ where
         })
     }
 
+    fn may_be_costly(&self) -> bool {
+        self.shape.surface.may_be_costly()
+    }
+
+    fn search_cost(&self, ray: &Ray, origin_side: Option<Side>) -> u32 {
+        self.shape.surface.search_cost(&self.shape.frame, ray, origin_side)
+    }
+
     fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
         self.shape.distance(ray, &RayRange { origin_side, ..RayRange::ALL })
     }
