@@ -25,6 +25,9 @@ const LEVEL: f64 = 1e-200;
 /// them, the ray's hits are not proven.
 const MAX_PIECES: usize = 1024;
 
+/// The number of plain rays that take as long as a piece, what bounds in `f64` leave undecided included.
+const RAYS_PER_PIECE: usize = 4;
+
 /// The number of slabs that count as one plain ray.
 const SLABS_PER_RAY: usize = 256;
 
@@ -34,7 +37,7 @@ struct Walked {
     distance: f64,
     /// Whether it is certain for all rays that this one may have been rounded from.
     is_certain: bool,
-    /// The number of pieces that were judged, each of which takes about as long as a plain ray.
+    /// The number of pieces that were judged.
     pieces: usize,
 }
 
@@ -54,7 +57,7 @@ impl Revolution {
             return 0;
         }
         let pieces = if self.slabs.is_tight() { 0 } else { self.search(frame, ray, &range).pieces };
-        (self.slabs.count() / SLABS_PER_RAY + pieces) as u32
+        (self.slabs.count() / SLABS_PER_RAY + RAYS_PER_PIECE * pieces) as u32
     }
 
     /// Tells whether the search for a ray's first hit may take as long as several plain rays.
