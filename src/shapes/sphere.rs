@@ -7,6 +7,7 @@
 use crate::geometry::aabb::larger;
 use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
 use crate::numeric::double_double::{DoubleDouble, exponent_to_one, times_power_of_two, two_product};
+use crate::numeric::scalar::per_axis;
 use crate::world::accuracy::{Accuracy, Bounded};
 use glam::DVec3;
 
@@ -268,7 +269,7 @@ fn in_double_double(line: &SphereLine, radius: f64) -> f64 {
 
     let a = dot(&line.dir, &line.dir);
     let middle = DoubleDouble::from((-dot(&from, &line.dir) / a).high);
-    let at = [0, 1, 2].map(|axis| from[axis] + middle * line.dir[axis]);
+    let at = per_axis(|axis| from[axis] + middle * line.dir[axis]);
     let toward = -dot(&at, &line.dir);
     let discriminant = toward * toward - a * outside_of(&at);
     if discriminant.high <= 0.0 {

@@ -5,7 +5,7 @@ use super::quick::Quick;
 use super::surface::{OwnRay, Quadratic};
 use crate::geometry::aabb::{Aabb, SLACK};
 use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
-use crate::numeric::scalar::Scalar;
+use crate::numeric::scalar::{Scalar, per_axis};
 use crate::world::accuracy::{Accuracy, Bounded, Classic};
 use glam::{DMat3, DVec3};
 use std::marker::PhantomData;
@@ -79,7 +79,7 @@ impl<A> Quadric<A> {
 
     /// Returns the left side of the equation at a point of the world: 0 on the quadric.
     pub fn value<N: Scalar>(&self, at: [N; 3]) -> N {
-        let from_center = [0, 1, 2].map(|axis| at[axis] - N::constant(self.center[axis]));
+        let from_center = per_axis(|axis| at[axis] - N::constant(self.center[axis]));
         let sum = |part: &dyn Fn(usize) -> N| part(0) + part(1) + part(2);
         let row = |row: usize| {
             let square = sum(&|column| from_center[column] * N::constant(self.square.col(column)[row]));
