@@ -1,6 +1,6 @@
 //! The tests of a ray against the edges of a triangle: the arithmetic behind triangles.
 
-use crate::geometry::ray::Ray;
+use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
 use crate::numeric::double_double::{
     self, DoubleDouble, exponent_to_one, rounded_unit, times_power_of_two, triple_product,
 };
@@ -36,6 +36,20 @@ impl<A: Bounded> Triangle<A> {
         }
         let normal = DVec3::from(rounded_unit(upright));
         Some(Self { plane: Plane::new(normal, upright, corners[0]), corners })
+    }
+}
+
+impl<A: Bounded> Triangle<A> {
+    /// Returns a bracket of the distance at which a ray crosses the triangle.
+    #[inline(always)]
+    pub fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+        let rough = self.plane.rough(ray, range.origin_error);
+        let Bracket { near, far } = self.plane.t_bounds(&rough, ray, range);
+        let passed = self.passed(ray);
+        Bracket {
+            near: if passed == Some(false) { MISS } else { near },
+            far: if passed == Some(true) { far } else { MISS },
+        }
     }
 }
 

@@ -222,7 +222,7 @@ impl<F: Float> Search<'_, F> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numeric::scalar::{Scalar, per_axis};
+    use crate::numeric::scalar::Scalar;
     use crate::world::certify::equation::Equation;
     use f256::f256;
     use glam::DVec3;
