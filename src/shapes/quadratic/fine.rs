@@ -14,6 +14,7 @@ impl Quadratic {
         let place = DVec3::from(from.map(|part| part.high));
         let gradient = 2.0 * (self.square * place) + self.linear;
         let size = (2.0 * self.sizes * place.abs().max_element() + self.linear.abs()).max_element();
+        // A few roundings of its terms are then less than 1e-12 of it.
         if gradient.abs().max_element() > 1e-3 * size {
             return gradient.normalize();
         }
