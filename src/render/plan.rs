@@ -90,7 +90,7 @@ impl<'m> Plan<'m> {
         let mut unmet = needs.unmet.iter().peekable();
         let mut met = objects.iter().enumerate().filter(|(index, _)| unmet.next_if_eq(&index).is_none());
         let has_glass = met.any(|(_, object)| object.material.transparency != 0.0);
-        let is_costly = |index: &usize| objects[*index].shape.packets().may_be_costly();
+        let is_costly = |index: &usize| objects[*index].shape.may_be_costly();
         let costly =
             if depth.is_some() { (0..objects.len()).filter(is_costly).collect() } else { Vec::new() };
         let bounces = usize::MAX;

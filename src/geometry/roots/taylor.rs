@@ -85,7 +85,7 @@ pub struct Found {
 }
 
 /// The largest number of pieces that are judged before the proof is given up; only the wildest functions take more.
-pub const MAX_PIECES: usize = 16_384;
+const MAX_PIECES: usize = 16_384;
 
 /// Pieces are not cut whose bounds are below this many times the rounding error of one evaluation: the part of the
 /// bounds that shrinks with the length of the piece is at most three times the part that does not.
@@ -150,7 +150,6 @@ struct Search<'l, L> {
     range: &'l RayRange,
     /// Pieces of this length are not cut.
     shortest: f64,
-    /// The number of pieces that may still be judged before the proof is given up.
     pieces: &'l mut usize,
     is_certain: bool,
 }

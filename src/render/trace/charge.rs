@@ -30,7 +30,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                     break;
                 }
                 let side = left.filter(|(object, _)| object == index).map(|(_, sides)| sides[lane]);
-                let shape = self.model.objects[*index].shape.packets();
+                let shape = &self.model.objects[*index].shape;
                 ray_budget[lane] = ray_budget[lane].saturating_sub(shape.search_cost(&rays.get(lane), side));
             }
         }

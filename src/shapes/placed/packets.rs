@@ -291,14 +291,6 @@ impl Packets for Shape<Placed, ByPackets, ByPlacement> {
         self.shape.brackets(cpu, rays, None, Some(drift), ends, (near, far));
     }
 
-    fn may_be_costly(&self) -> bool {
-        self.shape.body.shape.packets().may_be_costly()
-    }
-
-    fn search_cost(&self, ray: &Ray, origin_side: Option<Side>) -> u32 {
-        self.shape.body.shape.packets().search_cost(&self.shape.own_ray(ray).0, origin_side)
-    }
-
     fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
         self.shape.distance(ray, &RayRange { origin_side, ..RayRange::ALL })
     }

@@ -90,6 +90,14 @@ impl Hittable for InFrame<Revolution> {
         true
     }
 
+    fn may_be_costly(&self) -> bool {
+        self.surface.may_be_costly()
+    }
+
+    fn search_cost(&self, ray: &Ray, origin_side: Option<Side>) -> u32 {
+        self.surface.search_cost(&self.frame, ray, origin_side)
+    }
+
     fn method(&self) -> String {
         self.surface.to_string()
     }
@@ -183,14 +191,6 @@ where
             let (distance, is_certain) = self.shape.surface.first_hit(&self.shape.frame, ray, range);
             is_certain.then_some(distance)
         })
-    }
-
-    fn may_be_costly(&self) -> bool {
-        self.shape.surface.may_be_costly()
-    }
-
-    fn search_cost(&self, ray: &Ray, origin_side: Option<Side>) -> u32 {
-        self.shape.surface.search_cost(&self.shape.frame, ray, origin_side)
     }
 
     fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {

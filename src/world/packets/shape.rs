@@ -99,17 +99,6 @@ pub trait Packets: Send + Sync {
         }
     }
 
-    /// Tells whether the search for one ray's hit may take as long as several plain rays.
-    fn may_be_costly(&self) -> bool {
-        false
-    }
-
-    /// Returns how many plain rays take as long as the search for one ray's hit, beyond the ray itself. It depends on
-    /// the ray alone, and on the side of the shape that it leaves, if it does.
-    fn search_cost(&self, _ray: &Ray, _origin_side: Option<Side>) -> u32 {
-        0
-    }
-
     /// Returns the distance of one ray's hit that [`t_bounds`](Self::t_bounds) has found for certain, or NaN where it
     /// takes more than plain arithmetic.
     fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64;
