@@ -100,9 +100,8 @@ fn compare(colours: &[Rgb], truth: &[Rgb], rays: f64) -> Measured {
     }
     let rms = (squares / (3 * errors.len()) as f64).sqrt();
     let worst = errors.iter().copied().fold(0.0, f64::max);
-    let within = LEVELS.map(|level| {
-        errors.iter().filter(|error| **error <= level).count() as f64 / errors.len() as f64
-    });
+    let within = LEVELS
+        .map(|level| errors.iter().filter(|error| **error <= level).count() as f64 / errors.len() as f64);
     Measured { seconds: f64::INFINITY, rays, rms, worst, within }
 }
 

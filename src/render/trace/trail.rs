@@ -1,10 +1,14 @@
 //! What primary rays meet on their paths, so that rays of one pixel can be told apart by it.
 
 use super::light::{Lit, Reflectivities};
+use crate::simd::cpu::Cpu;
+use crate::simd::soa::View;
 use crate::world::material::Rgb;
+use crate::world::packets::shader::PacketShader;
+use std::mem::take;
 
-/// For each current primary ray, a hash of the objects and the lights on its path: through mirrors and glass, in the
-/// order in which they are met. It does not depend on the other rays of the packet.
+/// For each current primary ray, a hash of the objects, tiles and lights on its path: through mirrors and glass, in
+/// the order in which they are met. It does not depend on the other rays of the packet.
 #[derive(Default)]
 pub(super) struct Trails {
     /// Whether anything is recorded.
@@ -13,6 +17,8 @@ pub(super) struct Trails {
     pub marks: Vec<u64>,
     /// The distances of the first hits in world units, infinite for rays that hit nothing.
     pub distances: Vec<f64>,
+    /// The tiles that some of them meet.
+    tiles: Vec<u64>,
 }
 
 impl Trails {
@@ -27,11 +33,25 @@ impl Trails {
         }
     }
 
-    /// Records that descendants of the primary rays in these lanes hit the object of this index, and the distances, if
-    /// they are the primary rays themselves.
+    /// Records that descendants of the primary rays in these lanes hit the object of this index; the tiles or texels at
+    /// these points, if it has any; and the distances, if they are the primary rays themselves.
     #[inline]
-    pub fn meet(&mut self, camera: &[u8], object: usize, distances: Option<&[f64]>) {
+    pub fn meet(
+        &mut self,
+        cpu: Cpu,
+        camera: &[u8],
+        object: usize,
+        distances: Option<&[f64]>,
+        shader: Option<(&dyn PacketShader, View)>,
+    ) {
         camera.iter().for_each(|lane| self.add(*lane, 2 * object as u64 + 1));
+        if let Some((shader, points)) = shader {
+            let mut tiles = take(&mut self.tiles);
+            tiles.resize(points.len(), 0);
+            shader.tiles(cpu, points, &mut tiles);
+            camera.iter().zip(&tiles).for_each(|(lane, tile)| self.add(*lane, *tile));
+            self.tiles = tiles;
+        }
         for (lane, distance) in camera.iter().zip(distances.into_iter().flatten()) {
             self.distances[usize::from(*lane)] = *distance;
         }
