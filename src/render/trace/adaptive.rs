@@ -31,6 +31,9 @@ const CONFIDENCE: f64 = 2.0;
 /// the root of the number of samples: so the samples go where each lowers the mean square error of the image most.
 const BALANCED: f64 = 0.25 / 255.0;
 
+/// The number of samples that a pixel takes at least if anything crosses it, even where all that is known has one colour.
+const CROSSED_SAMPLES: u32 = 16;
+
 /// The number of corners of a pixel and of those around it, along each axis.
 const AROUND: usize = 4;
 
@@ -104,6 +107,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 let goes_on = goal < adaptive.most
                     && estimate.missing != f64::INFINITY
                     && (estimate.error(gain) > limit
+                        || goal < CROSSED_SAMPLES && estimate.is_crossed()
                         || goal < FEATURE_SAMPLES && rays.is_feature(pixel, estimate.distance()));
                 if goes_on {
                     estimate.join();

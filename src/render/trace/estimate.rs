@@ -122,6 +122,11 @@ impl Estimate {
         Self { around, ..Self::default() }
     }
 
+    /// Tells whether rays here or around met different things on their paths.
+    pub fn is_crossed(&self) -> bool {
+        self.around.is_crossed
+    }
+
     /// Returns the distance of the farthest first hit here or around, in world units.
     pub fn distance(&self) -> f64 {
         self.around.distance
