@@ -117,7 +117,7 @@ fn choices(question: Question) -> Vec<Samples> {
         Question::Rms => {
             all.extend([4, 16, 64].map(fixed(Sampler::Random)));
             all.extend(
-                [(1, 16), (2, 16), (2, 64), (4, 16), (4, 64), (4, 256), (8, 512)]
+                [(1, 16), (2, 16), (2, 64), (4, 16), (4, 64), (4, 256), (4, 1024)]
                     .map(|(least, most)| adaptive(least, most, None)),
             );
         }
@@ -173,9 +173,9 @@ fn limits(scene: &str, all: &[(Samples, Measured)]) -> String {
         let Measured { seconds, rays, worst, .. } = measured;
         let within = measured.within[index];
         let kept = if within >= PROMISED { "yes" } else { "no" };
-        let fixed = all.iter().find(|(choice, fixed)| {
-            choice.adaptive.is_none() && fixed.within[index] >= within.max(PROMISED)
-        });
+        let fixed = all
+            .iter()
+            .find(|(choice, fixed)| choice.adaptive.is_none() && fixed.within[index] >= within.max(PROMISED));
         let (samples, time) = fixed.map_or(("more".to_owned(), "-".to_owned()), |(choice, fixed)| {
             (choice.samples.to_string(), format!("{:.1} x", fixed.seconds / seconds))
         });

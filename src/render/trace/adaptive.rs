@@ -27,6 +27,10 @@ use std::mem::take;
 /// How many estimated errors the error of a pixel may be, where it is limited.
 const CONFIDENCE: f64 = 2.0;
 
+/// How many times its standard error the mean of a pixel's samples may be off, where its error is limited, for each
+/// of [`CONFIDENCE`]: few blocks of samples tell little of rare ones.
+const DOUBT: f64 = 1.5;
+
 /// The estimated error, where 1 is white, up to which one sample would be enough where no error is limited. It grows with
 /// the root of the number of samples: so the samples go where each lowers the mean square error of the image most.
 const BALANCED: f64 = 0.25 / 255.0;
@@ -101,12 +105,13 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 rays.trace(&mut |of, found| estimates[of].add(found, goal));
             }
             let limit = most_error(adaptive, goal);
+            let doubt = if adaptive.error.is_some() { DOUBT } else { 1.0 };
             active.retain(|of| {
                 let (estimate, pixel) = (&mut estimates[*of as usize], pixels[*of as usize]);
                 // More samples do not help a pixel that is off by an unknown amount.
                 let goes_on = goal < adaptive.most
                     && estimate.missing != f64::INFINITY
-                    && (estimate.error(gain) > limit
+                    && (estimate.error(gain, doubt) > limit
                         || goal < CROSSED_SAMPLES && estimate.is_crossed()
                         || goal < FEATURE_SAMPLES && rays.is_feature(pixel, estimate.distance()));
                 if goes_on {

@@ -140,7 +140,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         light::shine(cpu, &lit, material.shininess, colours.resized(count));
         if self.scratch.trails.is_on {
             let is_shiny = material.shininess != 0.0;
-            self.scratch.trails.see_light(&group.camera[..group.len], index, &lit, is_shiny);
+            let has_tints = light.uniform().is_some();
+            self.scratch.trails.see_light(&group.camera[..group.len], index, &lit, [is_shiny, has_tints]);
         }
         if W::SEES {
             let mut alone = VectorList::default();

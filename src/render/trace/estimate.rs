@@ -34,7 +34,7 @@ pub(super) struct AdaptiveScratch {
 impl AdaptiveScratch {
     /// Returns the number of samples of the first pixel, and the estimated error of its colour.
     pub fn first(&self, gain: f64) -> (u32, f64) {
-        self.estimates.first().map_or((0, 0.0), |estimate| (estimate.count, estimate.error(gain)))
+        self.estimates.first().map_or((0, 0.0), |estimate| (estimate.count, estimate.error(gain, 1.0)))
     }
 }
 
@@ -164,11 +164,11 @@ impl Estimate {
 
     /// Estimates the error of the colour as it is shown, the largest of its channels, where 1 is white: the standard
     /// error of the mean, as the means of its blocks have it, and what the contrast around leaves open. `gain` is the factor
-    /// of all colours.
+    /// of all colours, and `doubt` that of the standard error.
     ///
     /// Sobol points are spread more evenly than independent ones, so that blocks differ more than their number says.
     #[inline]
-    pub fn error(&self, gain: f64) -> f64 {
+    pub fn error(&self, gain: f64, doubt: f64) -> f64 {
         let blocks = (self.count as usize).min(BLOCKS);
         let (mean, long) = (self.colour(), f64::from(self.count) / blocks as f64);
         let squares: DVec3 = self.blocks[..blocks]
@@ -183,7 +183,7 @@ impl Estimate {
             _ => squares.map(f64::sqrt) / ((blocks * (blocks - 1)) as f64).sqrt(),
         };
         let unseen = if self.around.is_crossed { UNSEEN } else { UNSEEN_WITHIN };
-        let error = spread + (self.around.high - self.around.low) * (unseen / f64::from(self.count));
+        let error = doubt * spread + (self.around.high - self.around.low) * (unseen / f64::from(self.count));
         let (mean, error) = (gain * mean, gain * error);
         if mean.max_element() + FAR * error.max_element() <= 1.0 && (mean - FAR * error).min_element() >= 0.0
         {

@@ -1,6 +1,6 @@
 //! What primary rays meet on their paths, so that rays of one pixel can be told apart by it.
 
-use super::light::{Lit, Reflectivities};
+use super::light::{Colours, Lit, Reflectivities};
 use crate::simd::cpu::Cpu;
 use crate::simd::soa::View;
 use crate::world::material::Rgb;
@@ -58,9 +58,9 @@ impl Trails {
     }
 
     /// Records on which of these points the light of this index shines, as far as they reflect any of it: others may
-    /// not have been looked at.
+    /// not have been looked at. `has_tints` tells that its colours differ only by the glass on the way.
     #[inline]
-    pub fn see_light(&mut self, camera: &[u8], light: usize, lit: &Lit, is_shiny: bool) {
+    pub fn see_light(&mut self, camera: &[u8], light: usize, lit: &Lit, [is_shiny, has_tints]: [bool; 2]) {
         for (lane, primary) in camera.iter().enumerate() {
             let reflects = match lit.looks {
                 Reflectivities::Uniform(_) => true,
@@ -70,6 +70,14 @@ impl Trails {
             };
             if reflects && lit.shines[lane] != 0 && lit.blocked[lane] != 1 {
                 self.add(*primary, 2 * light as u64 + 2);
+                if let Colours::Each(sent) = lit.emissivity
+                    && has_tints
+                {
+                    sent.get(lane)
+                        .to_array()
+                        .iter()
+                        .for_each(|channel| self.add(*primary, channel.to_bits()));
+                }
             }
         }
     }
