@@ -23,8 +23,9 @@ use std::time::{Duration, Instant};
 /// Choose accuracy and samples for a maximum error or time
 ///
 /// Measures the choices on a part of the image, shows them with a bound on their errors that holds with a confidence of
-/// 99 %, and prints the command line to use. Takes at most half as many rays as the image that it recommends, or 1 million
-/// where that is more (with `--worst` 2 million), and never longer than 10 seconds unless it is given more.
+/// 99 %, and prints the command line to use. Takes at most half as many rays as the image with the fixed number of samples
+/// that suffices; or 1 million where that is more (with `--worst` 2 million), but then at most 4 times as many as that
+/// image, or 100,000. Never takes longer than 10 seconds unless it is given more.
 #[derive(clap::Args)]
 #[command(group = ArgGroup::new("limit").args(["max_error", "max_time"]).required(true))]
 pub struct Args {

@@ -36,7 +36,7 @@ const MIN_RAYS: f64 = 1e6;
 const PART: f64 = 0.5;
 
 /// The most that a measurement may take of the rays of an image so small that the minimum is more.
-const TINY: f64 = 8.0;
+const TINY: f64 = 4.0;
 
 /// The number of samples that an image must need for pixels with different numbers of them to be a choice.
 const ADAPTIVE_FROM: u32 = 16;
@@ -284,7 +284,7 @@ impl Study {
         };
         let mut errors: Vec<Errors> = vec![Errors::new(samples.len()); kept.len()];
         let mut rights = Vec::new();
-        let (mut next, mut is_short) = (FIRST, false);
+        let (mut next, mut is_short) = (FIRST.min(most(samples[0])), false);
         loop {
             let wanted = next.min(all);
             if wanted == all {
