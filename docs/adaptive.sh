@@ -61,7 +61,7 @@ fi
 if [ "$what" = all ] || [ "$what" = limits ]; then
     for seed in {1..20}; do made "$seed" >"$out/random-$seed.ray"; done
     "$TABRAY" bench --sampling limits --size "${SMALL:-80x60}" --keep "$keep" \
-        scenes/gallery/{marbles,three-lamps,stained-glass}.ray scenes/{heart/glass,light/size,projector/fit}.ray \
+        scenes/gallery/{marbles,three-lamps,stained-glass}.ray scenes/{material/transparent,light/size,projector/fit}.ray \
         scenes/texplane/tiled.ray scenes/pplane/{rainbow_tiles,tiles}.ray scenes/sphere/in-front.ray \
         "$out"/random-*.ray 2>/dev/null
 fi
@@ -75,7 +75,7 @@ difference() {
             open my $file, "<:raw", $_ or die "$_: $!";
             local $/;
             my $bytes = <$file>;
-            $bytes =~ s/^P6\s+(\d+)\s+(\d+)\s+255\s// or die "$_ is no PPM of 8 bits";
+            $bytes =~ s/^P6\s+(?:#.*\n\s*)*(\d+)\s+(\d+)\s+255\s// or die "$_ is no PPM of 8 bits";
             [$1, $2, $bytes];
         } @ARGV;
         my ($large, $small) = @read;

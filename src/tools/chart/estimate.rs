@@ -35,9 +35,6 @@ const MORE: u32 = 4;
 const MIN_RAYS: f64 = 1e6;
 const PART: f64 = 0.5;
 
-/// The most that a measurement may take of the rays of an image so small that the minimum is more.
-const TINY: f64 = 4.0;
-
 /// The number of samples that an image must need for pixels with different numbers of them to be a choice.
 const ADAPTIVE_FROM: u32 = 16;
 
@@ -277,14 +274,13 @@ impl Study {
         // One pixel costs the samples of each choice, and the true ones.
         let of_pixel = samples.iter().sum::<u32>() * kept.len() as u32 + against + needed::RAYS;
         let most = |picture: u32| {
-            let rays = f64::from(picture) * all as f64;
             let least = if self.goal.is_worst() { 2.0 * MIN_RAYS } else { MIN_RAYS };
-            let rays = (PART * rays).max(least.min(TINY * rays));
+            let rays = (PART * f64::from(picture) * all as f64).max(least);
             ((rays / f64::from(of_pixel)) as usize).clamp(FEWEST, all)
         };
         let mut errors: Vec<Errors> = vec![Errors::new(samples.len()); kept.len()];
         let mut rights = Vec::new();
-        let (mut next, mut is_short) = (FIRST.min(most(samples[0])), false);
+        let (mut next, mut is_short) = (FIRST, false);
         loop {
             let wanted = next.min(all);
             if wanted == all {
