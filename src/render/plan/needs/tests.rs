@@ -102,7 +102,7 @@ fn lights_that_reach_nothing_are_left_out() {
     assert_eq!(projector("4 9 -4", "8 7 -3.5"), 1, "beside it");
     assert_eq!(projector("4 9 -4", "3.5 1 -3.5"), 1, "the ball lies before the rectangle");
     assert_eq!(
-        projector("4 9 -4", "3.5 11 -4.5"),
+        projector("4 9 -4", "3.5 11 -3.5"),
         0,
         "a path to the light may end in the rectangle behind it"
     );
