@@ -34,7 +34,7 @@ pub struct Args {
     /// The width and height of the images of --sampling in pixels; by default those of the scenes' cameras
     #[arg(long, value_name = "WxH", value_parser = size, requires = "sampling")]
     size: Option<[usize; 2]>,
-    /// Write a chart of --sampling, an .svg file
+    /// Write a chart of --sampling, an .svg or a .png file
     #[arg(short, long, value_name = "FILE", requires = "sampling")]
     output: Option<PathBuf>,
     /// Keep what --sampling measures of each scene in this directory, and measure only what it lacks

@@ -94,7 +94,8 @@ pub fn run(
         });
     }
     let Some(file) = file else { return Ok(()) };
-    output::replace(file, chart::svg(&chart)?.as_bytes())
+    let is_png = file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
+    output::replace(file, &if is_png { chart::png(&chart)? } else { chart::svg(&chart)?.into_bytes() })
 }
 
 /// Reads what an earlier run has measured of so many choices.

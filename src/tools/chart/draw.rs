@@ -198,7 +198,7 @@ fn draw_panel<D: DrawingBackend>(canvas: &Canvas<D>, panel: &Panel, corner: (f64
     canvas.upward(panel.measure(), (corner.0 + 20.0, 0.5 * (plot.top + plot.bottom)), axis)?;
 
     if matches!(panel.subject, Subject::Samples | Subject::Bounces) {
-        for family in [Family::Sobol, Family::Random, Family::Own, Family::Adaptive] {
+        for family in [Family::Sobol, Family::Random, Family::Own] {
             let series = panel.points.iter().filter(|point| point.family == family);
             canvas.line(&series.map(place).collect::<Vec<_>>(), look(family).1, 1.0)?;
         }
