@@ -44,7 +44,7 @@ const AROUND: usize = 4;
 /// Returns which point of the rim of lights the probe at a corner goes to: one of 16, all of which are around each pixel.
 /// Those at the corners of a pixel are in different quarters.
 fn rim_point(column: usize, row: usize) -> u32 {
-    let quarter = |column: usize, row: usize| (2 * (row & 1) + (row + column & 1)) as u32;
+    let quarter = |column: usize, row: usize| (2 * (row & 1) + ((row + column) & 1)) as u32;
     4 * quarter(column, row) + quarter(column >> 1, row >> 1)
 }
 

@@ -140,7 +140,7 @@ impl Estimate {
         self.missing += found.missing;
         // Each block has a power of two of them.
         let shift = goal.trailing_zeros().saturating_sub(BLOCKS.trailing_zeros());
-        self.blocks[(self.count >> shift) as usize & BLOCKS - 1] += found.colour;
+        self.blocks[(self.count >> shift) as usize & (BLOCKS - 1)] += found.colour;
         self.count += 1;
     }
 
