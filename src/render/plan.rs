@@ -39,6 +39,8 @@ pub struct Plan<'m> {
     pub(crate) features: Option<Features>,
     /// How deep rays are followed; `None` where no object reflects or transmits rays.
     pub(crate) depth: Option<Depth>,
+    /// The indices of the objects whose hits may take long to find, where rays continue.
+    pub(crate) costly: Vec<usize>,
     /// The maximum number of reflections and transmissions on a path.
     pub(crate) bounces: usize,
     /// The lights that are sampled, and what is left out.
@@ -88,8 +90,11 @@ impl<'m> Plan<'m> {
         let mut unmet = needs.unmet.iter().peekable();
         let mut met = objects.iter().enumerate().filter(|(index, _)| unmet.next_if_eq(&index).is_none());
         let has_glass = met.any(|(_, object)| object.material.transparency != 0.0);
+        let is_costly = |index: &usize| objects[*index].shape.may_be_costly();
+        let costly =
+            if depth.is_some() { (0..objects.len()).filter(is_costly).collect() } else { Vec::new() };
         let bounces = usize::MAX;
-        Self { model, camera, unbounded, bounded, tree, has_glass, features, depth, bounces, needs }
+        Self { model, camera, unbounded, bounded, tree, has_glass, features, depth, costly, bounces, needs }
     }
 
     /// Lets pixels take different numbers of samples, or all the same. The plan must be one for any ray.
