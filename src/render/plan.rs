@@ -11,7 +11,7 @@ use crate::geometry::bvh::Bvh;
 use crate::render::culling;
 use crate::render::features::Features;
 use crate::scene::model::Model;
-use crate::world::camera::Camera;
+use crate::world::camera::{Adaptive, Camera};
 use rayon::prelude::*;
 
 /// The number of bounded objects from which on a BVH is faster than a list.
@@ -95,6 +95,14 @@ impl<'m> Plan<'m> {
             if depth.is_some() { (0..objects.len()).filter(is_costly).collect() } else { Vec::new() };
         let bounces = usize::MAX;
         Self { model, camera, unbounded, bounded, tree, has_glass, features, depth, costly, bounces, needs }
+    }
+
+    /// Lets pixels take different numbers of samples, or all the same. The plan must be one for any ray.
+    pub(crate) fn set_adaptive(&mut self, adaptive: Option<Adaptive>) {
+        self.camera.adaptive = adaptive;
+        if adaptive.is_some() && self.features.is_none() {
+            self.features = Some(Features::new(&self.camera, &self.model.objects));
+        }
     }
 
     /// Returns how rays continue from the object of this index.
