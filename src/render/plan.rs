@@ -10,6 +10,7 @@ use crate::geometry::aabb::Aabb;
 use crate::geometry::bvh::Bvh;
 use crate::render::culling;
 use crate::render::features::Features;
+use crate::render::footprint::Prover;
 use crate::scene::model::Model;
 use crate::world::camera::Camera;
 use rayon::prelude::*;
@@ -37,6 +38,8 @@ pub struct Plan<'m> {
     pub(crate) has_glass: bool,
     /// The objects that are small in the image, where the number of a pixel's samples depends on them.
     pub(crate) features: Option<Features>,
+    /// What proves the colours of pixels, where that is wanted.
+    pub(crate) prover: Option<Prover>,
     /// How deep rays are followed; `None` where no object reflects or transmits rays.
     pub(crate) depth: Option<Depth>,
     /// The maximum number of reflections and transmissions on a path.
@@ -79,6 +82,7 @@ impl<'m> Plan<'m> {
         }
         let camera = model.camera.value.clone();
         let features = camera.adaptive.map(|_| Features::new(&camera, objects));
+        let prover = camera.certain.then(|| Prover::new(model));
         let tree = (bounded.len() >= TREE).then(|| {
             let (objects, boxes): (Vec<_>, Vec<_>) = bounded.drain(..).unzip();
             let mut tree = Bvh::new(&boxes);
@@ -89,7 +93,7 @@ impl<'m> Plan<'m> {
         let mut met = objects.iter().enumerate().filter(|(index, _)| unmet.next_if_eq(&index).is_none());
         let has_glass = met.any(|(_, object)| object.material.transparency != 0.0);
         let bounces = usize::MAX;
-        Self { model, camera, unbounded, bounded, tree, has_glass, features, depth, bounces, needs }
+        Self { model, camera, unbounded, bounded, tree, has_glass, features, prover, depth, bounces, needs }
     }
 
     /// Returns how rays continue from the object of this index.

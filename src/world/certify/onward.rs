@@ -5,6 +5,7 @@
 
 use super::along::{PIECES, first_along, most_pieces};
 use super::equation::{Equation, Found};
+use super::footprint::OverFootprint;
 use crate::geometry::sight::Line;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::{Fine, Float, Fraction, Interval, Wide};
@@ -33,9 +34,9 @@ pub trait Onward<F: Float> {
 }
 
 /// What can be proven of a shape's hits along any line, in every precision.
-pub trait Proven: Onward<f64> + Onward<f256> + Onward<Fraction> {}
+pub trait Proven: Onward<f64> + Onward<f256> + Onward<Fraction> + OverFootprint {}
 
-impl<T: Onward<f64> + Onward<f256> + Onward<Fraction>> Proven for T {}
+impl<T: Onward<f64> + Onward<f256> + Onward<Fraction> + OverFootprint> Proven for T {}
 
 impl<E: Equation, F: Precise> Onward<F> for E {
     fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (Found<F>, usize) {
