@@ -69,7 +69,8 @@ impl Args {
         camera.certain = self.certain;
         if camera.certain && camera.accuracy == Accuracy::Classic {
             return Err(Failure::Usage(
-                "`--certain` proves the true colours, and the classic method has colours of its own".to_owned(),
+                "`--certain` proves the true colours, and the classic method has colours of its own"
+                    .to_owned(),
                 Some("leave out `--certain`, or give `--method exact`".to_owned()),
             ));
         }

@@ -86,7 +86,14 @@ impl Affine {
         Self { rest, ..self.without(index) }
     }
 
+    /// Tells whether the quantity is 0, for certain.
+    #[inline]
+    fn is_nothing(&self) -> bool {
+        self.centre == 0.0 && self.is_thin()
+    }
+
     /// Tells whether the quantity is one number.
+    #[inline]
     fn is_thin(&self) -> bool {
         self.rest == 0.0 && self.linear == [0.0; VARIABLES]
     }
@@ -116,10 +123,7 @@ impl Affine {
         let (middle, steep) = (value.middle(), slope.middle());
         let shift = 0.5 * (from + to);
         let lines = spread(&self.linear);
-        let rest = slope.magnitude() * self.rest
-            + (to - from) * 0.5
-            + value.width()
-            + slope.width() * lines;
+        let rest = slope.magnitude() * self.rest + (to - from) * 0.5 + value.width() + slope.width() * lines;
         let size = middle.abs() + from.abs() + to.abs() + steep.abs() * lines + rest;
         Self::rounded(middle + shift, self.linear.map(|part| steep * part), rest, size)
     }
@@ -143,6 +147,17 @@ impl Affine {
     fn by_range(self, function: impl FnOnce(Interval) -> Interval) -> Self {
         function(self.range()).into()
     }
+}
+
+/// Encloses a power by repeated squaring: many exponents of highlights are in the hundreds.
+fn power(base: Interval, exponent: i32) -> Interval {
+    if base.low < 0.0 || exponent < 8 {
+        return base.powi(exponent);
+    }
+    let half = power(base, exponent / 2);
+    let square = half * half;
+    let power = if exponent % 2 == 0 { square } else { square * base };
+    Interval { low: power.low.max(0.0), high: power.high }
 }
 
 /// Returns the sum of the magnitudes of the linear parts, rounded.
@@ -175,13 +190,17 @@ impl Add for Affine {
     #[inline]
     fn add(self, other: Self) -> Self {
         let centre = self.centre + other.centre;
-        if self == Self::ZERO {
+        if self.is_nothing() {
             return other;
         }
-        if other == Self::ZERO {
+        if other.is_nothing() {
             return self;
         }
-        if self.is_thin() && other.is_thin() && centre - self.centre == other.centre && centre - other.centre == self.centre {
+        if self.is_thin()
+            && other.is_thin()
+            && centre - self.centre == other.centre
+            && centre - other.centre == self.centre
+        {
             return Self { centre, ..Self::ZERO };
         }
         let linear = array::from_fn(|at| self.linear[at] + other.linear[at]);
@@ -213,7 +232,7 @@ impl Mul for Affine {
 
     #[inline]
     fn mul(self, other: Self) -> Self {
-        if self == Self::ZERO || other == Self::ZERO {
+        if self.is_nothing() || other.is_nothing() {
             return Self::ZERO;
         }
         let (a, b) = (&self.linear, &other.linear);
@@ -247,7 +266,7 @@ impl Div for Affine {
     type Output = Self;
 
     fn div(self, other: Self) -> Self {
-        if self == Self::ZERO && !other.has_zero() { self } else { self * other.reciprocal() }
+        if self.is_nothing() && !other.has_zero() { self } else { self * other.reciprocal() }
     }
 }
 
@@ -262,8 +281,7 @@ impl Scalar for Affine {
     }
 
     fn sin_cos(self) -> (Self, Self) {
-        let ((sin, cos), (sines, cosines)) =
-            (Interval::point(self.centre).sin_cos(), self.range().sin_cos());
+        let ((sin, cos), (sines, cosines)) = (Interval::point(self.centre).sin_cos(), self.range().sin_cos());
         (self.chain(sin, cos, -sines), self.chain(cos, -sin, -cosines))
     }
 
@@ -348,9 +366,9 @@ impl Scalar for Affine {
             _ => {
                 let (at, range) = (Interval::point(self.centre), self.range());
                 let degree = f64::from(exponent);
-                let slope = Interval::constant(degree) * at.powi(exponent - 1);
-                let bend = Interval::constant(degree * (degree - 1.0)) * range.powi(exponent - 2);
-                self.chain(at.powi(exponent), slope, bend).or(range.powi(exponent))
+                let slope = Interval::constant(degree) * power(at, exponent - 1);
+                let bend = Interval::constant(degree * (degree - 1.0)) * power(range, exponent - 2);
+                self.chain(power(at, exponent), slope, bend).or(power(range, exponent))
             }
         }
     }
@@ -368,6 +386,6 @@ impl Scalar for Affine {
     }
 
     fn is_zero(self) -> bool {
-        self == Self::ZERO
+        self.is_nothing()
     }
 }

@@ -110,7 +110,8 @@ impl Aov {
                 Ok(samples(&each(renderer, plan, done, |x, y| trace::samples(plan, x, y))?, &plan.camera))
             }
             Self::Error if plan.camera.certain => {
-                let proofs = each(renderer, plan, done, |x, y| trace::bounded(plan, x, y).unwrap_or_default())?;
+                let proofs =
+                    each(renderer, plan, done, |x, y| trace::bounded(plan, x, y).unwrap_or_default())?;
                 Ok(bounds(&proofs, &plan.camera))
             }
             Self::Error => {

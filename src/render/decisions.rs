@@ -77,7 +77,8 @@ fn picture(camera: &Camera) -> String {
             }
             None => "where its colour is less certain".to_owned(),
         };
-        let each = if camera.certain { "each pixel whose error is not proven to be within that" } else { "each" };
+        let each =
+            if camera.certain { "each pixel whose error is not proven to be within that" } else { "each" };
         return format!("{size}, {samples} to {most} {kind} samples in {each}: more {until}");
     }
     let rays = (width * height) as u64 * u64::from(samples);

@@ -125,13 +125,17 @@ fn passed(scene: &Scene, path: &Path) -> Passes {
         }
     }
     let (mut is_open, mut is_blocked) = (false, false);
-    scene.hits(path, |object| !is_glass(object), |hit, _| {
-        match hit {
-            Met::Hits(at) if at.range().high < 1.0 && !panes.are_at(at) => is_blocked = true,
-            hit => is_open |= hit.low() < 1.0,
-        }
-        !is_blocked
-    });
+    scene.hits(
+        path,
+        |object| !is_glass(object),
+        |hit, _| {
+            match hit {
+                Met::Hits(at) if at.range().high < 1.0 && !panes.are_at(at) => is_blocked = true,
+                hit => is_open |= hit.low() < 1.0,
+            }
+            !is_blocked
+        },
+    );
     match panes.passed {
         _ if is_blocked => Passes::Nothing,
         _ if is_open => Passes::Open,
@@ -161,16 +165,20 @@ impl Panes {
         let (mut onward, mut start) = (*path, Affine::constant(0.0));
         for _ in 0..MAX_PANES {
             let mut all = Vec::new();
-            scene.hits(&onward, |index| index == object, |hit, place| {
-                let low = match hit {
-                    Met::Hits(at) | Met::Perhaps(at) => (start + at).range().low,
-                    Met::Doubtful(low) => start.range().low + low,
-                };
-                if low < 1.0 {
-                    all.push((hit, place));
-                }
-                true
-            });
+            scene.hits(
+                &onward,
+                |index| index == object,
+                |hit, place| {
+                    let low = match hit {
+                        Met::Hits(at) | Met::Perhaps(at) => (start + at).range().low,
+                        Met::Doubtful(low) => start.range().low + low,
+                    };
+                    if low < 1.0 {
+                        all.push((hit, place));
+                    }
+                    true
+                },
+            );
             let at = match all[..] {
                 [] => return Some(()),
                 [(Met::Hits(at), _)] => start + at,

@@ -165,9 +165,9 @@ impl Prover {
             let Footprint { middle: [x, y], cuts, .. } = all.swap_remove(widest);
             let quarter = 0.5_f64.powi(cuts as i32 + 2);
             let corners = [[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]];
-            all.extend(corners.map(|[right, up]| {
-                footprint([x + right * quarter, y + up * quarter], cuts + 1)
-            }));
+            all.extend(
+                corners.map(|[right, up]| footprint([x + right * quarter, y + up * quarter], cuts + 1)),
+            );
             count += 4;
         }
     }

@@ -75,13 +75,17 @@ impl Scene<'_> {
     /// Returns what the lines may hit first, and whether each certainly hits something.
     pub fn first(&self, path: &Path) -> (Vec<(Met, Place)>, bool) {
         let (mut all, mut end) = (Vec::new(), f64::INFINITY);
-        self.hits(path, |_| true, |hit, place| {
-            if let Met::Hits(at) = hit {
-                end = end.min(at.range().high);
-            }
-            all.push((hit, place));
-            true
-        });
+        self.hits(
+            path,
+            |_| true,
+            |hit, place| {
+                if let Met::Hits(at) = hit {
+                    end = end.min(at.range().high);
+                }
+                all.push((hit, place));
+                true
+            },
+        );
         all.retain(|(hit, _)| hit.low() <= end);
         (all, end < f64::INFINITY)
     }

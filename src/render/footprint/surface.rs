@@ -36,8 +36,11 @@ impl Surface {
             return None;
         }
         let outward = normal.map(|part| part / length);
-        let toward =
-            if object.shape.is_two_sided() { dot(outward, line.dir).range() } else { Interval::constant(-1.0) };
+        let toward = if object.shape.is_two_sided() {
+            dot(outward, line.dir).range()
+        } else {
+            Interval::constant(-1.0)
+        };
         let look = EncloseLook::<f64>::look(&*object.shader, &object.material, at.map(|axis| axis.range()))?;
         let [ambient, diffuse, specular] =
             [look.ambient, look.diffuse, look.specular].map(|colour| colour.map(Affine::from));

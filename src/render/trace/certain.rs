@@ -37,9 +37,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     ) {
         let (plan, camera) = (self.plan, &self.plan.camera);
         let (limit, gain) = (limit(Some(adaptive)), camera.gain());
-        let prove = |pixel: &[usize; 2]| {
-            prover.pixel((plan.model, plan.depth.as_ref()), camera, *pixel, limit)
-        };
+        let prove =
+            |pixel: &[usize; 2]| prover.pixel((plan.model, plan.depth.as_ref()), camera, *pixel, limit);
         let proofs: Vec<Proof> = pixels.iter().map(prove).collect();
         let is_open = |index: &usize| !proofs[*index].is_within(limit, gain);
         let open: Vec<usize> = (0..pixels.len()).filter(is_open).collect();

@@ -16,7 +16,11 @@ enum Candidate<F> {
 
 /// Finds the first hit with t > 0. The start of the line itself is not a hit; with `leaves`, the line's true start lies
 /// on the surface, although its enclosure does not tell.
-pub fn first_hit<F: Float>(shape: &dyn Values<Interval<F>>, line: &Line<Interval<F>>, leaves: bool) -> Found<F> {
+pub fn first_hit<F: Float>(
+    shape: &dyn Values<Interval<F>>,
+    line: &Line<Interval<F>>,
+    leaves: bool,
+) -> Found<F> {
     let zero = F::of(0.0);
     let [a, b, c] = coefficients(shape, line);
     let c = if leaves { Interval::constant(0.0) } else { c };

@@ -334,7 +334,8 @@ fn root(shape: &dyn Values<Affine>, line: &Line<Affine>, low: f64, high: f64) ->
             break;
         }
         let middle = 0.5 * (low + high);
-        let next = Affine::constant(middle) - shape.value(line.at(Affine::constant(middle))) / slope.absorbing(ALONG);
+        let next = Affine::constant(middle)
+            - shape.value(line.at(Affine::constant(middle))) / slope.absorbing(ALONG);
         let range = next.range();
         root = Some(next);
         (low, high) = (low.max(range.low), high.min(range.high));
