@@ -167,7 +167,7 @@ mod tests {
         plane back { material shiny normal 0 0 1 point 0 0 -7 }
         sphere one { material paper center 2 1.5 -3 radius 1.2 }
         sphere two { material shiny center 5 1 -4 radius 1 }
-        torus ring { material paper center 6 4 -4 normal 0.3 1 0.5 radius 0.9 tube 0.3 }
+        torus ring { material paper center 6 4 -4 direction 0.3 1 0.5 radius 0.9 tube 0.3 }
         fplane pane { material glass normal 0 0 1 point 4.5 0.5 -1 xdir 1 0 0 dimensions 2 2 }";
 
     #[test]
