@@ -3,16 +3,17 @@
 use crate::render::bytes::shown;
 use crate::render::observer::{Count, TraceObserver};
 use crate::render::plan::Plan;
+use crate::render::ray_stats::Cuts;
 use crate::render::renderer::Renderer;
 use crate::render::tiles::{self, TILE, TOGETHER};
-use crate::render::trace::{self, Bounded, Scratch, Tracer};
+use crate::render::trace::{Bounded, Scratch, Tracer};
 use crate::scene::model::Model;
 use crate::simd::cpu::Cpu;
 use crate::tools::bench::clock;
 use crate::world::camera::Adaptive;
 use crate::world::material::Rgb;
 use crate::world::sample::{SCRAMBLE, Sampler};
-use std::ops::ControlFlow;
+use rayon::prelude::*;
 
 /// The number of independent images that the true colours are the mean of, and of the samples per pixel of each.
 const IMAGES: u32 = 8;
@@ -53,14 +54,20 @@ pub fn truth(renderer: &Renderer, model: &mut Model) -> Vec<Sampled> {
     let camera = &mut model.camera.value;
     (camera.samples, camera.adaptive, camera.certain) = (SAMPLES, None, false);
     camera.sampler = Sampler::Sobol;
-    let height = camera.pixels[1];
+    let [width, height] = camera.pixels;
     let mut plan = Plan::new(model);
     let (mut sums, mut squares) = (Vec::new(), Vec::new());
     for image in 1..=IMAGES {
         plan.camera.scramble = SCRAMBLE ^ image.wrapping_mul(0x9e37_79b9);
-        let pixel = |x, y| trace::pixel(&plan, x, y);
-        let colours = renderer.pixels(&plan, 0..height, &|| ControlFlow::Continue(()), pixel);
-        let colours = colours.unwrap_or_default();
+        let row = |y: usize| {
+            let pixels: Vec<_> = (0..width).map(|x| [x, y]).collect();
+            let (mut scratch, mut nobody) = (Scratch::default(), Cuts::default());
+            let mut tracer = Tracer::new(&plan, Cpu::best(), &mut scratch, &mut nobody);
+            let seen = tracer.pixels(&pixels);
+            (0..width).map(|lane| seen.get(lane)).collect::<Vec<_>>()
+        };
+        let rows = || (0..height).into_par_iter().rev().map(row).collect::<Vec<_>>();
+        let colours = renderer.run(rows).concat();
         sums.resize(colours.len(), Rgb::ZERO);
         squares.resize(colours.len(), Rgb::ZERO);
         for ((sum, square), colour) in sums.iter_mut().zip(&mut squares).zip(colours) {
@@ -157,7 +164,7 @@ mod tests {
     use std::path::Path;
 
     /// A floor, a wall with a mirror, spheres, a cone and a torus, a pane of glass, two lights, one of them with a size.
-    const SCENE: &str = "camera eye { pixeldim 24 18 worlddim 8 6 viewpoint 4 3 8 }
+    const SCENE: &str = "camera eye { pixeldim 16 12 worlddim 8 6 viewpoint 4 3 8 }
         material paper { ambient 0.4 0.4 0.3 diffuse 3 3 3 }
         material shiny { ambient 0.1 0.2 0.3 diffuse 2 1 1 specular 0.4 shininess 30 }
         material glass { ambient 0.1 0.1 0.1 diffuse 1 2 3 transparency 0.6 }

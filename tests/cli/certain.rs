@@ -38,7 +38,8 @@ fn certain_pixels_are_counted_shown_and_within_their_bounds() {
     let folder = folder();
     let path = folder.path();
     fs::write(path.join("a.ray"), SCENE).expect("a file");
-    let (_, told) = render(&folder, "a.ray", &["--max-error", "1", "--aov", "error,samples", "--stats", "json"]);
+    let (_, told) =
+        render(&folder, "a.ray", &["--max-error", "1", "--aov", "error,samples", "--stats", "json"]);
     assert!(told.contains(" % of the pixels are certain to be within 1 of 255 levels"), "{told}");
     let json = told.lines().find(|line| line.starts_with('{')).expect("statistics");
     let stats: serde_json::Value = serde_json::from_str(json).expect("JSON");
@@ -98,7 +99,10 @@ fn certain_needs_a_limit_and_the_exact_method() {
     fs::write(folder.path().join("a.ray"), SCENE).expect("a file");
     for (options, said) in [
         (&["--certain"][..], "--max-error"),
-        (&["--certain", "--max-error", "1", "--method", "classic"], "the classic method has colours of its own"),
+        (
+            &["--certain", "--max-error", "1", "--method", "classic"],
+            "the classic method has colours of its own",
+        ),
     ] {
         let mut command = tabray(&folder);
         let (status, _, err) = outcome(command.args(["render", "a.ray", "-o", "a.png"]).args(options));
@@ -115,6 +119,9 @@ fn plan_says_what_is_certain() {
     let (status, out, err) = outcome(tabray(&folder).args(arguments));
     assert_eq!(status, 0, "{err}");
     let plan = String::from_utf8(out).expect("text");
-    assert!(plan.contains("4 to 4096 evenly spread samples in each pixel whose error is not proven"), "{plan}");
+    assert!(
+        plan.contains("4 to 4096 evenly spread samples in each pixel whose error is not proven"),
+        "{plan}"
+    );
     assert!(plan.contains("\ncertain      all rays through a pixel are enclosed at once"), "{plan}");
 }
