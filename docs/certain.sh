@@ -51,4 +51,21 @@ for seed in {1..12}; do made "$seed" >"$out/random-$seed.ray"; done
     scenes/gallery/{three-lamps,marbles,stained-glass,hall-of-mirrors}.ray scenes/texplane/{fit,tiled}.ray \
     scenes/pplane/{tiles,rainbow,rainbow_tiles}.ray scenes/tiled_plane/floor.ray scenes/light/{shadow,size}.ray \
     scenes/spotlight/shadow.ray scenes/projector/fit.ray scenes/sphere/in-front.ray scenes/torus/shadow.ray \
-    "$out"/random-*.ray 2>/dev/null
+    "$out"/random-*.ray 2>/dev/null | awk '
+    BEGIN {
+        FS = " *[|] *"
+        print "| scene | pixels certified, % | worst of them | contradicted | mean bound of the others | footprints per pixel |"
+        print "|---|---|---|---:|---|---|"
+    }
+    $3 > 0 {
+        seconds[$3] += $10; without[$3] += $11; share[$3] += $4; scenes[$3] += 1
+        if ($3 == 1) { a = b = c = d = between = ""; bad = 0 }
+        a = a between ($4 + 0); b = b between $5; bad += $6; c = c between $7; d = d between $9; between = ", "
+        if ($3 == 4) print "| " $2 " | " a " | " b " | " bad " | " c " | " d " |"
+    }
+    END {
+        print "\n| levels | scenes | pixels certified, mean | CPU seconds | without `--certain` |\n|---:|---:|---:|---:|---:|"
+        for (levels = 1; levels <= 4; levels *= 2)
+            printf "| %d | %d | %.1f %% | %.1f | %.1f |\n", levels, scenes[levels], share[levels] / scenes[levels],
+                seconds[levels], without[levels]
+    }'
