@@ -3,7 +3,6 @@
 //! The equations are those of the proofs of single lines, evaluated in [`Affine`] numbers.
 
 use super::equation::{Equation, Values};
-use super::onward::Onward;
 use crate::geometry::sight::Line;
 use crate::numeric::affine::{Affine, VARIABLES};
 use crate::numeric::dual::Dual;
@@ -72,18 +71,6 @@ pub fn gradient_over(shape: &(impl OverFootprint + ?Sized), at: [Affine; 3], par
         };
         shape.slope([along(0), along(1), along(2)], part).slope
     })
-}
-
-/// Encloses the unit normals with which points of a part are shaded; `None` where they are open.
-pub fn shading_normals(
-    shape: &(impl Onward<f64> + ?Sized),
-    at: [Affine; 3],
-    part: usize,
-    normal: [Affine; 3],
-) -> Option<[Affine; 3]> {
-    let given = normal.map(|axis| axis.range());
-    let shaded = shape.shading_normal(at.map(|axis| axis.range()), part, given)?;
-    Some(if shaded == given { normal } else { shaded.map(Affine::from) })
 }
 
 /// Calls `met` with the possible hits of a shape with t > 0, in order.

@@ -13,8 +13,8 @@ mod onward;
 mod search;
 
 pub use equation::{Equation, Found};
-pub use footprint::{Met, OverFootprint, coarse, gradient_over, shading_normals};
-pub use onward::{Onward, Precise, Proven, gradient};
+pub use footprint::{Met, OverFootprint, coarse, gradient_over};
+pub use onward::{Onward, Precise, Proven, gradient, shading_normals};
 
 use crate::geometry::sight::Sight;
 use crate::numeric::double_double::DoubleDouble;
