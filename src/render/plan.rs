@@ -42,6 +42,8 @@ pub struct Plan<'m> {
     pub(crate) prover: Option<Prover>,
     /// How deep rays are followed; `None` where no object reflects or transmits rays.
     pub(crate) depth: Option<Depth>,
+    /// The indices of the objects whose hits may take long to find, where rays continue.
+    pub(crate) costly: Vec<usize>,
     /// The maximum number of reflections and transmissions on a path.
     pub(crate) bounces: usize,
     /// The lights that are sampled, and what is left out.
@@ -92,8 +94,24 @@ impl<'m> Plan<'m> {
         let mut unmet = needs.unmet.iter().peekable();
         let mut met = objects.iter().enumerate().filter(|(index, _)| unmet.next_if_eq(&index).is_none());
         let has_glass = met.any(|(_, object)| object.material.transparency != 0.0);
+        let is_costly = |index: &usize| objects[*index].shape.may_be_costly();
+        let costly =
+            if depth.is_some() { (0..objects.len()).filter(is_costly).collect() } else { Vec::new() };
         let bounces = usize::MAX;
-        Self { model, camera, unbounded, bounded, tree, has_glass, features, prover, depth, bounces, needs }
+        Self {
+            model,
+            camera,
+            unbounded,
+            bounded,
+            tree,
+            has_glass,
+            features,
+            prover,
+            depth,
+            costly,
+            bounces,
+            needs,
+        }
     }
 
     /// Returns how rays continue from the object of this index.

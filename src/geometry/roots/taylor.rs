@@ -114,11 +114,23 @@ pub fn first_root(
     range: &RayRange,
     shortest: f64,
 ) -> Found {
+    first_root_within(line, stretch, base, range, shortest, &mut MAX_PIECES.clone())
+}
+
+/// Returns what [`first_root`] does, and takes the pieces that are judged from `pieces`: none are cut after the last.
+pub fn first_root_within(
+    line: &impl FunctionOnLine,
+    stretch: &Stretch,
+    base: f64,
+    range: &RayRange,
+    shortest: f64,
+    pieces: &mut usize,
+) -> Found {
     let Range { start, end } = stretch.outer;
     if !(start <= end && start.is_finite() && end.is_finite()) {
         return Found { root: None, is_certain: true };
     }
-    let mut search = Search { line, start, base, range, shortest, is_certain: true };
+    let mut search = Search { line, start, base, range, shortest, pieces, is_certain: true };
     // The line may have reached the ends outside of `inner`, and is certainly between them inside.
     let inner = stretch.inner.start.clamp(start, end)..stretch.inner.end.clamp(start, end);
     let root = if inner.start < inner.end || start == end {
@@ -138,6 +150,7 @@ struct Search<'l, L> {
     range: &'l RayRange,
     /// Pieces of this length are not cut.
     shortest: f64,
+    pieces: &'l mut usize,
     is_certain: bool,
 }
 
@@ -156,7 +169,7 @@ impl<L: FunctionOnLine> Search<'_, L> {
         let RayRange { near, far, .. } = *self.range;
         let mut waiting = [(0.0, 0.0); STACK_SIZE];
         waiting[0] = (start, end);
-        let (mut count, mut judged) = (1, 0);
+        let mut count = 1;
         while count > 0 {
             count -= 1;
             let (low, high) = waiting[count];
@@ -167,8 +180,8 @@ impl<L: FunctionOnLine> Search<'_, L> {
             if self.base + low >= far {
                 return None;
             }
-            judged += 1;
-            let may_cut = judged < MAX_PIECES && count + 2 <= STACK_SIZE && high - low > self.shortest;
+            *self.pieces = self.pieces.saturating_sub(1);
+            let may_cut = *self.pieces > 0 && count + 2 <= STACK_SIZE && high - low > self.shortest;
             let judgement = if may_cut { self.judge(low, high) } else { self.judge_uncut(low, high) };
             match judgement {
                 Judgement::Free => {}

@@ -8,6 +8,7 @@
 mod adaptive;
 mod arrays;
 mod certain;
+mod charge;
 mod closest_hit;
 mod context;
 mod direct_light;
