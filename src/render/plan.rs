@@ -12,7 +12,7 @@ use crate::render::culling;
 use crate::render::features::Features;
 use crate::render::footprint::Prover;
 use crate::scene::model::Model;
-use crate::world::camera::Camera;
+use crate::world::camera::{Adaptive, Camera};
 use rayon::prelude::*;
 
 /// The number of bounded objects from which on a BVH is faster than a list.
@@ -111,6 +111,14 @@ impl<'m> Plan<'m> {
             costly,
             bounces,
             needs,
+        }
+    }
+
+    /// Lets pixels take different numbers of samples, or all the same. The plan must be one for any ray.
+    pub(crate) fn set_adaptive(&mut self, adaptive: Option<Adaptive>) {
+        self.camera.adaptive = adaptive;
+        if adaptive.is_some() && self.features.is_none() {
+            self.features = Some(Features::new(&self.camera, &self.model.objects));
         }
     }
 
