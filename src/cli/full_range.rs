@@ -35,6 +35,7 @@ pub fn render(
     stats.timed(|| pixels = renderer.colours(plan, [&part.columns, &part.rows], overseer, &add));
     progress.end();
     job::warn_of(stats.tally.cuts());
+    job::tell_proofs(stats.tally.proofs(), plan);
     let Some(pixels) = pixels else {
         stop.tell();
         messages::note("an EXR or a PFM is written once it is whole: nothing is written");

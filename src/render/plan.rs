@@ -10,6 +10,7 @@ use crate::geometry::aabb::Aabb;
 use crate::geometry::bvh::Bvh;
 use crate::render::culling;
 use crate::render::features::Features;
+use crate::render::footprint::Prover;
 use crate::scene::model::Model;
 use crate::world::camera::{Adaptive, Camera};
 use rayon::prelude::*;
@@ -37,6 +38,8 @@ pub struct Plan<'m> {
     pub(crate) has_glass: bool,
     /// The objects that are small in the image, where the number of a pixel's samples depends on them.
     pub(crate) features: Option<Features>,
+    /// What proves the colours of pixels, where that is wanted.
+    pub(crate) prover: Option<Prover>,
     /// How deep rays are followed; `None` where no object reflects or transmits rays.
     pub(crate) depth: Option<Depth>,
     /// The indices of the objects whose hits may take long to find, where rays continue.
@@ -81,6 +84,7 @@ impl<'m> Plan<'m> {
         }
         let camera = model.camera.value.clone();
         let features = camera.adaptive.map(|_| Features::new(&camera, objects));
+        let prover = camera.certain.then(|| Prover::new(model));
         let tree = (bounded.len() >= TREE).then(|| {
             let (objects, boxes): (Vec<_>, Vec<_>) = bounded.drain(..).unzip();
             let mut tree = Bvh::new(&boxes);
@@ -94,7 +98,20 @@ impl<'m> Plan<'m> {
         let costly =
             if depth.is_some() { (0..objects.len()).filter(is_costly).collect() } else { Vec::new() };
         let bounces = usize::MAX;
-        Self { model, camera, unbounded, bounded, tree, has_glass, features, depth, costly, bounces, needs }
+        Self {
+            model,
+            camera,
+            unbounded,
+            bounded,
+            tree,
+            has_glass,
+            features,
+            prover,
+            depth,
+            costly,
+            bounces,
+            needs,
+        }
     }
 
     /// Lets pixels take different numbers of samples, or all the same. The plan must be one for any ray.

@@ -3,10 +3,11 @@
 use super::face::Face;
 use super::surface::Surface;
 use crate::geometry::sight::Line;
+use crate::numeric::affine::Affine;
 use crate::numeric::interval::Interval;
 use crate::numeric::scalar::dot;
 use crate::world::accuracy::Bounded;
-use crate::world::certify::{Found, Onward, Precise};
+use crate::world::certify::{self, Found, Met, Onward, OverFootprint, Precise};
 
 impl Surface {
     /// Returns what is certain about a line's first hit with t > 0, and the face that is hit. `leaves` is the face on which
@@ -46,6 +47,25 @@ impl Surface {
             }
         }
         (Found::Doubtful(low), face)
+    }
+
+    /// Calls `met` with the possible first hits of each face.
+    pub(super) fn hits_of_footprint<A: Bounded>(
+        &self,
+        line: &Line<Affine>,
+        leaves: Option<usize>,
+        met: &mut dyn FnMut(Met, usize),
+    ) {
+        let coarse = certify::coarse(line);
+        self.tree.within(
+            |bounds| coarse.clip(bounds.low, bounds.high).is_some(),
+            |faces| {
+                for face in faces {
+                    let leaves = (leaves == Some(face)).then_some(0);
+                    Face(self.triangle::<A>(face)).hits(line, leaves, &mut |one, _| met(one, face));
+                }
+            },
+        );
     }
 
     /// Tells whether a line hits the outside of a face, or whether that makes no difference; `None` where it is open.

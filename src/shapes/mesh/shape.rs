@@ -9,6 +9,7 @@ use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
 use crate::geometry::ray_packet::{self, Nearest, PACKET_SIZE, RayPacket};
 use crate::geometry::roots::Method;
 use crate::geometry::sight::{Line, Sight};
+use crate::numeric::affine::Affine;
 use crate::numeric::double_double::DoubleDouble;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
@@ -16,7 +17,7 @@ use crate::shapes::plane::Plane;
 use crate::simd::cpu::{Cpu, kernels};
 use crate::text;
 use crate::world::accuracy::{Accuracy, Bounded};
-use crate::world::certify::{Enclosure, Found, Onward, Precise, Precision, Proven};
+use crate::world::certify::{Enclosure, Found, Met, Onward, OverFootprint, Precise, Precision, Proven};
 use crate::world::coincidence::{CLOSE, ROUNDING};
 use crate::world::hittable::Hittable;
 use crate::world::interaction::{SurfaceInteraction, turned};
@@ -193,6 +194,16 @@ impl<A: Bounded, F: Precise> Onward<F> for Mesh<A> {
         normal: [Interval<F>; 3],
     ) -> Option<[Interval<F>; 3]> {
         self.surface.enclosed_normal(part, at, normal)
+    }
+}
+
+impl<A: Bounded> OverFootprint for Mesh<A> {
+    fn hits(&self, line: &Line<Affine>, leaves: Option<usize>, met: &mut dyn FnMut(Met, usize)) {
+        self.surface.hits_of_footprint::<A>(line, leaves, met);
+    }
+
+    fn slope(&self, at: [Dual<Affine>; 3], part: usize) -> Dual<Affine> {
+        OverFootprint::slope(&Face(self.surface.triangle::<A>(part)), at, 0)
     }
 }
 
