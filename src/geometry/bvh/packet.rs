@@ -75,7 +75,7 @@ impl Search<'_, '_> {
             }
         }
         if count == LANES {
-            self.eight(self.start, 0);
+            self.eight(self.start, 0, 0);
             return;
         }
         let Some(beam) = Beam::around(self.rays.part(lanes.clone()), &self.t_max[lanes.clone()]) else {
@@ -92,7 +92,7 @@ impl Search<'_, '_> {
                 let bounds = self.bounds(place, &beam);
                 let mut first = lanes.start;
                 for eight in split(count, LANES).map(|eight| lanes.start + eight.start) {
-                    if !self.any_enters(eight, &bounds) {
+                    if self.entering(eight, &bounds) == 0 {
                         self.test(child, first..eight);
                         first = eight + LANES;
                     }
@@ -103,8 +103,11 @@ impl Search<'_, '_> {
             }
             let node = &self.tree.nodes[child as usize];
             if beam.width(enters) > WIDE * node.size() {
+                let bounds = self.bounds(place, &beam);
                 for first in lanes.clone().step_by(LANES) {
-                    self.eight(first, child);
+                    if child == 0 || self.entering(first, &bounds) != 0 {
+                        self.eight(first, child, place);
+                    }
                 }
                 t_max = self.most(lanes.clone());
             } else {
@@ -115,13 +118,13 @@ impl Search<'_, '_> {
 
     /// Searches a subtree for eight rays.
     #[inline(always)]
-    fn eight(&mut self, first: usize, root: u32) {
+    fn eight(&mut self, first: usize, root: u32, place: u32) {
         let lanes = first..first + LANES;
         let Some(beam) = Beam::around(self.rays.part(lanes.clone()), &self.t_max[lanes.clone()]) else {
             return;
         };
         let (start, mut t_max) = (self.stack.len(), self.most(lanes.clone()));
-        self.stack.push(Ahead { enters: 0.0, child: root, place: 0 });
+        self.stack.push(Ahead { enters: 0.0, child: root, place });
         while self.stack.len() > start {
             let Some(Ahead { enters, child, place }) = self.stack.pop() else { return };
             if enters > t_max * (1.0 + SLACK) {
@@ -129,7 +132,7 @@ impl Search<'_, '_> {
             }
             if child & OBJECT != 0 {
                 let bounds = self.bounds(place, &beam);
-                if self.any_enters(first, &bounds) {
+                if self.entering(first, &bounds) != 0 {
                     self.test(child, lanes.clone());
                     t_max = self.most(lanes.clone());
                 }
@@ -137,8 +140,13 @@ impl Search<'_, '_> {
             }
             let node = &self.tree.nodes[child as usize];
             if beam.width(enters) > WIDE * node.size() {
-                for lane in lanes.clone() {
-                    self.one(lane, child);
+                // The root's box is in no node.
+                let entering =
+                    if child == 0 { u64::MAX } else { self.entering(first, &self.bounds(place, &beam)) };
+                for lane in 0..LANES {
+                    if entering.to_le_bytes()[lane] != 0 {
+                        self.one(first + lane, child);
+                    }
                 }
                 t_max = self.most(lanes.clone());
             } else {
@@ -189,9 +197,10 @@ impl Search<'_, '_> {
         Aabb { low: low - beam.slack, high: high + beam.slack }
     }
 
-    /// Returns whether any of eight rays enters a box before its end.
+    /// Returns a byte for each of eight rays, the lowest one for the first: 1 where it enters a box before its end, and
+    /// else 0.
     #[inline(always)]
-    fn any_enters(&self, first: usize, bounds: &Aabb) -> bool {
+    fn entering(&self, first: usize, bounds: &Aabb) -> u64 {
         let lanes = first..first + LANES;
         let (origin, t_max) = (self.rays.origin.part(lanes.clone()), &self.t_max[lanes]);
         let first = first - self.start;
@@ -212,6 +221,6 @@ impl Search<'_, '_> {
             leave = smaller(larger(a.z, b.z), leave);
             is_entered[lane] = u8::from(enter <= leave * (1.0 + SLACK)) & u8::from(t_max[lane] > 0.0);
         }
-        u64::from_le_bytes(is_entered) != 0
+        u64::from_le_bytes(is_entered)
     }
 }
