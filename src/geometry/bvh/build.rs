@@ -73,13 +73,13 @@ pub struct Parts {
     pub objects: Vec<u32>,
 }
 
-/// Builds the nodes of a hierarchy of objects with these boxes.
-pub fn build(boxes: &[Aabb]) -> Parts {
-    let item = |(index, bounds)| Item::new(index, bounds);
-    let mut items: Vec<_> = if boxes.len() < LARGE {
-        boxes.iter().enumerate().map(item).collect()
+/// Builds the nodes of a hierarchy of objects, whose boxes `bounds` returns.
+pub fn build(count: usize, bounds: impl Fn(usize) -> Aabb + Sync) -> Parts {
+    let item = |index| Item::new(index, &bounds(index));
+    let mut items: Vec<_> = if count < LARGE {
+        (0..count).map(item).collect()
     } else {
-        boxes.par_iter().enumerate().map(item).collect()
+        (0..count).into_par_iter().map(item).collect()
     };
     let mut parts = Parts::default();
     if !items.is_empty() {

@@ -8,6 +8,7 @@ use crate::geometry::aabb::{Aabb, SLACK, larger, smaller};
 use crate::geometry::bvh::beam::Beam;
 use crate::geometry::bvh::node::WIDTH;
 use crate::geometry::bvh::tree::{Ahead, Bvh, OBJECT, Stack, descend, push};
+use crate::geometry::ray::Drift;
 use crate::geometry::ray_packet::{RayPacket, split};
 use crate::simd::cpu::kernels;
 use crate::simd::soa::{LANES, View};
@@ -35,14 +36,16 @@ pub trait PacketVisitor {
 
 kernels! {
     /// Visits the objects whose boxes the rays of a packet enter before their ends, roughly from near to far. A ray that
-    /// ends at 0 or less is not searched for.
-    pub fn visit(tree: &Bvh, stack: &mut Stack, rays: RayPacket, t_max: &mut [f64], visitor: &mut dyn PacketVisitor) {
+    /// ends at 0 or less is not searched for. With a drift, so do the objects that rays within it may hit.
+    pub fn visit(
+        tree: &Bvh, stack: &mut Stack, rays: RayPacket, drift: Drift, t_max: &mut [f64], visitor: &mut dyn PacketVisitor
+    ) {
         if tree.nodes.is_empty() {
             return;
         }
         for part in split(rays.len(), PART) {
             let Stack { ahead, inverse } = stack;
-            Search { tree, stack: ahead, rays, t_max, visitor, inverse, start: part.start }.part(part.len());
+            Search { tree, stack: ahead, rays, drift, t_max, visitor, inverse, start: part.start }.part(part.len());
         }
     }
 }
@@ -53,6 +56,7 @@ struct Search<'s, 'v> {
     stack: &'s mut Vec<Ahead>,
     /// The rays of the packet.
     rays: RayPacket<'s>,
+    drift: Drift,
     /// The distances at which they end, in world units.
     t_max: &'s mut [f64],
     visitor: &'s mut (dyn PacketVisitor + 'v),
@@ -78,9 +82,7 @@ impl Search<'_, '_> {
             self.eight(self.start, 0, 0);
             return;
         }
-        let Some(beam) = Beam::around(self.rays.part(lanes.clone()), &self.t_max[lanes.clone()]) else {
-            return;
-        };
+        let Some(beam) = self.beam(lanes.clone()) else { return };
         let (start, mut t_max) = (self.stack.len(), self.most(lanes.clone()));
         self.stack.push(Ahead { enters: 0.0, child: 0, place: 0 });
         while self.stack.len() > start {
@@ -116,13 +118,11 @@ impl Search<'_, '_> {
         }
     }
 
-    /// Searches a subtree for eight rays.
+    /// Searches a subtree for eight rays. `place` is that of its root in the parent, as in [`Ahead`].
     #[inline(always)]
     fn eight(&mut self, first: usize, root: u32, place: u32) {
         let lanes = first..first + LANES;
-        let Some(beam) = Beam::around(self.rays.part(lanes.clone()), &self.t_max[lanes.clone()]) else {
-            return;
-        };
+        let Some(beam) = self.beam(lanes.clone()) else { return };
         let (start, mut t_max) = (self.stack.len(), self.most(lanes.clone()));
         self.stack.push(Ahead { enters: 0.0, child: root, place });
         while self.stack.len() > start {
@@ -158,13 +158,20 @@ impl Search<'_, '_> {
     /// Searches a subtree for one ray.
     #[inline(always)]
     fn one(&mut self, lane: usize, root: u32) {
-        let (beam, visitor, t_max) = (Beam::of(&self.rays.get(lane)), &mut *self.visitor, &mut *self.t_max);
+        let (beam, visitor, t_max) =
+            (Beam::of(&self.rays.get(lane), self.drift), &mut *self.visitor, &mut *self.t_max);
         if t_max[lane] > 0.0 {
             descend(self.tree, self.stack, &beam, root, t_max[lane], &mut |object, _| {
                 visitor.test_one(object, lane, t_max);
                 t_max[lane]
             });
         }
+    }
+
+    /// Returns the bounds of rays, unless all of them have ended.
+    #[inline(always)]
+    fn beam(&self, lanes: Range<usize>) -> Option<Beam> {
+        Beam::around(self.rays.part(lanes.clone()), &self.t_max[lanes], self.drift)
     }
 
     /// Tests rays against the object at a position.
@@ -189,12 +196,11 @@ impl Search<'_, '_> {
         if most > 0.0 { most } else { -1.0 }
     }
 
-    /// Returns the box of an object, grown by the slack of the rays.
+    /// Returns the box of a child of a node, grown by the slack of the rays.
     #[inline(always)]
     fn bounds(&self, place: u32, beam: &Beam) -> Aabb {
         let (node, child) = (place as usize / WIDTH, place as usize % WIDTH);
-        let Aabb { low, high } = self.tree.nodes[node].bounds(child);
-        Aabb { low: low - beam.slack, high: high + beam.slack }
+        beam.grown(&self.tree.nodes[node].bounds(child))
     }
 
     /// Returns a byte for each of eight rays, the lowest one for the first: 1 where it enters a box before its end, and

@@ -4,7 +4,7 @@ use crate::geometry::aabb::{Aabb, SLACK};
 use crate::geometry::bvh::beam::Beam;
 use crate::geometry::bvh::build;
 use crate::geometry::bvh::node::{Entered, Node, WIDTH};
-use crate::geometry::ray::Ray;
+use crate::geometry::ray::{Drift, Ray};
 use crate::simd::cpu::{Cpu, kernels};
 
 /// A hierarchy of bounding boxes, with up to eight children in each node.
@@ -52,8 +52,17 @@ impl Bvh {
     ///
     /// If there are 2^29 boxes or more.
     pub fn new(boxes: &[Aabb]) -> Self {
-        assert!(boxes.len() < MOST, "{} boxes are too many", boxes.len());
-        let build::Parts { mut nodes, mut objects } = build::build(boxes);
+        Self::of(boxes.len(), |index| boxes[index])
+    }
+
+    /// Builds the hierarchy of as many objects as `count`, as [`new`](Self::new) does. `bounds` returns an object's box.
+    ///
+    /// # Panics
+    ///
+    /// If there are 2^29 boxes or more.
+    pub fn of(count: usize, bounds: impl Fn(usize) -> Aabb + Sync) -> Self {
+        assert!(count < MOST, "{count} boxes are too many");
+        let build::Parts { mut nodes, mut objects } = build::build(count, bounds);
         nodes.shrink_to_fit();
         objects.shrink_to_fit();
         Self { nodes, objects }
@@ -62,6 +71,18 @@ impl Bvh {
     /// Replaces each object's index, initially its position in the list of boxes.
     pub fn rename(&mut self, name: impl Fn(u32) -> u32) {
         self.objects.iter_mut().for_each(|object| *object = name(*object));
+    }
+
+    /// Returns the objects' indices node by node. From here on, an object's index is its place in that list.
+    pub fn take_order(&mut self) -> Vec<u32> {
+        let order = self.objects.clone();
+        (0..).zip(&mut self.objects).for_each(|(place, object)| *object = place);
+        order
+    }
+
+    /// Returns the memory that the hierarchy takes, in bytes.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.nodes[..]) + size_of_val(&self.objects[..])
     }
 
     /// Returns the number of nodes.
@@ -78,9 +99,22 @@ impl Bvh {
         stack: &mut Stack,
         ray: &Ray,
         t_max: f64,
+        visit: impl FnMut(usize, f64) -> f64,
+    ) {
+        self.closest_within(cpu, stack, ray, Drift::NONE, t_max, visit);
+    }
+
+    /// Visits the objects whose boxes any ray within a drift of one enters, as [`closest`](Self::closest) does.
+    pub fn closest_within(
+        &self,
+        cpu: Cpu,
+        stack: &mut Stack,
+        ray: &Ray,
+        drift: Drift,
+        t_max: f64,
         mut visit: impl FnMut(usize, f64) -> f64,
     ) {
-        search(cpu, self, stack, ray, t_max, &mut visit);
+        search(cpu, self, stack, ray, drift, t_max, &mut visit);
     }
 
     /// Tells whether `visit` returns true for any object whose box a ray enters before `t_max`, in world units.
@@ -102,14 +136,16 @@ impl Bvh {
 }
 
 kernels! {
-    /// Visits objects along a ray, as [`Bvh::closest`] does.
-    fn search[V: FnMut(usize, f64) -> f64](tree: &Bvh, stack: &mut Stack, ray: &Ray, t_max: f64, visit: &mut V) {
+    /// Visits objects along a ray, as [`Bvh::closest_within`] does.
+    fn search[V: FnMut(usize, f64) -> f64](
+        tree: &Bvh, stack: &mut Stack, ray: &Ray, drift: Drift, t_max: f64, visit: &mut V
+    ) {
         if tree.nodes.is_empty() {
             return;
         }
         let stack = &mut stack.ahead;
         let start = stack.len();
-        descend(tree, stack, &Beam::of(ray), 0, t_max, visit);
+        descend(tree, stack, &Beam::of(ray, drift), 0, t_max, visit);
         stack.truncate(start);
     }
 }
@@ -285,7 +321,7 @@ mod tests {
             let tree = Bvh::new(&boxes);
             for cpu in Cpu::all() {
                 let mut counter = Counter { tests: vec![vec![0; count]; boxes.len()] };
-                visit(cpu, &tree, &mut Stack::default(), rays, &mut t_max.clone(), &mut counter);
+                visit(cpu, &tree, &mut Stack::default(), rays, Drift::NONE, &mut t_max.clone(), &mut counter);
                 for (index, bounds) in boxes.iter().enumerate() {
                     for lane in 0..count {
                         let times = counter.tests[index][lane];
