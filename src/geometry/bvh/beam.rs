@@ -3,7 +3,7 @@
 use crate::geometry::aabb::{Aabb, SLACK, larger, smaller};
 use crate::geometry::ray::{Drift, Ray};
 use crate::geometry::ray_packet::RayPacket;
-use crate::simd::soa::LANES;
+use crate::simd::soa::{LANES, Vectors};
 use glam::DVec3;
 
 /// The index of the low plane of a box along an axis.
@@ -24,6 +24,7 @@ const LEAST_SLACK: f64 = 1e-100;
 /// The origins' bounds have a slack of [`SLACK`] times their largest coordinate. It is more than the rounding of the
 /// distances to planes, and than the distance by which rounding moves a ray of that size. So where a beam misses a box,
 /// so do the rays before anything was rounded.
+#[derive(Clone, Copy)]
 pub struct Beam {
     /// The bounds of the origins: the high one is measured from to low planes, and the low one to high planes.
     pub from: [DVec3; 2],
@@ -124,6 +125,35 @@ impl Beam {
     #[inline(always)]
     pub fn width(&self, distance: f64) -> f64 {
         self.width + distance * self.spread
+    }
+}
+
+/// Eight rays of a packet.
+#[derive(Clone)]
+pub struct Eight {
+    /// The origins, in world coordinates.
+    pub origin: Vectors<LANES>,
+    /// The reciprocals of the components of the directions.
+    pub inverse: Vectors<LANES>,
+}
+
+impl Eight {
+    /// Eight rays that are yet to be set.
+    pub const ZERO: Self = Self { origin: Vectors::ZERO, inverse: Vectors::ZERO };
+
+    /// Becomes the rays of a packet of eight.
+    #[inline(always)]
+    pub fn set(&mut self, rays: RayPacket) {
+        let RayPacket { origin, dir, .. } = rays.first(LANES);
+        let Self { origin: own, inverse } = self;
+        for (own, of) in [(&mut own.x, origin.x), (&mut own.y, origin.y), (&mut own.z, origin.z)] {
+            own.copy_from_slice(&of[..LANES]);
+        }
+        for (inverse, of) in [(&mut inverse.x, dir.x), (&mut inverse.y, dir.y), (&mut inverse.z, dir.z)] {
+            for lane in 0..LANES {
+                inverse[lane] = 1.0 / of[lane];
+            }
+        }
     }
 }
 

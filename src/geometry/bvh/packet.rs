@@ -5,13 +5,13 @@
 //! into beams of eight rays, and these into single rays.
 
 use crate::geometry::aabb::{Aabb, SLACK, larger, smaller};
-use crate::geometry::bvh::beam::Beam;
+use crate::geometry::bvh::beam::{Beam, Eight};
 use crate::geometry::bvh::node::WIDTH;
 use crate::geometry::bvh::tree::{Ahead, Bvh, OBJECT, Stack, descend, push};
 use crate::geometry::ray::Drift;
 use crate::geometry::ray_packet::{RayPacket, split};
 use crate::simd::cpu::kernels;
-use crate::simd::soa::{LANES, View};
+use crate::simd::soa::LANES;
 use std::ops::Range;
 
 /// The number of rays of the beams that a packet starts with.
@@ -44,8 +44,8 @@ kernels! {
             return;
         }
         for part in split(rays.len(), PART) {
-            let Stack { ahead, inverse } = stack;
-            Search { tree, stack: ahead, rays, drift, t_max, visitor, inverse, start: part.start }.part(part.len());
+            let Stack { ahead, eights, beams } = stack;
+            Search { tree, stack: ahead, rays, drift, t_max, visitor, eights, beams, start: part.start, count: part.len() }.part(part.len());
         }
     }
 }
@@ -60,10 +60,13 @@ struct Search<'s, 'v> {
     /// The distances at which they end, in world units.
     t_max: &'s mut [f64],
     visitor: &'s mut (dyn PacketVisitor + 'v),
-    /// The reciprocals of the directions of the part's rays.
-    inverse: &'s mut [Vec<f64>; 3],
-    /// The first lane of the part.
+    /// The part's rays, eight by eight.
+    eights: &'s mut Vec<Eight>,
+    /// Their bounds, and then each ray as a beam of its own, as soon as they were needed.
+    beams: &'s mut Vec<Option<Beam>>,
+    /// The first lane of the part, and the number of its lanes.
     start: usize,
+    count: usize,
 }
 
 impl Search<'_, '_> {
@@ -71,13 +74,12 @@ impl Search<'_, '_> {
     #[inline(always)]
     fn part(mut self, count: usize) {
         let lanes = self.start..self.start + count;
-        let dir = self.rays.dir.part(lanes.clone());
-        for (inverse, dir) in self.inverse.iter_mut().zip([dir.x, dir.y, dir.z]) {
-            inverse.resize(PART, 0.0);
-            for (inverse, dir) in inverse.iter_mut().zip(dir) {
-                *inverse = 1.0 / dir;
-            }
+        self.eights.resize(PART / LANES, Eight::ZERO);
+        for (eight, first) in self.eights.iter_mut().zip(lanes.clone().step_by(LANES)) {
+            eight.set(self.rays.part(first..first + LANES));
         }
+        self.beams.clear();
+        self.beams.resize(count / LANES + count, None);
         if count == LANES {
             self.eight(self.start, 0, 0);
             return;
@@ -122,7 +124,12 @@ impl Search<'_, '_> {
     #[inline(always)]
     fn eight(&mut self, first: usize, root: u32, place: u32) {
         let lanes = first..first + LANES;
-        let Some(beam) = self.beam(lanes.clone()) else { return };
+        let eight = (first - self.start) / LANES;
+        if self.beams[eight].is_none() {
+            self.beams[eight] = self.beam(lanes.clone());
+        }
+        // Rays of it may have ended since, which leaves it a bound of the others.
+        let Some(beam) = self.beams[eight] else { return };
         let (start, mut t_max) = (self.stack.len(), self.most(lanes.clone()));
         self.stack.push(Ahead { enters: 0.0, child: root, place });
         while self.stack.len() > start {
@@ -158,10 +165,14 @@ impl Search<'_, '_> {
     /// Searches a subtree for one ray.
     #[inline(always)]
     fn one(&mut self, lane: usize, root: u32) {
-        let (beam, visitor, t_max) =
-            (Beam::of(&self.rays.get(lane), self.drift), &mut *self.visitor, &mut *self.t_max);
+        let place = self.count / LANES + lane - self.start;
+        if self.beams[place].is_none() {
+            self.beams[place] = Some(Beam::of(&self.rays.get(lane), self.drift));
+        }
+        let Some(beam) = &self.beams[place] else { return };
+        let (visitor, t_max) = (&mut *self.visitor, &mut *self.t_max);
         if t_max[lane] > 0.0 {
-            descend(self.tree, self.stack, &beam, root, t_max[lane], &mut |object, _| {
+            descend(self.tree, self.stack, beam, root, t_max[lane], &mut |object, _| {
                 visitor.test_one(object, lane, t_max);
                 t_max[lane]
             });
@@ -207,12 +218,8 @@ impl Search<'_, '_> {
     /// else 0.
     #[inline(always)]
     fn entering(&self, first: usize, bounds: &Aabb) -> u64 {
-        let lanes = first..first + LANES;
-        let (origin, t_max) = (self.rays.origin.part(lanes.clone()), &self.t_max[lanes]);
-        let first = first - self.start;
-        let [x, y, z] = &*self.inverse;
-        let inverse = View { x, y, z }.part(first..first + LANES);
-        let (origin, inverse, t_max) = (origin.first(LANES), inverse.first(LANES), &t_max[..LANES]);
+        let Eight { origin, inverse } = &self.eights[(first - self.start) / LANES];
+        let t_max = &self.t_max[first..first + LANES][..LANES];
         let (low, high) = (bounds.low, bounds.high);
         let mut is_entered = [0; LANES];
         for lane in 0..LANES {

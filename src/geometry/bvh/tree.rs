@@ -1,7 +1,7 @@
 //! The hierarchy, and searches along one ray.
 
 use crate::geometry::aabb::{Aabb, SLACK};
-use crate::geometry::bvh::beam::Beam;
+use crate::geometry::bvh::beam::{Beam, Eight};
 use crate::geometry::bvh::build;
 use crate::geometry::bvh::node::{Entered, Node, WIDTH};
 use crate::geometry::ray::{Drift, Ray};
@@ -39,8 +39,10 @@ const MOST: usize = 1 << 29;
 pub struct Stack {
     /// What is still to be visited, the next one last.
     pub(super) ahead: Vec<Ahead>,
-    /// The reciprocals of the directions of the current rays.
-    pub(super) inverse: [Vec<f64>; 3],
+    /// The current rays of a packet.
+    pub(super) eights: Vec<Eight>,
+    /// Bounds of eight rays each, and single rays.
+    pub(super) beams: Vec<Option<Beam>>,
 }
 
 impl Bvh {

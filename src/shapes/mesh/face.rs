@@ -163,10 +163,10 @@ pub(super) fn side_error(drift: Option<Drift>) -> (f64, f64) {
 /// It computes the same numbers as [`Triangle::passed`], whose comment derives the error.
 #[inline(always)]
 pub(super) fn passed(corners: [DVec3; 3], ray: &Ray, drift: Option<Drift>) -> Option<bool> {
-    let [a, b, c] = corners.map(|corner| corner - ray.origin);
+    let [a, b, c] = [corners[0] - ray.origin, corners[1] - ray.origin, corners[2] - ray.origin];
     let (error, more) = side_error(drift);
-    let largest = [a, b, c].map(|corner| largest(corner) + more);
-    let size = largest.map(|largest| error * largest);
+    let largest = [largest(a) + more, largest(b) + more, largest(c) + more];
+    let size = [error * largest[0], error * largest[1], error * largest[2]];
     let one = a.cross(b).dot(ray.dir);
     let two = b.cross(c).dot(ray.dir);
     let three = c.cross(a).dot(ray.dir);
