@@ -22,8 +22,9 @@ const AWAY_ERROR: f64 = 32.0 * f64::EPSILON;
 const TOWARD_ERROR: f64 = 24.0 * f64::EPSILON;
 
 /// Far more than what products lose that are too small for all digits: the sum of a few of 5e-324. A product with such a
-/// sum loses as many times more as the other factor is.
-pub(super) const UNDERFLOW: f64 = 1e-320;
+/// sum loses as many times more as the other factor is. It is a normal number, as processors take a hundred times longer
+/// for products with others.
+pub(super) const UNDERFLOW: f64 = f64::MIN_POSITIVE;
 
 /// What a ray may leave: bounds on the distance of its origin from the point that it stands for, in world units. The
 /// ray leaves the faces within that distance.
@@ -58,22 +59,20 @@ impl Flat {
     /// Returns the product of the normal and the vector from a ray's origin to the face, and bounds on the errors of that
     /// and of the product with the direction.
     #[inline(always)]
-    fn away(&self, ray: &Ray, drift: Option<Drift>) -> (f64, f64, f64) {
+    fn away(&self, ray: &Ray, drift: Drift) -> (f64, f64, f64) {
         let (between, edges) = (self.corners[0] - ray.origin, self.edges);
         let largest = largest(between);
         let (away_error, toward_error) =
             (AWAY_ERROR * edges * largest + UNDERFLOW * (1.0 + largest), TOWARD_ERROR * edges + UNDERFLOW);
         // A normal is no longer than 3 times that product, as an edge is no longer than the root of 3 of its components.
-        let (away_error, toward_error) = match drift {
-            None => (away_error, toward_error),
-            Some(drift) => (away_error + 3.0 * edges * drift.origin, toward_error + 3.0 * edges * drift.dir),
-        };
+        let (away_error, toward_error) =
+            (away_error + 3.0 * edges * drift.origin, toward_error + 3.0 * edges * drift.dir);
         (self.normal.dot(between), away_error, toward_error)
     }
 
     /// Returns the bracket of a ray that certainly leaves the face, or may leave it; `None` for any other.
     #[inline(always)]
-    pub(super) fn left(&self, ray: &Ray, leaving: Leaving, drift: Option<Drift>) -> Option<Bracket> {
+    pub(super) fn left(&self, ray: &Ray, leaving: Leaving, drift: Drift) -> Option<Bracket> {
         let (away, away_error, toward_error) = self.away(ray, drift);
         // The length is off by less than an error of a direction.
         let offset = |error: f64| error * (self.size - toward_error);
@@ -98,7 +97,7 @@ impl Flat {
         ray: &Ray,
         end: f64,
         leaving: Leaving,
-        drift: Option<Drift>,
+        drift: Drift,
         is_passed: bool,
     ) -> Bracket {
         let (away, away_error, toward_error) = self.away(ray, drift);
@@ -127,13 +126,7 @@ pub(super) fn largest(vector: DVec3) -> f64 {
 
 /// Returns bounds of the distance before `end` at which a ray hits a face; with a drift, of all rays within it.
 #[inline(always)]
-pub(super) fn t_bounds(
-    corners: [DVec3; 3],
-    ray: &Ray,
-    end: f64,
-    leaving: Leaving,
-    drift: Option<Drift>,
-) -> Bracket {
+pub(super) fn t_bounds(corners: [DVec3; 3], ray: &Ray, end: f64, leaving: Leaving, drift: Drift) -> Bracket {
     let passed = passed(corners, ray, drift);
     if passed == Some(false) {
         return Bracket::MISS;
@@ -146,23 +139,18 @@ pub(super) fn t_bounds(
 /// Returns the error of a product of two corners, as seen from a ray's origin, and its direction: as a fraction of the
 /// product of the corners' largest components, and how much is to be added to each of these first.
 #[inline(always)]
-pub(super) fn side_error(drift: Option<Drift>) -> (f64, f64) {
-    match drift {
-        None => (32.0 * f64::EPSILON, 0.0),
-        // A drift of the direction changes a product by 3 of the drift and of the two largest components, and one of the
-        // origin by 2 of it and of their sum.
-        Some(Drift { origin, dir }) => {
-            let error = 32.0 * f64::EPSILON + 3.0 * dir;
-            (error, 2.0 * origin / error)
-        }
-    }
+pub(super) fn side_error(drift: Drift) -> (f64, f64) {
+    // A drift of the direction changes a product by 3 of the drift and of the two largest components, and one of the
+    // origin by 2 of it and of their sum.
+    let error = 32.0 * f64::EPSILON + 3.0 * drift.dir;
+    (error, 2.0 * drift.origin / error)
 }
 
 /// Tells whether the line of a ray passes every edge on the same side; `None` where rounding could have changed a sign.
 ///
 /// It computes the same numbers as [`Triangle::passed`], whose comment derives the error.
 #[inline(always)]
-pub(super) fn passed(corners: [DVec3; 3], ray: &Ray, drift: Option<Drift>) -> Option<bool> {
+pub(super) fn passed(corners: [DVec3; 3], ray: &Ray, drift: Drift) -> Option<bool> {
     let [a, b, c] = [corners[0] - ray.origin, corners[1] - ray.origin, corners[2] - ray.origin];
     let (error, more) = side_error(drift);
     let largest = [largest(a) + more, largest(b) + more, largest(c) + more];

@@ -46,13 +46,12 @@ impl Surface {
         ray: &Ray,
         range: &RayRange,
         leaving: Leaving,
-        drift: Option<Drift>,
+        drift: Drift,
         is_any: bool,
     ) -> Known {
         let mut nearest = Nearest::NONE;
-        let within = drift.unwrap_or(Drift::NONE);
         Scratch::with(|Scratch { stack, .. }| {
-            self.tree.closest_within(cpu, stack, ray, within, range.far, |face, end| {
+            self.tree.closest_within(cpu, stack, ray, drift, range.far, |face, end| {
                 let bracket = t_bounds(self.corners(face), ray, range.far, leaving, drift);
                 if bracket.near == MISS {
                     return end;
@@ -75,7 +74,7 @@ impl Surface {
         leaving: Leaving,
         last: &mut Last<Plane<A>>,
     ) -> (Bracket, Option<usize>) {
-        let known = self.first(cpu, ray, range, leaving, None, false);
+        let known = self.first(cpu, ray, range, leaving, Drift::NONE, false);
         self.bracketed(known, ray, range, leaving, last)
     }
 
@@ -121,7 +120,7 @@ impl Surface {
         drift: Drift,
         last: &mut Last<Plane<A>>,
     ) -> Bracket {
-        let known = self.first(cpu, ray, range, NOTHING, Some(drift), false);
+        let known = self.first(cpu, ray, range, NOTHING, drift, false);
         self.bracketed_within(known, ray, last)
     }
 
@@ -175,7 +174,7 @@ impl Surface {
     ) {
         Scratch::with(|Scratch { stack, .. }| {
             self.tree.closest(Cpu::best(), stack, ray, range.far, |face, end| {
-                let bracket = t_bounds(self.corners(face), ray, range.far, leaving, None);
+                let bracket = t_bounds(self.corners(face), ray, range.far, leaving, Drift::NONE);
                 if bracket.near < MISS { call(face, bracket) } else { end }
             });
         });
@@ -240,7 +239,7 @@ impl Surface {
         let distance = way.length();
         let far = distance - 64.0 * f64::EPSILON * (distance + ray.origin.abs().max_element());
         let (toward, range) = (Ray { dir: way / distance, ..*ray }, RayRange { far, ..RayRange::ALL });
-        let first = || self.first(Cpu::best(), &toward, &range, NOTHING, None, false);
+        let first = || self.first(Cpu::best(), &toward, &range, NOTHING, Drift::NONE, false);
         // The upper end of a bracket may lie beyond the range.
         self.open_edges == 0
             && matches!(first(), Known::Bracket(bracket) | Known::Face { bracket, .. } if bracket.far < far)

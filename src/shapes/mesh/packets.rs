@@ -30,7 +30,7 @@ impl<A: Bounded> Packets for Shape<Mesh<A>, ByPackets, ByFaces> {
         let (side, ends) = (sides.map(|sides| sides[0]), &nearest.far[..count]);
         if side.is_none() || mesh.can_hit_itself {
             let leaving = mesh.leaving(side, rays.origin_error);
-            let aims = Aims { leaving, drift: None, is_any: false };
+            let aims = Aims { leaving, drift: Drift::NONE, is_any: false };
             let mut last = Last::none();
             Memo::with(|memo| {
                 mesh.surface.search(cpu, rays, ends, aims, |lane, found| {
@@ -63,7 +63,8 @@ impl<A: Bounded> Packets for Shape<Mesh<A>, ByPackets, ByFaces> {
         let mesh = &self.shape;
         let side = sides.map(|sides| sides[0]);
         if side.is_none() || mesh.can_hit_itself {
-            let aims = Aims { leaving: mesh.leaving(side, rays.origin_error), drift: None, is_any: true };
+            let aims =
+                Aims { leaving: mesh.leaving(side, rays.origin_error), drift: Drift::NONE, is_any: true };
             let mut ends = [0.0; PACKET_SIZE];
             for lane in 0..count {
                 ends[lane] = if blocked[lane] == 0 { t_max[lane] } else { 0.0 };
@@ -127,7 +128,7 @@ impl<A: Bounded> Packets for Shape<Mesh<A>, ByPackets, ByFaces> {
         let (surface, mut last) = (&self.shape.surface, Last::<Plane<A>>::none());
         near.fill(MISS);
         far.fill(MISS);
-        let aims = Aims { leaving: NOTHING, drift: Some(drift), is_any: false };
+        let aims = Aims { leaving: NOTHING, drift, is_any: false };
         surface.search(cpu, rays, ends, aims, |lane, found| {
             let ray = rays.get(lane);
             let known = found.known(&ray, ends[lane], NOTHING, false);
@@ -138,7 +139,7 @@ impl<A: Bounded> Packets for Shape<Mesh<A>, ByPackets, ByFaces> {
     fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
         let (leaving, range) =
             (self.shape.leaving(origin_side, 0.0), RayRange { origin_side, ..RayRange::ALL });
-        match self.shape.surface.first(Cpu::best(), ray, &range, leaving, None, false) {
+        match self.shape.surface.first(Cpu::best(), ray, &range, leaving, Drift::NONE, false) {
             Known::Face { face, .. } => self.shape.surface.plane::<A>(face).quick_crossing(ray),
             Known::Bracket(_) => f64::NAN,
         }

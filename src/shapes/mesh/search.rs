@@ -40,7 +40,7 @@ impl Scratch {
 #[derive(Clone, Copy)]
 pub(super) struct Aims {
     pub leaving: Leaving,
-    pub drift: Option<Drift>,
+    pub drift: Drift,
     /// Whether any certain hit of a ray will do.
     pub is_any: bool,
 }
@@ -74,7 +74,7 @@ impl Surface {
             found.clear();
             found.resize(ends.len() / LANES, Eight::NONE);
             let mut search = Search { cpu, surface: self, rays, ends, aims, found };
-            bvh::visit(cpu, &self.tree, stack, rays, aims.drift.unwrap_or(Drift::NONE), t_max, &mut search);
+            bvh::visit(cpu, &self.tree, stack, rays, aims.drift, t_max, &mut search);
             for lane in (0..ends.len()).filter(|lane| ends[*lane] > 0.0) {
                 each(lane, found[lane / LANES].get(lane % LANES));
             }
@@ -127,7 +127,7 @@ kernels! {
 ///
 /// [`face::passed`]: super::face::passed
 #[inline(always)]
-fn passed(corners: [DVec3; 3], rays: RayPacket, drift: Option<Drift>) -> ([u64; LANES], [u64; LANES]) {
+fn passed(corners: [DVec3; 3], rays: RayPacket, drift: Drift) -> ([u64; LANES], [u64; LANES]) {
     let (error, more) = side_error(drift);
     let (mut missed, mut inside) = ([0; LANES], [0; LANES]);
     for lane in 0..LANES {
