@@ -79,7 +79,7 @@ impl Search<'_, '_> {
             eight.set(self.rays.part(first..first + LANES));
         }
         self.beams.clear();
-        self.beams.resize(count / LANES + count, None);
+        self.beams.resize(count / LANES, None);
         if count == LANES {
             self.eight(self.start, 0, 0);
             return;
@@ -165,7 +165,12 @@ impl Search<'_, '_> {
     /// Searches a subtree for one ray.
     #[inline(always)]
     fn one(&mut self, lane: usize, root: u32) {
-        let place = self.count / LANES + lane - self.start;
+        let eights = self.count / LANES;
+        // Most parts need none of these.
+        if self.beams.len() == eights {
+            self.beams.resize(eights + self.count, None);
+        }
+        let place = eights + lane - self.start;
         if self.beams[place].is_none() {
             self.beams[place] = Some(Beam::of(&self.rays.get(lane), self.drift));
         }

@@ -149,6 +149,9 @@ fn passed(corners: [DVec3; 3], rays: RayPacket, drift: Drift) -> ([u64; LANES], 
     (missed, inside)
 }
 
+/// The brackets of eight rays with a face that they leave or may leave; `None` for other rays.
+type Left = [Option<Bracket>; LANES];
+
 /// Returns the brackets of those rays that leave a face or may leave it, except for those that miss it.
 #[inline(never)]
 fn left(
@@ -173,7 +176,7 @@ fn add(
     rays: RayPacket,
     ends: &[f64],
     aims: &Aims,
-    (missed, inside, left): (&[u64; LANES], &[u64; LANES], Option<&[Option<Bracket>; LANES]>),
+    (missed, inside, left): (&[u64; LANES], &[u64; LANES], Option<&Left>),
     found: &mut Eight,
     t_max: &mut [f64],
 ) {
