@@ -5,7 +5,7 @@ use super::hits::{Last, NOTHING};
 use super::known::Known;
 use super::search::Aims;
 use super::{Mesh, Surface, ToWorld, read::Model};
-use crate::geometry::ray::{Drift, MISS, Ray, RayRange, Side};
+use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
 use crate::geometry::ray_packet::{PACKET_SIZE, RayPacket};
 use crate::geometry::sight::Sight;
 use crate::shapes::triangle::Triangle;
@@ -252,18 +252,11 @@ proptest! {
                 let (Known::Face { bracket: alone, .. } | Known::Bracket(alone)) = alone;
                 let known = found.known(&ray, ends[lane], leaving, is_any);
                 let (Known::Face { bracket, .. } | Known::Bracket(bracket)) = known;
-                if is_any {
-                    assert_eq!((bracket.near < MISS, bracket.far < MISS), (alone.near < MISS, alone.far < MISS));
-                } else {
-                    // A face that only its bounds cannot rule out may be visited or not.
-                    let is_missed = [bracket, alone].map(|bracket| bracket.near == MISS);
-                    assert!(
-                        is_missed[0] && alone.far == MISS
-                            || is_missed[1] && bracket.far == MISS
-                            || bracket.near <= alone.far && alone.near <= bracket.far,
-                        "{bracket:?} {alone:?}"
-                    );
-                }
+                // A face that only its bounds cannot rule out may be visited or not.
+                let contradicts = |one: Bracket, other: Bracket| one.far < MISS && other.near == MISS;
+                assert!(!contradicts(bracket, alone) && !contradicts(alone, bracket), "{bracket:?} {alone:?}");
+                let overlap = bracket.near <= alone.far && alone.near <= bracket.far;
+                assert!(is_any || overlap, "{bracket:?} {alone:?}");
             });
             prop_assert!(lanes.into_iter().eq((0..count).filter(|lane| ends[*lane] > 0.0)));
         }
