@@ -337,3 +337,50 @@ fn no_doubled_face_at_an_outline_is_seen_from_behind() {
         assert!(seen > 1000, "{seen}");
     }
 }
+
+#[test]
+fn faces_of_which_none_lies_beside_another_are_found() {
+    const COUNT: usize = 100_000;
+    let size = |index: usize| (400.0 * (index as f64 / COUNT as f64 - 0.5)).exp2();
+    // The place and the size of each face.
+    let all: [(&str, &dyn Fn(usize) -> (f64, f64)); 4] = [
+        ("equal", &|_| (0.0, 1.0)),
+        ("around one point", &|index| (0.0, 1.0 + index as f64 / COUNT as f64)),
+        ("around one point, growing exponentially", &|index| (0.0, size(index))),
+        ("in a row, growing exponentially", &|index| (size(index), 0.001 * size(index))),
+    ];
+    for (name, of) in all {
+        let corners = [[-1.0, -1.0, -1.0], [1.0, -1.0, 1.0], [-1.0, 1.0, 1.0]].map(DVec3::from);
+        let vertices = (0..COUNT).flat_map(|index| {
+            let (place, size) = of(index);
+            corners.map(|corner| place * DVec3::ONE + size * corner)
+        });
+        let faces = (0..COUNT as u32).map(|face| [3 * face, 3 * face + 1, 3 * face + 2]).collect();
+        let model = Model { vertices: vertices.collect(), faces, ..Model::default() };
+        let surface = surface(model, &ToWorld::new(PLAIN, DVec3::ZERO, DVec3::ZERO));
+        // Toward the middles of some faces, each from a place that is as far away as the face is large.
+        let (mut origin, mut dir) = (Vectors::<LANES>::ZERO, Vectors::<LANES>::ZERO);
+        for lane in 0..LANES {
+            let [a, b, c] = surface.corners((2 * lane + 1) * surface.face_count() / (2 * LANES));
+            let (middle, way) = ((a + b + c) / 3.0, DVec3::new(0.3, 0.2, 1.0));
+            origin.set(lane, middle + (a - b).length() * way);
+            dir.set(lane, -way.normalize());
+        }
+        let rays = RayPacket { origin: origin.view(LANES), dir: dir.view(LANES), origin_error: 0.0 };
+        let rights: Vec<_> = (0..LANES).map(|lane| among(&surface, &rays.get(lane))).collect();
+        for cpu in Cpu::all() {
+            let aims = Aims { leaving: NOTHING, drift: Drift::NONE, is_any: false };
+            surface.search(cpu, rays, &[MISS; LANES], aims, |lane, found| {
+                let (ray, right) = (rays.get(lane), rights[lane]);
+                let alone = surface.first(cpu, &ray, &RayRange::ALL, NOTHING, Drift::NONE, false);
+                for known in [alone, found.known(&ray, MISS, NOTHING, false)] {
+                    let (Known::Face { bracket, .. } | Known::Bracket(bracket)) = known;
+                    assert!(
+                        right < MISS && bracket.near <= right && right <= bracket.far,
+                        "{name}: {right} {bracket:?}"
+                    );
+                }
+            });
+        }
+    }
+}
