@@ -115,9 +115,12 @@ impl Beam {
     /// Returns a box that the rays enter wherever rays that they stand for enter this one.
     #[inline(always)]
     pub fn grown(&self, Aabb { low, high }: &Aabb) -> Aabb {
-        // To a point of the box it is less than four times the largest of all coordinates.
-        let farthest = larger(self.reach, larger(low.abs().max_element(), high.abs().max_element()));
-        let slack = self.slack + 4.0 * self.swerve * farthest;
+        let mut slack = self.slack;
+        if self.swerve > 0.0 {
+            // To a point of the box it is less than four times the largest of all coordinates.
+            let farthest = larger(self.reach, larger(low.abs().max_element(), high.abs().max_element()));
+            slack += 4.0 * self.swerve * farthest;
+        }
         Aabb { low: *low - slack, high: *high + slack }
     }
 

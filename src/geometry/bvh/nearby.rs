@@ -18,7 +18,7 @@ impl Bvh {
                 continue;
             }
             if !is_node {
-                limit = visit(self.objects[index as usize] as usize);
+                limit = visit(self.object(index));
                 continue;
             }
             let (node, start) = (&self.nodes[index as usize], ahead.len());
@@ -41,7 +41,7 @@ impl Bvh {
             for child in (0..node.len()).filter(|child| enters(&node.bounds(*child))) {
                 match node.child(child as u32) {
                     (true, index) => ahead.push(&self.nodes[index as usize]),
-                    (false, index) => visit(self.objects[index as usize] as usize),
+                    (false, index) => visit(self.object(index)),
                 }
             }
         }

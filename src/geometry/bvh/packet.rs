@@ -21,6 +21,9 @@ const PART: usize = 64;
 /// 10^3 to 10^6 objects take the same time to a tenth.
 const WIDE: f64 = 1.0;
 
+/// A byte of 1 for each of eight rays.
+const ALL: u64 = u64::from_le_bytes([1; LANES]);
+
 /// What is done with the objects that a packet's rays may hit.
 ///
 /// `t_max` holds the distance at which each ray of the packet ends, in world units, for which a test may put a lesser
@@ -32,6 +35,11 @@ pub trait PacketVisitor {
 
     /// Tests the ray in one lane against the object of this index.
     fn test_one(&mut self, object: usize, lane: usize, t_max: &mut [f64]);
+
+    /// Returns the number of rays up to which it is quicker to test them one by one than eight at a time.
+    fn few(&self) -> u32 {
+        0
+    }
 }
 
 kernels! {
@@ -45,7 +53,7 @@ kernels! {
         }
         for part in split(rays.len(), PART) {
             let Stack { ahead, eights, beams } = stack;
-            Search { tree, stack: ahead, rays, drift, t_max, visitor, eights, beams, start: part.start, count: part.len() }.part(part.len());
+            Search { tree, stack: ahead, rays, drift, t_max, visitor, eights, beams, start: part.start, count: part.len(), is_set: 0 }.part(part.len());
         }
     }
 }
@@ -60,8 +68,10 @@ struct Search<'s, 'v> {
     /// The distances at which they end, in world units.
     t_max: &'s mut [f64],
     visitor: &'s mut (dyn PacketVisitor + 'v),
-    /// The part's rays, eight by eight.
+    /// The part's rays, eight by eight, as soon as they were needed.
     eights: &'s mut Vec<Eight>,
+    /// A bit for each eight that is set.
+    is_set: u64,
     /// Their bounds, and then each ray as a beam of its own, as soon as they were needed.
     beams: &'s mut Vec<Option<Beam>>,
     /// The first lane of the part, and the number of its lanes.
@@ -75,13 +85,10 @@ impl Search<'_, '_> {
     fn part(mut self, count: usize) {
         let lanes = self.start..self.start + count;
         self.eights.resize(PART / LANES, Eight::ZERO);
-        for (eight, first) in self.eights.iter_mut().zip(lanes.clone().step_by(LANES)) {
-            eight.set(self.rays.part(first..first + LANES));
-        }
         self.beams.clear();
         self.beams.resize(count / LANES, None);
         if count == LANES {
-            self.eight(self.start, 0, 0);
+            self.eight(self.start, 0, ALL);
             return;
         }
         let Some(beam) = self.beam(lanes.clone()) else { return };
@@ -109,8 +116,10 @@ impl Search<'_, '_> {
             if beam.width(enters) > WIDE * node.size() {
                 let bounds = self.bounds(place, &beam);
                 for first in lanes.clone().step_by(LANES) {
-                    if child == 0 || self.entering(first, &bounds) != 0 {
-                        self.eight(first, child, place);
+                    // The root's box is in no node.
+                    let entering = if child == 0 { ALL } else { self.entering(first, &bounds) };
+                    if entering != 0 {
+                        self.eight(first, child, entering);
                     }
                 }
                 t_max = self.most(lanes.clone());
@@ -120,9 +129,14 @@ impl Search<'_, '_> {
         }
     }
 
-    /// Searches a subtree for eight rays. `place` is that of its root in the parent, as in [`Ahead`].
+    /// Searches a subtree for those of eight rays that enter its box, given a byte for each.
     #[inline(always)]
-    fn eight(&mut self, first: usize, root: u32, place: u32) {
+    fn eight(&mut self, first: usize, root: u32, entering: u64) {
+        let few = self.visitor.few();
+        if entering.count_ones() <= few {
+            self.each(first, root, entering);
+            return;
+        }
         let lanes = first..first + LANES;
         let eight = (first - self.start) / LANES;
         if self.beams[eight].is_none() {
@@ -130,8 +144,13 @@ impl Search<'_, '_> {
         }
         // Rays of it may have ended since, which leaves it a bound of the others.
         let Some(beam) = self.beams[eight] else { return };
+        let node = &self.tree.nodes[root as usize];
+        if beam.width(0.0) > WIDE * node.size() {
+            self.each(first, root, entering);
+            return;
+        }
         let (start, mut t_max) = (self.stack.len(), self.most(lanes.clone()));
-        self.stack.push(Ahead { enters: 0.0, child: root, place });
+        push(self.stack, node, root, node.entered(&beam, t_max));
         while self.stack.len() > start {
             let Some(Ahead { enters, child, place }) = self.stack.pop() else { return };
             if enters > t_max * (1.0 + SLACK) {
@@ -146,19 +165,26 @@ impl Search<'_, '_> {
                 continue;
             }
             let node = &self.tree.nodes[child as usize];
-            if beam.width(enters) > WIDE * node.size() {
-                // The root's box is in no node.
-                let entering =
-                    if child == 0 { u64::MAX } else { self.entering(first, &self.bounds(place, &beam)) };
-                for lane in 0..LANES {
-                    if entering.to_le_bytes()[lane] != 0 {
-                        self.one(first + lane, child);
-                    }
+            let is_wide = beam.width(enters) > WIDE * node.size();
+            if is_wide || few > 0 {
+                let bounds = self.bounds(place, &beam);
+                let entering = self.entering(first, &bounds);
+                if is_wide || entering.count_ones() <= few {
+                    self.each(first, child, entering);
+                    t_max = self.most(lanes.clone());
+                    continue;
                 }
-                t_max = self.most(lanes.clone());
-            } else {
-                push(self.stack, node, child, node.entered(&beam, t_max));
             }
+            push(self.stack, node, child, node.entered(&beam, t_max));
+        }
+    }
+
+    /// Searches a subtree for each of eight rays that enters its box, given a byte for each.
+    #[inline(always)]
+    fn each(&mut self, first: usize, root: u32, mut entering: u64) {
+        while entering != 0 {
+            self.one(first + (entering.trailing_zeros() / u8::BITS) as usize, root);
+            entering &= entering - 1;
         }
     }
 
@@ -194,7 +220,7 @@ impl Search<'_, '_> {
     #[inline(always)]
     fn test(&mut self, child: u32, lanes: Range<usize>) {
         if !lanes.is_empty() {
-            self.visitor.test(self.tree.objects[(child ^ OBJECT) as usize] as usize, lanes, self.t_max);
+            self.visitor.test(self.tree.object(child ^ OBJECT), lanes, self.t_max);
         }
     }
 
@@ -222,8 +248,13 @@ impl Search<'_, '_> {
     /// Returns a byte for each of eight rays, the lowest one for the first: 1 where it enters a box before its end, and
     /// else 0.
     #[inline(always)]
-    fn entering(&self, first: usize, bounds: &Aabb) -> u64 {
-        let Eight { origin, inverse } = &self.eights[(first - self.start) / LANES];
+    fn entering(&mut self, first: usize, bounds: &Aabb) -> u64 {
+        let eight = (first - self.start) / LANES;
+        if self.is_set & (1 << eight) == 0 {
+            self.is_set |= 1 << eight;
+            self.eights[eight].set(self.rays.part(first..first + LANES));
+        }
+        let Eight { origin, inverse } = &self.eights[eight];
         let t_max = &self.t_max[first..first + LANES][..LANES];
         let (low, high) = (bounds.low, bounds.high);
         let mut is_entered = [0; LANES];

@@ -6,6 +6,7 @@ use crate::geometry::bvh::build;
 use crate::geometry::bvh::node::{Entered, Node, WIDTH};
 use crate::geometry::ray::{Drift, Ray};
 use crate::simd::cpu::{Cpu, kernels};
+use std::mem::take;
 
 /// A hierarchy of bounding boxes, with up to eight children in each node.
 ///
@@ -13,8 +14,8 @@ use crate::simd::cpu::{Cpu, kernels};
 /// rounding: it is added here, and covers the rounding of the ray as well.
 pub struct Bvh {
     pub(super) nodes: Vec<Node>,
-    /// The objects' indices, node by node.
-    pub(super) objects: Vec<u32>,
+    /// The objects' indices, node by node; empty where each is its place.
+    objects: Vec<u32>,
 }
 
 /// A child of a node that is still to be visited.
@@ -78,9 +79,13 @@ impl Bvh {
 
     /// Returns the objects' indices node by node. From here on, an object's index is its place in that list.
     pub fn take_order(&mut self) -> Vec<u32> {
-        let order = self.objects.clone();
-        (0..).zip(&mut self.objects).for_each(|(place, object)| *object = place);
-        order
+        take(&mut self.objects)
+    }
+
+    /// Returns the index of the object at a place.
+    #[inline(always)]
+    pub(super) fn object(&self, place: u32) -> usize {
+        if self.objects.is_empty() { place as usize } else { self.objects[place as usize] as usize }
     }
 
     /// Returns the memory that the hierarchy takes, in bytes.
@@ -178,7 +183,7 @@ pub(super) fn descend(
             if child & OBJECT == 0 {
                 break &tree.nodes[child as usize];
             }
-            t_max = visit(tree.objects[(child ^ OBJECT) as usize] as usize, t_max);
+            t_max = visit(tree.object(child ^ OBJECT), t_max);
         };
     }
 }

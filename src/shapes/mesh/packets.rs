@@ -8,7 +8,9 @@ use super::shape::{ByFaces, Mesh};
 use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
 use crate::geometry::ray_packet::{self, Nearest, PACKET_SIZE, RayPacket};
 use crate::shapes::plane::Plane;
+use crate::shapes::triangle::unit_normals;
 use crate::simd::cpu::{Cpu, kernels};
+use crate::simd::soa::{LANES, Vectors};
 use crate::world::accuracy::Bounded;
 use crate::world::hittable::Hittable;
 use crate::world::interaction::{SurfaceInteraction, turned};
@@ -161,24 +163,38 @@ kernels! {
         mesh: &Mesh<A>, rays: RayPacket, distances: &[f64], memo: &Memo, sides: &mut [Side],
         cosines: &mut [f64], travelled: &mut [f64]
     ) => points, normals {
-        let (is_two_sided, mut last) = (mesh.is_two_sided(), Last::none());
-        for lane in 0..travelled.len() {
-            let ray = rays.get(lane);
-            if is_copy(&rays, lane) && distances[lane] == distances[lane - 1] {
-                (sides[lane], cosines[lane]) = (sides[lane - 1], cosines[lane - 1]);
-                points.set(lane, points.get(lane - 1));
-                normals.set(lane, normals.get(lane - 1));
-            } else {
-                let point = ray.at(distances[lane]);
-                let noted = memo.face(mesh.surface.id, &ray, distances[lane]);
-                let face = noted.unwrap_or_else(|| mesh.surface.face_along(&ray, distances[lane]));
-                let flat = *last.of(face, |face| mesh.surface.triangle::<A>(face).plane.normal);
-                let turn;
-                (sides[lane], cosines[lane], turn) = turned(ray.dir, flat, is_two_sided);
-                points.set(lane, point);
-                normals.set(lane, mesh.surface.smoothed(face, point, turn));
+        let (is_two_sided, surface) = (mesh.is_two_sided(), &mesh.surface);
+        let mut known = ([usize::MAX; LANES], Vectors::ZERO);
+        for first in (0..travelled.len()).step_by(LANES) {
+            let mut faces = [usize::MAX; LANES];
+            for lane in first..first + LANES {
+                let (ray, distance) = (rays.get(lane), distances[lane]);
+                faces[lane - first] = if is_copy(&rays, lane) && distance == distances[lane - 1] && lane > first {
+                    faces[lane - first - 1]
+                } else {
+                    memo.face(surface.id, &ray, distance).unwrap_or_else(|| surface.face_along(&ray, distance))
+                };
             }
-            travelled[lane] += distances[lane];
+            // Neighbouring rays often hit the same faces, and normals take many digits.
+            if known.0 != faces {
+                let mut corners = [Vectors::ZERO, Vectors::ZERO, Vectors::ZERO];
+                for lane in 0..LANES {
+                    let [a, b, c] = surface.corners(faces[lane]);
+                    corners[0].set(lane, a);
+                    corners[1].set(lane, b);
+                    corners[2].set(lane, c);
+                }
+                known = (faces, unit_normals(&corners));
+            }
+            for lane in first..first + LANES {
+                let (ray, place) = (rays.get(lane), lane - first);
+                let point = ray.at(distances[lane]);
+                let turn;
+                (sides[lane], cosines[lane], turn) = turned(ray.dir, known.1.get(place), is_two_sided);
+                points.set(lane, point);
+                normals.set(lane, surface.smoothed(faces[place], point, turn));
+                travelled[lane] += distances[lane];
+            }
         }
     }
 }

@@ -88,6 +88,10 @@ impl PacketVisitor for Search<'_> {
         test(cpu, face as u64, surface.corners(face), rays, lanes, ends, &aims, self.found, t_max);
     }
 
+    fn few(&self) -> u32 {
+        2
+    }
+
     fn test_one(&mut self, face: usize, lane: usize, t_max: &mut [f64]) {
         let Aims { leaving, drift, is_any } = self.aims;
         let ray = self.rays.get(lane);
