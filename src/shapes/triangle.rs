@@ -224,13 +224,14 @@ mod tests {
     use proptest::prelude::*;
 
     /// Generates coordinates of all sizes, some with few digits.
-    fn coordinate() -> impl Strategy<Value = f64> {
+    fn coordinate() -> BoxedStrategy<f64> {
         prop_oneof![
             4 => -10.0..10.0,
             4 => (-10.0..10.0).prop_map(|number: f64| f64::from(number as f32)),
             2 => Just(0.0), 1 => Just(1.0), 1 => -1e-3..1e-3, 1 => Just(5e-324), 1 => Just(1e-150), 1 => Just(1e150),
             1 => (-490..490_i32, 0.5..1.0).prop_map(|(exponent, number)| number * 2_f64.powi(exponent)),
         ]
+        .boxed()
     }
 
     fn corner() -> impl Strategy<Value = DVec3> {
