@@ -21,16 +21,14 @@ impl Surface {
         let mut met = Vec::new();
         self.tree.within(
             |bounds| coarse.clip(bounds.low, bounds.high).is_some(),
-            |faces| {
-                for face in faces {
-                    let leaves = (leaves == Some(face)).then_some(0);
-                    let found = match Face(self.triangle::<A>(face)).first_hit(line, leaves).0 {
-                        Found::Misses => continue,
-                        found @ (Found::Hits(at) | Found::Edge(at)) => (at.low, found),
-                        found @ Found::Doubtful(low) => (low, found),
-                    };
-                    met.push((found, face));
-                }
+            |face| {
+                let leaves = (leaves == Some(face)).then_some(0);
+                let found = match Face(self.triangle::<A>(face)).first_hit(line, leaves).0 {
+                    Found::Misses => return,
+                    found @ (Found::Hits(at) | Found::Edge(at)) => (at.low, found),
+                    found @ Found::Doubtful(low) => (low, found),
+                };
+                met.push((found, face));
             },
         );
         let first = met.iter().copied().reduce(|one, other| if other.0.0 < one.0.0 { other } else { one });
@@ -59,11 +57,9 @@ impl Surface {
         let coarse = certify::coarse(line);
         self.tree.within(
             |bounds| coarse.clip(bounds.low, bounds.high).is_some(),
-            |faces| {
-                for face in faces {
-                    let leaves = (leaves == Some(face)).then_some(0);
-                    Face(self.triangle::<A>(face)).hits(line, leaves, &mut |one, _| met(one, face));
-                }
+            |face| {
+                let leaves = (leaves == Some(face)).then_some(0);
+                Face(self.triangle::<A>(face)).hits(line, leaves, &mut |one, _| met(one, face));
             },
         );
     }
