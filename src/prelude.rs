@@ -4,6 +4,7 @@
 //! [`double_double`](crate::numeric::double_double).
 
 // Registration of an entity type: its table, its constructor, and the constructor's arguments.
+pub use crate::scene::counts::{List, OneOf};
 pub use crate::scene::entity::{Args, Entity, Refusal};
 pub use crate::scene::pparm::{Attributes, Derived, LEAST_LENGTH, Pparm, Row, Table};
 pub use crate::scene::value::{Datum, PerChannel, Value};
@@ -23,7 +24,7 @@ pub use crate::world::shape::Shape;
 pub use crate::world::texture::Texture;
 
 // What a scene selects by name: procedural shaders and profiles.
-pub use crate::numeric::formula::Formula;
+pub use crate::numeric::formula::{Field, Formula};
 pub use crate::scene::procedural::{Anchor, OnPlane, OnSphere, ProceduralShader};
 pub use crate::scene::profile::{Profile, ProfileLine};
 

@@ -1,6 +1,7 @@
 //! From a scene's text to a model, and back: the tables of entity types, and the documents generated from them.
 
 pub(crate) mod choice;
+pub(crate) mod counts;
 pub mod dump;
 pub(crate) mod entity;
 pub mod grammar;
@@ -19,6 +20,7 @@ pub(crate) mod syntax;
 pub(crate) mod value;
 
 pub use choice::Choice;
+pub use counts::{Counts, List, OneOf};
 pub use entity::{Args, Entity, Refusal};
 pub use kind::Kind;
 pub use model::Model;

@@ -127,7 +127,7 @@ fn any_values(attribute: &'static dyn Attribute) -> BoxedStrategy<String> {
         (-100..100i32).prop_map(|tenths| f64::from(tenths) / 10.0),
         any::<f64>().prop_filter("finite", |number| number.is_finite()),
     ];
-    let count = prop::sample::select(attribute.arity());
+    let count = prop::sample::select(attribute.arity().examples());
     let datum = match attribute.value_type() {
         Type::Whole => count
             .prop_flat_map(|count| prop::collection::vec(prop_oneof![0..2i64, 1..5000i64], count))
@@ -142,7 +142,8 @@ fn any_values(attribute: &'static dyn Attribute) -> BoxedStrategy<String> {
         Type::File => return Just(format!("{} scenes/models/bowl.stl\n", attribute.name())).boxed(),
         Type::Word | Type::Name(_) => return Just(format!("{} m0\n", attribute.name())).boxed(),
         // A revsurf takes either a surfer or a formula; formulas are covered by the project's scenes.
-        Type::Formula => return Just(String::new()).boxed(),
+        Type::Formula(_) => return Just(String::new()).boxed(),
+        Type::Truth => any::<bool>().prop_map(Datum::Truth).boxed(),
         Type::Choice(choices) => prop::sample::select(choices.all()).prop_map(Datum::Choice).boxed(),
     };
     datum

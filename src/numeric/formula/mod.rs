@@ -1,8 +1,10 @@
-//! Formulas in y, as a scene or a profile plugin writes them: `2 + sin(y)`.
+//! Formulas, as a scene or a profile plugin writes them: `2 + sin(y)`, or in x, y and z.
 
+mod field;
 mod parser;
 mod step;
 
+pub use field::{Field, SPACE};
 pub use parser::FormulaFault;
 
 use crate::numeric::dual::Dual;
@@ -12,10 +14,14 @@ use crate::simd::soa::LANES;
 use std::fmt;
 use step::{Function, MAX_DEPTH, Step};
 
-/// A formula in y, ready to be evaluated with any [`Scalar`].
+/// The variable of a profile.
+pub const HEIGHT: &[&str] = &["y"];
+
+/// A formula, ready to be evaluated with any [`Scalar`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Formula {
     text: String,
+    variables: &'static [&'static str],
     /// The operations in postfix order: operands first.
     steps: Vec<Step>,
     /// The largest depth of the stack while the formula is evaluated, in values.
@@ -28,12 +34,25 @@ pub struct Formula {
 const SMALL_STACK: usize = 4;
 
 impl Formula {
-    /// Parses a formula.
+    /// Parses a formula in y.
     ///
     /// # Errors
     /// Returns the first place where the text is not a formula.
     pub fn parse(text: &str) -> Result<Self, FormulaFault> {
-        Ok(Self::new(text.to_owned(), parser::parse(text)?))
+        Self::parse_in(text, HEIGHT)
+    }
+
+    /// Parses a formula in these variables.
+    ///
+    /// # Errors
+    /// Returns the first place where the text is not a formula.
+    pub fn parse_in(text: &str, variables: &'static [&'static str]) -> Result<Self, FormulaFault> {
+        Ok(Self::new(text.to_owned(), variables, parser::parse(text, variables)?))
+    }
+
+    /// Returns the names of the variables.
+    pub fn variables(&self) -> &'static [&'static str] {
+        self.variables
     }
 
     /// Returns the square of the formula. The square of a root is its operand: where a sphere's profile ends, its slope
@@ -46,24 +65,24 @@ impl Formula {
             }
             _ => steps.push(Step::Powi(2)),
         }
-        Self::new(format!("({})^2", self.text), steps)
+        Self::new(format!("({})^2", self.text), self.variables, steps)
     }
 
-    fn new(text: String, steps: Vec<Step>) -> Self {
+    fn new(text: String, variables: &'static [&'static str], steps: Vec<Step>) -> Self {
         let stack_depth = stack_depth(&steps);
         // The derivative of a general power takes more than arithmetic.
         let is_plain = stack_depth <= SMALL_STACK && !steps.contains(&Step::Call(Function::Pow));
-        Self { text, steps, stack_depth, is_plain }
+        Self { text, variables, steps, stack_depth, is_plain }
     }
 
-    /// Evaluates the formula at y.
+    /// Evaluates a formula in y at y.
     #[inline(always)]
     pub fn at<N: Scalar>(&self, y: N) -> N {
         // Most formulas need a small stack, which is quicker to set up.
         if self.stack_depth <= SMALL_STACK {
-            self.run(y, &mut [y; SMALL_STACK])
+            self.run(|_| y, &mut [y; SMALL_STACK])
         } else {
-            self.run(y, &mut [y; MAX_DEPTH])
+            self.run(|_| y, &mut [y; MAX_DEPTH])
         }
     }
 
@@ -80,8 +99,8 @@ impl Formula {
     }
 
     /// Evaluates the formula on a stack that is deep enough; one function for stacks of any size.
-    fn run<N: Scalar>(&self, y: N, stack: &mut [N]) -> N {
-        self.run_inline(y, stack)
+    fn run<N: Scalar>(&self, variable: impl Fn(u8) -> N, stack: &mut [N]) -> N {
+        self.run_inline(variable, stack)
     }
 
     /// Evaluates the formula and its derivative at eight y, for kernels.
@@ -89,7 +108,7 @@ impl Formula {
     pub fn at_eight(&self, y: [f64; LANES]) -> Dual<F64x8> {
         if self.is_plain {
             let y = Dual::variable(F64x8(y));
-            return self.run_inline(y, &mut [y; SMALL_STACK]);
+            return self.run_inline(|_| y, &mut [y; SMALL_STACK]);
         }
         let (mut value, mut slope) = ([0.0; LANES], [0.0; LANES]);
         for lane in 0..LANES {
@@ -99,13 +118,13 @@ impl Formula {
     }
 
     #[inline(always)]
-    fn run_inline<N: Scalar>(&self, y: N, stack: &mut [N]) -> N {
+    fn run_inline<N: Scalar>(&self, variable: impl Fn(u8) -> N, stack: &mut [N]) -> N {
         let mut top = 0_usize;
         for step in &self.steps {
             // The parser has checked that the operands are there and that they fit on the stack.
             let (a, b) = (stack[top.saturating_sub(2)], stack[top.saturating_sub(1)]);
             let (used, value) = match *step {
-                Step::Y => (0, y),
+                Step::Variable(index) => (0, variable(index)),
                 Step::Number(number) => (0, N::constant(number)),
                 Step::Neg => (1, -b),
                 Step::Powi(exponent) => (1, b.powi(exponent)),
@@ -137,7 +156,7 @@ fn stack_depth(steps: &[Step]) -> usize {
     let mut waiting = 0_usize;
     let after = steps.iter().map(|step| {
         let used = match step {
-            Step::Y | Step::Number(_) => 0,
+            Step::Variable(_) | Step::Number(_) => 0,
             Step::Neg | Step::Powi(_) => 1,
             Step::Add | Step::Sub | Step::Mul | Step::Div => 2,
             Step::Call(Function::Min | Function::Max | Function::Pow) => 2,

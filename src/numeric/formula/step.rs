@@ -3,7 +3,8 @@
 /// One operation of a formula.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Step {
-    Y,
+    /// A variable, by its index.
+    Variable(u8),
     Number(f64),
     Neg,
     Add,
