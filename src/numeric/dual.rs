@@ -185,6 +185,27 @@ impl<N: Scalar> Scalar for Dual<N> {
     }
 
     #[inline(always)]
+    fn scaled(self, factor: f64) -> Self {
+        Self { value: self.value.scaled(factor), slope: self.slope.scaled(factor) }
+    }
+
+    #[inline(always)]
+    fn shifted(self, by: f64) -> Self {
+        Self { value: self.value.shifted(by), slope: self.slope }
+    }
+
+    /// Differentiates the power as a whole: its derivatives have bounds where those of its base have none.
+    #[inline(always)]
+    fn ramp(self, exponent: i32) -> Self {
+        let derivative = if exponent == 1 {
+            self.value.step()
+        } else {
+            N::constant(f64::from(exponent)) * self.value.ramp(exponent - 1)
+        };
+        self.chain(self.value.ramp(exponent), derivative)
+    }
+
+    #[inline(always)]
     fn step(self) -> Self {
         self.chain(self.value.step(), self.value.kink())
     }

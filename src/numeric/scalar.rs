@@ -55,6 +55,24 @@ pub trait Scalar:
     /// Returns the number raised to an integer power.
     fn powi(self, exponent: i32) -> Self;
 
+    /// Returns the number times a constant.
+    #[inline(always)]
+    fn scaled(self, factor: f64) -> Self {
+        self * Self::constant(factor)
+    }
+
+    /// Returns the number plus a constant.
+    #[inline(always)]
+    fn shifted(self, by: f64) -> Self {
+        self + Self::constant(by)
+    }
+
+    /// Returns a power, 1 or more, of the number where it is above 0, and 0 elsewhere.
+    #[inline(always)]
+    fn ramp(self, exponent: i32) -> Self {
+        self.max(Self::constant(0.0)).powi(exponent)
+    }
+
     /// Returns the step function, 1 above 0 and 0 below: the derivative of `max(0, x)`.
     fn step(self) -> Self;
     /// Returns the derivative of [`step`](Self::step): unbounded where the number may be 0, else 0.

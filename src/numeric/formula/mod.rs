@@ -2,6 +2,7 @@
 
 mod field;
 mod parser;
+mod spline;
 mod step;
 
 pub use field::{Field, SPACE};
@@ -92,7 +93,7 @@ impl Formula {
             Step::Call(Function::Abs | Function::Floor | Function::Min | Function::Max) => 1,
             Step::Call(Function::Pow) => 24,
             Step::Call(_) => 8,
-            Step::Powi(exponent) => u64::from(exponent.unsigned_abs().max(1)),
+            Step::Powi(exponent) | Step::Ramp(exponent) => u64::from(exponent.unsigned_abs().max(1)),
             _ => 1,
         };
         self.steps.iter().map(cost).sum()
@@ -128,6 +129,9 @@ impl Formula {
                 Step::Number(number) => (0, N::constant(number)),
                 Step::Neg => (1, -b),
                 Step::Powi(exponent) => (1, b.powi(exponent)),
+                Step::Ramp(exponent) => (1, b.ramp(exponent)),
+                Step::Scale(factor) => (1, b.scaled(factor)),
+                Step::Shift(by) => (1, b.shifted(by)),
                 Step::Add => (2, a + b),
                 Step::Sub => (2, a - b),
                 Step::Mul => (2, a * b),
@@ -157,7 +161,7 @@ fn stack_depth(steps: &[Step]) -> usize {
     let after = steps.iter().map(|step| {
         let used = match step {
             Step::Variable(_) | Step::Number(_) => 0,
-            Step::Neg | Step::Powi(_) => 1,
+            Step::Neg | Step::Powi(_) | Step::Ramp(_) | Step::Scale(_) | Step::Shift(_) => 1,
             Step::Add | Step::Sub | Step::Mul | Step::Div => 2,
             Step::Call(Function::Min | Function::Max | Function::Pow) => 2,
             Step::Call(_) => 1,

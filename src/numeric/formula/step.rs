@@ -13,6 +13,12 @@ pub(super) enum Step {
     Div,
     /// A power with an integer exponent.
     Powi(i32),
+    /// A product with a constant.
+    Scale(f64),
+    /// A sum with a constant.
+    Shift(f64),
+    /// The power of a number above 0, or 0 below.
+    Ramp(i32),
     Call(Function),
 }
 
