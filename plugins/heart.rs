@@ -24,7 +24,7 @@ struct Heart {
 impl Implicit for Heart {
     fn value<N: Scalar>(&self, at: [N; 3]) -> N {
         let n = N::constant;
-        let [x, y, z] = at.map(|coordinate| coordinate / n(self.size));
+        let [x, y, z] = per_axis(|axis| at[axis] / n(self.size));
         let ellipsoid = x.powi(2) + y.powi(2) + n(2.25) * z.powi(2) - n(1.0);
         // The cube root of Taubin's formula: unlike the formula, it has a nonzero slope where `ellipsoid` and y are
         // both 0.

@@ -138,7 +138,7 @@ impl<A> Equation for Plane<A> {
     const IS_QUADRATIC: bool = true;
 
     fn value<N: Scalar>(&self, at: [N; 3]) -> N {
-        dot(self.given_normal(), [0, 1, 2].map(|axis| at[axis] - N::constant(self.point[axis])))
+        dot(self.given_normal(), per_axis(|axis| at[axis] - N::constant(self.point[axis])))
     }
 
     fn kept<N: Scalar>(&self, [_, _, z]: [N; 3]) -> N {

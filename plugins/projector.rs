@@ -60,19 +60,19 @@ where
     fn enclose<F: Precise>(&self, toward: [Interval<F>; 3]) -> Option<[Interval<F>; 3]> {
         let n = Interval::<F>::constant;
         let zero = n(0.0);
-        let minus = |one: [Interval<F>; 3], other: DVec3| [0, 1, 2].map(|axis| one[axis] - n(other[axis]));
+        let minus = |one: [Interval<F>; 3], other: DVec3| per_axis(|axis| one[axis] - n(other[axis]));
         let away = minus(toward, self.light.location).map(|part| -part);
         let normal = self.window.plane.given_normal::<Interval<F>>();
         let slope = dot(normal, away);
         let crossing = -dot(normal, minus(toward, self.window.plane.point)) / slope;
-        let at = [0, 1, 2].map(|axis| toward[axis] + crossing * away[axis]);
+        let at = per_axis(|axis| toward[axis] + crossing * away[axis]);
         // Below 0 where the path does not pass through the rectangle.
         let inside = crossing.min(self.window.inside_of(at));
         if inside.high < zero.low || slope.is_zero() {
             return Some([zero; 3]);
         }
         let texel = self.picture.enclose(at);
-        let sent = [0, 1, 2].map(|channel| n(self.light.emissivity[channel]) * texel[channel]);
+        let sent = per_axis(|channel| n(self.light.emissivity[channel]) * texel[channel]);
         Some(if inside.low > zero.low { sent } else { sent.map(|channel| channel.hull(zero)) })
     }
 

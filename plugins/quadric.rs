@@ -1,6 +1,5 @@
 //! A quadric: the solutions of an equation of the second degree (the notes' "General Quadric Surfaces").
 
-use crate::geometry::clearance;
 use crate::prelude::*;
 use crate::shapes::Quadric;
 
@@ -8,9 +7,7 @@ static COEFFICIENTS: Pparm<[f64; 10]> = Pparm::required(
     "coefficients",
     "the coefficients A to J of Axx + Byy + Czz + Dxy + Exz + Fyz + Gx + Hy + Iz = J",
 )
-.must("nonzero in at least one of A to I", |c: &[f64; 10]| {
-    c[..9].iter().any(|coefficient| *coefficient != 0.0)
-});
+.must("nonzero in at least one of A to I", |c: &[f64; 10]| c[..9].iter().any(|one| *one != 0.0));
 static CENTER: Pparm<DVec3> = Pparm::or("center", "the origin of the equation's coordinates", DVec3::ZERO)
     .alias(&["centre"])
     .unit("world coordinates");
@@ -74,7 +71,7 @@ impl Hittable for Quadric<Classic> {
     }
 
     fn method(&self) -> String {
-        "the notes' formula".to_owned()
+        Self::METHOD.to_owned()
     }
 
     fn clearance(&self, from: DVec3) -> Option<f64> {
@@ -104,13 +101,11 @@ impl<A: Bounded> Hittable for Quadric<A> {
     }
 
     fn method(&self) -> String {
-        "a closed form and a step of Newton's method, in twice the precision where rounding could decide"
-            .to_owned()
+        Self::METHOD.to_owned()
     }
 
     fn clearance(&self, from: DVec3) -> Option<f64> {
-        let by_box = clearance(from, self.bounds(), |region| self.is_clear_of(region));
-        Some(self.clearance_by_value(from).max(by_box))
+        Some(self.clearance_by_value(from).max(self.clearance_by_box(from)))
     }
 
     fn reach(&self) -> f64 {

@@ -44,22 +44,6 @@ impl<A> Sphere<A> {
         let (center, radius) = center_and_radius(args);
         Self { center, radius, accuracy: PhantomData }
     }
-
-    fn around(&self) -> Aabb {
-        Aabb { low: self.center - self.radius, high: self.center + self.radius }
-    }
-
-    fn away(&self, from: DVec3) -> f64 {
-        let away = (from - self.center).length();
-        let rounding = SLACK * (from.length() + self.center.length() + self.radius);
-        ((away - self.radius).abs() - rounding).max(0.0)
-    }
-
-    /// Returns a ray relative to the sphere's centre.
-    #[inline(always)]
-    fn line(&self, ray: &Ray) -> SphereLine {
-        SphereLine::new(ray, self.center)
-    }
 }
 
 impl Hittable for Sphere<Classic> {
@@ -74,11 +58,11 @@ impl Hittable for Sphere<Classic> {
     }
 
     fn bounds(&self) -> Option<Aabb> {
-        Some(self.around())
+        Some(sphere::bounds(self.center, self.radius))
     }
 
     fn clearance(&self, from: DVec3) -> Option<f64> {
-        Some(self.away(from))
+        Some(sphere::clearance(self.center, self.radius, from))
     }
 
     #[inline]
@@ -94,7 +78,7 @@ impl Hittable for Sphere<Classic> {
 impl<A: Bounded> Hittable for Sphere<A> {
     #[inline(always)]
     fn distance(&self, ray: &Ray, range: &RayRange) -> f64 {
-        range.keep(sphere::distance::<A>(&self.line(ray), self.radius, range.origin_side))
+        range.keep(sphere::distance::<A>(&SphereLine::new(ray, self.center), self.radius, range.origin_side))
     }
 
     #[inline]
@@ -103,11 +87,11 @@ impl<A: Bounded> Hittable for Sphere<A> {
     }
 
     fn bounds(&self) -> Option<Aabb> {
-        Some(self.around())
+        Some(sphere::bounds(self.center, self.radius))
     }
 
     fn clearance(&self, from: DVec3) -> Option<f64> {
-        Some(self.away(from))
+        Some(sphere::clearance(self.center, self.radius, from))
     }
 
     #[inline]
@@ -140,7 +124,7 @@ impl<A: Bounded> Bracketed for Sphere<A> {
 
     #[inline(always)]
     fn refine(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
-        sphere::refine::<A>(&self.line(ray), self.radius, origin_side)
+        sphere::refine::<A>(&SphereLine::new(ray, self.center), self.radius, origin_side)
     }
 }
 

@@ -76,7 +76,7 @@ impl Picture {
     pub fn enclose<F: Precise>(&self, at: [Interval<F>; 3]) -> [Interval<F>; 3] {
         let Given { normal, xdir, screen, pixels } = self.given;
         let (corner, n) = (self.rectangle.corner, Interval::<F>::constant);
-        let across = along_sides(normal, xdir, [0, 1, 2].map(|axis| at[axis] - n(corner[axis])));
+        let across = along_sides(normal, xdir, per_axis(|axis| at[axis] - n(corner[axis])));
         let size = self.texture.size();
         let range = |side: usize| {
             let texels = match self.texel {
@@ -99,7 +99,7 @@ impl Picture {
         let colours = texels
             .map(|(column, row)| self.texture.texel(wrapped(column, 0), wrapped(row, 1)).to_array().map(n));
         let hull = |one: [Interval<F>; 3], other: [Interval<F>; 3]| {
-            [0, 1, 2].map(|channel| one[channel].hull(other[channel]))
+            per_axis(|channel| one[channel].hull(other[channel]))
         };
         colours.reduce(hull).unwrap_or(any)
     }
@@ -120,7 +120,7 @@ impl Shader for Textured {
 
     fn enclose<F: Precise>(&self, material: &Material, at: [Interval<F>; 3]) -> Option<LookBounds<F>> {
         let (look, texel) = (LookBounds::from(material), self.0.enclose(at));
-        let times = |colour: [Interval<F>; 3]| [0, 1, 2].map(|channel| colour[channel] * texel[channel]);
+        let times = |colour: [Interval<F>; 3]| per_axis(|channel| colour[channel] * texel[channel]);
         Some(LookBounds { ambient: times(look.ambient), diffuse: times(look.diffuse), ..look })
     }
 

@@ -105,13 +105,7 @@ impl<A: Bounded> Hittable for Triangle<A> {
 impl<A: Bounded> Bracketed for Triangle<A> {
     #[inline(always)]
     fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
-        let rough = self.plane.rough(ray, range.origin_error);
-        let Bracket { near, far } = self.plane.t_bounds(&rough, ray, range);
-        let passed = self.passed(ray);
-        Bracket {
-            near: if passed == Some(false) { MISS } else { near },
-            far: if passed == Some(true) { far } else { MISS },
-        }
+        Triangle::t_bounds(self, ray, range)
     }
 
     #[inline(always)]
@@ -145,7 +139,7 @@ impl<A> Equation for Triangle<A> {
 
     fn value<N: Scalar>(&self, at: [N; 3]) -> N {
         let corner = self.corners[0].to_array();
-        dot(self.upright(), [0, 1, 2].map(|axis| at[axis] - N::constant(corner[axis])))
+        dot(self.upright(), per_axis(|axis| at[axis] - N::constant(corner[axis])))
     }
 
     fn kept<N: Scalar>(&self, at: [N; 3]) -> N {

@@ -134,10 +134,10 @@ impl About {
         line([""; 6]);
         line(["ns per ray", "tests", "closest", "occluded", "refine", "bare"]);
         for tests in &speed.tests {
-            let [meet, block, settle, bare] =
-                [tests.times.meet, tests.times.block, tests.times.settle, tests.bare]
+            let [closest, occluded, refine, bare] =
+                [tests.times.closest, tests.times.occluded, tests.times.refine, tests.bare]
                     .map(|time| number(time, 2));
-            line([tests.entity, &tests.number.to_string(), &meet, &block, &settle, &bare]);
+            line([tests.entity, &tests.number.to_string(), &closest, &occluded, &refine, &bare]);
         }
         match (speed.bare, speed.share()) {
             (Some(bare), Some(share)) => {
@@ -234,13 +234,13 @@ struct Times {
     /// The textbook formula.
     bare_ns: Option<f64>,
     /// The occlusion test of shadow rays.
-    block_ns: Option<f64>,
+    occluded_ns: Option<f64>,
     /// The entity type.
     entity: &'static str,
     /// The closest-hit test of primary rays.
-    meet_ns: Option<f64>,
+    closest_ns: Option<f64>,
     /// The refinement of the hit's distance.
-    settle_ns: Option<f64>,
+    refine_ns: Option<f64>,
     /// The number of tests in a frame, one for each ray and object.
     tests: u64,
 }
@@ -249,10 +249,10 @@ impl Times {
     fn of(tests: &TestTimes) -> Self {
         Self {
             bare_ns: tests.bare,
-            block_ns: tests.times.block,
+            occluded_ns: tests.times.occluded,
             entity: tests.entity,
-            meet_ns: tests.times.meet,
-            settle_ns: tests.times.settle,
+            closest_ns: tests.times.closest,
+            refine_ns: tests.times.refine,
             tests: tests.number,
         }
     }

@@ -31,7 +31,7 @@ pub struct Args {
 /// Numbers of samples per pixel.
 #[derive(Clone, Copy)]
 enum Samples {
-    /// The same in all pixels.
+    /// The number for all pixels.
     Fixed(u32),
     /// The minimum and the maximum.
     From(u32, u32),

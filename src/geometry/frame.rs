@@ -4,7 +4,7 @@ use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::Ray;
 use crate::geometry::sight::{Line, Sight};
 use crate::numeric::double_double::{DoubleDouble, offset};
-use crate::numeric::scalar::{Scalar, dot};
+use crate::numeric::scalar::{Scalar, constants, dot, per_axis};
 use glam::{DMat3, DVec3};
 
 /// The rounding error of each coordinate of a point that is transformed into a frame, as a fraction of the point's
@@ -66,12 +66,15 @@ impl Frame {
     /// Transforms a line from the world to the shape's own coordinates, using the numbers of the scene that the frame
     /// was made from.
     pub fn line<N: Scalar>(&self, line: Line<N>) -> Line<N> {
-        let origin = [0, 1, 2].map(|axis| line.origin[axis] - N::constant(self.origin[axis]));
+        let origin = per_axis(|axis| line.origin[axis] - N::constant(self.origin[axis]));
         let Some(axis) = self.axis else { return Line { origin, dir: line.dir } };
-        let given = axis.to_array().map(N::constant);
+        let given = constants::<N>(axis);
         let length = dot(given, given).sqrt();
-        let axes = orthonormal_basis(given.map(|part| part / length), sign(axis));
-        Line { origin: axes.map(|axis| dot(axis, origin)), dir: axes.map(|axis| dot(axis, line.dir)) }
+        let axes = orthonormal_basis(per_axis(|part| given[part] / length), sign(axis));
+        Line {
+            origin: per_axis(|axis| dot(axes[axis], origin)),
+            dir: per_axis(|axis| dot(axes[axis], line.dir)),
+        }
     }
 
     /// Returns the vector in the world from the frame's origin to the point at a distance along a ray: rounded about

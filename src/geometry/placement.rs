@@ -1,6 +1,6 @@
 //! Placements: where a copy of a shape lies in the world.
 
-use crate::numeric::scalar::Scalar;
+use crate::numeric::scalar::{Scalar, per_axis};
 use glam::{DMat3, DVec3};
 
 /// π as a sum: of four numbers, the last of which is known to [`PI_ERROR`].
@@ -35,7 +35,7 @@ impl Placement {
 
     /// Takes a point from the world to the shape's own coordinates.
     pub fn point<N: Scalar>(&self, at: [N; 3]) -> [N; 3] {
-        self.vector([0, 1, 2].map(|axis| at[axis] - N::constant(self.translation[axis])))
+        self.vector(per_axis(|axis| at[axis] - N::constant(self.translation[axis])))
     }
 
     /// Takes a vector from the world to the shape's own coordinates.

@@ -4,7 +4,7 @@ use crate::geometry::placement::Placement;
 use crate::geometry::ray::Ray;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::{Float, Interval};
-use crate::numeric::scalar::Scalar;
+use crate::numeric::scalar::{Scalar, constants, per_axis};
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
 
@@ -103,13 +103,13 @@ impl Sight {
     pub fn line<N: Scalar>(&self) -> Line<N> {
         let n = N::constant;
         let dir = match self.toward {
-            Toward::Direction(dir) => dir.to_array().map(n),
+            Toward::Direction(dir) => constants(dir),
             Toward::ImagePoint { at, last, size } => {
                 let part = |side: usize| n(at[side]) / n(last[side]) * n(size[side]) - n(self.origin[side]);
                 [part(0), part(1), n(-self.origin.z)]
             }
         };
-        let line = Line { origin: self.origin.to_array().map(n), dir };
+        let line = Line { origin: constants(self.origin), dir };
         match &self.within {
             None => line,
             Some(within) => within.line(line),
@@ -118,8 +118,8 @@ impl Sight {
 
     /// Returns the squared length of the direction of [`line`](Self::line), in square world units.
     pub fn squared_length<N: Scalar>(&self) -> N {
-        let [x, y, z] = self.line::<N>().dir.map(|part| part.powi(2));
-        x + y + z
+        let [x, y, z] = self.line::<N>().dir;
+        x.powi(2) + y.powi(2) + z.powi(2)
     }
 }
 
@@ -143,11 +143,11 @@ pub(crate) fn direction(viewpoint: DVec3, at: DVec2, last: DVec2, size: DVec2) -
 impl<N: Scalar> Line<N> {
     /// Returns the point at t.
     pub fn at(&self, t: N) -> [N; 3] {
-        [0, 1, 2].map(|axis| self.origin[axis] + t * self.dir[axis])
+        per_axis(|axis| self.origin[axis] + t * self.dir[axis])
     }
 
     /// Returns the point at a t that depends on a variable.
     pub fn along(&self, t: Dual<N>) -> [Dual<N>; 3] {
-        [0, 1, 2].map(|axis| Dual::fixed(self.origin[axis]) + t * Dual::fixed(self.dir[axis]))
+        per_axis(|axis| Dual::fixed(self.origin[axis]) + t * Dual::fixed(self.dir[axis]))
     }
 }

@@ -1,6 +1,6 @@
 //! Dual numbers: forward-mode automatic differentiation.
 
-use crate::numeric::scalar::Scalar;
+use crate::numeric::scalar::{Scalar, apart_if};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A number and its derivative. A dual number of dual numbers has the second derivative, too.
@@ -13,6 +13,9 @@ pub struct Dual<N = f64> {
 }
 
 impl<N: Scalar> Dual<N> {
+    /// Whether operations are calls: with second derivatives of intervals, an operation is hundreds of instructions.
+    const IS_LONG: bool = size_of::<N>() > size_of::<[f64; 4]>();
+
     /// Returns the variable itself, whose derivative is 1.
     #[inline(always)]
     pub fn variable(value: N) -> Self {
@@ -81,7 +84,12 @@ impl<N: Scalar> Mul for Dual<N> {
 
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
-        Self { value: self.value * other.value, slope: self.value * other.slope + self.slope * other.value }
+        apart_if!(Self::IS_LONG, {
+            Self {
+                value: self.value * other.value,
+                slope: self.value * other.slope + self.slope * other.value,
+            }
+        })
     }
 }
 
@@ -90,8 +98,10 @@ impl<N: Scalar> Div for Dual<N> {
 
     #[inline(always)]
     fn div(self, other: Self) -> Self {
-        let value = self.value / other.value;
-        Self { value, slope: (self.slope - value * other.slope) / other.value }
+        apart_if!(Self::IS_LONG, {
+            let value = self.value / other.value;
+            Self { value, slope: (self.slope - value * other.slope) / other.value }
+        })
     }
 }
 
@@ -137,8 +147,10 @@ impl<N: Scalar> Scalar for Dual<N> {
 
     #[inline(always)]
     fn sqrt(self) -> Self {
-        let root = self.value.sqrt();
-        self.chain(root, N::constant(0.5) * self.value.step() / root)
+        apart_if!(Self::IS_LONG, {
+            let root = self.value.sqrt();
+            self.chain(root, N::constant(0.5) * self.value.step() / root)
+        })
     }
 
     #[inline(always)]
@@ -159,9 +171,11 @@ impl<N: Scalar> Scalar for Dual<N> {
 
     #[inline(always)]
     fn max(self, other: Self) -> Self {
-        let own = (self.value - other.value).step();
-        let slope = own * self.slope + (N::constant(1.0) - own) * other.slope;
-        Self { value: self.value.max(other.value), slope }
+        apart_if!(Self::IS_LONG, {
+            let own = (self.value - other.value).step();
+            let slope = own * self.slope + (N::constant(1.0) - own) * other.slope;
+            Self { value: self.value.max(other.value), slope }
+        })
     }
 
     fn pow(self, exponent: Self) -> Self {
@@ -174,14 +188,16 @@ impl<N: Scalar> Scalar for Dual<N> {
 
     #[inline(always)]
     fn powi(self, exponent: i32) -> Self {
-        match exponent {
-            0 => return Self::constant(1.0),
-            1 => return self,
-            2 => return self.chain(self.value.powi(2), self.value + self.value),
-            _ => {}
-        }
-        let derivative = N::constant(f64::from(exponent)) * self.value.powi(exponent - 1);
-        self.chain(self.value.powi(exponent), derivative)
+        apart_if!(Self::IS_LONG, {
+            match exponent {
+                0 => return Self::constant(1.0),
+                1 => return self,
+                2 => return self.chain(self.value.powi(2), self.value + self.value),
+                _ => {}
+            }
+            let derivative = N::constant(f64::from(exponent)) * self.value.powi(exponent - 1);
+            self.chain(self.value.powi(exponent), derivative)
+        })
     }
 
     #[inline(always)]

@@ -4,7 +4,24 @@
 //! One formula evaluated with one type after the other gives values, derivatives and proven bounds. The functions are
 //! those of the `libm` crate, whose results do not depend on the machine.
 
+use glam::DVec3;
 use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// Inlines an operation, or calls it where it is long, so that it is compiled once and not into every formula, which would
+/// take megabytes of code.
+macro_rules! apart_if {
+    ($is_long:expr, $operation:expr) => {
+        if $is_long { $crate::numeric::scalar::apart(move || $operation) } else { $operation }
+    };
+}
+
+pub(crate) use apart_if;
+
+/// Calls a function without inlining it.
+#[inline(never)]
+pub(crate) fn apart<R>(operation: impl FnOnce() -> R) -> R {
+    operation()
+}
 
 /// A number type that formulas are evaluated with.
 ///
@@ -83,6 +100,21 @@ pub trait Scalar:
     fn is_zero(self) -> bool;
 }
 
+/// Returns what a function returns for axis 0, 1 and 2.
+///
+/// `map` of an array does the same, but guards against panics half way, which costs the compiler much for each number
+/// type, and nothing is gained by it.
+#[inline(always)]
+pub fn per_axis<T>(mut of: impl FnMut(usize) -> T) -> [T; 3] {
+    [of(0), of(1), of(2)]
+}
+
+/// Returns a vector of constants.
+#[inline(always)]
+pub fn constants<N: Scalar>(of: DVec3) -> [N; 3] {
+    [N::constant(of.x), N::constant(of.y), N::constant(of.z)]
+}
+
 /// Returns the dot product of two vectors.
 pub fn dot<N: Scalar>(a: [N; 3], b: [N; 3]) -> N {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
@@ -90,7 +122,7 @@ pub fn dot<N: Scalar>(a: [N; 3], b: [N; 3]) -> N {
 
 /// Returns the cross product of two vectors.
 pub fn cross<N: Scalar>(a: [N; 3], b: [N; 3]) -> [N; 3] {
-    [0, 1, 2].map(|axis| {
+    per_axis(|axis| {
         let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
         a[next] * b[last] - a[last] * b[next]
     })

@@ -1,5 +1,6 @@
 //! Arithmetic that several shapes share.
 
+mod ellipsoid;
 pub mod field;
 mod finite_plane;
 pub(crate) mod implicit;
@@ -13,6 +14,7 @@ pub(crate) mod revolution;
 pub mod sphere;
 pub(crate) mod triangle;
 
+pub use ellipsoid::Ellipsoid;
 pub use implicit::Implicit;
 pub use placed::Placed;
 pub use quadratic::Quadric;

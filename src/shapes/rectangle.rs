@@ -5,7 +5,7 @@ use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
 use crate::numeric::double_double::{
     DoubleDouble, cross, exponent_to_one, product, times_power_of_two, unit,
 };
-use crate::numeric::scalar::{self, Scalar, dot};
+use crate::numeric::scalar::{self, Scalar, constants, dot, per_axis};
 use crate::shapes::plane::{DRAFT_ERROR, Plane};
 use crate::world::accuracy::{Accuracy, Bounded, Classic};
 use glam::{DMat3, DVec2, DVec3};
@@ -55,11 +55,11 @@ impl Rectangle {
 /// Returns the coordinates of a vector along the sides of a rectangle with this normal, whose first side is along the
 /// projection of `xdir`, in the unit of the vector. The normal and `xdir` may have any length.
 pub fn along_sides<N: Scalar>(normal: DVec3, xdir: DVec3, vector: [N; 3]) -> [N; 2] {
-    let [normal, xdir] = [normal, xdir].map(|of| of.to_array().map(N::constant));
+    let [normal, xdir] = [constants(normal), constants(xdir)];
     let (square, across) = (dot(normal, normal), dot(normal, xdir));
-    let first = [0, 1, 2].map(|axis| square * xdir[axis] - across * normal[axis]);
-    let sides = [first, scalar::cross(normal, xdir)];
-    sides.map(|side| dot(side, vector) / dot(side, side).sqrt())
+    let first = per_axis(|axis| square * xdir[axis] - across * normal[axis]);
+    let along = |side: [N; 3]| dot(side, vector) / dot(side, side).sqrt();
+    [along(first), along(scalar::cross(normal, xdir))]
 }
 
 impl<A> FinitePlane<A> {
@@ -76,9 +76,8 @@ impl<A> FinitePlane<A> {
     /// from side to side. Works with squares: lengths and unit vectors would need square roots, which are expensive
     /// with many bits.
     pub fn inside_of<N: Scalar>(&self, at: [N; 3]) -> N {
-        let n = |of: DVec3| of.to_array().map(N::constant);
-        let (normal, xdir, corner) = (self.plane.given_normal(), n(self.given_xdir), n(self.plane.point));
-        let from_corner = [0, 1, 2].map(|axis| at[axis] - corner[axis]);
+        let (normal, xdir) = (self.plane.given_normal(), constants(self.given_xdir));
+        let from_corner = per_axis(|axis| at[axis] - N::constant(self.plane.point[axis]));
         // The first side is along the projection of `xdir`, from which it differs by a multiple of the normal; the
         // normal is perpendicular to all vectors in the plane.
         let ydir = scalar::cross(normal, xdir);
@@ -152,7 +151,7 @@ impl<A: Bounded> FinitePlane<A> {
     #[inline(never)]
     fn precisely_has_crossing(&self, ray: &Ray) -> bool {
         let distance = self.plane.exact_crossing(ray);
-        let from = [0, 1, 2].map(|axis| DoubleDouble::difference(ray.origin[axis], self.plane.point[axis]));
+        let from = per_axis(|axis| DoubleDouble::difference(ray.origin[axis], self.plane.point[axis]));
         let dir = ray.dir.to_array().map(DoubleDouble::from);
         (0..2).all(|side| {
             let (start, onward) =

@@ -4,9 +4,10 @@
 //! from the line's point closest to the center (Haines, Günther and Akenine-Möller 2019), the root is corrected by a
 //! step of Newton's method, and what rounding could decide is decided in double-double arithmetic.
 
-use crate::geometry::aabb::larger;
+use crate::geometry::aabb::{Aabb, SLACK, larger};
 use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
 use crate::numeric::double_double::{DoubleDouble, exponent_to_one, times_power_of_two, two_product};
+use crate::numeric::scalar::per_axis;
 use crate::world::accuracy::{Accuracy, Bounded};
 use glam::DVec3;
 
@@ -35,6 +36,18 @@ impl SphereLine {
         let scaled = |of: [DoubleDouble; 3]| [of[0] * squeeze[0], of[1] * squeeze[1], of[2] * squeeze[2]];
         Self { from: scaled(from), dir: scaled(dir) }
     }
+}
+
+/// Returns the bounding box of a sphere.
+pub fn bounds(center: DVec3, radius: f64) -> Aabb {
+    Aabb { low: center - radius, high: center + radius }
+}
+
+/// Returns a lower bound on the distance from a point to the surface of a sphere.
+pub fn clearance(center: DVec3, radius: f64, from: DVec3) -> f64 {
+    let away = (from - center).length();
+    let rounding = SLACK * (from.length() + center.length() + radius);
+    ((away - radius).abs() - rounding).max(0.0)
 }
 
 /// Returns the method of intersection, in a few words.
@@ -268,7 +281,7 @@ fn in_double_double(line: &SphereLine, radius: f64) -> f64 {
 
     let a = dot(&line.dir, &line.dir);
     let middle = DoubleDouble::from((-dot(&from, &line.dir) / a).high);
-    let at = [0, 1, 2].map(|axis| from[axis] + middle * line.dir[axis]);
+    let at = per_axis(|axis| from[axis] + middle * line.dir[axis]);
     let toward = -dot(&at, &line.dir);
     let discriminant = toward * toward - a * outside_of(&at);
     if discriminant.high <= 0.0 {

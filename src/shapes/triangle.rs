@@ -1,10 +1,10 @@
 //! The tests of a ray against the edges of a triangle: the arithmetic behind triangles.
 
-use crate::geometry::ray::Ray;
+use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
 use crate::numeric::double_double::{
     self, DoubleDouble, exponent_to_one, rounded_unit, times_power_of_two, triple_product,
 };
-use crate::numeric::scalar::{Scalar, cross, dot};
+use crate::numeric::scalar::{Scalar, constants, cross, dot, per_axis};
 use crate::shapes::plane::Plane;
 use crate::world::accuracy::{Bounded, Classic};
 use glam::DVec3;
@@ -39,25 +39,42 @@ impl<A: Bounded> Triangle<A> {
     }
 }
 
+impl<A: Bounded> Triangle<A> {
+    /// Returns a bracket of the distance at which a ray crosses the triangle.
+    #[inline(always)]
+    pub fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+        let rough = self.plane.rough(ray, range.origin_error);
+        let Bracket { near, far } = self.plane.t_bounds(&rough, ray, range);
+        let passed = self.passed(ray);
+        Bracket {
+            near: if passed == Some(false) { MISS } else { near },
+            far: if passed == Some(true) { far } else { MISS },
+        }
+    }
+}
+
 impl<A> Triangle<A> {
     /// Returns a normal whose length is twice the triangle's area.
     pub fn upright<N: Scalar>(&self) -> [N; 3] {
-        let [a, b, c] = self.corners.map(|corner| corner.to_array().map(N::constant));
-        let from_a = |corner: [N; 3]| [0, 1, 2].map(|axis| corner[axis] - a[axis]);
+        let [a, b, c] = self.given_corners();
+        let from_a = |corner: [N; 3]| per_axis(|axis| corner[axis] - a[axis]);
         cross(from_a(b), from_a(c))
+    }
+
+    fn given_corners<N: Scalar>(&self) -> [[N; 3]; 3] {
+        per_axis(|corner| constants(self.corners[corner]))
     }
 
     /// Returns a number above 0 for a point of the plane inside the three edges, and below 0 outside; its unit differs
     /// from edge to edge.
     pub fn inside<N: Scalar>(&self, at: [N; 3]) -> N {
         let normal = self.upright();
-        let corners = self.corners.map(|corner| corner.to_array().map(N::constant));
+        let [a, b, c] = self.given_corners();
         let inside = |from: [N; 3], to: [N; 3]| {
             // Perpendicular to the edge, in the plane, toward the inside.
-            let inward = cross(normal, [0, 1, 2].map(|axis| to[axis] - from[axis]));
-            dot(inward, [0, 1, 2].map(|axis| at[axis] - from[axis]))
+            let inward = cross(normal, per_axis(|axis| to[axis] - from[axis]));
+            dot(inward, per_axis(|axis| at[axis] - from[axis]))
         };
-        let [a, b, c] = corners;
         inside(a, b).min(inside(b, c)).min(inside(c, a))
     }
 
@@ -106,7 +123,7 @@ impl<A> Triangle<A> {
 #[inline(never)]
 fn exact_side(from: DVec3, to: DVec3, ray: &Ray) -> f64 {
     let place =
-        |of: DVec3| scaled_to_one([0, 1, 2].map(|axis| DoubleDouble::difference(of[axis], ray.origin[axis])));
+        |of: DVec3| scaled_to_one(per_axis(|axis| DoubleDouble::difference(of[axis], ray.origin[axis])));
     triple_product(place(from), place(to), ray.dir.to_array()).high
 }
 

@@ -34,7 +34,7 @@ fn bench_without_scenes_measures_those_that_are_built_in() {
         assert!(scene["rays"]["all"]["rays_per_second"].as_f64().is_some_and(|rate| rate > 0.0), "{scene}");
         for tests in scene["tests"].as_array().expect("a list of entities") {
             assert!(tests["tests"].as_u64() > Some(0), "{tests}");
-            assert!(tests["meet_ns"].as_f64().is_some_and(|time| time > 0.0), "{tests}");
+            assert!(tests["closest_ns"].as_f64().is_some_and(|time| time > 0.0), "{tests}");
         }
     }
     let share = |scene: &Value| scene["share_of_ceiling"].as_f64();

@@ -1,7 +1,7 @@
 //! The functions of formulas over intervals.
 
-use super::{Float, Interval, apart_if_long};
-use crate::numeric::scalar::Scalar;
+use super::{Float, Interval};
+use crate::numeric::scalar::{Scalar, apart_if};
 
 impl<F: Float> Interval<F> {
     /// Returns whether the interval may contain `start` plus any multiple of 2π radians.
@@ -41,7 +41,7 @@ impl<F: Float> Scalar for Interval<F> {
 
     #[inline(always)]
     fn about(value: f64, error: f64) -> Self {
-        apart_if_long!(F, {
+        apart_if!(F::IS_LONG, {
             let (value, error) = (F::of(value), F::of(error));
             Self::outward_sum(value - error, value + error)
         })
@@ -89,7 +89,7 @@ impl<F: Float> Scalar for Interval<F> {
 
     #[inline(always)]
     fn sqrt(self) -> Self {
-        apart_if_long!(F, {
+        apart_if!(F::IS_LONG, {
             let zero = F::of(0.0);
             // Written so that a NaN stays a NaN.
             let root = |of: F| (if of < zero { zero } else { of }).sqrt();
@@ -100,7 +100,7 @@ impl<F: Float> Scalar for Interval<F> {
 
     #[inline(always)]
     fn abs(self) -> Self {
-        apart_if_long!(F, {
+        apart_if!(F::IS_LONG, {
             let zero = F::of(0.0);
             if self.low >= zero {
                 self
@@ -118,12 +118,12 @@ impl<F: Float> Scalar for Interval<F> {
 
     #[inline(always)]
     fn min(self, other: Self) -> Self {
-        apart_if_long!(F, Self { low: self.low.min(other.low), high: self.high.min(other.high) })
+        apart_if!(F::IS_LONG, Self { low: self.low.min(other.low), high: self.high.min(other.high) })
     }
 
     #[inline(always)]
     fn max(self, other: Self) -> Self {
-        apart_if_long!(F, Self { low: self.low.max(other.low), high: self.high.max(other.high) })
+        apart_if!(F::IS_LONG, Self { low: self.low.max(other.low), high: self.high.max(other.high) })
     }
 
     fn pow(self, exponent: Self) -> Self {
@@ -139,7 +139,7 @@ impl<F: Float> Scalar for Interval<F> {
 
     #[inline(always)]
     fn powi(self, exponent: i32) -> Self {
-        apart_if_long!(F, {
+        apart_if!(F::IS_LONG, {
             if exponent < 0 {
                 return Self::constant(1.0) / self.powi(-exponent);
             }
@@ -173,7 +173,7 @@ impl<F: Float> Scalar for Interval<F> {
 
     #[inline(always)]
     fn step(self) -> Self {
-        apart_if_long!(F, {
+        apart_if!(F::IS_LONG, {
             let (zero, one) = (F::of(0.0), F::of(1.0));
             Self {
                 low: if self.low > zero { one } else { zero },

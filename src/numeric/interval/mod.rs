@@ -6,27 +6,11 @@ mod float;
 mod fraction;
 mod functions;
 
-use crate::numeric::scalar::Scalar;
+use crate::numeric::scalar::{Scalar, apart_if};
 use f256::f256;
 pub use float::Float;
 pub use fraction::Fraction;
 use std::ops::{Add, Div, Mul, Neg, Sub};
-
-/// Inlines an operation on intervals, or where numbers are [long](Float::IS_LONG) calls it, so that it is compiled once and
-/// not into every formula, which would take megabytes of code.
-macro_rules! apart_if_long {
-    ($F:ident, $operation:expr) => {
-        if $F::IS_LONG { $crate::numeric::interval::apart(move || $operation) } else { $operation }
-    };
-}
-
-use apart_if_long;
-
-/// Calls a function without inlining it.
-#[inline(never)]
-fn apart<R>(operation: impl FnOnce() -> R) -> R {
-    operation()
-}
 
 /// A closed interval: all numbers from `low` to `high`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -159,7 +143,7 @@ impl<F: Float> Add for Interval<F> {
 
     #[inline(always)]
     fn add(self, other: Self) -> Self {
-        apart_if_long!(F, Self::outward_sum(self.low + other.low, self.high + other.high))
+        apart_if!(F::IS_LONG, Self::outward_sum(self.low + other.low, self.high + other.high))
     }
 }
 
@@ -168,7 +152,7 @@ impl<F: Float> Sub for Interval<F> {
 
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        apart_if_long!(F, {
+        apart_if!(F::IS_LONG, {
             // The difference of a single number with itself is exactly 0: a product with something unbounded then stays 0.
             if self == other && self.low == self.high {
                 return Self::constant(0.0);
@@ -192,7 +176,7 @@ impl<F: Float> Mul for Interval<F> {
 
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
-        apart_if_long!(F, {
+        apart_if!(F::IS_LONG, {
             // The product of 0 with anything is 0, even if that is unbounded.
             if self.is_zero() || other.is_zero() {
                 return Self::constant(0.0);
@@ -227,7 +211,7 @@ impl<F: Float> Div for Interval<F> {
 
     #[inline(always)]
     fn div(self, other: Self) -> Self {
-        apart_if_long!(F, {
+        apart_if!(F::IS_LONG, {
             if self.is_zero() && !other.is_zero() {
                 return Self::constant(0.0);
             }

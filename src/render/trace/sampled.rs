@@ -62,6 +62,7 @@ mod tests {
     use crate::render::ray_stats::RayStats;
     use crate::render::renderer::Renderer;
     use crate::render::trace;
+    use crate::scene::model::Model;
     use crate::scene::reader;
     use crate::scene::registry::Registry;
     use crate::simd::cpu::Cpu;
@@ -77,58 +78,59 @@ mod tests {
         plane p3 { material g normal 0 0 1 point 0 0 -2.5 }
         plane p4 { material g normal 0 0 1 point 0 0 -3 }";
 
-    #[test]
-    fn a_pixel_off_by_an_unknown_amount_costs_as_one_of_a_single_sample() {
+    fn loaded() -> Model {
         let registry = Registry::get().expect("sound types");
-        let Ok(loaded) = reader::read(registry, "scene", Path::new(""), SCENE, None) else {
-            panic!("a sound scene");
-        };
-        let plan = Plan::new(&loaded.model);
-        assert!(is_unbounded(&plan));
-        let pixels: Vec<_> = (0..4).flat_map(|row| (0..5).map(move |column| [column, row])).collect();
-        let renderer = Renderer::new(1).expect("a thread");
+        match reader::read(registry, "scene", Path::new(""), SCENE, None) {
+            Ok(loaded) => loaded.model,
+            Err(report) => panic!("{report}"),
+        }
+    }
+
+    /// Renders all pixels in one packet, with what that took, and checks that their number is that of those cut short.
+    fn together(plan: &Plan) -> (Vec<Rgb>, u64) {
         let (mut scratch, mut stats) = (Scratch::default(), RayStats::default());
-        let together: Vec<Rgb> = renderer.run(|| {
-            let mut tracer = Tracer::new(&plan, Cpu::best(), &mut scratch, &mut stats);
-            let seen = tracer.pixels(&pixels);
-            (0..pixels.len()).map(|lane| seen.get(lane)).collect()
+        let colours = Renderer::new(1).expect("a thread").run(|| {
+            let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, &mut stats);
+            let seen = tracer.pixels(&pixels());
+            (0..20).map(|lane| seen.get(lane)).collect()
         });
         assert_eq!(stats.cuts.pixels, 20);
-        let rays = stats.all_rays();
+        (colours, stats.all_rays())
+    }
+
+    /// Renders one pixel after the other.
+    fn alone(plan: &Plan) -> Vec<Rgb> {
+        let renderer = Renderer::new(1).expect("a thread");
+        renderer.run(|| pixels().iter().map(|[x, y]| trace::pixel(plan, *x, *y)).collect())
+    }
+
+    fn pixels() -> Vec<[usize; 2]> {
+        (0..4).flat_map(|row| (0..5).map(move |column| [column, row])).collect()
+    }
+
+    #[test]
+    fn a_pixel_off_by_an_unknown_amount_costs_as_one_of_a_single_sample() {
+        let model = loaded();
+        let plan = Plan::new(&model);
+        assert!(is_unbounded(&plan));
+        let (colours, rays) = together(&plan);
         // Five samples of 20 pixels would cost 2,000,000. The first sample may be one that does not meet the limit.
         assert!((400_000..500_000).contains(&rays), "{rays} rays");
-        let alone =
-            renderer.run(|| pixels.iter().map(|[x, y]| trace::pixel(&plan, *x, *y)).collect::<Vec<_>>());
-        assert_eq!(together, alone);
+        assert_eq!(colours, alone(&plan));
     }
 
     #[test]
     fn a_pixel_off_by_an_unknown_amount_takes_no_more_samples_than_the_first() {
-        let registry = Registry::get().expect("sound types");
-        let Ok(mut loaded) = reader::read(registry, "scene", Path::new(""), SCENE, None) else {
-            panic!("a sound scene");
-        };
-        loaded.model.camera.value.samples = 4;
-        let fixed = Plan::new(&loaded.model).camera;
-        loaded.model.camera.value.adaptive = Some(Adaptive { most: 64, error: Some(1e-9) });
-        let mut plan = Plan::new(&loaded.model);
-        let pixels: Vec<_> = (0..4).flat_map(|row| (0..5).map(move |column| [column, row])).collect();
-        let renderer = Renderer::new(1).expect("a thread");
-        let (mut scratch, mut stats) = (Scratch::default(), RayStats::default());
-        let together: Vec<Rgb> = renderer.run(|| {
-            let mut tracer = Tracer::new(&plan, Cpu::best(), &mut scratch, &mut stats);
-            let seen = tracer.pixels(&pixels);
-            (0..pixels.len()).map(|lane| seen.get(lane)).collect()
-        });
-        assert_eq!(stats.cuts.pixels, 20);
+        let mut model = loaded();
+        model.camera.value.samples = 4;
+        let fixed = Plan::new(&model).camera;
+        model.camera.value.adaptive = Some(Adaptive { most: 64, error: Some(1e-9) });
+        let mut plan = Plan::new(&model);
+        let (colours, rays) = together(&plan);
         // One sample of each of 42 pixels, in the image and around it, may cost 20,000 rays.
-        let rays = stats.all_rays();
         assert!((400_000..900_000).contains(&rays), "{rays} rays");
-        let alone = |plan: &Plan| {
-            renderer.run(|| pixels.iter().map(|[x, y]| trace::pixel(plan, *x, *y)).collect::<Vec<_>>())
-        };
-        assert_eq!(together, alone(&plan));
+        assert_eq!(colours, alone(&plan));
         plan.camera = fixed;
-        assert_eq!(together, alone(&plan));
+        assert_eq!(colours, alone(&plan));
     }
 }

@@ -6,6 +6,7 @@
 
 mod body;
 mod onward;
+mod own;
 mod packets;
 mod shape;
 

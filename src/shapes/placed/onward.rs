@@ -4,7 +4,7 @@ use super::shape::Placed;
 use crate::geometry::sight::Line;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
-use crate::numeric::scalar::{Scalar, dot};
+use crate::numeric::scalar::{Scalar, dot, per_axis};
 use crate::world::certify::{Found, Onward, Precise};
 use glam::DMat3;
 
@@ -35,7 +35,7 @@ impl<F: Precise> Onward<F> for Placed {
         let n = Interval::<F>::constant;
         // Normals are transformed by the inverse transpose of what transforms vectors.
         let own = self.placement.vector(normal);
-        let own = [0, 1, 2].map(|axis| own[axis] * n(self.placement.scale[axis]).powi(2));
+        let own = per_axis(|axis| own[axis] * n(self.placement.scale[axis]).powi(2));
         let length = dot(own, own).sqrt();
         let own = own.map(|part| part / length);
         let shaded = shape.shading_normal(self.placement.point(at), part, own)?;

@@ -1,69 +1,20 @@
 //! Packets of rays that meet a copy: taken to the object's own coordinates together, so that the shape is tested against
 //! packets there, too.
 
-use super::shape::{ByPlacement, CAMERA, Placed, entered, in_world};
+use super::own::{Own, take_out, to_world};
+use super::shape::{ByPlacement, CAMERA, Placed, entered};
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
 use crate::geometry::ray_packet::{self, Nearest, PACKET_SIZE, RayPacket, split};
-use crate::simd::cpu::{Cpu, kernels};
-use crate::simd::soa::{LANES, Vectors};
-use crate::world::coincidence::CLOSE;
+use crate::simd::cpu::Cpu;
+use crate::simd::soa::LANES;
 use crate::world::hittable::Hittable;
 use crate::world::interaction::SurfaceInteraction;
 use crate::world::packets::shape::{self, Packets};
 use crate::world::shape::{ByPackets, Shape};
-use glam::DVec3;
 
 /// The number of rays that are taken to an object's own coordinates together, where there are more than [`LANES`].
 const PART: usize = 64;
-
-/// Rays in an object's own coordinates.
-struct Own<const N: usize> {
-    origin: Vectors<N>,
-    dir: Vectors<N>,
-    /// The lengths of a world unit along each ray.
-    lengths: [f64; N],
-    /// The distances at which the rays end.
-    ends: [f64; N],
-    origin_error: f64,
-}
-
-impl<const N: usize> Own<N> {
-    /// Takes at most `N` rays to a copy's coordinates, which end at these distances in world units.
-    #[inline(always)]
-    fn of(cpu: Cpu, placed: &Placed, rays: RayPacket, ends: &[f64]) -> Self {
-        let count = ends.len();
-        let mut own = Self {
-            origin: Vectors::ZERO,
-            dir: Vectors::ZERO,
-            lengths: [0.0; N],
-            ends: [0.0; N],
-            origin_error: 0.0,
-        };
-        let (lengths, own_ends) = (&mut own.lengths[..count], &mut own.ends[..count]);
-        let largest = take_in(
-            cpu,
-            placed,
-            rays,
-            ends,
-            lengths,
-            own_ends,
-            own.origin.view_mut(count),
-            own.dir.view_mut(count),
-        );
-        if rays.origin_error > 0.0 {
-            own.origin_error = placed.own_error(DVec3::splat(largest), rays.origin_error);
-        }
-        own
-    }
-
-    /// Returns the first `count` rays.
-    #[inline(always)]
-    fn rays(&self, count: usize) -> RayPacket<'_> {
-        let (origin, dir) = (self.origin.view(count), self.dir.view(count));
-        RayPacket { origin, dir, origin_error: self.origin_error }
-    }
-}
 
 impl Placed {
     /// Computes brackets of first hits before `ends`. `drift` is that of rays in another copy's coordinates.
@@ -342,65 +293,5 @@ impl Packets for Shape<Placed, ByPackets, ByPlacement> {
 
     fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
         self.shape.distance(ray, &RayRange { origin_side, ..RayRange::ALL })
-    }
-}
-
-kernels! {
-    /// Takes rays, and the distances at which they end, to a copy's coordinates. Returns the largest coordinate of their
-    /// origins in the world.
-    fn take_in(
-        placed: &Placed, rays: RayPacket, ends: &[f64], lengths: &mut [f64], own_ends: &mut [f64]
-    ) => origins, dirs -> f64 {
-        let count = ends.len();
-        let rays = rays.first(count);
-        let (lengths, own_ends) = (&mut lengths[..count], &mut own_ends[..count]);
-        let (mut origins, mut dirs) = (origins.first(count), dirs.first(count));
-        let mut largest = 0.0_f64;
-        for lane in 0..count {
-            let ray = rays.get(lane);
-            let (own, length) = placed.own_ray(&ray);
-            origins.set(lane, own.origin);
-            dirs.set(lane, own.dir);
-            lengths[lane] = length;
-            own_ends[lane] = ends[lane] * length * (1.0 + CLOSE);
-            largest = largest.max(ray.origin.abs().max_element());
-        }
-        largest
-    }
-
-    /// Takes brackets to world units, as [`in_world`] does.
-    fn to_world(error: f64, lengths: &[f64], ends: &[f64], near: &mut [f64], far: &mut [f64]) {
-        let count = near.len();
-        let (lengths, ends, far) = (&lengths[..count], &ends[..count], &mut far[..count]);
-        for lane in 0..count {
-            let range = RayRange { far: ends[lane], ..RayRange::ALL };
-            let bracket = in_world(Bracket { near: near[lane], far: far[lane] }, lengths[lane], error, &range);
-            (near[lane], far[lane]) = (bracket.near, bracket.far);
-        }
-    }
-
-    /// Takes hits to the world: `own` and `lengths` are the rays in the copy's coordinates and the lengths of a world
-    /// unit there.
-    fn take_out(
-        placed: &Placed, rays: RayPacket, own: RayPacket, lengths: &[f64], distances: &[f64], cosines: &mut [f64],
-        travelled: &mut [f64]
-    ) => points, normals {
-        let (count, to_world) = (travelled.len(), placed.to_own.transpose());
-        let least = placed.placement.scale.min_element();
-        let (rays, own, lengths) = (rays.first(count), own.first(count), &lengths[..count]);
-        let (distances, cosines) = (&distances[..count], &mut cosines[..count]);
-        let (mut points, mut normals) = (points.first(count), normals.first(count));
-        for lane in 0..count {
-            let normal = normals.get(lane);
-            let there = to_world * normal;
-            let size = there.length();
-            // The cosine is that of the flat normal, which a smooth surface does not tell: then a lower bound.
-            let (cosine, shaded) = (cosines[lane], own.dir.get(lane).dot(normal));
-            let is_flat = (cosine.abs() - shaded.abs()).abs() <= 1e-12;
-            cosines[lane] = cosine * lengths[lane] * if is_flat { 1.0 / size } else { least };
-            points.set(lane, rays.get(lane).at(distances[lane]));
-            normals.set(lane, there.normalize());
-            travelled[lane] += distances[lane];
-        }
     }
 }

@@ -5,6 +5,7 @@ use super::surface::{MAX_Z, Plane};
 use crate::geometry::ray::{MISS, Ray, RayRange};
 use crate::geometry::ray_packet::RayPacket;
 use crate::numeric::double_double::{DoubleDouble, dot, exact_sum, two_product, two_sum};
+use crate::numeric::scalar::per_axis;
 use crate::simd::soa::LANES;
 use crate::world::accuracy::{Accuracy, Bounded, Classic};
 
@@ -61,7 +62,7 @@ impl<A> Plane<A> {
                 parts.chain([one.low * other.low])
             }))
         };
-        let between = [0, 1, 2].map(|axis| DoubleDouble::difference(self.point[axis], ray.origin[axis]));
+        let between = per_axis(|axis| DoubleDouble::difference(self.point[axis], ray.origin[axis]));
         (product(between), product(ray.dir.to_array().map(DoubleDouble::from)))
     }
 

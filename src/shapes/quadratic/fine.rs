@@ -4,7 +4,7 @@ use super::exact::PreciseHit;
 use super::surface::{DD_ERROR, OwnRay, Quadratic};
 use crate::geometry::ray::{MISS, Side};
 use crate::numeric::double_double::{DoubleDouble, exponent_to_one, product, times_power_of_two};
-use crate::numeric::scalar::Scalar;
+use crate::numeric::scalar::{Scalar, per_axis};
 use glam::DVec3;
 
 impl Quadratic {
@@ -14,6 +14,7 @@ impl Quadratic {
         let place = DVec3::from(from.map(|part| part.high));
         let gradient = 2.0 * (self.square * place) + self.linear;
         let size = (2.0 * self.sizes * place.abs().max_element() + self.linear.abs()).max_element();
+        // A few roundings of its terms are then less than 1e-12 of it.
         if gradient.abs().max_element() > 1e-3 * size {
             return gradient.normalize();
         }
@@ -168,7 +169,7 @@ impl Quadratic {
     /// Returns `b` and `c` of a ray's polynomial around its point at a distance, and bounds of their errors.
     fn at(&self, ray: &OwnRay, distance: DoubleDouble) -> [DoubleDouble; 4] {
         let dir = ray.dir.to_array().map(DoubleDouble::from);
-        let place = [0, 1, 2].map(|axis| ray.from[axis] + distance * dir[axis]);
+        let place = per_axis(|axis| ray.from[axis] + distance * dir[axis]);
         let linear = self.linear.to_array().map(DoubleDouble::from);
         let b = product(place, self.square_times(dir)) + DoubleDouble::from(0.5) * product(linear, dir);
         let size = DVec3::from(place.map(|part| part.high.abs()));
@@ -198,7 +199,7 @@ impl Quadratic {
     fn value(&self, place: [DoubleDouble; 3]) -> DoubleDouble {
         let linear = self.linear.to_array().map(DoubleDouble::from);
         let turned = self.square_times(place);
-        let sum = [0, 1, 2].map(|axis| turned[axis] + linear[axis]);
+        let sum = per_axis(|axis| turned[axis] + linear[axis]);
         product(place, sum) + DoubleDouble::from(self.constant)
     }
 }

@@ -4,8 +4,9 @@
 use super::quick::Quick;
 use super::surface::{OwnRay, Quadratic};
 use crate::geometry::aabb::{Aabb, SLACK};
+use crate::geometry::clearance;
 use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
-use crate::numeric::scalar::Scalar;
+use crate::numeric::scalar::{Scalar, per_axis};
 use crate::world::accuracy::{Accuracy, Bounded, Classic};
 use glam::{DMat3, DVec3};
 use std::marker::PhantomData;
@@ -77,9 +78,15 @@ impl<A> Quadric<A> {
         if value > 0.0 && radius.is_finite() { radius * (1.0 - 1e-6) } else { 0.0 }
     }
 
+    /// Returns a lower bound of the distance from a point to the quadric in world units, as far as its box tells.
+    pub fn clearance_by_box(&self, from: DVec3) -> f64 {
+        let around = self.around();
+        clearance(from, Some(around), |region| !around.overlaps(region))
+    }
+
     /// Returns the left side of the equation at a point of the world: 0 on the quadric.
     pub fn value<N: Scalar>(&self, at: [N; 3]) -> N {
-        let from_center = [0, 1, 2].map(|axis| at[axis] - N::constant(self.center[axis]));
+        let from_center = per_axis(|axis| at[axis] - N::constant(self.center[axis]));
         let sum = |part: &dyn Fn(usize) -> N| part(0) + part(1) + part(2);
         let row = |row: usize| {
             let square = sum(&|column| from_center[column] * N::constant(self.square.col(column)[row]));
@@ -100,6 +107,9 @@ impl<A> Quadric<A> {
 }
 
 impl Quadric<Classic> {
+    /// How hits are found, in a few words.
+    pub const METHOD: &str = "the notes' formula";
+
     /// Returns the distance of the first hit by the course notes' formula.
     pub fn classic_distance(&self, ray: &Ray, range: &RayRange) -> f64 {
         let origin = ray.origin - self.center;
@@ -126,6 +136,10 @@ impl Quadric<Classic> {
 }
 
 impl<A: Bounded> Quadric<A> {
+    /// How hits are found, in a few words.
+    pub const METHOD: &str =
+        "a closed form and a step of Newton's method, in twice the precision where rounding could decide";
+
     #[inline(always)]
     fn own_ray(&self, ray: &Ray) -> OwnRay {
         self.own.own(ray.origin, ray.dir, self.center)

@@ -8,7 +8,7 @@ use crate::geometry::roots::taylor::FunctionOnLine;
 use crate::geometry::roots::twice;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
-use crate::numeric::scalar::Scalar;
+use crate::numeric::scalar::{Scalar, per_axis};
 use crate::world::certify::Equation;
 
 /// The left side of the surface's equation along a ray, in any number type: above 0 outside, below 0 inside.
@@ -20,7 +20,7 @@ pub(super) struct ProfileOnRay<'s> {
 impl FunctionOnLine for ProfileOnRay<'_> {
     #[inline(always)]
     fn at<N: Scalar>(&self, along: N) -> N {
-        self.surface.value([0, 1, 2].map(|axis| self.local.place(axis, along)))
+        self.surface.value(per_axis(|axis| self.local.place(axis, along)))
     }
 
     /// Returns bounds of the second derivative; that of the squared distance from the axis is constant.
@@ -38,7 +38,7 @@ impl FunctionOnLine for ProfileOnRay<'_> {
         // The rounding error along this ray alone, however far apart the rays are that it may have been rounded from.
         let hidden = |along: f64| {
             let along = Interval::<f64>::constant(along);
-            let place = [0, 1, 2].map(|axis| local.own_place(axis, along));
+            let place = per_axis(|axis| local.own_place(axis, along));
             surface.value(place).width()
         };
         let hidden = hidden(piece.low).min(hidden(piece.high));

@@ -55,11 +55,11 @@ impl Bundle {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Times {
     /// The closest-hit test of primary rays.
-    pub meet: Option<f64>,
+    pub closest: Option<f64>,
     /// The occlusion test of shadow rays.
-    pub block: Option<f64>,
+    pub occluded: Option<f64>,
     /// The refinement of the hit's distance.
-    pub settle: Option<f64>,
+    pub refine: Option<f64>,
 }
 
 /// Collects packets of a model's rays.
@@ -135,7 +135,7 @@ pub(super) fn times(
     let met: Vec<&Met> =
         packets.iter().filter_map(|packet| packet.met.as_ref()).filter(|met| is_wanted(met.object)).collect();
 
-    let mut meet = || {
+    let mut closest = || {
         for (packet, objects) in &viewed {
             let (mut near, mut far) = ([MISS; PACKET_SIZE], [MISS; PACKET_SIZE]);
             let (mut met, mut doubt) = ([0; PACKET_SIZE], [0; PACKET_SIZE]);
@@ -147,7 +147,7 @@ pub(super) fn times(
             black_box((&near, &far, &met));
         }
     };
-    let mut block = || {
+    let mut occluded = || {
         for (met, objects) in &lit {
             let (mut blocked, mut doubt) = ([0; PACKET_SIZE], [0; PACKET_SIZE]);
             for object in objects {
@@ -174,20 +174,20 @@ pub(super) fn times(
             (near, far)
         })
         .collect();
-    let mut settle = || {
+    let mut refine = || {
         for (met, (near, far)) in met.iter().zip(&brackets) {
             let mut distances = [0.0; PACKET_SIZE];
             shape(met.object).packets().refine(cpu, met.view.rays(), None, (near, far), &mut distances);
             black_box(&distances);
         }
     };
-    let [meets, blocks, settles] = clock::least(patience, [&mut meet, &mut block, &mut settle]);
+    let [closests, occludes, refines] = clock::least(patience, [&mut closest, &mut occluded, &mut refine]);
     let per_ray =
         |seconds: f64, tests: usize| (tests > 0).then(|| 1e9 * seconds / (tests * PACKET_SIZE) as f64);
     Times {
-        meet: per_ray(meets, viewed.iter().map(|(_, objects)| objects.len()).sum()),
-        block: per_ray(blocks, lit.iter().map(|(_, objects)| objects.len()).sum()),
-        settle: per_ray(settles, met.len()),
+        closest: per_ray(closests, viewed.iter().map(|(_, objects)| objects.len()).sum()),
+        occluded: per_ray(occludes, lit.iter().map(|(_, objects)| objects.len()).sum()),
+        refine: per_ray(refines, met.len()),
     }
 }
 

@@ -4,7 +4,7 @@ use super::scene::{Colour, Number, Path, Place, Scene, coarse};
 use super::surface::{Surface, is_black, tint};
 use crate::geometry::sight::Line;
 use crate::numeric::interval::{Float, Interval};
-use crate::numeric::scalar::{Scalar, dot};
+use crate::numeric::scalar::{Scalar, dot, per_axis};
 use crate::world::certify::Found;
 use crate::world::packets::light::PacketLight;
 use glam::DVec2;
@@ -40,17 +40,17 @@ pub(super) fn shine<F: Number>(
     }
     let mut scattered = surface.diffuse.map(|channel| channel * cosine / distance);
     if has_glint {
-        let half = [0, 1, 2].map(|axis| toward[axis] / distance - dir[axis]);
+        let half = per_axis(|axis| toward[axis] / distance - dir[axis]);
         let half_cosine = dot(half, surface.normal) / dot(half, half).sqrt();
         if half_cosine.high > zero {
             let strength = power(half_cosine, shininess);
-            scattered = [0, 1, 2].map(|channel| scattered[channel] + surface.specular[channel] * strength);
+            scattered = per_axis(|channel| scattered[channel] + surface.specular[channel] * strength);
         }
     }
     let path = Path { line: Line { origin: surface.at, dir: toward }, leaves: Some(surface.place) };
     let passed = passed(scene, &path);
-    let full = [0, 1, 2].map(|channel| scattered[channel] * sent[channel]);
-    Some([0, 1, 2].map(|channel| {
+    let full = per_axis(|channel| scattered[channel] * sent[channel]);
+    Some(per_axis(|channel| {
         let lit = match passed {
             Some(passed) => passed[channel] * full[channel],
             None => full[channel].hull(black[channel]),
@@ -68,7 +68,7 @@ fn toward<F: Number>(
 ) -> Option<[Interval<F>; 3]> {
     let n = Interval::<F>::constant;
     let (location, size) = (light.location(), light.size());
-    let toward = [0, 1, 2].map(|axis| n(location[axis]) - at[axis]);
+    let toward = per_axis(|axis| n(location[axis]) - at[axis]);
     let Some(draw) = draw.filter(|_| size != 0.0) else { return Some(toward) };
     let length = dot(toward, toward).sqrt();
     let [x, y, z] = toward.map(|part| part / length);
@@ -86,7 +86,7 @@ fn toward<F: Number>(
     let up = [b, sign + y * y * a, -y];
     let (sin, cos) = (n(2.0) * Interval::pi() * n(draw.y)).sin_cos();
     let radius = n(size) * n(draw.x).sqrt();
-    Some([0, 1, 2].map(|axis| toward[axis] + radius * (cos * across[axis] + sin * up[axis])))
+    Some(per_axis(|axis| toward[axis] + radius * (cos * across[axis] + sin * up[axis])))
 }
 
 /// Encloses the power of a cosine above 0; 0 below.
@@ -160,7 +160,7 @@ impl<F: Number> Panes<F> {
             let point = path.line.at(at);
             let pane = &scene.objects[object];
             let tint = tint(pane.material.transparency, F::look(pane, point)?.diffuse)?;
-            self.passed = [0, 1, 2].map(|channel| self.passed[channel] * tint[channel]);
+            self.passed = per_axis(|channel| self.passed[channel] * tint[channel]);
             self.at.push(at);
             start = at;
             let leaves = Some(Place { object, part });

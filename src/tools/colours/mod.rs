@@ -12,7 +12,7 @@ mod surface;
 
 use crate::geometry::sight::Sight;
 use crate::numeric::interval::{Float, Fraction, Interval};
-use crate::numeric::scalar::Scalar;
+use crate::numeric::scalar::{Scalar, per_axis};
 use crate::render::bytes::to_byte;
 use crate::render::plan::Plan;
 use crate::render::plan::depth::FAINT;
@@ -92,7 +92,7 @@ impl<'p, 'm> Prover<'p, 'm> {
         let wide = self.verdicts::<f256>(x, y, bytes);
         let last = if wide.is_final { wide } else { self.verdicts::<Fraction>(x, y, bytes) };
         let may_round = quick.is_enclosed;
-        let channels = [0, 1, 2].map(|channel| match last.pixel.channels[channel] {
+        let channels = per_axis(|channel| match last.pixel.channels[channel] {
             Verdict::Contradicted if may_round && quick.pixel.channels[channel] == Verdict::Open => {
                 Verdict::Rounded
             }
@@ -109,7 +109,7 @@ impl<'p, 'm> Prover<'p, 'm> {
         };
         // Rays may be left out that add less than this to a pixel.
         let missing = if self.plan.depth.is_some() { FAINT } else { 0.0 };
-        let channels = [0, 1, 2].map(|channel| verdict(colour[channel], bytes[channel], missing));
+        let channels = per_axis(|channel| verdict(colour[channel], bytes[channel], missing));
         let is_final = is_spent || !channels.contains(&Verdict::Open);
         Attempt { pixel: Pixel { channels }, is_enclosed: true, is_final }
     }
@@ -125,7 +125,7 @@ impl<'p, 'm> Prover<'p, 'm> {
             let colour = tracer.primary::<F>(&sight.line());
             is_spent |= tracer.is_spent();
             let Some(colour) = colour else { return (None, is_spent) };
-            sum = [0, 1, 2].map(|channel| sum[channel] + colour[channel]);
+            sum = per_axis(|channel| sum[channel] + colour[channel]);
         }
         let count = Interval::constant(f64::from(camera.samples));
         let mean = if camera.samples == 1 { sum } else { sum.map(|channel| channel / count) };
@@ -144,7 +144,7 @@ impl<'p, 'm> Prover<'p, 'm> {
         let bytes = renderer.picture(self.plan);
         let verdict = |x: usize, y: usize| {
             let first = 3 * ((height - 1 - y) * width + x);
-            (!stops()).then(|| self.pixel(x, y, [0, 1, 2].map(|channel| bytes[first + channel])))
+            (!stops()).then(|| self.pixel(x, y, per_axis(|channel| bytes[first + channel])))
         };
         let done = || {
             done();

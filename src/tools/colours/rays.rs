@@ -5,7 +5,7 @@ use super::scene::{Colour, First, Number, Path, Place, Scene};
 use super::surface::{Surface, is_black, tint};
 use crate::geometry::sight::Line;
 use crate::numeric::interval::Interval;
-use crate::numeric::scalar::{Scalar, dot};
+use crate::numeric::scalar::{Scalar, dot, per_axis};
 use crate::render::limits::MAX_DIST;
 use crate::world::sample::Sample;
 
@@ -73,7 +73,7 @@ impl<'s, 'p, 'm> Tracer<'s, 'p, 'm> {
             First::Nothing => Some(black),
             First::Hit(t, place) => self.seen(ray, t, place),
             First::OneOf(places, may_be_nothing) => {
-                let hull = |one: Colour<F>, other: Colour<F>| [0, 1, 2].map(|at| one[at].hull(other[at]));
+                let hull = |one: Colour<F>, other: Colour<F>| per_axis(|at| one[at].hull(other[at]));
                 let mut any = may_be_nothing.then_some(black);
                 for (t, place) in places {
                     let seen = self.seen(ray, t, place)?;
@@ -95,7 +95,7 @@ impl<'s, 'p, 'm> Tracer<'s, 'p, 'm> {
         for (index, light) in self.scene.plan.model.lights.iter().enumerate() {
             let draw = self.sample.map(|sample| sample.on_light(index));
             let added = light::shine(self.scene, &*light.value, draw, &surface, toward)?;
-            colour = [0, 1, 2].map(|channel| colour[channel] + added[channel]);
+            colour = per_axis(|channel| colour[channel] + added[channel]);
         }
         colour = colour.map(|channel| channel / travelled);
         let material = &self.scene.objects[place.object].material;
@@ -103,14 +103,14 @@ impl<'s, 'p, 'm> Tracer<'s, 'p, 'm> {
             let tint = tint(material.transparency, surface.diffuse)?;
             let kept = Interval::constant(1.0) - Interval::constant(material.transparency);
             let behind = self.onward(ray, &surface, travelled, ray.path.line.dir, &tint)?;
-            colour = [0, 1, 2].map(|channel| kept * colour[channel] + tint[channel] * behind[channel]);
+            colour = per_axis(|channel| kept * colour[channel] + tint[channel] * behind[channel]);
         }
         if !is_black(&surface.specular) {
             let across = dot(ray.path.line.dir, surface.normal);
             let twice = across + across;
-            let dir = [0, 1, 2].map(|axis| ray.path.line.dir[axis] - twice * surface.normal[axis]);
+            let dir = per_axis(|axis| ray.path.line.dir[axis] - twice * surface.normal[axis]);
             let seen = self.onward(ray, &surface, travelled, dir, &surface.specular)?;
-            colour = [0, 1, 2].map(|channel| colour[channel] + surface.specular[channel] * seen[channel]);
+            colour = per_axis(|channel| colour[channel] + surface.specular[channel] * seen[channel]);
         }
         Some(colour)
     }

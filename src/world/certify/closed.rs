@@ -4,7 +4,7 @@ use super::equation::{Found, Values, is_kept};
 use crate::geometry::sight::Line;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::{Float, Interval};
-use crate::numeric::scalar::Scalar;
+use crate::numeric::scalar::{Scalar, per_axis};
 
 /// A possible hit.
 enum Candidate<F> {
@@ -43,7 +43,7 @@ pub fn first_hit<F: Float>(shape: &dyn Values<F>, line: &Line<Interval<F>>, leav
 fn coefficients<F: Float>(shape: &dyn Values<F>, line: &Line<Interval<F>>) -> [Interval<F>; 3] {
     // The value and its derivatives are computed at t = 0, so that the start of the line is not rounded.
     let zero = Interval::constant(0.0);
-    let at = [0, 1, 2].map(|axis| {
+    let at = per_axis(|axis| {
         let (origin, dir) = (line.origin[axis], line.dir[axis]);
         Dual { value: Dual { value: origin, slope: dir }, slope: Dual { value: dir, slope: zero } }
     });

@@ -8,7 +8,7 @@ use super::equation::{Equation, Found};
 use crate::geometry::sight::Line;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::{Fine, Float, Fraction, Interval, Wide};
-use crate::numeric::scalar::Scalar;
+use crate::numeric::scalar::{Scalar, per_axis};
 use f256::f256;
 
 /// What can be proven of a shape's hits along any line, in one precision.
@@ -54,7 +54,7 @@ pub fn gradient<F: Float>(
     at: [Interval<F>; 3],
     part: usize,
 ) -> [Interval<F>; 3] {
-    [0, 1, 2].map(|axis| {
+    per_axis(|axis| {
         let along = |other: usize| {
             if other == axis { Dual::variable(at[other]) } else { Dual::fixed(at[other]) }
         };

@@ -4,6 +4,7 @@ use super::equation::{Found, Values, is_kept};
 use crate::geometry::sight::Line;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::{Float, Interval};
+use crate::numeric::scalar::per_axis;
 
 /// The length below which a piece is not cut where the value jumps, as a fraction of the whole line: a fraction of
 /// an ulp of `f64`. A ray that passes through a jump stays undecided however short the piece is, and 237 bits of exponential
@@ -134,7 +135,7 @@ impl<F: Float> Search<'_, F> {
     fn bend(&self, t: Interval<F>) -> Interval<F> {
         let t = Dual::variable_twice(t);
         let Line { origin, dir } = self.line;
-        let at = [0, 1, 2].map(|axis| Dual::fixed_twice(origin[axis]) + t * Dual::fixed_twice(dir[axis]));
+        let at = per_axis(|axis| Dual::fixed_twice(origin[axis]) + t * Dual::fixed_twice(dir[axis]));
         self.shape.bend(at).second()
     }
 

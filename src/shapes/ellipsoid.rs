@@ -1,0 +1,107 @@
+//! Spheres stretched along the axes: the arithmetic behind ellipsoids.
+
+use crate::geometry::aabb::Aabb;
+use crate::geometry::ray::{Bracket, Drift, Ray, RayRange};
+use crate::numeric::double_double::{DoubleDouble, exponent_to_one, times_power_of_two};
+use crate::numeric::scalar::Scalar;
+use crate::shapes::sphere::{self, SphereLine};
+use crate::world::accuracy::Bounded;
+use glam::DVec3;
+use std::marker::PhantomData;
+
+/// A sphere in a space that is divided by `scale` around the ellipsoid's centre.
+pub struct Ellipsoid<A> {
+    /// The centre, in world coordinates.
+    pub center: DVec3,
+    /// The radius in the divided space.
+    pub radius: f64,
+    /// The scale factors along the axes.
+    pub scale: DVec3,
+    /// The reciprocals of `scale`, in double-double arithmetic.
+    squeeze: [DoubleDouble; 3],
+    /// The reciprocal of the smallest component of `scale`.
+    most_squeezed: f64,
+    accuracy: PhantomData<A>,
+}
+
+impl<A> Ellipsoid<A> {
+    /// Returns the sphere of this radius, scaled along the axes around its centre.
+    pub fn new(center: DVec3, radius: f64, scale: DVec3) -> Self {
+        let squeeze = scale.to_array().map(|part| DoubleDouble::from(1.0) / DoubleDouble::from(part));
+        let most_squeezed = 1.0 / scale.min_element();
+        Self { center, radius, scale, squeeze, most_squeezed, accuracy: PhantomData }
+    }
+
+    /// Returns the origin and the direction of a ray in the divided space. The direction is no longer a unit vector, so
+    /// distances along the ray are unchanged.
+    #[inline(always)]
+    pub fn squeezed(&self, ray: &Ray) -> (DVec3, DVec3) {
+        ((ray.origin - self.center) / self.scale, ray.dir / self.scale)
+    }
+
+    /// Returns a ray in the divided space, in double-double arithmetic.
+    #[inline(always)]
+    pub fn line(&self, ray: &Ray) -> SphereLine {
+        SphereLine::squeezed(ray, self.center, &self.squeeze)
+    }
+
+    /// Returns the bounding box.
+    pub fn around(&self) -> Aabb {
+        let reach = self.radius * self.scale;
+        Aabb { low: self.center - reach, high: self.center + reach }
+    }
+
+    #[inline(always)]
+    /// Returns the unit normal at a point of the surface.
+    pub fn upright(&self, at: DVec3) -> DVec3 {
+        ((at - self.center) / (self.scale * self.scale)).normalize()
+    }
+
+    /// Returns the left side of the equation at a point of the world: 0 on the ellipsoid.
+    pub fn value<N: Scalar>(&self, at: [N; 3]) -> N {
+        let part = |axis: usize| {
+            ((at[axis] - N::constant(self.center[axis])) / N::constant(self.scale[axis])).powi(2)
+        };
+        part(0) + part(1) + part(2) - N::constant(self.radius).powi(2)
+    }
+
+    /// Tells whether a point that is off by at most an error may lie on the ellipsoid.
+    pub fn touches(&self, at: DVec3, error: f64) -> bool {
+        // To first order, an error moves the distance from the centre of the divided space by at most the error times
+        // this distance's gradient.
+        let from = (at - self.center) / self.scale;
+        let gradient = (from / self.scale).length() / from.length();
+        sphere::touches(from, self.radius, error * gradient)
+    }
+}
+
+impl<A: Bounded> Ellipsoid<A> {
+    /// Returns the ellipsoid, scaled for the solver.
+    pub fn exact(center: DVec3, radius: f64, scale: DVec3) -> Self {
+        // Moving a power of two from the scale to the radius changes nothing but the size of the squares, which then do
+        // not overflow or underflow as easily.
+        let exponent = exponent_to_one(scale.min_element());
+        let scale = DVec3::from(scale.to_array().map(|part| times_power_of_two(part, exponent)));
+        Self::new(center, times_power_of_two(radius, -exponent), scale)
+    }
+
+    /// Returns a bracket of the distance of a ray's first hit.
+    #[inline(always)]
+    pub fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+        let (from, dir) = self.squeezed(ray);
+        let (inverse, error) = (1.0 / dir.dot(dir), range.origin_error / self.scale.min_element());
+        let spread = self.most_squeezed * inverse.sqrt();
+        sphere::t_bounds(from, dir, inverse, spread, self.radius, range.origin_side, error)
+    }
+
+    /// Returns a bracket of the distance of the first hit of each ray within a drift of this one.
+    #[inline(always)]
+    pub fn t_bounds_within(&self, ray: &Ray, drift: Drift) -> Bracket {
+        let (from, dir) = self.squeezed(ray);
+        let inverse = 1.0 / dir.dot(dir);
+        let spread = self.most_squeezed * inverse.sqrt();
+        let drift = Drift { origin: drift.origin * self.most_squeezed, dir: drift.dir * spread };
+        let spread = spread + sphere::spread_within(from, self.radius, drift);
+        sphere::t_bounds(from, dir, inverse, spread, self.radius, None, 0.0)
+    }
+}
