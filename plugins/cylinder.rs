@@ -30,6 +30,8 @@ struct Cylinder {
 }
 
 impl Implicit for Cylinder {
+    const IS_CUT: bool = true;
+
     fn value<N: Scalar>(&self, [x, y, z]: [N; 3]) -> N {
         let wall = x.powi(2) + z.powi(2) - N::constant(self.radius).powi(2);
         if self.is_open { wall } else { wall.max(y * (y - N::constant(self.height))) }

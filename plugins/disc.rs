@@ -25,6 +25,8 @@ struct Disc {
 }
 
 impl Implicit for Disc {
+    const IS_CUT: bool = true;
+
     fn value<N: Scalar>(&self, [_, y, _]: [N; 3]) -> N {
         y
     }

@@ -29,6 +29,9 @@ pub trait Implicit: Send + Sync {
     /// Returns the value of the formula at a point: below 0 inside the shape, above 0 outside, and 0 on the surface.
     fn value<N: Scalar>(&self, at: [N; 3]) -> N;
 
+    /// Whether more than the box cuts the surface: without, [`kept`](Self::kept) is not asked.
+    const IS_CUT: bool = false;
+
     /// Returns a number that is not below 0 where the surface is kept, and below 0 where it is cut off.
     fn kept<N: Scalar>(&self, _at: [N; 3]) -> N {
         N::constant(1.0)
@@ -111,7 +114,7 @@ impl<T: Implicit> Searched for ImplicitShape<T> {
         let line = FormulaOnRay::new(self, ray);
         let Stretch { outer, .. } = line.stretch();
         let root = method.first_root(&line, outer.clone(), line.closest, range, shortest(&outer));
-        line.distance(root.filter(|root| line.kept(*root).0), range)
+        line.distance(root.filter(|root| !T::IS_CUT || line.kept(*root).0), range)
     }
 }
 
@@ -178,6 +181,9 @@ impl<'s, T: Implicit> FormulaOnRay<'s, T> {
 
     fn first_hit(&self, range: &RayRange) -> Found {
         let stretch = self.stretch();
+        if !T::IS_CUT {
+            return taylor::first_root(self, &stretch, self.closest, range, shortest(&stretch.outer));
+        }
         let (mut range, mut all_certain) = (*range, true);
         loop {
             let found = taylor::first_root(self, &stretch, self.closest, &range, shortest(&stretch.outer));
