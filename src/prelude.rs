@@ -24,7 +24,8 @@ pub use crate::world::shape::Shape;
 pub use crate::world::texture::Texture;
 
 // What a scene selects by name: procedural shaders and profiles.
-pub use crate::numeric::formula::{Field, Formula};
+pub use crate::numeric::formula::Formula;
+pub use crate::numeric::formula::field::Field;
 pub use crate::scene::procedural::{Anchor, OnPlane, OnSphere, ProceduralShader};
 pub use crate::scene::profile::{Profile, ProfileLine};
 

@@ -1,6 +1,7 @@
 //! The types of attribute values that the scene language has.
 
-use crate::numeric::formula::{Field, Formula, HEIGHT, SPACE};
+use crate::numeric::formula::field::{Field, SPACE};
+use crate::numeric::formula::{Formula, HEIGHT};
 use crate::scene::choice::{Choice, ChoiceName, Choices};
 use crate::scene::counts::Counts;
 use crate::scene::kind::Kind;

@@ -2,7 +2,7 @@
 //! formula and its slope are bounded, which is proven by interval arithmetic on smaller and smaller parts of the box.
 
 use crate::numeric::dual::Dual;
-use crate::numeric::formula::Field;
+use crate::numeric::formula::field::Field;
 use crate::numeric::interval::Interval;
 use glam::DVec3;
 

@@ -40,10 +40,13 @@ impl Field {
     #[inline(always)]
     pub fn at<N: Scalar>(&self, at: [N; 3]) -> N {
         let variable = |index: u8| at[usize::from(index)];
-        match self.quick.stack_depth {
-            ..=SMALL_STACK => self.quick.run(variable, &mut [at[0]; SMALL_STACK]),
-            ..=MEDIUM_STACK => self.quick.run(variable, &mut [at[0]; MEDIUM_STACK]),
-            _ => self.quick.run(variable, &mut [at[0]; MAX_DEPTH]),
+        let depth = self.quick.stack_depth;
+        if depth <= SMALL_STACK {
+            self.quick.run(variable, &mut [at[0]; SMALL_STACK])
+        } else if depth <= MEDIUM_STACK {
+            self.quick.run(variable, &mut [at[0]; MEDIUM_STACK])
+        } else {
+            self.quick.run(variable, &mut [at[0]; MAX_DEPTH])
         }
     }
 }

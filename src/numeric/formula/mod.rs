@@ -1,11 +1,10 @@
 //! Formulas, as a scene or a profile plugin writes them: `2 + sin(y)`, or in x, y and z.
 
-mod field;
+pub mod field;
 mod parser;
 mod spline;
 mod step;
 
-pub use field::{Field, SPACE};
 pub use parser::FormulaFault;
 
 use crate::numeric::dual::Dual;
