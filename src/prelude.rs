@@ -4,8 +4,9 @@
 //! [`double_double`](crate::numeric::double_double).
 
 // Registration of an entity type: its table, its constructor, and the constructor's arguments.
-pub use crate::scene::counts::{List, OneOf};
+pub use crate::scene::counts::OneOf;
 pub use crate::scene::entity::{Args, Entity, Refusal};
+pub use crate::scene::list::List;
 pub use crate::scene::pparm::{Attributes, Derived, LEAST_LENGTH, Pparm, Row, Table};
 pub use crate::scene::value::{Datum, PerChannel, Value};
 pub use inventory;
