@@ -4,16 +4,21 @@
 #
 #     bash docs/adaptive.sh [rms|limits|povray]
 #
-# Without an argument, all three. TABRAY names a program other than a new build, SHARED the folder of the course's scenes
-# and of POV-Ray's, SIZE the size of the pictures of `rms` (640x480), SMALL that of `limits` (80x60).
+# Without an argument, all three. What is measured is kept in a folder, scene by scene, so that a run that was ended goes
+# on where it stopped; remove the folder to measure anew. TABRAY names a program other than a new build, SHARED the folder
+# of the course's scenes and of POV-Ray's, KEEP the folder of what is measured (target/adaptive), SIZE the size of the
+# pictures of `rms` (640x480), SMALL that of `limits` (80x60).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 what=${1:-all}
 shared=$(realpath "${SHARED:-../shared}")
+target=${CARGO_TARGET_DIR:-target}
+keep=${KEEP:-$target/adaptive}
+mkdir -p "$keep"
 if [ -z "${TABRAY:-}" ]; then
     cargo build --profile dist --locked --quiet
-    TABRAY=$(realpath "${CARGO_TARGET_DIR:-target}/dist/tabray")
+    TABRAY=$(realpath "$target/dist/tabray")
 fi
 out=$(mktemp -d)
 trap 'rm -r "$out"' EXIT
@@ -48,24 +53,56 @@ made() {
 }
 
 if [ "$what" = all ] || [ "$what" = rms ]; then
-    "$TABRAY" bench --sampling rms --size "${SIZE:-640x480}" -o docs/charts/adaptive.svg \
+    "$TABRAY" bench --sampling rms --size "${SIZE:-640x480}" --keep "$keep" -o docs/charts/adaptive.svg \
         scenes/gallery/{marbles,three-lamps,stained-glass,hall-of-mirrors}.ray "$shared"/conformance/fplane/fplane1.txt \
         "$shared"/conformance/spec/spec1.txt scenes/texplane/tiled.ray scenes/pplane/rainbow_tiles.ray 2>/dev/null
 fi
 
 if [ "$what" = all ] || [ "$what" = limits ]; then
     for seed in {1..20}; do made "$seed" >"$out/random-$seed.ray"; done
-    "$TABRAY" bench --sampling limits --size "${SMALL:-80x60}" \
-        scenes/gallery/{marbles,three-lamps,stained-glass}.ray scenes/{heart/glass,light/size,projector/fit}.ray \
+    "$TABRAY" bench --sampling limits --size "${SMALL:-80x60}" --keep "$keep" \
+        scenes/gallery/{marbles,three-lamps,stained-glass}.ray scenes/{material/transparent,light/size,projector/fit}.ray \
         scenes/texplane/tiled.ray scenes/pplane/{rainbow_tiles,tiles}.ray scenes/sphere/in-front.ray \
         "$out"/random-*.ray 2>/dev/null
 fi
 
-# POV-Ray's own error, in bytes, against 256 samples per pixel: an image of four times the width and height, whose pixels
-# have 16 samples each, reduced by ImageMagick.
+# Prints the RMS error and the largest one of a picture's bytes against a larger one, of four times the width and height;
+# both are of 8 bits.
+difference() {
+    perl -e '
+        use strict;
+        my @read = map {
+            open my $file, "<:raw", $_ or die "$_: $!";
+            local $/;
+            my $bytes = <$file>;
+            $bytes =~ s/^P6\s+(?:#.*\n\s*)*(\d+)\s+(\d+)\s+255\s// or die "$_ is no PPM of 8 bits";
+            [$1, $2, $bytes];
+        } @ARGV;
+        my ($large, $small) = @read;
+        my ($width, $height) = @$small;
+        my ($squares, $worst) = (0, 0);
+        for my $y (0 .. $height - 1) {
+            my @sums = (0) x (3 * $width);
+            for my $row (4 * $y .. 4 * $y + 3) {
+                my @bytes = unpack "C*", substr($large->[2], 12 * $width * $row, 12 * $width);
+                $sums[3 * int($_ / 12) + $_ % 3] += $bytes[$_] for 0 .. $#bytes;
+            }
+            my @bytes = unpack "C*", substr($small->[2], 3 * $width * $y, 3 * $width);
+            for (0 .. $#bytes) {
+                my $off = abs($bytes[$_] - $sums[$_] / 16);
+                $squares += $off * $off;
+                $worst = $off if $worst < $off;
+            }
+        }
+        printf "%.3f | %.1f", sqrt($squares / (3 * $width * $height)), $worst;
+    ' "$1" "$2"
+}
+
+# POV-Ray's own error, in levels, against 256 samples per pixel: an image of four times the width and height, whose pixels
+# have 16 samples each.
 if [ "$what" = all ] || [ "$what" = povray ]; then
-    if ! command -v povray >/dev/null || ! command -v convert >/dev/null || ! [ -d "$shared/peers" ]; then
-        echo "SKIPPED: POV-Ray, ImageMagick or $shared/peers is not installed"
+    if ! command -v povray >/dev/null || ! command -v perl >/dev/null || ! [ -d "$shared/peers" ]; then
+        echo "SKIPPED: POV-Ray, Perl or $shared/peers is not installed"
         exit
     fi
     echo "| scene | POV-Ray | CPU seconds | RMS error of the bytes | worst pixel |"
@@ -73,18 +110,20 @@ if [ "$what" = all ] || [ "$what" = povray ]; then
     pov() {
         local scene=$1 name=$2
         shift 2
-        (cd "$shared/peers" && povray "+I$scene.pov" "+O$out/$name.png" +FN -D -P -V -GA File_Gamma=1.0 "$@") \
+        (cd "$shared/peers" && povray "+I$scene.pov" "+O$out/$name.ppm" +FP -D -P -V -GA File_Gamma=1.0 "$@") \
             >"$out/told" 2>&1
     }
     for scene in fplane1 spec1; do
-        pov "$scene" large +W2560 +H1920 +A0.0 +AM1 +R4 -J
-        convert "$out/large.png" -scale 640x480 "$out/truth.png"
-        for options in -A "+A0.3 +AM1 +R3" "+A0.1 +AM2 +R3" "+A0.03 +AM2 +R4" "+A0.1 +AM3 +R3" "+A0.03 +AM3 +R4"; do
-            TIMEFORMAT='%U %S'
-            # shellcheck disable=SC2086
-            time=$({ time pov "$scene" small +W640 +H480 +WT1 -J $options; } 2>&1 | awk '{ print $1 + $2 }')
-            echo "| $scene | \`$options\` | $time | $("$TABRAY" diff "$out/truth.png" "$out/small.png" |
-                sed -n 's/.*largest difference \([0-9]*\) levels*, RMS \(.*\)/\2 | \1/p') |"
-        done
+        if ! [ -e "$keep/povray-$scene.md" ]; then
+            pov "$scene" large +W2560 +H1920 +A0.0 +AM1 +R4 -J
+            for options in -A "+A0.3 +AM1 +R3" "+A0.1 +AM2 +R3" "+A0.03 +AM2 +R4" "+A0.1 +AM3 +R3" "+A0.03 +AM3 +R4"; do
+                TIMEFORMAT='%U %S'
+                # shellcheck disable=SC2086
+                time=$({ time pov "$scene" small +W640 +H480 +WT1 -J $options; } 2>&1 | awk '{ print $1 + $2 }')
+                echo "| $scene | \`$options\` | $time | $(difference "$out/large.ppm" "$out/small.ppm") |"
+            done >"$out/rows"
+            mv "$out/rows" "$keep/povray-$scene.md"
+        fi
+        cat "$keep/povray-$scene.md"
     done
 fi

@@ -64,7 +64,7 @@ rows() {
             -v rendering="$rendering" '
             { if (match($0, /RMS[^0-9]*[0-9.]+/)) { text = substr($0, RSTART, RLENGTH); sub(/^[^0-9]*/, "", text); rms = text / 255 } }
             END {
-                printf "| %s | %s | %s | %s | %.2e | %s | %.1f s / %.1f s |\n", name, error, samples, promised, rms,
+                printf "| %s | %s | %s | %s | %.2e | %s | %.2f s / %.2f s |\n", name, error, samples, promised, rms,
                     rms <= error ? rms <= sqrt(promised * promised + 2.6e-6) ? "yes" : "the error asked for" : "no",
                     choosing, rendering
             }' "$out/diff"

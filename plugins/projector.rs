@@ -5,7 +5,7 @@ use super::light::{self, PointLight};
 use super::plane;
 use super::texplane::{self, Picture};
 use crate::prelude::*;
-use crate::shapes::rectangle::{FinitePlane, Window};
+use crate::shapes::rectangle::{FinitePlane, Rectangle, Window};
 
 static HEADING: Derived = Derived(|_| Datum::Word(String::new()).line("projector", " \n"));
 
@@ -74,6 +74,37 @@ where
         let texel = self.picture.enclose(at);
         let sent = per_axis(|channel| n(self.light.emissivity[channel]) * texel[channel]);
         Some(if inside.low > zero.low { sent } else { sent.map(|channel| channel.hull(zero)) })
+    }
+
+    /// The lines through the light and the rectangle are a pyramid on either side of the light. The region is clear if it
+    /// lies outside of a side of each, or before the rectangle and outside of the pyramid behind the light.
+    fn is_clear_of(&self, region: &Aabb) -> bool {
+        let (from, Rectangle { corner, dimensions, sides }) = (self.light.location, self.window.rectangle);
+        let at = |x: f64, y: f64| corner + x * dimensions.x * sides[0] + y * dimensions.y * sides[1] - from;
+        let (corners, middle) = ([at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0)], at(0.5, 0.5));
+        let [low, high] = [region.low - from, region.high - from];
+        let largest = |of: DVec3| of.abs().max_element();
+        // Far above the rounding errors of these heights. It is infinite for an unbounded region, which is not clear.
+        let slack =
+            1e-9 * (largest(from) + largest(low) + largest(high) + largest(corner) + dimensions.length());
+        // The least and the greatest height of the region above a plane through the light.
+        let heights = |normal: DVec3| {
+            let (one, other) = (normal * low, normal * high);
+            (one.min(other).element_sum() + slack, one.max(other).element_sum() - slack)
+        };
+        // Inward, unless the light lies in the rectangle's plane, where nothing is clear.
+        let inward =
+            |normal: DVec3| normal.try_normalize().map(|normal| normal * normal.dot(middle).signum());
+        let pairs = [(0, 1), (1, 2), (2, 3), (3, 0)].map(|(one, other)| corners[one].cross(corners[other]));
+        let Some(away) = inward(sides[0].cross(sides[1])) else { return false };
+        let [mut before, mut behind] =
+            [heights(away).1 < away.dot(middle) - 2.0 * slack, heights(away).0 > 2.0 * slack];
+        for normal in pairs {
+            let Some((least, most)) = inward(normal).map(heights) else { return false };
+            before |= most < -2.0 * slack;
+            behind |= least > 2.0 * slack;
+        }
+        before && behind && slack.is_finite()
     }
 
     /// The emissivity is the bound, since no texel is above 1.

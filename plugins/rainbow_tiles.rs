@@ -25,6 +25,11 @@ impl Shader for RainbowTiles {
         })
     }
 
+    #[inline]
+    fn tile(&self, at: DVec3) -> DVec2 {
+        tiles::tile(at)
+    }
+
     fn brightest(&self, material: &Material) -> Option<Look> {
         let look = rainbow::brightest(6.0, material)?;
         Some(Look { ambient: look.ambient.max(material.ambient.abs()), ..look })

@@ -63,13 +63,20 @@ impl Picture {
     /// Returns the texel at a point of the rectangle, each channel from 0 to 1.
     #[inline]
     pub fn colour(&self, at: DVec3) -> Rgb {
+        let [column, row] = self.texel(at);
+        self.texture.texel(column, row)
+    }
+
+    /// Returns the column and the row of the texel at a point of the rectangle.
+    #[inline]
+    pub fn texel(&self, at: DVec3) -> [u32; 2] {
         let across = self.rectangle.coordinates(at);
         let size = self.texture.size();
         let texel = |side: usize| match self.texel {
             None => (across[side] / self.rectangle.dimensions[side] * f64::from(size[side])) as u32,
             Some(texel) => (across[side] / texel[side]) as u32 % size[side].max(1),
         };
-        self.texture.texel(texel(0), texel(1))
+        [texel(0), texel(1)]
     }
 
     /// Encloses the texels at the points of a box in the rectangle's plane.
@@ -116,6 +123,12 @@ impl Shader for Textured {
     #[inline]
     fn diffuse(&self, material: &Material, at: DVec3) -> Rgb {
         material.diffuse * self.0.colour(at)
+    }
+
+    #[inline]
+    fn tile(&self, at: DVec3) -> DVec2 {
+        let [column, row] = self.0.texel(at);
+        DVec2::new(column.into(), row.into())
     }
 
     fn enclose<F: Precise>(&self, material: &Material, at: [Interval<F>; 3]) -> Option<LookBounds<F>> {

@@ -38,8 +38,8 @@ impl Tiles {
     /// point. The notes add the offset because a cast to an integer would make the tile at 0 twice as wide.
     #[inline]
     fn material<'m>(&'m self, own: &'m Material, at: DVec3) -> &'m Material {
-        let tile = |side: usize| ((self.sides[side].dot(at) + 100_000.0) / self.dimensions[side]).floor();
-        if (tile(0) + tile(1)).rem_euclid(2.0) == 0.0 { &self.other } else { own }
+        let tile = self.tile(at);
+        if (tile.x + tile.y).rem_euclid(2.0) == 0.0 { &self.other } else { own }
     }
 }
 
@@ -68,6 +68,12 @@ impl Shader for Tiles {
             (Some(_), Some(_)) => own,
             _ => own.hull(&other),
         })
+    }
+
+    #[inline]
+    fn tile(&self, at: DVec3) -> DVec2 {
+        let tile = |side: usize| ((self.sides[side].dot(at) + 100_000.0) / self.dimensions[side]).floor();
+        DVec2::new(tile(0), tile(1))
     }
 
     fn brightest(&self, material: &Material) -> Option<Look> {

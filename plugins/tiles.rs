@@ -30,6 +30,11 @@ impl Shader for Tiles {
         })
     }
 
+    #[inline]
+    fn tile(&self, at: DVec3) -> DVec2 {
+        tile(at)
+    }
+
     fn brightest(&self, material: &Material) -> Option<Look> {
         let Material { ambient, diffuse, specular, .. } = *material;
         (diffuse.min_element() >= 0.0).then_some(Look { ambient, diffuse, specular })
@@ -40,8 +45,15 @@ impl Shader for Tiles {
 /// twice as wide; with `floor` in place of the cast, tiles are equally wide at any distance.
 #[inline]
 pub fn is_odd(at: DVec3) -> bool {
+    let tile = tile(at);
+    (tile.x + tile.y).rem_euclid(2.0) != 0.0
+}
+
+/// Returns the tile on which a point lies.
+#[inline]
+pub fn tile(at: DVec3) -> DVec2 {
     let tile = |coordinate: f64| (2.0 * coordinate + 1000.0).floor();
-    (tile(at.x) + tile(at.z)).rem_euclid(2.0) != 0.0
+    DVec2::new(tile(at.x), tile(at.z))
 }
 
 /// Tells whether a point lies on an odd tile, where that is certain.

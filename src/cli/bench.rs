@@ -34,9 +34,12 @@ pub struct Args {
     /// The width and height of the images of --sampling in pixels; by default those of the scenes' cameras
     #[arg(long, value_name = "WxH", value_parser = size, requires = "sampling")]
     size: Option<[usize; 2]>,
-    /// Write a chart of --sampling, an .svg file
+    /// Write a chart of --sampling, an .svg or a .png file
     #[arg(short, long, value_name = "FILE", requires = "sampling")]
     output: Option<PathBuf>,
+    /// Keep what --sampling measures of each scene in this directory, and measure only what it lacks
+    #[arg(long, value_name = "DIR", requires = "sampling")]
+    keep: Option<PathBuf>,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -71,7 +74,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         }
     }
     if let Some(question) = args.sampling {
-        return sampling::run(question, models, args.size, args.output.as_deref());
+        return sampling::run(question, models, args.size, args.output.as_deref(), args.keep.as_deref());
     }
     let mut measured = Vec::new();
     for (name, model) in models {

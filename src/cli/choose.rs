@@ -23,8 +23,9 @@ use std::time::{Duration, Instant};
 /// Choose accuracy and samples for a maximum error or time
 ///
 /// Measures the choices on a part of the image, shows them with a bound on their errors that holds with a confidence of
-/// 99 %, and prints the command line to use. Takes at most half as many rays as the image that it recommends, or 1 million
-/// where that is more (with `--worst` 2 million), and never longer than 10 seconds unless it is given more.
+/// 99 %, and prints the command line to use. Takes at most half as many rays as the image with the fixed number of samples
+/// that suffices; or 1 million where that is more (with `--worst` 2 million). That is at most about 500 rays for each pixel
+/// of a tiny image. Never takes longer than 10 seconds unless it is given more.
 #[derive(clap::Args)]
 #[command(group = ArgGroup::new("limit").args(["max_error", "max_time"]).required(true))]
 pub struct Args {
@@ -115,7 +116,9 @@ impl<'e> Weighed<'e> {
 
     /// Returns the choice that meets the goal: of the scene's own accuracy, unless another one is clearly better.
     fn chosen(&self) -> Result<&'e Estimate, Failure> {
-        let accuracies = self.estimates.all.chunk_by(|one, other| one.accuracy == other.accuracy);
+        let accuracies = self.estimates.all.chunk_by(|one, other| {
+            (one.accuracy, one.most.is_some()) == (other.accuracy, other.most.is_some())
+        });
         let mut best: Option<&Estimate> = None;
         for met in accuracies.filter_map(|choices| self.goal.met(choices, self.cores)) {
             let is_better = |best: &Estimate| match self.goal {
@@ -153,11 +156,13 @@ impl<'e> Weighed<'e> {
         let head = ["accuracy", "samples", "error", "at most", "time"];
         let mut text =
             format!("  {:<9}{:>8}{:>12}{:>12}{:>12}\n", head[0], head[1], head[2], head[3], head[4]);
-        let is_chosen = |one: &Estimate| (one.accuracy, one.samples) == (chosen.accuracy, chosen.samples);
+        let is_chosen = |one: &Estimate| is_same(one, chosen);
         let mut shown: Vec<_> =
             self.estimates.all.iter().filter(|one| self.is_best(one) || is_chosen(one)).collect();
         shown.sort_by(|a, b| {
-            (a.samples, a.seconds).partial_cmp(&(b.samples, b.seconds)).unwrap_or(Ordering::Equal)
+            (a.most, a.samples, a.seconds)
+                .partial_cmp(&(b.most, b.samples, b.seconds))
+                .unwrap_or(Ordering::Equal)
         });
         for estimate in shown {
             let mark = if is_chosen(estimate) { '>' } else { ' ' };
@@ -166,8 +171,11 @@ impl<'e> Weighed<'e> {
                 |error: f64| if error.is_finite() { format!("{error:.2e}") } else { "unknown".to_owned() };
             let [measured, bound] = [error(estimate.error), error(estimate.bound)];
             let time = format!("{:.3} s", self.time(estimate));
-            let _ =
-                writeln!(text, "{mark} {name:<9}{:>8}{measured:>12}{bound:>12}{time:>12}", estimate.samples);
+            let _ = writeln!(
+                text,
+                "{mark} {name:<9}{:>8}{measured:>12}{bound:>12}{time:>12}",
+                estimate.numbers()
+            );
         }
         let how = match chosen.accuracy {
             Accuracy::Classic => "--method classic".to_owned(),
@@ -189,7 +197,7 @@ impl<'e> Weighed<'e> {
              {} render {} {how} --samples {}\n",
             program::name(),
             scene.display(),
-            chosen.samples
+            chosen.numbers()
         );
         text
     }
@@ -197,8 +205,12 @@ impl<'e> Weighed<'e> {
     /// Tells whether no other choice is clearly faster and has no larger bound.
     fn is_best(&self, one: &Estimate) -> bool {
         !self.estimates.all.iter().any(|other| {
-            let is_other = (other.accuracy, other.samples) != (one.accuracy, one.samples);
-            is_other && other.seconds <= GAIN * one.seconds && other.bound <= one.bound
+            !is_same(one, other) && other.seconds <= GAIN * one.seconds && other.bound <= one.bound
         })
     }
+}
+
+/// Tells whether two estimates are of the same choice.
+fn is_same(one: &Estimate, other: &Estimate) -> bool {
+    (one.accuracy, one.samples, one.most) == (other.accuracy, other.samples, other.most)
 }

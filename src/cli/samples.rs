@@ -19,7 +19,7 @@ pub struct Args {
     #[arg(long, value_name = "N|MIN..MAX", value_parser = samples)]
     samples: Option<Samples>,
     /// Take as many samples in each pixel as it needs for this error of its colour, such as `2` (levels of 255) or
-    /// `0.5%` (of white): an estimate, which 97 to 99.9 of 100 pixels kept in the scenes of docs/adaptive.md; 4 to 4096
+    /// `0.5%` (of white): an estimate, which 98 to 100 of 100 pixels kept in the scenes of docs/adaptive.md; 4 to 4096
     /// samples unless --samples gives other limits
     #[arg(long, value_name = "LEVELS|PERCENT%", value_parser = error, allow_negative_numbers = true)]
     max_error: Option<f64>,

@@ -4,5 +4,6 @@
 pub(crate) const MAX_DIST: f64 = 20.0;
 
 /// The number of rays that one primary ray may cost, itself included; the rays beyond are black. Without a limit,
-/// mirrors that nearly touch would reflect each other almost endlessly.
+/// mirrors that nearly touch would reflect each other almost endlessly. A ray whose hit takes as long to find as those of
+/// many other rays counts as many.
 pub(crate) const MAX_RAYS: usize = 20_000;

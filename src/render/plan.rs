@@ -11,7 +11,7 @@ use crate::geometry::bvh::Bvh;
 use crate::render::culling;
 use crate::render::features::Features;
 use crate::scene::model::Model;
-use crate::world::camera::Camera;
+use crate::world::camera::{Adaptive, Camera};
 use rayon::prelude::*;
 
 /// The number of bounded objects from which on a BVH is faster than a list.
@@ -39,6 +39,8 @@ pub struct Plan<'m> {
     pub(crate) features: Option<Features>,
     /// How deep rays are followed; `None` where no object reflects or transmits rays.
     pub(crate) depth: Option<Depth>,
+    /// The indices of the objects whose hits may take long to find, where rays continue.
+    pub(crate) costly: Vec<usize>,
     /// The maximum number of reflections and transmissions on a path.
     pub(crate) bounces: usize,
     /// The lights that are sampled, and what is left out.
@@ -88,8 +90,19 @@ impl<'m> Plan<'m> {
         let mut unmet = needs.unmet.iter().peekable();
         let mut met = objects.iter().enumerate().filter(|(index, _)| unmet.next_if_eq(&index).is_none());
         let has_glass = met.any(|(_, object)| object.material.transparency != 0.0);
+        let is_costly = |index: &usize| objects[*index].shape.may_be_costly();
+        let costly =
+            if depth.is_some() { (0..objects.len()).filter(is_costly).collect() } else { Vec::new() };
         let bounces = usize::MAX;
-        Self { model, camera, unbounded, bounded, tree, has_glass, features, depth, bounces, needs }
+        Self { model, camera, unbounded, bounded, tree, has_glass, features, depth, costly, bounces, needs }
+    }
+
+    /// Lets pixels take different numbers of samples, or all the same. The plan must be one for any ray.
+    pub(crate) fn set_adaptive(&mut self, adaptive: Option<Adaptive>) {
+        self.camera.adaptive = adaptive;
+        if adaptive.is_some() && self.features.is_none() {
+            self.features = Some(Features::new(&self.camera, &self.model.objects));
+        }
     }
 
     /// Returns how rays continue from the object of this index.

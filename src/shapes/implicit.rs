@@ -6,7 +6,8 @@
 use crate::geometry::aabb::Aabb;
 use crate::geometry::frame::{self, BLUR, Frame};
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange, Side};
-use crate::geometry::roots::taylor::{self, Found, Stretch};
+use crate::geometry::roots::stretch::Stretch;
+use crate::geometry::roots::taylor::{self, Found};
 use crate::geometry::roots::{Method, twice};
 use crate::geometry::sight::Line;
 use crate::numeric::double_double::DoubleDouble;

@@ -14,7 +14,7 @@ use crate::world::camera::Adaptive;
 use crate::world::material::Rgb;
 use crate::world::sample::{SCRAMBLE, Sampler};
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 /// Numbers of samples per pixel.
@@ -30,7 +30,7 @@ pub struct Samples {
 
 /// What numbers of samples cost, and how wrong they are. Errors are in levels of 1/255, of colours as they are shown but
 /// not rounded to levels.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Measured {
     /// The CPU time of one thread, in seconds: the least of some rounds.
     pub seconds: f64,
@@ -38,23 +38,14 @@ pub struct Measured {
     pub rays: f64,
     /// The root of the mean square of the errors of all channels.
     pub rms: f64,
-    /// The errors of the pixels, each the largest of its channels, in ascending order.
-    #[serde(skip)]
-    pub errors: Vec<f64>,
+    /// The largest error of a pixel, that of its worst channel.
+    pub worst: f64,
+    /// The fractions of the pixels whose errors are at most 1, 2, 4 and 8 levels.
+    pub within: [f64; LEVELS.len()],
 }
 
-impl Measured {
-    /// Returns the largest error of a pixel.
-    pub fn worst(&self) -> f64 {
-        self.errors.last().copied().unwrap_or(0.0)
-    }
-
-    /// Returns the fraction of pixels whose errors are no larger than this.
-    pub fn within(&self, error: f64) -> f64 {
-        let count = self.errors.partition_point(|other| *other <= error);
-        count as f64 / self.errors.len() as f64
-    }
-}
+/// The errors in levels for which [`Measured::within`] counts pixels.
+pub const LEVELS: [f64; 4] = [1.0, 2.0, 4.0, 8.0];
 
 /// Renders the colours of a model with so many samples per pixel that they count as true, on all threads.
 pub fn truth(renderer: &Renderer, model: &mut Model, samples: u32) -> Vec<Rgb> {
@@ -107,9 +98,11 @@ fn compare(colours: &[Rgb], truth: &[Rgb], rays: f64) -> Measured {
         squares += off.length_squared();
         errors.push(off.max_element());
     }
-    errors.sort_by(f64::total_cmp);
     let rms = (squares / (3 * errors.len()) as f64).sqrt();
-    Measured { seconds: f64::INFINITY, rays, rms, errors }
+    let worst = errors.iter().copied().fold(0.0, f64::max);
+    let within = LEVELS
+        .map(|level| errors.iter().filter(|error| **error <= level).count() as f64 / errors.len() as f64);
+    Measured { seconds: f64::INFINITY, rays, rms, worst, within }
 }
 
 /// Lists the tiles of an image, by their columns and rows.

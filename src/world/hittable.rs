@@ -82,6 +82,17 @@ pub trait Hittable: Send + Sync {
         None
     }
 
+    /// Tells whether the search for a ray's hit may take as long as several plain rays.
+    fn may_be_costly(&self) -> bool {
+        false
+    }
+
+    /// Returns how many plain rays take as long as the search for a ray's hit, beyond the ray itself. It depends on
+    /// the ray alone, and on the side of the shape that it leaves, if it does.
+    fn search_cost(&self, _ray: &Ray, _origin_side: Option<Side>) -> u32 {
+        0
+    }
+
     /// Returns a lower bound on the distance from a point to the shape, in world units, or `None` where the bounding
     /// box gives as good a bound.
     fn clearance(&self, _from: DVec3) -> Option<f64> {

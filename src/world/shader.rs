@@ -4,7 +4,7 @@ use crate::numeric::interval::{Float, Interval};
 use crate::numeric::scalar::Scalar;
 use crate::world::certify::Precise;
 use crate::world::material::{Look, Material, Rgb};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// The reflectivities of a surface, which may differ from point to point.
 ///
@@ -41,6 +41,14 @@ pub trait Shader: Send + Sync {
         Self: Sized,
     {
         self.uniform(material).map(LookBounds::from)
+    }
+
+    /// Returns the tile or the texel at a point, as two whole numbers that differ from those of its neighbours. Between
+    /// points in different ones, an image may need more samples than their colours tell. Two zeros everywhere are
+    /// correct.
+    #[inline]
+    fn tile(&self, _at: DVec3) -> DVec2 {
+        DVec2::ZERO
     }
 
     /// Returns the largest magnitudes of the three reflectivities over all points, with either sign. They decide how

@@ -122,3 +122,20 @@ fn a_scene_has_as_many_objects_as_it_is_asked_for() {
         }
     }
 }
+
+#[test]
+fn what_is_kept_of_samples_is_not_measured_again() {
+    let (folder, scene) = (tempfile::tempdir().expect("a folder"), "scenes/light/size.ray");
+    let table = || {
+        let kept = folder.path().to_str().expect("a name in Unicode");
+        let run = cargo_bin_cmd!("tabray")
+            .args(["bench", "--sampling", "rms", "--size", "8x6", "--keep", kept, scene])
+            .current_dir(root())
+            .assert()
+            .success();
+        String::from_utf8(run.get_output().stdout.clone()).expect("text")
+    };
+    let first = table();
+    assert!(first.contains("| size | 4..64 |"), "{first}");
+    assert_eq!(table(), first, "the times too");
+}

@@ -38,6 +38,27 @@ fn a_pixel_with_so_many_samples_has_the_colour_of_a_picture_with_as_many() {
     assert!(used[0] > used[1] && used[3] > 0, "{used:?}");
 }
 
+/// Returns the largest difference of a pixel's channels.
+fn off(one: &RgbImage, other: &RgbImage, [x, y]: [u32; 2]) -> u8 {
+    let (one, other) = (one.get_pixel(x, y).0, other.get_pixel(x, y).0);
+    one.iter().zip(other).map(|(one, other)| one.abs_diff(other)).max().expect("three channels")
+}
+
+#[test]
+fn rows_of_tiles_between_samples_are_not_missed() {
+    let name = "pplane/rainbow_tiles.ray";
+    let [right, fixed, adaptive] =
+        ["1024", "64", "4..256"].map(|samples| picture(name, &["--samples", samples]));
+    let (mut sums, mut places) = ([0; 2], 0);
+    for (x, y, _) in right.enumerate_pixels() {
+        let errors = [&fixed, &adaptive].map(|picture| off(picture, &right, [x, y]));
+        sums = [sums[0] + u32::from(errors[0]), sums[1] + u32::from(errors[1])];
+        places += u32::from(errors[1] > 16);
+    }
+    assert_eq!(places, 0, "pixels that are more than 16 levels off");
+    assert!(sums[1] < 2 * sums[0], "{sums:?}");
+}
+
 #[test]
 fn samples_are_counted_and_shown() {
     let folder = folder();

@@ -4,12 +4,13 @@ use crate::cli::failure::{Failure, print};
 use crate::cli::output;
 use crate::render::renderer::Renderer;
 use crate::scene::model::Model;
-use crate::text::short;
+use crate::text::{self, short};
 use crate::tools::chart::{self, Chart, Family, Machine, Panel, Point, Subject, Times, Wrong};
-use crate::tools::sampling::{self, Measured, Samples};
+use crate::tools::sampling::{self, LEVELS, Measured, Samples};
 use crate::world::camera::Adaptive;
 use crate::world::sample::Sampler;
 use std::fmt::Write;
+use std::fs;
 use std::path::Path;
 
 /// The number of samples per pixel of the images that count as true.
@@ -21,6 +22,9 @@ const ROUNDS: usize = 2;
 
 /// The part of the pixels for which `--max-error` is meant to hold.
 const PROMISED: f64 = 0.99;
+
+/// The number of the levels that `--max-error` is asked for, the first ones of [`LEVELS`].
+const ASKED: usize = 3;
 
 /// What is compared.
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -37,6 +41,7 @@ pub fn run(
     models: Vec<(String, Model)>,
     size: Option<[usize; 2]>,
     file: Option<&Path>,
+    keep: Option<&Path>,
 ) -> Result<(), Failure> {
     let renderer = Renderer::new(0)?;
     let mut chart = Chart {
@@ -62,9 +67,20 @@ pub fn run(
         let stem = Path::new(&path).file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let all = choices(question);
         let truth = if question == Question::Rms { TRUTH } else { TRUTH_OF_LIMITS };
-        let right = sampling::truth(&renderer, &mut model, truth);
-        let rounds = if question == Question::Rms { ROUNDS } else { 1 };
-        let measured = sampling::measure(&mut model, &all, &right, rounds);
+        let [width, height] = model.camera.value.pixels;
+        let kept = keep.map(|folder| folder.join(format!("{stem}-{width}x{height}-{truth}.json")));
+        let measured = match kept.as_deref().and_then(|path| read(path, all.len())) {
+            Some(measured) => measured,
+            None => {
+                let right = sampling::truth(&renderer, &mut model, truth);
+                let rounds = if question == Question::Rms { ROUNDS } else { 1 };
+                let measured = sampling::measure(&mut model, &all, &right, rounds);
+                if let Some(path) = kept {
+                    output::replace(&path, text::json_in_lines(&measured).as_bytes())?;
+                }
+                measured
+            }
+        };
         let all: Vec<_> = all.into_iter().zip(measured).collect();
         print(&match question {
             Question::Rms => errors(&stem, &all),
@@ -78,7 +94,14 @@ pub fn run(
         });
     }
     let Some(file) = file else { return Ok(()) };
-    output::replace(file, chart::svg(&chart)?.as_bytes())
+    let is_png = file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
+    output::replace(file, &if is_png { chart::png(&chart)? } else { chart::svg(&chart)?.into_bytes() })
+}
+
+/// Reads what an earlier run has measured of so many choices.
+fn read(path: &Path, count: usize) -> Option<Vec<Measured>> {
+    let measured: Vec<_> = serde_json::from_slice(&fs::read(path).ok()?).ok()?;
+    (measured.len() == count).then_some(measured)
 }
 
 fn choices(question: Question) -> Vec<Samples> {
@@ -95,11 +118,11 @@ fn choices(question: Question) -> Vec<Samples> {
         Question::Rms => {
             all.extend([4, 16, 64].map(fixed(Sampler::Random)));
             all.extend(
-                [(1, 16), (2, 16), (2, 64), (4, 16), (4, 64), (4, 256), (8, 512)]
+                [(1, 16), (2, 16), (2, 64), (4, 16), (4, 64), (4, 256), (4, 1024)]
                     .map(|(least, most)| adaptive(least, most, None)),
             );
         }
-        Question::Limits => all.extend([1.0, 2.0, 4.0].map(|levels| adaptive(4, 4096, Some(levels)))),
+        Question::Limits => all.extend(LEVELS[..ASKED].iter().map(|levels| adaptive(4, 4096, Some(*levels)))),
     }
     all
 }
@@ -125,7 +148,7 @@ fn errors(scene: &str, all: &[(Samples, Measured)]) -> String {
         let _ = writeln!(
             text,
             "| {scene} | {name} | {seconds:.3} | {rays:.2} | {rms:.3} | {:.1} | {samples} | {time} |",
-            measured.worst()
+            measured.worst
         );
     }
     text
@@ -146,23 +169,22 @@ fn equal(fixed: &[&(Samples, Measured)], rms: f64) -> Option<(f64, f64)> {
 /// Returns the rows of a scene: each limit, whether it was kept, and the least fixed number of samples that keeps it.
 fn limits(scene: &str, all: &[(Samples, Measured)]) -> String {
     let mut text = String::new();
-    for (choice, measured) in all {
-        let Some(error) = choice.adaptive.and_then(|adaptive| adaptive.error) else { continue };
-        let levels = 255.0 * error;
-        let (within, Measured { seconds, rays, .. }) = (measured.within(levels), measured);
+    let limited = all.iter().filter(|(choice, _)| choice.adaptive.is_some());
+    for ((index, levels), (_, measured)) in LEVELS.iter().enumerate().zip(limited) {
+        let Measured { seconds, rays, worst, .. } = measured;
+        let within = measured.within[index];
         let kept = if within >= PROMISED { "yes" } else { "no" };
-        let fixed = all.iter().find(|(choice, fixed)| {
-            choice.adaptive.is_none() && fixed.within(levels) >= within.max(PROMISED)
-        });
+        let fixed = all
+            .iter()
+            .find(|(choice, fixed)| choice.adaptive.is_none() && fixed.within[index] >= within.max(PROMISED));
         let (samples, time) = fixed.map_or(("more".to_owned(), "-".to_owned()), |(choice, fixed)| {
             (choice.samples.to_string(), format!("{:.1} x", fixed.seconds / seconds))
         });
         let _ = writeln!(
             text,
-            "| {scene} | {} | {seconds:.3} | {rays:.1} | {:.2} % | {:.1} | {kept} | {samples} | {time} |",
-            short(levels),
+            "| {scene} | {} | {seconds:.3} | {rays:.1} | {:.2} % | {worst:.1} | {kept} | {samples} | {time} |",
+            short(*levels),
             (1e4 * within).floor() / 100.0,
-            measured.worst()
         );
     }
     text
@@ -180,7 +202,7 @@ fn point((choice, measured): &(Samples, Measured), pixels: usize) -> Point {
         is_default: false,
         times: Times { least: seconds, median: seconds, rounds: ROUNDS, waited: 0.0 },
         error: measured.rms / 255.0,
-        worst: measured.worst() / 255.0,
+        worst: measured.worst / 255.0,
         wrong: Wrong::default(),
         visible: None,
         changed: None,

@@ -12,6 +12,7 @@ pub mod newton;
 mod refiner;
 mod samples;
 mod steps;
+pub mod stretch;
 pub mod taylor;
 mod tracing;
 mod turning;

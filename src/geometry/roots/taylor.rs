@@ -7,9 +7,8 @@
 //! no root is stepped over: D. P. Mitchell, "Robust ray intersection with interval arithmetic" (1990), whose bounds are
 //! of the first order and shrink more slowly where a ray grazes.
 
-use crate::geometry::frame::BLUR;
 use crate::geometry::ray::{RayRange, Side};
-use crate::geometry::roots::{newton, twice};
+use crate::geometry::roots::{newton, stretch::Stretch, twice};
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
 use crate::numeric::scalar::Scalar;
@@ -35,46 +34,6 @@ pub trait FunctionOnLine {
     fn undecided(&self, piece: Interval, origin_side: Option<Side>) -> Option<f64> {
         let hidden = self.at(Interval::constant(piece.middle())).width();
         twice::first_root(|t| self.at(t), piece, origin_side, hidden)
-    }
-}
-
-/// The part of a line that is searched.
-#[derive(Clone, Debug)]
-pub struct Stretch {
-    /// Contains the part between the ends, for the line and for all lines that it may have been rounded from.
-    pub outer: Range<f64>,
-    /// Certainly lies between the ends, for all of these lines.
-    pub inner: Range<f64>,
-}
-
-impl From<Range<f64>> for Stretch {
-    fn from(span: Range<f64>) -> Self {
-        Self { outer: span.clone(), inner: span }
-    }
-}
-
-impl Stretch {
-    /// Cuts off what lies beyond two heights, where a line's height at `t` is `start + t dir`. Rounding may have moved
-    /// `start` by `blur` and `dir` by [`BLUR`], and the search goes no farther than `reach` from t = 0, all in world
-    /// units.
-    pub fn cut(&mut self, (start, dir): (f64, f64), [low, high]: [f64; 2], blur: f64, reach: f64) {
-        // The line that this one was rounded from may be parallel to the ends.
-        if dir.abs() <= 2.0 * BLUR {
-            let moved = blur + 3.0 * BLUR * reach;
-            if start < low - moved || start > high + moved {
-                self.outer.end = f64::NEG_INFINITY;
-            }
-            if start < low + moved || start > high - moved {
-                self.inner.end = f64::NEG_INFINITY;
-            }
-            return;
-        }
-        let (one, other) = ((low - start) / dir, (high - start) / dir);
-        // The true direction is more than half of the rounded one, and the division itself rounds by less than BLUR.
-        let margin = |t: f64| 2.0 * (blur + BLUR * t.abs()) / dir.abs() + BLUR * t.abs();
-        let (first, last) = (one.min(other), one.max(other));
-        self.outer = self.outer.start.max(first - margin(first))..self.outer.end.min(last + margin(last));
-        self.inner = self.inner.start.max(first + margin(first))..self.inner.end.min(last - margin(last));
     }
 }
 
@@ -118,11 +77,23 @@ pub fn first_root(
     range: &RayRange,
     shortest: f64,
 ) -> Found {
+    first_root_within(line, stretch, base, range, shortest, &mut MAX_PIECES.clone())
+}
+
+/// Returns what [`first_root`] does, and takes the pieces that are judged from `pieces`: none are cut after the last.
+pub fn first_root_within(
+    line: &impl FunctionOnLine,
+    stretch: &Stretch,
+    base: f64,
+    range: &RayRange,
+    shortest: f64,
+    pieces: &mut usize,
+) -> Found {
     let Range { start, end } = stretch.outer;
     if !(start <= end && start.is_finite() && end.is_finite()) {
         return Found { root: None, is_certain: true };
     }
-    let mut search = Search { line, start, base, range, shortest, is_certain: true };
+    let mut search = Search { line, start, base, range, shortest, pieces, is_certain: true };
     // The line may have reached the ends outside of `inner`, and is certainly between them inside.
     let inner = stretch.inner.start.clamp(start, end)..stretch.inner.end.clamp(start, end);
     let root = if inner.start < inner.end || start == end {
@@ -142,6 +113,7 @@ struct Search<'l, L> {
     range: &'l RayRange,
     /// Pieces of this length are not cut.
     shortest: f64,
+    pieces: &'l mut usize,
     is_certain: bool,
 }
 
@@ -160,7 +132,7 @@ impl<L: FunctionOnLine> Search<'_, L> {
         let RayRange { near, far, .. } = *self.range;
         let mut waiting = [(0.0, 0.0); STACK_SIZE];
         waiting[0] = (start, end);
-        let (mut count, mut judged) = (1, 0);
+        let mut count = 1;
         while count > 0 {
             count -= 1;
             let (low, high) = waiting[count];
@@ -171,8 +143,8 @@ impl<L: FunctionOnLine> Search<'_, L> {
             if self.base + low >= far {
                 return None;
             }
-            judged += 1;
-            let may_cut = judged < MAX_PIECES && count + 2 <= STACK_SIZE && high - low > self.shortest;
+            *self.pieces = self.pieces.saturating_sub(1);
+            let may_cut = *self.pieces > 0 && count + 2 <= STACK_SIZE && high - low > self.shortest;
             let judgement = if may_cut { self.judge(low, high) } else { self.judge_uncut(low, high) };
             match judgement {
                 Judgement::Free => {}

@@ -1,15 +1,19 @@
 //! Pixels that take more samples where their colour is less certain.
 //!
 //! A pixel first takes [`Camera::samples`] samples, and then twice as many again and again, by the sampler's sequence,
-//! until [`Estimate::error`] is small enough. That depends on the pixel's own samples and on the first ones of the eight
-//! pixels around it, and so not on tiles, threads, or the part of the image that is rendered. A pixel that ends with N
-//! samples has the colour that it has in an image of N samples per pixel.
+//! until [`Estimate::error`] is small enough. That depends on the pixel's own samples and on probes at the corners of the
+//! pixel and of the eight around it, and so not on tiles, threads, or the part of the image that is rendered. A pixel that
+//! ends with N samples has the colour that it has in an image of N samples per pixel.
+//!
+//! Probes add nothing to colours. They are where samples never are: a straight edge that crosses a pixel separates its
+//! corners, and the shadow of one that crosses a light separates points of the light's rim, to each of which the rays of
+//! some probe go.
 //!
 //! [`Camera::samples`]: crate::world::camera::Camera::samples
 
 use super::arrays::VectorList;
 use super::context::Tracer;
-use super::estimate::{AdaptiveScratch, Estimate, First, Found, Wanted};
+use super::estimate::{AdaptiveScratch, Around, Estimate, Found, Wanted};
 use super::ray_group::RayGroup;
 use super::sampled;
 use super::scratch::{PrimaryScratch, Scratch};
@@ -23,9 +27,26 @@ use std::mem::take;
 /// How many estimated errors the error of a pixel may be, where it is limited.
 const CONFIDENCE: f64 = 2.0;
 
+/// How many times its standard error the mean of a pixel's samples may be off, where its error is limited, for each
+/// of [`CONFIDENCE`]: few blocks of samples tell little of rare ones.
+const DOUBT: f64 = 1.5;
+
 /// The estimated error, where 1 is white, up to which one sample would be enough where no error is limited. It grows with
 /// the root of the number of samples: so the samples go where each lowers the mean square error of the image most.
 const BALANCED: f64 = 0.25 / 255.0;
+
+/// The number of samples that a pixel takes at least if anything crosses it, even where all that is known has one colour.
+const CROSSED_SAMPLES: u32 = 16;
+
+/// The number of corners of a pixel and of those around it, along each axis.
+const AROUND: usize = 4;
+
+/// Returns which point of the rim of lights the probe at a corner goes to: one of 16, all of which are around each pixel.
+/// Those at the corners of a pixel are in different quarters.
+fn rim_point(column: usize, row: usize) -> u32 {
+    let quarter = |column: usize, row: usize| (2 * (row & 1) + ((row + column) & 1)) as u32;
+    4 * quarter(column, row) + quarter(column >> 1, row >> 1)
+}
 
 /// Returns the estimated error at which a pixel takes no more samples, where 1 is white.
 fn most_error(adaptive: Adaptive, samples: u32) -> f64 {
@@ -45,10 +66,10 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     ) {
         let PrimaryScratch { group, seen, colours, adaptive: scratch } = primary;
         let mut colours = colours.resized(pixels.len());
-        let AdaptiveScratch { firsts, grid, estimates, active, batch } = scratch;
+        let AdaptiveScratch { probes, grid, estimates, active, batch } = scratch;
         self.scratch.trails.is_on = true;
         let mut rays = Rays { tracer: self, group, seen, batch: take(batch) };
-        rays.begin(pixels, firsts, grid, estimates);
+        rays.begin(pixels, probes, grid, estimates);
         active.clear();
         active.extend(0..pixels.len() as u32);
         let mut goal = rays.tracer.plan.camera.samples;
@@ -61,7 +82,7 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             };
             if is_unbounded {
                 // What a sample may cost depends on those before it.
-                for index in 1..goal {
+                for index in 0..goal {
                     for of in &*active {
                         let Estimate { count, missing, .. } = estimates[*of as usize];
                         if count <= index {
@@ -84,13 +105,15 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
                 rays.trace(&mut |of, found| estimates[of].add(found, goal));
             }
             let limit = most_error(adaptive, goal);
+            let doubt = if adaptive.error.is_some() { DOUBT } else { 1.0 };
             active.retain(|of| {
                 let (estimate, pixel) = (&mut estimates[*of as usize], pixels[*of as usize]);
                 // More samples do not help a pixel that is off by an unknown amount.
                 let goes_on = goal < adaptive.most
                     && estimate.missing != f64::INFINITY
-                    && (estimate.error(gain) > limit
-                        || goal < FEATURE_SAMPLES && rays.is_feature(pixel, estimate.distance));
+                    && (estimate.error(gain, doubt) > limit
+                        || goal < CROSSED_SAMPLES && estimate.is_crossed()
+                        || goal < FEATURE_SAMPLES && rays.is_feature(pixel, estimate.distance()));
                 if goes_on {
                     estimate.join();
                 }
@@ -117,47 +140,74 @@ struct Rays<'r, 'm, 'w, W> {
 }
 
 impl<W: TraceObserver> Rays<'_, '_, '_, W> {
-    /// Takes the first samples of pixels and of those around them, and starts the pixels' estimates.
+    /// Takes the probes at the corners of pixels and of those around them, and starts the pixels' estimates.
     fn begin(
         &mut self,
         pixels: &[[usize; 2]],
-        firsts: &mut Vec<First>,
-        grid: &mut Vec<u32>,
+        probes: &mut Vec<[usize; 2]>,
+        grid: &mut Vec<Around>,
         estimates: &mut Vec<Estimate>,
     ) {
         let [left, low] = [0, 1].map(|axis| pixels.iter().map(|pixel| pixel[axis]).min().unwrap_or(0));
         let [right, high] = [0, 1].map(|axis| pixels.iter().map(|pixel| pixel[axis]).max().unwrap_or(0));
-        // The grid has a margin of one pixel, which may lie outside of the image: nothing else shows what lies there.
-        let wide = right - left + 3;
+        // Corners are counted from one below and to the left of the image: nothing else shows what lies there.
+        let wide = right - left + AROUND;
         let place = |[x, y]: [usize; 2]| (y - low) * wide + x - left;
-        // From the place in the grid at the lower left of a pixel.
-        let around = |[x, y]: [usize; 2]| (y..y + 3).flat_map(move |y| (x..x + 3).map(move |x| [x, y]));
         grid.clear();
-        grid.resize(wide * (high - low + 3), 0);
-        firsts.clear();
-        for pixel in pixels {
-            for pixel in around(*pixel) {
-                grid[place(pixel)] = 1;
-            }
+        grid.resize(wide * (high - low + AROUND), Around::default());
+        probes.clear();
+        let mut is_wanted = vec![false; grid.len()];
+        for [x, y] in pixels {
+            (*y..y + AROUND).for_each(|y| is_wanted[place([*x, y])..][..AROUND].fill(true));
         }
         // In rows, so that neighbours are traced together however the pixels are ordered.
-        for (index, wanted) in grid.iter_mut().enumerate().filter(|(_, wanted)| **wanted != 0) {
-            let pixel = [(index % wide + left) as f64 - 1.0, (index / wide + low) as f64 - 1.0];
-            firsts.push(First { pixel, found: Found::default() });
-            *wanted = firsts.len() as u32;
+        for (index, _) in is_wanted.iter().enumerate().filter(|(_, is_wanted)| **is_wanted) {
+            probes.push([index % wide + left, index / wide + low]);
         }
-        for of in 0..firsts.len() {
-            let wanted = Wanted { of: of as u32, pixel: firsts[of].pixel, index: 0, ray_budget: None };
-            self.want(wanted, &mut |of, found| firsts[of].found = *found);
+        for corners in probes.chunks(PACKET_SIZE) {
+            self.probe(corners, |corner, found| grid[place(corner)] = Around::from(&found));
         }
-        self.trace(&mut |of, found| firsts[of].found = *found);
-        let first = |pixel| &firsts[grid[place(pixel)] as usize - 1].found;
+        // Each place gets what is found there and at the next, and then what there and at the next two have: so it has
+        // what is found at four of a row, and then in four rows.
+        for step in [1, 2, wide, 2 * wide] {
+            for from in 0..grid.len() - step {
+                let next = grid[from + step];
+                grid[from].include(&next);
+            }
+        }
         estimates.clear();
-        estimates.extend(pixels.iter().map(|pixel| {
-            let mut estimate = Estimate::new(first(pixel.map(|side| side + 1)));
-            around(*pixel).for_each(|other| estimate.compare(first(other)));
-            estimate
-        }));
+        estimates.extend(pixels.iter().map(|pixel| Estimate::new(grid[place(*pixel)])));
+    }
+
+    /// Traces probes at corners, and reports what each found.
+    fn probe(&mut self, corners: &[[usize; 2]], mut found: impl FnMut([usize; 2], Found)) {
+        let Self { tracer, group, seen, .. } = self;
+        let (len, camera) = (corners.len(), &tracer.plan.camera);
+        let is_unbounded = sampled::is_unbounded(tracer.plan);
+        let Scratch { places: [x, y], samples, are_probes, .. } = &mut *tracer.scratch;
+        samples.clear();
+        for (lane, [column, row]) in corners.iter().enumerate() {
+            (x[lane], y[lane]) = (*column as f64 - 1.5, *row as f64 - 1.5);
+            samples.push(Sample { sampler: camera.sampler, index: 0, pixel: rim_point(*column, *row) });
+        }
+        *are_probes = true;
+        group.look(tracer.cpu, camera, tracer.plan.depth.as_ref(), &mut tracer.scratch.places, len);
+        if is_unbounded {
+            group.ray_budget.fill(sampled::REST);
+        }
+        tracer.colours(group, seen);
+        tracer.scratch.are_probes = false;
+        for (lane, corner) in corners.iter().enumerate() {
+            found(*corner, self.found(lane));
+        }
+    }
+
+    /// Returns what the ray of a lane found.
+    #[inline]
+    fn found(&self, lane: usize) -> Found {
+        let trails = &self.tracer.scratch.trails;
+        let (mark, distance) = (trails.marks[lane], trails.distances[lane]);
+        Found { colour: self.seen.get(lane), missing: self.tracer.missing(lane), mark, distance }
     }
 
     /// Tells whether the bounds of a small object, no farther than a distance, reach into a pixel.
@@ -202,12 +252,9 @@ impl<W: TraceObserver> Rays<'_, '_, '_, W> {
             *budget = wanted.ray_budget.unwrap_or(*budget);
         }
         tracer.colours(group, seen);
-        for (lane, wanted) in batch.iter().enumerate() {
-            let trails = &tracer.scratch.trails;
-            let (mark, distance) = (trails.marks[lane], trails.distances[lane]);
-            let (colour, missing) = (seen.get(lane), tracer.missing(lane));
-            found(wanted.of as usize, &Found { colour, missing, mark, distance });
+        for lane in 0..len {
+            found(self.batch[lane].of as usize, &self.found(lane));
         }
-        batch.clear();
+        self.batch.clear();
     }
 }

@@ -26,6 +26,9 @@ impl<'m, W: TraceObserver> Tracer<'m, '_, W> {
         if hits.begin(self.cpu, &mut group.ray_budget, count, t_max) && t_max.is_none() {
             self.miss_beyond(group, hits);
         }
+        let mut ray_budget = take(&mut group.ray_budget);
+        self.charge_searches(group.rays(), group.left(), 0..group.len, &mut ray_budget);
+        group.ray_budget = ray_budget;
         if W::SEES {
             if is_over {
                 self.observer.see(Event::Dropped(Reason::TooMany));

@@ -15,6 +15,9 @@ use crate::world::material::Rgb;
 use crate::world::packets::light::PacketLight;
 use crate::world::sample;
 
+/// The number of points on the rim of a light that probes go to.
+const RIM_POINTS: f64 = 16.0;
+
 impl<W: TraceObserver> Tracer<'_, '_, W> {
     /// Adds the contributions of all lights.
     pub(super) fn illuminate(&mut self, group: &mut RayGroup, surface: &Surface, colours: &mut VectorList) {
@@ -137,7 +140,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         light::shine(cpu, &lit, material.shininess, colours.resized(count));
         if self.scratch.trails.is_on {
             let is_shiny = material.shininess != 0.0;
-            self.scratch.trails.see_light(&group.camera[..group.len], index, &lit, is_shiny);
+            let has_tints = light.uniform().is_some();
+            self.scratch.trails.see_light(&group.camera[..group.len], index, &lit, [is_shiny, has_tints]);
         }
         if W::SEES {
             let mut alone = VectorList::default();
@@ -167,7 +171,12 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         samples.clear();
         samples.extend(group.camera[..count].iter().map(|camera| self.scratch.samples[usize::from(*camera)]));
         let (x, y) = (resized(x, count), resized(y, count));
-        sample::on_lights(self.cpu, samples, index, x, y);
+        if self.scratch.are_probes {
+            x.fill(1.0);
+            y.iter_mut().zip(samples).for_each(|(turn, sample)| *turn = f64::from(sample.pixel) / RIM_POINTS);
+        } else {
+            sample::on_lights(self.cpu, samples, index, x, y);
+        }
         for lane in 0..count {
             let Some(axis) = (middle - surface.points.get(lane)).try_normalize() else { continue };
             let (across, up) = axis.any_orthonormal_pair();

@@ -13,13 +13,16 @@ const BLOCKS: usize = 8;
 const UNSEEN: f64 = 0.25;
 const UNSEEN_WITHIN: f64 = 0.06;
 
+/// How many estimated errors a colour beyond white or black may be off: so much may bring back one that cannot be shown.
+const FAR: f64 = 4.0;
+
 /// The scratch space of pixels that take more samples where that is needed.
 #[derive(Default)]
 pub(super) struct AdaptiveScratch {
-    /// The first samples of the pixels and of those around them.
-    pub firsts: Vec<First>,
-    /// For each place of a grid around the pixels, the index of its sample in `firsts` plus 1; 0 where there is none.
-    pub grid: Vec<u32>,
+    /// The corners that are probed, by column and row.
+    pub probes: Vec<[usize; 2]>,
+    /// What is found at each place of a grid of corners around the pixels.
+    pub grid: Vec<Around>,
     /// The pixels' estimates.
     pub estimates: Vec<Estimate>,
     /// The indices of the pixels that take more samples.
@@ -31,7 +34,7 @@ pub(super) struct AdaptiveScratch {
 impl AdaptiveScratch {
     /// Returns the number of samples of the first pixel, and the estimated error of its colour.
     pub fn first(&self, gain: f64) -> (u32, f64) {
-        self.estimates.first().map_or((0, 0.0), |estimate| (estimate.count, estimate.error(gain)))
+        self.estimates.first().map_or((0, 0.0), |estimate| (estimate.count, estimate.error(gain, 1.0)))
     }
 }
 
@@ -60,11 +63,40 @@ pub(super) struct Found {
     pub distance: f64,
 }
 
-/// The first sample of a pixel.
-#[derive(Clone, Copy, Default)]
-pub(super) struct First {
-    pub pixel: [f64; 2],
-    pub found: Found,
+/// What rays found together.
+#[derive(Clone, Copy)]
+pub(super) struct Around {
+    /// The least and the greatest colour.
+    low: Rgb,
+    high: Rgb,
+    /// What the first of them met, and whether another met anything else.
+    mark: u64,
+    is_crossed: bool,
+    /// The distance of the farthest first hit, in world units.
+    distance: f64,
+}
+
+impl Default for Around {
+    fn default() -> Self {
+        Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY, mark: 0, is_crossed: false, distance: 0.0 }
+    }
+}
+
+impl From<&Found> for Around {
+    #[inline]
+    fn from(&Found { colour, mark, distance, .. }: &Found) -> Self {
+        Self { low: colour, high: colour, mark, is_crossed: false, distance }
+    }
+}
+
+impl Around {
+    /// Includes what others found.
+    #[inline]
+    pub fn include(&mut self, other: &Self) {
+        (self.low, self.high) = (self.low.min(other.low), self.high.max(other.high));
+        self.is_crossed |= other.is_crossed | (other.mark != self.mark);
+        self.distance = self.distance.max(other.distance);
+    }
 }
 
 /// What is known of a pixel's colour.
@@ -79,43 +111,36 @@ pub(super) struct Estimate {
     blocks: [Rgb; BLOCKS],
     /// The sum of the bounds on the light that they lack.
     pub missing: f64,
-    /// The least and the greatest colour of its samples and of the first ones of the pixels around it.
-    low: Rgb,
-    high: Rgb,
-    /// What the first sample met, and whether another one here or around met anything else.
-    pub mark: u64,
-    is_crossed: bool,
-    /// The distance of the farthest first hit, in world units.
-    pub distance: f64,
+    /// What its samples and the probes around it found.
+    around: Around,
 }
 
 impl Estimate {
-    /// Starts with the first sample.
+    /// Starts with what the probes around the pixel found.
     #[inline]
-    pub fn new(found: &Found) -> Self {
-        let &Found { colour, missing, mark, distance } = found;
-        let mut blocks = [Rgb::ZERO; BLOCKS];
-        blocks[0] = colour;
-        let (low, high) = (colour, colour);
-        Self { count: 1, sum: colour, blocks, missing, low, high, mark, is_crossed: false, distance }
+    pub fn new(around: Around) -> Self {
+        Self { around, ..Self::default() }
     }
 
-    /// Includes what was found here or around.
-    #[inline]
-    pub fn compare(&mut self, found: &Found) {
-        (self.low, self.high) = (self.low.min(found.colour), self.high.max(found.colour));
-        self.is_crossed |= found.mark != self.mark;
+    /// Tells whether rays here or around met different things on their paths.
+    pub fn is_crossed(&self) -> bool {
+        self.around.is_crossed
+    }
+
+    /// Returns the distance of the farthest first hit here or around, in world units.
+    pub fn distance(&self) -> f64 {
+        self.around.distance
     }
 
     /// Adds the next sample of `goal`, a power of two.
     #[inline]
     pub fn add(&mut self, found: &Found, goal: u32) {
-        self.compare(found);
+        self.around.include(&Around::from(found));
         self.sum += found.colour;
         self.missing += found.missing;
-        self.distance = self.distance.max(found.distance);
-        let long = goal.div_ceil(BLOCKS as u32);
-        self.blocks[(self.count / long) as usize] += found.colour;
+        // Each block has a power of two of them.
+        let shift = goal.trailing_zeros().saturating_sub(BLOCKS.trailing_zeros());
+        self.blocks[(self.count >> shift) as usize & (BLOCKS - 1)] += found.colour;
         self.count += 1;
     }
 
@@ -139,11 +164,11 @@ impl Estimate {
 
     /// Estimates the error of the colour as it is shown, the largest of its channels, where 1 is white: the standard
     /// error of the mean, as the means of its blocks have it, and what the contrast around leaves open. `gain` is the factor
-    /// of all colours.
+    /// of all colours, and `doubt` that of the standard error.
     ///
     /// Sobol points are spread more evenly than independent ones, so that blocks differ more than their number says.
     #[inline]
-    pub fn error(&self, gain: f64) -> f64 {
+    pub fn error(&self, gain: f64, doubt: f64) -> f64 {
         let blocks = (self.count as usize).min(BLOCKS);
         let (mean, long) = (self.colour(), f64::from(self.count) / blocks as f64);
         let squares: DVec3 = self.blocks[..blocks]
@@ -157,12 +182,17 @@ impl Estimate {
             1 => DVec3::ZERO,
             _ => squares.map(f64::sqrt) / ((blocks * (blocks - 1)) as f64).sqrt(),
         };
-        let unseen = if self.is_crossed { UNSEEN } else { UNSEEN_WITHIN };
-        let error = spread + (self.high - self.low) * (unseen / f64::from(self.count));
+        let unseen = if self.around.is_crossed { UNSEEN } else { UNSEEN_WITHIN };
+        let error = doubt * spread + (self.around.high - self.around.low) * (unseen / f64::from(self.count));
         let (mean, error) = (gain * mean, gain * error);
-        if mean.max_element() + error.max_element() <= 1.0 && (mean - error).min_element() >= 0.0 {
+        if mean.max_element() + FAR * error.max_element() <= 1.0 && (mean - FAR * error).min_element() >= 0.0
+        {
             return error.max_element();
         }
-        (shown(mean + error) - shown(mean)).max(shown(mean) - shown(mean - error)).max_element()
+        let off = |times: f64| {
+            let (up, down) = (shown(mean + times * error), shown(mean - times * error));
+            (up - shown(mean)).max(shown(mean) - down).max_element() / times
+        };
+        off(1.0).max(off(FAR))
     }
 }

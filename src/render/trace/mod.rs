@@ -7,6 +7,7 @@
 
 mod adaptive;
 mod arrays;
+mod charge;
 mod closest_hit;
 mod context;
 mod direct_light;

@@ -18,6 +18,9 @@ pub(crate) struct Scratch {
     pub(super) places: [Vec<f64>; 2],
     /// The samples of the current primary rays, where pixels have more than one.
     pub(super) samples: Vec<Sample>,
+    /// Whether the current primary rays are probes, whose rays go to the rims of lights: to the point whose number is
+    /// the pixel of their sample.
+    pub(super) are_probes: bool,
     /// What the current primary rays meet on their paths.
     pub(super) trails: Trails,
     /// The unused scratch space of packets, one for each level of recursion, the outermost one last.

@@ -87,7 +87,8 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         };
         if self.scratch.trails.is_on {
             let nearest = (self.depth == 0).then_some(distances);
-            self.scratch.trails.meet(&group.camera[..group.len], index, nearest);
+            let shader = surface.look.is_none().then_some((&**shader, points));
+            self.scratch.trails.meet(cpu, &group.camera[..group.len], index, nearest, shader);
         }
         let goes_on = !self.plan.needs.lights.is_empty() || surface.is_mirror || material.transparency != 0.0;
         surface.errors = if goes_on {

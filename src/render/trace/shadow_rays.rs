@@ -57,9 +57,11 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
             return;
         }
         self.observer.count(Count::Rays(RayKind::Shadow, len));
+        let rays =
+            RayPacket { origin: surface.points.view(count), dir: paths.toward.view(count), origin_error };
+        let cast = (0..group.len).filter(|lane| t_max[*lane] > 0.0);
+        self.charge_searches(rays, Some((surface.index, &surface.sides)), cast, &mut group.ray_budget);
         if 2 * len > group.len {
-            let rays =
-                RayPacket { origin: surface.points.view(count), dir: paths.toward.view(count), origin_error };
             let sides = &surface.sides[..count];
             let shadow_rays =
                 ShadowRays { rays, len: group.len, going: len, t_max, surface, lanes: None, sides };

@@ -1,10 +1,14 @@
 //! What primary rays meet on their paths, so that rays of one pixel can be told apart by it.
 
-use super::light::{Lit, Reflectivities};
+use super::light::{Colours, Lit, Reflectivities};
+use crate::simd::cpu::Cpu;
+use crate::simd::soa::View;
 use crate::world::material::Rgb;
+use crate::world::packets::shader::PacketShader;
+use std::mem::take;
 
-/// For each current primary ray, a hash of the objects and the lights on its path: through mirrors and glass, in the
-/// order in which they are met. It does not depend on the other rays of the packet.
+/// For each current primary ray, a hash of the objects, tiles and lights on its path: through mirrors and glass, in
+/// the order in which they are met. It does not depend on the other rays of the packet.
 #[derive(Default)]
 pub(super) struct Trails {
     /// Whether anything is recorded.
@@ -13,6 +17,8 @@ pub(super) struct Trails {
     pub marks: Vec<u64>,
     /// The distances of the first hits in world units, infinite for rays that hit nothing.
     pub distances: Vec<f64>,
+    /// The tiles that some of them meet.
+    tiles: Vec<u64>,
 }
 
 impl Trails {
@@ -27,20 +33,34 @@ impl Trails {
         }
     }
 
-    /// Records that descendants of the primary rays in these lanes hit the object of this index, and the distances, if
-    /// they are the primary rays themselves.
+    /// Records that descendants of the primary rays in these lanes hit the object of this index; the tiles or texels at
+    /// these points, if it has any; and the distances, if they are the primary rays themselves.
     #[inline]
-    pub fn meet(&mut self, camera: &[u8], object: usize, distances: Option<&[f64]>) {
+    pub fn meet(
+        &mut self,
+        cpu: Cpu,
+        camera: &[u8],
+        object: usize,
+        distances: Option<&[f64]>,
+        shader: Option<(&dyn PacketShader, View)>,
+    ) {
         camera.iter().for_each(|lane| self.add(*lane, 2 * object as u64 + 1));
+        if let Some((shader, points)) = shader {
+            let mut tiles = take(&mut self.tiles);
+            tiles.resize(points.len(), 0);
+            shader.tiles(cpu, points, &mut tiles);
+            camera.iter().zip(&tiles).for_each(|(lane, tile)| self.add(*lane, *tile));
+            self.tiles = tiles;
+        }
         for (lane, distance) in camera.iter().zip(distances.into_iter().flatten()) {
             self.distances[usize::from(*lane)] = *distance;
         }
     }
 
     /// Records on which of these points the light of this index shines, as far as they reflect any of it: others may
-    /// not have been looked at.
+    /// not have been looked at. `has_tints` tells that its colours differ only by the glass on the way.
     #[inline]
-    pub fn see_light(&mut self, camera: &[u8], light: usize, lit: &Lit, is_shiny: bool) {
+    pub fn see_light(&mut self, camera: &[u8], light: usize, lit: &Lit, [is_shiny, has_tints]: [bool; 2]) {
         for (lane, primary) in camera.iter().enumerate() {
             let reflects = match lit.looks {
                 Reflectivities::Uniform(_) => true,
@@ -50,6 +70,14 @@ impl Trails {
             };
             if reflects && lit.shines[lane] != 0 && lit.blocked[lane] != 1 {
                 self.add(*primary, 2 * light as u64 + 2);
+                if let Colours::Each(sent) = lit.emissivity
+                    && has_tints
+                {
+                    sent.get(lane)
+                        .to_array()
+                        .iter()
+                        .for_each(|channel| self.add(*primary, channel.to_bits()));
+                }
             }
         }
     }

@@ -3,7 +3,7 @@
 use super::surface::Surface;
 use crate::world::material::{Look, Material, Rgb};
 use crate::world::shader::Shader;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::sync::Arc;
 
 /// The colours of a mesh whose faces have materials of their own.
@@ -35,6 +35,10 @@ impl Shader for Painted {
 
     fn specular(&self, material: &Material, at: DVec3) -> Rgb {
         self.at(material, at).specular
+    }
+
+    fn tile(&self, at: DVec3) -> DVec2 {
+        DVec2::new(f64::from(self.surface.slots[self.surface.face_at(at)]), 0.0)
     }
 
     /// The largest of all materials, if none has a negative diffuse colour.

@@ -9,7 +9,7 @@ use crate::world::material::{Look, Material, Rgb};
 use crate::world::packets::shader::EncloseLook;
 use crate::world::shader::{LookBounds, Plain, Shader};
 use crate::world::shape::{ByPackets, Shape};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::sync::Arc;
 
 impl Placed {
@@ -37,6 +37,10 @@ impl Shader for PlacedShader {
 
     fn specular(&self, material: &Material, at: DVec3) -> Rgb {
         self.0.body.shader.specular(material, self.0.own_point(at))
+    }
+
+    fn tile(&self, at: DVec3) -> DVec2 {
+        self.0.body.shader.tile(self.0.own_point(at))
     }
 
     fn enclose<F: Precise>(&self, material: &Material, at: [Interval<F>; 3]) -> Option<LookBounds<F>> {

@@ -214,6 +214,14 @@ impl Hittable for Placed {
         self.body.shape.is_two_sided()
     }
 
+    fn may_be_costly(&self) -> bool {
+        self.body.shape.may_be_costly()
+    }
+
+    fn search_cost(&self, ray: &Ray, origin_side: Option<Side>) -> u32 {
+        self.body.shape.search_cost(&self.own_ray(ray).0, origin_side)
+    }
+
     fn method(&self) -> String {
         format!("in the object's own coordinates: {}", self.body.shape.method())
     }

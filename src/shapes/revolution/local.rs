@@ -4,7 +4,7 @@
 use super::quadratic::Quadratic;
 use crate::geometry::frame::{self, BLUR, Frame};
 use crate::geometry::ray::{Ray, RayRange};
-use crate::geometry::roots::taylor::Stretch;
+use crate::geometry::roots::stretch::Stretch;
 use crate::numeric::scalar::Scalar;
 use glam::DVec3;
 use std::ops::Range;

@@ -97,6 +97,11 @@ impl Slabs {
         self.is_smooth
     }
 
+    /// Returns whether every slab has the error that slabs are cut for, so that few rays take a search.
+    pub fn is_tight(&self) -> bool {
+        self.is_smooth && self.coarsest <= ERROR
+    }
+
     /// Returns the slab at an index, counted from the bottom.
     #[inline(always)]
     pub fn get(&self, index: usize) -> &Slab {

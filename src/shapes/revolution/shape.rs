@@ -90,6 +90,14 @@ impl Hittable for InFrame<Revolution> {
         true
     }
 
+    fn may_be_costly(&self) -> bool {
+        self.surface.may_be_costly()
+    }
+
+    fn search_cost(&self, ray: &Ray, origin_side: Option<Side>) -> u32 {
+        self.surface.search_cost(&self.frame, ray, origin_side)
+    }
+
     fn method(&self) -> String {
         self.surface.to_string()
     }

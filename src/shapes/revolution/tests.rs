@@ -2,9 +2,12 @@
 
 use super::no_surface::NoSurface;
 use super::*;
+use crate::geometry::frame::Frame;
+use crate::geometry::ray::Ray;
 use crate::numeric::formula::Formula;
 use crate::numeric::interval::Interval;
 use crate::numeric::scalar::Scalar;
+use glam::DVec3;
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 
@@ -177,4 +180,19 @@ fn runs_contain_their_slabs() {
     assert_eq!(slabs.skipped(0, true, 0..20, |_| false), 16);
     assert_eq!(slabs.skipped(0, true, 0..15, |_| false), 0);
     assert_eq!(slabs.skipped(0, true, all, |run| run.to > slabs.get(255).to), 256);
+}
+
+/// Without a limit on all slabs together, one ray took minutes.
+#[test]
+fn a_search_ends_however_many_slabs_have_no_good_bounds() {
+    let profile = "0.3 + abs(min(y, exp(sqrt(9.6^7 - y^3))))";
+    let surface = surface(profile, 15.0).expect("a surface");
+    assert!(surface.may_be_costly() && surface.slabs.count() > 1000);
+    let frame = Frame::around(DVec3::ZERO, DVec3::Y);
+    let dir = DVec3::new(0.5, 1.0, 0.0).normalize();
+    for part in 0..50 {
+        let origin = DVec3::new(-0.4 - 0.01 * f64::from(part), -0.5, 0.1);
+        let cost = surface.search_cost(&frame, &Ray { origin, dir }, None);
+        assert!(cost < 10_000, "{cost}");
+    }
 }

@@ -12,7 +12,8 @@ use crate::geometry::frame::Frame;
 use crate::geometry::ray::{MISS, Ray, RayRange, Side};
 use crate::geometry::ray_packet::RayPacket;
 use crate::geometry::roots::Method;
-use crate::geometry::roots::taylor::{self, Found, Stretch};
+use crate::geometry::roots::stretch::Stretch;
+use crate::geometry::roots::taylor::{self, Found};
 use crate::simd::cpu::Cpu;
 use crate::simd::soa::View;
 use glam::DVec3;
@@ -21,24 +22,68 @@ use std::slice::from_ref;
 /// A unit direction whose component along the axis is below this stays in one slab, and is not divided by.
 const LEVEL: f64 = 1e-200;
 
+/// The largest number of pieces that are judged along one ray, in all slabs together: some milliseconds' worth. Beyond
+/// them, the ray's hits are not proven.
+const MAX_PIECES: usize = 1024;
+
+/// The number of plain rays that take as long as a piece, what bounds in `f64` leave undecided included.
+const RAYS_PER_PIECE: usize = 4;
+
+/// The number of slabs that count as one plain ray.
+const SLABS_PER_RAY: usize = 256;
+
+/// The result of a search.
+struct Walked {
+    /// The distance of the first hit, in world units.
+    distance: f64,
+    /// Whether it is certain for all rays that this one may have been rounded from.
+    is_certain: bool,
+    /// The number of pieces that were judged.
+    pieces: usize,
+}
+
 impl Revolution {
     /// Returns the distance of a ray's first hit in a range, and whether that is certain for all rays that this one may
     /// have been rounded from.
     pub fn first_hit(&self, frame: &Frame, ray: &Ray, range: &RayRange) -> (f64, bool) {
+        let Walked { distance, is_certain, .. } = self.search(frame, ray, range);
+        (distance, is_certain)
+    }
+
+    /// Returns how many plain rays take as long as the search for the first hit of a ray that may leave the surface to
+    /// a side. It depends on nothing else, so that what a pixel may cost is the same however its rays are traced.
+    pub fn search_cost(&self, frame: &Frame, ray: &Ray, origin_side: Option<Side>) -> u32 {
+        let range = RayRange { origin_side, ..RayRange::ALL };
+        if Local::new(frame, ray, &range, self.height, self.slabs.reach().sqrt()).is_none() {
+            return 0;
+        }
+        let pieces = if self.slabs.is_tight() { 0 } else { self.search(frame, ray, &range).pieces };
+        (self.slabs.count() / SLABS_PER_RAY + RAYS_PER_PIECE * pieces) as u32
+    }
+
+    /// Tells whether the search for a ray's first hit may take as long as several plain rays.
+    pub fn may_be_costly(&self) -> bool {
+        self.slabs.count() >= SLABS_PER_RAY || !self.slabs.is_tight()
+    }
+
+    /// Searches for a ray's first hit in a range.
+    fn search(&self, frame: &Frame, ray: &Ray, range: &RayRange) -> Walked {
         let rays = RayPacket { origin: view(&ray.origin), dir: view(&ray.dir), origin_error: 0.0 };
         let sides = range.origin_side.as_ref().map(from_ref);
         let mut lanes = Lanes::<1>::none();
         self.t_bounds(Cpu::best(), frame, rays, sides, &[MISS], &mut lanes);
         let (near, far) = (lanes.near[0], lanes.far[0]);
+        let known = |distance| Walked { distance, is_certain: true, pieces: 0 };
         if near == MISS {
-            (MISS, true)
+            known(MISS)
         } else if far < MISS {
-            (range.keep(self.root(frame, ray, (near, far))), true)
+            known(range.keep(self.root(frame, ray, (near, far))))
         } else {
             let local = Local::new(frame, ray, range, self.height, self.slabs.reach().sqrt());
-            local.map_or((MISS, true), |local| {
-                let (distance, is_certain) = self.walk(&local, range.origin_side, lanes);
-                (range.keep(distance), is_certain)
+            local.map_or(known(MISS), |local| {
+                let mut left = MAX_PIECES;
+                let (distance, is_certain) = self.walk(&local, range.origin_side, lanes, &mut left);
+                Walked { distance: range.keep(distance), is_certain, pieces: MAX_PIECES - left }
             })
         }
     }
@@ -58,8 +103,14 @@ impl Revolution {
 
     /// Returns the distance of the first crossing of the surface, and whether that is certain for all rays that this
     /// one may have been rounded from. For a ray that leaves the surface to a side, only crossings from that side
-    /// count.
-    fn walk(&self, local: &Local, origin_side: Option<Side>, mut lanes: Lanes<1>) -> (f64, bool) {
+    /// count. At most `left` pieces of the ray are judged; what is left over of them is returned there.
+    fn walk(
+        &self,
+        local: &Local,
+        origin_side: Option<Side>,
+        mut lanes: Lanes<1>,
+        left: &mut usize,
+    ) -> (f64, bool) {
         let (size, cpu) = (self.size(), Cpu::best());
         lanes.prepare(1, origin_side.as_ref().map(from_ref));
         let own = Ray { origin: local.origin, dir: local.dir };
@@ -90,7 +141,7 @@ impl Revolution {
             if near < MISS {
                 let shell = lanes.shell(0, &slab, (from, to), size, 0.0);
                 let (end, is_across) = shell.end(near);
-                let found = self.first_crossing(local, (near, end), wanted);
+                let found = self.first_crossing(local, (near, end), wanted, left);
                 is_certain &= found.is_certain && (found.root.is_some() || !is_across);
                 // A ray that is on the other side has crossed the surface.
                 if let Some(root) = found.root.or(is_across.then_some(near)) {
@@ -109,8 +160,18 @@ impl Revolution {
         }
     }
 
-    /// Returns the first crossing on a short piece, only from one side if a side is given.
-    fn first_crossing(&self, local: &Local, (from, to): (f64, f64), wanted: Option<Side>) -> Found {
+    /// Returns the first crossing on a short piece, only from one side if a side is given. It is left unknown where no
+    /// more pieces may be judged.
+    fn first_crossing(
+        &self,
+        local: &Local,
+        (from, to): (f64, f64),
+        wanted: Option<Side>,
+        left: &mut usize,
+    ) -> Found {
+        if *left == 0 {
+            return Found { root: None, is_certain: false };
+        }
         // The ends of the piece may themselves be crossings, as shells begin and end there, unless the ray begins
         // there.
         let (from, to) = (from.next_down().max(local.from), to.next_up());
@@ -118,7 +179,7 @@ impl Revolution {
         let all = RayRange { near: f64::NEG_INFINITY, origin_side: wanted, ..RayRange::ALL };
         let stretch =
             Stretch { outer: from..to, inner: from.max(local.inner.start)..to.min(local.inner.end) };
-        taylor::first_root(&line, &stretch, 0.0, &all, 4.0 * local.tolerance())
+        taylor::first_root_within(&line, &stretch, 0.0, &all, 4.0 * local.tolerance(), left)
     }
 }
 

@@ -6,6 +6,7 @@
 
 use super::candidate::Load;
 use super::data::{Family, Panel, Point, Subject, Wrong};
+use super::needed;
 use super::pictures::{count, render, timed};
 use super::places::{Pixels, spread};
 use super::progress::Progress;
@@ -18,6 +19,7 @@ use crate::scene::model::Model;
 use crate::tools::bench::clock;
 use crate::world::accuracy::Accuracy;
 use crate::world::camera::Camera;
+use crate::world::material::Rgb;
 use crate::world::sample::Sampler;
 use std::io;
 use std::time::Instant;
@@ -25,10 +27,16 @@ use std::time::Instant;
 /// The numbers of samples to choose from, and the number of samples that they are compared with.
 const STAGES: [(&[u32], u32); 2] = [(&[1, 2, 4, 8, 16, 32, 64], 256), (&[128, 256], 1024)];
 
+/// How many times as many samples there are at least in what pixels with different numbers are compared with.
+const MORE: u32 = 4;
+
 /// The rays that a measurement may always take, and twice as many for the worst pixels; else it may take this fraction of
 /// those of the image that it is about.
 const MIN_RAYS: f64 = 1e6;
 const PART: f64 = 0.5;
+
+/// The number of samples that an image must need for pixels with different numbers of them to be a choice.
+const ADAPTIVE_FROM: u32 = 16;
 
 /// The numbers of pixels that are measured before it is asked whether they suffice: at first, and when time runs out.
 const FIRST: usize = 1024;
@@ -68,8 +76,10 @@ pub enum Goal {
 pub struct Estimate {
     /// The accuracy.
     pub accuracy: Accuracy,
-    /// The number of samples per pixel, from a Sobol sequence.
+    /// The number of samples per pixel, from a Sobol sequence; the least where pixels take different ones.
     pub samples: u32,
+    /// The greatest number of samples, where pixels take different ones.
+    pub most: Option<u32>,
     /// The CPU time of one thread for the whole image, in seconds.
     pub seconds: f64,
     /// The measured error, where 1 is white.
@@ -82,7 +92,8 @@ pub struct Estimate {
 
 /// Estimates, and what they rest on.
 pub struct Estimates {
-    /// The choices: those of the scene's own accuracy first, by ascending samples.
+    /// The choices: those of the scene's own accuracy first, by ascending samples; those where pixels take different
+    /// numbers follow the others of their accuracy.
     pub all: Vec<Estimate>,
     /// The scene's own accuracy.
     pub own: Accuracy,
@@ -146,7 +157,9 @@ pub fn estimates(load: Load, goal: Goal, progress: &mut dyn Progress) -> io::Res
         }
     }
     let mut estimates = last.ok_or(io::ErrorKind::Interrupted)?;
-    estimates.all.sort_by_key(|one| (one.accuracy != own, one.accuracy.to_string(), one.samples));
+    estimates.all.sort_by_key(|one| (one.accuracy != own, one.accuracy.to_string(), one.most, one.samples));
+    // A choice that was measured twice counts as it was with more samples.
+    estimates.all.dedup_by_key(|one| (one.accuracy, one.most, one.samples));
     Ok(estimates)
 }
 
@@ -163,16 +176,20 @@ pub(super) fn panel(load: Load, progress: &mut dyn Progress) -> io::Result<Panel
     let point = |one: &Estimate| {
         let seconds = one.seconds / all;
         Point {
-            name: format!("{} {}", one.accuracy.option().name, one.samples),
-            family: if one.accuracy == Accuracy::Classic { Family::Notes } else { Family::Own },
-            is_default: one.accuracy == estimates.own && one.samples == samples,
+            name: format!("{} {}", one.accuracy.option().name, one.numbers()),
+            family: match (one.accuracy, one.most) {
+                (_, Some(_)) => Family::Adaptive,
+                (Accuracy::Classic, None) => Family::Notes,
+                _ => Family::Own,
+            },
+            is_default: one.accuracy == estimates.own && one.most.is_none() && one.samples == samples,
             times: Times { least: seconds, median: seconds, rounds: ROUNDS, waited: 0.0 },
             error: one.error,
             worst: one.worst,
             wrong: Wrong::default(),
             visible: None,
             changed: None,
-            samples: one.samples,
+            samples: one.most.unwrap_or(one.samples),
         }
     };
     Ok(Panel {
@@ -215,6 +232,27 @@ impl Study {
         pairs.all(|(time, own)| *time <= GAIN * own)
     }
 
+    /// Measures pixels that take as many samples as they need, with the scene's own accuracy.
+    fn needed(
+        &self,
+        (accuracy, model): (Accuracy, &Model),
+        pixels: &Pixels,
+        right: &[Rgb],
+        against: u32,
+        all: usize,
+    ) -> Vec<Estimate> {
+        let tiles = timed(model.camera.value.pixels, f64::INFINITY);
+        let measured = needed::measure(model, &self.threads, pixels, needed::timed(&tiles), against / MORE);
+        let estimate = |one: needed::Needed| {
+            let (mut errors, [samples, most]) = (Errors::new(1), one.limits);
+            errors.add(&[one.colours], right);
+            let [error, bound] = errors.bounds(0, most, against, all, self.goal.is_worst());
+            let (seconds, worst) = (one.seconds * all as f64, errors.worst(0));
+            Estimate { accuracy, samples, most: Some(most), seconds, error, bound, worst }
+        };
+        measured.into_iter().map(estimate).collect()
+    }
+
     fn measure(
         &self,
         models: &[(Accuracy, &Model)],
@@ -234,18 +272,20 @@ impl Study {
         let size = models[0].1.camera.value.pixels;
         let all = size[0] * size[1];
         // One pixel costs the samples of each choice, and the true ones.
-        let of_pixel = samples.iter().sum::<u32>() * kept.len() as u32 + against;
+        let of_pixel = samples.iter().sum::<u32>() * kept.len() as u32 + against + needed::RAYS;
         let most = |picture: u32| {
             let least = if self.goal.is_worst() { 2.0 * MIN_RAYS } else { MIN_RAYS };
             let rays = (PART * f64::from(picture) * all as f64).max(least);
             ((rays / f64::from(of_pixel)) as usize).clamp(FEWEST, all)
         };
         let mut errors: Vec<Errors> = vec![Errors::new(samples.len()); kept.len()];
+        let mut rights = Vec::new();
         let (mut next, mut is_short) = (FIRST, false);
         loop {
             let wanted = next.min(all);
             if wanted == all {
                 errors.fill(Errors::new(samples.len()));
+                rights.clear();
             }
             let pixels = spread(size, wanted);
             progress.more((wanted - errors[0].pixels()) * of_pixel as usize / 10);
@@ -260,6 +300,7 @@ impl Study {
                     let choices = choices.collect::<io::Result<Vec<_>>>()?;
                     errors.add(&choices, &true_ones);
                 }
+                rights.extend(true_ones);
                 is_short = progress.is_late();
             }
             let measured = errors[0].pixels();
@@ -269,6 +310,7 @@ impl Study {
                     Estimate {
                         accuracy: models[*index].0,
                         samples: *samples,
+                        most: None,
                         seconds: self.time(*index, *samples),
                         error,
                         bound,
@@ -277,14 +319,29 @@ impl Study {
                 };
                 samples.iter().enumerate().map(choice)
             });
-            let estimates: Vec<_> = estimates.collect();
+            let mut estimates: Vec<_> = estimates.collect();
             let met = self.goal.met(&estimates[..samples.len()], self.cores());
             let picture = met.map_or(samples[samples.len() - 1], |met| met.samples);
             if is_short || measured >= most(picture) {
+                if !is_short && picture >= ADAPTIVE_FROM {
+                    let pixels: Pixels = pixels[..measured].to_vec();
+                    estimates.extend(self.needed(models[0], &pixels, &rights, against, all));
+                    let _ = progress.done(0);
+                }
                 let pixels = [measured, all];
                 return Ok(Estimates { all: estimates, own: self.own, pixels, against, is_short });
             }
             next = (2 * next).min(most(picture));
+        }
+    }
+}
+
+impl Estimate {
+    /// Returns the number of samples, as `--samples` takes it.
+    pub fn numbers(&self) -> String {
+        match self.most {
+            Some(most) => format!("{}..{most}", self.samples),
+            None => self.samples.to_string(),
         }
     }
 }

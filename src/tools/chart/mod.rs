@@ -17,6 +17,7 @@ mod front;
 mod hits;
 mod labels;
 mod machine;
+mod needed;
 mod packets;
 mod pictures;
 mod places;

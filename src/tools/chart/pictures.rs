@@ -19,6 +19,7 @@ use crate::render::renderer::Renderer;
 use crate::render::trace::{self, Scratch, Tracer};
 use crate::scene::model::Model;
 use crate::simd::cpu::Cpu;
+use crate::world::camera::Adaptive;
 use crate::world::material::Rgb;
 use crate::world::sample::{Sample, Sampler};
 use glam::DVec2;
@@ -31,6 +32,9 @@ pub(super) const TRUE_SAMPLES: u32 = 1024;
 
 /// The numbers of samples that are compared, beside the scene's own.
 const SAMPLES: [u32; 8] = [1, 2, 4, 8, 16, 24, 32, 64];
+
+/// The least and the greatest numbers of samples that are compared where pixels take different ones.
+pub(super) const ADAPTIVE: [[u32; 2]; 3] = [[4, 16], [4, 64], [4, 256]];
 
 /// The numbers of reflections and transmissions on a path that are compared, beside all.
 const BOUNCES: [usize; 8] = [0, 1, 2, 3, 4, 6, 8, 12];
@@ -63,7 +67,9 @@ pub fn work(study: &Study) -> usize {
     let of_images = |count: usize| count * METHOD_TESTS / 10 + clock::work(count);
     let model = &study.candidates[study.default].model;
     let bounces = if goes_on(model) { of_images(BOUNCES.len() + 1) } else { 0 };
-    of_images(study.candidates.len()) + bounces + kinds * (TRUE_TESTS / 8 + clock::work(2 * SAMPLES.len()))
+    of_images(study.candidates.len())
+        + bounces
+        + kinds * (TRUE_TESTS / 8 + clock::work(2 * SAMPLES.len() + ADAPTIVE.len()))
 }
 
 /// Tells whether any light of a model has a size.
@@ -159,10 +165,16 @@ pub fn samples(study: &Study, seen: Seen, progress: &mut dyn Progress) -> Contro
     let mut pixels = spread(own.pixels, max_pixels.clamp(1024, 8192));
     let right = truth(&plan, threads, &pixels, seen, progress)?;
     pixels.truncate(right.len());
-    let choices: Vec<_> = choices(own.samples, own.sampler);
+    let mut choices: Vec<_> = choices(own.samples, own.sampler);
+    if seen == Seen::Picture {
+        choices.extend(
+            ADAPTIVE.map(|[least, most]| (least, Sampler::Sobol, Some(Adaptive { most, error: None }))),
+        );
+    }
     let mut differences = Vec::new();
-    for (samples, sampler) in &choices {
+    for (samples, sampler, adaptive) in &choices {
         (plan.camera.samples, plan.camera.sampler) = (*samples, *sampler);
+        plan.set_adaptive(*adaptive);
         let colours = each(threads, &pixels, |x, y| colour(&plan, [x, y], seen));
         differences.push(difference(&colours, &right));
         progress.done(TRUE_TESTS / 40 / choices.len())?;
@@ -170,7 +182,9 @@ pub fn samples(study: &Study, seen: Seen, progress: &mut dyn Progress) -> Contro
     let timed = timed(own.pixels, tests);
     let times = thread.run(|| {
         let work = |choice: usize| {
-            (plan.camera.samples, plan.camera.sampler) = choices[choice];
+            let (samples, sampler, adaptive) = choices[choice];
+            (plan.camera.samples, plan.camera.sampler) = (samples, sampler);
+            plan.set_adaptive(adaptive);
             render(&plan, &timed);
         };
         clock::rounds(choices.len(), count(&timed), work, progress)
@@ -179,15 +193,13 @@ pub fn samples(study: &Study, seen: Seen, progress: &mut dyn Progress) -> Contro
         return ControlFlow::Continue(None);
     }
     let points =
-        choices.iter().zip(differences).zip(times?).map(|(((samples, sampler), off), times)| Point {
-            is_default: *samples == own.samples && *sampler == own.sampler,
-            ..point(
-                format!("{} {samples}", name(*sampler)),
-                sampler.family(),
-                times,
-                off,
-                (pixels.len(), *samples),
-            )
+        choices.iter().zip(differences).zip(times?).map(|(((samples, sampler, adaptive), off), times)| {
+            let (name, family, most) = match adaptive {
+                Some(Adaptive { most, .. }) => (format!("{samples}..{most}"), Family::Adaptive, *most),
+                None => (format!("{} {samples}", name(*sampler)), sampler.family(), *samples),
+            };
+            let is_default = adaptive.is_none() && *samples == own.samples && *sampler == own.sampler;
+            Point { is_default, ..point(name, family, times, off, (pixels.len(), most)) }
         });
     let title = match (seen, has_size(model)) {
         (Seen::Picture, false) => "samples per pixel: edges",
@@ -231,7 +243,7 @@ fn name(sampler: Sampler) -> &'static str {
 }
 
 /// Returns the numbers of samples and the samplers that are compared; a single sample is compared only once.
-fn choices(own: u32, own_sampler: Sampler) -> Vec<(u32, Sampler)> {
+fn choices(own: u32, own_sampler: Sampler) -> Vec<(u32, Sampler, Option<Adaptive>)> {
     let mut counts = SAMPLES.to_vec();
     if !counts.contains(&own) && own <= TRUE_SAMPLES / 4 {
         counts.push(own);
@@ -244,7 +256,7 @@ fn choices(own: u32, own_sampler: Sampler) -> Vec<(u32, Sampler)> {
             counts
                 .iter()
                 .filter(|count| **count > 1 || sampler == own_sampler)
-                .map(|count| (*count, sampler)),
+                .map(|count| (*count, sampler, None)),
         );
     }
     choices

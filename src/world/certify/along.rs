@@ -8,9 +8,9 @@ use crate::numeric::interval::{Float, Interval};
 /// The maximum number of pieces of a line that are examined before a search is given up.
 pub(super) const PIECES: usize = 2000;
 
-/// The maximum number of operations with 237 bits that a search may take if each piece is evaluated once: a tenth of a
-/// second's worth. Only formulas of more than ten operations are given up before [`PIECES`].
-const OPERATIONS: usize = 20_000;
+/// The maximum number of operations with 237 bits that a search may take if each piece is evaluated once. Where most of
+/// them are exponential functions, that is about 5 ms; only formulas are given up before [`PIECES`].
+const OPERATIONS: usize = 2_000;
 
 /// Returns the number of pieces after which a search with 237 bits is given up.
 pub(super) fn most_pieces(shape: &impl Equation) -> usize {

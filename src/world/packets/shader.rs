@@ -23,6 +23,9 @@ pub trait PacketShader: Shader + EncloseLook<f64> + EncloseLook<f256> + EncloseL
 
     /// Evaluates [`diffuse`](Shader::diffuse) at many points. Returns whether any reflectivity is not 0.
     fn diffuses(&self, cpu: Cpu, material: &Material, points: View, out: ViewMut) -> bool;
+
+    /// Writes the [`tile`](Shader::tile) at each point, as one number.
+    fn tiles(&self, cpu: Cpu, points: View, out: &mut [u64]);
 }
 
 /// A shader whose looks are enclosed in one precision. Every [`Shader`] is one.
@@ -52,6 +55,10 @@ impl<T: Shader> PacketShader for T {
     fn diffuses(&self, cpu: Cpu, material: &Material, points: View, out: ViewMut) -> bool {
         diffuses(cpu, self, material, points, out)
     }
+
+    fn tiles(&self, cpu: Cpu, points: View, out: &mut [u64]) {
+        tiles(cpu, self, points, out);
+    }
 }
 
 kernels! {
@@ -80,6 +87,17 @@ kernels! {
             any |= is_any(diffuse);
         }
         any != 0
+    }
+
+    /// Writes the tiles at points of a surface.
+    fn tiles[T: Shader](shader: &T, points: View, out: &mut [u64]) {
+        let points = points.first(out.len());
+        for lane in 0..out.len() {
+            let tile = shader.tile(points.get(lane));
+            // So that minus zero is zero.
+            let [column, row] = [(tile.x + 0.0).to_bits(), (tile.y + 0.0).to_bits()];
+            out[lane] = column.rotate_left(17) ^ row.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        }
     }
 }
 

@@ -92,6 +92,20 @@ fn lights_that_reach_nothing_are_left_out() {
             [1]
     };
     assert_eq!([spot("4 3 -4"), spot("9 3 -4")], [0, 1]);
+    let projector = |location: &str, point: &str| {
+        left_out(&format!(
+            "{ball} texture t {{ filename scenes/textures/bricks.png }}
+            projector p {{ location {location} emissivity 5 5 5 normal 0 1 0 point {point} xdir 1 0 0 dimensions 1 1 texname t mode 0 }}"
+        ))[1]
+    };
+    assert_eq!(projector("4 9 -4", "3.5 7 -3.5"), 0, "onto the ball");
+    assert_eq!(projector("4 9 -4", "8 7 -3.5"), 1, "beside it");
+    assert_eq!(projector("4 9 -4", "3.5 1 -3.5"), 1, "the ball lies before the rectangle");
+    assert_eq!(
+        projector("4 9 -4", "3.5 11 -3.5"),
+        0,
+        "a path to the light may end in the rectangle behind it"
+    );
 }
 
 /// Makes scenes with objects and lights all around the viewer; some of the planes are mirrors.
@@ -137,6 +151,34 @@ fn scene(state: &mut u64) -> String {
         };
     }
     text
+}
+
+#[test]
+fn no_projector_shines_that_is_left_out_of_scenes_made_at_random() {
+    let (mut state, mut sum) = (7_u64, 0);
+    for _ in 0..200 {
+        let mut from = |low: f64, high: f64| {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            low + (high - low) * (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let mut place = |size: f64| [0; 3].map(|_| from(-size, size));
+        let ([x, y, z], [a, b, c], [d, e, f], [g, h, i]) = (place(6.0), place(1.0), place(3.0), place(2.0));
+        let left_out = left_out(&format!(
+            "{CAMERA} sphere ball {{ material matt center 4 3 -4 radius 1 }}
+            fplane leaf {{ material matt normal {b} {c} 1 point {} 2 -3 xdir 1 {a} 0 dimensions 2 1 }}
+            texture t {{ filename scenes/textures/bricks.png }}
+            projector p {{ location {x} {y} {z} emissivity 5 4 3 normal {a} {b} {c} point {} {} {}
+                xdir {b} {c} {a} dimensions {} {} texname t mode 0 }}",
+            3.0 + g,
+            x + d,
+            y + e,
+            z + f,
+            2.5 + h,
+            2.5 + i
+        ));
+        sum += left_out[1];
+    }
+    assert!((20..180).contains(&sum), "{sum} of 200 projectors");
 }
 
 #[test]

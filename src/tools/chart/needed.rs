@@ -1,0 +1,122 @@
+//! Pixels that take as many samples as they need, measured for `choose`.
+
+use super::pictures::ADAPTIVE;
+use super::places::Pixels;
+use crate::geometry::ray_packet::PACKET_SIZE;
+use crate::render::bytes::shown;
+use crate::render::observer::{Count, TraceObserver};
+use crate::render::plan::Plan;
+use crate::render::renderer::Renderer;
+use crate::render::tiles::{self, TILE, TOGETHER};
+use crate::render::trace::{Scratch, Tracer};
+use crate::scene::model::Model;
+use crate::simd::cpu::Cpu;
+use crate::tools::bench::clock;
+use crate::world::camera::Adaptive;
+use crate::world::material::Rgb;
+use crate::world::sample::Sampler;
+use std::hint::black_box;
+
+/// About how many rays all choices take of a pixel that is measured alone, with the probes around it.
+pub(super) const RAYS: u32 = 120;
+
+/// How many times a choice is timed, after a first time that does not count.
+const ROUNDS: usize = 2;
+
+/// The measured cost and colours of a choice.
+pub(super) struct Needed {
+    /// The least and the greatest number of samples.
+    pub limits: [u32; 2],
+    /// The colours of the pixels as they are shown.
+    pub colours: Vec<Rgb>,
+    /// The CPU time of one thread for a pixel in the mean, in seconds.
+    pub seconds: f64,
+}
+
+/// Measures the choices whose greatest number of samples is at most `most`.
+pub(super) fn measure(
+    model: &Model,
+    threads: &Renderer,
+    pixels: &Pixels,
+    timed: &[Pixels],
+    most: u32,
+) -> Vec<Needed> {
+    let mut plan = Plan::new(model);
+    plan.camera.sampler = Sampler::Sobol;
+    let wide: Vec<_> = timed.iter().map(|tile| widened(&plan, tile)).collect();
+    let choices = ADAPTIVE.into_iter().filter(|[_, own]| *own <= most);
+    choices
+        .map(|[least, most]| {
+            plan.camera.samples = least;
+            plan.set_adaptive(Some(Adaptive { most, error: None }));
+            let (colours, samples) = colours(threads, &plan, pixels);
+            // Tiles differ in their samples, and there are fewer of them than pixels.
+            let seconds = samples * threads.run(|| of_sample(&plan, &wide));
+            Needed { limits: [least, most], colours, seconds }
+        })
+        .collect()
+}
+
+/// Counts samples.
+#[derive(Default)]
+struct Samples(u64);
+
+impl TraceObserver for Samples {
+    const SEES: bool = false;
+
+    fn count(&mut self, count: Count) {
+        if let Count::Sampled(samples) = count {
+            self.0 += u64::from(samples);
+        }
+    }
+}
+
+/// Returns the colours of pixels and the mean of their numbers of samples.
+fn colours(threads: &Renderer, plan: &Plan, pixels: &Pixels) -> (Vec<Rgb>, f64) {
+    use rayon::prelude::*;
+    // Pixels that lie far apart share no probes.
+    let part = |scratch: &mut Scratch, [x, y]: &[usize; 2]| {
+        let mut samples = Samples::default();
+        let mut tracer = Tracer::new(plan, Cpu::best(), scratch, &mut samples);
+        let colour = shown(tracer.pixels(&[[*x, *y]]).get(0));
+        (colour, samples.0)
+    };
+    let all: Vec<_> =
+        threads.run(|| pixels.par_iter().with_min_len(8).map_init(Scratch::default, part).collect());
+    let samples = all.iter().map(|(_, samples)| *samples).sum::<u64>() as f64;
+    (all.iter().map(|(colour, _)| *colour).collect(), samples / pixels.len() as f64)
+}
+
+/// Returns the pixels of as many tiles as a render traces together, beside and with the given one.
+fn widened(plan: &Plan, tile: &Pixels) -> Pixels {
+    let [width, height] = plan.camera.pixels;
+    let [left, low] = [0, 1].map(|axis| tile.iter().map(|pixel| pixel[axis]).min().unwrap_or(0));
+    let left = left / (TILE * TOGETHER) * TILE * TOGETHER;
+    let mut pixels = Vec::new();
+    for left in (left..width.min(left + TILE * TOGETHER)).step_by(TILE) {
+        tiles::list(left..width.min(left + TILE), low..height.min(low + TILE), &mut pixels);
+    }
+    pixels
+}
+
+/// Returns the CPU time of one thread for a sample, in seconds, with its part of the probes.
+fn of_sample(plan: &Plan, tiles: &[Pixels]) -> f64 {
+    let mut scratch = Scratch::default();
+    let mut round = || {
+        let mut samples = Samples::default();
+        let start = clock::now();
+        for tile in tiles {
+            black_box(Tracer::new(plan, Cpu::best(), &mut scratch, &mut samples).pixels(tile));
+        }
+        (clock::now() - start).as_secs_f64() / samples.0 as f64
+    };
+    round();
+    (0..ROUNDS).map(|_| round()).fold(f64::INFINITY, f64::min)
+}
+
+/// Returns how many tiles of a measurement by fixed numbers are timed here: about as many rays.
+pub(super) fn timed(tiles: &[Pixels]) -> &[Pixels] {
+    let pixels: usize = tiles.iter().map(Vec::len).sum();
+    let few = pixels.div_ceil(4 * PACKET_SIZE * TOGETHER).clamp(1, tiles.len());
+    &tiles[..few]
+}
