@@ -231,5 +231,5 @@ fn lists_truths_and_formulas_are_the_same_in_both_syntaxes() {
         assert_eq!(dump::scene(&model(&toml), Syntax::Notes), dump::scene(&notes, Syntax::Notes));
     }
     let quoted = dump::scene(&notes, Syntax::Notes);
-    assert!(quoted.contains("open     yes\n") && quoted.contains("points 0 1 0.5 2 1 1.5\n"), "{quoted}");
+    assert!(quoted.contains("open     yes\n") && quoted.contains("points   0 1 0.5 2 1 1.5\n"), "{quoted}");
 }
