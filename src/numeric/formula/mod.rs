@@ -9,7 +9,7 @@ pub use parser::FormulaFault;
 
 use crate::numeric::dual::Dual;
 use crate::numeric::f64x8::F64x8;
-use crate::numeric::scalar::Scalar;
+use crate::numeric::scalar::{Scalar, apart_if};
 use crate::simd::soa::LANES;
 use std::fmt;
 use step::{Function, MAX_DEPTH, Step};
@@ -32,6 +32,9 @@ pub struct Formula {
 
 /// The stack depth that suffices for most formulas, in values.
 const SMALL_STACK: usize = 4;
+
+/// The size of a number, in bytes, from which each of its operations is a call.
+const LONG: usize = 64;
 
 impl Formula {
     /// Parses a formula in y.
@@ -80,9 +83,9 @@ impl Formula {
     pub fn at<N: Scalar>(&self, y: N) -> N {
         // Most formulas need a small stack, which is quicker to set up.
         if self.stack_depth <= SMALL_STACK {
-            self.run(|_| y, &mut [y; SMALL_STACK])
+            self.run(&[y], &mut [y; SMALL_STACK])
         } else {
-            self.run(|_| y, &mut [y; MAX_DEPTH])
+            self.run(&[y], &mut [y; MAX_DEPTH])
         }
     }
 
@@ -98,9 +101,10 @@ impl Formula {
         self.steps.iter().map(cost).sum()
     }
 
-    /// Evaluates the formula on a stack that is deep enough; one function for stacks of any size.
-    fn run<N: Scalar>(&self, variable: impl Fn(u8) -> N, stack: &mut [N]) -> N {
-        self.run_inline(variable, stack)
+    /// Evaluates the formula, given the values of its variables, on a stack that is deep enough; one function for each
+    /// number type, for any number of variables and stacks of any size.
+    fn run<N: Scalar>(&self, variables: &[N], stack: &mut [N]) -> N {
+        self.run_inline::<N, true>(variables, stack)
     }
 
     /// Evaluates the formula and its derivative at eight y, for kernels.
@@ -108,7 +112,7 @@ impl Formula {
     pub fn at_eight(&self, y: [f64; LANES]) -> Dual<F64x8> {
         if self.is_plain {
             let y = Dual::variable(F64x8(y));
-            return self.run_inline(|_| y, &mut [y; SMALL_STACK]);
+            return self.run_inline::<_, false>(&[y], &mut [y; SMALL_STACK]);
         }
         let (mut value, mut slope) = ([0.0; LANES], [0.0; LANES]);
         for lane in 0..LANES {
@@ -118,34 +122,41 @@ impl Formula {
     }
 
     #[inline(always)]
-    fn run_inline<N: Scalar>(&self, variable: impl Fn(u8) -> N, stack: &mut [N]) -> N {
+    fn run_inline<N: Scalar, const MAY_CALL: bool>(&self, variables: &[N], stack: &mut [N]) -> N {
+        /// Calls an operation of a long number, such as an interval with second derivatives, which takes up to thousands
+        /// of instructions.
+        macro_rules! long {
+            ($operation:expr) => {
+                apart_if!(MAY_CALL && size_of::<N>() >= LONG, $operation)
+            };
+        }
         let mut top = 0_usize;
         for step in &self.steps {
             // The parser has checked that the operands are there and that they fit on the stack.
             let (a, b) = (stack[top.saturating_sub(2)], stack[top.saturating_sub(1)]);
             let (used, value) = match *step {
-                Step::Variable(index) => (0, variable(index)),
+                Step::Variable(index) => (0, variables[usize::from(index)]),
                 Step::Number(number) => (0, N::constant(number)),
                 Step::Neg => (1, -b),
-                Step::Powi(exponent) => (1, b.powi(exponent)),
-                Step::Ramp(exponent) => (1, b.ramp(exponent)),
-                Step::Scale(factor) => (1, b.scaled(factor)),
-                Step::Shift(by) => (1, b.shifted(by)),
-                Step::Add => (2, a + b),
-                Step::Sub => (2, a - b),
-                Step::Mul => (2, a * b),
-                Step::Div => (2, a / b),
-                Step::Call(Function::Sin) => (1, b.sin()),
-                Step::Call(Function::Cos) => (1, b.cos()),
-                Step::Call(Function::Tan) => (1, b.tan()),
-                Step::Call(Function::Exp) => (1, b.exp()),
-                Step::Call(Function::Ln) => (1, b.ln()),
-                Step::Call(Function::Sqrt) => (1, b.sqrt()),
-                Step::Call(Function::Abs) => (1, b.abs()),
-                Step::Call(Function::Floor) => (1, b.floor()),
-                Step::Call(Function::Min) => (2, a.min(b)),
-                Step::Call(Function::Max) => (2, a.max(b)),
-                Step::Call(Function::Pow) => (2, a.pow(b)),
+                Step::Powi(exponent) => (1, long!(b.powi(exponent))),
+                Step::Ramp(exponent) => (1, long!(b.ramp(exponent))),
+                Step::Scale(factor) => (1, long!(b.scaled(factor))),
+                Step::Shift(by) => (1, long!(b.shifted(by))),
+                Step::Add => (2, long!(a + b)),
+                Step::Sub => (2, long!(a - b)),
+                Step::Mul => (2, long!(a * b)),
+                Step::Div => (2, long!(a / b)),
+                Step::Call(Function::Sin) => (1, long!(b.sin())),
+                Step::Call(Function::Cos) => (1, long!(b.cos())),
+                Step::Call(Function::Tan) => (1, long!(b.tan())),
+                Step::Call(Function::Exp) => (1, long!(b.exp())),
+                Step::Call(Function::Ln) => (1, long!(b.ln())),
+                Step::Call(Function::Sqrt) => (1, long!(b.sqrt())),
+                Step::Call(Function::Abs) => (1, long!(b.abs())),
+                Step::Call(Function::Floor) => (1, long!(b.floor())),
+                Step::Call(Function::Min) => (2, long!(a.min(b))),
+                Step::Call(Function::Max) => (2, long!(a.max(b))),
+                Step::Call(Function::Pow) => (2, long!(a.pow(b))),
             };
             top = top - used + 1;
             stack[top - 1] = value;
