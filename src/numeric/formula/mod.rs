@@ -10,8 +10,10 @@ pub use parser::FormulaFault;
 use crate::numeric::dual::Dual;
 use crate::numeric::f64x8::F64x8;
 use crate::numeric::scalar::{Scalar, apart_if};
+use crate::numeric::spline::Spline;
 use crate::simd::soa::LANES;
 use std::fmt;
+use std::sync::Arc;
 use step::{Function, MAX_DEPTH, Step};
 
 /// The variable of a profile.
@@ -24,6 +26,8 @@ pub struct Formula {
     variables: &'static [&'static str],
     /// The operations in postfix order: operands first.
     steps: Vec<Step>,
+    /// The curve that [`Step::Spline`] evaluates.
+    spline: Option<Arc<Spline>>,
     /// The largest depth of the stack while the formula is evaluated, in values.
     stack_depth: usize,
     /// Whether the formula can be evaluated for eight y at a time.
@@ -68,14 +72,15 @@ impl Formula {
             }
             _ => steps.push(Step::Powi(2)),
         }
-        Self::new(format!("({})^2", self.text), self.variables, steps)
+        let squared = Self::new(format!("({})^2", self.text), self.variables, steps);
+        Self { spline: self.spline.clone(), is_plain: squared.is_plain && self.spline.is_none(), ..squared }
     }
 
     fn new(text: String, variables: &'static [&'static str], steps: Vec<Step>) -> Self {
         let stack_depth = stack_depth(&steps);
         // The derivative of a general power takes more than arithmetic.
         let is_plain = stack_depth <= SMALL_STACK && !steps.contains(&Step::Call(Function::Pow));
-        Self { text, variables, steps, stack_depth, is_plain }
+        Self { text, variables, steps, spline: None, stack_depth, is_plain }
     }
 
     /// Evaluates a formula in y at y.
@@ -95,7 +100,8 @@ impl Formula {
             Step::Call(Function::Abs | Function::Floor | Function::Min | Function::Max) => 1,
             Step::Call(Function::Pow) => 24,
             Step::Call(_) => 8,
-            Step::Powi(exponent) | Step::Ramp(exponent) => u64::from(exponent.unsigned_abs().max(1)),
+            Step::Spline => 12,
+            Step::Powi(exponent) => u64::from(exponent.unsigned_abs().max(1)),
             _ => 1,
         };
         self.steps.iter().map(cost).sum()
@@ -139,7 +145,10 @@ impl Formula {
                 Step::Number(number) => (0, N::constant(number)),
                 Step::Neg => (1, -b),
                 Step::Powi(exponent) => (1, long!(b.powi(exponent))),
-                Step::Ramp(exponent) => (1, long!(b.ramp(exponent))),
+                Step::Spline => match &self.spline {
+                    Some(spline) => (1, long!(b.spline(spline, 0))),
+                    None => (1, b),
+                },
                 Step::Scale(factor) => (1, long!(b.scaled(factor))),
                 Step::Shift(by) => (1, long!(b.shifted(by))),
                 Step::Add => (2, long!(a + b)),
@@ -171,7 +180,7 @@ fn stack_depth(steps: &[Step]) -> usize {
     let after = steps.iter().map(|step| {
         let used = match step {
             Step::Variable(_) | Step::Number(_) => 0,
-            Step::Neg | Step::Powi(_) | Step::Ramp(_) | Step::Scale(_) | Step::Shift(_) => 1,
+            Step::Neg | Step::Powi(_) | Step::Spline | Step::Scale(_) | Step::Shift(_) => 1,
             Step::Add | Step::Sub | Step::Mul | Step::Div => 2,
             Step::Call(Function::Min | Function::Max | Function::Pow) => 2,
             Step::Call(_) => 1,
