@@ -117,7 +117,7 @@ pub fn per_axis<T>(mut of: impl FnMut(usize) -> T) -> [T; 3] {
 pub fn of_cubic<N: Scalar>(y: N, spline: &Spline, piece: usize, order: usize) -> N {
     let (from, [c0, c1, c2, c3]) = spline.cubic(piece, order);
     let t = y.shifted(-from);
-    ((t.scaled(c3).shifted(c2) * t).shifted(c1) * t).shifted(c0)
+    (((N::constant(c3) * t).shifted(c2) * t).shifted(c1) * t).shifted(c0)
 }
 
 /// Returns a vector of constants.
