@@ -6,7 +6,8 @@
 //! linear part is.
 
 use crate::numeric::interval::Interval;
-use crate::numeric::scalar::Scalar;
+use crate::numeric::scalar::{Scalar, of_cubic};
+use crate::numeric::spline::Spline;
 use std::array;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -323,6 +324,16 @@ impl Scalar for Affine {
             -self
         } else {
             range.abs().into()
+        }
+    }
+
+    fn spline(self, spline: &Spline, order: usize) -> Self {
+        let range = self.range();
+        let [first, last] = [range.low, range.high].map(|end| spline.piece(end));
+        if first == last {
+            of_cubic(self, spline, first, order)
+        } else {
+            self.by_range(|range| range.spline(spline, order))
         }
     }
 
