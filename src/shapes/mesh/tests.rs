@@ -342,8 +342,9 @@ fn no_doubled_face_at_an_outline_is_seen_from_behind() {
 fn faces_of_which_none_lies_beside_another_are_found() {
     const COUNT: usize = 100_000;
     let size = |index: usize| (400.0 * (index as f64 / COUNT as f64 - 0.5)).exp2();
-    // The place and the size of each face.
-    let all: [(&str, &dyn Fn(usize) -> (f64, f64)); 4] = [
+    /// Returns the place and the size of a face.
+    type Of<'o> = &'o dyn Fn(usize) -> (f64, f64);
+    let all: [(&str, Of); 4] = [
         ("equal", &|_| (0.0, 1.0)),
         ("around one point", &|index| (0.0, 1.0 + index as f64 / COUNT as f64)),
         ("around one point, growing exponentially", &|index| (0.0, size(index))),
