@@ -353,7 +353,7 @@ fn pixels_that_are_cut_off_are_counted_and_told_of_with_what_they_lack() {
     let (stats, said) = panes("0.4", "classic");
     let levels = stats["cut"]["levels"].as_f64().expect("a bound");
     assert!(stats["cut"]["pixels"].as_u64() > Some(0) && levels > 0.1 && levels < 255.0, "{stats}");
-    assert!(said.starts_with("warning: ") && said.contains("cut off at 20000 rays"), "{said}");
+    assert!(said.starts_with("warning: ") && said.contains("the work of 20000 simple rays"), "{said}");
     assert!(said.contains("off by at most ") && said.contains("of 255 levels"), "{said}");
     // More light is reflected than arrives.
     let (stats, said) = panes("1", "exact");
