@@ -66,6 +66,14 @@ impl LocalRay {
         Self { near_origin, far_origin, inverse, is_backward, skipped, scale: tree.space.scale }
     }
 
+    /// Tells whether the ray's origin is finite in single precision. Only then are the boxes missed that do not exist,
+    /// which are infinitely far away.
+    #[inline(always)]
+    fn is_finite(&self) -> bool {
+        let sum = |of: [f32; 3]| of[0].abs() + of[1].abs() + of[2].abs();
+        (sum(self.near_origin) + sum(self.far_origin)).is_finite()
+    }
+
     /// Returns a distance in the tree's own units from where the ray starts there, rounded up.
     #[inline(always)]
     fn limit(&self, distance: f64) -> f32 {
@@ -105,6 +113,9 @@ impl Tree {
     #[inline(always)]
     pub fn along(&self, ray: &Ray, far: f64, drift: Option<Drift>, faces: &mut impl Faces) {
         let local = LocalRay::new(self, ray, drift);
+        if !local.is_finite() {
+            return;
+        }
         let mut limit = local.limit(far);
         let mut stack = [(0.0_f32, 0_u32); STACK];
         let mut waiting = 1;
@@ -195,5 +206,39 @@ impl Tree {
                 }
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Count(usize);
+
+    impl Faces for Count {
+        fn visit(&mut self, faces: Range<usize>) -> f64 {
+            self.0 += faces.len();
+            f64::INFINITY
+        }
+    }
+
+    #[test]
+    fn a_ray_that_is_not_finite_visits_no_face() {
+        let (tree, _) = Tree::new(&[DVec3::X, DVec3::Y, DVec3::Z], &[[0, 1, 2]]);
+        let visits = |origin, dir, drift| {
+            let mut faces = Count(0);
+            tree.along(&Ray { origin, dir }, f64::INFINITY, drift, &mut faces);
+            faces.0
+        };
+        let origin = DVec3::splat(-1.0);
+        let dir = DVec3::ONE.normalize();
+        assert_eq!(visits(origin, dir, None), 1);
+        for number in [f64::NAN, f64::INFINITY, -f64::INFINITY, 1e200] {
+            assert_eq!(visits(DVec3::splat(number), dir, None), 0, "{number}");
+            let drift = Drift { origin: number.abs(), dir: 0.0 };
+            assert_eq!(visits(origin, dir, Some(drift)), 0, "{number}");
+        }
+        assert_eq!(visits(origin, DVec3::NAN, None), 0);
+        assert_eq!(visits(origin, DVec3::INFINITY, None), 0);
     }
 }
