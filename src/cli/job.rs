@@ -206,7 +206,7 @@ pub fn tell_proofs(proofs: Proofs, plan: &Plan) {
     ));
 }
 
-/// Warns of pixels that reached the limit on their number of rays, if there are any.
+/// Warns of pixels with primary rays that used up their ray budget, if there are any.
 pub fn warn_of(cuts: Cuts) {
     if cuts.pixels == 0 {
         return;
@@ -219,9 +219,12 @@ pub fn warn_of(cuts: Cuts) {
     };
     messages::warning(
         &format!(
-            "{} cut off at {MAX_RAYS} rays for one primary ray, {most}",
+            "{} cut off at the ray budget (the work of {MAX_RAYS} simple rays for each primary ray), {most}",
             count(cuts.pixels as usize, "pixel")
         ),
-        Some("mirrors or glass spawn too many rays: a lower `specular` or `transparency` ends them sooner"),
+        Some(
+            "mirrors or glass spawn too many rays, or rays that are too costly: a lower `specular` or `transparency` \
+            ends them sooner",
+        ),
     );
 }

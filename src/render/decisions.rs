@@ -182,7 +182,8 @@ fn named((_, object): (usize, &Object)) -> &str {
 }
 
 fn depth(model: &Model, depth: &Depth) -> String {
-    let ends = format!("after a path of {MAX_DIST} units, and at {MAX_RAYS} rays for one primary ray");
+    let ends =
+        format!("after a path of {MAX_DIST} units, and at a ray budget of {MAX_RAYS} for one primary ray");
     let bound =
         || format!("nothing is brighter than {} divided by the path length of its light", short(depth.most));
     match (model.camera.value.accuracy, depth.most.is_finite()) {
