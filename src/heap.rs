@@ -4,7 +4,7 @@
 //! stable interface changes that, so the allocator itself calls a function of the command line, which tells the user.
 #![allow(
     unsafe_code,
-    reason = "the trait of allocators is unsafe; this one hands everything on to the system's"
+    reason = "the trait of allocators is unsafe, and so is to end at once; this one hands everything on to the system's"
 )]
 
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -27,6 +27,20 @@ thread_local! {
 /// program ends with a signal.
 pub fn when_refused(call: fn(usize)) {
     REFUSED.get_or_init(|| call);
+}
+
+/// Ends the program at once, without anything that runs at its end. The standard library's `exit` ends with a signal where
+/// the thread is in it already: there, memory can be refused, too.
+#[cfg(target_os = "linux")]
+pub fn exit_at_once(status: i32) -> ! {
+    // SAFETY: nothing of the program runs any more.
+    unsafe { nix::libc::_exit(status) }
+}
+
+/// Ends the program.
+#[cfg(not(target_os = "linux"))]
+pub fn exit_at_once(status: i32) -> ! {
+    std::process::exit(status)
 }
 
 /// Tells whether the system would provide so many bytes in one piece.

@@ -6,7 +6,6 @@ use crate::heap;
 use bytesize::ByteSize;
 use std::fs;
 use std::io::{self, Write};
-use std::process;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
@@ -42,7 +41,7 @@ fn end(bytes: usize) {
         // Another thread is telling the user, or this one was and the reserve did not suffice.
         thread::sleep(Duration::from_secs(1));
         let _ = io::stderr().write_all(b"error: not enough memory\n");
-        process::exit(1);
+        heap::exit_at_once(1);
     }
     if let Ok(mut reserve) = RESERVE.try_lock() {
         *reserve = Vec::new();
