@@ -35,7 +35,7 @@ fn line(text: &str) -> usize {
 /// The files that are dropped in, by their paths.
 static PLUGINS: LazyLock<Files> = LazyLock::new(|| {
     // This plugin asks for an attribute that is not in its table.
-    let forgetful = brick().replace("&[&CENTER, &SIZE]", "&[&CENTER]").replace("\"box\"", "\"brick\"");
+    let forgetful = brick().replace("&[&CENTER, &SIZE]", "&[&CENTER]").replace("\"brick\"", "\"block\"");
     // This plugin reads three numbers as one.
     let confused = brick()
         .replace(
@@ -43,11 +43,11 @@ static PLUGINS: LazyLock<Files> = LazyLock::new(|| {
             "static WIDE: Pparm<f64> = Pparm::required(\"size\", \"its width\");\n\nconst TABLE",
         )
         .replace("0.5 * args.get(&SIZE)", "DVec3::splat(0.5 * args.get(&WIDE))")
-        .replace("\"box\"", "\"slab\"");
+        .replace("\"brick\"", "\"slab\"");
     let plugins = [
-        ("disc", block_with(&readme(), "struct Disc")),
-        ("box", brick()),
-        ("brick", forgetful),
+        ("ring", block_with(&readme(), "struct Ring")),
+        ("brick", brick()),
+        ("block", forgetful),
         ("slab", confused),
         ("barrel", BARREL.to_owned()),
         ("stripes", STRIPES.to_owned()),
@@ -125,7 +125,7 @@ fn a_file_that_registers_nothing_is_warned_of() {
     let warning = |name: &str| format!("plugins/{name}.rs registers nothing, so no scene can use it");
     assert!(BUILT.said.contains(&warning("empty")), "{}", BUILT.said);
     assert!(!BUILT.prints(&["list"]).contains("empty "));
-    assert!(page().contains(&warning("box")));
+    assert!(page().contains(&warning("brick")));
 }
 
 #[test]
@@ -140,52 +140,52 @@ fn a_file_that_is_no_module_is_refused() {
 #[test]
 fn the_readmes_plugin_is_listed_with_its_attributes() {
     let list = BUILT.prints(&["list"]);
-    let disc = list.lines().find(|line| line.starts_with("disc ")).expect("the list has it");
-    assert!(disc.contains("a circular piece of a plane"));
-    assert!(BUILT.prints(&["list", "disc"]).contains("the distance from the centre to the rim"));
+    let ring = list.lines().find(|line| line.starts_with("ring ")).expect("the list has it");
+    assert!(ring.contains("a flat ring"));
+    assert!(BUILT.prints(&["list", "ring"]).contains("the distance from the centre to the outer edge"));
 }
 
 #[test]
 fn the_readmes_plugin_is_dumped() {
-    let scene = BUILT.scene("disc-dumped", &block_with(&readme(), "disc target"));
+    let scene = BUILT.scene("ring-dumped", &block_with(&readme(), "ring target"));
     let dump = BUILT.prints(&["dump", scene.to_str().expect("a path in UTF-8")]);
     assert!(
-        dump.contains("\ndisc         target \nmaterial     red \nnormal         0.0   0.0   1.0 \n"),
+        dump.contains("\nring         target \nmaterial     red \nnormal         0.0   0.0   1.0 \n"),
         "{dump}"
     );
-    assert!(dump.contains("\nradius         2.0 \n"), "{dump}");
+    assert!(dump.contains("\nouter          2.0 \n"), "{dump}");
 }
 
 #[test]
-fn the_readmes_plugin_is_a_round_disc() {
-    let picture = BUILT.picture("disc", &block_with(&readme(), "disc target"));
+fn the_readmes_plugin_is_a_flat_ring() {
+    let picture = BUILT.picture("ring", &block_with(&readme(), "ring target"));
     let red = picture.pixels().filter(|pixel| pixel.0 == [255, 0, 0]).count() as f64;
-    // On the image plane, which is 8 by 6 units, the disc's radius of 2 is seen as 2 * 6 / 9.
-    let area = std::f64::consts::PI * (2.0_f64 * 6.0 / 9.0).powi(2) / (8.0 * 6.0);
-    assert!((red / (160.0 * 120.0) - area).abs() < 0.005, "a round disc of the right size, {red} pixels");
+    // On the image plane, which is 8 by 6 units, the ring's radii of 2 and 1 are seen as 6 / 9 of them.
+    let area = std::f64::consts::PI * (4.0 - 1.0) * (6.0_f64 / 9.0).powi(2) / (8.0 * 6.0);
+    assert!((red / (160.0 * 120.0) - area).abs() < 0.005, "a flat ring of the right size, {red} pixels");
 }
 
 #[test]
 fn the_readmes_plugin_has_its_rules_checked() {
-    let message = BUILT.says(&["check", "-"], "disc d { radius 0 }");
-    assert!(message.contains("`radius` of disc `d` must be positive, not 0"), "{message}");
+    let message = BUILT.says(&["check", "-"], "ring r { outer 0 }");
+    assert!(message.contains("`outer` of ring `r` must be positive, not 0"), "{message}");
 }
 
 // The plugin of docs/plugins.md
 
 #[test]
 fn the_pages_plugin_gives_no_warning() {
-    assert!(!BUILT.said.contains("plugins/box.rs"), "{}", BUILT.said);
+    assert!(!BUILT.said.contains("plugins/brick.rs"), "{}", BUILT.said);
 }
 
 #[test]
 fn the_pages_plugin_is_listed_as_the_page_has_it() {
-    assert_eq!(BUILT.prints(&["list", "box"]), block_with(&page(), "box NAME"));
+    assert_eq!(BUILT.prints(&["list", "brick"]), block_with(&page(), "brick NAME"));
 }
 
 #[test]
 fn the_pages_plugin_looks_as_the_page_shows_it() {
-    assert_shown(&BUILT.picture("box", &block_with(&page(), "box brick")), "box");
+    assert_shown(&BUILT.picture("brick", &block_with(&page(), "brick low")), "brick");
 }
 
 /// Asserts that the docs show this image.
@@ -196,26 +196,26 @@ fn assert_shown(picture: &RgbImage, name: &str) {
 
 // Mistakes
 
-const A_BOX: &str = "camera eye { pixeldim 1 1 worlddim 8 6 viewpoint 4 3 6 } material m { ambient 1 1 1 }
-    box b { material m center 1 1 1 }";
+const A_BRICK: &str = "camera eye { pixeldim 1 1 worlddim 8 6 viewpoint 4 3 6 } material m { ambient 1 1 1 }
+    brick b { material m center 1 1 1 }";
 
 #[test]
 fn a_constructor_that_asks_for_what_is_not_in_its_table_is_told() {
-    let said = BUILT.says(&["check", "-"], &A_BOX.replace("box b", "brick b"));
+    let said = BUILT.says(&["check", "-"], &A_BRICK.replace("brick b", "block b"));
     let line = line(&brick());
     let message = |name: &str| {
         format!(
             "the plugin `{name}` asks for `size`, which is not in the table it registers at plugins/{name}.rs:{line}: add it there"
         )
     };
-    assert!(said.contains("(src/../plugins/brick.rs:"), "the plugin's own line is told: {said}");
-    assert!(said.contains(&message("brick")), "{said}");
-    assert!(page().contains(&message("box")), "the page has the message");
+    assert!(said.contains("(src/../plugins/block.rs:"), "the plugin's own line is told: {said}");
+    assert!(said.contains(&message("block")), "{said}");
+    assert!(page().contains(&message("brick")), "the page has the message");
 }
 
 #[test]
 fn a_constructor_that_asks_for_another_type_is_told() {
-    let scene = A_BOX.replace("box b", "slab b").replace("center 1 1 1", "center 1 1 1 size 1 1 1");
+    let scene = A_BRICK.replace("brick b", "slab b").replace("center 1 1 1", "center 1 1 1 size 1 1 1");
     let said = BUILT.says(&["check", "-"], &scene);
     // In this plugin, there are two more lines above the registration.
     let line = line(&brick()) + 2;
@@ -242,7 +242,7 @@ fn a_name_that_is_taken_is_told_as_the_page_has_it() {
     let (_, places) = told.split_once(registered).unwrap_or_else(|| panic!("{told}"));
     let (_, other) = places.split_once(" and ").expect("two places");
     let (other, _) = other.split_once(".rs:").expect("a line");
-    assert!(page().contains(&format!("{registered}box.rs:{} and {other}.rs:", line(&brick()))), "{told}");
+    assert!(page().contains(&format!("{registered}brick.rs:{} and {other}.rs:", line(&brick()))), "{told}");
 }
 
 // Profiles and shaders
@@ -326,7 +326,7 @@ use tabray::tools::contract;
 
 fn main() {
     let all = Registry::get().expect(\"no two plugins claim one name\");
-    let sound = all.iter().filter(|entity| ![\"brick\", \"slab\"].contains(&entity.name));
+    let sound = all.iter().filter(|entity| ![\"block\", \"slab\"].contains(&entity.name));
     for breach in contract::breaches(&Registry::of(sound).expect(\"they were one already\")) {
         println!(\"{breach}\");
     }
