@@ -12,6 +12,9 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 /// The number of parts per thread that many indices are divided into, so that no thread waits long for the last one.
 const PARTS: usize = 32;
 
+/// The number of places that are filled by one thread together.
+const FILLED: usize = 1 << 12;
+
 /// Does some work on the threads of a pool, and returns its result.
 pub fn on<T: Send>(pool: &ThreadPool, work: impl FnOnce() -> T + Send) -> T {
     let (mut work, mut result) = (Some(work), None);
@@ -68,6 +71,21 @@ pub fn ranges<T: Send>(count: usize, many: usize, work: &(dyn Fn(Range<usize>) -
         all.append(&mut part.into_inner().expect("no thread panicked"));
     }
     all
+}
+
+/// Returns the first index below a number for which some question is answered with yes.
+pub fn first(count: usize, is: impl Fn(usize) -> bool + Sync) -> Option<usize> {
+    ranges(count, 2, &|mut range| range.find(|index| is(*index)).into_iter().collect()).first().copied()
+}
+
+/// Fills a slice with what some work returns for each index.
+pub fn fill<T: Send>(all: &mut [T], work: impl Fn(usize) -> T + Sync) {
+    let _ = chunks(all, FILLED, |index, chunk| {
+        for (offset, place) in chunk.iter_mut().enumerate() {
+            *place = work(FILLED * index + offset);
+        }
+        ControlFlow::Continue(())
+    });
 }
 
 /// Does some work for each chunk of a slice, with its index, until it breaks; then chunks may be left out.

@@ -193,14 +193,14 @@ fn shown(hasher: Sha256) -> String {
 /// # Errors
 /// Those of `out` and `picture`, and an error where a PNG cannot have the size.
 pub fn write(
-    out: impl Write,
+    mut out: impl Write,
     [width, height]: [usize; 2],
     identity: &Identity,
     tiles: &Tiles,
     mut picture: Rows,
 ) -> io::Result<()> {
     let side = |pixels: usize| u32::try_from(pixels).map_err(io::Error::other);
-    let mut encoder = png::Encoder::new(out, side(width)?, side(height)?);
+    let mut encoder = png::Encoder::new(&mut out as &mut dyn Write, side(width)?, side(height)?);
     encoder.set_color(png::ColorType::Rgba);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::Fast);

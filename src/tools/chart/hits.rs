@@ -203,7 +203,7 @@ fn tally(candidate: &Candidate, set: &Set, truths: &[Truth], screen: f64) -> (Ve
         }
         wrong.of += 1;
     }
-    errors.sort_by(f64::total_cmp);
+    errors.sort_unstable_by(f64::total_cmp);
     (errors, wrong)
 }
 
