@@ -47,10 +47,12 @@ pub trait Attribute: Sync {
     fn rule(&self) -> &'static str;
     /// Tells whether values of the right type and number satisfy the rule.
     fn allows(&self, datum: &Datum) -> bool;
+}
 
+impl dyn Attribute + '_ {
     /// Finds the first value that is a length or a coordinate whose square would overflow or underflow; returns its
     /// index and the reason.
-    fn beyond_squares(&self, datum: &Datum) -> Option<(usize, &'static str)> {
+    pub fn beyond_squares(&self, datum: &Datum) -> Option<(usize, &'static str)> {
         let Datum::Numbers(numbers) = datum else { return None };
         let is_length = self.unit() == "world units";
         // The sides of a rectangle or of the image plane, which come in pairs, are not squared.
@@ -68,7 +70,7 @@ pub trait Attribute: Sync {
     }
 
     /// Says how many values of which type the attribute takes: "1 or 3 numbers".
-    fn takes(&self) -> String {
+    pub fn takes(&self) -> String {
         let counts: Vec<_> = self.arity().iter().map(usize::to_string).collect();
         let counts = counts.join(" or ");
         let plural = if counts == "1" { "" } else { "s" };
