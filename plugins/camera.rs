@@ -5,9 +5,7 @@ use crate::prelude::*;
 static PIXELDIM: Pparm<[i64; 2]> = Pparm::required("pixeldim", "the width and height of the image")
     .alias(&["pixel_dim"])
     .unit("pixels")
-    .must("from 1 to 100000 in each dimension", |size: &[i64; 2]| {
-        size.iter().all(|side| (1..=100_000).contains(side))
-    })
+    .between(1.0, 100_000.0)
     .dumped("pixel_dim", " \n");
 static WORLDDIM: Pparm<DVec2> = Pparm::required("worlddim", "the width and height of the image plane")
     .alias(&["world_dim"])
@@ -21,7 +19,7 @@ static VIEWPOINT: Pparm<DVec3> = Pparm::required("viewpoint", "the position of t
     .dumped("view_point", "\n");
 
 static SAMPLES: Pparm<i64> = Pparm::or("samples", "the number of samples per pixel, to smooth edges", 1)
-    .must("from 1 to 65536", |samples| (1..=Sampler::MOST.into()).contains(samples))
+    .between(1.0, Sampler::MOST as f64)
     .not_dumped();
 
 static ACCURACY: Pparm<Accuracy> =
@@ -40,6 +38,7 @@ inventory::submit! {
         }
         Ok(Camera {
             adaptive: None,
+            certain: false,
             scramble: 0,
             exposure: 0.0,
             // The attributes' rules ensure that these casts are lossless.

@@ -18,7 +18,7 @@ static SHININESS: Pparm<f64> =
         .dumped("shininess", " \n\n");
 static TRANSPARENCY: Pparm<f64> =
     Pparm::or("transparency", "the fraction of light that is transmitted, tinted by the diffuse colour", 0.0)
-        .must("from 0 to 1", |part| (0.0..=1.0).contains(part))
+        .between(0.0, 1.0)
         .dumped("transparency", " \n\n");
 
 const TABLE: Table = &[&AMBIENT, &DIFFUSE, &SPECULAR, &SHININESS, &TRANSPARENCY];

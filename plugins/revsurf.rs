@@ -21,12 +21,14 @@ static HEIGHT: Pparm<f64> = Pparm::required("height", "the height of the surface
     .must("positive", |height| *height > 0.0)
     .not_dumped();
 
-const TABLE: Table = &[&SURFER, &PROFILE, &DIRECTION, &BASE, &HEIGHT];
+static CURVE: OneOf = OneOf { meaning: "the profile curve", names: &["surfer", "profile"] };
+
+const TABLE: Table = &[&SURFER, &PROFILE, &CURVE, &DIRECTION, &BASE, &HEIGHT];
 
 inventory::submit! {
     Entity::shape("revsurf", "a surface of revolution, such as a cone, a vase or a column", &[TABLE], |args| {
         let frame = Frame::around(args.get(&BASE), args.get(&DIRECTION));
-        let (line, height) = (line(args)?, args.get(&HEIGHT));
+        let (line, height) = (line(args), args.get(&HEIGHT));
         let finish = match args.accuracy() {
             Accuracy::Classic => {
                 return Ok(Body::plain(Shape::new(InFrame { surface: Classic { line, height }, frame }).classic()));
@@ -44,19 +46,8 @@ inventory::submit! {
 }
 
 /// Returns the profile curve that an entity names or gives as a formula.
-fn line(args: &Args) -> Result<ProfileLine, Refusal> {
-    match (args.get(&SURFER), args.get(&PROFILE)) {
-        (Some(profile), None) => Ok(profile.line()),
-        (None, Some(formula)) => Ok(ProfileLine { radius: (*formula).clone(), slope: None }),
-        (Some(_), Some(_)) => Err(Refusal {
-            attribute: Some("profile"),
-            message: "has both a `surfer` and a `profile`".to_owned(),
-            help: "each of them is the profile curve: leave one out",
-        }),
-        (None, None) => Err(Refusal {
-            attribute: None,
-            message: "lacks `surfer` or `profile`".to_owned(),
-            help: "add `surfer N`, or a formula: `profile \"2 + sin(y)\"`",
-        }),
-    }
+fn line(args: &Args) -> ProfileLine {
+    let formula = args.get(&PROFILE).map(|formula| ProfileLine { radius: (*formula).clone(), slope: None });
+    let named = args.get(&SURFER).map(Profile::line);
+    named.or(formula).expect("the table holds that one of them is given")
 }

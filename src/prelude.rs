@@ -4,7 +4,9 @@
 //! [`double_double`](crate::numeric::double_double).
 
 // Registration of an entity type: its table, its constructor, and the constructor's arguments.
+pub use crate::scene::counts::OneOf;
 pub use crate::scene::entity::{Args, Entity, Refusal};
+pub use crate::scene::list::List;
 pub use crate::scene::pparm::{Attributes, Derived, LEAST_LENGTH, Pparm, Row, Table};
 pub use crate::scene::value::{Datum, PerChannel, Value};
 pub use inventory;
@@ -24,6 +26,7 @@ pub use crate::world::texture::Texture;
 
 // What a scene selects by name: procedural shaders and profiles.
 pub use crate::numeric::formula::Formula;
+pub use crate::numeric::formula::field::Field;
 pub use crate::scene::procedural::{Anchor, OnPlane, OnSphere, ProceduralShader};
 pub use crate::scene::profile::{Profile, ProfileLine};
 

@@ -123,6 +123,19 @@ pub fn list<'w>(words: impl IntoIterator<Item = &'w str>) -> String {
     words.into_iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ")
 }
 
+/// Lists words in prose: `x`, `x and y`, `x, y and z`.
+pub fn and(words: &[&str]) -> String {
+    match words {
+        [words @ .., last] if !words.is_empty() => format!("{} and {last}", words.join(", ")),
+        words => words.concat(),
+    }
+}
+
+/// Returns the article of a word: `a` or `an`.
+pub fn article(word: &str) -> &'static str {
+    if word.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" }
+}
+
 /// Writes a number that is not below 0 to about three significant digits.
 pub fn short(number: f64) -> String {
     if number == 0.0 || (1e-3..1e6).contains(&number) {

@@ -1,6 +1,7 @@
 //! Dual numbers: forward-mode automatic differentiation.
 
 use crate::numeric::scalar::{Scalar, apart_if};
+use crate::numeric::spline::Spline;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A number and its derivative. A dual number of dual numbers has the second derivative, too.
@@ -198,6 +199,31 @@ impl<N: Scalar> Scalar for Dual<N> {
             let derivative = N::constant(f64::from(exponent)) * self.value.powi(exponent - 1);
             self.chain(self.value.powi(exponent), derivative)
         })
+    }
+
+    #[inline(always)]
+    fn scaled(self, factor: f64) -> Self {
+        Self { value: self.value.scaled(factor), slope: self.slope.scaled(factor) }
+    }
+
+    #[inline(always)]
+    fn shifted(self, by: f64) -> Self {
+        Self { value: self.value.shifted(by), slope: self.slope }
+    }
+
+    /// Differentiates the power as a whole: its derivatives have bounds where those of its base have none.
+    #[inline(always)]
+    fn ramp(self, exponent: i32) -> Self {
+        let derivative = if exponent == 1 {
+            self.value.step()
+        } else {
+            N::constant(f64::from(exponent)) * self.value.ramp(exponent - 1)
+        };
+        self.chain(self.value.ramp(exponent), derivative)
+    }
+
+    fn spline(self, spline: &Spline, order: usize) -> Self {
+        self.chain(self.value.spline(spline, order), self.value.spline(spline, order + 1))
     }
 
     #[inline(always)]

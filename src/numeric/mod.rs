@@ -1,11 +1,13 @@
 //! Number types that formulas are evaluated with, and formulas.
 
+pub(crate) mod affine;
 pub mod double_double;
 pub(crate) mod dual;
 pub(crate) mod f64x8;
 pub(crate) mod formula;
 pub(crate) mod interval;
 pub(crate) mod scalar;
+pub(crate) mod spline;
 
 pub use dual::Dual;
 pub use formula::Formula;

@@ -1,5 +1,6 @@
 //! Entity types: what a plugin registers, and what its constructor receives.
 
+use crate::scene::counts::OneOf;
 use crate::scene::kind::Kind;
 use crate::scene::pparm::{Attribute, Attributes, Given, Pparm, Row, Table};
 use crate::scene::value::{Datum, Type};
@@ -161,6 +162,11 @@ impl Entity {
     /// Returns the type's attributes, in the order of its table.
     pub fn attributes(&self) -> impl Iterator<Item = &'static dyn Attribute> + use<> {
         self.rows().filter_map(|row| row.attribute())
+    }
+
+    /// Returns the groups of attributes of which exactly one must be given.
+    pub fn groups(&self) -> impl Iterator<Item = &'static OneOf> + use<> {
+        self.rows().filter_map(|row| row.one_of())
     }
 
     /// Tells whether a constructor reads files that the entity names.

@@ -155,7 +155,10 @@ fn attribute_rule(attribute: &'static dyn Attribute) -> Rule {
     let (end, scopes) = match attribute.value_type() {
         Type::Whole | Type::Number => return Rule::matching(begin, Some(ATTRIBUTE)),
         Type::Name(_) => (format!("({QUOTED}|{BARE})|(?=[{{}}])"), &[REFERENCE][..]),
-        Type::Word | Type::File | Type::Formula => {
+        Type::Truth => {
+            (format!("({QUOTED})|(yes|no){END}|({BARE})|(?=[{{}}])"), &[IN_QUOTES, CHOICE, WORD][..])
+        }
+        Type::Word | Type::File | Type::Formula(_) => {
             (format!("({QUOTED})|({BARE})|(?=[{{}}])"), &[IN_QUOTES, WORD][..])
         }
         Type::Choice(choices) => {

@@ -3,6 +3,7 @@
 //! Fields are declared in the order in which they are written.
 
 use crate::scene::choice::ChoiceName;
+use crate::scene::counts::Counts;
 use crate::scene::entity;
 use crate::scene::kind::Kind;
 use crate::scene::pparm;
@@ -13,6 +14,7 @@ use crate::scene::registry::Registry;
 use crate::scene::schema::Constant;
 use crate::scene::value::Type;
 use serde::Serialize;
+use std::borrow::Cow;
 use std::iter;
 
 /// The format's version: it grows when a field is removed or changes its meaning, and not when one is added.
@@ -44,6 +46,8 @@ pub struct Entity {
     pub meaning: &'static str,
     /// The name in scenes.
     pub name: &'static str,
+    /// The groups of attributes of each of which a scene gives exactly one.
+    pub one_of: Vec<Group>,
 }
 
 /// An attribute.
@@ -53,25 +57,51 @@ pub struct Attribute {
     pub aliases: &'static [&'static str],
     /// All allowed values of a choice; null for other types.
     pub choices: Option<Vec<Named>>,
-    /// The numbers of values that the attribute may take: `[1, 3]` for one or three.
+    /// The numbers of values that the attribute may take: `[1, 3]` for one or three; empty for a list.
     pub counts: &'static [usize],
     /// The values where a scene gives none: one value, or several in an array; null where there is no default.
     pub default: Option<Constant>,
+    /// How many values a list takes; null for other attributes.
+    pub list: Option<ListOf>,
     /// The meaning, in a few words.
     pub meaning: &'static str,
     /// The rule for the values, in words that end "it must be ...", or null.
-    pub must_be: Option<&'static str>,
+    pub must_be: Option<Cow<'static, str>>,
     /// The name in scenes.
     pub name: &'static str,
+    /// The least and the greatest number that each value may be; null where there are none.
+    pub range: Option<[f64; 2]>,
     /// The kind of entity that a name refers to; null for other types.
     pub refers_to: Option<Kind>,
     /// Whether a scene must give it.
     pub required: bool,
-    /// `number`, `whole number`, `word`, `name`, `choice` or `formula`.
+    /// `number`, `whole number`, `word`, `file`, `name`, `choice`, `formula` or `truth`.
     #[serde(rename = "type")]
     pub value_type: &'static str,
     /// The unit of the values, or null.
     pub unit: Option<&'static str>,
+    /// The variables of a formula; null for other types.
+    pub variables: Option<&'static [&'static str]>,
+}
+
+/// How many values a list takes.
+#[derive(Serialize)]
+pub struct ListOf {
+    /// The number of values in each group.
+    pub group: usize,
+    /// The least number of groups.
+    pub least: usize,
+    /// The most number of groups.
+    pub most: usize,
+}
+
+/// Attributes of which a scene gives exactly one.
+#[derive(Serialize)]
+pub struct Group {
+    /// What each of them is.
+    pub meaning: &'static str,
+    /// Their names.
+    pub names: &'static [&'static str],
 }
 
 /// One of several alternatives.
@@ -118,6 +148,10 @@ impl Entity {
             kind: entity.kind(),
             meaning: entity.meaning,
             name: entity.name,
+            one_of: entity
+                .groups()
+                .map(|group| Group { meaning: group.meaning, names: group.names })
+                .collect(),
         }
     }
 }
@@ -129,7 +163,8 @@ impl Attribute {
             Type::Number => ("number", None, None),
             Type::Word => ("word", None, None),
             Type::File => ("file", None, None),
-            Type::Formula => ("formula", None, None),
+            Type::Formula(_) => ("formula", None, None),
+            Type::Truth => ("truth", None, None),
             Type::Name(kind) => ("name", Some(kind), None),
             Type::Choice(choices) => {
                 ("choice", None, Some(choices.all().into_iter().map(Named::from).collect()))
@@ -140,11 +175,23 @@ impl Attribute {
         Self {
             aliases: attribute.aliases(),
             choices,
-            counts: attribute.arity(),
+            counts: match attribute.arity() {
+                Counts::Of(counts) => counts,
+                Counts::List { .. } => &[],
+            },
+            list: match attribute.arity() {
+                Counts::Of(_) => None,
+                Counts::List { group, least, most } => Some(ListOf { group, least, most }),
+            },
+            range: attribute.range(),
+            variables: match attribute.value_type() {
+                Type::Formula(variables) => Some(variables),
+                _ => None,
+            },
             required: default.is_none(),
             default: default.as_ref().and_then(Constant::of),
             meaning: attribute.meaning(),
-            must_be: some(attribute.rule()),
+            must_be: Some(attribute.rule()).filter(|rule| !rule.is_empty()),
             name: attribute.name(),
             refers_to,
             value_type,

@@ -1,10 +1,12 @@
 //! From a scene's text to a model, and back: the tables of entity types, and the documents generated from them.
 
 pub(crate) mod choice;
+pub(crate) mod counts;
 pub mod dump;
 pub(crate) mod entity;
 pub mod grammar;
 pub(crate) mod kind;
+pub(crate) mod list;
 pub(crate) mod list_json;
 pub(crate) mod model;
 pub(crate) mod pparm;
@@ -19,8 +21,10 @@ pub(crate) mod syntax;
 pub(crate) mod value;
 
 pub use choice::Choice;
+pub use counts::{Counts, OneOf};
 pub use entity::{Args, Entity, Refusal};
 pub use kind::Kind;
+pub use list::List;
 pub use model::Model;
 pub use pparm::{Attribute, Derived, Pparm, Row, Table};
 pub use profile::Profile;

@@ -3,8 +3,10 @@
 //! A descriptor is a typed key. Name, type, default and rule are written once; the reader, messages, the dump, `tabray
 //! list` and the constructor all use that one place (the notes' "general attribute parser").
 
+use crate::scene::counts::{Counts, OneOf};
 use crate::scene::value::{Datum, Type, Value};
 use crate::text;
+use std::borrow::Cow;
 use std::panic::Location;
 use std::ptr;
 
@@ -14,6 +16,10 @@ pub trait Row: Sync {
     fn attribute(&self) -> Option<&dyn Attribute>;
     /// Returns what the notes' dump prints for this row, line ends included.
     fn dump(&self, attributes: &Attributes) -> String;
+    /// Returns the attributes of which exactly one must be given, or `None` where the row says nothing of that.
+    fn one_of(&self) -> Option<&OneOf> {
+        None
+    }
 }
 
 /// Rows that belong together, so that tables can be composed: a finite plane's are the plane's and its own.
@@ -40,11 +46,13 @@ pub trait Attribute: Sync {
     /// Returns the type of the values.
     fn value_type(&self) -> Type;
     /// Returns the numbers of values that the attribute may take.
-    fn arity(&self) -> &'static [usize];
+    fn arity(&self) -> Counts;
     /// Returns the values where a scene gives none, or `None` where a scene must give them.
     fn default(&self) -> Option<Datum>;
     /// Returns what the values must be, such as "positive", or an empty string where every value is allowed.
-    fn rule(&self) -> &'static str;
+    fn rule(&self) -> Cow<'static, str>;
+    /// Returns the least and the greatest number that each value may be, where there are such numbers.
+    fn range(&self) -> Option<[f64; 2]>;
     /// Tells whether values of the right type and number satisfy the rule.
     fn allows(&self, datum: &Datum) -> bool;
 }
@@ -71,12 +79,9 @@ impl dyn Attribute + '_ {
 
     /// Says how many values of which type the attribute takes: "1 or 3 numbers".
     pub fn takes(&self) -> String {
-        let counts: Vec<_> = self.arity().iter().map(usize::to_string).collect();
-        let counts = counts.join(" or ");
-        let plural = if counts == "1" { "" } else { "s" };
         match self.value_type() {
-            Type::Whole => format!("{counts} whole number{plural}"),
-            Type::Number => format!("{counts} number{plural}"),
+            Type::Whole => self.arity().told("whole number"),
+            Type::Number => self.arity().told("number"),
             Type::Word => "a word".to_owned(),
             Type::File => "the name of a file".to_owned(),
             Type::Name(kind) => format!("the name of {}", kind.with_article()),
@@ -84,7 +89,8 @@ impl dyn Attribute + '_ {
                 format!("the name or number of a {}", choices.what)
             }
             Type::Choice(choices) => format!("the name of an {}", choices.what),
-            Type::Formula => "a formula in y, in quotes".to_owned(),
+            Type::Formula(variables) => format!("a formula in {}, in quotes", text::and(variables)),
+            Type::Truth => "`yes` or `no`".to_owned(),
         }
     }
 }
@@ -100,6 +106,7 @@ pub struct Pparm<T: Value> {
     default: Option<T>,
     rule: &'static str,
     keeps: fn(&T) -> bool,
+    range: Option<[f64; 2]>,
     /// The beginning of the attribute's line in the notes' dump; `None` where the dump leaves it out.
     label: Option<&'static str>,
     ending: &'static str,
@@ -126,6 +133,7 @@ impl<T: Value> Pparm<T> {
             default,
             rule: "",
             keeps: |_| true,
+            range: None,
             label: Some(name),
             ending: " \n",
             shown: None,
@@ -148,6 +156,12 @@ impl<T: Value> Pparm<T> {
     pub const fn must(mut self, rule: &'static str, keeps: fn(&T) -> bool) -> Self {
         self.rule = rule;
         self.keeps = keeps;
+        self
+    }
+
+    /// Sets the range of each number, ends included. It is part of the rule: "from 0 to 1".
+    pub const fn between(mut self, least: f64, most: f64) -> Self {
+        self.range = Some([least, most]);
         self
     }
 
@@ -192,7 +206,7 @@ impl<T: Value> Attribute for Pparm<T> {
         T::TYPE
     }
 
-    fn arity(&self) -> &'static [usize] {
+    fn arity(&self) -> Counts {
         T::ARITY
     }
 
@@ -200,12 +214,25 @@ impl<T: Value> Attribute for Pparm<T> {
         self.default.as_ref().map(T::to_datum)
     }
 
-    fn rule(&self) -> &'static str {
-        self.rule
+    fn rule(&self) -> Cow<'static, str> {
+        let Some([least, most]) = self.range else { return self.rule.into() };
+        let of_each = if T::ARITY.most() > 1 { " in each dimension" } else { "" };
+        let and = if self.rule.is_empty() { "" } else { ", and " };
+        format!("{}{and}from {least} to {most}{of_each}", self.rule).into()
+    }
+
+    fn range(&self) -> Option<[f64; 2]> {
+        self.range
     }
 
     fn allows(&self, datum: &Datum) -> bool {
-        T::from_datum(datum).is_some_and(|value| (self.keeps)(&value))
+        let lies_in = |number: f64| self.range.is_none_or(|[least, most]| (least..=most).contains(&number));
+        let is_in_range = match datum {
+            Datum::Numbers(numbers) => numbers.iter().all(|number| lies_in(*number)),
+            Datum::Whole(numbers) => numbers.iter().all(|number| lies_in(*number as f64)),
+            _ => true,
+        };
+        is_in_range && T::from_datum(datum).is_some_and(|value| (self.keeps)(&value))
     }
 }
 
@@ -234,6 +261,21 @@ impl Row for Derived {
 
     fn dump(&self, attributes: &Attributes) -> String {
         (self.0)(attributes)
+    }
+}
+
+/// Says of which attributes exactly one must be given.
+impl Row for OneOf {
+    fn attribute(&self) -> Option<&dyn Attribute> {
+        None
+    }
+
+    fn dump(&self, _attributes: &Attributes) -> String {
+        String::new()
+    }
+
+    fn one_of(&self) -> Option<&OneOf> {
+        Some(self)
     }
 }
 

@@ -1,6 +1,7 @@
 //! The reference of the scene language: the meaning of its words, generated from the tables.
 
 use crate::scene::choice::{Choice, ChoiceName};
+use crate::scene::counts::OneOf;
 use crate::scene::entity::Entity;
 use crate::scene::kind::Kind;
 use crate::scene::pparm::Attribute;
@@ -73,8 +74,11 @@ impl Word {
             aliases => format!("\nAlso written {}.\n", text::list(aliases.iter().copied())),
         };
         let rows: String = entity.attributes().map(attribute_row).collect();
+        let one_of =
+            |group: &OneOf| format!("\nExactly one of {} is given: {}.\n", group.told("and"), group.meaning);
+        let groups: String = entity.groups().map(one_of).collect();
         let details =
-            format!("{also}\n| attribute | values | default | meaning |\n|---|---|---|---|\n{rows}");
+            format!("{also}\n| attribute | values | default | meaning |\n|---|---|---|---|\n{rows}{groups}");
         Self { name: entity.name, meaning: entity.meaning, place: entity.place(), details }
     }
 

@@ -131,7 +131,7 @@ fn taken(what: &str, name: &str, first: &Entity, second: &Entity) -> String {
 mod tests {
     use super::*;
     use crate::scene::pparm::{Pparm, Row, Table};
-    use crate::scene::value::Type;
+    use crate::scene::value::{Datum, Type};
     use crate::world::body::Body;
 
     static SIZE: Pparm<f64> = Pparm::required("size", "how large it is").alias(&["extent"]);
@@ -189,17 +189,31 @@ mod tests {
             for attribute in entity.attributes() {
                 let of = |what: &str| of(&format!("{what} of `{}`", attribute.name()));
                 assert!(is_short(attribute.meaning()), "{meant} {}", of("that"));
-                assert!(!attribute.arity().is_empty(), "some number of values is taken: {}", of("the arity"));
+                assert!(
+                    (1..1000).contains(&attribute.arity().most()),
+                    "some number of values is taken, and fewer than are kept: {}",
+                    of("the arity")
+                );
                 assert!(
                     attribute.default().is_none_or(|datum| attribute.allows(&datum)),
                     "{} does not keep its own rule, to be {}",
                     of("the default"),
                     attribute.rule()
                 );
+                assert!(
+                    attribute.range().is_none_or(|[least, most]| least <= most),
+                    "the range has numbers: {}",
+                    of("that")
+                );
                 if let Type::Name(kind) = attribute.value_type() {
                     let is_there = registry.iter().any(|entity| entity.kind() == kind);
                     assert!(is_there, "no plugin makes a {kind}, {}", of("the type"));
                 }
+            }
+            for name in entity.groups().flat_map(|group| group.names) {
+                let attribute = entity.attributes().find(|attribute| attribute.name() == *name);
+                let may_be_absent = attribute.and_then(|known| known.default()) == Some(Datum::Absent);
+                assert!(may_be_absent, "one of a group may be left out: `{name}` of `{}`", entity.name);
             }
         }
     }

@@ -1,5 +1,6 @@
 //! The JSON Schema of scenes in TOML, generated from the tables: editors check and complete with it.
 
+use crate::scene::counts::Counts;
 use crate::scene::entity::Entity;
 use crate::scene::kind::Kind;
 use crate::scene::pparm::Attribute;
@@ -38,12 +39,18 @@ pub struct Schema {
     /// The schema of each value of an array.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub items: Option<Box<Schema>>,
+    /// The greatest number.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub maximum: Option<f64>,
     /// The maximum number of values of an array.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max_items: Option<usize>,
     /// The maximum number of fields of an object.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max_properties: Option<usize>,
+    /// The least number.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub minimum: Option<f64>,
     /// The minimum number of values of an array.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub min_items: Option<usize>,
@@ -62,7 +69,7 @@ pub struct Schema {
     /// The title that editors show.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub title: Option<&'static str>,
-    /// The type of the value: `object`, `array`, `string`, `number` or `integer`.
+    /// The type of the value: `object`, `array`, `string`, `number`, `integer` or `boolean`.
     #[serde(rename = "type", skip_serializing_if = "Option::is_none")]
     pub sort: Option<&'static str>,
 }
@@ -91,6 +98,8 @@ pub enum Constant {
     Numbers(Vec<f64>),
     /// A word, a name or a formula.
     Text(String),
+    /// Yes or no.
+    Truth(bool),
 }
 
 /// Returns the schema of scenes. Rules that the language states in words appear only in the descriptions.
@@ -157,6 +166,13 @@ fn body(entity: &'static Entity) -> Schema {
             all_of.push(Schema { any_of, ..Schema::default() });
         }
     }
+    for group in entity.groups() {
+        let names = |attribute: &&dyn Attribute| group.names.contains(&attribute.name());
+        let of_group = entity.attributes().filter(names);
+        let all = of_group
+            .flat_map(|attribute| iter::once(attribute.name()).chain(attribute.aliases().iter().copied()));
+        all_of.push(Schema { one_of: all.map(requiring).collect(), ..Schema::default() });
+    }
     Schema {
         additional_properties: Some(Others::Any(false)),
         min_properties: Some(usize::from(!properties.is_empty())),
@@ -172,7 +188,17 @@ fn value(attribute: &'static dyn Attribute) -> Schema {
     let one = match attribute.value_type() {
         Type::Whole => Schema::sort("integer"),
         Type::Number => Schema::sort("number"),
-        Type::Word | Type::File | Type::Name(_) | Type::Formula => Schema::sort("string"),
+        Type::Truth => Schema {
+            any_of: vec![
+                Schema::sort("boolean"),
+                Schema {
+                    choices: Some(["yes", "no"].map(|word| Constant::Text(word.to_owned())).into()),
+                    ..Schema::default()
+                },
+            ],
+            ..Schema::default()
+        },
+        Type::Word | Type::File | Type::Name(_) | Type::Formula(_) => Schema::sort("string"),
         Type::Choice(choices) => {
             let all = choices.all();
             let names = all.iter().map(|choice| Constant::Text(choice.name.to_owned()));
@@ -180,8 +206,13 @@ fn value(attribute: &'static dyn Attribute) -> Schema {
             Schema { choices: Some(names.chain(numbers).collect()), ..Schema::default() }
         }
     };
-    let several = attribute.arity().iter().map(|count| one.clone().array(*count, Some(*count)));
-    let is_alone = attribute.arity().contains(&1).then(|| one.clone());
+    let [minimum, maximum] = attribute.range().map_or([None; 2], |range| range.map(Some));
+    let one = Schema { minimum, maximum, ..one };
+    let several: Vec<_> = match attribute.arity() {
+        Counts::Of(counts) => counts.iter().map(|count| one.clone().array(*count, Some(*count))).collect(),
+        Counts::List { group, least, most } => vec![one.clone().array(group * least, Some(group * most))],
+    };
+    let is_alone = attribute.arity().allow(1).then(|| one.clone());
     let mut forms: Vec<_> = is_alone.into_iter().chain(several).collect();
     let any = if forms.len() == 1 { forms.remove(0) } else { Schema { any_of: forms, ..Schema::default() } };
     let default = attribute.default().as_ref().and_then(Constant::of);
@@ -219,6 +250,7 @@ impl Constant {
             Datum::Choice(choice) => {
                 choice.number.map_or_else(|| Self::Text(choice.name.to_owned()), Self::Whole)
             }
+            Datum::Truth(truth) => Self::Truth(*truth),
             Datum::Absent => return None,
         })
     }

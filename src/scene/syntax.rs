@@ -1,8 +1,10 @@
 //! The two syntaxes of a scene: how each writes names, attributes and values.
 
+use crate::numeric::formula::field::SPACE;
+use crate::scene::counts::OneOf;
 use crate::scene::entity::Entity;
 use crate::scene::pparm::Attribute;
-use crate::scene::value::{Datum, Type};
+use crate::scene::value::{Datum, Type, yes_or_no};
 use clap::ValueEnum;
 use std::fmt;
 use std::path::Path;
@@ -41,15 +43,18 @@ impl Syntax {
     /// Shows how a scene writes an attribute, in short: `center N N N`.
     pub fn usage(self, attribute: &dyn Attribute) -> String {
         let (value, count) = match attribute.value_type() {
-            Type::Whole | Type::Number => ("N", attribute.arity().first().copied().unwrap_or(1)),
+            Type::Whole | Type::Number => ("N", attribute.arity().examples().first().copied().unwrap_or(1)),
             Type::Word => ("WORD", 1),
             Type::File => ("FILE", 1),
             Type::Name(_) => ("NAME", 1),
             Type::Choice(_) => ("N", 1),
-            Type::Formula => ("2 + sin(y)", 1),
+            Type::Formula(SPACE) => ("x^2 + y^2 + z^2 - 1", 1),
+            Type::Formula(_) => ("2 + sin(y)", 1),
+            Type::Truth if self == Self::Toml => ("true", 1),
+            Type::Truth => ("yes", 1),
         };
         let is_text =
-            matches!(attribute.value_type(), Type::Word | Type::File | Type::Name(_) | Type::Formula);
+            matches!(attribute.value_type(), Type::Word | Type::File | Type::Name(_) | Type::Formula(_));
         let values = vec![if is_text { self.word(value) } else { value.to_owned() }; count];
         self.pair(attribute.name(), &values)
     }
@@ -58,6 +63,10 @@ impl Syntax {
     pub fn entity_usage(self, entity: &Entity, name: &str) -> String {
         let required = entity.attributes().filter(|attribute| attribute.default().is_none());
         let mut body: Vec<_> = required.map(|attribute| self.usage(attribute)).collect();
+        let first = |group: &OneOf| {
+            entity.attributes().find(|attribute| group.names.first() == Some(&attribute.name()))
+        };
+        body.extend(entity.groups().filter_map(first).map(|attribute| self.usage(attribute)));
         if body.len() < entity.attributes().count() {
             body.push("...".to_owned());
         }
@@ -88,6 +97,8 @@ impl Syntax {
             Datum::Numbers(numbers) => numbers.iter().map(|number| shortest(*number)).collect(),
             Datum::Word(word) => vec![self.word(word)],
             Datum::Formula(formula) => vec![quoted(&formula.to_string())],
+            Datum::Truth(truth) if self == Self::Toml => vec![truth.to_string()],
+            Datum::Truth(truth) => vec![yes_or_no(*truth).to_owned()],
             Datum::Absent => Vec::new(),
             Datum::Material { name, .. } | Datum::Texture { name, .. } | Datum::Object { name, .. } => {
                 vec![self.word(name)]

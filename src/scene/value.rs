@@ -1,7 +1,9 @@
 //! The types of attribute values that the scene language has.
 
-use crate::numeric::formula::Formula;
+use crate::numeric::formula::field::{Field, SPACE};
+use crate::numeric::formula::{Formula, HEIGHT};
 use crate::scene::choice::{Choice, ChoiceName, Choices};
+use crate::scene::counts::Counts;
 use crate::scene::kind::Kind;
 use crate::world::body::NamedBody;
 use crate::world::material::{Material, Rgb};
@@ -25,8 +27,10 @@ pub enum Type {
     Name(Kind),
     /// The name or the number of one of several alternatives.
     Choice(Choices),
-    /// A formula.
-    Formula,
+    /// A formula in these variables.
+    Formula(&'static [&'static str]),
+    /// Yes or no.
+    Truth,
 }
 
 /// The values of one attribute, checked for type, number and rule.
@@ -63,6 +67,8 @@ pub enum Datum {
     Choice(ChoiceName),
     /// A formula.
     Formula(Arc<Formula>),
+    /// Yes or no.
+    Truth(bool),
     /// No value, where an attribute may be left out.
     Absent,
 }
@@ -95,6 +101,7 @@ impl Datum {
             Self::Word(word) => format!(" {word}"),
             Self::Material { name, .. } | Self::Object { name, .. } => format!(" {name}"),
             Self::Choice(choice) => format!(" {}", choice.name),
+            Self::Truth(truth) => format!(" {}", yes_or_no(*truth)),
         };
         format!("{label:<12}{values}{ending}")
     }
@@ -105,7 +112,7 @@ pub trait Value: Clone + Send + Sync + 'static {
     /// The type of the values in a scene.
     const TYPE: Type;
     /// The numbers of values from which a Rust value can be read.
-    const ARITY: &'static [usize];
+    const ARITY: Counts;
     /// Converts a default to a datum.
     fn to_datum(&self) -> Datum;
     /// Converts a datum to a value, or returns `None` where the datum's type or its number of values does not fit.
@@ -114,7 +121,7 @@ pub trait Value: Clone + Send + Sync + 'static {
 
 impl Value for f64 {
     const TYPE: Type = Type::Number;
-    const ARITY: &'static [usize] = &[1];
+    const ARITY: Counts = Counts::Of(&[1]);
 
     fn to_datum(&self) -> Datum {
         [*self].to_datum()
@@ -127,7 +134,7 @@ impl Value for f64 {
 
 impl Value for DVec2 {
     const TYPE: Type = Type::Number;
-    const ARITY: &'static [usize] = &[2];
+    const ARITY: Counts = Counts::Of(&[2]);
 
     fn to_datum(&self) -> Datum {
         self.to_array().to_datum()
@@ -140,7 +147,7 @@ impl Value for DVec2 {
 
 impl Value for DVec3 {
     const TYPE: Type = Type::Number;
-    const ARITY: &'static [usize] = &[3];
+    const ARITY: Counts = Counts::Of(&[3]);
 
     fn to_datum(&self) -> Datum {
         self.to_array().to_datum()
@@ -157,7 +164,7 @@ pub struct PerChannel(pub Rgb);
 
 impl Value for PerChannel {
     const TYPE: Type = Type::Number;
-    const ARITY: &'static [usize] = &[1, 3];
+    const ARITY: Counts = Counts::Of(&[1, 3]);
 
     fn to_datum(&self) -> Datum {
         let Self(Rgb { x, y, z }) = *self;
@@ -171,7 +178,7 @@ impl Value for PerChannel {
 
 impl<const N: usize> Value for [i64; N] {
     const TYPE: Type = Type::Whole;
-    const ARITY: &'static [usize] = &[N];
+    const ARITY: Counts = Counts::Of(&[N]);
 
     fn to_datum(&self) -> Datum {
         Datum::Whole(self.to_vec())
@@ -187,7 +194,7 @@ impl<const N: usize> Value for [i64; N] {
 
 impl Value for i64 {
     const TYPE: Type = Type::Whole;
-    const ARITY: &'static [usize] = &[1];
+    const ARITY: Counts = Counts::Of(&[1]);
 
     fn to_datum(&self) -> Datum {
         Datum::Whole(vec![*self])
@@ -200,7 +207,7 @@ impl Value for i64 {
 
 impl<const N: usize> Value for [f64; N] {
     const TYPE: Type = Type::Number;
-    const ARITY: &'static [usize] = &[N];
+    const ARITY: Counts = Counts::Of(&[N]);
 
     fn to_datum(&self) -> Datum {
         Datum::Numbers(self.to_vec())
@@ -216,7 +223,7 @@ impl<const N: usize> Value for [f64; N] {
 
 impl Value for String {
     const TYPE: Type = Type::Word;
-    const ARITY: &'static [usize] = &[1];
+    const ARITY: Counts = Counts::Of(&[1]);
 
     fn to_datum(&self) -> Datum {
         Datum::Word(self.clone())
@@ -233,7 +240,7 @@ impl Value for String {
 /// The name of a file.
 impl Value for PathBuf {
     const TYPE: Type = Type::File;
-    const ARITY: &'static [usize] = &[1];
+    const ARITY: Counts = Counts::Of(&[1]);
 
     fn to_datum(&self) -> Datum {
         Datum::Word(self.display().to_string())
@@ -244,9 +251,10 @@ impl Value for PathBuf {
     }
 }
 
+/// A formula in y.
 impl Value for Arc<Formula> {
-    const TYPE: Type = Type::Formula;
-    const ARITY: &'static [usize] = &[1];
+    const TYPE: Type = Type::Formula(HEIGHT);
+    const ARITY: Counts = Counts::Of(&[1]);
 
     fn to_datum(&self) -> Datum {
         Datum::Formula(self.clone())
@@ -254,16 +262,55 @@ impl Value for Arc<Formula> {
 
     fn from_datum(datum: &Datum) -> Option<Self> {
         match datum {
-            Datum::Formula(formula) => Some(formula.clone()),
+            Datum::Formula(formula) if formula.variables() == HEIGHT => Some(formula.clone()),
             _ => None,
         }
     }
 }
 
+/// A formula in x, y and z.
+impl Value for Field {
+    const TYPE: Type = Type::Formula(SPACE);
+    const ARITY: Counts = Counts::Of(&[1]);
+
+    fn to_datum(&self) -> Datum {
+        Datum::Formula(self.formula().clone())
+    }
+
+    fn from_datum(datum: &Datum) -> Option<Self> {
+        match datum {
+            Datum::Formula(formula) => Self::new(formula.clone()),
+            _ => None,
+        }
+    }
+}
+
+/// Yes or no.
+impl Value for bool {
+    const TYPE: Type = Type::Truth;
+    const ARITY: Counts = Counts::Of(&[1]);
+
+    fn to_datum(&self) -> Datum {
+        Datum::Truth(*self)
+    }
+
+    fn from_datum(datum: &Datum) -> Option<Self> {
+        match datum {
+            Datum::Truth(truth) => Some(*truth),
+            _ => None,
+        }
+    }
+}
+
+/// Writes a truth as the notes' syntax does.
+pub(crate) fn yes_or_no(truth: bool) -> &'static str {
+    if truth { "yes" } else { "no" }
+}
+
 /// An attribute that may be left out.
 impl<T: Value> Value for Option<T> {
     const TYPE: Type = T::TYPE;
-    const ARITY: &'static [usize] = T::ARITY;
+    const ARITY: Counts = T::ARITY;
 
     fn to_datum(&self) -> Datum {
         self.as_ref().map_or(Datum::Absent, T::to_datum)
@@ -280,7 +327,7 @@ impl<T: Value> Value for Option<T> {
 /// A texture, which a scene refers to by its name.
 impl Value for Arc<Texture> {
     const TYPE: Type = Type::Name(Kind::Texture);
-    const ARITY: &'static [usize] = &[1];
+    const ARITY: Counts = Counts::Of(&[1]);
 
     fn to_datum(&self) -> Datum {
         Datum::Texture { name: Arc::from(""), texture: self.clone() }
@@ -297,7 +344,7 @@ impl Value for Arc<Texture> {
 /// A material, which a scene refers to by its name.
 impl Value for Arc<Material> {
     const TYPE: Type = Type::Name(Kind::Material);
-    const ARITY: &'static [usize] = &[1];
+    const ARITY: Counts = Counts::Of(&[1]);
 
     fn to_datum(&self) -> Datum {
         Datum::Material { name: Arc::from(""), material: self.clone() }
@@ -314,7 +361,7 @@ impl Value for Arc<Material> {
 /// An object, which a scene refers to by its name. It is seen only where entities that refer to it put it.
 impl Value for NamedBody {
     const TYPE: Type = Type::Name(Kind::Object);
-    const ARITY: &'static [usize] = &[1];
+    const ARITY: Counts = Counts::Of(&[1]);
 
     fn to_datum(&self) -> Datum {
         Datum::Object { name: Arc::from(""), body: self.clone() }
@@ -331,7 +378,7 @@ impl Value for NamedBody {
 /// One of several alternatives, which a scene chooses by name or number.
 impl<T: Choice> Value for T {
     const TYPE: Type = Type::Choice(Choices::of::<T>());
-    const ARITY: &'static [usize] = &[1];
+    const ARITY: Counts = Counts::Of(&[1]);
 
     fn to_datum(&self) -> Datum {
         Datum::Choice(self.option())

@@ -1,9 +1,11 @@
 //! Arithmetic that several shapes share.
 
 mod ellipsoid;
+pub mod field;
 mod finite_plane;
 pub(crate) mod implicit;
 pub mod mesh;
+pub mod outline;
 pub(crate) mod placed;
 pub mod plane;
 pub(crate) mod quadratic;

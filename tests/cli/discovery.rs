@@ -37,6 +37,14 @@ fn the_json_has_every_entity_attribute_and_choice() {
     assert_eq!(attribute("material", "ambient")["default"], serde_json::json!([0.0, 0.0, 0.0]));
     assert_eq!(attribute("camera", "accuracy")["choices"].as_array().map(Vec::len), Some(4));
     assert_eq!(attribute("revsurf", "profile")["type"], "formula");
+    assert_eq!(attribute("revsurf", "profile")["variables"], serde_json::json!(["y"]));
+    assert_eq!(attribute("implicit", "formula")["variables"], serde_json::json!(["x", "y", "z"]));
+    assert_eq!(find("revsurf")["one_of"][0]["names"], serde_json::json!(["surfer", "profile"]));
+    let list = serde_json::json!({ "group": 2, "least": 2, "most": 64 });
+    assert_eq!(attribute("lathe", "points")["list"], list);
+    assert_eq!(attribute("cylinder", "open")["type"], "truth");
+    assert_eq!(attribute("cylinder", "open")["default"], false);
+    assert_eq!(attribute("material", "transparency")["range"], serde_json::json!([0.0, 1.0]));
     let named = |list: &str, name: &str| {
         tables[list].as_array().expect("a list").iter().find(|told| told["name"] == name).expect(name).clone()
     };

@@ -213,3 +213,23 @@ fn standard_input_may_be_toml() {
     let output = cargo_bin_cmd!("tabray").args(["dump", "-"]).write_stdin(TOML).output().expect("it runs");
     assert_eq!(String::from_utf8_lossy(&output.stdout), dump::notes(&model(NOTES)));
 }
+
+#[test]
+fn lists_truths_and_formulas_are_the_same_in_both_syntaxes() {
+    let notes = model(
+        "camera eye { pixeldim 40 30 worlddim 8 6 viewpoint 4 3 6 }
+        material red { ambient 1 0 0 }
+        lathe vase { material red points 0 1  0.5 2  1 1.5  base 4 0 -4 }
+        cylinder tube { material red base 4 0 -4 height 1 radius 1 open yes }
+        implicit ball { material red formula \"x^2 + y^2 + z^2 - 1\" box -2 -2 -2 2 2 2 }",
+    );
+    let toml = dump::scene(&notes, Syntax::Toml);
+    for line in ["[0, 1, 0.5, 2, 1, 1.5]", "= true\n", "= \"x^2 + y^2 + z^2 - 1\""] {
+        assert!(toml.contains(line), "{toml}");
+    }
+    for toml in [toml.clone(), toml.replace("= true", "= \"yes\"")] {
+        assert_eq!(dump::scene(&model(&toml), Syntax::Notes), dump::scene(&notes, Syntax::Notes));
+    }
+    let quoted = dump::scene(&notes, Syntax::Notes);
+    assert!(quoted.contains("open     yes\n") && quoted.contains("points   0 1 0.5 2 1 1.5\n"), "{quoted}");
+}

@@ -13,7 +13,7 @@ pub struct FormulaFault {
     /// What is wrong.
     pub message: String,
     /// What would be right.
-    pub help: &'static str,
+    pub help: String,
 }
 
 /// The functions of a formula: name, function and number of arguments.
@@ -30,12 +30,18 @@ const FUNCTIONS: [(&str, Function, usize); 10] = [
     ("max", Function::Max, 2),
 ];
 
-const LANGUAGE: &str = "a formula consists of numbers, `y`, `pi`, + - * / ^, parentheses, and the functions \
-    sin cos tan exp ln sqrt abs floor of one value and min max of two";
+/// Says what a formula in these variables consists of.
+fn language(variables: &[&str]) -> String {
+    format!(
+        "a formula consists of numbers, {}, `pi`, + - * / ^, parentheses, and the functions \
+         sin cos tan exp ln sqrt abs floor of one value and min max of two",
+        text::list(variables.iter().copied())
+    )
+}
 
-/// Parses the operations of a formula.
-pub(super) fn parse(text: &str) -> Result<Vec<Step>, FormulaFault> {
-    let mut parser = Parser { text, at: 0, steps: Vec::new(), depth: 0 };
+/// Parses the operations of a formula in these variables.
+pub(super) fn parse(text: &str, variables: &[&str]) -> Result<Vec<Step>, FormulaFault> {
+    let mut parser = Parser { text, variables, at: 0, steps: Vec::new(), depth: 0 };
     parser.sum()?;
     match parser.peek() {
         None => Ok(parser.steps),
@@ -46,6 +52,7 @@ pub(super) fn parse(text: &str) -> Result<Vec<Step>, FormulaFault> {
 
 struct Parser<'t> {
     text: &'t str,
+    variables: &'t [&'t str],
     at: usize,
     steps: Vec<Step>,
     /// The number of values on the stack or the depth of parentheses, whichever is greater.
@@ -70,7 +77,7 @@ impl<'t> Parser<'t> {
     }
 
     fn fault(&self, place: Range<usize>, message: impl Into<String>) -> FormulaFault {
-        FormulaFault { place, message: message.into(), help: LANGUAGE }
+        FormulaFault { place, message: message.into(), help: language(self.variables) }
     }
 
     fn fault_here(&mut self, message: &str) -> FormulaFault {
@@ -184,8 +191,11 @@ impl<'t> Parser<'t> {
         self.at += length;
         let word = &rest[..length];
         let place = start..self.at;
+        if let Some(variable) = self.variables.iter().position(|name| *name == word) {
+            self.steps.push(Step::Variable(variable as u8));
+            return Ok(());
+        }
         match (word, FUNCTIONS.iter().find(|(name, ..)| *name == word)) {
-            ("y", _) => self.steps.push(Step::Y),
             ("pi", _) => self.steps.push(Step::Number(PI)),
             (_, Some((_, function, arguments))) => {
                 self.arguments(word, place, *arguments)?;

@@ -3,7 +3,8 @@
 /// One operation of a formula.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Step {
-    Y,
+    /// A variable, by its index.
+    Variable(u8),
     Number(f64),
     Neg,
     Add,
@@ -12,6 +13,12 @@ pub(super) enum Step {
     Div,
     /// A power with an integer exponent.
     Powi(i32),
+    /// A product with a constant.
+    Scale(f64),
+    /// A sum with a constant.
+    Shift(f64),
+    /// The formula's spline.
+    Spline,
     Call(Function),
 }
 

@@ -3,7 +3,7 @@
 use super::fault::{Fault, Place};
 use super::guesses::{find_attribute, near_attribute};
 use super::names::Names;
-use super::parsed::{Form, MAX_VALUES, Parsed, Word};
+use super::parsed::{Form, MAX_VALUES, Parsed, VALUES, Word};
 use super::report::Report;
 use super::values;
 use crate::scene::entity::Entity;
@@ -56,6 +56,8 @@ impl Against<'_, '_> {
                 }
             }
         }
+        let one_of_each = self.groups(&title, &attributes, &given, &meant, parsed);
+        sound &= one_of_each;
         let mut missing = Vec::new();
         let mut values = Vec::new();
         for (attribute, given) in attributes.iter().zip(given) {
@@ -82,7 +84,7 @@ impl Against<'_, '_> {
                 Fault::error(parsed.name.place.clone(), fault)
                     .help(format!("add `{}`", wanted.join("` and `"))),
             );
-        } else if parsed.is_empty() && !attributes.is_empty() && !parsed.is_damaged {
+        } else if parsed.is_empty() && one_of_each && !attributes.is_empty() && !parsed.is_damaged {
             sound = false;
             let names = list(attributes.iter().map(|attribute| attribute.name()));
             self.report.add(
@@ -91,6 +93,44 @@ impl Against<'_, '_> {
             );
         }
         sound.then_some(values)
+    }
+
+    /// Tells whether exactly one attribute of each group is given that needs one, and reports what is not so.
+    fn groups(
+        &mut self,
+        title: &str,
+        attributes: &[&'static dyn Attribute],
+        given: &[Option<(&Word<'_>, &[Word<'_>])>],
+        meant: &[&str],
+        parsed: &Parsed<'_>,
+    ) -> bool {
+        let mut sound = true;
+        for group in self.entity.groups() {
+            let of_group = || attributes.iter().zip(given).filter(|(a, _)| group.names.contains(&a.name()));
+            let there: Vec<_> = of_group().filter_map(|(a, given)| Some((a.name(), (*given)?))).collect();
+            // An attribute that may be present, misspelt or unreadable, is not reported as missing.
+            let may_be_there = parsed.is_damaged || group.names.iter().any(|name| meant.contains(name));
+            sound &= there.len() == 1;
+            if let [_, (_, (word, words)), ..] = there[..] {
+                let names: Vec<_> = there.iter().map(|(name, _)| *name).collect();
+                let message = format!("{title} has {}", group.several(&names));
+                let help = format!("each of them is {}: leave one out", group.meaning);
+                self.report.add(Fault::error(whole(word, words), message).help(help));
+            } else if there.is_empty() && !may_be_there {
+                let usage = |attribute: &dyn Attribute| {
+                    let usage = self.report.syntax().usage(attribute);
+                    let is_formula = matches!(attribute.value_type(), Type::Formula(_));
+                    if is_formula { format!("a formula: `{usage}`") } else { format!("`{usage}`") }
+                };
+                let usages: Vec<_> = of_group().map(|(attribute, _)| usage(*attribute)).collect();
+                let message = format!("{title} lacks {}", group.told("or"));
+                self.report.add(
+                    Fault::error(parsed.name.place.clone(), message)
+                        .help(format!("add {}", usages.join(", or "))),
+                );
+            }
+        }
+        sound
     }
 
     /// Reports an attribute that the type does not have, and returns the one that was probably meant, if any.
@@ -114,10 +154,21 @@ impl Against<'_, '_> {
         word: &Word<'_>,
         words: &[Word<'_>],
     ) -> Option<Datum> {
-        if !attribute.arity().contains(&words.len()) {
+        let truth = words.iter().find(|word| word.form == Form::Truth);
+        if let (false, Some(truth)) = (matches!(attribute.value_type(), Type::Truth), truth) {
+            let message = format!("`{}` cannot be the value of an attribute", truth.text);
+            self.report.add(Fault::error(truth.place.clone(), message).help(VALUES));
+            return None;
+        }
+        if !attribute.arity().allow(words.len()) {
             let takes = attribute.takes();
             let more = if words.len() < MAX_VALUES { "" } else { " or more" };
-            let message = format!("`{}` of {title} takes {takes}, not {}{more}", word.text, words.len());
+            let count = format!("{}{more}", words.len());
+            let not = match attribute.value_type() {
+                Type::Truth | Type::Formula(_) => format!("{count} values"),
+                _ => attribute.arity().not(&count),
+            };
+            let message = format!("`{}` of {title} takes {takes}, not {not}", word.text);
             self.report.add(Fault::error(whole(word, words), message).help(format!(
                 "`{}`: {}",
                 attribute.name(),

@@ -1,5 +1,6 @@
 //! Finds attributes by their names, and guesses which attribute a misspelt word was meant to be.
 
+use crate::scene::counts::OneOf;
 use crate::scene::entity::Entity;
 use crate::scene::pparm::Attribute;
 use crate::scene::value::Type;
@@ -18,6 +19,7 @@ pub fn find_attribute(entity: &'static Entity, name: &str) -> Option<&'static dy
 pub struct Table {
     entity: &'static Entity,
     attributes: Vec<Known>,
+    groups: Vec<&'static OneOf>,
 }
 
 /// An attribute of an entity type.
@@ -35,11 +37,17 @@ impl Table {
         let known = |attribute: &'static dyn Attribute| Known {
             attribute,
             value_type: attribute.value_type(),
-            max: attribute.arity().iter().copied().max().unwrap_or(0),
+            max: attribute.arity().most(),
             is_required: attribute.default().is_none(),
             name: attribute.name(),
         };
-        Self { entity, attributes: entity.attributes().map(known).collect() }
+        let groups = entity.groups().collect();
+        Self { entity, attributes: entity.attributes().map(known).collect(), groups }
+    }
+
+    /// Returns the groups of attributes of which exactly one must be given.
+    pub fn groups(&self) -> &[&'static OneOf] {
+        &self.groups
     }
 
     /// Finds the index of the attribute of this name or alias.

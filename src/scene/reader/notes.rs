@@ -293,7 +293,9 @@ fn is_value(
     let max = attribute.map_or(1, |attribute| attribute.max);
     match attribute.map(|attribute| attribute.value_type) {
         // A name may look like anything, even like a number or an attribute: `material material`.
-        Some(Type::Word | Type::File | Type::Name(_) | Type::Choice(_) | Type::Formula) => already < max,
+        Some(Type::Word | Type::File | Type::Name(_) | Type::Choice(_) | Type::Formula(_) | Type::Truth) => {
+            already < max
+        }
         _ if looks_like_number(word) => true,
         _ => {
             let Some(table) = table else { return already < max };

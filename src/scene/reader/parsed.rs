@@ -24,6 +24,8 @@ pub(super) enum Form {
     Number,
     /// Text, because the word stands in quotes.
     Text,
+    /// Yes or no, as TOML writes it: `true` or `false`.
+    Truth,
 }
 
 impl<'a> Word<'a> {
@@ -36,8 +38,11 @@ impl<'a> Word<'a> {
     }
 }
 
-/// The maximum number of values that are kept for an attribute. No attribute takes as many.
+/// The maximum number of values that are kept for an attribute. No attribute takes as many (`every_table_keeps_its_own_rules`).
 pub(super) const MAX_VALUES: usize = 1000;
+
+/// What the values of attributes are, for messages about others.
+pub(super) const VALUES: &str = "values are numbers, quoted words, or several of them in brackets";
 
 /// The maximum number of attributes that are kept for an entity. No type has as many.
 pub(super) const MAX_ATTRIBUTES: usize = 1000;

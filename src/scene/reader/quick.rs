@@ -98,6 +98,12 @@ impl<'r> Quick<'r> {
                 return None;
             }
         }
+        for group in table.groups() {
+            let is_given = |name: &&&str| table.find(name).is_some_and(|index| self.given[index].is_some());
+            if group.names.iter().filter(is_given).count() != 1 {
+                return None;
+            }
+        }
         let mut packed = Packed::begin(&mut self.bytes, number, &parsed.name.text, true);
         for (known, given) in table.iter().zip(&self.given) {
             let Some(given) = given else {
@@ -111,7 +117,7 @@ impl<'r> Quick<'r> {
             let is_right = |datum: &Datum| {
                 known.attribute.allows(datum) && known.attribute.beyond_squares(datum).is_none()
             };
-            if !known.attribute.arity().contains(&words.len()) {
+            if !known.attribute.arity().allow(words.len()) {
                 return None;
             }
             match (known.value_type, words) {
@@ -129,7 +135,7 @@ impl<'r> Quick<'r> {
                     is_right(&self.whole).then_some(())?;
                     packed.numbers(&self.whole);
                 }
-                (Type::Name(kind), [word]) if word.form != Form::Number => {
+                (Type::Name(kind), [word]) if !matches!(word.form, Form::Number | Form::Truth) => {
                     let index = names.defined(kind, &word.text)?;
                     is_right(store.datum(index)).then_some(())?;
                     packed.datum(index);

@@ -1,7 +1,7 @@
 //! Parses scenes in TOML: `[entity-type.name]` tables of the same attributes.
 
 use super::fault::Fault;
-use super::parsed::{Form, MAX_VALUES, Parsed, Word};
+use super::parsed::{Form, MAX_VALUES, Parsed, VALUES, Word};
 use super::report::Report;
 use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
@@ -365,15 +365,14 @@ impl<'a, 'r, 't> Parser<'a, 'r, 't> {
                 }
                 return sound;
             }
-            DeValue::Boolean(_) | DeValue::Datetime(_) | DeValue::Array(_) | DeValue::Table(_) => {
+            DeValue::Boolean(truth) => entity.value(self.word(truth.to_string(), Form::Truth, place)),
+            DeValue::Datetime(_) | DeValue::Array(_) | DeValue::Table(_) => {
                 let what = match value.get_ref() {
-                    DeValue::Boolean(truth) => format!("`{truth}` cannot be the value of an attribute"),
                     DeValue::Datetime(_) => "a date cannot be the value of an attribute".to_owned(),
                     DeValue::Array(_) => "a nested array cannot be the value of an attribute".to_owned(),
                     _ => "a table cannot be the value of an attribute".to_owned(),
                 };
-                let help = "values are numbers, quoted words, or several of them in brackets";
-                self.fault(Fault::error(Some(place), what).help(help));
+                self.fault(Fault::error(Some(place), what).help(VALUES));
                 return false;
             }
         }

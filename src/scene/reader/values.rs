@@ -18,7 +18,10 @@ pub fn read(value_type: Type, words: &[Word<'_>]) -> Result<Datum, Vec<Fault>> {
         Type::Whole => all(words, whole).map(Datum::Whole),
         Type::Number => all(words, number).map(Datum::Numbers),
         Type::Word | Type::File | Type::Name(_) => words.first().ok_or_else(Vec::new).and_then(text),
-        Type::Formula => words.first().ok_or_else(Vec::new).and_then(formula),
+        Type::Formula(variables) => {
+            words.first().ok_or_else(Vec::new).and_then(|word| formula(word, variables))
+        }
+        Type::Truth => words.first().ok_or_else(Vec::new).and_then(truth),
         Type::Choice(choices) => words.first().ok_or_else(Vec::new).and_then(|word| choice(choices, word)),
     }
 }
@@ -39,19 +42,34 @@ fn text(word: &Word<'_>) -> Result<Datum, Vec<Fault>> {
     Ok(Datum::Word(word.text.to_string()))
 }
 
-fn formula(word: &Word<'_>) -> Result<Datum, Vec<Fault>> {
-    Formula::parse(&word.text).map(|formula| Datum::Formula(Arc::new(formula))).map_err(|fault| {
-        // The place within the quotes, if the text contains the formula exactly as written, without escapes.
-        let quotes = usize::from(word.form == Form::Text);
-        let is_as_it_is = |place: &Range<usize>| place.len() == word.text.len() + 2 * quotes;
-        let inside = |place: &Range<usize>| {
-            let at = place.start + quotes;
-            at + fault.place.start..at + fault.place.end
-        };
-        let place =
-            word.place.as_ref().map(|place| if is_as_it_is(place) { inside(place) } else { place.clone() });
-        vec![Fault::error(place, fault.message).help(fault.help)]
-    })
+fn truth(word: &Word<'_>) -> Result<Datum, Vec<Fault>> {
+    match (word.text.as_ref(), word.form) {
+        ("yes", Form::Any | Form::Text) | ("true", Form::Truth) => Ok(Datum::Truth(true)),
+        ("no", Form::Any | Form::Text) | ("false", Form::Truth) => Ok(Datum::Truth(false)),
+        _ => {
+            let message = format!("`{}` is neither `yes` nor `no`", word.text);
+            Err(vec![Fault::error(word.place.clone(), message)])
+        }
+    }
+}
+
+fn formula(word: &Word<'_>, variables: &'static [&'static str]) -> Result<Datum, Vec<Fault>> {
+    Formula::parse_in(&word.text, variables).map(|formula| Datum::Formula(Arc::new(formula))).map_err(
+        |fault| {
+            // The place within the quotes, if the text contains the formula exactly as written, without escapes.
+            let quotes = usize::from(word.form == Form::Text);
+            let is_as_it_is = |place: &Range<usize>| place.len() == word.text.len() + 2 * quotes;
+            let inside = |place: &Range<usize>| {
+                let at = place.start + quotes;
+                at + fault.place.start..at + fault.place.end
+            };
+            let place = word
+                .place
+                .as_ref()
+                .map(|place| if is_as_it_is(place) { inside(place) } else { place.clone() });
+            vec![Fault::error(place, fault.message).help(fault.help)]
+        },
+    )
 }
 
 fn choice(choices: Choices, word: &Word<'_>) -> Result<Datum, Vec<Fault>> {
@@ -78,7 +96,7 @@ fn all<T>(words: &[Word<'_>], read: fn(&str) -> Result<T, Complaint>) -> Result<
     for word in words {
         let value = match word.form {
             Form::Text => Err(("in quotes", Some("write numbers without quotes"))),
-            Form::Any | Form::Number => read(&word.text),
+            Form::Any | Form::Number | Form::Truth => read(&word.text),
         };
         match value {
             Ok(value) => values.push(value),

@@ -101,19 +101,26 @@ kernels! {
     ) => points, normals {
         let (count, to_world) = (travelled.len(), placed.to_own.transpose());
         let least = placed.placement.scale.min_element();
+        let is_two_sided = placed.body.shape.is_two_sided();
         let (rays, own, lengths) = (rays.first(count), own.first(count), &lengths[..count]);
         let (distances, cosines) = (&distances[..count], &mut cosines[..count]);
         let (mut points, mut normals) = (points.first(count), normals.first(count));
         for lane in 0..count {
             let normal = normals.get(lane);
-            let there = to_world * normal;
-            let size = there.length();
             // The cosine is that of the flat normal, which a smooth surface does not tell: then a lower bound.
             let (cosine, shaded) = (cosines[lane], own.dir.get(lane).dot(normal));
+            // Turned only after it is taken to the world, as single rays do: so even zeros have the same sign.
+            let is_turned = is_two_sided && cosine >= 0.0;
+            let there = (to_world * if is_turned { -normal } else { normal }).normalize();
             let is_flat = (cosine.abs() - shaded.abs()).abs() <= 1e-12;
-            cosines[lane] = cosine * lengths[lane] * if is_flat { 1.0 / size } else { least };
+            cosines[lane] = if is_flat {
+                // As single rays compute it, to the last bit.
+                rays.dir.get(lane).dot(there)
+            } else {
+                cosine * lengths[lane] * least
+            };
             points.set(lane, rays.get(lane).at(distances[lane]));
-            normals.set(lane, there.normalize());
+            normals.set(lane, if is_turned { -there } else { there });
             travelled[lane] += distances[lane];
         }
     }

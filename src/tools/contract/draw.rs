@@ -1,5 +1,6 @@
 //! Draws values for attributes by their types and rules, the same in every run.
 
+use crate::numeric::formula::HEIGHT;
 use crate::scene::entity::Entity;
 use crate::scene::kind::Kind;
 use crate::scene::pparm::Attribute;
@@ -28,6 +29,10 @@ const TETRAHEDRON: &str = "v 0 0 0\nv 2 0 0.5\nv 0.25 2 0\nv 0 0.5 2\nv 3 3 1\n
     f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\nf 2 5 3\n";
 
 const FORMULAS: [&str; 4] = ["2 + sin(y)", "1", "0.5 * y", "sqrt(abs(4 - y^2))"];
+
+/// Formulas in x, y and z.
+const FIELDS: [&str; 4] =
+    ["x^2 + y^2 + z^2 - 4", "sin(x) + sin(y) + sin(z)", "x + 2*y - z", "max(abs(x), abs(y)) - 1 + z^2/4"];
 
 /// The folder to which the drawn scenes' file names are relative.
 pub struct SceneFolder(TempDir);
@@ -119,8 +124,14 @@ impl Draw {
 
     fn entity(&mut self, entity: &Entity, name: &str) -> String {
         let mut lines = String::new();
+        let groups: Vec<_> = entity.groups().map(|group| (group.names, self.pick(group.names))).collect();
         for attribute in entity.attributes() {
-            if let Some(values) = self.values(attribute, entity.kind() == Kind::Material) {
+            let chosen = groups.iter().find(|(names, _)| names.contains(&attribute.name()));
+            if chosen.is_some_and(|(_, chosen)| *chosen != attribute.name()) {
+                continue;
+            }
+            let must = chosen.is_some();
+            if let Some(values) = self.values(attribute, must, entity.kind() == Kind::Material) {
                 lines += &format!("    {}\n", Syntax::Notes.pair(attribute.name(), &values));
             }
         }
@@ -128,11 +139,11 @@ impl Draw {
     }
 
     /// Draws values that an attribute allows, in a scene's syntax; `None` leaves the default.
-    fn values(&mut self, attribute: &dyn Attribute, positive: bool) -> Option<Vec<String>> {
-        if attribute.default().is_some() && self.below(2) == 0 {
+    fn values(&mut self, attribute: &dyn Attribute, must: bool, positive: bool) -> Option<Vec<String>> {
+        if attribute.default().is_some() && !must && self.below(2) == 0 {
             return None;
         }
-        let count = self.pick(attribute.arity());
+        let count = self.pick(&attribute.arity().examples());
         let word = |word: &str| Some(vec![word.to_owned()]);
         let datum = |draw: &mut Self| match attribute.value_type() {
             Type::Whole => Datum::Whole((0..count).map(|_| draw.whole()).collect()),
@@ -141,13 +152,15 @@ impl Draw {
                 Datum::Numbers((0..count).map(|_| sign(draw.number())).collect())
             }
             Type::Choice(choices) => Datum::Choice(draw.pick(&choices.all())),
-            Type::Word | Type::File | Type::Name(_) | Type::Formula => Datum::Absent,
+            Type::Truth => Datum::Truth(draw.below(2) == 0),
+            Type::Word | Type::File | Type::Name(_) | Type::Formula(_) => Datum::Absent,
         };
         match attribute.value_type() {
             Type::Word => word(PICTURE),
             Type::File => word(MODEL),
             Type::Name(kind) => word(name(kind)),
-            Type::Formula => word(&format!("\"{}\"", self.pick(&FORMULAS))),
+            Type::Formula(HEIGHT) => word(&format!("\"{}\"", self.pick(&FORMULAS))),
+            Type::Formula(_) => word(&format!("\"{}\"", self.pick(&FIELDS))),
             _ => {
                 let drawn = (0..TRIES).map(|_| datum(self)).find(|datum| attribute.allows(datum));
                 Some(Syntax::Notes.values(&drawn?))

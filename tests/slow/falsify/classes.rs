@@ -1,6 +1,7 @@
 //! Classes of scenes: shapes, and rays aimed where the arithmetic is hard.
 
 mod flat;
+mod formulas;
 mod meshes;
 mod revolved;
 mod round;
@@ -29,7 +30,7 @@ const fn closed(name: &'static str, rays: [usize; 2], ask: fn(&mut Random) -> Qu
 }
 
 /// All classes.
-pub const CLASSES: [Class; 35] = [
+pub const CLASSES: [Class; 43] = [
     class("sphere", [600_000, 4000], round::spheres),
     class("sphere, tangents", [400_000, 4000], round::sphere_tangents),
     class("sphere, from inside", [100_000, 1000], round::inside),
@@ -65,4 +66,12 @@ pub const CLASSES: [Class; 35] = [
     class("torus", [1_000_000, 800], revolved::tori),
     class("heart", [1_000_000, 500], revolved::hearts),
     class("curved, silhouettes", [20_000, 200], revolved::silhouettes),
+    class("implicit, formulas", [1_000_000, 500], formulas::implicits),
+    class("implicit, silhouettes", [20_000, 100], formulas::silhouettes),
+    class("implicit, from inside", [100_000, 300], formulas::inside),
+    class("cylinder, capsule, disc", [1_000_000, 500], formulas::rounds),
+    class("cylinder, capsule, disc, rims", [100_000, 300], formulas::rims),
+    class("lathe", [1_000_000, 300], formulas::lathes),
+    class("box", [1_000_000, 1000], formulas::boxes),
+    class("prism", [1_000_000, 1000], formulas::prisms),
 ];

@@ -224,6 +224,81 @@ pub fn revolved(ray: &Ray, profile: &Formula, axis: &Vector, base: &Vector, heig
     local.first_hit(&OnRevolved { profile, known: Known(known) }, (0.6 * height).hypot(widest) * 1.01)
 }
 
+/// A formula of three variables, each `c0 + c1 s + c2 s^2` along the ray.
+struct OnFormula<'s> {
+    formula: &'s Formula,
+    kept: &'s [Formula],
+    known: Known<Wide>,
+}
+
+impl OnFormula<'_> {
+    fn variables<T: Number>(place: &Jet<T>, known: &Known<T>) -> [Jet<T>; 3] {
+        [0, 3, 6].map(|of| {
+            let constant = |power: usize| Jet::constant(known.0[of + power].clone());
+            constant(0).add(&constant(1).mul(place)).add(&constant(2).mul(&place.square()))
+        })
+    }
+}
+
+impl Along for OnFormula<'_> {
+    fn at<T: Number>(&self, place: &Jet<T>, known: &Known<T>) -> Jet<T> {
+        self.formula.of(Self::variables(place, known).each_ref())
+    }
+
+    fn kept<T: Number>(&self, place: &T, known: &Known<T>) -> Option<bool> {
+        let variables = Self::variables(&Jet::constant(place.clone()), known);
+        let signs = self.kept.iter().map(|kept| kept.of(variables.each_ref()).value.sign());
+        let mut all = Some(true);
+        for sign in signs {
+            match sign {
+                Some(Ordering::Less) => return Some(false),
+                Some(_) => {}
+                None => all = None,
+            }
+        }
+        all
+    }
+
+    fn known(&self) -> &Known<Wide> {
+        &self.known
+    }
+}
+
+/// Returns the first hit of a shape by its formulas, as the scene's text has them.
+pub fn by_formula(
+    ray: &Ray,
+    (own, middle, reach): (&Vector, &Vector, f64),
+    axis: Option<&Vector>,
+    formula: &Formula,
+    kept: &[Formula],
+) -> Hit {
+    let at = [0, 1, 2].map(|of| own[of].add(&middle[of]));
+    let local = Local::new(ray, &at, own);
+    let (from, dir) = (&local.from, &local.dir);
+    let zero = || Wide::exact(&Dyadic::zero());
+    let known = match axis {
+        None => (0..3).flat_map(|of| [Wide::exact(&from[of]), Wide::exact(&dir[of]), zero()]).collect(),
+        Some(axis) => {
+            let square = dot(axis, axis);
+            let (length, whole) = (Wide::root_of(&square), Wide::exact(&square));
+            let (one, other) = (cross(from, axis), cross(dir, axis));
+            let over = |of: Dyadic, by: &Wide| Wide::exact(&of).div(by);
+            vec![
+                over(dot(&one, &one), &whole),
+                over(dot(&one, &other).shifted(1), &whole),
+                over(dot(&other, &other), &whole),
+                over(dot(from, axis), &length),
+                over(dot(dir, axis), &length),
+                zero(),
+                zero(),
+                zero(),
+                zero(),
+            ]
+        }
+    };
+    local.first_hit(&OnFormula { formula, kept, known: Known(known) }, reach)
+}
+
 /// A polynomial, and for some shapes a second one, which is negative where the surface is cut off.
 struct OnPolynomial {
     known: Known<Wide>,

@@ -1,12 +1,15 @@
-//! Formulas in y, parsed and evaluated without any code of the program.
+//! Formulas in y, or in x, y and z, parsed and evaluated without any code of the program.
 
 use super::dyadic::Dyadic;
 use super::number::{Jet, Number};
+use super::spline::Spline;
 
 /// A formula. Its constants are the nearest `f64`; everything else is exact.
 #[derive(Clone, Debug)]
 pub enum Formula {
-    Y,
+    /// A variable: x, y or z.
+    Variable(usize),
+    Spline(Spline),
     Number(Dyadic),
     Neg(Box<Formula>),
     Two(char, Box<[Formula; 2]>),
@@ -24,12 +27,18 @@ impl Formula {
     }
 
     pub fn at<T: Number>(&self, y: &Jet<T>) -> Jet<T> {
+        self.of([y, y, y])
+    }
+
+    /// Evaluates a formula of x, y and z.
+    pub fn of<T: Number>(&self, y: [&Jet<T>; 3]) -> Jet<T> {
         match self {
-            Self::Y => y.clone(),
+            Self::Variable(index) => y[*index].clone(),
+            Self::Spline(spline) => spline.at(y[1]),
             Self::Number(number) => Jet::constant(T::exact(number)),
-            Self::Neg(of) => of.at(y).neg(),
+            Self::Neg(of) => of.of(y).neg(),
             Self::Whole(of, exponent) => {
-                let of = of.at(y);
+                let of = of.of(y);
                 let mut power: Option<Jet<T>> = None;
                 for bit in (0..32 - exponent.leading_zeros()).rev() {
                     power = power.map(|power| power.square());
@@ -40,7 +49,7 @@ impl Formula {
                 power.expect("an exponent from 1")
             }
             Self::Two(operation, of) => {
-                let (a, b) = (of[0].at(y), of[1].at(y));
+                let (a, b) = (of[0].of(y), of[1].of(y));
                 match operation {
                     '+' => a.add(&b),
                     '-' => a.sub(&b),
@@ -50,7 +59,7 @@ impl Formula {
                 }
             }
             Self::Call(name, of) => {
-                let a = of[0].at(y);
+                let a = of[0].of(y);
                 match name.as_str() {
                     "sin" => a.sin(),
                     "cos" => a.cos(),
@@ -58,12 +67,17 @@ impl Formula {
                     "ln" => a.ln(),
                     "sqrt" => a.root(),
                     "abs" => a.abs(),
-                    "min" => a.min(&of[1].at(y)),
-                    "max" => a.max(&of[1].at(y)),
+                    "min" => a.min(&of[1].of(y)),
+                    "max" => a.max(&of[1].of(y)),
                     _ => panic!("no oracle for `{name}`"),
                 }
             }
         }
+    }
+
+    /// Returns the sum of a formula and a number.
+    pub fn plus(self, number: Dyadic) -> Self {
+        Self::Two('+', Box::new([self, Self::Number(number)]))
     }
 
     /// Returns the square of the formula's value. If the formula is a square root, this is its argument.
@@ -155,8 +169,8 @@ impl Reader<'_> {
             let end = bytes.iter().position(|byte| !byte.is_ascii_alphanumeric()).unwrap_or(bytes.len());
             let (name, rest) = self.rest.split_at(end);
             self.rest = rest;
-            if name == "y" {
-                return Formula::Y;
+            if let Some(index) = ["x", "y", "z"].iter().position(|variable| *variable == name) {
+                return Formula::Variable(index);
             }
             assert!(self.take('('), "a `(` after {name}");
             let mut of = vec![self.sum()];

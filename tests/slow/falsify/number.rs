@@ -139,6 +139,11 @@ impl<T: Number> Jet<T> {
         }
     }
 
+    /// Returns the hull of two values, and of their derivatives.
+    pub fn hull(&self, other: &Self) -> Self {
+        Self { value: self.value.hull_of(&other.value), slope: self.slope.hull_of(&other.slope) }
+    }
+
     pub fn min(&self, other: &Self) -> Self {
         self.neg().max(&other.neg()).neg()
     }

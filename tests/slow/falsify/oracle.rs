@@ -76,6 +76,9 @@ fn hit(shape: &Shape, ray: &Ray) -> Hit {
             curved::torus(ray, center, direction, radius, tube)
         }
         Shape::Heart { center, size } => curved::heart(ray, center, size),
+        Shape::Formula { own, axis, formula, kept, middle, reach } => {
+            curved::by_formula(ray, (own, middle, *reach), axis.as_ref(), formula, kept)
+        }
         Shape::Mesh { faces } => closed::mesh(ray, faces),
         Shape::Placed { shape, place } => hit(shape, &place.own(ray)),
     }
@@ -149,6 +152,25 @@ fn normal(shape: &Shape, ray: &Ray, at: &Wide) -> [f64; 3] {
                 13.5 * ball * ball * z - 0.225 * z * y.powi(3),
             ]
         }
+        Shape::Formula { own, axis, formula, .. } => {
+            let at = near(own);
+            let slopes = |at: [f64; 3]| {
+                [0, 1, 2].map(|along| {
+                    let number = |of: usize| Fast::exact(&Dyadic::from(at[of]));
+                    let jet = |of: usize| {
+                        if of == along { Jet::variable(number(of)) } else { Jet::constant(number(of)) }
+                    };
+                    let Fast { low, high } = formula.of([&jet(0), &jet(1), &jet(2)]).slope;
+                    if (high - low).is_finite() { 0.5 * (low + high) } else { 1e6 }
+                })
+            };
+            let Some(axis) = axis else { return slopes(at) };
+            let axis = unit(f64s(axis));
+            let y = dot(at, axis);
+            let out = [0, 1, 2].map(|of| at[of] - y * axis[of]);
+            let [by_square, by_height, _] = slopes([dot(out, out), y, 0.0]);
+            [0, 1, 2].map(|of| 2.0 * by_square * out[of] + by_height * axis[of])
+        }
         Shape::Mesh { faces } => {
             let [a, b, c] = &faces[closed::face(ray, faces).unwrap_or(0)];
             f64s(&super::ray::cross(&super::ray::minus(b, a), &super::ray::minus(c, a)))
@@ -216,6 +238,27 @@ mod tests {
             ),
             ("revsurf r { profile \"y^2 - 7 + exp(0)\" direction 0 1 0 base 4 0 -4 height 6 }", Some(0), 7.0),
             ("revsurf r { profile \"2 - y\" direction 0 1 0 base 4 0 -4 height 6 }", None, 0.0),
+            ("implicit i { formula \"x^2 + y^2 + z^2 - 4\" center 4 3 -4 box -3 -3 -3 3 3 3 }", Some(0), 8.0),
+            (
+                "implicit i { formula \"x^2 + y^2 + z^2 - 4\" center 4 3 -4 box -3 -3 -3 3 3 1 }",
+                Some(0),
+                12.0,
+            ),
+            (
+                "implicit i { formula \"max(abs(x), abs(z)) - y\" center 4 2 -4 box -3 -3 -3 3 3 3 }",
+                Some(0),
+                9.0,
+            ),
+            ("cylinder c { base 4 1 -4 height 4 radius 2 }", Some(0), 8.0),
+            ("cylinder c { base 4 3 -5 direction 0 0 7 height 4 radius 2 }", Some(0), 7.0),
+            ("cylinder c { base 4 3 -5 direction 0 0 7 height 4 radius 2 open yes }", None, 0.0),
+            ("capsule c { base 4 3 -5 direction 0 0 7 height 4 radius 2 }", Some(0), 5.0),
+            ("disc d { center 4 3 -4 normal 0 0 2 radius 0.1 }", Some(0), 10.0),
+            ("disc d { center 4 3.2 -4 normal 0 0 2 radius 0.1 }", None, 0.0),
+            ("lathe l { points 0 2  3 2  6 2  base 4 0 -4 }", Some(0), 8.0),
+            ("lathe l { points 0 1  1 2  2 1  base 4 2 -4 }", Some(0), 8.0),
+            ("box b { center 4 3.125 -4 size 2 2 2 }", Some(0), 9.0),
+            ("prism p { points -1 0  1 0.5  1 2  -1 2  base 4 1 -4 height 3.5 }", Some(0), 8.0),
             ("torus t { center 4 3 -4 radius 2 tube 0.5 }", Some(0), 7.5),
             ("torus t { center 4 3 -4 direction 0 0 1 radius 2 tube 0.5 }", None, 0.0),
         ] {

@@ -3,6 +3,7 @@
 use super::dyadic::Dyadic;
 use super::formula::Formula;
 use super::place::Place;
+use super::spline::Spline;
 use std::collections::HashMap;
 use std::rc::Rc;
 
@@ -55,6 +56,17 @@ pub enum Shape {
     Heart {
         center: Vector,
         size: Dyadic,
+    },
+    /// The points where a formula is 0 and others are not negative, in coordinates from `own` on.
+    Formula {
+        own: Vector,
+        /// If there is an axis, y is the height along it and x the squared distance from it.
+        axis: Option<Vector>,
+        formula: Formula,
+        kept: Vec<Formula>,
+        /// The middle of the shape, from `own` on, and an upper bound of the distance of its points from there.
+        middle: Vector,
+        reach: f64,
     },
     /// Triangles, of a closed surface or not.
     Mesh {
@@ -122,7 +134,10 @@ fn words(text: &str) -> Vec<&str> {
 /// The notes' profiles, in the order of their numbers.
 const SURFERS: [&str; 4] = ["2 + sin(y)", "-4/6 * (y - 6)", "1 + 0.5 * cos(y)", "1 + 0.5 * sin(y)"];
 
-const ATTRIBUTES: [&str; 35] = [
+const ATTRIBUTES: [&str; 38] = [
+    "formula",
+    "points",
+    "open",
     "pixeldim",
     "worlddim",
     "viewpoint",
@@ -176,6 +191,26 @@ fn faces(text: &str) -> Vec<[Vector; 3]> {
         }
     }
     faces.into_iter().map(|face: [usize; 3]| face.map(|corner| points[corner].clone())).collect()
+}
+
+/// Returns the triangles of a convex polygon in x and z, extended from one height to another.
+fn prism(corners: &[[Dyadic; 2]], [low, high]: [Dyadic; 2], is_open: bool) -> Vec<[Vector; 3]> {
+    let count = corners.len();
+    let at = |corner: usize, y: &Dyadic| {
+        let [x, z] = &corners[corner % count];
+        [x.clone(), y.clone(), z.clone()]
+    };
+    let mut faces = Vec::new();
+    for corner in 0..count {
+        let next = corner + 1;
+        faces.push([at(corner, &low), at(corner, &high), at(next, &high)]);
+        faces.push([at(corner, &low), at(next, &high), at(next, &low)]);
+        if !is_open && corner > 0 && next < count {
+            faces.push([at(0, &low), at(corner, &low), at(next, &low)]);
+            faces.push([at(0, &high), at(next, &high), at(corner, &high)]);
+        }
+    }
+    faces
 }
 
 impl Scene {
@@ -288,6 +323,90 @@ impl Scene {
                 radius: a.number("radius"),
                 tube: a.number("tube"),
             },
+            "implicit" => {
+                let ends = a.numbers("box").expect("a box");
+                let kept = |end: usize| {
+                    let variable = Formula::Variable(end % 3);
+                    let inward = if end < 3 { variable } else { Formula::Neg(Box::new(variable)) };
+                    inward.plus(if end < 3 { ends[end].neg() } else { ends[end].clone() })
+                };
+                let corner = |from: usize| [0, 1, 2].map(|axis| ends[from + axis].to_f64(true));
+                let (low, high) = (corner(0), corner(3));
+                let half = [0, 1, 2].map(|axis| 0.51 * (high[axis] - low[axis]));
+                Shape::Formula {
+                    own: a.vector_or("center", [0, 0, 0]),
+                    axis: None,
+                    formula: Formula::read(a.0["formula"][0]),
+                    kept: (0..6).map(kept).collect(),
+                    middle: [0, 1, 2].map(|axis| Dyadic::from(0.5 * (low[axis] + high[axis]))),
+                    reach: half.iter().map(|side| side * side).sum::<f64>().sqrt(),
+                }
+            }
+            "cylinder" | "capsule" | "disc" => {
+                let [square, height] = [|| Formula::Variable(0), || Formula::Variable(1)];
+                let radius = a.number("radius");
+                let axis = a.vector_or(if kind == "disc" { "normal" } else { "direction" }, [0, 1, 0]);
+                let length = if kind == "disc" { Dyadic::zero() } else { a.number("height") };
+                let number = |of: &Dyadic| Formula::Number(of.clone());
+                let two =
+                    |sign: char, one: Formula, other: Formula| Formula::Two(sign, Box::new([one, other]));
+                let wall = square().plus(radius.square().neg());
+                let above = height().plus(length.neg());
+                let below = Formula::Neg(Box::new(above.clone()));
+                let is_open = a.0.get("open").is_some_and(|open| open[0] == "yes");
+                let (formula, kept) = match kind {
+                    "disc" => (height(), vec![Formula::Neg(Box::new(wall))]),
+                    "cylinder" if is_open => (wall, vec![height(), below]),
+                    "cylinder" => {
+                        (Formula::Call("max".to_owned(), vec![wall, two('*', height(), above)]), Vec::new())
+                    }
+                    _ => {
+                        let zero = || number(&Dyadic::zero());
+                        let under = Formula::Call("min".to_owned(), vec![height(), zero()]);
+                        let over = Formula::Call("max".to_owned(), vec![above, zero()]);
+                        let square = |of| Formula::Whole(Box::new(of), 2);
+                        (two('+', wall, two('+', square(under), square(over))), Vec::new())
+                    }
+                };
+                let along = 0.5 * length.to_f64(true);
+                let lengths = axis.each_ref().map(|part| part.to_f64(false));
+                let most = lengths.iter().map(|part| part * part).sum::<f64>().sqrt();
+                Shape::Formula {
+                    own: a.vector(if kind == "disc" { "center" } else { "base" }),
+                    middle: lengths.map(|part| Dyadic::from(part / most * along)),
+                    axis: Some(axis),
+                    formula,
+                    kept,
+                    reach: 1.1 * (along + radius.to_f64(true)),
+                }
+            }
+            "lathe" => {
+                let points = a.numbers("points").expect("points");
+                let points: Vec<_> = points.chunks(2).map(|two| [two[0].clone(), two[1].clone()]).collect();
+                Shape::Revolved {
+                    height: points[points.len() - 1][0].clone(),
+                    profile: Formula::Spline(Spline::new(&points)),
+                    direction: a.vector_or("direction", [0, 1, 0]),
+                    base: a.vector("base"),
+                }
+            }
+            "box" => {
+                let (center, size) = (a.vector("center"), a.vector("size"));
+                let end = |axis: usize, sign: i64| {
+                    center[axis].add(&size[axis].shifted(-1).mul(&Dyadic::int(sign)))
+                };
+                let corners = [[-1, -1], [1, -1], [1, 1], [-1, 1]];
+                let corners = corners.map(|[x, z]| [end(0, x), end(2, z)]);
+                Shape::Mesh { faces: prism(&corners, [end(1, -1), end(1, 1)], false) }
+            }
+            "prism" => {
+                let base = a.vector_or("base", [0, 0, 0]);
+                let points = a.numbers("points").expect("points");
+                let corners = points.chunks(2).map(|two| [two[0].add(&base[0]), two[1].add(&base[2])]);
+                let ends = [base[1].clone(), base[1].add(&a.number("height"))];
+                let is_open = a.0.get("open").is_some_and(|open| open[0] == "yes");
+                Shape::Mesh { faces: prism(&corners.collect::<Vec<_>>(), ends, is_open) }
+            }
             "heart" => Shape::Heart { center: a.vector("center"), size: a.number("size") },
             _ => panic!("no oracle for `{kind}`"),
         })

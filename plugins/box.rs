@@ -1,0 +1,27 @@
+//! A box: a cuboid with its sides along the axes.
+
+use crate::prelude::*;
+use crate::shapes::outline;
+
+static CENTER: Pparm<DVec3> =
+    Pparm::required("center", "the position of the centre").alias(&["centre"]).unit("world coordinates");
+static SIZE: Pparm<DVec3> = Pparm::required("size", "the width, height and depth")
+    .unit("world units")
+    .must("positive in each dimension", |size: &DVec3| size.min_element() > 0.0);
+
+const TABLE: Table = &[&CENTER, &SIZE];
+
+inventory::submit! {
+    Entity::shape("box", "a cuboid with its sides along the axes", &[TABLE], |args| {
+        let (center, half) = (args.get(&CENTER), 0.5 * args.get(&SIZE));
+        let (low, high) = (center - half, center + half);
+        let corners = [(low.x, low.z), (high.x, low.z), (high.x, high.z), (low.x, high.z)].map(DVec2::from);
+        let solid = outline::prism(&corners, [low.y, high.y], false);
+        let body = solid.and_then(|(vertices, faces)| outline::body(vertices, faces, args.accuracy()).ok());
+        body.ok_or(Refusal {
+            attribute: Some("size"),
+            message: "is too small for where it is: its sides coincide, or are too far away".to_owned(),
+            help: "a side must be longer than the rounding of its coordinates, about 1e-16 of their size",
+        })
+    })
+}

@@ -1,0 +1,50 @@
+//! A cylinder: solid, or a tube without its ends.
+
+use crate::prelude::*;
+
+static BASE: Pparm<DVec3> = Pparm::required("base", "the centre of its lower end").unit("world coordinates");
+static DIRECTION: Pparm<DVec3> = Pparm::or("direction", "the direction of the axis, upward", DVec3::Y)
+    .must("a nonzero vector", |axis: &DVec3| axis.try_normalize().is_some());
+static HEIGHT: Pparm<f64> =
+    Pparm::required("height", "the length").unit("world units").must("positive", |height| *height > 0.0);
+static RADIUS: Pparm<f64> = Pparm::required("radius", "the distance of its wall from the axis")
+    .unit("world units")
+    .must("positive", |radius| *radius > 0.0);
+static OPEN: Pparm<bool> = Pparm::or("open", "whether it is a tube, without its two ends", false);
+
+const TABLE: Table = &[&BASE, &DIRECTION, &HEIGHT, &RADIUS, &OPEN];
+
+inventory::submit! {
+    Entity::shape("cylinder", "a cylinder", &[TABLE], |args| {
+        let cylinder =
+            Cylinder { height: args.get(&HEIGHT), radius: args.get(&RADIUS), is_open: args.get(&OPEN) };
+        Ok(Body::implicit(cylinder, Frame::around(args.get(&BASE), args.get(&DIRECTION))))
+    })
+}
+
+/// A cylinder around the y axis, from the origin upward.
+struct Cylinder {
+    height: f64,
+    radius: f64,
+    is_open: bool,
+}
+
+impl Implicit for Cylinder {
+    const IS_CUT: bool = true;
+
+    fn value<N: Scalar>(&self, [x, y, z]: [N; 3]) -> N {
+        let wall = x.powi(2) + z.powi(2) - N::constant(self.radius).powi(2);
+        if self.is_open { wall } else { wall.max(y * (y - N::constant(self.height))) }
+    }
+
+    fn kept<N: Scalar>(&self, [_, y, _]: [N; 3]) -> N {
+        if self.is_open { y.min(N::constant(self.height) - y) } else { N::constant(1.0) }
+    }
+
+    fn bounds(&self) -> [DVec3; 2] {
+        // The box must not touch the surface, or it would be in doubt on which side of it a hit is.
+        let Self { radius, height, .. } = *self;
+        let [out, up] = [1.125 * radius, 0.125 * height];
+        [DVec3::new(-out, -up, -out), DVec3::new(out, height + up, out)]
+    }
+}

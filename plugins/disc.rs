@@ -1,0 +1,42 @@
+//! A disc: the part of a plane within a circle.
+
+use crate::prelude::*;
+
+static CENTER: Pparm<DVec3> =
+    Pparm::required("center", "the position of the centre").alias(&["centre"]).unit("world coordinates");
+static NORMAL: Pparm<DVec3> = Pparm::or("normal", "the direction in which it faces", DVec3::Y)
+    .must("a nonzero vector", |normal: &DVec3| normal.try_normalize().is_some());
+static RADIUS: Pparm<f64> = Pparm::required("radius", "the distance from its centre to its edge")
+    .unit("world units")
+    .must("positive", |radius| *radius > 0.0);
+
+const TABLE: Table = &[&CENTER, &NORMAL, &RADIUS];
+
+inventory::submit! {
+    Entity::shape("disc", "a flat disc, lit on both sides", &[TABLE], |args| {
+        let disc = Disc { radius: args.get(&RADIUS) };
+        Ok(Body::implicit(disc, Frame::around(args.get(&CENTER), args.get(&NORMAL))))
+    })
+}
+
+/// A disc in the plane y = 0.
+struct Disc {
+    radius: f64,
+}
+
+impl Implicit for Disc {
+    const IS_CUT: bool = true;
+
+    fn value<N: Scalar>(&self, [_, y, _]: [N; 3]) -> N {
+        y
+    }
+
+    fn kept<N: Scalar>(&self, [x, _, z]: [N; 3]) -> N {
+        N::constant(self.radius).powi(2) - x.powi(2) - z.powi(2)
+    }
+
+    fn bounds(&self) -> [DVec3; 2] {
+        let corner = self.radius * DVec3::new(1.125, 0.125, 1.125);
+        [-corner, corner]
+    }
+}

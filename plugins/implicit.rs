@@ -1,0 +1,52 @@
+//! A surface by its formula: the points where it is 0.
+
+use crate::prelude::*;
+use crate::shapes::field;
+
+static FORMULA: Pparm<Field> = Pparm::required(
+    "formula",
+    "the formula, which is 0 on the surface, below 0 inside of it and above 0 outside",
+);
+static CENTER: Pparm<DVec3> = Pparm::or("center", "the origin of the formula's coordinates", DVec3::ZERO)
+    .alias(&["centre"])
+    .unit("world coordinates");
+static BOX: Pparm<[f64; 6]> = Pparm::required(
+    "box",
+    "the box that clips the surface, as its low and its high corner relative to `center`; where it clips, the surface is \
+     open, and its inside is seen",
+)
+.unit("world units")
+.must("a low corner and a high corner above it", |[a, b, c, x, y, z]: &[f64; 6]| a < x && b < y && c < z);
+
+const TABLE: Table = &[&FORMULA, &CENTER, &BOX];
+
+inventory::submit! {
+    Entity::shape("implicit", "a surface by its formula", &[TABLE], |args| {
+        let [x, y, z, x2, y2, z2] = args.get(&BOX);
+        let surface =
+            Surface { formula: args.get(&FORMULA), corners: [DVec3::new(x, y, z), DVec3::new(x2, y2, z2)] };
+        field::check(&surface.formula, surface.corners).map_err(|fault| {
+            let (what, help) = fault.told();
+            Refusal { attribute: Some("formula"), message: format!("has a formula {what}"), help }
+        })?;
+        Ok(Body::implicit(surface, Frame::at(args.get(&CENTER))))
+    })
+}
+
+/// The surface where a scene's formula is 0.
+struct Surface {
+    formula: Field,
+    corners: [DVec3; 2],
+}
+
+impl Implicit for Surface {
+    const IS_IN_WIDE_BOX: bool = true;
+
+    fn value<N: Scalar>(&self, at: [N; 3]) -> N {
+        self.formula.at(at)
+    }
+
+    fn bounds(&self) -> [DVec3; 2] {
+        self.corners
+    }
+}

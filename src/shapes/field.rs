@@ -1,0 +1,126 @@
+//! What has to be so of a formula in x, y and z before its surface can be met: on the whole surface within its box, the
+//! formula and its slope are bounded, which is proven by interval arithmetic on smaller and smaller parts of the box.
+
+use crate::numeric::dual::Dual;
+use crate::numeric::formula::field::Field;
+use crate::numeric::interval::Interval;
+use glam::DVec3;
+
+/// The number of formula operations that a check may take, a function counted as eight: some tenths of a second.
+const OPERATIONS: u64 = 40_000_000;
+
+/// The number of times that the box is halved before a part counts as a point: 18 times along each axis.
+const HALVINGS: u32 = 54;
+
+/// The number of parts in which a change of sign is looked for.
+const PARTS: usize = 1 << 14;
+
+/// The reason why a formula makes no surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NoField {
+    /// The formula has no bounds, or is not defined.
+    Unbounded {
+        /// A point near which that is so.
+        near: DVec3,
+    },
+    /// The slope has no bounds where the formula may be 0.
+    Steep {
+        /// A point near which that is so.
+        near: DVec3,
+    },
+    /// The formula is nowhere 0.
+    Nowhere,
+    /// Bounds take too many operations.
+    Bends,
+}
+
+impl NoField {
+    /// Returns what is wrong with the formula and what would help, for messages: "has a formula ...".
+    pub fn told(self) -> (String, &'static str) {
+        let place = |DVec3 { x, y, z }: DVec3| format!("near x = {x:.4}, y = {y:.4}, z = {z:.4}");
+        match self {
+            Self::Unbounded { near } => (
+                format!("that is unbounded or not defined {}", place(near)),
+                "the formula has to be finite wherever it may be 0 in its box",
+            ),
+            Self::Steep { near } => (
+                format!("whose slope is unbounded {}", place(near)),
+                "where the formula is 0 in its box it must not jump, and a root or a power with a fraction must not \
+                 be of something that is 0 there: write a cone as `x^2 + z^2 - y^2`, not as `sqrt(x^2 + z^2) - y`",
+            ),
+            Self::Nowhere => (
+                "that is nowhere 0 in its box".to_owned(),
+                "the surface is where the formula is 0: change the formula, or the box",
+            ),
+            Self::Bends => (
+                "that bends too often in its box to be bounded".to_owned(),
+                "give a smaller box, or a formula with fewer waves",
+            ),
+        }
+    }
+}
+
+/// A part of the box, and the number of halvings that made it.
+type Part = ([DVec3; 2], u32);
+
+/// Proves that a formula and its slope are bounded on its surface in a box, and that there may be such a surface.
+///
+/// # Errors
+/// Why there is none.
+pub fn check(field: &Field, corners: [DVec3; 2]) -> Result<(), NoField> {
+    let mut left = OPERATIONS / (field.formula().cost().max(1) * 16);
+    let (mut waiting, mut smooth) = (vec![(corners, 0)], Vec::new());
+    while let Some(part) = waiting.pop() {
+        left = left.checked_sub(1).ok_or(NoField::Bends)?;
+        let ([low, high], halvings) = part;
+        let at = [0, 1, 2].map(|axis| Interval { low: low[axis], high: high[axis] });
+        let value = field.at(at);
+        if !value.has_zero() {
+            continue;
+        }
+        if value.is_bounded() && (0..3).all(|axis| slope(field, at, axis).is_bounded()) {
+            smooth.push(part);
+        } else if halvings < HALVINGS {
+            waiting.extend(halves(part));
+        } else {
+            let near = 0.5 * (low + high);
+            return Err(match value.is_bounded() {
+                true => NoField::Steep { near },
+                false => NoField::Unbounded { near },
+            });
+        }
+    }
+    if is_nowhere(field, smooth) { Err(NoField::Nowhere) } else { Ok(()) }
+}
+
+/// Tells whether a formula is certainly nowhere 0 in these parts.
+fn is_nowhere(field: &Field, parts: Vec<Part>) -> bool {
+    let (mut signs, mut parts, mut judged) = ([false; 2], std::collections::VecDeque::from(parts), 0);
+    while let Some(part) = parts.pop_front() {
+        let ([low, high], _) = part;
+        judged += 1;
+        let at = [0, 1, 2].map(|axis| Interval { low: low[axis], high: high[axis] });
+        signs[usize::from(field.at((0.5 * (low + high)).to_array()) < 0.0)] = true;
+        if signs == [true; 2] || judged > PARTS {
+            return false;
+        }
+        if field.at(at).has_zero() {
+            parts.extend(halves(part));
+        }
+    }
+    true
+}
+
+fn slope(field: &Field, at: [Interval; 3], along: usize) -> Interval {
+    let own = |axis: usize| if axis == along { Dual::variable(at[axis]) } else { Dual::fixed(at[axis]) };
+    field.at([own(0), own(1), own(2)]).slope
+}
+
+/// Returns the halves of a part, cut across its longest side.
+fn halves(([low, high], halvings): Part) -> [Part; 2] {
+    let axis = (high - low).max_position();
+    let middle = low[axis] + 0.5 * (high[axis] - low[axis]);
+    let (mut below, mut above) = (high, low);
+    (below[axis], above[axis]) = (middle, middle);
+    [([low, below], halvings + 1), ([above, high], halvings + 1)]
+}
