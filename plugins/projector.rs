@@ -61,7 +61,8 @@ where
         let n = Interval::<F>::constant;
         let zero = n(0.0);
         let minus = |one: [Interval<F>; 3], other: DVec3| per_axis(|axis| one[axis] - n(other[axis]));
-        let away = minus(toward, self.light.location).map(|part| -part);
+        let from = minus(toward, self.light.location);
+        let away = per_axis(|axis| -from[axis]);
         let normal = self.window.plane.given_normal::<Interval<F>>();
         let slope = dot(normal, away);
         let crossing = -dot(normal, minus(toward, self.window.plane.point)) / slope;
@@ -73,7 +74,7 @@ where
         }
         let texel = self.picture.enclose(at);
         let sent = per_axis(|channel| n(self.light.emissivity[channel]) * texel[channel]);
-        Some(if inside.low > zero.low { sent } else { sent.map(|channel| channel.hull(zero)) })
+        Some(if inside.low > zero.low { sent } else { per_axis(|channel| sent[channel].hull(zero)) })
     }
 
     /// The lines through the light and the rectangle are a pyramid on either side of the light. The region is clear if it

@@ -62,5 +62,5 @@ pub fn enclose<F: Precise>([x, y]: [Interval<F>; 2]) -> [Interval<F>; 3] {
 /// Encloses six times the colour of [`around`].
 pub fn enclosed_around<F: Precise>(anchor: &Anchor, [x, y, _]: [Interval<F>; 3]) -> [Interval<F>; 3] {
     let colour = enclose([x - Interval::constant(anchor.origin.x), y - Interval::constant(anchor.origin.y)]);
-    colour.map(|channel| Interval::constant(6.0) * channel)
+    per_axis(|channel| Interval::constant(6.0) * colour[channel])
 }

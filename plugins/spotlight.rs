@@ -59,12 +59,12 @@ impl Light for Spotlight {
 
     fn enclose<F: Precise>(&self, toward: [Interval<F>; 3]) -> Option<[Interval<F>; 3]> {
         let n = Interval::<F>::constant;
-        let location = self.light.location.to_array().map(n);
+        let location = constants(self.light.location);
         let from = |at: [Interval<F>; 3]| per_axis(|axis| at[axis] - location[axis]);
-        let (axis, away) = (from(self.point.to_array().map(n)), from(toward));
+        let (axis, away) = (from(constants(self.point)), from(toward));
         let inside =
             dot(away, axis) - F::narrow(self.cosine.into()) * (dot(away, away) * dot(axis, axis)).sqrt();
-        let (sent, nothing) = (self.light.emissivity.to_array().map(n), [n(0.0); 3]);
+        let (sent, nothing) = (constants::<Interval<F>>(self.light.emissivity), [n(0.0); 3]);
         Some(match inside.has_zero() {
             true => per_axis(|channel| sent[channel].hull(nothing[channel])),
             false if inside.low > nothing[0].low => sent,

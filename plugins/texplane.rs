@@ -103,8 +103,8 @@ impl Picture {
         }
         let wrapped = |at: u32, side: usize| if self.texel.is_some() { at % size[side].max(1) } else { at };
         let texels = rows.flat_map(|row| columns.clone().map(move |column| (column, row)));
-        let colours = texels
-            .map(|(column, row)| self.texture.texel(wrapped(column, 0), wrapped(row, 1)).to_array().map(n));
+        let colours =
+            texels.map(|(column, row)| constants(self.texture.texel(wrapped(column, 0), wrapped(row, 1))));
         let hull = |one: [Interval<F>; 3], other: [Interval<F>; 3]| {
             per_axis(|channel| one[channel].hull(other[channel]))
         };

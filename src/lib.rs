@@ -18,6 +18,7 @@ pub mod geometry;
 mod heap;
 pub mod numeric;
 pub mod output;
+mod parallel;
 pub mod prelude;
 pub mod render;
 pub mod scene;

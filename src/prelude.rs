@@ -36,7 +36,7 @@ pub use crate::geometry::frame::Frame;
 pub use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
 pub use crate::numeric::double_double::DoubleDouble;
 pub use crate::numeric::interval::{Interval, Wide};
-pub use crate::numeric::scalar::{Scalar, cross, dot, per_axis};
+pub use crate::numeric::scalar::{Scalar, constants, cross, dot, per_axis};
 pub use crate::shapes::implicit::Implicit;
 pub use crate::world::certify::{Equation, Precise};
 

@@ -86,7 +86,7 @@ pub fn nearest_file(path: &Path) -> Option<String> {
     let entries = folder.read_dir().ok()?.filter_map(Result::ok);
     let mut names: Vec<_> = entries.filter_map(|entry| entry.file_name().into_string().ok()).collect();
     // A folder lists its files in any order.
-    names.sort();
+    names.sort_unstable();
     nearest(path.file_name()?.to_str()?, names.iter().map(String::as_str)).map(str::to_owned)
 }
 

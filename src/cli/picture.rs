@@ -27,7 +27,8 @@ impl Picture {
         let cannot =
             |reason: String| Failure::Usage(format!("cannot read `{}`: {reason}", path.display()), None);
         let Some(format) = FullRange::of(path) else { return read(path).map(Self::Bytes) };
-        let file = BufReader::new(files::open(path).map_err(|error| cannot(text::reason(&error)))?);
+        let file: &mut dyn ImageBytes =
+            &mut BufReader::new(files::open(path).map_err(|error| cannot(text::reason(&error)))?);
         let picture = match format {
             FullRange::Pfm => full_range::read_pfm(file).map_err(|error| match error.kind() {
                 io::ErrorKind::InvalidData => "it is no PFM of three channels".to_owned(),

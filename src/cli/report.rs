@@ -8,11 +8,12 @@ use crate::output::compare::Comparison;
 use crate::text;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use image::{ImageFormat, RgbImage};
+use image::RgbImage;
+use image::codecs::png::PngEncoder;
 use serde::Serialize;
 use similar::algorithms::{Capture, Compact, Replace, myers};
 use similar::{Change as LineChange, ChangeTag, DiffableStr};
-use std::io::{self, Cursor, Write};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 const PAGE: &str = include_str!("report.html");
@@ -206,9 +207,10 @@ impl<'d> Shown<'d> {
 
 /// Encodes an image as a data URI. It is encoded anew, so that no colour profile in its file changes its look.
 fn data_uri(picture: &RgbImage) -> io::Result<String> {
-    let mut png = Cursor::new(Vec::new());
-    picture.write_to(&mut png, ImageFormat::Png).map_err(io::Error::other)?;
-    Ok(format!("data:image/png;base64,{}", STANDARD.encode(png.into_inner())))
+    let mut png = Vec::new();
+    let out: &mut dyn Write = &mut png;
+    picture.write_with_encoder(PngEncoder::new(out)).map_err(io::Error::other)?;
+    Ok(format!("data:image/png;base64,{}", STANDARD.encode(png)))
 }
 
 /// Compares two texts line by line.

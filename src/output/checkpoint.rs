@@ -4,16 +4,15 @@
 //! what the image depends on.
 
 use crate::output::picture::{AS_SHOWN, Rows};
+use crate::parallel;
 use crate::render::tiles::{Band, Strip, TILE, Tiles};
 use crate::scene::choice::Choice;
 use crate::scene::dump;
 use crate::scene::model::Model;
-use crate::scene::store::Record;
 use crate::scene::syntax::Syntax;
 use crate::text;
 use crate::world::camera::Adaptive;
 use rayon::ThreadPoolBuilder;
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -154,19 +153,19 @@ const TOGETHER: usize = 1 << 12;
 /// waiting for an interrupted render to end.
 fn scene(model: &Model) -> String {
     let entities = dump::in_order(model);
-    let hash = |entities: &[&Record]| {
+    let chunks: Vec<_> = entities.chunks(TOGETHER).collect();
+    let hash = |index: usize| {
         let mut hasher = Sha256::new();
         let mut memory = None;
-        for record in entities {
+        for record in chunks[index] {
             hasher.update(dump::block(record.args_in(&mut memory), Syntax::Notes, false));
         }
         hasher.finalize()
     };
-    let chunks = entities.chunks(TOGETHER);
     let pool = (chunks.len() > 1).then(|| ThreadPoolBuilder::new().build().ok()).flatten();
     let hashes: Vec<_> = match pool {
-        Some(pool) => pool.install(|| entities.par_chunks(TOGETHER).map(hash).collect()),
-        None => chunks.map(hash).collect(),
+        Some(pool) => parallel::on(&pool, || parallel::map(chunks.len(), hash)),
+        None => (0..chunks.len()).map(hash).collect(),
     };
     shown(hashes.iter().fold(Sha256::new(), |all, hash| all.chain_update(hash)))
 }
@@ -197,14 +196,14 @@ fn shown(hasher: Sha256) -> String {
 /// # Errors
 /// Those of `out` and `picture`, and an error where a PNG cannot have the size.
 pub fn write(
-    out: impl Write,
+    mut out: impl Write,
     [width, height]: [usize; 2],
     identity: &Identity,
     tiles: &Tiles,
     mut picture: Rows,
 ) -> io::Result<()> {
     let side = |pixels: usize| u32::try_from(pixels).map_err(io::Error::other);
-    let mut encoder = png::Encoder::new(out, side(width)?, side(height)?);
+    let mut encoder = png::Encoder::new(&mut out as &mut dyn Write, side(width)?, side(height)?);
     encoder.set_color(png::ColorType::Rgba);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::Fast);

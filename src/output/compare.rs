@@ -1,5 +1,6 @@
 //! The difference of two images, in numbers.
 
+use crate::numeric::scalar::per_axis;
 use crate::text;
 use image::{Rgb32FImage, RgbImage};
 use std::fmt;
@@ -57,7 +58,7 @@ impl FullRangeComparison {
                     levels
                 }
             };
-            let apart = [0, 1, 2].map(apart);
+            let apart = per_axis(apart);
             let max = apart.into_iter().fold(0.0, f64::max);
             largest = largest.max(max);
             squares += apart.map(|levels| levels * levels).iter().sum::<f64>();
@@ -112,7 +113,7 @@ impl Comparison {
         }
         let (mut differing, mut largest, mut squares, mut first) = (0, 0, 0, None);
         for ((x, from_top, a), b) in old.enumerate_pixels().zip(new.pixels()) {
-            let apart = [0, 1, 2].map(|channel| a[channel].abs_diff(b[channel]));
+            let apart = per_axis(|channel| a[channel].abs_diff(b[channel]));
             let max = apart.into_iter().max().unwrap_or(0);
             largest = largest.max(max);
             squares += apart.map(|levels| u64::from(levels).pow(2)).iter().sum::<u64>();

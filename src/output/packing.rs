@@ -1,8 +1,8 @@
 //! Divides the rows of a PNG into pieces of the same height, which are compressed on all threads.
 
-use crate::output::deflate::{Checksum, Compression, EMPTY_END, Packed, Piece};
+use crate::output::deflate::{Checksum, Compression, EMPTY_END, Piece};
+use crate::parallel;
 use crate::render::renderer::Renderer;
-use rayon::prelude::*;
 use std::io;
 use std::mem::take;
 
@@ -127,13 +127,12 @@ impl<'r> Packing<'r> {
     fn pack(&mut self, put: &mut impl FnMut(&[u8]) -> io::Result<()>) -> io::Result<()> {
         let (pieces, compression) = (take(&mut self.pieces), self.compression);
         let is_last = pieces.last().is_some_and(|piece| piece.is_last);
-        let pack = |piece: Piece| piece.pack(compression);
-        let mut packed: Vec<Packed> = match self.renderer {
-            Some(renderer) if pieces.len() > 1 => {
-                renderer.run(|| pieces.into_par_iter().map(pack).collect::<io::Result<_>>())?
-            }
-            _ => pieces.into_iter().map(pack).collect::<io::Result<_>>()?,
+        let pack = |piece: usize| pieces[piece].pack(compression);
+        let packed = match self.renderer {
+            Some(renderer) if pieces.len() > 1 => renderer.run(|| parallel::map(pieces.len(), pack)),
+            _ => (0..pieces.len()).map(pack).collect(),
         };
+        let mut packed = packed.into_iter().collect::<io::Result<Vec<_>>>()?;
         for packed in &packed {
             self.checksum = self.checksum.and(&packed.checksum);
         }

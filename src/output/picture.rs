@@ -60,13 +60,13 @@ impl Format {
     pub fn write_on(
         self,
         renderer: Option<&Renderer>,
-        out: impl Write,
+        mut out: impl Write,
         [width, height]: [usize; 2],
         rows: impl IntoIterator<Item = io::Result<Vec<u8>>>,
     ) -> io::Result<()> {
         match self {
-            Self::Ppm => write_ppm(out, width, height, rows),
-            Self::Png(compression) => write_png(out, width, height, (compression, renderer), rows),
+            Self::Ppm => write_ppm(&mut out, width, height, rows),
+            Self::Png(compression) => write_png(&mut out, width, height, (compression, renderer), rows),
         }
     }
 
@@ -120,7 +120,7 @@ fn ppm_header(width: usize, height: usize) -> String {
 }
 
 fn write_ppm(
-    mut out: impl Write,
+    out: &mut dyn Write,
     width: usize,
     height: usize,
     rows: impl IntoIterator<Item = io::Result<Vec<u8>>>,
@@ -143,7 +143,7 @@ fn write_ppm(
 pub(crate) const AS_SHOWN: png::SrgbRenderingIntent = png::SrgbRenderingIntent::RelativeColorimetric;
 
 fn write_png(
-    out: impl Write,
+    out: &mut dyn Write,
     width: usize,
     height: usize,
     (compression, renderer): (Compression, Option<&Renderer>),

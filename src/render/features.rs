@@ -1,6 +1,7 @@
 //! The objects that are so small in the image that they may lie between samples.
 
 use crate::geometry::aabb::Aabb;
+use crate::numeric::scalar::per_axis;
 use crate::render::tiles::TILE;
 use crate::scene::model::Object;
 use crate::world::camera::Camera;
@@ -85,7 +86,7 @@ impl Small {
             let part = |axis: usize| {
                 if corner >> axis & 1 == 0 { bounds.low[axis] } else { bounds.high[axis] }
             };
-            let place = camera.project(DVec3::from_array([0, 1, 2].map(part)))?;
+            let place = camera.project(DVec3::from_array(per_axis(part)))?;
             (low, high) = (low.min(place), high.max(place));
         }
         // So written that no NaN counts as small.

@@ -8,12 +8,12 @@ use needs::Needs;
 
 use crate::geometry::aabb::Aabb;
 use crate::geometry::bvh::Bvh;
+use crate::parallel;
 use crate::render::culling;
 use crate::render::features::Features;
 use crate::render::footprint::Prover;
 use crate::scene::model::{Model, Object};
 use crate::world::camera::{Adaptive, Camera};
-use rayon::prelude::*;
 
 /// The number of bounded objects from which on a BVH is faster than a list.
 pub(crate) const TREE: usize = 24;
@@ -84,11 +84,9 @@ impl<'m> Plan<'m> {
     fn with(model: &'m Model, needs: impl FnOnce(&[Option<Aabb>], Option<&Depth>) -> Needs) -> Self {
         let objects = &model.objects;
         let (mut unbounded, mut bounded) = (Vec::new(), Vec::new());
-        let bounds: Vec<_> = if objects.len() < MANY {
-            objects.iter().map(culling::bounds).collect()
-        } else {
-            objects.par_iter().map(culling::bounds).collect()
-        };
+        let bounds = parallel::ranges(objects.len(), MANY, &|range| {
+            objects[range].iter().map(culling::bounds).collect()
+        });
         let depth = Depth::new(model);
         let needs = needs(&bounds, depth.as_ref());
         let mut unmet = needs.unmet.iter().peekable();

@@ -1,6 +1,7 @@
 //! Progressive rendering: the whole image coarsely, then tile by tile.
 
 use crate::geometry::ray_packet::PACKET_SIZE;
+use crate::parallel;
 use crate::render::plan::Plan;
 use crate::render::ray_stats::Cuts;
 use crate::render::renderer::Renderer;
@@ -8,7 +9,6 @@ use crate::render::trace::{Scratch, Tracer};
 use crate::simd::cpu::Cpu;
 use crate::world::material::Rgb;
 use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The width and height of a block, in pixels. The coarse pass traces one pixel of each block.
 const BLOCK: usize = 8;
@@ -102,18 +102,14 @@ pub fn render(
     check: impl Fn() -> ControlFlow<()> + Sync,
 ) -> ControlFlow<()> {
     for areas in passes(plan.camera.pixels) {
-        let next = AtomicUsize::new(0);
         // Each thread takes the next area, so that areas are finished roughly in their order.
-        renderer.run(|| {
-            rayon::broadcast(|_| {
-                while let Some(area) = areas.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    match area.colours(plan, &check) {
-                        Some(colours) => part(*area, colours),
-                        None => break,
-                    }
-                }
-            })
-        });
+        let work = |(): &mut (), index: usize| {
+            let area: Area = areas[index];
+            if let Some(colours) = area.colours(plan, &check) {
+                part(area, colours);
+            }
+        };
+        renderer.run(|| parallel::turns(areas.len(), &work));
         if check().is_break() {
             return ControlFlow::Break(());
         }

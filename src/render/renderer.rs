@@ -1,5 +1,6 @@
 //! The tile loop: renders a model's pixels, on all threads.
 
+use crate::parallel;
 use crate::render::bytes::to_bytes;
 use crate::render::observer::TraceObserver;
 use crate::render::plan::Plan;
@@ -8,7 +9,6 @@ use crate::render::tiles::{self, BAND, Band, Strip, TILE, locked};
 use crate::render::trace::{Scratch, Tracer};
 use crate::simd::cpu::Cpu;
 use crate::text;
-use rayon::prelude::*;
 use std::io;
 use std::ops::{ControlFlow, Range};
 use std::panic;
@@ -92,20 +92,17 @@ impl Renderer {
         overseer: Overseer,
         watched: &(dyn Fn(W) + Sync),
     ) {
-        self.pool.install(|| {
-            // Each thread takes the next strip when it is free: with strips assigned beforehand, threads would wait for
-            // the slowest one.
-            let strips = band.strips.iter().zip(band.rows.clone().step_by(TILE)).par_bridge();
-            strips.for_each_init(Scratch::default, |scratch, (strip, from_top)| {
-                let mut observer = W::default();
-                let tall = TILE.min(band.rows.end - from_top);
-                let rows = from_top..from_top + tall;
-                let tracer = Tracer::new(plan, self.cpu, scratch, &mut observer);
-                self.strip(tracer, strip, [&band.columns, &rows], overseer);
-                watched(observer);
-                (0..tall).for_each(|_| (overseer.row)());
-            });
-        });
+        let strip = |scratch: &mut Scratch, index: usize| {
+            let mut observer = W::default();
+            let from_top = band.rows.start + TILE * index;
+            let rows = from_top..band.rows.end.min(from_top + TILE);
+            let tracer = Tracer::new(plan, self.cpu, scratch, &mut observer);
+            self.strip(tracer, &band.strips[index], [&band.columns, &rows], overseer);
+            watched(observer);
+            rows.for_each(|_| (overseer.row)());
+        };
+        // With strips assigned beforehand, threads would wait for the slowest one.
+        self.run(|| parallel::turns(band.strips.len(), &strip));
     }
 
     /// Renders the tiles of one strip. `rows` count from the top.
@@ -161,7 +158,7 @@ impl Renderer {
     ) -> Option<Vec<f32>> {
         let (width, end) = (columns.len(), plan.camera.pixels[1]);
         let mut all = vec![0.0; 3 * width * rows.len()];
-        let strip = |(index, strip): (usize, &mut [f32])| {
+        let strip = |index: usize, strip: &mut [f32]| {
             let mut observer = W::default();
             let (top, mut pixels, mut scratch) = (rows.start + TILE * index, Vec::new(), Scratch::default());
             let tall = strip.len() / (3 * width);
@@ -169,7 +166,7 @@ impl Renderer {
             let side = TILE * tracer.tiles_together();
             for left in columns.clone().step_by(side) {
                 if (overseer.stops)() {
-                    return None;
+                    return ControlFlow::Break(());
                 }
                 let right = columns.end.min(left + side);
                 pixels.clear();
@@ -182,10 +179,10 @@ impl Renderer {
             }
             watched(observer);
             (0..tall).for_each(|_| (overseer.row)());
-            Some(())
+            ControlFlow::Continue(())
         };
-        let strips = || all.par_chunks_mut(3 * width * TILE).enumerate().try_for_each(strip);
-        self.pool.install(strips).is_some().then_some(all)
+        let finished = self.run(|| parallel::chunks(&mut all, 3 * width * TILE, strip));
+        finished.is_continue().then_some(all)
     }
 
     /// Lets `work` render bands with `Unfinished::fill`, which may leave threads at work.
@@ -204,21 +201,20 @@ impl Renderer {
     ) -> Option<Vec<T>> {
         let [width, height] = plan.camera.pixels;
         let mut pixels = vec![T::default(); width * rows.len()];
-        let row = |(row, from_top): (&mut [T], usize)| {
-            let y = height - 1 - from_top;
+        let row = |index: usize, row: &mut [T]| {
+            let y = height - 1 - rows.start - index;
             for (x, place) in row.iter_mut().enumerate() {
                 *place = pixel(x, y);
             }
             done()
         };
-        let finished =
-            self.pool.install(|| pixels.par_chunks_mut(width).with_max_len(1).zip(rows).try_for_each(row));
+        let finished = self.run(|| parallel::chunks(&mut pixels, width, row));
         finished.is_continue().then_some(pixels)
     }
 
     /// Runs other work on one of the threads, whose stacks are large enough for deep reflections.
     pub fn run<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
-        self.pool.install(work)
+        parallel::on(&self.pool, work)
     }
 }
 

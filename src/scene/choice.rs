@@ -71,7 +71,7 @@ impl Choices {
 
 fn sorted<T: Choice>() -> Vec<ChoiceName> {
     let mut all: Vec<_> = T::all().iter().map(T::option).collect();
-    all.sort_by_key(|choice| (choice.number.unwrap_or(i64::MAX), choice.name));
+    all.sort_unstable_by_key(|choice| (choice.number.unwrap_or(i64::MAX), choice.name));
     all
 }
 

@@ -76,6 +76,6 @@ pub(crate) fn block(args: &Args, syntax: Syntax, repeated: bool) -> String {
 pub(crate) fn in_order(model: &Model) -> Vec<&Record> {
     let kinds = [Kind::Camera, Kind::Material, Kind::Texture, Kind::Object, Kind::Light];
     let mut all: Vec<_> = kinds.into_iter().flat_map(|kind| model.entities(kind)).collect();
-    all.sort_by_key(|record| record.order());
+    all.sort_unstable_by_key(|record| record.order());
     all
 }

@@ -36,7 +36,7 @@ impl Model {
             Kind::Object => {
                 let shown = self.objects.iter().map(|object| &object.args);
                 let mut all: Vec<_> = shown.chain(self.patterns.iter().map(|item| &item.args)).collect();
-                all.sort_by_key(|record| record.order());
+                all.sort_unstable_by_key(|record| record.order());
                 all
             }
             Kind::Light => self.lights.iter().map(|item| &item.args).collect(),

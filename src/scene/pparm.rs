@@ -55,10 +55,12 @@ pub trait Attribute: Sync {
     fn range(&self) -> Option<[f64; 2]>;
     /// Tells whether values of the right type and number satisfy the rule.
     fn allows(&self, datum: &Datum) -> bool;
+}
 
+impl dyn Attribute + '_ {
     /// Finds the first value that is a length or a coordinate whose square would overflow or underflow; returns its
     /// index and the reason.
-    fn beyond_squares(&self, datum: &Datum) -> Option<(usize, &'static str)> {
+    pub fn beyond_squares(&self, datum: &Datum) -> Option<(usize, &'static str)> {
         let Datum::Numbers(numbers) = datum else { return None };
         let is_length = self.unit() == "world units";
         // The sides of a rectangle or of the image plane, which come in pairs, are not squared.
@@ -76,7 +78,7 @@ pub trait Attribute: Sync {
     }
 
     /// Says how many values of which type the attribute takes: "1 or 3 numbers".
-    fn takes(&self) -> String {
+    pub fn takes(&self) -> String {
         match self.value_type() {
             Type::Whole => self.arity().told("whole number"),
             Type::Number => self.arity().told("number"),

@@ -105,7 +105,7 @@ fn profiles() -> impl Iterator<Item = Word> {
 /// Returns all alternatives of a type, sorted by name.
 pub(super) fn by_name<T: Choice>() -> impl Iterator<Item = ChoiceName> {
     let mut all: Vec<_> = T::all().iter().map(T::option).collect();
-    all.sort_by_key(|choice| choice.name);
+    all.sort_unstable_by_key(|choice| choice.name);
     all.into_iter()
 }
 

@@ -33,7 +33,7 @@ impl Registry {
             ];
             let mut faults = choices.concat();
             // A shader's name is registered on planes and on spheres, so its faults come twice.
-            faults.sort();
+            faults.sort_unstable();
             faults.dedup();
             let registry = Registry::of(inventory::iter::<Entity>());
             faults.extend(registry.as_ref().err().cloned());
@@ -49,7 +49,7 @@ impl Registry {
     pub fn of(entities: impl IntoIterator<Item = &'static Entity>) -> Result<Registry, String> {
         // `inventory` returns the entity types in the linker's order.
         let mut sorted: Vec<_> = entities.into_iter().collect();
-        sorted.sort_by_key(|entity| (entity.name, entity.place()));
+        sorted.sort_unstable_by_key(|entity| (entity.name, entity.place()));
 
         let mut faults = Vec::new();
         let mut by_name: BTreeMap<&str, &Entity> = BTreeMap::new();
@@ -115,7 +115,7 @@ impl Registry {
 /// Returns an error message for each profile that is not a formula.
 fn profiles() -> Vec<String> {
     let mut faults: Vec<_> = inventory::iter::<Profile>().filter_map(Profile::fault).collect();
-    faults.sort();
+    faults.sort_unstable();
     faults
 }
 

@@ -1,5 +1,6 @@
 //! Measures certified pixels: how many there are, whether samples contradict them, and what they cost.
 
+use crate::parallel;
 use crate::render::bytes::shown;
 use crate::render::observer::{Count, TraceObserver};
 use crate::render::plan::Plan;
@@ -13,7 +14,6 @@ use crate::tools::bench::clock;
 use crate::world::camera::Adaptive;
 use crate::world::material::Rgb;
 use crate::world::sample::{SCRAMBLE, Sampler};
-use rayon::prelude::*;
 
 /// The number of independent images that the true colours are the mean of, and of the samples per pixel of each.
 const IMAGES: u32 = 8;
@@ -59,15 +59,15 @@ pub fn truth(renderer: &Renderer, model: &mut Model) -> Vec<Sampled> {
     let (mut sums, mut squares) = (Vec::new(), Vec::new());
     for image in 1..=IMAGES {
         plan.camera.scramble = SCRAMBLE ^ image.wrapping_mul(0x9e37_79b9);
-        let row = |y: usize| {
+        let row = |index: usize| {
+            let y = height - 1 - index;
             let pixels: Vec<_> = (0..width).map(|x| [x, y]).collect();
             let (mut scratch, mut nobody) = (Scratch::default(), Cuts::default());
             let mut tracer = Tracer::new(&plan, Cpu::best(), &mut scratch, &mut nobody);
             let seen = tracer.pixels(&pixels);
             (0..width).map(|lane| seen.get(lane)).collect::<Vec<_>>()
         };
-        let rows = || (0..height).into_par_iter().rev().map(row).collect::<Vec<_>>();
-        let colours = renderer.run(rows).concat();
+        let colours = renderer.run(|| parallel::map(height, row)).concat();
         sums.resize(colours.len(), Rgb::ZERO);
         squares.resize(colours.len(), Rgb::ZERO);
         for ((sum, square), colour) in sums.iter_mut().zip(&mut squares).zip(colours) {

@@ -1,5 +1,6 @@
 //! Measures what numbers of samples per pixel cost, and how wrong they leave an image.
 
+use crate::parallel;
 use crate::render::bytes::shown;
 use crate::render::observer::RayKind;
 use crate::render::plan::Plan;
@@ -13,7 +14,6 @@ use crate::tools::bench::clock;
 use crate::world::camera::Adaptive;
 use crate::world::material::Rgb;
 use crate::world::sample::{SCRAMBLE, Sampler};
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
@@ -54,13 +54,13 @@ pub fn truth(renderer: &Renderer, model: &mut Model, samples: u32) -> Vec<Rgb> {
     camera.scramble = SCRAMBLE;
     let plan = Plan::new(model);
     let all = tiles(plan.camera.pixels, 1);
-    let render = |tile: &[Range<usize>; 2]| {
+    let render = |tile: usize| {
         let mut colours = Vec::new();
         let mut scratch = Scratch::default();
-        trace(&plan, &mut scratch, &mut RayStats::default(), tile, &mut colours);
+        trace(&plan, &mut scratch, &mut RayStats::default(), &all[tile], &mut colours);
         colours
     };
-    let colours: Vec<_> = renderer.run(|| all.par_iter().map(render).collect());
+    let colours: Vec<_> = renderer.run(|| parallel::map(all.len(), render));
     model.camera.value.scramble = 0;
     colours.concat()
 }

@@ -2,7 +2,7 @@
 
 use crate::geometry::aabb::Aabb;
 use crate::numeric::interval::Interval;
-use crate::numeric::scalar::Scalar;
+use crate::numeric::scalar::constants;
 use crate::world::certify::Precise;
 use crate::world::material::Rgb;
 use glam::DVec3;
@@ -27,7 +27,7 @@ pub trait Light: Send + Sync {
     where
         Self: Sized,
     {
-        self.uniform().map(|sent| sent.to_array().map(Interval::constant))
+        self.uniform().map(constants)
     }
 
     /// Returns the largest magnitude of each channel of [`emissivity`](Self::emissivity) over all points, with either

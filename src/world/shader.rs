@@ -1,7 +1,7 @@
 //! Shaders: the trait that a plugin implements for one point of a surface.
 
 use crate::numeric::interval::{Float, Interval};
-use crate::numeric::scalar::Scalar;
+use crate::numeric::scalar::{Scalar, per_axis};
 use crate::world::certify::Precise;
 use crate::world::material::{Look, Material, Rgb};
 use glam::{DVec2, DVec3};
@@ -73,7 +73,7 @@ pub struct LookBounds<F> {
 /// Takes the numbers for exact.
 impl<F: Float> From<Look> for LookBounds<F> {
     fn from(Look { ambient, diffuse, specular }: Look) -> Self {
-        let exactly = |colour: Rgb| colour.to_array().map(Interval::constant);
+        let exactly = |colour: Rgb| per_axis(|channel| Interval::constant(colour[channel]));
         Self { ambient: exactly(ambient), diffuse: exactly(diffuse), specular: exactly(specular) }
     }
 }
@@ -89,7 +89,7 @@ impl<F: Float> LookBounds<F> {
     /// Returns the smallest bounds that contain both.
     pub fn hull(&self, other: &Self) -> Self {
         let hull = |one: [Interval<F>; 3], other: [Interval<F>; 3]| {
-            [0, 1, 2].map(|channel| one[channel].hull(other[channel]))
+            per_axis(|channel| one[channel].hull(other[channel]))
         };
         Self {
             ambient: hull(self.ambient, other.ambient),

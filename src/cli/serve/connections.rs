@@ -21,7 +21,7 @@ use std::future::poll_fn;
 use std::io;
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::pin::pin;
+use std::pin::Pin;
 use std::rc::Rc;
 use std::task::Poll;
 use std::time::Duration;
@@ -52,6 +52,9 @@ const MIN_IDLE: usize = 4;
 /// An answer; `Break` if it is the last one.
 pub type Answer = ControlFlow<Response<Body>, Response<Body>>;
 
+/// An answer that is still to come. It is in a box, so that the server's code is compiled once for all that answer.
+type FutureAnswer = Pin<Box<dyn Future<Output = Answer>>>;
+
 /// Limits on numbers and times.
 #[derive(Clone, Copy)]
 pub struct Limits {
@@ -77,10 +80,10 @@ impl Limits {
 }
 
 /// The connections of a server.
-pub struct Connections<A> {
+pub struct Connections {
     access: Access,
     limits: Limits,
-    answer: A,
+    answer: Box<dyn Fn(Request<Bytes>) -> FutureAnswer>,
     /// The tasks of idle connections, oldest first.
     idle: RefCell<BTreeMap<u64, AbortHandle>>,
     /// A permit for each request that may be answered at the same time.
@@ -88,12 +91,17 @@ pub struct Connections<A> {
     end: Notify,
 }
 
-impl<A> Connections<A>
-where
-    A: AsyncFn(Request<Bytes>) -> Answer + 'static,
-{
-    pub fn new(access: Access, limits: Limits, answer: A) -> Self {
+impl Connections {
+    pub fn new<A>(access: Access, limits: Limits, answer: A) -> Self
+    where
+        A: AsyncFn(Request<Bytes>) -> Answer + 'static,
+    {
         let slots = Semaphore::new(limits.requests);
+        let answer = Rc::new(answer);
+        let answer = Box::new(move |request| -> FutureAnswer {
+            let answer = answer.clone();
+            Box::pin(async move { answer(request).await })
+        });
         Self { access, limits, answer, idle: RefCell::default(), slots, end: Notify::new() }
     }
 
@@ -191,7 +199,7 @@ where
             Ok(Err(_)) => return refusal(StatusCode::PAYLOAD_TOO_LARGE, "the request is too large"),
             Err(_) => return refusal(StatusCode::REQUEST_TIMEOUT, "the request did not arrive in time"),
         };
-        let mut answer = pin!((self.answer)(Request::from_parts(head, body)));
+        let mut answer = (self.answer)(Request::from_parts(head, body));
         // A panic ends this answer only.
         poll_fn(|context| {
             let polled = catch_unwind(AssertUnwindSafe(|| answer.as_mut().poll(context)));

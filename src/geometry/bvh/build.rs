@@ -7,6 +7,8 @@
 
 use crate::geometry::aabb::{Aabb, smaller};
 use crate::geometry::bvh::node::{Node, WIDTH, finite};
+use crate::numeric::scalar::per_axis;
+use crate::parallel;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::array;
@@ -61,7 +63,7 @@ impl Item {
     /// Returns twice the center of the box as limits.
     #[inline(always)]
     fn centers(&self) -> Limits {
-        let [x, y, z] = [0, 1, 2].map(|axis| self.center(axis));
+        let [x, y, z] = per_axis(|axis| self.center(axis));
         [x, y, z, -x, -y, -z]
     }
 }
@@ -108,7 +110,7 @@ impl<'i> Part<'i> {
         let (limits, centers) = if items.len() < LARGE {
             fold(items)
         } else {
-            items.par_chunks(LARGE).map(fold).reduce(|| (NOTHING, NOTHING), both)
+            chunks(items, fold).into_iter().fold((NOTHING, NOTHING), both)
         };
         Self { items, limits, centers }
     }
@@ -217,13 +219,19 @@ fn largest(parts: &[Part], size: impl Fn(&Part) -> f64) -> Option<usize> {
 /// The items whose centers lie in a bin: their number and limits.
 type Bin = (u32, Limits);
 
+/// Returns what some work returns for each chunk of many items.
+fn chunks<T: Send>(items: &[Item], work: impl Fn(&[Item]) -> T + Sync) -> Vec<T> {
+    let chunks: Vec<_> = items.chunks(LARGE).collect();
+    parallel::map(chunks.len(), |chunk| work(chunks[chunk]))
+}
+
 /// Returns the limits of twice the centers of some items.
 fn centers(items: &[Item]) -> Limits {
     let fold = |items: &[Item]| items.iter().fold(NOTHING, |all, item| join(&all, &item.centers()));
     if items.len() < LARGE {
         fold(items)
     } else {
-        items.par_chunks(LARGE).map(fold).reduce(|| NOTHING, |one, other| join(&one, &other))
+        chunks(items, fold).iter().fold(NOTHING, |one, other| join(&one, other))
     }
 }
 
@@ -235,7 +243,7 @@ fn both(one: &Bin, other: &Bin) -> Bin {
 
 /// Splits the items of a part in two.
 fn split(part: Part, depth: usize) -> [Part; 2] {
-    let size = [0, 1, 2].map(|axis| -part.centers[axis + 3] - part.centers[axis]);
+    let size = per_axis(|axis| -part.centers[axis + 3] - part.centers[axis]);
     let axis = if size[0] >= size[1] && size[0] >= size[2] { 0 } else { 1 + usize::from(size[2] > size[1]) };
     let (low, scale) = (part.centers[axis], BINS as f64 * (1.0 - 1e-9) / size[axis]);
     if depth >= DEEP || !(size[axis] > 0.0 && scale < f64::INFINITY && half_area(part.limits) < f64::INFINITY)
@@ -257,7 +265,7 @@ fn split(part: Part, depth: usize) -> [Part; 2] {
         count(part.items)
     } else {
         let add = |one: [Bin; BINS], other: [Bin; BINS]| array::from_fn(|bin| both(&one[bin], &other[bin]));
-        part.items.par_chunks(LARGE).map(count).reduce(none, add)
+        chunks(part.items, count).into_iter().fold(none(), add)
     };
     // What lies above each cut, from the last cut to the first.
     let mut above = bins;

@@ -354,7 +354,7 @@ struct Repeated<'n> {
 /// more than [`MAX_LISTED`] names, returns only the first.
 fn few(mut all: Vec<Repeated<'_>>, is_placed: bool) -> Vec<(Repeated<'_>, usize, usize)> {
     // Entities without places come in the order of their names.
-    all.sort_by_key(|repeated| (is_placed.then_some(repeated.orders[1]), repeated.text));
+    all.sort_unstable_by_key(|repeated| (is_placed.then_some(repeated.orders[1]), repeated.text));
     let (names, later) = (all.len(), all.iter().map(|repeated| repeated.orders.len() - 1).sum::<usize>());
     if names > MAX_LISTED {
         return all.into_iter().take(1).map(|first| (first, names - 1, later - 1)).collect();

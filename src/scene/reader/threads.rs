@@ -1,6 +1,6 @@
 //! The threads that large scenes are read by.
 
-use rayon::prelude::*;
+use crate::parallel;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::sync::OnceLock;
 
@@ -17,7 +17,7 @@ impl Threads {
     /// Does pieces of work, and returns the results in the order of the pieces.
     pub fn map<T: Send>(&self, pieces: usize, work: impl Fn(usize) -> T + Send + Sync) -> Vec<T> {
         match if pieces > 1 { self.pool() } else { None } {
-            Some(pool) => pool.install(|| (0..pieces).into_par_iter().map(work).collect()),
+            Some(pool) => parallel::on(pool, || parallel::map(pieces, work)),
             None => (0..pieces).map(work).collect(),
         }
     }

@@ -126,7 +126,7 @@ fn places(errors: &[Error], text: &str, titles: &[usize]) -> Vec<SyntaxError> {
         place.start.min(place.end)..place.start.max(place.end)
     };
     let mut places: Vec<_> = errors.iter().map(|error| (place(error), error.message().to_owned())).collect();
-    places.sort_by_key(|(place, _)| place.start);
+    places.sort_unstable_by_key(|(place, _)| place.start);
     let mut end = 0;
     let mut second_title = 0..0;
     places.retain(|(place, message)| {
@@ -290,7 +290,7 @@ impl<'a, 'r, 't> Parser<'a, 'r, 't> {
             self.word(name.get_ref().clone(), Form::Text, name_at.clone()),
         );
         let mut attributes: Vec<_> = attributes.into_iter().collect();
-        attributes.sort_by_key(|(key, _)| key.span().start);
+        attributes.sort_unstable_by_key(|(key, _)| key.span().start);
         let mut end = name_at.end.max(span.end);
         for (key, value) in attributes {
             end = end.max(value.span().end);

@@ -3,7 +3,7 @@
 use crate::geometry::aabb::{Aabb, larger};
 use crate::geometry::ray::{Bracket, Drift, MISS, Ray};
 use crate::numeric::double_double::{exponent_to_one, times_power_of_two};
-use crate::numeric::scalar::{Scalar, dot};
+use crate::numeric::scalar::{Scalar, dot, per_axis};
 use crate::shapes::triangle::Triangle;
 use crate::world::accuracy::Exact;
 use crate::world::certify::Equation;
@@ -191,7 +191,7 @@ impl<A> Equation for Face<A> {
 
     fn value<N: Scalar>(&self, at: [N; 3]) -> N {
         let corner = self.0.corners[0].to_array();
-        dot(self.0.upright(), [0, 1, 2].map(|axis| at[axis] - N::constant(corner[axis])))
+        dot(self.0.upright(), per_axis(|axis| at[axis] - N::constant(corner[axis])))
     }
 
     fn kept<N: Scalar>(&self, at: [N; 3]) -> N {

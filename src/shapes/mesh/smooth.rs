@@ -3,7 +3,7 @@
 use super::surface::Surface;
 use crate::numeric::double_double::{exponent_to_one, times_power_of_two};
 use crate::numeric::interval::{Float, Interval};
-use crate::numeric::scalar::{Scalar, cross, dot};
+use crate::numeric::scalar::{Scalar, cross, dot, per_axis};
 use glam::DVec3;
 
 impl Surface {
@@ -26,8 +26,7 @@ impl Surface {
         }
         let n = Interval::<F>::constant;
         let zero = F::of(0.0);
-        let minus =
-            |one: [Interval<F>; 3], other: [Interval<F>; 3]| [0, 1, 2].map(|axis| one[axis] - other[axis]);
+        let minus = |one: [Interval<F>; 3], other: [Interval<F>; 3]| per_axis(|axis| one[axis] - other[axis]);
         let [a, b, c] = self.corners(face).map(|corner| corner.to_array().map(n));
         let across = cross(minus(b, a), minus(c, a));
         let part = |from: [Interval<F>; 3], to: [Interval<F>; 3]| {
@@ -37,18 +36,18 @@ impl Surface {
         let mut sum = [n(0.0); 3];
         for (corner, weight) in self.faces[face].iter().zip(weights) {
             let normal = self.normals[*corner as usize].map(f64::from);
-            sum = [0, 1, 2].map(|axis| sum[axis] + weight * n(normal[axis]));
+            sum = per_axis(|axis| sum[axis] + weight * n(normal[axis]));
         }
         let side = dot(flat, across);
         if side.has_zero() {
             return None;
         }
-        let sum = if side.high < zero { sum.map(|part| -part) } else { sum };
+        let sum = if side.high < zero { per_axis(|axis| -sum[axis]) } else { sum };
         let length = dot(sum, sum).sqrt();
         if length.has_zero() || !length.is_bounded() {
             return None;
         }
-        let normal = sum.map(|part| part / length);
+        let normal = per_axis(|axis| sum[axis] / length);
         let cosine = dot(normal, flat);
         if cosine.has_zero() { None } else { Some(if cosine.low > zero { normal } else { flat }) }
     }

@@ -6,11 +6,12 @@ use super::to_world::ToWorld;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::bvh::Bvh;
 use crate::numeric::double_double::{exponent_to_one, times_power_of_two};
+use crate::parallel;
 use crate::scene::pparm::MOST_LENGTH;
 use crate::shapes::triangle::Triangle;
 use crate::world::accuracy::Exact;
 use glam::DVec3;
-use rayon::prelude::*;
+use rayon::slice::ParallelSliceMut;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::mem::take;
@@ -71,14 +72,15 @@ impl Surface {
         }
         let Model { vertices, mut faces, materials, slots } = model;
         let vertices = merge(vertices, &mut faces, placement);
-        if vertices.par_iter().any(|at| !at.is_finite() || at.abs().max_element() > MOST_LENGTH) {
+        let is_far = |at: DVec3| !at.is_finite() || at.abs().max_element() > MOST_LENGTH;
+        if parallel::first(vertices.len(), |vertex| is_far(vertices[vertex])).is_some() {
             return Err(Unfit::TooLarge);
         }
         let mut order: Vec<u32> = (0..faces.len() as u32).collect();
         let has_area =
             |face: &u32| face::has_area(faces[*face as usize].map(|corner| vertices[corner as usize]));
         let total = order.len();
-        order = order.into_par_iter().filter(has_area).collect();
+        order = parallel::ranges(total, 2, &|range| order[range].iter().copied().filter(has_area).collect());
         let degenerate = total - order.len();
         if order.is_empty() {
             return Err(Unfit::NoArea);
@@ -209,8 +211,8 @@ fn open_edges(faces: &[[u32; 3]]) -> usize {
     let edge = |from: u32, to: u32| {
         (u64::from(from.min(to)) << 32) | (u64::from(from.max(to)) << 1) | u64::from(from > to)
     };
-    let mut edges: Vec<_> =
-        faces.par_iter().flat_map_iter(|[a, b, c]| [edge(*a, *b), edge(*b, *c), edge(*c, *a)]).collect();
+    let edges = |[a, b, c]: &[u32; 3]| [edge(*a, *b), edge(*b, *c), edge(*c, *a)];
+    let mut edges = parallel::ranges(faces.len(), 2, &|range| faces[range].iter().flat_map(edges).collect());
     edges.par_sort_unstable();
     edges
         .chunk_by(|one, other| one >> 1 == other >> 1)

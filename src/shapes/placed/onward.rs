@@ -5,9 +5,9 @@ use crate::geometry::sight::Line;
 use crate::numeric::affine::Affine;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
-use crate::numeric::scalar::{Scalar, dot, per_axis};
+use crate::numeric::scalar::{Scalar, constants, dot, per_axis};
 use crate::world::certify::{Found, Met, Onward, OverFootprint, Precise};
-use glam::DMat3;
+use glam::DVec3;
 
 impl<F: Precise> Onward<F> for Placed {
     fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (Found<F>, usize) {
@@ -38,15 +38,14 @@ impl<F: Precise> Onward<F> for Placed {
         let own = self.placement.vector(normal);
         let own = per_axis(|axis| own[axis] * n(self.placement.scale[axis]).powi(2));
         let length = dot(own, own).sqrt();
-        let own = own.map(|part| part / length);
+        let own = per_axis(|axis| own[axis] / length);
         let shaded = shape.shading_normal(self.placement.point(at), part, own)?;
         if shaded == own {
             return Some(normal);
         }
-        let axes = DMat3::IDENTITY.to_cols_array_2d().map(|axis| self.placement.vector(axis.map(n)));
-        let world = axes.map(|axis| dot(axis, shaded));
+        let world = per_axis(|axis| dot(self.placement.vector(constants(DVec3::AXES[axis])), shaded));
         let length = dot(world, world).sqrt();
-        Some(world.map(|part| part / length))
+        Some(per_axis(|axis| world[axis] / length))
     }
 }
 

@@ -4,7 +4,7 @@ use super::products::{MIN_TOWARD, Products, RECIPROCAL_ERROR, reciprocal};
 use crate::geometry::aabb::{Aabb, SLACK, larger};
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
 use crate::numeric::double_double::{DoubleDouble, exponent_to_one, times_power_of_two};
-use crate::numeric::scalar::Scalar;
+use crate::numeric::scalar::{Scalar, per_axis};
 use glam::DVec3;
 use std::marker::PhantomData;
 
@@ -57,7 +57,7 @@ impl<A> Plane<A> {
 
     /// Returns the normal that the scene gives, times a power of two, without rounding.
     pub fn given_normal<N: Scalar>(&self) -> [N; 3] {
-        self.upright.map(|part| N::constant(part.high))
+        per_axis(|axis| N::constant(self.upright[axis].high))
     }
 
     /// Returns whether a point is on the plane to within `error` world units and the rounding error of its distance

@@ -1,6 +1,7 @@
 //! A quadric scaled for the solver, and rays in its coordinates.
 
 use crate::numeric::double_double::{DoubleDouble, exponent_to_one, times_power_of_two, two_sum};
+use crate::numeric::scalar::per_axis;
 use glam::{DMat3, DVec3};
 
 /// The part of the quadric `p·Sp + l·p + c = 0` in a box, scaled.
@@ -82,7 +83,7 @@ impl Quadratic {
     /// Returns a ray of the world in the quadric's own unit of length, relative to its center.
     #[inline(always)]
     pub fn own(&self, origin: DVec3, dir: DVec3, center: DVec3) -> OwnRay {
-        let from = [0, 1, 2].map(|axis| {
+        let from = per_axis(|axis| {
             let (high, low) = two_sum(origin[axis], -center[axis]);
             DoubleDouble { high: high * self.scale, low: low * self.scale }
         });

@@ -8,7 +8,7 @@ use crate::geometry::roots::newton::{self, Functions, Start};
 use crate::numeric::double_double::offset;
 use crate::numeric::dual::Dual;
 use crate::numeric::f64x8::{F64x8, each};
-use crate::numeric::scalar::Scalar;
+use crate::numeric::scalar::{Scalar, per_axis};
 use crate::simd::cpu::{Cpu, kernels};
 use crate::simd::soa::{LANES, View};
 
@@ -110,7 +110,7 @@ kernels! {
             let (near, far) = (eight(near, first), eight(far, first));
             // Offset in the world before it is rotated: the rotated vector is as small as the surface.
             let from = frame.origin.to_array();
-            let from = [0, 1, 2].map(|axis| {
+            let from = per_axis(|axis| {
                 each!(origin = origin[axis], near = near, dir = dir[axis] => offset(origin, near, dir, from[axis]))
             });
             let (from, dir) = (directions(frame, from), directions(frame, dir));

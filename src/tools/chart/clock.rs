@@ -64,7 +64,7 @@ pub fn rounds(
         all.iter_mut()
             .zip(waits)
             .map(|(times, waited)| {
-                times.sort();
+                times.sort_unstable();
                 Times {
                     least: one(&times[0]),
                     median: one(&times[times.len() / 2]),

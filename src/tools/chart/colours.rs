@@ -32,7 +32,7 @@ pub fn difference(colours: &[Rgb], right: &[Rgb]) -> Difference {
             changed += usize::from(colour.to_array().map(to_byte) != right.to_array().map(to_byte));
         }
     }
-    visible.sort_by(|one, other| other.total_cmp(one));
+    visible.sort_unstable_by(|one, other| other.total_cmp(one));
     let count = colours.len().max(1) as f64;
     Difference {
         rmse: (squares / (3.0 * count)).sqrt(),

@@ -172,7 +172,7 @@ impl Chart {
         let panels = self.panels.iter().filter(|panel| panel.subject != Subject::Whole);
         let points = panels.flat_map(|panel| &panel.points);
         let mut parts: Vec<f64> = points.map(|point| of(&point.times)).collect();
-        parts.sort_by(f64::total_cmp);
+        parts.sort_unstable_by(f64::total_cmp);
         parts.get(parts.len() / 2).copied().unwrap_or(0.0)
     }
 }

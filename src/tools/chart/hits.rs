@@ -13,6 +13,7 @@ use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::geometry::roots::bisection::bisect;
 use crate::geometry::sight::Sight;
 use crate::numeric::double_double::DoubleDouble;
+use crate::parallel;
 use crate::scene::model::Model;
 use crate::simd::cpu::Cpu;
 use crate::world::any_shape::AnyShape;
@@ -153,8 +154,7 @@ pub fn panel(study: &Study, set: &Set, progress: &mut dyn Progress) -> ControlFl
 
 /// Maps items on all threads of the current pool.
 fn each<T: Sync, U: Send>(of: &[T], work: impl Fn(&T) -> U + Sync + Send) -> Vec<U> {
-    use rayon::prelude::*;
-    of.par_iter().map(work).collect()
+    parallel::map(of.len(), |index| work(&of[index]))
 }
 
 fn truths_of(model: &Model, packet: &Packet) -> Vec<Truth> {
@@ -203,7 +203,7 @@ fn tally(candidate: &Candidate, set: &Set, truths: &[Truth], screen: f64) -> (Ve
         }
         wrong.of += 1;
     }
-    errors.sort_by(f64::total_cmp);
+    errors.sort_unstable_by(f64::total_cmp);
     (errors, wrong)
 }
 

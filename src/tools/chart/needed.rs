@@ -3,6 +3,7 @@
 use super::pictures::ADAPTIVE;
 use super::places::Pixels;
 use crate::geometry::ray_packet::PACKET_SIZE;
+use crate::parallel;
 use crate::render::bytes::shown;
 use crate::render::observer::{Count, TraceObserver};
 use crate::render::plan::Plan;
@@ -16,6 +17,7 @@ use crate::world::camera::Adaptive;
 use crate::world::material::Rgb;
 use crate::world::sample::Sampler;
 use std::hint::black_box;
+use std::ops::Range;
 
 /// About how many rays all choices take of a pixel that is measured alone, with the probes around it.
 pub(super) const RAYS: u32 = 120;
@@ -73,16 +75,18 @@ impl TraceObserver for Samples {
 
 /// Returns the colours of pixels and the mean of their numbers of samples.
 fn colours(threads: &Renderer, plan: &Plan, pixels: &Pixels) -> (Vec<Rgb>, f64) {
-    use rayon::prelude::*;
     // Pixels that lie far apart share no probes.
-    let part = |scratch: &mut Scratch, [x, y]: &[usize; 2]| {
-        let mut samples = Samples::default();
-        let mut tracer = Tracer::new(plan, Cpu::best(), scratch, &mut samples);
-        let colour = shown(tracer.pixels(&[[*x, *y]]).get(0));
-        (colour, samples.0)
+    let part = |range: Range<usize>| -> Vec<_> {
+        let mut scratch = Scratch::default();
+        let one = |pixel: &[usize; 2]| {
+            let mut samples = Samples::default();
+            let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, &mut samples);
+            let colour = shown(tracer.pixels(&[*pixel]).get(0));
+            (colour, samples.0)
+        };
+        pixels[range].iter().map(one).collect()
     };
-    let all: Vec<_> =
-        threads.run(|| pixels.par_iter().with_min_len(8).map_init(Scratch::default, part).collect());
+    let all = threads.run(|| parallel::ranges(pixels.len(), 8, &part));
     let samples = all.iter().map(|(_, samples)| *samples).sum::<u64>() as f64;
     (all.iter().map(|(colour, _)| *colour).collect(), samples / pixels.len() as f64)
 }

@@ -11,6 +11,7 @@ use super::progress::Progress;
 use super::study::Study;
 use super::times::Times;
 use crate::geometry::ray_packet::PACKET_SIZE;
+use crate::parallel;
 use crate::render::bytes::shown;
 use crate::render::observer::{Event, TraceObserver};
 use crate::render::plan::Plan;
@@ -24,7 +25,7 @@ use crate::world::material::Rgb;
 use crate::world::sample::{Sample, Sampler};
 use glam::DVec2;
 use std::hint::black_box;
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 
 /// The number of samples per pixel of an image that counts as true. It serves as a reference for up to a quarter as
 /// many samples.
@@ -282,16 +283,18 @@ pub(super) fn render(plan: &Plan, tiles: &[Pixels]) {
 
 /// Returns the colours of pixels as they are shown, traced in packets on all threads of a renderer.
 pub(super) fn shown_colours(threads: &Renderer, plan: &Plan, pixels: &[[usize; 2]]) -> Vec<Rgb> {
-    use rayon::prelude::*;
     let at_once = (4 * PACKET_SIZE / plan.camera.samples as usize).max(1);
-    let part = |scratch: &mut Scratch, pixels: &[[usize; 2]]| -> Vec<Rgb> {
-        let mut nobody = Cuts::default();
-        let mut tracer = Tracer::new(plan, Cpu::best(), scratch, &mut nobody);
-        let colours = tracer.pixels(pixels);
-        (0..pixels.len()).map(|pixel| shown(colours.get(pixel))).collect()
+    let packets: Vec<_> = pixels.chunks(at_once).collect();
+    let part = |range: Range<usize>| {
+        let (mut scratch, mut nobody, mut shades) = (Scratch::default(), Cuts::default(), Vec::new());
+        for pixels in &packets[range] {
+            let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, &mut nobody);
+            let colours = tracer.pixels(pixels);
+            shades.extend((0..pixels.len()).map(|pixel| shown(colours.get(pixel))));
+        }
+        shades
     };
-    let parts = || pixels.par_chunks(at_once).map_init(Scratch::default, part).flatten_iter().collect();
-    threads.run(parts)
+    threads.run(|| parallel::ranges(packets.len(), 2, &part))
 }
 
 /// Returns the true colours: with so many samples that more make no difference, and other ones than those that are
@@ -352,8 +355,7 @@ pub(super) fn each<T: Send>(
     pixels: &[[usize; 2]],
     work: impl Fn(usize, usize) -> T + Sync + Send,
 ) -> Vec<T> {
-    use rayon::prelude::*;
-    threads.run(|| pixels.par_iter().map(|[x, y]| work(*x, *y)).collect())
+    threads.run(|| parallel::map(pixels.len(), |index| work(pixels[index][0], pixels[index][1])))
 }
 
 /// Returns the mean number of object tests for one ray through a pixel and all rays that follow from it.

@@ -100,7 +100,7 @@ impl Errors {
     /// of the pixels exceed that it is no accident.
     fn percentile(&self, choice: usize, all: usize) -> [f64; 2] {
         let mut errors: Vec<_> = self.choices[choice].iter().map(|error| error[1]).collect();
-        errors.sort_by(|one, other| other.total_cmp(one));
+        errors.sort_unstable_by(|one, other| other.total_cmp(one));
         let place = (WORST * errors.len() as f64) as usize;
         if errors.len() >= all {
             return [errors[place]; 2];

@@ -38,7 +38,7 @@ pub(super) fn shine<F: Number>(
     if is_black(&sent) {
         return Some(black);
     }
-    let mut scattered = surface.diffuse.map(|channel| channel * cosine / distance);
+    let mut scattered = per_axis(|channel| surface.diffuse[channel] * cosine / distance);
     if has_glint {
         let half = per_axis(|axis| toward[axis] / distance - dir[axis]);
         let half_cosine = dot(half, surface.normal) / dot(half, half).sqrt();
@@ -71,7 +71,7 @@ fn toward<F: Number>(
     let toward = per_axis(|axis| n(location[axis]) - at[axis]);
     let Some(draw) = draw.filter(|_| size != 0.0) else { return Some(toward) };
     let length = dot(toward, toward).sqrt();
-    let [x, y, z] = toward.map(|part| part / length);
+    let [x, y, z] = per_axis(|axis| toward[axis] / length);
     let sign = if z.low >= F::of(0.0) {
         n(1.0)
     } else if z.high < F::of(0.0) {

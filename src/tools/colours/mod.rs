@@ -128,7 +128,7 @@ impl<'p, 'm> Prover<'p, 'm> {
             sum = per_axis(|channel| sum[channel] + colour[channel]);
         }
         let count = Interval::constant(f64::from(camera.samples));
-        let mean = if camera.samples == 1 { sum } else { sum.map(|channel| channel / count) };
+        let mean = if camera.samples == 1 { sum } else { per_axis(|channel| sum[channel] / count) };
         (Some(mean), is_spent)
     }
 

@@ -91,13 +91,13 @@ impl<'s, 'p, 'm> Tracer<'s, 'p, 'm> {
         let surface = Surface::new(self.scene, &ray.path.line, t, place)?;
         let travelled = ray.travelled + t * ray.length;
         let mut colour = surface.ambient;
-        let toward = ray.path.line.dir.map(|part| part / ray.length);
+        let toward = per_axis(|axis| ray.path.line.dir[axis] / ray.length);
         for (index, light) in self.scene.plan.model.lights.iter().enumerate() {
             let draw = self.sample.map(|sample| sample.on_light(index));
             let added = light::shine(self.scene, &*light.value, draw, &surface, toward)?;
             colour = per_axis(|channel| colour[channel] + added[channel]);
         }
-        colour = colour.map(|channel| channel / travelled);
+        colour = per_axis(|channel| colour[channel] / travelled);
         let material = &self.scene.objects[place.object].material;
         if material.transparency != 0.0 {
             let tint = tint(material.transparency, surface.diffuse)?;

@@ -3,7 +3,7 @@
 use super::scene::{Colour, Number, Place, Scene};
 use crate::geometry::sight::Line;
 use crate::numeric::interval::{Float, Interval};
-use crate::numeric::scalar::{Scalar, dot};
+use crate::numeric::scalar::{Scalar, dot, per_axis};
 use crate::world::certify::gradient;
 
 /// A point that a ray hits, and how it looks there.
@@ -28,14 +28,14 @@ impl<F: Number> Surface<F> {
         if length.has_zero() || !length.is_bounded() {
             return None;
         }
-        let normal = normal.map(|part| part / length);
+        let normal = per_axis(|axis| normal[axis] / length);
         let zero = F::of(0.0);
         let toward =
             if object.shape.is_two_sided() { dot(normal, line.dir) } else { Interval::constant(-1.0) };
         let normal = if toward.high < zero {
             normal
         } else if toward.low > zero {
-            normal.map(|part| -part)
+            per_axis(|axis| -normal[axis])
         } else {
             return None;
         };
@@ -53,7 +53,7 @@ pub(super) fn tint<F: Number>(transparency: f64, diffuse: Colour<F>) -> Option<C
     let strongest = red.max(green).max(blue);
     let transparency = Interval::constant(transparency);
     if strongest.low > F::of(0.0) {
-        Some(diffuse.map(|channel| transparency * ratio(channel, strongest)))
+        Some(per_axis(|channel| transparency * ratio(diffuse[channel], strongest)))
     } else if strongest.high <= F::of(0.0) {
         Some([transparency; 3])
     } else {

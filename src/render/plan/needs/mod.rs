@@ -24,13 +24,13 @@ mod tests;
 mod view;
 
 use crate::geometry::aabb::Aabb;
+use crate::parallel;
 use crate::render::plan::depth::{self, Depth};
 use crate::scene::model::{Model, Object};
 use crate::world::accuracy::Accuracy;
 use crate::world::body::AnyLight;
 use crate::world::material::{Look, Rgb};
 use hull::Hull;
-use rayon::prelude::*;
 use view::{Seen, View};
 
 /// The maximum number of views, of the viewer and of the mirrors together.
@@ -162,11 +162,9 @@ impl Scene<'_> {
             // Stops at the first that the object may meet.
             views.chain(paths).try_fold(f64::INFINITY, |least, one| (one > 0.0).then_some(least.min(one)))
         };
-        let clear: Vec<_> = if candidates.len() < MANY {
-            candidates.iter().map(clearance).collect()
-        } else {
-            candidates.par_iter().map(clearance).collect()
-        };
+        let clear = parallel::ranges(candidates.len(), MANY, &|range| {
+            candidates[range].iter().map(clearance).collect()
+        });
         for (index, clearance) in candidates.into_iter().zip(clear) {
             if let Some(clearance) = clearance {
                 needs.unmet.push(index);
@@ -197,11 +195,7 @@ impl Scene<'_> {
                 view.clearance(object, bounds) == 0.0
             };
             let count = self.model.objects.len();
-            let shown: Vec<_> = if count < MANY {
-                (0..count).filter(shows).collect()
-            } else {
-                (0..count).into_par_iter().filter(shows).collect()
-            };
+            let shown = parallel::ranges(count, MANY, &|range| range.filter(shows).collect());
             for index in shown.iter().filter(|index| mirror != Some(**index) && self.reflects(**index)) {
                 let [at, normal] = self.model.objects[*index].shape.plane()?;
                 if !normal.is_normalized() {

@@ -2,6 +2,7 @@
 
 use super::hull::Hull;
 use crate::geometry::aabb::Aabb;
+use crate::numeric::scalar::per_axis;
 use crate::scene::model::Object;
 use crate::world::camera::Camera;
 use glam::DVec3;
@@ -91,9 +92,8 @@ impl View {
     pub fn paths(&self, far: f64, location: DVec3, size: f64) -> Hull {
         let middle = self.middle();
         let mut points = if size > 0.0 {
-            let corner = |index: i32| {
-                DVec3::from([0, 1, 2].map(|axis| if index >> axis & 1 == 0 { size } else { -size }))
-            };
+            let corner =
+                |index: i32| DVec3::from(per_axis(|axis| if index >> axis & 1 == 0 { size } else { -size }));
             (0..8).map(|index| location + corner(index)).collect()
         } else {
             vec![location]

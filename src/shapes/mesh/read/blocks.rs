@@ -1,8 +1,8 @@
 //! Lines of a text, and blocks of lines that are read on all cores.
 
 use super::model::Broken;
+use crate::parallel;
 use memchr::{memchr, memchr_iter, memrchr};
-use rayon::prelude::*;
 
 /// The length of a block in bytes, about.
 const BLOCK: usize = 1 << 17;
@@ -52,15 +52,14 @@ pub(super) fn read<T: Send>(
         if some.is_empty() {
             return Ok(());
         }
-        let counts: Vec<_> = some.par_iter().map(|block| count(block)).collect();
+        let counts = parallel::map(some.len(), |block| count(some[block]));
         let befores = counts.iter().scan(before, |sum, count| {
             *sum += count;
             Some(*sum - count)
         });
         let befores: Vec<_> = befores.collect();
         before += counts.iter().sum::<usize>();
-        let parts: Vec<_> =
-            some.par_iter().zip(&befores).map(|(block, before)| read(block, *before)).collect();
+        let parts = parallel::map(some.len(), |block| read(some[block], befores[block]));
         parts.into_iter().try_for_each(&mut take)?;
     }
 }

@@ -2,8 +2,8 @@
 
 use super::model::{Broken, ENDS_EARLY, Model, Room, fan};
 use super::ply_header::{Field, Kind, Number, Section};
+use crate::parallel;
 use glam::DVec3;
-use rayon::prelude::*;
 
 /// Reads what follows the header of a file; the highest byte comes first if `BIG`.
 pub(super) fn read<const BIG: bool>(
@@ -22,9 +22,12 @@ pub(super) fn read<const BIG: bool>(
             let (elements, after) = rest.split_at(length);
             if section.kind == Kind::Vertex {
                 room.holds(section.count, model.faces.len()).map_err(Broken::file)?;
-                let read = |element: &[u8]| section.vertex::<BIG>(element);
-                model.vertices = elements.par_chunks_exact(size).map(read).collect();
-                if let Some(index) = model.vertices.par_iter().position_first(|at| !at.is_finite()) {
+                model.vertices = vec![DVec3::ZERO; section.count];
+                let read = |index: usize| section.vertex::<BIG>(&elements[index * size..][..size]);
+                parallel::fill(&mut model.vertices, read);
+                if let Some(index) =
+                    parallel::first(section.count, |index| !model.vertices[index].is_finite())
+                {
                     let message = format!("vertex {index} is not finite");
                     return Err(Broken::byte(place(rest) + index * size, message));
                 }

@@ -2,8 +2,8 @@
 
 use super::blocks::{self, never, words};
 use super::model::{Broken, MAX_VERTICES, Model, Room, coordinate, shown};
+use crate::parallel;
 use glam::DVec3;
-use rayon::prelude::*;
 
 /// The bytes before the first triangle: a title, and the number of triangles.
 const HEADER: usize = 84;
@@ -33,8 +33,9 @@ pub fn read(bytes: &[u8], room: &Room) -> Result<Model, Broken> {
         let part = |axis: usize| f64::from(f32::from_bits(word(&bytes[byte(corner) + 4 * axis..][..4])));
         DVec3::new(part(0), part(1), part(2))
     };
-    let vertices: Vec<_> = (0..3 * count).into_par_iter().map(at).collect();
-    if let Some(corner) = vertices.par_iter().position_first(|at| !at.is_finite()) {
+    let mut vertices = vec![DVec3::ZERO; 3 * count];
+    parallel::fill(&mut vertices, at);
+    if let Some(corner) = parallel::first(vertices.len(), |corner| !vertices[corner].is_finite()) {
         let message = format!("a corner of triangle {} is not finite", corner / 3 + 1);
         return Err(Broken::byte(byte(corner), message));
     }

@@ -1,0 +1,108 @@
+//! Loops on all threads of the current pool.
+//!
+//! What rayon offers is generic in all that a loop does, and each loop so written is some thousand lines for the compiler.
+//! Here that code is compiled once, and only what a loop does itself for each.
+
+use rayon::ThreadPool;
+use rayon::prelude::*;
+use std::ops::{ControlFlow, Range};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+/// The number of parts per thread that many indices are divided into, so that no thread waits long for the last one.
+const PARTS: usize = 32;
+
+/// The number of places that are filled by one thread together.
+const FILLED: usize = 1 << 12;
+
+/// Does some work on the threads of a pool, and returns its result.
+pub fn on<T: Send>(pool: &ThreadPool, work: impl FnOnce() -> T + Send) -> T {
+    let (mut work, mut result) = (Some(work), None);
+    let mut once = || result = work.take().map(|work| work());
+    install(pool, &mut once);
+    result.expect("the work is done")
+}
+
+fn install(pool: &ThreadPool, work: &mut (dyn FnMut() + Send)) {
+    pool.install(work);
+}
+
+/// Does some work for each index below a number.
+pub fn each(count: usize, work: &(dyn Fn(usize) + Sync)) {
+    (0..count).into_par_iter().with_max_len(1).for_each(work);
+}
+
+/// Does some work for each index below a number, in their order: each thread takes the next one when it is free. What
+/// the work needs besides is made once on each thread.
+pub fn turns<S: Default>(count: usize, work: &(dyn Fn(&mut S, usize) + Sync)) {
+    let next = AtomicUsize::new(0);
+    each(rayon::current_num_threads(), &|_| {
+        let mut own = S::default();
+        loop {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            if index >= count {
+                break;
+            }
+            work(&mut own, index);
+        }
+    });
+}
+
+/// Returns what some work returns for each index below a number, in their order.
+pub fn map<T: Send>(count: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    ranges(count, 2, &|range| range.map(&work).collect())
+}
+
+/// Returns what some work returns for ranges that cover all indices below a number, in their order; on this thread alone
+/// where the indices are fewer than `many`.
+pub fn ranges<T: Send>(count: usize, many: usize, work: &(dyn Fn(Range<usize>) -> Vec<T> + Sync)) -> Vec<T> {
+    if count < many {
+        return work(0..count);
+    }
+    let length = count.div_ceil(PARTS * rayon::current_num_threads()).max(1);
+    let mut parts = Vec::new();
+    parts.resize_with(count.div_ceil(length), || Mutex::new(Vec::new()));
+    each(parts.len(), &|index| {
+        let part = work(index * length..count.min((index + 1) * length));
+        *parts[index].lock().expect("no thread panicked") = part;
+    });
+    let mut all = Vec::with_capacity(count);
+    for part in parts {
+        all.append(&mut part.into_inner().expect("no thread panicked"));
+    }
+    all
+}
+
+/// Returns the first index below a number for which some question is answered with yes.
+pub fn first(count: usize, is: impl Fn(usize) -> bool + Sync) -> Option<usize> {
+    ranges(count, 2, &|mut range| range.find(|index| is(*index)).into_iter().collect()).first().copied()
+}
+
+/// Fills a slice with what some work returns for each index.
+pub fn fill<T: Send>(all: &mut [T], work: impl Fn(usize) -> T + Sync) {
+    let _ = chunks(all, FILLED, |index, chunk| {
+        for (offset, place) in chunk.iter_mut().enumerate() {
+            *place = work(FILLED * index + offset);
+        }
+        ControlFlow::Continue(())
+    });
+}
+
+/// Does some work for each chunk of a slice, with its index, until it breaks; then chunks may be left out.
+pub fn chunks<T: Send>(
+    all: &mut [T],
+    size: usize,
+    work: impl Fn(usize, &mut [T]) -> ControlFlow<()> + Sync,
+) -> ControlFlow<()> {
+    let chunks: Vec<_> = all.chunks_mut(size).map(Mutex::new).collect();
+    let is_over = AtomicBool::new(false);
+    each(chunks.len(), &|index| {
+        if !is_over.load(Ordering::Relaxed) {
+            let mut chunk = chunks[index].lock().expect("no thread panicked");
+            if work(index, &mut chunk).is_break() {
+                is_over.store(true, Ordering::Relaxed);
+            }
+        }
+    });
+    if is_over.into_inner() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+}
