@@ -4,7 +4,7 @@ use super::pending::{self, Content, Pending};
 use crate::cli::explain::Place;
 use crate::cli::failure::{Failure, tell};
 use crate::cli::report::{Change, Decision, Item};
-use crate::cli::{crash, input, picture};
+use crate::cli::{crash, input, picture, set};
 use crate::output::compare::Comparison;
 use crate::scene::registry::Registry;
 use std::env;
@@ -40,7 +40,7 @@ fn item(registry: &Registry, snapshot: &Pending, before: Option<&Path>) -> Resul
         (
             Change::Picture { comparison: Some(Comparison { first: Some(pixel), size, .. }), .. },
             Some(scene),
-        ) => match input::load(registry, &scene, None) {
+        ) => match input::load(registry, &scene, &set::Args::default(), None) {
             Ok(model) => Place { scene: &scene, model, size: *size, pixel: *pixel }.explained(before),
             Err(failure) => {
                 tell(&failure);
