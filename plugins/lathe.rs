@@ -26,7 +26,7 @@ inventory::submit! {
     Entity::shape("lathe", "a surface of revolution with a smooth profile through points", &[TABLE], |args| {
         let frame = Frame::around(args.get(&BASE), args.get(&DIRECTION));
         let points: Vec<_> = args.get(&POINTS).0.iter().map(DVec2::to_array).collect();
-        let (radius, height) = (Formula::spline(&points), points[points.len() - 1][0]);
+        let (radius, height) = (Formula::through(&points), points[points.len() - 1][0]);
         let finish = match args.accuracy() {
             Accuracy::Classic => {
                 let surface = Classic { line: ProfileLine { radius, slope: None }, height };

@@ -27,6 +27,8 @@ inventory::submit! {
 
 /// Cuts a polygon into triangles; `None` if it is not flat, or meets itself.
 fn triangles(points: &[DVec3]) -> Option<Vec<[u32; 3]>> {
+    let points: Vec<_> = points.iter().map(DVec3::to_array).collect();
+    let points: Vec<_> = outline::to_unit_size(&points).into_iter().map(DVec3::from).collect();
     let first = points[0];
     let pairs = points[1..].iter().zip(&points[2..]);
     let normal: DVec3 = pairs.map(|(one, other)| (*one - first).cross(*other - first)).sum();

@@ -1,6 +1,7 @@
 //! Dual numbers: forward-mode automatic differentiation.
 
 use crate::numeric::scalar::{Scalar, apart_if};
+use crate::numeric::spline::Spline;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A number and its derivative. A dual number of dual numbers has the second derivative, too.
@@ -219,6 +220,10 @@ impl<N: Scalar> Scalar for Dual<N> {
             N::constant(f64::from(exponent)) * self.value.ramp(exponent - 1)
         };
         self.chain(self.value.ramp(exponent), derivative)
+    }
+
+    fn spline(self, spline: &Spline, order: usize) -> Self {
+        self.chain(self.value.spline(spline, order), self.value.spline(spline, order + 1))
     }
 
     #[inline(always)]

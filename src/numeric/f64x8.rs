@@ -5,6 +5,7 @@
 //! ported.
 
 use crate::numeric::scalar::Scalar;
+use crate::numeric::spline::Spline;
 use crate::simd::soa::LANES;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -147,6 +148,10 @@ impl Scalar for F64x8 {
             square = square * square;
         }
         if exponent < 0 { Self::constant(1.0) / result } else { result }
+    }
+
+    fn spline(self, spline: &Spline, order: usize) -> Self {
+        each!(a = self => a.spline(spline, order))
     }
 
     #[inline(always)]

@@ -6,6 +6,7 @@ pub(crate) mod f64x8;
 pub(crate) mod formula;
 pub(crate) mod interval;
 pub(crate) mod scalar;
+pub(crate) mod spline;
 
 pub use dual::Dual;
 pub use formula::Formula;

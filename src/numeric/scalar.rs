@@ -4,6 +4,7 @@
 //! One formula evaluated with one type after the other gives values, derivatives and proven bounds. The functions are
 //! those of the `libm` crate, whose results do not depend on the machine.
 
+use crate::numeric::spline::Spline;
 use glam::DVec3;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -90,6 +91,9 @@ pub trait Scalar:
         self.max(Self::constant(0.0)).powi(exponent)
     }
 
+    /// Returns the value of a spline, or of its derivative of an order from 0.
+    fn spline(self, spline: &Spline, order: usize) -> Self;
+
     /// Returns the step function, 1 above 0 and 0 below: the derivative of `max(0, x)`.
     fn step(self) -> Self;
     /// Returns the derivative of [`step`](Self::step): unbounded where the number may be 0, else 0.
@@ -107,6 +111,13 @@ pub trait Scalar:
 #[inline(always)]
 pub fn per_axis<T>(mut of: impl FnMut(usize) -> T) -> [T; 3] {
     [of(0), of(1), of(2)]
+}
+
+/// Returns the value of a piece of a spline, or of its derivative of an order from 0.
+pub fn of_cubic<N: Scalar>(y: N, spline: &Spline, piece: usize, order: usize) -> N {
+    let (from, [c0, c1, c2, c3]) = spline.cubic(piece, order);
+    let t = y.shifted(-from);
+    (((N::constant(c3) * t).shifted(c2) * t).shifted(c1) * t).shifted(c0)
 }
 
 /// Returns a vector of constants.
@@ -192,6 +203,10 @@ impl Scalar for f64 {
             square *= square;
         }
         if exponent < 0 { 1.0 / result } else { result }
+    }
+
+    fn spline(self, spline: &Spline, order: usize) -> Self {
+        of_cubic(self, spline, spline.piece(self), order)
     }
 
     #[inline(always)]

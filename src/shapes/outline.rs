@@ -8,6 +8,16 @@ use crate::world::body::Body;
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
 
+/// Scales points by a power of two to a size between 1 and 2, so that products of their coordinates neither overflow nor
+/// underflow.
+pub fn to_unit_size<const N: usize>(points: &[[f64; N]]) -> Vec<[f64; N]> {
+    let size = points.as_flattened().iter().fold(0.0, |most: f64, number| most.max(number.abs()));
+    // Only the exponent is kept, which makes the product exact.
+    let power = f64::from_bits(size.to_bits() & f64::INFINITY.to_bits());
+    let scale = if power.is_normal() { 1.0 / power } else { 1.0 };
+    points.iter().map(|point| point.map(|number| number * scale)).collect()
+}
+
 /// Returns a number whose sign tells whether three points turn left (above 0), right, or not at all (0).
 fn turn([a, b, c]: [DVec2; 3]) -> f64 {
     let from_a = |to: DVec2, axis: usize| DoubleDouble::difference(to[axis], a[axis]);
@@ -16,8 +26,14 @@ fn turn([a, b, c]: [DVec2; 3]) -> f64 {
     if sign == 0.0 { 0.0 } else { sign.signum() }
 }
 
+fn unit_corners(corners: &[DVec2]) -> Vec<DVec2> {
+    let corners: Vec<_> = corners.iter().map(DVec2::to_array).collect();
+    to_unit_size(&corners).into_iter().map(DVec2::from).collect()
+}
+
 /// Tells whether a polygon's edges meet only at the corners that they share.
 pub fn is_simple(corners: &[DVec2]) -> bool {
+    let corners = unit_corners(corners);
     let count = corners.len();
     let at = |index: usize| corners[index % count];
     let turns_back = |index: usize| {
@@ -51,6 +67,7 @@ pub fn triangles(corners: &[DVec2]) -> Option<Vec<[u32; 3]>> {
     if !is_simple(corners) {
         return None;
     }
+    let corners = &unit_corners(corners)[..];
     let sign = if is_counterclockwise(corners) { 1.0 } else { -1.0 };
     let mut left: Vec<_> = (0..corners.len()).collect();
     let mut all = Vec::new();
@@ -77,7 +94,7 @@ pub fn triangles(corners: &[DVec2]) -> Option<Vec<[u32; 3]>> {
 /// ends if it is open. `None` if the polygon is not simple.
 pub fn prism(corners: &[DVec2], [low, high]: [f64; 2], is_open: bool) -> Option<(Vec<DVec3>, Vec<[u32; 3]>)> {
     let mut corners = corners.to_vec();
-    if is_simple(&corners) && !is_counterclockwise(&corners) {
+    if is_simple(&corners) && !is_counterclockwise(&unit_corners(&corners)) {
         corners.reverse();
     }
     let ends = triangles(&corners)?;
@@ -131,6 +148,15 @@ mod tests {
             let areas: Vec<_> = all.iter().map(|face| area(&corners, *face)).collect();
             assert!(areas.iter().all(|area| area * whole > 0.0), "{areas:?}");
             assert_eq!(areas.iter().sum::<f64>(), whole);
+        }
+    }
+
+    #[test]
+    fn polygons_of_any_size_are_cut() {
+        for size in [1e-300, 1e-160, 1e150, 1e300] {
+            let corners = points(&[[0., 0.], [2. * size, 0.], [1.5 * size, size], [2. * size, 2. * size]]);
+            assert_eq!(triangles(&corners).map(|all| all.len()), Some(2), "{size}");
+            assert!(prism(&corners, [0.0, size], false).is_some(), "{size}");
         }
     }
 

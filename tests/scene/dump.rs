@@ -4,7 +4,7 @@ use crate::common;
 use crate::common::{load, model, model_in, registry, root, scenes};
 use proptest::prelude::*;
 use std::path::Path;
-use tabray::scene::{self, Attribute, Datum, Entity, Fault, Kind, Model, Syntax, Type, dump};
+use tabray::scene::{self, Attribute, Counts, Datum, Entity, Fault, Kind, Model, Syntax, Type, dump};
 
 /// Returns every value of a model, to its last bit.
 fn values(model: &Model) -> Vec<String> {
@@ -85,6 +85,9 @@ fn of_a_constructor(fault: &Fault) -> bool {
         "squares overflow",
         "has no face with an area",
         "without an area",
+        "has no area",
+        "has a formula",
+        "is too small for where it is",
     ];
     found.iter().any(|words| fault.message.contains(words))
 }
@@ -117,9 +120,24 @@ fn any_entity(entity: &'static Entity) -> impl Strategy<Value = String> {
         _ => "[^\\p{Cc}]{1,20}".prop_map(|name| Syntax::Notes.key(&name)).boxed(),
     };
     let attributes: Vec<_> = entity.attributes().map(any_values).collect();
-    (name, attributes)
-        .prop_map(move |(name, attributes)| format!("{} {name} {{\n{}}}\n", entity.name, attributes.concat()))
+    let chosen: Vec<_> = entity.groups().map(|group| prop::sample::select(group.names)).collect();
+    (name, attributes, chosen).prop_map(move |(name, values, chosen)| {
+        let is_left_out = |attribute: &dyn Attribute| {
+            let mut groups = entity.groups().zip(&chosen);
+            groups
+                .any(|(group, chosen)| group.names.contains(&attribute.name()) && *chosen != attribute.name())
+        };
+        let given = entity.attributes().zip(&values).filter(|(attribute, _)| !is_left_out(*attribute));
+        let lines: String = given.map(|(_, values)| values.as_str()).collect();
+        format!("{} {name} {{\n{lines}}}\n", entity.name)
+    })
 }
+
+/// Formulas of a surface of revolution's profile, and of space: of any operation, and some that plugins refuse.
+const FORMULAS: [&[&str]; 2] = [
+    &["2 + sin(y)", "1", "0.5 * -y", "sqrt(abs(4 - y^2))", "1/y", "ln(y)^y - tan(exp(pi))"],
+    &["x^2 + y^2 + z^2 - 4", "max(abs(x), min(y, -z)) - .5", "x + 2*y - z", "1e-3", "sqrt(x*z)", "floor(y)"],
+];
 
 fn any_values(attribute: &'static dyn Attribute) -> BoxedStrategy<String> {
     let number = prop_oneof![
@@ -133,16 +151,25 @@ fn any_values(attribute: &'static dyn Attribute) -> BoxedStrategy<String> {
             .prop_flat_map(|count| prop::collection::vec(prop_oneof![0..2i64, 1..5000i64], count))
             .prop_map(Datum::Whole)
             .boxed(),
-        Type::Number => count
-            .prop_flat_map(move |count| prop::collection::vec(number.clone(), count))
+        Type::Number => (count, any::<bool>())
+            .prop_flat_map(move |(count, rises)| {
+                let numbers = prop::collection::vec(number.clone(), count);
+                numbers.prop_map(move |numbers| match attribute.arity() {
+                    Counts::List { group, .. } if rises => rising(&numbers, group),
+                    _ => numbers,
+                })
+            })
             .prop_map(Datum::Numbers)
             .boxed(),
         Type::Name(Kind::Texture) => return Just(format!("{} t0\n", attribute.name())).boxed(),
         Type::Name(Kind::Object) => return Just(format!("{} o0\n", attribute.name())).boxed(),
         Type::File => return Just(format!("{} scenes/models/bowl.stl\n", attribute.name())).boxed(),
         Type::Word | Type::Name(_) => return Just(format!("{} m0\n", attribute.name())).boxed(),
-        // A revsurf takes either a surfer or a formula; formulas are covered by the project's scenes.
-        Type::Formula(_) => return Just(String::new()).boxed(),
+        Type::Formula(variables) => {
+            let formulas = FORMULAS[usize::from(variables.len() > 1)];
+            let line = |text| format!("{} \"{text}\"\n", attribute.name());
+            return prop::sample::select(formulas).prop_map(line).boxed();
+        }
         Type::Truth => any::<bool>().prop_map(Datum::Truth).boxed(),
         Type::Choice(choices) => prop::sample::select(choices.all()).prop_map(Datum::Choice).boxed(),
     };
@@ -150,4 +177,18 @@ fn any_values(attribute: &'static dyn Attribute) -> BoxedStrategy<String> {
         .prop_filter("the rule", |datum| attribute.allows(datum) && attribute.beyond_squares(datum).is_none())
         .prop_map(|datum| format!("{} {datum}\n", attribute.name()))
         .boxed()
+}
+
+/// Sorts the groups of a list by the magnitudes of their first numbers, and makes the first of these 0: rules of lists
+/// ask for that, and hardly any drawn list keeps them by itself.
+fn rising(numbers: &[f64], group: usize) -> Vec<f64> {
+    let mut groups: Vec<_> = numbers.chunks(group).map(<[f64]>::to_vec).collect();
+    for one in &mut groups {
+        one[0] = one[0].abs();
+    }
+    groups.sort_by(|low, high| low[0].total_cmp(&high[0]));
+    if let Some(first) = groups.first_mut() {
+        first[0] = 0.0;
+    }
+    groups.concat()
 }

@@ -44,3 +44,19 @@ fn extreme_numbers_are_refused_or_drawn_at_once() {
     }
     assert!(drawn > 100, "{drawn} are drawn");
 }
+
+#[test]
+fn a_mesh_or_a_box_seen_from_much_too_far_away_is_drawn() {
+    for object in
+        ["mesh a { material m file ../models/bowl.stl }", "box a { material m center 0 0.5 0 size 2 1 1 }"]
+    {
+        let text = format!(
+            "camera eye {{ pixeldim 8 6 worlddim 4 3 viewpoint 4 3.6 1e77 }}\n\
+             material m {{ ambient 0.2 0.2 0.2 diffuse 1 1 1 }}\n{object}\n\
+             light l {{ location 0 5 5 emissivity 1 1 1 }}\n"
+        );
+        let folder = root().join("scenes/entities");
+        let scene = scene::read(registry(), "far", &folder, text.as_bytes(), None);
+        render(&scene.unwrap_or_else(|report| panic!("{report}")).model);
+    }
+}

@@ -196,6 +196,10 @@ impl<L: FunctionOnLine> Search<'_, L> {
             if !over.value.has_zero() {
                 return Judgement::Free;
             }
+            // At a jump, the bounds of a place are as wide as those of the piece: shorter pieces would not help.
+            if value.has_zero() && over.value.is_bounded() && 2.0 * value.width() >= over.value.width() {
+                return self.undecided(low, high);
+            }
             (value + over.slope * around, over.slope)
         };
         if !values.has_zero() {

@@ -2,7 +2,8 @@
 //! true hits that tests compare with.
 
 use super::{DoubleDouble, two_product};
-use crate::numeric::scalar::Scalar;
+use crate::numeric::scalar::{Scalar, of_cubic};
+use crate::numeric::spline::Spline;
 
 /// Returns 2^`exponent`, which may be subnormal.
 fn power_of_two(exponent: i32) -> f64 {
@@ -163,6 +164,10 @@ impl Scalar for DoubleDouble {
     fn powi(self, exponent: i32) -> Self {
         let power = (0..exponent.unsigned_abs()).fold(Self::ONE, |power, _| power * self);
         if exponent < 0 { Self::ONE / power } else { power }
+    }
+
+    fn spline(self, spline: &Spline, order: usize) -> Self {
+        of_cubic(self, spline, spline.piece(self.high), order)
     }
 
     fn step(self) -> Self {

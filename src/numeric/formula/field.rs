@@ -39,14 +39,13 @@ impl Field {
     /// Evaluates the formula at a point.
     #[inline(always)]
     pub fn at<N: Scalar>(&self, at: [N; 3]) -> N {
-        let variable = |index: u8| at[usize::from(index)];
         let depth = self.quick.stack_depth;
         if depth <= SMALL_STACK {
-            self.quick.run(variable, &mut [at[0]; SMALL_STACK])
+            self.quick.run(&at, &mut [at[0]; SMALL_STACK])
         } else if depth <= MEDIUM_STACK {
-            self.quick.run(variable, &mut [at[0]; MEDIUM_STACK])
+            self.quick.run(&at, &mut [at[0]; MEDIUM_STACK])
         } else {
-            self.quick.run(variable, &mut [at[0]; MAX_DEPTH])
+            self.quick.run(&at, &mut [at[0]; MAX_DEPTH])
         }
     }
 }

@@ -9,10 +9,12 @@ pub use parser::{FormulaFault, Named, is_taken};
 
 use crate::numeric::dual::Dual;
 use crate::numeric::f64x8::F64x8;
-use crate::numeric::scalar::Scalar;
+use crate::numeric::scalar::{Scalar, apart_if};
+use crate::numeric::spline::Spline;
 use crate::simd::soa::LANES;
 use crate::text;
 use std::fmt;
+use std::sync::Arc;
 use step::{Function, MAX_DEPTH, Step};
 
 /// The variable of a profile.
@@ -25,6 +27,8 @@ pub struct Formula {
     variables: &'static [&'static str],
     /// The operations in postfix order: operands first.
     steps: Vec<Step>,
+    /// The curve that [`Step::Spline`] evaluates.
+    spline: Option<Arc<Spline>>,
     /// The largest depth of the stack while the formula is evaluated, in values.
     stack_depth: usize,
     /// Whether the formula can be evaluated for eight y at a time.
@@ -33,6 +37,9 @@ pub struct Formula {
 
 /// The stack depth that suffices for most formulas, in values.
 const SMALL_STACK: usize = 4;
+
+/// The size of a number, in bytes, from which each of its operations is a call.
+const LONG: usize = 64;
 
 impl Formula {
     /// Parses a formula in y.
@@ -86,14 +93,15 @@ impl Formula {
             }
             _ => steps.push(Step::Powi(2)),
         }
-        Self::new(format!("({})^2", self.text), self.variables, steps)
+        let squared = Self::new(format!("({})^2", self.text), self.variables, steps);
+        Self { spline: self.spline.clone(), is_plain: squared.is_plain && self.spline.is_none(), ..squared }
     }
 
     fn new(text: String, variables: &'static [&'static str], steps: Vec<Step>) -> Self {
         let stack_depth = stack_depth(&steps);
         // The derivative of a general power takes more than arithmetic.
         let is_plain = stack_depth <= SMALL_STACK && !steps.contains(&Step::Call(Function::Pow));
-        Self { text, variables, steps, stack_depth, is_plain }
+        Self { text, variables, steps, spline: None, stack_depth, is_plain }
     }
 
     /// Evaluates a formula in y at y.
@@ -101,9 +109,9 @@ impl Formula {
     pub fn at<N: Scalar>(&self, y: N) -> N {
         // Most formulas need a small stack, which is quicker to set up.
         if self.stack_depth <= SMALL_STACK {
-            self.run(|_| y, &mut [y; SMALL_STACK])
+            self.run(&[y], &mut [y; SMALL_STACK])
         } else {
-            self.run(|_| y, &mut [y; MAX_DEPTH])
+            self.run(&[y], &mut [y; MAX_DEPTH])
         }
     }
 
@@ -113,15 +121,17 @@ impl Formula {
             Step::Call(Function::Abs | Function::Floor | Function::Min | Function::Max) => 1,
             Step::Call(Function::Pow) => 24,
             Step::Call(_) => 8,
-            Step::Powi(exponent) | Step::Ramp(exponent) => u64::from(exponent.unsigned_abs().max(1)),
+            Step::Spline => 12,
+            Step::Powi(exponent) => u64::from(exponent.unsigned_abs().max(1)),
             _ => 1,
         };
         self.steps.iter().map(cost).sum()
     }
 
-    /// Evaluates the formula on a stack that is deep enough; one function for stacks of any size.
-    fn run<N: Scalar>(&self, variable: impl Fn(u8) -> N, stack: &mut [N]) -> N {
-        self.run_inline(variable, stack)
+    /// Evaluates the formula, given the values of its variables, on a stack that is deep enough; one function for each
+    /// number type, for any number of variables and stacks of any size.
+    fn run<N: Scalar>(&self, variables: &[N], stack: &mut [N]) -> N {
+        self.run_inline::<N, true>(variables, stack)
     }
 
     /// Evaluates the formula and its derivative at eight y, for kernels.
@@ -129,7 +139,7 @@ impl Formula {
     pub fn at_eight(&self, y: [f64; LANES]) -> Dual<F64x8> {
         if self.is_plain {
             let y = Dual::variable(F64x8(y));
-            return self.run_inline(|_| y, &mut [y; SMALL_STACK]);
+            return self.run_inline::<_, false>(&[y], &mut [y; SMALL_STACK]);
         }
         let (mut value, mut slope) = ([0.0; LANES], [0.0; LANES]);
         for lane in 0..LANES {
@@ -139,34 +149,44 @@ impl Formula {
     }
 
     #[inline(always)]
-    fn run_inline<N: Scalar>(&self, variable: impl Fn(u8) -> N, stack: &mut [N]) -> N {
+    fn run_inline<N: Scalar, const MAY_CALL: bool>(&self, variables: &[N], stack: &mut [N]) -> N {
+        /// Calls an operation of a long number, such as an interval with second derivatives, which takes up to thousands
+        /// of instructions.
+        macro_rules! long {
+            ($operation:expr) => {
+                apart_if!(MAY_CALL && size_of::<N>() >= LONG, $operation)
+            };
+        }
         let mut top = 0_usize;
         for step in &self.steps {
             // The parser has checked that the operands are there and that they fit on the stack.
             let (a, b) = (stack[top.saturating_sub(2)], stack[top.saturating_sub(1)]);
             let (used, value) = match *step {
-                Step::Variable(index) => (0, variable(index)),
+                Step::Variable(index) => (0, variables[usize::from(index)]),
                 Step::Number(number) => (0, N::constant(number)),
                 Step::Neg => (1, -b),
-                Step::Powi(exponent) => (1, b.powi(exponent)),
-                Step::Ramp(exponent) => (1, b.ramp(exponent)),
-                Step::Scale(factor) => (1, b.scaled(factor)),
-                Step::Shift(by) => (1, b.shifted(by)),
-                Step::Add => (2, a + b),
-                Step::Sub => (2, a - b),
-                Step::Mul => (2, a * b),
-                Step::Div => (2, a / b),
-                Step::Call(Function::Sin) => (1, b.sin()),
-                Step::Call(Function::Cos) => (1, b.cos()),
-                Step::Call(Function::Tan) => (1, b.tan()),
-                Step::Call(Function::Exp) => (1, b.exp()),
-                Step::Call(Function::Ln) => (1, b.ln()),
-                Step::Call(Function::Sqrt) => (1, b.sqrt()),
-                Step::Call(Function::Abs) => (1, b.abs()),
-                Step::Call(Function::Floor) => (1, b.floor()),
-                Step::Call(Function::Min) => (2, a.min(b)),
-                Step::Call(Function::Max) => (2, a.max(b)),
-                Step::Call(Function::Pow) => (2, a.pow(b)),
+                Step::Powi(exponent) => (1, long!(b.powi(exponent))),
+                Step::Spline => match &self.spline {
+                    Some(spline) => (1, long!(b.spline(spline, 0))),
+                    None => (1, b),
+                },
+                Step::Scale(factor) => (1, long!(b.scaled(factor))),
+                Step::Shift(by) => (1, long!(b.shifted(by))),
+                Step::Add => (2, long!(a + b)),
+                Step::Sub => (2, long!(a - b)),
+                Step::Mul => (2, long!(a * b)),
+                Step::Div => (2, long!(a / b)),
+                Step::Call(Function::Sin) => (1, long!(b.sin())),
+                Step::Call(Function::Cos) => (1, long!(b.cos())),
+                Step::Call(Function::Tan) => (1, long!(b.tan())),
+                Step::Call(Function::Exp) => (1, long!(b.exp())),
+                Step::Call(Function::Ln) => (1, long!(b.ln())),
+                Step::Call(Function::Sqrt) => (1, long!(b.sqrt())),
+                Step::Call(Function::Abs) => (1, long!(b.abs())),
+                Step::Call(Function::Floor) => (1, long!(b.floor())),
+                Step::Call(Function::Min) => (2, long!(a.min(b))),
+                Step::Call(Function::Max) => (2, long!(a.max(b))),
+                Step::Call(Function::Pow) => (2, long!(a.pow(b))),
             };
             top = top - used + 1;
             stack[top - 1] = value;
@@ -181,7 +201,7 @@ fn stack_depth(steps: &[Step]) -> usize {
     let after = steps.iter().map(|step| {
         let used = match step {
             Step::Variable(_) | Step::Number(_) => 0,
-            Step::Neg | Step::Powi(_) | Step::Ramp(_) | Step::Scale(_) | Step::Shift(_) => 1,
+            Step::Neg | Step::Powi(_) | Step::Spline | Step::Scale(_) | Step::Shift(_) => 1,
             Step::Add | Step::Sub | Step::Mul | Step::Div => 2,
             Step::Call(Function::Min | Function::Max | Function::Pow) => 2,
             Step::Call(_) => 1,

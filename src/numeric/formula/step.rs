@@ -17,8 +17,8 @@ pub(super) enum Step {
     Scale(f64),
     /// A sum with a constant.
     Shift(f64),
-    /// The power of a number above 0, or 0 below.
-    Ramp(i32),
+    /// The formula's spline.
+    Spline,
     Call(Function),
 }
 

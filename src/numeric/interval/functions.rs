@@ -1,7 +1,8 @@
 //! The functions of formulas over intervals.
 
 use super::{Float, Interval};
-use crate::numeric::scalar::{Scalar, apart_if};
+use crate::numeric::scalar::{Scalar, apart_if, of_cubic};
+use crate::numeric::spline::Spline;
 
 impl<F: Float> Interval<F> {
     /// Returns whether the interval may contain `start` plus any multiple of 2π radians.
@@ -169,6 +170,19 @@ impl<F: Float> Scalar for Interval<F> {
             }
             if exponent % 2 == 0 { Self { low: power.low.max(zero), high: power.high } } else { power }
         })
+    }
+
+    /// Encloses each piece that the interval meets, over what it has of the interval.
+    fn spline(self, spline: &Spline, order: usize) -> Self {
+        let Interval { low, high } = self.coarse();
+        let [first, last] = [low, high].map(|end| spline.piece(end));
+        let part = |piece: usize| {
+            let [low, high] = spline.ends(piece).map(F::of);
+            let (low, high) = (self.low.max(low), self.high.min(high));
+            // The piece before may be met only by the rounding of an end.
+            of_cubic(Self { low: low.min(high), high: low.max(high) }, spline, piece, order)
+        };
+        (first + 1..=last).fold(part(first), |all, piece| all.hull(part(piece)))
     }
 
     #[inline(always)]

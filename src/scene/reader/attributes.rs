@@ -166,7 +166,11 @@ impl Against<'_, '_> {
         if !attribute.arity().allow(words.len()) {
             let takes = attribute.takes();
             let more = if words.len() < MAX_VALUES { "" } else { " or more" };
-            let not = attribute.arity().not(&format!("{}{more}", words.len()));
+            let count = format!("{}{more}", words.len());
+            let not = match attribute.value_type() {
+                Type::Truth | Type::Formula(_) => format!("{count} values"),
+                _ => attribute.arity().not(&count),
+            };
             let message = format!("`{}` of {title} takes {takes}, not {not}", word.text);
             self.report.add(Fault::error(whole(word, words), message).help(format!(
                 "`{}`: {}",

@@ -196,3 +196,22 @@ fn a_search_ends_however_many_slabs_have_no_good_bounds() {
         assert!(cost < 10_000, "{cost}");
     }
 }
+
+/// The bounds of far rays are as wide at a jump as on a piece around it: to cut on would take thousands of pieces, and
+/// the last slabs would not be searched at all.
+#[test]
+fn a_jump_takes_few_pieces_however_far_a_ray_comes_from() {
+    let surface = surface("0.001*(0.5 + 0.25*floor(y/0.001))", 0.00628).expect("a surface");
+    let base = DVec3::new(0.004, 0.0, -0.004);
+    let frame = Frame::around(base, DVec3::Y);
+    let dir = DVec3::new(-0.0553758255167238, 0.9672145356099231, -0.24784987402301045);
+    for distance in [0.01, 10.0, 1e4] {
+        for ray in 0..1000 {
+            let part = [0.7, 0.37, 0.91].map(|step| (step * f64::from(ray)).sin());
+            let target = base + DVec3::new(0.0, 0.003, 0.0) + 0.002 * DVec3::from(part);
+            let ray = Ray { origin: target - distance * dir, dir };
+            let cost = surface.search_cost(&frame, &ray, None);
+            assert!(cost < 500, "{ray:?}: {cost}");
+        }
+    }
+}
