@@ -102,6 +102,18 @@ fn a_hundred_thousand_rounds_are_read_quickly_and_many_more_are_refused() {
 }
 
 #[test]
+fn many_unknown_names_are_told_quickly() {
+    let numbers: String = (0..20_000).map(|index| format!("let n{index} {index}\n")).collect();
+    let wrong: String = (0..20_000)
+        .map(|index| format!("sphere s{index} {{ material m center \"m{index}\" 0 -4 radius 1 }}\n"))
+        .collect();
+    let start = Instant::now();
+    let said = refused(Path::new(""), "scene", &format!("{HEAD}{numbers}{wrong}"));
+    assert!(said.ends_with("scene: 20000 errors\n"), "{said}");
+    assert!(start.elapsed() < Duration::from_secs(20), "{:?}", start.elapsed());
+}
+
+#[test]
 fn a_fault_in_every_round_is_told_once() {
     let said = refused(
         Path::new(""),

@@ -13,6 +13,7 @@ pub enum Keyword {
 
 impl Keyword {
     /// Returns the keyword that a word is.
+    #[inline]
     pub fn of(word: &str) -> Option<Self> {
         match word {
             "let" => Some(Self::Let),

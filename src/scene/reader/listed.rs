@@ -114,7 +114,9 @@ impl<'a> Lister<'a, '_, '_> {
                 rounds.word(word, value_type, report)
             });
         }
-        self.sets.apply(&mut entity, self.registry, &mut self.rounds.numbers, self.report);
+        if !self.sets.is_empty() {
+            self.sets.apply(&mut entity, self.registry, &mut self.rounds.numbers, self.report);
+        }
         self.entities.push(entity);
     }
 

@@ -201,7 +201,7 @@ impl<'a, 'r> Parser<'a, 'r> {
             Some(name) if !name.is_brace() => {
                 let name = self.tokens.word(name);
                 self.step();
-                self.rounds.renamed(name)
+                if self.rounds.is_open() { self.rounds.renamed(name) } else { name }
             }
             _ => {
                 self.report.add(
@@ -241,7 +241,9 @@ impl<'a, 'r> Parser<'a, 'r> {
                 self.attribute(known, entity);
             }
         }
-        self.sets.apply(entity, self.registry, &mut self.rounds.numbers, self.report);
+        if !self.sets.is_empty() {
+            self.sets.apply(entity, self.registry, &mut self.rounds.numbers, self.report);
+        }
         entity.place = Some(first.start..self.before.end);
         self.last = Some((kind_at, self.before.clone()));
         Some(())

@@ -1,6 +1,6 @@
 //! The named numbers of a scene, and formulas in place of numbers.
 
-use super::fault::{Fault, Place};
+use super::fault::{Fault, Place, Severity};
 use super::parsed::{Form, Word};
 use super::report::Report;
 use super::tokens::Tokens;
@@ -44,6 +44,7 @@ impl<'a> Numbers<'a> {
     }
 
     /// Returns the number of names, to which [`keep`](Self::keep) returns.
+    #[inline]
     pub fn len(&self) -> usize {
         self.all.len()
     }
@@ -124,7 +125,7 @@ impl<'a> Numbers<'a> {
                     if values.is_empty() { fault } else { fault.help(format!("here {values}")) }
                 }
             },
-            Err(fault) => self.explained(word, fault),
+            Err(fault) => self.explained(word, fault, report),
         };
         report.add(fault);
         None
@@ -141,6 +142,13 @@ impl<'a> Numbers<'a> {
                     None => Word { form: Form::Faulty, ..word },
                 }
             }
+            Some(Type::Number | Type::Whole)
+                if word.form == Form::Any && self.by_name.contains_key(&*word.text) =>
+            {
+                let fault = Fault::error(word.place.clone(), format!("`{}` is not in quotes", word.text));
+                report.add(fault.help(format!("a formula goes in quotes: `\"{}\"`", word.text)));
+                Word { form: Form::Faulty, ..word }
+            }
             Some(Type::Formula(variables)) if !self.all.is_empty() => {
                 let mut used = Vec::new();
                 match self.formula(&word, variables, &mut used) {
@@ -150,7 +158,8 @@ impl<'a> Numbers<'a> {
                     }
                     Ok(formula) => Word { text: formula.to_string().into(), ..word },
                     Err(fault) => {
-                        report.add(self.explained(&word, fault));
+                        let fault = self.explained(&word, fault, report);
+                        report.add(fault);
                         Word { form: Form::Faulty, ..word }
                     }
                 }
@@ -175,7 +184,7 @@ impl<'a> Numbers<'a> {
     }
 
     /// Returns the fault of a formula with what may have been meant.
-    fn explained(&mut self, word: &Word<'_>, fault: FormulaFault) -> Fault {
+    fn explained(&mut self, word: &Word<'_>, fault: FormulaFault, report: &Report<'_>) -> Fault {
         let mut told = Fault::error(word.within(&fault.place), fault.message);
         let Some(unknown) = fault.unknown else { return told.help(fault.help) };
         if let Some(place) = self.anywhere().get(&unknown) {
@@ -184,7 +193,8 @@ impl<'a> Numbers<'a> {
                 .also(place.clone(), "defined here")
                 .help("a number must be defined before it is used");
         }
-        if let Some(near) = nearest(&unknown, self.names()) {
+        let is_told = report.tells(Severity::Error, &told.place);
+        if let Some(near) = nearest(&unknown, self.names().filter(|_| is_told)) {
             told = told.label(format!("did you mean `{near}`?"));
         }
         let names = list(self.names().take(LISTED));

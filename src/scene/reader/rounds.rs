@@ -54,11 +54,13 @@ impl<'a> Rounds<'a> {
     }
 
     /// Tells whether a `repeat` is under way.
+    #[inline]
     pub fn is_open(&self) -> bool {
         !self.open.is_empty()
     }
 
     /// Tells whether words that are not in quotes may mean something else than they say.
+    #[inline]
     pub fn is_used(&self) -> bool {
         self.is_open() || self.numbers.len() > 0
     }

@@ -49,6 +49,12 @@ impl<'a> Sets<'a> {
         sets
     }
 
+    /// Tells whether nothing is set.
+    #[inline]
+    pub fn is_empty(&self) -> bool {
+        self.all.is_empty()
+    }
+
     /// Returns the word that is set for a number, if there is one.
     pub fn number(&mut self, name: &str) -> Option<Word<'a>> {
         if self.all.is_empty() {
@@ -71,9 +77,6 @@ impl<'a> Sets<'a> {
         numbers: &mut Numbers<'a>,
         report: &mut Report<'_>,
     ) {
-        if self.all.is_empty() {
-            return;
-        }
         if self.names.len() < MAX_NAMES {
             self.names.insert(entity.name.text.to_string());
         }
