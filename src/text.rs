@@ -4,6 +4,7 @@ use clap::ValueEnum;
 use image::ImageError;
 use serde::Serialize;
 use std::borrow::Cow;
+use std::ffi::OsStr;
 use std::io;
 use std::panic::Location;
 use std::path::Path;
@@ -84,6 +85,17 @@ pub fn boundary(text: &str, at: usize) -> usize {
 pub fn shortest(number: f64) -> String {
     let text = format!("{number:?}");
     text.strip_suffix(".0").unwrap_or(&text).to_owned()
+}
+
+/// Quotes a word of a command for a shell.
+pub fn quoted(word: &OsStr) -> String {
+    let word = word.to_string_lossy();
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "_-./:=+,@%".contains(c);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        word.into_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
 }
 
 /// Returns the file that was probably meant by a path that leads nowhere: the name of a file in the same folder.

@@ -100,7 +100,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         };
         let cores = thread::available_parallelism().map_or(1, usize::from);
         let choice = Weighed { estimates: &estimates, cores, goal };
-        print(&choice.words(choice.chosen()?, &args.scene))
+        print(&choice.words(choice.chosen()?, &args.scene, &args.set))
     })
 }
 
@@ -154,7 +154,7 @@ impl<'e> Weighed<'e> {
     }
 
     /// Says which choices were considered and which one was chosen, and shows the command line.
-    fn words(&self, chosen: &Estimate, scene: &Path) -> String {
+    fn words(&self, chosen: &Estimate, scene: &Path, set: &set::Args) -> String {
         let head = ["accuracy", "samples", "error", "at most", "time"];
         let mut text =
             format!("  {:<9}{:>8}{:>12}{:>12}{:>12}\n", head[0], head[1], head[2], head[3], head[4]);
@@ -196,9 +196,10 @@ impl<'e> Weighed<'e> {
             text,
             "\nThe marked choice is {why}{sure}. Errors were measured on {measured} of {all} pixels, against {against} \
              samples in each{short}; those of the whole image are at most what the table says. Times are estimates.\n\n\
-             {} render {} {how} --samples {}\n",
+             {} render {}{} {how} --samples {}\n",
             program::name(),
             scene.display(),
+            set.words(),
             chosen.numbers()
         );
         text

@@ -1,5 +1,7 @@
 //! `--set`: values beside the text of a scene.
 
+use crate::text;
+
 /// The values that are set.
 #[derive(Clone, Default, clap::Args)]
 #[group(id = "what is set")]
@@ -8,4 +10,11 @@ pub struct Args {
     /// that of a `let`; may be given more than once
     #[arg(long = "set", value_name = "NAME=VALUES")]
     pub values: Vec<String>,
+}
+
+impl Args {
+    /// Returns the options as a shell reads them, each after a space.
+    pub fn words(&self) -> String {
+        self.values.iter().map(|value| format!(" --set {}", text::quoted(value.as_ref()))).collect()
+    }
 }

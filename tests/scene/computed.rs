@@ -279,3 +279,18 @@ fn every_command_that_takes_a_scene_takes_what_is_set() {
         assert!(status == 2 && err.contains("--set:1:14"), "{args:?}: {err}");
     }
 }
+
+#[test]
+fn choose_prints_what_is_set_in_its_command_line() {
+    let folder = folder();
+    let text = format!("{HEAD}let r 2\nsphere ball {{ material m center 4 3 -4 radius \"r\" }}\n");
+    fs::write(folder.path().join("a.ray"), text).expect("a file");
+    let sets = ["--set", "eye.pixeldim=40 30", "--set", "ball.radius=1"];
+    let (status, out, err) =
+        outcome(tabray(&folder).args(["choose", "a.ray", "--max-error", "50"]).args(sets));
+    let out = String::from_utf8_lossy(&out);
+    assert!(
+        status == 0 && out.contains("render a.ray --set 'eye.pixeldim=40 30' --set ball.radius=1 --"),
+        "{out}{err}"
+    );
+}
