@@ -38,6 +38,7 @@ inventory::submit! {
         }
         Ok(Camera {
             adaptive: None,
+            certain: false,
             scramble: 0,
             exposure: 0.0,
             // The attributes' rules ensure that these casts are lossless.

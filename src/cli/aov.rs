@@ -99,7 +99,7 @@ pub fn write(
     files: Vec<Files>,
 ) -> Result<(), Failure> {
     let (exact_model, own);
-    let truth = if files.iter().any(|file| file.aov == Aov::Error) {
+    let truth = if files.iter().any(|file| file.aov == Aov::Error) && !plan.camera.certain {
         exact_model = exact()?;
         let mut exact = Plan::new(&exact_model);
         let samples = match plan.camera.adaptive {

@@ -1,5 +1,6 @@
 //! `tabray bench`: how fast scenes are traced on one core.
 
+mod certain;
 mod sampling;
 
 use super::failure::{Failure, print};
@@ -74,6 +75,9 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
             let built = reader::build(registry, scene).map_err(Failure::Scene)?;
             models.push((name.to_owned(), built.model));
         }
+    }
+    if args.sampling == Some(sampling::Question::Certain) {
+        return certain::run(models, args.size);
     }
     if let Some(question) = args.sampling {
         return sampling::run(question, models, args.size, args.output.as_deref(), args.keep.as_deref());

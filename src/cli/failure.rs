@@ -6,6 +6,11 @@ use crate::text;
 use std::io::{self, Write};
 use std::path::Path;
 use std::process::{self, ExitCode};
+use std::thread;
+use std::time::Duration;
+
+/// The time in which a program that ends must have said why.
+const SAYING: Duration = Duration::from_millis(500);
 
 /// The reason why a command did not do what it was asked to do.
 pub enum Failure {
@@ -57,6 +62,18 @@ pub fn end(failure: &Failure) -> ! {
     end_in_haste(failure)
 }
 
+/// Lets the program end soon with a failure's status, even if the reader of standard error does not read, so that no
+/// thread can say any more why it ends.
+pub fn end_even_if_blocked(failure: &Failure) {
+    let status = status(failure);
+    // Without the thread the program ends too, once somebody reads.
+    let _ = thread::Builder::new().spawn(move || {
+        thread::sleep(SAYING);
+        temporary::remove_all();
+        process::exit(status.into());
+    });
+}
+
 /// Ends the program as [`end`] does, but a bar on the terminal stays: it may be what the thread was drawing.
 pub fn end_in_haste(failure: &Failure) -> ! {
     // From here on no other thread prints anything.
@@ -81,6 +98,11 @@ fn told(failure: &Failure) -> u8 {
         Failure::Interrupted(what) => messages::note(&format!("interrupted: {what}")),
         Failure::Stopped | Failure::Told => {}
     }
+    status(failure)
+}
+
+/// Returns the exit status of a failure.
+fn status(failure: &Failure) -> u8 {
     match failure {
         Failure::Failed(_) => 1,
         Failure::Scene(_) | Failure::Usage(..) | Failure::Told => 2,

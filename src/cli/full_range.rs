@@ -16,6 +16,9 @@ use std::path::Path;
 /// The memory for a pixel, in bytes: its colour, and what encodes it.
 pub const PIXEL: usize = 12 * 4;
 
+/// The message if a render is stopped.
+const UNKEPT: &str = "an EXR or a PFM is written once it is whole: nothing is written";
+
 /// Renders a part of an image, and writes it once it is whole: its formats have no place for what is not rendered.
 pub fn render(
     (plan, part): (&Plan, &Part),
@@ -27,7 +30,7 @@ pub fn render(
     let [width, height] = part.size();
     memory::room(PIXEL.saturating_mul(width).saturating_mul(height), "the image")?;
     let progress = Progress::new(height);
-    stop.begin();
+    stop.begin_unkept(UNKEPT);
     let overseer = Overseer { stops: &|| stop.is_due(), row: &|| progress.step() };
     let tally = &stats.tally;
     let add = |part: RayStats| tally.add(&part);
@@ -35,9 +38,10 @@ pub fn render(
     stats.timed(|| pixels = renderer.colours(plan, [&part.columns, &part.rows], overseer, &add));
     progress.end();
     job::warn_of(stats.tally.cuts());
+    job::tell_proofs(stats.tally.proofs(), plan);
     let Some(pixels) = pixels else {
         stop.tell();
-        messages::note("an EXR or a PFM is written once it is whole: nothing is written");
+        messages::note(UNKEPT);
         return Err(Failure::Stopped);
     };
     output::put(path, output, |out| format.write(out, [width, height], &pixels))

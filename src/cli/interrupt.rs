@@ -44,7 +44,10 @@ pub fn catch(first: Manner) -> Result<(), Failure> {
     handle(|| {
         // The lock is held while the program ends, so that the manner does not change meanwhile.
         match *manner() {
-            Manner::Ends(said) => failure::end(&Failure::Interrupted(said)),
+            Manner::Ends(said) => {
+                failure::end_even_if_blocked(&Failure::Stopped);
+                failure::end(&Failure::Interrupted(said));
+            }
             Manner::Notes => {}
             Manner::NotesFirst(_) => drop(thread::spawn(|| {
                 thread::sleep(PATIENCE);
@@ -72,10 +75,11 @@ fn handle(mut then: impl FnMut() + Send + 'static) -> Result<(), Failure> {
     .map_err(|error| Failure::Failed(format!("cannot catch interruptions: {error}")))
 }
 
-/// If an interruption would end the program, calls `tell` and ends it.
-pub fn end_if_it_would(tell: impl FnOnce()) {
-    if let Manner::Ends(_) = *manner() {
-        tell();
+/// If an interruption would end the program, calls `tell` with what it would say and ends the program.
+pub fn end_if_it_would(tell: impl FnOnce(&'static str)) {
+    if let Manner::Ends(said) = *manner() {
+        failure::end_even_if_blocked(&Failure::Stopped);
+        tell(said);
         failure::end(&Failure::Stopped);
     }
 }

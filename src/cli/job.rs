@@ -12,7 +12,7 @@ use crate::output::packing::PIECE;
 use crate::output::picture::Format;
 use crate::render::limits::MAX_RAYS;
 use crate::render::plan::Plan;
-use crate::render::ray_stats::{Cuts, RayStats};
+use crate::render::ray_stats::{Cuts, Proofs, RayStats};
 use crate::render::renderer::{Overseer, Renderer};
 use crate::render::tiles::{BAND, Band, Tiles};
 use crate::text::{count, short};
@@ -47,11 +47,12 @@ impl Job<'_> {
     /// ends with what is done, because threads may still be at work.
     pub fn run(&self, output: Output, begun: Option<Begun>) -> Result<(), Failure> {
         let progress = Progress::new(self.part.rows.len());
-        let cuts = Mutex::new(Cuts::default());
+        let (cuts, proofs) = (Mutex::new(Cuts::default()), Mutex::new(Proofs::default()));
         let cut = |part| cuts.lock().unwrap_or_else(PoisonError::into_inner).add(part);
         let sum = self.stats.map(|stats| &stats.tally);
         let add = |tally: RayStats| {
             cut(tally.cuts);
+            proofs.lock().unwrap_or_else(PoisonError::into_inner).add(tally.proofs);
             sum.iter().for_each(|sum| sum.add(&tally));
         };
         let overseer = Overseer { stops: &|| self.stop.is_due(), row: &|| progress.step() };
@@ -59,12 +60,14 @@ impl Job<'_> {
         self.stop.begin();
         self.renderer.unfinished(|renders| {
             let fill = |band: &mut Band| match self.stats {
+                None if plan.camera.certain => renders.fill(plan, band, overseer, counted),
                 None => renders.fill(plan, band, overseer, plain),
                 Some(stats) => stats.timed(|| renders.fill(plan, band, overseer, counted)),
             };
             let outcome = self.write(output, begun, &progress, fill);
             progress.end();
             warn_of(take(&mut cuts.lock().unwrap_or_else(PoisonError::into_inner)));
+            tell_proofs(take(&mut proofs.lock().unwrap_or_else(PoisonError::into_inner)), plan);
             match outcome {
                 Err(failure) if self.stop.is_due() => failure::end(&failure),
                 outcome => outcome,
@@ -179,7 +182,31 @@ impl Job<'_> {
     }
 }
 
-/// Warns of pixels that reached the limit on their number of rays, if there are any.
+/// Tells how many pixels are certified, and how much the others may be off, if anything is proven.
+pub fn tell_proofs(proofs: Proofs, plan: &Plan) {
+    let (Some(error), 1..) = (plan.camera.adaptive.and_then(|adaptive| adaptive.error), proofs.pixels())
+    else {
+        return;
+    };
+    // Rounded down, so that an open pixel does not show 100 %; the bounds are rounded up.
+    let share = (10000.0 * proofs.certified as f64 / proofs.pixels() as f64).floor() / 100.0;
+    let levels = |error: f64| short((255.0 * 1000.0 * error).ceil() / 1000.0);
+    let rest = match proofs.open {
+        0 => String::new(),
+        open => format!(
+            "; the other {} may be off by up to {} levels, by {} on average",
+            count(open as usize, "pixel"),
+            levels(proofs.most),
+            levels(proofs.mean()),
+        ),
+    };
+    messages::note(&format!(
+        "{share} % of the pixels are certain to be within {} of 255 levels{rest}; the bytes are rounded down from that",
+        short(255.0 * error)
+    ));
+}
+
+/// Warns of pixels with primary rays that used up their ray budget, if there are any.
 pub fn warn_of(cuts: Cuts) {
     if cuts.pixels == 0 {
         return;
@@ -192,9 +219,12 @@ pub fn warn_of(cuts: Cuts) {
     };
     messages::warning(
         &format!(
-            "{} cut off at {MAX_RAYS} rays for one primary ray, {most}",
+            "{} cut off at the ray budget (the work of {MAX_RAYS} simple rays for each primary ray), {most}",
             count(cuts.pixels as usize, "pixel")
         ),
-        Some("mirrors or glass spawn too many rays: a lower `specular` or `transparency` ends them sooner"),
+        Some(
+            "mirrors or glass spawn too many rays, or rays that are too costly: a lower `specular` or `transparency` \
+            ends them sooner",
+        ),
     );
 }

@@ -1,6 +1,7 @@
 //! `--samples`, `--max-error` and `--sampler`: how many samples the pixels of an image take, and where.
 
 use super::failure::Failure;
+use crate::world::accuracy::Accuracy;
 use crate::world::camera::{Adaptive, Camera};
 use crate::world::sample::Sampler;
 
@@ -23,6 +24,11 @@ pub struct Args {
     /// samples unless --samples gives other limits
     #[arg(long, value_name = "LEVELS|PERCENT%", value_parser = error, allow_negative_numbers = true)]
     max_error: Option<f64>,
+    /// Prove the error of --max-error where that is possible: the colour of a pixel is enclosed for all rays through it
+    /// at once, and where the enclosure is narrow enough the pixel takes no samples. The share of these pixels is
+    /// printed, and how much the others may be off, which take samples as without this option
+    #[arg(long, requires = "max_error")]
+    certain: bool,
     /// The distribution of the samples within a pixel
     #[arg(long, value_name = "NAME", default_value = "sobol")]
     sampler: Sampler,
@@ -60,6 +66,14 @@ impl Args {
         };
         camera.samples = limits[0];
         camera.adaptive = Some(Adaptive { most: limits[1], error: self.max_error });
+        camera.certain = self.certain;
+        if camera.certain && camera.accuracy == Accuracy::Classic {
+            return Err(Failure::Usage(
+                "`--certain` proves the true colours, and the classic method has colours of its own"
+                    .to_owned(),
+                Some("leave out `--certain`, or give `--method exact`".to_owned()),
+            ));
+        }
         Ok(())
     }
 }

@@ -2,7 +2,7 @@
 
 use super::memory;
 use crate::render::observer::RayKind;
-use crate::render::ray_stats::{Cuts, RayStats, TestCounts};
+use crate::render::ray_stats::{Cuts, Proofs, RayStats, TestCounts};
 use crate::scene::model::Model;
 use crate::text::{json, short};
 use serde::Serialize;
@@ -76,6 +76,11 @@ impl Sum {
         self.get().cuts
     }
 
+    /// Returns what is proven of pixels' colours.
+    pub fn proofs(&self) -> Proofs {
+        self.get().proofs
+    }
+
     /// Adds the counts of a part.
     pub fn add(&self, part: &RayStats) {
         self.get().add(part);
@@ -109,6 +114,14 @@ impl Stats {
             }
             let _ = writeln!(out, "{:<12} {mean:>14.2}", "mean");
         }
+        if tally.proofs.pixels() > 0 {
+            let Proofs { certified, open, most, footprints, .. } = tally.proofs;
+            let _ = writeln!(out, "\n{:<12} {:>14} {:>14} {:>14}", "proven", "pixels", "levels", "mean");
+            let _ = writeln!(out, "{:<12} {certified:>14}", "certain");
+            let (most, mean) = (short(255.0 * most), short(255.0 * tally.proofs.mean()));
+            let _ = writeln!(out, "{:<12} {open:>14} {most:>14} {mean:>14}", "open, within");
+            let _ = writeln!(out, "{:<12} {footprints:>14}", "footprints");
+        }
         let Cuts { pixels, most } = tally.cuts;
         let _ = writeln!(out, "\n{:<12} {:>14} {:>14}", "cut off", "pixels", "levels");
         let _ = writeln!(out, "{:<12} {pixels:>14} {:>14}", "at most", short(255.0 * most));
@@ -140,6 +153,13 @@ impl Stats {
         Counts {
             cut: Cut { levels: 255.0 * tally.cuts.most, pixels: tally.cuts.pixels },
             peak_memory: memory::peak(),
+            proven: (tally.proofs.pixels() > 0).then(|| Proven {
+                certain: tally.proofs.certified,
+                footprints: tally.proofs.footprints,
+                levels: 255.0 * tally.proofs.most,
+                mean_levels: 255.0 * tally.proofs.mean(),
+                open: tally.proofs.open,
+            }),
             rays: Rays {
                 primary: tally.rays(RayKind::Primary),
                 reflected: tally.rays(RayKind::Reflected),
@@ -161,6 +181,9 @@ struct Counts {
     /// The most memory that the program used at one time, in bytes; left out where the system does not report it.
     #[serde(skip_serializing_if = "Option::is_none")]
     peak_memory: Option<u64>,
+    /// What is proven of pixels' colours; left out without `--certain`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    proven: Option<Proven>,
     /// The numbers of rays that were traced.
     rays: Rays,
     /// The numbers of samples that pixels took; left out where all take the same.
@@ -183,6 +206,21 @@ struct Rays {
     shadow: u64,
     /// Rays through glass.
     transmitted: u64,
+}
+
+/// What is proven of pixels' colours.
+#[derive(Serialize)]
+struct Proven {
+    /// The number of pixels that are certain to be within the limit.
+    certain: u64,
+    /// The number of footprints that were examined.
+    footprints: u64,
+    /// How much any of the other pixels may be off at most, in levels of a channel, from 0 to 255.
+    levels: f64,
+    /// How much the other pixels may be off on average, in levels.
+    mean_levels: f64,
+    /// The number of the other pixels.
+    open: u64,
 }
 
 /// The numbers of samples that pixels took.

@@ -108,6 +108,13 @@ impl Stop {
         let _ = self.begun.set(());
     }
 
+    /// From here on an image is rendered of which no part can be kept: interruptions and limits end the program, and
+    /// this is said.
+    pub fn begin_unkept(&self, said: &'static str) {
+        interrupt::from_here(Manner::Ends(said));
+        let _ = self.begun.set(());
+    }
+
     /// From here on interruptions and limits end the program, and the images not yet written are lost.
     pub fn ends_from_here(&self) -> Result<(), Failure> {
         interrupt::from_here(Manner::Ends(NOT_FINISHED));
@@ -149,9 +156,9 @@ impl Args {
                     let _ = reached.set(limit);
                     // If nothing is rendered yet, there is nothing to keep.
                     if matches!(limit, Limit::Time(_)) {
-                        interrupt::end_if_it_would(|| {
+                        interrupt::end_if_it_would(|said| {
                             limit.tell();
-                            messages::note(if begun.get().is_some() { NOT_FINISHED } else { NOT_BEGUN });
+                            messages::note(if begun.get().is_some() { said } else { NOT_BEGUN });
                         });
                     }
                     return;

@@ -117,3 +117,8 @@ pub struct Drift {
     /// A bound on the length of the difference between the directions, which are unit vectors.
     pub dir: f64,
 }
+
+impl Drift {
+    /// That of a ray that stands for itself.
+    pub const NONE: Self = Self { origin: 0.0, dir: 0.0 };
+}

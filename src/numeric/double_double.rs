@@ -243,19 +243,25 @@ fn quick_cross(a: [DoubleDouble; 3], b: [DoubleDouble; 3]) -> Option<[DoubleDoub
     if !is_plain(a) | !is_plain(b) {
         return None;
     }
-    let mut lost = 0.0;
-    let mut part = |one: usize, other: usize| {
-        let (plus, plus_low) = two_product(a[one].high, b[other].high);
-        let (minus, minus_low) = two_product(-a[other].high, b[one].high);
+    let (product, lost) = plain_cross([a[0].high, a[1].high, a[2].high], [b[0].high, b[1].high, b[2].high]);
+    (lost == 0.0).then_some(product)
+}
+
+/// Returns the cross product of two vectors, and the sum of what its components lack, without signs: where that is 0,
+/// each is exactly a double-double.
+#[inline(always)]
+pub fn plain_cross(a: [f64; 3], b: [f64; 3]) -> ([DoubleDouble; 3], f64) {
+    let part = |one: usize, other: usize| {
+        let (plus, plus_low) = two_product(a[one], b[other]);
+        let (minus, minus_low) = two_product(-a[other], b[one]);
         let (sum, of_sum) = two_sum(plus, minus);
         let (lows, of_lows) = two_sum(plus_low, minus_low);
         let (low, of_low) = two_sum(of_sum, lows);
-        lost += of_lows.abs() + of_low.abs();
         let (high, low) = two_sum(sum, low);
-        DoubleDouble { high, low }
+        (DoubleDouble { high, low }, of_lows.abs() + of_low.abs())
     };
-    let product = [part(1, 2), part(2, 0), part(0, 1)];
-    (lost == 0.0).then_some(product)
+    let ((x, x_lost), (y, y_lost), (z, z_lost)) = (part(1, 2), part(2, 0), part(0, 1));
+    ([x, y, z], x_lost + y_lost + z_lost)
 }
 
 #[inline(never)]
@@ -305,6 +311,26 @@ pub fn rounded_unit(vector: [DoubleDouble; 3]) -> [f64; 3] {
         if is_certain && part.high.abs() > 1e-200 { high } else { (part / length).high }
     };
     [rounded(vector[0]), rounded(vector[1]), rounded(vector[2])]
+}
+
+/// Returns what [`rounded_unit`] does, without branches, and whether it is that.
+#[inline(always)]
+pub fn quick_unit(vector: [DoubleDouble; 3]) -> ([f64; 3], bool) {
+    let square = product(vector, vector);
+    let root = DoubleDouble::from(square.high.sqrt());
+    let rest = square - root * root;
+    let length = root + DoubleDouble::from(rest.high / (2.0 * root.high));
+    let first = 1.0 / length.high;
+    let rest = DoubleDouble::from(1.0) - length * DoubleDouble::from(first);
+    let inverse = DoubleDouble::normal(first, rest.high * first);
+    let rounded = |part: DoubleDouble| {
+        let DoubleDouble { high, low } = part * inverse;
+        let error = power_of_two(-98) * high.abs();
+        let is_certain = (high + (low - error) == high) & (high + (low + error) == high);
+        (high, is_certain & (part.high.abs() > 1e-200))
+    };
+    let ((x, is_x), (y, is_y), (z, is_z)) = (rounded(vector[0]), rounded(vector[1]), rounded(vector[2]));
+    ([x, y, z], is_x & is_y & is_z & (square.high > 0.0))
 }
 
 #[cfg(test)]

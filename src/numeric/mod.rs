@@ -1,5 +1,6 @@
 //! Number types that formulas are evaluated with, and formulas.
 
+pub(crate) mod affine;
 pub mod double_double;
 pub(crate) mod dual;
 pub(crate) mod f64x8;

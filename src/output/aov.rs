@@ -6,7 +6,7 @@ use crate::render::bytes::{shown, to_byte};
 use crate::render::observer::{Event, TraceObserver};
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
-use crate::render::trace;
+use crate::render::trace::{self, Bounded};
 use crate::world::camera::Camera;
 use crate::world::material::Rgb;
 use clap::ValueEnum;
@@ -42,7 +42,8 @@ pub enum Aov {
     Samples,
     /// Error of a pixel's colour, against four times its samples, at least 64, traced exactly.
     ///
-    /// The worst one is white; red where another object is seen.
+    /// The worst one is white; red where another object is seen. With --certain, what is proven of it: grey up to the
+    /// limit, and red where that is not certain.
     Error,
 }
 
@@ -54,7 +55,8 @@ pub struct Layer {
     /// fills all three channels and is infinite where nothing is hit; a normal is 0 there. Samples consist of their
     /// number, the estimated error of the colour, and 1 where that is above the limit, else 0. An error consists of the
     /// error of the colour, the root of the mean square over its channels; the error of the distance to the first hit,
-    /// in world units; and 1 where another object is hit, else 0.
+    /// in world units; and 1 where another object is hit, else 0. A proven bound consists of the bound, where 1 is white,
+    /// the number of footprints, and 1 where the bound is above the limit, else 0.
     pub exact: Option<Vec<f32>>,
     /// The number of rays of the most expensive pixel, and that pixel: its column from the left and its row from the
     /// bottom.
@@ -106,6 +108,11 @@ impl Aov {
             }
             Self::Samples => {
                 Ok(samples(&each(renderer, plan, done, |x, y| trace::samples(plan, x, y))?, &plan.camera))
+            }
+            Self::Error if plan.camera.certain => {
+                let proofs =
+                    each(renderer, plan, done, |x, y| trace::bounded(plan, x, y).unwrap_or_default())?;
+                Ok(bounds(&proofs, &plan.camera))
             }
             Self::Error => {
                 let errors = each(renderer, plan, done, |x, y| PixelError::of(plan, truth, x, y))?;
@@ -233,6 +240,28 @@ fn samples(pixels: &[(u32, Option<f64>)], camera: &Camera) -> Layer {
         exact: Some(pixels.iter().flat_map(numbers).collect()),
         most: None,
         worst: None,
+    }
+}
+
+/// Shows what is proven of pixels: as grey up to the limit, and red beyond.
+fn bounds(pixels: &[Bounded], camera: &Camera) -> Layer {
+    let [width, height] = camera.pixels;
+    let limit = camera.adaptive.and_then(|adaptive| adaptive.error).unwrap_or(1.0);
+    let worst = pixels.iter().map(|pixel| pixel.error).fold(0.0, f64::max);
+    let place = pixels.iter().position(|pixel| pixel.error == worst).unwrap_or(0);
+    let shade = |pixel: &Bounded| match pixel.is_certified {
+        true => DVec3::splat(0.5 * pixel.error / limit),
+        false => DVec3::X,
+    };
+    let numbers = |pixel: &Bounded| {
+        let open = if pixel.is_certified { 0.0 } else { 1.0 };
+        [(pixel.error as f32).next_up(), pixel.footprints as f32, open]
+    };
+    Layer {
+        bytes: shown_all(pixels.iter().map(shade)),
+        exact: Some(pixels.iter().flat_map(numbers).collect()),
+        most: None,
+        worst: Some((worst, [place % width, height - 1 - place / width])),
     }
 }
 

@@ -84,6 +84,9 @@ impl Identity {
             exposure: (camera.exposure != 0.0).then_some(camera.exposure),
             samples: camera.samples,
             more_samples: camera.adaptive.map(|Adaptive { most, error }| match error {
+                Some(error) if camera.certain => {
+                    format!("up to {most} for a certain error of {} levels", 255.0 * error)
+                }
                 Some(error) => format!("up to {most} for an error of {} levels", 255.0 * error),
                 None => format!("up to {most}"),
             }),

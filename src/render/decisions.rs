@@ -2,6 +2,7 @@
 
 use crate::render::culling;
 use crate::render::features::{FEATURE_SAMPLES, Features};
+use crate::render::footprint::{MAX_CUTS, MAX_FOOTPRINTS};
 use crate::render::limits::{MAX_DIST, MAX_RAYS};
 use crate::render::plan::depth::Depth;
 use crate::render::plan::needs::{self, Needs};
@@ -57,6 +58,7 @@ pub fn of(plan: &Plan) -> Vec<Decision> {
     all.extend(unmet(plan).map(|text| decision("unmet", text)));
     all.push(decision("search", search(model, plan)));
     all.extend(plan.features.as_ref().map(|features| decision("small", small(features))));
+    all.extend(plan.prover.is_some().then(|| decision("certain", certain())));
     all.extend(objects(plan));
     all
 }
@@ -75,7 +77,9 @@ fn picture(camera: &Camera) -> String {
             }
             None => "where its colour is less certain".to_owned(),
         };
-        return format!("{size}, {samples} to {most} {kind} samples in each: more {until}");
+        let each =
+            if camera.certain { "each pixel whose error is not proven to be within that" } else { "each" };
+        return format!("{size}, {samples} to {most} {kind} samples in {each}: more {until}");
     }
     let rays = (width * height) as u64 * u64::from(samples);
     match (samples, sampler) {
@@ -89,6 +93,13 @@ fn picture(camera: &Camera) -> String {
             format!("{size}, {samples} random samples in each: {rays} primary rays")
         }
     }
+}
+
+fn certain() -> String {
+    format!(
+        "all rays through a pixel are enclosed at once, in up to {MAX_FOOTPRINTS} footprints, each cut into quarters up to \
+         {MAX_CUTS} times: where that proves the error, the pixel takes no samples"
+    )
 }
 
 fn lights(plan: &Plan) -> String {
@@ -171,7 +182,8 @@ fn named((_, object): (usize, &Object)) -> &str {
 }
 
 fn depth(model: &Model, depth: &Depth) -> String {
-    let ends = format!("after a path of {MAX_DIST} units, and at {MAX_RAYS} rays for one primary ray");
+    let ends =
+        format!("after a path of {MAX_DIST} units, and at a ray budget of {MAX_RAYS} for one primary ray");
     let bound =
         || format!("nothing is brighter than {} divided by the path length of its light", short(depth.most));
     match (model.camera.value.accuracy, depth.most.is_finite()) {

@@ -3,7 +3,7 @@
 /// The path length from the viewer, in world units, beyond which no reflected or transmitted ray is followed.
 pub(crate) const MAX_DIST: f64 = 20.0;
 
-/// The number of rays that one primary ray may cost, itself included; the rays beyond are black. Without a limit,
-/// mirrors that nearly touch would reflect each other almost endlessly. A ray whose hit takes as long to find as those of
-/// many other rays counts as many.
+/// The ray budget: the number of simple rays whose work one primary ray may cost, itself included; the rays beyond are
+/// black. Without a limit, mirrors that nearly touch would reflect each other almost endlessly. A ray whose hit takes as
+/// long to find as those of many simple rays counts as many.
 pub(crate) const MAX_RAYS: usize = 20_000;

@@ -4,6 +4,7 @@ pub(crate) mod bytes;
 mod culling;
 pub mod decisions;
 mod features;
+mod footprint;
 mod frusta;
 pub(crate) mod limits;
 pub(crate) mod observer;

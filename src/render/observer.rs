@@ -69,6 +69,16 @@ pub enum Count {
     Culled(usize, usize),
     /// A pixel took a number of samples, where pixels differ in that.
     Sampled(u32),
+    /// A bound on the error of a pixel's colour is proven, where 1 is white: whether it is within the limit, and of how
+    /// many footprints.
+    Bounded {
+        /// The bound.
+        error: f64,
+        /// Whether it is within the limit.
+        is_certified: bool,
+        /// The number of footprints that were examined.
+        footprints: u32,
+    },
     /// A pixel has used up its ray budget; it lacks at most this much light in any channel.
     Cut(f64),
 }

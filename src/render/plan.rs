@@ -10,7 +10,8 @@ use crate::geometry::aabb::Aabb;
 use crate::geometry::bvh::Bvh;
 use crate::render::culling;
 use crate::render::features::Features;
-use crate::scene::model::Model;
+use crate::render::footprint::Prover;
+use crate::scene::model::{Model, Object};
 use crate::world::camera::{Adaptive, Camera};
 use rayon::prelude::*;
 
@@ -37,14 +38,35 @@ pub struct Plan<'m> {
     pub(crate) has_glass: bool,
     /// The objects that are small in the image, where the number of a pixel's samples depends on them.
     pub(crate) features: Option<Features>,
+    /// What proves the colours of pixels, where that is wanted.
+    pub(crate) prover: Option<Prover>,
     /// How deep rays are followed; `None` where no object reflects or transmits rays.
     pub(crate) depth: Option<Depth>,
-    /// The indices of the objects whose hits may take long to find, where rays continue.
-    pub(crate) costly: Vec<usize>,
+    /// The objects whose hits may take long to find, where rays continue.
+    pub(crate) costly: Option<Costly>,
     /// The maximum number of reflections and transmissions on a path.
     pub(crate) bounces: usize,
     /// The lights that are sampled, and what is left out.
     pub(crate) needs: Needs,
+}
+
+/// Objects whose hits may take long to find.
+pub(crate) struct Costly {
+    /// The objects, by their indices in the scene.
+    pub tree: Bvh,
+    /// The number of them, at least 1.
+    pub count: u32,
+}
+
+impl Costly {
+    fn of(objects: &[Object]) -> Option<Self> {
+        let costly = objects.iter().enumerate().filter(|(_, object)| object.shape.may_be_costly());
+        let boxed = |(index, object): (usize, &Object)| Some((index as u32, object.shape.bounds()?));
+        let (indices, boxes): (Vec<_>, Vec<_>) = costly.filter_map(boxed).unzip();
+        let mut tree = Bvh::new(&boxes);
+        tree.rename(|object| indices[object as usize]);
+        (!indices.is_empty()).then_some(Self { tree, count: indices.len() as u32 })
+    }
 }
 
 impl<'m> Plan<'m> {
@@ -81,6 +103,7 @@ impl<'m> Plan<'m> {
         }
         let camera = model.camera.value.clone();
         let features = camera.adaptive.map(|_| Features::new(&camera, objects));
+        let prover = camera.certain.then(|| Prover::new(model));
         let tree = (bounded.len() >= TREE).then(|| {
             let (objects, boxes): (Vec<_>, Vec<_>) = bounded.drain(..).unzip();
             let mut tree = Bvh::new(&boxes);
@@ -90,11 +113,22 @@ impl<'m> Plan<'m> {
         let mut unmet = needs.unmet.iter().peekable();
         let mut met = objects.iter().enumerate().filter(|(index, _)| unmet.next_if_eq(&index).is_none());
         let has_glass = met.any(|(_, object)| object.material.transparency != 0.0);
-        let is_costly = |index: &usize| objects[*index].shape.may_be_costly();
-        let costly =
-            if depth.is_some() { (0..objects.len()).filter(is_costly).collect() } else { Vec::new() };
+        let costly = depth.as_ref().and_then(|_| Costly::of(objects));
         let bounces = usize::MAX;
-        Self { model, camera, unbounded, bounded, tree, has_glass, features, depth, costly, bounces, needs }
+        Self {
+            model,
+            camera,
+            unbounded,
+            bounded,
+            tree,
+            has_glass,
+            features,
+            prover,
+            depth,
+            costly,
+            bounces,
+            needs,
+        }
     }
 
     /// Lets pixels take different numbers of samples, or all the same. The plan must be one for any ray.

@@ -15,12 +15,54 @@ pub struct RayStats {
     tests: Vec<TestCounts>,
     /// The pixels that have used up their ray budget.
     pub cuts: Cuts,
+    /// The pixels of whose colours something is proven.
+    pub proofs: Proofs,
     /// The numbers of pixels that took 1, 2, 4 ... samples, where pixels differ in that.
     sampled: [u64; SAMPLE_COUNTS],
 }
 
 /// How many different numbers of samples a pixel can take: the powers of two up to [`Sampler::MOST`].
 const SAMPLE_COUNTS: usize = Sampler::MOST.ilog2() as usize + 1;
+
+/// The pixels of whose colours something is proven.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Proofs {
+    /// The number of pixels that are within the limit for certain.
+    pub certified: u64,
+    /// The number of the others.
+    pub open: u64,
+    /// The greatest error that any of the others may have, where 1 is white.
+    pub most: f64,
+    /// The sum of the errors that the others may have, each rounded up, in parts of which [`PARTS`] are white: a whole number,
+    /// so that the order of the sum makes no difference.
+    sum: u64,
+    /// The number of footprints that were examined.
+    pub footprints: u64,
+}
+
+/// The parts of white that errors are summed in.
+const PARTS: f64 = 1e9;
+
+impl Proofs {
+    /// Adds the proofs of another part of the image.
+    pub fn add(&mut self, other: Self) {
+        self.certified += other.certified;
+        self.open += other.open;
+        self.most = self.most.max(other.most);
+        self.sum += other.sum;
+        self.footprints += other.footprints;
+    }
+
+    /// Returns the number of pixels.
+    pub fn pixels(&self) -> u64 {
+        self.certified + self.open
+    }
+
+    /// Returns the mean error that the pixels that are not certified may have, where 1 is white.
+    pub fn mean(&self) -> f64 {
+        if self.open == 0 { 0.0 } else { self.sum as f64 / PARTS / self.open as f64 }
+    }
+}
 
 /// The pixels that have used up their ray budget. It is an observer that counts nothing else.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -72,6 +114,13 @@ impl TraceObserver for RayStats {
             Count::Tested(object, rays) => self.of(object).tested += rays as u64,
             Count::Culled(object, rays) => self.of(object).culled += rays as u64,
             Count::Sampled(samples) => self.sampled[samples.ilog2() as usize] += 1,
+            Count::Bounded { error, is_certified, footprints } => {
+                let pixels = u64::from(!is_certified);
+                let most = if is_certified { 0.0 } else { error };
+                let sum = (PARTS * most).ceil() as u64;
+                let footprints = footprints.into();
+                self.proofs.add(Proofs { certified: 1 - pixels, open: pixels, most, sum, footprints });
+            }
             Count::Cut(_) => self.cuts.count(count),
         }
     }
@@ -92,6 +141,7 @@ impl RayStats {
             *sum += part;
         }
         self.cuts.add(other.cuts);
+        self.proofs.add(other.proofs);
         for (sum, part) in self.sampled.iter_mut().zip(other.sampled) {
             *sum += part;
         }

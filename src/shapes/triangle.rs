@@ -1,11 +1,14 @@
 //! The tests of a ray against the edges of a triangle: the arithmetic behind triangles.
 
+use crate::geometry::aabb::larger;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
 use crate::numeric::double_double::{
-    self, DoubleDouble, exponent_to_one, rounded_unit, times_power_of_two, triple_product,
+    self, DoubleDouble, exponent_to_one, plain_cross, quick_unit, rounded_unit, times_power_of_two,
+    triple_product, two_sum,
 };
 use crate::numeric::scalar::{Scalar, constants, cross, dot, per_axis};
 use crate::shapes::plane::Plane;
+use crate::simd::soa::{LANES, Vectors};
 use crate::world::accuracy::{Bounded, Classic};
 use glam::DVec3;
 
@@ -137,7 +140,66 @@ pub fn plane_for_distances<A>(corners: [DVec3; 3]) -> Plane<A> {
 /// Returns a normal of the plane through three points, each component rounded once however thin their triangle is; 0
 /// where the points are collinear.
 #[inline]
-fn exact_normal([a, b, c]: [DVec3; 3]) -> [DoubleDouble; 3] {
+fn exact_normal(corners: [DVec3; 3]) -> [DoubleDouble; 3] {
+    let (normal, is_known) = quick_normal(corners);
+    if is_known { normal } else { slow_normal(corners) }
+}
+
+/// Returns what [`exact_normal`] does, without branches, and whether it is that: where edges are plain numbers of common
+/// sizes, as they mostly are.
+#[inline(always)]
+fn quick_normal([a, b, c]: [DVec3; 3]) -> ([DoubleDouble; 3], bool) {
+    let edge = |to: DVec3| {
+        let (x, x_low) = two_sum(to.x, -a.x);
+        let (y, y_low) = two_sum(to.y, -a.y);
+        let (z, z_low) = two_sum(to.z, -a.z);
+        let (scale, is_common) = scale_to_one(x, y, z);
+        let scaled = [x * scale, y * scale, z * scale];
+        // No product with the scale loses digits.
+        let is_normal = |part: f64| (part == 0.0) | (part.abs() > 1e-280);
+        let is_normal = is_normal(scaled[0]) & is_normal(scaled[1]) & is_normal(scaled[2]);
+        let is_plain = (x_low == 0.0) & (y_low == 0.0) & (z_low == 0.0);
+        (scaled, is_common & is_normal & is_plain)
+    };
+    let ((one, is_one_known), (other, is_other_known)) = (edge(b), edge(c));
+    let ([x, y, z], lost) = plain_cross(one, other);
+    let (scale, is_common) = scale_to_one(x.high, y.high, z.high);
+    let scaled = |of: DoubleDouble| DoubleDouble { high: of.high * scale, low: of.low * scale };
+    ([scaled(x), scaled(y), scaled(z)], is_one_known & is_other_known & is_common & (lost == 0.0))
+}
+
+/// Returns the power of two that brings the largest of three numbers to between 1/2 and 1, and whether it is one of
+/// common size.
+#[inline(always)]
+fn scale_to_one(x: f64, y: f64, z: f64) -> (f64, bool) {
+    let exponent = larger(larger(x.abs(), y.abs()), z.abs()).to_bits() >> 52;
+    // From 2^-400 to 2^400. The others' is not used.
+    (f64::from_bits(2045_u64.wrapping_sub(exponent) << 52), exponent.wrapping_sub(623) <= 800)
+}
+
+/// The unit normals of eight triangles.
+///
+/// They are those of [`Triangle::new`], to the bit.
+#[inline(always)]
+pub fn unit_normals(corners: &[Vectors<LANES>; 3]) -> Vectors<LANES> {
+    let (mut normals, mut is_known) = (Vectors::ZERO, [0; LANES]);
+    let Vectors { x, y, z } = &mut normals;
+    let corners_of = |lane: usize| [corners[0].get(lane), corners[1].get(lane), corners[2].get(lane)];
+    for lane in 0..LANES {
+        let (upright, is_upright_known) = quick_normal(corners_of(lane));
+        let ([a, b, c], is_unit_known) = quick_unit(upright);
+        (x[lane], y[lane], z[lane]) = (a, b, c);
+        is_known[lane] = u64::from(is_upright_known & is_unit_known);
+    }
+    for lane in (0..LANES).filter(|lane| is_known[*lane] == 0) {
+        normals.set(lane, DVec3::from(rounded_unit(exact_normal(corners_of(lane)))));
+    }
+    normals
+}
+
+/// Returns what [`exact_normal`] does, in all cases.
+#[inline(never)]
+fn slow_normal([a, b, c]: [DVec3; 3]) -> [DoubleDouble; 3] {
     let edge = |to: DVec3| {
         let edge = |axis: usize| DoubleDouble::difference(to[axis], a[axis]);
         scaled_to_one([edge(0), edge(1), edge(2)])
@@ -154,4 +216,52 @@ fn scaled_to_one(vector: [DoubleDouble; 3]) -> [DoubleDouble; 3] {
         low: times_power_of_two(low, exponent),
     };
     [scaled(vector[0]), scaled(vector[1]), scaled(vector[2])]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Generates coordinates of all sizes, some with few digits.
+    fn coordinate() -> BoxedStrategy<f64> {
+        prop_oneof![
+            4 => -10.0..10.0,
+            4 => (-10.0..10.0).prop_map(|number: f64| f64::from(number as f32)),
+            2 => Just(0.0), 1 => Just(1.0), 1 => -1e-3..1e-3, 1 => Just(5e-324), 1 => Just(1e-150), 1 => Just(1e150),
+            1 => (-490..490_i32, 0.5..1.0).prop_map(|(exponent, number)| number * 2_f64.powi(exponent)),
+        ]
+        .boxed()
+    }
+
+    fn corner() -> impl Strategy<Value = DVec3> {
+        (coordinate(), coordinate(), coordinate()).prop_map(DVec3::from)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(4096))]
+
+        #[test]
+        fn a_normal_is_the_same_by_the_quick_way(
+            corners in prop::array::uniform8((corner(), corner(), corner())),
+            scale in prop_oneof![Just(1.0), Just(1e-140), Just(1e-60), Just(1e60)],
+        ) {
+            let corners = corners.map(|(a, b, c)| [scale * a, scale * b, scale * c]);
+            let mut lanes = [Vectors::ZERO, Vectors::ZERO, Vectors::ZERO];
+            for (lane, corners) in corners.iter().enumerate() {
+                for (of, at) in lanes.iter_mut().zip(corners) {
+                    of.set(lane, *at);
+                }
+            }
+            let normals = unit_normals(&lanes);
+            for (lane, corners) in corners.into_iter().enumerate() {
+                let slow = slow_normal(corners);
+                prop_assert_eq!(exact_normal(corners), slow, "{:?}", corners);
+                if slow.iter().any(|part| part.high != 0.0) {
+                    let bits = |of: [f64; 3]| of.map(f64::to_bits);
+                    prop_assert_eq!(bits(normals.get(lane).to_array()), bits(rounded_unit(slow)), "{:?}", corners);
+                }
+            }
+        }
+    }
 }

@@ -1,6 +1,7 @@
 //! Tools that work on a model beside rendering it: charts, benchmarks, contracts, proofs.
 
 pub mod bench;
+pub mod certain;
 pub mod chart;
 pub mod colours;
 pub mod contract;

@@ -239,7 +239,7 @@ fn dropped(reason: Reason) -> String {
     match reason {
         Reason::TooFar => format!("light that has travelled more than {MAX_DIST} is black"),
         Reason::TooFaint => "it can add less than 1/1024 of a level to the pixel".to_owned(),
-        Reason::TooMany => format!("the pixel has taken {MAX_RAYS} rays, and no more are followed"),
+        Reason::TooMany => format!("the ray budget of {MAX_RAYS} is used up, and no more rays are followed"),
     }
 }
 

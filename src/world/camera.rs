@@ -21,6 +21,8 @@ pub struct Camera {
     pub samples: u32,
     /// When a pixel takes more primary rays than `samples`; `None` where all take the same number.
     pub adaptive: Option<Adaptive>,
+    /// Whether pixels whose colours are proven to be within [`Adaptive::error`] take no primary rays.
+    pub certain: bool,
     /// How the rays are placed within a pixel, if there is more than one.
     pub sampler: Sampler,
     /// What the samplers' sequences are scrambled with beside the pixel: 0 in a render, and another number where the

@@ -82,7 +82,8 @@ pub trait Hittable: Send + Sync {
         None
     }
 
-    /// Tells whether the search for a ray's hit may take as long as several plain rays.
+    /// Tells whether the search for a ray's hit may take as long as several plain rays; of a shape without bounds, that
+    /// is not asked.
     fn may_be_costly(&self) -> bool {
         false
     }

@@ -353,7 +353,7 @@ fn pixels_that_are_cut_off_are_counted_and_told_of_with_what_they_lack() {
     let (stats, said) = panes("0.4", "classic");
     let levels = stats["cut"]["levels"].as_f64().expect("a bound");
     assert!(stats["cut"]["pixels"].as_u64() > Some(0) && levels > 0.1 && levels < 255.0, "{stats}");
-    assert!(said.starts_with("warning: ") && said.contains("cut off at 20000 rays"), "{said}");
+    assert!(said.starts_with("warning: ") && said.contains("the work of 20000 simple rays"), "{said}");
     assert!(said.contains("off by at most ") && said.contains("of 255 levels"), "{said}");
     // More light is reflected than arrives.
     let (stats, said) = panes("1", "exact");
@@ -368,7 +368,7 @@ fn a_plan_says_how_deep_rays_are_followed() {
     let depth = |entities: &str| line(&counted(entities).0, "depth");
     assert!(!text(&counted(FLOOR).0).contains("depth "), "no ray goes on");
     let bounded = depth(pane);
-    assert!(bounded.contains("1/1024 of a level") && bounded.contains("20000 rays"), "{bounded}");
+    assert!(bounded.contains("1/1024 of a level") && bounded.contains("a ray budget of 20000"), "{bounded}");
     let mirrors = format!(
         "{FLOOR} material all {{ specular 1 }} plane a {{ material all normal 0 0 1 point 0 0 -4 }}
         plane b {{ material all normal 0 1 0 point 0 9 0 }}"

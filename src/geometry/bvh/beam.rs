@@ -1,9 +1,9 @@
 //! A ray, or a bundle of rays, prepared for tests against boxes.
 
-use crate::geometry::aabb::{SLACK, larger, smaller};
-use crate::geometry::ray::Ray;
+use crate::geometry::aabb::{Aabb, SLACK, larger, smaller};
+use crate::geometry::ray::{Drift, Ray};
 use crate::geometry::ray_packet::RayPacket;
-use crate::simd::soa::LANES;
+use crate::simd::soa::{LANES, Vectors};
 use glam::DVec3;
 
 /// The index of the low plane of a box along an axis.
@@ -24,6 +24,7 @@ const LEAST_SLACK: f64 = 1e-100;
 /// The origins' bounds have a slack of [`SLACK`] times their largest coordinate. It is more than the rounding of the
 /// distances to planes, and than the distance by which rounding moves a ray of that size. So where a beam misses a box,
 /// so do the rays before anything was rounded.
+#[derive(Clone, Copy)]
 pub struct Beam {
     /// The bounds of the origins: the high one is measured from to low planes, and the low one to high planes.
     pub from: [DVec3; 2],
@@ -36,7 +37,11 @@ pub struct Beam {
     /// it.
     pub is_mixed: [bool; 3],
     /// The slack of the origins, in world units.
-    pub slack: f64,
+    slack: f64,
+    /// A bound on the difference between the directions and those that they stand for.
+    swerve: f64,
+    /// The largest magnitude of a coordinate of the origins, in world units.
+    reach: f64,
     /// The largest extent of the origins along any axis, in world units.
     width: f64,
     /// The largest difference between any component of the directions.
@@ -44,16 +49,16 @@ pub struct Beam {
 }
 
 impl Beam {
-    /// Prepares one ray.
+    /// Prepares one ray, and all rays within a drift of it.
     #[inline(always)]
-    pub fn of(ray: &Ray) -> Self {
-        Self::between([ray.origin; 2], [ray.dir; 2])
+    pub fn of(ray: &Ray, drift: Drift) -> Self {
+        Self::between([ray.origin; 2], [ray.dir; 2], drift)
     }
 
-    /// Bounds the rays of a packet that end beyond 0, given the distances in world units at which its rays end. Returns
-    /// `None` if there are none.
+    /// Bounds the rays of a packet that end beyond 0, given the distances in world units at which its rays end, and all
+    /// rays within a drift of those. Returns `None` if there are none.
     #[inline(always)]
-    pub fn around(rays: RayPacket, t_max: &[f64]) -> Option<Self> {
+    pub fn around(rays: RayPacket, t_max: &[f64], drift: Drift) -> Option<Self> {
         let lane = t_max.iter().position(|t_max| *t_max > 0.0)?;
         let ray = rays.get(lane);
         let (origin, dir) = (rays.origin, rays.dir);
@@ -72,13 +77,18 @@ impl Beam {
         Some(Self::between(
             [corner(from_x, from_y, from_z, LOW), corner(from_x, from_y, from_z, HIGH)],
             [corner(x, y, z, LOW), corner(x, y, z, HIGH)],
+            drift,
         ))
     }
 
     /// Bounds rays by the least and the greatest coordinates of their origins, and components of their directions.
     #[inline(always)]
-    fn between([low, high]: [DVec3; 2], [least, greatest]: [DVec3; 2]) -> Self {
-        let slack = SLACK * larger(low.abs().max_element(), high.abs().max_element()) + LEAST_SLACK;
+    fn between([low, high]: [DVec3; 2], [mut least, mut greatest]: [DVec3; 2], drift: Drift) -> Self {
+        let reach = larger(low.abs().max_element(), high.abs().max_element());
+        let slack = SLACK * reach + LEAST_SLACK + drift.origin;
+        if drift.dir > 0.0 {
+            (least, greatest) = (least - drift.dir, greatest + drift.dir);
+        }
         let (mut near, mut is_mixed) = ([LOW; 3], [false; 3]);
         for axis in 0..3 {
             // Signs, not comparisons, as -0 has a negative reciprocal.
@@ -95,15 +105,58 @@ impl Beam {
             near,
             is_mixed,
             slack,
+            swerve: drift.dir,
+            reach,
             width: (high - low).max_element(),
             spread: (greatest - least).max_element(),
         }
+    }
+
+    /// Returns a box that the rays enter wherever rays that they stand for enter this one.
+    #[inline(always)]
+    pub fn grown(&self, Aabb { low, high }: &Aabb) -> Aabb {
+        let mut slack = self.slack;
+        if self.swerve > 0.0 {
+            // To a point of the box it is less than four times the largest of all coordinates.
+            let farthest = larger(self.reach, larger(low.abs().max_element(), high.abs().max_element()));
+            slack += 4.0 * self.swerve * farthest;
+        }
+        Aabb { low: *low - slack, high: *high + slack }
     }
 
     /// Returns how far apart the rays are at a distance, in world units along the axis where that is most.
     #[inline(always)]
     pub fn width(&self, distance: f64) -> f64 {
         self.width + distance * self.spread
+    }
+}
+
+/// Eight rays of a packet.
+#[derive(Clone)]
+pub struct Eight {
+    /// The origins, in world coordinates.
+    pub origin: Vectors<LANES>,
+    /// The reciprocals of the components of the directions.
+    pub inverse: Vectors<LANES>,
+}
+
+impl Eight {
+    /// Eight rays that are yet to be set.
+    pub const ZERO: Self = Self { origin: Vectors::ZERO, inverse: Vectors::ZERO };
+
+    /// Becomes the rays of a packet of eight.
+    #[inline(always)]
+    pub fn set(&mut self, rays: RayPacket) {
+        let RayPacket { origin, dir, .. } = rays.first(LANES);
+        let Self { origin: own, inverse } = self;
+        for (own, of) in [(&mut own.x, origin.x), (&mut own.y, origin.y), (&mut own.z, origin.z)] {
+            own.copy_from_slice(&of[..LANES]);
+        }
+        for (inverse, of) in [(&mut inverse.x, dir.x), (&mut inverse.y, dir.y), (&mut inverse.z, dir.z)] {
+            for lane in 0..LANES {
+                inverse[lane] = 1.0 / of[lane];
+            }
+        }
     }
 }
 

@@ -73,13 +73,13 @@ pub struct Parts {
     pub objects: Vec<u32>,
 }
 
-/// Builds the nodes of a hierarchy of objects with these boxes.
-pub fn build(boxes: &[Aabb]) -> Parts {
-    let item = |(index, bounds)| Item::new(index, bounds);
-    let mut items: Vec<_> = if boxes.len() < LARGE {
-        boxes.iter().enumerate().map(item).collect()
+/// Builds the nodes of a hierarchy of objects, whose boxes `bounds` returns.
+pub fn build(count: usize, bounds: impl Fn(usize) -> Aabb + Sync) -> Parts {
+    let item = |index| Item::new(index, &bounds(index));
+    let mut items: Vec<_> = if count < LARGE {
+        (0..count).map(item).collect()
     } else {
-        boxes.par_iter().enumerate().map(item).collect()
+        (0..count).into_par_iter().map(item).collect()
     };
     let mut parts = Parts::default();
     if !items.is_empty() {
@@ -336,5 +336,43 @@ fn partition(items: &mut [Item], is_first: impl Fn(&Item) -> bool) -> usize {
             return start;
         }
         items.swap(start, end - 1);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Returns the number of nodes on the longest way down from a node.
+    fn levels(nodes: &[Node], index: usize) -> usize {
+        let node = &nodes[index];
+        let below = (0..node.nodes.into()).map(|child| levels(nodes, node.first_node as usize + child)).max();
+        1 + below.unwrap_or(0)
+    }
+
+    #[test]
+    fn a_tree_is_not_deep_however_boxes_lie() {
+        const COUNT: usize = 100_000;
+        let cube = |middle: f64, size: f64| Aabb {
+            low: DVec3::splat(middle - size),
+            high: DVec3::splat(middle + size),
+        };
+        let growing = |index: usize, octaves: f64| (octaves * (index as f64 / COUNT as f64 - 0.5)).exp2();
+        let all: [(&str, &(dyn Fn(usize) -> Aabb + Sync)); 6] = [
+            ("equal", &|_| cube(1.0, 0.0)),
+            ("around one point", &|index| cube(1.0, index as f64)),
+            ("around one point, growing exponentially", &|index| cube(0.0, growing(index, 600.0))),
+            ("in a row, growing exponentially", &|index| cube(growing(index, 600.0), growing(index, 600.0))),
+            ("in a row, growing by all that a number can", &|index| cube(growing(index, 2000.0), 0.0)),
+            ("endless", &|index| cube(index as f64, f64::INFINITY)),
+        ];
+        for (name, bounds) in all {
+            let Parts { nodes, mut objects } = build(COUNT, bounds);
+            objects.sort_unstable();
+            assert!(objects.into_iter().eq(0..COUNT as u32), "{name}");
+            let levels = levels(&nodes, 0);
+            // Each level from `DEEP` on divides by eight, and 8^6 is more than the number of boxes.
+            assert!(levels <= DEEP + 6, "{name}: {levels} levels");
+        }
     }
 }

@@ -10,6 +10,7 @@
 
 mod beam;
 mod build;
+mod nearby;
 mod node;
 mod packet;
 mod tree;

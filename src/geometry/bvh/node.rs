@@ -176,6 +176,11 @@ impl Node {
         }
     }
 
+    /// Returns the number of children.
+    pub fn len(&self) -> usize {
+        self.children.into()
+    }
+
     /// Returns the box of a child.
     #[inline(always)]
     pub fn bounds(&self, child: usize) -> Aabb {

@@ -5,12 +5,13 @@
 //! into beams of eight rays, and these into single rays.
 
 use crate::geometry::aabb::{Aabb, SLACK, larger, smaller};
-use crate::geometry::bvh::beam::Beam;
+use crate::geometry::bvh::beam::{Beam, Eight};
 use crate::geometry::bvh::node::WIDTH;
 use crate::geometry::bvh::tree::{Ahead, Bvh, OBJECT, Stack, descend, push};
+use crate::geometry::ray::Drift;
 use crate::geometry::ray_packet::{RayPacket, split};
 use crate::simd::cpu::kernels;
-use crate::simd::soa::{LANES, View};
+use crate::simd::soa::LANES;
 use std::ops::Range;
 
 /// The number of rays of the beams that a packet starts with.
@@ -19,6 +20,9 @@ const PART: usize = 64;
 /// The width of a beam, as a multiple of a node's size, from which on the beam is split. Between 0.5 and 2, frames of
 /// 10^3 to 10^6 objects take the same time to a tenth.
 const WIDE: f64 = 1.0;
+
+/// A byte of 1 for each of eight rays.
+const ALL: u64 = u64::from_le_bytes([1; LANES]);
 
 /// What is done with the objects that a packet's rays may hit.
 ///
@@ -31,18 +35,25 @@ pub trait PacketVisitor {
 
     /// Tests the ray in one lane against the object of this index.
     fn test_one(&mut self, object: usize, lane: usize, t_max: &mut [f64]);
+
+    /// Returns the number of rays up to which it is quicker to test them one by one than eight at a time.
+    fn few(&self) -> u32 {
+        0
+    }
 }
 
 kernels! {
     /// Visits the objects whose boxes the rays of a packet enter before their ends, roughly from near to far. A ray that
-    /// ends at 0 or less is not searched for.
-    pub fn visit(tree: &Bvh, stack: &mut Stack, rays: RayPacket, t_max: &mut [f64], visitor: &mut dyn PacketVisitor) {
+    /// ends at 0 or less is not searched for. With a drift, so do the objects that rays within it may hit.
+    pub fn visit(
+        tree: &Bvh, stack: &mut Stack, rays: RayPacket, drift: Drift, t_max: &mut [f64], visitor: &mut dyn PacketVisitor
+    ) {
         if tree.nodes.is_empty() {
             return;
         }
         for part in split(rays.len(), PART) {
-            let Stack { ahead, inverse } = stack;
-            Search { tree, stack: ahead, rays, t_max, visitor, inverse, start: part.start }.part(part.len());
+            let Stack { ahead, eights, beams } = stack;
+            Search { tree, stack: ahead, rays, drift, t_max, visitor, eights, beams, start: part.start, count: part.len(), is_set: 0 }.part(part.len());
         }
     }
 }
@@ -53,13 +64,19 @@ struct Search<'s, 'v> {
     stack: &'s mut Vec<Ahead>,
     /// The rays of the packet.
     rays: RayPacket<'s>,
+    drift: Drift,
     /// The distances at which they end, in world units.
     t_max: &'s mut [f64],
     visitor: &'s mut (dyn PacketVisitor + 'v),
-    /// The reciprocals of the directions of the part's rays.
-    inverse: &'s mut [Vec<f64>; 3],
-    /// The first lane of the part.
+    /// The part's rays, eight by eight, as soon as they were needed.
+    eights: &'s mut Vec<Eight>,
+    /// A bit for each eight that is set.
+    is_set: u64,
+    /// Their bounds, and then each ray as a beam of its own, as soon as they were needed.
+    beams: &'s mut Vec<Option<Beam>>,
+    /// The first lane of the part, and the number of its lanes.
     start: usize,
+    count: usize,
 }
 
 impl Search<'_, '_> {
@@ -67,20 +84,14 @@ impl Search<'_, '_> {
     #[inline(always)]
     fn part(mut self, count: usize) {
         let lanes = self.start..self.start + count;
-        let dir = self.rays.dir.part(lanes.clone());
-        for (inverse, dir) in self.inverse.iter_mut().zip([dir.x, dir.y, dir.z]) {
-            inverse.resize(PART, 0.0);
-            for (inverse, dir) in inverse.iter_mut().zip(dir) {
-                *inverse = 1.0 / dir;
-            }
-        }
+        self.eights.resize(PART / LANES, Eight::ZERO);
+        self.beams.clear();
+        self.beams.resize(count / LANES, None);
         if count == LANES {
-            self.eight(self.start, 0);
+            self.eight(self.start, 0, ALL);
             return;
         }
-        let Some(beam) = Beam::around(self.rays.part(lanes.clone()), &self.t_max[lanes.clone()]) else {
-            return;
-        };
+        let Some(beam) = self.beam(lanes.clone()) else { return };
         let (start, mut t_max) = (self.stack.len(), self.most(lanes.clone()));
         self.stack.push(Ahead { enters: 0.0, child: 0, place: 0 });
         while self.stack.len() > start {
@@ -92,7 +103,7 @@ impl Search<'_, '_> {
                 let bounds = self.bounds(place, &beam);
                 let mut first = lanes.start;
                 for eight in split(count, LANES).map(|eight| lanes.start + eight.start) {
-                    if !self.any_enters(eight, &bounds) {
+                    if self.entering(eight, &bounds) == 0 {
                         self.test(child, first..eight);
                         first = eight + LANES;
                     }
@@ -103,8 +114,13 @@ impl Search<'_, '_> {
             }
             let node = &self.tree.nodes[child as usize];
             if beam.width(enters) > WIDE * node.size() {
+                let bounds = self.bounds(place, &beam);
                 for first in lanes.clone().step_by(LANES) {
-                    self.eight(first, child);
+                    // The root's box is in no node.
+                    let entering = if child == 0 { ALL } else { self.entering(first, &bounds) };
+                    if entering != 0 {
+                        self.eight(first, child, entering);
+                    }
                 }
                 t_max = self.most(lanes.clone());
             } else {
@@ -113,15 +129,28 @@ impl Search<'_, '_> {
         }
     }
 
-    /// Searches a subtree for eight rays.
+    /// Searches a subtree for those of eight rays that enter its box, given a byte for each.
     #[inline(always)]
-    fn eight(&mut self, first: usize, root: u32) {
-        let lanes = first..first + LANES;
-        let Some(beam) = Beam::around(self.rays.part(lanes.clone()), &self.t_max[lanes.clone()]) else {
+    fn eight(&mut self, first: usize, root: u32, entering: u64) {
+        let few = self.visitor.few();
+        if entering.count_ones() <= few {
+            self.each(first, root, entering);
             return;
-        };
+        }
+        let lanes = first..first + LANES;
+        let eight = (first - self.start) / LANES;
+        if self.beams[eight].is_none() {
+            self.beams[eight] = self.beam(lanes.clone());
+        }
+        // Rays of it may have ended since, which leaves it a bound of the others.
+        let Some(beam) = self.beams[eight] else { return };
+        let node = &self.tree.nodes[root as usize];
+        if beam.width(0.0) > WIDE * node.size() {
+            self.each(first, root, entering);
+            return;
+        }
         let (start, mut t_max) = (self.stack.len(), self.most(lanes.clone()));
-        self.stack.push(Ahead { enters: 0.0, child: root, place: 0 });
+        push(self.stack, node, root, node.entered(&beam, t_max));
         while self.stack.len() > start {
             let Some(Ahead { enters, child, place }) = self.stack.pop() else { return };
             if enters > t_max * (1.0 + SLACK) {
@@ -129,41 +158,69 @@ impl Search<'_, '_> {
             }
             if child & OBJECT != 0 {
                 let bounds = self.bounds(place, &beam);
-                if self.any_enters(first, &bounds) {
+                if self.entering(first, &bounds) != 0 {
                     self.test(child, lanes.clone());
                     t_max = self.most(lanes.clone());
                 }
                 continue;
             }
             let node = &self.tree.nodes[child as usize];
-            if beam.width(enters) > WIDE * node.size() {
-                for lane in lanes.clone() {
-                    self.one(lane, child);
+            let is_wide = beam.width(enters) > WIDE * node.size();
+            if is_wide || few > 0 {
+                let bounds = self.bounds(place, &beam);
+                let entering = self.entering(first, &bounds);
+                if is_wide || entering.count_ones() <= few {
+                    self.each(first, child, entering);
+                    t_max = self.most(lanes.clone());
+                    continue;
                 }
-                t_max = self.most(lanes.clone());
-            } else {
-                push(self.stack, node, child, node.entered(&beam, t_max));
             }
+            push(self.stack, node, child, node.entered(&beam, t_max));
+        }
+    }
+
+    /// Searches a subtree for each of eight rays that enters its box, given a byte for each.
+    #[inline(always)]
+    fn each(&mut self, first: usize, root: u32, mut entering: u64) {
+        while entering != 0 {
+            self.one(first + (entering.trailing_zeros() / u8::BITS) as usize, root);
+            entering &= entering - 1;
         }
     }
 
     /// Searches a subtree for one ray.
     #[inline(always)]
     fn one(&mut self, lane: usize, root: u32) {
-        let (beam, visitor, t_max) = (Beam::of(&self.rays.get(lane)), &mut *self.visitor, &mut *self.t_max);
+        let eights = self.count / LANES;
+        // Most parts need none of these.
+        if self.beams.len() == eights {
+            self.beams.resize(eights + self.count, None);
+        }
+        let place = eights + lane - self.start;
+        if self.beams[place].is_none() {
+            self.beams[place] = Some(Beam::of(&self.rays.get(lane), self.drift));
+        }
+        let Some(beam) = &self.beams[place] else { return };
+        let (visitor, t_max) = (&mut *self.visitor, &mut *self.t_max);
         if t_max[lane] > 0.0 {
-            descend(self.tree, self.stack, &beam, root, t_max[lane], &mut |object, _| {
+            descend(self.tree, self.stack, beam, root, t_max[lane], &mut |object, _| {
                 visitor.test_one(object, lane, t_max);
                 t_max[lane]
             });
         }
     }
 
+    /// Returns the bounds of rays, unless all of them have ended.
+    #[inline(always)]
+    fn beam(&self, lanes: Range<usize>) -> Option<Beam> {
+        Beam::around(self.rays.part(lanes.clone()), &self.t_max[lanes], self.drift)
+    }
+
     /// Tests rays against the object at a position.
     #[inline(always)]
     fn test(&mut self, child: u32, lanes: Range<usize>) {
         if !lanes.is_empty() {
-            self.visitor.test(self.tree.objects[(child ^ OBJECT) as usize] as usize, lanes, self.t_max);
+            self.visitor.test(self.tree.object(child ^ OBJECT), lanes, self.t_max);
         }
     }
 
@@ -181,23 +238,24 @@ impl Search<'_, '_> {
         if most > 0.0 { most } else { -1.0 }
     }
 
-    /// Returns the box of an object, grown by the slack of the rays.
+    /// Returns the box of a child of a node, grown by the slack of the rays.
     #[inline(always)]
     fn bounds(&self, place: u32, beam: &Beam) -> Aabb {
         let (node, child) = (place as usize / WIDTH, place as usize % WIDTH);
-        let Aabb { low, high } = self.tree.nodes[node].bounds(child);
-        Aabb { low: low - beam.slack, high: high + beam.slack }
+        beam.grown(&self.tree.nodes[node].bounds(child))
     }
 
-    /// Returns whether any of eight rays enters a box before its end.
+    /// Returns a byte for each of eight rays, the lowest one for the first: 1 where it enters a box before its end, and
+    /// else 0.
     #[inline(always)]
-    fn any_enters(&self, first: usize, bounds: &Aabb) -> bool {
-        let lanes = first..first + LANES;
-        let (origin, t_max) = (self.rays.origin.part(lanes.clone()), &self.t_max[lanes]);
-        let first = first - self.start;
-        let [x, y, z] = &*self.inverse;
-        let inverse = View { x, y, z }.part(first..first + LANES);
-        let (origin, inverse, t_max) = (origin.first(LANES), inverse.first(LANES), &t_max[..LANES]);
+    fn entering(&mut self, first: usize, bounds: &Aabb) -> u64 {
+        let eight = (first - self.start) / LANES;
+        if self.is_set & (1 << eight) == 0 {
+            self.is_set |= 1 << eight;
+            self.eights[eight].set(self.rays.part(first..first + LANES));
+        }
+        let Eight { origin, inverse } = &self.eights[eight];
+        let t_max = &self.t_max[first..first + LANES][..LANES];
         let (low, high) = (bounds.low, bounds.high);
         let mut is_entered = [0; LANES];
         for lane in 0..LANES {
@@ -212,6 +270,6 @@ impl Search<'_, '_> {
             leave = smaller(larger(a.z, b.z), leave);
             is_entered[lane] = u8::from(enter <= leave * (1.0 + SLACK)) & u8::from(t_max[lane] > 0.0);
         }
-        u64::from_le_bytes(is_entered) != 0
+        u64::from_le_bytes(is_entered)
     }
 }

@@ -1,11 +1,12 @@
 //! The hierarchy, and searches along one ray.
 
 use crate::geometry::aabb::{Aabb, SLACK};
-use crate::geometry::bvh::beam::Beam;
+use crate::geometry::bvh::beam::{Beam, Eight};
 use crate::geometry::bvh::build;
 use crate::geometry::bvh::node::{Entered, Node, WIDTH};
-use crate::geometry::ray::Ray;
+use crate::geometry::ray::{Drift, Ray};
 use crate::simd::cpu::{Cpu, kernels};
+use std::mem::take;
 
 /// A hierarchy of bounding boxes, with up to eight children in each node.
 ///
@@ -13,8 +14,8 @@ use crate::simd::cpu::{Cpu, kernels};
 /// rounding: it is added here, and covers the rounding of the ray as well.
 pub struct Bvh {
     pub(super) nodes: Vec<Node>,
-    /// The objects' indices, node by node.
-    pub(super) objects: Vec<u32>,
+    /// The objects' indices, node by node; empty where each is its place.
+    objects: Vec<u32>,
 }
 
 /// A child of a node that is still to be visited.
@@ -37,10 +38,13 @@ const MOST: usize = 1 << 29;
 /// The scratch space of searches, which is reused from one search to the next.
 #[derive(Default)]
 pub struct Stack {
-    /// What is still to be visited, the next one last.
+    /// What is still to be visited, the next one last. It grows as it must: a search for one ray, for eight and for a
+    /// packet within each other each add up to seven children for each level of the tree.
     pub(super) ahead: Vec<Ahead>,
-    /// The reciprocals of the directions of the current rays.
-    pub(super) inverse: [Vec<f64>; 3],
+    /// The current rays of a packet.
+    pub(super) eights: Vec<Eight>,
+    /// Bounds of eight rays each, and single rays.
+    pub(super) beams: Vec<Option<Beam>>,
 }
 
 impl Bvh {
@@ -52,8 +56,17 @@ impl Bvh {
     ///
     /// If there are 2^29 boxes or more.
     pub fn new(boxes: &[Aabb]) -> Self {
-        assert!(boxes.len() < MOST, "{} boxes are too many", boxes.len());
-        let build::Parts { mut nodes, mut objects } = build::build(boxes);
+        Self::of(boxes.len(), |index| boxes[index])
+    }
+
+    /// Builds the hierarchy of as many objects as `count`, as [`new`](Self::new) does. `bounds` returns an object's box.
+    ///
+    /// # Panics
+    ///
+    /// If there are 2^29 boxes or more.
+    pub fn of(count: usize, bounds: impl Fn(usize) -> Aabb + Sync) -> Self {
+        assert!(count < MOST, "{count} boxes are too many");
+        let build::Parts { mut nodes, mut objects } = build::build(count, bounds);
         nodes.shrink_to_fit();
         objects.shrink_to_fit();
         Self { nodes, objects }
@@ -62,6 +75,22 @@ impl Bvh {
     /// Replaces each object's index, initially its position in the list of boxes.
     pub fn rename(&mut self, name: impl Fn(u32) -> u32) {
         self.objects.iter_mut().for_each(|object| *object = name(*object));
+    }
+
+    /// Returns the objects' indices node by node. From here on, an object's index is its place in that list.
+    pub fn take_order(&mut self) -> Vec<u32> {
+        take(&mut self.objects)
+    }
+
+    /// Returns the index of the object at a place.
+    #[inline(always)]
+    pub(super) fn object(&self, place: u32) -> usize {
+        if self.objects.is_empty() { place as usize } else { self.objects[place as usize] as usize }
+    }
+
+    /// Returns the memory that the hierarchy takes, in bytes.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.nodes[..]) + size_of_val(&self.objects[..])
     }
 
     /// Returns the number of nodes.
@@ -78,9 +107,22 @@ impl Bvh {
         stack: &mut Stack,
         ray: &Ray,
         t_max: f64,
+        visit: impl FnMut(usize, f64) -> f64,
+    ) {
+        self.closest_within(cpu, stack, ray, Drift::NONE, t_max, visit);
+    }
+
+    /// Visits the objects whose boxes any ray within a drift of one enters, as [`closest`](Self::closest) does.
+    pub fn closest_within(
+        &self,
+        cpu: Cpu,
+        stack: &mut Stack,
+        ray: &Ray,
+        drift: Drift,
+        t_max: f64,
         mut visit: impl FnMut(usize, f64) -> f64,
     ) {
-        search(cpu, self, stack, ray, t_max, &mut visit);
+        search(cpu, self, stack, ray, drift, t_max, &mut visit);
     }
 
     /// Tells whether `visit` returns true for any object whose box a ray enters before `t_max`, in world units.
@@ -102,14 +144,16 @@ impl Bvh {
 }
 
 kernels! {
-    /// Visits objects along a ray, as [`Bvh::closest`] does.
-    fn search[V: FnMut(usize, f64) -> f64](tree: &Bvh, stack: &mut Stack, ray: &Ray, t_max: f64, visit: &mut V) {
+    /// Visits objects along a ray, as [`Bvh::closest_within`] does.
+    fn search[V: FnMut(usize, f64) -> f64](
+        tree: &Bvh, stack: &mut Stack, ray: &Ray, drift: Drift, t_max: f64, visit: &mut V
+    ) {
         if tree.nodes.is_empty() {
             return;
         }
         let stack = &mut stack.ahead;
         let start = stack.len();
-        descend(tree, stack, &Beam::of(ray), 0, t_max, visit);
+        descend(tree, stack, &Beam::of(ray, drift), 0, t_max, visit);
         stack.truncate(start);
     }
 }
@@ -139,7 +183,7 @@ pub(super) fn descend(
             if child & OBJECT == 0 {
                 break &tree.nodes[child as usize];
             }
-            t_max = visit(tree.objects[(child ^ OBJECT) as usize] as usize, t_max);
+            t_max = visit(tree.object(child ^ OBJECT), t_max);
         };
     }
 }
@@ -285,7 +329,7 @@ mod tests {
             let tree = Bvh::new(&boxes);
             for cpu in Cpu::all() {
                 let mut counter = Counter { tests: vec![vec![0; count]; boxes.len()] };
-                visit(cpu, &tree, &mut Stack::default(), rays, &mut t_max.clone(), &mut counter);
+                visit(cpu, &tree, &mut Stack::default(), rays, Drift::NONE, &mut t_max.clone(), &mut counter);
                 for (index, bounds) in boxes.iter().enumerate() {
                     for lane in 0..count {
                         let times = counter.tests[index][lane];
@@ -333,22 +377,5 @@ mod tests {
         assert_eq!(one.objects, three.objects);
         assert!(one.nodes == three.nodes);
         assert!(one.size() < boxes.len() / 4, "{} nodes", one.size());
-    }
-
-    #[test]
-    fn coincident_boxes_make_no_deep_tree() {
-        let boxes = vec![Aabb { low: DVec3::ONE, high: DVec3::ONE }; 10_000];
-        assert_eq!(
-            visited(&Bvh::new(&boxes), Cpu::best(), &Ray { origin: DVec3::ONE, dir: DVec3::X }, 1.0).len(),
-            10_000
-        );
-        // Each box is far smaller and nearer to 0 than the one before.
-        let nested: Vec<_> = (0..2000)
-            .map(|index| {
-                let at = DVec3::splat(0.5_f64.powf(0.5 * f64::from(index)));
-                Aabb { low: at, high: 1.01 * at }
-            })
-            .collect();
-        assert!(Bvh::new(&nested).size() > 200);
     }
 }

@@ -50,6 +50,10 @@ pub struct Found {
 /// The largest number of pieces that are judged before the proof is given up; only the wildest functions take more.
 const MAX_PIECES: usize = 16_384;
 
+/// The largest number of pieces that are left to [`undecided`](FunctionOnLine::undecided) in one search, which takes up to
+/// 0.1 ms for each. Only a line that is rounded by more than the size of a shape has more; it has no root beyond them.
+const MAX_UNDECIDED: usize = 256;
+
 /// Pieces are not cut whose bounds are below this many times the rounding error of one evaluation: the part of the
 /// bounds that shrinks with the length of the piece is at most three times the part that does not.
 const HIDDEN: f64 = 4.0;
@@ -93,7 +97,7 @@ pub fn first_root_within(
     if !(start <= end && start.is_finite() && end.is_finite()) {
         return Found { root: None, is_certain: true };
     }
-    let mut search = Search { line, start, base, range, shortest, pieces, is_certain: true };
+    let mut search = Search { line, start, base, range, shortest, pieces, undecided: 0, is_certain: true };
     // The line may have reached the ends outside of `inner`, and is certainly between them inside.
     let inner = stretch.inner.start.clamp(start, end)..stretch.inner.end.clamp(start, end);
     let root = if inner.start < inner.end || start == end {
@@ -114,6 +118,8 @@ struct Search<'l, L> {
     /// Pieces of this length are not cut.
     shortest: f64,
     pieces: &'l mut usize,
+    /// The number of pieces that bounds did not decide so far.
+    undecided: usize,
     is_certain: bool,
 }
 
@@ -294,6 +300,10 @@ impl<L: FunctionOnLine> Search<'_, L> {
             return Judgement::Free;
         }
         self.is_certain = false;
+        self.undecided += 1;
+        if self.undecided > MAX_UNDECIDED {
+            return Judgement::Free;
+        }
         match self.line.undecided(Interval { low, high }, self.range.origin_side) {
             Some(root) => Judgement::Root(root.clamp(low, high)),
             None => Judgement::Free,
@@ -328,6 +338,7 @@ fn clear_up_to(away: f64, slope: f64, bend: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::cell::Cell;
 
     /// A double root at 1, and a single one at 3.
     struct Cubic;
@@ -360,6 +371,28 @@ mod tests {
         assert_eq!(first(&Cubic, 0.0..9.0, Some(Side::Outside)), Some(3.0));
         assert_eq!(first(&Cubic, 0.0..9.0, Some(Side::Inside)), None);
         assert_eq!(first(&Cubic, 1.5..2.9, None), None);
+    }
+
+    /// Is rounded by as much as it waves; counts the pieces that bounds do not decide.
+    #[derive(Default)]
+    struct Hidden(Cell<usize>);
+
+    impl FunctionOnLine for Hidden {
+        fn at<N: Scalar>(&self, t: N) -> N {
+            (N::constant(1e4) * t).sin() + N::about(0.0, 1.0)
+        }
+
+        fn undecided(&self, _piece: Interval, _origin_side: Option<Side>) -> Option<f64> {
+            self.0.set(self.0.get() + 1);
+            None
+        }
+    }
+
+    #[test]
+    fn pieces_that_rounding_hides_are_not_all_judged() {
+        let line = Hidden::default();
+        assert_eq!(first(&line, 0.0..9.0, None), None);
+        assert_eq!(line.0.get(), MAX_UNDECIDED);
     }
 
     #[test]

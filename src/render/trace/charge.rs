@@ -5,8 +5,10 @@ use crate::geometry::ray::Side;
 use crate::geometry::ray_packet::RayPacket;
 use crate::render::limits::MAX_RAYS;
 use crate::render::observer::TraceObserver;
+use crate::render::plan::Costly;
 
-/// The number of rays of a pixel from which on searches are charged: they are made again to be counted.
+/// The number of rays of a pixel from which on searches are charged where a scene has one costly shape, as searches are
+/// made again to be counted. Of several shapes, each has its share, since a ray may be searched for in all of them.
 const UNCOUNTED: u32 = 16;
 
 impl<W: TraceObserver> Tracer<'_, '_, W> {
@@ -15,24 +17,25 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
     /// All such shapes of the scene count, those too that lie behind a ray's hit or are not needed for the image, so
     /// that the charge depends on the ray alone.
     pub(super) fn charge_searches(
-        &self,
+        &mut self,
         rays: RayPacket,
         left: Option<(usize, &[Side])>,
         lanes: impl Iterator<Item = usize>,
         ray_budget: &mut [u32],
     ) {
-        if self.plan.costly.is_empty() {
-            return;
-        }
+        let Some(Costly { tree, count }) = &self.plan.costly else { return };
+        let counted = 0..=MAX_RAYS as u32 - UNCOUNTED / count;
         for lane in lanes {
-            for index in &self.plan.costly {
-                if ray_budget[lane] == 0 || ray_budget[lane] > MAX_RAYS as u32 - UNCOUNTED {
-                    break;
-                }
-                let side = left.filter(|(object, _)| object == index).map(|(_, sides)| sides[lane]);
-                let shape = &self.model.objects[*index].shape;
-                ray_budget[lane] = ray_budget[lane].saturating_sub(shape.search_cost(&rays.get(lane), side));
+            let budget = &mut ray_budget[lane];
+            if *budget == 0 || !counted.contains(budget) {
+                continue;
             }
+            let ray = rays.get(lane);
+            tree.closest(self.cpu, &mut self.scratch.stack, &ray, f64::INFINITY, |index, t_max| {
+                let side = left.filter(|(object, _)| *object == index).map(|(_, sides)| sides[lane]);
+                *budget = budget.saturating_sub(self.model.objects[index].shape.search_cost(&ray, side));
+                if *budget == 0 { -1.0 } else { t_max }
+            });
         }
     }
 }
@@ -62,6 +65,9 @@ mod tests {
     /// Is cut into thousands of slabs.
     const LONG: &str = "revsurf long { material glass profile \"cos(sin(y) + 1e-8 - exp(y))\" \
         direction 0 1 0.3 base 4 -2 -2 height 7.88 }";
+
+    /// A heart of glass, of which each search takes as long as 60 plain rays.
+    const HEART: &str = "heart heart { material glass center 4 3 -2 size 2 }";
 
     /// Renders all pixels in packets and one by one, where every step is reported; returns how many rays were cast in
     /// packets, and how many pixels were cut off.
@@ -96,5 +102,21 @@ mod tests {
         assert!(wild < 10_000 && cut == 2, "{wild} rays, {cut} pixels");
         let (long, cut) = rays(LONG);
         assert!(long < 20_000 && cut == 6, "{long} rays, {cut} pixels");
+    }
+
+    #[test]
+    fn rays_through_many_copies_count_as_many() {
+        let copies = |name: &str, count: usize| -> String {
+            let copy = |index| {
+                let turned = 0.1 * index as f64;
+                format!("\nplace p{index} {{ object {name} material glass rotation 0 {turned} 0 }}")
+            };
+            (0..count).map(copy).collect()
+        };
+        for (surface, name, most) in [(HEART, "heart", 2000), (WILD, "wild", 5000)] {
+            let (few, _) = rays(&format!("{surface}{}", copies(name, 4)));
+            let (many, cut) = rays(&format!("{surface}{}", copies(name, 40)));
+            assert!(many < few && many < most && cut > 0, "{name}: {few} and {many} rays, {cut} pixels");
+        }
     }
 }

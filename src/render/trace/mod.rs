@@ -7,6 +7,7 @@
 
 mod adaptive;
 mod arrays;
+mod certain;
 mod charge;
 mod closest_hit;
 mod context;
@@ -53,6 +54,12 @@ pub fn pixel(plan: &Plan, x: usize, y: usize) -> Rgb {
 
 /// Computes the colour of a pixel as [`pixel`] does, and reports each step to `observer`.
 pub fn observe_pixel(plan: &Plan, x: usize, y: usize, observer: &mut impl TraceObserver) -> Rgb {
+    let proof = certain::proof(plan, x, y);
+    if let Some(proof) = &proof
+        && certain::is_certified(plan, proof)
+    {
+        return plan.camera.gain() * proof.middle(plan.camera.gain());
+    }
     let (camera, count) = (&plan.camera, samples(plan, x, y).0);
     let (mut sum, mut budget) = (Rgb::ZERO, None);
     for (place, sample) in camera.places(x, y, count) {
@@ -64,7 +71,27 @@ pub fn observe_pixel(plan: &Plan, x: usize, y: usize, observer: &mut impl TraceO
         }
     }
     let colour = sum / f64::from(count);
+    let colour = proof.map_or(colour, |proof| proof.nearest(colour));
     if camera.exposure == 0.0 { colour } else { camera.gain() * colour }
+}
+
+/// What is proven of a pixel's colour.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Bounded {
+    /// A bound on the error of the colour as it is shown, the largest of its channels, where 1 is white.
+    pub error: f64,
+    /// Whether the bound is within the limit, so that the pixel takes no samples.
+    pub is_certified: bool,
+    /// The number of footprints that were examined.
+    pub footprints: u32,
+}
+
+/// Returns what is proven of a pixel's colour, where that is wanted.
+pub fn bounded(plan: &Plan, x: usize, y: usize) -> Option<Bounded> {
+    let (proof, gain) = (certain::proof(plan, x, y)?, plan.camera.gain());
+    let is_certified = certain::is_certified(plan, &proof);
+    let colour = if is_certified { proof.middle(gain) } else { pixel(plan, x, y) / gain };
+    Some(Bounded { error: proof.error(colour, gain), is_certified, footprints: proof.footprints })
 }
 
 /// Returns the number of samples that a pixel takes, and where pixels differ in that, the estimated error of its colour,
@@ -152,7 +179,9 @@ impl<W: TraceObserver> Tracer<'_, '_, W> {
         self.scratch.places.iter_mut().for_each(|places| places.resize(PACKET_SIZE, 0.0));
         let PrimaryScratch { group, seen, colours, .. } = &mut *primary;
         let mut colours = colours.resized(pixels.len());
-        if let Some(adaptive) = camera.adaptive {
+        if let (Some(adaptive), Some(prover)) = (camera.adaptive, &self.plan.prover) {
+            self.certain_pixels(pixels, adaptive, prover, &mut primary);
+        } else if let Some(adaptive) = camera.adaptive {
             self.adaptive_pixels(pixels, adaptive, &mut primary);
         } else if camera.samples > 1 && sampled::is_unbounded(self.plan) {
             self.one_by_one(pixels, &mut primary);

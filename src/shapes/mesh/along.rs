@@ -3,10 +3,11 @@
 use super::face::Face;
 use super::surface::Surface;
 use crate::geometry::sight::Line;
+use crate::numeric::affine::Affine;
 use crate::numeric::interval::Interval;
 use crate::numeric::scalar::dot;
 use crate::world::accuracy::Bounded;
-use crate::world::certify::{Found, Onward, Precise};
+use crate::world::certify::{self, Found, Met, Onward, OverFootprint, Precise};
 
 impl Surface {
     /// Returns what is certain about a line's first hit with t > 0, and the face that is hit. `leaves` is the face on which
@@ -20,16 +21,14 @@ impl Surface {
         let mut met = Vec::new();
         self.tree.within(
             |bounds| coarse.clip(bounds.low, bounds.high).is_some(),
-            |faces| {
-                for face in faces {
-                    let leaves = (leaves == Some(face)).then_some(0);
-                    let found = match Face(self.triangle::<A>(face)).first_hit(line, leaves).0 {
-                        Found::Misses => continue,
-                        found @ (Found::Hits(at) | Found::Edge(at)) => (at.low, found),
-                        found @ Found::Doubtful(low) => (low, found),
-                    };
-                    met.push((found, face));
-                }
+            |face| {
+                let leaves = (leaves == Some(face)).then_some(0);
+                let found = match Face(self.triangle::<A>(face)).first_hit(line, leaves).0 {
+                    Found::Misses => return,
+                    found @ (Found::Hits(at) | Found::Edge(at)) => (at.low, found),
+                    found @ Found::Doubtful(low) => (low, found),
+                };
+                met.push((found, face));
             },
         );
         let first = met.iter().copied().reduce(|one, other| if other.0.0 < one.0.0 { other } else { one });
@@ -46,6 +45,23 @@ impl Surface {
             }
         }
         (Found::Doubtful(low), face)
+    }
+
+    /// Calls `met` with the possible first hits of each face.
+    pub(super) fn hits_of_footprint<A: Bounded>(
+        &self,
+        line: &Line<Affine>,
+        leaves: Option<usize>,
+        met: &mut dyn FnMut(Met, usize),
+    ) {
+        let coarse = certify::coarse(line);
+        self.tree.within(
+            |bounds| coarse.clip(bounds.low, bounds.high).is_some(),
+            |face| {
+                let leaves = (leaves == Some(face)).then_some(0);
+                Face(self.triangle::<A>(face)).hits(line, leaves, &mut |one, _| met(one, face));
+            },
+        );
     }
 
     /// Tells whether a line hits the outside of a face, or whether that makes no difference; `None` where it is open.

@@ -1,12 +1,10 @@
 //! One face of a mesh: what plain arithmetic tells of a ray's hit, and its equation.
 
-use super::tree::LEAF;
 use crate::geometry::aabb::{Aabb, larger};
-use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange};
+use crate::geometry::ray::{Bracket, Drift, MISS, Ray};
 use crate::numeric::double_double::{exponent_to_one, times_power_of_two};
 use crate::numeric::scalar::{Scalar, dot};
 use crate::shapes::triangle::Triangle;
-use crate::simd::cpu::kernels;
 use crate::world::accuracy::Exact;
 use crate::world::certify::Equation;
 use glam::DVec3;
@@ -24,8 +22,9 @@ const AWAY_ERROR: f64 = 32.0 * f64::EPSILON;
 const TOWARD_ERROR: f64 = 24.0 * f64::EPSILON;
 
 /// Far more than what products lose that are too small for all digits: the sum of a few of 5e-324. A product with such a
-/// sum loses as many times more as the other factor is.
-const UNDERFLOW: f64 = 1e-320;
+/// sum loses as many times more as the other factor is. It is a normal number, as processors take a hundred times longer
+/// for products with others.
+pub(super) const UNDERFLOW: f64 = f64::MIN_POSITIVE;
 
 /// What a ray may leave: bounds on the distance of its origin from the point that it stands for, in world units. The
 /// ray leaves the faces within that distance.
@@ -37,85 +36,125 @@ pub(super) struct Leaving {
     pub most: f64,
 }
 
-/// Returns bounds of the distance at which a ray hits a face; with a drift, of all rays within it.
-#[inline(always)]
-pub(super) fn t_bounds(
+/// What all rays have in common that are tested against a face.
+pub(super) struct Flat {
     corners: [DVec3; 3],
-    ray: &Ray,
-    range: &RayRange,
-    leaving: Leaving,
-    drift: Option<Drift>,
-) -> Bracket {
-    let passed = passed(corners, ray, drift);
-    if passed == Some(false) {
-        return Bracket::MISS;
+    normal: DVec3,
+    /// The length of the normal.
+    size: f64,
+    /// The product of the largest components of two edges.
+    edges: f64,
+}
+
+impl Flat {
+    /// Prepares a face.
+    #[inline(always)]
+    pub(super) fn of(corners: [DVec3; 3]) -> Self {
+        let [a, b, c] = corners;
+        let (one, other) = (b - a, c - a);
+        let (normal, edges) = (one.cross(other), one.abs().max_element() * other.abs().max_element());
+        Self { corners, normal, size: normal.length(), edges }
     }
-    let [a, b, c] = corners;
-    let (one, other, between) = (b - a, c - a, a - ray.origin);
-    let normal = one.cross(other);
-    let edges = one.abs().max_element() * other.abs().max_element();
-    let (away, toward) = (normal.dot(between), normal.dot(ray.dir));
-    let largest = between.abs().max_element();
-    let (away_error, toward_error) =
-        (AWAY_ERROR * edges * largest + UNDERFLOW * (1.0 + largest), TOWARD_ERROR * edges + UNDERFLOW);
-    // A normal is no longer than 3 times that product, as an edge is no longer than the root of 3 of its components.
-    let (away_error, toward_error) = match drift {
-        None => (away_error, toward_error),
-        Some(drift) => (away_error + 3.0 * edges * drift.origin, toward_error + 3.0 * edges * drift.dir),
-    };
-    if leaving.most >= 0.0 {
-        let size = normal.length();
+
+    /// Returns the product of the normal and the vector from a ray's origin to the face, and bounds on the errors of that
+    /// and of the product with the direction.
+    #[inline(always)]
+    fn away(&self, ray: &Ray, drift: Drift) -> (f64, f64, f64) {
+        let (between, edges) = (self.corners[0] - ray.origin, self.edges);
+        let largest = largest(between);
+        let (away_error, toward_error) =
+            (AWAY_ERROR * edges * largest + UNDERFLOW * (1.0 + largest), TOWARD_ERROR * edges + UNDERFLOW);
+        // A normal is no longer than 3 times that product, as an edge is no longer than the root of 3 of its components.
+        let (away_error, toward_error) =
+            (away_error + 3.0 * edges * drift.origin, toward_error + 3.0 * edges * drift.dir);
+        (self.normal.dot(between), away_error, toward_error)
+    }
+
+    /// Returns the bracket of a ray that certainly leaves the face, or may leave it; `None` for any other.
+    #[inline(always)]
+    pub(super) fn left(&self, ray: &Ray, leaving: Leaving, drift: Drift) -> Option<Bracket> {
+        let (away, away_error, toward_error) = self.away(ray, drift);
         // The length is off by less than an error of a direction.
-        let offset = |error: f64| error * (size - toward_error);
-        let bounds = Aabb::around(&corners);
+        let offset = |error: f64| error * (self.size - toward_error);
+        let bounds = Aabb::around(&self.corners);
         let holds = |error: f64| {
             let error = error + 4.0 * f64::EPSILON * ray.origin.abs().max_element();
             (bounds.low - error).cmple(ray.origin).all() && ray.origin.cmple(bounds.high + error).all()
         };
         if away.abs() + away_error <= offset(leaving.least) && holds(leaving.least) {
-            return Bracket::MISS;
+            return Some(Bracket::MISS);
         }
-        let farthest =
-            (leaving.most + 4.0 * f64::EPSILON * 3.0 * between.abs().max_element()) * (size + toward_error);
-        if away.abs() - away_error <= farthest && holds(leaving.most) {
-            return Bracket { near: range.near, far: MISS };
-        }
+        let largest = largest(self.corners[0] - ray.origin);
+        let farthest = (leaving.most + 4.0 * f64::EPSILON * 3.0 * largest) * (self.size + toward_error);
+        (away.abs() - away_error <= farthest && holds(leaving.most)).then_some(Bracket::UNKNOWN)
     }
-    let distance = away / toward;
-    let least = toward.abs() - toward_error;
-    let error = (away_error + distance.abs() * toward_error + larger(leaving.most, 0.0) * normal.length())
-        / least
-        + 2.0 * f64::EPSILON * distance.abs();
-    // All comparisons are false where the distance is NaN, as that of a ray in the plane.
-    let is_known = least > toward_error && error < MISS;
-    if !is_known {
-        return Bracket { near: range.near, far: MISS };
+
+    /// Returns bounds of the distance before `end` at which a ray hits the face whose line does not certainly miss it,
+    /// and passes through it for certain where `is_passed`. The ray leaves other faces, if any.
+    #[inline(always)]
+    pub(super) fn t_bounds(
+        &self,
+        ray: &Ray,
+        end: f64,
+        leaving: Leaving,
+        drift: Drift,
+        is_passed: bool,
+    ) -> Bracket {
+        let (away, away_error, toward_error) = self.away(ray, drift);
+        let toward = self.normal.dot(ray.dir);
+        let distance = away / toward;
+        let least = toward.abs() - toward_error;
+        let error = (away_error + distance.abs() * toward_error + larger(leaving.most, 0.0) * self.size)
+            / least
+            + 2.0 * f64::EPSILON * distance.abs();
+        // All comparisons are false where the distance is NaN, as that of a ray in the plane.
+        let is_known = (least > toward_error) & (error < MISS);
+        let (low, high) = (distance - error, distance + error);
+        let is_out = is_known & ((high <= 0.0) | (low >= end));
+        let near = if is_known { larger(low, 0.0) } else { 0.0 };
+        let far = if is_known & is_passed & (low > 0.0) { high } else { MISS };
+        Bracket { near: if is_out { MISS } else { near }, far: if is_out { MISS } else { far } }
     }
-    let (low, high) = (distance - error, distance + error);
-    if high <= range.near || low >= range.far {
+}
+
+/// Returns the largest magnitude of a component.
+#[inline(always)]
+pub(super) fn largest(vector: DVec3) -> f64 {
+    let DVec3 { x, y, z } = vector.abs();
+    larger(larger(x, y), z)
+}
+
+/// Returns bounds of the distance before `end` at which a ray hits a face; with a drift, of all rays within it.
+#[inline(always)]
+pub(super) fn t_bounds(corners: [DVec3; 3], ray: &Ray, end: f64, leaving: Leaving, drift: Drift) -> Bracket {
+    let passed = passed(corners, ray, drift);
+    if passed == Some(false) {
         return Bracket::MISS;
     }
-    let is_there = passed == Some(true) && low > range.near;
-    Bracket { near: larger(low, range.near), far: if is_there { high } else { MISS } }
+    let flat = Flat::of(corners);
+    let left = if leaving.most >= 0.0 { flat.left(ray, leaving, drift) } else { None };
+    left.unwrap_or_else(|| flat.t_bounds(ray, end, leaving, drift, passed == Some(true)))
+}
+
+/// Returns the error of a product of two corners, as seen from a ray's origin, and its direction: as a fraction of the
+/// product of the corners' largest components, and how much is to be added to each of these first.
+#[inline(always)]
+pub(super) fn side_error(drift: Drift) -> (f64, f64) {
+    // A drift of the direction changes a product by 3 of the drift and of the two largest components, and one of the
+    // origin by 2 of it and of their sum.
+    let error = 32.0 * f64::EPSILON + 3.0 * drift.dir;
+    (error, 2.0 * drift.origin / error)
 }
 
 /// Tells whether the line of a ray passes every edge on the same side; `None` where rounding could have changed a sign.
 ///
 /// It computes the same numbers as [`Triangle::passed`], whose comment derives the error.
 #[inline(always)]
-pub(super) fn passed(corners: [DVec3; 3], ray: &Ray, drift: Option<Drift>) -> Option<bool> {
-    let [a, b, c] = corners.map(|corner| corner - ray.origin);
-    let largest = [a, b, c].map(|corner| corner.abs().max_element());
-    // A drift of the direction changes a product by 3 of the drift and of the two largest components, and one of the
-    // origin by 2 of it and of their sum.
-    let (error, largest) = match drift {
-        None => (32.0 * f64::EPSILON, largest),
-        Some(Drift { origin, dir }) => {
-            let error = 32.0 * f64::EPSILON + 3.0 * dir;
-            (error, largest.map(|largest| largest + 2.0 * origin / error))
-        }
-    };
-    let size = largest.map(|largest| error * largest);
+pub(super) fn passed(corners: [DVec3; 3], ray: &Ray, drift: Drift) -> Option<bool> {
+    let [a, b, c] = [corners[0] - ray.origin, corners[1] - ray.origin, corners[2] - ray.origin];
+    let (error, more) = side_error(drift);
+    let largest = [largest(a) + more, largest(b) + more, largest(c) + more];
+    let size = [error * largest[0], error * largest[1], error * largest[2]];
     let one = a.cross(b).dot(ray.dir);
     let two = b.cross(c).dot(ray.dir);
     let three = c.cross(a).dot(ray.dir);
@@ -131,48 +170,6 @@ pub(super) fn passed(corners: [DVec3; 3], ray: &Ray, drift: Option<Drift>) -> Op
     let is_inside = (plus[0] & plus[1] & plus[2]) | (minus[0] & minus[1] & minus[2]);
     let is_outside = (plus[0] | plus[1] | plus[2]) & (minus[0] | minus[1] | minus[2]);
     if is_inside | is_outside { Some(is_inside) } else { None }
-}
-
-/// The x, y and z of each corner of a leaf's faces, in world coordinates.
-pub(super) type Corners = [[[f64; LEAF]; 3]; 3];
-
-kernels! {
-    /// Returns a bit for each of a leaf's faces, the lowest one for the first: 0 where [`passed`] tells that the line of
-    /// a ray without a drift passes outside of the face, and else 1. It takes all faces at once, and computes the same numbers.
-    ///
-    /// A kernel of its own, as the compiler does not reliably take the faces at a time where it is inlined.
-    pub(super) fn not_missed(corners: &Corners, ray: &Ray) -> u64 {
-        let (mut sides, mut errors) = ([[0.0; LEAF]; 3], [[0.0; LEAF]; 3]);
-        for lane in 0..LEAF {
-            let corner = |corner: usize| {
-                let [x, y, z] = &corners[corner];
-                DVec3::new(x[lane], y[lane], z[lane]) - ray.origin
-            };
-            let corners = [corner(0), corner(1), corner(2)];
-            let largest = |corner: DVec3| {
-                let DVec3 { x, y, z } = corner.abs();
-                larger(larger(x, y), z)
-            };
-            let largest = [largest(corners[0]), largest(corners[1]), largest(corners[2])];
-            for (side, (one, other)) in [(0, 1), (1, 2), (2, 0)].into_iter().enumerate() {
-                sides[side][lane] = corners[one].cross(corners[other]).dot(ray.dir);
-                errors[side][lane] = 32.0 * f64::EPSILON * largest[one] * largest[other] + UNDERFLOW;
-            }
-        }
-        let mut signs = [0; LEAF];
-        for lane in 0..LEAF {
-            // Signs of differences, not comparisons, which the compiler would take one by one. Nothing is NaN, as
-            // coordinates are at most 1e152.
-            let (mut plus, mut minus) = (0, 0);
-            for side in 0..3 {
-                plus |= (errors[side][lane] - sides[side][lane]).to_bits();
-                minus |= (errors[side][lane] + sides[side][lane]).to_bits();
-            }
-            signs[lane] = plus & minus;
-        }
-        let missed = signs.iter().enumerate().fold(0, |bits, (lane, sign)| bits | (sign >> 63) << lane);
-        !missed & ((1 << LEAF) - 1)
-    }
 }
 
 /// Tells whether the corners of a face do not lie on one line.

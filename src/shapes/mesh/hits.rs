@@ -1,10 +1,10 @@
 //! First hits of rays with a mesh: brackets in plain arithmetic, distances, and proofs.
 
-use super::face::{self, Corners, Face, Leaving, t_bounds};
+use super::face::{Face, Leaving, t_bounds};
+use super::known::{Known, Nearest};
 use super::points::touches;
+use super::search::Scratch;
 use super::surface::Surface;
-use super::traversal::Faces;
-use super::tree::LEAF;
 use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange};
 use crate::geometry::sight::Sight;
 use crate::numeric::interval::{Float, Interval, Wide};
@@ -16,70 +16,6 @@ use crate::world::certify::{self, Enclosure, Precision};
 use crate::world::coincidence::CLOSE;
 use f256::f256;
 use glam::DVec3;
-use std::ops::Range;
-
-/// The search for a bracket of a ray's first hit.
-struct Nearest<'s> {
-    cpu: Cpu,
-    surface: &'s Surface,
-    ray: &'s Ray,
-    range: &'s RayRange,
-    leaving: Leaving,
-    drift: Option<Drift>,
-    /// Whether any certain hit ends the search.
-    is_any: bool,
-    /// The smallest upper bound of a certain hit's distance so far.
-    far: f64,
-    /// The smallest lower bound of a hit's distance, and its face; and the second smallest.
-    near: (f64, usize),
-    second: f64,
-    /// The smallest lower bound of an uncertain hit's distance.
-    doubtful: f64,
-}
-
-impl Nearest<'_> {
-    /// Returns more than the distance between two hits that [`Surface::face_along`] takes for the same, in world units.
-    #[inline(always)]
-    fn close(&self, distance: f64) -> f64 {
-        2.0 * CLOSE * (distance + self.ray.origin.abs().max_element())
-    }
-}
-
-impl Faces for Nearest<'_> {
-    #[inline(always)]
-    fn visit(&mut self, faces: Range<usize>) -> f64 {
-        let mut bits = match self.drift {
-            None => self.surface.not_missed(self.cpu, &faces, self.ray),
-            // Another ray within the drift may hit a face that this one misses.
-            Some(_) => (1 << faces.len()) - 1,
-        };
-        while bits != 0 {
-            let face = faces.start + bits.trailing_zeros() as usize;
-            bits &= bits - 1;
-            let Bracket { near, far } =
-                t_bounds(self.surface.corners(face), self.ray, self.range, self.leaving, self.drift);
-            if near == MISS {
-                continue;
-            }
-            if near < self.near.0 {
-                self.second = self.near.0;
-                self.near = (near, face);
-            } else if near < self.second {
-                self.second = near;
-            }
-            if far == MISS {
-                self.doubtful = self.doubtful.min(near);
-            } else if far < self.far {
-                self.far = far;
-                if self.is_any {
-                    return -1.0;
-                }
-            }
-        }
-        // Beyond the hit, hits are found that rounding may not tell from it.
-        self.far + self.close(self.far)
-    }
-}
 
 /// What was computed from the face that the last ray hit: neighbouring rays often hit the same, and its normal takes
 /// many digits.
@@ -101,14 +37,6 @@ impl<T> Last<T> {
     }
 }
 
-/// What is known of a ray's first hit.
-pub(super) enum Known {
-    /// A bracket of the distance.
-    Bracket(Bracket),
-    /// The ray certainly hits this face first. Where `is_alone`, it is the face that [`Surface::face_along`] returns.
-    Face { face: usize, bracket: Bracket, is_alone: bool },
-}
-
 impl Surface {
     /// Finds a bracket of a ray's first hit in a range. If `is_any`, any certain hit in the range will do.
     #[inline(always)]
@@ -118,36 +46,21 @@ impl Surface {
         ray: &Ray,
         range: &RayRange,
         leaving: Leaving,
-        drift: Option<Drift>,
+        drift: Drift,
         is_any: bool,
     ) -> Known {
-        let mut nearest = Nearest {
-            cpu,
-            surface: self,
-            ray,
-            range,
-            leaving,
-            drift,
-            is_any,
-            far: MISS,
-            near: (MISS, 0),
-            second: MISS,
-            doubtful: MISS,
-        };
-        self.tree.along(ray, range.far, drift, &mut nearest);
-        let close = nearest.close(nearest.far);
-        let Nearest { far, near: (near, face), second, doubtful, .. } = nearest;
-        if doubtful < far {
-            // A certain hit behind an uncertain one does not make the nearer one certain.
-            return Known::Bracket(Bracket { near, far: if is_any && far < MISS { far } else { MISS } });
-        }
-        let bracket = Bracket { near, far };
-        if far < MISS && far < second && !is_any {
-            let is_alone = leaving.most < 0.0 && far + close < second.min(range.far);
-            Known::Face { face, bracket, is_alone }
-        } else {
-            Known::Bracket(bracket)
-        }
+        let mut nearest = Nearest::NONE;
+        Scratch::with(|Scratch { stack, .. }| {
+            self.tree.closest_within(cpu, stack, ray, drift, range.far, |face, end| {
+                let bracket = t_bounds(self.corners(face), ray, range.far, leaving, drift);
+                if bracket.near == MISS {
+                    return end;
+                }
+                nearest.add(face as u64, bracket);
+                nearest.end(ray, end, is_any)
+            });
+        });
+        nearest.known(ray, range.far, leaving, is_any)
     }
 
     /// Returns the bracket of a ray's first hit in a range: of width 0, where plain arithmetic finds the distance. If
@@ -161,7 +74,21 @@ impl Surface {
         leaving: Leaving,
         last: &mut Last<Plane<A>>,
     ) -> (Bracket, Option<usize>) {
-        let (distance, bracket, only) = match self.first(cpu, ray, range, leaving, None, false) {
+        let known = self.first(cpu, ray, range, leaving, Drift::NONE, false);
+        self.bracketed(known, ray, range, leaving, last)
+    }
+
+    /// Returns what [`bracket`](Self::bracket) does, given what is known of the hit.
+    #[inline(always)]
+    pub(super) fn bracketed<A: Bounded>(
+        &self,
+        known: Known,
+        ray: &Ray,
+        range: &RayRange,
+        leaving: Leaving,
+        last: &mut Last<Plane<A>>,
+    ) -> (Bracket, Option<usize>) {
+        let (distance, bracket, only) = match known {
             Known::Face { face, bracket, is_alone } => {
                 let distance = last.of(face, |face| self.plane(face)).quick_crossing(ray);
                 (distance, bracket, is_alone.then_some(face))
@@ -193,7 +120,19 @@ impl Surface {
         drift: Drift,
         last: &mut Last<Plane<A>>,
     ) -> Bracket {
-        match self.first(cpu, ray, range, NOTHING, Some(drift), false) {
+        let known = self.first(cpu, ray, range, NOTHING, drift, false);
+        self.bracketed_within(known, ray, last)
+    }
+
+    /// Returns what [`bracket_within`](Self::bracket_within) does, given what is known of the hit.
+    #[inline(always)]
+    pub(super) fn bracketed_within<A: Bounded>(
+        &self,
+        known: Known,
+        ray: &Ray,
+        last: &mut Last<Plane<A>>,
+    ) -> Bracket {
+        match known {
             Known::Face { face, bracket, .. } => {
                 let distance = last.of(face, |face| self.plane(face)).quick_crossing(ray);
                 // A bracket that is far narrower than what coincides is taken for the distance.
@@ -226,30 +165,19 @@ impl Surface {
 
     /// Calls a function with each face that a ray may hit in a range, and with the bracket of its distance. The
     /// function returns the distance beyond which no more faces matter.
-    fn each(&self, ray: &Ray, range: &RayRange, leaving: Leaving, call: impl FnMut(usize, Bracket) -> f64) {
-        struct Each<'s, F> {
-            surface: &'s Surface,
-            ray: &'s Ray,
-            range: &'s RayRange,
-            leaving: Leaving,
-            call: F,
-            far: f64,
-        }
-        impl<F: FnMut(usize, Bracket) -> f64> Faces for Each<'_, F> {
-            #[inline(always)]
-            fn visit(&mut self, faces: Range<usize>) -> f64 {
-                for face in faces {
-                    let bracket =
-                        t_bounds(self.surface.corners(face), self.ray, self.range, self.leaving, None);
-                    if bracket.near < MISS {
-                        self.far = (self.call)(face, bracket);
-                    }
-                }
-                self.far
-            }
-        }
-        let far = range.far;
-        self.tree.along(ray, far, None, &mut Each { surface: self, ray, range, leaving, call, far });
+    fn each(
+        &self,
+        ray: &Ray,
+        range: &RayRange,
+        leaving: Leaving,
+        mut call: impl FnMut(usize, Bracket) -> f64,
+    ) {
+        Scratch::with(|Scratch { stack, .. }| {
+            self.tree.closest(Cpu::best(), stack, ray, range.far, |face, end| {
+                let bracket = t_bounds(self.corners(face), ray, range.far, leaving, Drift::NONE);
+                if bracket.near < MISS { call(face, bracket) } else { end }
+            });
+        });
     }
 
     /// Returns the distance of a ray's first hit in a range, decided for the ray as it is rounded; [`MISS`] for none.
@@ -311,7 +239,7 @@ impl Surface {
         let distance = way.length();
         let far = distance - 64.0 * f64::EPSILON * (distance + ray.origin.abs().max_element());
         let (toward, range) = (Ray { dir: way / distance, ..*ray }, RayRange { far, ..RayRange::ALL });
-        let first = || self.first(Cpu::best(), &toward, &range, NOTHING, None, false);
+        let first = || self.first(Cpu::best(), &toward, &range, NOTHING, Drift::NONE, false);
         // The upper end of a bracket may lie beyond the range.
         self.open_edges == 0
             && matches!(first(), Known::Bracket(bracket) | Known::Face { bracket, .. } if bracket.far < far)
@@ -326,20 +254,18 @@ impl Surface {
             |bounds| {
                 line.clip(bounds.low, bounds.high).is_some_and(|(entry, _)| f256::from(entry) <= end.get())
             },
-            |faces| {
-                for face in faces {
-                    let enclosure = certify::first_hit(&Face(self.triangle::<A>(face)), sight, precision);
-                    let low = match enclosure {
-                        Enclosure::Misses => continue,
-                        Enclosure::Hits(at) => {
-                            end.set(Float::min(end.get(), at.high));
-                            at.low
-                        }
-                        Enclosure::Edge(at) => at.low,
-                        Enclosure::Doubtful(low) => low,
-                    };
-                    met.push((low, enclosure));
-                }
+            |face| {
+                let enclosure = certify::first_hit(&Face(self.triangle::<A>(face)), sight, precision);
+                let low = match enclosure {
+                    Enclosure::Misses => return,
+                    Enclosure::Hits(at) => {
+                        end.set(Float::min(end.get(), at.high));
+                        at.low
+                    }
+                    Enclosure::Edge(at) => at.low,
+                    Enclosure::Doubtful(low) => low,
+                };
+                met.push((low, enclosure));
             },
         );
         let end = end.get();
@@ -360,19 +286,6 @@ impl Surface {
     pub(super) fn triangle<A: Bounded>(&self, face: usize) -> Triangle<A> {
         let corners = self.corners(face);
         Triangle::new(corners).expect("faces without an area are left out")
-    }
-
-    /// Returns a bit for each face of a leaf, the lowest one for the first: 0 where the ray's line certainly misses it.
-    #[inline(always)]
-    fn not_missed(&self, cpu: Cpu, faces: &Range<usize>, ray: &Ray) -> u64 {
-        let (last, mut corners) = (faces.end - 1, Corners::default());
-        for lane in 0..LEAF {
-            let face = self.corners((faces.start + lane).min(last));
-            for (axes, corner) in corners.iter_mut().zip(face) {
-                (axes[0][lane], axes[1][lane], axes[2][lane]) = (corner.x, corner.y, corner.z);
-            }
-        }
-        face::not_missed(cpu, &corners, ray) & ((1 << faces.len()) - 1)
     }
 
     /// Returns the plane of a face, for distances only.

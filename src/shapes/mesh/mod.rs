@@ -9,18 +9,19 @@
 mod along;
 mod face;
 mod hits;
+mod known;
 mod memo;
+mod packets;
 mod painted;
 mod points;
 pub mod read;
+mod search;
 mod shape;
 mod smooth;
 mod surface;
 #[cfg(test)]
 mod tests;
 mod to_world;
-mod traversal;
-mod tree;
 
 pub use painted::Painted;
 pub use shape::Mesh;

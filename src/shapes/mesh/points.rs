@@ -2,14 +2,12 @@
 
 use super::face::nearest_point;
 use super::surface::Surface;
-use super::traversal::Faces;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::ray::MISS;
 use crate::shapes::triangle::Triangle;
 use crate::world::accuracy::Bounded;
 use crate::world::coincidence::CLOSE;
 use glam::DVec3;
-use std::ops::Range;
 
 impl Surface {
     /// Returns the face that is nearest to a point; of several, up to rounding, the first in the file.
@@ -55,46 +53,19 @@ impl Surface {
 
     /// Calls a function with each face that may be within a distance of a point, and with its distance, in world units.
     /// The function returns the distance beyond which no more faces matter.
-    fn near(&self, at: DVec3, within: f64, call: impl FnMut(usize, f64) -> f64) {
-        struct Near<'s, F> {
-            surface: &'s Surface,
-            at: DVec3,
-            within: f64,
-            call: F,
-        }
-        impl<F: FnMut(usize, f64) -> f64> Faces for Near<'_, F> {
-            fn visit(&mut self, faces: Range<usize>) -> f64 {
-                for face in faces {
-                    let distance = nearest_point(self.surface.corners(face), self.at).distance(self.at);
-                    self.within = (self.call)(face, distance);
-                }
-                self.within
-            }
-        }
-        self.tree.around(at, within, &mut Near { surface: self, at, within, call });
+    fn near(&self, at: DVec3, within: f64, mut call: impl FnMut(usize, f64) -> f64) {
+        self.tree.around(at, within, |face| call(face, nearest_point(self.corners(face), at).distance(at)));
     }
 
     /// Tells whether a point is on a face, up to an error in world units and to rounding.
     pub(super) fn touches<A: Bounded>(&self, at: DVec3, error: f64) -> bool {
-        struct Touched<'s, F> {
-            surface: &'s Surface,
-            touches: F,
-            within: f64,
-            any: bool,
-        }
-        impl<F: Fn([DVec3; 3]) -> bool> Faces for Touched<'_, F> {
-            fn visit(&mut self, mut faces: Range<usize>) -> f64 {
-                self.any |= faces.any(|face| (self.touches)(self.surface.corners(face)));
-                if self.any { -1.0 } else { self.within }
-            }
-        }
         let error_there = error + 8.0 * f64::EPSILON * at.abs().max_element();
-        let touches = |corners: [DVec3; 3]| {
-            Triangle::<A>::new(corners).is_some_and(|triangle| touches(&triangle, at, error))
-        };
-        let mut touched = Touched { surface: self, touches, within: error_there, any: false };
-        self.tree.around(at, error_there, &mut touched);
-        touched.any
+        let mut any = false;
+        self.tree.around(at, error_there, |face| {
+            any |= Triangle::<A>::new(self.corners(face)).is_some_and(|face| touches(&face, at, error));
+            if any { -1.0 } else { error_there }
+        });
+        any
     }
 }
 

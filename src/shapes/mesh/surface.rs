@@ -3,8 +3,8 @@
 use super::face;
 use super::read::Model;
 use super::to_world::ToWorld;
-use super::tree::{MAX_FACES, Tree};
 use crate::geometry::aabb::Aabb;
+use crate::geometry::bvh::Bvh;
 use crate::numeric::double_double::{exponent_to_one, times_power_of_two};
 use crate::scene::pparm::MOST_LENGTH;
 use crate::shapes::triangle::Triangle;
@@ -15,6 +15,9 @@ use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::mem::take;
 use std::sync::atomic::{AtomicU64, Ordering};
+
+/// The largest number of faces.
+const MAX_FACES: usize = 1 << 28;
 
 /// The number of surfaces that have been made.
 static SURFACES: AtomicU64 = AtomicU64::new(0);
@@ -28,7 +31,7 @@ pub struct Surface {
     pub(super) id: u64,
     /// The vertices in world coordinates, each once.
     pub(super) vertices: Vec<DVec3>,
-    /// The corners of each face, in the order of the tree's leaves, counterclockwise as seen from the outside.
+    /// The corners of each face, in the order of the tree, counterclockwise as seen from the outside.
     pub(super) faces: Vec<[u32; 3]>,
     /// For each face, its index in the file.
     pub(super) order: Vec<u32>,
@@ -36,7 +39,7 @@ pub struct Surface {
     pub(super) slots: Vec<u16>,
     /// The normals at the vertices, where the mesh looks smooth; 0 where the normals around a vertex cancel.
     pub(super) normals: Vec<[f32; 3]>,
-    pub(super) tree: Tree,
+    pub(super) tree: Bvh,
     /// A bounding box of the vertices, in world coordinates.
     pub(super) bounds: Aabb,
     /// The number of edges that do not join two faces. Where it is 0, the surface is closed.
@@ -84,7 +87,9 @@ impl Surface {
         drop(take(&mut faces));
         let open_edges = open_edges(&kept);
         let normals = if is_smooth { smooth(&vertices, &kept) } else { Vec::new() };
-        let (tree, sorted) = Tree::new(&vertices, &kept);
+        let mut tree =
+            Bvh::of(kept.len(), |face| Aabb::around(&kept[face].map(|corner| vertices[corner as usize])));
+        let sorted = tree.take_order();
         let mut faces: Vec<_> = sorted.iter().map(|face| kept[*face as usize]).collect();
         let (vertices, normals) = in_order_of_use(&vertices, &normals, &mut faces);
         let order: Vec<_> = sorted.iter().map(|face| order[*face as usize]).collect();
@@ -173,7 +178,7 @@ fn merge(vertices: Vec<DVec3>, faces: &mut [[u32; 3]], placement: &ToWorld) -> V
     merged
 }
 
-/// Sorts vertices, and their normals if there are any, in the order in which faces use them, so that those of a leaf
+/// Sorts vertices, and their normals if there are any, in the order in which faces use them, so that those of a node
 /// lie close together in memory.
 fn in_order_of_use(
     vertices: &[DVec3],

@@ -1,11 +1,12 @@
 //! Properties of meshes: their hits are those of their triangles, and no ray escapes from a closed one.
 
-use super::face::{Corners, not_missed, passed};
+use super::face::Leaving;
 use super::hits::{Last, NOTHING};
-use super::tree::LEAF;
+use super::known::Known;
+use super::search::Aims;
 use super::{Mesh, Surface, ToWorld, read::Model};
-use crate::geometry::ray::{Drift, MISS, Ray, RayRange, Side};
-use crate::geometry::ray_packet::RayPacket;
+use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
+use crate::geometry::ray_packet::{PACKET_SIZE, RayPacket};
 use crate::geometry::sight::Sight;
 use crate::shapes::triangle::Triangle;
 use crate::simd::cpu::Cpu;
@@ -214,26 +215,50 @@ proptest! {
     }
 
     #[test]
-    fn faces_that_a_ray_misses_are_told_as_one_by_one(
-        corners in prop::collection::vec((direction(), scale()), 3 * LEAF),
-        (origin, to, weight) in (direction(), 0..3 * LEAF, prop_oneof![Just(0.0), Just(1e-16), 0.0..1.0]),
+    fn the_rays_of_a_packet_find_what_each_finds_alone(
+        bumps in prop::collection::vec(0.6..1.5, 1..9),
+        (rows, scale) in (3..30_u32, scale()),
+        (eye, spread) in (direction(), prop_oneof![Just(0.0), Just(1e-9), 0.0..1.0]),
+        ways in prop::collection::vec((direction(), any::<prop::sample::Index>(), 0.0..1.0), 1..PACKET_SIZE),
+        (leaves, drift) in (any::<bool>(), prop_oneof![Just(0.0), Just(1e-9)]),
     ) {
-        let at = |index: usize| corners[index].0 * corners[index].1;
-        let Some(dir) = (at(to) + weight * origin - origin).try_normalize() else { return Ok(()) };
-        let (ray, mut of_leaf) = (Ray { origin, dir }, Corners::default());
-        for lane in 0..LEAF {
-            for corner in 0..3 {
-                of_leaf[corner][0][lane] = at(3 * lane + corner).x;
-                of_leaf[corner][1][lane] = at(3 * lane + corner).y;
-                of_leaf[corner][2][lane] = at(3 * lane + corner).z;
-            }
+        let surface = surface(closed(&bumps, rows), &ToWorld::new(scale, DVec3::ZERO, DVec3::ZERO));
+        let reach = surface.reach();
+        let count = ways.len().next_multiple_of(LANES);
+        let (mut origin, mut dir) = (Vectors::<PACKET_SIZE>::ZERO, Vectors::<PACKET_SIZE>::ZERO);
+        let mut ends = vec![0.0; count];
+        for lane in 0..count {
+            // Toward an edge, a vertex or the inside of a face, from almost the same point, from anywhere or from there.
+            let (aside, to, along) = &ways[lane.min(ways.len() - 1)];
+            let [a, b, c] = surface.corners(to.index(surface.face_count()));
+            let at = if *along < 0.3 { a } else if *along < 0.6 { a.lerp(b, *along) } else { (a + b + c) / 3.0 };
+            let from = reach * (3.0 * eye + spread * *aside);
+            let toward = (at - from).try_normalize().unwrap_or(DVec3::X);
+            let is_there = leaves && *along > 0.2;
+            origin.set(lane, if is_there { at } else { from });
+            dir.set(lane, if is_there { aside.normalize() } else { toward });
+            ends[lane] = [0.0, reach, 4.0 * reach, MISS][lane % 4];
         }
-        for cpu in Cpu::all() {
-            let bits = not_missed(cpu, &of_leaf, &ray);
-            for lane in 0..LEAF {
-                let face = [0, 1, 2].map(|corner| at(3 * lane + corner));
-                prop_assert_eq!(bits >> lane & 1 == 0, passed(face, &ray, None) == Some(false), "{}", lane);
-            }
+        let rays = RayPacket { origin: origin.view(count), dir: dir.view(count), origin_error: 0.0 };
+        let error = coincidence::ROUNDING * reach;
+        let leaving = if leaves { Leaving { least: error, most: 2.0 * error } } else { NOTHING };
+        let drift = Drift { origin: drift * reach, dir: drift };
+        for (cpu, is_any) in Cpu::all().flat_map(|cpu| [(cpu, false), (cpu, true)]) {
+            let mut lanes = Vec::new();
+            surface.search(cpu, rays, &ends, Aims { leaving, drift, is_any }, |lane, found| {
+                lanes.push(lane);
+                let (ray, range) = (rays.get(lane), RayRange { far: ends[lane], ..RayRange::ALL });
+                let alone = surface.first(cpu, &ray, &range, leaving, drift, is_any);
+                let (Known::Face { bracket: alone, .. } | Known::Bracket(alone)) = alone;
+                let known = found.known(&ray, ends[lane], leaving, is_any);
+                let (Known::Face { bracket, .. } | Known::Bracket(bracket)) = known;
+                // A face that only its bounds cannot rule out may be visited or not.
+                let contradicts = |one: Bracket, other: Bracket| one.far < MISS && other.near == MISS;
+                assert!(!contradicts(bracket, alone) && !contradicts(alone, bracket), "{bracket:?} {alone:?}");
+                let overlap = bracket.near <= alone.far && alone.near <= bracket.far;
+                assert!(is_any || overlap, "{bracket:?} {alone:?}");
+            });
+            prop_assert!(lanes.into_iter().eq((0..count).filter(|lane| ends[*lane] > 0.0)));
         }
     }
 }
@@ -310,5 +335,53 @@ fn no_doubled_face_at_an_outline_is_seen_from_behind() {
             }
         }
         assert!(seen > 1000, "{seen}");
+    }
+}
+
+#[test]
+fn faces_of_which_none_lies_beside_another_are_found() {
+    const COUNT: usize = 100_000;
+    let size = |index: usize| (400.0 * (index as f64 / COUNT as f64 - 0.5)).exp2();
+    /// Returns the place and the size of a face.
+    type Of<'o> = &'o dyn Fn(usize) -> (f64, f64);
+    let all: [(&str, Of); 4] = [
+        ("equal", &|_| (0.0, 1.0)),
+        ("around one point", &|index| (0.0, 1.0 + index as f64 / COUNT as f64)),
+        ("around one point, growing exponentially", &|index| (0.0, size(index))),
+        ("in a row, growing exponentially", &|index| (size(index), 0.001 * size(index))),
+    ];
+    for (name, of) in all {
+        let corners = [[-1.0, -1.0, -1.0], [1.0, -1.0, 1.0], [-1.0, 1.0, 1.0]].map(DVec3::from);
+        let vertices = (0..COUNT).flat_map(|index| {
+            let (place, size) = of(index);
+            corners.map(|corner| place * DVec3::ONE + size * corner)
+        });
+        let faces = (0..COUNT as u32).map(|face| [3 * face, 3 * face + 1, 3 * face + 2]).collect();
+        let model = Model { vertices: vertices.collect(), faces, ..Model::default() };
+        let surface = surface(model, &ToWorld::new(PLAIN, DVec3::ZERO, DVec3::ZERO));
+        // Toward the middles of some faces, each from a place that is as far away as the face is large.
+        let (mut origin, mut dir) = (Vectors::<LANES>::ZERO, Vectors::<LANES>::ZERO);
+        for lane in 0..LANES {
+            let [a, b, c] = surface.corners((2 * lane + 1) * surface.face_count() / (2 * LANES));
+            let (middle, way) = ((a + b + c) / 3.0, DVec3::new(0.3, 0.2, 1.0));
+            origin.set(lane, middle + (a - b).length() * way);
+            dir.set(lane, -way.normalize());
+        }
+        let rays = RayPacket { origin: origin.view(LANES), dir: dir.view(LANES), origin_error: 0.0 };
+        let rights: Vec<_> = (0..LANES).map(|lane| among(&surface, &rays.get(lane))).collect();
+        for cpu in Cpu::all() {
+            let aims = Aims { leaving: NOTHING, drift: Drift::NONE, is_any: false };
+            surface.search(cpu, rays, &[MISS; LANES], aims, |lane, found| {
+                let (ray, right) = (rays.get(lane), rights[lane]);
+                let alone = surface.first(cpu, &ray, &RayRange::ALL, NOTHING, Drift::NONE, false);
+                for known in [alone, found.known(&ray, MISS, NOTHING, false)] {
+                    let (Known::Face { bracket, .. } | Known::Bracket(bracket)) = known;
+                    assert!(
+                        right < MISS && bracket.near <= right && right <= bracket.far,
+                        "{name}: {right} {bracket:?}"
+                    );
+                }
+            });
+        }
     }
 }

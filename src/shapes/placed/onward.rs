@@ -2,10 +2,11 @@
 
 use super::shape::Placed;
 use crate::geometry::sight::Line;
+use crate::numeric::affine::Affine;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::Interval;
 use crate::numeric::scalar::{Scalar, dot, per_axis};
-use crate::world::certify::{Found, Onward, Precise};
+use crate::world::certify::{Found, Met, Onward, OverFootprint, Precise};
 use glam::DMat3;
 
 impl<F: Precise> Onward<F> for Placed {
@@ -46,5 +47,23 @@ impl<F: Precise> Onward<F> for Placed {
         let world = axes.map(|axis| dot(axis, shaded));
         let length = dot(world, world).sqrt();
         Some(world.map(|part| part / length))
+    }
+}
+
+impl OverFootprint for Placed {
+    fn hits(&self, line: &Line<Affine>, leaves: Option<usize>, met: &mut dyn FnMut(Met, usize)) {
+        let own = Line { origin: self.placement.point(line.origin), dir: self.placement.vector(line.dir) };
+        match self.body.shape.proven() {
+            Some(proven) => proven.hits(&own, leaves, met),
+            None => met(Met::Doubtful(0.0), 0),
+        }
+    }
+
+    fn slope(&self, at: [Dual<Affine>; 3], part: usize) -> Dual<Affine> {
+        let own = self.placement.point(at);
+        match self.body.shape.proven() {
+            Some(proven) => OverFootprint::slope(proven, own, part),
+            None => Dual::fixed(Affine::WHOLE),
+        }
     }
 }

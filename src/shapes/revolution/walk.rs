@@ -58,7 +58,8 @@ impl Revolution {
             return 0;
         }
         let pieces = if self.slabs.is_tight() { 0 } else { self.search(frame, ray, &range).pieces };
-        (self.slabs.count() / SLABS_PER_RAY + RAYS_PER_PIECE * pieces) as u32
+        // The search of a plain hit takes as long as a plain ray, and is made twice.
+        (self.slabs.count() / SLABS_PER_RAY + RAYS_PER_PIECE * pieces).max(1) as u32
     }
 
     /// Tells whether the search for a ray's first hit may take as long as several plain rays.

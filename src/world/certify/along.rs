@@ -19,7 +19,7 @@ pub(super) fn most_pieces(shape: &impl Equation) -> usize {
 
 /// Finds the first hit of a line given in world coordinates. With `leaves`, the line's true start lies on the shape.
 pub(super) fn first_along<F: Float>(
-    shape: &dyn Values<F>,
+    shape: &dyn Values<Interval<F>>,
     line: &Line<Interval<F>>,
     leaves: bool,
     pieces: usize,

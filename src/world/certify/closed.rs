@@ -16,7 +16,11 @@ enum Candidate<F> {
 
 /// Finds the first hit with t > 0. The start of the line itself is not a hit; with `leaves`, the line's true start lies
 /// on the surface, although its enclosure does not tell.
-pub fn first_hit<F: Float>(shape: &dyn Values<F>, line: &Line<Interval<F>>, leaves: bool) -> Found<F> {
+pub fn first_hit<F: Float>(
+    shape: &dyn Values<Interval<F>>,
+    line: &Line<Interval<F>>,
+    leaves: bool,
+) -> Found<F> {
     let zero = F::of(0.0);
     let [a, b, c] = coefficients(shape, line);
     let c = if leaves { Interval::constant(0.0) } else { c };
@@ -40,7 +44,7 @@ pub fn first_hit<F: Float>(shape: &dyn Values<F>, line: &Line<Interval<F>>, leav
 }
 
 /// Computes the coefficients of `a t^2 + 2 b t + c`, the equation's value along the line.
-fn coefficients<F: Float>(shape: &dyn Values<F>, line: &Line<Interval<F>>) -> [Interval<F>; 3] {
+fn coefficients<F: Float>(shape: &dyn Values<Interval<F>>, line: &Line<Interval<F>>) -> [Interval<F>; 3] {
     // The value and its derivatives are computed at t = 0, so that the start of the line is not rounded.
     let zero = Interval::constant(0.0);
     let at = per_axis(|axis| {

@@ -41,53 +41,53 @@ pub trait Equation {
     }
 }
 
-/// An equation in intervals of one precision. Proofs take it as a `dyn`, so that they are compiled once for a precision,
-/// not once for a shape.
-pub(super) trait Values<F: Float> {
+/// An equation in one type of numbers that enclose values. Proofs take it as a `dyn`, so that they are compiled once for a
+/// type, not once for a shape.
+pub(super) trait Values<N: Scalar> {
     /// Returns [`Equation::IS_QUADRATIC`].
     fn is_quadratic(&self) -> bool;
 
     /// Transforms a line into the coordinates that the equation is written in.
-    fn own(&self, line: Line<Interval<F>>) -> Line<Interval<F>>;
+    fn own(&self, line: Line<N>) -> Line<N>;
 
     /// Encloses the value.
-    fn value(&self, at: [Interval<F>; 3]) -> Interval<F>;
+    fn value(&self, at: [N; 3]) -> N;
 
     /// Encloses the value and its first derivative.
-    fn slope(&self, at: [Dual<Interval<F>>; 3]) -> Dual<Interval<F>>;
+    fn slope(&self, at: [Dual<N>; 3]) -> Dual<N>;
 
     /// Encloses the value and its first two derivatives.
-    fn bend(&self, at: [Dual<Dual<Interval<F>>>; 3]) -> Dual<Dual<Interval<F>>>;
+    fn bend(&self, at: [Dual<Dual<N>>; 3]) -> Dual<Dual<N>>;
 
-    /// Returns a positive interval where the surface is kept, and a negative one where it is cut off.
-    fn kept(&self, at: [Interval<F>; 3]) -> Interval<F>;
+    /// Returns a positive number where the surface is kept, and a negative one where it is cut off.
+    fn kept(&self, at: [N; 3]) -> N;
 
     /// Returns [`Equation::extent`].
     fn extent(&self) -> [DVec3; 2];
 }
 
-impl<E: Equation, F: Float> Values<F> for E {
+impl<E: Equation, N: Scalar> Values<N> for E {
     fn is_quadratic(&self) -> bool {
         E::IS_QUADRATIC
     }
 
-    fn own(&self, line: Line<Interval<F>>) -> Line<Interval<F>> {
+    fn own(&self, line: Line<N>) -> Line<N> {
         Equation::own(self, line)
     }
 
-    fn value(&self, at: [Interval<F>; 3]) -> Interval<F> {
+    fn value(&self, at: [N; 3]) -> N {
         Equation::value(self, at)
     }
 
-    fn slope(&self, at: [Dual<Interval<F>>; 3]) -> Dual<Interval<F>> {
+    fn slope(&self, at: [Dual<N>; 3]) -> Dual<N> {
         Equation::value(self, at)
     }
 
-    fn bend(&self, at: [Dual<Dual<Interval<F>>>; 3]) -> Dual<Dual<Interval<F>>> {
+    fn bend(&self, at: [Dual<Dual<N>>; 3]) -> Dual<Dual<N>> {
         Equation::value(self, at)
     }
 
-    fn kept(&self, at: [Interval<F>; 3]) -> Interval<F> {
+    fn kept(&self, at: [N; 3]) -> N {
         Equation::kept(self, at)
     }
 
@@ -111,7 +111,7 @@ pub enum Found<F> {
 
 /// Tells whether the surface is kept at all distances of an interval along a line; `None` where that is uncertain.
 pub(super) fn is_kept<F: Float>(
-    shape: &dyn Values<F>,
+    shape: &dyn Values<Interval<F>>,
     line: &Line<Interval<F>>,
     distance: Interval<F>,
 ) -> Option<bool> {

@@ -8,11 +8,13 @@
 mod along;
 mod closed;
 mod equation;
+mod footprint;
 mod onward;
 mod search;
 
 pub use equation::{Equation, Found};
-pub use onward::{Onward, Precise, Proven, gradient};
+pub use footprint::{Met, OverFootprint, coarse, gradient_over};
+pub use onward::{Onward, Precise, Proven, gradient, shading_normals};
 
 use crate::geometry::sight::Sight;
 use crate::numeric::double_double::DoubleDouble;
@@ -105,7 +107,7 @@ pub fn first_hit(shape: &impl Equation, sight: &Sight, precision: Precision) -> 
     }
 }
 
-fn solve<F: Float>(shape: &dyn Values<F>, sight: &Sight, pieces: usize) -> Found<F> {
+fn solve<F: Float>(shape: &dyn Values<Interval<F>>, sight: &Sight, pieces: usize) -> Found<F> {
     first_along(shape, &sight.line(), false, pieces)
 }
 

@@ -5,7 +5,9 @@
 
 use super::along::{PIECES, first_along, most_pieces};
 use super::equation::{Equation, Found};
+use super::footprint::OverFootprint;
 use crate::geometry::sight::Line;
+use crate::numeric::affine::Affine;
 use crate::numeric::dual::Dual;
 use crate::numeric::interval::{Fine, Float, Fraction, Interval, Wide};
 use crate::numeric::scalar::{Scalar, per_axis};
@@ -33,9 +35,9 @@ pub trait Onward<F: Float> {
 }
 
 /// What can be proven of a shape's hits along any line, in every precision.
-pub trait Proven: Onward<f64> + Onward<f256> + Onward<Fraction> {}
+pub trait Proven: Onward<f64> + Onward<f256> + Onward<Fraction> + OverFootprint {}
 
-impl<T: Onward<f64> + Onward<f256> + Onward<Fraction>> Proven for T {}
+impl<T: Onward<f64> + Onward<f256> + Onward<Fraction> + OverFootprint> Proven for T {}
 
 impl<E: Equation, F: Precise> Onward<F> for E {
     fn first_hit(&self, line: &Line<Interval<F>>, leaves: Option<usize>) -> (Found<F>, usize) {
@@ -60,6 +62,18 @@ pub fn gradient<F: Float>(
         };
         shape.slope([along(0), along(1), along(2)], part).slope
     })
+}
+
+/// Encloses the unit normals with which points of a part are shaded; `None` where they are open.
+pub fn shading_normals(
+    shape: &(impl Onward<f64> + ?Sized),
+    at: [Affine; 3],
+    part: usize,
+    normal: [Affine; 3],
+) -> Option<[Affine; 3]> {
+    let given = normal.map(|axis| axis.range());
+    let shaded = shape.shading_normal(at.map(|axis| axis.range()), part, given)?;
+    Some(if shaded == given { normal } else { shaded.map(Affine::from) })
 }
 
 /// A precision that proofs are tried in.

@@ -14,7 +14,7 @@ const JUMP: f64 = f64::EPSILON / 16.0;
 /// Finds the first hit with t > 0. The search is given up after `pieces` pieces of the line. With `leaves`, the line's
 /// true start lies on the surface, and is not a hit.
 pub fn first_hit<F: Float>(
-    shape: &dyn Values<F>,
+    shape: &dyn Values<Interval<F>>,
     line: &Line<Interval<F>>,
     leaves: bool,
     pieces: usize,
@@ -77,7 +77,7 @@ pub fn first_hit<F: Float>(
 
 /// Returns a length from a line's start, which lies on the surface, within which the value is strictly monotonic, and so
 /// has no other root; at most `to`. `None` where the line touches the surface, as far as intervals tell.
-fn left<F: Float>(shape: &dyn Values<F>, line: &Line<Interval<F>>, to: F) -> Option<F> {
+fn left<F: Float>(shape: &dyn Values<Interval<F>>, line: &Line<Interval<F>>, to: F) -> Option<F> {
     let shortest = F::of(1024.0) * F::EPSILON * to;
     let mut length = to;
     while length > shortest {
@@ -98,14 +98,14 @@ fn cut<F: Float>(low: F, high: F) -> [(F, F); 2] {
 }
 
 /// Clips a line to the extent of a shape, from t = 0 on.
-fn clipped<F: Float>(shape: &dyn Values<F>, line: &Line<Interval<F>>) -> Option<(F, F)> {
+fn clipped<F: Float>(shape: &dyn Values<Interval<F>>, line: &Line<Interval<F>>) -> Option<(F, F)> {
     let [low, high] = shape.extent();
     line.clip(low, high)
 }
 
 /// The search for roots of an equation along a line.
 struct Search<'s, F> {
-    shape: &'s dyn Values<F>,
+    shape: &'s dyn Values<Interval<F>>,
     line: &'s Line<Interval<F>>,
 }
 

@@ -41,6 +41,20 @@ fn a_time_limit_holds_within_a_tile() {
     assert_eq!(names_in(folder.path()), ["large.ray", "mirrors.ray"]);
 }
 
+#[test]
+fn a_time_limit_holds_within_a_tile_of_an_image_that_is_written_whole() {
+    let folder = between_mirrors();
+    for name in ["a.exr", "a.pfm"] {
+        let start = Instant::now();
+        let (status, _, err) = render(&folder, &["mirrors.ray", "-o", name, "--time-limit", "300ms"]);
+        assert!(start.elapsed() < SOON, "{:?}", start.elapsed());
+        let said = "the time limit of 300ms has been reached\n\
+            an EXR or a PFM is written once it is whole: nothing is written\n";
+        assert_eq!((status, err.as_str()), (130, said));
+    }
+    assert_eq!(names_in(folder.path()), ["large.ray", "mirrors.ray"]);
+}
+
 /// The tiles around a sphere are soon finished; those that show it, lit by many lights, take far longer.
 #[test]
 fn a_time_limit_within_a_tile_keeps_those_that_are_done() {
@@ -121,6 +135,8 @@ fn an_interruption_ends_every_command_soon() {
     for args in [
         &["render", "mirrors.ray"][..],
         &["render", "mirrors.ray", "-o", "-"],
+        &["render", "mirrors.ray", "-o", "a.exr"],
+        &["render", "mirrors.ray", "-o", "a.pfm"],
         &["render", "mirrors.ray", "--debug", "find", "--at", "3,3"],
         &["verify", "large.ray"],
         &["choose", "mirrors.ray", "--max-error", "1e-9"],
@@ -149,6 +165,29 @@ fn an_interruption_ends_every_command_soon() {
         assert!(matches!(status, 130 | -1), "{args:?}: {status} {err}");
         drop(held);
     }
+}
+
+#[test]
+fn an_interruption_ends_a_program_whose_messages_nobody_reads() {
+    let folder = between_mirrors();
+    let mut command = Command::new(tabray_path());
+    command.args(["render", "mirrors.ray", "--debug", "find"]).current_dir(folder.path());
+    let mut child = command.stderr(Stdio::piped()).spawn().expect("the program runs");
+    let unread = child.stderr.take();
+    let mut running = Running(child);
+    // Long enough to fill the pipe.
+    std::thread::sleep(Duration::from_secs(1));
+    let start = Instant::now();
+    running.send(interruption());
+    let status = loop {
+        if let Some(status) = running.0.try_wait().expect("a program that runs") {
+            break status;
+        }
+        assert!(start.elapsed() < SOON, "it has not ended");
+        std::thread::sleep(Duration::from_millis(20));
+    };
+    assert_eq!(status.code(), Some(130));
+    drop(unread);
 }
 
 /// When little of a large image is finished, the rest is not written, but the finished part is kept.

@@ -94,6 +94,13 @@ impl Depth {
     }
 }
 
+/// Bounds what a primary ray returns in any channel, times the path length; infinite where there is no bound.
+pub(crate) fn most(model: &Model) -> f64 {
+    let looks: Vec<_> =
+        model.objects.iter().map(|object| object.shader.brightest(&object.material)).collect();
+    Scene::new(model, Surface::all(model, &looks, None)).bounds(false).0
+}
+
 /// Bounds what one light of a model adds to a primary ray in any channel, times the path length; infinite where there is
 /// no bound.
 pub(crate) fn most_of_light(model: &Model, light: usize) -> f64 {

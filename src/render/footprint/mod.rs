@@ -1,0 +1,207 @@
+//! Certified pixels: proofs about all rays through a pixel's footprint at once.
+//!
+//! The colour of a pixel, which samples estimate, is the mean of what primary rays return over the square around the
+//! pixel's centre that is one pixel wide, and over the points of lights with a size. A footprint is a part of that square.
+//! The rules by which a scene is rendered are evaluated for all rays through it, in [`Affine`] numbers: functions that are
+//! linear in the place within the footprint, up to a bound. Where every decision is the same for all rays, the mean is
+//! known to within that bound, however steep the linear part is. Where a decision is open, such as which of two objects is
+//! seen, the colour is anything that it would be either way.
+//!
+//! The footprint whose mean is known the least is cut into quarters, again and again, until the mean of the whole pixel is
+//! known well enough.
+
+mod light;
+mod rays;
+mod scene;
+mod surface;
+
+use crate::geometry::aabb::Aabb;
+use crate::geometry::sight::Line;
+use crate::numeric::affine::Affine;
+use crate::numeric::interval::Interval;
+use crate::numeric::scalar::Scalar;
+use crate::render::bytes::shown;
+use crate::render::plan::depth::{self, Depth};
+use crate::scene::model::Model;
+use crate::world::camera::Camera;
+use crate::world::material::Rgb;
+use rays::Tracer;
+use scene::Scene;
+
+/// The maximum number of footprints that are examined for a pixel.
+pub(crate) const MAX_FOOTPRINTS: usize = 1 + 4 * 256;
+
+/// How many times a footprint may be cut into quarters.
+pub(crate) const MAX_CUTS: u32 = 10;
+
+/// The number of footprints from which on it is judged whether [`MAX_FOOTPRINTS`] will be enough.
+const JUDGED: usize = 1 + 4 * 16;
+
+/// More than the roundings of a colour within its bounds, where 1 is white.
+const ROUNDING: f64 = 1e-14;
+
+/// What is proven of a pixel's colour.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Proof {
+    /// The least colour that it may be, before exposure; infinite where nothing is known.
+    low: Rgb,
+    /// The greatest colour that it may be, before exposure.
+    high: Rgb,
+    /// The number of footprints that were examined.
+    pub footprints: u32,
+}
+
+impl Proof {
+    /// Returns the colour in the middle of what is possible, before exposure. `gain` is the factor of all colours.
+    pub fn middle(&self, gain: f64) -> Rgb {
+        let channel = |low: f64, high: f64| {
+            let (below, above) = (low < 0.0, gain * high > 1.0);
+            match (gain * low >= 1.0, high <= 0.0) {
+                // It is shown as white or as black, whatever it is.
+                (true, _) if high.is_infinite() => low,
+                (_, true) if low.is_infinite() => high,
+                (false, false) if below || above => 0.5 * (low.max(0.0) + high.min(1.0 / gain)),
+                _ => 0.5 * (low + high),
+            }
+        };
+        self.by_channel(channel)
+    }
+
+    /// Bounds the difference of a colour within the bounds from the true one, as they are shown: the largest of the
+    /// channels, where 1 is white.
+    pub fn error(&self, colour: Rgb, gain: f64) -> f64 {
+        let [low, colour, high] = [self.low, colour, self.high].map(|colour| shown(gain * colour));
+        (high - colour).max(colour - low).max_element() + ROUNDING
+    }
+
+    /// Returns the possible colour that is the nearest to one.
+    pub fn nearest(&self, colour: Rgb) -> Rgb {
+        colour.max(self.low).min(self.high)
+    }
+
+    /// Tells whether the colour in the middle is within an error, where 1 is white, as it is shown.
+    pub fn is_within(&self, error: f64, gain: f64) -> bool {
+        self.half_width(gain) <= error
+    }
+
+    /// Returns half the distance of the bounds as they are shown, the largest of the channels, where 1 is white.
+    fn half_width(&self, gain: f64) -> f64 {
+        0.5 * (shown(gain * self.high) - shown(gain * self.low)).max_element() + ROUNDING
+    }
+
+    fn by_channel(&self, of: impl Fn(f64, f64) -> f64) -> Rgb {
+        Rgb::from_array([0, 1, 2].map(|channel| of(self.low[channel], self.high[channel])))
+    }
+}
+
+/// A part of a pixel.
+#[derive(Clone, Copy)]
+struct Footprint {
+    /// The image position of its middle, in pixels.
+    middle: [f64; 2],
+    /// How many times it was cut.
+    cuts: u32,
+    /// The mean of its colours.
+    mean: [Interval; 3],
+}
+
+impl Footprint {
+    /// Returns its part of the pixel.
+    fn area(&self) -> f64 {
+        0.25_f64.powi(self.cuts as i32)
+    }
+
+    /// Returns how much of the pixel's colour it leaves open.
+    fn open(&self) -> f64 {
+        if self.cuts == MAX_CUTS {
+            return 0.0;
+        }
+        self.area() * self.mean.iter().fold(0.0, |open: f64, channel| open.max(channel.width()))
+    }
+}
+
+/// Proves the colours of a model's pixels.
+pub(crate) struct Prover {
+    boxes: Vec<Option<Aabb>>,
+    most: f64,
+}
+
+impl Prover {
+    /// Prepares the proofs of a model.
+    pub fn new(model: &Model) -> Self {
+        Self { boxes: scene::boxes(model), most: depth::most(model) }
+    }
+
+    /// Encloses the colour of a pixel, until it is known to within an error, where 1 is white, as it is shown, or until
+    /// a limit is reached. `x` counts pixels from the left and `y` from the bottom.
+    pub fn pixel(
+        &self,
+        (model, depth): (&Model, Option<&Depth>),
+        camera: &Camera,
+        [x, y]: [usize; 2],
+        error: f64,
+    ) -> Proof {
+        let scene = Scene { model, depth, boxes: &self.boxes, most: self.most };
+        let gain = camera.gain();
+        let footprint = |middle: [f64; 2], cuts: u32| {
+            let colour = Tracer::new(&scene).primary(&lines(camera, middle, 0.5_f64.powi(cuts as i32 + 1)));
+            Footprint { middle, cuts, mean: colour.map(|channel| channel.mean()) }
+        };
+        let mut all = vec![footprint([x as f64, y as f64], 0)];
+        let mut count = 1;
+        loop {
+            let proof = proof(&all, count);
+            let half = proof.half_width(gain);
+            if proof.is_within(error, gain) || count + 4 > MAX_FOOTPRINTS {
+                return proof;
+            }
+            // What edges leave open is in inverse proportion to the number of footprints.
+            if count >= JUDGED && half * count as f64 > error * MAX_FOOTPRINTS as f64 {
+                return proof;
+            }
+            let open = |index: &usize| all[*index].open();
+            let widest = (0..all.len()).max_by(|one, other| open(one).total_cmp(&open(other)));
+            let Some(widest) = widest.filter(|index| open(index) > 0.0) else { return proof };
+            let Footprint { middle: [x, y], cuts, .. } = all.swap_remove(widest);
+            let quarter = 0.5_f64.powi(cuts as i32 + 2);
+            let corners = [[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]];
+            all.extend(
+                corners.map(|[right, up]| footprint([x + right * quarter, y + up * quarter], cuts + 1)),
+            );
+            count += 4;
+        }
+    }
+}
+
+/// Returns what is proven of a pixel that consists of these footprints.
+fn proof(all: &[Footprint], count: usize) -> Proof {
+    let mut sum = [Interval::constant(0.0); 3];
+    for footprint in all {
+        let area = Interval::constant(footprint.area());
+        sum = [0, 1, 2].map(|channel| sum[channel] + area * footprint.mean[channel]);
+    }
+    Proof {
+        low: Rgb::from_array(sum.map(|channel| channel.low)),
+        high: Rgb::from_array(sum.map(|channel| channel.high)),
+        footprints: count as u32,
+    }
+}
+
+/// Returns the primary rays through a square of the image, given by its middle and half its width in pixels.
+fn lines(camera: &Camera, middle: [f64; 2], half: f64) -> Line<Affine> {
+    let n = Affine::constant;
+    let origin = camera.viewpoint.to_array();
+    let part = |side: usize| {
+        let pixels = camera.pixels[side];
+        // A single pixel looks through the middle.
+        let (at, last) = match pixels {
+            1 => (n(1.0), n(2.0)),
+            _ => (Affine::variable(side, middle[side], half), n((pixels - 1) as f64)),
+        };
+        at / last * n(camera.screen[side]) - n(origin[side])
+    };
+    Line { origin: origin.map(n), dir: [part(0), part(1), n(-origin[2])] }
+}
+
+#[cfg(test)]
+mod tests;

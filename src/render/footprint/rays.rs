@@ -1,0 +1,163 @@
+//! The colours that the rays through a footprint return.
+
+use super::light;
+use super::scene::{Colour, Path, Place, Scene};
+use super::surface::{Surface, is_black, tint};
+use crate::geometry::sight::Line;
+use crate::numeric::affine::Affine;
+use crate::numeric::interval::Interval;
+use crate::numeric::scalar::{Scalar, dot};
+use crate::render::limits::MAX_DIST;
+use crate::world::certify::Met;
+
+/// The number of hits in a footprint after which its branches are no longer followed, but bounded.
+const MAX_HITS: usize = 48;
+
+/// The number of rays one after the other, each continuing the last, after which they are bounded.
+const MAX_DEPTH: usize = 24;
+
+/// The number of places that a ray may hit first from which on it is bounded.
+const MAX_PLACES: usize = 6;
+
+/// A branch that can add no more than this to a pixel's channel is bounded and not followed: 1/400 of a level.
+const NEGLIGIBLE: f64 = 1e-5;
+
+/// Rays.
+struct Ray {
+    path: Path,
+    /// The length of the lines' direction, in world units.
+    length: Affine,
+    /// The length of the path from the viewer to the lines' start, in world units.
+    travelled: Affine,
+    /// A bound on the factor by which the rays' light is multiplied.
+    weight: f64,
+    depth: usize,
+}
+
+/// Traces the rays of one footprint.
+pub(super) struct Tracer<'s> {
+    scene: &'s Scene<'s>,
+    hits: usize,
+}
+
+impl<'s> Tracer<'s> {
+    pub fn new(scene: &'s Scene<'s>) -> Self {
+        Self { scene, hits: 0 }
+    }
+
+    /// Encloses the colours that primary rays return.
+    pub fn primary(&mut self, line: &Line<Affine>) -> Colour {
+        let length = dot(line.dir, line.dir).sqrt();
+        let path = Path { line: *line, leaves: None };
+        self.colour(&Ray { path, length, travelled: Affine::constant(0.0), weight: 1.0, depth: 0 })
+    }
+
+    fn colour(&mut self, ray: &Ray) -> Colour {
+        let black = [Affine::constant(0.0); 3];
+        let travelled = ray.travelled.range();
+        if travelled.low > MAX_DIST {
+            return black;
+        }
+        let most = self.bound(ray, 0.0);
+        let is_negligible = ray.depth > 0 && ray.weight * most < NEGLIGIBLE;
+        if is_negligible || ray.depth >= MAX_DEPTH || travelled.high > MAX_DIST {
+            return up_to(most);
+        }
+        let (places, is_something) = self.scene.first(&ray.path);
+        if places.len() > MAX_PLACES || self.hits + places.len() > MAX_HITS {
+            let nearest = places.iter().map(|(hit, _)| hit.low()).fold(f64::INFINITY, f64::min);
+            return up_to(self.bound(ray, nearest));
+        }
+        self.hits += places.len();
+        let mut any = (!is_something).then_some(black);
+        for (hit, place) in places {
+            let most = self.bound(ray, hit.low());
+            let seen = match hit {
+                Met::Hits(t) | Met::Perhaps(t) => self.seen(ray, t, place),
+                Met::Doubtful(_) => up_to(most),
+            };
+            let seen = seen.map(|channel| if channel.rest > most { within(most) } else { channel });
+            any = Some(any.map_or(seen, |any| hull(any, seen)));
+        }
+        any.unwrap_or(black)
+    }
+
+    /// Encloses the colours that rays return which hit a place at t.
+    fn seen(&mut self, ray: &Ray, t: Affine, place: Place) -> Colour {
+        let surfaces = Surface::new(self.scene, &ray.path.line, t, place);
+        let any = surfaces.iter().map(|surface| self.shaded(ray, t, surface)).reduce(hull);
+        any.unwrap_or([Affine::WHOLE; 3])
+    }
+
+    fn shaded(&mut self, ray: &Ray, t: Affine, surface: &Surface) -> Colour {
+        let travelled = ray.travelled + t * ray.length;
+        let mut colour = surface.ambient;
+        let dir = ray.path.line.dir;
+        let toward = dir.map(|part| part / ray.length);
+        for light in &self.scene.model.lights {
+            let added = light::shine(self.scene, &*light.value, surface, toward);
+            colour = [0, 1, 2].map(|channel| colour[channel] + added[channel]);
+        }
+        colour = colour.map(|channel| channel / travelled);
+        let material = &self.scene.model.objects[surface.place.object].material;
+        if material.transparency != 0.0 {
+            let Some(tint) = tint(material.transparency, surface.diffuse) else {
+                return [Affine::WHOLE; 3];
+            };
+            let kept = Affine::constant(1.0) - Affine::constant(material.transparency);
+            let behind = self.onward(ray, surface, travelled, dir, &tint);
+            colour = [0, 1, 2].map(|channel| kept * colour[channel] + tint[channel] * behind[channel]);
+        }
+        if !is_black(&surface.specular) {
+            let across = dot(dir, surface.normal);
+            let twice = across + across;
+            let dir = [0, 1, 2].map(|axis| dir[axis] - twice * surface.normal[axis]);
+            let seen = self.onward(ray, surface, travelled, dir, &surface.specular);
+            colour = [0, 1, 2].map(|channel| colour[channel] + surface.specular[channel] * seen[channel]);
+        }
+        colour
+    }
+
+    /// Encloses the colours that rays return which continue from a surface. Their light is multiplied by `factor`.
+    fn onward(
+        &mut self,
+        ray: &Ray,
+        surface: &Surface,
+        travelled: Affine,
+        dir: [Affine; 3],
+        factor: &Colour,
+    ) -> Colour {
+        let path = Path { line: Line { origin: surface.at, dir }, leaves: Some(surface.place) };
+        let most = factor.iter().fold(0.0_f64, |most, channel| most.max(channel.range().magnitude()));
+        // A mirrored direction is as long as the one that it is mirrored from.
+        let length = ray.length;
+        self.colour(&Ray { path, length, travelled, weight: ray.weight * most, depth: ray.depth + 1 })
+    }
+
+    /// Bounds the magnitude of what rays return that hit nothing before t.
+    fn bound(&self, ray: &Ray, t: f64) -> f64 {
+        let most = match (ray.path.leaves, self.scene.depth) {
+            (Some(place), Some(depth)) => depth.beyond(Some(place.object)),
+            _ => self.scene.most,
+        };
+        if most == 0.0 {
+            return 0.0;
+        }
+        let path = Interval::point(t) * ray.length.range() + ray.travelled.range();
+        let bound = (Interval::point(most) / Interval { low: path.low.max(0.0), high: path.high }).high;
+        if bound.is_nan() { f64::INFINITY } else { bound }
+    }
+}
+
+/// Encloses all colours up to a magnitude.
+fn up_to(most: f64) -> Colour {
+    [within(most); 3]
+}
+
+fn within(most: f64) -> Affine {
+    if most.is_finite() { Interval { low: -most, high: most }.into() } else { Affine::WHOLE }
+}
+
+fn hull(one: Colour, other: Colour) -> Colour {
+    [0, 1, 2].map(|channel| one[channel].hull(other[channel]))
+}

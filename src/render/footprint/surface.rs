@@ -1,0 +1,83 @@
+//! The points of a surface that the lines of a footprint hit.
+
+use super::scene::{Colour, Place, Scene};
+use crate::geometry::sight::Line;
+use crate::numeric::affine::Affine;
+use crate::numeric::interval::Interval;
+use crate::numeric::scalar::{Scalar, dot};
+use crate::world::certify::{gradient_over, shading_normals};
+use crate::world::packets::shader::EncloseLook;
+
+/// The points that lines hit, and how they look there.
+pub(super) struct Surface {
+    pub place: Place,
+    pub at: [Affine; 3],
+    /// The unit normals, turned to face the lines where both sides are lit.
+    pub normal: [Affine; 3],
+    pub ambient: Colour,
+    pub diffuse: Colour,
+    pub specular: Colour,
+}
+
+impl Surface {
+    /// Returns the points at t of lines, once for each way that the normals may face; empty where these or the look are
+    /// open.
+    pub fn new(scene: &Scene, line: &Line<Affine>, t: Affine, place: Place) -> Vec<Self> {
+        Self::facing(scene, line, t, place).unwrap_or_default()
+    }
+
+    fn facing(scene: &Scene, line: &Line<Affine>, t: Affine, place: Place) -> Option<Vec<Self>> {
+        let object = &scene.model.objects[place.object];
+        let at = line.at(t);
+        let shape = object.shape.proven()?;
+        let normal = gradient_over(shape, at, place.part);
+        let length = dot(normal, normal).sqrt();
+        if length.range().low <= 0.0 || !length.is_bounded() {
+            return None;
+        }
+        let outward = normal.map(|part| part / length);
+        let toward = if object.shape.is_two_sided() {
+            dot(outward, line.dir).range()
+        } else {
+            Interval::constant(-1.0)
+        };
+        let look = EncloseLook::<f64>::look(&*object.shader, &object.material, at.map(|axis| axis.range()))?;
+        let [ambient, diffuse, specular] =
+            [look.ambient, look.diffuse, look.specular].map(|colour| colour.map(Affine::from));
+        let shaded = |normal: [Affine; 3]| {
+            let normal = shading_normals(shape, at, place.part, normal)?;
+            Some(Self { place, at, normal, ambient, diffuse, specular })
+        };
+        let mut all = Vec::with_capacity(2);
+        if toward.low <= 0.0 {
+            all.push(shaded(outward)?);
+        }
+        if toward.high >= 0.0 {
+            all.push(shaded(outward.map(|part| -part))?);
+        }
+        Some(all)
+    }
+}
+
+/// Returns the fraction of light that passes through an object at points; `None` where it is open.
+pub(super) fn tint(transparency: f64, diffuse: Colour) -> Option<Colour> {
+    let [red, green, blue] = diffuse;
+    let strongest = red.max(green).max(blue);
+    let transparency = Affine::constant(transparency);
+    let ratio = |channel: Affine| match channel == strongest {
+        true if strongest.rest == 0.0 => Affine::constant(1.0),
+        _ => (channel / strongest).min(Affine::constant(1.0)),
+    };
+    if strongest.range().low > 0.0 {
+        Some(diffuse.map(|channel| transparency * ratio(channel)))
+    } else if strongest.range().high <= 0.0 {
+        Some([transparency; 3])
+    } else {
+        None
+    }
+}
+
+/// Tells whether a colour is black, for certain.
+pub(super) fn is_black(colour: &Colour) -> bool {
+    colour.iter().all(|channel| channel.is_zero())
+}

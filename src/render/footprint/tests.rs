@@ -1,0 +1,90 @@
+use super::*;
+use crate::scene::reader;
+use crate::scene::registry::Registry;
+use std::path::Path;
+
+fn model(scene: &str) -> Model {
+    let registry = Registry::get().expect("sound types");
+    match reader::read(registry, "scene", Path::new(""), scene.as_bytes(), None) {
+        Ok(loaded) => loaded.model,
+        Err(report) => panic!("{report}"),
+    }
+}
+
+fn proof(model: &Model, pixel: [usize; 2], error: f64) -> Proof {
+    let depth = Depth::new(model);
+    Prover::new(model).pixel((model, depth.as_ref()), &model.camera.value, pixel, error)
+}
+
+/// A pixel is a thousandth of a unit wide on the image plane, and that of the image's middle looks along -z.
+const CAMERA: &str = "camera eye { pixeldim 8001 6001 worlddim 8 6 viewpoint 4 3 8 }
+    material m { ambient 0.5 0.5 0.5 diffuse 2 2 2 }";
+
+const MIDDLE: [usize; 2] = [4000, 3000];
+
+/// More than how much the colour at the middle of such a pixel differs from the mean.
+const CURVED: f64 = 1e-6;
+
+#[track_caller]
+fn holds(proof: &Proof, fraction: f64) {
+    let (low, high) = (proof.low.min_element() - CURVED, proof.high.max_element() + CURVED);
+    assert!(low <= fraction && fraction <= high, "{proof:?}, {fraction}");
+}
+
+#[test]
+fn a_plane_half_in_shadow_has_the_mean_of_both_halves() {
+    // The wall is 16 units from the viewer. The light is 10 units from the middle, at a cosine of 4/5: it adds
+    // 25 * 2 * 4/5 / 10 = 4 to the ambient 1/2. What is to the right of x = 4 is in the shadow of the screen.
+    let model = model(&format!(
+        "{CAMERA}
+         light lamp {{ location 4 9 0 emissivity 25 25 25 }}
+         plane wall {{ material m normal 0 0 1 point 0 0 -8 }}
+         fplane screen {{ material m normal 0 0 1 point 4 5 -4 xdir 1 0 0 dimensions 2 2 }}"
+    ));
+    let [lit, dark] = [9.0 / 2.0 / 16.0, 1.0 / 2.0 / 16.0];
+    let [left, middle, right] = [3999, 4000, 4001].map(|x| proof(&model, [x, 3000], 1.0 / 255.0));
+    assert!([left, middle, right].iter().all(|proof| proof.is_within(1.0 / 255.0, 1.0)));
+    holds(&left, lit);
+    holds(&middle, 0.5 * (lit + dark));
+    holds(&right, dark);
+    assert!(middle.footprints > 1 && middle.high.max_element() < lit && middle.low.min_element() > dark);
+}
+
+#[test]
+fn a_sphere_is_known_from_one_footprint() {
+    // The sphere is 14 units from the viewer, and lit like the wall above.
+    let model = model(&format!(
+        "{CAMERA}
+         light lamp {{ location 4 9 2 emissivity 25 25 25 }}
+         sphere ball {{ material m center 4 3 -8 radius 2 }}"
+    ));
+    let proof = proof(&model, MIDDLE, 1e-3 / 255.0);
+    assert_eq!(proof.footprints, 1);
+    assert!(proof.is_within(1e-3 / 255.0, 1.0), "{proof:?}");
+    holds(&proof, 9.0 / 2.0 / 14.0);
+}
+
+#[test]
+fn a_light_with_a_size_is_its_mean_where_all_of_it_is_seen() {
+    let model = model(&format!(
+        "{CAMERA}
+         light lamp {{ location 4 9 0 emissivity 25 25 25 size 0.01 }}
+         plane wall {{ material m normal 0 0 1 point 0 0 -8 }}"
+    ));
+    let proof = proof(&model, MIDDLE, 0.1 / 255.0);
+    assert_eq!(proof.footprints, 1);
+    holds(&proof, 9.0 / 2.0 / 16.0);
+}
+
+#[test]
+fn the_middle_of_the_bounds_is_shown_within_half_their_width() {
+    let proof = |low: f64, high: f64| Proof { low: Rgb::splat(low), high: Rgb::splat(high), footprints: 1 };
+    for (low, high) in [(0.2, 0.4), (0.9, 3.0), (-1.0, 0.1), (1.5, 4.0), (2.0, f64::INFINITY), (-3.0, -1.0)] {
+        for gain in [0.5, 1.0, 4.0] {
+            let proof = proof(low, high);
+            let error = proof.error(proof.middle(gain), gain);
+            assert!((error - proof.half_width(gain)).abs() < 1e-12, "{proof:?} {gain}");
+        }
+    }
+    assert!(!proof(-1.0, f64::INFINITY).is_within(0.4, 1.0));
+}

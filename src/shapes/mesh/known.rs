@@ -1,0 +1,126 @@
+//! What a search has found of a ray's first hit.
+
+use super::face::{Leaving, largest};
+use crate::geometry::ray::{Bracket, MISS, Ray};
+use crate::simd::soa::LANES;
+use crate::world::coincidence::CLOSE;
+
+/// The hits of a ray that a search has found so far.
+#[derive(Clone, Copy)]
+pub(super) struct Nearest {
+    /// The smallest lower bound of a hit's distance, and its face.
+    near: f64,
+    face: u64,
+    /// The second smallest lower bound.
+    second: f64,
+    /// The smallest upper bound of a certain hit's distance.
+    far: f64,
+    /// The smallest lower bound of an uncertain hit's distance.
+    doubtful: f64,
+}
+
+/// What is known of a ray's first hit.
+pub(super) enum Known {
+    /// A bracket of the distance.
+    Bracket(Bracket),
+    /// The ray certainly hits this face first. Where `is_alone`, it is the face that [`Surface::face_along`] returns.
+    ///
+    /// [`Surface::face_along`]: super::Surface::face_along
+    Face { face: usize, bracket: Bracket, is_alone: bool },
+}
+
+impl Nearest {
+    pub(super) const NONE: Self = Self { near: MISS, face: 0, second: MISS, far: MISS, doubtful: MISS };
+
+    /// Adds a hit of a face, or a miss.
+    #[inline(always)]
+    pub(super) fn add(&mut self, face: u64, Bracket { near, far }: Bracket) {
+        let is_first = near < self.near;
+        let smaller = |one: f64, other: f64| if one < other { one } else { other };
+        // Minima, which need no branches.
+        self.second = smaller(self.second, if is_first { self.near } else { near });
+        self.face = if is_first { face } else { self.face };
+        self.near = smaller(near, self.near);
+        let uncertain = if far == MISS { near } else { MISS };
+        self.doubtful = smaller(uncertain, self.doubtful);
+        self.far = smaller(far, self.far);
+    }
+
+    /// Returns the distance beyond which no more faces matter to a ray that ends at `t_max`, in world units: where hits
+    /// are no longer found that rounding may not tell from the first one, or nothing if `is_any` certain hit will do.
+    #[inline(always)]
+    pub(super) fn end(&self, ray: &Ray, t_max: f64, is_any: bool) -> f64 {
+        let end = self.far + close(ray, self.far);
+        let end = if is_any & (self.far < MISS) { -1.0 } else { end };
+        if end < t_max { end } else { t_max }
+    }
+
+    /// Returns what is known of the hit of a ray that ends at `end`. If `is_any`, any certain hit will do.
+    #[inline(always)]
+    pub(super) fn known(self, ray: &Ray, end: f64, leaving: Leaving, is_any: bool) -> Known {
+        let Self { near, face, second, far, doubtful } = self;
+        if doubtful < far {
+            // A certain hit behind an uncertain one does not make the nearer one certain.
+            return Known::Bracket(Bracket { near, far: if is_any && far < MISS { far } else { MISS } });
+        }
+        let bracket = Bracket { near, far };
+        if far < MISS && far < second && !is_any {
+            let is_alone = leaving.most < 0.0 && far + close(ray, far) < second.min(end);
+            Known::Face { face: face as usize, bracket, is_alone }
+        } else {
+            Known::Bracket(bracket)
+        }
+    }
+}
+
+/// Returns more than the distance between two hits that [`Surface::face_along`] takes for the same, in world units.
+///
+/// [`Surface::face_along`]: super::Surface::face_along
+#[inline(always)]
+fn close(ray: &Ray, distance: f64) -> f64 {
+    2.0 * CLOSE * (distance + largest(ray.origin))
+}
+
+/// What a search has found of eight rays.
+#[derive(Clone)]
+pub(super) struct Eight {
+    near: [f64; LANES],
+    face: [u64; LANES],
+    second: [f64; LANES],
+    far: [f64; LANES],
+    doubtful: [f64; LANES],
+}
+
+impl Eight {
+    pub(super) const NONE: Self = Self {
+        near: [MISS; LANES],
+        face: [0; LANES],
+        second: [MISS; LANES],
+        far: [MISS; LANES],
+        doubtful: [MISS; LANES],
+    };
+
+    /// Returns what was found of one ray.
+    #[inline(always)]
+    pub(super) fn get(&self, lane: usize) -> Nearest {
+        let Self { near, face, second, far, doubtful } = self;
+        Nearest {
+            near: near[lane],
+            face: face[lane],
+            second: second[lane],
+            far: far[lane],
+            doubtful: doubtful[lane],
+        }
+    }
+
+    /// Sets what was found of one ray.
+    #[inline(always)]
+    pub(super) fn set(&mut self, lane: usize, nearest: Nearest) {
+        let Nearest { near, face, second, far, doubtful } = nearest;
+        self.near[lane] = near;
+        self.face[lane] = face;
+        self.second[lane] = second;
+        self.far[lane] = far;
+        self.doubtful[lane] = doubtful;
+    }
+}

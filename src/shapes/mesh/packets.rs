@@ -1,0 +1,200 @@
+//! Meshes for packets of rays.
+
+use super::hits::{Last, NOTHING};
+use super::known::Known;
+use super::memo::Memo;
+use super::search::Aims;
+use super::shape::{ByFaces, Mesh};
+use crate::geometry::ray::{Bracket, Drift, MISS, Ray, RayRange, Side};
+use crate::geometry::ray_packet::{self, Nearest, PACKET_SIZE, RayPacket};
+use crate::shapes::plane::Plane;
+use crate::shapes::triangle::unit_normals;
+use crate::simd::cpu::{Cpu, kernels};
+use crate::simd::soa::{LANES, Vectors};
+use crate::world::accuracy::Bounded;
+use crate::world::hittable::Hittable;
+use crate::world::interaction::{SurfaceInteraction, turned};
+use crate::world::packets::shape::Packets;
+use crate::world::shape::{ByPackets, Shape};
+
+impl<A: Bounded> Packets for Shape<Mesh<A>, ByPackets, ByFaces> {
+    fn closest_hits(
+        &self,
+        cpu: Cpu,
+        rays: RayPacket,
+        sides: Option<&[Side]>,
+        id: u64,
+        nearest: Nearest,
+    ) -> bool {
+        let (mut near, mut far) = ([MISS; PACKET_SIZE], [MISS; PACKET_SIZE]);
+        let count = rays.len();
+        let mesh = &self.shape;
+        let (side, ends) = (sides.map(|sides| sides[0]), &nearest.far[..count]);
+        if side.is_none() || mesh.can_hit_itself {
+            let leaving = mesh.leaving(side, rays.origin_error);
+            let aims = Aims { leaving, drift: Drift::NONE, is_any: false };
+            let mut last = Last::none();
+            Memo::with(|memo| {
+                mesh.surface.search(cpu, rays, ends, aims, |lane, found| {
+                    let (ray, end) = (rays.get(lane), ends[lane]);
+                    let range = RayRange { far: end, ..RayRange::ALL };
+                    let known = found.known(&ray, end, leaving, false);
+                    let (bracket, face) =
+                        mesh.surface.bracketed::<A>(known, &ray, &range, leaving, &mut last);
+                    (near[lane], far[lane]) = (bracket.near, bracket.far);
+                    if let Some(face) = face {
+                        memo.note(mesh.surface.id, &ray, bracket.near, face);
+                    }
+                });
+            });
+        }
+        ray_packet::closest_of_brackets(cpu, &near[..count], &far[..count], id, nearest)
+    }
+
+    fn occluded(
+        &self,
+        cpu: Cpu,
+        rays: RayPacket,
+        sides: Option<&[Side]>,
+        t_max: &[f64],
+        blocked: &mut [u64],
+        doubt: &mut [u64],
+    ) -> bool {
+        let (mut near, mut far) = ([MISS; PACKET_SIZE], [MISS; PACKET_SIZE]);
+        let count = t_max.len();
+        let mesh = &self.shape;
+        let side = sides.map(|sides| sides[0]);
+        if side.is_none() || mesh.can_hit_itself {
+            let aims =
+                Aims { leaving: mesh.leaving(side, rays.origin_error), drift: Drift::NONE, is_any: true };
+            let mut ends = [0.0; PACKET_SIZE];
+            for lane in 0..count {
+                ends[lane] = if blocked[lane] == 0 { t_max[lane] } else { 0.0 };
+            }
+            mesh.surface.search(cpu, rays, &ends[..count], aims, |lane, found| {
+                let known = found.known(&rays.get(lane), t_max[lane], aims.leaving, true);
+                let (Known::Face { bracket, .. } | Known::Bracket(bracket)) = known;
+                (near[lane], far[lane]) = (bracket.near, bracket.far);
+            });
+        }
+        ray_packet::occluded_by_brackets(cpu, &near[..count], &far[..count], t_max, blocked, doubt)
+    }
+
+    fn refine(
+        &self,
+        _cpu: Cpu,
+        rays: RayPacket,
+        sides: Option<&[Side]>,
+        (near, far): (&[f64], &[f64]),
+        out: &mut [f64],
+    ) {
+        let mesh = &self.shape;
+        for lane in 0..out.len() {
+            let leaving = mesh.leaving(sides.map(|sides| sides[lane]), rays.origin_error);
+            let bracket = Bracket { near: near[lane], far: far[lane] };
+            out[lane] = match bracket.near == bracket.far {
+                true => bracket.near,
+                false => mesh.surface.refined::<A>(&rays.get(lane), &RayRange::ALL, leaving, bracket),
+            };
+        }
+    }
+
+    fn interact(&self, cpu: Cpu, rays: RayPacket, distances: &[f64], interaction: SurfaceInteraction) {
+        let SurfaceInteraction { points, normals, sides, cosines, travelled } = interaction;
+        Memo::with(|memo| {
+            interact(cpu, &self.shape, rays, distances, memo, sides, cosines, travelled, points, normals);
+        });
+    }
+
+    fn finds_normals_by_rays(&self) -> bool {
+        true
+    }
+
+    fn t_bounds(&self, ray: &Ray, range: &RayRange) -> Bracket {
+        self.shape.bracket(Cpu::best(), ray, range, &mut Last::none()).0
+    }
+
+    fn t_bounds_within(&self, ray: &Ray, range: &RayRange, drift: Drift) -> Bracket {
+        self.shape.surface.bracket_within::<A>(Cpu::best(), ray, range, drift, &mut Last::none())
+    }
+
+    fn brackets_within(
+        &self,
+        cpu: Cpu,
+        rays: RayPacket,
+        drift: Drift,
+        ends: &[f64],
+        near: &mut [f64],
+        far: &mut [f64],
+    ) {
+        let (surface, mut last) = (&self.shape.surface, Last::<Plane<A>>::none());
+        near.fill(MISS);
+        far.fill(MISS);
+        let aims = Aims { leaving: NOTHING, drift, is_any: false };
+        surface.search(cpu, rays, ends, aims, |lane, found| {
+            let ray = rays.get(lane);
+            let known = found.known(&ray, ends[lane], NOTHING, false);
+            Bracket { near: near[lane], far: far[lane] } = surface.bracketed_within(known, &ray, &mut last);
+        });
+    }
+
+    fn refine_one(&self, ray: &Ray, origin_side: Option<Side>) -> f64 {
+        let (leaving, range) =
+            (self.shape.leaving(origin_side, 0.0), RayRange { origin_side, ..RayRange::ALL });
+        match self.shape.surface.first(Cpu::best(), ray, &range, leaving, Drift::NONE, false) {
+            Known::Face { face, .. } => self.shape.surface.plane::<A>(face).quick_crossing(ray),
+            Known::Bracket(_) => f64::NAN,
+        }
+    }
+}
+
+/// Tells whether a ray of a packet is the one before it: arrays are padded with copies of the last ray.
+#[inline(always)]
+fn is_copy(rays: &RayPacket, lane: usize) -> bool {
+    lane > 0 && {
+        let (one, other) = (rays.get(lane), rays.get(lane - 1));
+        one.dir == other.dir && one.origin == other.origin
+    }
+}
+
+kernels! {
+    /// Computes the points, normals and sides that rays hit at these distances, in world units.
+    fn interact[A: Bounded](
+        mesh: &Mesh<A>, rays: RayPacket, distances: &[f64], memo: &Memo, sides: &mut [Side],
+        cosines: &mut [f64], travelled: &mut [f64]
+    ) => points, normals {
+        let (is_two_sided, surface) = (mesh.is_two_sided(), &mesh.surface);
+        let mut known = ([usize::MAX; LANES], Vectors::ZERO);
+        for first in (0..travelled.len()).step_by(LANES) {
+            let mut faces = [usize::MAX; LANES];
+            for lane in first..first + LANES {
+                let (ray, distance) = (rays.get(lane), distances[lane]);
+                faces[lane - first] = if is_copy(&rays, lane) && distance == distances[lane - 1] && lane > first {
+                    faces[lane - first - 1]
+                } else {
+                    memo.face(surface.id, &ray, distance).unwrap_or_else(|| surface.face_along(&ray, distance))
+                };
+            }
+            // Neighbouring rays often hit the same faces, and normals take many digits.
+            if known.0 != faces {
+                let mut corners = [Vectors::ZERO, Vectors::ZERO, Vectors::ZERO];
+                for lane in 0..LANES {
+                    let [a, b, c] = surface.corners(faces[lane]);
+                    corners[0].set(lane, a);
+                    corners[1].set(lane, b);
+                    corners[2].set(lane, c);
+                }
+                known = (faces, unit_normals(&corners));
+            }
+            for lane in first..first + LANES {
+                let (ray, place) = (rays.get(lane), lane - first);
+                let point = ray.at(distances[lane]);
+                let turn;
+                (sides[lane], cosines[lane], turn) = turned(ray.dir, known.1.get(place), is_two_sided);
+                points.set(lane, point);
+                normals.set(lane, surface.smoothed(faces[place], point, turn));
+                travelled[lane] += distances[lane];
+            }
+        }
+    }
+}

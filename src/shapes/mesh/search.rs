@@ -1,0 +1,204 @@
+//! The search for the first hits of a packet's rays.
+
+use super::face::{Flat, Leaving, UNDERFLOW, largest, side_error, t_bounds};
+use super::known::{Eight, Nearest};
+use super::surface::Surface;
+use crate::geometry::bvh::{self, PacketVisitor, Stack};
+use crate::geometry::ray::{Bracket, Drift, MISS, Ray};
+use crate::geometry::ray_packet::RayPacket;
+use crate::simd::cpu::{Cpu, kernels};
+use crate::simd::soa::LANES;
+use glam::DVec3;
+use std::cell::Cell;
+use std::ops::Range;
+
+/// The scratch space of searches.
+#[derive(Default)]
+pub(super) struct Scratch {
+    pub stack: Stack,
+    /// The distances at which the rays of a packet end, in world units.
+    t_max: Vec<f64>,
+    found: Vec<Eight>,
+}
+
+thread_local! {
+    static SCRATCH: Cell<Option<Scratch>> = const { Cell::new(None) };
+}
+
+impl Scratch {
+    /// Calls a function with this thread's scratch space.
+    #[inline(always)]
+    pub fn with<R>(call: impl FnOnce(&mut Self) -> R) -> R {
+        let mut scratch = SCRATCH.take().unwrap_or_default();
+        let result = call(&mut scratch);
+        SCRATCH.set(Some(scratch));
+        result
+    }
+}
+
+/// What the rays of a packet have in common.
+#[derive(Clone, Copy)]
+pub(super) struct Aims {
+    pub leaving: Leaving,
+    pub drift: Drift,
+    /// Whether any certain hit of a ray will do.
+    pub is_any: bool,
+}
+
+/// The search for the hits of a packet's rays.
+struct Search<'s> {
+    cpu: Cpu,
+    surface: &'s Surface,
+    rays: RayPacket<'s>,
+    /// The distances at which the rays end, in world units.
+    ends: &'s [f64],
+    aims: Aims,
+    found: &'s mut [Eight],
+}
+
+impl Surface {
+    /// Searches for the first hits of a packet's rays before their ends, and calls a function for each ray that ends
+    /// beyond 0, with its lane and what is found.
+    #[inline(always)]
+    pub(super) fn search(
+        &self,
+        cpu: Cpu,
+        rays: RayPacket,
+        ends: &[f64],
+        aims: Aims,
+        mut each: impl FnMut(usize, Nearest),
+    ) {
+        Scratch::with(|Scratch { stack, t_max, found }| {
+            t_max.clear();
+            t_max.extend_from_slice(ends);
+            found.clear();
+            found.resize(ends.len() / LANES, Eight::NONE);
+            let mut search = Search { cpu, surface: self, rays, ends, aims, found };
+            bvh::visit(cpu, &self.tree, stack, rays, aims.drift, t_max, &mut search);
+            for lane in (0..ends.len()).filter(|lane| ends[*lane] > 0.0) {
+                each(lane, found[lane / LANES].get(lane % LANES));
+            }
+        });
+    }
+}
+
+impl PacketVisitor for Search<'_> {
+    fn test(&mut self, face: usize, lanes: Range<usize>, t_max: &mut [f64]) {
+        let Self { cpu, surface, rays, ends, aims, .. } = *self;
+        test(cpu, face as u64, surface.corners(face), rays, lanes, ends, &aims, self.found, t_max);
+    }
+
+    fn few(&self) -> u32 {
+        2
+    }
+
+    fn test_one(&mut self, face: usize, lane: usize, t_max: &mut [f64]) {
+        let Aims { leaving, drift, is_any } = self.aims;
+        let ray = self.rays.get(lane);
+        let bracket = t_bounds(self.surface.corners(face), &ray, self.ends[lane], leaving, drift);
+        if bracket.near < MISS {
+            let eight = &mut self.found[lane / LANES];
+            let mut nearest = eight.get(lane % LANES);
+            nearest.add(face as u64, bracket);
+            eight.set(lane % LANES, nearest);
+            t_max[lane] = nearest.end(&ray, t_max[lane], is_any);
+        }
+    }
+}
+
+kernels! {
+    /// Tests the rays of some lanes against a face.
+    fn test(
+        face: u64, corners: [DVec3; 3], rays: RayPacket, lanes: Range<usize>, ends: &[f64], aims: &Aims,
+        found: &mut [Eight], t_max: &mut [f64]
+    ) {
+        let flat = Flat::of(corners);
+        for first in lanes.step_by(LANES) {
+            let of = first..first + LANES;
+            let rays = rays.part(of.clone()).first(LANES);
+            let (missed, inside) = passed(corners, rays, aims.drift);
+            if missed != [1; LANES] {
+                let left = if aims.leaving.most >= 0.0 { left(&flat, rays, aims, &missed) } else { None };
+                let (ends, t_max) = (&ends[of.clone()][..LANES], &mut t_max[of][..LANES]);
+                add(face, &flat, rays, ends, aims, (&missed, &inside, left.as_ref()), &mut found[first / LANES], t_max);
+            }
+        }
+    }
+}
+
+/// Tells which of eight rays certainly miss a face, and which certainly pass through it, as [`face::passed`] does; 1 for
+/// those.
+///
+/// [`face::passed`]: super::face::passed
+#[inline(always)]
+fn passed(corners: [DVec3; 3], rays: RayPacket, drift: Drift) -> ([u64; LANES], [u64; LANES]) {
+    let (error, more) = side_error(drift);
+    let (mut missed, mut inside) = ([0; LANES], [0; LANES]);
+    for lane in 0..LANES {
+        let Ray { origin, dir } = rays.get(lane);
+        let [a, b, c] = [corners[0] - origin, corners[1] - origin, corners[2] - origin];
+        let [one, two, three] = [largest(a) + more, largest(b) + more, largest(c) + more];
+        let sides = [a.cross(b).dot(dir), b.cross(c).dot(dir), c.cross(a).dot(dir)];
+        let errors =
+            [error * one * two + UNDERFLOW, error * two * three + UNDERFLOW, error * three * one + UNDERFLOW];
+        // Signs of differences, not comparisons, which the compiler would take one by one. Nothing is NaN, as
+        // coordinates are at most 1e152.
+        let plus = |side: usize| (errors[side] - sides[side]).to_bits();
+        let minus = |side: usize| (errors[side] + sides[side]).to_bits();
+        let any = (plus(0) | plus(1) | plus(2)) & (minus(0) | minus(1) | minus(2));
+        let all = (plus(0) & plus(1) & plus(2)) | (minus(0) & minus(1) & minus(2));
+        missed[lane] = any >> 63;
+        inside[lane] = all >> 63;
+    }
+    (missed, inside)
+}
+
+/// The brackets of eight rays with a face that they leave or may leave; `None` for other rays.
+type Left = [Option<Bracket>; LANES];
+
+/// Returns the brackets of those rays that leave a face or may leave it, except for those that miss it.
+#[inline(never)]
+fn left(
+    flat: &Flat,
+    rays: RayPacket,
+    aims: &Aims,
+    missed: &[u64; LANES],
+) -> Option<[Option<Bracket>; LANES]> {
+    let mut left = [None; LANES];
+    for lane in (0..LANES).filter(|lane| missed[*lane] == 0) {
+        left[lane] = flat.left(&rays.get(lane), aims.leaving, aims.drift);
+    }
+    left.iter().any(Option::is_some).then_some(left)
+}
+
+/// Adds the hits of eight rays with a face.
+#[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "they are arrays")]
+fn add(
+    face: u64,
+    flat: &Flat,
+    rays: RayPacket,
+    ends: &[f64],
+    aims: &Aims,
+    (missed, inside, left): (&[u64; LANES], &[u64; LANES], Option<&Left>),
+    found: &mut Eight,
+    t_max: &mut [f64],
+) {
+    let (mut near, mut far) = ([MISS; LANES], [MISS; LANES]);
+    for lane in 0..LANES {
+        let bracket = flat.t_bounds(&rays.get(lane), ends[lane], aims.leaving, aims.drift, inside[lane] != 0);
+        near[lane] = if missed[lane] != 0 { MISS } else { bracket.near };
+        far[lane] = if missed[lane] != 0 { MISS } else { bracket.far };
+    }
+    for lane in 0..LANES {
+        if let Some(bracket) = left.and_then(|left| left[lane]) {
+            (near[lane], far[lane]) = (bracket.near, bracket.far);
+        }
+    }
+    for lane in 0..LANES {
+        let mut nearest = found.get(lane);
+        nearest.add(face, Bracket { near: near[lane], far: far[lane] });
+        found.set(lane, nearest);
+        t_max[lane] = nearest.end(&rays.get(lane), t_max[lane], aims.is_any);
+    }
+}

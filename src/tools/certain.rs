@@ -1,0 +1,194 @@
+//! Measures certified pixels: how many there are, whether samples contradict them, and what they cost.
+
+use crate::render::bytes::shown;
+use crate::render::observer::{Count, TraceObserver};
+use crate::render::plan::Plan;
+use crate::render::ray_stats::Cuts;
+use crate::render::renderer::Renderer;
+use crate::render::tiles::{self, TILE, TOGETHER};
+use crate::render::trace::{Bounded, Scratch, Tracer};
+use crate::scene::model::Model;
+use crate::simd::cpu::Cpu;
+use crate::tools::bench::clock;
+use crate::world::camera::Adaptive;
+use crate::world::material::Rgb;
+use crate::world::sample::{SCRAMBLE, Sampler};
+use rayon::prelude::*;
+
+/// The number of independent images that the true colours are the mean of, and of the samples per pixel of each.
+const IMAGES: u32 = 8;
+const SAMPLES: u32 = 512;
+
+/// How many standard errors of the mean of [`IMAGES`] colours are beyond what is possible: of numbers that are distributed
+/// normally, one in a million is farther off.
+const IMPOSSIBLE: f64 = 16.0;
+
+/// A colour as samples have it, as it is shown, and the standard error of each channel.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Sampled {
+    colour: Rgb,
+    error: Rgb,
+}
+
+/// What is found of a limit. Errors are in levels of 1/255.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// The fraction of pixels that are certified.
+    pub certified: f64,
+    /// The greatest difference of a certified pixel from the samples.
+    pub worst: f64,
+    /// The number of pixels that differ from the samples by more than what is proven and what the samples may be off.
+    pub contradicted: usize,
+    /// The mean and the greatest bound of the other pixels.
+    pub open: [f64; 2],
+    /// The CPU time of one thread, in seconds.
+    pub seconds: f64,
+    /// That of the same render without proofs.
+    pub without: f64,
+    /// The mean number of footprints per pixel.
+    pub footprints: f64,
+}
+
+/// Renders the colours of a model by 4096 samples per pixel, on all threads, in rows from the top.
+pub fn truth(renderer: &Renderer, model: &mut Model) -> Vec<Sampled> {
+    let camera = &mut model.camera.value;
+    (camera.samples, camera.adaptive, camera.certain) = (SAMPLES, None, false);
+    camera.sampler = Sampler::Sobol;
+    let [width, height] = camera.pixels;
+    let mut plan = Plan::new(model);
+    let (mut sums, mut squares) = (Vec::new(), Vec::new());
+    for image in 1..=IMAGES {
+        plan.camera.scramble = SCRAMBLE ^ image.wrapping_mul(0x9e37_79b9);
+        let row = |y: usize| {
+            let pixels: Vec<_> = (0..width).map(|x| [x, y]).collect();
+            let (mut scratch, mut nobody) = (Scratch::default(), Cuts::default());
+            let mut tracer = Tracer::new(&plan, Cpu::best(), &mut scratch, &mut nobody);
+            let seen = tracer.pixels(&pixels);
+            (0..width).map(|lane| seen.get(lane)).collect::<Vec<_>>()
+        };
+        let rows = || (0..height).into_par_iter().rev().map(row).collect::<Vec<_>>();
+        let colours = renderer.run(rows).concat();
+        sums.resize(colours.len(), Rgb::ZERO);
+        squares.resize(colours.len(), Rgb::ZERO);
+        for ((sum, square), colour) in sums.iter_mut().zip(&mut squares).zip(colours) {
+            *sum += colour;
+            *square += colour * colour;
+        }
+    }
+    let images = f64::from(IMAGES);
+    let sampled = |(sum, square): (&Rgb, &Rgb)| {
+        let mean = *sum / images;
+        let variance = (*square / images - mean * mean).max(Rgb::ZERO) / (images - 1.0);
+        Sampled { colour: shown(mean), error: variance.map(f64::sqrt) }
+    };
+    sums.iter().zip(&squares).map(sampled).collect()
+}
+
+/// Collects what is proven of pixels, in their order.
+#[derive(Default)]
+struct Bounds(Vec<Bounded>);
+
+impl TraceObserver for Bounds {
+    const SEES: bool = false;
+
+    fn count(&mut self, count: Count) {
+        if let Count::Bounded { error, is_certified, footprints } = count {
+            self.0.push(Bounded { error, is_certified, footprints });
+        }
+    }
+}
+
+/// Measures a limit, where 1 is white, against the colours that [`truth`] returns.
+pub fn measure(renderer: &Renderer, model: &mut Model, limit: f64, truth: &[Sampled]) -> Outcome {
+    let camera = &mut model.camera.value;
+    (camera.samples, camera.adaptive) = (4, Some(Adaptive { most: 4096, error: Some(limit) }));
+    camera.certain = true;
+    let (certain, bounds, seconds) = render(renderer, model);
+    model.camera.value.certain = false;
+    let (_, _, without) = render(renderer, model);
+    let (mut worst, mut contradicted, mut open) = (0.0_f64, 0, Vec::new());
+    for ((colour, bound), truth) in certain.iter().zip(&bounds).zip(truth) {
+        let off = (shown(*colour) - truth.colour).abs();
+        if bound.is_certified {
+            worst = worst.max(off.max_element());
+        } else {
+            open.push(255.0 * bound.error);
+        }
+        contradicted += usize::from((off - IMPOSSIBLE * truth.error).max_element() > bound.error);
+    }
+    let count = bounds.len() as f64;
+    let mean = if open.is_empty() { 0.0 } else { open.iter().sum::<f64>() / open.len() as f64 };
+    Outcome {
+        certified: 1.0 - open.len() as f64 / count,
+        worst: 255.0 * worst,
+        contradicted,
+        open: [mean, open.iter().copied().fold(0.0, f64::max)],
+        seconds,
+        without,
+        footprints: bounds.iter().map(|bound| f64::from(bound.footprints)).sum::<f64>() / count,
+    }
+}
+
+/// Renders a model on one thread, in rows from the top: its colours, what is proven of them, and the CPU time.
+fn render(renderer: &Renderer, model: &Model) -> (Vec<Rgb>, Vec<Bounded>, f64) {
+    renderer.run(|| {
+        let (mut scratch, mut bounds) = (Scratch::default(), Bounds::default());
+        let start = clock::now();
+        let plan = Plan::new(model);
+        let [width, height] = plan.camera.pixels;
+        let mut colours = vec![Rgb::ZERO; width * height];
+        let mut proven = vec![Bounded::default(); width * height];
+        let mut pixels = Vec::new();
+        for (low, left) in (0..height)
+            .step_by(TILE)
+            .flat_map(|low| (0..width).step_by(TILE * TOGETHER).map(move |left| (low, left)))
+        {
+            pixels.clear();
+            tiles::list(left..width.min(left + TILE * TOGETHER), low..height.min(low + TILE), &mut pixels);
+            bounds.0.clear();
+            let mut tracer = Tracer::new(&plan, Cpu::best(), &mut scratch, &mut bounds);
+            let seen = tracer.pixels(&pixels);
+            let at = |[x, y]: [usize; 2]| (height - 1 - y) * width + x;
+            (0..pixels.len()).for_each(|lane| colours[at(pixels[lane])] = seen.get(lane));
+            pixels.iter().zip(&bounds.0).for_each(|(pixel, bound)| proven[at(*pixel)] = *bound);
+        }
+        (colours, proven, (clock::now() - start).as_secs_f64())
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::reader;
+    use crate::scene::registry::Registry;
+    use std::path::Path;
+
+    /// A floor, a wall with a mirror, spheres, a cone and a torus, a pane of glass, two lights, one of them with a size.
+    const SCENE: &str = "camera eye { pixeldim 16 12 worlddim 8 6 viewpoint 4 3 8 }
+        material paper { ambient 0.4 0.4 0.3 diffuse 3 3 3 }
+        material shiny { ambient 0.1 0.2 0.3 diffuse 2 1 1 specular 0.4 shininess 30 }
+        material glass { ambient 0.1 0.1 0.1 diffuse 1 2 3 transparency 0.6 }
+        light lamp { location 2 8 4 emissivity 9 8 7 }
+        light ball { location 7 6 3 emissivity 4 5 6 size 0.3 }
+        plane floor { material paper normal 0 1 0 point 0 0 0 }
+        plane back { material shiny normal 0 0 1 point 0 0 -7 }
+        sphere one { material paper center 2 1.5 -3 radius 1.2 }
+        sphere two { material shiny center 5 1 -4 radius 1 }
+        torus ring { material paper center 6 4 -4 direction 0.3 1 0.5 radius 0.9 tube 0.3 }
+        fplane pane { material glass normal 0 0 1 point 4.5 0.5 -1 xdir 1 0 0 dimensions 2 2 }";
+
+    #[test]
+    fn certified_pixels_are_not_contradicted_by_samples() {
+        let registry = Registry::get().expect("sound types");
+        let mut model = match reader::read(registry, "scene", Path::new(""), SCENE.as_bytes(), None) {
+            Ok(loaded) => loaded.model,
+            Err(report) => panic!("{report}"),
+        };
+        let renderer = Renderer::new(0).expect("threads");
+        let truth = truth(&renderer, &mut model);
+        let outcome = measure(&renderer, &mut model, 2.0 / 255.0, &truth);
+        assert_eq!(outcome.contradicted, 0, "{outcome:?}");
+        assert!(outcome.certified > 0.5, "{outcome:?}");
+        assert!(outcome.worst < 2.5, "{outcome:?}");
+    }
+}
