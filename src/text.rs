@@ -4,6 +4,7 @@ use clap::ValueEnum;
 use image::ImageError;
 use serde::Serialize;
 use std::borrow::Cow;
+use std::ffi::OsStr;
 use std::io;
 use std::panic::Location;
 use std::path::Path;
@@ -78,6 +79,23 @@ fn cut(text: &str, (max_len, [first, last]): (usize, [usize; 2])) -> Cow<'_, str
 /// Returns the last boundary between two characters of a text that is not after byte `at`.
 pub fn boundary(text: &str, at: usize) -> usize {
     (0..=at.min(text.len())).rev().find(|at| text.is_char_boundary(*at)).unwrap_or(0)
+}
+
+/// Returns the shortest decimal that reads back as the same number.
+pub fn shortest(number: f64) -> String {
+    let text = format!("{number:?}");
+    text.strip_suffix(".0").unwrap_or(&text).to_owned()
+}
+
+/// Quotes a word of a command for a shell.
+pub fn quoted(word: &OsStr) -> String {
+    let word = word.to_string_lossy();
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "_-./:=+,@%".contains(c);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        word.into_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
 }
 
 /// Returns the file that was probably meant by a path that leads nowhere: the name of a file in the same folder.

@@ -4,7 +4,7 @@ mod certain;
 mod sampling;
 
 use super::failure::{Failure, print};
-use super::{cpu, input, method};
+use super::{cpu, input, method, set};
 use crate::scene::model::Model;
 use crate::scene::reader;
 use crate::scene::registry::Registry;
@@ -24,6 +24,8 @@ use std::time::Duration;
 pub struct Args {
     /// The scenes; `-` reads one from standard input; by default four built-in ones
     scenes: Vec<PathBuf>,
+    #[command(flatten)]
+    set: set::Args,
     #[command(flatten)]
     cpu: cpu::Args,
     /// Measuring time for each number, in seconds
@@ -66,7 +68,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let accuracy = args.method.accuracy()?;
     let mut models = Vec::new();
     for path in &args.scenes {
-        models.push((path.display().to_string(), input::load(registry, path, accuracy)?));
+        models.push((path.display().to_string(), input::load(registry, path, &args.set, accuracy)?));
     }
     if args.scenes.is_empty() {
         for (name, scene) in scenes::all() {

@@ -5,7 +5,7 @@ use super::input::{self, Source};
 use super::interrupt::{self, Manner};
 use super::measuring::{Work, wait};
 use super::output::{self, Output};
-use super::{messages, progress, stop};
+use super::{messages, progress, set, stop};
 use crate::scene::choice::Choice;
 use crate::scene::model::Model;
 use crate::scene::registry::Registry;
@@ -27,6 +27,8 @@ use std::time::{Duration, Instant};
 pub struct Args {
     /// The scene; `-` reads it from standard input
     scene: PathBuf,
+    #[command(flatten)]
+    set: set::Args,
     /// Directory for the chart (SCENE.svg and SCENE.png), its numbers (SCENE.csv and SCENE.json) and the verdict in
     /// words (SCENE.txt); by default the working directory
     #[arg(short, long, value_name = "DIR", default_value = ".", hide_default_value = true)]
@@ -48,7 +50,7 @@ const NOTHING: &str = "nothing has been measured yet";
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let limit = args.time_limit.unwrap_or(LIMIT).min(Duration::from_secs(1 << 30));
     let (mut work, start) = (Work::within(limit), Instant::now());
-    let source = Source::read(&args.scene)?;
+    let source = Source::read(&args.scene, &args.set)?;
     input::told(source.load(registry, None))?;
     let load = all_accuracies(registry, &source)?;
     let name = match args.scene.file_stem() {

@@ -1,7 +1,7 @@
 //! `tabray check`: reports the faults of scenes.
 
 use super::failure::{Failure, tell};
-use super::{input, messages};
+use super::{input, messages, set};
 use crate::scene::registry::Registry;
 use std::path::PathBuf;
 
@@ -13,12 +13,14 @@ pub struct Args {
     /// The scenes; `-` reads one from standard input
     #[arg(required = true, value_name = "SCENE")]
     scenes: Vec<PathBuf>,
+    #[command(flatten)]
+    set: set::Args,
 }
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let mut sound = true;
     for scene in &args.scenes {
-        match input::load(registry, scene, None) {
+        match input::load(registry, scene, &args.set, None) {
             Ok(_) => messages::note(&format!("{}: no errors", scene.display())),
             // The scene may be sound: the machine is at fault.
             Err(failure @ Failure::Failed(_)) => return Err(failure),

@@ -5,7 +5,7 @@ use super::failure::{self, Failure, print};
 use super::input::{self, Source};
 use super::interrupt::{self, Manner};
 use super::measuring::{Work, wait};
-use super::{program, stop};
+use super::{program, set, stop};
 use crate::scene::choice::Choice;
 use crate::scene::registry::Registry;
 use crate::tools::chart::{self, Estimate, Estimates, Goal};
@@ -31,6 +31,8 @@ use std::time::{Duration, Instant};
 pub struct Args {
     /// The scene; `-` reads it from standard input
     scene: PathBuf,
+    #[command(flatten)]
+    set: set::Args,
     /// Maximum error: the root mean square error of the colours, where 1 is white
     #[arg(long, value_name = "E", value_parser = positive)]
     max_error: Option<f64>,
@@ -63,7 +65,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let limit = args.time_limit.unwrap_or(LIMIT).min(Duration::from_secs(1 << 30));
     let (mut work, start) = (Work::within(limit), Instant::now());
     let units = work.units();
-    let source = Source::read(&args.scene)?;
+    let source = Source::read(&args.scene, &args.set)?;
     input::told(source.load(registry, None))?;
     let load = all_accuracies(registry, &source)?;
     interrupt::catch(Manner::Ends("nothing has been chosen"))?;
@@ -98,7 +100,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         };
         let cores = thread::available_parallelism().map_or(1, usize::from);
         let choice = Weighed { estimates: &estimates, cores, goal };
-        print(&choice.words(choice.chosen()?, &args.scene))
+        print(&choice.words(choice.chosen()?, &args.scene, &args.set))
     })
 }
 
@@ -152,7 +154,7 @@ impl<'e> Weighed<'e> {
     }
 
     /// Says which choices were considered and which one was chosen, and shows the command line.
-    fn words(&self, chosen: &Estimate, scene: &Path) -> String {
+    fn words(&self, chosen: &Estimate, scene: &Path, set: &set::Args) -> String {
         let head = ["accuracy", "samples", "error", "at most", "time"];
         let mut text =
             format!("  {:<9}{:>8}{:>12}{:>12}{:>12}\n", head[0], head[1], head[2], head[3], head[4]);
@@ -194,9 +196,10 @@ impl<'e> Weighed<'e> {
             text,
             "\nThe marked choice is {why}{sure}. Errors were measured on {measured} of {all} pixels, against {against} \
              samples in each{short}; those of the whole image are at most what the table says. Times are estimates.\n\n\
-             {} render {} {how} --samples {}\n",
+             {} render {}{} {how} --samples {}\n",
             program::name(),
             scene.display(),
+            set.words(),
             chosen.numbers()
         );
         text

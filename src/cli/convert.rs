@@ -1,7 +1,7 @@
 //! `tabray convert`: writes a scene in the other syntax.
 
 use super::failure::{Failure, print};
-use super::{input, messages, output};
+use super::{input, messages, output, set};
 use crate::scene::dump;
 use crate::scene::model::Model;
 use crate::scene::reader;
@@ -11,11 +11,13 @@ use std::path::{Path, PathBuf};
 
 /// Write a scene in the other syntax
 ///
-/// Everything but comments is kept: the copy loads to the identical model.
+/// Everything but comments is kept, and what the scene computes is written out: the copy loads to the identical model.
 #[derive(clap::Args)]
 pub struct Args {
     /// The scene; `-` reads it from standard input
     scene: PathBuf,
+    #[command(flatten)]
+    set: set::Args,
     /// The file to write: TOML if its name ends in .toml, the course notes' syntax otherwise; `-` writes to standard
     /// output
     output: PathBuf,
@@ -26,7 +28,7 @@ pub struct Args {
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let syntax = syntax(&args)?;
-    let model = input::load(registry, &args.scene, None)?;
+    let model = input::load(registry, &args.scene, &args.set, None)?;
     let text = dump::scene(&model, syntax);
     if input::is_standard(&args.output) {
         return print(&text);

@@ -2,9 +2,9 @@
 
 use super::explain::Place;
 use super::failure::{Failure, print, tell};
-use super::input;
 use super::picture::Picture;
 use super::report::{Change, Item, Page};
+use super::{input, set};
 use crate::output::compare::{Comparison, FullRangeComparison};
 use crate::scene::registry::Registry;
 use std::path::PathBuf;
@@ -31,6 +31,8 @@ pub struct Args {
     /// The scene of the images, from which the page explains the first pixel that differs
     #[arg(long, requires = "output")]
     scene: Option<PathBuf>,
+    #[command(flatten)]
+    set: set::Args,
     /// The `tabray` that made the old image, whose explanation the page shows too
     #[arg(long, value_name = "PROGRAM", requires = "scene")]
     before: Option<PathBuf>,
@@ -56,7 +58,8 @@ pub fn run(registry: &Registry, args: &Args) -> ExitCode {
 /// Tells whether the images are equal.
 fn compare(registry: &Registry, args: &Args) -> Result<bool, Failure> {
     let page = args.output.as_deref().map(Page::open).transpose()?;
-    let model = args.scene.as_deref().map(|scene| input::load(registry, scene, None)).transpose()?;
+    let model =
+        args.scene.as_deref().map(|scene| input::load(registry, scene, &args.set, None)).transpose()?;
     let (old, new) = (Picture::read(&args.old)?, Picture::read(&args.new)?);
     let names = [&args.old, &args.new].map(|path| path.display().to_string());
     let sizes = [old.size(), new.size()];

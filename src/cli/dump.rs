@@ -1,7 +1,7 @@
 //! `tabray dump`: a scene as the program understands it.
 
 use super::failure::{Failure, print};
-use super::input;
+use super::{input, set};
 use crate::scene::dump;
 use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
@@ -12,6 +12,8 @@ use std::path::PathBuf;
 pub struct Args {
     /// The scene; `-` reads it from standard input
     scene: PathBuf,
+    #[command(flatten)]
+    set: set::Args,
     /// The format to print
     #[arg(long, default_value = "notes")]
     format: Format,
@@ -28,7 +30,7 @@ enum Format {
 }
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
-    let model = input::load(registry, &args.scene, None)?;
+    let model = input::load(registry, &args.scene, &args.set, None)?;
     print(&match args.format {
         Format::Notes => dump::notes(&model),
         Format::Ray => dump::scene(&model, Syntax::Notes),

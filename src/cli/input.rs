@@ -1,7 +1,7 @@
 //! Reads scenes from files and from standard input.
 
 use super::failure::Failure;
-use super::{crash, memory, messages};
+use super::{crash, memory, messages, set};
 use crate::files;
 use crate::scene::model::Model;
 use crate::scene::reader::{self, Chosen, Loaded, Report};
@@ -25,14 +25,15 @@ pub fn is_standard(path: &Path) -> bool {
     path == Path::new("-")
 }
 
-/// Reads a scene, prints its warnings and returns its model, with the given accuracy or with its own.
-pub fn load(registry: &Registry, path: &Path, accuracy: Option<Accuracy>) -> Result<Model, Failure> {
-    loaded(registry, path, accuracy).map(|loaded| loaded.model)
-}
-
-/// Reads a scene and prints its warnings as [`load`] does, and returns the model with the warnings and places.
-pub fn loaded(registry: &Registry, path: &Path, accuracy: Option<Accuracy>) -> Result<Loaded, Failure> {
-    told(Source::read(path)?.load(registry, accuracy))
+/// Reads a scene with what is set beside its text, prints its warnings and returns its model, with the given accuracy or
+/// with its own.
+pub fn load(
+    registry: &Registry,
+    path: &Path,
+    sets: &set::Args,
+    accuracy: Option<Accuracy>,
+) -> Result<Model, Failure> {
+    told(Source::read(path, sets)?.load(registry, accuracy)).map(|loaded| loaded.model)
 }
 
 /// Prints the warnings of a scene that was loaded.
@@ -47,17 +48,18 @@ pub struct Source {
     name: String,
     folder: PathBuf,
     bytes: Vec<u8>,
+    sets: Vec<String>,
 }
 
 impl Source {
-    /// Reads the text of a scene.
-    pub fn read(path: &Path) -> Result<Self, Failure> {
+    /// Reads the text of a scene, beside which values are set.
+    pub fn read(path: &Path, sets: &set::Args) -> Result<Self, Failure> {
         let (name, bytes) = read(path)?;
         let syntax = Syntax::of_name(path);
         let syntax = syntax.or_else(|| Some(Syntax::of_text(std::str::from_utf8(&bytes).ok()?)));
         let model = if syntax == Some(Syntax::Toml) { MODEL_IN_TOML } else { MODEL };
         memory::room(model.saturating_mul(bytes.len()), &format!("the model of `{name}`"))?;
-        Ok(Self { name, folder: path.parent().unwrap_or(path).to_owned(), bytes })
+        Ok(Self { name, folder: path.parent().unwrap_or(path).to_owned(), bytes, sets: sets.values.clone() })
     }
 
     /// Makes a model, with the given accuracy or with the scene's own, and its warnings.
@@ -66,8 +68,9 @@ impl Source {
     }
 
     /// Makes a model and its warnings, with the choices of [`Chosen`].
-    pub fn load_by(&self, registry: &Registry, accuracy: Chosen) -> Result<Loaded, Report> {
-        reader::read_by(registry, &self.name, &self.folder, &self.bytes, accuracy)
+    pub fn load_by(&self, registry: &Registry, accuracy: Chosen<'_>) -> Result<Loaded, Report> {
+        let chosen = Chosen { sets: &self.sets, ..accuracy };
+        reader::read_by(registry, &self.name, &self.folder, &self.bytes, chosen)
     }
 }
 

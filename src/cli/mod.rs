@@ -43,6 +43,7 @@ mod review;
 mod samples;
 mod schema;
 mod serve;
+mod set;
 mod size;
 mod stats;
 mod stop;

@@ -5,6 +5,7 @@ use super::input::{self, Source};
 use super::interrupt::{self, Manner};
 use super::job::Job;
 use super::output::Output;
+use super::set;
 use super::size::Part;
 use super::stop::Stop;
 use crate::output::picture::Format;
@@ -23,7 +24,8 @@ pub fn run(registry: &Registry) -> Result<(), Failure> {
     let output = Output::open(standard)?;
     // The course's own image, unless the camera asks for another method.
     let accuracy = Chosen { by_default: Accuracy::Classic, ..Chosen::default() };
-    let model = input::told(Source::read(standard)?.load_by(registry, accuracy))?.model;
+    let model =
+        input::told(Source::read(standard, &set::Args::default())?.load_by(registry, accuracy))?.model;
     interrupt::catch(Manner::Ends("the image was not finished"))?;
     let _ = write!(std::io::stderr(), "{}", dump::notes(&model));
     let job = Job {

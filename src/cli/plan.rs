@@ -1,7 +1,7 @@
 //! `tabray plan`: how a scene would be rendered, and why.
 
 use super::failure::{Failure, print};
-use super::{input, keep, method, samples};
+use super::{input, keep, method, samples, set};
 use crate::render::decisions::{self, Decision};
 use crate::scene::registry::Registry;
 use crate::simd::cpu::Cpu;
@@ -13,6 +13,8 @@ pub struct Args {
     /// The scene; `-` reads it from standard input
     scene: PathBuf,
     #[command(flatten)]
+    set: set::Args,
+    #[command(flatten)]
     samples: samples::Args,
     #[command(flatten)]
     method: method::Args,
@@ -21,7 +23,7 @@ pub struct Args {
 }
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
-    let mut model = input::load(registry, &args.scene, args.method.accuracy()?)?;
+    let mut model = input::load(registry, &args.scene, &args.set, args.method.accuracy()?)?;
     args.samples.apply(&mut model.camera.value)?;
     let best = format!("{}, the highest level of this machine; the image is the same with any", Cpu::best());
     let cpu = Decision { subject: "instructions", text: best };

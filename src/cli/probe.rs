@@ -1,7 +1,7 @@
 //! `tabray probe`: explains one pixel.
 
 use super::failure::Failure;
-use super::{input, method};
+use super::{input, method, set};
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::scene::model::Model;
@@ -15,6 +15,8 @@ use std::path::{Path, PathBuf};
 pub struct Args {
     /// The scene; `-` reads it from standard input
     scene: PathBuf,
+    #[command(flatten)]
+    set: set::Args,
     /// The pixel's column, from 0 at the left
     #[arg(allow_negative_numbers = true)]
     x: i64,
@@ -26,7 +28,7 @@ pub struct Args {
 }
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
-    let model = input::load(registry, &args.scene, args.method.accuracy()?)?;
+    let model = input::load(registry, &args.scene, &args.set, args.method.accuracy()?)?;
     let [x, y] = inside(&model, [args.x, args.y])?;
     let mut out = BufWriter::new(io::stdout());
     let printed =

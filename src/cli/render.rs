@@ -6,7 +6,7 @@ use super::job::Job;
 use super::output::{Output, named};
 use super::resume::Begun;
 use super::stats::{self, Stats};
-use super::{aov, cpu, debug, full_range, input, keep, messages, method, output, samples, size, stop};
+use super::{aov, cpu, debug, full_range, input, keep, messages, method, output, samples, set, size, stop};
 use crate::output::deflate::Compression;
 use crate::output::full_range::FullRange;
 use crate::output::picture::Format;
@@ -22,6 +22,8 @@ use std::time::Instant;
 pub struct Args {
     /// The scene; `-` reads it from standard input
     scene: PathBuf,
+    #[command(flatten)]
+    set: set::Args,
     /// The image to write: a .png or .ppm file, or an .exr or .pfm file for colours that are not clamped or rounded, or
     /// `-` for standard output (a PPM unless --format says otherwise); by default the scene's name with .png in the
     /// working directory
@@ -68,7 +70,7 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
     let cpu = args.cpu.cpu()?;
     let start = Instant::now();
     let accuracy = args.method.accuracy()?;
-    let source = Source::read(&args.scene)?;
+    let source = Source::read(&args.scene, &args.set)?;
     let memory = args.stop.left();
     let chosen = |accuracy| Chosen { above_all: accuracy, memory, ..Chosen::default() };
     let Loaded { mut model, building, .. } = input::told(source.load_by(registry, chosen(accuracy)))?;

@@ -6,7 +6,7 @@ use super::failure::{Failure, print};
 use super::interrupt::{self, Manner};
 use super::output::{self, Output, named};
 use super::progress::Progress;
-use super::{input, method};
+use super::{input, method, set};
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::scene::registry::Registry;
@@ -31,6 +31,8 @@ use std::path::PathBuf;
 pub struct Args {
     /// The scene; `-` reads it from standard input
     scene: PathBuf,
+    #[command(flatten)]
+    set: set::Args,
     /// Write an image of the result: black for proven pixels, white for ties, red where the tracer finds another
     /// object; a .png or .ppm file. With --colours, white for open pixels, and grey where the image differs by rounding
     #[arg(short, long, value_name = "FILE")]
@@ -48,7 +50,7 @@ pub struct Args {
 }
 
 pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
-    let model = input::load(registry, &args.scene, args.method.accuracy()?)?;
+    let model = input::load(registry, &args.scene, &args.set, args.method.accuracy()?)?;
     interrupt::catch(Manner::Ends("the image was not finished"))?;
     let picture = match args.output {
         Some(path) => {

@@ -9,12 +9,12 @@ pub(super) mod frame;
 
 use super::failure::{Failure, tell};
 use super::serve::{Server, Work};
-use super::{crash, input, interrupt, messages, method};
+use super::{crash, input, interrupt, messages, method, set};
 use crate::render::plan::Plan;
 use crate::render::progressive;
 use crate::render::renderer::Renderer;
 use crate::scene::model::Model;
-use crate::scene::reader::{self, Loaded};
+use crate::scene::reader::{self, Chosen, Loaded};
 use crate::scene::registry::Registry;
 use crate::text;
 use crate::world::accuracy::Accuracy;
@@ -47,6 +47,8 @@ const SETTLED: Duration = Duration::from_millis(10);
 pub struct Args {
     /// The scene
     scene: PathBuf,
+    #[command(flatten)]
+    set: set::Args,
     /// The port of the page on 127.0.0.1; by default the first free one from 3000; 0 is any free one
     #[arg(long, value_name = "N")]
     port: Option<u16>,
@@ -103,8 +105,15 @@ pub fn run(registry: &Registry, args: Args) -> Result<(), Failure> {
         let reason = text::reason(error);
         messages::note(&format!("cannot open a browser: {reason}; open the address yourself"));
     }
-    let mut watched =
-        Watched { registry, path: args.scene, accuracy, named: Vec::new(), last: None, version: 0 };
+    let mut watched = Watched {
+        registry,
+        path: args.scene,
+        sets: args.set.values,
+        accuracy,
+        named: Vec::new(),
+        last: None,
+        version: 0,
+    };
     loop {
         watched.read(&board, &frames, &mut files)?;
         match next(&news) {
@@ -169,6 +178,8 @@ fn stamp(file: &Path) -> Option<Stamp> {
 struct Watched<'r> {
     registry: &'r Registry,
     path: PathBuf,
+    /// The values that are set beside its text.
+    sets: Vec<String>,
     accuracy: Option<Accuracy>,
     /// The files that the scene names.
     named: Vec<PathBuf>,
@@ -202,7 +213,8 @@ impl Watched<'_> {
         let text = String::from_utf8_lossy(bytes);
         let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
         let folder = self.path.parent().unwrap_or(&self.path);
-        let read = match crash::catch(|| reader::read(self.registry, &name, folder, bytes, self.accuracy)) {
+        let chosen = Chosen { above_all: self.accuracy, sets: &self.sets, ..Chosen::default() };
+        let read = match crash::catch(|| reader::read_by(self.registry, &name, folder, bytes, chosen)) {
             Ok(read) => read,
             Err(failure) => {
                 crashed(board, &name, text, &failure);

@@ -22,6 +22,7 @@ const ATTRIBUTE: &str = "support.type.property-name.tabray";
 const NUMERIC: &str = "constant.numeric.tabray";
 const CHOICE: &str = "constant.language.tabray";
 const REFERENCE: &str = "variable.other.tabray";
+const KEYWORD: &str = "keyword.control.tabray";
 const IN_QUOTES: &str = "string.quoted.double.tabray";
 const WORD: &str = "string.unquoted.tabray";
 
@@ -106,15 +107,16 @@ pub fn of(registry: &Registry) -> Grammar {
         // The program that reads the scene may have more plugins than the one that wrote the grammar.
         ("other-entity", within(BARE, None, iter::empty())),
     ]);
-    let known = registry.iter().map(|entity| entity.name);
+    let known = || registry.iter().map(|entity| entity.name);
+    let all = || {
+        let rules = iter::once("comment-line").chain(["let", "include", "repeat"]).chain(known());
+        rules.chain(["other-entity"]).map(Rule::include).collect::<Vec<_>>()
+    };
+    repository.extend(computed(all()));
     Grammar {
         file_types: ["ray"],
         name: "tabray scene",
-        patterns: iter::once("comment-line")
-            .chain(known)
-            .chain(["other-entity"])
-            .map(Rule::include)
-            .collect(),
+        patterns: all(),
         repository,
         scope_name: "source.tabray",
     }
@@ -145,6 +147,38 @@ fn within(begin: &str, scope: Option<&'static str>, attributes: impl Iterator<It
         patterns: comment().chain([name, body]).collect(),
         ..Rule::default()
     }
+}
+
+/// Returns the rules of what is no entity: named numbers, files and what is repeated, to which these rules apply again.
+fn computed(all: Vec<Rule>) -> [(&'static str, Rule); 3] {
+    let named = |keyword| format!(r"({keyword})\s+({QUOTED}|{BARE}){END}");
+    let rest = ["any-number", "quoted-word", "bare-word"].map(Rule::include);
+    let body =
+        Rule { begin: Some(r"\{".to_owned()), end: Some(r"\}".to_owned()), patterns: all, ..Rule::default() };
+    let number = Rule {
+        begin: Some(named("let")),
+        begin_captures: captures(&[KEYWORD, NAME]),
+        end: Some(format!("({QUOTED})|({NUMBER}){END}|({BARE})|(?=[{{}}])")),
+        end_captures: captures(&[IN_QUOTES, NUMERIC, WORD]),
+        patterns: vec![Rule::include("comment-line")],
+        ..Rule::default()
+    };
+    let file = Rule {
+        begin: Some(format!("(include){END}")),
+        begin_captures: captures(&[KEYWORD]),
+        end: Some(format!("({QUOTED})|({BARE})|(?=[{{}}])")),
+        end_captures: captures(&[IN_QUOTES, WORD]),
+        patterns: vec![Rule::include("comment-line")],
+        ..Rule::default()
+    };
+    let rounds = Rule {
+        begin: Some(named("repeat")),
+        begin_captures: captures(&[KEYWORD, NAME]),
+        end: Some(r"(?<=\})".to_owned()),
+        patterns: iter::once(Rule::include("comment-line")).chain([body]).chain(rest).collect(),
+        ..Rule::default()
+    };
+    [("let", number), ("include", file), ("repeat", rounds)]
 }
 
 /// Matches an attribute. Numbers are recognised on their own; any other value may look like anything, even like an

@@ -21,6 +21,9 @@ pub struct Schema {
     /// What fields that are not in `properties` may hold.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub additional_properties: Option<Others>,
+    /// Where the schema is that matches in place of this one.
+    #[serde(rename = "$ref", skip_serializing_if = "Option::is_none")]
+    pub reference: Option<String>,
     /// Schemas that must all match.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub all_of: Vec<Schema>,
@@ -107,14 +110,52 @@ pub fn of(registry: &Registry) -> Schema {
     let names = |entity: &'static Entity| iter::once(entity.name).chain(entity.aliases.iter().copied());
     let cameras = registry.iter().filter(|entity| entity.kind() == Kind::Camera).flat_map(names);
     let kinds = registry.iter().flat_map(|entity| names(entity).map(move |name| (name, kind(entity))));
+    let mut properties: BTreeMap<_, _> = kinds.collect();
+    properties.extend(computed(properties.keys().copied().collect()));
+    // The camera may be in a file that is included.
+    let camera = Schema { one_of: cameras.map(requiring).collect(), ..Schema::default() };
     Schema {
         language: Some("https://json-schema.org/draft/2020-12/schema"),
         title: Some("a tabray scene"),
         additional_properties: Some(Others::Any(false)),
-        one_of: cameras.map(requiring).collect(),
-        properties: Some(kinds.collect()),
+        any_of: vec![camera, requiring("include")],
+        properties: Some(properties),
         ..Schema::sort("object")
     }
+}
+
+/// Returns the schemas of named numbers, of included files and of what is repeated: entities of these types, and
+/// numbers.
+fn computed(mut kinds: Vec<&'static str>) -> [(&'static str, Schema); 3] {
+    let each = |schema| Some(Others::Each(Box::new(schema)));
+    let any_of = |any_of| Schema { any_of, ..Schema::default() };
+    let described = |text: &str, schema| Schema { description: Some(text.to_owned()), ..schema };
+    let numbers = Schema { additional_properties: each(number("number")), ..Schema::sort("object") };
+    let files = any_of(vec![Schema::sort("string"), Schema::sort("string").array(1, None)]);
+    kinds.extend(["let", "repeat"]);
+    let elsewhere = |name| {
+        let reference = Some(format!("#/properties/{name}"));
+        (name, Schema { reference, ..Schema::default() })
+    };
+    let body = kinds.into_iter().map(elsewhere).chain([("count", number("number"))]);
+    let round = Schema {
+        additional_properties: Some(Others::Any(false)),
+        properties: Some(body.collect()),
+        required: Some(vec!["count"]),
+        ..Schema::sort("object")
+    };
+    let rounds = any_of(vec![round.clone(), round.array(1, None)]);
+    let repeats = Schema { additional_properties: each(rounds), ..Schema::sort("object") };
+    [
+        ("let", described("named numbers, which formulas can use", numbers)),
+        ("include", described("files that are read as if they stood here", files)),
+        ("repeat", described("entities that are repeated; the name counts the rounds from 0", repeats)),
+    ]
+}
+
+/// Returns the schema of a number of this type, or a formula in place of it.
+fn number(sort: &'static str) -> Schema {
+    Schema { any_of: vec![Schema::sort(sort), Schema::sort("string")], ..Schema::default() }
 }
 
 impl Schema {
@@ -208,6 +249,12 @@ fn value(attribute: &'static dyn Attribute) -> Schema {
     };
     let [minimum, maximum] = attribute.range().map_or([None; 2], |range| range.map(Some));
     let one = Schema { minimum, maximum, ..one };
+    let one = match attribute.value_type() {
+        Type::Whole | Type::Number => {
+            Schema { any_of: vec![one, Schema::sort("string")], ..Schema::default() }
+        }
+        _ => one,
+    };
     let several: Vec<_> = match attribute.arity() {
         Counts::Of(counts) => counts.iter().map(|count| one.clone().array(*count, Some(*count))).collect(),
         Counts::List { group, least, most } => vec![one.clone().array(group * least, Some(group * most))],

@@ -5,6 +5,7 @@ use crate::scene::counts::OneOf;
 use crate::scene::entity::Entity;
 use crate::scene::pparm::Attribute;
 use crate::scene::value::{Datum, Type, yes_or_no};
+use crate::text::shortest;
 use clap::ValueEnum;
 use std::fmt;
 use std::path::Path;
@@ -31,12 +32,13 @@ impl Syntax {
         Some(if extension.eq_ignore_ascii_case("toml") { Self::Toml } else { Self::Notes })
     }
 
-    /// Guesses the syntax of a text that has no file name: only TOML begins with a bracket or with `TYPE.NAME =`.
+    /// Guesses the syntax of a text that has no file name: only TOML begins with a bracket, with `TYPE.NAME =`
+    /// or with `include =`.
     pub fn of_text(text: &str) -> Self {
         let mut lines = text.lines().map(str::trim);
         let first = lines.find(|line| !line.is_empty() && !line.starts_with('#')).unwrap_or_default();
         let key = first.split_once('=').map_or("", |(key, _)| key.trim_end());
-        let is_key = key.contains('.') && !key.contains(char::is_whitespace);
+        let is_key = (key.contains('.') || key == "include") && !key.contains(char::is_whitespace);
         if first.starts_with('[') || is_key { Self::Toml } else { Self::Notes }
     }
 
@@ -138,12 +140,6 @@ impl fmt::Display for Datum {
 /// Writes a word in quotes, as both syntaxes read it.
 fn quoted(word: &str) -> String {
     format!("\"{}\"", word.replace('\\', "\\\\").replace('"', "\\\""))
-}
-
-/// Returns the shortest decimal that reads back as the same number.
-fn shortest(number: f64) -> String {
-    let text = format!("{number:?}");
-    text.strip_suffix(".0").unwrap_or(&text).to_owned()
 }
 
 #[cfg(test)]

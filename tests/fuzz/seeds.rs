@@ -82,7 +82,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         words.insert(entity.name.to_owned());
         words.extend(entity.attributes().map(|attribute| attribute.name().to_owned()));
     }
-    let functions = "sin cos tan exp ln sqrt abs floor min max 1e300 1e-320 -0 nan inf".split(' ');
+    let functions = "sin cos tan exp ln sqrt abs floor min max 1e300 1e-320 -0 nan inf let include repeat count".split(' ');
     words.extend(functions.map(str::to_owned));
     let meshes = "v f usemtl solid facet normal outer loop vertex endloop endfacet endsolid ply format ascii \
                   binary_little_endian binary_big_endian element face property list uchar int float double \

@@ -86,7 +86,8 @@ fn every_word_has_its_page() {
 /// Returns the snapshot settings for a scene, by its folder; `None` for scenes that have no image.
 fn settings(path: &Path) -> Option<Settings> {
     let subject = path.strip_prefix(root().join("scenes")).ok()?.parent()?.to_str()?;
-    (subject != "wrong").then(|| folder(subject))
+    // What the README's commands have generated is too large to be tested.
+    (!["wrong", "generated"].contains(&subject)).then(|| folder(subject))
 }
 
 fn folder(subject: &str) -> Settings {

@@ -155,7 +155,12 @@ fn a_scene_read_by_its_colours_is_the_same_scene() {
     let in_notes = scenes().into_iter().filter(|path| path.extension().is_some_and(|ending| ending == "ray"));
     for path in in_notes.chain([root().join("src/cli/new/templates/scene.ray")]) {
         let text = fs::read_to_string(&path).expect("a scene");
-        let understood = scene_of(&highlighter.scopes(&text));
+        let scoped = highlighter.scopes(&text);
+        // What is computed has no entities to be compared word by word.
+        if scoped.iter().any(|(scope, _)| scope.starts_with("keyword.")) {
+            continue;
+        }
+        let understood = scene_of(&scoped);
         assert_eq!(
             read(&path, "scene.toml", &understood),
             read(&path, "scene.ray", &text),
@@ -185,6 +190,43 @@ fn words_are_what_they_are_wherever_they_stand() {
             "radius support.type.property-name",
             "# 7 comment.line.number-sign",
             "material support.type.property-name",
+        ]
+    );
+}
+
+#[test]
+fn what_is_computed_has_its_colours_and_entities_in_it_have_theirs() {
+    let text = "let r \"2*pi\" # two\nlet n 3\ninclude a.inc include \"b c\"\n\
+                repeat i \"n\" {\n repeat j 2 { sphere s { radius \"r\" } }\n gem g { } }\nsphere t { }";
+    let scoped = Highlighter::new().scopes(text);
+    let shown: Vec<_> = scoped.iter().map(|(scope, word)| format!("{word} {}", &scope[..7])).collect();
+    assert_eq!(
+        shown,
+        [
+            "let keyword",
+            "r entity.",
+            "\"2*pi\" string.",
+            "# two comment",
+            "let keyword",
+            "n entity.",
+            "3 constan",
+            "include keyword",
+            "a.inc string.",
+            "include keyword",
+            "\"b c\" string.",
+            "repeat keyword",
+            "i entity.",
+            "\"n\" string.",
+            "repeat keyword",
+            "j entity.",
+            "2 constan",
+            "sphere storage",
+            "s entity.",
+            "radius support",
+            "\"r\" string.",
+            "g entity.",
+            "sphere storage",
+            "t entity.",
         ]
     );
 }

@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod computed;
 mod dump;
 mod extremes;
 mod grammar;

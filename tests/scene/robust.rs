@@ -31,6 +31,7 @@ proptest! {
             "camera", "material", "sphere", "plane", "fplane", "tiled_plane", "light", "{", "}", "{", "}", "\n", "#",
             "pixeldim", "worlddim", "viewpoint", "ambient", "normal", "point", "xdir", "center", "radius", "a", "b",
             "0", "1", "-3.5", "1e400", "nan", "1,5", "raduis", "über", "\r\n", "\t",
+            "let", "repeat", "include", "\"2*a\"", "\"a\"", "\"1/0\"", "repeat a 3 {", "let b",
         ]), 0..60)
     ) {
         read(words.join(" ").as_bytes());
@@ -44,6 +45,7 @@ proptest! {
             "[camera.eye]", "\n[sphere.a]\n", "\n[sphere.b]\n", "\n[[sphere.a]]\n", "\n[material.m]\n", "[", "]", "{", "}",
             "\n", "#", ".", "=", ",", "\"", "'", "\"m\"", "\"\"\"", "\\", "pixeldim = [8, 6]\n", "material = \"m\"\n",
             "center = [1, 2, 3]\n", "radius", "radius = 1\n", "1", "-0", "1.", "0x", "nan", "true", "1979-05-27", "über",
+            "[let]\n", "a = \"2*b\"\n", "[repeat.b]\n", "count = 3\n", "[repeat.b.sphere.a]\n", "include", "\"a\"",
             "\r\n", "\t", "\u{7f}",
         ]), 0..60)
     ) {

@@ -143,7 +143,7 @@ fn converting_there_and_back_gives_the_same_scene() {
     let root_of_copies = TempDir::new().expect("a folder");
     let folder = root_of_copies.path().join("copies");
     fs::create_dir(&folder).expect("a folder");
-    for kind in ["textures", "models"] {
+    for kind in ["textures", "models", "parts"] {
         let copies = root_of_copies.path().join(kind);
         fs::create_dir(&copies).expect("a folder");
         for entry in fs::read_dir(root().join("scenes").join(kind)).expect("the files") {

@@ -4,9 +4,10 @@ use super::pending::{self, Content, Pending};
 use crate::cli::explain::Place;
 use crate::cli::failure::{Failure, tell};
 use crate::cli::report::{Change, Decision, Item};
-use crate::cli::{crash, input, picture};
+use crate::cli::{crash, input, picture, set};
 use crate::output::compare::Comparison;
 use crate::scene::registry::Registry;
+use crate::text::quoted;
 use std::env;
 use std::ffi::OsStr;
 use std::io::Cursor;
@@ -40,7 +41,7 @@ fn item(registry: &Registry, snapshot: &Pending, before: Option<&Path>) -> Resul
         (
             Change::Picture { comparison: Some(Comparison { first: Some(pixel), size, .. }), .. },
             Some(scene),
-        ) => match input::load(registry, &scene, None) {
+        ) => match input::load(registry, &scene, &set::Args::default(), None) {
             Ok(model) => Place { scene: &scene, model, size: *size, pixel: *pixel }.explained(before),
             Err(failure) => {
                 tell(&failure);
@@ -84,15 +85,4 @@ fn scene(snapshot: &Path) -> Option<PathBuf> {
     parts[folder] = OsStr::new("scenes");
     let scene: PathBuf = parts.iter().collect();
     ["ray", "toml"].iter().map(|extension| scene.with_extension(extension)).find(|scene| scene.is_file())
-}
-
-/// Quotes a word of a command for a shell.
-fn quoted(word: &OsStr) -> String {
-    let word = word.to_string_lossy();
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || "_-./:=+,@%".contains(c);
-    if !word.is_empty() && word.chars().all(is_plain) {
-        word.into_owned()
-    } else {
-        format!("'{}'", word.replace('\'', r"'\''"))
-    }
 }

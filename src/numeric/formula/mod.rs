@@ -5,13 +5,14 @@ mod parser;
 mod spline;
 mod step;
 
-pub use parser::FormulaFault;
+pub use parser::{FormulaFault, Named, is_taken};
 
 use crate::numeric::dual::Dual;
 use crate::numeric::f64x8::F64x8;
 use crate::numeric::scalar::{Scalar, apart_if};
 use crate::numeric::spline::Spline;
 use crate::simd::soa::LANES;
+use crate::text;
 use std::fmt;
 use std::sync::Arc;
 use step::{Function, MAX_DEPTH, Step};
@@ -54,7 +55,27 @@ impl Formula {
     /// # Errors
     /// Returns the first place where the text is not a formula.
     pub fn parse_in(text: &str, variables: &'static [&'static str]) -> Result<Self, FormulaFault> {
-        Ok(Self::new(text.to_owned(), variables, parser::parse(text, variables)?))
+        Self::parse_with(text, variables, &|_| None)
+    }
+
+    /// Parses a formula in these variables and named numbers. Its own text has the numbers in place of their names.
+    ///
+    /// # Errors
+    /// Returns the first place where the text is not a formula.
+    pub fn parse_with(
+        text: &str,
+        variables: &'static [&'static str],
+        named: Named<'_>,
+    ) -> Result<Self, FormulaFault> {
+        let (steps, numbers) = parser::parse(text, variables, named)?;
+        let (mut written, mut at) = (String::with_capacity(text.len()), 0);
+        for (place, number) in numbers {
+            written += &text[at..place.start];
+            let number = text::shortest(number);
+            written += &if number.starts_with('-') { format!("({number})") } else { number };
+            at = place.end;
+        }
+        Ok(Self::new(written + &text[at..], variables, steps))
     }
 
     /// Returns the names of the variables.

@@ -14,7 +14,15 @@ pub struct FormulaFault {
     pub message: String,
     /// What would be right.
     pub help: String,
+    /// The name that is unknown, if that is what is wrong.
+    pub unknown: Option<String>,
 }
+
+/// Looks up a number by the name that a scene gives it.
+pub type Named<'n> = &'n dyn Fn(&str) -> Option<f64>;
+
+/// The operations of a formula, and the named numbers in its text, each with its place.
+pub(super) type Operations = (Vec<Step>, Vec<(Range<usize>, f64)>);
 
 /// The functions of a formula: name, function and number of arguments.
 const FUNCTIONS: [(&str, Function, usize); 10] = [
@@ -30,21 +38,30 @@ const FUNCTIONS: [(&str, Function, usize); 10] = [
     ("max", Function::Max, 2),
 ];
 
+/// Returns whether a name means something in every formula, so that a scene cannot give it to a number.
+pub fn is_taken(name: &str) -> bool {
+    ["x", "y", "z", "pi"].contains(&name) || FUNCTIONS.iter().any(|(function, ..)| *function == name)
+}
+
 /// Says what a formula in these variables consists of.
 fn language(variables: &[&str]) -> String {
+    let variables = match variables {
+        [] => "named numbers".to_owned(),
+        variables => text::list(variables.iter().copied()),
+    };
     format!(
-        "a formula consists of numbers, {}, `pi`, + - * / ^, parentheses, and the functions \
-         sin cos tan exp ln sqrt abs floor of one value and min max of two",
-        text::list(variables.iter().copied())
+        "a formula consists of numbers, {variables}, `pi`, + - * / ^, parentheses, and the functions \
+         sin cos tan exp ln sqrt abs floor of one value and min max of two"
     )
 }
 
-/// Parses the operations of a formula in these variables.
-pub(super) fn parse(text: &str, variables: &[&str]) -> Result<Vec<Step>, FormulaFault> {
-    let mut parser = Parser { text, variables, at: 0, steps: Vec::new(), depth: 0 };
+/// Parses the operations of a formula in these variables and named numbers.
+pub(super) fn parse(text: &str, variables: &[&str], named: Named<'_>) -> Result<Operations, FormulaFault> {
+    let mut parser =
+        Parser { text, variables, named, at: 0, steps: Vec::new(), numbers: Vec::new(), depth: 0 };
     parser.sum()?;
     match parser.peek() {
-        None => Ok(parser.steps),
+        None => Ok((parser.steps, parser.numbers)),
         Some(')') => Err(parser.fault_here("unmatched `)`")),
         Some(_) => Err(parser.fault_here("expected an operator")),
     }
@@ -53,8 +70,11 @@ pub(super) fn parse(text: &str, variables: &[&str]) -> Result<Vec<Step>, Formula
 struct Parser<'t> {
     text: &'t str,
     variables: &'t [&'t str],
+    named: Named<'t>,
     at: usize,
     steps: Vec<Step>,
+    /// The named numbers so far, each with its place.
+    numbers: Vec<(Range<usize>, f64)>,
     /// The number of values on the stack or the depth of parentheses, whichever is greater.
     depth: usize,
 }
@@ -77,7 +97,7 @@ impl<'t> Parser<'t> {
     }
 
     fn fault(&self, place: Range<usize>, message: impl Into<String>) -> FormulaFault {
-        FormulaFault { place, message: message.into(), help: language(self.variables) }
+        FormulaFault { place, message: message.into(), help: language(self.variables), unknown: None }
     }
 
     fn fault_here(&mut self, message: &str) -> FormulaFault {
@@ -201,7 +221,14 @@ impl<'t> Parser<'t> {
                 self.arguments(word, place, *arguments)?;
                 self.steps.push(Step::Call(*function));
             }
-            _ => return Err(self.fault(place, format!("unknown name `{word}` in a formula"))),
+            _ => {
+                let Some(number) = (self.named)(word) else {
+                    let fault = self.fault(place, format!("unknown name `{word}` in a formula"));
+                    return Err(FormulaFault { unknown: Some(word.to_owned()), ..fault });
+                };
+                self.steps.push(Step::Number(number));
+                self.numbers.push((place, number));
+            }
         }
         Ok(())
     }

@@ -154,6 +154,9 @@ impl Against<'_, '_> {
         word: &Word<'_>,
         words: &[Word<'_>],
     ) -> Option<Datum> {
+        if words.iter().any(|word| word.form == Form::Faulty) {
+            return None;
+        }
         let truth = words.iter().find(|word| word.form == Form::Truth);
         if let (false, Some(truth)) = (matches!(attribute.value_type(), Type::Truth), truth) {
             let message = format!("`{}` cannot be the value of an attribute", truth.text);

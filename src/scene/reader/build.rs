@@ -23,7 +23,7 @@ pub type Checked = (Option<Model>, Places, Duration);
 pub fn model(
     registry: &Registry,
     folder: &Path,
-    accuracy: Chosen,
+    accuracy: Chosen<'_>,
     source: &mut Source<'_, '_>,
     report: &mut Report<'_>,
 ) -> Checked {
@@ -41,6 +41,7 @@ pub fn model(
             let [mut memory, mut other] = [vec![None; TOGETHER], vec![None; TOGETHER]];
             let mut count = parser.entities(&mut memory);
             while count > 0 {
+                parser.rounds.take_repeated().into_iter().for_each(|range| check.report.repeat(range));
                 let entities: Vec<_> = memory[..count].iter().flatten().collect();
                 let work = || {
                     let start = Instant::now();

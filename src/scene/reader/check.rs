@@ -30,7 +30,7 @@ use std::sync::Arc;
 /// The entities of a scene: parsed while they are checked, or all of them parsed before.
 pub enum Source<'s, 'a> {
     /// A text in the notes' syntax, and its parser.
-    Text(&'a str, notes::Parser<'a, 's>),
+    Text(&'a str, Box<notes::Parser<'a, 's>>),
     /// Entities in their order.
     List(&'s [Parsed<'a>]),
 }
@@ -44,7 +44,11 @@ impl<'a> Source<'_, 'a> {
         place: &Place,
     ) -> Option<Cow<'_, Parsed<'a>>> {
         match self {
-            Self::Text(text, _) => notes::again(registry, text, place.as_ref()?.start).map(Cow::Owned),
+            Self::Text(text, parser) => {
+                let mut parsed = notes::again(registry, text, place.as_ref()?.start)?;
+                parser.sets.put(&mut parsed, registry, None);
+                Some(Cow::Owned(parsed))
+            }
             Self::List(parsed) => parsed.get(order).map(Cow::Borrowed),
         }
     }
@@ -60,7 +64,7 @@ const TEXTURE_MEMORY: u64 = 1 << 30;
 
 /// The accuracy of a scene and its memory limit, as far as the caller chooses them.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Chosen {
+pub struct Chosen<'s> {
     /// The accuracy that overrides the scene's own.
     pub above_all: Option<Accuracy>,
     /// The accuracy where the scene chooses none.
@@ -68,6 +72,8 @@ pub struct Chosen {
     /// The limit on the memory of the scene's textures and of its objects' files, in bytes; by default 1 GiB for the
     /// textures, and none for the objects, which take little more than their files do.
     pub memory: Option<u64>,
+    /// The values that are set beside the text, each as `NAME.ATTRIBUTE=VALUES` or `NUMBER=VALUE`.
+    pub sets: &'s [String],
 }
 
 pub(super) struct Check<'r, 't> {
@@ -105,7 +111,7 @@ impl<'r, 't> Check<'r, 't> {
     pub fn new(
         registry: &'r Registry,
         folder: &Path,
-        accuracy: Chosen,
+        accuracy: Chosen<'_>,
         report: &'r mut Report<'t>,
         threads: &'r Threads,
     ) -> Self {

@@ -1,6 +1,7 @@
 //! Renders faults as text: a message, and the lines of the scene that it concerns, shortened to what can be read.
 
 use super::fault::{Fault, Place, Severity};
+use super::parts::{Lines, Parts};
 use crate::text::{self, boundary};
 use annotate_snippets::{AnnotationKind, Element, Level, Origin, Renderer, Snippet};
 use std::ops::Range;
@@ -13,26 +14,39 @@ const WHOLE: usize = 4096;
 const AROUND: usize = 48;
 const MARK: usize = 64;
 
-/// Renders a fault as text. `newlines` are the positions of the text's line ends, in bytes.
-pub fn rendered(
-    fault: &Fault,
-    (name, text): (&str, &str),
-    newlines: &[usize],
-    renderer: &Renderer,
-) -> String {
+/// Renders a fault as text.
+pub fn rendered(fault: &Fault, parts: &Parts<'_>, renderer: &Renderer) -> String {
     let level = match fault.severity {
         Severity::Error => Level::ERROR,
         Severity::Warning => Level::WARNING,
     };
+    let lines_of = parts.at(fault.start());
+    let Lines { name, text, ends: newlines, .. } = lines_of;
     let title = level.primary_title(fault.message.as_str());
     let help = fault.help.as_deref().map(|help| Level::HELP.message(help));
-    let alike = alike(fault, newlines);
+    let alike = alike(fault, lines_of);
     let notes = help.into_iter().chain(alike.as_deref().map(|alike| Level::NOTE.message(alike)));
     let Some(place) = &fault.place else {
-        return renderer.render(&[title.element(Origin::path(name)).elements(notes)]);
+        return renderer.render(&[title.element(Origin::path(*name)).elements(notes)]);
     };
     let also = fault.also.iter().filter_map(|(place, label)| Some((place.as_ref()?, label.as_str())));
-    let marks: Vec<_> = [(place, fault.label.as_str())].into_iter().chain(also).collect();
+    let (here, elsewhere): (Vec<_>, Vec<_>) = also.partition(|(place, _)| lines_of.has(place.start));
+    let marks = [(place, fault.label.as_str())].into_iter().chain(here);
+    let marks: Vec<_> = marks.map(|(place, label)| (lines_of.place(place), label)).collect();
+    let elsewhere: Vec<_> = elsewhere
+        .into_iter()
+        .map(|(place, label)| {
+            let lines = parts.at(place.start);
+            (Piece::of(lines.text, &lines.place(place), &lines.ends), label, lines.name)
+        })
+        .collect();
+    let elsewhere = elsewhere.iter().map(|(piece, label, name)| {
+        let mark = AnnotationKind::Context.span(piece.mark.clone());
+        let mark = if label.is_empty() { mark } else { mark.label(*label) };
+        Element::from(
+            Snippet::source(piece.text.as_str()).path(*name).line_start(piece.line).annotation(mark),
+        )
+    });
     // Only the marked lines are passed on: a long scene with many faults must not be scanned over and over.
     let first = marks.iter().map(|(place, _)| place.start).min().unwrap_or(0);
     let last = marks.iter().map(|(place, _)| place.end).max().unwrap_or(0);
@@ -45,10 +59,10 @@ pub fn rendered(
             if label.is_empty() { mark } else { mark.label(*label) }
         });
         let snippet = Snippet::source(&text[lines.clone()])
-            .path(name)
+            .path(*name)
             .line_start(line(lines.start, newlines))
             .annotations(annotations);
-        return renderer.render(&[title.element(snippet).elements(notes)]);
+        return renderer.render(&[title.element(snippet).elements(elsewhere).elements(notes)]);
     }
     let pieces: Vec<_> =
         marks.iter().map(|(place, label)| (Piece::of(text, place, newlines), *label)).collect();
@@ -57,10 +71,10 @@ pub fn rendered(
     for (piece, label) in &pieces {
         let mark = std::mem::replace(&mut kind, AnnotationKind::Context).span(piece.mark.clone());
         let mark = if label.is_empty() { mark } else { mark.label(*label) };
-        let snippet = Snippet::source(piece.text.as_str()).path(name).line_start(piece.line);
+        let snippet = Snippet::source(piece.text.as_str()).path(*name).line_start(piece.line);
         elements.push(snippet.annotation(mark).into());
     }
-    let rendered = renderer.render(&[title.elements(elements).elements(notes)]);
+    let rendered = renderer.render(&[title.elements(elements).elements(elsewhere).elements(notes)]);
     // The renderer only knows the columns of the shortened line, so the true ones are put in.
     pieces.iter().fold(rendered, |rendered, (piece, _)| {
         let [shown, column] =
@@ -70,9 +84,10 @@ pub fn rendered(
 }
 
 /// Says how many similar faults this fault stands for.
-fn alike(fault: &Fault, newlines: &[usize]) -> Option<String> {
+fn alike(fault: &Fault, part: &Lines<'_>) -> Option<String> {
     let (count, places) = &fault.alike;
-    let mut lines: Vec<_> = places.iter().flatten().map(|place| line(place.start, newlines)).collect();
+    let here = places.iter().flatten().filter(|place| part.has(place.start));
+    let mut lines: Vec<_> = here.map(|place| line(part.place(place).start, &part.ends)).collect();
     lines.dedup();
     let lines = lines.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");
     let first = if lines.is_empty() { String::new() } else { format!(", first in line {lines}") };

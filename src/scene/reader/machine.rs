@@ -1,7 +1,8 @@
 //! Reports for other programs: one line per fault, as editors read them, or one JSON object per fault.
 
-use super::excerpt;
+use super::excerpt::{self, rendered};
 use super::fault::{Fault, Severity};
+use super::parts::Parts;
 use super::report::Report;
 use crate::text;
 use annotate_snippets::Renderer;
@@ -22,13 +23,17 @@ impl Report<'_> {
     /// Writes one line per fault, `FILE:LINE:COLUMN: error: MESSAGE`. Lines and columns count from 1, columns in
     /// characters.
     pub fn short(&self) -> String {
-        let lines = Lines::of(&self.text);
+        let parts = self.parts();
         let line = |fault: &Fault| {
-            let place = fault.place.as_ref().map(|place| lines.at(place.start));
-            let place = place.map(|(line, column)| format!(":{line}:{column}")).unwrap_or_default();
+            let place = fault.place.as_ref().map(|place| {
+                let lines = parts.at(place.start);
+                let (line, column) = lines.line_and_column(lines.place(place).start);
+                format!("{}:{line}:{column}", lines.name)
+            });
+            let place = place.unwrap_or_else(|| self.name.clone());
             let label = if fault.label.is_empty() { String::new() } else { format!(": {}", fault.label) };
             let label = label + &fault.more();
-            format!("{}{place}: {}: {}{label}\n", self.name, fault.severity, fault.message)
+            format!("{place}: {}: {}{label}\n", fault.severity, fault.message)
         };
         let rest = self.rest().map(|rest| format!("{}: {rest}\n", self.name));
         self.faults.iter().map(line).chain(rest).collect()
@@ -36,16 +41,16 @@ impl Report<'_> {
 
     /// Writes one JSON object per fault, a `Message`, each on a line of its own.
     pub fn json(&self) -> String {
-        let lines = Lines::of(&self.text);
+        let parts = self.parts();
         let line = |fault: &Fault| {
-            let first = fault.place.iter().map(|place| lines.span(&self.name, place, &fault.label, true));
+            let first = fault.place.iter().map(|place| span(&parts, place, &fault.label, true));
             let also = excerpt::others(fault)
-                .filter_map(|(place, label)| Some(lines.span(&self.name, place.as_ref()?, label, false)));
+                .filter_map(|(place, label)| Some(span(&parts, place.as_ref()?, label, false)));
             Message {
                 help: fault.help.as_deref(),
                 level: &fault.severity.to_string(),
                 message: &fault.message,
-                rendered: &self.render_fault(fault, &lines.ends, &Renderer::plain()),
+                rendered: &rendered(fault, &parts, &Renderer::plain()),
                 spans: first.chain(also).collect(),
             }
             .line()
@@ -91,7 +96,7 @@ pub struct Span<'m> {
     pub column_end: usize,
     /// The first column of the place.
     pub column_start: usize,
-    /// The scene as the command line names it, `<stdin>` for standard input.
+    /// The scene as the command line names it, `<stdin>` for standard input; an included file; or `--set`.
     pub file_name: &'m str,
     /// Whether the message is about this place; other places help to understand it.
     pub is_primary: bool,
@@ -103,45 +108,23 @@ pub struct Span<'m> {
     pub line_start: usize,
 }
 
-/// The lines of a text.
-struct Lines<'t> {
-    text: &'t str,
-    /// The positions of the line ends, in bytes, without that of the last line.
-    ends: Vec<usize>,
-}
-
-impl<'t> Lines<'t> {
-    fn of(text: &'t str) -> Self {
-        Self { text, ends: text.match_indices('\n').map(|(at, _)| at).collect() }
-    }
-
-    /// Returns the line and the column of a byte, both from 1.
-    fn at(&self, byte: usize) -> (usize, usize) {
-        let before = self.ends.partition_point(|end| *end < byte);
-        let start = before.checked_sub(1).map_or(0, |line| self.ends[line] + 1);
-        (1 + before, 1 + self.text[start..byte].chars().count())
-    }
-
-    fn span<'m>(
-        &self,
-        file_name: &'m str,
-        place: &Range<usize>,
-        label: &'m str,
-        is_primary: bool,
-    ) -> Span<'m> {
-        let ((line_start, column_start), (line_end, column_end)) = (self.at(place.start), self.at(place.end));
-        let label = Some(label).filter(|label| !label.is_empty());
-        let Range { start: byte_start, end: byte_end } = *place;
-        Span {
-            byte_end,
-            byte_start,
-            column_end,
-            column_start,
-            file_name,
-            is_primary,
-            label,
-            line_end,
-            line_start,
-        }
+/// Describes a place in one of the parts of a scene.
+fn span<'m>(parts: &Parts<'m>, place: &Range<usize>, label: &'m str, is_primary: bool) -> Span<'m> {
+    let lines = parts.at(place.start);
+    let place = lines.place(place);
+    let ((line_start, column_start), (line_end, column_end)) =
+        (lines.line_and_column(place.start), lines.line_and_column(place.end));
+    let label = Some(label).filter(|label| !label.is_empty());
+    let Range { start: byte_start, end: byte_end } = place;
+    Span {
+        byte_end,
+        byte_start,
+        column_end,
+        column_start,
+        file_name: lines.name,
+        is_primary,
+        label,
+        line_end,
+        line_start,
     }
 }

@@ -6,18 +6,27 @@ mod check;
 mod excerpt;
 mod fault;
 mod guesses;
+mod keyword;
+mod listed;
 mod machine;
 mod made;
 mod names;
 mod notes;
+mod numbers;
 mod objects;
 mod parsed;
+mod parts;
 mod quick;
 mod report;
+mod rounds;
+mod sets;
+mod sources;
+mod statements;
 mod textures;
 mod threads;
 mod tokens;
 mod toml;
+mod toml_faults;
 mod values;
 
 pub use check::Chosen;
@@ -31,6 +40,8 @@ use crate::scene::syntax::Syntax;
 use crate::world::accuracy::Accuracy;
 use build::Checked;
 use check::Source;
+use sources::Sources;
+use std::ops::Range;
 use std::path::Path;
 use std::time::Duration;
 
@@ -75,19 +86,31 @@ pub fn read_by(
     name: &str,
     folder: &Path,
     bytes: &[u8],
-    accuracy: Chosen,
+    accuracy: Chosen<'_>,
 ) -> Result<Loaded, Report> {
     let text = decode(name, bytes)?;
     let syntax = match Syntax::of_name(name) {
         Some(Syntax::Toml) => Syntax::Toml,
         _ => Syntax::of_text(text),
     };
+    // The memory for making a model, in bytes per byte of its text.
+    let weight = if syntax == Syntax::Toml { 48 } else { 8 };
+    let room = accuracy.memory.map_or(u64::MAX, |memory| memory / weight);
+    let sources = Sources::read(name, folder, text, syntax, accuracy.sets, room);
+    let begin = || {
+        let mut report = report::Report::new(name, &*sources.text, syntax).in_parts(&sources.parts);
+        sources.files.iter().for_each(|file| report.add_file(file.clone()));
+        report
+    };
     let checked = |report: &mut report::Report<'_>, mut source: Source<'_, '_>| {
         build::model(registry, folder, accuracy, &mut source, report)
     };
-    let mut report = report::Report::new(name, text, syntax);
+    let mut report = begin();
     if syntax == Syntax::Toml {
-        let parsed = toml::parse(registry, text, &mut report);
+        let parse = |part: Range<usize>, report: &mut report::Report<'_>| {
+            toml::parse(registry, &sources.text[..part.end], part.start, report)
+        };
+        let parsed = listed::entities(registry, &sources, &parse, &mut report);
         return match report.has_enough() {
             true => Err(report.into_owned()),
             false => finish(checked(&mut report, Source::List(&parsed)), registry, report),
@@ -95,20 +118,24 @@ pub fn read_by(
     }
     // A sound text is parsed and checked at one go.
     let mut errors = report.clone();
-    let Some(parser) = notes::parser(registry, text, &mut errors) else { return Err(errors.into_owned()) };
-    let all = checked(&mut report, Source::Text(text, parser));
+    let Some(parser) = notes::parser(registry, &sources, &mut errors) else {
+        return Err(errors.into_owned());
+    };
+    let all = checked(&mut report, Source::Text(&sources.text, Box::new(parser)));
     if !errors.is_fatal() {
         return finish(all, registry, report);
     }
     drop(all);
     // All syntax errors are reported before all other faults. After too many, nothing else is.
-    let (mut report, mut nowhere) = (report::Report::new(name, text, syntax), report::Report::default());
-    notes::parse(registry, text, &mut report);
+    let (mut report, mut nowhere) = (begin(), report::Report::default());
+    statements::parse(registry, &sources, &mut report);
     if report.has_enough() {
         return Err(report.into_owned());
     }
-    let Some(parser) = notes::parser(registry, text, &mut nowhere) else { return Err(report.into_owned()) };
-    finish(checked(&mut report, Source::Text(text, parser.reading_on())), registry, report)
+    let Some(parser) = notes::parser(registry, &sources, &mut nowhere) else {
+        return Err(report.into_owned());
+    };
+    finish(checked(&mut report, Source::Text(&sources.text, Box::new(parser.reading_on()))), registry, report)
 }
 
 /// Makes a model without any text (the notes' `modelstat.c`). The entities are checked like those of a text; file names

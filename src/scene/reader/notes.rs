@@ -2,8 +2,12 @@
 
 use super::fault::Fault;
 use super::guesses::{Guesses, Known, Table, Tables};
+use super::keyword::Keyword;
 use super::parsed::{Form, Parsed, Word};
 use super::report::Report;
+use super::rounds::Rounds;
+use super::sets::Sets;
+use super::sources::Sources;
 use super::tokens::{Token, TokenForm, Tokens};
 use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
@@ -14,9 +18,10 @@ use std::ops::Range;
 /// Begins to parse the entities of a text. Returns `None`, and reports why, if no part of it is an entity.
 pub fn parser<'a, 'r>(
     registry: &'r Registry,
-    text: &'a str,
+    sources: &'a Sources<'_>,
     report: &'r mut Report<'a>,
 ) -> Option<Parser<'a, 'r>> {
+    let text = &sources.text[..sources.own.end];
     let first = Tokens::of(text, &mut Report::default()).ahead[0];
     if let Some(first) = first
         && !looks_like_a_scene(registry, text)
@@ -32,15 +37,13 @@ pub fn parser<'a, 'r>(
         );
         return None;
     }
-    Some(Parser::new(registry, text, 0, report))
-}
-
-/// Reports the syntax errors of a text.
-pub fn parse<'a>(registry: &Registry, text: &'a str, report: &mut Report<'a>) {
-    let mut memory = vec![None; 1];
-    if let Some(mut parser) = parser(registry, text, report).map(Parser::reading_on) {
-        while parser.entities(&mut memory) > 0 {}
-    }
+    let sets = match &sources.options {
+        Some(options) => Sets::of(&sources.text, options.clone(), report),
+        None => Sets::default(),
+    };
+    let mut parser = Parser::new(registry, text, 0, report);
+    (parser.rounds, parser.sets, parser.sources) = (Rounds::of(text), sets, Some(sources));
+    Some(parser)
 }
 
 /// Parses the entity that begins at a byte of a text once more; what is wrong with it is reported already.
@@ -55,7 +58,7 @@ pub fn again<'a>(registry: &Registry, text: &'a str, at: usize) -> Option<Parsed
 fn looks_like_a_scene(registry: &Registry, text: &str) -> bool {
     let mut nowhere = Report::default();
     let mut parser = Parser::new(registry, text, 0, &mut nowhere);
-    if parser.begins_entity() {
+    if parser.begins_entity() || parser.keyword().is_some() {
         return true;
     }
     while parser.token().is_some() {
@@ -69,12 +72,22 @@ fn looks_like_a_scene(registry: &Registry, text: &str) -> bool {
 
 /// The parser of a scene in the notes' syntax.
 pub struct Parser<'a, 'r> {
-    registry: &'r Registry,
-    tokens: Tokens<'a>,
-    report: &'r mut Report<'a>,
+    pub(super) registry: &'r Registry,
+    pub(super) tokens: Tokens<'a>,
+    pub(super) report: &'r mut Report<'a>,
     tables: Tables,
+    /// Where the text comes from; `None` where one entity is parsed again.
+    pub(super) sources: Option<&'a Sources<'a>>,
+    /// What the scene repeats, and its numbers.
+    pub(super) rounds: Rounds<'a>,
+    /// The values that are set beside the text.
+    pub(super) sets: Sets<'a>,
+    /// The rests of the texts that include this one.
+    pub(super) outer: Vec<Tokens<'a>>,
+    /// Whether everything has been read.
+    pub(super) is_over: bool,
     /// Whether a syntax error is a reason to stop.
-    stops: bool,
+    pub(super) stops: bool,
     /// The place of the token read last.
     before: Range<usize>,
     /// The entity read last: the place of its first word, and that of its end.
@@ -83,8 +96,20 @@ pub struct Parser<'a, 'r> {
 
 impl<'a, 'r> Parser<'a, 'r> {
     fn new(registry: &'r Registry, text: &'a str, at: usize, report: &'r mut Report<'a>) -> Self {
-        let tokens = Tokens::from(text, at, report);
-        Self { registry, tokens, report, tables: Tables::default(), stops: true, before: 0..0, last: None }
+        Self {
+            registry,
+            tokens: Tokens::from(text, at, report),
+            report,
+            tables: Tables::default(),
+            sources: None,
+            rounds: Rounds::default(),
+            sets: Sets::default(),
+            outer: Vec::new(),
+            is_over: false,
+            stops: true,
+            before: 0..0,
+            last: None,
+        }
     }
 
     /// Goes on after a syntax error.
@@ -93,28 +118,11 @@ impl<'a, 'r> Parser<'a, 'r> {
         self
     }
 
-    /// Parses the next entities, in the memory of others, until there are as many as asked for or no more. After a syntax
-    /// error there are no more, except where parsing goes on so that one run finds the faults that follow.
-    pub fn entities(&mut self, parsed: &mut [Option<Parsed<'a>>]) -> usize {
-        let mut count = 0;
-        while count < parsed.len() && self.token().is_some() && !self.report.has_enough() {
-            if self.stops && self.report.is_fatal() {
-                return 0;
-            }
-            if !self.begins_entity() {
-                self.stray();
-            } else if self.entity(&mut parsed[count]).is_some() {
-                count += 1;
-            }
-        }
-        count
-    }
-
-    fn token(&self) -> Option<Token> {
+    pub(super) fn token(&self) -> Option<Token> {
         self.tokens.ahead[0]
     }
 
-    fn step(&mut self) -> Option<Token> {
+    pub(super) fn step(&mut self) -> Option<Token> {
         let token = self.tokens.step(self.report);
         if let Some(token) = &token {
             self.before = token.place();
@@ -122,15 +130,21 @@ impl<'a, 'r> Parser<'a, 'r> {
         token
     }
 
+    /// Returns the keyword that follows, if there is one.
+    pub(super) fn keyword(&self) -> Option<Keyword> {
+        let token = self.token().filter(|token| token.form == TokenForm::Word)?;
+        Keyword::of(self.tokens.raw(token))
+    }
+
     fn text(&self, token: Token) -> Cow<'a, str> {
         self.tokens.text(token)
     }
 
-    fn is(&self, ahead: usize, form: TokenForm) -> bool {
+    pub(super) fn is(&self, ahead: usize, form: TokenForm) -> bool {
         self.tokens.ahead[ahead].is_some_and(|token| token.form == form)
     }
 
-    fn is_word(&self, ahead: usize) -> bool {
+    pub(super) fn is_word(&self, ahead: usize) -> bool {
         self.tokens.ahead[ahead].is_some_and(|token| !token.is_brace())
     }
 
@@ -147,18 +161,19 @@ impl<'a, 'r> Parser<'a, 'r> {
     }
 
     /// Tells whether an entity begins here, even if its name or its brace is missing.
-    fn begins_entity(&self) -> bool {
+    pub(super) fn begins_entity(&self) -> bool {
         self.has_form()
             || (self.is_word(0) && self.is(1, TokenForm::Open))
             || (self.is_entity_type() && self.is_word(1))
     }
 
     /// Skips words that belong to no entity.
-    fn stray(&mut self) {
+    pub(super) fn stray(&mut self) {
         let Some(first) = self.step() else { return };
         let (mut last, mut count) = (first, 1);
         while last.form != TokenForm::Close
             && !self.begins_entity()
+            && self.keyword().is_none()
             && let Some(next) = self.step()
         {
             (last, count) = (next, count + 1);
@@ -179,14 +194,14 @@ impl<'a, 'r> Parser<'a, 'r> {
     }
 
     /// Parses an entity, in the memory of another one if there is one.
-    fn entity(&mut self, memory: &mut Option<Parsed<'a>>) -> Option<()> {
+    pub(super) fn entity(&mut self, memory: &mut Option<Parsed<'a>>) -> Option<()> {
         let first = self.step()?;
         let (kind, kind_at) = (self.tokens.word(first), first.place());
         let name = match self.token() {
             Some(name) if !name.is_brace() => {
                 let name = self.tokens.word(name);
                 self.step();
-                name
+                if self.rounds.is_open() { self.rounds.renamed(name) } else { name }
             }
             _ => {
                 self.report.add(
@@ -225,6 +240,9 @@ impl<'a, 'r> Parser<'a, 'r> {
             } else {
                 self.attribute(known, entity);
             }
+        }
+        if !self.sets.is_empty() {
+            self.sets.apply(entity, self.registry, &mut self.rounds.numbers, self.report);
         }
         entity.place = Some(first.start..self.before.end);
         self.last = Some((kind_at, self.before.clone()));
@@ -274,7 +292,13 @@ impl<'a, 'r> Parser<'a, 'r> {
                 is_value(table, known, count, word, self.report.guesses())
             })
         {
-            entity.value(self.tokens.word(token));
+            let word = self.tokens.word(token);
+            let value_type = || table.zip(known).map(|(table, known)| self.tables[table][known].value_type);
+            entity.value(if word.form == Form::Text || self.rounds.is_used() {
+                self.rounds.word(word, value_type(), self.report)
+            } else {
+                word
+            });
             count += 1;
             self.step();
         }

@@ -26,6 +26,8 @@ pub(super) enum Form {
     Text,
     /// Yes or no, as TOML writes it: `true` or `false`.
     Truth,
+    /// A formula whose fault is reported.
+    Faulty,
 }
 
 impl<'a> Word<'a> {
@@ -35,6 +37,18 @@ impl<'a> Word<'a> {
 
     fn unplaced(text: impl Into<String>) -> Self {
         Self { text: Cow::Owned(text.into()), form: Form::Any, place: None }
+    }
+
+    /// Returns the place of a part of the word, given in bytes: all of the word where the text does not contain it
+    /// exactly as written, without escapes.
+    pub fn within(&self, part: &Range<usize>) -> Place {
+        let quotes = usize::from(self.form == Form::Text);
+        let place = self.place.clone()?;
+        if place.len() != self.text.len() + 2 * quotes {
+            return Some(place);
+        }
+        let at = place.start + quotes;
+        Some(at + part.start..at + part.end)
     }
 }
 
@@ -102,6 +116,31 @@ impl<'a> Parsed<'a> {
     /// Drops the values added since the last attribute.
     pub(super) fn drop_values(&mut self) {
         self.values.truncate(self.attributes.last().map_or(0, |(_, end)| *end));
+    }
+
+    /// Replaces the values of an attribute, under any of its names, or adds the attribute.
+    pub(super) fn replace(&mut self, name: Word<'a>, values: Vec<Word<'a>>, is_same: impl Fn(&str) -> bool) {
+        let old = self.clone();
+        self.attributes.clear();
+        self.values.clear();
+        for (name, values) in old.attributes().filter(|(name, _)| !is_same(&name.text)) {
+            self.values.extend_from_slice(values);
+            self.attributes.push((name.clone(), self.values.len()));
+        }
+        self.values.extend(values.into_iter().take(MAX_VALUES));
+        self.attributes.push((name, self.values.len()));
+    }
+
+    /// Changes the values of all attributes.
+    pub(super) fn change(&mut self, mut change: impl FnMut(&str, Word<'a>) -> Word<'a>) {
+        let mut start = 0;
+        for (name, end) in &self.attributes {
+            for value in &mut self.values[start..*end] {
+                let empty = Word { text: Cow::Borrowed(""), form: Form::Any, place: None };
+                *value = change(&name.text, replace(value, empty));
+            }
+            start = *end;
+        }
     }
 
     /// Gives back memory that the entity does not need.

@@ -135,7 +135,9 @@ impl<'r> Quick<'r> {
                     is_right(&self.whole).then_some(())?;
                     packed.numbers(&self.whole);
                 }
-                (Type::Name(kind), [word]) if !matches!(word.form, Form::Number | Form::Truth) => {
+                (Type::Name(kind), [word])
+                    if !matches!(word.form, Form::Number | Form::Truth | Form::Faulty) =>
+                {
                     let index = names.defined(kind, &word.text)?;
                     is_right(store.datum(index)).then_some(())?;
                     packed.datum(index);
@@ -151,7 +153,8 @@ impl<'r> Quick<'r> {
 fn read<T>(numbers: &mut Vec<T>, words: &[Word<'_>], read: fn(&str) -> Result<T, Complaint>) -> Option<()> {
     numbers.clear();
     for word in words {
-        let number = if word.form == Form::Text { None } else { read(&word.text).ok() };
+        let is_text = matches!(word.form, Form::Text | Form::Faulty);
+        let number = if is_text { None } else { read(&word.text).ok() };
         numbers.push(number?);
     }
     Some(())

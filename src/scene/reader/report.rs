@@ -1,13 +1,15 @@
 //! All faults of a scene: the first ones are listed, and the others are counted.
 
-use super::excerpt;
+use super::excerpt::rendered;
 use super::fault::{Fault, Place, Severity};
 use super::guesses::Guesses;
+use super::parts::{Part, Parts};
 use crate::scene::syntax::Syntax;
 use crate::text;
 use annotate_snippets::Renderer;
 use std::borrow::Cow;
 use std::fmt;
+use std::ops::Range;
 use std::path::PathBuf;
 
 /// The maximum number of errors of one scene that are listed, and the maximum number of warnings. The others are
@@ -17,6 +19,9 @@ const MAX_LISTED: usize = 100;
 /// The maximum number of faults differing only in their places that are listed separately. Of more, only the first is
 /// listed, with their number.
 const MAX_ALIKE: usize = 8;
+
+/// The maximum number of repeated ranges of a text that are kept.
+const MAX_REPEATED: usize = 1000;
 
 /// The number of syntax errors after which the rest of a scene is not read.
 const MAX_ERRORS: usize = 100_000;
@@ -41,6 +46,10 @@ struct Notes {
     told: [usize; 2],
     is_cut_short: bool,
     guesses: Guesses,
+    /// The parts of the text, if there are several.
+    parts: Vec<Part>,
+    /// The ranges of the text that are read more than once. Of the faults at one place of them, one is listed.
+    repeated: Vec<Range<usize>>,
 }
 
 impl<'t> Report<'t> {
@@ -49,10 +58,25 @@ impl<'t> Report<'t> {
         Self { name: name.into(), text: text.into(), syntax, ..Self::default() }
     }
 
+    /// Divides the text into parts, which messages name.
+    pub(super) fn in_parts(mut self, parts: &[Part]) -> Self {
+        self.notes.parts = parts.to_vec();
+        self
+    }
+
+    /// Notes that a range of the text is read more than once: of the faults at one place there, one is listed.
+    pub(super) fn repeat(&mut self, range: Range<usize>) {
+        if self.notes.repeated.len() < MAX_REPEATED {
+            self.notes.repeated.push(range);
+        }
+    }
+
     /// Returns the report with a text of its own, if there is anything to show in the text.
     pub(super) fn into_owned(self) -> Report<'static> {
-        let text = if self.faults.is_empty() { String::new() } else { self.text.into_owned() };
-        let Self { name, syntax, faults, notes, files, .. } = self;
+        let is_shown = !self.faults.is_empty();
+        let text = if is_shown { self.text.into_owned() } else { String::new() };
+        let Self { name, syntax, faults, mut notes, files, .. } = self;
+        notes.parts = if is_shown { notes.parts } else { Vec::new() };
         Report { name, text: text.into(), syntax, faults, notes, files }
     }
 
@@ -65,12 +89,23 @@ impl<'t> Report<'t> {
     pub fn add(&mut self, mut fault: Fault) {
         self.notes.counts[fault.severity as usize] += 1;
         fault.tidy(&self.text);
+        if self.is_again(&fault) {
+            return;
+        }
         let gathered = |told: &&mut Fault| told.alike.0 > 0 && told.is_like(&fault);
         if let Some(first) = self.faults.iter_mut().find(gathered) {
             first.stand_for(fault.place);
         } else if self.tells(fault.severity, &fault.place) {
             self.insert(fault);
         }
+    }
+
+    /// Tells whether a fault was found before, in another round of a text that is repeated.
+    fn is_again(&self, fault: &Fault) -> bool {
+        let is_repeated = |at: &usize| self.notes.repeated.iter().any(|range| range.contains(at));
+        let is_there = fault.place.as_ref().is_some_and(|place| is_repeated(&place.start));
+        is_there
+            && self.faults.iter().any(|told| told.severity == fault.severity && told.place == fault.place)
     }
 
     /// Counts faults that come after so many others that none would be listed.
@@ -165,9 +200,9 @@ impl<'t> Report<'t> {
 
     fn render(&self, renderer: &Renderer) -> String {
         let mut text = String::new();
-        let newlines: Vec<usize> = self.text.match_indices('\n').map(|(at, _)| at).collect();
+        let parts = self.parts();
         for fault in &self.faults {
-            text += &self.render_fault(fault, &newlines, renderer);
+            text += &rendered(fault, &parts, renderer);
             text += "\n\n";
         }
         if let Some(rest) = self.rest() {
@@ -183,8 +218,9 @@ impl<'t> Report<'t> {
         text
     }
 
-    pub(super) fn render_fault(&self, fault: &Fault, newlines: &[usize], renderer: &Renderer) -> String {
-        excerpt::rendered(fault, (&self.name, &self.text), newlines, renderer)
+    /// Returns the parts of the scene's text, with their lines.
+    pub(super) fn parts(&self) -> Parts<'_> {
+        Parts::of(&self.name, &self.text, &self.notes.parts)
     }
 }
 

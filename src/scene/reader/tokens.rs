@@ -153,6 +153,7 @@ impl<'a> Tokens<'a> {
     }
 
     /// Returns the text of a token, with its quotes if it has any.
+    #[inline]
     pub fn raw(&self, token: Token) -> &'a str {
         &self.text[token.start..token.end]
     }

@@ -1,29 +1,35 @@
 //! Parses scenes in TOML: `[entity-type.name]` tables of the same attributes.
 
 use super::fault::Fault;
+use super::keyword::Keyword;
+use super::listed::Statement;
 use super::parsed::{Form, MAX_VALUES, Parsed, VALUES, Word};
 use super::report::Report;
+use super::toml_faults::{
+    LINE, SyntaxError, before_titles, fault_of, is_duplicate, is_sound, long_line, next, pieces, places,
+};
 use crate::scene::registry::Registry;
 use crate::scene::syntax::Syntax;
 use std::borrow::Cow;
-use std::mem::take;
+use std::mem::{swap, take};
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Error};
 
-/// The maximum length of a line, and of the part of a text that is parsed at once before the whole text is known to be
-/// free of syntax errors, in bytes. For each token and each error, the parser keeps many times as much memory as it
-/// takes in the text.
-const LINE: usize = 1 << 16;
-const PART: usize = 1 << 17;
-
-/// Parses the entities of a text, in their order, and reports syntax errors. Parsing goes on after an error, so that
-/// one run finds the faults that follow.
-pub fn parse<'a>(registry: &Registry, text: &'a str, report: &mut Report<'_>) -> Vec<Parsed<'a>> {
+/// Parses the part of a text that begins at `start` and ends with it, and reports syntax errors. Parsing goes on after
+/// an error, so that one run finds the faults that follow.
+pub fn parse<'a>(
+    registry: &Registry,
+    text: &'a str,
+    start: usize,
+    report: &mut Report<'_>,
+) -> Vec<Statement<'a>> {
+    let text = &text[start..];
+    let placed = |place: Range<usize>| start + place.start..start + place.end;
     if let Some(place) = long_line(text) {
         let message = format!("this line is {} bytes long", place.len());
         let help = format!("a line of a scene in TOML is at most {LINE} bytes long");
-        report.add(Fault::error(Some(place), message).help(help));
+        report.add(Fault::error(Some(placed(place)), message).help(help));
         return Vec::new();
     }
     let mut parsed = Vec::new();
@@ -32,13 +38,14 @@ pub fn parse<'a>(registry: &Registry, text: &'a str, report: &mut Report<'_>) ->
         if document.get_ref().is_empty()
             && let Some(first) = errors.first()
         {
-            let fault = Fault::error(first.span().or(Some(0..0)), "this is not a scene in TOML");
+            let place = placed(first.span().unwrap_or(0..0));
+            let fault = Fault::error(Some(place), "this is not a scene in TOML");
             report.add(fault.help(registry.first_steps(Syntax::Toml)));
             return Vec::new();
         }
         if errors.iter().all(is_duplicate) {
-            Parser::new((text, 0), &errors, report, &mut parsed).read(document);
-            parsed.sort_by_key(|entity| entity.name.place.as_ref().map(|place| place.start));
+            Parser::new((text, start), &errors, report, &mut parsed).read(document);
+            parsed.sort_by_key(Statement::start);
             return parsed;
         }
     }
@@ -47,138 +54,13 @@ pub fn parse<'a>(registry: &Registry, text: &'a str, report: &mut Report<'_>) ->
         if report.has_enough() {
             break;
         }
-        let at = piece.start;
+        let at = start + piece.start;
         let text = &text[piece];
         let (document, errors) = DeTable::parse_recoverable(text);
         Parser::new((text, at), &errors, report, &mut parsed).read(document);
     }
-    parsed.sort_by_key(|entity| entity.name.place.as_ref().map(|place| place.start));
+    parsed.sort_by_key(Statement::start);
     parsed
-}
-
-/// Finds the first line that is too long.
-fn long_line(text: &str) -> Option<Range<usize>> {
-    let mut at = 0;
-    let mut lines = text.split('\n').map(|line| {
-        at += line.len() + 1;
-        at - 1 - line.len()..at - 1
-    });
-    lines.find(|line| line.len() > LINE)
-}
-
-/// Tells whether a text can be parsed at once: it is short, or its parts have no syntax errors.
-fn is_sound(text: &str) -> bool {
-    let mut parts = pieces(text);
-    // Each part joins as many pieces as fit.
-    parts.dedup_by(|next, part| {
-        let fits = next.end - part.start <= PART;
-        if fits {
-            part.end = next.end;
-        }
-        fits
-    });
-    let has_errors = |part: Range<usize>| {
-        let (_, errors) = DeTable::parse_recoverable(&text[part]);
-        !errors.iter().all(is_duplicate)
-    };
-    text.len() <= PART || !parts.into_iter().any(has_errors)
-}
-
-/// A syntax error: its place and its message.
-type SyntaxError = (Range<usize>, String);
-
-fn is_duplicate(error: &Error) -> bool {
-    error.message() == DUPLICATE
-}
-
-const DUPLICATE: &str = "duplicate key";
-
-/// Splits a text: before each line that is a title, and before other lines where no title comes for a long time.
-fn pieces(text: &str) -> Vec<Range<usize>> {
-    let is_title = |line: &str| {
-        let line = line.split('#').next().unwrap_or_default().trim();
-        let name = line.strip_prefix('[').and_then(|line| line.strip_suffix(']'));
-        name.is_some_and(|name| name.contains('.') && !name.contains([',', '=']))
-    };
-    let mut starts = vec![0];
-    let mut at = 0;
-    for line in text.split_inclusive('\n') {
-        let is_long = at + line.len() - starts[starts.len() - 1] > PART;
-        if at > 0 && (is_long || is_title(line)) {
-            starts.push(at);
-        }
-        at += line.len();
-    }
-    let ends = starts[1..].iter().copied().chain([text.len()]);
-    starts.iter().copied().zip(ends).map(|(start, end)| start..end).collect()
-}
-
-/// Returns the ends of the lines that are followed by a line beginning with a bracket.
-fn before_titles(text: &str) -> Vec<usize> {
-    text.match_indices("\n[").map(|(at, _)| at).collect()
-}
-
-/// Returns the first syntax error of each line, in order: later errors on a line mostly follow from the first.
-fn places(errors: &[Error], text: &str, titles: &[usize]) -> Vec<SyntaxError> {
-    let place = |error: &Error| {
-        let place = error.span().unwrap_or(text.len()..text.len());
-        // The range of a token missing between two others may end before it begins.
-        place.start.min(place.end)..place.start.max(place.end)
-    };
-    let mut places: Vec<_> = errors.iter().map(|error| (place(error), error.message().to_owned())).collect();
-    places.sort_unstable_by_key(|(place, _)| place.start);
-    let mut end = 0;
-    let mut second_title = 0..0;
-    places.retain(|(place, message)| {
-        // Duplicates below a repeated title follow from the title, so they are not reported.
-        if message == DUPLICATE {
-            let line = text[..place.start].rfind('\n').map_or(0, |end| end + 1);
-            if text[line..].starts_with('[') {
-                second_title = place.end..next(titles, place.end).unwrap_or(text.len());
-            }
-            if second_title.contains(&place.start) {
-                return false;
-            }
-        }
-        let is_first = place.start >= end;
-        if is_first {
-            end = text[place.start..].find('\n').map_or(text.len() + 1, |length| place.start + length + 1);
-        }
-        is_first
-    });
-    places
-}
-
-/// Returns the first of these sorted positions that is not before `from`.
-fn next(places: &[usize], from: usize) -> Option<usize> {
-    places.get(places.partition_point(|place| *place < from)).copied()
-}
-
-/// Makes a fault of a syntax error.
-fn fault_of(place: Range<usize>, message: &str, text: &str) -> Fault {
-    let before = &text[..place.start];
-    let begins_line = before.rfind('\n').is_some_and(|end| before[end..].trim().is_empty());
-    let (place, message, help) = match message {
-        DUPLICATE => {
-            let key = text[place.clone()].to_owned();
-            let help = "a table or an attribute may appear only once; for lights that share a name, write `[[TYPE.NAME]]`";
-            (place, format!("duplicate `{key}`"), help)
-        }
-        _ if message.contains("array") && (begins_line || place.start == text.len()) => {
-            let end = before.trim_end().len();
-            (end..end, "missing `]`".to_owned(), "several values go in brackets: `center = [4, 2, -4]`")
-        }
-        _ if message.starts_with("string values") => {
-            (place, "unquoted word".to_owned(), "names need quotes: `material = \"red\"`")
-        }
-        _ if message.starts_with("key with no value") => {
-            (place, "missing `=`".to_owned(), "write attributes as `NAME = VALUE`")
-        }
-        _ => {
-            (place, message.to_owned(), "a value is a number, a quoted word, or several of them in brackets")
-        }
-    };
-    Fault::error(Some(place), message).help(help)
 }
 
 struct Parser<'a, 'r, 't> {
@@ -191,7 +73,7 @@ struct Parser<'a, 'r, 't> {
     is_told: Vec<bool>,
     titles: Vec<usize>,
     report: &'r mut Report<'t>,
-    parsed: &'r mut Vec<Parsed<'a>>,
+    parsed: &'r mut Vec<Statement<'a>>,
 }
 
 /// A key with its place, and a value with its place.
@@ -203,7 +85,7 @@ impl<'a, 'r, 't> Parser<'a, 'r, 't> {
         (text, at): (&'a str, usize),
         errors: &[Error],
         report: &'r mut Report<'t>,
-        parsed: &'r mut Vec<Parsed<'a>>,
+        parsed: &'r mut Vec<Statement<'a>>,
     ) -> Self {
         let titles = before_titles(text);
         let errors = places(errors, text, &titles);
@@ -237,6 +119,9 @@ impl<'a, 'r, 't> Parser<'a, 'r, 't> {
 
     /// Reads the entities of one type.
     fn kind(&mut self, kind: &Key<'a>, value: Value<'a>) {
+        if let Some(keyword) = Keyword::of(kind.get_ref()) {
+            return self.statement(keyword, kind, value);
+        }
         let DeValue::Table(entities) = value.into_inner() else {
             let what = format!("`{}` is not part of any entity", kind.get_ref());
             self.no_entity(kind, what);
@@ -267,6 +152,103 @@ impl<'a, 'r, 't> Parser<'a, 'r, 't> {
                 }
             }
         }
+    }
+
+    /// Reads what stands in place of an entity.
+    fn statement(&mut self, keyword: Keyword, key: &Key<'a>, value: Value<'a>) {
+        let help = keyword.usage_in_toml();
+        let text = self.text;
+        let wrong = |place| {
+            let what = text.get(key.span()).unwrap_or_default();
+            Fault::error(Some(place), format!("this is not the form of `{what}`")).help(help)
+        };
+        match (keyword, value) {
+            (Keyword::Let, value) => {
+                let DeValue::Table(numbers) = value.into_inner() else {
+                    return self.fault(wrong(key.span()));
+                };
+                for (name, value) in numbers {
+                    let Some(value) = self.one(&value) else {
+                        self.fault(wrong(value.span()));
+                        continue;
+                    };
+                    let name = self.word(name.get_ref().clone(), Form::Text, name.span());
+                    self.parsed.push(Statement::Let { name, value });
+                }
+            }
+            (Keyword::Include, value) => {
+                let files = match value.get_ref() {
+                    DeValue::Array(files) => files.iter().cloned().collect(),
+                    _ => vec![value],
+                };
+                for file in files {
+                    match self.one(&file).filter(|file| file.form == Form::Text) {
+                        Some(file) => self.parsed.push(Statement::Include { file }),
+                        None => self.fault(wrong(file.span())),
+                    }
+                }
+            }
+            (Keyword::Repeat, value) => {
+                let DeValue::Table(repeats) = value.into_inner() else {
+                    return self.fault(wrong(key.span()));
+                };
+                for (name, value) in repeats {
+                    let values = match value.get_ref() {
+                        DeValue::Array(values) => values.iter().cloned().collect(),
+                        _ => vec![value],
+                    };
+                    for value in values {
+                        match (value.span(), value.into_inner()) {
+                            (span, DeValue::Table(body)) => self.repeat(&name, span, body, &wrong),
+                            (span, _) => self.fault(wrong(span)),
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Reads what a `repeat` repeats, and how often.
+    fn repeat(
+        &mut self,
+        name: &Key<'a>,
+        span: Range<usize>,
+        body: DeTable<'a>,
+        wrong: &dyn Fn(Range<usize>) -> Fault,
+    ) {
+        let (mut inner, mut count) = (Vec::new(), None);
+        swap(self.parsed, &mut inner);
+        for (kind, value) in body {
+            if kind.get_ref() == "count" {
+                count = self.one(&value);
+            } else {
+                self.kind(&kind, value);
+            }
+        }
+        swap(self.parsed, &mut inner);
+        inner.sort_by_key(Statement::start);
+        match count {
+            Some(count) => {
+                let start = self.placed(span).start;
+                let name = self.word(name.get_ref().clone(), Form::Text, name.span());
+                self.parsed.push(Statement::Repeat { start, name, count, body: inner });
+            }
+            // Where something could not be parsed, the number may be there.
+            None if self.errors.is_empty() => self.fault(wrong(name.span())),
+            None => {}
+        }
+    }
+
+    /// Returns the only word of a value.
+    fn one(&mut self, value: &Value<'a>) -> Option<Word<'a>> {
+        let mut words = Parsed::begin(Word::at("", Form::Any, 0..0), Word::at("", Form::Any, 0..0));
+        if matches!(value.get_ref(), DeValue::Table(_) | DeValue::Array(_) | DeValue::Datetime(_)) {
+            return None;
+        }
+        self.values(value, &mut words);
+        let name = Word::at("", Form::Any, 0..0);
+        words.add(name, self.report);
+        words.values_of(0).first().cloned()
     }
 
     fn no_entity(&mut self, at: &Key<'a>, what: String) {
@@ -315,7 +297,7 @@ impl<'a, 'r, 't> Parser<'a, 'r, 't> {
         let next = next(&self.titles, end).unwrap_or(self.text.len());
         entity.is_damaged |= self.is_faulty(name_at.start..next);
         entity.shrink();
-        self.parsed.push(entity);
+        self.parsed.push(Statement::Entity(entity));
     }
 
     /// Returns the errors that begin in a span, its end included.

@@ -6,7 +6,6 @@ use crate::numeric::formula::Formula;
 use crate::scene::choice::Choices;
 use crate::scene::value::{Datum, Type};
 use crate::text::nearest;
-use std::ops::Range;
 use std::sync::Arc;
 
 /// Reads words as values of a type.
@@ -54,22 +53,9 @@ fn truth(word: &Word<'_>) -> Result<Datum, Vec<Fault>> {
 }
 
 fn formula(word: &Word<'_>, variables: &'static [&'static str]) -> Result<Datum, Vec<Fault>> {
-    Formula::parse_in(&word.text, variables).map(|formula| Datum::Formula(Arc::new(formula))).map_err(
-        |fault| {
-            // The place within the quotes, if the text contains the formula exactly as written, without escapes.
-            let quotes = usize::from(word.form == Form::Text);
-            let is_as_it_is = |place: &Range<usize>| place.len() == word.text.len() + 2 * quotes;
-            let inside = |place: &Range<usize>| {
-                let at = place.start + quotes;
-                at + fault.place.start..at + fault.place.end
-            };
-            let place = word
-                .place
-                .as_ref()
-                .map(|place| if is_as_it_is(place) { inside(place) } else { place.clone() });
-            vec![Fault::error(place, fault.message).help(fault.help)]
-        },
-    )
+    Formula::parse_in(&word.text, variables)
+        .map(|formula| Datum::Formula(Arc::new(formula)))
+        .map_err(|fault| vec![Fault::error(word.within(&fault.place), fault.message).help(fault.help)])
 }
 
 fn choice(choices: Choices, word: &Word<'_>) -> Result<Datum, Vec<Fault>> {
@@ -96,7 +82,7 @@ fn all<T>(words: &[Word<'_>], read: fn(&str) -> Result<T, Complaint>) -> Result<
     for word in words {
         let value = match word.form {
             Form::Text => Err(("in quotes", Some("write numbers without quotes"))),
-            Form::Any | Form::Number | Form::Truth => read(&word.text),
+            Form::Any | Form::Number | Form::Truth | Form::Faulty => read(&word.text),
         };
         match value {
             Ok(value) => values.push(value),

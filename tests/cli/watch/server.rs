@@ -100,6 +100,26 @@ fn a_texture_is_watched_even_one_that_is_not_there_yet() {
 }
 
 #[test]
+fn an_included_file_is_watched_even_one_that_is_not_there_yet() {
+    let folder = TempDir::new().expect("a folder");
+    let text = "include parts.inc
+        camera eye { pixeldim 80 60 worlddim 8 6 viewpoint 4 3 6 } sphere a { material m center 4 3 -3 radius 1 }";
+    fs::write(folder.path().join("scene.ray"), text).expect("a file");
+    let watching = Watching::start(folder, &["--port", "0", "--set", "a.radius=2"]);
+    let mut events = watching.events();
+    let fault = events.until("fault");
+    let says = fault["report"].as_str().is_some_and(|report| report.contains("cannot read `parts.inc`"));
+    assert!(says, "{fault}");
+    let parts = watching.folder.path().join("parts.inc");
+    fs::write(&parts, "material m { ambient 9 0 0 }").expect("a file");
+    assert_eq!(events.until("scene")["version"], 1);
+    fs::write(&parts, "material m { ambient 0 9 0 }").expect("a file");
+    assert_eq!(events.until("scene")["version"], 2);
+    fs::write(&parts, "material m { ambient -9 }").expect("a file");
+    events.until("fault");
+}
+
+#[test]
 fn a_broken_scene_leaves_the_last_good_picture_to_every_page() {
     let watching = Watching::text(&ball("9 0 0"));
     let mut events = watching.events();

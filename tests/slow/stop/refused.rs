@@ -49,6 +49,7 @@ fn what_differs_is_named() {
         .expect("a file");
     refused(&args, "the scene has changed");
     fs::write(at("wall.ray"), TEXTURED).expect("a file");
+    refused(&[&args[..], &["--set", "white.ambient=2 2 3"]].concat(), "the scene has changed");
     let mut bricks = rgb(&folder, "bricks.png");
     bricks.put_pixel(3, 2, Rgb([1, 2, 3]));
     bricks.save(at("bricks.png")).expect("a picture");

@@ -1,0 +1,20 @@
+//! `--set`: values beside the text of a scene.
+
+use crate::text;
+
+/// The values that are set.
+#[derive(Clone, Default, clap::Args)]
+#[group(id = "what is set")]
+pub struct Args {
+    /// Set values beside the scene's text: `ball.radius=3` those of an attribute, written as in a scene, and `radius=3`
+    /// that of a `let`; may be given more than once
+    #[arg(long = "set", value_name = "NAME=VALUES")]
+    pub values: Vec<String>,
+}
+
+impl Args {
+    /// Returns the options as a shell reads them, each after a space.
+    pub fn words(&self) -> String {
+        self.values.iter().map(|value| format!(" --set {}", text::quoted(value.as_ref()))).collect()
+    }
+}

@@ -1,0 +1,223 @@
+//! The named numbers of a scene, and formulas in place of numbers.
+
+use super::fault::{Fault, Place, Severity};
+use super::parsed::{Form, Word};
+use super::report::Report;
+use super::tokens::Tokens;
+use super::values;
+use crate::numeric::formula::{Formula, FormulaFault, is_taken};
+use crate::scene::value::Type;
+use crate::text::{list, nearest, shortest};
+use std::collections::HashMap;
+
+/// The maximum number of names that a message lists.
+const LISTED: usize = 8;
+
+/// A number that a scene names.
+struct Number {
+    name: String,
+    /// `None` if what it should be is faulty: then nothing that uses it is reported.
+    value: Option<f64>,
+    place: Place,
+}
+
+/// The numbers that are named so far.
+#[derive(Default)]
+pub struct Numbers<'a> {
+    all: Vec<Number>,
+    by_name: HashMap<String, usize>,
+    /// The text in the notes' syntax, in which names may be defined later.
+    text: &'a str,
+    /// The names that are defined somewhere, once they are needed, and where.
+    anywhere: Option<HashMap<String, Place>>,
+}
+
+impl<'a> Numbers<'a> {
+    /// Begins with no numbers of a text in the notes' syntax.
+    pub fn of(text: &'a str) -> Self {
+        Self { text, ..Self::default() }
+    }
+
+    /// Begins with no numbers of a text in which these names are defined.
+    pub fn of_names(names: HashMap<String, Place>) -> Self {
+        Self { anywhere: Some(names), ..Self::default() }
+    }
+
+    /// Returns the number of names, to which [`keep`](Self::keep) returns.
+    #[inline]
+    pub fn len(&self) -> usize {
+        self.all.len()
+    }
+
+    /// Forgets all names but the first ones.
+    pub fn keep(&mut self, len: usize) {
+        for number in self.all.drain(len..) {
+            self.by_name.remove(&number.name);
+        }
+    }
+
+    /// Changes a number, given by how many names were there before it.
+    pub fn change(&mut self, index: usize, value: f64) {
+        if let Some(number) = self.all.get_mut(index) {
+            number.value = Some(value);
+        }
+    }
+
+    /// Returns the names.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.all.iter().map(|number| number.name.as_str())
+    }
+
+    /// Names a number, or reports why it cannot have the name; `None` stands for a number that is faulty.
+    pub fn define(&mut self, name: &Word<'_>, value: Option<f64>, report: &mut Report<'_>) {
+        let mut letters = name.text.chars();
+        let is_name = letters.next().is_some_and(char::is_alphabetic)
+            && letters.all(|letter| letter.is_alphanumeric() || letter == '_');
+        let fault = |message| Fault::error(name.place.clone(), message);
+        if !is_name {
+            let message = format!("`{}` cannot be the name of a number", name.text.escape_debug());
+            let help =
+                "a name that formulas can use begins with a letter, and has only letters, digits and `_`";
+            report.add(fault(message).help(help));
+        } else if is_taken(&name.text) {
+            let message = format!("`{}` cannot be the name of a number", name.text);
+            report.add(
+                fault(message)
+                    .help(format!("in formulas, `{}` has a meaning already: choose another name", name.text)),
+            );
+        } else if let Some(known) = self.by_name.get(&*name.text) {
+            let message = format!("the number `{}` is defined twice", name.text);
+            report.add(
+                fault(message)
+                    .also(self.all[*known].place.clone(), "the first one")
+                    .help("a named number does not change: choose another name"),
+            );
+        } else {
+            self.by_name.insert(name.text.to_string(), self.all.len());
+            self.all.push(Number { name: name.text.to_string(), value, place: name.place.clone() });
+        }
+    }
+
+    /// Returns the number that a word stands for: a number, or a formula in quotes. Returns `None` after reporting that it
+    /// is neither, or if it depends on a number for which that is reported.
+    pub fn number(&mut self, word: &Word<'_>, report: &mut Report<'_>) -> Option<f64> {
+        if word.form != Form::Text {
+            return values::number(&word.text)
+                .map_err(|(what, help)| {
+                    let fault = Fault::error(word.place.clone(), format!("`{}` is {what}", word.text));
+                    report.add(
+                        fault.help(help.unwrap_or("a number, or a formula in quotes, is expected here")),
+                    );
+                })
+                .ok();
+        }
+        let mut used = Vec::new();
+        let fault = match self.formula(word, &[], &mut used) {
+            Ok(_) if used.iter().any(|(_, value)| f64::is_nan(*value)) => return None,
+            Ok(formula) => match formula.at(0.0) {
+                value if f64::is_finite(value) => return Some(value),
+                value => {
+                    let what = if value.is_nan() { "not a number" } else { "infinite" };
+                    let fault = Fault::error(word.place.clone(), format!("`{}` is {what}", word.text));
+                    used.dedup();
+                    let values = used.iter().map(|(name, value)| format!("`{name}` is {}", shortest(*value)));
+                    let values = values.collect::<Vec<_>>().join(" and ");
+                    if values.is_empty() { fault } else { fault.help(format!("here {values}")) }
+                }
+            },
+            Err(fault) => self.explained(word, fault, report),
+        };
+        report.add(fault);
+        None
+    }
+
+    /// Returns a word of an attribute's values with numbers in place of formulas and names.
+    pub fn word(&mut self, word: Word<'a>, value_type: Option<Type>, report: &mut Report<'_>) -> Word<'a> {
+        match value_type {
+            Some(Type::Number | Type::Whole)
+                if word.form == Form::Text && word.text.parse::<f64>().is_err() =>
+            {
+                match self.number(&word, report) {
+                    Some(number) => Word { text: shortest(number).into(), form: Form::Number, ..word },
+                    None => Word { form: Form::Faulty, ..word },
+                }
+            }
+            Some(Type::Number | Type::Whole)
+                if word.form == Form::Any && self.by_name.contains_key(&*word.text) =>
+            {
+                let fault = Fault::error(word.place.clone(), format!("`{}` is not in quotes", word.text));
+                report.add(fault.help(format!("a formula goes in quotes: `\"{}\"`", word.text)));
+                Word { form: Form::Faulty, ..word }
+            }
+            Some(Type::Formula(variables)) if !self.all.is_empty() => {
+                let mut used = Vec::new();
+                match self.formula(&word, variables, &mut used) {
+                    Ok(_) if used.is_empty() => word,
+                    Ok(_) if used.iter().any(|(_, value)| f64::is_nan(*value)) => {
+                        Word { form: Form::Faulty, ..word }
+                    }
+                    Ok(formula) => Word { text: formula.to_string().into(), ..word },
+                    Err(fault) => {
+                        let fault = self.explained(&word, fault, report);
+                        report.add(fault);
+                        Word { form: Form::Faulty, ..word }
+                    }
+                }
+            }
+            _ => word,
+        }
+    }
+
+    /// Parses a word as a formula, and notes the named numbers in it.
+    fn formula(
+        &self,
+        word: &Word<'_>,
+        variables: &'static [&'static str],
+        used: &mut Vec<(String, f64)>,
+    ) -> Result<Formula, FormulaFault> {
+        let seen = std::cell::RefCell::new(used);
+        Formula::parse_with(&word.text, variables, &|name| {
+            let value = self.all[*self.by_name.get(name)?].value.unwrap_or(f64::NAN);
+            seen.borrow_mut().push((name.to_owned(), value));
+            Some(value)
+        })
+    }
+
+    /// Returns the fault of a formula with what may have been meant.
+    fn explained(&mut self, word: &Word<'_>, fault: FormulaFault, report: &Report<'_>) -> Fault {
+        let mut told = Fault::error(word.within(&fault.place), fault.message);
+        let Some(unknown) = fault.unknown else { return told.help(fault.help) };
+        if let Some(place) = self.anywhere().get(&unknown) {
+            told.message = format!("the number `{unknown}` is used before it is defined");
+            return told
+                .also(place.clone(), "defined here")
+                .help("a number must be defined before it is used");
+        }
+        let is_told = report.tells(Severity::Error, &told.place);
+        if let Some(near) = nearest(&unknown, self.names().filter(|_| is_told)) {
+            told = told.label(format!("did you mean `{near}`?"));
+        }
+        let names = list(self.names().take(LISTED));
+        let more = if self.all.len() > LISTED { " and others" } else { "" };
+        match self.all.len() {
+            0 => told.help(fault.help),
+            1 => told.help(format!("{}; the named number is {names}", fault.help)),
+            _ => told.help(format!("{}; the named numbers are {names}{more}", fault.help)),
+        }
+    }
+
+    /// Returns the names that are defined somewhere in the text.
+    fn anywhere(&mut self) -> &HashMap<String, Place> {
+        let text = self.text;
+        self.anywhere.get_or_insert_with(|| {
+            let (mut names, nowhere) = (HashMap::new(), &mut Report::default());
+            let mut tokens = Tokens::of(text, nowhere);
+            while let Some(token) = tokens.step(nowhere) {
+                if let (true, Some(name)) = (tokens.raw(token) == "let", tokens.ahead[0]) {
+                    names.insert(tokens.text(name).into_owned(), Some(name.place()));
+                }
+            }
+            names
+        })
+    }
+}

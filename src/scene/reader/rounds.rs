@@ -1,0 +1,177 @@
+//! What a scene repeats: the rounds of its `repeat`s, and the names in them.
+
+use super::fault::{Fault, Place};
+use super::numbers::Numbers;
+use super::parsed::Word;
+use super::report::Report;
+use crate::scene::value::Type;
+use std::collections::{HashMap, HashSet};
+use std::ops::Range;
+
+/// The maximum number of rounds and of repeated entities of a scene, and the maximum length of the texts of all rounds,
+/// in bytes.
+const MOST: usize = 1_000_000;
+const MOST_BYTES: usize = 1 << 28;
+
+/// The rounds of a scene's `repeat`s.
+#[derive(Default)]
+pub struct Rounds<'a> {
+    /// The numbers of the scene, and of the rounds.
+    pub numbers: Numbers<'a>,
+    open: Vec<Round>,
+    /// How many rounds and repeated entities there were, and the length of their texts, in bytes.
+    count: usize,
+    bytes: usize,
+    /// The ranges of the text that are read more than once, as far as they are not yet taken.
+    repeated: Vec<Range<usize>>,
+}
+
+/// A `repeat` that is under way.
+struct Round {
+    /// The place of its name.
+    place: Place,
+    index: u64,
+    count: u64,
+    /// The number of names outside of it.
+    names: usize,
+    /// The position of its body in the text, in bytes.
+    start: usize,
+    /// The number of errors when it began.
+    errors: usize,
+    /// The names of the entities in its body.
+    entities: HashSet<String>,
+}
+
+impl<'a> Rounds<'a> {
+    /// Begins with a text in the notes' syntax.
+    pub fn of(text: &'a str) -> Self {
+        Self { numbers: Numbers::of(text), ..Self::default() }
+    }
+
+    /// Begins with a text in which these numbers are defined.
+    pub fn of_names(names: HashMap<String, Place>) -> Self {
+        Self { numbers: Numbers::of_names(names), ..Self::default() }
+    }
+
+    /// Tells whether a `repeat` is under way.
+    #[inline]
+    pub fn is_open(&self) -> bool {
+        !self.open.is_empty()
+    }
+
+    /// Tells whether words that are not in quotes may mean something else than they say.
+    #[inline]
+    pub fn is_used(&self) -> bool {
+        self.is_open() || self.numbers.len() > 0
+    }
+
+    /// Returns the place of the name of the innermost `repeat`.
+    pub fn innermost(&self) -> Place {
+        self.open.last().and_then(|round| round.place.clone())
+    }
+
+    /// Begins the first round of a `repeat` that counts in `name`, or reports why there are none. `entities` are the names
+    /// of the entities in its body, which begins at `start`.
+    pub fn begin(
+        &mut self,
+        name: &Word<'_>,
+        count: &Word<'_>,
+        (start, entities): (usize, HashSet<String>),
+        errors: usize,
+        report: &mut Report<'_>,
+    ) -> bool {
+        let names = self.numbers.len();
+        let number = self.numbers.number(count, report);
+        let rounds = number.map_or(0.0, |number| number);
+        if rounds < 0.0 || rounds.fract() != 0.0 || rounds > MOST as f64 {
+            let message =
+                format!("`repeat {}` cannot have {} rounds", name.text, crate::text::shortest(rounds));
+            let help = format!("the number of rounds is a whole number from 0 to {MOST}");
+            report.add(Fault::error(count.place.clone(), message).help(help));
+        }
+        self.numbers.define(name, Some(0.0), report);
+        let count =
+            if number.is_some() && rounds >= 0.0 && rounds <= MOST as f64 { rounds as u64 } else { 1 };
+        let place = name.place.clone();
+        self.open.push(Round { place, index: 0, count, names, start, errors, entities });
+        count > 0
+    }
+
+    /// Ends a round whose body ends at `end`. Returns the position of the body if there is another round; otherwise the
+    /// `repeat` is over.
+    pub fn next(&mut self, end: usize, errors: usize, report: &mut Report<'_>) -> Option<usize> {
+        let is_more = {
+            let round = self.open.last_mut()?;
+            if round.index == 0 {
+                self.repeated.push(round.start..end);
+            }
+            self.bytes = self.bytes.saturating_add(end - round.start);
+            round.index += 1;
+            round.index < round.count && round.errors == errors
+        };
+        if !is_more || !self.has_room(report) {
+            self.end();
+            return None;
+        }
+        let round = self.open.last()?;
+        self.numbers.keep(round.names + 1);
+        self.numbers.change(round.names, round.index as f64);
+        Some(round.start)
+    }
+
+    /// Ends the innermost `repeat`.
+    pub fn end(&mut self) {
+        if let Some(round) = self.open.pop() {
+            self.numbers.keep(round.names);
+        }
+    }
+
+    /// Counts a round, and reports if there are too many.
+    fn has_room(&mut self, report: &mut Report<'_>) -> bool {
+        self.count += 1;
+        let is_there = self.count <= MOST && self.bytes <= MOST_BYTES;
+        if !is_there {
+            let place = self.innermost();
+            let help = format!(
+                "a scene has at most {MOST} rounds and repeated entities, and at most {} MiB of repeated text",
+                MOST_BYTES >> 20
+            );
+            report.add(Fault::error(place, "the scene repeats too much").help(help));
+        }
+        is_there
+    }
+
+    /// Returns the name of an entity, with the number of its round.
+    pub fn renamed(&mut self, name: Word<'a>) -> Word<'a> {
+        if self.open.is_empty() {
+            return name;
+        }
+        self.count += 1;
+        let text = name.text.to_string() + &self.suffix(self.open.len());
+        Word { text: text.into(), ..name }
+    }
+
+    fn suffix(&self, depth: usize) -> String {
+        self.open[..depth].iter().map(|round| format!("_{}", round.index)).collect()
+    }
+
+    /// Returns a word of an attribute's values with numbers in place of formulas, and the name of the entity of this
+    /// round in place of that in the body.
+    pub fn word(&mut self, word: Word<'a>, value_type: Option<Type>, report: &mut Report<'_>) -> Word<'a> {
+        if let Some(Type::Name(_)) = value_type {
+            let depth = self.open.iter().rposition(|round| round.entities.contains(&*word.text));
+            return match depth {
+                Some(depth) => {
+                    Word { text: (word.text.to_string() + &self.suffix(depth + 1)).into(), ..word }
+                }
+                None => word,
+            };
+        }
+        self.numbers.word(word, value_type, report)
+    }
+
+    /// Takes the ranges of the text that are read more than once.
+    pub fn take_repeated(&mut self) -> Vec<Range<usize>> {
+        std::mem::take(&mut self.repeated)
+    }
+}

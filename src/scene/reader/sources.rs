@@ -1,0 +1,218 @@
+//! The texts that a scene is read from: its own, those of the files that it includes, and the options that set values.
+//! They stand one after the other in one text, so that a place is a range of it.
+
+use super::fault::Fault;
+use super::parts::Part;
+use super::report::Report;
+use super::sets::OPTION;
+use super::tokens::{Token, TokenForm, Tokens};
+use crate::files;
+use crate::scene::syntax::Syntax;
+use crate::text::{self, nearest_file};
+use std::borrow::Cow;
+use std::collections::HashMap;
+use std::io::{self, Read};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use toml::de::{DeTable, DeValue};
+
+/// The maximum length of all texts together, in bytes.
+const LARGEST: u64 = 1 << 30;
+
+/// The maximum number of files that a scene includes, and how deep they may include each other.
+const MOST_FILES: usize = 1000;
+const DEEPEST: usize = 16;
+
+/// The texts that a scene is read from.
+pub struct Sources<'t> {
+    /// All texts.
+    pub text: Cow<'t, str>,
+    /// The parts of the text; empty if it is one.
+    pub parts: Vec<Part>,
+    /// The part that each `include` includes, by the place at which its file is named, or why it cannot.
+    includes: HashMap<usize, Result<usize, Fault>>,
+    /// The range of the scene's own text.
+    pub own: Range<usize>,
+    /// The range of the options that set values.
+    pub options: Option<Range<usize>>,
+    /// The files that are included, whether they exist or not.
+    pub files: Vec<PathBuf>,
+}
+
+/// A file that is read: its path, its folder, and the index of the one that includes it.
+struct Reading {
+    path: PathBuf,
+    includer: Option<usize>,
+}
+
+impl<'t> Sources<'t> {
+    /// Reads the files that a scene includes, and adds the options.
+    pub fn read(
+        name: &str,
+        folder: &Path,
+        text: &'t str,
+        syntax: Syntax,
+        sets: &[String],
+        room: u64,
+    ) -> Self {
+        let own = 0..text.len();
+        let mut sources = Self {
+            text: Cow::Borrowed(text),
+            parts: Vec::new(),
+            includes: HashMap::new(),
+            own: own.clone(),
+            options: None,
+            files: Vec::new(),
+        };
+        if !text.contains("include") && sets.is_empty() {
+            return sources;
+        }
+        sources.parts.push(Part { name: name.to_owned(), range: own });
+        let own = folder.join(Path::new(name).file_name().unwrap_or_default());
+        let mut readings = vec![Reading { path: own, includer: None }];
+        let mut room = room.min(LARGEST).saturating_sub(text.len() as u64);
+        let mut at = 0;
+        while at < readings.len() {
+            for (place, file) in included(syntax, &sources.text, sources.parts[at].range.clone()) {
+                let read = sources.include(&mut readings, at, &file, syntax, &mut room);
+                let read = read.map_err(|(message, help)| {
+                    let fault = Fault::error(Some(place.clone()), message);
+                    Fault { help, ..fault }
+                });
+                sources.includes.insert(place.start, read);
+            }
+            at += 1;
+        }
+        if !sets.is_empty() {
+            sources.options = Some(sources.add(OPTION.to_owned(), &sets.join("\n")));
+        }
+        sources
+    }
+
+    /// Returns the range of the file that an `include` includes, or why it cannot; `None` if none can stand there.
+    pub fn included(&self, place: usize) -> Option<Result<Range<usize>, &Fault>> {
+        let part = self.includes.get(&place)?.as_ref();
+        Some(part.map(|part| self.parts[*part].range.clone()))
+    }
+
+    /// Adds a text, and returns its range.
+    fn add(&mut self, name: String, text: &str) -> Range<usize> {
+        let all = self.text.to_mut();
+        all.push('\n');
+        let range = all.len()..all.len() + text.len();
+        *all += text;
+        self.parts.push(Part { name, range: range.clone() });
+        range
+    }
+
+    /// Reads a file and returns the index of its part, or what is wrong and what would be right.
+    fn include(
+        &mut self,
+        readings: &mut Vec<Reading>,
+        includer: usize,
+        file: &str,
+        syntax: Syntax,
+        room: &mut u64,
+    ) -> Result<usize, (String, Option<String>)> {
+        let path = readings[includer].path.with_file_name(file);
+        self.files.push(path.clone());
+        let same = |other: &Path| match (other.canonicalize(), path.canonicalize()) {
+            (Ok(other), Ok(path)) => other == path,
+            _ => false,
+        };
+        let mut outer = Some(includer);
+        let mut depth = 0;
+        while let Some(reading) = outer.map(|outer| &readings[outer]) {
+            if same(&reading.path) {
+                let help = "a file cannot include itself, directly or through others";
+                return Err((format!("`{file}` includes itself"), Some(help.to_owned())));
+            }
+            outer = reading.includer;
+            depth += 1;
+        }
+        if depth > DEEPEST || readings.len() > MOST_FILES {
+            let help =
+                format!("a scene includes at most {MOST_FILES} files, at most {DEEPEST} within each other");
+            return Err((format!("`{file}` is one file too many"), Some(help)));
+        }
+        if Syntax::of_name(&path).unwrap_or(syntax) != syntax {
+            let help = "`tabray convert` writes a file in the other syntax";
+            return Err((format!("`{file}` has another syntax than the scene"), Some(help.to_owned())));
+        }
+        let mut bytes = Vec::new();
+        let read = files::open(&path).and_then(|opened| opened.take(*room + 1).read_to_end(&mut bytes));
+        if let Err(error) = read {
+            let near = nearest_file(&path).filter(|_| error.kind() == io::ErrorKind::NotFound);
+            let near = near.map(|near| Path::new(file).with_file_name(near));
+            return Err((
+                format!("cannot read `{file}`: {}", text::reason(&error)),
+                Some(match near {
+                    Some(near) => format!("did you mean `{}`?", near.display()),
+                    None => "the name is relative to the file that includes it".to_owned(),
+                }),
+            ));
+        }
+        *room = room
+            .checked_sub(bytes.len() as u64)
+            .ok_or_else(|| (format!("`{file}` is too large to be included"), None))?;
+        let text = String::from_utf8(bytes).ok().filter(|text| !text.contains('\0'));
+        let Some(text) = text else {
+            return Err((
+                format!("`{file}` is not a text"),
+                Some("a scene is plain text, in UTF-8".to_owned()),
+            ));
+        };
+        let name = Path::new(&self.parts[includer].name).with_file_name(file).display().to_string();
+        self.add(name, text.strip_prefix('\u{feff}').unwrap_or(&text));
+        readings.push(Reading { path, includer: Some(includer) });
+        Ok(self.parts.len() - 1)
+    }
+}
+
+/// Returns the files that a part of a text includes, each with the place at which it is named.
+fn included(syntax: Syntax, text: &str, part: Range<usize>) -> Vec<(Range<usize>, String)> {
+    if !text[part.clone()].contains("include") {
+        return Vec::new();
+    }
+    match syntax {
+        Syntax::Notes => in_words(&text[..part.end], part.start),
+        Syntax::Toml => in_toml(&text[part.clone()], part.start),
+    }
+}
+
+fn in_words(text: &str, start: usize) -> Vec<(Range<usize>, String)> {
+    let nowhere = &mut Report::default();
+    let mut tokens = Tokens::from(text, start, nowhere);
+    let (mut depth, mut files) = (0_usize, Vec::new());
+    while let Some(Token { form, .. }) = tokens.ahead[0] {
+        let is_include =
+            form == TokenForm::Word && tokens.ahead[0].map(|token| tokens.raw(token)) == Some("include");
+        match form {
+            TokenForm::Open => depth += 1,
+            TokenForm::Close => depth = depth.saturating_sub(1),
+            _ if depth == 0 && is_include => {
+                let file = tokens.ahead[1].filter(|file| !file.is_brace());
+                files.extend(file.map(|file| (file.place(), tokens.text(file).into_owned())));
+            }
+            _ => {}
+        }
+        tokens.step(nowhere);
+    }
+    files
+}
+
+fn in_toml(text: &str, start: usize) -> Vec<(Range<usize>, String)> {
+    let (document, _) = DeTable::parse_recoverable(text);
+    let include = document.into_inner().into_iter().find(|(key, _)| key.get_ref() == "include");
+    let values = include.map(|(_, value)| match value.get_ref() {
+        DeValue::Array(files) => files.iter().cloned().collect(),
+        _ => vec![value],
+    });
+    let file = |value: toml::Spanned<DeValue<'_>>| match value.get_ref() {
+        DeValue::String(file) => {
+            Some((start + value.span().start..start + value.span().end, file.to_string()))
+        }
+        _ => None,
+    };
+    values.into_iter().flatten().filter_map(file).collect()
+}
