@@ -165,6 +165,17 @@ fn a_chart_has_all_its_files_and_its_errors_are_the_same_twice() {
 }
 
 #[test]
+fn choices_for_an_image_of_few_pixels_are_measured_on_all_of_them() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("few.ray"), EDGE.replace("40 30", "8 6")).expect("a file");
+    let mut choose = cargo_bin_cmd!("tabray");
+    let chosen = choose.current_dir(folder.path()).args(["choose", "few.ray", "--max-error", "0.1"]).output();
+    let chosen = chosen.expect("it runs");
+    let text = String::from_utf8_lossy(&chosen.stdout);
+    assert!(text.contains("measured on 48 of 48 pixels"), "{text}{}", String::from_utf8_lossy(&chosen.stderr));
+}
+
+#[test]
 fn what_is_chosen_is_a_command_line_that_renders() {
     let folder = TempDir::new().expect("a folder");
     std::fs::write(folder.path().join("edge.ray"), EDGE).expect("a file");

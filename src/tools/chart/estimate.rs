@@ -276,7 +276,8 @@ impl Study {
         let most = |picture: u32| {
             let least = if self.goal.is_worst() { 2.0 * MIN_RAYS } else { MIN_RAYS };
             let rays = (PART * f64::from(picture) * all as f64).max(least);
-            ((rays / f64::from(of_pixel)) as usize).clamp(FEWEST, all)
+            // A small image has fewer pixels than that.
+            ((rays / f64::from(of_pixel)) as usize).max(FEWEST).min(all)
         };
         let mut errors: Vec<Errors> = vec![Errors::new(samples.len()); kept.len()];
         let mut rights = Vec::new();
