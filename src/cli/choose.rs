@@ -51,7 +51,7 @@ pub struct Args {
 /// How long choosing may take if no time limit is given.
 const LIMIT: Duration = Duration::from_secs(10);
 
-/// The ratio of times or errors from which on another accuracy than the scene's is worth choosing.
+/// The ratio of costs or errors from which on another choice than the first is worth taking.
 const GAIN: f64 = 0.8;
 
 fn positive(text: &str) -> Result<f64, String> {
@@ -116,6 +116,17 @@ impl<'e> Weighed<'e> {
         estimate.seconds / self.cores as f64
     }
 
+    /// Tells whether one choice is clearly faster than another one. Those of one accuracy are compared by their rays, which
+    /// are the same on each machine; times of choices that are timed apart are not.
+    fn is_faster(one: &Estimate, other: &Estimate) -> bool {
+        let costs = if one.accuracy == other.accuracy {
+            [one.rays, other.rays]
+        } else {
+            [one.seconds, other.seconds]
+        };
+        costs[0] <= GAIN * costs[1]
+    }
+
     /// Returns the choice that meets the goal: of the scene's own accuracy, unless another one is clearly better.
     fn chosen(&self) -> Result<&'e Estimate, Failure> {
         let accuracies = self.estimates.all.chunk_by(|one, other| {
@@ -124,7 +135,7 @@ impl<'e> Weighed<'e> {
         let mut best: Option<&Estimate> = None;
         for met in accuracies.filter_map(|choices| self.goal.met(choices, self.cores)) {
             let is_better = |best: &Estimate| match self.goal {
-                Goal::Error { .. } => met.seconds <= GAIN * best.seconds,
+                Goal::Error { .. } => Self::is_faster(met, best),
                 Goal::Time { .. } => met.bound <= GAIN * best.bound,
             };
             if best.is_none_or(is_better) {
@@ -155,9 +166,11 @@ impl<'e> Weighed<'e> {
 
     /// Says which choices were considered and which one was chosen, and shows the command line.
     fn words(&self, chosen: &Estimate, scene: &Path, set: &set::Args) -> String {
-        let head = ["accuracy", "samples", "error", "at most", "time"];
-        let mut text =
-            format!("  {:<9}{:>8}{:>12}{:>12}{:>12}\n", head[0], head[1], head[2], head[3], head[4]);
+        let head = ["accuracy", "samples", "error", "at most", "rays", "time"];
+        let mut text = format!(
+            "  {:<9}{:>8}{:>12}{:>12}{:>9}{:>12}\n",
+            head[0], head[1], head[2], head[3], head[4], head[5]
+        );
         let is_chosen = |one: &Estimate| is_same(one, chosen);
         let mut shown: Vec<_> =
             self.estimates.all.iter().filter(|one| self.is_best(one) || is_chosen(one)).collect();
@@ -175,8 +188,9 @@ impl<'e> Weighed<'e> {
             let time = format!("{:.3} s", self.time(estimate));
             let _ = writeln!(
                 text,
-                "{mark} {name:<9}{:>8}{measured:>12}{bound:>12}{time:>12}",
-                estimate.numbers()
+                "{mark} {name:<9}{:>8}{measured:>12}{bound:>12}{:>9.1}{time:>12}",
+                estimate.numbers(),
+                estimate.rays
             );
         }
         let how = match chosen.accuracy {
@@ -195,7 +209,8 @@ impl<'e> Weighed<'e> {
         let _ = write!(
             text,
             "\nThe marked choice is {why}{sure}. Errors were measured on {measured} of {all} pixels, against {against} \
-             samples in each{short}; those of the whole image are at most what the table says. Times are estimates.\n\n\
+             samples in each{short}; those of the whole image are at most what the table says. Choices of one \
+             accuracy are compared by their rays per pixel, those of several by their times, which are estimates.\n\n\
              {} render {}{} {how} --samples {}\n",
             program::name(),
             scene.display(),
@@ -207,9 +222,11 @@ impl<'e> Weighed<'e> {
 
     /// Tells whether no other choice is clearly faster and has no larger bound.
     fn is_best(&self, one: &Estimate) -> bool {
-        !self.estimates.all.iter().any(|other| {
-            !is_same(one, other) && other.seconds <= GAIN * one.seconds && other.bound <= one.bound
-        })
+        !self
+            .estimates
+            .all
+            .iter()
+            .any(|other| !is_same(one, other) && Self::is_faster(other, one) && other.bound <= one.bound)
     }
 }
 

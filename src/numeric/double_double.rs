@@ -3,6 +3,9 @@
 //! Nothing here uses a fused multiply-add, so the bits are the same on every machine.
 
 mod elementary;
+mod exact;
+
+pub use exact::{Exact, exact_sum};
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -51,56 +54,6 @@ pub fn dot(a: [f64; 3], b: [f64; 3], b_low: [f64; 3], small: f64) -> f64 {
     let (sum, rest_low) = two_sum(sum, third);
     let of_low = a[0] * b_low[0] + a[1] * b_low[1] + a[2] * b_low[2];
     sum + ((first_low + second_low + third_low) + (sum_low + rest_low) + (of_low + small))
-}
-
-/// An exact number: an unevaluated sum of parts whose digits do not overlap, smallest first (Shewchuk 1997).
-#[derive(Clone, Debug, Default)]
-pub struct Exact {
-    parts: Vec<f64>,
-}
-
-impl Exact {
-    /// Returns the exact sum of some numbers.
-    pub fn sum(terms: impl IntoIterator<Item = f64>) -> Self {
-        let mut parts = Vec::with_capacity(16);
-        for term in terms {
-            let (mut carry, mut kept) = (term, 0);
-            for index in 0..parts.len() {
-                let (sum, low) = two_sum(carry, parts[index]);
-                if low != 0.0 {
-                    parts[kept] = low;
-                    kept += 1;
-                }
-                carry = sum;
-            }
-            parts.truncate(kept);
-            if carry != 0.0 {
-                parts.push(carry);
-            }
-        }
-        Self { parts }
-    }
-
-    /// Returns the parts that the number is the sum of.
-    pub fn parts(&self) -> &[f64] {
-        &self.parts
-    }
-
-    /// Returns the terms whose exact sum is the product with another number.
-    pub fn times<'e>(&'e self, other: &'e Self) -> impl Iterator<Item = f64> + 'e {
-        let pairs = self.parts.iter().flat_map(|one| other.parts.iter().map(move |other| (*one, *other)));
-        pairs.flat_map(|(one, other)| <[f64; 2]>::from(two_product(one, other)))
-    }
-
-    /// Returns the number rounded once to a double-double.
-    pub fn rounded(&self) -> DoubleDouble {
-        self.parts.iter().rev().fold(DoubleDouble::from(0.0), |sum, part| sum + DoubleDouble::from(*part))
-    }
-}
-
-/// Returns a sum, rounded once to a double-double: 0 exactly where the sum is 0, however much of it cancels.
-pub fn exact_sum(terms: impl IntoIterator<Item = f64>) -> DoubleDouble {
-    Exact::sum(terms).rounded()
 }
 
 /// Returns the exponent of the power of two that scales a magnitude to between 1/2 and 1; 0 for 0.
@@ -342,14 +295,6 @@ mod tests {
         assert_eq!(two_sum(1.0, 1e-17), (1.0, 1e-17));
         let (product, low) = two_product(1.0 + f64::EPSILON, 1.0 + f64::EPSILON);
         assert_eq!((product, low), (1.0 + 2.0 * f64::EPSILON, f64::EPSILON * f64::EPSILON));
-    }
-
-    #[test]
-    fn exact_sums_lose_nothing() {
-        assert_eq!(exact_sum([1e200, 1.0, -1e200, 1e-200, -1.0]), DoubleDouble::from(1e-200));
-        assert_eq!(exact_sum([0.1, 0.2, -0.2, -0.1]), DoubleDouble::from(0.0));
-        let DoubleDouble { high, low } = exact_sum([1e-40, 1e-20, 1.0, 1e40, -1e40]);
-        assert_eq!((high, low), (1.0, 1e-20));
     }
 
     /// Returns a pseudorandom number from -1 to 1, with zeros and few digits among them.

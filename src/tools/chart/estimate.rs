@@ -80,6 +80,9 @@ pub struct Estimate {
     pub samples: u32,
     /// The greatest number of samples, where pixels take different ones.
     pub most: Option<u32>,
+    /// The mean number of rays from the viewer for a pixel: its samples, and where pixels take different numbers, its part
+    /// of the probes that decide on them.
+    pub rays: f64,
     /// The CPU time of one thread for the whole image, in seconds.
     pub seconds: f64,
     /// The measured error, where 1 is white.
@@ -248,7 +251,7 @@ impl Study {
             errors.add(&[one.colours], right);
             let [error, bound] = errors.bounds(0, most, against, all, self.goal.is_worst());
             let (seconds, worst) = (one.seconds * all as f64, errors.worst(0));
-            Estimate { accuracy, samples, most: Some(most), seconds, error, bound, worst }
+            Estimate { accuracy, samples, most: Some(most), rays: one.rays, seconds, error, bound, worst }
         };
         measured.into_iter().map(estimate).collect()
     }
@@ -312,6 +315,7 @@ impl Study {
                         accuracy: models[*index].0,
                         samples: *samples,
                         most: None,
+                        rays: f64::from(*samples),
                         seconds: self.time(*index, *samples),
                         error,
                         bound,

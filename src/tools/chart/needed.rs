@@ -5,7 +5,7 @@ use super::places::Pixels;
 use crate::geometry::ray_packet::PACKET_SIZE;
 use crate::parallel;
 use crate::render::bytes::shown;
-use crate::render::observer::{Count, TraceObserver};
+use crate::render::observer::{Count, RayKind, TraceObserver};
 use crate::render::plan::Plan;
 use crate::render::renderer::Renderer;
 use crate::render::tiles::{self, TILE, TOGETHER};
@@ -31,6 +31,8 @@ pub(super) struct Needed {
     pub limits: [u32; 2],
     /// The colours of the pixels as they are shown.
     pub colours: Vec<Rgb>,
+    /// The mean number of rays from the viewer for a pixel: its samples, and its part of the probes.
+    pub rays: f64,
     /// The CPU time of one thread for a pixel in the mean, in seconds.
     pub seconds: f64,
 }
@@ -53,22 +55,27 @@ pub(super) fn measure(
             plan.set_adaptive(Some(Adaptive { most, error: None }));
             let (colours, samples) = colours(threads, &plan, pixels);
             // Tiles differ in their samples, and there are fewer of them than pixels.
-            let seconds = samples * threads.run(|| of_sample(&plan, &wide));
-            Needed { limits: [least, most], colours, seconds }
+            let (of_sample, probes) = threads.run(|| (of_sample(&plan, &wide), probes(&plan, &wide)));
+            Needed { limits: [least, most], colours, rays: samples + probes, seconds: samples * of_sample }
         })
         .collect()
 }
 
-/// Counts samples.
+/// Counts samples, and all rays from the viewer.
 #[derive(Default)]
-struct Samples(u64);
+struct Samples {
+    samples: u64,
+    primary: u64,
+}
 
 impl TraceObserver for Samples {
     const SEES: bool = false;
 
     fn count(&mut self, count: Count) {
-        if let Count::Sampled(samples) = count {
-            self.0 += u64::from(samples);
+        match count {
+            Count::Sampled(samples) => self.samples += u64::from(samples),
+            Count::Rays(RayKind::Primary, rays) => self.primary += rays as u64,
+            _ => {}
         }
     }
 }
@@ -82,7 +89,7 @@ fn colours(threads: &Renderer, plan: &Plan, pixels: &Pixels) -> (Vec<Rgb>, f64) 
             let mut samples = Samples::default();
             let mut tracer = Tracer::new(plan, Cpu::best(), &mut scratch, &mut samples);
             let colour = shown(tracer.pixels(&[*pixel]).get(0));
-            (colour, samples.0)
+            (colour, samples.samples)
         };
         pixels[range].iter().map(one).collect()
     };
@@ -112,10 +119,20 @@ fn of_sample(plan: &Plan, tiles: &[Pixels]) -> f64 {
         for tile in tiles {
             black_box(Tracer::new(plan, Cpu::best(), &mut scratch, &mut samples).pixels(tile));
         }
-        (clock::now() - start).as_secs_f64() / samples.0 as f64
+        (clock::now() - start).as_secs_f64() / samples.samples as f64
     };
     round();
     (0..ROUNDS).map(|_| round()).fold(f64::INFINITY, f64::min)
+}
+
+/// Returns the number of probes per pixel where these tiles are traced, each with those around it.
+fn probes(plan: &Plan, tiles: &[Pixels]) -> f64 {
+    let (mut scratch, mut samples) = (Scratch::default(), Samples::default());
+    for tile in tiles {
+        Tracer::new(plan, Cpu::best(), &mut scratch, &mut samples).pixels(tile);
+    }
+    let pixels: usize = tiles.iter().map(Vec::len).sum();
+    samples.primary.saturating_sub(samples.samples) as f64 / pixels as f64
 }
 
 /// Returns how many tiles of a measurement by fixed numbers are timed here: about as many rays.

@@ -245,6 +245,24 @@ mod tests {
     }
 
     #[test]
+    fn a_wall_behind_a_rim_that_is_missed_is_seen() {
+        // The ball is cut one part in 2^53 before its nearest point, which intervals in `f64` do not tell. Its inner wall
+        // is 9 away; the screen behind it is as bright as the rim would be, at 7.
+        let model = model(
+            "material pale { ambient 6 6 6 } material bright { ambient 12 12 12 }
+             quadric cut { material pale coefficients 1 1 1 0 0 0 0 0 0 1 center 4 3 -3
+                           box -2 -2 -2 2 2 0.9999999999999999 }
+             plane screen { material bright normal 0 0 1 point 0 0 -9 }",
+        );
+        let plan = Plan::new(&model);
+        let prover = Prover::new(&plan);
+        let red = prover.mean::<f64>(1, 1).0.expect("a known colour")[0];
+        assert!((red * Interval::constant(9.0) - Interval::constant(6.0)).has_zero(), "{red:?}");
+        assert_eq!(prover.pixel(1, 1, [170; 3]).verdict(), Verdict::Proven);
+        assert_ne!(prover.pixel(1, 1, [218; 3]).verdict(), Verdict::Proven);
+    }
+
+    #[test]
     fn a_pixel_at_the_edge_of_a_tile_is_decided() {
         let tiles = |color: &str| {
             format!(

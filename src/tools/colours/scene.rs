@@ -10,6 +10,9 @@ use crate::world::packets::light::{EncloseLight, PacketLight};
 use crate::world::packets::shader::{EncloseLook, PacketShader};
 use crate::world::shader::LookBounds;
 
+/// The number of edges of one object on a line after which its hits are in doubt.
+const MAX_EDGES: usize = 4;
+
 /// A colour in intervals.
 pub(super) type Colour<F> = [Interval<F>; 3];
 
@@ -105,23 +108,48 @@ impl<'p, 'm> Scene<'p, 'm> {
         }
     }
 
+    /// Returns what is certain about the next hit of a line with an object that it may pass through in a place.
+    fn behind<F: Precise>(&self, path: &Path<F>, start: Interval<F>, place: Place) -> (Found<F>, usize) {
+        let line = Line { origin: path.line.at(start), dir: path.line.dir };
+        let onward = Path { line, leaves: Some(place) };
+        let (found, part) = self.hit(&onward, &coarse(&line), place.object);
+        let found = match found {
+            Found::Misses => Found::Misses,
+            Found::Hits(at) => Found::Hits(start + at),
+            Found::Edge(at) => Found::Edge(start + at),
+            Found::Doubtful(low) => Found::Doubtful((start + Interval::point(low)).low),
+        };
+        (found, part)
+    }
+
     /// Returns what a line hits first.
     pub fn first<F: Precise>(&self, path: &Path<F>) -> First<F> {
         let coarse = coarse(&path.line);
         let mut found = Vec::new();
         let mut end = F::INFINITY;
         for object in 0..self.objects.len() {
-            let (hit, part) = self.hit(path, &coarse, object);
-            let low = match hit {
-                Found::Misses => continue,
-                Found::Hits(at) => {
-                    end = end.min(at.high);
-                    at.low
-                }
-                Found::Edge(at) => at.low,
-                Found::Doubtful(low) => low,
-            };
-            found.push((low, hit, Place { object, part }));
+            let (mut hit, mut part) = self.hit(path, &coarse, object);
+            for round in 0..=MAX_EDGES {
+                let low = match hit {
+                    Found::Misses => break,
+                    Found::Hits(at) => {
+                        end = end.min(at.high);
+                        at.low
+                    }
+                    // Too many to follow.
+                    Found::Edge(Interval { low, .. }) if round == MAX_EDGES => {
+                        hit = Found::Doubtful(low);
+                        low
+                    }
+                    Found::Edge(at) => at.low,
+                    Found::Doubtful(low) => low,
+                };
+                let place = Place { object, part };
+                found.push((low, hit, place));
+                // What is cut off at its edge does not hide what lies behind.
+                let Found::Edge(start) = hit else { break };
+                (hit, part) = self.behind(path, start, place);
+            }
         }
         let mut nearest = found.iter().filter(|(low, ..)| *low <= end);
         match (nearest.next(), nearest.next()) {
