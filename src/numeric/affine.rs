@@ -9,7 +9,7 @@ mod functions;
 
 use crate::numeric::interval::Interval;
 use std::array;
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::ops::{Add, Mul, Neg, Sub};
 
 /// The number of variables.
 pub const VARIABLES: usize = 5;
@@ -214,13 +214,5 @@ impl Mul for Affine {
             + other.rest * (self.centre.abs() + lines);
         let linear = array::from_fn(|at| self.centre * b[at] + other.centre * a[at]);
         Self::rounded(self.centre * other.centre + shift, linear, rest, size)
-    }
-}
-
-impl Div for Affine {
-    type Output = Self;
-
-    fn div(self, other: Self) -> Self {
-        if self.is_nothing() && !other.has_zero() { self } else { self * other.reciprocal() }
     }
 }

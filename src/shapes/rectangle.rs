@@ -2,9 +2,8 @@
 
 use crate::geometry::aabb::{Aabb, larger, smaller};
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
-use crate::numeric::double_double::{
-    DoubleDouble, cross, exponent_to_one, product, times_power_of_two, unit,
-};
+use crate::numeric::double_double::vectors::{cross, product, unit};
+use crate::numeric::double_double::{DoubleDouble, exponent_to_one, times_power_of_two};
 use crate::numeric::scalar::{self, Scalar, constants, dot, per_axis};
 use crate::shapes::plane::{DRAFT_ERROR, Plane};
 use crate::world::accuracy::{Accuracy, Bounded, Classic};

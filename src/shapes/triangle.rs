@@ -2,10 +2,8 @@
 
 use crate::geometry::aabb::larger;
 use crate::geometry::ray::{Bracket, MISS, Ray, RayRange};
-use crate::numeric::double_double::{
-    self, DoubleDouble, exponent_to_one, plain_cross, quick_unit, rounded_unit, times_power_of_two,
-    triple_product, two_sum,
-};
+use crate::numeric::double_double::vectors::{self, plain_cross, quick_unit, rounded_unit, triple_product};
+use crate::numeric::double_double::{DoubleDouble, exponent_to_one, times_power_of_two, two_sum};
 use crate::numeric::scalar::{Scalar, constants, cross, dot, per_axis};
 use crate::shapes::plane::Plane;
 use crate::simd::soa::{LANES, Vectors};
@@ -204,7 +202,7 @@ fn slow_normal([a, b, c]: [DVec3; 3]) -> [DoubleDouble; 3] {
         let edge = |axis: usize| DoubleDouble::difference(to[axis], a[axis]);
         scaled_to_one([edge(0), edge(1), edge(2)])
     };
-    scaled_to_one(double_double::cross(edge(b), edge(c)))
+    scaled_to_one(vectors::cross(edge(b), edge(c)))
 }
 
 /// Returns a vector scaled by a power of two so that its largest component is between 1/2 and 1.

@@ -4,6 +4,7 @@ use super::{Affine, spread};
 use crate::numeric::interval::Interval;
 use crate::numeric::scalar::{Scalar, of_cubic};
 use crate::numeric::spline::Spline;
+use std::ops::Div;
 
 impl Affine {
     /// Applies a function, given its value and its derivative at the centre, and its second derivative over the range.
@@ -21,7 +22,7 @@ impl Affine {
         Self::rounded(middle + shift, self.linear.map(|part| steep * part), rest, size)
     }
 
-    pub(super) fn reciprocal(self) -> Self {
+    fn reciprocal(self) -> Self {
         let range = self.range();
         if range.has_zero() || !range.is_bounded() {
             return Self::WHOLE;
@@ -51,6 +52,14 @@ fn power(base: Interval, exponent: i32) -> Interval {
     let square = half * half;
     let power = if exponent % 2 == 0 { square } else { square * base };
     Interval { low: power.low.max(0.0), high: power.high }
+}
+
+impl Div for Affine {
+    type Output = Self;
+
+    fn div(self, other: Self) -> Self {
+        if self.is_nothing() && !other.has_zero() { self } else { self * other.reciprocal() }
+    }
 }
 
 impl Scalar for Affine {

@@ -3,7 +3,8 @@
 use super::exact::PreciseHit;
 use super::surface::{DD_ERROR, OwnRay, Quadratic};
 use crate::geometry::ray::{MISS, Side};
-use crate::numeric::double_double::{DoubleDouble, exponent_to_one, product, times_power_of_two};
+use crate::numeric::double_double::vectors::product;
+use crate::numeric::double_double::{DoubleDouble, exponent_to_one, times_power_of_two};
 use crate::numeric::scalar::{Scalar, per_axis};
 use glam::DVec3;
 
