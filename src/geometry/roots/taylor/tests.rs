@@ -1,0 +1,68 @@
+//! Tests of the search for roots.
+
+use super::*;
+use std::cell::Cell;
+
+/// A double root at 1, and a single one at 3.
+struct Cubic;
+
+impl FunctionOnLine for Cubic {
+    fn at<N: Scalar>(&self, t: N) -> N {
+        (t - N::constant(1.0)).powi(2) * (N::constant(3.0) - t)
+    }
+}
+
+/// A kink at the root 2, a jump past 0 at 3 and a pole at 4.
+struct Broken;
+
+impl FunctionOnLine for Broken {
+    fn at<N: Scalar>(&self, t: N) -> N {
+        let n = N::constant;
+        (t - n(2.0)).abs().min(n(2.5) - t.floor()) / (n(4.0) - t)
+    }
+}
+
+fn first(line: &impl FunctionOnLine, span: Range<f64>, origin_side: Option<Side>) -> Option<f64> {
+    let range = RayRange { origin_side, ..RayRange::ALL };
+    first_root(line, &span.into(), 0.0, &range, f64::EPSILON * 36.0).root
+}
+
+#[test]
+fn a_touch_is_a_root_and_no_way_in() {
+    let touch = first(&Cubic, 0.0..9.0, None).expect("a touch");
+    assert!((touch - 1.0).abs() < 1e-7, "{touch:e}");
+    assert_eq!(first(&Cubic, 0.0..9.0, Some(Side::Outside)), Some(3.0));
+    assert_eq!(first(&Cubic, 0.0..9.0, Some(Side::Inside)), None);
+    assert_eq!(first(&Cubic, 1.5..2.9, None), None);
+}
+
+/// Is rounded by as much as it waves; counts the pieces that bounds do not decide.
+#[derive(Default)]
+struct Hidden(Cell<usize>);
+
+impl FunctionOnLine for Hidden {
+    fn at<N: Scalar>(&self, t: N) -> N {
+        (N::constant(1e4) * t).sin() + N::about(0.0, 1.0)
+    }
+
+    fn undecided(&self, _piece: Interval, _origin_side: Option<Side>) -> Option<f64> {
+        self.0.set(self.0.get() + 1);
+        None
+    }
+}
+
+#[test]
+fn pieces_that_rounding_hides_are_not_all_judged() {
+    let line = Hidden::default();
+    assert_eq!(first(&line, 0.0..9.0, None), None);
+    assert_eq!(line.0.get(), MAX_UNDECIDED);
+}
+
+#[test]
+fn kinks_and_jumps_are_met_and_poles_are_not() {
+    let kink = first(&Broken, 0.3..9.0, None).expect("a kink");
+    assert!((kink - 2.0).abs() < 1e-14, "{kink}");
+    let jump = first(&Broken, 2.3..9.0, None).expect("a jump");
+    assert!((jump - 3.0).abs() < 1e-14, "{jump}");
+    assert_eq!(first(&Broken, 3.3..9.0, None), None);
+}
