@@ -115,7 +115,7 @@ fn left(folder: &TempDir, whole: &[u8]) -> String {
 #[test]
 #[ignore = "takes a minute, and prints a table of docs/limits.md"]
 fn faults_table() {
-    const ARGS: &str = "render hall.ray --size 600 --samples 4 -o a.png";
+    const ARGS: &str = "render hall.ray --size 600 --samples 256 -o a.png";
     let whole = workplace();
     assert_eq!(render(&whole, &ARGS.split(' ').skip(1).collect::<Vec<_>>()).0, 0);
     let whole = bytes(&whole, "a.png");
@@ -140,7 +140,7 @@ fn faults_table() {
             format!(
                 "\"$0\" {ARGS} --time-limit 400ms 2>/dev/null; echo precious | tr -d '\\n' > a.png
                 sed 's/specular/ambient 1 1 1 specular/' hall.ray > other.ray
-                exec \"$0\" render other.ray --size 600 --samples 4 -o a.png --resume"
+                exec \"$0\" render other.ray --size 600 --samples 256 -o a.png --resume"
             ),
         ),
     ] {
