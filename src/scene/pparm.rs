@@ -89,7 +89,13 @@ impl dyn Attribute + '_ {
                 format!("the name or number of a {}", choices.what)
             }
             Type::Choice(choices) => format!("the name of an {}", choices.what),
-            Type::Formula(variables) => format!("a formula in {}, in quotes", text::and(variables)),
+            Type::Formula(variables) => {
+                let what = match self.arity().most() {
+                    1 => "a formula".to_owned(),
+                    _ => self.arity().told("formula"),
+                };
+                format!("{what} in {}, in quotes", text::and(variables))
+            }
             Type::Truth => "`yes` or `no`".to_owned(),
         }
     }

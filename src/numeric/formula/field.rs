@@ -1,4 +1,4 @@
-//! Formulas in x, y and z.
+//! Formulas in x, y and z, and in all that is known of a point of a surface.
 
 use super::step::{Function, MAX_DEPTH, Step};
 use super::{Formula, SMALL_STACK};
@@ -8,27 +8,50 @@ use std::sync::Arc;
 /// The variables of a formula of space.
 pub const SPACE: &[&str] = &["x", "y", "z"];
 
+/// The variables of a formula of a surface: the point, u and v, and the unit normal.
+pub const SURFACE: &[&str] = &["x", "y", "z", "u", "v", "nx", "ny", "nz"];
+
 /// The stack depth that suffices for most formulas of space, in values. A stack of [`MAX_DEPTH`] takes longer to set up
 /// than most formulas to evaluate.
 const MEDIUM_STACK: usize = 8;
 
 /// A formula in x, y and z: `x^2 + y^2 + z^2 - 1`.
+pub type Field = FieldOf<3>;
+
+/// A formula in the variables of [`SURFACE`]: `0.5 + 0.5*sin(4*x)`.
+pub type SurfaceField = FieldOf<8>;
+
+/// A formula in 3 variables, those of [`SPACE`], or in the 8 of [`SURFACE`].
 #[derive(Clone, Debug, PartialEq)]
-pub struct Field {
+pub struct FieldOf<const N: usize> {
     /// The formula as it was read.
     formula: Arc<Formula>,
     /// The same with fewer operations.
     quick: Formula,
 }
 
-impl Field {
-    /// Takes a formula, if its variables are x, y and z.
+impl<const COUNT: usize> FieldOf<COUNT> {
+    /// The names of the variables.
+    pub const VARIABLES: &'static [&'static str] = if COUNT == SURFACE.len() { SURFACE } else { SPACE };
+
+    /// Takes a formula, if its variables are these.
     pub fn new(formula: Arc<Formula>) -> Option<Self> {
-        if formula.variables() != SPACE {
+        if formula.variables() != Self::VARIABLES {
             return None;
         }
-        let quick = Formula::new(formula.text.clone(), SPACE, with_constants(&formula.steps));
+        let quick = Formula::new(formula.text.clone(), Self::VARIABLES, with_constants(&formula.steps));
         Some(Self { formula, quick })
+    }
+
+    /// Tells whether the formula uses the variable of this index.
+    pub fn uses(&self, index: usize) -> bool {
+        self.quick.steps.iter().any(|step| *step == Step::Variable(index as u8))
+    }
+
+    /// Tells whether the formula has a value wherever an interval has one: it has no square roots, which intervals take of
+    /// what is not negative alone.
+    pub fn is_enclosed(&self) -> bool {
+        !self.quick.steps.contains(&Step::Call(Function::Sqrt))
     }
 
     /// Returns the formula.
@@ -38,7 +61,7 @@ impl Field {
 
     /// Evaluates the formula at a point.
     #[inline(always)]
-    pub fn at<N: Scalar>(&self, at: [N; 3]) -> N {
+    pub fn at<N: Scalar>(&self, at: [N; COUNT]) -> N {
         let depth = self.quick.stack_depth;
         if depth <= SMALL_STACK {
             self.quick.run(&at, &mut [at[0]; SMALL_STACK])

@@ -29,7 +29,7 @@ pub fn made(
         let construct: &dyn Fn(&Args) -> Result<Made, Refusal> =
             match store.sound(order).map(|entity| entity.construct) {
                 Some(Construct::Object(_)) if reads_files => &|_| Ok(Made::ByFile),
-                Some(Construct::Object(construct)) => &move |args| construct(args).map(Made::Object),
+                Some(Construct::Object(construct)) => &move |args| args.body(construct).map(Made::Object),
                 Some(Construct::Light(construct)) => &move |args| construct(args).map(Made::Light),
                 _ => continue,
             };

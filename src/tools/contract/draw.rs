@@ -1,6 +1,7 @@
 //! Draws values for attributes by their types and rules, the same in every run.
 
 use crate::numeric::formula::HEIGHT;
+use crate::scene::choice::Choices;
 use crate::scene::entity::Entity;
 use crate::scene::kind::Kind;
 use crate::scene::pparm::Attribute;
@@ -101,14 +102,24 @@ impl Draw {
     /// Draws a scene with an entity of this type, and with the entities that it may refer to.
     pub fn scene(&mut self, registry: &Registry, entity: &'static Entity) -> String {
         let mut text = String::new();
+        let is_simple = |other: &&'static Entity| {
+            other.kind() == Kind::Shader && !refers_to(other, Kind::Shader)
+        };
+        let shaders: Vec<_> = registry.iter().filter(is_simple).collect();
+        let shader =
+            (refers_to(entity, Kind::Shader) && !shaders.is_empty()).then(|| self.pick(&shaders));
         for kind in [Kind::Camera, Kind::Material, Kind::Texture] {
             let its = |other: &&'static Entity| other.kind() == kind;
-            if kind != Kind::Camera && !its(&entity) && !refers_to(entity, kind) {
+            let is_needed = [Some(entity), shader].into_iter().flatten().any(|user| refers_to(user, kind));
+            if kind != Kind::Camera && !its(&entity) && !is_needed {
                 continue;
             }
             if let Some(other) = Some(entity).filter(its).or_else(|| registry.iter().find(its)) {
                 text += &self.entity(other, name(kind));
             }
+        }
+        if let Some(shader) = shader {
+            text += &self.entity(shader, name(Kind::Shader));
         }
         let is_plain = |other: &&Entity| other.kind() == Kind::Object && !refers_to(other, Kind::Object);
         if refers_to(entity, Kind::Object)
@@ -116,7 +127,7 @@ impl Draw {
         {
             text += &self.entity(other, name(Kind::Object));
         }
-        if matches!(entity.kind(), Kind::Object | Kind::Light) {
+        if matches!(entity.kind(), Kind::Shader | Kind::Object | Kind::Light) {
             text += &self.entity(entity, "tried");
         }
         text
@@ -159,6 +170,7 @@ impl Draw {
             Type::Word => word(PICTURE),
             Type::File => word(MODEL),
             Type::Name(kind) => word(name(kind)),
+            Type::Choice(Choices { kind: Some(kind), .. }) if self.below(2) == 0 => word(name(kind)),
             Type::Formula(HEIGHT) => word(&format!("\"{}\"", self.pick(&FORMULAS))),
             Type::Formula(_) => word(&format!("\"{}\"", self.pick(&FIELDS))),
             _ => {
@@ -179,7 +191,11 @@ impl Draw {
 /// Tells whether an attribute of the type refers to an entity of this kind.
 fn refers_to(entity: &Entity, kind: Kind) -> bool {
     let mut types = entity.attributes().map(|attribute| attribute.value_type());
-    types.any(|its| matches!(its, Type::Name(named) if named == kind))
+    types.any(|its| match its {
+        Type::Name(named) => named == kind,
+        Type::Choice(choices) => choices.kind == Some(kind),
+        _ => false,
+    })
 }
 
 /// Returns the name of the entity of this kind that others refer to.
@@ -188,6 +204,7 @@ fn name(kind: Kind) -> &'static str {
         Kind::Camera => "eye",
         Kind::Material => "m",
         Kind::Texture => "t",
+        Kind::Shader => "s",
         Kind::Object => "o",
         Kind::Light => "tried",
     }
