@@ -54,7 +54,8 @@ impl Kind {
             ],
             Self::Shader => &[
                 ("plugins/NAME.rs", include_str!("templates/shader.rs")),
-                ("scenes/psphere/NAME.ray", include_str!("templates/shader.ray")),
+                ("scenes/entities/NAME.ray", include_str!("templates/shader.ray")),
+                ("scenes/wrong/NAME.ray", include_str!("templates/shader-wrong.ray")),
             ],
             Self::Profile => &[
                 ("plugins/NAME.rs", include_str!("templates/profile.rs")),

@@ -304,6 +304,15 @@ impl Names {
                         .also(place(defined), "defined here")
                         .help(format!("{} must be defined before it is used", kind.with_article()))
                 }
+                // A type that needs attributes does not stand for a shader.
+                None if *kind == Kind::Shader
+                    && let Some(entity) = registry.find(text).filter(|entity| entity.kind() == *kind) =>
+                {
+                    let usage = report.syntax().entity_usage(entity, "NAME");
+                    Fault::error(first.clone(), format!("there is no shader `{text}`"))
+                        .label(suggestion(None, *count))
+                        .help(format!("`{text}` is a type of shader: define one before this: {usage}"))
+                }
                 None => {
                     let known = known.get(kind).filter(|_| is_told).into_iter().flatten().copied();
                     Fault::error(first.clone(), format!("there is no {kind} `{text}`"))
