@@ -39,7 +39,15 @@ impl<const COUNT: usize> FieldOf<COUNT> {
         if formula.variables() != Self::VARIABLES {
             return None;
         }
-        let quick = Formula::new(formula.text.clone(), Self::VARIABLES, with_constants(&formula.steps));
+        let new = |steps| Formula::new(formula.text.clone(), Self::VARIABLES, steps);
+        let mut quick = new(with_constants(&formula.steps));
+        let of_surface = COUNT == SURFACE.len() && quick.steps.contains(&Step::Call(Function::Sqrt));
+        if of_surface {
+            let rooted = new(with_roots(&quick.steps));
+            if rooted.stack_depth <= MAX_DEPTH {
+                quick = rooted;
+            }
+        }
         Some(Self { formula, quick })
     }
 
@@ -48,10 +56,13 @@ impl<const COUNT: usize> FieldOf<COUNT> {
         self.quick.steps.iter().any(|step| *step == Step::Variable(index as u8))
     }
 
-    /// Tells whether the formula has a value wherever an interval has one: it has no square roots, which intervals take of
-    /// what is not negative alone.
+    /// Tells whether intervals enclose the formula also where it takes a square root of what may be negative: in a formula
+    /// of a surface, that is 0.
     pub fn is_enclosed(&self) -> bool {
-        !self.quick.steps.contains(&Step::Call(Function::Sqrt))
+        let is_root = |step: &Step| *step == Step::Call(Function::Sqrt);
+        let roots = |steps: &[Step]| steps.iter().filter(|step| is_root(step)).count();
+        let pairs = self.quick.steps.windows(ROOT.len());
+        roots(&self.quick.steps) == pairs.filter(|steps| *steps == ROOT).count()
     }
 
     /// Returns the formula.
@@ -71,6 +82,21 @@ impl<const COUNT: usize> FieldOf<COUNT> {
             self.quick.run(&at, &mut [at[0]; MAX_DEPTH])
         }
     }
+}
+
+/// A square root of which that of a negative number is 0.
+const ROOT: [Step; 3] = [Step::Number(0.0), Step::Call(Function::Max), Step::Call(Function::Sqrt)];
+
+/// Returns the same operations, where square roots of negative numbers are 0.
+fn with_roots(steps: &[Step]) -> Vec<Step> {
+    let mut out = Vec::with_capacity(steps.len());
+    for step in steps {
+        match step {
+            Step::Call(Function::Sqrt) => out.extend(ROOT),
+            step => out.push(*step),
+        }
+    }
+    out
 }
 
 /// Returns the same operations, where those with a constant take one step and no derivatives of the constant.
@@ -116,6 +142,15 @@ fn with_constants(steps: &[Step]) -> Vec<Step> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn roots_of_negative_numbers_are_0_in_a_formula_of_a_surface() {
+        let formula = Formula::parse_in("2 + sqrt(x)*nz", SURFACE).expect("a formula");
+        let field = SurfaceField::new(Arc::new(formula)).expect("its variables are those of a surface");
+        assert!(field.is_enclosed() && field.uses(7) && !field.uses(6));
+        let at = |x: f64| field.at([x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.5]);
+        assert_eq!([at(-4.0), at(4.0)], [2.0, 3.0]);
+    }
 
     #[test]
     fn a_field_means_what_its_formula_says() {
